@@ -1,0 +1,1 @@
+//! The flexible rocking model and its solver.

@@ -1,0 +1,1 @@
+//! Ground motion records: PEER AT2 and CSV.

@@ -1,0 +1,104 @@
+//! The state of the structure and the phase it is in.
+
+use crate::quantity::{OutOfRange, Quantity, quantity};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::FRAC_PI_2;
+
+/// State of the structure.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Elastic displacement of the top mass in the frame that turns with the base, m.
+    pub u: f64,
+    /// Its rate, m/s.
+    pub u_dot: f64,
+    /// Rotation of the base, rad; positive about the right pivot.
+    pub theta: f64,
+    /// Its rate, rad/s.
+    pub theta_dot: f64,
+}
+
+/// The pivot about which the structure rocks: the sign s of θ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Side {
+    /// About the left pivot, θ < 0, s = −1.
+    Left,
+    /// About the right pivot, θ > 0, s = +1.
+    Right,
+}
+
+impl Side {
+    /// s: +1 right, −1 left.
+    pub fn sign(self) -> f64 {
+        match self {
+            Side::Left => -1.0,
+            Side::Right => 1.0,
+        }
+    }
+
+    /// The other pivot.
+    pub fn opposite(self) -> Side {
+        match self {
+            Side::Left => Side::Right,
+            Side::Right => Side::Left,
+        }
+    }
+
+    /// The side whose sign `x` has; right for 0.
+    pub fn of(x: f64) -> Side {
+        if x < 0.0 { Side::Left } else { Side::Right }
+    }
+}
+
+/// What holds of the base.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Phase {
+    /// Both pivots down: θ = θ̇ = 0, Eq 1.
+    FullContact,
+    /// Rocking about one pivot: Eqs 5, 6.
+    Rocking(Side),
+    /// |θ| has reached π/2; the simulation is over.
+    Overturned(Side),
+}
+
+/// The initial values with their units and ranges, under their names in files and in the FMU.
+pub const INITIAL_VALUES: [Quantity<State>; 4] = [
+    quantity!("theta_0", theta["rad"] - 1.5, 1.5, "initial rotation of the base; 0 is full contact"),
+    quantity!("theta_dot_0", theta_dot["rad/s"] - 1e3, 1e3, "initial angular velocity of the base"),
+    quantity!("u_0", u["m"] - 1e4, 1e4, "initial elastic displacement of the top mass"),
+    quantity!("u_dot_0", u_dot["m/s"] - 1e4, 1e4, "initial elastic velocity of the top mass"),
+];
+
+/// Why an initial state is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum InitialStateError {
+    /// One value is outside its own range.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+    /// The base turns although both pivots are down.
+    #[error(
+        "theta_dot_0 = {0} rad/s contradicts theta_0 = 0 (full contact, where theta and theta_dot are both 0): \
+         set theta_dot_0 to 0, or theta_0 to an angle with the sign of the pivot that the structure rocks about"
+    )]
+    TurningInFullContact(f64),
+}
+
+impl State {
+    /// The phase that this state starts in: full contact for θ = 0, otherwise rocking about the side of θ's sign.
+    pub fn initial_phase(&self) -> Result<Phase, InitialStateError> {
+        for quantity in &INITIAL_VALUES {
+            quantity.check((quantity.get)(self))?;
+        }
+        if self.theta != 0.0 {
+            Ok(Phase::Rocking(Side::of(self.theta)))
+        } else if self.theta_dot == 0.0 {
+            Ok(Phase::FullContact)
+        } else {
+            Err(InitialStateError::TurningInFullContact(self.theta_dot))
+        }
+    }
+
+    /// Whether the angle is past the horizontal: |θ| ≥ π/2.
+    pub fn is_overturned(&self) -> bool {
+        self.theta.abs() >= FRAC_PI_2
+    }
+}
