@@ -1,6 +1,36 @@
-//! The hybrid engine.
-use crate::{Phase, Side, State, Structure, state::InitialStateError};
+//! The hybrid engine: phase equations → step → guard → transition, repeated to the end of an interval.
+//!
+//! A step is a Taylor series ([`crate::taylor`]) that ends where its truncation error meets the tolerance, at the end
+//! of the interval, or at the first transition on it, which [`crate::first_crossing`] cannot pass. At the start of
+//! rocking θ is exactly 0; its leading zero coefficients are divided out before the search for its return, so that
+//! neither is a return within microseconds missed nor the start taken for one.
+//!
+//! # Progress
+//!
+//! No vibration period 2π/ω_u sees more than [`MAX_TRANSITIONS_PER_PERIOD`] + 2 transitions, so that work per simulated
+//! second is bounded: after that number the next impact is a landing whatever its momentum, and contact is then held to
+//! the end of that period ([`TransitionKind::Settling`]). It is the limit to which ever faster impacts tend; the
+//! specimens never come near it. One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps.
+
+use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
+use crate::state::InitialStateError;
+use crate::taylor::{Arc, Series};
+use crate::{Phase, Side, State, Structure, full_contact, impact, nonlinear_rocking, uplift};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// The default relative tolerance of the results.
+pub const DEFAULT_TOLERANCE: f64 = 1e-9;
+
+/// Part of the tolerance that one step may use up. Impacts amplify an error by orders of magnitude over a record, and a
+/// series pays for each with only one more coefficient or so.
+const LOCAL_SHARE: f64 = 1e-4;
+
+/// Transitions within one period of the vibration mode (2π/ω_u) after which contact is held.
+pub const MAX_TRANSITIONS_PER_PERIOD: u32 = 32;
+
+/// Steps that one advance may take, some ten seconds of computing; a longer interval has to be cut.
+pub const MAX_STEPS_PER_ADVANCE: u64 = 20_000_000;
 
 /// Ground acceleration over one interval, positive to the right: `value + slope·(t − start of the interval)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -11,6 +41,32 @@ pub struct GroundAcceleration {
     pub slope: f64,
 }
 
+impl GroundAcceleration {
+    /// Its value `tau` seconds into the interval, m/s².
+    pub fn at(self, tau: f64) -> f64 {
+        self.value + self.slope * tau
+    }
+
+    /// The same ground motion, its interval started `tau` seconds later.
+    fn from(self, tau: f64) -> GroundAcceleration {
+        GroundAcceleration { value: self.at(tau), slope: self.slope }
+    }
+
+    /// Coefficient `k` of its series.
+    pub(crate) fn coefficient(self, k: usize) -> f64 {
+        match k {
+            0 => self.value,
+            1 => self.slope,
+            _ => 0.0,
+        }
+    }
+
+    /// Coefficient `k` of its product with a series.
+    pub(crate) fn times(self, series: &Series, k: usize) -> f64 {
+        self.value * series[k] + if k > 0 { self.slope * series[k - 1] } else { 0.0 }
+    }
+}
+
 /// Work done since the start, counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Work {
@@ -18,6 +74,17 @@ pub struct Work {
     pub steps: u64,
     /// Right-hand-side evaluations: one for every order of every series.
     pub evaluations: u64,
+}
+
+/// Transitions since the start of the present vibration period, for the guarantee of progress.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Burst {
+    /// Time of the first of them, s.
+    start: f64,
+    /// How many.
+    transitions: u32,
+    /// Until when contact is held, s.
+    held_until: f64,
 }
 
 /// Everything about a structure that changes with time.
@@ -33,17 +100,20 @@ pub struct Motion {
     pub transitions: u64,
     /// Work so far.
     pub work: Work,
+    burst: Burst,
 }
 
 /// What changed at a transition.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TransitionKind {
-    /// Full contact → rocking.
+    /// Full contact → rocking about this side.
     Uplift(Side),
     /// Rocking → rocking about the other pivot, which is the side given.
     Impact(Side),
     /// Rocking → full contact.
     Landing,
+    /// Rocking → full contact, held to the end of a vibration period that saw too many transitions.
+    Settling,
     /// |θ| reached π/2 on this side.
     Overturning(Side),
 }
@@ -62,7 +132,7 @@ pub struct Transition {
 }
 
 /// How far an advance came.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
     /// To the end of the interval.
     Complete,
@@ -73,27 +143,81 @@ pub enum Progress {
 /// Why an advance failed; the motion is then as it was before.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AdvanceError {
-    /// The end of the interval or the ground acceleration is not a usable number.
-    #[error("{0}")]
-    BadInput(String),
-    /// The solver could not go on.
-    #[error("{0}")]
-    Stuck(String),
+    /// The end of the interval does not lie ahead.
+    #[error("cannot advance from t = {from} s to {until} s: the end must be a finite time that lies ahead")]
+    NotAhead {
+        /// The motion's time, s.
+        from: f64,
+        /// The refused end, s.
+        until: f64,
+    },
+    /// The ground acceleration is not finite over the interval.
+    #[error("the ground acceleration {value} m/s2 with slope {slope} m/s3 is not finite up to t = {until} s")]
+    GroundAcceleration {
+        /// m/s².
+        value: f64,
+        /// m/s³.
+        slope: f64,
+        /// End of the interval, s.
+        until: f64,
+    },
+    /// Too many steps for one call.
+    #[error(
+        "one advance may take {MAX_STEPS_PER_ADVANCE} steps; they ended at t = {time} s of {until} s: advance in \
+         shorter intervals"
+    )]
+    TooLong {
+        /// Where the steps ended, s.
+        time: f64,
+        /// End of the interval, s.
+        until: f64,
+    },
+    /// The equations have no finite solution from here on.
+    #[error(
+        "the motion cannot be continued beyond t = {time} s (u = {u} m, theta = {theta} rad): the top mass passes \
+         above the pivot of a foundation without inertia (m0, J0 too small), or the numbers overflow"
+    )]
+    Singular {
+        /// s.
+        time: f64,
+        /// m.
+        u: f64,
+        /// rad.
+        theta: f64,
+    },
 }
 
 /// A structure in motion.
 #[derive(Clone, Debug)]
 pub struct Engine {
     structure: Structure,
-    tolerance: f64,
+    local_error: f64,
     motion: Motion,
 }
 
+/// What happens at the end of a step.
+enum StepEnd {
+    Quiet,
+    HoldOver,
+    Uplift(Side),
+    Impact(Side),
+    Overturning(Side),
+}
+
 impl Engine {
-    /// Starts at `time` from `initial`, to a relative `tolerance` of the results.
+    /// Starts at `time` (s) from `initial`, to a relative `tolerance` of the results.
     pub fn new(structure: Structure, initial: State, time: f64, tolerance: f64) -> Result<Engine, InitialStateError> {
-        let _ = (structure, initial, time, tolerance);
-        todo!()
+        let phase = initial.initial_phase()?;
+        let motion = Motion {
+            time,
+            state: initial,
+            phase,
+            transitions: 0,
+            work: Work::default(),
+            burst: Burst { start: f64::NEG_INFINITY, transitions: 0, held_until: f64::NEG_INFINITY },
+        };
+        let local_error = (LOCAL_SHARE * tolerance).max(f64::EPSILON / 2.0);
+        Ok(Engine { structure, local_error, motion })
     }
 
     /// The structure.
@@ -119,7 +243,159 @@ impl Engine {
         a_g: GroundAcceleration,
         observe: &mut dyn FnMut(&Transition),
     ) -> Result<Progress, AdvanceError> {
-        let _ = (until, a_g, observe, self.tolerance);
-        todo!()
+        let start = self.motion.time;
+        let interval = until - start;
+        if !(interval > 0.0 && interval.is_finite()) {
+            return Err(AdvanceError::NotAhead { from: start, until });
+        }
+        if !(a_g.value.is_finite() && a_g.at(interval).is_finite()) {
+            return Err(AdvanceError::GroundAcceleration { value: a_g.value, slope: a_g.slope, until });
+        }
+        let mut motion = self.motion;
+        let last_step = motion.work.steps + MAX_STEPS_PER_ADVANCE;
+        // Time runs from the start of the interval: transitions are then as sharp at t = 1000 s as at 0.
+        let mut elapsed = 0.0;
+        while elapsed < interval {
+            let left = interval - elapsed;
+            let here = a_g.from(elapsed);
+            let (arc, end) = match motion.phase {
+                Phase::FullContact => self.step_in_full_contact(&motion, here, left),
+                Phase::Rocking(side) => self.step_while_rocking(&motion, side, here, left),
+                Phase::Overturned(_) => break,
+            };
+            if !arc.is_finite() || (arc.duration == 0.0 && matches!(end, StepEnd::Quiet)) {
+                let State { u, theta, .. } = motion.state;
+                return Err(AdvanceError::Singular { time: motion.time, u, theta });
+            }
+            if motion.work.steps == last_step {
+                return Err(AdvanceError::TooLong { time: motion.time, until });
+            }
+            motion.work.steps += 1;
+            motion.work.evaluations += arc.order as u64;
+            motion.state = arc.at(arc.duration);
+            (elapsed, motion.time) = if arc.duration == left {
+                (interval, until)
+            } else {
+                (elapsed + arc.duration, start + elapsed + arc.duration)
+            };
+            if let Some(transition) = motion.resolve(&self.structure, end) {
+                observe(&transition);
+            }
+        }
+        self.motion = motion;
+        match motion.phase {
+            Phase::Overturned(_) => Ok(Progress::Overturned),
+            _ => Ok(Progress::Complete),
+        }
     }
+
+    /// Motion in full contact over at most `interval` (s), cut at uplift.
+    fn step_in_full_contact(&self, motion: &Motion, a_g: GroundAcceleration, interval: f64) -> (Arc, StepEnd) {
+        let expand = |interval| full_contact::motion(&self.structure, &motion.state, a_g, interval, self.local_error);
+        let held = motion.burst.held_until - motion.time;
+        if held > 0.0 {
+            let arc = expand(interval.min(held));
+            let end = if arc.duration == held { StepEnd::HoldOver } else { StepEnd::Quiet };
+            return (arc, end);
+        }
+        let mut arc = expand(interval);
+        let (crossing, side) = uplift::first_on(&self.structure, &arc);
+        let end = cut(&mut arc, crossing, StepEnd::Uplift(side));
+        (arc, end)
+    }
+
+    /// Rocking about `side` over at most `interval` (s), cut at impact or overturning.
+    fn step_while_rocking(
+        &self,
+        motion: &Motion,
+        side: Side,
+        a_g: GroundAcceleration,
+        interval: f64,
+    ) -> (Arc, StepEnd) {
+        let mut arc = nonlinear_rocking::motion(&self.structure, side, &motion.state, a_g, interval, self.local_error);
+        let overturning = first_overturning(&arc, side);
+        let mut end = cut(&mut arc, overturning, StepEnd::Overturning(side));
+        let crossing = first_return(&arc, side);
+        if crossing != Crossing::None {
+            end = cut(&mut arc, crossing, StepEnd::Impact(side));
+        }
+        (arc, end)
+    }
+}
+
+impl Motion {
+    /// Applies what happens at the end of a step; a transition is returned to be reported.
+    fn resolve(&mut self, structure: &Structure, end: StepEnd) -> Option<Transition> {
+        let before = self.state;
+        let (kind, phase, after) = match end {
+            StepEnd::Quiet => return None,
+            StepEnd::HoldOver => {
+                self.burst.held_until = f64::NEG_INFINITY;
+                return None;
+            }
+            StepEnd::Uplift(side) => (TransitionKind::Uplift(side), Phase::Rocking(side), before),
+            StepEnd::Overturning(side) => (TransitionKind::Overturning(side), Phase::Overturned(side), before),
+            StepEnd::Impact(_) if self.is_chattering(structure) => {
+                self.burst.held_until = self.burst.start + period(structure);
+                let after = impact::land(structure, &before);
+                (TransitionKind::Settling, Phase::FullContact, after)
+            }
+            StepEnd::Impact(side) => match impact::resolve(structure, side, &before) {
+                (phase @ Phase::Rocking(other), after) => (TransitionKind::Impact(other), phase, after),
+                (phase, after) => (TransitionKind::Landing, phase, after),
+            },
+        };
+        self.count_transition(structure);
+        self.phase = phase;
+        self.state = after;
+        Some(Transition { time: self.time, kind, before, after })
+    }
+
+    /// Whether the present vibration period has already seen [`MAX_TRANSITIONS_PER_PERIOD`] transitions.
+    fn is_chattering(&self, structure: &Structure) -> bool {
+        self.burst.transitions >= MAX_TRANSITIONS_PER_PERIOD && self.time < self.burst.start + period(structure)
+    }
+
+    fn count_transition(&mut self, structure: &Structure) {
+        self.transitions += 1;
+        if self.time >= self.burst.start + period(structure) {
+            self.burst.start = self.time;
+            self.burst.transitions = 0;
+        }
+        self.burst.transitions += 1;
+    }
+}
+
+/// Period of the vibration mode while rocking, 2π/ω_u, s.
+fn period(structure: &Structure) -> f64 {
+    TAU / structure.omega_u
+}
+
+/// Ends `arc` at `crossing`, and says whether the transition `end` happens there.
+fn cut(arc: &mut Arc, crossing: Crossing, end: StepEnd) -> StepEnd {
+    match crossing {
+        Crossing::None => StepEnd::Quiet,
+        Crossing::NoneUntil(tau) => {
+            arc.duration = tau;
+            StepEnd::Quiet
+        }
+        Crossing::At(tau) => {
+            arc.duration = tau;
+            end
+        }
+    }
+}
+
+/// The first instant of a rocking `arc` at which |θ| reaches π/2.
+fn first_overturning(arc: &Arc, side: Side) -> Crossing {
+    let theta = arc.used(&arc.theta);
+    first_time_all_closed([Guard::new(theta, -side.sign(), FRAC_PI_2, arc.duration)], arc.duration)
+}
+
+/// The first instant of a rocking `arc` at which s θ returns to 0. A start at θ = 0 is divided out: s θ/τ^z is searched,
+/// z the number of leading zeros, so that the start is no return and a return right after it is not missed.
+fn first_return(arc: &Arc, side: Side) -> Crossing {
+    let theta = arc.used(&arc.theta);
+    let zeros = theta.iter().take_while(|c| **c == 0.0).count().min(arc.order);
+    first_time_all_closed([Guard::new(&theta[zeros..], side.sign(), 0.0, arc.duration)], arc.duration)
 }

@@ -17,13 +17,20 @@
 //! | [`record`] | ground motion records: PEER AT2, CSV |
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
+pub mod energy;
 pub mod engine;
+pub mod first_crossing;
+pub mod full_contact;
+pub mod impact;
+pub mod nonlinear_rocking;
 pub mod outputs;
 pub mod parameters;
 pub mod quantity;
 pub mod record;
 pub mod state;
 pub mod structure;
+pub mod taylor;
+pub mod uplift;
 
 pub use engine::{Engine, GroundAcceleration, Motion, Progress, Transition, TransitionKind};
 pub use outputs::Outputs;

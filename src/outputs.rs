@@ -1,14 +1,22 @@
 //! What the structure shows at an instant: accelerations, forces, displacements (Eqs 2, 3, 23–27) and their rates.
-use crate::{Phase, State, Structure};
+//!
+//! ```text
+//! a_t = ü + H θ̈ + θ̇² (sB − u) + a_g cos θ          (full contact: ü + a_g)                       (27)
+//! ```
+//!
+//! By (5) that is g sin θ − (c_u u̇ + k u)/m, and by (1) −(c_fc u̇ + k u)/m in full contact: the outputs depend on
+//! the state alone and are computed so; only their rates need the ground acceleration.
 
-/// The outputs at one instant; with [`Outputs::rates`], their time derivatives in the same fields.
+use crate::{Phase, Side, State, Structure, full_contact, nonlinear_rocking};
+
+/// The outputs at one instant; from [`Outputs::rates`], their time derivatives in the same fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outputs {
     /// Rotation of the base θ, rad.
     pub theta: f64,
     /// Elastic displacement u, m.
     pub u: f64,
-    /// Acceleration of the top mass a_t, m/s² (Eq 27).
+    /// Acceleration of the top mass in the direction of u, a_t, m/s² (Eq 27).
     pub a_t: f64,
     /// Base shear V_t = m a_t, N (Eqs 2, 23).
     pub V_t: f64,
@@ -20,20 +28,140 @@ pub struct Outputs {
     pub u_dot: f64,
     /// Uplift of the free edge of the base δ_u = 2 B sin|θ|, m (Eq 25).
     pub uplift: f64,
-    /// Lateral displacement of the top mass δ_t, m (Eq 26).
+    /// Lateral displacement of the top mass δ_t = sB (1 − cos θ) + u cos θ + H sin θ, m (Eq 26).
     pub delta_t: f64,
 }
 
+/// s and the damping in force: c_fc in full contact, where s does not matter, c_u otherwise.
+fn sign_and_damping(structure: &Structure, phase: Phase) -> (f64, f64) {
+    match phase {
+        Phase::FullContact => (Side::Right.sign(), structure.c_fc),
+        Phase::Rocking(side) | Phase::Overturned(side) => (side.sign(), structure.c_u),
+    }
+}
+
 impl Outputs {
-    /// The outputs of `structure` in `phase` and `state`; they depend on the state alone.
+    /// The outputs of `structure` in `phase` and `state`.
     pub fn of(structure: &Structure, phase: Phase, state: &State) -> Outputs {
-        let _ = (structure, phase, state);
-        todo!()
+        let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
+        let &State { u, u_dot, theta, theta_dot } = state;
+        let (s, damping) = sign_and_damping(structure, phase);
+        let (sin, cos) = theta.sin_cos();
+        let a_t = g * sin - (damping * u_dot + structure.k * u) / m;
+        let one_minus_cos = 2.0 * (0.5 * theta).sin().powi(2);
+        Outputs {
+            theta,
+            u,
+            a_t,
+            V_t: m * a_t,
+            M_t: m * H * a_t,
+            theta_dot,
+            u_dot,
+            uplift: 2.0 * B * sin.abs(),
+            delta_t: s * B * one_minus_cos + u * cos + H * sin,
+        }
     }
 
-    /// Time derivatives of the outputs under the ground acceleration `a_g` (m/s²), exact.
+    /// Time derivatives of the outputs under the ground acceleration `a_g` (m/s²), from the equations of motion of
+    /// `phase`; 0 once overturned, where motion has ended. At a transition they are those just after it.
     pub fn rates(structure: &Structure, phase: Phase, state: &State, a_g: f64) -> Outputs {
-        let _ = (structure, phase, state, a_g);
-        todo!()
+        let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
+        let &State { u, u_dot, theta, theta_dot } = state;
+        let (s, damping) = sign_and_damping(structure, phase);
+        let (sin, cos) = theta.sin_cos();
+        let (moves, u_ddot, theta_ddot) = match phase {
+            Phase::FullContact => (1.0, full_contact::acceleration(structure, state, a_g), 0.0),
+            Phase::Rocking(side) => match nonlinear_rocking::accelerations(structure, side, state, a_g) {
+                Some(accelerations) => (1.0, accelerations[0], accelerations[1]),
+                None => (1.0, f64::NAN, f64::NAN),
+            },
+            Phase::Overturned(_) => (0.0, 0.0, 0.0),
+        };
+        let a_t = moves * (g * cos * theta_dot - (damping * u_ddot + structure.k * u_dot) / m);
+        Outputs {
+            theta: moves * theta_dot,
+            u: moves * u_dot,
+            a_t,
+            V_t: m * a_t,
+            M_t: m * H * a_t,
+            theta_dot: theta_ddot,
+            u_dot: u_ddot,
+            uplift: moves * 2.0 * B * s * cos * theta_dot,
+            delta_t: moves * (s * B * sin * theta_dot + u_dot * cos - u * sin * theta_dot + H * cos * theta_dot),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::GroundAcceleration;
+    use crate::{Engine, Parameters};
+    use approx::assert_relative_eq;
+
+    /// Eq 27 with ü and θ̈ from Eqs 5 and 6 is what the state alone gives, and Eq 1 in full contact.
+    #[test]
+    fn the_acceleration_is_that_of_equation_27() {
+        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let &Parameters { H, B, .. } = structure.parameters();
+        let state = State { u: 3e-3, u_dot: -0.2, theta: -0.08, theta_dot: 0.6 };
+        let a_g = 7.0;
+        let accelerations = nonlinear_rocking::accelerations(&structure, Side::Left, &state, a_g).unwrap();
+        let expected = accelerations[0]
+            + H * accelerations[1]
+            + state.theta_dot.powi(2) * (-B - state.u)
+            + a_g * state.theta.cos();
+        let outputs = Outputs::of(&structure, Phase::Rocking(Side::Left), &state);
+        assert_relative_eq!(outputs.a_t, expected, max_relative = 1e-12);
+
+        let down = State { theta: 0.0, theta_dot: 0.0, ..state };
+        let outputs = Outputs::of(&structure, Phase::FullContact, &down);
+        assert_relative_eq!(
+            outputs.a_t,
+            full_contact::acceleration(&structure, &down, a_g) + a_g,
+            max_relative = 1e-12
+        );
+    }
+
+    /// The rates are the slopes of the outputs along the motion.
+    #[test]
+    fn the_rates_are_the_slopes_of_the_outputs() {
+        let structure = Structure::new(Parameters::EVISON).unwrap();
+        for initial in [
+            State { u: 2e-4, u_dot: 0.01, theta: 0.0, theta_dot: 0.0 },
+            State { u: 1e-3, u_dot: -0.1, theta: 0.05, theta_dot: 0.4 },
+        ] {
+            let a_g = GroundAcceleration { value: 1.2, slope: 40.0 };
+            let h = 1e-5;
+            let mut engine = Engine::new(structure, initial, 0.0, 1e-11).unwrap();
+            let mut show = |until: f64| {
+                let start = engine.motion().time;
+                let a_g = GroundAcceleration { value: a_g.value + a_g.slope * start, slope: a_g.slope };
+                engine.advance(until, a_g, &mut |_| ()).unwrap();
+                let motion = engine.motion();
+                let here = a_g.value + a_g.slope * (motion.time - start);
+                (
+                    Outputs::of(&structure, motion.phase, &motion.state),
+                    Outputs::rates(&structure, motion.phase, &motion.state, here),
+                )
+            };
+            let (before, _) = show(1e-3 - h);
+            let (_, rates) = show(1e-3);
+            let (after, _) = show(1e-3 + h);
+            let slope = |get: fn(&Outputs) -> f64| (get(&after) - get(&before)) / (2.0 * h);
+            for get in [
+                |o: &Outputs| o.theta,
+                |o: &Outputs| o.u,
+                |o: &Outputs| o.a_t,
+                |o: &Outputs| o.V_t,
+                |o: &Outputs| o.M_t,
+                |o: &Outputs| o.theta_dot,
+                |o: &Outputs| o.u_dot,
+                |o: &Outputs| o.uplift,
+                |o: &Outputs| o.delta_t,
+            ] {
+                assert_relative_eq!(get(&rates), slope(get), max_relative = 1e-4, epsilon = 1e-9);
+            }
+        }
     }
 }

@@ -2,7 +2,6 @@
 
 use crate::quantity::{OutOfRange, Quantity, quantity};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::FRAC_PI_2;
 
 /// State of the structure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -95,10 +94,5 @@ impl State {
         } else {
             Err(InitialStateError::TurningInFullContact(self.theta_dot))
         }
-    }
-
-    /// Whether the angle is past the horizontal: |θ| ≥ π/2.
-    pub fn is_overturned(&self) -> bool {
-        self.theta.abs() >= FRAC_PI_2
     }
 }

@@ -1,0 +1,182 @@
+//! The first instant at which guards close, found without ever stepping over it.
+//!
+//! A guard is open while its polynomial is positive. From τ, with |g''| ≤ M over the step, g stays positive at least
+//! for δ, the positive root of g(τ) + g'(τ) δ − M δ²/2 = 0. Marching by δ cannot pass a root, however close two of
+//! them are, and converges to a simple one quadratically, from the left.
+
+use crate::taylor::evaluate;
+
+/// A guard's polynomial in τ over one step, with a bound on its curvature there.
+#[derive(Clone, Copy, Debug)]
+pub struct Guard<'a> {
+    coefficients: &'a [f64],
+    /// Added to the constant term.
+    offset: f64,
+    /// +1 or −1.
+    sign: f64,
+    /// Bound of the second derivative over the step.
+    curvature: f64,
+}
+
+/// What a search over one step found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Crossing {
+    /// No guard combination closes over the step.
+    None,
+    /// The guards close τ seconds into the step.
+    At(f64),
+    /// None until τ (s), where the search gave up: a fresh expansion from there has tighter bounds.
+    NoneUntil(f64),
+}
+
+impl Crossing {
+    /// The time (s) up to which it cuts the step; ∞ for none.
+    pub fn instant(self) -> f64 {
+        match self {
+            Crossing::None => f64::INFINITY,
+            Crossing::At(tau) | Crossing::NoneUntil(tau) => tau,
+        }
+    }
+}
+
+/// Evaluations after which a search hands back what it has cleared so far.
+const MAX_EVALUATIONS: usize = 100;
+
+impl<'a> Guard<'a> {
+    /// The guard `offset + sign·Σ c_k τ^k` over 0 ≤ τ ≤ `duration` (s).
+    pub fn new(coefficients: &'a [f64], sign: f64, offset: f64, duration: f64) -> Guard<'a> {
+        let curvature = coefficients
+            .iter()
+            .enumerate()
+            .skip(2)
+            .rev()
+            .fold(0.0, |sum, (k, c)| sum * duration + (k * (k - 1)) as f64 * c.abs());
+        Guard { coefficients, offset, sign, curvature }
+    }
+
+    /// Whether the sum of all its terms' magnitudes proves it positive over the whole step.
+    pub fn is_open_throughout(&self, duration: f64) -> bool {
+        let excursion = self.coefficients[1..].iter().rev().fold(0.0, |sum, c| sum * duration + c.abs()) * duration;
+        self.offset + self.sign * self.coefficients[0] > excursion
+    }
+
+    /// For how long after `tau` (s) it certainly stays positive; 0 where it is not.
+    fn open_for(&self, tau: f64) -> f64 {
+        let value = self.offset + self.sign * evaluate(self.coefficients, tau);
+        if value <= 0.0 {
+            return 0.0;
+        }
+        let slope = self.sign
+            * self.coefficients.iter().enumerate().skip(1).rev().fold(0.0, |sum, (k, c)| sum * tau + k as f64 * c);
+        let root = (slope * slope + 2.0 * self.curvature * value).sqrt();
+        if slope < 0.0 { 2.0 * value / (root - slope) } else { (slope + root) / self.curvature }
+    }
+}
+
+/// The first instant in [0, `duration`] (s) at which all `guards` are closed at once (≤ 0, to rounding).
+pub fn first_time_all_closed<const N: usize>(guards: [Guard; N], duration: f64) -> Crossing {
+    if guards.iter().any(|guard| guard.is_open_throughout(duration)) {
+        return Crossing::None;
+    }
+    let mut tau = 0.0;
+    for _ in 0..MAX_EVALUATIONS {
+        let open_for = guards.iter().map(|guard| guard.open_for(tau)).fold(0.0, f64::max);
+        let next = tau + open_for;
+        if next > duration {
+            return Crossing::None;
+        }
+        if next == tau {
+            return Crossing::At(tau);
+        }
+        tau = next;
+    }
+    Crossing::NoneUntil(tau)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_abs_diff_eq;
+    use proptest::prelude::*;
+
+    fn first(coefficients: &[f64], duration: f64) -> Crossing {
+        first_time_all_closed([Guard::new(coefficients, 1.0, 0.0, duration)], duration)
+    }
+
+    fn from_roots(roots: &[f64], lead: f64) -> Vec<f64> {
+        let mut coefficients = vec![lead];
+        for root in roots {
+            let mut product = vec![0.0; coefficients.len() + 1];
+            for (k, c) in coefficients.iter().enumerate() {
+                product[k + 1] += c;
+                product[k] -= c * root;
+            }
+            coefficients = product;
+        }
+        coefficients
+    }
+
+    #[test]
+    fn two_roots_a_billionth_apart_are_not_missed() {
+        let Crossing::At(tau) = first(&from_roots(&[0.5, 0.5 + 1e-9], 1.0), 1.0) else { panic!("missed") };
+        assert_abs_diff_eq!(tau, 0.5, epsilon = 2e-8); // where the rounding of a double root puts it
+    }
+
+    #[test]
+    fn a_clear_graze_is_no_crossing() {
+        let mut graze = from_roots(&[0.5, 0.5], 1.0);
+        graze[0] += 1e-12;
+        assert_eq!(first(&graze, 1.0), Crossing::None);
+    }
+
+    #[test]
+    fn a_root_at_the_very_end_is_found_and_one_beyond_is_not() {
+        assert_eq!(first(&[1.0, -1.0], 1.0), Crossing::At(1.0));
+        assert_eq!(first(&[1.0, -1.0], 1.0 - 1e-12), Crossing::None);
+    }
+
+    #[test]
+    fn a_guard_closed_from_the_start_closes_at_once() {
+        assert_eq!(first(&[-1.0, 5.0], 1.0), Crossing::At(0.0));
+    }
+
+    #[test]
+    fn all_guards_must_be_closed_at_once() {
+        let (one, two) = ([0.2, -1.0], [0.5, -1.0]); // closed from 0.2 on, from 0.5 on
+        let both = |duration| {
+            first_time_all_closed(
+                [Guard::new(&one, 1.0, 0.0, duration), Guard::new(&two, 1.0, 0.0, duration)],
+                duration,
+            )
+        };
+        assert_eq!(both(1.0), Crossing::At(0.5));
+        assert_eq!(both(0.4), Crossing::None);
+        let closed_before = [-0.1, 1.0]; // closed until 0.1
+        let never =
+            first_time_all_closed([Guard::new(&closed_before, 1.0, 0.0, 1.0), Guard::new(&two, 1.0, 0.0, 1.0)], 1.0);
+        assert_eq!(never, Crossing::None);
+    }
+
+    proptest! {
+        #[test]
+        fn the_first_of_random_roots_is_found(mut roots in prop::collection::vec(0.01..2.0f64, 1..7)) {
+            roots.sort_by(f64::total_cmp);
+            let lead = if roots.len() % 2 == 0 { 1.0 } else { -1.0 };
+            let coefficients = from_roots(&roots, lead);
+            let found = match first(&coefficients, 1.0) {
+                Crossing::At(tau) => tau,
+                Crossing::None => f64::INFINITY,
+                Crossing::NoneUntil(tau) => return Ok(prop_assert!(tau <= roots[0])),
+            };
+            // where rounding alone can make the polynomial vanish, its root is anybody's
+            let magnitude: f64 = coefficients.iter().map(|c| c.abs()).sum();
+            let value_there = evaluate(&coefficients, found.min(1.0));
+            if roots[0] <= 1.0 {
+                prop_assert!(found <= roots[0] + 1e-9 || value_there.abs() < 1e-14 * magnitude);
+                prop_assert!(value_there.abs() <= 1e-14 * magnitude);
+            } else {
+                prop_assert!(found.is_infinite() || value_there.abs() < 1e-14 * magnitude);
+            }
+        }
+    }
+}

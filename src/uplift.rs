@@ -1,0 +1,110 @@
+//! Uplift: full contact → rocking.
+//!
+//! With s = sign(u), the base lifts off at the first instant at which
+//!
+//! ```text
+//! s u ≥ u_cr      and      s θ̈ > 0,   θ̈ by (5, 6) at θ = θ̇ = 0
+//! ```
+//!
+//! There the equations leave [(J0 + m0 B²)/m + (sB − u)²] θ̈ = H (c_u u̇ + k u)/m + g u − sγ g B, whatever a_g is: the
+//! second condition is that the moment which turns the structure about the pivot exceeds that of its weight. While |u|
+//! grows through u_cr it always does; after a landing with |u| > u_cr it may not, and leaving it out makes contact
+//! open and shut without end.
+
+use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
+use crate::taylor::{Arc, Series};
+use crate::{Side, Structure};
+
+/// Smallest excess of the turning moment over the weight's, as a part of the latter: far above rounding, so that what
+/// has lifted off moves away from the ground.
+const LEAST_EXCESS: f64 = 1e-12;
+
+/// Coefficients of the turning moment over the mass, H (c_u u̇ + k u)/m + g u, in m²/s².
+fn turning_moment(structure: &Structure, u: f64, u_dot: f64) -> f64 {
+    let parameters = structure.parameters();
+    parameters.H * (structure.c_u * u_dot + structure.k * u) / parameters.m + parameters.g * u
+}
+
+/// The restoring moment of the weight over the mass, γ g B, in m²/s².
+fn weight_moment(structure: &Structure) -> f64 {
+    structure.gamma * structure.parameters().g * structure.parameters().B
+}
+
+/// The first instant of `arc`, a motion in full contact, at which uplift is due, and the side about which it rocks
+/// from there.
+pub fn first_on(structure: &Structure, arc: &Arc) -> (Crossing, Side) {
+    let right = first_about(structure, arc, Side::Right);
+    let left = first_about(structure, arc, Side::Left);
+    if right.instant() <= left.instant() { (right, Side::Right) } else { (left, Side::Left) }
+}
+
+fn first_about(structure: &Structure, arc: &Arc, side: Side) -> Crossing {
+    let s = side.sign();
+    let u = arc.used(&arc.u);
+    let displacement = Guard::new(u, -s, structure.u_cr, arc.duration);
+    if displacement.is_open_throughout(arc.duration) {
+        return Crossing::None;
+    }
+    let mut moment: Series = arc.u;
+    for (k, coefficient) in moment[..=arc.order].iter_mut().enumerate() {
+        *coefficient = turning_moment(structure, arc.u[k], arc.u_dot[k]);
+    }
+    let weight = (1.0 + LEAST_EXCESS) * weight_moment(structure);
+    let moment = Guard::new(arc.used(&moment), -s, weight, arc.duration);
+    first_time_all_closed([displacement, moment], arc.duration)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::GroundAcceleration;
+    use crate::nonlinear_rocking::accelerations;
+    use crate::{Parameters, State, full_contact};
+    use proptest::prelude::*;
+
+    fn first_from(structure: &Structure, state: State) -> (Crossing, Side) {
+        let arc = full_contact::motion(structure, &state, GroundAcceleration::default(), 1e-9, 1e-13);
+        first_on(structure, &arc)
+    }
+
+    proptest! {
+        /// The condition on the moment is the condition s θ̈ > 0 of Eqs 5 and 6, for every a_g.
+        #[test]
+        fn the_moment_condition_is_that_of_equations_5_and_6(
+            u in -0.02..0.02f64, u_dot in -3.0..3.0f64, a_g in -20.0..20.0f64,
+        ) {
+            let structure = Structure::new(Parameters { zeta_fc: 0.1, ..Parameters::MCMANUS }).unwrap();
+            let state = State { u, u_dot, ..State::default() };
+            let side = Side::of(u);
+            let theta_ddot = accelerations(&structure, side, &state, a_g).unwrap()[1];
+            prop_assume!(theta_ddot.abs() > 1e-6 && (u.abs() - structure.u_cr).abs() > 1e-8);
+            let both = u.abs() >= structure.u_cr && side.sign() * theta_ddot > 0.0;
+            let expected = if both { (Crossing::At(0.0), side) } else { (Crossing::None, Side::Right) };
+            prop_assert_eq!(first_from(&structure, state), expected);
+        }
+    }
+
+    #[test]
+    fn a_displacement_that_reaches_u_cr_lifts_off() {
+        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let at_rest = |factor: f64| State { u: factor * structure.u_cr, ..State::default() };
+        assert_eq!(first_from(&structure, at_rest(1.0)), (Crossing::At(0.0), Side::Right));
+        assert_eq!(first_from(&structure, at_rest(-1.0)), (Crossing::At(0.0), Side::Left));
+        assert_eq!(first_from(&structure, at_rest(1.0 - 1e-12)).0, Crossing::None);
+    }
+
+    /// After a landing with u > u_cr and a velocity whose damping force holds the base down, contact lasts until the
+    /// moment of the weight is overcome.
+    #[test]
+    fn a_landing_beyond_u_cr_waits_for_the_moment() {
+        let structure = Structure::new(Parameters { zeta_fc: 0.2, ..Parameters::EVISON }).unwrap();
+        let state = State { u: 1.05 * structure.u_cr, u_dot: -0.02, ..State::default() };
+        let push = GroundAcceleration { value: -40.0, slope: 0.0 }; // turns the velocity round
+        let arc = full_contact::motion(&structure, &state, push, 2e-3, 1e-15);
+        let (Crossing::At(tau), Side::Right) = first_on(&structure, &arc) else { panic!("no uplift") };
+        let there = arc.at(tau);
+        let theta_ddot = accelerations(&structure, Side::Right, &there, push.value).unwrap()[1];
+        assert!(tau > 1e-5 && there.u > structure.u_cr);
+        assert!((0.0..1e-9).contains(&theta_ddot), "{theta_ddot}");
+    }
+}

@@ -1,0 +1,188 @@
+//! The hybrid engine from outside: the paper's numbers, conservation, independence of cuts, guarantee of progress.
+#![allow(non_snake_case)]
+
+use approx::{assert_abs_diff_eq, assert_relative_eq};
+use proptest::prelude::*;
+use rocking::energy::energy;
+use rocking::engine::{DEFAULT_TOLERANCE, MAX_TRANSITIONS_PER_PERIOD};
+use rocking::{
+    Engine, GroundAcceleration, Motion, Outputs, Parameters, Phase, Progress, Side, State, Structure, Transition,
+    TransitionKind,
+};
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+const STILL: GroundAcceleration = GroundAcceleration { value: 0.0, slope: 0.0 };
+
+/// Advances and collects the transitions.
+fn advance(engine: &mut Engine, until: f64, a_g: GroundAcceleration) -> Vec<Transition> {
+    let mut transitions = Vec::new();
+    engine.advance(until, a_g, &mut |transition| transitions.push(*transition)).unwrap();
+    transitions
+}
+
+fn is_impact(transition: &&Transition) -> bool {
+    matches!(transition.kind, TransitionKind::Impact(_))
+}
+
+fn evison_released(structure: &Structure) -> Engine {
+    let released = State { theta: 0.04, u: structure.u_cr, ..State::default() };
+    Engine::new(*structure, released, 0.0, DEFAULT_TOLERANCE).unwrap()
+}
+
+#[test]
+fn evisons_free_vibration_has_its_impacts_and_its_peak() {
+    let structure = Structure::new(Parameters::EVISON).unwrap();
+    let mut engine = evison_released(&structure);
+    let transitions = advance(&mut engine, 2.0, STILL);
+    let impacts: Vec<f64> = transitions.iter().filter(is_impact).map(|impact| impact.time).take(6).collect();
+    let expected = [0.168487319, 0.486378723, 0.783968665, 1.062370970, 1.321721172, 1.562668213];
+    for (impact, expected) in impacts.iter().zip(expected) {
+        assert_abs_diff_eq!(*impact, expected, epsilon = 1e-9);
+    }
+
+    let mut engine = evison_released(&structure);
+    let (mut peak, mut instant) = (0.0, 0.0);
+    for k in 1..=200_000 {
+        advance(&mut engine, k as f64 * 1e-5, STILL);
+        let Motion { time, phase, state, .. } = *engine.motion();
+        let a_t = Outputs::of(&structure, phase, &state).a_t.abs();
+        if a_t > peak {
+            (peak, instant) = (a_t, time);
+        }
+    }
+    assert_abs_diff_eq!(peak / 9.81, 0.92061, epsilon = 5e-6);
+    assert_abs_diff_eq!(instant, 1.3349, epsilon = 6e-5);
+}
+
+/// Without damping and ground motion the energy is constant between impacts, and each impact loses what its formula
+/// says.
+#[test]
+fn energy_is_kept_between_impacts() {
+    let structure = Structure::new(Parameters { zeta_fc: 0.0, ..Parameters::MCMANUS }).unwrap();
+    let released = State { theta: 0.02, u: -0.001, ..State::default() };
+    let mut engine = Engine::new(structure, released, 0.0, 1e-11).unwrap();
+    let mut phase = engine.motion().phase;
+    let mut expected = energy(&structure, phase, &released);
+    let transitions = advance(&mut engine, 5.0, STILL);
+    assert!(transitions.len() > 10);
+    for transition in transitions {
+        assert_relative_eq!(energy(&structure, phase, &transition.before), expected, max_relative = 1e-12);
+        phase = match transition.kind {
+            TransitionKind::Uplift(side) | TransitionKind::Impact(side) => Phase::Rocking(side),
+            TransitionKind::Overturning(side) => Phase::Overturned(side),
+            TransitionKind::Landing | TransitionKind::Settling => Phase::FullContact,
+        };
+        expected = energy(&structure, phase, &transition.after);
+    }
+    let Motion { phase, state, .. } = *engine.motion();
+    assert_relative_eq!(energy(&structure, phase, &state), expected, max_relative = 1e-12);
+}
+
+#[test]
+fn a_tall_push_overturns_at_a_right_angle_and_stays_there() {
+    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let mut engine = Engine::new(structure, State::default(), 10.0, DEFAULT_TOLERANCE).unwrap();
+    let push = GroundAcceleration { value: -6.0, slope: 0.0 };
+    let mut last = None;
+    let progress = engine.advance(20.0, push, &mut |transition| last = Some(*transition)).unwrap();
+    assert_eq!(progress, Progress::Overturned);
+    let end = *engine.motion();
+    assert_eq!(last.unwrap().kind, TransitionKind::Overturning(Side::Right));
+    assert_abs_diff_eq!(end.state.theta, FRAC_PI_2, epsilon = 1e-14);
+    assert!(end.time > 10.0 && end.time < 20.0);
+    assert_eq!(engine.advance(30.0, STILL, &mut |_| ()).unwrap(), Progress::Overturned);
+    assert_eq!(*engine.motion(), end);
+}
+
+/// One step of 10 s and 10,000 steps of 1 ms: the same transitions, the same state.
+#[test]
+fn the_result_does_not_depend_on_how_time_is_cut() {
+    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let a_g = GroundAcceleration { value: 0.3, slope: -0.06 };
+    let released = State { theta: 0.03, ..State::default() };
+    let start = || Engine::new(structure, released, 0.0, 1e-10).unwrap();
+    let mut whole = start();
+    let whole_transitions = advance(&mut whole, 10.0, a_g);
+    let mut cut = start();
+    let mut cut_transitions = Vec::new();
+    for k in 1..=10_000 {
+        let here = GroundAcceleration { value: a_g.at(cut.motion().time), ..a_g };
+        cut_transitions.extend(advance(&mut cut, k as f64 * 1e-3, here));
+    }
+    assert!(whole_transitions.len() > 10);
+    assert_eq!(whole_transitions.len(), cut_transitions.len());
+    for (whole, cut) in whole_transitions.iter().zip(&cut_transitions) {
+        assert_eq!(whole.kind, cut.kind);
+        assert_abs_diff_eq!(whole.time, cut.time, epsilon = 1e-9);
+    }
+    let (whole, cut) = (whole.motion().state, cut.motion().state);
+    assert_abs_diff_eq!(whole.theta, cut.theta, epsilon = 1e-10);
+    assert_abs_diff_eq!(whole.u, cut.u, epsilon = 1e-10);
+}
+
+/// A structure from a lab specimen to a bridge pier.
+fn any_parameters() -> impl Strategy<Value = Parameters> {
+    let log = |low: f64, high: f64| (low.ln()..high.ln()).prop_map(f64::exp);
+    (log(1.0, 1e6), 0.0..2.0, log(0.1, 10.0), 1.0..10.0, 0.0..1.0, log(0.5, 100.0), 0.0..0.2, 0.0..2.0, 0.5..=1.0)
+        .prop_map(|(m, mass_ratio, B, slenderness, inertia, f_fc, zeta_fc, c_ratio, r)| Parameters {
+            m,
+            m0: (0.02 + mass_ratio) * m,
+            H: slenderness * B,
+            B,
+            J0: inertia * m * B * B,
+            f_fc,
+            zeta_fc,
+            c_ratio,
+            r,
+            g: 9.81,
+        })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(300))]
+
+    /// Random structures under random ground motion: numbers stay numbers, the structure stays above the floor, time
+    /// reaches the end or the structure overturns, and the work stays under its bound.
+    #[test]
+    fn any_structure_gets_through_any_shaking(
+        parameters in any_parameters(),
+        samples in prop::collection::vec(-1.0..1.0f64, 150),
+        intensity in 0.0..3.0f64,
+        dt in 0.002..0.05f64,
+    ) {
+        let structure = Structure::new(parameters).unwrap();
+        let scale = intensity * structure.tan_alpha_cg * parameters.g * 2.0;
+        let mut engine = Engine::new(structure, State::default(), 0.0, DEFAULT_TOLERANCE).unwrap();
+        let mut in_this_period = std::collections::VecDeque::new();
+        let period = TAU / structure.omega_u;
+        let mut settled = 0;
+        for (k, pair) in samples.windows(2).enumerate() {
+            let a_g = GroundAcceleration { value: scale * pair[0], slope: scale * (pair[1] - pair[0]) / dt };
+            let mut most = 0;
+            let progress = engine.advance((k + 1) as f64 * dt, a_g, &mut |transition| {
+                settled += u32::from(transition.kind == TransitionKind::Settling);
+                in_this_period.push_back(transition.time);
+                while transition.time - in_this_period[0] > period {
+                    in_this_period.pop_front();
+                }
+                most = most.max(in_this_period.len());
+            }).unwrap();
+            let Motion { state, phase, .. } = *engine.motion();
+            let outputs = Outputs::of(&structure, phase, &state);
+            prop_assert!([outputs.theta, outputs.u, outputs.a_t, outputs.delta_t].iter().all(|x| x.is_finite()));
+            // any period overlaps at most two of those that the engine counts in
+            prop_assert!(most <= 2 * (MAX_TRANSITIONS_PER_PERIOD as usize + 2));
+            if let Phase::Rocking(side) = phase {
+                prop_assert!(side.sign() * state.theta >= -1e-12);
+            }
+            if progress == Progress::Overturned {
+                break;
+            }
+        }
+        let Motion { time, phase, work, transitions, .. } = *engine.motion();
+        prop_assert!(matches!(phase, Phase::Overturned(_)) || time == (samples.len() - 1) as f64 * dt);
+        let bound = samples.len() as f64 + 2.0 * transitions as f64 + structure.omega_u * time;
+        prop_assert!((work.steps as f64) < bound, "{} steps, bound {bound}", work.steps);
+        prop_assert!(settled == 0, "settled {settled} times");
+    }
+}
