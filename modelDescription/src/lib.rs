@@ -1,1 +1,170 @@
-//! The flexible rocking model and its solver.
+//! FMI 2.0 model description of a co-simulation unit: its types, named as in the standard, and their XML.
+//!
+//! Build a [`FmiModelDescription`], call [`FmiModelDescription::to_xml`]. The fields stand in the order that the
+//! standard's schema asks of the elements; an attribute that is `None` is left out. What only model exchange needs
+//! is not here.
+
+mod model_structure;
+mod model_variables;
+mod type_definitions;
+mod unit_definitions;
+
+pub use model_structure::{DependenciesKind, InitialUnknowns, ModelStructure, Outputs, Unknown};
+pub use model_variables::{
+    Boolean, Causality, Enumeration, Initial, Integer, ModelVariables, Real, ScalarVariable, Variability, VariableType,
+};
+pub use quick_xml::SeError;
+pub use type_definitions::{EnumerationType, Item, SimpleType, TypeAttributes, TypeDefinitions};
+pub use unit_definitions::{BaseUnit, Unit, UnitDefinitions};
+
+use quick_xml::se::Serializer as XmlSerializer;
+use serde::{Serialize, Serializer};
+
+/// Root of `modelDescription.xml`.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename = "fmiModelDescription")]
+pub struct FmiModelDescription {
+    /// Version of the standard.
+    #[serde(rename = "@fmiVersion")]
+    pub fmi_version: FmiVersion,
+    /// Name of the model.
+    #[serde(rename = "@modelName")]
+    pub model_name: String,
+    /// Fingerprint that binds this description to its library.
+    #[serde(rename = "@guid")]
+    pub guid: String,
+    /// What the model is, in one line.
+    #[serde(rename = "@description")]
+    pub description: String,
+    /// Version of the model.
+    #[serde(rename = "@version")]
+    pub version: String,
+    /// License of the model.
+    #[serde(rename = "@license")]
+    pub license: String,
+    /// Name of the tool that wrote this file.
+    #[serde(rename = "@generationTool")]
+    pub generation_tool: String,
+    /// How variable names are to be read.
+    #[serde(rename = "@variableNamingConvention")]
+    pub variable_naming_convention: VariableNamingConvention,
+    /// Capabilities of the co-simulation interface.
+    #[serde(rename = "CoSimulation")]
+    pub co_simulation: CoSimulation,
+    /// Units of the variables.
+    #[serde(rename = "UnitDefinitions")]
+    pub unit_definitions: UnitDefinitions,
+    /// Types that variables declare.
+    #[serde(rename = "TypeDefinitions")]
+    pub type_definitions: TypeDefinitions,
+    /// Log categories that can be switched on.
+    #[serde(rename = "LogCategories")]
+    pub log_categories: LogCategories,
+    /// Settings of a simulation for which nothing else is asked.
+    #[serde(rename = "DefaultExperiment")]
+    pub default_experiment: DefaultExperiment,
+    /// All variables; the first has index 1.
+    #[serde(rename = "ModelVariables")]
+    pub model_variables: ModelVariables,
+    /// What depends on what.
+    #[serde(rename = "ModelStructure")]
+    pub model_structure: ModelStructure,
+}
+
+impl FmiModelDescription {
+    /// The text of `modelDescription.xml`: declaration, elements indented by two spaces, a final line feed.
+    pub fn to_xml(&self) -> Result<String, SeError> {
+        let mut xml = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+        let mut serializer = XmlSerializer::new(&mut xml);
+        serializer.indent(' ', 2);
+        self.serialize(serializer)?;
+        xml.push('\n');
+        Ok(xml)
+    }
+}
+
+/// Version of the standard that a description follows.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub enum FmiVersion {
+    /// FMI 2.0 and its maintenance releases.
+    #[serde(rename = "2.0")]
+    V2_0,
+}
+
+/// How variable names are to be read.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub enum VariableNamingConvention {
+    /// A list of plain strings.
+    Flat,
+}
+
+/// Capabilities of the co-simulation interface.
+#[derive(Clone, Debug, Serialize)]
+pub struct CoSimulation {
+    /// File name of the library, without extension.
+    #[serde(rename = "@modelIdentifier")]
+    pub model_identifier: String,
+    /// Communication steps may differ in size.
+    #[serde(rename = "@canHandleVariableCommunicationStepSize")]
+    pub can_handle_variable_communication_step_size: bool,
+    /// `fmi2SetRealInputDerivatives` is understood.
+    #[serde(rename = "@canInterpolateInputs")]
+    pub can_interpolate_inputs: bool,
+    /// Highest order that `fmi2GetRealOutputDerivatives` gives.
+    #[serde(rename = "@maxOutputDerivativeOrder")]
+    pub max_output_derivative_order: u32,
+    /// Only one instance may live in a process.
+    #[serde(rename = "@canBeInstantiatedOnlyOncePerProcess")]
+    pub can_be_instantiated_only_once_per_process: bool,
+    /// The host's memory callbacks are not used.
+    #[serde(rename = "@canNotUseMemoryManagementFunctions")]
+    pub can_not_use_memory_management_functions: bool,
+    /// The state can be taken out and put back.
+    #[serde(rename = "@canGetAndSetFMUstate")]
+    pub can_get_and_set_fmu_state: bool,
+    /// The state can be turned into bytes and back.
+    #[serde(rename = "@canSerializeFMUstate")]
+    pub can_serialize_fmu_state: bool,
+}
+
+/// Log categories that can be switched on.
+#[derive(Clone, Debug, Serialize)]
+pub struct LogCategories {
+    /// The categories.
+    #[serde(rename = "Category")]
+    pub categories: Vec<Category>,
+}
+
+/// A log category.
+#[derive(Clone, Debug, Serialize)]
+pub struct Category {
+    /// Name under which `fmi2SetDebugLogging` knows it.
+    #[serde(rename = "@name")]
+    pub name: String,
+    /// What it logs.
+    #[serde(rename = "@description")]
+    pub description: String,
+}
+
+/// Settings of a simulation for which nothing else is asked.
+#[derive(Clone, Debug, Serialize)]
+pub struct DefaultExperiment {
+    /// Start time, s.
+    #[serde(rename = "@startTime", serialize_with = "shortest")]
+    pub start_time: f64,
+    /// Relative tolerance.
+    #[serde(rename = "@tolerance", serialize_with = "shortest")]
+    pub tolerance: f64,
+}
+
+/// Writes a number with the fewest digits that read back the same: `1e-9`, not `0.000000001`.
+fn shortest<S: Serializer>(number: &(impl Copy + Into<Option<f64>>), serializer: S) -> Result<S::Ok, S::Error> {
+    match (*number).into() {
+        Some(number) => serializer.collect_str(&format_args!("{number:?}")),
+        None => serializer.serialize_none(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

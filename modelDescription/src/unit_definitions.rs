@@ -1,0 +1,41 @@
+use serde::Serialize;
+
+/// Units of the variables.
+#[derive(Clone, Debug, Serialize)]
+pub struct UnitDefinitions {
+    /// The units.
+    #[serde(rename = "Unit")]
+    pub units: Vec<Unit>,
+}
+
+/// A unit and what it is in SI base units.
+#[derive(Clone, Debug, Serialize)]
+pub struct Unit {
+    /// Name by which variables refer to it.
+    #[serde(rename = "@name")]
+    pub name: String,
+    /// Its SI base units.
+    #[serde(rename = "BaseUnit")]
+    pub base_unit: BaseUnit,
+}
+
+/// Exponents of the SI base units, and of rad; a zero is left out.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct BaseUnit {
+    /// Exponent of the kilogram.
+    #[serde(rename = "@kg", skip_serializing_if = "is_zero")]
+    pub kg: i32,
+    /// Exponent of the metre.
+    #[serde(rename = "@m", skip_serializing_if = "is_zero")]
+    pub m: i32,
+    /// Exponent of the second.
+    #[serde(rename = "@s", skip_serializing_if = "is_zero")]
+    pub s: i32,
+    /// Exponent of the radian.
+    #[serde(rename = "@rad", skip_serializing_if = "is_zero")]
+    pub rad: i32,
+}
+
+fn is_zero(exponent: &i32) -> bool {
+    *exponent == 0
+}
