@@ -13,9 +13,11 @@
 //! specimens never come near it. One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps.
 
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
+use crate::full_contact::ExactContact;
+use crate::nonlinear_rocking::NonlinearRocking;
 use crate::state::InitialStateError;
-use crate::taylor::{Arc, Series};
-use crate::{Phase, Side, State, Structure, full_contact, impact, nonlinear_rocking, uplift};
+use crate::taylor::{Arc, Start};
+use crate::{Phase, Side, State, Structure, full_contact, impact, uplift};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -48,22 +50,18 @@ impl GroundAcceleration {
     }
 
     /// The same ground motion, its interval started `tau` seconds later.
-    fn from(self, tau: f64) -> GroundAcceleration {
+    pub(crate) fn from(self, tau: f64) -> GroundAcceleration {
         GroundAcceleration { value: self.at(tau), slope: self.slope }
     }
 
-    /// Coefficient `k` of its series.
-    pub(crate) fn coefficient(self, k: usize) -> f64 {
+    /// Coefficient `k` of its series over a step of `span` s.
+    #[inline]
+    pub(crate) fn coefficient(self, k: usize, span: f64) -> f64 {
         match k {
             0 => self.value,
-            1 => self.slope,
+            1 => self.slope * span,
             _ => 0.0,
         }
-    }
-
-    /// Coefficient `k` of its product with a series.
-    pub(crate) fn times(self, series: &Series, k: usize) -> f64 {
-        self.value * series[k] + if k > 0 { self.slope * series[k - 1] } else { 0.0 }
     }
 }
 
@@ -193,6 +191,10 @@ pub struct Engine {
     structure: Structure,
     local_error: f64,
     motion: Motion,
+    /// The step in hand.
+    arc: Arc,
+    contact: ExactContact,
+    rocking: NonlinearRocking,
 }
 
 /// What happens at the end of a step.
@@ -217,7 +219,9 @@ impl Engine {
             burst: Burst { start: f64::NEG_INFINITY, transitions: 0, held_until: f64::NEG_INFINITY },
         };
         let local_error = (LOCAL_SHARE * tolerance).max(f64::EPSILON / 2.0);
-        Ok(Engine { structure, local_error, motion })
+        let contact = ExactContact::new(&structure);
+        let rocking = NonlinearRocking::default();
+        Ok(Engine { structure, local_error, motion, arc: Arc::default(), contact, rocking })
     }
 
     /// The structure.
@@ -251,6 +255,15 @@ impl Engine {
         if !(a_g.value.is_finite() && a_g.at(interval).is_finite()) {
             return Err(AdvanceError::GroundAcceleration { value: a_g.value, slope: a_g.slope, until });
         }
+        if self.motion.phase == Phase::FullContact && self.motion.burst.held_until <= start {
+            let &Structure { u_cr, .. } = &self.structure;
+            if let Some(state) = self.contact.leap(&self.structure, &self.motion.state, a_g, interval, u_cr) {
+                self.motion.state = state;
+                self.motion.time = until;
+                self.motion.work.steps += 1;
+                return Ok(Progress::Complete);
+            }
+        }
         let mut motion = self.motion;
         let last_step = motion.work.steps + MAX_STEPS_PER_ADVANCE;
         // Time runs from the start of the interval: transitions are then as sharp at t = 1000 s as at 0.
@@ -258,12 +271,14 @@ impl Engine {
         while elapsed < interval {
             let left = interval - elapsed;
             let here = a_g.from(elapsed);
-            let (arc, end) = match motion.phase {
-                Phase::FullContact => self.step_in_full_contact(&motion, here, left),
-                Phase::Rocking(side) => self.step_while_rocking(&motion, side, here, left),
+            let begin = Start { state: motion.state, a_g: here, interval: left, local_error: self.local_error };
+            let end = match motion.phase {
+                Phase::FullContact => self.step_in_full_contact(begin, motion.burst.held_until - motion.time),
+                Phase::Rocking(side) => self.step_while_rocking(&begin, side),
                 Phase::Overturned(_) => break,
             };
-            if !arc.is_finite() || (arc.duration == 0.0 && matches!(end, StepEnd::Quiet)) {
+            let (arc, duration) = (&self.arc, self.arc.duration());
+            if !arc.is_finite() || (duration == 0.0 && matches!(end, StepEnd::Quiet)) {
                 let State { u, theta, .. } = motion.state;
                 return Err(AdvanceError::Singular { time: motion.time, u, theta });
             }
@@ -272,12 +287,9 @@ impl Engine {
             }
             motion.work.steps += 1;
             motion.work.evaluations += arc.order as u64;
-            motion.state = arc.at(arc.duration);
-            (elapsed, motion.time) = if arc.duration == left {
-                (interval, until)
-            } else {
-                (elapsed + arc.duration, start + elapsed + arc.duration)
-            };
+            motion.state = arc.end();
+            (elapsed, motion.time) =
+                if duration == left { (interval, until) } else { (elapsed + duration, start + elapsed + duration) };
             if let Some(transition) = motion.resolve(&self.structure, end) {
                 observe(&transition);
             }
@@ -289,37 +301,32 @@ impl Engine {
         }
     }
 
-    /// Motion in full contact over at most `interval` (s), cut at uplift.
-    fn step_in_full_contact(&self, motion: &Motion, a_g: GroundAcceleration, interval: f64) -> (Arc, StepEnd) {
-        let expand = |interval| full_contact::motion(&self.structure, &motion.state, a_g, interval, self.local_error);
-        let held = motion.burst.held_until - motion.time;
+    /// Motion in full contact, cut at uplift; none of it for the first `held` seconds.
+    fn step_in_full_contact(&mut self, mut start: Start, held: f64) -> StepEnd {
+        let (structure, arc) = (&self.structure, &mut self.arc);
         if held > 0.0 {
-            let arc = expand(interval.min(held));
-            let end = if arc.duration == held { StepEnd::HoldOver } else { StepEnd::Quiet };
-            return (arc, end);
+            start.interval = start.interval.min(held);
+            full_contact::series(structure, &start, arc);
+            return if arc.duration() == held { StepEnd::HoldOver } else { StepEnd::Quiet };
         }
-        let mut arc = expand(interval);
-        let (crossing, side) = uplift::first_on(&self.structure, &arc);
-        let end = cut(&mut arc, crossing, StepEnd::Uplift(side));
-        (arc, end)
+        full_contact::series(structure, &start, arc);
+        let (crossing, side) = uplift::first_on(structure, arc);
+        cut(arc, crossing, StepEnd::Uplift(side))
     }
 
-    /// Rocking about `side` over at most `interval` (s), cut at impact or overturning.
-    fn step_while_rocking(
-        &self,
-        motion: &Motion,
-        side: Side,
-        a_g: GroundAcceleration,
-        interval: f64,
-    ) -> (Arc, StepEnd) {
-        let mut arc = nonlinear_rocking::motion(&self.structure, side, &motion.state, a_g, interval, self.local_error);
-        let overturning = first_overturning(&arc, side);
-        let mut end = cut(&mut arc, overturning, StepEnd::Overturning(side));
-        let crossing = first_return(&arc, side);
-        if crossing != Crossing::None {
-            end = cut(&mut arc, crossing, StepEnd::Impact(side));
+    /// Rocking about `side`, cut at impact or overturning.
+    fn step_while_rocking(&mut self, start: &Start, side: Side) -> StepEnd {
+        let arc = &mut self.arc;
+        self.rocking.series(&self.structure, side, start, arc);
+        if stays_about(arc, side) {
+            return StepEnd::Quiet;
         }
-        (arc, end)
+        let overturning = first_overturning(arc, side);
+        let end = cut(arc, overturning, StepEnd::Overturning(side));
+        match first_return(arc, side) {
+            Crossing::None => end,
+            crossing => cut(arc, crossing, StepEnd::Impact(side)),
+        }
     }
 }
 
@@ -375,27 +382,34 @@ fn period(structure: &Structure) -> f64 {
 fn cut(arc: &mut Arc, crossing: Crossing, end: StepEnd) -> StepEnd {
     match crossing {
         Crossing::None => StepEnd::Quiet,
-        Crossing::NoneUntil(tau) => {
-            arc.duration = tau;
+        Crossing::NoneUntil(sigma) => {
+            arc.reach = sigma;
             StepEnd::Quiet
         }
-        Crossing::At(tau) => {
-            arc.duration = tau;
+        Crossing::At(sigma) => {
+            arc.reach = sigma;
             end
         }
     }
 }
 
+/// Whether the magnitudes of the terms of θ prove that neither guard of rocking about `side` closes on `arc`.
+fn stays_about(arc: &Arc, side: Side) -> bool {
+    let start = side.sign() * arc.theta[0];
+    let excursion: f64 = arc.theta[1..=arc.order].iter().map(|c| c.abs()).sum();
+    excursion < start && excursion + start < FRAC_PI_2
+}
+
 /// The first instant of a rocking `arc` at which |θ| reaches π/2.
 fn first_overturning(arc: &Arc, side: Side) -> Crossing {
     let theta = arc.used(&arc.theta);
-    first_time_all_closed([Guard::new(theta, -side.sign(), FRAC_PI_2, arc.duration)], arc.duration)
+    first_time_all_closed([Guard::new(theta, -side.sign(), FRAC_PI_2)], arc.reach)
 }
 
-/// The first instant of a rocking `arc` at which s θ returns to 0. A start at θ = 0 is divided out: s θ/τ^z is searched,
+/// The first instant of a rocking `arc` at which s θ returns to 0. A start at θ = 0 is divided out: s θ/σ^z is searched,
 /// z the number of leading zeros, so that the start is no return and a return right after it is not missed.
 fn first_return(arc: &Arc, side: Side) -> Crossing {
     let theta = arc.used(&arc.theta);
     let zeros = theta.iter().take_while(|c| **c == 0.0).count().min(arc.order);
-    first_time_all_closed([Guard::new(&theta[zeros..], side.sign(), 0.0, arc.duration)], arc.duration)
+    first_time_all_closed([Guard::new(&theta[zeros..], side.sign(), 0.0)], arc.reach)
 }

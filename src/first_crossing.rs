@@ -1,40 +1,34 @@
 //! The first instant at which guards close, found without ever stepping over it.
 //!
-//! A guard is open while its polynomial is positive. From τ, with |g''| ≤ M over the step, g stays positive at least
-//! for δ, the positive root of g(τ) + g'(τ) δ − M δ²/2 = 0. Marching by δ cannot pass a root, however close two of
+//! A guard is open while its polynomial g is positive. From σ on, with |g''| ≤ M over the step, g stays positive at
+//! least for δ, the positive root of g(σ) + g'(σ) δ − M δ²/2 = 0. Marching by δ cannot pass a root, however close two of
 //! them are, and converges to a simple one quadratically, from the left.
 
-use crate::taylor::evaluate;
-
-/// A guard's polynomial in τ over one step, with a bound on its curvature there.
+/// A guard over one step: the polynomial `offset + sign·Σ c_k σ^k`.
 #[derive(Clone, Copy, Debug)]
 pub struct Guard<'a> {
     coefficients: &'a [f64],
-    /// Added to the constant term.
-    offset: f64,
-    /// +1 or −1.
     sign: f64,
-    /// Bound of the second derivative over the step.
-    curvature: f64,
+    offset: f64,
 }
 
 /// What a search over one step found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Crossing {
-    /// No guard combination closes over the step.
+    /// The guards do not close over the step.
     None,
-    /// The guards close τ seconds into the step.
+    /// They close at this σ.
     At(f64),
-    /// None until τ (s), where the search gave up: a fresh expansion from there has tighter bounds.
+    /// They do not close up to this σ, where the search gave up: a fresh expansion from there has tighter bounds.
     NoneUntil(f64),
 }
 
 impl Crossing {
-    /// The time (s) up to which it cuts the step; ∞ for none.
-    pub fn instant(self) -> f64 {
+    /// The σ at which it cuts the step; ∞ for none.
+    pub fn sigma(self) -> f64 {
         match self {
             Crossing::None => f64::INFINITY,
-            Crossing::At(tau) | Crossing::NoneUntil(tau) => tau,
+            Crossing::At(sigma) | Crossing::NoneUntil(sigma) => sigma,
         }
     }
 }
@@ -43,64 +37,70 @@ impl Crossing {
 const MAX_EVALUATIONS: usize = 100;
 
 impl<'a> Guard<'a> {
-    /// The guard `offset + sign·Σ c_k τ^k` over 0 ≤ τ ≤ `duration` (s).
-    pub fn new(coefficients: &'a [f64], sign: f64, offset: f64, duration: f64) -> Guard<'a> {
-        let curvature = coefficients
-            .iter()
-            .enumerate()
-            .skip(2)
-            .rev()
-            .fold(0.0, |sum, (k, c)| sum * duration + (k * (k - 1)) as f64 * c.abs());
-        Guard { coefficients, offset, sign, curvature }
+    /// The guard `offset + sign·Σ c_k σ^k`.
+    pub fn new(coefficients: &'a [f64], sign: f64, offset: f64) -> Guard<'a> {
+        Guard { coefficients, sign, offset }
     }
 
-    /// Whether the sum of all its terms' magnitudes proves it positive over the whole step.
-    pub fn is_open_throughout(&self, duration: f64) -> bool {
-        let excursion = self.coefficients[1..].iter().rev().fold(0.0, |sum, c| sum * duration + c.abs()) * duration;
-        self.offset + self.sign * self.coefficients[0] > excursion
+    /// Whether the magnitudes of its terms prove it positive up to σ = `reach` ≤ 1.
+    #[inline]
+    pub fn is_open_throughout(&self, reach: f64) -> bool {
+        let excursion: f64 = self.coefficients[1..].iter().map(|c| c.abs()).sum();
+        self.offset + self.sign * self.coefficients[0] > excursion * reach
     }
 
-    /// For how long after `tau` (s) it certainly stays positive; 0 where it is not.
-    fn open_for(&self, tau: f64) -> f64 {
-        let value = self.offset + self.sign * evaluate(self.coefficients, tau);
+    /// Bound M of its second derivative up to σ = `reach`.
+    fn curvature(&self, reach: f64) -> f64 {
+        let terms = self.coefficients.iter().enumerate().skip(2).rev();
+        terms.fold(0.0, |sum, (k, c)| sum * reach + (k * (k - 1)) as f64 * c.abs())
+    }
+
+    /// For how long after `sigma` it certainly stays positive; 0 where it is not.
+    fn open_for(&self, sigma: f64, curvature: f64) -> f64 {
+        let (mut value, mut slope) = (0.0, 0.0);
+        for c in self.coefficients.iter().rev() {
+            slope = slope * sigma + value;
+            value = value * sigma + c;
+        }
+        let (value, slope) = (self.offset + self.sign * value, self.sign * slope);
         if value <= 0.0 {
             return 0.0;
         }
-        let slope = self.sign
-            * self.coefficients.iter().enumerate().skip(1).rev().fold(0.0, |sum, (k, c)| sum * tau + k as f64 * c);
-        let root = (slope * slope + 2.0 * self.curvature * value).sqrt();
-        if slope < 0.0 { 2.0 * value / (root - slope) } else { (slope + root) / self.curvature }
+        let root = (slope * slope + 2.0 * curvature * value).sqrt();
+        if slope < 0.0 { 2.0 * value / (root - slope) } else { (slope + root) / curvature }
     }
 }
 
-/// The first instant in [0, `duration`] (s) at which all `guards` are closed at once (≤ 0, to rounding).
-pub fn first_time_all_closed<const N: usize>(guards: [Guard; N], duration: f64) -> Crossing {
-    if guards.iter().any(|guard| guard.is_open_throughout(duration)) {
+/// The first σ in [0, `reach`] at which all `guards` are closed at once (≤ 0, to rounding).
+pub fn first_time_all_closed<const N: usize>(guards: [Guard; N], reach: f64) -> Crossing {
+    if guards.iter().any(|guard| guard.is_open_throughout(reach)) {
         return Crossing::None;
     }
-    let mut tau = 0.0;
+    let curvatures = guards.map(|guard| guard.curvature(reach));
+    let mut sigma = 0.0;
     for _ in 0..MAX_EVALUATIONS {
-        let open_for = guards.iter().map(|guard| guard.open_for(tau)).fold(0.0, f64::max);
-        let next = tau + open_for;
-        if next > duration {
+        let still_open = guards.iter().zip(curvatures).map(|(guard, curvature)| guard.open_for(sigma, curvature));
+        let next = sigma + still_open.fold(0.0, f64::max);
+        if next > reach {
             return Crossing::None;
         }
-        if next == tau {
-            return Crossing::At(tau);
+        if next == sigma {
+            return Crossing::At(sigma);
         }
-        tau = next;
+        sigma = next;
     }
-    Crossing::NoneUntil(tau)
+    Crossing::NoneUntil(sigma)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::taylor::evaluate;
     use approx::assert_abs_diff_eq;
     use proptest::prelude::*;
 
-    fn first(coefficients: &[f64], duration: f64) -> Crossing {
-        first_time_all_closed([Guard::new(coefficients, 1.0, 0.0, duration)], duration)
+    fn first(coefficients: &[f64], reach: f64) -> Crossing {
+        first_time_all_closed([Guard::new(coefficients, 1.0, 0.0)], reach)
     }
 
     fn from_roots(roots: &[f64], lead: f64) -> Vec<f64> {
@@ -118,8 +118,8 @@ mod tests {
 
     #[test]
     fn two_roots_a_billionth_apart_are_not_missed() {
-        let Crossing::At(tau) = first(&from_roots(&[0.5, 0.5 + 1e-9], 1.0), 1.0) else { panic!("missed") };
-        assert_abs_diff_eq!(tau, 0.5, epsilon = 2e-8); // where the rounding of a double root puts it
+        let Crossing::At(sigma) = first(&from_roots(&[0.5, 0.5 + 1e-9], 1.0), 1.0) else { panic!("missed") };
+        assert_abs_diff_eq!(sigma, 0.5, epsilon = 2e-8); // where the rounding of a double root puts it
     }
 
     #[test]
@@ -143,17 +143,11 @@ mod tests {
     #[test]
     fn all_guards_must_be_closed_at_once() {
         let (one, two) = ([0.2, -1.0], [0.5, -1.0]); // closed from 0.2 on, from 0.5 on
-        let both = |duration| {
-            first_time_all_closed(
-                [Guard::new(&one, 1.0, 0.0, duration), Guard::new(&two, 1.0, 0.0, duration)],
-                duration,
-            )
-        };
+        let both = |reach| first_time_all_closed([Guard::new(&one, 1.0, 0.0), Guard::new(&two, 1.0, 0.0)], reach);
         assert_eq!(both(1.0), Crossing::At(0.5));
         assert_eq!(both(0.4), Crossing::None);
         let closed_before = [-0.1, 1.0]; // closed until 0.1
-        let never =
-            first_time_all_closed([Guard::new(&closed_before, 1.0, 0.0, 1.0), Guard::new(&two, 1.0, 0.0, 1.0)], 1.0);
+        let never = first_time_all_closed([Guard::new(&closed_before, 1.0, 0.0), Guard::new(&two, 1.0, 0.0)], 1.0);
         assert_eq!(never, Crossing::None);
     }
 
@@ -164,9 +158,12 @@ mod tests {
             let lead = if roots.len() % 2 == 0 { 1.0 } else { -1.0 };
             let coefficients = from_roots(&roots, lead);
             let found = match first(&coefficients, 1.0) {
-                Crossing::At(tau) => tau,
+                Crossing::At(sigma) => sigma,
                 Crossing::None => f64::INFINITY,
-                Crossing::NoneUntil(tau) => return Ok(prop_assert!(tau <= roots[0])),
+                Crossing::NoneUntil(sigma) => {
+                    prop_assert!(sigma <= roots[0]);
+                    return Ok(());
+                }
             };
             // where rounding alone can make the polynomial vanish, its root is anybody's
             let magnitude: f64 = coefficients.iter().map(|c| c.abs()).sum();

@@ -8,16 +8,19 @@
 //!       − a_g [ m H cos θ + (s (m + m0) B − m u) sin θ ]                                            (6)
 //! ```
 //!
-//! The series need θ̈ alone on one side. (6) − H (5), over m, with w = sB − u and e = sγB − u:
+//! The series are those of momenta rather than velocities, which takes the fewest products. With w = sB − u, κ = (c_u u̇ +
+//! k u)/m, i = (J0 + m0 B²)/m, and y = u̇ + H θ̇ (over m the momentum along u), L = (i + w²) θ̇ (over m the angular momentum
+//! about the pivot of all but y), F = g sin θ − a_g cos θ and G = g cos θ + a_g sin θ, Eq 5 and (6) − H (5) read
 //!
 //! ```text
-//! [(J0 + m0 B²)/m + w²] θ̈ = w θ̇ (2 u̇ + H θ̇) + H (c_u u̇ + k u)/m − e (g cos θ + a_g sin θ)
+//! ẏ = F − κ − w θ̇²
+//! L̇ = H (κ + w θ̇²) − [w + s(γ−1)B] G
 //! ```
 
-use crate::engine::GroundAcceleration;
-use crate::taylor::{Arc, MAX_ORDER, Series, Truncation, expand, product};
+use crate::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
 use crate::{Side, State, Structure};
 use nalgebra::{Matrix2, Vector2};
+use wide::f64x2;
 
 /// (ü, θ̈) in m/s² and rad/s² under the ground acceleration `a_g` (m/s²): Eqs 5 and 6 as they stand, solved for the
 /// accelerations. `None` where the mass matrix is singular: m0 = J0 = 0 and u = sB, the top mass above the pivot.
@@ -37,68 +40,121 @@ pub fn accelerations(structure: &Structure, side: Side, state: &State, a_g: f64)
     Some(mass.try_inverse()? * force)
 }
 
-/// The motion from `state` about `side` over at most `interval` (s) under `a_g`, as a series whose truncation errors in
-/// u̇ and θ̇ are `local_error` times the largest velocities that the step can bring.
-pub fn motion(
-    structure: &Structure,
-    side: Side,
-    state: &State,
-    a_g: GroundAcceleration,
-    interval: f64,
-    local_error: f64,
-) -> Arc {
-    let &crate::Parameters { m, m0, H, B, J0, g, .. } = structure.parameters();
-    let s = side.sign();
-    let stiffness = structure.omega_fc * structure.omega_fc;
-    let damping = structure.c_u / m;
-    let foundation = (J0 + m0 * B * B) / m;
+/// One order of the factors of six products.
+type Row = [f64x2; 3];
 
-    let zero: Series = [0.0; MAX_ORDER + 2];
-    let (mut sin, mut cos) = (zero, zero);
-    (sin[0], cos[0]) = state.theta.sin_cos();
-    let mut lever = zero; // w = sB − u
-    let mut gravity_lever = zero; // e = sγB − u
-    let mut lever_speed = zero; // w θ̇
-    let mut speeds = zero; // 2 u̇ + H θ̇
-    let mut weight = zero; // g cos θ + a_g sin θ
-    let mut inertia = zero; // (J0 + m0 B²)/m + w²
-    let mut theta_ddot = zero;
+const NO_ROW: Row = [f64x2::ZERO; 3];
 
-    let truncation = truncation(structure, state, a_g, interval, local_error);
-    expand(state, interval, truncation, |arc| {
-        let k = arc.order;
-        if k > 0 {
-            sin[k] = product(&cos, &arc.theta_dot, k - 1) / k as f64;
-            cos[k] = -product(&sin, &arc.theta_dot, k - 1) / k as f64;
-        }
-        lever[k] = if k == 0 { s * B - arc.u[0] } else { -arc.u[k] };
-        gravity_lever[k] = if k == 0 { s * structure.gamma * B - arc.u[0] } else { -arc.u[k] };
-        lever_speed[k] = product(&lever, &arc.theta_dot, k);
-        speeds[k] = 2.0 * arc.u_dot[k] + H * arc.theta_dot[k];
-        weight[k] = g * cos[k] + a_g.times(&sin, k);
-        inertia[k] = product(&lever, &lever, k) + if k == 0 { foundation } else { 0.0 };
-        let elastic = damping * arc.u_dot[k] + stiffness * arc.u[k];
-        let moment = product(&lever_speed, &speeds, k) + H * elastic - product(&gravity_lever, &weight, k);
-        theta_ddot[k] = 0.0;
-        theta_ddot[k] = (moment - product(&inertia, &theta_ddot, k)) / inertia[0];
-        let u_ddot =
-            g * sin[k] - a_g.times(&cos, k) - elastic - product(&lever_speed, &arc.theta_dot, k) - H * theta_ddot[k];
-        (u_ddot, theta_ddot[k])
-    })
+/// Factors of six products, one row per order.
+type Factors = [Row; MAX_ORDER + 1];
+
+#[inline(always)]
+fn row(columns: [f64; 6]) -> Row {
+    [f64x2::new([columns[0], columns[1]]), f64x2::new([columns[2], columns[3]]), f64x2::new([columns[4], columns[5]])]
 }
 
-/// `local_error` times the velocities that a step of at most `interval` can bring from `state`.
-fn truncation(
-    structure: &Structure,
-    state: &State,
-    a_g: GroundAcceleration,
-    interval: f64,
-    local_error: f64,
-) -> Truncation {
+#[inline(always)]
+fn add_product(sum: &mut Row, a: &Row, b: &Row) {
+    for lanes in 0..3 {
+        sum[lanes] += a[lanes] * b[lanes];
+    }
+}
+
+/// Σ a_i b_{n−i} over i = 0 … n in each column: six Cauchy products at once. The newest factors, a_n and b_n, come last
+/// and not from memory, so that the processor can sum the others before it knows them.
+#[inline(always)]
+fn products(a: &Factors, b: &Factors, newest_a: &Row, newest_b: &Row, n: usize) -> [f64; 6] {
+    let mut sum = NO_ROW;
+    if n > 0 {
+        for (a, b) in a[1..n].iter().zip(b[1..n].iter().rev()) {
+            add_product(&mut sum, a, b);
+        }
+        add_product(&mut sum, newest_a, &b[0]);
+    }
+    add_product(&mut sum, &a[0], newest_b);
+    let [first, second, third] = sum.map(f64x2::to_array);
+    [first[0], first[1], second[0], second[1], third[0], third[1]]
+}
+
+/// Series of the motion by Eqs 5 and 6, with room for the factors of its products. Row i of `left` and `right` holds
+///
+/// ```text
+/// left:   θ̇       θ̇      θ̇         w θ̇       w θ̇     w
+/// right:  cos θ   sin θ   w, next   w, next   θ̇       g cos θ + a_g sin θ
+/// ```
+///
+/// of order i ("next": of order i + 1). Column by column they multiply to the rates of sin θ and −cos θ, to what the
+/// later coefficients of w contribute to w θ̇ and w² θ̇, to w θ̇² and to the moment of the weight.
+#[derive(Clone, Debug)]
+pub struct NonlinearRocking {
+    left: Factors,
+    right: Factors,
+}
+
+impl Default for NonlinearRocking {
+    fn default() -> NonlinearRocking {
+        NonlinearRocking { left: [NO_ROW; MAX_ORDER + 1], right: [NO_ROW; MAX_ORDER + 1] }
+    }
+}
+
+impl NonlinearRocking {
+    /// Writes the motion from `start` about `side` into `arc`.
+    pub fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
+        let &Start { state, a_g, interval, .. } = start;
+        let &crate::Parameters { H, B, g, .. } = structure.parameters();
+        let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
+        let span = interval.min(longest_span(structure));
+        let (a, slope) = (a_g.value, a_g.slope * span);
+        let weight_offset = side.sign() * (gamma - 1.0) * B; // s(γ−1)B
+        let lever = side.sign() * B - state.u; // w at the start
+        let per_inertia = 1.0 / (foundation + lever * lever);
+
+        let State { u, u_dot, theta, theta_dot } = state;
+        let (mut sin, mut cos) = theta.sin_cos();
+        let mut weight = g * cos + a * sin; // G
+        let mut along = g * sin - a * cos; // F
+        let mut elastic = damping_u * u_dot + stiffness * u; // κ
+        let (left, right) = (&mut self.left, &mut self.right);
+        let mut newest_left = row([theta_dot, theta_dot, theta_dot, lever * theta_dot, lever * theta_dot, lever]);
+        let mut theta_dot = theta_dot;
+
+        let truncation = truncation(structure, start, span);
+        arc.expand(&state, span, truncation, |arc, k, per| {
+            let before = k - 1;
+            let newest_right = row([cos, sin, -arc.u[k], -arc.u[k], theta_dot, weight]);
+            left[before] = newest_left;
+            right[before] = newest_right;
+            let [sin_rate, minus_cos_rate, w_turning, w_w_turning, centrifugal, weight_moment] =
+                products(left, right, &newest_left, &newest_right, before);
+            let y = (along - elastic - centrifugal) * per;
+            let momentum = ((H * elastic - weight_offset * weight) + (H * centrifugal - weight_moment)) * per;
+            theta_dot = momentum * per_inertia - (lever * w_turning + w_w_turning) * per_inertia;
+            let u_dot = y - H * theta_dot;
+
+            let (sin_before, cos_before) = (sin, cos);
+            (sin, cos) = (sin_rate * per, -minus_cos_rate * per);
+            let lever_turning = lever * theta_dot + w_turning;
+            weight = g * cos + a * sin + slope * sin_before;
+            along = g * sin - a * cos - slope * cos_before;
+            elastic = damping_u * u_dot + stiffness * arc.u[k];
+            newest_left = row([theta_dot, theta_dot, theta_dot, lever_turning, lever_turning, -arc.u[k]]);
+            (u_dot, theta_dot)
+        });
+    }
+}
+
+/// The longest span (s) that a series about the present state is tried over.
+fn longest_span(structure: &Structure) -> f64 {
+    LONGEST_SPAN / structure.omega_u.max(structure.p_l)
+}
+
+/// The truncation that `start` asks for over a step of `span` s.
+fn truncation(structure: &Structure, start: &Start, span: f64) -> Truncation {
+    let &Start { state, a_g, local_error, .. } = start;
     let omega = structure.omega_u;
-    let response_time = interval.min(1.0 / omega);
+    let response_time = span.min(1.0 / omega);
     let gravity = structure.parameters().g * structure.tan_alpha_cg;
-    let forcing = a_g.value.abs() + a_g.slope.abs() * interval + gravity;
+    let forcing = a_g.value.abs() + a_g.slope.abs() * span + gravity;
     let u_dot = state.u_dot.abs() + response_time * (omega * omega * state.u.abs() + forcing);
     let theta_dot = state.theta_dot.abs() + u_dot / structure.parameters().H;
     Truncation { u_dot: local_error * u_dot, theta_dot: local_error * theta_dot }
@@ -108,6 +164,8 @@ fn truncation(
 mod tests {
     use super::*;
     use crate::Parameters;
+    use crate::engine::GroundAcceleration;
+    use crate::taylor::Series;
     use approx::assert_relative_eq;
     use proptest::prelude::*;
 
@@ -122,11 +180,15 @@ mod tests {
             let structure = Structure::new(Parameters::MCMANUS).unwrap();
             let side = Side::of(theta);
             let state = State { u, u_dot, theta, theta_dot };
-            let arc = motion(&structure, side, &state, GroundAcceleration { value, slope }, 2e-3, 1e-16);
-            for tau in [0.0, 0.4e-3, 1.1e-3, 2e-3] {
-                let expected = accelerations(&structure, side, &arc.at(tau), value + slope * tau).unwrap();
+            let mut arc = Arc::default();
+            let a_g = GroundAcceleration { value, slope };
+            let start = Start { state, a_g, interval: 2e-3, local_error: 1e-16 };
+            NonlinearRocking::default().series(&structure, side, &start, &mut arc);
+            for sigma in [0.0, 0.2, 0.55, 1.0] {
+                let a_g = a_g.at(sigma * arc.span);
+                let expected = accelerations(&structure, side, &arc.at(sigma), a_g).unwrap();
                 let derivative = |series: &Series| -> f64 {
-                    (1..=arc.order).map(|k| k as f64 * series[k] * tau.powi(k as i32 - 1)).sum()
+                    (1..=arc.order).map(|k| k as f64 * series[k] * sigma.powi(k as i32 - 1)).sum::<f64>() / arc.span
                 };
                 let size = expected.norm() + 100.0;
                 prop_assert!((derivative(&arc.u_dot) - expected[0]).abs() < 1e-10 * size);

@@ -211,8 +211,7 @@ impl Record {
 impl Segment {
     /// The ground acceleration as it is given from `time` (s) on.
     pub fn from(&self, time: f64) -> GroundAcceleration {
-        let GroundAcceleration { value, slope } = self.a_g;
-        GroundAcceleration { value: value + slope * (time - self.start), slope }
+        GroundAcceleration { value: self.a_g.at(time - self.start), slope: self.a_g.slope }
     }
 }
 
@@ -240,7 +239,8 @@ fn at2_counts(line: &str) -> Result<(usize, f64), String> {
     let upper = line.to_uppercase();
     let words: Vec<_> = upper.split([' ', '\t', ',', '=']).filter(|word| !word.is_empty()).collect();
     let (npts, dt) = match words.as_slice() {
-        ["NPTS", npts, "DT", dt] | ["NPTS", npts, "DT", dt, "SEC", ..] => (npts, dt.trim_end_matches("SEC")),
+        ["NPTS", npts, "DT", dt] => (npts, dt.trim_end_matches("SEC")),
+        ["NPTS", npts, "DT", dt, unit, ..] if unit.starts_with("SEC") => (npts, *dt),
         [npts, dt, "NPTS", "DT", ..] => (npts, *dt),
         _ => {
             let expected = "`NPTS= 4172, DT= .0100 SEC` or `4172 0.0100 NPTS, DT`";
@@ -436,6 +436,7 @@ mod tests {
         assert_eq!(csv_problem(""), "1: the file ends after 0 sample(s); two or more are needed");
         assert_eq!(csv_problem("t,a\n\n0,1\n"), "3: the file ends after 1 sample(s); two or more are needed");
         assert_eq!(csv_problem("# c\n0,1\n\nx,2\n"), "4: the time \"x\" is not a number");
+        assert_eq!(csv_problem("0,1\ninf,2\n"), "2: the time \"inf\" is not a number");
         assert_eq!(csv_problem("t,a\nt,a\n"), "2: the time \"t\" is not a number");
         assert_eq!(csv_problem("0,1\n1,NaN\n"), "2: the acceleration \"NaN\" is not a number");
         assert_eq!(csv_problem("0,1\n1,\n"), "2: the acceleration \"\" is not a number");

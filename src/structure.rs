@@ -31,6 +31,14 @@ pub struct Structure {
     pub u_cr: f64,
     /// Circular frequency of the vibration mode while rocking ω_u = ω_fc/√(1−β), rad/s (before Eq 18).
     pub omega_u: f64,
+    /// ω_fc² = k/m, 1/s².
+    pub(crate) stiffness: f64,
+    /// c_fc/m, 1/s.
+    pub(crate) damping_fc: f64,
+    /// c_u/m, 1/s.
+    pub(crate) damping_u: f64,
+    /// (J0 + m0 B²)/m, m².
+    pub(crate) foundation: f64,
     /// Damping ratio of the vibration mode ζ_u = c_u/(2√(k m (1−β))) (before Eq 18).
     pub zeta_u: f64,
 }
@@ -102,6 +110,10 @@ impl Structure {
             one_minus_beta,
             u_cr: g * tan_alpha_cg / (omega_fc * omega_fc),
             omega_u: omega_fc / one_minus_beta.sqrt(),
+            stiffness: omega_fc * omega_fc,
+            damping_fc: c_fc / m,
+            damping_u: c_u / m,
+            foundation: (J0 + m0 * B * B) / m,
             zeta_u: c_u / (2.0 * (k * m * one_minus_beta).sqrt()),
         })
     }

@@ -1,26 +1,33 @@
 //! Truncated Taylor series in time: the solver's representation of a motion over one step.
 //!
-//! Both phases' equations are analytic, so their solution over a step is expanded to as high an order as the tolerance
-//! asks. The expansion is its own dense output: a transition is a root of one of its polynomials.
+//! The equations of every phase are analytic, so their solution over a step is expanded to as high an order as the
+//! tolerance asks. The expansion is its own dense output: a transition is a root of one of its polynomials.
+//!
+//! Time within a step is σ = τ/span, 0 at its start and 1 at the end of the span that was asked for; the coefficients
+//! are then the terms themselves at the end, which can be compared with the tolerance and summed as they are.
 
 use crate::State;
+use crate::engine::GroundAcceleration;
 
 /// Highest order of an expansion. At a local error of 1e-16 it carries ω·h of more than 3 rad per step.
 pub const MAX_ORDER: usize = 28;
 
-/// Coefficients c_k of Σ c_k τ^k, τ in s from the start of the step.
+/// The longest span, as ω·h in rad, that an expansion is tried over: more than [`MAX_ORDER`] ever reaches.
+pub const LONGEST_SPAN: f64 = 8.0;
+
+/// Coefficients c_k of Σ c_k σ^k.
 pub type Series = [f64; MAX_ORDER + 2];
 
-/// Coefficient `k` of the product of two series.
-#[inline]
-pub fn product(a: &Series, b: &Series, k: usize) -> f64 {
-    a[..=k].iter().zip(b[..=k].iter().rev()).map(|(a, b)| a * b).sum()
-}
+/// A series of zeros.
+pub const ZERO: Series = [0.0; MAX_ORDER + 2];
 
-/// Value at `tau` of the polynomial with these coefficients.
+/// Value at `sigma` of the polynomial with these coefficients.
 #[inline]
-pub fn evaluate(coefficients: &[f64], tau: f64) -> f64 {
-    coefficients.iter().rev().fold(0.0, |sum, c| sum * tau + c)
+pub fn evaluate(coefficients: &[f64], sigma: f64) -> f64 {
+    if sigma == 1.0 {
+        return coefficients.iter().rev().sum();
+    }
+    coefficients.iter().rev().fold(0.0, |sum, c| sum * sigma + c)
 }
 
 /// The motion over one step: a polynomial in time for each component of the state.
@@ -36,39 +43,22 @@ pub struct Arc {
     pub theta_dot: Series,
     /// Highest order in use.
     pub order: usize,
-    /// Length of the step, s: over it the truncation error is within the tolerance.
-    pub duration: f64,
+    /// Duration of σ = 1, s.
+    pub span: f64,
+    /// The σ up to which the truncation error is within the tolerance; at most 1.
+    pub reach: f64,
+}
+
+impl Default for Arc {
+    fn default() -> Arc {
+        Arc { u: ZERO, u_dot: ZERO, theta: ZERO, theta_dot: ZERO, order: 0, span: 0.0, reach: 0.0 }
+    }
 }
 
 impl Arc {
-    /// The expansion of order 0: the state itself.
-    pub fn from_state(state: &State) -> Arc {
-        let constant = |value| {
-            let mut series = [0.0; MAX_ORDER + 2];
-            series[0] = value;
-            series
-        };
-        Arc {
-            u: constant(state.u),
-            u_dot: constant(state.u_dot),
-            theta: constant(state.theta),
-            theta_dot: constant(state.theta_dot),
-            order: 0,
-            duration: 0.0,
-        }
-    }
-
-    /// Raises the order by one, given the coefficients of ü and θ̈ at the present order.
-    #[inline]
-    pub fn push(&mut self, u_ddot: f64, theta_ddot: f64) {
-        let k = self.order;
-        let next = k + 1;
-        let per = 1.0 / next as f64;
-        self.u[next] = self.u_dot[k] * per;
-        self.u_dot[next] = u_ddot * per;
-        self.theta[next] = self.theta_dot[k] * per;
-        self.theta_dot[next] = theta_ddot * per;
-        self.order = next;
+    /// How long it lasts, s.
+    pub fn duration(&self) -> f64 {
+        self.reach * self.span
     }
 
     /// The coefficients of `series` up to the order in use.
@@ -80,66 +70,104 @@ impl Arc {
     /// Whether the expansion consists of numbers: what is not one stays so from order to order.
     pub fn is_finite(&self) -> bool {
         let last = self.order;
-        (self.u_dot[last] + self.theta_dot[last] + self.duration).is_finite()
+        (self.u_dot[last] + self.theta_dot[last] + self.reach).is_finite()
     }
 
-    /// The state `tau` seconds into the step.
-    pub fn at(&self, tau: f64) -> State {
+    /// The state at the end of the step.
+    #[inline]
+    pub fn end(&self) -> State {
+        self.at(self.reach)
+    }
+
+    /// The state at `sigma`.
+    #[inline]
+    pub fn at(&self, sigma: f64) -> State {
         State {
-            u: evaluate(self.used(&self.u), tau),
-            u_dot: evaluate(self.used(&self.u_dot), tau),
-            theta: evaluate(self.used(&self.theta), tau),
-            theta_dot: evaluate(self.used(&self.theta_dot), tau),
+            u: evaluate(self.used(&self.u), sigma),
+            u_dot: evaluate(self.used(&self.u_dot), sigma),
+            theta: evaluate(self.used(&self.theta), sigma),
+            theta_dot: evaluate(self.used(&self.theta_dot), sigma),
         }
     }
 }
 
-/// The velocities against which truncation is measured, and how small it has to be.
+/// What a step starts from and what is asked of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Start {
+    /// The state there.
+    pub state: State,
+    /// Ground acceleration from there on.
+    pub a_g: GroundAcceleration,
+    /// How far it may go at most, s.
+    pub interval: f64,
+    /// Truncation error over the largest velocities that the step can bring.
+    pub local_error: f64,
+}
+
+/// The largest truncated terms that a step may have.
 #[derive(Clone, Copy, Debug)]
 pub struct Truncation {
-    /// Largest truncated term of u̇ over the step, m/s.
+    /// Of u̇, m/s.
     pub u_dot: f64,
-    /// Largest truncated term of θ̇ over the step, rad/s.
+    /// Of θ̇, rad/s.
     pub theta_dot: f64,
 }
 
 /// Fewest orders in an expansion, so that terms that vanish at rest cannot end it early.
 const MIN_ORDER: usize = 5;
 
-/// Expands the motion from `state` order by order with `accelerations` — (ü, θ̈), coefficient `k`, from an arc known
-/// to order `k` — until the last two terms at the end of `interval` (s) are within `truncation`. When
-/// [`MAX_ORDER`] does not reach that far, the step is as long as its last two terms allow.
-#[inline]
-pub fn expand(
-    state: &State,
-    interval: f64,
-    truncation: Truncation,
-    mut accelerations: impl FnMut(&Arc) -> (f64, f64),
-) -> Arc {
-    let mut arc = Arc::from_state(state);
-    let mut power = 1.0;
-    let mut small_terms = 0;
-    loop {
-        let (u_ddot, theta_ddot) = accelerations(&arc);
-        arc.push(u_ddot, theta_ddot);
-        let k = arc.order;
-        power *= interval;
-        let is_small = (arc.u_dot[k] * power).abs() <= truncation.u_dot
-            && (arc.theta_dot[k] * power).abs() <= truncation.theta_dot;
-        small_terms = if is_small { small_terms + 1 } else { 0 };
-        if small_terms >= 2 && k >= MIN_ORDER {
-            arc.duration = interval;
-            return arc;
+/// 1/k for the orders in use.
+const RECIPROCAL: Series = {
+    let mut reciprocal = ZERO;
+    let mut k = 1;
+    while k < reciprocal.len() {
+        reciprocal[k] = 1.0 / k as f64;
+        k += 1;
+    }
+    reciprocal
+};
+
+impl Arc {
+    /// Expands the motion from `state` over `span` (s), order by order, until its last two terms are within `truncation`;
+    /// coefficients of an earlier use are overwritten.
+    ///
+    /// `velocities(arc, k, per)` gives the coefficients of (u̇, θ̇) at order k ≥ 1, from u and θ to order k and from u̇ and
+    /// θ̇ to order k − 1; `per` is span/k, which integrates a coefficient of order k − 1. When [`MAX_ORDER`] is not enough
+    /// for the span, the arc reaches as far as its last two terms allow.
+    #[inline(always)]
+    pub fn expand(
+        &mut self,
+        state: &State,
+        span: f64,
+        truncation: Truncation,
+        mut velocities: impl FnMut(&Arc, usize, f64) -> (f64, f64),
+    ) {
+        self.span = span;
+        self.reach = 1.0;
+        (self.u[0], self.u_dot[0]) = (state.u, state.u_dot);
+        (self.theta[0], self.theta_dot[0]) = (state.theta, state.theta_dot);
+        let mut previous_is_small = false;
+        for (k, reciprocal) in RECIPROCAL.iter().enumerate().take(MAX_ORDER + 1).skip(1) {
+            let per = span * reciprocal;
+            self.u[k] = self.u_dot[k - 1] * per;
+            self.theta[k] = self.theta_dot[k - 1] * per;
+            let (u_dot, theta_dot) = velocities(self, k, per);
+            self.u_dot[k] = u_dot;
+            self.theta_dot[k] = theta_dot;
+            self.order = k;
+            let is_small = u_dot.abs() <= truncation.u_dot && theta_dot.abs() <= truncation.theta_dot;
+            if is_small && previous_is_small && k >= MIN_ORDER {
+                return;
+            }
+            previous_is_small = is_small;
         }
-        if k == MAX_ORDER {
-            arc.duration = interval.min(longest_step(&arc, truncation));
-            return arc;
-        }
+        self.reach = reach(self, truncation).min(1.0);
     }
 }
 
-/// The step (s) over which the last two terms of a full expansion stay within `truncation`.
-fn longest_step(arc: &Arc, truncation: Truncation) -> f64 {
+/// The σ up to which the last two terms of a full expansion stay within `truncation`.
+#[cold]
+fn reach(arc: &Arc, truncation: Truncation) -> f64 {
     [MAX_ORDER - 1, MAX_ORDER]
         .into_iter()
         .flat_map(|k| [(truncation.u_dot / arc.u_dot[k].abs(), k), (truncation.theta_dot / arc.theta_dot[k].abs(), k)])
@@ -152,38 +180,39 @@ mod tests {
     use super::*;
     use approx::assert_relative_eq;
 
-    /// u = cos t, θ = e^t: the expansion reproduces both to the truncation asked for, and says how far it holds.
-    #[test]
-    fn an_expansion_holds_over_the_step_it_claims() {
+    /// u = cos t, θ = e^t.
+    fn cosine_and_exponential(span: f64, error: f64) -> Arc {
         let state = State { u: 1.0, u_dot: 0.0, theta: 1.0, theta_dot: 1.0 };
-        for (interval, error) in [(0.1, 1e-4), (0.5, 1e-9), (1.0, 1e-14), (50.0, 1e-14)] {
-            let arc = expand(&state, interval, Truncation { u_dot: error, theta_dot: error }, |arc| {
-                (-arc.u[arc.order], arc.theta[arc.order])
-            });
-            let end = arc.at(arc.duration);
-            let scale = arc.duration.exp();
-            assert!((end.u - arc.duration.cos()).abs() <= error.max(4e-15 * scale));
-            assert!((end.theta - arc.duration.exp()).abs() <= error.max(4e-15 * scale));
-            assert!(arc.duration == interval || (arc.order == MAX_ORDER && arc.duration > 3.0));
+        let mut arc = Arc::default();
+        arc.expand(&state, span, Truncation { u_dot: error, theta_dot: error }, |arc, k, per| {
+            (-arc.u[k - 1] * per, arc.theta[k - 1] * per)
+        });
+        arc
+    }
+
+    /// The expansion reproduces both to the truncation asked for, and says how far it holds.
+    #[test]
+    fn an_expansion_holds_as_far_as_it_says() {
+        for (span, error) in [(0.1, 1e-4), (0.5, 1e-9), (1.0, 1e-14), (50.0, 1e-14)] {
+            let arc = cosine_and_exponential(span, error);
+            let duration = arc.duration();
+            let end = arc.end();
+            let rounding = 4e-15 * duration.exp();
+            assert!((end.u - duration.cos()).abs() <= error.max(rounding));
+            assert!((end.theta - duration.exp()).abs() <= error.max(rounding));
+            assert!(arc.reach == 1.0 || (arc.order == MAX_ORDER && duration > 3.0));
         }
     }
 
     #[test]
     fn the_order_follows_the_tolerance() {
-        let state = State { u: 1.0, ..State::default() };
-        let order = |error| {
-            expand(&state, 1.0, Truncation { u_dot: error, theta_dot: error }, |arc| (-arc.u[arc.order], 0.0)).order
-        };
+        let order = |error| cosine_and_exponential(1.0, error).order;
         assert!(order(1e-4) < order(1e-8) && order(1e-8) < order(1e-15));
     }
 
     #[test]
-    fn a_product_is_the_cauchy_product() {
-        let mut a = [0.0; MAX_ORDER + 2];
-        let mut b = a;
-        (a[0], a[1], a[2]) = (1.0, 2.0, 3.0);
-        (b[0], b[1], b[2]) = (4.0, 5.0, 6.0);
-        assert_eq!(product(&a, &b, 2), 1.0 * 6.0 + 2.0 * 5.0 + 3.0 * 4.0);
-        assert_relative_eq!(evaluate(&a[..3], 2.0), 1.0 + 4.0 + 12.0);
+    fn a_polynomial_is_evaluated_at_its_end_and_before() {
+        assert_relative_eq!(evaluate(&[1.0, 2.0, 3.0], 2.0), 1.0 + 4.0 + 12.0);
+        assert_relative_eq!(evaluate(&[1.0, 2.0, 3.0], 1.0), 6.0);
     }
 }

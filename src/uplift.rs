@@ -22,7 +22,7 @@ const LEAST_EXCESS: f64 = 1e-12;
 /// Coefficients of the turning moment over the mass, H (c_u u̇ + k u)/m + g u, in m²/s².
 fn turning_moment(structure: &Structure, u: f64, u_dot: f64) -> f64 {
     let parameters = structure.parameters();
-    parameters.H * (structure.c_u * u_dot + structure.k * u) / parameters.m + parameters.g * u
+    parameters.H * (structure.damping_u * u_dot + structure.stiffness * u) + parameters.g * u
 }
 
 /// The restoring moment of the weight over the mass, γ g B, in m²/s².
@@ -35,14 +35,14 @@ fn weight_moment(structure: &Structure) -> f64 {
 pub fn first_on(structure: &Structure, arc: &Arc) -> (Crossing, Side) {
     let right = first_about(structure, arc, Side::Right);
     let left = first_about(structure, arc, Side::Left);
-    if right.instant() <= left.instant() { (right, Side::Right) } else { (left, Side::Left) }
+    if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
 }
 
 fn first_about(structure: &Structure, arc: &Arc, side: Side) -> Crossing {
     let s = side.sign();
     let u = arc.used(&arc.u);
-    let displacement = Guard::new(u, -s, structure.u_cr, arc.duration);
-    if displacement.is_open_throughout(arc.duration) {
+    let displacement = Guard::new(u, -s, structure.u_cr);
+    if displacement.is_open_throughout(arc.reach) {
         return Crossing::None;
     }
     let mut moment: Series = arc.u;
@@ -50,8 +50,8 @@ fn first_about(structure: &Structure, arc: &Arc, side: Side) -> Crossing {
         *coefficient = turning_moment(structure, arc.u[k], arc.u_dot[k]);
     }
     let weight = (1.0 + LEAST_EXCESS) * weight_moment(structure);
-    let moment = Guard::new(arc.used(&moment), -s, weight, arc.duration);
-    first_time_all_closed([displacement, moment], arc.duration)
+    let moment = Guard::new(arc.used(&moment), -s, weight);
+    first_time_all_closed([displacement, moment], arc.reach)
 }
 
 #[cfg(test)]
@@ -59,11 +59,14 @@ mod tests {
     use super::*;
     use crate::engine::GroundAcceleration;
     use crate::nonlinear_rocking::accelerations;
+    use crate::taylor::Start;
     use crate::{Parameters, State, full_contact};
     use proptest::prelude::*;
 
     fn first_from(structure: &Structure, state: State) -> (Crossing, Side) {
-        let arc = full_contact::motion(structure, &state, GroundAcceleration::default(), 1e-9, 1e-13);
+        let mut arc = Arc::default();
+        let a_g = GroundAcceleration::default();
+        full_contact::series(structure, &Start { state, a_g, interval: 1e-9, local_error: 1e-13 }, &mut arc);
         first_on(structure, &arc)
     }
 
@@ -100,11 +103,12 @@ mod tests {
         let structure = Structure::new(Parameters { zeta_fc: 0.2, ..Parameters::EVISON }).unwrap();
         let state = State { u: 1.05 * structure.u_cr, u_dot: -0.02, ..State::default() };
         let push = GroundAcceleration { value: -40.0, slope: 0.0 }; // turns the velocity round
-        let arc = full_contact::motion(&structure, &state, push, 2e-3, 1e-15);
-        let (Crossing::At(tau), Side::Right) = first_on(&structure, &arc) else { panic!("no uplift") };
-        let there = arc.at(tau);
+        let mut arc = Arc::default();
+        full_contact::series(&structure, &Start { state, a_g: push, interval: 2e-3, local_error: 1e-15 }, &mut arc);
+        let (Crossing::At(sigma), Side::Right) = first_on(&structure, &arc) else { panic!("no uplift") };
+        let there = arc.at(sigma);
         let theta_ddot = accelerations(&structure, Side::Right, &there, push.value).unwrap()[1];
-        assert!(tau > 1e-5 && there.u > structure.u_cr);
+        assert!(sigma * arc.span > 1e-5 && there.u > structure.u_cr);
         assert!((0.0..1e-9).contains(&theta_ddot), "{theta_ddot}");
     }
 }
