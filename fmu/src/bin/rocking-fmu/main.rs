@@ -1,1 +1,96 @@
-fn main() {}
+//! The command line: write the FMU, simulate a record without a host, show what follows from a structure's parameters.
+#![allow(non_snake_case)] // H, B, V_t: the paper's own letters
+
+mod archive;
+mod describe;
+mod estimate;
+mod export;
+mod modes;
+mod pushover;
+mod quantities;
+mod record_args;
+mod significant;
+mod simulate;
+mod structure_args;
+mod summary;
+mod tables;
+
+use clap::Parser;
+use std::{io, process::ExitCode};
+
+/// A flexible structure that rocks on its foundation: FMU exporter and simulator.
+///
+/// A command works on the McManus specimen of the paper unless --preset or --parameters says otherwise. SI units
+/// throughout, angles in rad.
+#[derive(Parser)]
+#[command(name = "rocking-fmu", version)]
+enum Command {
+    /// Write the FMU (FMI 2.0 co-simulation)
+    #[command(after_help = "Examples:
+  rocking-fmu export
+  rocking-fmu export --preset evison -o Evison.fmu
+  rocking-fmu export --parameters pier.toml -o pier.fmu")]
+    Export(export::ExportArgs),
+    /// Simulate the response to a ground motion record, or free vibration
+    ///
+    /// Writes the response as CSV and prints its peaks. The ground acceleration is linear between samples; the
+    /// structure starts at rest unless initial values are given. Overturning ends the run.
+    #[command(after_help = "Examples:
+  rocking-fmu simulate --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45
+  rocking-fmu simulate --parameters pier.toml --record table.csv --unit g --dt 0.001 -o pier.csv
+  rocking-fmu simulate --preset evison --free 2 --theta-0 0.04 --events impacts.csv")]
+    Simulate(simulate::SimulateArgs),
+    /// Show the parameters and all that follows from them
+    #[command(after_help = "Examples:
+  rocking-fmu describe
+  rocking-fmu describe --preset evison
+  rocking-fmu describe --parameters pier.toml")]
+    Describe(describe::DescribeArgs),
+    /// Estimate demands and frequency without a time history (Eqs 14, 21 to 24)
+    ///
+    /// The demand of a ground motion comes from its response spectrum; without a record the ground is at rest.
+    #[command(after_help = "Examples:
+  rocking-fmu estimate --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45
+  rocking-fmu estimate --preset evison --amplification 1.4 --amplitudes 0.1,0.2,0.3
+  rocking-fmu estimate --parameters pier.toml --record table.csv --unit g --csv")]
+    Estimate(estimate::EstimateArgs),
+    /// Push the structure over slowly: force and moment against displacement, to overturning
+    #[command(after_help = "Examples:
+  rocking-fmu pushover
+  rocking-fmu pushover --preset evison --points 500 -o evison.csv")]
+    Pushover(pushover::PushoverArgs),
+    /// Split a response into rocking and vibration mode (Eqs 12, 16, 19)
+    #[command(after_help = "Examples:
+  rocking-fmu simulate --preset evison --free 2 --theta-0 0.04 -o response.csv
+  rocking-fmu modes --preset evison --response response.csv")]
+    Modes(modes::ModesArgs),
+}
+
+fn main() -> ExitCode {
+    let result = match Command::parse() {
+        Command::Export(args) => export::run(&args),
+        Command::Simulate(args) => simulate::run(&args),
+        Command::Describe(args) => describe::run(&args),
+        Command::Estimate(args) => estimate::run(&args),
+        Command::Pushover(args) => pushover::run(&args),
+        Command::Modes(args) => modes::run(&args),
+    };
+    match result {
+        Err(error) if !is_closed_pipe(&error) => {
+            eprintln!("error: {error:#}");
+            ExitCode::FAILURE
+        }
+        _ => ExitCode::SUCCESS,
+    }
+}
+
+/// Whether the reader of the output has seen enough, as `head` has.
+fn is_closed_pipe(error: &anyhow::Error) -> bool {
+    error.chain().any(|cause| {
+        let io_error = match cause.downcast_ref::<csv::Error>().map(csv::Error::kind) {
+            Some(csv::ErrorKind::Io(error)) => Some(error),
+            _ => cause.downcast_ref::<io::Error>(),
+        };
+        io_error.is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe)
+    })
+}

@@ -1,0 +1,46 @@
+//! `describe`: a structure's parameters and what follows from them.
+use crate::{
+    quantities::{Line, print_csv},
+    significant::significant,
+    structure_args::StructureArgs,
+};
+use rocking::{
+    parameters::PARAMETERS,
+    quantity::Quantity,
+    structure::{DERIVED, Derived},
+};
+use std::io::{Write, stdout};
+
+/// What to describe.
+#[derive(clap::Args)]
+pub struct DescribeArgs {
+    #[command(flatten)]
+    structure: StructureArgs,
+    /// Print the derived quantities as CSV
+    #[arg(long)]
+    csv: bool,
+}
+
+/// Prints the parameters as they were given and the derived quantities with the equations that define them.
+pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
+    let structure = args.structure.load()?;
+    if args.csv {
+        return print_csv(DERIVED.iter().map(|derived| {
+            let Derived { name, unit, description, equation, value } = derived;
+            Line::new(name, value(&structure), unit, equation, description)
+        }));
+    }
+    let mut out = stdout().lock();
+    let unit = |unit| if unit == "1" { "-" } else { unit };
+    writeln!(out, "Parameters")?;
+    for Quantity { name, unit: of, description, get, .. } in &PARAMETERS {
+        let value = get(structure.parameters());
+        writeln!(out, "  {name:<10} {value:>12} {:<6} {description}", unit(of))?;
+    }
+    writeln!(out, "\nDerived quantities")?;
+    for Derived { name, unit: of, description, equation, value } in &DERIVED {
+        let value = significant(value(&structure));
+        writeln!(out, "  {name:<10} {value:>12} {:<6} {equation:<13} {description}", unit(of))?;
+    }
+    Ok(())
+}

@@ -1,0 +1,115 @@
+//! `estimate`: demands without a time history (Eqs 21–24) and the effective frequency of rocking (Eq 14).
+use crate::{
+    quantities::{Line, print_columns, print_csv},
+    record_args::RecordArgs,
+    significant::significant,
+    structure_args::StructureArgs,
+};
+use rocking::{
+    Structure,
+    demand::{Demand, INSTANT_TRANSITION},
+    effective_frequency::effective_frequency,
+    record::Record,
+    response_spectrum::spectral_acceleration,
+};
+use std::f64::consts::TAU;
+use std::io::{Write, stdout};
+
+/// What to estimate.
+#[derive(clap::Args)]
+pub struct EstimateArgs {
+    #[command(flatten)]
+    structure: StructureArgs,
+    #[command(flatten)]
+    ground: RecordArgs,
+    /// Dynamic amplification C at a transition between rocking phases, 0 to 2; 2 for an instant one
+    #[arg(long, value_name = "C", default_value_t = INSTANT_TRANSITION, allow_negative_numbers = true)]
+    amplification: f64,
+    /// Amplitudes theta/tan(alpha_cg) at which to show the effective frequency
+    #[arg(
+        long,
+        value_name = "LIST",
+        value_delimiter = ',',
+        default_values_t = [0.1, 0.25, 0.5, 0.75, 0.9],
+        value_parser = amplitude
+    )]
+    amplitudes: Vec<f64>,
+    /// Print the values as CSV
+    #[arg(long)]
+    csv: bool,
+}
+
+fn amplitude(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(part) if part > 0.0 && part < 1.0 => Ok(part),
+        _ => Err("a number between 0 and 1 is needed: beyond, the structure does not come down".into()),
+    }
+}
+
+/// Prints the demands, term by term, and the effective frequencies.
+pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
+    let structure = args.structure.load()?;
+    let g = structure.parameters().g;
+    let record = args.ground.load(g)?;
+    let fixed_base = record.as_ref().map_or(Vec::new(), |record| on_fixed_base(&structure, record));
+    let rocking = while_rocking(&structure, record.as_ref(), args.amplification)?;
+    if args.csv {
+        let frequencies = args.amplitudes.iter().map(|part| Line {
+            name: format!("f_r({part})"),
+            value: effective_frequency(&structure, part * structure.tan_alpha_cg),
+            unit: "Hz",
+            equation: "Eq 14",
+            description: format!("effective frequency of rocking at theta = {part} tan(alpha_cg)"),
+        });
+        return print_csv(fixed_base.into_iter().chain(rocking).chain(frequencies));
+    }
+    let mut out = stdout().lock();
+    if let Some(record) = &record {
+        writeln!(out, "Ground motion: {}", record.title())?;
+        print_columns(&mut out, &fixed_base, g)?;
+        writeln!(out, "\nDemand while rocking")?;
+    } else {
+        writeln!(out, "Demand while rocking, the ground at rest")?;
+    }
+    print_columns(&mut out, &rocking, g)?;
+    writeln!(out, "\nEffective frequency of rocking, Eq 14")?;
+    writeln!(out, "  {:>19} {:>12} {:>12} {:>12}", "theta/tan(alpha_cg)", "theta (rad)", "f_r (Hz)", "1/f_r (s)")?;
+    for part in &args.amplitudes {
+        let theta = part * structure.tan_alpha_cg;
+        let f_r = effective_frequency(&structure, theta);
+        let [theta, frequency, period] = [theta, f_r, 1.0 / f_r].map(significant);
+        writeln!(out, "  {part:>19} {theta:>12} {frequency:>12} {period:>12}")?;
+    }
+    Ok(())
+}
+
+/// The ground motion, and what it asks of the structure on a fixed base.
+fn on_fixed_base(structure: &Structure, record: &Record) -> Vec<Line> {
+    let peak = record.acceleration().iter().fold(0.0, |peak: f64, a_g| peak.max(a_g.abs()));
+    let S_a = spectral_acceleration(record, TAU / structure.omega_fc, structure.parameters().zeta_fc);
+    vec![
+        Line::new("PGA", peak, "m/s2", "", "peak ground acceleration"),
+        Line::new("S_a(T_fc, zeta_fc)", S_a, "m/s2", "Eq 4", "lateral acceleration on a fixed base"),
+        Line::new("V_fc", structure.parameters().m * S_a, "N", "Eq 4", "base shear on a fixed base"),
+    ]
+}
+
+/// The demand while rocking, term by term; without a record the ground is at rest.
+fn while_rocking(structure: &Structure, record: Option<&Record>, C: f64) -> anyhow::Result<Vec<Line>> {
+    let T_u = TAU / structure.omega_u;
+    let S_a = record.map_or(0.0, |record| spectral_acceleration(record, T_u, structure.zeta_u));
+    let Demand { u_ddot_gr, ground, rocking, impact, a_t, V_t, M_t } = Demand::new(structure, S_a, C)?;
+    Ok(vec![
+        Line::new("T_u", T_u, "s", "before Eq 18", "period of the vibration mode while rocking"),
+        Line::new("zeta_u", structure.zeta_u, "1", "before Eq 18", "its damping ratio"),
+        Line::new("S_a(T_u, zeta_u)", S_a, "m/s2", "after Eq 20", "its absolute spectral acceleration"),
+        Line::new("C", C, "1", "Eq 21", "dynamic amplification at a transition between rocking phases"),
+        Line::new("u_ddot_gr", u_ddot_gr, "m/s2", "Eq 21", "elastic acceleration as the weight changes sides"),
+        Line::new("(1-beta) S_a", ground, "m/s2", "Eq 22", "vibration that the ground excites"),
+        Line::new("beta g tan", rocking, "m/s2", "Eq 22", "rocking mode, beta g tan(alpha_cg)"),
+        Line::new("C beta g tan", impact, "m/s2", "Eq 22", "vibration that the change of sides excites"),
+        Line::new("a_t", a_t, "m/s2", "Eq 22", "lateral acceleration, the sum of these three"),
+        Line::new("V_t", V_t, "N", "Eq 23", "base shear m a_t"),
+        Line::new("M_t", M_t, "N.m", "Eq 24", "overturning moment m H a_t"),
+    ])
+}

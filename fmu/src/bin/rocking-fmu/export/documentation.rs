@@ -1,0 +1,165 @@
+//! `documentation/index.html`: the model, its variables and how to use it.
+
+use super::model_description::{DESCRIPTION, MODEL_NAME};
+use crate::significant::significant;
+use FlexibleRocking::GUID;
+use FlexibleRocking::logger::Category;
+use FlexibleRocking::variables::{DataType, VARIABLES, Variable};
+use minijinja::value::Serde;
+use minijinja::{Environment, UndefinedBehavior};
+use model_description::Causality;
+use rocking::Structure;
+use rocking::engine::{DEFAULT_TOLERANCE, MAX_TRANSITIONS_PER_PERIOD};
+use rocking::parameters::MAX_SLENDERNESS;
+use rocking::structure::DERIVED;
+use serde::Serialize;
+
+const TEMPLATE: &str = include_str!("../../../../resources/index.html");
+const ICON: &str = include_str!("../../../../resources/model.svg");
+
+/// What the template fills in.
+#[derive(Serialize)]
+struct Page<'a> {
+    model_name: &'a str,
+    description: &'a str,
+    version: &'a str,
+    guid: &'a str,
+    icon: &'a str,
+    groups: Vec<Group>,
+    tolerance: String,
+    log_categories: Vec<LogCategory>,
+    max_slenderness: String,
+    max_transitions: u32,
+}
+
+/// The variables of one kind.
+#[derive(Serialize)]
+struct Group {
+    title: &'static str,
+    rows: Vec<Row>,
+}
+
+/// A variable as the page shows it.
+#[derive(Serialize)]
+struct Row {
+    name: &'static str,
+    unit: &'static str,
+    value: String,
+    range: String,
+    meaning: String,
+}
+
+#[derive(Serialize)]
+struct LogCategory {
+    name: String,
+    description: &'static str,
+}
+
+/// The page of an FMU whose start values are those of `structure`.
+pub fn documentation(structure: &Structure) -> Result<String, minijinja::Error> {
+    let page = Page {
+        model_name: MODEL_NAME,
+        description: DESCRIPTION,
+        version: env!("CARGO_PKG_VERSION"),
+        guid: GUID,
+        icon: ICON,
+        groups: [
+            ("Input", Causality::Input),
+            ("Outputs", Causality::Output),
+            ("Parameters and initial values", Causality::Parameter),
+            ("Calculated parameters", Causality::CalculatedParameter),
+        ]
+        .map(|(title, causality)| group(title, causality, structure))
+        .into(),
+        tolerance: format!("{DEFAULT_TOLERANCE:e}"),
+        log_categories: Category::ALL.map(log_category).into(),
+        max_slenderness: MAX_SLENDERNESS.to_string(),
+        max_transitions: MAX_TRANSITIONS_PER_PERIOD,
+    };
+    let mut environment = Environment::new();
+    environment.set_undefined_behavior(UndefinedBehavior::Strict);
+    let name = "index.html"; // the extension switches HTML escaping on
+    environment.render_named_str(name, TEMPLATE, Serde(page))
+}
+
+fn group(title: &'static str, causality: Causality, structure: &Structure) -> Group {
+    let variables = VARIABLES.iter().filter(|variable| variable.causality == causality);
+    Group { title, rows: variables.map(|variable| row(variable, structure)).collect() }
+}
+
+fn log_category(category: Category) -> LogCategory {
+    LogCategory { name: category.name().to_string_lossy().into_owned(), description: category.description() }
+}
+
+fn row(variable: &Variable, structure: &Structure) -> Row {
+    let (unit, range) = match variable.data_type {
+        DataType::Real { unit, range } => (if unit == "1" { "–" } else { unit }, range),
+        _ => ("", None),
+    };
+    let meaning = match variable.data_type {
+        DataType::Real { .. } => variable.description.to_owned(),
+        DataType::Integer => format!("{} (Integer)", variable.description),
+        DataType::Boolean => format!("{} (Boolean)", variable.description),
+        DataType::Enumeration(literals) => {
+            let literals: Vec<_> = (1..).zip(literals).map(|(number, name)| format!("{number} {name}")).collect();
+            format!("{}: {}", variable.description, literals.join(", "))
+        }
+    };
+    Row {
+        name: variable.name,
+        unit,
+        value: value(variable, structure),
+        range: range.map_or(String::new(), |(min, max)| format!("{} … {}", short(min), short(max))),
+        meaning,
+    }
+}
+
+/// What is known of a variable's value before the simulation: its start value, or what follows from the parameters.
+fn value(variable: &Variable, structure: &Structure) -> String {
+    if let Some(start) = variable.start(structure.parameters()) {
+        return short(start);
+    }
+    let derived = DERIVED.iter().find(|derived| derived.name == variable.name);
+    derived.map_or(String::new(), |derived| significant((derived.value)(structure)))
+}
+
+/// `x` with all its digits, but without long rows of zeros.
+fn short(x: f64) -> String {
+    if x == 0.0 || (1e-3..1e5).contains(&x.abs()) { x.to_string() } else { format!("{x:e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rocking::Parameters;
+
+    #[test]
+    fn the_page_has_a_row_for_every_variable() {
+        let page = documentation(&Structure::new(Parameters::EVISON).unwrap()).unwrap();
+        for variable in VARIABLES.iter() {
+            let cell = format!("<tr><td class=\"n\"><code>{}</code></td><td class=\"n\">", variable.name);
+            assert_eq!(page.matches(&cell).count(), 1, "{}", variable.name);
+        }
+        let cells = |name, unit, value, range, meaning| {
+            let n = |cell| format!("<td class=\"n\">{cell}</td>");
+            format!("<code>{name}</code></td>{}{}{}<td>{meaning}</td></tr>", n(unit), n(value), n(range))
+        };
+        for row in [
+            cells("m", "kg", "125.8", "1e-6 … 1e12", "top mass"),
+            cells("zeta_fc", "–", "0.015", "0 … 10", "damping ratio in full contact"),
+            cells("u_cr", "m", "0.000752467", "", "critical displacement: uplift"),
+            cells("overturned", "", "", "", "whether the structure has overturned (Boolean)"),
+            cells(
+                "phase",
+                "",
+                "",
+                "",
+                "what holds of the base: 1 full contact, 2 rocking left, 3 rocking right, 4 overturned",
+            ),
+        ] {
+            assert!(page.contains(&row), "{row}\n{page}");
+        }
+        assert!(page.contains("or 1e-9. A step must start"));
+        assert!(page.contains("<code>logEvents</code></td><td>uplift, impact, landing"));
+    }
+}

@@ -1,0 +1,212 @@
+//! `modelDescription.xml`, from the table of variables.
+
+use FlexibleRocking::GUID;
+use FlexibleRocking::logger;
+use FlexibleRocking::variables::{DataType, PHASES, VARIABLES, Variable};
+use model_description as fmi;
+use rocking::Parameters;
+use rocking::engine::DEFAULT_TOLERANCE;
+
+/// Name of the model, and of its library without extension.
+pub const MODEL_NAME: &str = "FlexibleRocking";
+
+/// What the model is, in one line.
+pub const DESCRIPTION: &str = "A flexible structure that rocks freely on rigid ground under earthquake ground motion";
+
+/// Name of the enumeration of phases.
+const PHASE_TYPE: &str = "Phase";
+
+/// The units of the variables, as exponents of kg, m, s, rad.
+const UNITS: [(&str, [i32; 4]); 10] = [
+    ("kg", [1, 0, 0, 0]),
+    ("m", [0, 1, 0, 0]),
+    ("Hz", [0, 0, -1, 0]),
+    ("rad", [0, 0, 0, 1]),
+    ("rad/s", [0, 0, -1, 1]),
+    ("m/s", [0, 1, -1, 0]),
+    ("m/s2", [0, 1, -2, 0]),
+    ("N", [1, 1, -2, 0]),
+    ("N.m", [1, 2, -2, 0]),
+    ("kg.m2", [1, 2, 0, 0]),
+];
+
+/// The description of an FMU whose start values are `parameters`.
+pub fn model_description(parameters: &Parameters) -> fmi::FmiModelDescription {
+    fmi::FmiModelDescription {
+        fmi_version: fmi::FmiVersion::V2_0,
+        model_name: MODEL_NAME.into(),
+        guid: GUID.into(),
+        description: DESCRIPTION.into(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        license: env!("CARGO_PKG_LICENSE").into(),
+        generation_tool: concat!("rocking-fmu ", env!("CARGO_PKG_VERSION")).into(),
+        variable_naming_convention: fmi::VariableNamingConvention::Flat,
+        co_simulation: fmi::CoSimulation {
+            model_identifier: MODEL_NAME.into(),
+            can_handle_variable_communication_step_size: true,
+            can_interpolate_inputs: true,
+            max_output_derivative_order: 1,
+            can_be_instantiated_only_once_per_process: false,
+            can_not_use_memory_management_functions: true,
+            can_get_and_set_fmu_state: true,
+            can_serialize_fmu_state: true,
+        },
+        unit_definitions: fmi::UnitDefinitions { units: UNITS.map(unit).into() },
+        type_definitions: fmi::TypeDefinitions { simple_types: vec![phase_type()] },
+        log_categories: fmi::LogCategories { categories: logger::Category::ALL.map(log_category).into() },
+        default_experiment: fmi::DefaultExperiment { start_time: 0.0, tolerance: DEFAULT_TOLERANCE },
+        model_variables: fmi::ModelVariables {
+            scalar_variables: (0..)
+                .zip(&*VARIABLES)
+                .map(|(at, variable)| scalar_variable(at, variable, parameters))
+                .collect(),
+        },
+        model_structure: model_structure(),
+    }
+}
+
+fn unit((name, [kg, m, s, rad]): (&str, [i32; 4])) -> fmi::Unit {
+    fmi::Unit { name: name.into(), base_unit: fmi::BaseUnit { kg, m, s, rad } }
+}
+
+fn phase_type() -> fmi::SimpleType {
+    let items = (1..).zip(PHASES).map(|(value, name)| fmi::Item { name: name.into(), value }).collect();
+    fmi::SimpleType {
+        name: PHASE_TYPE.into(),
+        description: "what holds of the base".into(),
+        attributes: fmi::TypeAttributes::Enumeration(fmi::EnumerationType { items }),
+    }
+}
+
+fn log_category(category: logger::Category) -> fmi::Category {
+    let name = category.name().to_string_lossy().into_owned();
+    fmi::Category { name, description: category.description().into() }
+}
+
+/// The variable at position `at` of the table, which is its value reference.
+fn scalar_variable(at: u32, variable: &Variable, parameters: &Parameters) -> fmi::ScalarVariable {
+    fmi::ScalarVariable {
+        name: variable.name.into(),
+        value_reference: at,
+        description: variable.description.into(),
+        causality: variable.causality,
+        variability: variable.variability,
+        initial: variable.initial,
+        variable_type: match variable.data_type {
+            DataType::Real { unit, range } => fmi::VariableType::Real(fmi::Real {
+                unit: (unit != "1").then(|| unit.into()),
+                min: range.map(|(min, _)| min),
+                max: range.map(|(_, max)| max),
+                start: variable.start(parameters),
+            }),
+            DataType::Integer => fmi::VariableType::Integer(fmi::Integer { min: Some(0) }),
+            DataType::Boolean => fmi::VariableType::Boolean(fmi::Boolean {}),
+            DataType::Enumeration(_) => {
+                fmi::VariableType::Enumeration(fmi::Enumeration { declared_type: PHASE_TYPE.into() })
+            }
+        },
+    }
+}
+
+/// At a communication point the outputs depend on the state alone, so on no variable; at initialization on what the
+/// table says.
+fn model_structure() -> fmi::ModelStructure {
+    let unknowns = |is_one: fn(&Variable) -> bool, dependencies: fn(&Variable) -> Vec<usize>| {
+        let calculated = (1..).zip(&*VARIABLES).filter(|(_, variable)| is_one(variable));
+        calculated.map(|(index, variable)| unknown(index, dependencies(variable))).collect()
+    };
+    fmi::ModelStructure {
+        outputs: fmi::Outputs { unknowns: unknowns(|v| v.causality == fmi::Causality::Output, |_| vec![]) },
+        initial_unknowns: fmi::InitialUnknowns {
+            unknowns: unknowns(
+                |v| v.initial == Some(fmi::Initial::Calculated),
+                |v| v.initial_dependencies.iter().map(|name| index(name)).collect(),
+            ),
+        },
+    }
+}
+
+fn unknown(index: usize, dependencies: Vec<usize>) -> fmi::Unknown {
+    let dependencies_kind = vec![fmi::DependenciesKind::Dependent; dependencies.len()];
+    fmi::Unknown { index, dependencies, dependencies_kind }
+}
+
+/// Index of the variable called `name`; the first is 1.
+fn index(name: &str) -> usize {
+    let at = VARIABLES.iter().position(|variable| variable.name == name);
+    1 + at.unwrap_or_else(|| panic!("no variable is called {name}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn every_variable_is_there_once_in_the_order_of_the_table() {
+        let written = model_description(&Parameters::MCMANUS).model_variables.scalar_variables;
+        let names: Vec<_> = written.iter().map(|variable| variable.name.as_str()).collect();
+        assert_eq!(names, VARIABLES.iter().map(|variable| variable.name).collect::<Vec<_>>());
+        assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len());
+        let references: Vec<_> = written.iter().map(|variable| variable.value_reference).collect();
+        assert_eq!(references, (0..names.len() as u32).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn the_structure_points_at_the_outputs_and_at_what_initialization_calculates() {
+        let description = model_description(&Parameters::MCMANUS);
+        let variables = &description.model_variables.scalar_variables;
+        let name = |index: &usize| variables[index - 1].name.as_str();
+        let names = |unknowns: &[fmi::Unknown]| unknowns.iter().map(|u| name(&u.index).to_owned()).collect::<Vec<_>>();
+
+        let outputs = "theta u a_t V_t M_t theta_dot u_dot uplift delta_t phase transitions overturned";
+        let calculated_parameters = "alpha_cg p_l beta u_cr f_u";
+        let structure = &description.model_structure;
+        assert_eq!(names(&structure.outputs.unknowns).join(" "), outputs);
+        assert!(structure.outputs.unknowns.iter().all(|unknown| unknown.dependencies.is_empty()));
+        let initial = &structure.initial_unknowns.unknowns;
+        assert_eq!(names(initial).join(" "), format!("{outputs} {calculated_parameters}"));
+
+        let p_l = initial.iter().find(|unknown| name(&unknown.index) == "p_l").unwrap();
+        assert_eq!(p_l.dependencies.iter().map(name).collect::<Vec<_>>(), ["m", "m0", "H", "B", "J0", "g"]);
+        for unknown in initial {
+            assert_eq!(unknown.dependencies.len(), unknown.dependencies_kind.len());
+            for known in &unknown.dependencies {
+                assert_eq!(variables[known - 1].initial, Some(fmi::Initial::Exact), "{}", name(known));
+            }
+        }
+    }
+
+    #[test]
+    fn the_units_defined_are_the_units_used() {
+        let used: BTreeSet<_> = VARIABLES
+            .iter()
+            .filter_map(|variable| match variable.data_type {
+                DataType::Real { unit, .. } if unit != "1" => Some(unit),
+                _ => None,
+            })
+            .collect();
+        assert_eq!(used, UNITS.iter().map(|(name, _)| *name).collect());
+    }
+
+    #[test]
+    fn start_values_are_those_of_the_structure() {
+        let xml = model_description(&Parameters::EVISON).to_xml().unwrap();
+        for element in [
+            r#"name="a_g" valueReference="0" description="horizontal ground acceleration, positive to the right" causality="input" variability="continuous">
+      <Real unit="m/s2" min="-10000.0" max="10000.0" start="0.0"/>"#,
+            r#"description="natural frequency in full contact (fixed base)" causality="parameter" variability="fixed" initial="exact">
+      <Real unit="Hz" min="0.001" max="10000.0" start="11.0"/>"#,
+            r#"description="damping ratio in full contact" causality="parameter" variability="fixed" initial="exact">
+      <Real min="0.0" max="10.0" start="0.015"/>"#,
+            r#"description="modal participation of rocking" causality="calculatedParameter" variability="fixed" initial="calculated">
+      <Real/>"#,
+            r#"description="what holds of the base" causality="output" variability="discrete" initial="calculated">
+      <Enumeration declaredType="Phase"/>"#,
+            r#"<Item name="rocking left" value="2"/>"#,
+            r#"<DefaultExperiment startTime="0.0" tolerance="1e-9"/>"#,
+        ] {
+            assert!(xml.contains(element), "{element}\n{xml}");
+        }
+    }
+}

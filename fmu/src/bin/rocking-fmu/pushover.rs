@@ -1,0 +1,65 @@
+//! `pushover`: lateral force and moment against displacement (Fig 1).
+use crate::{significant::significant, structure_args::StructureArgs, tables::Table};
+use anyhow::Context;
+use rocking::{
+    Phase, Structure,
+    pushover::{Equilibrium, at_displacement, at_overturning, at_rotation},
+};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// What to push over.
+#[derive(clap::Args)]
+pub struct PushoverArgs {
+    #[command(flatten)]
+    structure: StructureArgs,
+    /// Points on each of the two branches, full contact and rocking
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(2..))]
+    points: u32,
+    /// Curve as CSV, `-` for standard output
+    #[arg(short, long, value_name = "FILE.csv", default_value = "pushover.csv")]
+    output: PathBuf,
+}
+
+const HEADINGS: [&str; 6] = ["phase", "theta[rad]", "u[m]", "delta_t[m]", "P[N]", "M[N.m]"];
+
+/// Writes the curve from 0 to overturning, to the right, and prints its corners.
+pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
+    let structure = args.structure.load()?;
+    let too_soft = "the strut is too soft to hold the structure all the way to overturning: raise f_fc or lower m0";
+    let end = at_overturning(&structure).context(too_soft)?;
+    let mut table = Table::create(&args.output, &HEADINGS)?;
+    for delta_t in displacements(&structure, end.delta_t, args.points) {
+        table.write(line(&at_displacement(&structure, delta_t).context(too_soft)?))?;
+    }
+    table.finish()?;
+    let corners = [
+        ("uplift", at_displacement(&structure, structure.u_cr)),
+        ("start of rocking", at_rotation(&structure, 0.0)),
+        ("overturning", Some(end)),
+    ];
+    for (name, corner) in corners {
+        let Equilibrium { theta, delta_t, force, moment, .. } = corner.context(too_soft)?;
+        let [theta, delta_t, force, moment] = [theta, 1e3 * delta_t, force, moment].map(significant);
+        eprintln!("{name:<16} delta_t {delta_t:>8} mm, theta {theta:>8} rad, P {force:>8} N, M {moment:>8} N.m");
+    }
+    if args.output != Path::new("-") {
+        eprintln!("curve            {}", args.output.display());
+    }
+    Ok(())
+}
+
+/// Displacements (m) evenly on each branch: 0 to u_cr, and from just beyond to `end`.
+fn displacements(structure: &Structure, end: f64, points: u32) -> impl Iterator<Item = f64> {
+    let evenly = move |from: f64, to: f64| {
+        (0..points)
+            .map(move |i| if i == points - 1 { to } else { from + (to - from) * f64::from(i) / f64::from(points - 1) })
+    };
+    evenly(0.0, structure.u_cr).chain(evenly(structure.u_cr.next_up(), end))
+}
+
+fn line(at: &Equilibrium) -> impl Serialize + use<> {
+    let &Equilibrium { phase, theta, u, delta_t, force, moment } = at;
+    let phase = if phase == Phase::FullContact { "full contact" } else { "rocking right" };
+    (phase, theta, u, delta_t, force, moment)
+}

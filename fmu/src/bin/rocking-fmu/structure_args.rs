@@ -1,0 +1,40 @@
+//! Which structure a command works on: one of the paper's specimens, or parameters from a file.
+use anyhow::Context;
+use rocking::{Parameters, Structure};
+use std::path::PathBuf;
+
+/// The structure asked for.
+#[derive(clap::Args, Debug)]
+pub struct StructureArgs {
+    /// Specimen of the paper
+    #[arg(long, value_enum, default_value_t = Preset::Mcmanus, conflicts_with = "parameters")]
+    preset: Preset,
+    /// TOML file with m, m0, H, B, f_fc, zeta_fc, r (SI units) and, where they differ from 0, 1 and 9.81, J0, c_ratio, g
+    #[arg(long, value_name = "FILE.toml")]
+    parameters: Option<PathBuf>,
+}
+
+#[derive(Clone, Copy, Debug, clap::ValueEnum)]
+enum Preset {
+    /// Shear wall (Table 1)
+    Evison,
+    /// Bridge pier (Table 2)
+    Mcmanus,
+}
+
+impl StructureArgs {
+    /// Reads the parameters and derives the structure; a refusal names the file, the line and the key.
+    pub fn load(&self) -> anyhow::Result<Structure> {
+        let Some(path) = &self.parameters else {
+            return Ok(Structure::new(match self.preset {
+                Preset::Evison => Parameters::EVISON,
+                Preset::Mcmanus => Parameters::MCMANUS,
+            })?);
+        };
+        let read = || -> anyhow::Result<Structure> {
+            let parameters: Parameters = toml::from_str(&std::fs::read_to_string(path)?)?;
+            Ok(Structure::new(parameters)?)
+        };
+        read().with_context(|| format!("parameters in {}", path.display()))
+    }
+}

@@ -1,0 +1,105 @@
+//! The tables that `simulate` writes: the response and its transitions as CSV.
+use anyhow::Context;
+use rocking::{Motion, Outputs, Phase, Side, State, Transition, TransitionKind};
+use serde::Serialize;
+use std::{
+    fs::File,
+    io::{Write, stdout},
+    path::{Path, PathBuf},
+};
+
+/// A CSV file that is being written.
+pub struct Table {
+    path: PathBuf,
+    writer: csv::Writer<Box<dyn Write>>,
+}
+
+impl Table {
+    /// A new file with these `headings`, or standard output for `-`.
+    pub fn create(path: &Path, headings: &[&str]) -> anyhow::Result<Table> {
+        let to: Box<dyn Write> = if path == Path::new("-") {
+            Box::new(stdout().lock())
+        } else {
+            Box::new(File::create(path).with_context(|| cannot_be_written(path))?)
+        };
+        let writer = csv::WriterBuilder::new().has_headers(false).from_writer(to);
+        let mut table = Table { path: path.into(), writer };
+        table.write(headings)?;
+        Ok(table)
+    }
+
+    /// Adds a line; a number reads back to the same bits.
+    pub fn write(&mut self, line: impl Serialize) -> anyhow::Result<()> {
+        self.writer.serialize(line).with_context(|| cannot_be_written(&self.path))
+    }
+
+    /// Writes out what is still held back.
+    pub fn finish(mut self) -> anyhow::Result<()> {
+        self.writer.flush().with_context(|| cannot_be_written(&self.path))
+    }
+}
+
+fn cannot_be_written(path: &Path) -> String {
+    format!("{} cannot be written", path.display())
+}
+
+/// Headings of the response: the ground acceleration, and the outputs of the FMU under their names and units.
+pub const RESPONSE: [&str; 13] = [
+    "time[s]",
+    "a_g[m/s2]",
+    "theta[rad]",
+    "u[m]",
+    "a_t[m/s2]",
+    "V_t[N]",
+    "M_t[N.m]",
+    "theta_dot[rad/s]",
+    "u_dot[m/s]",
+    "uplift[m]",
+    "delta_t[m]",
+    "phase",
+    "transitions",
+];
+
+/// A line of the response: `motion` with its `outputs` under the ground acceleration `a_g` (m/s²).
+pub fn response_line(motion: &Motion, a_g: f64, outputs: Outputs) -> impl Serialize + use<> {
+    let Outputs { theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t } = outputs;
+    let phase = match motion.phase {
+        Phase::FullContact => "full contact",
+        Phase::Rocking(Side::Left) => "rocking left",
+        Phase::Rocking(Side::Right) => "rocking right",
+        Phase::Overturned(_) => "overturned",
+    };
+    let transitions = motion.transitions;
+    (motion.time, a_g, theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, phase, transitions)
+}
+
+/// Headings of the transitions.
+pub const EVENTS: [&str; 10] = [
+    "time[s]",
+    "kind",
+    "u_before[m]",
+    "u_dot_before[m/s]",
+    "theta_before[rad]",
+    "theta_dot_before[rad/s]",
+    "u_after[m]",
+    "u_dot_after[m/s]",
+    "theta_after[rad]",
+    "theta_dot_after[rad/s]",
+];
+
+/// A line of the transitions.
+pub fn event_line(transition: &Transition) -> impl Serialize + use<> {
+    let &Transition { time, kind, before, after } = transition;
+    let kind = match kind {
+        TransitionKind::Uplift(Side::Left) => "uplift left",
+        TransitionKind::Uplift(Side::Right) => "uplift right",
+        TransitionKind::Impact(Side::Left) => "impact left",
+        TransitionKind::Impact(Side::Right) => "impact right",
+        TransitionKind::Landing => "landing",
+        TransitionKind::Settling => "settling",
+        TransitionKind::Overturning(Side::Left) => "overturning left",
+        TransitionKind::Overturning(Side::Right) => "overturning right",
+    };
+    let values = |State { u, u_dot, theta, theta_dot }| (u, u_dot, theta, theta_dot);
+    (time, kind, values(before), values(after))
+}

@@ -1,0 +1,608 @@
+//! The C interface of FMI 2.0 for co-simulation. Only here are pointers followed: each function turns its arguments
+//! into slices and text, and calls the instance.
+//!
+//! What C cannot promise is checked: null and misaligned pointers, lengths, numbers that stand for an enumeration, an
+//! `fmi2Component` that is none (as far as that can be told), a call from within the logger callback. A panic becomes
+//! `fmi2Fatal`.
+//!
+//! # Safety
+//!
+//! The rest is the host's, for every function: a component is null or what `fmi2Instantiate` returned, not freed
+//! before; other pointers are null or point to as many values, or to a text, as the standard says; no two threads call
+//! one instance at the same time.
+#![allow(unsafe_code, clippy::missing_safety_doc)] // the section above
+
+use crate::failure::Failure;
+use crate::instance::{Arguments, Instance, StatusKind};
+use crate::logger::{Logger, Sink, Status};
+use crate::state_machine::Function;
+use libc::{c_char, c_double, c_int, c_uint, c_void, size_t};
+use std::any::Any;
+use std::cell::{Cell, UnsafeCell};
+use std::ffi::CString;
+use std::mem::MaybeUninit;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::{ptr, slice};
+
+/// `fmi2CallbackLogger`
+pub type CallbackLogger = unsafe extern "C" fn(*mut c_void, *const c_char, c_int, *const c_char, *const c_char, ...);
+
+/// `fmi2CallbackFunctions`
+#[repr(C)]
+pub struct CallbackFunctions {
+    /// Takes messages.
+    pub logger: Option<CallbackLogger>,
+    /// Not used: memory is Rust's own.
+    pub allocate_memory: *const c_void,
+    /// Not used.
+    pub free_memory: *const c_void,
+    /// Not used: steps are synchronous.
+    pub step_finished: *const c_void,
+    /// Handed back to the logger.
+    pub component_environment: *mut c_void,
+}
+
+/// What an `fmi2Component` points to.
+struct Component {
+    magic: Cell<u64>,
+    availability: Cell<Availability>,
+    instance: UnsafeCell<Instance>,
+}
+
+#[derive(Clone, Copy, PartialEq)]
+enum Availability {
+    Ready,
+    /// A call is under way: the host calls from within its logger.
+    Busy,
+    /// A call panicked.
+    Broken,
+}
+
+const MAGIC: u64 = 0x526f_636b_696e_6732;
+
+/// Longest text taken from the host, bytes.
+const MAX_TEXT: usize = 1 << 16;
+
+/// Most values or bytes taken in one call.
+const MAX_LENGTH: usize = 1 << 24;
+
+const CO_SIMULATION: c_int = 1;
+
+/// Follows `c` if it points to a component.
+unsafe fn component<'a>(c: *mut c_void) -> Option<&'a Component> {
+    let c = c.cast::<Component>();
+    if c.is_null() || !c.is_aligned() {
+        return None;
+    }
+    // The magic number is read alone first: if it is wrong, the rest is no component.
+    let magic = unsafe { (&raw const (*c).magic).cast::<u64>().read() };
+    if magic == MAGIC { Some(unsafe { &*c }) } else { None }
+}
+
+/// Calls `body` with the instance that `c` points to, if `function` is allowed in its state. No panic gets out.
+unsafe fn call(c: *mut c_void, function: Function, body: impl FnOnce(&mut Instance) -> Result<(), Failure>) -> c_int {
+    let Some(component) = (unsafe { component(c) }) else { return Status::Error as c_int };
+    match component.availability.get() {
+        Availability::Ready => component.availability.set(Availability::Busy),
+        Availability::Busy => return Status::Error as c_int,
+        Availability::Broken => return Status::Fatal as c_int,
+    }
+    // The one reference to the instance: nobody gets here while the component is busy.
+    let instance = unsafe { &mut *component.instance.get() };
+    match catch_unwind(AssertUnwindSafe(|| instance.call(function, body))) {
+        Ok(status) => {
+            component.availability.set(Availability::Ready);
+            status as c_int
+        }
+        Err(panic) => {
+            let report = || instance.report(function, &Failure::Panicked(panic_message(&*panic).to_owned()));
+            // Whatever becomes of the message, the status is known.
+            let _ = catch_unwind(AssertUnwindSafe(report));
+            component.availability.set(Availability::Broken);
+            Status::Fatal as c_int
+        }
+    }
+}
+
+fn panic_message(panic: &(dyn Any + Send)) -> &str {
+    match (panic.downcast_ref::<&str>(), panic.downcast_ref::<String>()) {
+        (Some(message), _) => message,
+        (_, Some(message)) => message,
+        _ => "panic",
+    }
+}
+
+/// The `length` values at `pointer`.
+unsafe fn values<'a, T>(name: &'static str, pointer: *const T, length: size_t) -> Result<&'a [T], Failure> {
+    check_length(length)?;
+    if length == 0 {
+        return Ok(&[]);
+    }
+    check_pointer(name, pointer)?;
+    Ok(unsafe { slice::from_raw_parts(pointer, length) })
+}
+
+/// Room for `length` values at `pointer`.
+unsafe fn room<'a, T>(
+    name: &'static str,
+    pointer: *mut T,
+    length: size_t,
+) -> Result<&'a mut [MaybeUninit<T>], Failure> {
+    check_length(length)?;
+    if length == 0 {
+        return Ok(&mut []);
+    }
+    check_pointer(name, pointer)?;
+    Ok(unsafe { slice::from_raw_parts_mut(pointer.cast(), length) })
+}
+
+/// The value at `pointer`.
+unsafe fn read<T: Copy>(name: &'static str, pointer: *const T) -> Result<T, Failure> {
+    check_pointer(name, pointer)?;
+    Ok(unsafe { *pointer })
+}
+
+/// Writes `value` to `pointer`.
+unsafe fn write<T>(name: &'static str, pointer: *mut T, value: T) -> Result<(), Failure> {
+    check_pointer(name, pointer)?;
+    unsafe { pointer.write(value) };
+    Ok(())
+}
+
+fn check_length(length: size_t) -> Result<(), Failure> {
+    if length > MAX_LENGTH { Err(Failure::TooLong { length, limit: MAX_LENGTH }) } else { Ok(()) }
+}
+
+fn check_pointer<T>(name: &'static str, pointer: *const T) -> Result<(), Failure> {
+    if pointer.is_null() || !pointer.is_aligned() { Err(Failure::BadPointer(name)) } else { Ok(()) }
+}
+
+/// The text at `pointer`.
+unsafe fn text<'a>(name: &'static str, pointer: *const c_char) -> Result<&'a str, Failure> {
+    check_pointer(name, pointer)?;
+    let length = unsafe { libc::strnlen(pointer, MAX_TEXT + 1) };
+    let bytes = unsafe { slice::from_raw_parts(pointer.cast::<u8>(), length) };
+    match str::from_utf8(bytes) {
+        Ok(text) if length <= MAX_TEXT => Ok(text),
+        _ => Err(Failure::BadText { name, limit: MAX_TEXT }),
+    }
+}
+
+fn boolean(name: &'static str, value: c_int) -> Result<bool, Failure> {
+    match value {
+        0 => Ok(false),
+        1 => Ok(true),
+        _ => Err(Failure::BadChoice { name, value, accepted: "0 (fmi2False), 1 (fmi2True)" }),
+    }
+}
+
+fn status_kind(value: c_int) -> Result<StatusKind, Failure> {
+    let accepted = "0 (fmi2DoStepStatus), 1 (fmi2PendingStatus), 2 (fmi2LastSuccessfulTime), 3 (fmi2Terminated)";
+    StatusKind::from_number(value).ok_or(Failure::BadChoice { name: "fmi2StatusKind", value, accepted })
+}
+
+/// `fmi2GetTypesPlatform`
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2GetTypesPlatform() -> *const c_char {
+    c"default".as_ptr()
+}
+
+/// `fmi2GetVersion`
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2GetVersion() -> *const c_char {
+    c"2.0".as_ptr()
+}
+
+/// `fmi2Instantiate`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Instantiate(
+    instanceName: *const c_char,
+    fmuType: c_int,
+    fmuGUID: *const c_char,
+    fmuResourceLocation: *const c_char,
+    functions: *const CallbackFunctions,
+    _visible: c_int,
+    loggingOn: c_int,
+) -> *mut c_void {
+    let create = || {
+        check_pointer("functions", functions).ok()?;
+        let name = unsafe { text("instanceName", instanceName) };
+        let logger = Logger::new(sink(unsafe { &*functions }, name.as_ref().unwrap_or(&"")));
+        let arguments = || {
+            if fmuType != CO_SIMULATION {
+                return Err(Failure::BadChoice { name: "fmuType", value: fmuType, accepted: "1 (fmi2CoSimulation)" });
+            }
+            Ok(Arguments {
+                name: name?,
+                guid: unsafe { text("fmuGUID", fmuGUID) }?,
+                resource_location: unsafe { text("fmuResourceLocation", fmuResourceLocation) }?,
+                logging_on: boolean("loggingOn", loggingOn)?,
+            })
+        };
+        Instance::new(arguments(), logger)
+    };
+    let Some(instance) = catch_unwind(create).ok().flatten() else { return ptr::null_mut() };
+    let component = Component {
+        magic: Cell::new(MAGIC),
+        availability: Cell::new(Availability::Ready),
+        instance: UnsafeCell::new(instance),
+    };
+    Box::into_raw(Box::new(component)).cast()
+}
+
+fn sink(functions: &CallbackFunctions, instance_name: &str) -> Sink {
+    let Some(logger) = functions.logger else { return Box::new(|_, _, _| ()) };
+    let environment = functions.component_environment;
+    let name = CString::new(instance_name).expect("it was read up to its NUL");
+    Box::new(move |status, category, message| unsafe {
+        logger(environment, name.as_ptr(), status as c_int, category.as_ptr(), message.as_ptr());
+    })
+}
+
+/// `fmi2FreeInstance`. Ignored for null, and from within the logger of the same instance.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2FreeInstance(c: *mut c_void) {
+    let Some(component) = (unsafe { component(c) }) else { return };
+    if component.availability.get() == Availability::Busy {
+        return;
+    }
+    // Volatile, so that a call with the freed component finds no magic number as long as the memory is not used anew.
+    unsafe { component.magic.as_ptr().write_volatile(0) };
+    let free = || drop(unsafe { Box::from_raw(c.cast::<Component>()) });
+    // There is no one to tell that freeing panicked.
+    let _ = catch_unwind(AssertUnwindSafe(free));
+}
+
+/// `fmi2SetDebugLogging`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetDebugLogging(
+    c: *mut c_void,
+    loggingOn: c_int,
+    nCategories: size_t,
+    categories: *const *const c_char,
+) -> c_int {
+    unsafe {
+        call(c, Function::SetDebugLogging, |instance| {
+            let names = values("categories", categories, nCategories)?;
+            let names = names.iter().map(|name| text("category", *name)).collect::<Result<Vec<_>, _>>()?;
+            instance.set_debug_logging(boolean("loggingOn", loggingOn)?, &names)
+        })
+    }
+}
+
+/// `fmi2SetupExperiment`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetupExperiment(
+    c: *mut c_void,
+    toleranceDefined: c_int,
+    tolerance: c_double,
+    startTime: c_double,
+    stopTimeDefined: c_int,
+    stopTime: c_double,
+) -> c_int {
+    unsafe {
+        call(c, Function::SetupExperiment, |instance| {
+            let tolerance = boolean("toleranceDefined", toleranceDefined)?.then_some(tolerance);
+            let stop_time = boolean("stopTimeDefined", stopTimeDefined)?.then_some(stopTime);
+            instance.setup_experiment(tolerance, startTime, stop_time)
+        })
+    }
+}
+
+/// `fmi2EnterInitializationMode`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2EnterInitializationMode(c: *mut c_void) -> c_int {
+    unsafe { call(c, Function::EnterInitializationMode, |instance| instance.enter_initialization_mode()) }
+}
+
+/// `fmi2ExitInitializationMode`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2ExitInitializationMode(c: *mut c_void) -> c_int {
+    unsafe { call(c, Function::ExitInitializationMode, |instance| instance.exit_initialization_mode()) }
+}
+
+/// `fmi2Terminate`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Terminate(c: *mut c_void) -> c_int {
+    unsafe { call(c, Function::Terminate, |instance| instance.terminate()) }
+}
+
+/// `fmi2Reset`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Reset(c: *mut c_void) -> c_int {
+    unsafe { call(c, Function::Reset, |instance| instance.reset()) }
+}
+
+/// `fmi2GetReal`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetReal(c: *mut c_void, vr: *const c_uint, nvr: size_t, value: *mut c_double) -> c_int {
+    unsafe {
+        call(c, Function::GetReal, |instance| instance.get_real(values("vr", vr, nvr)?, room("value", value, nvr)?))
+    }
+}
+
+/// `fmi2GetInteger`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetInteger(c: *mut c_void, vr: *const c_uint, nvr: size_t, value: *mut c_int) -> c_int {
+    unsafe {
+        call(c, Function::GetInteger, |instance| {
+            instance.get_integer(values("vr", vr, nvr)?, room("value", value, nvr)?)
+        })
+    }
+}
+
+/// `fmi2GetBoolean`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetBoolean(c: *mut c_void, vr: *const c_uint, nvr: size_t, value: *mut c_int) -> c_int {
+    unsafe {
+        call(c, Function::GetBoolean, |instance| {
+            instance.get_boolean(values("vr", vr, nvr)?, room("value", value, nvr)?)
+        })
+    }
+}
+
+/// `fmi2GetString`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetString(
+    c: *mut c_void,
+    vr: *const c_uint,
+    nvr: size_t,
+    _value: *mut *const c_char,
+) -> c_int {
+    unsafe { call(c, Function::GetString, |instance| instance.get_string(values("vr", vr, nvr)?)) }
+}
+
+/// `fmi2SetReal`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetReal(c: *mut c_void, vr: *const c_uint, nvr: size_t, value: *const c_double) -> c_int {
+    unsafe {
+        call(c, Function::SetReal, |instance| instance.set_real(values("vr", vr, nvr)?, values("value", value, nvr)?))
+    }
+}
+
+/// `fmi2SetInteger`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetInteger(c: *mut c_void, vr: *const c_uint, nvr: size_t, _value: *const c_int) -> c_int {
+    unsafe { call(c, Function::SetInteger, |instance| instance.set_discrete(values("vr", vr, nvr)?)) }
+}
+
+/// `fmi2SetBoolean`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetBoolean(c: *mut c_void, vr: *const c_uint, nvr: size_t, _value: *const c_int) -> c_int {
+    unsafe { call(c, Function::SetBoolean, |instance| instance.set_discrete(values("vr", vr, nvr)?)) }
+}
+
+/// `fmi2SetString`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetString(
+    c: *mut c_void,
+    vr: *const c_uint,
+    nvr: size_t,
+    _value: *const *const c_char,
+) -> c_int {
+    unsafe { call(c, Function::SetString, |instance| instance.set_string(values("vr", vr, nvr)?)) }
+}
+
+/// `fmi2GetFMUstate`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetFMUstate(c: *mut c_void, FMUstate: *mut *mut c_void) -> c_int {
+    unsafe {
+        call(c, Function::GetFMUstate, |instance| {
+            let handle = instance.get_fmu_state(read("FMUstate", FMUstate)?.addr())?;
+            write("FMUstate", FMUstate, ptr::without_provenance_mut(handle))
+        })
+    }
+}
+
+/// `fmi2SetFMUstate`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetFMUstate(c: *mut c_void, FMUstate: *mut c_void) -> c_int {
+    unsafe { call(c, Function::SetFMUstate, |instance| instance.set_fmu_state(FMUstate.addr())) }
+}
+
+/// `fmi2FreeFMUstate`. Ignored for null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2FreeFMUstate(c: *mut c_void, FMUstate: *mut *mut c_void) -> c_int {
+    unsafe {
+        call(c, Function::FreeFMUstate, |instance| {
+            if FMUstate.is_null() || read("FMUstate", FMUstate)?.is_null() {
+                return Ok(());
+            }
+            instance.free_fmu_state(read("FMUstate", FMUstate)?.addr())?;
+            write("FMUstate", FMUstate, ptr::null_mut())
+        })
+    }
+}
+
+/// `fmi2SerializedFMUstateSize`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SerializedFMUstateSize(c: *mut c_void, FMUstate: *mut c_void, size: *mut size_t) -> c_int {
+    unsafe {
+        call(c, Function::SerializedFMUstateSize, |instance| {
+            let bytes = instance.serialize_fmu_state(FMUstate.addr())?;
+            write("size", size, bytes.len())
+        })
+    }
+}
+
+/// `fmi2SerializeFMUstate`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SerializeFMUstate(
+    c: *mut c_void,
+    FMUstate: *mut c_void,
+    serializedState: *mut u8,
+    size: size_t,
+) -> c_int {
+    unsafe {
+        call(c, Function::SerializeFMUstate, |instance| {
+            let bytes = instance.serialize_fmu_state(FMUstate.addr())?;
+            if size != bytes.len() {
+                return Err(Failure::WrongSize { given: size, needed: bytes.len() });
+            }
+            check_pointer("serializedState", serializedState)?;
+            ptr::copy_nonoverlapping(bytes.as_ptr(), serializedState, size);
+            Ok(())
+        })
+    }
+}
+
+/// `fmi2DeSerializeFMUstate`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
+    c: *mut c_void,
+    serializedState: *const u8,
+    size: size_t,
+    FMUstate: *mut *mut c_void,
+) -> c_int {
+    unsafe {
+        call(c, Function::DeSerializeFMUstate, |instance| {
+            let bytes = values("serializedState", serializedState, size)?;
+            let handle = read("FMUstate", FMUstate)?.addr();
+            let handle = instance.deserialize_fmu_state(bytes, handle)?;
+            write("FMUstate", FMUstate, ptr::without_provenance_mut(handle))
+        })
+    }
+}
+
+/// `fmi2GetDirectionalDerivative`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
+    c: *mut c_void,
+    _vUnknown_ref: *const c_uint,
+    _nUnknown: size_t,
+    _vKnown_ref: *const c_uint,
+    _nKnown: size_t,
+    _dvKnown: *const c_double,
+    _dvUnknown: *mut c_double,
+) -> c_int {
+    unsafe { call(c, Function::GetDirectionalDerivative, |_| Err(Failure::NoDirectionalDerivatives)) }
+}
+
+/// `fmi2SetRealInputDerivatives`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
+    c: *mut c_void,
+    vr: *const c_uint,
+    nvr: size_t,
+    order: *const c_int,
+    value: *const c_double,
+) -> c_int {
+    unsafe {
+        call(c, Function::SetRealInputDerivatives, |instance| {
+            let (orders, slopes) = (values("order", order, nvr)?, values("value", value, nvr)?);
+            instance.set_real_input_derivatives(values("vr", vr, nvr)?, orders, slopes)
+        })
+    }
+}
+
+/// `fmi2GetRealOutputDerivatives`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
+    c: *mut c_void,
+    vr: *const c_uint,
+    nvr: size_t,
+    order: *const c_int,
+    value: *mut c_double,
+) -> c_int {
+    unsafe {
+        call(c, Function::GetRealOutputDerivatives, |instance| {
+            let (orders, rates) = (values("order", order, nvr)?, room("value", value, nvr)?);
+            instance.get_real_output_derivatives(values("vr", vr, nvr)?, orders, rates)
+        })
+    }
+}
+
+/// `fmi2DoStep`. Whether the host will go back makes no difference: FMU states are kept until it frees them.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2DoStep(
+    c: *mut c_void,
+    currentCommunicationPoint: c_double,
+    communicationStepSize: c_double,
+    _noSetFMUStatePriorToCurrentPoint: c_int,
+) -> c_int {
+    unsafe { call(c, Function::DoStep, |instance| instance.do_step(currentCommunicationPoint, communicationStepSize)) }
+}
+
+/// `fmi2CancelStep`. Never allowed: no step is ever pending.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2CancelStep(c: *mut c_void) -> c_int {
+    unsafe { call(c, Function::CancelStep, |_| Ok(())) }
+}
+
+/// `fmi2GetRealStatus`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetRealStatus(c: *mut c_void, s: c_int, value: *mut c_double) -> c_int {
+    unsafe {
+        call(c, Function::GetRealStatus, |instance| write("value", value, instance.real_status(status_kind(s)?)?))
+    }
+}
+
+/// `fmi2GetBooleanStatus`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetBooleanStatus(c: *mut c_void, s: c_int, value: *mut c_int) -> c_int {
+    unsafe {
+        call(c, Function::GetBooleanStatus, |instance| {
+            write("value", value, c_int::from(instance.boolean_status(status_kind(s)?)?))
+        })
+    }
+}
+
+/// `fmi2GetStatus`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetStatus(c: *mut c_void, s: c_int, _value: *mut c_int) -> c_int {
+    unsafe { call(c, Function::GetStatus, |_| Err(Failure::NoAnswer(status_kind(s)?))) }
+}
+
+/// `fmi2GetIntegerStatus`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetIntegerStatus(c: *mut c_void, s: c_int, _value: *mut c_int) -> c_int {
+    unsafe { call(c, Function::GetIntegerStatus, |_| Err(Failure::NoAnswer(status_kind(s)?))) }
+}
+
+/// `fmi2GetStringStatus`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2GetStringStatus(c: *mut c_void, s: c_int, _value: *mut *const c_char) -> c_int {
+    unsafe { call(c, Function::GetStringStatus, |_| Err(Failure::NoAnswer(status_kind(s)?))) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::GUID;
+    use crate::resources::PARAMETERS_FILE;
+    use rocking::Parameters;
+
+    #[test]
+    fn a_panic_is_fatal_and_the_instance_can_only_be_freed() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join(PARAMETERS_FILE), toml::to_string(&Parameters::EVISON).unwrap()).unwrap();
+        let [guid, location] =
+            [GUID.to_owned(), format!("file://{}", folder.path().display())].map(|text| CString::new(text).unwrap());
+        let functions = CallbackFunctions {
+            logger: None,
+            allocate_memory: ptr::null(),
+            free_memory: ptr::null(),
+            step_finished: ptr::null(),
+            component_environment: ptr::null_mut(),
+        };
+        unsafe {
+            let c = fmi2Instantiate(c"a".as_ptr(), 1, guid.as_ptr(), location.as_ptr(), &functions, 0, 0);
+            assert_eq!(fmi2EnterInitializationMode(c), Status::Ok as c_int);
+            assert_eq!(call(c, Function::GetReal, |_| panic!("on purpose")), Status::Fatal as c_int);
+            assert_eq!(fmi2ExitInitializationMode(c), Status::Fatal as c_int);
+            assert_eq!(fmi2Reset(c), Status::Fatal as c_int);
+            fmi2FreeInstance(c);
+        }
+    }
+
+    #[test]
+    fn the_message_of_a_panic_is_found() {
+        let message = |panic: fn()| {
+            let panic = catch_unwind(panic).unwrap_err();
+            panic_message(&*panic).to_owned()
+        };
+        assert_eq!(message(|| panic!("plain")), "plain");
+        assert_eq!(message(|| panic!("{} formatted", 1)), "1 formatted");
+        assert_eq!(message(|| std::panic::panic_any(1)), "panic");
+    }
+}

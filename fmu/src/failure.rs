@@ -1,0 +1,245 @@
+//! Why a call does not return `fmi2OK`: every message of that kind, in one place.
+
+use crate::instance::StatusKind;
+use crate::logger::Status;
+use crate::resources::ResourceError;
+use crate::state_machine::{Function, Stage};
+use crate::variables::{DataType, VARIABLES, Variable};
+use model_description::Causality;
+use rocking::engine::AdvanceError;
+use rocking::parameters::ParameterError;
+use rocking::quantity::OutOfRange;
+use rocking::state::InitialStateError;
+
+/// Why a call does not return `fmi2OK`. But for [`Failure::Overturned`] and [`AdvanceError::Singular`], nothing has
+/// changed.
+#[derive(Debug, thiserror::Error)]
+pub enum Failure {
+    /// Not in this stage.
+    #[error("not allowed in the state \"{stage}\"; allowed in: {}", function.stages())]
+    WrongStage {
+        /// The function.
+        function: Function,
+        /// The present stage.
+        stage: Stage,
+    },
+    /// A pointer that must not be null or is not aligned.
+    #[error("{0} must be a valid pointer; it is null or misaligned")]
+    BadPointer(&'static str),
+    /// A length beyond any use.
+    #[error("{length} values are too many for one call: at most {limit}")]
+    TooLong {
+        /// How many.
+        length: usize,
+        /// The limit.
+        limit: usize,
+    },
+    /// A string without an end, or not in UTF-8.
+    #[error("{name} is not UTF-8 text of at most {limit} bytes")]
+    BadText {
+        /// The argument.
+        name: &'static str,
+        /// The limit.
+        limit: usize,
+    },
+    /// A number that stands for something, and does not.
+    #[error("{name} = {value} is not one of {accepted}")]
+    BadChoice {
+        /// The argument.
+        name: &'static str,
+        /// Its value.
+        value: i32,
+        /// What would be.
+        accepted: &'static str,
+    },
+    /// An empty name.
+    #[error("instanceName must not be empty")]
+    NoName,
+    /// A model description of another build.
+    #[error(
+        "fmuGUID = {given:?} is not that of this library, {}: modelDescription.xml and the library are of different \
+         builds; export the FMU again",
+        crate::GUID
+    )]
+    WrongGuid {
+        /// What the host passed.
+        given: String,
+    },
+    /// The archive's own parameters.
+    #[error(transparent)]
+    Resource(#[from] ResourceError),
+    /// No such log category.
+    #[error("log category {0:?} does not exist; see LogCategories in modelDescription.xml")]
+    UnknownCategory(String),
+    /// No such variable.
+    #[error("value reference {0} does not exist; they run from 0 to {last}", last = VARIABLES.len() - 1)]
+    UnknownReference(u32),
+    /// A variable of another type.
+    #[error("{} is {}: call {} instead", .0.name, type_name(.0), type_function(.0))]
+    WrongType(&'static Variable),
+    /// A variable that is not set by the host.
+    #[error("{} cannot be set: it is {}, computed by the FMU", .0.name, causality_name(.0))]
+    NotSettable(&'static Variable),
+    /// A string.
+    #[error("value reference {0} is no String: this FMU has no String variables")]
+    NoStrings(u32),
+    /// A fixed parameter, too late.
+    #[error(
+        "{} is fixed once the simulation has started: set it before fmi2ExitInitializationMode, or call fmi2Reset",
+        .0.name
+    )]
+    Fixed(&'static Variable),
+    /// A value out of range.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+    /// The input runs out of its range.
+    #[error("at the end of the step, {0}")]
+    InputRunsOut(OutOfRange),
+    /// Parameters that contradict each other.
+    #[error(transparent)]
+    Parameters(#[from] ParameterError),
+    /// Initial values that contradict each other.
+    #[error(transparent)]
+    InitialState(#[from] InitialStateError),
+    /// A setting of the experiment.
+    #[error("{name} = {value} is out of range: it must be {limit}")]
+    Experiment {
+        /// The argument.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+        /// What it must be.
+        limit: String,
+    },
+    /// A derivative of no use.
+    #[error("order = {order} for {} is out of range: only derivatives of order 1 exist", variable.name)]
+    WrongOrder {
+        /// The variable.
+        variable: &'static Variable,
+        /// The order asked for.
+        order: i32,
+    },
+    /// A derivative of something else than the input.
+    #[error("{} has no derivative that can be set: only the input has", .0.name)]
+    NoInput(&'static Variable),
+    /// A derivative that is not a number.
+    #[error("the derivative of {}, {value}, is out of range: it must be finite", variable.name)]
+    BadSlope {
+        /// The input.
+        variable: &'static Variable,
+        /// Its derivative.
+        value: f64,
+    },
+    /// A derivative of something else than a real output.
+    #[error("{} has no derivative: only Real outputs have", .0.name)]
+    NoOutput(&'static Variable),
+    /// The equations of motion are singular here.
+    #[error("the derivative of {} does not exist at t = {time} s", variable.name)]
+    NoRate {
+        /// The output.
+        variable: &'static Variable,
+        /// s.
+        time: f64,
+    },
+    /// A step from the wrong time.
+    #[error(
+        "currentCommunicationPoint = {given} s is not where the FMU is, t = {time} s: step from there, or go back with \
+         fmi2SetFMUstate"
+    )]
+    WrongPoint {
+        /// What the host passed, s.
+        given: f64,
+        /// Where the FMU is, s.
+        time: f64,
+    },
+    /// A step that is none.
+    #[error(
+        "communicationStepSize = {step} s is out of range: it must be positive, finite, and large enough to move t = {time} s"
+    )]
+    BadStep {
+        /// What the host passed, s.
+        step: f64,
+        /// Where the FMU is, s.
+        time: f64,
+    },
+    /// A step past the end.
+    #[error("the step would end at t = {until} s, past stopTime = {stop} s given to fmi2SetupExperiment: shorten it")]
+    PastStop {
+        /// End of the step, s.
+        until: f64,
+        /// Stop time, s.
+        stop: f64,
+    },
+    /// The solver's own.
+    #[error(transparent)]
+    Advance(#[from] AdvanceError),
+    /// The structure has overturned within the step.
+    #[error("the structure overturned at t = {time} s; the simulation ends there")]
+    Overturned {
+        /// s.
+        time: f64,
+    },
+    /// A question that has no answer.
+    #[error(
+        "fmi2{0:?} has no answer here: fmi2DoStep never returns fmi2Pending, fmi2GetRealStatus knows \
+         fmi2LastSuccessfulTime, fmi2GetBooleanStatus knows fmi2Terminated"
+    )]
+    NoAnswer(StatusKind),
+    /// Directional derivatives are not provided.
+    #[error("directional derivatives are not provided (providesDirectionalDerivative is false)")]
+    NoDirectionalDerivatives,
+    /// Not one of the instance's FMU states.
+    #[error(
+        "FMUstate {0:#x} is not one that this instance has handed out and not freed; pass a pointer to NULL for a new one"
+    )]
+    UnknownSnapshot(usize),
+    /// A buffer of the wrong size.
+    #[error("size = {given} does not fit: the serialized FMU state takes {needed} bytes (fmi2SerializedFMUstateSize)")]
+    WrongSize {
+        /// What the host passed.
+        given: usize,
+        /// What it takes.
+        needed: usize,
+    },
+    /// Bytes that are no FMU state of this library.
+    #[error("serializedState is not a serialized state of this FMU: {0}")]
+    BadBytes(&'static str),
+    /// A caught panic.
+    #[error("internal failure, please report it: {0}; the instance can only be freed")]
+    Panicked(String),
+}
+
+impl Failure {
+    /// What the call returns.
+    pub fn status(&self) -> Status {
+        match self {
+            Failure::Overturned { .. } | Failure::NoAnswer(_) => Status::Discard,
+            Failure::Panicked(_) => Status::Fatal,
+            _ => Status::Error,
+        }
+    }
+}
+
+fn type_name(variable: &Variable) -> &'static str {
+    match variable.data_type {
+        DataType::Real { .. } => "a Real",
+        DataType::Integer => "an Integer",
+        DataType::Boolean => "a Boolean",
+        DataType::Enumeration(_) => "an Enumeration",
+    }
+}
+
+fn type_function(variable: &Variable) -> &'static str {
+    match variable.data_type {
+        DataType::Real { .. } => "fmi2GetReal or fmi2SetReal",
+        DataType::Integer | DataType::Enumeration(_) => "fmi2GetInteger",
+        DataType::Boolean => "fmi2GetBoolean",
+    }
+}
+
+fn causality_name(variable: &Variable) -> &'static str {
+    match variable.causality {
+        Causality::CalculatedParameter => "a calculated parameter",
+        _ => "an output",
+    }
+}

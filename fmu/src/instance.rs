@@ -1,0 +1,551 @@
+//! One instance of the FMU: what each function does, in safe code.
+
+use crate::GUID;
+use crate::failure::Failure;
+use crate::logger::{Category, Logger, Status};
+use crate::resources;
+use crate::snapshot::{self, Snapshots};
+use crate::state_machine::{Function, Stage};
+use crate::variables::{A_G, OfMotion, Source, VARIABLES, Variable};
+use model_description::Causality;
+use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE, GroundAcceleration, Motion, Progress, TransitionKind};
+use rocking::quantity::Quantity;
+use rocking::{Engine, Outputs, Parameters, Phase, Side, State, Structure, Transition};
+use serde::{Deserialize, Serialize};
+use std::mem::MaybeUninit;
+
+/// How close two times (s) are that mean the same: relative to the time, or to the step if that is longer.
+const SAME_TIME: f64 = 1e-9;
+
+/// One instance.
+pub struct Instance {
+    logger: Logger,
+    events_at_start: bool,
+    shipped: Parameters,
+    now: Condition,
+    snapshots: Snapshots,
+}
+
+/// Everything that the future of an instance depends on: what an FMU state holds.
+#[derive(Clone, Debug)]
+pub struct Condition {
+    /// State of FMI's state machine.
+    pub stage: Stage,
+    /// What was set before the start.
+    pub setup: Setup,
+    /// The input, from the present time on. After a step the slope is 0: the value is held.
+    pub input: GroundAcceleration,
+    /// The structure in motion. Until initialization ends it is built when an output is asked for, and dropped when
+    /// what it was built from is set anew.
+    pub engine: Option<Engine>,
+}
+
+/// What is set before a simulation starts.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct Setup {
+    parameters: Parameters,
+    initial: State,
+    tolerance: f64,
+    start_time: f64,
+    stop_time: Option<f64>,
+}
+
+impl Setup {
+    /// The structure at the start time.
+    pub fn start(&self) -> Result<Engine, Failure> {
+        let structure = Structure::new(self.parameters)?;
+        Ok(Engine::new(structure, self.initial, self.start_time, self.tolerance)?)
+    }
+}
+
+impl Condition {
+    /// As instantiated, with the parameters that the archive carries.
+    fn new(parameters: Parameters) -> Condition {
+        Condition {
+            stage: Stage::Instantiated,
+            setup: Setup {
+                parameters,
+                initial: State::default(),
+                tolerance: DEFAULT_TOLERANCE,
+                start_time: 0.0,
+                stop_time: None,
+            },
+            input: GroundAcceleration::default(),
+            engine: None,
+        }
+    }
+
+    /// The structure in motion, or at its start with what has been set so far.
+    fn engine(&mut self) -> Result<&mut Engine, Failure> {
+        match &mut self.engine {
+            Some(engine) => Ok(engine),
+            none => Ok(none.insert(self.setup.start()?)),
+        }
+    }
+}
+
+/// What the host says of a new instance.
+pub struct Arguments<'a> {
+    /// Its name.
+    pub name: &'a str,
+    /// The GUID of the model description that the host has read.
+    pub guid: &'a str,
+    /// URI of the archive's folder `resources`.
+    pub resource_location: &'a str,
+    /// Whether events are logged.
+    pub logging_on: bool,
+}
+
+impl Instance {
+    /// `fmi2Instantiate`: an instance, or a message in the log.
+    pub fn new(arguments: Result<Arguments, Failure>, mut logger: Logger) -> Option<Instance> {
+        let parameters = |arguments: &Arguments| {
+            if arguments.name.is_empty() {
+                return Err(Failure::NoName);
+            }
+            if arguments.guid != GUID {
+                return Err(Failure::WrongGuid { given: arguments.guid.to_owned() });
+            }
+            Ok(resources::parameters(arguments.resource_location)?)
+        };
+        match arguments.and_then(|arguments| Ok((parameters(&arguments)?, arguments.logging_on))) {
+            Ok((shipped, events_at_start)) => {
+                logger.set_events(events_at_start);
+                let now = Condition::new(shipped);
+                Some(Instance { logger, events_at_start, shipped, now, snapshots: Snapshots::default() })
+            }
+            Err(failure) => {
+                logger.failure(failure.status(), &format!("fmi2Instantiate: {failure}"));
+                None
+            }
+        }
+    }
+
+    /// Calls `body` if `function` is allowed now. A failure is logged under the function's name.
+    pub fn call(&mut self, function: Function, body: impl FnOnce(&mut Instance) -> Result<(), Failure>) -> Status {
+        let stage = self.now.stage;
+        let result =
+            if function.is_allowed_in(stage) { body(self) } else { Err(Failure::WrongStage { function, stage }) };
+        match result {
+            Ok(()) => Status::Ok,
+            Err(failure) => self.report(function, &failure),
+        }
+    }
+
+    /// Logs `failure` of `function` and returns its status.
+    pub fn report(&self, function: Function, failure: &Failure) -> Status {
+        self.logger.failure(failure.status(), &format!("{}: {failure}", function.name()));
+        failure.status()
+    }
+
+    /// `fmi2SetDebugLogging`: no category means all of them.
+    pub fn set_debug_logging(&mut self, on: bool, categories: &[&str]) -> Result<(), Failure> {
+        for name in categories {
+            if !Category::ALL.iter().any(|category| category.name().to_str() == Ok(name)) {
+                return Err(Failure::UnknownCategory((*name).to_owned()));
+            }
+        }
+        let events = Category::Events.name().to_str();
+        self.logger.set_events(on && (categories.is_empty() || categories.iter().any(|name| events == Ok(name))));
+        Ok(())
+    }
+
+    /// `fmi2SetupExperiment`
+    pub fn setup_experiment(
+        &mut self,
+        tolerance: Option<f64>,
+        start_time: f64,
+        stop_time: Option<f64>,
+    ) -> Result<(), Failure> {
+        let refuse = |name, value, limit: &str| Failure::Experiment { name, value, limit: limit.to_owned() };
+        let tolerance = tolerance.unwrap_or(DEFAULT_TOLERANCE);
+        if !(tolerance > 0.0 && tolerance < 1.0) {
+            return Err(refuse("tolerance", tolerance, "between 0 and 1, such as 1e-9"));
+        }
+        if !start_time.is_finite() {
+            return Err(refuse("startTime", start_time, "finite"));
+        }
+        if let Some(stop_time) = stop_time
+            && !(stop_time > start_time && stop_time.is_finite())
+        {
+            return Err(refuse("stopTime", stop_time, &format!("finite and later than startTime = {start_time} s")));
+        }
+        self.now.setup = Setup { tolerance, start_time, stop_time, ..self.now.setup };
+        Ok(())
+    }
+
+    /// `fmi2EnterInitializationMode`
+    pub fn enter_initialization_mode(&mut self) -> Result<(), Failure> {
+        self.now.stage = Stage::InitializationMode;
+        Ok(())
+    }
+
+    /// `fmi2ExitInitializationMode`: from here on parameters and initial values are fixed, and fit together.
+    pub fn exit_initialization_mode(&mut self) -> Result<(), Failure> {
+        self.now.engine()?;
+        self.now.stage = Stage::StepComplete;
+        Ok(())
+    }
+
+    /// `fmi2Terminate`
+    pub fn terminate(&mut self) -> Result<(), Failure> {
+        self.now.stage = Stage::Terminated;
+        Ok(())
+    }
+
+    /// `fmi2Reset`: as instantiated. FMU states stay the host's until it frees them.
+    pub fn reset(&mut self) -> Result<(), Failure> {
+        self.now = Condition::new(self.shipped);
+        self.logger.set_events(self.events_at_start);
+        Ok(())
+    }
+
+    /// `fmi2GetReal`: all of the values, or none if one is refused.
+    pub fn get_real(&mut self, references: &[u32], values: &mut [MaybeUninit<f64>]) -> Result<(), Failure> {
+        let mut is_computed = false;
+        for reference in references {
+            let variable = find(*reference)?;
+            match variable.source {
+                Source::Input(_) | Source::Parameter(_) | Source::InitialValue(_) => (),
+                Source::Output(_) | Source::Derived(_) => is_computed = true,
+                Source::Integer(_) | Source::Boolean(_) => return Err(Failure::WrongType(variable)),
+            }
+        }
+        if is_computed {
+            self.now.engine()?;
+        }
+        let mut outputs = None;
+        for (reference, value) in references.iter().zip(values) {
+            let variable = find(*reference)?;
+            value.write(match variable.source {
+                Source::Input(quantity) => (quantity.get)(&self.now.input),
+                Source::Parameter(quantity) => (quantity.get)(&self.now.setup.parameters),
+                Source::InitialValue(quantity) => (quantity.get)(&self.now.setup.initial),
+                Source::Derived(derived) => (derived.value)(self.now.engine()?.structure()),
+                Source::Output(of) => match &outputs {
+                    Some(outputs) => of(outputs),
+                    None => {
+                        let engine = self.now.engine()?;
+                        let Motion { phase, state, .. } = engine.motion();
+                        of(outputs.insert(Outputs::of(engine.structure(), *phase, state)))
+                    }
+                },
+                Source::Integer(_) | Source::Boolean(_) => return Err(Failure::WrongType(variable)),
+            });
+        }
+        Ok(())
+    }
+
+    /// `fmi2GetInteger`: integers and enumerations.
+    pub fn get_integer(&mut self, references: &[u32], values: &mut [MaybeUninit<i32>]) -> Result<(), Failure> {
+        self.get_discrete(references, values, |source| match source {
+            Source::Integer(of) => Some(of),
+            _ => None,
+        })
+    }
+
+    /// `fmi2GetBoolean`: 0 or 1.
+    pub fn get_boolean(&mut self, references: &[u32], values: &mut [MaybeUninit<i32>]) -> Result<(), Failure> {
+        self.get_discrete(references, values, |source| match source {
+            Source::Boolean(of) => Some(of),
+            _ => None,
+        })
+    }
+
+    /// All of the values, or none if one is refused. `of_type` picks the sources of one type.
+    fn get_discrete(
+        &mut self,
+        references: &[u32],
+        values: &mut [MaybeUninit<i32>],
+        of_type: fn(Source) -> Option<OfMotion>,
+    ) -> Result<(), Failure> {
+        let source = |reference: &u32| {
+            let variable = find(*reference)?;
+            of_type(variable.source).ok_or(Failure::WrongType(variable))
+        };
+        for reference in references {
+            source(reference)?;
+        }
+        for (reference, value) in references.iter().zip(values) {
+            let of = source(reference)?;
+            value.write(of(self.now.engine()?.motion()));
+        }
+        Ok(())
+    }
+
+    /// `fmi2GetString`: there are no strings.
+    pub fn get_string(&self, references: &[u32]) -> Result<(), Failure> {
+        references.first().map_or(Ok(()), |reference| Err(Failure::NoStrings(*reference)))
+    }
+
+    /// `fmi2SetReal`: all of the values, or none if one is refused.
+    pub fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
+        let Condition { stage, mut setup, mut input, .. } = self.now;
+        let mut is_set_up_anew = false;
+        for (reference, &value) in references.iter().zip(values) {
+            let variable = find(*reference)?;
+            match variable.source {
+                Source::Input(quantity) => set(quantity, &mut input, value)?,
+                Source::Parameter(_) | Source::InitialValue(_) if stage == Stage::StepComplete => {
+                    return Err(Failure::Fixed(variable));
+                }
+                Source::Parameter(quantity) => set(quantity, &mut setup.parameters, value)?,
+                Source::InitialValue(quantity) => set(quantity, &mut setup.initial, value)?,
+                _ => return Err(Failure::NotSettable(variable)),
+            }
+            is_set_up_anew |= variable.causality == Causality::Parameter;
+        }
+        self.now.input = input;
+        if is_set_up_anew {
+            self.now.setup = setup;
+            self.now.engine = None;
+        }
+        Ok(())
+    }
+
+    /// `fmi2SetInteger`, `fmi2SetBoolean`: no variable of these types can be set.
+    pub fn set_discrete(&self, references: &[u32]) -> Result<(), Failure> {
+        let Some(reference) = references.first() else { return Ok(()) };
+        let variable = find(*reference)?;
+        Err(match variable.causality {
+            Causality::Output | Causality::CalculatedParameter => Failure::NotSettable(variable),
+            Causality::Input | Causality::Parameter => Failure::WrongType(variable),
+        })
+    }
+
+    /// `fmi2SetString`: there are no strings.
+    pub fn set_string(&self, references: &[u32]) -> Result<(), Failure> {
+        self.get_string(references)
+    }
+
+    /// `fmi2SetRealInputDerivatives`: slopes of the input over the next step.
+    pub fn set_real_input_derivatives(
+        &mut self,
+        references: &[u32],
+        orders: &[i32],
+        values: &[f64],
+    ) -> Result<(), Failure> {
+        let mut input = self.now.input;
+        for ((reference, &order), &value) in references.iter().zip(orders).zip(values) {
+            let variable = find(*reference)?;
+            if !matches!(variable.source, Source::Input(_)) {
+                return Err(Failure::NoInput(variable));
+            }
+            if order != 1 {
+                return Err(Failure::WrongOrder { variable, order });
+            }
+            if !value.is_finite() {
+                return Err(Failure::BadSlope { variable, value });
+            }
+            input.slope = value;
+        }
+        self.now.input = input;
+        Ok(())
+    }
+
+    /// `fmi2GetRealOutputDerivatives`: from the equations of motion, under the present value of the input.
+    pub fn get_real_output_derivatives(
+        &mut self,
+        references: &[u32],
+        orders: &[i32],
+        values: &mut [MaybeUninit<f64>],
+    ) -> Result<(), Failure> {
+        let a_g = self.now.input.value;
+        let engine = self.now.engine()?;
+        let &Motion { time, phase, state, .. } = engine.motion();
+        let rates = Outputs::rates(engine.structure(), phase, &state, a_g);
+        let rate = |reference: &u32, order: i32| {
+            let variable = find(*reference)?;
+            let Source::Output(of) = variable.source else { return Err(Failure::NoOutput(variable)) };
+            if order != 1 {
+                return Err(Failure::WrongOrder { variable, order });
+            }
+            Some(of(&rates)).filter(|rate| rate.is_finite()).ok_or(Failure::NoRate { variable, time })
+        };
+        for (reference, order) in references.iter().zip(orders) {
+            rate(reference, *order)?;
+        }
+        for ((reference, order), value) in references.iter().zip(orders).zip(values) {
+            value.write(rate(reference, *order)?);
+        }
+        Ok(())
+    }
+
+    /// `fmi2DoStep`: from `point` (s), which is where the instance is, over `step` (s).
+    pub fn do_step(&mut self, point: f64, step: f64) -> Result<(), Failure> {
+        let logger = &self.logger;
+        let Condition { input, setup: Setup { stop_time, .. }, .. } = self.now;
+        let engine = self.now.engine()?;
+        let time = engine.motion().time;
+        let until = point + step;
+        if !(step > 0.0 && step.is_finite()) {
+            return Err(Failure::BadStep { step, time });
+        }
+        if !is_same_time(point, time, step) {
+            return Err(Failure::WrongPoint { given: point, time });
+        }
+        if until <= time {
+            return Err(Failure::BadStep { step, time });
+        }
+        if let Some(stop) = stop_time
+            && until > stop
+            && !is_same_time(until, stop, step)
+        {
+            return Err(Failure::PastStop { until, stop });
+        }
+        A_G.check(input.at(until - time)).map_err(Failure::InputRunsOut)?;
+
+        let progress = engine.advance(until, input, &mut |transition| log(logger, transition));
+        let end = engine.motion().time;
+        match progress {
+            Ok(Progress::Complete) => {
+                self.now.input = held(input, end - time);
+                Ok(())
+            }
+            Ok(Progress::Overturned) => {
+                self.now.input = held(input, end - time);
+                self.now.stage = Stage::StepFailed;
+                Err(Failure::Overturned { time: end })
+            }
+            Err(error) => {
+                if matches!(error, AdvanceError::Singular { .. }) {
+                    self.now.stage = Stage::Error;
+                }
+                Err(error.into())
+            }
+        }
+    }
+
+    /// `fmi2GetRealStatus`
+    pub fn real_status(&mut self, kind: StatusKind) -> Result<f64, Failure> {
+        match kind {
+            StatusKind::LastSuccessfulTime => Ok(self.now.engine()?.motion().time),
+            _ => Err(Failure::NoAnswer(kind)),
+        }
+    }
+
+    /// `fmi2GetBooleanStatus`
+    pub fn boolean_status(&mut self, kind: StatusKind) -> Result<bool, Failure> {
+        match kind {
+            StatusKind::Terminated => Ok(matches!(self.now.engine()?.motion().phase, Phase::Overturned(_))),
+            _ => Err(Failure::NoAnswer(kind)),
+        }
+    }
+
+    /// `fmi2GetFMUstate`: into the state `handle`, or into a new one for 0.
+    pub fn get_fmu_state(&mut self, handle: usize) -> Result<usize, Failure> {
+        self.snapshots.keep(handle, self.now.clone())
+    }
+
+    /// `fmi2SetFMUstate`
+    pub fn set_fmu_state(&mut self, handle: usize) -> Result<(), Failure> {
+        self.now = self.snapshots.find(handle)?.clone();
+        Ok(())
+    }
+
+    /// `fmi2FreeFMUstate`
+    pub fn free_fmu_state(&mut self, handle: usize) -> Result<(), Failure> {
+        self.snapshots.free(handle)
+    }
+
+    /// `fmi2SerializeFMUstate`; the length is what `fmi2SerializedFMUstateSize` returns.
+    pub fn serialize_fmu_state(&self, handle: usize) -> Result<Vec<u8>, Failure> {
+        Ok(snapshot::serialize(self.snapshots.find(handle)?))
+    }
+
+    /// `fmi2DeSerializeFMUstate`: into the state `handle`, or into a new one for 0.
+    pub fn deserialize_fmu_state(&mut self, bytes: &[u8], handle: usize) -> Result<usize, Failure> {
+        self.snapshots.keep(handle, snapshot::deserialize(bytes)?)
+    }
+}
+
+/// What a host may ask about a step: `fmi2StatusKind`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StatusKind {
+    /// Result of a pending step.
+    DoStepStatus,
+    /// How a pending step is doing.
+    PendingStatus,
+    /// How far the last step came.
+    LastSuccessfulTime,
+    /// Whether the FMU ends the simulation.
+    Terminated,
+}
+
+impl StatusKind {
+    /// The kind that `number` stands for in the C interface.
+    pub fn from_number(number: i32) -> Option<StatusKind> {
+        use StatusKind::*;
+        [DoStepStatus, PendingStatus, LastSuccessfulTime, Terminated].get(usize::try_from(number).ok()?).copied()
+    }
+}
+
+fn find(reference: u32) -> Result<&'static Variable, Failure> {
+    VARIABLES.get(reference as usize).ok_or(Failure::UnknownReference(reference))
+}
+
+fn set<T>(quantity: &Quantity<T>, of: &mut T, value: f64) -> Result<(), Failure> {
+    quantity.check(value)?;
+    (quantity.set)(of, value);
+    Ok(())
+}
+
+/// The input at the end of a step of `duration` (s), held from there on until it is set anew.
+fn held(input: GroundAcceleration, duration: f64) -> GroundAcceleration {
+    GroundAcceleration { value: input.at(duration), slope: 0.0 }
+}
+
+/// Hosts add up steps or multiply them: their times (s) differ in the last digits.
+fn is_same_time(a: f64, b: f64, step: f64) -> bool {
+    (a - b).abs() <= SAME_TIME * b.abs().max(step)
+}
+
+fn log(logger: &Logger, transition: &Transition) {
+    match transition.kind {
+        TransitionKind::Settling => logger.warning(&format!(
+            "{}; too many transitions within one vibration period: contact is held for the rest of it",
+            describe(transition)
+        )),
+        _ => logger.event(|| describe(transition)),
+    }
+}
+
+fn describe(transition: &Transition) -> String {
+    let Transition { time, kind, before, after } = transition;
+    let side = |side| if side == Side::Left { "left" } else { "right" };
+    let what = match *kind {
+        TransitionKind::Uplift(pivot) => format!("uplift, rocking about the {} edge", side(pivot)),
+        TransitionKind::Impact(pivot) => format!("impact, rocking on about the {} edge", side(pivot)),
+        TransitionKind::Landing | TransitionKind::Settling => "landing in full contact".to_owned(),
+        TransitionKind::Overturning(pivot) => format!("overturning about the {} edge", side(pivot)),
+    };
+    format!(
+        "t = {time} s: {what}; u = {} m, u_dot = {} m/s (before: {}), theta_dot = {} rad/s (before: {})",
+        after.u, after.u_dot, before.u_dot, after.theta_dot, before.theta_dot
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::cell::RefCell;
+    use std::rc::Rc;
+
+    /// A result that is not the model's alone is said to be so, even if no events are asked for.
+    #[test]
+    fn contact_held_by_force_is_a_warning() {
+        let sent = Rc::new(RefCell::new(Vec::new()));
+        let logger = Logger::new(Box::new({
+            let sent = Rc::clone(&sent);
+            move |status, category, text| sent.borrow_mut().push((status, category.to_owned(), text.to_owned()))
+        }));
+        let before = State { u: 0.001, u_dot: 0.25, theta: 0.0, theta_dot: -0.5 };
+        let after = State { u_dot: -0.75, theta_dot: 0.0, ..before };
+        log(&logger, &Transition { time: 1.5, kind: TransitionKind::Landing, before, after });
+        log(&logger, &Transition { time: 2.5, kind: TransitionKind::Settling, before, after });
+        let text = c"t = 2.5 s: landing in full contact; u = 0.001 m, u_dot = -0.75 m/s (before: 0.25), theta_dot = 0 \
+                     rad/s (before: -0.5); too many transitions within one vibration period: contact is held for the \
+                     rest of it";
+        assert_eq!(*sent.borrow(), [(Status::Warning, c"logStatusWarning".to_owned(), text.to_owned())]);
+    }
+}

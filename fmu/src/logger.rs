@@ -1,0 +1,116 @@
+//! Messages to the host.
+
+use std::ffi::{CStr, CString};
+
+/// Result of a call, numbered as `fmi2Status`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(i32)]
+pub enum Status {
+    /// Done.
+    Ok = 0,
+    /// Done, with something to be read in the log.
+    Warning = 1,
+    /// Not done, or not to its end; the simulation may go on from where it is.
+    Discard = 2,
+    /// Refused.
+    Error = 3,
+    /// The instance cannot be used any more.
+    Fatal = 4,
+}
+
+/// What a message is about. Hosts switch categories on and off by name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Category {
+    /// Uplift, impact, landing, overturning.
+    Events,
+    /// What the user should know of the results.
+    Warning,
+    /// Steps that end early, questions without an answer.
+    Discard,
+    /// Refused calls.
+    Error,
+}
+
+impl Category {
+    /// All of them.
+    pub const ALL: [Category; 4] = [Category::Events, Category::Warning, Category::Discard, Category::Error];
+
+    /// Name, as the standard recommends it.
+    pub const fn name(self) -> &'static CStr {
+        match self {
+            Category::Events => c"logEvents",
+            Category::Warning => c"logStatusWarning",
+            Category::Discard => c"logStatusDiscard",
+            Category::Error => c"logStatusError",
+        }
+    }
+
+    /// What it is about, in one line.
+    pub const fn description(self) -> &'static str {
+        match self {
+            Category::Events => "uplift, impact, landing and overturning, as they happen",
+            Category::Warning => "what should be known of the results; always on",
+            Category::Discard => "steps that end early and why; always on",
+            Category::Error => "refused calls and why; always on",
+        }
+    }
+}
+
+/// Takes the status, the category's name and the message, escaped for the host.
+pub type Sink = Box<dyn Fn(Status, &CStr, &CStr)>;
+
+/// Sends messages. Warnings, discards and errors are always sent, events if the host asked for them.
+pub struct Logger {
+    sink: Sink,
+    events: bool,
+}
+
+impl Logger {
+    /// A logger into `sink`, without events.
+    pub fn new(sink: Sink) -> Logger {
+        Logger { sink, events: false }
+    }
+
+    /// Switches events on or off.
+    pub fn set_events(&mut self, events: bool) {
+        self.events = events;
+    }
+
+    /// Sends an event, which is put into words only if someone listens.
+    pub fn event(&self, message: impl FnOnce() -> String) {
+        if self.events {
+            self.send(Status::Ok, Category::Events, &message());
+        }
+    }
+
+    /// Sends a warning.
+    pub fn warning(&self, message: &str) {
+        self.send(Status::Warning, Category::Warning, message);
+    }
+
+    /// Sends why a call returns `status`.
+    pub fn failure(&self, status: Status, message: &str) {
+        let category = if status == Status::Discard { Category::Discard } else { Category::Error };
+        self.send(status, category, message);
+    }
+
+    fn send(&self, status: Status, category: Category, message: &str) {
+        (self.sink)(status, category.name(), &escape(message));
+    }
+}
+
+/// The host reads a message as a printf format, in which `#` marks variables: both are doubled. A NUL would end it.
+fn escape(message: &str) -> CString {
+    let escaped = message.replace('%', "%%").replace('#', "##").replace('\0', "\u{fffd}");
+    CString::new(escaped).expect("every NUL is replaced")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_message_is_a_format_that_prints_itself() {
+        assert_eq!(escape("100 % of #5\0 ü").to_str().unwrap(), "100 %% of ##5\u{fffd} ü");
+    }
+}

@@ -1,0 +1,108 @@
+//! The parameters that the archive carries: `resources/parameters.toml`, found through the URI that the host gives.
+
+use percent_encoding::percent_decode_str;
+use rocking::Parameters;
+use rocking::parameters::ParameterError;
+use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+/// The file with the parameters, in the archive's folder `resources`.
+pub const PARAMETERS_FILE: &str = "parameters.toml";
+
+/// Why the parameters could not be read.
+#[derive(Debug, thiserror::Error)]
+pub enum ResourceError {
+    /// Not the URI of a local folder.
+    #[error("fmuResourceLocation = {0:?} is not a file URI of this machine, such as file:///tmp/fmu/resources")]
+    NotAFileUri(String),
+    /// No such file, or not readable.
+    #[error("{file}: {error}; unpack the whole archive and pass the URI of its folder \"resources\"", file = file.display())]
+    Unreadable {
+        /// The file.
+        file: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// Not the TOML of parameters.
+    #[error("{file}: {error}", file = file.display())]
+    Malformed {
+        /// The file.
+        file: PathBuf,
+        /// Line and reason.
+        error: Box<toml::de::Error>,
+    },
+    /// A parameter out of range.
+    #[error("{file}: {error}", file = file.display())]
+    Refused {
+        /// The file.
+        file: PathBuf,
+        /// Which, and the limit.
+        error: ParameterError,
+    },
+}
+
+/// The parameters in the folder that `location`, a file URI, points to.
+pub fn parameters(location: &str) -> Result<Parameters, ResourceError> {
+    let folder = path(location).ok_or_else(|| ResourceError::NotAFileUri(location.to_owned()))?;
+    let file = folder.join(PARAMETERS_FILE);
+    let text = match fs::read_to_string(&file) {
+        Ok(text) => text,
+        Err(error) => return Err(ResourceError::Unreadable { file, error }),
+    };
+    let parameters: Parameters = match toml::from_str(&text) {
+        Ok(parameters) => parameters,
+        Err(error) => return Err(ResourceError::Malformed { file, error: Box::new(error) }),
+    };
+    match parameters.check() {
+        Ok(()) => Ok(parameters),
+        Err(error) => Err(ResourceError::Refused { file, error }),
+    }
+}
+
+/// The local path of a file URI (RFC 8089): `file:/path`, `file:///path`, `file://localhost/path`.
+fn path(uri: &str) -> Option<PathBuf> {
+    let (scheme, rest) = uri.split_once(':')?;
+    if !scheme.eq_ignore_ascii_case("file") {
+        return None;
+    }
+    let path = match rest.strip_prefix("//") {
+        Some(authority) => authority.strip_prefix("localhost").unwrap_or(authority),
+        None => rest,
+    };
+    if !path.starts_with('/') {
+        return None;
+    }
+    Some(Path::new(&*percent_decode_str(path).decode_utf8().ok()?).to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn file_uris_become_paths() {
+        for uri in ["file:/a/b%20c/%C3%BC%25", "file:///a/b%20c/ü%25", "FILE://localhost/a/b c/%c3%bc%25"] {
+            assert_eq!(path(uri).as_deref(), Some(Path::new("/a/b c/ü%")), "{uri}");
+        }
+        for uri in ["/a/b", "a/b", "file:a", "file://elsewhere/a", "http://localhost/a", "file:///%ff", ""] {
+            assert_eq!(path(uri), None, "{uri}");
+        }
+    }
+
+    #[test]
+    fn a_refusal_names_the_file_and_the_reason() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join(PARAMETERS_FILE);
+        let refusal = || parameters(&format!("file://{}", folder.path().display())).unwrap_err().to_string();
+        assert!(refusal().starts_with(&format!("{}: No such file", file.display())), "{}", refusal());
+
+        let evison = "m = 125.8\nm0 = 44.02\nH = 1.05\nB = 0.285\nf_fc = 11\nzeta_fc = 0.015\nr = 0.96\n";
+        fs::write(&file, evison).unwrap();
+        assert_eq!(parameters(&format!("file:{}/", folder.path().display())).unwrap(), Parameters::EVISON);
+
+        fs::write(&file, evison.replace("r = 0.96", "r = 1.5")).unwrap();
+        assert!(refusal().contains("r = 1.5 1 is out of range"), "{}", refusal());
+        fs::write(&file, evison.replace("r = 0.96", "e = 0.96")).unwrap();
+        assert!(refusal().contains("line 7") && refusal().contains("unknown field `e`"), "{}", refusal());
+    }
+}

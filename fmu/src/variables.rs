@@ -1,0 +1,249 @@
+//! The one table of the FMU's variables. What a variable is called, what it may be, who sets it and what it depends on
+//! stands here and nowhere else: the model description is written from this table, and the C functions read and write
+//! through it. A value reference is a position in the table.
+
+use model_description::{Causality, Initial, Variability};
+use rocking::engine::{GroundAcceleration, Motion};
+use rocking::parameters::PARAMETERS;
+use rocking::quantity::Quantity;
+use rocking::state::INITIAL_VALUES;
+use rocking::structure::{DERIVED, Derived};
+use rocking::{Outputs, Parameters, Phase, Side, State};
+use std::sync::LazyLock;
+
+/// One variable.
+#[derive(Clone, Copy, Debug)]
+pub struct Variable {
+    /// Name, as hosts show it.
+    pub name: &'static str,
+    /// What it is, in one line.
+    pub description: &'static str,
+    /// Its data type, with what belongs to that type alone.
+    pub data_type: DataType,
+    /// Who sets it.
+    pub causality: Causality,
+    /// When it may change.
+    pub variability: Variability,
+    /// How its initial value comes about; inputs have none.
+    pub initial: Option<Initial>,
+    /// The parameters and initial values that its value at the start of a simulation depends on, by name. From then on
+    /// the outputs depend on the state alone, on no input.
+    pub initial_dependencies: &'static [&'static str],
+    /// Where its value is.
+    pub(crate) source: Source,
+}
+
+/// Data type of a variable.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum DataType {
+    /// A real number.
+    Real {
+        /// Unit as FMI writes it, `1` for a ratio.
+        unit: &'static str,
+        /// Smallest and largest value accepted, of what a host sets.
+        range: Option<(f64, f64)>,
+    },
+    /// An integer, not negative.
+    Integer,
+    /// True or false.
+    Boolean,
+    /// One of these, numbered from 1.
+    Enumeration(&'static [&'static str]),
+}
+
+/// An integer, or a Boolean as 0 or 1.
+pub(crate) type OfMotion = fn(&Motion) -> i32;
+
+/// Where the value of a variable is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Source {
+    Input(&'static Quantity<GroundAcceleration>),
+    Output(fn(&Outputs) -> f64),
+    Integer(OfMotion),
+    Boolean(OfMotion),
+    Parameter(&'static Quantity<Parameters>),
+    InitialValue(&'static Quantity<State>),
+    Derived(&'static Derived),
+}
+
+/// The phases, as the enumeration `phase` numbers them from 1.
+pub const PHASES: [&str; 4] = ["full contact", "rocking left", "rocking right", "overturned"];
+
+fn phase_number(motion: &Motion) -> i32 {
+    match motion.phase {
+        Phase::FullContact => 1,
+        Phase::Rocking(Side::Left) => 2,
+        Phase::Rocking(Side::Right) => 3,
+        Phase::Overturned(_) => 4,
+    }
+}
+
+fn transitions(motion: &Motion) -> i32 {
+    i32::try_from(motion.transitions).unwrap_or(i32::MAX)
+}
+
+fn overturned(motion: &Motion) -> i32 {
+    i32::from(matches!(motion.phase, Phase::Overturned(_)))
+}
+
+/// The input. Setting it holds it: a slope is set afterwards, and anew for every step.
+pub(crate) static A_G: Quantity<GroundAcceleration> = Quantity {
+    name: "a_g",
+    unit: "m/s2",
+    description: "horizontal ground acceleration, positive to the right",
+    min: -1e4,
+    max: 1e4,
+    get: |a_g| a_g.value,
+    set: |a_g, value| *a_g = GroundAcceleration { value, slope: 0.0 },
+};
+
+/// All variables, in the order of the model description.
+pub static VARIABLES: LazyLock<Vec<Variable>> = LazyLock::new(|| {
+    std::iter::once(input())
+        .chain(outputs())
+        .chain(const { &PARAMETERS }.iter().map(|quantity| fixed(quantity, Source::Parameter(quantity))))
+        .chain(const { &INITIAL_VALUES }.iter().map(|quantity| fixed(quantity, Source::InitialValue(quantity))))
+        .chain(calculated_parameters())
+        .collect()
+});
+
+fn input() -> Variable {
+    Variable {
+        name: A_G.name,
+        description: A_G.description,
+        data_type: DataType::Real { unit: A_G.unit, range: Some((A_G.min, A_G.max)) },
+        causality: Causality::Input,
+        variability: Variability::Continuous,
+        initial: None,
+        initial_dependencies: &[],
+        source: Source::Input(&A_G),
+    }
+}
+
+fn outputs() -> [Variable; 12] {
+    // k/m and the damping over m are functions of f_fc, zeta_fc and c_ratio alone.
+    const A_T: &[&str] = &["f_fc", "zeta_fc", "c_ratio", "g", "theta_0", "u_0", "u_dot_0"];
+    const V_T: &[&str] = &["m", "f_fc", "zeta_fc", "c_ratio", "g", "theta_0", "u_0", "u_dot_0"];
+    const M_T: &[&str] = &["m", "H", "f_fc", "zeta_fc", "c_ratio", "g", "theta_0", "u_0", "u_dot_0"];
+    const DELTA_T: &[&str] = &["H", "B", "theta_0", "u_0"];
+    [
+        real("theta", "rad", "rotation of the base, positive about the right edge", |o| o.theta, &["theta_0"]),
+        real("u", "m", "elastic displacement of the top mass in the frame that turns with the base", |o| o.u, &["u_0"]),
+        real("a_t", "m/s2", "acceleration of the top mass, ground included (Eq 27)", |o| o.a_t, A_T),
+        real("V_t", "N", "base shear m a_t (Eqs 2, 23)", |o| o.V_t, V_T),
+        real("M_t", "N.m", "overturning moment m H a_t (Eqs 3, 24)", |o| o.M_t, M_T),
+        real("theta_dot", "rad/s", "angular velocity of the base", |o| o.theta_dot, &["theta_dot_0"]),
+        real("u_dot", "m/s", "elastic velocity of the top mass", |o| o.u_dot, &["u_dot_0"]),
+        real("uplift", "m", "height of the free edge of the base (Eq 25)", |o| o.uplift, &["B", "theta_0"]),
+        real("delta_t", "m", "lateral displacement of the top mass (Eq 26)", |o| o.delta_t, DELTA_T),
+        discrete(
+            "phase",
+            "what holds of the base",
+            DataType::Enumeration(&PHASES),
+            Source::Integer(phase_number),
+            &["theta_0"],
+        ),
+        discrete(
+            "transitions",
+            "uplifts, impacts and landings so far",
+            DataType::Integer,
+            Source::Integer(transitions),
+            &[],
+        ),
+        discrete(
+            "overturned",
+            "whether the structure has overturned",
+            DataType::Boolean,
+            Source::Boolean(overturned),
+            &[],
+        ),
+    ]
+}
+
+fn calculated_parameters() -> [Variable; 5] {
+    [
+        calculated("alpha_cg", &["m", "m0", "H", "B"]),
+        calculated("p_l", &["m", "m0", "H", "B", "J0", "g"]),
+        calculated("beta", &["m", "m0", "H", "B", "J0"]),
+        calculated("u_cr", &["m", "m0", "H", "B", "f_fc", "g"]),
+        calculated("f_u", &["m", "m0", "H", "B", "J0", "f_fc"]),
+    ]
+}
+
+fn real(
+    name: &'static str,
+    unit: &'static str,
+    description: &'static str,
+    of: fn(&Outputs) -> f64,
+    initial_dependencies: &'static [&'static str],
+) -> Variable {
+    Variable {
+        name,
+        description,
+        data_type: DataType::Real { unit, range: None },
+        causality: Causality::Output,
+        variability: Variability::Continuous,
+        initial: Some(Initial::Calculated),
+        initial_dependencies,
+        source: Source::Output(of),
+    }
+}
+
+fn discrete(
+    name: &'static str,
+    description: &'static str,
+    data_type: DataType,
+    source: Source,
+    initial_dependencies: &'static [&'static str],
+) -> Variable {
+    Variable {
+        name,
+        description,
+        data_type,
+        causality: Causality::Output,
+        variability: Variability::Discrete,
+        initial: Some(Initial::Calculated),
+        initial_dependencies,
+        source,
+    }
+}
+
+fn fixed<T>(quantity: &'static Quantity<T>, source: Source) -> Variable {
+    Variable {
+        name: quantity.name,
+        description: quantity.description,
+        data_type: DataType::Real { unit: quantity.unit, range: Some((quantity.min, quantity.max)) },
+        causality: Causality::Parameter,
+        variability: Variability::Fixed,
+        initial: Some(Initial::Exact),
+        initial_dependencies: &[],
+        source,
+    }
+}
+
+fn calculated(name: &'static str, initial_dependencies: &'static [&'static str]) -> Variable {
+    let derived = const { &DERIVED }.iter().find(|derived| derived.name == name);
+    let derived = derived.unwrap_or_else(|| panic!("no derived quantity is called {name}"));
+    Variable {
+        name,
+        description: derived.description,
+        data_type: DataType::Real { unit: derived.unit, range: None },
+        causality: Causality::CalculatedParameter,
+        variability: Variability::Fixed,
+        initial: Some(Initial::Calculated),
+        initial_dependencies,
+        source: Source::Derived(derived),
+    }
+}
+
+impl Variable {
+    /// The start value in an FMU of the structure `parameters`: of the input, the parameters and the initial values.
+    pub fn start(&self, parameters: &Parameters) -> Option<f64> {
+        match self.source {
+            Source::Input(quantity) => Some((quantity.get)(&GroundAcceleration::default())),
+            Source::Parameter(quantity) => Some((quantity.get)(parameters)),
+            Source::InitialValue(quantity) => Some((quantity.get)(&State::default())),
+            _ => None,
+        }
+    }
+}

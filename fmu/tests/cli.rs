@@ -1,0 +1,306 @@
+//! The command line driven from outside: `describe` and `simulate`, their tables, messages and exit codes.
+
+use FlexibleRocking::variables::{DataType, PHASES, VARIABLES};
+use model_description::Causality;
+use rocking::{Engine, GroundAcceleration, Outputs, Parameters, Phase, State, Structure, engine::DEFAULT_TOLERANCE};
+use std::{
+    fs,
+    io::Read,
+    path::Path,
+    process::{Command, Output, Stdio},
+};
+use tempfile::TempDir;
+
+/// A full sine of 0.6 g and 0.5 s and rest after it, 401 samples: lifts and lands the McManus specimen.
+const SAMPLES: usize = 401;
+const DT: f64 = 0.01;
+
+fn pulse(i: usize) -> f64 {
+    let time = i as f64 * DT;
+    if time < 0.5 { 0.6 * (std::f64::consts::TAU * time / 0.5).sin() } else { 0.0 }
+}
+
+/// An empty folder with the pulse in it as `pulse.AT2`.
+fn folder() -> TempDir {
+    let folder = TempDir::new().unwrap();
+    let values: Vec<_> = (0..SAMPLES).map(|i| format!("{:e}", pulse(i))).collect();
+    let lines: Vec<_> = values.chunks(5).map(|line| line.join("  ")).collect();
+    let header = "PEER\nFull sine\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS=    401, DT=   .0100 SEC,\n";
+    fs::write(folder.path().join("pulse.AT2"), format!("{header}{}\n", lines.join("\n"))).unwrap();
+    folder
+}
+
+fn command(folder: &Path, arguments: &str) -> Command {
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rocking-fmu"));
+    command.current_dir(folder).args(arguments.split_whitespace());
+    command
+}
+
+fn run(folder: &Path, arguments: &str) -> Output {
+    command(folder, arguments).output().unwrap()
+}
+
+/// Runs a command that succeeds, and returns its standard output and standard error.
+fn succeed(folder: &Path, arguments: &str) -> (String, String) {
+    let Output { status, stdout, stderr } = run(folder, arguments);
+    let (stdout, stderr) = (String::from_utf8(stdout).unwrap(), String::from_utf8(stderr).unwrap());
+    assert!(status.success(), "{arguments}: {stderr}");
+    (stdout, stderr)
+}
+
+/// Runs a command that fails, and returns its exit code and standard error.
+fn fail(folder: &Path, arguments: &str) -> (i32, String) {
+    let Output { status, stdout, stderr } = run(folder, arguments);
+    assert_eq!(String::from_utf8(stdout).unwrap(), "");
+    (status.code().unwrap(), String::from_utf8(stderr).unwrap())
+}
+
+/// The headings and lines of a CSV file.
+fn table(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
+    let text = fs::read_to_string(path).unwrap();
+    let mut lines = text.lines().map(|line| line.split(',').map(str::to_owned).collect());
+    (lines.next().unwrap(), lines.collect())
+}
+
+fn column(path: &Path, heading: &str) -> Vec<f64> {
+    let (headings, lines) = table(path);
+    let index = headings.iter().position(|found| found == heading).unwrap();
+    lines.iter().map(|line| line[index].parse().unwrap()).collect()
+}
+
+#[test]
+fn describe_shows_the_specimen_with_units_and_equations() {
+    let folder = folder();
+    let (mcmanus, _) = succeed(folder.path(), "describe");
+    for line in [
+        "  m                 130.1 kg     top mass",
+        "  r                  0.99 -      coefficient of restitution on the angular velocity at impact",
+        "  u_cr         0.00231348 m      after Eq 4    critical displacement: uplift",
+        "  J_P             467.046 kg.m2  after Eq 8    inertia about a pivot",
+        "  p_l             2.24234 rad/s  before Eq 11  frequency parameter",
+        "  beta           0.943090 -      after Eq 13   modal participation of rocking",
+    ] {
+        assert!(mcmanus.lines().any(|found| found == line), "{line}\n{mcmanus}");
+    }
+    assert_eq!(mcmanus, succeed(folder.path(), "describe --preset mcmanus").0);
+
+    let (evison, _) = succeed(folder.path(), "describe --preset evison");
+    assert!(evison.contains("  f_u             36.5739 Hz     before Eq 18"), "{evison}");
+
+    let parameters = "m = 125.8\nm0 = 44.02\nH = 1.05\nB = 0.285\nf_fc = 11\nzeta_fc = 0.015\nr = 0.96\n";
+    fs::write(folder.path().join("wall.toml"), parameters).unwrap();
+    assert_eq!(evison, succeed(folder.path(), "describe --parameters wall.toml").0);
+}
+
+#[test]
+fn the_response_has_every_output_of_the_fmu_under_its_name_and_unit() {
+    let folder = folder();
+    succeed(folder.path(), "simulate --record pulse.AT2");
+    let (headings, _) = table(&folder.path().join("pulse_response.csv"));
+    let mut expected = vec!["time[s]".to_owned(), "a_g[m/s2]".to_owned()];
+    for variable in VARIABLES.iter().filter(|variable| variable.causality == Causality::Output) {
+        match variable.data_type {
+            DataType::Real { unit, .. } => expected.push(format!("{}[{unit}]", variable.name)),
+            DataType::Enumeration(_) | DataType::Integer => expected.push(variable.name.to_owned()),
+            DataType::Boolean => assert_eq!(variable.name, "overturned", "a phase, not a column"),
+        }
+    }
+    assert_eq!(headings, expected);
+}
+
+/// The CSV holds the bits that the engine has.
+#[test]
+fn the_response_reads_back_to_the_engines_numbers() {
+    let folder = folder();
+    let (_, summary) = succeed(folder.path(), "simulate --record pulse.AT2 --scale -2 --time-scale 0.5 -o out.csv");
+    let (_, lines) = table(&folder.path().join("out.csv"));
+    assert_eq!(lines.len(), SAMPLES);
+
+    let acceleration = |i: usize| pulse(i) * 9.81 * -2.0;
+    let time = |i: usize| i as f64 * DT * 0.5;
+    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let mut engine = Engine::new(structure, State::default(), 0.0, DEFAULT_TOLERANCE).unwrap();
+    for (i, line) in lines.iter().enumerate() {
+        if i > 0 {
+            let slope = (acceleration(i) - acceleration(i - 1)) / (time(i) - time(i - 1));
+            let a_g = GroundAcceleration { value: acceleration(i - 1), slope };
+            engine.advance(time(i), a_g, &mut |_| ()).unwrap();
+        }
+        let motion = engine.motion();
+        let o = Outputs::of(&structure, motion.phase, &motion.state);
+        let numbers: Vec<f64> = line[..11].iter().map(|number| number.parse().unwrap()).collect();
+        assert_eq!(numbers[0], time(i));
+        assert!((numbers[1] - acceleration(i)).abs() <= 1e-14 * 12.0, "{} {}", numbers[1], acceleration(i));
+        let expected = [o.theta, o.u, o.a_t, o.V_t, o.M_t, o.theta_dot, o.u_dot, o.uplift, o.delta_t];
+        assert_eq!(numbers[2..], expected, "line {i}");
+        assert!(PHASES.contains(&line[11].as_str()));
+        assert_eq!(line[11] == "full contact", motion.phase == Phase::FullContact);
+        assert_eq!(line[12], motion.transitions.to_string());
+    }
+    let transitions = engine.motion().transitions;
+    assert!(transitions > 2);
+    let work = engine.motion().work;
+    for line in [
+        format!("transitions    {transitions}"),
+        "overturned     no".into(),
+        format!("work           {} steps, {} evaluations", work.steps, work.evaluations),
+    ] {
+        assert!(summary.lines().any(|found| found == line), "{line}\n{summary}");
+    }
+}
+
+/// The numbers of the paper's Fig 5: released at theta = 0.04 rad, u = u_cr.
+#[test]
+fn free_vibration_of_the_wall_has_its_impacts_on_time() {
+    let folder = folder();
+    let u_cr = Structure::new(Parameters::EVISON).unwrap().u_cr;
+    let run = format!("simulate --preset evison --free 2 --theta-0 0.04 --u-0 {u_cr} --dt 1e-5 --events events.csv");
+    let (_, summary) = succeed(folder.path(), &run);
+
+    let (headings, events) = table(&folder.path().join("events.csv"));
+    assert_eq!(
+        headings[..6].join(" "),
+        "time[s] kind u_before[m] u_dot_before[m/s] theta_before[rad] theta_dot_before[rad/s]"
+    );
+    let impacts: Vec<f64> = column(&folder.path().join("events.csv"), "time[s]");
+    let expected = [0.168487319, 0.486378723, 0.783968665, 1.062370970, 1.321721172, 1.562668213];
+    for (impact, expected) in impacts.iter().zip(expected) {
+        assert!((impact - expected).abs() < 1e-9, "{impact} {expected}");
+    }
+    let (before, after) = (
+        column(&folder.path().join("events.csv"), "theta_dot_before[rad/s]"),
+        column(&folder.path().join("events.csv"), "theta_dot_after[rad/s]"),
+    );
+    assert_eq!(events[0][1], "impact left");
+    assert_eq!(after[0], 0.96 * before[0]);
+
+    for line in [
+        "free vibration, 0.00000 to 2.00000 s",
+        "peak |a_t|         0.920607 g    at 1.33495 s",
+        "first uplift   none",
+        "first impact   at 0.168487 s",
+        "response       free_vibration.csv",
+    ] {
+        assert!(summary.lines().any(|found| found == line), "{line}\n{summary}");
+    }
+    let a_t = column(&folder.path().join("free_vibration.csv"), "a_t[m/s2]");
+    assert_eq!(a_t.len(), 200_001);
+}
+
+#[test]
+fn output_times_are_the_samples_or_multiples_of_dt_and_always_the_end() {
+    let folder = folder();
+    let record = "time,a_g\n1,0\n1.25,0.5\n2,0\n";
+    fs::write(folder.path().join("three.csv"), record).unwrap();
+    for (options, expected) in [
+        ("", &[1.0, 1.25, 2.0][..]),
+        ("--time-scale 2", &[2.0, 2.5, 4.0]),
+        ("--duration 0.5", &[1.0, 1.25, 1.5]),
+        ("--duration 2", &[1.0, 1.25, 2.0, 2.75, 3.0]),
+        ("--dt 0.5", &[1.0, 1.5, 2.0]),
+        ("--dt 0.5 --duration 1.125", &[1.0, 1.5, 2.0, 2.125]),
+        ("--dt 8", &[1.0, 2.0]),
+    ] {
+        succeed(folder.path(), &format!("simulate --record three.csv -o out.csv --events events.csv {options}"));
+        assert_eq!(column(&folder.path().join("out.csv"), "time[s]"), expected, "{options}");
+        assert_eq!(column(&folder.path().join("events.csv"), "time[s]"), [0.0; 0], "{options}");
+    }
+    // The thirtieth sample is one rounding error short of the end.
+    succeed(folder.path(), "simulate --record pulse.AT2 --time-scale 0.2 --duration 0.058 -o out.csv");
+    assert_eq!(column(&folder.path().join("out.csv"), "time[s]").len(), 30);
+    succeed(folder.path(), "simulate --record three.csv --unit g --dt 0.25 --duration 1.5 -o out.csv");
+    let a_g = column(&folder.path().join("out.csv"), "a_g[m/s2]");
+    let expected = [0.0, 0.5, 1.0 / 3.0, 1.0 / 6.0, 0.0, 0.0, 0.0].map(|a_g| a_g * 9.81);
+    assert!(a_g.iter().zip(expected).all(|(a_g, expected)| (a_g - expected).abs() < 1e-14), "{a_g:?}");
+}
+
+#[test]
+fn standard_output_gets_the_same_table_and_may_be_closed_early() {
+    let folder = folder();
+    succeed(folder.path(), "simulate --record pulse.AT2 -o out.csv");
+    let (stdout, summary) = succeed(folder.path(), "simulate --record pulse.AT2 -o -");
+    assert_eq!(stdout, fs::read_to_string(folder.path().join("out.csv")).unwrap());
+    assert!(!summary.contains("response"), "{summary}");
+
+    let run = "simulate --free 100 --theta-0 0.1 -o -";
+    let mut child = command(folder.path(), run).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let mut first = [0; 7];
+    child.stdout.take().unwrap().read_exact(&mut first).unwrap();
+    assert_eq!(&first, b"time[s]");
+    let Output { status, stderr, .. } = child.wait_with_output().unwrap();
+    assert_eq!((status.code(), String::from_utf8(stderr).unwrap()), (Some(0), String::new()));
+}
+
+#[test]
+fn overturning_is_a_result() {
+    let folder = folder();
+    let (_, summary) =
+        succeed(folder.path(), "simulate --record pulse.AT2 --scale 0 --theta-0 -0.3 --events events.csv");
+    let (_, lines) = table(&folder.path().join("pulse_response.csv"));
+    let (_, events) = table(&folder.path().join("events.csv"));
+    let [.., before, last] = lines.as_slice() else { panic!("{lines:?}") };
+    assert_eq!([&before[11], &last[11]], ["rocking left", "overturned"]);
+    assert!((last[2].parse::<f64>().unwrap() + std::f64::consts::FRAC_PI_2).abs() < 1e-9);
+    assert_eq!(events.len(), 1);
+    assert_eq!(events[0][..2], [last[0].as_str(), "overturning left"]);
+    assert!(summary.lines().any(|line| line.starts_with("overturned     to the left at 1.61")), "{summary}");
+}
+
+#[test]
+fn an_error_names_its_cause_and_exits_with_1() {
+    let folder = folder();
+    let at2 = fs::read_to_string(folder.path().join("pulse.AT2")).unwrap();
+    for (name, text) in [
+        ("short.at2", at2.trim_end().rsplit_once('\n').unwrap().0),
+        ("velocity.AT2", &at2.replace("ACCELERATION", "VELOCITY")),
+        ("word.csv", "t,a\n0,0\n0.1,much\n"),
+        ("key.toml", "m = 1\nmass = 2\n"),
+        ("range.toml", "m = 1\nm0 = 1\nH = 1\nB = -1\nf_fc = 1\nzeta_fc = 0\nr = 1\n"),
+        ("text.toml", "m = 1\nm0 = 'one'\n"),
+    ] {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    for (arguments, expected) in [
+        ("simulate --record absent.AT2", "error: the record absent.AT2 cannot be read: No such file"),
+        ("simulate --record pulse.vt2", "error: pulse.vt2: the extension tells a record's format"),
+        ("simulate --record short.at2", "error: short.at2, line 84: the file ends after 400 of the 401 values of NPTS"),
+        ("simulate --record velocity.AT2", "error: velocity.AT2, line 3: found \"VELOCITY TIME SERIES"),
+        ("simulate --record word.csv", "error: word.csv, line 3: the acceleration \"much\" is not a number"),
+        ("simulate --record pulse.AT2 -o no/out.csv", "error: no/out.csv cannot be written: No such file"),
+        ("simulate --record pulse.AT2 --scale 1e308", "error: the ground acceleration "),
+        ("simulate --free 1 --theta-dot-0 0.1", "error: theta_dot_0 = 0.1 rad/s contradicts theta_0 = 0"),
+        ("simulate --free 1 --theta-0 nan", "error: theta_0 = NaN rad is out of range"),
+        ("describe --parameters absent.toml", "error: parameters in absent.toml: No such file"),
+        ("describe --parameters key.toml", "error: parameters in key.toml: TOML parse error at line 2, column 1"),
+        ("describe --parameters text.toml", "error: parameters in text.toml: TOML parse error at line 2, column 6"),
+        ("describe --parameters range.toml", "error: parameters in range.toml: B = -1 m is out of range"),
+    ] {
+        let (code, message) = fail(folder.path(), arguments);
+        assert_eq!(code, 1, "{arguments}: {message}");
+        assert!(message.starts_with(expected), "{arguments}: {message}");
+    }
+    let (_, message) = fail(folder.path(), "describe --parameters key.toml");
+    assert!(message.contains("unknown field `mass`"), "{message}");
+}
+
+#[test]
+fn wrong_usage_exits_with_2() {
+    let folder = folder();
+    for (arguments, expected) in [
+        ("", "Usage: rocking-fmu <COMMAND>"),
+        ("simulate", "--record <FILE>"),
+        ("simulate --record pulse.AT2 --free 1", "cannot be used with"),
+        ("simulate --free 1 --scale 2", "cannot be used with"),
+        ("simulate --free 0", "a finite number greater than 0 is needed"),
+        ("simulate --free 1 --dt inf", "a finite number greater than 0 is needed"),
+        ("simulate --free 1 --tolerance 1", "a number less than 1 is needed"),
+        ("simulate --record pulse.csv --unit gal", "[possible values: g, m/s2]"),
+        ("describe --preset evison --parameters a.toml", "cannot be used with"),
+        ("describe --preset housner", "[possible values: evison, mcmanus]"),
+    ] {
+        let (code, message) = fail(folder.path(), arguments);
+        assert_eq!(code, 2, "{arguments}: {message}");
+        assert!(message.contains(expected), "{arguments}: {message}");
+    }
+    assert_eq!(succeed(folder.path(), "--version").0, format!("rocking-fmu {}\n", env!("CARGO_PKG_VERSION")));
+}

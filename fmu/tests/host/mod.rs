@@ -1,0 +1,315 @@
+//! A host: loads nothing, calls the C functions directly, keeps what is logged.
+#![allow(unsafe_code, dead_code)] // the C interface; every test file uses a part of this
+
+use FlexibleRocking::GUID;
+use FlexibleRocking::c_abi::*;
+use FlexibleRocking::resources::PARAMETERS_FILE;
+use FlexibleRocking::variables::VARIABLES;
+use libc::{c_char, c_int, c_uint, c_void};
+use rocking::Parameters;
+use std::cell::RefCell;
+use std::ffi::{CStr, CString};
+use std::ptr;
+use tempfile::TempDir;
+
+pub const OK: c_int = 0;
+pub const DISCARD: c_int = 2;
+pub const ERROR: c_int = 3;
+
+/// One message, as the host's logger got it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Message {
+    pub instance: String,
+    pub status: c_int,
+    pub category: String,
+    pub text: String,
+}
+
+type Log = RefCell<Vec<Message>>;
+
+/// An instance, and the folder and log that it needs.
+pub struct Host {
+    pub component: *mut c_void,
+    pub log: Box<Log>,
+    resources: TempDir,
+}
+
+/// The arguments of `fmi2Instantiate` that tests vary.
+pub struct Instantiate {
+    pub name: &'static str,
+    pub fmu_type: c_int,
+    pub guid: String,
+    pub location: Option<String>,
+    pub logging_on: c_int,
+}
+
+impl Default for Instantiate {
+    fn default() -> Instantiate {
+        Instantiate { name: "wall", fmu_type: 1, guid: GUID.to_owned(), location: None, logging_on: 0 }
+    }
+}
+
+/// A folder `resources` with the parameters of Evison's wall.
+pub fn resources() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join(PARAMETERS_FILE), toml::to_string(&Parameters::EVISON).unwrap()).unwrap();
+    folder
+}
+
+unsafe extern "C" fn record(
+    environment: *mut c_void,
+    instance: *const c_char,
+    status: c_int,
+    category: *const c_char,
+    message: *const c_char,
+) {
+    let [instance, category, text] =
+        [instance, category, message].map(|text| unsafe { CStr::from_ptr(text) }.to_str().unwrap().to_owned());
+    let log = unsafe { &*environment.cast::<Log>() };
+    log.borrow_mut().push(Message { instance, status, category, text });
+}
+
+/// Callbacks that log into `environment`. The logger has no further arguments to read, so that it may be declared
+/// without them.
+pub fn callbacks(environment: *mut c_void) -> CallbackFunctions {
+    let logger: unsafe extern "C" fn(_, _, _, _, _) = record;
+    CallbackFunctions {
+        logger: Some(unsafe { std::mem::transmute::<*const (), CallbackLogger>(logger as *const ()) }),
+        allocate_memory: ptr::null(),
+        free_memory: ptr::null(),
+        step_finished: ptr::null(),
+        component_environment: environment,
+    }
+}
+
+pub fn reference(name: &str) -> c_uint {
+    VARIABLES.iter().position(|variable| variable.name == name).unwrap_or_else(|| panic!("{name}")) as c_uint
+}
+
+fn references(names: &[&str]) -> Vec<c_uint> {
+    names.iter().map(|name| reference(name)).collect()
+}
+
+impl Host {
+    /// Just instantiated, or the log.
+    pub fn instantiate(arguments: Instantiate) -> Result<Host, Vec<Message>> {
+        let resources = resources();
+        let log = Box::<Log>::default();
+        let location = arguments.location.unwrap_or_else(|| format!("file://{}", resources.path().display()));
+        let [name, guid, location] =
+            [arguments.name, &arguments.guid, &location].map(|text| CString::new(text).unwrap());
+        let component = unsafe {
+            fmi2Instantiate(
+                name.as_ptr(),
+                arguments.fmu_type,
+                guid.as_ptr(),
+                location.as_ptr(),
+                &callbacks((&raw const *log).cast_mut().cast()),
+                0,
+                arguments.logging_on,
+            )
+        };
+        if component.is_null() { Err(log.take()) } else { Ok(Host { component, log, resources }) }
+    }
+
+    pub fn new() -> Host {
+        Host::instantiate(Instantiate::default()).unwrap()
+    }
+
+    /// In initialization mode.
+    pub fn initializing(start_values: &[(&str, f64)]) -> Host {
+        let host = Host::new();
+        assert_eq!(host.set(start_values), OK, "{:?}", host.log);
+        assert_eq!(host.setup(None, 0.0, None), OK);
+        assert_eq!(host.enter(), OK);
+        host
+    }
+
+    /// Ready to step, at t = 0.
+    pub fn started(start_values: &[(&str, f64)]) -> Host {
+        let host = Host::initializing(start_values);
+        assert_eq!(host.exit(), OK, "{:?}", host.log);
+        host
+    }
+
+    pub fn setup(&self, tolerance: Option<f64>, start: f64, stop: Option<f64>) -> c_int {
+        let (defined, tolerance) = (tolerance.is_some().into(), tolerance.unwrap_or_default());
+        unsafe {
+            fmi2SetupExperiment(
+                self.component,
+                defined,
+                tolerance,
+                start,
+                stop.is_some().into(),
+                stop.unwrap_or_default(),
+            )
+        }
+    }
+
+    pub fn enter(&self) -> c_int {
+        unsafe { fmi2EnterInitializationMode(self.component) }
+    }
+
+    pub fn exit(&self) -> c_int {
+        unsafe { fmi2ExitInitializationMode(self.component) }
+    }
+
+    pub fn terminate(&self) -> c_int {
+        unsafe { fmi2Terminate(self.component) }
+    }
+
+    pub fn reset(&self) -> c_int {
+        unsafe { fmi2Reset(self.component) }
+    }
+
+    pub fn set(&self, values: &[(&str, f64)]) -> c_int {
+        let (names, values): (Vec<_>, Vec<_>) = values.iter().copied().unzip();
+        self.set_by_reference(&references(&names), &values)
+    }
+
+    pub fn set_by_reference(&self, references: &[c_uint], values: &[f64]) -> c_int {
+        unsafe { fmi2SetReal(self.component, references.as_ptr(), references.len(), values.as_ptr()) }
+    }
+
+    pub fn set_slope(&self, name: &str, order: c_int, slope: f64) -> c_int {
+        unsafe { fmi2SetRealInputDerivatives(self.component, &reference(name), 1, &order, &slope) }
+    }
+
+    /// Values, or the status.
+    pub fn try_get(&self, names: &[&str]) -> Result<Vec<f64>, c_int> {
+        let mut values = vec![f64::MAX; names.len()];
+        let references = references(names);
+        match unsafe { fmi2GetReal(self.component, references.as_ptr(), names.len(), values.as_mut_ptr()) } {
+            OK => Ok(values),
+            status => {
+                assert!(values.iter().all(|value| *value == f64::MAX), "a refused call wrote {values:?}");
+                Err(status)
+            }
+        }
+    }
+
+    pub fn get(&self, name: &str) -> f64 {
+        self.try_get(&[name]).unwrap_or_else(|_| panic!("{:?}", self.log))[0]
+    }
+
+    pub fn try_integer(&self, name: &str) -> Result<c_int, c_int> {
+        let mut value = c_int::MAX;
+        match unsafe { fmi2GetInteger(self.component, &reference(name), 1, &mut value) } {
+            OK => Ok(value),
+            status => Err(status),
+        }
+    }
+
+    pub fn integer(&self, name: &str) -> c_int {
+        self.try_integer(name).unwrap_or_else(|_| panic!("{:?}", self.log))
+    }
+
+    pub fn try_boolean(&self, name: &str) -> Result<c_int, c_int> {
+        let mut value = c_int::MAX;
+        match unsafe { fmi2GetBoolean(self.component, &reference(name), 1, &mut value) } {
+            OK => Ok(value),
+            status => Err(status),
+        }
+    }
+
+    pub fn rate(&self, name: &str, order: c_int) -> Result<f64, c_int> {
+        let mut value = f64::MAX;
+        match unsafe { fmi2GetRealOutputDerivatives(self.component, &reference(name), 1, &order, &mut value) } {
+            OK => Ok(value),
+            status => Err(status),
+        }
+    }
+
+    pub fn step(&self, time: f64, step: f64) -> c_int {
+        unsafe { fmi2DoStep(self.component, time, step, 0) }
+    }
+
+    pub fn last_successful_time(&self) -> f64 {
+        let mut time = f64::MAX;
+        assert_eq!(unsafe { fmi2GetRealStatus(self.component, 2, &mut time) }, OK);
+        time
+    }
+
+    pub fn is_terminated(&self) -> bool {
+        let mut terminated = c_int::MAX;
+        assert_eq!(unsafe { fmi2GetBooleanStatus(self.component, 3, &mut terminated) }, OK);
+        [0, 1].iter().position(|value| *value == terminated).unwrap() == 1
+    }
+
+    /// Keeps the present state: into `state`, or a new one for null.
+    pub fn try_keep(&self, mut state: *mut c_void) -> Result<*mut c_void, c_int> {
+        match unsafe { fmi2GetFMUstate(self.component, &mut state) } {
+            OK => Ok(state),
+            status => Err(status),
+        }
+    }
+
+    pub fn keep(&self) -> *mut c_void {
+        self.try_keep(ptr::null_mut()).unwrap()
+    }
+
+    pub fn go_back(&self, state: *mut c_void) -> c_int {
+        unsafe { fmi2SetFMUstate(self.component, state) }
+    }
+
+    pub fn free_state(&self, mut state: *mut c_void) -> c_int {
+        let status = unsafe { fmi2FreeFMUstate(self.component, &mut state) };
+        assert_eq!(state.is_null(), status == OK);
+        status
+    }
+
+    pub fn size(&self, state: *mut c_void) -> Result<usize, c_int> {
+        let mut size = usize::MAX;
+        match unsafe { fmi2SerializedFMUstateSize(self.component, state, &mut size) } {
+            OK => Ok(size),
+            status => Err(status),
+        }
+    }
+
+    pub fn serialize(&self, state: *mut c_void, size: usize) -> Result<Vec<u8>, c_int> {
+        let mut bytes = vec![0; size];
+        match unsafe { fmi2SerializeFMUstate(self.component, state, bytes.as_mut_ptr(), size) } {
+            OK => Ok(bytes),
+            status => Err(status),
+        }
+    }
+
+    pub fn deserialize(&self, bytes: &[u8]) -> Result<*mut c_void, c_int> {
+        let mut state = ptr::null_mut();
+        match unsafe { fmi2DeSerializeFMUstate(self.component, bytes.as_ptr(), bytes.len(), &mut state) } {
+            OK => Ok(state),
+            status => Err(status),
+        }
+    }
+
+    /// All that the instance's future depends on, as bytes.
+    pub fn bytes(&self) -> Vec<u8> {
+        let state = self.keep();
+        let bytes = self.serialize(state, self.size(state).unwrap()).unwrap();
+        assert_eq!(self.free_state(state), OK);
+        bytes
+    }
+
+    pub fn set_debug_logging(&self, on: bool, categories: &[&str]) -> c_int {
+        let categories: Vec<_> = categories.iter().map(|name| CString::new(*name).unwrap()).collect();
+        let pointers: Vec<_> = categories.iter().map(|name| name.as_ptr()).collect();
+        unsafe { fmi2SetDebugLogging(self.component, on.into(), pointers.len(), pointers.as_ptr()) }
+    }
+
+    /// Asserts that `call` is refused with `message` and changes nothing.
+    pub fn assert_refused<T: std::fmt::Debug + PartialEq>(&self, call: impl FnOnce() -> T, refused: T, message: &str) {
+        let before = self.bytes();
+        self.log.borrow_mut().clear();
+        assert_eq!(call(), refused, "{:?}", self.log);
+        let log = self.log.take();
+        assert_eq!(log.iter().map(|message| message.text.as_str()).collect::<Vec<_>>(), [message]);
+        assert_eq!((log[0].status, log[0].category.as_str()), (ERROR, "logStatusError"));
+        assert_eq!(self.bytes(), before, "the refused call changed something");
+    }
+}
+
+impl Drop for Host {
+    fn drop(&mut self) {
+        unsafe { fmi2FreeInstance(self.component) }
+    }
+}

@@ -1,0 +1,240 @@
+//! Instances come and go: creation and its refusals, many at once, and callers that are wrong about pointers.
+#![allow(unsafe_code)]
+
+mod host;
+
+use FlexibleRocking::GUID;
+use FlexibleRocking::c_abi::*;
+use host::*;
+use std::ffi::{CStr, CString, c_char, c_void};
+use std::ptr::{null, null_mut};
+use std::thread;
+
+/// The one message of a refused instantiation.
+fn refusal(arguments: Instantiate) -> String {
+    let Err(log) = Host::instantiate(arguments) else { panic!("instantiated") };
+    assert_eq!((log.len(), log[0].status, log[0].category.as_str()), (1, ERROR, "logStatusError"), "{log:?}");
+    log[0].text.clone()
+}
+
+#[test]
+fn the_library_says_what_it_is() {
+    let [platform, version] = [fmi2GetTypesPlatform(), fmi2GetVersion()].map(|text| unsafe { CStr::from_ptr(text) });
+    assert_eq!((platform, version), (c"default", c"2.0"));
+    assert_eq!((GUID.len(), &GUID[..1], &GUID[15..16], &GUID[37..]), (38, "{", "5", "}"));
+}
+
+#[test]
+fn an_instance_that_cannot_be_made_is_null_and_the_log_says_why() {
+    let guid = "{00000000-0000-0000-0000-000000000000}";
+    assert_eq!(
+        refusal(Instantiate { guid: guid.to_owned(), ..Instantiate::default() }),
+        format!(
+            "fmi2Instantiate: fmuGUID = \"{guid}\" is not that of this library, {GUID}: modelDescription.xml and the \
+             library are of different builds; export the FMU again"
+        )
+    );
+    assert_eq!(
+        refusal(Instantiate { name: "", ..Instantiate::default() }),
+        "fmi2Instantiate: instanceName must not be empty"
+    );
+    assert_eq!(
+        refusal(Instantiate { fmu_type: 0, ..Instantiate::default() }),
+        "fmi2Instantiate: fmuType = 0 is not one of 1 (fmi2CoSimulation)"
+    );
+    assert_eq!(
+        refusal(Instantiate { logging_on: 2, ..Instantiate::default() }),
+        "fmi2Instantiate: loggingOn = 2 is not one of 0 (fmi2False), 1 (fmi2True)"
+    );
+    let location = Some("file:///nowhere/100%25".to_owned());
+    assert_eq!(
+        refusal(Instantiate { location, ..Instantiate::default() }),
+        "fmi2Instantiate: /nowhere/100%%/parameters.toml: No such file or directory (os error 2); unpack the whole \
+         archive and pass the URI of its folder \"resources\""
+    );
+    let location = Some("/nowhere".to_owned());
+    assert_eq!(
+        refusal(Instantiate { location, ..Instantiate::default() }),
+        "fmi2Instantiate: fmuResourceLocation = \"/nowhere\" is not a file URI of this machine, such as \
+         file:///tmp/fmu/resources"
+    );
+}
+
+#[test]
+fn null_and_misaligned_pointers_are_errors() {
+    let no_text: *const c_char = null();
+    let guid = CString::new(GUID).unwrap();
+    let log = std::cell::RefCell::new(Vec::<Message>::new());
+    let functions = callbacks((&raw const log).cast_mut().cast());
+    unsafe {
+        assert!(fmi2Instantiate(c"a".as_ptr(), 1, guid.as_ptr(), c"".as_ptr(), null(), 0, 0).is_null());
+        assert!(fmi2Instantiate(no_text, 1, guid.as_ptr(), c"".as_ptr(), &functions, 0, 0).is_null());
+        assert!(fmi2Instantiate(c"a".as_ptr(), 1, no_text, c"".as_ptr(), &functions, 0, 0).is_null());
+        assert!(fmi2Instantiate(c"a".as_ptr(), 1, guid.as_ptr(), no_text, &functions, 0, 0).is_null());
+        assert!(fmi2Instantiate(c"\xff".as_ptr(), 1, guid.as_ptr(), c"".as_ptr(), &functions, 0, 0).is_null());
+    }
+    let texts: Vec<_> = log.take().into_iter().map(|message| message.text).collect();
+    assert_eq!(
+        texts,
+        [
+            "fmi2Instantiate: instanceName must be a valid pointer; it is null or misaligned",
+            "fmi2Instantiate: fmuGUID must be a valid pointer; it is null or misaligned",
+            "fmi2Instantiate: fmuResourceLocation must be a valid pointer; it is null or misaligned",
+            "fmi2Instantiate: instanceName is not UTF-8 text of at most 65536 bytes",
+        ]
+    );
+
+    let host = Host::started(&[]);
+    let c = host.component;
+    let message = |function: &str, name: &str| {
+        format!("fmi2{function}: {name} must be a valid pointer; it is null or misaligned")
+    };
+    let mut value = [0.0, 0.0];
+    let misaligned = value.as_mut_ptr().wrapping_byte_add(1);
+    unsafe {
+        host.assert_refused(|| fmi2GetReal(c, null(), 1, &mut value[0]), ERROR, &message("GetReal", "vr"));
+        host.assert_refused(|| fmi2GetReal(c, &1, 1, null_mut()), ERROR, &message("GetReal", "value"));
+        host.assert_refused(|| fmi2GetReal(c, &1, 1, misaligned), ERROR, &message("GetReal", "value"));
+        host.assert_refused(|| fmi2SetReal(c, &0, 1, null()), ERROR, &message("SetReal", "value"));
+        host.assert_refused(|| fmi2GetFMUstate(c, null_mut()), ERROR, &message("GetFMUstate", "FMUstate"));
+        host.assert_refused(|| fmi2GetRealStatus(c, 2, null_mut()), ERROR, &message("GetRealStatus", "value"));
+        host.assert_refused(|| fmi2SetDebugLogging(c, 1, 1, &null()), ERROR, &message("SetDebugLogging", "category"));
+        host.assert_refused(
+            || fmi2GetReal(c, &1, usize::MAX, &mut value[0]),
+            ERROR,
+            "fmi2GetReal: 18446744073709551615 values are too many for one call: at most 16777216",
+        );
+        host.assert_refused(
+            || fmi2SetDebugLogging(c, -1, 0, null()),
+            ERROR,
+            "fmi2SetDebugLogging: loggingOn = -1 is not one of 0 (fmi2False), 1 (fmi2True)",
+        );
+        host.assert_refused(
+            || fmi2GetStatus(c, 4, null_mut()),
+            ERROR,
+            "fmi2GetStatus: fmi2StatusKind = 4 is not one of 0 (fmi2DoStepStatus), 1 (fmi2PendingStatus), 2 \
+             (fmi2LastSuccessfulTime), 3 (fmi2Terminated)",
+        );
+    }
+}
+
+#[test]
+fn what_is_no_component_is_an_error_and_freeing_it_does_nothing() {
+    let memory = [0_u64; 64];
+    let other = (&raw const memory).cast_mut().cast::<c_void>();
+    for c in [null_mut(), other, other.wrapping_byte_add(4)] {
+        unsafe {
+            assert_eq!(fmi2DoStep(c, 0.0, 1.0, 0), ERROR);
+            assert_eq!(fmi2GetReal(c, &1, 1, &mut 0.0), ERROR);
+            fmi2FreeInstance(c);
+        }
+    }
+}
+
+#[test]
+fn a_host_without_a_logger_gets_its_statuses() {
+    let folder = resources();
+    let location = CString::new(format!("file://{}", folder.path().display())).unwrap();
+    let guid = CString::new(GUID).unwrap();
+    let functions = CallbackFunctions { logger: None, ..callbacks(null_mut()) };
+    unsafe {
+        let c = fmi2Instantiate(c"quiet".as_ptr(), 1, guid.as_ptr(), location.as_ptr(), &functions, 0, 1);
+        assert_eq!(fmi2DoStep(c, 0.0, 1.0, 0), ERROR);
+        assert_eq!(fmi2EnterInitializationMode(c), OK);
+        fmi2FreeInstance(c);
+    }
+}
+
+/// A logger that calls the instance it is told about.
+#[test]
+fn a_call_from_within_the_logger_is_refused() {
+    #[derive(Default)]
+    struct Environment {
+        component: std::cell::Cell<usize>,
+        statuses: std::cell::RefCell<Vec<i32>>,
+    }
+    unsafe extern "C" fn call_back(
+        environment: *mut c_void,
+        _: *const c_char,
+        _: i32,
+        _: *const c_char,
+        _: *const c_char,
+    ) {
+        let environment = unsafe { &*environment.cast::<Environment>() };
+        let c = std::ptr::with_exposed_provenance_mut(environment.component.get());
+        let status = unsafe { fmi2Reset(c) };
+        unsafe { fmi2FreeInstance(c) };
+        environment.statuses.borrow_mut().push(status);
+    }
+    let environment = Environment::default();
+    let logger: unsafe extern "C" fn(_, _, _, _, _) = call_back;
+    let functions = CallbackFunctions {
+        logger: Some(unsafe { std::mem::transmute::<*const (), CallbackLogger>(logger as *const ()) }),
+        ..callbacks((&raw const environment).cast_mut().cast())
+    };
+    let folder = resources();
+    let location = CString::new(format!("file://{}", folder.path().display())).unwrap();
+    let guid = CString::new(GUID).unwrap();
+    unsafe {
+        let c = fmi2Instantiate(c"talkative".as_ptr(), 1, guid.as_ptr(), location.as_ptr(), &functions, 0, 0);
+        environment.component.set(c.expose_provenance());
+        assert_eq!(fmi2EnterInitializationMode(c), OK);
+        assert_eq!(fmi2DoStep(c, 0.0, 1.0, 0), ERROR);
+        assert_eq!(environment.statuses.take(), [ERROR]);
+        assert_eq!(fmi2ExitInitializationMode(c), OK, "neither reset nor freed");
+        fmi2FreeInstance(c);
+    }
+}
+
+#[test]
+fn questions_without_an_answer_are_discarded() {
+    let host = Host::started(&[]);
+    let c = host.component;
+    let before = host.bytes();
+    unsafe {
+        assert_eq!(fmi2GetStatus(c, 0, &mut 0), DISCARD);
+        assert_eq!(fmi2GetRealStatus(c, 3, &mut 0.0), DISCARD);
+        assert_eq!(fmi2GetIntegerStatus(c, 2, &mut 0), DISCARD);
+        assert_eq!(fmi2GetBooleanStatus(c, 2, &mut 0), DISCARD);
+        assert_eq!(fmi2GetStringStatus(c, 1, &mut null()), DISCARD);
+    }
+    let log = host.log.take();
+    assert!(log.iter().all(|message| message.category == "logStatusDiscard" && message.status == DISCARD));
+    assert_eq!(
+        log[4].text,
+        "fmi2GetStringStatus: fmi2PendingStatus has no answer here: fmi2DoStep never returns fmi2Pending, \
+         fmi2GetRealStatus knows fmi2LastSuccessfulTime, fmi2GetBooleanStatus knows fmi2Terminated"
+    );
+    assert_eq!(host.bytes(), before);
+    host.assert_refused(
+        || unsafe { fmi2GetDirectionalDerivative(c, &1, 1, &0, 1, &1.0, &mut 0.0) },
+        ERROR,
+        "fmi2GetDirectionalDerivative: directional derivatives are not provided (providesDirectionalDerivative is false)",
+    );
+}
+
+/// Sixty steps of 20 ms of an instance that is a little different from all others, one after the other by `turn`.
+fn run(hosts: &[Host]) -> Vec<Vec<u8>> {
+    for step in 0..60 {
+        for host in hosts {
+            let t = 0.02 * f64::from(step);
+            assert_eq!(host.set(&[("a_g", 8.0 * (5.0 * t).sin())]), OK);
+            assert_eq!(host.step(t, 0.02), OK);
+        }
+    }
+    hosts.iter().map(Host::bytes).collect()
+}
+
+fn hosts(numbers: impl IntoIterator<Item = u32>) -> Vec<Host> {
+    numbers.into_iter().map(|number| Host::started(&[("m", 100.0 + f64::from(number))])).collect()
+}
+
+#[test]
+fn instances_do_not_feel_each_other() {
+    let alone: Vec<_> = (0..8).flat_map(|number| run(&hosts([number]))).collect();
+    assert_eq!(run(&hosts(0..8)), alone, "interleaved");
+    let threads: Vec<_> = (0..8).map(|number| thread::spawn(move || run(&hosts([number])))).collect();
+    let threaded: Vec<_> = threads.into_iter().flat_map(|thread| thread.join().unwrap()).collect();
+    assert_eq!(threaded, alone, "on eight threads");
+    assert_ne!(alone[0], alone[1]);
+}

@@ -1,0 +1,98 @@
+//! What the host is told, and when.
+
+mod host;
+
+use host::*;
+use rocking::{Engine, GroundAcceleration, Parameters, State, Structure, TransitionKind};
+
+/// Released at an angle: impacts, landings, uplifts.
+fn released(logging_on: i32) -> Host {
+    let host = Host::instantiate(Instantiate { logging_on, ..Instantiate::default() }).unwrap();
+    assert_eq!(host.set(&[("theta_0", 0.01), ("r", 0.8)]), OK);
+    assert_eq!((host.setup(None, 0.0, None), host.enter(), host.exit()), (OK, OK, OK));
+    host
+}
+
+fn categories(host: &Host) -> Vec<String> {
+    let mut categories: Vec<_> = host.log.take().into_iter().map(|message| message.category).collect();
+    categories.dedup();
+    categories
+}
+
+#[test]
+fn every_transition_is_told_as_the_engine_shows_it() {
+    let structure = Structure::new(Parameters { r: 0.8, ..Parameters::EVISON }).unwrap();
+    let mut engine = Engine::new(structure, State { theta: 0.01, ..State::default() }, 0.0, 1e-9).unwrap();
+    let mut expected = Vec::new();
+    engine
+        .advance(0.5, GroundAcceleration::default(), &mut |transition| {
+            let what = match transition.kind {
+                TransitionKind::Uplift(side) => format!("uplift, rocking about the {side:?} edge"),
+                TransitionKind::Impact(side) => format!("impact, rocking on about the {side:?} edge"),
+                TransitionKind::Landing => "landing in full contact".to_owned(),
+                kind => panic!("{kind:?}"),
+            };
+            let (before, after) = (transition.before, transition.after);
+            expected.push(format!(
+                "t = {} s: {}; u = {} m, u_dot = {} m/s (before: {}), theta_dot = {} rad/s (before: {})",
+                transition.time,
+                what.to_lowercase(),
+                after.u,
+                after.u_dot,
+                before.u_dot,
+                after.theta_dot,
+                before.theta_dot
+            ));
+        })
+        .unwrap();
+
+    let host = released(1);
+    assert_eq!(host.step(0.0, 0.5), OK);
+    let log = host.log.take();
+    assert_eq!(log.iter().map(|message| &message.text).collect::<Vec<_>>(), expected.iter().collect::<Vec<_>>());
+    assert!(
+        expected.iter().any(|text| text.contains("impact")) && expected.iter().any(|text| text.contains("landing"))
+    );
+    assert!(log.iter().all(|m| (m.status, m.category.as_str(), m.instance.as_str()) == (OK, "logEvents", "wall")));
+}
+
+#[test]
+fn events_are_told_if_asked_for_and_errors_always() {
+    for (logging_on, debug_logging, expected) in [
+        (0, None, vec!["logStatusError"]),
+        (1, None, vec!["logEvents", "logStatusError"]),
+        (0, Some((true, vec![])), vec!["logEvents", "logStatusError"]),
+        (1, Some((false, vec![])), vec!["logStatusError"]),
+        (1, Some((false, vec!["logEvents"])), vec!["logStatusError"]),
+        (0, Some((true, vec!["logStatusError", "logEvents"])), vec!["logEvents", "logStatusError"]),
+        (1, Some((true, vec!["logStatusWarning", "logStatusDiscard"])), vec!["logStatusError"]),
+    ] {
+        let host = released(logging_on);
+        if let Some((on, names)) = &debug_logging {
+            assert_eq!(host.set_debug_logging(*on, names), OK);
+        }
+        assert_eq!(host.step(0.0, 0.5), OK);
+        assert_eq!(host.step(0.0, 0.5), ERROR);
+        assert_eq!(categories(&host), expected, "{logging_on} {debug_logging:?}");
+    }
+}
+
+#[test]
+fn an_unknown_category_is_refused_and_the_others_with_it() {
+    let host = released(0);
+    let message = "fmi2SetDebugLogging: log category \"100 %% of ##it\" does not exist; see LogCategories in \
+                   modelDescription.xml";
+    host.assert_refused(|| host.set_debug_logging(true, &["logEvents", "100 % of #it"]), ERROR, message);
+    assert_eq!(host.step(0.0, 0.5), OK);
+    assert_eq!(categories(&host), Vec::<String>::new());
+}
+
+#[test]
+fn a_reset_instance_logs_as_it_was_instantiated() {
+    let host = released(0);
+    assert_eq!((host.set_debug_logging(true, &[]), host.reset()), (OK, OK));
+    assert_eq!((host.set(&[("theta_0", 0.01)]), host.enter(), host.exit()), (OK, OK, OK));
+    assert_eq!(host.step(0.0, 0.5), OK);
+    assert!(host.integer("transitions") > 0);
+    assert_eq!(categories(&host), Vec::<String>::new());
+}

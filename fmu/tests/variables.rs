@@ -1,0 +1,223 @@
+//! Values in and out, and the table of variables against what the FMU computes.
+#![allow(unsafe_code)]
+
+mod host;
+
+use FlexibleRocking::c_abi::*;
+use FlexibleRocking::variables::{DataType, PHASES, VARIABLES};
+use approx::assert_relative_eq;
+use host::*;
+use model_description::{Causality, Initial, Variability};
+use rocking::Parameters;
+use std::collections::BTreeSet;
+use std::ptr::null;
+
+#[test]
+fn the_table_holds_the_variables_in_their_order() {
+    let names = |causality| {
+        let of_causality = VARIABLES.iter().filter(|variable| variable.causality == causality);
+        of_causality.map(|variable| variable.name).collect::<Vec<_>>().join(" ")
+    };
+    assert_eq!(VARIABLES[0].name, "a_g");
+    assert_eq!(names(Causality::Input), "a_g");
+    assert_eq!(
+        names(Causality::Output),
+        "theta u a_t V_t M_t theta_dot u_dot uplift delta_t phase transitions overturned"
+    );
+    assert_eq!(names(Causality::Parameter), "m m0 H B J0 f_fc zeta_fc c_ratio r g theta_0 theta_dot_0 u_0 u_dot_0");
+    assert_eq!(names(Causality::CalculatedParameter), "alpha_cg p_l beta u_cr f_u");
+    assert_eq!(VARIABLES.iter().map(|variable| variable.name).collect::<BTreeSet<_>>().len(), VARIABLES.len());
+}
+
+/// FMI 2.0, the table of allowed combinations of causality, variability and initial.
+#[test]
+fn start_values_are_where_the_standard_wants_them() {
+    for variable in VARIABLES.iter() {
+        let start = variable.start(&Parameters::MCMANUS);
+        match variable.causality {
+            Causality::Input => {
+                assert_eq!((variable.variability, variable.initial, start), (Variability::Continuous, None, Some(0.0)));
+            }
+            Causality::Parameter => {
+                assert_eq!((variable.variability, variable.initial), (Variability::Fixed, Some(Initial::Exact)));
+                let DataType::Real { range: Some((min, max)), .. } = variable.data_type else { panic!() };
+                assert!((min..=max).contains(&start.unwrap()), "{}", variable.name);
+            }
+            Causality::CalculatedParameter | Causality::Output => {
+                assert_eq!((variable.initial, start), (Some(Initial::Calculated), None), "{}", variable.name);
+            }
+        }
+    }
+    let start = |name: &str| VARIABLES[reference(name) as usize].start(&Parameters::MCMANUS);
+    assert_eq!((start("H"), start("J0"), start("theta_0")), (Some(1.84), Some(10.7), Some(0.0)));
+}
+
+/// A change of one parameter or initial value changes the initial value of exactly those variables that state it.
+#[test]
+fn the_stated_dependencies_are_the_true_ones() {
+    let u_cr = 7.52467e-4;
+    let bases: [&[(&str, f64)]; 4] = [
+        &[("u_0", 3e-4), ("u_dot_0", 0.2)],
+        &[("theta_0", 0.3), ("theta_dot_0", -0.4), ("u_0", 2e-3), ("u_dot_0", 0.3), ("c_ratio", 0.7), ("J0", 2.0)],
+        &[("u_0", u_cr * (1.0 - 1e-4)), ("u_dot_0", 0.01)],
+        &[("u_0", u_cr * (1.0 + 1e-4)), ("u_dot_0", -0.01)],
+    ];
+    let show = |values: &[(&str, f64)]| {
+        let host = Host::initializing(values);
+        let show = |name: &&str| match VARIABLES[reference(name) as usize].data_type {
+            DataType::Real { .. } => host.get(name),
+            DataType::Boolean => host.try_boolean(name).unwrap().into(),
+            DataType::Integer | DataType::Enumeration(_) => host.integer(name).into(),
+        };
+        computed().map(|name| (name, show(&name))).collect::<Vec<_>>()
+    };
+    fn computed() -> impl Iterator<Item = &'static str> {
+        VARIABLES.iter().filter(|variable| variable.initial == Some(Initial::Calculated)).map(|variable| variable.name)
+    }
+    let mut found: BTreeSet<(&str, &str)> = BTreeSet::new();
+    for base in bases {
+        let host = Host::initializing(base);
+        let before = show(base);
+        for known in VARIABLES.iter().filter(|variable| variable.causality == Causality::Parameter) {
+            // In full contact the base does not turn.
+            let value = host.get(known.name);
+            if known.name == "theta_dot_0" && host.get("theta_0") == 0.0 {
+                continue;
+            }
+            let changed = if value == 0.0 { 1e-3 } else { value * (1.0 - 1e-3) };
+            let mut values = base.to_vec();
+            values.retain(|(name, _)| *name != known.name);
+            values.push((known.name, changed));
+            for ((name, before), (_, after)) in before.iter().zip(show(&values)) {
+                if (after - before).abs() > 1e-9 * before.abs() {
+                    found.insert((name, known.name));
+                }
+            }
+        }
+    }
+    let stated: BTreeSet<_> = computed()
+        .flat_map(|name| {
+            VARIABLES[reference(name) as usize].initial_dependencies.iter().map(move |known| (name, *known))
+        })
+        .collect();
+    assert_eq!(found.difference(&stated).collect::<Vec<_>>(), Vec::<&(&str, &str)>::new(), "found, not stated");
+    assert_eq!(stated.difference(&found).collect::<Vec<_>>(), Vec::<&(&str, &str)>::new(), "stated, not found");
+}
+
+#[test]
+fn values_during_initialization_follow_what_is_set() {
+    let host = Host::initializing(&[]);
+    let calculated = ["alpha_cg", "p_l", "beta", "u_cr", "f_u"];
+    for (value, expected) in
+        host.try_get(&calculated).unwrap().into_iter().zip([0.35122, 2.9151, 0.90954, 0.752467e-3, 36.574])
+    {
+        assert_relative_eq!(value, expected, max_relative = 2e-5);
+    }
+    assert_eq!(host.set(&[("theta_0", -0.04), ("u_0", 1e-3), ("B", 0.3)]), OK);
+    let values = host.try_get(&["theta", "u", "theta_0", "uplift", "a_t"]).unwrap();
+    assert_eq!(values[..3], [-0.04, 1e-3, -0.04]);
+    assert_relative_eq!(values[3], 0.6 * 0.04_f64.sin(), max_relative = 1e-14);
+    let omega = std::f64::consts::TAU * 11.0;
+    assert_relative_eq!(values[4], -9.81 * 0.04_f64.sin() - omega * omega * 1e-3, max_relative = 1e-14);
+    assert_eq!(host.integer("phase"), 2);
+    assert_eq!(host.set(&[("theta_0", 0.04)]), OK);
+    assert_eq!(host.integer("phase"), 3);
+    assert_eq!(host.set(&[("theta_0", 0.0)]), OK);
+    assert_eq!((host.integer("phase"), host.integer("transitions"), host.try_boolean("overturned")), (1, 0, Ok(0)));
+    assert_eq!(PHASES, ["full contact", "rocking left", "rocking right", "overturned"]);
+}
+
+#[test]
+fn a_value_out_of_range_is_refused_with_all_that_come_with_it() {
+    let host = Host::initializing(&[]);
+    for (name, value, message) in [
+        (
+            "r",
+            0.0,
+            "r = 0 1 is out of range: it must lie between 0.001 and 1 1 (coefficient of restitution on the angular velocity at impact)",
+        ),
+        ("B", -0.285, "B = -0.285 m is out of range: it must lie between 0.001 and 10000 m (half-width of the base)"),
+        ("m", f64::NAN, "m = NaN kg is out of range: it must lie between 0.000001 and 1000000000000 kg (top mass)"),
+        (
+            "theta_0",
+            1.6,
+            "theta_0 = 1.6 rad is out of range: it must lie between -1.5 and 1.5 rad (initial rotation of the base; 0 is full contact)",
+        ),
+        (
+            "a_g",
+            f64::INFINITY,
+            "a_g = inf m/s2 is out of range: it must lie between -10000 and 10000 m/s2 (horizontal ground acceleration, positive to the right)",
+        ),
+        ("theta", 0.1, "theta cannot be set: it is an output, computed by the FMU"),
+        ("phase", 1.0, "phase cannot be set: it is an output, computed by the FMU"),
+        ("beta", 0.9, "beta cannot be set: it is a calculated parameter, computed by the FMU"),
+    ] {
+        let message = format!("fmi2SetReal: {message}");
+        host.assert_refused(|| host.set(&[("H", 2.0), ("a_g", 1.0), ("u_0", 1e-3), (name, value)]), ERROR, &message);
+    }
+    let last = VARIABLES.len() - 1;
+    let message = format!("fmi2SetReal: value reference 99 does not exist; they run from 0 to {last}");
+    host.assert_refused(|| host.set_by_reference(&[0, 99], &[1.0, 1.0]), ERROR, &message);
+    assert_eq!(host.try_get(&["H", "a_g", "u_0"]).unwrap(), [1.05, 0.0, 0.0]);
+}
+
+#[test]
+fn contradictions_are_refused_when_initialization_ends_and_can_be_put_right() {
+    let host = Host::initializing(&[("theta_dot_0", 0.5)]);
+    let message = "theta_dot_0 = 0.5 rad/s contradicts theta_0 = 0 (full contact, where theta and theta_dot are both 0): \
+                   set theta_dot_0 to 0, or theta_0 to an angle with the sign of the pivot that the structure rocks about";
+    host.assert_refused(|| host.exit(), ERROR, &format!("fmi2ExitInitializationMode: {message}"));
+    host.assert_refused(|| host.try_get(&["m", "theta"]), Err(ERROR), &format!("fmi2GetReal: {message}"));
+    assert_eq!(host.get("theta_dot_0"), 0.5);
+    assert_eq!(host.set(&[("theta_0", 0.02), ("H", 1000.0), ("B", 0.5)]), OK);
+    let message = "fmi2ExitInitializationMode: H/B = 2000 is out of range: H must not exceed 1000 B; \
+                   lower H or raise B";
+    host.assert_refused(|| host.exit(), ERROR, message);
+    assert_eq!(host.set(&[("B", 500.0)]), OK);
+    assert_eq!(host.exit(), OK);
+    assert_eq!(host.try_get(&["theta", "theta_dot", "H"]).unwrap(), [0.02, 0.5, 1000.0]);
+}
+
+#[test]
+fn parameters_are_fixed_once_the_simulation_has_started() {
+    let host = Host::started(&[]);
+    for name in ["m", "theta_0"] {
+        let message = format!(
+            "fmi2SetReal: {name} is fixed once the simulation has started: set it before fmi2ExitInitializationMode, \
+             or call fmi2Reset"
+        );
+        host.assert_refused(|| host.set(&[("a_g", 1.0), (name, 0.5)]), ERROR, &message);
+    }
+    assert_eq!(host.set(&[("a_g", 1.0)]), OK);
+    assert_eq!(host.get("a_g"), 1.0);
+}
+
+#[test]
+fn a_variable_is_read_as_what_it_is() {
+    let host = Host::started(&[]);
+    let message = "fmi2GetReal: phase is an Enumeration: call fmi2GetInteger instead";
+    host.assert_refused(|| host.try_get(&["theta", "phase"]), Err(ERROR), message);
+    let message = "fmi2GetReal: overturned is a Boolean: call fmi2GetBoolean instead";
+    host.assert_refused(|| host.try_get(&["overturned"]), Err(ERROR), message);
+    let message = "fmi2GetInteger: theta is a Real: call fmi2GetReal or fmi2SetReal instead";
+    host.assert_refused(|| host.try_integer("theta"), Err(ERROR), message);
+    let message = "fmi2GetBoolean: transitions is an Integer: call fmi2GetInteger instead";
+    host.assert_refused(|| host.try_boolean("transitions"), Err(ERROR), message);
+}
+
+#[test]
+fn there_is_nothing_to_set_but_reals() {
+    let host = Host::started(&[]);
+    let c = host.component;
+    let set = |name: &str| unsafe { fmi2SetInteger(c, &reference(name), 1, &1) };
+    let message = "fmi2SetInteger: phase cannot be set: it is an output, computed by the FMU";
+    host.assert_refused(|| set("phase"), ERROR, message);
+    let message = "fmi2SetInteger: a_g is a Real: call fmi2GetReal or fmi2SetReal instead";
+    host.assert_refused(|| set("a_g"), ERROR, message);
+    let message = "fmi2SetBoolean: overturned cannot be set: it is an output, computed by the FMU";
+    host.assert_refused(|| unsafe { fmi2SetBoolean(c, &reference("overturned"), 1, &1) }, ERROR, message);
+    let message = "fmi2SetString: value reference 0 is no String: this FMU has no String variables";
+    host.assert_refused(|| unsafe { fmi2SetString(c, &0, 1, &null()) }, ERROR, message);
+    let message = "fmi2GetString: value reference 3 is no String: this FMU has no String variables";
+    host.assert_refused(|| unsafe { fmi2GetString(c, &3, 1, &mut null()) }, ERROR, message);
+}
