@@ -10,14 +10,16 @@
 //! No vibration period 2π/ω_u sees more than [`MAX_TRANSITIONS_PER_PERIOD`] + 2 transitions, so that work per simulated
 //! second is bounded: after that number the next impact is a landing whatever its momentum, and contact is then held to
 //! the end of that period ([`TransitionKind::Settling`]). It is the limit to which ever faster impacts tend; the
-//! specimens never come near it. One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps.
+//! specimens never come near it. The rigid limit, which has no vibration and does come to rest by ever faster impacts,
+//! has [`MAX_RIGID_TRANSITIONS_PER_PERIOD`] for each 1/p_l instead. One call takes at most [`MAX_STEPS_PER_ADVANCE`]
+//! steps.
 
+use crate::detail::{Detail, RockingEquations};
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::full_contact::ExactContact;
-use crate::nonlinear_rocking::NonlinearRocking;
 use crate::state::InitialStateError;
 use crate::taylor::{Arc, Start};
-use crate::{Phase, Side, State, Structure, full_contact, impact, uplift};
+use crate::{Outputs, Phase, Side, State, Structure, full_contact, impact, rigid_rocking, uplift};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -31,8 +33,11 @@ const LOCAL_SHARE: f64 = 1e-4;
 /// Transitions within one period of the vibration mode (2π/ω_u) after which contact is held.
 pub const MAX_TRANSITIONS_PER_PERIOD: u32 = 32;
 
-/// Steps that one advance may take, some ten seconds of computing; a longer interval has to be cut.
-pub const MAX_STEPS_PER_ADVANCE: u64 = 20_000_000;
+/// Transitions within 1/p_l after which contact is held at the rigid level: coming to rest with r = 0.9998 takes as many.
+pub const MAX_RIGID_TRANSITIONS_PER_PERIOD: u32 = 100_000;
+
+/// Steps that one advance may take, about a second of computing; a longer interval has to be cut.
+pub const MAX_STEPS_PER_ADVANCE: u64 = 2_000_000;
 
 /// Ground acceleration over one interval, positive to the right: `value + slope·(t − start of the interval)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -98,6 +103,8 @@ pub struct Motion {
     pub transitions: u64,
     /// Work so far.
     pub work: Work,
+    /// Ground acceleration at that time, m/s², 0 before the first advance.
+    pub a_g: f64,
     burst: Burst,
 }
 
@@ -189,12 +196,13 @@ pub enum AdvanceError {
 #[derive(Clone, Debug)]
 pub struct Engine {
     structure: Structure,
-    local_error: f64,
+    detail: Detail,
+    tolerance: f64,
     motion: Motion,
+    contact: ExactContact,
+    rocking: RockingEquations,
     /// The step in hand.
     arc: Arc,
-    contact: ExactContact,
-    rocking: NonlinearRocking,
 }
 
 /// What happens at the end of a step.
@@ -207,21 +215,38 @@ enum StepEnd {
 }
 
 impl Engine {
-    /// Starts at `time` (s) from `initial`, to a relative `tolerance` of the results.
+    /// Starts at `time` (s) from `initial`, to a relative `tolerance` of the results, at the level of detail `auto`.
     pub fn new(structure: Structure, initial: State, time: f64, tolerance: f64) -> Result<Engine, InitialStateError> {
-        let phase = initial.initial_phase()?;
+        Engine::with_detail(structure, initial, time, tolerance, Detail::Auto)
+    }
+
+    /// The same at the level `detail`.
+    pub fn with_detail(
+        structure: Structure,
+        initial: State,
+        time: f64,
+        tolerance: f64,
+        detail: Detail,
+    ) -> Result<Engine, InitialStateError> {
+        let phase = initial.initial_phase(detail)?;
         let motion = Motion {
             time,
             state: initial,
             phase,
             transitions: 0,
             work: Work::default(),
+            a_g: 0.0,
             burst: Burst { start: f64::NEG_INFINITY, transitions: 0, held_until: f64::NEG_INFINITY },
         };
-        let local_error = (LOCAL_SHARE * tolerance).max(f64::EPSILON / 2.0);
-        let contact = ExactContact::new(&structure);
-        let rocking = NonlinearRocking::default();
-        Ok(Engine { structure, local_error, motion, arc: Arc::default(), contact, rocking })
+        Ok(Engine {
+            structure,
+            detail,
+            tolerance,
+            motion,
+            contact: ExactContact::new(&structure),
+            rocking: RockingEquations::new(detail, &structure),
+            arc: Arc::default(),
+        })
     }
 
     /// The structure.
@@ -255,14 +280,13 @@ impl Engine {
         if !(a_g.value.is_finite() && a_g.at(interval).is_finite()) {
             return Err(AdvanceError::GroundAcceleration { value: a_g.value, slope: a_g.slope, until });
         }
-        if self.motion.phase == Phase::FullContact && self.motion.burst.held_until <= start {
-            let &Structure { u_cr, .. } = &self.structure;
-            if let Some(state) = self.contact.leap(&self.structure, &self.motion.state, a_g, interval, u_cr) {
-                self.motion.state = state;
-                self.motion.time = until;
-                self.motion.work.steps += 1;
-                return Ok(Progress::Complete);
-            }
+        let local_error = (LOCAL_SHARE * self.tolerance).max(f64::EPSILON / 2.0);
+        if let Some(state) = self.leap(&Start { state: self.motion.state, a_g, interval, local_error }) {
+            self.motion.state = state;
+            self.motion.time = until;
+            self.motion.a_g = a_g.at(interval);
+            self.motion.work.steps += 1;
+            return Ok(Progress::Complete);
         }
         let mut motion = self.motion;
         let last_step = motion.work.steps + MAX_STEPS_PER_ADVANCE;
@@ -271,7 +295,7 @@ impl Engine {
         while elapsed < interval {
             let left = interval - elapsed;
             let here = a_g.from(elapsed);
-            let begin = Start { state: motion.state, a_g: here, interval: left, local_error: self.local_error };
+            let begin = Start { state: motion.state, a_g: here, interval: left, local_error };
             let end = match motion.phase {
                 Phase::FullContact => self.step_in_full_contact(begin, motion.burst.held_until - motion.time),
                 Phase::Rocking(side) => self.step_while_rocking(&begin, side),
@@ -290,7 +314,8 @@ impl Engine {
             motion.state = arc.end();
             (elapsed, motion.time) =
                 if duration == left { (interval, until) } else { (elapsed + duration, start + elapsed + duration) };
-            if let Some(transition) = motion.resolve(&self.structure, end) {
+            motion.a_g = a_g.at(elapsed);
+            if let Some(transition) = self.resolve(&mut motion, end) {
                 observe(&transition);
             }
         }
@@ -301,16 +326,61 @@ impl Engine {
         }
     }
 
+    /// The outputs now.
+    pub fn outputs(&self) -> Outputs {
+        let Motion { phase, state, a_g, .. } = &self.motion;
+        match self.detail {
+            Detail::Rigid => Outputs::of_rigid(&self.structure, *phase, state, *a_g),
+            _ => Outputs::of(&self.structure, *phase, state),
+        }
+    }
+
+    /// Their time derivatives now under `a_g`, from the equations of motion; 0 once overturned. At a transition they are
+    /// those just after it.
+    pub fn output_rates(&self, a_g: GroundAcceleration) -> Outputs {
+        let Motion { phase, state, .. } = &self.motion;
+        if self.detail == Detail::Rigid {
+            return Outputs::rates_of_rigid(&self.structure, *phase, state, a_g);
+        }
+        let accelerations = self.rocking.accelerations(&self.structure, *phase, state, a_g.value);
+        Outputs::rates_by(&self.structure, *phase, state, accelerations)
+    }
+
+    /// The state at the end of `start` where it is known exactly and no transition can happen until then.
+    #[inline]
+    fn leap(&mut self, start: &Start) -> Option<State> {
+        let state = match (self.detail, self.motion.phase) {
+            (Detail::FixedBase, Phase::FullContact) => self.contact.leap(start, f64::INFINITY),
+            (Detail::Auto | Detail::Linear | Detail::Modal, Phase::FullContact)
+                if self.motion.burst.held_until <= self.motion.time =>
+            {
+                self.contact.leap(start, self.structure.u_cr)
+            }
+            (_, Phase::Rocking(side)) => self.rocking.leap(side, start),
+            _ => None,
+        };
+        state.filter(State::is_finite)
+    }
+
     /// Motion in full contact, cut at uplift; none of it for the first `held` seconds.
     fn step_in_full_contact(&mut self, mut start: Start, held: f64) -> StepEnd {
-        let (structure, arc) = (&self.structure, &mut self.arc);
-        if held > 0.0 {
+        let is_held = held > 0.0;
+        if is_held {
             start.interval = start.interval.min(held);
-            full_contact::series(structure, &start, arc);
+        }
+        let (structure, arc) = (&self.structure, &mut self.arc);
+        match self.detail {
+            Detail::Rigid => rigid_rocking::rest(&start, arc),
+            _ => full_contact::series(structure, &start, arc),
+        }
+        if is_held {
             return if arc.duration() == held { StepEnd::HoldOver } else { StepEnd::Quiet };
         }
-        full_contact::series(structure, &start, arc);
-        let (crossing, side) = uplift::first_on(structure, arc);
+        let (crossing, side) = match self.detail {
+            Detail::FixedBase => return StepEnd::Quiet,
+            Detail::Rigid => rigid_rocking::first_uplift(structure, start.a_g, arc.span),
+            _ => uplift::first_on(structure, &self.rocking.turning_moment(structure), arc),
+        };
         cut(arc, crossing, StepEnd::Uplift(side))
     }
 
@@ -328,54 +398,62 @@ impl Engine {
             crossing => cut(arc, crossing, StepEnd::Impact(side)),
         }
     }
-}
 
-impl Motion {
-    /// Applies what happens at the end of a step; a transition is returned to be reported.
-    fn resolve(&mut self, structure: &Structure, end: StepEnd) -> Option<Transition> {
-        let before = self.state;
+    /// Applies to `motion` what happens at the end of a step; a transition is returned to be reported.
+    fn resolve(&self, motion: &mut Motion, end: StepEnd) -> Option<Transition> {
+        let before = motion.state;
         let (kind, phase, after) = match end {
             StepEnd::Quiet => return None,
             StepEnd::HoldOver => {
-                self.burst.held_until = f64::NEG_INFINITY;
+                motion.burst.held_until = f64::NEG_INFINITY;
                 return None;
             }
             StepEnd::Uplift(side) => (TransitionKind::Uplift(side), Phase::Rocking(side), before),
             StepEnd::Overturning(side) => (TransitionKind::Overturning(side), Phase::Overturned(side), before),
-            StepEnd::Impact(_) if self.is_chattering(structure) => {
-                self.burst.held_until = self.burst.start + period(structure);
-                let after = impact::land(structure, &before);
-                (TransitionKind::Settling, Phase::FullContact, after)
-            }
-            StepEnd::Impact(side) => match impact::resolve(structure, side, &before) {
-                (phase @ Phase::Rocking(other), after) => (TransitionKind::Impact(other), phase, after),
-                (phase, after) => (TransitionKind::Landing, phase, after),
-            },
+            StepEnd::Impact(side) => self.resolve_impact(motion, side),
         };
-        self.count_transition(structure);
-        self.phase = phase;
-        self.state = after;
-        Some(Transition { time: self.time, kind, before, after })
-    }
-
-    /// Whether the present vibration period has already seen [`MAX_TRANSITIONS_PER_PERIOD`] transitions.
-    fn is_chattering(&self, structure: &Structure) -> bool {
-        self.burst.transitions >= MAX_TRANSITIONS_PER_PERIOD && self.time < self.burst.start + period(structure)
-    }
-
-    fn count_transition(&mut self, structure: &Structure) {
-        self.transitions += 1;
-        if self.time >= self.burst.start + period(structure) {
-            self.burst.start = self.time;
-            self.burst.transitions = 0;
+        let (period, _) = self.chatter_limit();
+        if motion.time >= motion.burst.start + period {
+            motion.burst.start = motion.time;
+            motion.burst.transitions = 0;
         }
-        self.burst.transitions += 1;
+        motion.burst.transitions += 1;
+        motion.transitions += 1;
+        motion.phase = phase;
+        motion.state = after;
+        Some(Transition { time: motion.time, kind, before, after })
     }
-}
 
-/// Period of the vibration mode while rocking, 2π/ω_u, s.
-fn period(structure: &Structure) -> f64 {
-    TAU / structure.omega_u
+    /// What follows when rocking about `side` ends at the ground.
+    fn resolve_impact(&self, motion: &mut Motion, side: Side) -> (TransitionKind, Phase, State) {
+        let (structure, before) = (&self.structure, &motion.state);
+        let (period, most) = self.chatter_limit();
+        let period_end = motion.burst.start + period;
+        if motion.burst.transitions >= most && motion.time < period_end {
+            motion.burst.held_until = period_end;
+            let after = match self.detail {
+                Detail::Rigid => State::default(),
+                _ => impact::land(structure, before),
+            };
+            return (TransitionKind::Settling, Phase::FullContact, after);
+        }
+        let (phase, after) = match self.detail {
+            Detail::Rigid => rigid_rocking::resolve_impact(structure, side, before, self.tolerance),
+            _ => impact::resolve(structure, side, before),
+        };
+        match phase {
+            Phase::Rocking(side) => (TransitionKind::Impact(side), phase, after),
+            _ => (TransitionKind::Landing, phase, after),
+        }
+    }
+
+    /// The period (s) that may see no more than so many transitions.
+    fn chatter_limit(&self) -> (f64, u32) {
+        match self.detail {
+            Detail::Rigid => (1.0 / self.structure.p_l, MAX_RIGID_TRANSITIONS_PER_PERIOD),
+            _ => (TAU / self.structure.omega_u, MAX_TRANSITIONS_PER_PERIOD),
+        }
+    }
 }
 
 /// Ends `arc` at `crossing`, and says whether the transition `end` happens there.

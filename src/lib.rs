@@ -10,28 +10,49 @@
 //! | [`structure`] | everything derived from them (before Eq 11, after 13, before 18) |
 //! | [`full_contact`] | Eq 1 |
 //! | [`nonlinear_rocking`] | Eqs 5, 6 |
+//! | [`linear_rocking`], [`modal_rocking`], [`rigid_rocking`] | Eqs 7–9; 11, 16, 18; 6 with u = 0 |
+//! | [`detail`] | levels of detail: which of these equations move the structure |
 //! | [`uplift`], [`impact`] | the transitions' guards and resets |
 //! | [`outputs`] | Eqs 2, 3, 23–27 |
 //! | [`energy`] | the energy that is conserved between impacts |
 //! | [`taylor`], [`first_crossing`], [`engine`] | the solver: series, guards, hybrid engine |
+//! | [`modal_split`] | Eqs 10–20: rocking and vibration mode |
+//! | [`effective_frequency`] | Eq 14 |
+//! | [`demand`], [`response_spectrum`] | Eqs 21–24: demands without a time history |
+//! | [`pushover`] | Fig 1: equilibrium under a lateral force |
 //! | [`record`] | ground motion records: PEER AT2, CSV |
+//! | [`fragility`] | fragility curve of many runs |
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
+mod bisection;
+pub mod demand;
+pub mod detail;
+pub mod effective_frequency;
 pub mod energy;
 pub mod engine;
 pub mod first_crossing;
+pub mod fragility;
 pub mod full_contact;
 pub mod impact;
+pub mod linear_rocking;
+mod linear_system;
+pub mod modal_rocking;
+pub mod modal_split;
 pub mod nonlinear_rocking;
+mod oscillator;
 pub mod outputs;
 pub mod parameters;
+pub mod pushover;
 pub mod quantity;
 pub mod record;
+pub mod response_spectrum;
+pub mod rigid_rocking;
 pub mod state;
 pub mod structure;
 pub mod taylor;
 pub mod uplift;
 
+pub use detail::Detail;
 pub use engine::{Engine, GroundAcceleration, Motion, Progress, Transition, TransitionKind};
 pub use outputs::Outputs;
 pub use parameters::Parameters;

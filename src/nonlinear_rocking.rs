@@ -108,6 +108,8 @@ impl NonlinearRocking {
         let weight_offset = side.sign() * (gamma - 1.0) * B; // s(γ−1)B
         let lever = side.sign() * B - state.u; // w at the start
         let per_inertia = 1.0 / (foundation + lever * lever);
+        // over the inertia, so that few operations stand between one order of θ̇ and the next
+        let [height, offset, lever_start] = [H, weight_offset, lever].map(|factor| factor * per_inertia);
 
         let State { u, u_dot, theta, theta_dot } = state;
         let (mut sin, mut cos) = theta.sin_cos();
@@ -127,8 +129,8 @@ impl NonlinearRocking {
             let [sin_rate, minus_cos_rate, w_turning, w_w_turning, centrifugal, weight_moment] =
                 products(left, right, &newest_left, &newest_right, before);
             let y = (along - elastic - centrifugal) * per;
-            let momentum = ((H * elastic - weight_offset * weight) + (H * centrifugal - weight_moment)) * per;
-            theta_dot = momentum * per_inertia - (lever * w_turning + w_w_turning) * per_inertia;
+            let moment = (height * elastic - offset * weight) + (height * centrifugal - per_inertia * weight_moment);
+            theta_dot = moment * per - (lever_start * w_turning + per_inertia * w_w_turning);
             let u_dot = y - H * theta_dot;
 
             let (sin_before, cos_before) = (sin, cos);
@@ -143,13 +145,13 @@ impl NonlinearRocking {
     }
 }
 
-/// The longest span (s) that a series about the present state is tried over.
-fn longest_span(structure: &Structure) -> f64 {
+/// The longest span (s) that a series is tried over while rocking.
+pub(crate) fn longest_span(structure: &Structure) -> f64 {
     LONGEST_SPAN / structure.omega_u.max(structure.p_l)
 }
 
-/// The truncation that `start` asks for over a step of `span` s.
-fn truncation(structure: &Structure, start: &Start, span: f64) -> Truncation {
+/// The truncation that `start` asks for over a step of `span` s while rocking.
+pub(crate) fn truncation(structure: &Structure, start: &Start, span: f64) -> Truncation {
     let &Start { state, a_g, local_error, .. } = start;
     let omega = structure.omega_u;
     let response_time = span.min(1.0 / omega);

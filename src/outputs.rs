@@ -5,11 +5,12 @@
 //! ```
 //!
 //! By (5) that is g sin θ − (c_u u̇ + k u)/m, and by (1) −(c_fc u̇ + k u)/m in full contact: the outputs depend on
-//! the state alone and are computed so; only their rates need the ground acceleration.
+//! the state alone and are computed so, at every level of detail; only their rates need the ground acceleration. The rigid
+//! limit, where u is 0 whatever the forces, is the exception: there (27) is taken as it stands.
 
-use crate::{Phase, Side, State, Structure, full_contact, nonlinear_rocking};
+use crate::{GroundAcceleration, Phase, Side, State, Structure, detail, rigid_rocking};
 
-/// The outputs at one instant; from [`Outputs::rates`], their time derivatives in the same fields.
+/// The outputs at one instant; from [`crate::Engine::output_rates`], their time derivatives in the same fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outputs {
     /// Rotation of the base θ, rad.
@@ -62,41 +63,76 @@ impl Outputs {
         }
     }
 
-    /// Time derivatives of the outputs under the ground acceleration `a_g` (m/s²), from the equations of motion of
-    /// `phase`; 0 once overturned, where motion has ended. At a transition they are those just after it.
+    /// The outputs of the rigid limit, where u says nothing of the forces: Eq 27 from the equation of motion, with the
+    /// ground acceleration `a_g` (m/s²) of that instant.
+    pub(crate) fn of_rigid(structure: &Structure, phase: Phase, state: &State, a_g: f64) -> Outputs {
+        let &crate::Parameters { m, H, B, .. } = structure.parameters();
+        let (s, _) = sign_and_damping(structure, phase);
+        let [_, theta_ddot] = rigid_rocking::accelerations(structure, phase, state, a_g);
+        let a_t = H * theta_ddot + state.theta_dot.powi(2) * s * B + a_g * state.theta.cos();
+        Outputs { a_t, V_t: m * a_t, M_t: m * H * a_t, ..Outputs::of(structure, phase, state) }
+    }
+
+    /// Time derivatives of the outputs by Eqs 1, 5 and 6 under the ground acceleration `a_g` (m/s²); 0 once overturned,
+    /// where motion has ended.
     pub fn rates(structure: &Structure, phase: Phase, state: &State, a_g: f64) -> Outputs {
+        Outputs::rates_by(structure, phase, state, detail::full_accelerations(structure, phase, state, a_g))
+    }
+
+    /// Time derivatives of the outputs, given `accelerations` (ü, θ̈).
+    pub(crate) fn rates_by(structure: &Structure, phase: Phase, state: &State, accelerations: [f64; 2]) -> Outputs {
         let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
-        let &State { u, u_dot, theta, theta_dot } = state;
+        let moves = if let Phase::Overturned(_) = phase { 0.0 } else { 1.0 };
+        let &State { u, .. } = state;
+        let (u_dot, theta_dot) = (moves * state.u_dot, moves * state.theta_dot);
+        let [u_ddot, theta_ddot] = accelerations;
         let (s, damping) = sign_and_damping(structure, phase);
-        let (sin, cos) = theta.sin_cos();
-        let (moves, u_ddot, theta_ddot) = match phase {
-            Phase::FullContact => (1.0, full_contact::acceleration(structure, state, a_g), 0.0),
-            Phase::Rocking(side) => match nonlinear_rocking::accelerations(structure, side, state, a_g) {
-                Some(accelerations) => (1.0, accelerations[0], accelerations[1]),
-                None => (1.0, f64::NAN, f64::NAN),
-            },
-            Phase::Overturned(_) => (0.0, 0.0, 0.0),
-        };
-        let a_t = moves * (g * cos * theta_dot - (damping * u_ddot + structure.k * u_dot) / m);
+        let (sin, cos) = state.theta.sin_cos();
+        let a_t = g * cos * theta_dot - (damping * u_ddot + structure.k * u_dot) / m;
         Outputs {
-            theta: moves * theta_dot,
-            u: moves * u_dot,
+            theta: theta_dot,
+            u: u_dot,
             a_t,
             V_t: m * a_t,
             M_t: m * H * a_t,
             theta_dot: theta_ddot,
             u_dot: u_ddot,
-            uplift: moves * 2.0 * B * s * cos * theta_dot,
-            delta_t: moves * (s * B * sin * theta_dot + u_dot * cos - u * sin * theta_dot + H * cos * theta_dot),
+            uplift: 2.0 * B * s * cos * theta_dot,
+            delta_t: s * B * sin * theta_dot + u_dot * cos - u * sin * theta_dot + H * cos * theta_dot,
         }
+    }
+
+    /// [`Outputs::rates`] of the rigid limit under `a_g`.
+    pub(crate) fn rates_of_rigid(
+        structure: &Structure,
+        phase: Phase,
+        state: &State,
+        a_g: GroundAcceleration,
+    ) -> Outputs {
+        let &crate::Parameters { m, H, B, .. } = structure.parameters();
+        let &State { theta, theta_dot, .. } = state;
+        let accelerations = rigid_rocking::accelerations(structure, phase, state, a_g.value);
+        let jerk = match phase {
+            Phase::Rocking(side) => rigid_rocking::jerk(structure, side, state, a_g),
+            Phase::FullContact | Phase::Overturned(_) => 0.0,
+        };
+        let (s, _) = sign_and_damping(structure, phase);
+        let a_t = match phase {
+            Phase::Overturned(_) => 0.0,
+            _ => {
+                H * jerk + 2.0 * s * B * theta_dot * accelerations[1] + a_g.slope * theta.cos()
+                    - a_g.value * theta.sin() * theta_dot
+            }
+        };
+        Outputs { a_t, V_t: m * a_t, M_t: m * H * a_t, ..Outputs::rates_by(structure, phase, state, accelerations) }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::GroundAcceleration;
-    use crate::{Engine, Parameters};
+    use crate::detail::Detail;
+    use crate::{Engine, Parameters, full_contact, nonlinear_rocking};
     use approx::assert_relative_eq;
 
     /// Eq 27 with ü and θ̈ from Eqs 5 and 6 is what the state alone gives, and Eq 1 in full contact.
@@ -123,27 +159,30 @@ mod tests {
         );
     }
 
-    /// The rates are the slopes of the outputs along the motion.
+    /// The rates are the slopes of the outputs along the motion, at every level.
     #[test]
     fn the_rates_are_the_slopes_of_the_outputs() {
         let structure = Structure::new(Parameters::EVISON).unwrap();
-        for initial in [
-            State { u: 2e-4, u_dot: 0.01, theta: 0.0, theta_dot: 0.0 },
-            State { u: 1e-3, u_dot: -0.1, theta: 0.05, theta_dot: 0.4 },
-        ] {
+        let down = State { u: 2e-4, u_dot: 0.01, ..State::default() };
+        let rocking = State { u: 1e-3, u_dot: -0.1, theta: 0.05, theta_dot: 0.4 };
+        let rigid = State { u: 0.0, u_dot: 0.0, ..rocking };
+        let scenes = [
+            (Detail::Auto, down),
+            (Detail::Auto, rocking),
+            (Detail::Linear, rocking),
+            (Detail::Modal, rocking),
+            (Detail::Rigid, State::default()),
+            (Detail::Rigid, rigid),
+            (Detail::FixedBase, down),
+        ];
+        for (detail, initial) in scenes {
             let a_g = GroundAcceleration { value: 1.2, slope: 40.0 };
             let h = 1e-5;
-            let mut engine = Engine::new(structure, initial, 0.0, 1e-11).unwrap();
+            let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-11, detail).unwrap();
             let mut show = |until: f64| {
-                let start = engine.motion().time;
-                let a_g = GroundAcceleration { value: a_g.value + a_g.slope * start, slope: a_g.slope };
-                engine.advance(until, a_g, &mut |_| ()).unwrap();
-                let motion = engine.motion();
-                let here = a_g.value + a_g.slope * (motion.time - start);
-                (
-                    Outputs::of(&structure, motion.phase, &motion.state),
-                    Outputs::rates(&structure, motion.phase, &motion.state, here),
-                )
+                let here = |time: f64| GroundAcceleration { value: a_g.at(time), ..a_g };
+                engine.advance(until, here(engine.motion().time), &mut |_| ()).unwrap();
+                (engine.outputs(), engine.output_rates(here(until)))
             };
             let (before, _) = show(1e-3 - h);
             let (_, rates) = show(1e-3);

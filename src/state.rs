@@ -1,5 +1,6 @@
 //! The state of the structure and the phase it is in.
 
+use crate::Detail;
 use crate::quantity::{OutOfRange, Quantity, quantity};
 use serde::{Deserialize, Serialize};
 
@@ -79,13 +80,37 @@ pub enum InitialStateError {
          set theta_dot_0 to 0, or theta_0 to an angle with the sign of the pivot that the structure rocks about"
     )]
     TurningInFullContact(f64),
+    /// The base is turned although it is fixed.
+    #[error("theta_0 = {0} rad contradicts detail = fixed_base, where the base cannot turn: set theta_0 to 0")]
+    TurnedFixedBase(f64),
+    /// The structure is deformed although it is rigid.
+    #[error("u_0 = {u} m, u_dot_0 = {u_dot} m/s contradict detail = rigid, where u is always 0: set both to 0")]
+    DeformedRigid {
+        /// u_0, m.
+        u: f64,
+        /// u_dot_0, m/s.
+        u_dot: f64,
+    },
 }
 
 impl State {
-    /// The phase that this state starts in: full contact for θ = 0, otherwise rocking about the side of θ's sign.
-    pub fn initial_phase(&self) -> Result<Phase, InitialStateError> {
+    /// Whether it consists of numbers.
+    pub fn is_finite(&self) -> bool {
+        (self.u + self.u_dot + self.theta + self.theta_dot).is_finite()
+    }
+
+    /// The phase that this state starts in at the level `detail`: full contact for θ = 0, otherwise rocking about the side
+    /// of θ's sign.
+    pub fn initial_phase(&self, detail: Detail) -> Result<Phase, InitialStateError> {
         for quantity in &INITIAL_VALUES {
             quantity.check((quantity.get)(self))?;
+        }
+        let &State { u, u_dot, theta, .. } = self;
+        if detail == Detail::FixedBase && theta != 0.0 {
+            return Err(InitialStateError::TurnedFixedBase(theta));
+        }
+        if detail == Detail::Rigid && (u, u_dot) != (0.0, 0.0) {
+            return Err(InitialStateError::DeformedRigid { u, u_dot });
         }
         if self.theta != 0.0 {
             Ok(Phase::Rocking(Side::of(self.theta)))

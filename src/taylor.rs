@@ -116,16 +116,20 @@ pub struct Truncation {
 /// Fewest orders in an expansion, so that terms that vanish at rest cannot end it early.
 const MIN_ORDER: usize = 5;
 
-/// 1/k for the orders in use.
-const RECIPROCAL: Series = {
-    let mut reciprocal = ZERO;
-    let mut k = 1;
-    while k < reciprocal.len() {
-        reciprocal[k] = 1.0 / k as f64;
-        k += 1;
-    }
-    reciprocal
-};
+/// 1/k, looked up.
+#[inline]
+fn reciprocal(k: usize) -> f64 {
+    const RECIPROCAL: Series = {
+        let mut reciprocal = ZERO;
+        let mut k = 1;
+        while k < reciprocal.len() {
+            reciprocal[k] = 1.0 / k as f64;
+            k += 1;
+        }
+        reciprocal
+    };
+    RECIPROCAL[k]
+}
 
 impl Arc {
     /// Expands the motion from `state` over `span` (s), order by order, until its last two terms are within `truncation`;
@@ -147,8 +151,8 @@ impl Arc {
         (self.u[0], self.u_dot[0]) = (state.u, state.u_dot);
         (self.theta[0], self.theta_dot[0]) = (state.theta, state.theta_dot);
         let mut previous_is_small = false;
-        for (k, reciprocal) in RECIPROCAL.iter().enumerate().take(MAX_ORDER + 1).skip(1) {
-            let per = span * reciprocal;
+        for k in 1..MAX_ORDER + 1 {
+            let per = span * reciprocal(k);
             self.u[k] = self.u_dot[k - 1] * per;
             self.theta[k] = self.theta_dot[k - 1] * per;
             let (u_dot, theta_dot) = velocities(self, k, per);

@@ -17,28 +17,37 @@ use crate::{Side, Structure};
 
 /// Smallest excess of the turning moment over the weight's, as a part of the latter: far above rounding, so that what
 /// has lifted off moves away from the ground.
-const LEAST_EXCESS: f64 = 1e-12;
+pub(crate) const LEAST_EXCESS: f64 = 1e-12;
 
-/// Coefficients of the turning moment over the mass, H (c_u u̇ + k u)/m + g u, in m²/s².
-fn turning_moment(structure: &Structure, u: f64, u_dot: f64) -> f64 {
-    let parameters = structure.parameters();
-    parameters.H * (structure.damping_u * u_dot + structure.stiffness * u) + parameters.g * u
+/// The sign of s θ̈ at θ = θ̇ = 0 is that of s (u·`u` + u̇·`u_dot`) − `weight`.
+#[derive(Clone, Copy, Debug)]
+pub struct TurningMoment {
+    /// Moment per displacement.
+    pub u: f64,
+    /// Moment per velocity.
+    pub u_dot: f64,
+    /// Moment of the weight.
+    pub weight: f64,
 }
 
-/// The restoring moment of the weight over the mass, γ g B, in m²/s².
-fn weight_moment(structure: &Structure) -> f64 {
-    structure.gamma * structure.parameters().g * structure.parameters().B
+impl TurningMoment {
+    /// By Eqs 5 and 6: over m, H (c_u u̇ + k u)/m + g u against γ g B.
+    pub fn new(structure: &Structure) -> TurningMoment {
+        let &crate::Parameters { H, B, g, .. } = structure.parameters();
+        let &Structure { stiffness, damping_u, gamma, .. } = structure;
+        TurningMoment { u: H * stiffness + g, u_dot: H * damping_u, weight: gamma * g * B }
+    }
 }
 
 /// The first instant of `arc`, a motion in full contact, at which uplift is due, and the side about which it rocks
-/// from there.
-pub fn first_on(structure: &Structure, arc: &Arc) -> (Crossing, Side) {
-    let right = first_about(structure, arc, Side::Right);
-    let left = first_about(structure, arc, Side::Left);
+/// from there. `turning` is that of the equations by which it will.
+pub fn first_on(structure: &Structure, turning: &TurningMoment, arc: &Arc) -> (Crossing, Side) {
+    let right = first_about(structure, turning, arc, Side::Right);
+    let left = first_about(structure, turning, arc, Side::Left);
     if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
 }
 
-fn first_about(structure: &Structure, arc: &Arc, side: Side) -> Crossing {
+fn first_about(structure: &Structure, turning: &TurningMoment, arc: &Arc, side: Side) -> Crossing {
     let s = side.sign();
     let u = arc.used(&arc.u);
     let displacement = Guard::new(u, -s, structure.u_cr);
@@ -47,10 +56,9 @@ fn first_about(structure: &Structure, arc: &Arc, side: Side) -> Crossing {
     }
     let mut moment: Series = arc.u;
     for (k, coefficient) in moment[..=arc.order].iter_mut().enumerate() {
-        *coefficient = turning_moment(structure, arc.u[k], arc.u_dot[k]);
+        *coefficient = turning.u * arc.u[k] + turning.u_dot * arc.u_dot[k];
     }
-    let weight = (1.0 + LEAST_EXCESS) * weight_moment(structure);
-    let moment = Guard::new(arc.used(&moment), -s, weight);
+    let moment = Guard::new(arc.used(&moment), -s, (1.0 + LEAST_EXCESS) * turning.weight);
     first_time_all_closed([displacement, moment], arc.reach)
 }
 
@@ -67,7 +75,7 @@ mod tests {
         let mut arc = Arc::default();
         let a_g = GroundAcceleration::default();
         full_contact::series(structure, &Start { state, a_g, interval: 1e-9, local_error: 1e-13 }, &mut arc);
-        first_on(structure, &arc)
+        first_on(structure, &TurningMoment::new(structure), &arc)
     }
 
     proptest! {
@@ -105,7 +113,9 @@ mod tests {
         let push = GroundAcceleration { value: -40.0, slope: 0.0 }; // turns the velocity round
         let mut arc = Arc::default();
         full_contact::series(&structure, &Start { state, a_g: push, interval: 2e-3, local_error: 1e-15 }, &mut arc);
-        let (Crossing::At(sigma), Side::Right) = first_on(&structure, &arc) else { panic!("no uplift") };
+        let (Crossing::At(sigma), Side::Right) = first_on(&structure, &TurningMoment::new(&structure), &arc) else {
+            panic!("no uplift")
+        };
         let there = arc.at(sigma);
         let theta_ddot = accelerations(&structure, Side::Right, &there, push.value).unwrap()[1];
         assert!(sigma * arc.span > 1e-5 && there.u > structure.u_cr);

@@ -362,14 +362,18 @@ pub unsafe extern "C" fn fmi2SetReal(c: *mut c_void, vr: *const c_uint, nvr: siz
 
 /// `fmi2SetInteger`
 #[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetInteger(c: *mut c_void, vr: *const c_uint, nvr: size_t, _value: *const c_int) -> c_int {
-    unsafe { call(c, Function::SetInteger, |instance| instance.set_discrete(values("vr", vr, nvr)?)) }
+pub unsafe extern "C" fn fmi2SetInteger(c: *mut c_void, vr: *const c_uint, nvr: size_t, value: *const c_int) -> c_int {
+    unsafe {
+        call(c, Function::SetInteger, |instance| {
+            instance.set_integer(values("vr", vr, nvr)?, values("value", value, nvr)?)
+        })
+    }
 }
 
 /// `fmi2SetBoolean`
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2SetBoolean(c: *mut c_void, vr: *const c_uint, nvr: size_t, _value: *const c_int) -> c_int {
-    unsafe { call(c, Function::SetBoolean, |instance| instance.set_discrete(values("vr", vr, nvr)?)) }
+    unsafe { call(c, Function::SetBoolean, |instance| instance.set_boolean(values("vr", vr, nvr)?)) }
 }
 
 /// `fmi2SetString`

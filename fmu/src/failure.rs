@@ -4,7 +4,7 @@ use crate::instance::StatusKind;
 use crate::logger::Status;
 use crate::resources::ResourceError;
 use crate::state_machine::{Function, Stage};
-use crate::variables::{DataType, VARIABLES, Variable};
+use crate::variables::{DataType, Enumeration, VARIABLES, Variable};
 use model_description::Causality;
 use rocking::engine::AdvanceError;
 use rocking::parameters::ParameterError;
@@ -80,6 +80,14 @@ pub enum Failure {
     /// A variable that is not set by the host.
     #[error("{} cannot be set: it is {}, computed by the FMU", .0.name, causality_name(.0))]
     NotSettable(&'static Variable),
+    /// A number that stands for no item of an enumeration.
+    #[error("{} = {value} is out of range: {}", variable.name, items(variable))]
+    NoSuchItem {
+        /// The enumeration.
+        variable: &'static Variable,
+        /// The number.
+        value: i32,
+    },
     /// A string.
     #[error("value reference {0} is no String: this FMU has no String variables")]
     NoStrings(u32),
@@ -218,6 +226,12 @@ impl Failure {
             _ => Status::Error,
         }
     }
+}
+
+/// What the numbers of an enumeration stand for.
+fn items(variable: &Variable) -> String {
+    let DataType::Enumeration(Enumeration { items, .. }) = variable.data_type else { return String::new() };
+    (1..).zip(items.iter()).map(|(number, item): (u32, _)| format!("{number} = {item}")).collect::<Vec<_>>().join(", ")
 }
 
 fn type_name(variable: &Variable) -> &'static str {

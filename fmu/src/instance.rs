@@ -6,11 +6,11 @@ use crate::logger::{Category, Logger, Status};
 use crate::resources;
 use crate::snapshot::{self, Snapshots};
 use crate::state_machine::{Function, Stage};
-use crate::variables::{A_G, OfMotion, Source, VARIABLES, Variable};
+use crate::variables::{self, A_G, Source, VARIABLES, Variable};
 use model_description::Causality;
-use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE, GroundAcceleration, Motion, Progress, TransitionKind};
+use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE, GroundAcceleration, Progress, TransitionKind};
 use rocking::quantity::Quantity;
-use rocking::{Engine, Outputs, Parameters, Phase, Side, State, Structure, Transition};
+use rocking::{Detail, Engine, Parameters, Phase, Side, State, Structure, Transition};
 use serde::{Deserialize, Serialize};
 use std::mem::MaybeUninit;
 
@@ -45,6 +45,7 @@ pub struct Condition {
 pub struct Setup {
     parameters: Parameters,
     initial: State,
+    detail: Detail,
     tolerance: f64,
     start_time: f64,
     stop_time: Option<f64>,
@@ -54,7 +55,7 @@ impl Setup {
     /// The structure at the start time.
     pub fn start(&self) -> Result<Engine, Failure> {
         let structure = Structure::new(self.parameters)?;
-        Ok(Engine::new(structure, self.initial, self.start_time, self.tolerance)?)
+        Ok(Engine::with_detail(structure, self.initial, self.start_time, self.tolerance, self.detail)?)
     }
 }
 
@@ -66,6 +67,7 @@ impl Condition {
             setup: Setup {
                 parameters,
                 initial: State::default(),
+                detail: Detail::default(),
                 tolerance: DEFAULT_TOLERANCE,
                 start_time: 0.0,
                 stop_time: None,
@@ -208,7 +210,7 @@ impl Instance {
             match variable.source {
                 Source::Input(_) | Source::Parameter(_) | Source::InitialValue(_) => (),
                 Source::Output(_) | Source::Derived(_) => is_computed = true,
-                Source::Integer(_) | Source::Boolean(_) => return Err(Failure::WrongType(variable)),
+                Source::Integer(_) | Source::Boolean(_) | Source::Detail => return Err(Failure::WrongType(variable)),
             }
         }
         if is_computed {
@@ -226,11 +228,10 @@ impl Instance {
                     Some(outputs) => of(outputs),
                     None => {
                         let engine = self.now.engine()?;
-                        let Motion { phase, state, .. } = engine.motion();
-                        of(outputs.insert(Outputs::of(engine.structure(), *phase, state)))
+                        of(outputs.insert(engine.outputs()))
                     }
                 },
-                Source::Integer(_) | Source::Boolean(_) => return Err(Failure::WrongType(variable)),
+                Source::Integer(_) | Source::Boolean(_) | Source::Detail => return Err(Failure::WrongType(variable)),
             });
         }
         Ok(())
@@ -238,37 +239,32 @@ impl Instance {
 
     /// `fmi2GetInteger`: integers and enumerations.
     pub fn get_integer(&mut self, references: &[u32], values: &mut [MaybeUninit<i32>]) -> Result<(), Failure> {
-        self.get_discrete(references, values, |source| match source {
-            Source::Integer(of) => Some(of),
-            _ => None,
-        })
+        self.get_discrete(references, values, |source| matches!(source, Source::Integer(_) | Source::Detail))
     }
 
     /// `fmi2GetBoolean`: 0 or 1.
     pub fn get_boolean(&mut self, references: &[u32], values: &mut [MaybeUninit<i32>]) -> Result<(), Failure> {
-        self.get_discrete(references, values, |source| match source {
-            Source::Boolean(of) => Some(of),
-            _ => None,
-        })
+        self.get_discrete(references, values, |source| matches!(source, Source::Boolean(_)))
     }
 
-    /// All of the values, or none if one is refused. `of_type` picks the sources of one type.
+    /// All of the values, or none if one is refused. `is_of_type` tells the sources of one type.
     fn get_discrete(
         &mut self,
         references: &[u32],
         values: &mut [MaybeUninit<i32>],
-        of_type: fn(Source) -> Option<OfMotion>,
+        is_of_type: fn(&Source) -> bool,
     ) -> Result<(), Failure> {
-        let source = |reference: &u32| {
-            let variable = find(*reference)?;
-            of_type(variable.source).ok_or(Failure::WrongType(variable))
-        };
         for reference in references {
-            source(reference)?;
+            let variable = find(*reference)?;
+            if !is_of_type(&variable.source) {
+                return Err(Failure::WrongType(variable));
+            }
         }
         for (reference, value) in references.iter().zip(values) {
-            let of = source(reference)?;
-            value.write(of(self.now.engine()?.motion()));
+            value.write(match find(*reference)?.source {
+                Source::Integer(of) | Source::Boolean(of) => of(self.now.engine()?.motion()),
+                _ => variables::detail_number(self.now.setup.detail),
+            });
         }
         Ok(())
     }
@@ -303,8 +299,27 @@ impl Instance {
         Ok(())
     }
 
-    /// `fmi2SetInteger`, `fmi2SetBoolean`: no variable of these types can be set.
-    pub fn set_discrete(&self, references: &[u32]) -> Result<(), Failure> {
+    /// `fmi2SetInteger`: all of the values, or none if one is refused. Of enumerations alone, the parameter `detail` can be
+    /// set.
+    pub fn set_integer(&mut self, references: &[u32], values: &[i32]) -> Result<(), Failure> {
+        let mut detail = self.now.setup.detail;
+        for (reference, &value) in references.iter().zip(values) {
+            let variable = find(*reference)?;
+            match variable.source {
+                Source::Detail if self.now.stage == Stage::StepComplete => return Err(Failure::Fixed(variable)),
+                Source::Detail => detail = variables::detail(value).ok_or(Failure::NoSuchItem { variable, value })?,
+                _ => self.set_boolean(std::slice::from_ref(reference))?,
+            }
+        }
+        if detail != self.now.setup.detail {
+            self.now.setup.detail = detail;
+            self.now.engine = None;
+        }
+        Ok(())
+    }
+
+    /// `fmi2SetBoolean`: no Boolean can be set.
+    pub fn set_boolean(&self, references: &[u32]) -> Result<(), Failure> {
         let Some(reference) = references.first() else { return Ok(()) };
         let variable = find(*reference)?;
         Err(match variable.causality {
@@ -350,10 +365,10 @@ impl Instance {
         orders: &[i32],
         values: &mut [MaybeUninit<f64>],
     ) -> Result<(), Failure> {
-        let a_g = self.now.input.value;
+        let a_g = self.now.input;
         let engine = self.now.engine()?;
-        let &Motion { time, phase, state, .. } = engine.motion();
-        let rates = Outputs::rates(engine.structure(), phase, &state, a_g);
+        let time = engine.motion().time;
+        let rates = engine.output_rates(a_g);
         let rate = |reference: &u32, order: i32| {
             let variable = find(*reference)?;
             let Source::Output(of) = variable.source else { return Err(Failure::NoOutput(variable)) };

@@ -22,7 +22,8 @@ pub enum Stage {
 }
 
 impl Stage {
-    const ALL: [Stage; 6] = [
+    /// All of them.
+    pub const ALL: [Stage; 6] = [
         Stage::Instantiated,
         Stage::InitializationMode,
         Stage::StepComplete,

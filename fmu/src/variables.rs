@@ -8,7 +8,7 @@ use rocking::parameters::PARAMETERS;
 use rocking::quantity::Quantity;
 use rocking::state::INITIAL_VALUES;
 use rocking::structure::{DERIVED, Derived};
-use rocking::{Outputs, Parameters, Phase, Side, State};
+use rocking::{Detail, Outputs, Parameters, Phase, Side, State};
 use std::sync::LazyLock;
 
 /// One variable.
@@ -48,7 +48,18 @@ pub enum DataType {
     /// True or false.
     Boolean,
     /// One of these, numbered from 1.
-    Enumeration(&'static [&'static str]),
+    Enumeration(&'static Enumeration),
+}
+
+/// An enumeration.
+#[derive(Debug, PartialEq)]
+pub struct Enumeration {
+    /// Name of the type.
+    pub name: &'static str,
+    /// What it tells, in one line.
+    pub description: &'static str,
+    /// Its items, numbered from 1.
+    pub items: &'static [&'static str],
 }
 
 /// An integer, or a Boolean as 0 or 1.
@@ -64,10 +75,39 @@ pub(crate) enum Source {
     Parameter(&'static Quantity<Parameters>),
     InitialValue(&'static Quantity<State>),
     Derived(&'static Derived),
+    Detail,
 }
 
-/// The phases, as the enumeration `phase` numbers them from 1.
-pub const PHASES: [&str; 4] = ["full contact", "rocking left", "rocking right", "overturned"];
+/// The phases, as [`phase_number`] numbers them.
+pub static PHASES: Enumeration = Enumeration {
+    name: "Phase",
+    description: "what holds of the base",
+    items: &["full contact", "rocking left", "rocking right", "overturned"],
+};
+
+/// The levels of detail, in the order of [`Detail::ALL`].
+pub static DETAILS: Enumeration = Enumeration {
+    name: "Detail",
+    description: "level of detail: the equations that move the structure",
+    items: &[
+        Detail::Auto.name(),
+        Detail::Nonlinear.name(),
+        Detail::Linear.name(),
+        Detail::Modal.name(),
+        Detail::Rigid.name(),
+        Detail::FixedBase.name(),
+    ],
+};
+
+/// The level that `number` stands for.
+pub(crate) fn detail(number: i32) -> Option<Detail> {
+    usize::try_from(number).ok()?.checked_sub(1).and_then(|at| Detail::ALL.get(at)).copied()
+}
+
+/// The number that stands for `detail`.
+pub(crate) fn detail_number(detail: Detail) -> i32 {
+    detail as i32 + 1
+}
 
 fn phase_number(motion: &Motion) -> i32 {
     match motion.phase {
@@ -102,6 +142,7 @@ pub static VARIABLES: LazyLock<Vec<Variable>> = LazyLock::new(|| {
     std::iter::once(input())
         .chain(outputs())
         .chain(const { &PARAMETERS }.iter().map(|quantity| fixed(quantity, Source::Parameter(quantity))))
+        .chain(std::iter::once(detail_parameter()))
         .chain(const { &INITIAL_VALUES }.iter().map(|quantity| fixed(quantity, Source::InitialValue(quantity))))
         .chain(calculated_parameters())
         .collect()
@@ -121,24 +162,37 @@ fn input() -> Variable {
 }
 
 fn outputs() -> [Variable; 12] {
-    // k/m and the damping over m are functions of f_fc, zeta_fc and c_ratio alone.
-    const A_T: &[&str] = &["f_fc", "zeta_fc", "c_ratio", "g", "theta_0", "u_0", "u_dot_0"];
-    const V_T: &[&str] = &["m", "f_fc", "zeta_fc", "c_ratio", "g", "theta_0", "u_0", "u_dot_0"];
-    const M_T: &[&str] = &["m", "H", "f_fc", "zeta_fc", "c_ratio", "g", "theta_0", "u_0", "u_dot_0"];
+    // The masses, the geometry and theta_dot_0 by the rigid level, the others by the elastic ones.
+    const A_T: &[&str] = &[
+        "m",
+        "m0",
+        "H",
+        "B",
+        "J0",
+        "f_fc",
+        "zeta_fc",
+        "c_ratio",
+        "g",
+        "detail",
+        "theta_0",
+        "theta_dot_0",
+        "u_0",
+        "u_dot_0",
+    ];
     const DELTA_T: &[&str] = &["H", "B", "theta_0", "u_0"];
     [
         real("theta", "rad", "rotation of the base, positive about the right edge", |o| o.theta, &["theta_0"]),
         real("u", "m", "elastic displacement of the top mass in the frame that turns with the base", |o| o.u, &["u_0"]),
         real("a_t", "m/s2", "acceleration of the top mass, ground included (Eq 27)", |o| o.a_t, A_T),
-        real("V_t", "N", "base shear m a_t (Eqs 2, 23)", |o| o.V_t, V_T),
-        real("M_t", "N.m", "overturning moment m H a_t (Eqs 3, 24)", |o| o.M_t, M_T),
+        real("V_t", "N", "base shear m a_t (Eqs 2, 23)", |o| o.V_t, A_T),
+        real("M_t", "N.m", "overturning moment m H a_t (Eqs 3, 24)", |o| o.M_t, A_T),
         real("theta_dot", "rad/s", "angular velocity of the base", |o| o.theta_dot, &["theta_dot_0"]),
         real("u_dot", "m/s", "elastic velocity of the top mass", |o| o.u_dot, &["u_dot_0"]),
         real("uplift", "m", "height of the free edge of the base (Eq 25)", |o| o.uplift, &["B", "theta_0"]),
         real("delta_t", "m", "lateral displacement of the top mass (Eq 26)", |o| o.delta_t, DELTA_T),
         discrete(
             "phase",
-            "what holds of the base",
+            PHASES.description,
             DataType::Enumeration(&PHASES),
             Source::Integer(phase_number),
             &["theta_0"],
@@ -158,6 +212,19 @@ fn outputs() -> [Variable; 12] {
             &[],
         ),
     ]
+}
+
+fn detail_parameter() -> Variable {
+    Variable {
+        name: "detail",
+        description: DETAILS.description,
+        data_type: DataType::Enumeration(&DETAILS),
+        causality: Causality::Parameter,
+        variability: Variability::Fixed,
+        initial: Some(Initial::Exact),
+        initial_dependencies: &[],
+        source: Source::Detail,
+    }
 }
 
 fn calculated_parameters() -> [Variable; 5] {
@@ -243,6 +310,7 @@ impl Variable {
             Source::Input(quantity) => Some((quantity.get)(&GroundAcceleration::default())),
             Source::Parameter(quantity) => Some((quantity.get)(parameters)),
             Source::InitialValue(quantity) => Some((quantity.get)(&State::default())),
+            Source::Detail => Some(f64::from(detail_number(Detail::default()))),
             _ => None,
         }
     }

@@ -133,7 +133,7 @@ fn the_response_reads_back_to_the_engines_numbers() {
         assert!((numbers[1] - acceleration(i)).abs() <= 1e-14 * 12.0, "{} {}", numbers[1], acceleration(i));
         let expected = [o.theta, o.u, o.a_t, o.V_t, o.M_t, o.theta_dot, o.u_dot, o.uplift, o.delta_t];
         assert_eq!(numbers[2..], expected, "line {i}");
-        assert!(PHASES.contains(&line[11].as_str()));
+        assert!(PHASES.items.contains(&line[11].as_str()));
         assert_eq!(line[11] == "full contact", motion.phase == Phase::FullContact);
         assert_eq!(line[12], motion.transitions.to_string());
     }

@@ -119,4 +119,7 @@ pub struct Enumeration {
     /// Name of the type that lists its literals.
     #[serde(rename = "@declaredType")]
     pub declared_type: String,
+    /// Number of the literal that it has unless the environment sets another.
+    #[serde(rename = "@start", skip_serializing_if = "Option::is_none")]
+    pub start: Option<i32>,
 }

@@ -119,7 +119,11 @@ impl Host {
     /// In initialization mode.
     pub fn initializing(start_values: &[(&str, f64)]) -> Host {
         let host = Host::new();
-        assert_eq!(host.set(start_values), OK, "{:?}", host.log);
+        let (details, reals): (Vec<_>, Vec<_>) = start_values.iter().partition(|(name, _)| *name == "detail");
+        assert_eq!(host.set(&reals), OK, "{:?}", host.log);
+        for (name, number) in details {
+            assert_eq!(host.set_integer(name, number as c_int), OK, "{:?}", host.log);
+        }
         assert_eq!(host.setup(None, 0.0, None), OK);
         assert_eq!(host.enter(), OK);
         host
@@ -169,6 +173,10 @@ impl Host {
 
     pub fn set_by_reference(&self, references: &[c_uint], values: &[f64]) -> c_int {
         unsafe { fmi2SetReal(self.component, references.as_ptr(), references.len(), values.as_ptr()) }
+    }
+
+    pub fn set_integer(&self, name: &str, value: c_int) -> c_int {
+        unsafe { fmi2SetInteger(self.component, &reference(name), 1, &value) }
     }
 
     pub fn set_slope(&self, name: &str, order: c_int, slope: f64) -> c_int {

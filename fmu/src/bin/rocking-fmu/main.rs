@@ -13,6 +13,7 @@ mod significant;
 mod simulate;
 mod structure_args;
 mod summary;
+mod sweep;
 mod tables;
 
 use clap::Parser;
@@ -64,6 +65,14 @@ enum Command {
   rocking-fmu simulate --preset evison --free 2 --theta-0 0.04 -o response.csv
   rocking-fmu modes --preset evison --response response.csv")]
     Modes(modes::ModesArgs),
+    /// Run records x scale factors x structures; probabilities of overturning, fragility curves
+    ///
+    /// Appends a row per run to the CSV file as the runs end. A sweep that was stopped goes on where it was when the
+    /// same command is given again; once all runs are there, the command shows the probabilities alone.
+    #[command(after_help = "Examples:
+  rocking-fmu sweep fragility.toml
+  rocking-fmu sweep fragility.toml -o runs.csv --threads 2")]
+    Sweep(sweep::SweepArgs),
 }
 
 fn main() -> ExitCode {
@@ -74,6 +83,7 @@ fn main() -> ExitCode {
         Command::Estimate(args) => estimate::run(&args),
         Command::Pushover(args) => pushover::run(&args),
         Command::Modes(args) => modes::run(&args),
+        Command::Sweep(args) => sweep::run(&args),
     };
     match result {
         Err(error) if !is_closed_pipe(&error) => {

@@ -14,22 +14,31 @@ pub struct StructureArgs {
     parameters: Option<PathBuf>,
 }
 
-#[derive(Clone, Copy, Debug, clap::ValueEnum)]
-enum Preset {
+/// A specimen of the paper.
+#[derive(Clone, Copy, Debug, clap::ValueEnum, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Preset {
     /// Shear wall (Table 1)
     Evison,
     /// Bridge pier (Table 2)
     Mcmanus,
 }
 
+impl Preset {
+    /// Its parameters.
+    pub fn parameters(self) -> Parameters {
+        match self {
+            Preset::Evison => Parameters::EVISON,
+            Preset::Mcmanus => Parameters::MCMANUS,
+        }
+    }
+}
+
 impl StructureArgs {
     /// Reads the parameters and derives the structure; a refusal names the file, the line and the key.
     pub fn load(&self) -> anyhow::Result<Structure> {
         let Some(path) = &self.parameters else {
-            return Ok(Structure::new(match self.preset {
-                Preset::Evison => Parameters::EVISON,
-                Preset::Mcmanus => Parameters::MCMANUS,
-            })?);
+            return Ok(Structure::new(self.preset.parameters())?);
         };
         let read = || -> anyhow::Result<Structure> {
             let parameters: Parameters = toml::from_str(&std::fs::read_to_string(path)?)?;

@@ -101,7 +101,8 @@ fn row(variable: &Variable, structure: &Structure) -> Row {
         DataType::Integer => format!("{} (Integer)", variable.description),
         DataType::Boolean => format!("{} (Boolean)", variable.description),
         DataType::Enumeration(literals) => {
-            let literals: Vec<_> = (1..).zip(literals).map(|(number, name)| format!("{number} {name}")).collect();
+            let literals: Vec<_> =
+                (1..).zip(literals.items).map(|(number, name): (u32, _)| format!("{number} {name}")).collect();
             format!("{}: {}", variable.description, literals.join(", "))
         }
     };

@@ -2,7 +2,7 @@
 
 use FlexibleRocking::GUID;
 use FlexibleRocking::logger;
-use FlexibleRocking::variables::{DataType, PHASES, VARIABLES, Variable};
+use FlexibleRocking::variables::{DETAILS, DataType, Enumeration, PHASES, VARIABLES, Variable};
 use model_description as fmi;
 use rocking::Parameters;
 use rocking::engine::DEFAULT_TOLERANCE;
@@ -14,7 +14,6 @@ pub const MODEL_NAME: &str = "FlexibleRocking";
 pub const DESCRIPTION: &str = "A flexible structure that rocks freely on rigid ground under earthquake ground motion";
 
 /// Name of the enumeration of phases.
-const PHASE_TYPE: &str = "Phase";
 
 /// The units of the variables, as exponents of kg, m, s, rad.
 const UNITS: [(&str, [i32; 4]); 10] = [
@@ -52,7 +51,7 @@ pub fn model_description(parameters: &Parameters) -> fmi::FmiModelDescription {
             can_serialize_fmu_state: true,
         },
         unit_definitions: fmi::UnitDefinitions { units: UNITS.map(unit).into() },
-        type_definitions: fmi::TypeDefinitions { simple_types: vec![phase_type()] },
+        type_definitions: fmi::TypeDefinitions { simple_types: [&PHASES, &DETAILS].map(enumeration_type).into() },
         log_categories: fmi::LogCategories { categories: logger::Category::ALL.map(log_category).into() },
         default_experiment: fmi::DefaultExperiment { start_time: 0.0, tolerance: DEFAULT_TOLERANCE },
         model_variables: fmi::ModelVariables {
@@ -69,11 +68,11 @@ fn unit((name, [kg, m, s, rad]): (&str, [i32; 4])) -> fmi::Unit {
     fmi::Unit { name: name.into(), base_unit: fmi::BaseUnit { kg, m, s, rad } }
 }
 
-fn phase_type() -> fmi::SimpleType {
-    let items = (1..).zip(PHASES).map(|(value, name)| fmi::Item { name: name.into(), value }).collect();
+fn enumeration_type(enumeration: &Enumeration) -> fmi::SimpleType {
+    let items = (1..).zip(enumeration.items).map(|(value, &name)| fmi::Item { name: name.into(), value }).collect();
     fmi::SimpleType {
-        name: PHASE_TYPE.into(),
-        description: "what holds of the base".into(),
+        name: enumeration.name.into(),
+        description: enumeration.description.into(),
         attributes: fmi::TypeAttributes::Enumeration(fmi::EnumerationType { items }),
     }
 }
@@ -101,9 +100,10 @@ fn scalar_variable(at: u32, variable: &Variable, parameters: &Parameters) -> fmi
             }),
             DataType::Integer => fmi::VariableType::Integer(fmi::Integer { min: Some(0) }),
             DataType::Boolean => fmi::VariableType::Boolean(fmi::Boolean {}),
-            DataType::Enumeration(_) => {
-                fmi::VariableType::Enumeration(fmi::Enumeration { declared_type: PHASE_TYPE.into() })
-            }
+            DataType::Enumeration(enumeration) => fmi::VariableType::Enumeration(fmi::Enumeration {
+                declared_type: enumeration.name.into(),
+                start: variable.start(parameters).map(|number| number as i32),
+            }),
         },
     }
 }

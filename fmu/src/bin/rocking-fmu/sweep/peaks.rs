@@ -1,0 +1,82 @@
+//! The largest magnitudes of a motion, also between the instants at which it is looked at.
+use super::outcome::MEASURES;
+use rocking::{Outputs, Parameters, Phase, State, Structure, Transition, TransitionKind};
+
+/// Peaks so far of theta, u and a_t, from which those of the other measures follow.
+///
+/// Between two instants of one phase each is taken as the cubic with their values and rates at both ends.
+pub struct Peaks {
+    structure: Structure,
+    phase: Phase,
+    last: Instant,
+    largest: [f64; 3],
+}
+
+/// theta, u and a_t at an instant, and their rates.
+struct Instant {
+    time: f64,
+    values: [f64; 3],
+    rates: [f64; 3],
+}
+
+impl Peaks {
+    /// Of `structure` at rest in full contact at `time` (s).
+    pub fn at_rest(structure: Structure, time: f64) -> Peaks {
+        let last = Instant { time, values: [0.0; 3], rates: [0.0; 3] };
+        Peaks { structure, phase: Phase::FullContact, last, largest: [0.0; 3] }
+    }
+
+    /// Takes in the motion up to `time` (s) and `state` in `phase`, without a transition on the way.
+    pub fn reach(&mut self, time: f64, phase: Phase, state: &State, a_g: f64) {
+        let instant = self.instant(time, phase, state, a_g);
+        for (i, largest) in self.largest.iter_mut().enumerate() {
+            let (from, to) = (&self.last, &instant);
+            let peak = cubic_peak([from.values[i], to.values[i]], [from.rates[i], to.rates[i]], to.time - from.time);
+            *largest = largest.max(peak);
+        }
+        self.last = instant;
+    }
+
+    /// Takes in the motion up to the transition `at`, and goes on after it.
+    pub fn pass(&mut self, at: &Transition, a_g: f64) {
+        self.reach(at.time, self.phase, &at.before, a_g);
+        self.phase = match at.kind {
+            TransitionKind::Uplift(side) | TransitionKind::Impact(side) => Phase::Rocking(side),
+            TransitionKind::Landing | TransitionKind::Settling => Phase::FullContact,
+            TransitionKind::Overturning(side) => Phase::Overturned(side),
+        };
+        self.last = self.instant(at.time, self.phase, &at.after, a_g);
+    }
+
+    fn instant(&self, time: f64, phase: Phase, state: &State, a_g: f64) -> Instant {
+        let of_interest = |outputs: Outputs| [outputs.theta, outputs.u, outputs.a_t];
+        Instant {
+            time,
+            values: of_interest(Outputs::of(&self.structure, phase, state)),
+            rates: of_interest(Outputs::rates(&self.structure, phase, state, a_g)),
+        }
+    }
+
+    /// The peak of each of [`MEASURES`] (uplift by Eq 25, V_t and M_t by Eqs 2, 3, 23, 24).
+    pub fn measures(&self) -> [f64; MEASURES.len()] {
+        let &Parameters { m, H, B, .. } = self.structure.parameters();
+        let [theta, u, a_t] = self.largest;
+        [theta, theta / self.structure.tan_alpha_cg.atan(), 2.0 * B * theta.sin(), u, a_t, m * a_t, m * H * a_t]
+    }
+}
+
+/// The largest magnitude of the cubic with these values and rates at the ends of `duration`.
+fn cubic_peak(values: [f64; 2], rates: [f64; 2], duration: f64) -> f64 {
+    let [start, end] = values;
+    let [from, to] = rates.map(|rate| rate * duration);
+    let ends = start.abs().max(end.abs());
+    if from * to >= 0.0 {
+        return ends;
+    }
+    // Rate along the unit interval: a s² + b s + c, which changes sign once.
+    let rise = end - start;
+    let (a, b, c) = (3.0 * (from + to - 2.0 * rise), 2.0 * (3.0 * rise - 2.0 * from - to), from);
+    let q = -0.5 * (b + (b * b - 4.0 * a * c).sqrt().copysign(b));
+    let turns = [q / a, c / q].into_iter().find(|s| (0.0..=1.0).contains(s));
+    turns.map_or(ends, |s| ends.max((start + s * (c + s * (b / 2.0 + s * a / 3.0))).abs()))
+}

@@ -1,0 +1,682 @@
+//! Hostile calls: random functions in any order, with arguments from sensible to absurd.
+//!
+//! `FUZZ_CALLS` says how many calls to make (`make fuzz`: ten million). Calls come in sequences of a few hundred on two
+//! instances; what a sequence does follows from its number alone, and a failure names it.
+#![allow(unsafe_code)]
+
+mod host;
+
+use FlexibleRocking::GUID;
+use FlexibleRocking::c_abi::*;
+use FlexibleRocking::state_machine::{Function, Stage};
+use FlexibleRocking::variables::{DataType, VARIABLES};
+use fastrand::Rng;
+use host::{DISCARD, ERROR, OK};
+use libc::{c_char, c_int, c_uint, c_void};
+use stats_alloc::{INSTRUMENTED_SYSTEM, Region, StatsAlloc};
+use std::alloc::System;
+use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
+use std::ffi::{CStr, CString};
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::ptr::{null, null_mut, without_provenance_mut};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+use std::{env, slice, thread};
+
+#[global_allocator]
+static ALLOCATOR: &StatsAlloc<System> = &INSTRUMENTED_SYSTEM;
+
+/// Calls without `FUZZ_CALLS`.
+const CALLS: u64 = 200_000;
+
+const CALLS_PER_SEQUENCE: u64 = 400;
+
+/// No crash, no panic, no leak, and what [`Slot::call`] checks of every call.
+#[test]
+fn no_call_does_harm() {
+    let calls = env::var("FUZZ_CALLS").map_or(CALLS, |calls| calls.parse().expect("FUZZ_CALLS is a number"));
+    let resources = host::resources();
+    let location = CString::new(format!("file://{}", resources.path().display())).unwrap();
+    Sequence::new(0, &location).run(); // what is allocated once per process is not a leak
+    let region = Region::new(ALLOCATOR);
+    let tally = {
+        let sequences = AtomicU64::new(0);
+        let work = || {
+            let mut tally = Tally::default();
+            loop {
+                let number = sequences.fetch_add(1, Ordering::Relaxed);
+                if number * CALLS_PER_SEQUENCE >= calls {
+                    return tally;
+                }
+                let run = || Sequence::new(number, &location).run();
+                match catch_unwind(AssertUnwindSafe(run)) {
+                    Ok(of_sequence) => tally.add(of_sequence),
+                    Err(panic) => {
+                        eprintln!("in sequence {number}");
+                        resume_unwind(panic)
+                    }
+                }
+            }
+        };
+        thread::scope(|scope| {
+            let threads: Vec<_> =
+                (0..thread::available_parallelism().unwrap().get()).map(|_| scope.spawn(work)).collect();
+            let mut tally = Tally::default();
+            threads.into_iter().for_each(|thread| tally.add(thread.join().unwrap()));
+            tally
+        })
+    };
+    println!("{tally}");
+    assert!(tally.statuses.values().sum::<u64>() >= calls);
+    drop(tally);
+    let change = region.change();
+    let left = change.bytes_allocated as isize - change.bytes_deallocated as isize;
+    assert_eq!(left, 0, "{left} bytes are left behind: {change:?}");
+}
+
+/// What came of the calls.
+#[derive(Default)]
+struct Tally {
+    statuses: BTreeMap<(c_int, &'static str), u64>,
+    longest: Duration,
+    longest_function: &'static str,
+}
+
+impl Tally {
+    fn add(&mut self, other: Tally) {
+        for (key, count) in other.statuses {
+            *self.statuses.entry(key).or_default() += count;
+        }
+        if other.longest > self.longest {
+            (self.longest, self.longest_function) = (other.longest, other.longest_function);
+        }
+    }
+}
+
+impl std::fmt::Display for Tally {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        for (status, name) in [(OK, "OK"), (DISCARD, "discard"), (ERROR, "error")] {
+            let of_status = self.statuses.iter().filter(|((s, _), _)| *s == status);
+            let by_function: Vec<_> = of_status.clone().map(|((_, name), count)| format!("{name} {count}")).collect();
+            writeln!(f, "{name} {}: {}", of_status.map(|(_, count)| count).sum::<u64>(), by_function.join(", "))?;
+        }
+        write!(f, "longest call {:?} ({})", self.longest, self.longest_function)
+    }
+}
+
+/// Where an instance logs to.
+#[derive(Default)]
+struct Told {
+    messages: RefCell<Vec<(c_int, String)>>,
+    /// Called from within the logger, unless null.
+    call_back: Cell<*mut c_void>,
+}
+
+unsafe extern "C" fn tell(
+    environment: *mut c_void,
+    _: *const c_char,
+    status: c_int,
+    _: *const c_char,
+    text: *const c_char,
+) {
+    let told = unsafe { &*environment.cast::<Told>() };
+    told.messages.borrow_mut().push((status, unsafe { CStr::from_ptr(text) }.to_str().unwrap().to_owned()));
+    let c = told.call_back.get();
+    if !c.is_null() {
+        unsafe {
+            fmi2FreeInstance(c);
+            assert_eq!((fmi2DoStep(c, 0.0, 1.0, 0), fmi2Reset(c)), (ERROR, ERROR));
+        }
+    }
+}
+
+/// Room for one instance.
+struct Slot {
+    /// Null if there is none.
+    c: *mut c_void,
+    told: Box<Told>,
+    /// The FMU states that it has handed out.
+    states: Vec<*mut c_void>,
+}
+
+/// A run of calls on two instances.
+struct Sequence<'a> {
+    rng: Rng,
+    location: &'a CStr,
+    slots: [Slot; 2],
+    /// Serialized states of both.
+    bytes: Vec<Vec<u8>>,
+    tally: Tally,
+}
+
+impl Sequence<'_> {
+    fn new(number: u64, location: &CStr) -> Sequence<'_> {
+        let slot = || Slot { c: null_mut(), told: Box::default(), states: Vec::new() };
+        Sequence {
+            rng: Rng::with_seed(number),
+            location,
+            slots: [slot(), slot()],
+            bytes: Vec::new(),
+            tally: Tally::default(),
+        }
+    }
+
+    fn run(mut self) -> Tally {
+        for _ in 0..CALLS_PER_SEQUENCE {
+            let at = self.rng.usize(..2);
+            if self.slots[at].c.is_null() && self.rng.u8(..) > 8 {
+                self.instantiate(at);
+            } else if self.one_in(100) {
+                self.free(at);
+            } else {
+                let function = self.function(at);
+                self.call_function(at, function);
+            }
+        }
+        (0..2).for_each(|at| self.free(at));
+        self.tally
+    }
+
+    fn one_in(&mut self, n: u32) -> bool {
+        self.rng.u32(..n) == 0
+    }
+
+    /// Any function, or one that leads on.
+    fn function(&mut self, at: usize) -> Function {
+        use Function::*;
+        let leading_on: &[Function] = match self.stage(at) {
+            Stage::Instantiated => &[SetReal, SetReal, SetupExperiment, EnterInitializationMode],
+            Stage::InitializationMode => &[SetReal, GetReal, ExitInitializationMode, ExitInitializationMode],
+            Stage::StepComplete => {
+                &[SetReal, SetRealInputDerivatives, DoStep, DoStep, GetReal, GetRealOutputDerivatives]
+            }
+            Stage::StepFailed | Stage::Terminated | Stage::Error => &[Reset, SetFMUstate, GetReal],
+        };
+        let functions = if self.rng.bool() { leading_on } else { Function::ALL };
+        functions[self.rng.usize(..functions.len())]
+    }
+
+    /// A number from anywhere.
+    fn number(&mut self) -> f64 {
+        const SPECIAL: [f64; 20] = [
+            f64::NAN,
+            f64::INFINITY,
+            f64::NEG_INFINITY,
+            0.0,
+            -0.0,
+            5e-324,
+            -5e-324,
+            f64::MIN_POSITIVE,
+            1e-300,
+            -1e-300,
+            f64::EPSILON,
+            1e-9,
+            1.0,
+            -1.0,
+            1e9,
+            -1e9,
+            1e300,
+            -1e300,
+            f64::MAX,
+            f64::MIN,
+        ];
+        match self.rng.u8(..8) {
+            0 | 1 => SPECIAL[self.rng.usize(..SPECIAL.len())],
+            2 => f64::from_bits(self.rng.u64(..)),
+            3 | 4 => 2.0 * self.rng.f64() - 1.0,
+            _ => self.sign() * self.between(1e-12, 1e12),
+        }
+    }
+
+    fn sign(&mut self) -> f64 {
+        if self.rng.bool() { 1.0 } else { -1.0 }
+    }
+
+    /// Evenly distributed in its logarithm.
+    fn between(&mut self, low: f64, high: f64) -> f64 {
+        (low.ln() + self.rng.f64() * (high / low).ln()).exp()
+    }
+
+    /// A value for the variable `reference`: in its range or on its edge, more often than not.
+    fn value(&mut self, reference: c_uint) -> f64 {
+        let variable = VARIABLES.get(reference as usize);
+        let Some(DataType::Real { range: Some((min, max)), .. }) = variable.map(|v| v.data_type) else {
+            return self.number();
+        };
+        match self.rng.u8(..8) {
+            0 => self.number(),
+            1 => [min, max][self.rng.usize(..2)],
+            2 | 3 if min > 0.0 => self.between(min, max),
+            2 | 3 => self.sign() * self.between(1e-6, max),
+            _ => match variable.unwrap().name {
+                "m" | "m0" | "J0" => self.between(1.0, 1e4),
+                "H" => self.between(0.5, 20.0),
+                "B" => self.between(0.1, 3.0),
+                "f_fc" => self.between(0.5, 50.0),
+                "zeta_fc" => self.between(1e-3, 0.3),
+                "r" => self.between(0.5, 1.0),
+                "g" => 9.81,
+                "a_g" => self.sign() * self.between(0.1, 50.0),
+                _ => self.sign() * self.between(1e-4, 0.5),
+            },
+        }
+    }
+
+    fn reference(&mut self) -> c_uint {
+        match self.rng.u8(..24) {
+            0 => self.rng.u32(..),
+            1 => VARIABLES.len() as c_uint,
+            2 => c_uint::MAX,
+            _ => self.rng.u32(..VARIABLES.len() as c_uint),
+        }
+    }
+
+    fn references(&mut self) -> Vec<c_uint> {
+        let n = if self.one_in(50) { 1000 } else { self.rng.usize(..5) };
+        let mut references: Vec<_> = (0..n).map(|_| self.reference()).collect();
+        if self.rng.bool() {
+            references.truncate(1);
+        }
+        references
+    }
+
+    /// How many values the host says there are: as many as there are, or more than any call takes.
+    fn length(&mut self, n: usize) -> usize {
+        if self.one_in(40) { [usize::MAX, 1 << 40, (1 << 24) + 1][self.rng.usize(..3)] } else { n }
+    }
+
+    /// A pointer to `values`, or a bad one.
+    fn pointer<T>(&mut self, values: &mut [T]) -> *mut T {
+        match self.rng.u8(..100) {
+            0 => null_mut(),
+            1 if align_of::<T>() > 1 => values.as_mut_ptr().wrapping_byte_add(1),
+            _ => values.as_mut_ptr(),
+        }
+    }
+
+    fn choice(&mut self) -> c_int {
+        match self.rng.u8(..20) {
+            0 => self.rng.i32(..),
+            1 => -1,
+            2 => 2,
+            _ => self.rng.i32(0..2),
+        }
+    }
+
+    /// An FMU state of the instance, of the other one, or none at all.
+    fn state(&mut self, at: usize) -> *mut c_void {
+        let of = if self.one_in(20) { 1 - at } else { at };
+        match self.rng.u8(..20) {
+            0 => without_provenance_mut(self.rng.usize(..)),
+            1 => null_mut(),
+            _ => self.rng.choice(&self.slots[of].states).copied().unwrap_or(null_mut()),
+        }
+    }
+
+    /// Bytes of a state, mostly damaged.
+    fn damaged_bytes(&mut self) -> Vec<u8> {
+        let Some(mut bytes) = self.rng.choice(&self.bytes).cloned() else {
+            return (0..self.rng.usize(..200)).map(|_| self.rng.u8(..)).collect();
+        };
+        match self.rng.u8(..6) {
+            0 => return bytes,
+            1 => bytes.truncate(self.rng.usize(..bytes.len())),
+            2 => bytes.extend((0..=self.rng.usize(..64)).map(|_| 0)),
+            _ => {
+                for _ in 0..=self.rng.usize(..4) {
+                    let at = self.rng.usize(..bytes.len());
+                    bytes[at] ^= 1 << self.rng.u8(..8);
+                }
+            }
+        }
+        // A checksum that is right again lets the damage through to what lies behind it.
+        if self.rng.bool()
+            && let Some((damaged, crc)) = bytes.split_last_chunk_mut::<4>()
+        {
+            *crc = crc32fast::hash(damaged).to_le_bytes();
+        }
+        bytes
+    }
+
+    fn instantiate(&mut self, at: usize) {
+        let wrong = |rng: &mut Rng| rng.u8(..20) == 0;
+        let rng = &mut self.rng;
+        let names = [c"wall", c"%s%n#", c"\xff", c""];
+        let name = if wrong(rng) { names[rng.usize(..4)] } else { names[0] };
+        let guid = CString::new(if wrong(rng) { "{00000000-0000-0000-0000-000000000000}" } else { GUID }).unwrap();
+        let locations = [c"", c"file:///nowhere", c"file:///%00", c"http://localhost/", c"file:///dev", c"\xfe"];
+        let location = if wrong(rng) { locations[rng.usize(..6)] } else { self.location };
+        let mut texts = [name.as_ptr(), guid.as_ptr(), location.as_ptr()];
+        if wrong(rng) {
+            texts[rng.usize(..3)] = null();
+        }
+        let told = &self.slots[at].told;
+        let mut functions = host::callbacks((&raw const **told).cast_mut().cast());
+        let logger: unsafe extern "C" fn(_, _, _, _, _) = tell;
+        functions.logger = (!wrong(rng)).then(|| unsafe { std::mem::transmute(logger as *const ()) });
+        let functions = if wrong(rng) { null() } else { &raw const functions };
+        let (kind, logging_on) = (if wrong(rng) { self.choice() } else { 1 }, self.choice());
+        let c = unsafe { fmi2Instantiate(texts[0], kind, texts[1], texts[2], functions, 0, logging_on) };
+        let slot = &mut self.slots[at];
+        let messages = slot.told.messages.take();
+        assert!(messages.len() <= usize::from(c.is_null()), "{messages:?}");
+        slot.c = c;
+        *self.tally.statuses.entry((if c.is_null() { ERROR } else { OK }, "fmi2Instantiate")).or_default() += 1;
+    }
+
+    /// In whatever state, with the FMU states that it has handed out.
+    fn free(&mut self, at: usize) {
+        let slot = &mut self.slots[at];
+        unsafe { fmi2FreeInstance(slot.c) };
+        slot.c = null_mut();
+        slot.states.clear();
+        *self.tally.statuses.entry((OK, "fmi2FreeInstance")).or_default() += 1;
+    }
+
+    /// The instance as bytes.
+    fn serialized(&self, at: usize) -> Vec<u8> {
+        let c = self.slots[at].c;
+        let mut state = null_mut();
+        assert_eq!(unsafe { fmi2GetFMUstate(c, &mut state) }, OK);
+        let bytes = self.bytes_of(at, state);
+        assert_eq!(unsafe { fmi2FreeFMUstate(c, &mut state) }, OK);
+        bytes
+    }
+
+    /// One of the instance's FMU states as bytes.
+    fn bytes_of(&self, at: usize, state: *mut c_void) -> Vec<u8> {
+        let c = self.slots[at].c;
+        let mut size = 0;
+        unsafe {
+            assert_eq!(fmi2SerializedFMUstateSize(c, state, &mut size), OK);
+            let mut bytes = vec![0; size];
+            assert_eq!(fmi2SerializeFMUstate(c, state, bytes.as_mut_ptr(), size), OK);
+            bytes
+        }
+    }
+
+    /// The stage, which the refusal of a function that is never allowed tells. That of a null or silent instance is
+    /// of no interest.
+    fn stage(&self, at: usize) -> Stage {
+        let slot = &self.slots[at];
+        assert_eq!(unsafe { fmi2CancelStep(slot.c) }, ERROR);
+        let messages = slot.told.messages.take();
+        let is_told = |stage: &Stage| messages.iter().any(|(_, text)| text.contains(&format!("\"{stage}\"")));
+        Stage::ALL.into_iter().find(is_told).unwrap_or(Stage::Error)
+    }
+
+    /// Where the instance is in time, if it is.
+    fn time(&self, at: usize) -> f64 {
+        let slot = &self.slots[at];
+        let mut time = 0.0;
+        unsafe { fmi2GetRealStatus(slot.c, 2, &mut time) };
+        slot.told.messages.take();
+        time
+    }
+
+    /// Makes `call` and checks what can be said of every call: it returns OK, Discard or Error; it is told to the host
+    /// exactly if it does not return OK; if it returns Error, the instance is as it was, unless the solver got stuck.
+    fn call(&mut self, at: usize, function: Function, call: impl FnOnce(*mut c_void) -> c_int) -> c_int {
+        let c = self.slots[at].c;
+        let before = (!c.is_null() && self.one_in(16)).then(|| self.serialized(at));
+        let told = &self.slots[at].told;
+        told.messages.take();
+        told.call_back.set(if self.rng.u8(..64) == 0 { c } else { null_mut() });
+        let begin = Instant::now();
+        let status = call(c);
+        let duration = begin.elapsed();
+        told.call_back.set(null_mut());
+
+        let messages = told.messages.take();
+        let name = function.name();
+        *self.tally.statuses.entry((status, name)).or_default() += 1;
+        if duration > self.tally.longest {
+            (self.tally.longest, self.tally.longest_function) = (duration, name);
+        }
+        assert!([OK, DISCARD, ERROR].contains(&status), "{name}: {status} {messages:?}");
+        let failures: Vec<_> = messages.iter().filter(|(status, _)| *status > 1).collect();
+        assert!(failures.len() <= usize::from(status != OK), "{messages:?}");
+        for (told_status, text) in &failures {
+            assert_eq!(*told_status, status);
+            assert!(text.starts_with(&format!("{name}: ")), "{text}");
+        }
+        let is_stuck = failures.iter().any(|(_, text)| text.contains("cannot be continued"));
+        if let Some(before) = before
+            && status == ERROR
+            && !is_stuck
+        {
+            assert!(self.serialized(at) == before, "the refused {name} changed something: {failures:?}");
+        }
+        status
+    }
+
+    /// Calls `function` with arguments of its kind.
+    fn call_function(&mut self, at: usize, function: Function) {
+        use Function::*;
+        match function {
+            SetDebugLogging => self.set_debug_logging(at),
+            SetupExperiment => self.setup_experiment(at),
+            EnterInitializationMode => _ = self.call(at, function, |c| unsafe { fmi2EnterInitializationMode(c) }),
+            ExitInitializationMode => _ = self.call(at, function, |c| unsafe { fmi2ExitInitializationMode(c) }),
+            Terminate => _ = self.call(at, function, |c| unsafe { fmi2Terminate(c) }),
+            Reset => _ = self.call(at, function, |c| unsafe { fmi2Reset(c) }),
+            GetReal | GetRealOutputDerivatives => self.get_reals(at, function),
+            GetInteger | GetBoolean => self.get_discrete(at, function),
+            SetReal | SetRealInputDerivatives => self.set_reals(at, function),
+            GetString | SetInteger | SetBoolean | SetString | GetDirectionalDerivative => {
+                self.ask_in_vain(at, function)
+            }
+            GetFMUstate => self.get_state(at),
+            SetFMUstate => self.set_state(at),
+            FreeFMUstate => self.free_state(at),
+            SerializedFMUstateSize | SerializeFMUstate => self.serialize(at, function),
+            DeSerializeFMUstate => self.deserialize(at),
+            DoStep => self.do_step(at),
+            CancelStep => _ = self.call(at, function, |c| unsafe { fmi2CancelStep(c) }),
+            GetStatus | GetRealStatus | GetIntegerStatus | GetBooleanStatus | GetStringStatus => {
+                self.status(at, function)
+            }
+        }
+    }
+
+    fn set_debug_logging(&mut self, at: usize) {
+        let categories = [c"logEvents", c"logStatusError", c"nonsense", c"\xff%n"];
+        let mut names: Vec<_> = (0..self.rng.usize(..4)).map(|_| categories[self.rng.usize(..4)].as_ptr()).collect();
+        if self.one_in(20) {
+            names.push(null());
+        }
+        let (count, names, on) = (self.length(names.len()), self.pointer(&mut names), self.choice());
+        self.call(at, Function::SetDebugLogging, |c| unsafe { fmi2SetDebugLogging(c, on, count, names) });
+    }
+
+    fn setup_experiment(&mut self, at: usize) {
+        let (has_tolerance, has_stop) = (self.choice(), self.choice());
+        let tolerance = if self.one_in(4) { self.number() } else { self.between(1e-14, 0.1) };
+        let start = if self.one_in(4) { self.number() } else { self.rng.f64() };
+        let stop = if self.one_in(4) { self.number() } else { start + self.between(1.0, 1e6) };
+        let call = |c| unsafe { fmi2SetupExperiment(c, has_tolerance, tolerance, start, has_stop, stop) };
+        self.call(at, Function::SetupExperiment, call);
+    }
+
+    /// Values are finite, or left alone.
+    fn get_reals(&mut self, at: usize, function: Function) {
+        let mut references = self.references();
+        let n = references.len();
+        let (mut values, mut orders) = (vec![f64::NEG_INFINITY; n], self.orders(n));
+        let nvr = self.length(n);
+        let (vr, order, value) = (self.pointer(&mut references), self.pointer(&mut orders), self.pointer(&mut values));
+        let status = self.call(at, function, |c| unsafe {
+            match function {
+                Function::GetReal => fmi2GetReal(c, vr, nvr, value),
+                _ => fmi2GetRealOutputDerivatives(c, vr, nvr, order, value),
+            }
+        });
+        let is_right = |value: &f64| if status == OK { value.is_finite() } else { *value == f64::NEG_INFINITY };
+        assert!(values.iter().all(is_right), "{function:?} {references:?} {status} {values:?}");
+    }
+
+    fn orders(&mut self, n: usize) -> Vec<c_int> {
+        (0..n).map(|_| if self.one_in(20) { self.rng.i32(..) } else { 1 }).collect()
+    }
+
+    /// Values are small, or left alone.
+    fn get_discrete(&mut self, at: usize, function: Function) {
+        let mut references = self.references();
+        let n = references.len();
+        let mut values = vec![c_int::MIN; n];
+        let (nvr, vr, value) = (self.length(n), self.pointer(&mut references), self.pointer(&mut values));
+        let status = self.call(at, function, |c| unsafe {
+            match function {
+                Function::GetInteger => fmi2GetInteger(c, vr, nvr, value),
+                _ => fmi2GetBoolean(c, vr, nvr, value),
+            }
+        });
+        let is_right = |value: &c_int| if status == OK { *value >= 0 } else { *value == c_int::MIN };
+        assert!(values.iter().all(is_right), "{function:?} {references:?} {status} {values:?}");
+    }
+
+    fn set_reals(&mut self, at: usize, function: Function) {
+        let mut references = self.references();
+        if self.rng.bool() {
+            references = vec![0];
+        }
+        let n = references.len();
+        let (mut values, mut orders): (Vec<_>, _) =
+            (references.iter().map(|r| self.value(*r)).collect(), self.orders(n));
+        let nvr = self.length(n);
+        let (vr, order, value) = (self.pointer(&mut references), self.pointer(&mut orders), self.pointer(&mut values));
+        self.call(at, function, |c| unsafe {
+            match function {
+                Function::SetReal => fmi2SetReal(c, vr, nvr, value),
+                _ => fmi2SetRealInputDerivatives(c, vr, nvr, order, value),
+            }
+        });
+    }
+
+    /// What this FMU has nothing of.
+    fn ask_in_vain(&mut self, at: usize, function: Function) {
+        let mut references = self.references();
+        let n = references.len();
+        let (mut reals, mut integers, mut texts) = (vec![0.0; n], vec![0; n], vec![null(); n]);
+        let (nvr, vr) = (self.length(n), self.pointer(&mut references));
+        let (real, integer, text) = (self.pointer(&mut reals), self.pointer(&mut integers), self.pointer(&mut texts));
+        self.call(at, function, |c| unsafe {
+            match function {
+                Function::GetString => fmi2GetString(c, vr, nvr, text),
+                Function::SetInteger => fmi2SetInteger(c, vr, nvr, integer),
+                Function::SetBoolean => fmi2SetBoolean(c, vr, nvr, integer),
+                Function::SetString => fmi2SetString(c, vr, nvr, text),
+                _ => fmi2GetDirectionalDerivative(c, vr, nvr, vr, nvr, real, real),
+            }
+        });
+    }
+
+    fn get_state(&mut self, at: usize) {
+        let mut state = if self.rng.bool() { null_mut() } else { self.state(at) };
+        let is_new = state.is_null();
+        let place = self.pointer(slice::from_mut(&mut state));
+        let status = self.call(at, Function::GetFMUstate, |c| unsafe { fmi2GetFMUstate(c, place) });
+        if status == OK && is_new {
+            self.keep(at, state);
+        }
+    }
+
+    fn keep(&mut self, at: usize, state: *mut c_void) {
+        let slot = &mut self.slots[at];
+        assert!(!state.is_null() && !slot.states.contains(&state));
+        if slot.states.len() == 8 {
+            let mut oldest = slot.states.remove(0);
+            assert_eq!(unsafe { fmi2FreeFMUstate(slot.c, &mut oldest) }, OK);
+        }
+        slot.states.push(state);
+    }
+
+    /// The instance is then what the state was.
+    fn set_state(&mut self, at: usize) {
+        let state = self.state(at);
+        let status = self.call(at, Function::SetFMUstate, |c| unsafe { fmi2SetFMUstate(c, state) });
+        if status == OK {
+            assert!(self.serialized(at) == self.bytes_of(at, state));
+        }
+    }
+
+    fn free_state(&mut self, at: usize) {
+        let mut state = self.state(at);
+        let freed = state;
+        let place = self.pointer(slice::from_mut(&mut state));
+        let status = self.call(at, Function::FreeFMUstate, |c| unsafe { fmi2FreeFMUstate(c, place) });
+        if status == OK && !place.is_null() {
+            assert!(state.is_null());
+            self.slots[at].states.retain(|state| *state != freed);
+        }
+    }
+
+    /// Into a buffer of the right size, or another.
+    fn serialize(&mut self, at: usize, function: Function) {
+        let state = self.state(at);
+        if function == Function::SerializedFMUstateSize {
+            let mut size = 0;
+            let place = self.pointer(slice::from_mut(&mut size));
+            self.call(at, function, |c| unsafe { fmi2SerializedFMUstateSize(c, state, place) });
+            return;
+        }
+        let right = if self.slots[at].states.contains(&state) { self.bytes_of(at, state).len() } else { 0 };
+        let mut bytes = vec![0; if self.one_in(8) { self.rng.usize(..400) } else { right }];
+        let (size, place) = (self.length(bytes.len()), self.pointer(&mut bytes));
+        let status = self.call(at, function, |c| unsafe { fmi2SerializeFMUstate(c, state, place, size) });
+        if status == OK {
+            self.bytes.truncate(7);
+            self.bytes.insert(0, bytes);
+        }
+    }
+
+    fn deserialize(&mut self, at: usize) {
+        let mut bytes = self.damaged_bytes();
+        let is_whole = self.bytes.contains(&bytes);
+        let mut state = if self.rng.bool() { null_mut() } else { self.state(at) };
+        let is_new = state.is_null();
+        let (size, from) = (self.length(bytes.len()), self.pointer(&mut bytes));
+        let place = self.pointer(slice::from_mut(&mut state));
+        let call = |c| unsafe { fmi2DeSerializeFMUstate(c, from, size, place) };
+        if self.call(at, Function::DeSerializeFMUstate, call) == OK {
+            assert!(!is_whole || self.bytes_of(at, state) == bytes);
+            if is_new {
+                self.keep(at, state);
+            }
+        }
+    }
+
+    /// Mostly from where the instance is, mostly over some ten milliseconds.
+    fn do_step(&mut self, at: usize) {
+        let before = self.time(at);
+        let point = if self.one_in(16) { before + self.number() } else { before };
+        let step = match self.rng.u16(..1000) {
+            0 => 1e9,
+            1..100 => self.number(),
+            100..120 => 1e-300,
+            _ => self.between(1e-4, 0.1),
+        };
+        let go_back = self.choice();
+        let status = self.call(at, Function::DoStep, |c| unsafe { fmi2DoStep(c, point, step, go_back) });
+        let after = self.time(at);
+        assert!(if status == OK { after > before } else { after >= before }, "{before} {after}");
+    }
+
+    fn status(&mut self, at: usize, function: Function) {
+        let kind = if self.one_in(8) { self.rng.i32(..) } else { self.rng.i32(0..4) };
+        let (mut real, mut integer, mut text) = (0.0, 0, null());
+        let real = self.pointer(slice::from_mut(&mut real));
+        let integer = self.pointer(slice::from_mut(&mut integer));
+        let text = self.pointer(slice::from_mut(&mut text));
+        self.call(at, function, |c| unsafe {
+            match function {
+                Function::GetStatus => fmi2GetStatus(c, kind, integer),
+                Function::GetRealStatus => fmi2GetRealStatus(c, kind, real),
+                Function::GetIntegerStatus => fmi2GetIntegerStatus(c, kind, integer),
+                Function::GetBooleanStatus => fmi2GetBooleanStatus(c, kind, integer),
+                _ => fmi2GetStringStatus(c, kind, text),
+            }
+        });
+    }
+}

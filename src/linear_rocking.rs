@@ -1,0 +1,161 @@
+//! Rocking about side s = ±1, linearised about θ = u = 0 (Eqs 7–9).
+//!
+//! ```text
+//! ü + H θ̈ + (c_u/m) u̇ + ω_fc² u − g θ = −a_g                                                              (7)
+//! H ü + (J_P/m) θ̈ − g u − g H θ = −H a_g − s γ g B                                                        (8)
+//! ```
+//!
+//! Solved for the accelerations, with κ = (c_u/m) u̇ + ω_fc² u and i = J_P/m − H² = (J0 + m0 B²)/m + B²:
+//!
+//! ```text
+//! θ̈ = [H κ + g u − s γ g B]/i,      ü = −a_g + g θ − κ − H θ̈
+//! ```
+//!
+//! Under a ground acceleration that is linear in time the exact solution is a matrix exponential, kept for the step
+//! lengths used last; series serve the steps on which a transition may happen.
+
+use crate::linear_system::{LinearSystem, Row};
+use crate::oscillator::Kept;
+use crate::taylor::Start;
+use crate::{Side, State, Structure};
+use nalgebra::{SMatrix, SVector};
+use std::f64::consts::FRAC_PI_2;
+
+/// Takes (u, u̇, θ, θ̇, a_g, ȧ_g, s) from the start of a step to the state at its end, by columns.
+type Flow = SMatrix<f64, 4, 7>;
+
+/// Exact propagation by Eqs 7 and 8.
+#[derive(Clone, Debug)]
+pub struct LinearRocking {
+    pub(crate) system: LinearSystem,
+    flows: Kept<Flow>,
+    /// Circular frequency of u for θ held, rad/s.
+    omega: f64,
+    g: f64,
+}
+
+impl LinearRocking {
+    /// For `structure`.
+    pub fn new(structure: &Structure) -> LinearRocking {
+        let &crate::Parameters { H, B, g, .. } = structure.parameters();
+        let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
+        let inertia = foundation + B * B;
+        let theta_ddot = Row {
+            u: (H * stiffness + g) / inertia,
+            u_dot: H * damping_u / inertia,
+            theta: 0.0,
+            a_g: 0.0,
+            side: -gamma * g * B / inertia,
+        };
+        let u_ddot = Row {
+            u: -stiffness - H * theta_ddot.u,
+            u_dot: -damping_u - H * theta_ddot.u_dot,
+            theta: g,
+            a_g: -1.0,
+            side: -H * theta_ddot.side,
+        };
+        let omega = (-u_ddot.u).sqrt();
+        LinearRocking { system: LinearSystem { u_ddot, theta_ddot }, flows: Kept::new(Flow::zeros()), omega, g }
+    }
+
+    /// The state after the interval of `start` if rocking about `side` certainly goes on until then.
+    ///
+    /// With f = g θ − a_g + s U_s, the vibration about f/Ω² has an energy that grows by the change of f alone, which
+    /// bounds |θ̈| by M and with it the distance of θ from its chord by M h²/8.
+    #[inline]
+    pub fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
+        let &Start { state: State { u, u_dot, theta, theta_dot }, a_g, interval: h, .. } = start;
+        let LinearSystem { u_ddot, theta_ddot } = &self.system;
+        let s = side.sign();
+        let flow = self.flows.over(h, || flow(&self.system, h));
+        let end = flow * SVector::from([u, u_dot, theta, theta_dot, a_g.value, a_g.slope, s]);
+
+        let following = (self.g * theta - a_g.value + s * u_ddot.side) / (self.omega * self.omega);
+        let swing = self.omega * (u - following);
+        let speed = (u_dot * u_dot + swing * swing).sqrt() + h * h * (a_g.slope.abs() + self.g * theta_dot.abs());
+        let per_speed = theta_ddot.u / self.omega + theta_ddot.u_dot;
+        let feedback = per_speed * self.g * h * h * h / 2.0;
+        let steady = (theta_ddot.u * following + s * theta_ddot.side).abs();
+        let off_chord = (steady + per_speed * speed) / (1.0 - feedback) * h * h / 8.0;
+        let (first, last) = (s * theta, s * end[2]);
+        let goes_on = feedback < 0.5 && first.min(last) > off_chord && first.max(last) + off_chord < FRAC_PI_2;
+        goes_on.then(|| State { u: end[0], u_dot: end[1], theta: end[2], theta_dot: end[3] })
+    }
+}
+
+/// The flow of `system` over `duration` (s): the exponential of the system augmented by its inputs.
+fn flow(system: &LinearSystem, duration: f64) -> Flow {
+    let mut rates = SMatrix::<f64, 7, 7>::zeros();
+    rates[(0, 1)] = 1.0;
+    rates[(2, 3)] = 1.0;
+    rates[(4, 5)] = 1.0;
+    for (equation, row) in [(1, &system.u_ddot), (3, &system.theta_ddot)] {
+        rates[(equation, 0)] = row.u;
+        rates[(equation, 1)] = row.u_dot;
+        rates[(equation, 2)] = row.theta;
+        rates[(equation, 4)] = row.a_g;
+        rates[(equation, 6)] = row.side;
+    }
+    (rates * duration).exp().fixed_rows::<4>(0).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Parameters;
+    use crate::engine::GroundAcceleration;
+    use crate::nonlinear_rocking::accelerations;
+    use crate::taylor::Arc;
+    use approx::assert_relative_eq;
+    use proptest::prelude::*;
+
+    /// Eqs 7 and 8 as they stand, and their distance from Eqs 5 and 6, which is of second order.
+    #[test]
+    fn the_accelerations_satisfy_equations_7_and_8() {
+        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let &Parameters { m, H, B, g, .. } = structure.parameters();
+        let system = LinearRocking::new(&structure).system;
+        let (side, a_g) = (Side::Left, 0.8);
+        let distance = |scale: f64| {
+            let state = State { u: 1e-3 * scale, u_dot: 0.1 * scale, theta: -0.01 * scale, theta_dot: 0.05 * scale };
+            let [u_ddot, theta_ddot] = system.accelerations(side, &state, a_g * scale);
+            let State { u, u_dot, theta, .. } = state;
+            let elastic = structure.c_u / m * u_dot + structure.omega_fc.powi(2) * u;
+            assert_relative_eq!(u_ddot + H * theta_ddot + elastic - g * theta, -a_g * scale, epsilon = 1e-12);
+            let left = H * u_ddot + structure.J_P / m * theta_ddot - g * u - g * H * theta;
+            assert_relative_eq!(left, -H * a_g * scale + structure.gamma * g * B, max_relative = 1e-12);
+            let full = accelerations(&structure, side, &state, a_g * scale).unwrap();
+            (full[1] - theta_ddot).abs()
+        };
+        // The weight's moment stays as the rest shrinks: it leaves an error of first order in u/B.
+        assert_relative_eq!(distance(1e-3) / distance(1e-4), 10.0, max_relative = 0.01);
+    }
+
+    proptest! {
+        /// A leap ends where the series does, and is refused wherever the series comes back to the ground.
+        #[test]
+        fn a_leap_agrees_with_the_series_and_never_passes_an_impact(
+            u in -4e-3..4e-3f64, u_dot in -0.4..0.4f64, theta in 1e-4..0.05f64, theta_dot in -1.0..1.0f64,
+            value in -5.0..5.0f64, slope in -300.0..300.0f64, interval in 1e-4..0.02f64,
+        ) {
+            let structure = Structure::new(Parameters::MCMANUS).unwrap();
+            let state = State { u, u_dot, theta, theta_dot };
+            let start = Start { state, a_g: GroundAcceleration { value, slope }, interval, local_error: 1e-15 };
+            let mut rocking = LinearRocking::new(&structure);
+            let mut arc = Arc::default();
+            rocking.system.series(&structure, Side::Right, &start, &mut arc);
+            prop_assert_eq!(arc.reach, 1.0);
+            let lowest = (0..=1000).map(|i| arc.at(i as f64 / 1000.0).theta).fold(1.0, f64::min);
+            if let Some(end) = rocking.leap(Side::Right, &start) {
+                prop_assert!(lowest > 0.0);
+                let expected = arc.end();
+                prop_assert!((end.theta - expected.theta).abs() < 1e-14);
+                prop_assert!((end.theta_dot - expected.theta_dot).abs() < 1e-12);
+                prop_assert!((end.u - expected.u).abs() < 1e-14);
+                prop_assert!((end.u_dot - expected.u_dot).abs() < 1e-12);
+            } else {
+                prop_assert!(lowest < 0.03);
+            }
+        }
+    }
+}

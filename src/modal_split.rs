@@ -1,0 +1,141 @@
+//! Rocking and vibration mode of a rocking state (Eqs 10–20).
+//!
+//! The linearised equations (7, 8) are uncoupled, but for small geometric stiffness terms, by the shapes (u, θ) = (0, 1)
+//! of the rocking mode and (1, −p_l²/g) of the vibration mode:
+//!
+//! ```text
+//! θ = q_r + q_u,      q_u = −(p_l²/g) u                                                                (16)
+//! q̈_r − p_l² q_r = −p_l² a_g/g − s p_l² tan α_cg                                                       (11)
+//! ü + 2 ζ_u ω_u u̇ + ω_u² u = −a_g + s (β/(1−β)) g tan α_cg                                             (18)
+//! ```
+//!
+//! The lateral accelerations at the height of the top mass that belong to them, and their sum:
+//!
+//! ```text
+//! a_r = H q̈_r = β g q_r − β a_g − s β g tan α_cg                                                       (12)
+//! a_u = ü + H q̈_u + a_g = (1−β) ü + a_g                                                                (19)
+//! a_t = a_r + a_u                                                                                      (20)
+//! ```
+//!
+//! The paper's (13) and (20) are these with q_r → 0. The sum needs no a_g: it is β g q_r − (c_u u̇ + k u)/m, and differs
+//! from that of the full equations by g (θ − β q_r) to first order.
+
+use crate::{Side, State, Structure};
+
+/// The rotation of the base, split into the two modes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Modes {
+    /// Rotation of the rocking mode, rad.
+    pub q_r: f64,
+    /// Rotation of the vibration mode, rad.
+    pub q_u: f64,
+    /// Rate of q_r, rad/s.
+    pub q_r_dot: f64,
+    /// Rate of q_u, rad/s.
+    pub q_u_dot: f64,
+}
+
+impl Modes {
+    /// Splits the rotation of `state` (Eq 16).
+    pub fn of(structure: &Structure, state: &State) -> Modes {
+        let &State { u, u_dot, theta, theta_dot } = state;
+        let ratio = -structure.p_l * structure.p_l / structure.parameters().g;
+        let (q_u, q_u_dot) = (ratio * u, ratio * u_dot);
+        Modes { q_r: theta - q_u, q_u, q_r_dot: theta_dot - q_u_dot, q_u_dot }
+    }
+}
+
+/// The lateral acceleration of the top mass, split into the two modes, m/s².
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ModalAccelerations {
+    /// Of the rocking mode, a_r (Eq 12).
+    pub a_r: f64,
+    /// Of the vibration mode with the ground's part, a_u (Eq 19).
+    pub a_u: f64,
+}
+
+impl ModalAccelerations {
+    /// The modes' accelerations while rocking about `side` under the ground acceleration `a_g` (m/s²).
+    pub fn of(structure: &Structure, side: Side, state: &State, a_g: f64) -> ModalAccelerations {
+        let &Structure { beta, one_minus_beta, omega_u, zeta_u, tan_alpha_cg, .. } = structure;
+        let g = structure.parameters().g;
+        let step = side.sign() * g * tan_alpha_cg;
+        let a_r = beta * (g * Modes::of(structure, state).q_r - a_g - step);
+        let u_ddot =
+            beta / one_minus_beta * step - a_g - 2.0 * zeta_u * omega_u * state.u_dot - omega_u * omega_u * state.u;
+        ModalAccelerations { a_r, a_u: one_minus_beta * u_ddot + a_g }
+    }
+
+    /// Of both modes together, a_t (Eq 20).
+    pub fn a_t(&self) -> f64 {
+        self.a_r + self.a_u
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Parameters;
+    use approx::assert_relative_eq;
+    use nalgebra::{Matrix2, Vector2};
+
+    const STATE: State = State { u: 2e-4, u_dot: -0.03, theta: 0.02, theta_dot: 0.15 };
+
+    #[test]
+    fn the_split_adds_up_and_leaves_a_rigid_rotation_alone() {
+        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let modes = Modes::of(&structure, &STATE);
+        assert_relative_eq!(modes.q_r + modes.q_u, STATE.theta, max_relative = 1e-15);
+        assert_relative_eq!(modes.q_r_dot + modes.q_u_dot, STATE.theta_dot, max_relative = 1e-15);
+        assert_relative_eq!(structure.parameters().H * modes.q_u, -structure.beta * STATE.u, max_relative = 1e-14);
+        let rigid = State { u: 0.0, u_dot: 0.0, ..STATE };
+        let alone = Modes { q_r: 0.02, q_u: 0.0, q_r_dot: 0.15, q_u_dot: 0.0 };
+        assert_eq!(Modes::of(&structure, &rigid), alone);
+    }
+
+    /// The linearised equations (7, 8), their gravity terms replaced by those which the modes keep: g H q_r in (8), and in
+    /// (7) β g q_r, whose moment about the vibration mode's node is the same.
+    #[test]
+    fn the_modes_solve_the_linearised_equations() {
+        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let &Parameters { m, H, B, g, .. } = structure.parameters();
+        let a_g = 2.0;
+        for side in [Side::Right, Side::Left] {
+            let q_r = Modes::of(&structure, &STATE).q_r;
+            let mass = Matrix2::new(1.0, H, H, structure.J_P / m);
+            let force = Vector2::new(
+                structure.beta * g * q_r - (structure.c_u * STATE.u_dot + structure.k * STATE.u) / m - a_g,
+                g * H * q_r - H * a_g - side.sign() * structure.gamma * g * B,
+            );
+            let accelerations = mass.try_inverse().unwrap() * force;
+            let modal = ModalAccelerations::of(&structure, side, &STATE, a_g);
+            let a_t = accelerations[0] + H * accelerations[1] + a_g;
+            assert_relative_eq!(modal.a_t(), a_t, max_relative = 1e-12);
+            assert_relative_eq!(modal.a_u, structure.one_minus_beta * accelerations[0] + a_g, max_relative = 1e-12);
+        }
+    }
+
+    /// Eq 13: the step of the rocking mode, 0.34 g in the paper with β = 0.92, and its sign.
+    #[test]
+    fn a_small_rotation_leaves_the_step_of_equation_13() {
+        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let g = structure.parameters().g;
+        let step = |side, a_g| ModalAccelerations::of(&structure, side, &State::default(), a_g).a_r / g;
+        assert_relative_eq!(step(Side::Left, 0.0), 0.33326, max_relative = 1e-4);
+        assert_relative_eq!(step(Side::Right, 0.0), -0.33326, max_relative = 1e-4);
+        assert_relative_eq!(step(Side::Right, g), -0.33326 - structure.beta, max_relative = 1e-4);
+    }
+
+    /// The sum depends on the state alone.
+    #[test]
+    fn the_sum_needs_no_ground_acceleration() {
+        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let &Parameters { m, g, .. } = structure.parameters();
+        let q_r = Modes::of(&structure, &STATE).q_r;
+        let expected = structure.beta * g * q_r - (structure.c_u * STATE.u_dot + structure.k * STATE.u) / m;
+        for a_g in [-15.0, 0.0, 8.0] {
+            let modal = ModalAccelerations::of(&structure, Side::Right, &STATE, a_g);
+            assert_relative_eq!(modal.a_t(), expected, max_relative = 1e-12);
+        }
+    }
+}
