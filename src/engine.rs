@@ -28,7 +28,7 @@ pub const DEFAULT_TOLERANCE: f64 = 1e-9;
 
 /// Part of the tolerance that one step may use up. Impacts amplify an error by orders of magnitude over a record, and a
 /// series pays for each with only one more coefficient or so.
-const LOCAL_SHARE: f64 = 1e-4;
+const LOCAL_SHARE: f64 = 1e-5;
 
 /// Transitions within one period of the vibration mode (2π/ω_u) after which contact is held.
 pub const MAX_TRANSITIONS_PER_PERIOD: u32 = 32;

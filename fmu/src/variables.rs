@@ -126,7 +126,7 @@ fn overturned(motion: &Motion) -> i32 {
     i32::from(matches!(motion.phase, Phase::Overturned(_)))
 }
 
-/// The input. Setting it holds it: a slope is set afterwards, and anew for every step.
+/// The input. Its slope is set by a call of its own, before or after, and anew for every step.
 pub(crate) static A_G: Quantity<GroundAcceleration> = Quantity {
     name: "a_g",
     unit: "m/s2",
@@ -134,7 +134,7 @@ pub(crate) static A_G: Quantity<GroundAcceleration> = Quantity {
     min: -1e4,
     max: 1e4,
     get: |a_g| a_g.value,
-    set: |a_g, value| *a_g = GroundAcceleration { value, slope: 0.0 },
+    set: |a_g, value| a_g.value = value,
 };
 
 /// All variables, in the order of the model description.

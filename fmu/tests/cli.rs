@@ -1,59 +1,17 @@
 //! The command line driven from outside: `describe` and `simulate`, their tables, messages and exit codes.
 
+mod command_line;
+
 use FlexibleRocking::variables::{DataType, PHASES, VARIABLES};
+use command_line::{DT, SAMPLES, command, fail, folder, pulse, succeed};
 use model_description::Causality;
 use rocking::{Engine, GroundAcceleration, Outputs, Parameters, Phase, State, Structure, engine::DEFAULT_TOLERANCE};
 use std::{
     fs,
     io::Read,
     path::Path,
-    process::{Command, Output, Stdio},
+    process::{Output, Stdio},
 };
-use tempfile::TempDir;
-
-/// A full sine of 0.6 g and 0.5 s and rest after it, 401 samples: lifts and lands the McManus specimen.
-const SAMPLES: usize = 401;
-const DT: f64 = 0.01;
-
-fn pulse(i: usize) -> f64 {
-    let time = i as f64 * DT;
-    if time < 0.5 { 0.6 * (std::f64::consts::TAU * time / 0.5).sin() } else { 0.0 }
-}
-
-/// An empty folder with the pulse in it as `pulse.AT2`.
-fn folder() -> TempDir {
-    let folder = TempDir::new().unwrap();
-    let values: Vec<_> = (0..SAMPLES).map(|i| format!("{:e}", pulse(i))).collect();
-    let lines: Vec<_> = values.chunks(5).map(|line| line.join("  ")).collect();
-    let header = "PEER\nFull sine\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS=    401, DT=   .0100 SEC,\n";
-    fs::write(folder.path().join("pulse.AT2"), format!("{header}{}\n", lines.join("\n"))).unwrap();
-    folder
-}
-
-fn command(folder: &Path, arguments: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_rocking-fmu"));
-    command.current_dir(folder).args(arguments.split_whitespace());
-    command
-}
-
-fn run(folder: &Path, arguments: &str) -> Output {
-    command(folder, arguments).output().unwrap()
-}
-
-/// Runs a command that succeeds, and returns its standard output and standard error.
-fn succeed(folder: &Path, arguments: &str) -> (String, String) {
-    let Output { status, stdout, stderr } = run(folder, arguments);
-    let (stdout, stderr) = (String::from_utf8(stdout).unwrap(), String::from_utf8(stderr).unwrap());
-    assert!(status.success(), "{arguments}: {stderr}");
-    (stdout, stderr)
-}
-
-/// Runs a command that fails, and returns its exit code and standard error.
-fn fail(folder: &Path, arguments: &str) -> (i32, String) {
-    let Output { status, stdout, stderr } = run(folder, arguments);
-    assert_eq!(String::from_utf8(stdout).unwrap(), "");
-    (status.code().unwrap(), String::from_utf8(stderr).unwrap())
-}
 
 /// The headings and lines of a CSV file.
 fn table(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {

@@ -86,7 +86,10 @@ fn spring() -> FmiModelDescription {
                     causality: Causality::Output,
                     variability: Variability::Discrete,
                     initial: Some(Initial::Calculated),
-                    variable_type: VariableType::Enumeration(Enumeration { declared_type: "Branch".into(), start: None }),
+                    variable_type: VariableType::Enumeration(Enumeration {
+                        declared_type: "Branch".into(),
+                        start: None,
+                    }),
                 },
                 ScalarVariable {
                     name: "cycles".into(),

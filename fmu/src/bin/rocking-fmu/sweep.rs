@@ -41,8 +41,8 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     };
     let (rows, mut outcomes) = Rows::open(&output, &plan)?;
     let missing: Vec<_> = (0..plan.len()).filter(|index| outcomes[*index].is_none()).collect();
-    eprintln!("{}", plan.describe());
-    eprintln!("in {}: {} of {} runs", output.display(), plan.len() - missing.len(), plan.len());
+    let done = plan.len() - missing.len();
+    eprintln!("{}: {done} of {} runs done, {}", output.display(), plan.len(), plan.describe());
 
     let pool = ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, NonZeroUsize::get)).build()?;
     let clock = Instant::now();

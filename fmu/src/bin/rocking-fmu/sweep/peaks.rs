@@ -80,3 +80,40 @@ fn cubic_peak(values: [f64; 2], rates: [f64; 2], duration: f64) -> f64 {
     let turns = [q / a, c / q].into_iter().find(|s| (0.0..=1.0).contains(s));
     turns.map_or(ends, |s| ends.max((start + s * (c + s * (b / 2.0 + s * a / 3.0))).abs()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::cubic_peak;
+    use approx::assert_relative_eq;
+
+    /// p(t) = t³ − 3t on [−2, 1.5] turns at −1 and 1, where |p| = 2.
+    #[test]
+    fn the_peak_of_a_cubic_is_where_it_turns() {
+        let p = |t: f64| t * t * t - 3.0 * t;
+        let rate = |t: f64| 3.0 * t * t - 3.0;
+        let peak = |from: f64, to: f64| cubic_peak([p(from), p(to)], [rate(from), rate(to)], to - from);
+        assert_relative_eq!(peak(-1.3, 0.2), 2.0, max_relative = 1e-14);
+        assert_relative_eq!(peak(-0.2, 1.4), 2.0, max_relative = 1e-14);
+        assert_eq!(peak(-0.5, 0.7), p(0.7).abs());
+        assert_eq!(peak(1.2, 3.0), p(3.0));
+        assert_eq!(peak(1.0, 1.0), 2.0);
+    }
+
+    #[test]
+    fn a_parabola_and_a_line_are_cubics_too() {
+        assert_eq!(cubic_peak([0.0, 0.0], [4.0, -4.0], 1.0), 1.0);
+        assert_eq!(cubic_peak([0.0, 0.0], [2.0, -2.0], 2.0), 1.0);
+        assert_eq!(cubic_peak([1.0, -3.0], [-2.0, -2.0], 2.0), 3.0);
+        assert_eq!(cubic_peak([0.0, 0.0], [0.0, 0.0], 0.1), 0.0);
+    }
+
+    /// Twelve instants per period, as [`super::super::outcome`] has them at least.
+    #[test]
+    fn a_vibration_peaks_between_the_instants() {
+        let step = std::f64::consts::TAU / 12.0;
+        let from = std::f64::consts::FRAC_PI_2 - 0.3 * step;
+        let to = from + step;
+        let peak = cubic_peak([from.sin(), to.sin()], [from.cos(), to.cos()], step);
+        assert!((peak - 1.0).abs() < 2e-4, "{peak}");
+    }
+}

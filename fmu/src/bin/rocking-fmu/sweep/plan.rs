@@ -202,7 +202,7 @@ impl Plan {
     /// Its size, for people.
     pub fn describe(&self) -> String {
         let [structures, records, scales] = [self.points.len(), self.motions.len(), self.scales.len()];
-        format!("{structures} structures x {records} records x {scales} scale factors")
+        format!("structures: {structures}, records: {records}, scale factors: {scales}")
     }
 }
 

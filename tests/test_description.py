@@ -1,0 +1,167 @@
+"""What the FMU says of itself."""
+
+import re
+import zipfile
+
+import pytest
+from fmpy.util import fmu_info
+from fmpy.validation import validate_fmu
+from host import PHASES, REALS
+
+KINDS = {
+    ("input", "continuous", "Real"): {"a_g": "m/s2"},
+    ("output", "continuous", "Real"): {
+        "theta": "rad", "u": "m", "a_t": "m/s2", "V_t": "N", "M_t": "N.m",
+        "theta_dot": "rad/s", "u_dot": "m/s", "uplift": "m", "delta_t": "m",
+    },
+    ("output", "discrete", "Enumeration"): {"phase": None},
+    ("output", "discrete", "Integer"): {"transitions": None},
+    ("output", "discrete", "Boolean"): {"overturned": None},
+    ("parameter", "fixed", "Real"): {
+        "m": "kg", "m0": "kg", "H": "m", "B": "m", "J0": "kg.m2", "f_fc": "Hz", "zeta_fc": "1", "c_ratio": "1", "r": "1",
+        "g": "m/s2", "theta_0": "rad", "theta_dot_0": "rad/s", "u_0": "m", "u_dot_0": "m/s",
+    },
+    ("parameter", "fixed", "Enumeration"): {"detail": None},
+    ("calculatedParameter", "fixed", "Real"): {"alpha_cg": "rad", "p_l": "rad/s", "beta": "1", "u_cr": "m", "f_u": "Hz"},
+}
+
+STARTS = {
+    "mcmanus": dict(m=130.1, m0=65.4, H=1.84, B=0.285, J0=10.7, f_fc=5, zeta_fc=0.02, c_ratio=1, r=0.99, g=9.81),
+    "evison": dict(m=125.8, m0=44.02, H=1.05, B=0.285, J0=0, f_fc=11, zeta_fc=0.015, c_ratio=1, r=0.96, g=9.81),
+}
+
+
+@pytest.fixture(params=["mcmanus", "evison"])
+def fmu(request):
+    return request.getfixturevalue(request.param)
+
+
+def test_fmpy_finds_no_problem(fmu):
+    assert validate_fmu(fmu.path) == []
+
+
+def test_variables(fmu):
+    described = {}
+    for variable in fmu.description.modelVariables:
+        kind = (variable.causality, variable.variability, variable.type)
+        described.setdefault(kind, {})[variable.name] = variable.unit
+    # a ratio's unit may be left out or be "1"
+    described = {kind: {name: unit or ("1" if kind[2] == "Real" else None) for name, unit in names.items()}
+                 for kind, names in described.items()}
+    assert described == KINDS
+
+
+def test_every_variable_is_described(fmu):
+    assert [variable.name for variable in fmu.description.modelVariables if not variable.description] == []
+
+
+@pytest.mark.parametrize("preset", STARTS)
+def test_start_values_are_those_of_the_structure(preset, request):
+    fmu = request.getfixturevalue(preset)
+    starts = STARTS[preset] | dict(theta_0=0, theta_dot_0=0, u_0=0, u_dot_0=0)
+    described = {variable.name: float(variable.start) for variable in fmu.variables.values()
+                 if variable.causality == "parameter" and variable.type == "Real"}
+    assert described == starts
+    with fmu.start() as instance:
+        assert {name: instance.get(name) for name in starts} == starts
+
+
+def test_ranges_are_what_the_library_accepts(fmu):
+    """At its limits a parameter or initial value is accepted; every one has limits."""
+    for variable in fmu.variables.values():
+        if variable.causality not in ("parameter", "input") or variable.type != "Real":
+            continue
+        with fmu.instance() as instance:
+            for limit in (variable.min, variable.max):
+                assert limit is not None, f"{variable.name} has no limit"
+                instance.set(**{variable.name: float(limit)})
+
+
+def test_phases(fmu):
+    items = {item.name: int(item.value) for item in fmu.variables["phase"].declaredType.items}
+    assert items == PHASES
+
+
+def test_no_output_depends_on_the_input(fmu):
+    unknowns = fmu.description.outputs
+    assert sorted(unknown.variable.name for unknown in unknowns) == sorted([*REALS, "phase", "transitions", "overturned"])
+    for unknown in unknowns:
+        # no attribute would mean "on all of the inputs"
+        assert unknown.dependencies == [], unknown.variable.name
+
+
+def test_initial_dependencies_are_the_true_ones(fmu):
+    """Changing one number changes exactly those initial unknowns that name it as a dependency."""
+    start = dict(theta_0=0.01, theta_dot_0=0.02, u_0=0.0003, u_dot_0=0.004)
+    unknowns = {unknown.variable.name: unknown for unknown in fmu.description.initialUnknowns}
+    names = [name for name in unknowns if fmu.variables[name].type == "Real"]
+
+    def values(**changes):
+        with fmu.instance() as instance:
+            instance.set(**(start | changes))
+            instance.slave.enterInitializationMode()
+            return instance.reals(names)
+
+    with fmu.instance() as instance:
+        instance.set(**start)
+        instance.slave.enterInitializationMode()
+        numbers = {variable.name: instance.get(variable.name) for variable in fmu.variables.values()
+                   if variable.causality in ("parameter", "input") and variable.type == "Real"}
+    before = values()
+    for known, number in numbers.items():
+        after = values(**{known: number * 0.75 if number else 0.75})
+        changed = {name for name, old, new in zip(names, before, after) if new != pytest.approx(old, rel=1e-12)}
+        stated = {name for name in names if known in {v.name for v in unknowns[name].dependencies}}
+        assert changed == stated, f"what depends on {known}"
+
+
+def test_capabilities(fmu):
+    capabilities = fmu.description.coSimulation
+    assert capabilities.modelIdentifier == "FlexibleRocking"
+    assert capabilities.canHandleVariableCommunicationStepSize
+    assert capabilities.canInterpolateInputs
+    assert capabilities.canGetAndSetFMUstate
+    assert capabilities.canSerializeFMUstate
+    assert not capabilities.canBeInstantiatedOnlyOncePerProcess
+
+
+def test_archive(fmu):
+    with zipfile.ZipFile(fmu.path) as archive:
+        names = archive.namelist()
+        assert archive.testzip() is None
+        for name in ("modelDescription.xml", "model.png", "binaries/linux64/FlexibleRocking.so",
+                     "documentation/index.html"):
+            assert name in names
+        page = archive.read("documentation/index.html").decode()
+        assert archive.read("model.png").startswith(b"\x89PNG\r\n")
+    for name in fmu.variables:
+        assert name in page, f"the documentation does not mention {name}"
+
+
+def test_two_exports_are_identical(export):
+    first, second = (export("mcmanus").read_bytes() for _ in range(2))
+    assert first == second, "the archives differ"
+
+
+def test_the_library_refuses_another_builds_description(fmu):
+    other = "{00000000-0000-0000-0000-000000000000}"
+    messages = []
+    with pytest.raises(Exception, match="Failed to instantiate"):
+        fmu.instance(guid=other, messages=messages)
+    (message,) = messages
+    assert message.status == 3 and message.category == "logStatusError"
+    assert other in message.text and fmu.description.guid in message.text
+
+
+def test_info(fmu):
+    info = fmu_info(fmu.path)
+    assert re.search(r"FMI Version +2\.0\n", info)
+    assert re.search(r"FMI Type +Co-Simulation\n", info)
+    assert re.search(r"Model Name +\S", info)
+    assert re.search(r"Description +\S", info)
+    # no date: it would tell two exports of the same thing apart
+    assert re.findall(r"^  (.*?) +None$", info, re.MULTILINE) == ["Generation Date"]
+    for name in ("a_g", *REALS, "phase", "transitions", "overturned"):
+        variable = fmu.variables[name]
+        line = re.search(rf"^  {name} +{variable.causality} .*$", info, re.MULTILINE)
+        assert line and variable.description in line[0], name
