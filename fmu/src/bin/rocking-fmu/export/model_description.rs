@@ -13,8 +13,6 @@ pub const MODEL_NAME: &str = "FlexibleRocking";
 /// What the model is, in one line.
 pub const DESCRIPTION: &str = "A flexible structure that rocks freely on rigid ground under earthquake ground motion";
 
-/// Name of the enumeration of phases.
-
 /// The units of the variables, as exponents of kg, m, s, rad.
 const UNITS: [(&str, [i32; 4]); 10] = [
     ("kg", [1, 0, 0, 0]),

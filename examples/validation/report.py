@@ -1,0 +1,105 @@
+"""What the report is made of: rows "paper / computed / difference / remark", sections, and their Markdown."""
+
+import textwrap
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Row:
+    """One number of the paper beside ours."""
+
+    quantity: str
+    paper: str | None  # as printed; None where the paper gives no number
+    computed: float
+    form: str = ".3f"  # how to print ours
+    unit: str = ""
+    remark: str = ""
+
+    @property
+    def difference(self) -> float | None:
+        """Ours less the paper's."""
+        return None if self.paper is None else self.computed - float(self.paper)
+
+    @property
+    def agrees(self) -> bool:
+        """Whether ours, rounded to the digits that the paper prints, is what it prints; true where it prints none."""
+        if self.paper is None:
+            return True
+        decimals = len(self.paper.partition(".")[2])
+        return round(self.computed, decimals) == float(self.paper)
+
+    def cells(self) -> list[str]:
+        """Its cells in the table."""
+        unit = f" {self.unit}" if self.unit else ""
+        if self.paper is None:
+            paper, difference = "–", "–"
+        elif self.agrees:
+            paper, difference = f"{self.paper}{unit}", "to its digits"
+        elif self.unit == "%":
+            paper, difference = f"{self.paper}{unit}", f"{self.difference:+.1f}{unit}"
+        else:
+            part = 100 * self.difference / float(self.paper)
+            paper, difference = f"{self.paper}{unit}", f"{self.difference:+.2g}{unit} ({part:+.1f} %)"
+        numbers = [paper, f"{self.computed:{self.form}}{unit}", difference]
+        return [self.quantity, *(number.replace("-", "−") for number in numbers), self.remark]
+
+
+@dataclass(frozen=True)
+class Section:
+    """One claim: what it is, the table, the figure, and what to make of them."""
+
+    title: str
+    introduction: str
+    rows: list[Row]
+    figure: str  # file name
+    caption: str
+    findings: list[str] = field(default_factory=list)  # paragraphs and tables after the figure
+    source: str = "paper"  # what the second column holds
+
+
+def table(headings: list[str], lines: list[list[str]], texts: tuple[int, ...] = (0,)) -> str:
+    """A Markdown table; the columns `texts` are words, the others numbers."""
+    rule = ["---" if column in texts else "---:" for column in range(len(headings))]
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in [headings, rule, *lines])
+
+
+def comparison(section: Section) -> str:
+    """The table of a section's rows."""
+    headings = ["quantity", section.source, "computed", "difference", "remark"]
+    return table(headings, [row.cells() for row in section.rows], texts=(0, 4))
+
+
+def summary(sections: list[Section]) -> str:
+    """How many numbers agree, and the table of those that do not."""
+    compared = [row for section in sections for row in section.rows if row.paper is not None]
+    lines = [[str(number), *row.cells()] for number, section in enumerate(sections, 1) for row in section.rows
+             if not row.agrees]
+    headings = ["section", "quantity", "paper or its formula", "computed", "difference", "why"]
+    return (f"{sum(row.agrees for row in compared)} of the {len(compared)} numbers compared below agree to every digit "
+            f"that the paper prints (or that its formula gives). The others:\n\n{table(headings, lines, texts=(1, 5))}")
+
+
+def markdown(sections: list[Section], figures: str) -> str:
+    """The report; figures are found in the folder `figures` beside it."""
+    parts = [INTRODUCTION, "## What agrees, and what does not", summary(sections)]
+    for number, section in enumerate(sections, 1):
+        parts += [f"## {number}. {section.title}", section.introduction, comparison(section),
+                  f"![{section.title}]({figures}/{section.figure})", f"*{section.caption}*", *section.findings]
+    blocks = "\n\n".join(parts).split("\n\n")
+    return "\n\n".join(map(_filled, blocks)) + "\n"
+
+
+def _filled(block: str) -> str:
+    """A paragraph with lines of even length; a table, a heading or a figure as it is."""
+    return block if block.startswith(("|", "#", "!")) else textwrap.fill(block, 120, break_long_words=False)
+
+
+INTRODUCTION = """# Validation against the paper
+
+Every number of the paper that its text gives the data for, beside the one that the exported FMU gives. `make report`
+writes this page and its figures: the FMU is exported and driven by fmpy, at a tolerance of 1e-10 (1e-8 in section 7),
+and what the library itself computes (pushover, demands, effective frequency, modes) is asked of `rocking-fmu`.
+Equation, figure and table numbers are the paper's. Its measured histories are printed as pictures only and are not
+redrawn; of them the values that the text states are compared.
+
+"computed" is ours; "to its digits" says that it rounds to what is printed."""
