@@ -129,6 +129,7 @@ pub struct Run<'a> {
     pub population: &'a str,
     pub point: &'a Point,
     motion: &'a Motion,
+    /// Position of the scale factor in [`Plan::scales`].
     pub scale_index: usize,
     pub scale: f64,
 }
@@ -227,9 +228,10 @@ impl Run<'_> {
         &self.point.values
     }
 
-    /// Identifies the run by all that it depends on: every parameter, every sample, the scale factor.
+    /// Identifies the run by its names and by all that it depends on: every parameter, every sample, the scale factor.
     pub fn digest(&self) -> u64 {
-        digest(&(self.point.structure.parameters(), self.motion.digest, self.scale))
+        let names = (self.population, self.record());
+        digest(&(names, self.point.structure.parameters(), self.motion.digest, self.scale))
     }
 
     /// Which run it is, for people.
@@ -302,7 +304,7 @@ fn motions(
 ) -> anyhow::Result<Vec<Motion>> {
     let mut motions = Vec::new();
     for pattern in patterns {
-        let in_folder = folder.join(pattern);
+        let in_folder = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
         let before = motions.len();
         for path in glob::glob(&in_folder.to_string_lossy()).with_context(|| format!("records {pattern:?}"))? {
             let path = path?;
@@ -312,7 +314,7 @@ fn motions(
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             motions.push(Motion { name, digest: digest(&(record.times(), record.acceleration())), record, pga });
         }
-        ensure!(motions.len() > before, "records: there is no file {}", in_folder.display());
+        ensure!(motions.len() > before, "records: there is no file {}", folder.join(pattern).display());
     }
     ensure!(!motions.is_empty(), "records is empty: name one or more");
     Ok(motions)
