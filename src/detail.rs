@@ -1,11 +1,13 @@
-//! Levels of detail: which equations a structure moves by. The rules of transition are the same at all of them.
+//! Levels of detail: which equations a structure moves by. Transitions are found and applied by the same code at all of
+//! them; the rigid limit, where u decides nothing, has its own condition of uplift and its own end of bouncing, and a
+//! fixed base has no uplift.
 //!
 //! | level | equations | solved by |
 //! |---|---|---|
 //! | `auto` | 1, 5, 6 | exact flow in full contact, series while rocking |
 //! | `nonlinear` | 1, 5, 6 | series throughout, each to the tolerance |
-//! | `linear` | 1, 7, 8 | exact flow |
-//! | `modal` | 1, 11, 18 | closed forms of two modes |
+//! | `linear` | 1, 7, 8 | exact flow, series on steps that may hold a transition |
+//! | `modal` | 1, 11, 18 | closed forms of two modes, likewise |
 //! | `rigid` | 6 with u = 0 | series |
 //! | `fixed_base` | 1, no uplift | exact flow |
 

@@ -7,10 +7,11 @@
 //!
 //! # Progress
 //!
-//! No vibration period 2π/ω_u sees more than [`MAX_TRANSITIONS_PER_PERIOD`] + 2 transitions, so that work per simulated
-//! second is bounded: after that number the next impact is a landing whatever its momentum, and contact is then held to
-//! the end of that period ([`TransitionKind::Settling`]). It is the limit to which ever faster impacts tend; the
-//! specimens never come near it. The rigid limit, which has no vibration and does come to rest by ever faster impacts,
+//! Transitions are counted from the first of them on for a vibration period 2π/ω_u, then anew. After
+//! [`MAX_TRANSITIONS_PER_PERIOD`] the next impact is a landing whatever its momentum, and contact is held to the end of the
+//! period ([`TransitionKind::Settling`]): it sees two more at most. Bounces that fast are the start of infinitely many
+//! in finite time, which end in contact; neither specimen comes near them. Steps are then bounded too: an advance takes
+//! at most one for itself, two for each transition, and one for each 1/Ω of time, Ω the largest of ω_u, 2 ζ_u ω_u and p_l. The rigid limit, which has no vibration and does come to rest by ever faster impacts,
 //! has [`MAX_RIGID_TRANSITIONS_PER_PERIOD`] for each 1/p_l instead. One call takes at most [`MAX_STEPS_PER_ADVANCE`]
 //! steps.
 
@@ -31,13 +32,16 @@ pub const DEFAULT_TOLERANCE: f64 = 1e-9;
 const LOCAL_SHARE: f64 = 1e-5;
 
 /// Transitions within one period of the vibration mode (2π/ω_u) after which contact is held.
-pub const MAX_TRANSITIONS_PER_PERIOD: u32 = 32;
+pub const MAX_TRANSITIONS_PER_PERIOD: u32 = 1000;
 
 /// Transitions within 1/p_l after which contact is held at the rigid level: coming to rest with r = 0.9998 takes as many.
 pub const MAX_RIGID_TRANSITIONS_PER_PERIOD: u32 = 100_000;
 
 /// Steps that one advance may take, about a second of computing; a longer interval has to be cut.
 pub const MAX_STEPS_PER_ADVANCE: u64 = 2_000_000;
+
+/// A step shorter than this part of 1/ω_u is not the doing of the step's end or of a transition: the solution ends.
+const STALLED: f64 = 1e-12;
 
 /// Ground acceleration over one interval, positive to the right: `value + slope·(t − start of the interval)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -145,7 +149,7 @@ pub enum Progress {
     Overturned,
 }
 
-/// Why an advance failed; the motion is then as it was before.
+/// Why an advance failed; the motion is then as it was before, whatever transitions have been shown on the way.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AdvanceError {
     /// The end of the interval does not lie ahead.
@@ -236,7 +240,7 @@ impl Engine {
             transitions: 0,
             work: Work::default(),
             a_g: 0.0,
-            burst: Burst { start: f64::NEG_INFINITY, transitions: 0, held_until: f64::NEG_INFINITY },
+            burst: Burst { start: f64::MIN, transitions: 0, held_until: f64::MIN },
         };
         Ok(Engine {
             structure,
@@ -302,7 +306,8 @@ impl Engine {
                 Phase::Overturned(_) => break,
             };
             let (arc, duration) = (&self.arc, self.arc.duration());
-            if !arc.is_finite() || (duration == 0.0 && matches!(end, StepEnd::Quiet)) {
+            let has_stalled = arc.reach < 1.0 && duration <= STALLED / self.structure.omega_u;
+            if !arc.is_finite() || (has_stalled && matches!(end, StepEnd::Quiet)) {
                 let State { u, theta, .. } = motion.state;
                 return Err(AdvanceError::Singular { time: motion.time, u, theta });
             }
@@ -312,8 +317,8 @@ impl Engine {
             motion.work.steps += 1;
             motion.work.evaluations += arc.order as u64;
             motion.state = arc.end();
-            (elapsed, motion.time) =
-                if duration == left { (interval, until) } else { (elapsed + duration, start + elapsed + duration) };
+            elapsed = if duration == left { interval } else { elapsed + duration };
+            motion.time = if elapsed < interval { start + elapsed } else { until };
             motion.a_g = a_g.at(elapsed);
             if let Some(transition) = self.resolve(&mut motion, end) {
                 observe(&transition);
@@ -405,7 +410,7 @@ impl Engine {
         let (kind, phase, after) = match end {
             StepEnd::Quiet => return None,
             StepEnd::HoldOver => {
-                motion.burst.held_until = f64::NEG_INFINITY;
+                motion.burst.held_until = f64::MIN;
                 return None;
             }
             StepEnd::Uplift(side) => (TransitionKind::Uplift(side), Phase::Rocking(side), before),

@@ -14,6 +14,9 @@ pub fn acceleration(structure: &Structure, state: &State, a_g: f64) -> f64 {
     -a_g - structure.damping_fc * state.u_dot - structure.stiffness * state.u
 }
 
+/// Part of the velocity at uplift, ω_fc u_cr, below which motion is as good as none.
+const NEGLIGIBLE: f64 = 1e-30;
+
 /// Writes the motion from `start` into `arc`.
 pub fn series(structure: &Structure, start: &Start, arc: &mut Arc) {
     let &Start { state, a_g, interval, local_error } = start;
@@ -22,6 +25,8 @@ pub fn series(structure: &Structure, start: &Start, arc: &mut Arc) {
     let forcing = a_g.value.abs() + a_g.slope.abs() * span;
     let response_time = span.min(1.0 / omega_fc);
     let u_dot = state.u_dot.abs() + response_time * (stiffness * state.u.abs() + forcing);
+    // a structure that comes to rest must not ask for less than numbers can tell
+    let u_dot = u_dot.max(NEGLIGIBLE * omega_fc * structure.u_cr);
     let truncation = Truncation { u_dot: local_error * u_dot, theta_dot: 0.0 };
     arc.expand(&state, span, truncation, |arc, k, per| {
         let u_ddot = -a_g.coefficient(k - 1, span) - damping_fc * arc.u_dot[k - 1] - stiffness * arc.u[k - 1];
@@ -47,6 +52,9 @@ impl ExactContact {
     #[inline]
     pub fn leap(&mut self, start: &Start, limit: f64) -> Option<State> {
         let &Start { state: State { u, u_dot, .. }, a_g, interval, .. } = start;
+        if !self.oscillator.can_leap(interval) {
+            return None;
+        }
         let flow = self.flows.over(interval, || self.oscillator.flow(interval));
         let Driven { end: [u, u_dot], following, amplitude } =
             self.oscillator.driven(flow, [u, u_dot], a_g.value, a_g.slope, interval);

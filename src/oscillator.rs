@@ -40,6 +40,13 @@ impl Oscillator {
         self.omega * ((1.0 - self.zeta) * (1.0 + self.zeta)).abs().sqrt()
     }
 
+    /// Whether [`Oscillator::driven`] keeps its digits over `interval` (s): what follows the load is larger than what
+    /// moves by 1/(ωh)², or ζ/(ωh)³ for a slope, and is lost to rounding over too short an interval.
+    #[inline]
+    pub(crate) fn can_leap(&self, interval: f64) -> bool {
+        self.omega * interval > 0.03 * (1.0 + self.zeta)
+    }
+
     /// Where it is after `tau` (s) of a load a + b τ that pushes against w, over its mass: `value` = a in m/s², `slope` = b
     /// in m/s³; `flow` is its flow over `tau`. About the motion that follows such a load, w = −(a + b (τ − 2ζ/ω))/ω², the
     /// rest vibrates freely.

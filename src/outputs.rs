@@ -5,8 +5,9 @@
 //! ```
 //!
 //! By (5) that is g sin θ − (c_u u̇ + k u)/m, and by (1) −(c_fc u̇ + k u)/m in full contact: the outputs depend on
-//! the state alone and are computed so, at every level of detail; only their rates need the ground acceleration. The rigid
-//! limit, where u is 0 whatever the forces, is the exception: there (27) is taken as it stands.
+//! the state alone and are computed so; only their rates need the ground acceleration. The levels with linear equations
+//! have the same outputs, by Eq 5 rather than by their own ü and θ̈. The rigid limit, where u is 0 whatever the forces, is the
+//! exception: there (27) is taken as it stands, with the ground acceleration at the end of the last advance.
 
 use crate::{GroundAcceleration, Phase, Side, State, Structure, detail, rigid_rocking};
 

@@ -7,7 +7,8 @@
 //! ```
 //!
 //! P' = Q θ̇ and Q' = −P θ̇, so that its series take two products. The base lifts off when |a_g| ≥ g tan α_cg, towards the side
-//! away from the push; an impact leaves r θ̇ about the other pivot.
+//! away from the push; an impact leaves r θ̇ about the other pivot, also of a structure so squat that the momentum rule of
+//! the other levels would end rocking: with u = 0 that rule speaks of the shape alone.
 //!
 //! # Zeno
 //!

@@ -235,6 +235,30 @@ fn a_small_shaking_lifts_nothing_at_any_level() {
     }
 }
 
+/// A structure that has come to rest stays so, in one call or in many, long after its motion is too small for numbers.
+#[test]
+fn rest_lasts_at_every_level() {
+    for detail in Detail::ALL {
+        for f_fc in [5.0, 400.0] {
+            let structure = Structure::new(Parameters { f_fc, zeta_fc: 0.1, ..Parameters::MCMANUS }).unwrap();
+            let theta = if detail == Detail::FixedBase { 0.0 } else { 1e-3 };
+            let u = if detail == Detail::Rigid { 0.0 } else { 0.9 * structure.u_cr };
+            let initial = State { theta, u, ..State::default() };
+            let start = || Engine::with_detail(structure, initial, 0.0, 1e-9, detail).unwrap();
+            let mut at_once = start();
+            at_once.advance(1000.0, STILL, &mut |_| ()).unwrap();
+            let mut bit_by_bit = start();
+            for k in 1..=20_000 {
+                bit_by_bit.advance(f64::from(k) * 0.05, STILL, &mut |_| ()).unwrap();
+            }
+            for engine in [at_once, bit_by_bit] {
+                let State { u, u_dot, theta, theta_dot } = engine.motion().state;
+                assert!([u, u_dot, theta, theta_dot].iter().all(|x| x.abs() < 1e-30), "{}", detail.name());
+            }
+        }
+    }
+}
+
 #[test]
 fn initial_states_that_a_level_cannot_have_are_refused() {
     let refused = |detail, initial| Engine::with_detail(mcmanus(), initial, 0.0, 1e-9, detail).unwrap_err().to_string();
