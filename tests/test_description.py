@@ -91,28 +91,40 @@ def test_no_output_depends_on_the_input(fmu):
 
 
 def test_initial_dependencies_are_the_true_ones(fmu):
-    """Changing one number changes exactly those initial unknowns that name it as a dependency."""
-    start = dict(theta_0=0.01, theta_dot_0=0.02, u_0=0.0003, u_dot_0=0.004)
+    """Changing one number, at the elastic or at the rigid level, changes exactly those that name it as a dependency."""
     unknowns = {unknown.variable.name: unknown for unknown in fmu.description.initialUnknowns}
     names = [name for name in unknowns if fmu.variables[name].type == "Real"]
+    auto, rigid = 1, 5
+    bases = [
+        (auto, dict(theta_0=0.01, theta_dot_0=0.02, u_0=0.0003, u_dot_0=0.004)),
+        (rigid, dict(theta_0=0.01, theta_dot_0=0.02)),
+    ]
 
-    def values(**changes):
-        with fmu.instance() as instance:
-            instance.set(**(start | changes))
-            instance.slave.enterInitializationMode()
-            return instance.reals(names)
-
-    with fmu.instance() as instance:
+    def initialized(instance, detail, start):
         instance.set(**start)
+        instance.slave.setInteger([fmu.variables["detail"].valueReference], [detail])
         instance.slave.enterInitializationMode()
-        numbers = {variable.name: instance.get(variable.name) for variable in fmu.variables.values()
-                   if variable.causality in ("parameter", "input") and variable.type == "Real"}
-    before = values()
-    for known, number in numbers.items():
-        after = values(**{known: number * 0.75 if number else 0.75})
-        changed = {name for name, old, new in zip(names, before, after) if new != pytest.approx(old, rel=1e-12)}
-        stated = {name for name in names if known in {v.name for v in unknowns[name].dependencies}}
-        assert changed == stated, f"what depends on {known}"
+        return instance
+
+    def values(detail, start):
+        with fmu.instance() as instance:
+            return initialized(instance, detail, start).reals(names)
+
+    changed = set()
+    for detail, start in bases:
+        with fmu.instance() as instance:
+            initialized(instance, detail, start)
+            numbers = {variable.name: instance.get(variable.name) for variable in fmu.variables.values()
+                       if variable.causality in ("parameter", "input") and variable.type == "Real"}
+        if detail == rigid:  # which does not deform
+            numbers = {name: number for name, number in numbers.items() if name not in ("u_0", "u_dot_0")}
+        before = values(detail, start)
+        for known, number in numbers.items():
+            after = values(detail, start | {known: number * 0.75 if number else 0.75})
+            changed |= {(name, known) for name, old, new in zip(names, before, after)
+                        if new != pytest.approx(old, rel=1e-12)}
+    stated = {(name, v.name) for name in names for v in unknowns[name].dependencies if v.name != "detail"}
+    assert changed == stated
 
 
 def test_capabilities(fmu):
