@@ -8,14 +8,21 @@ use crate::snapshot::{self, Snapshots};
 use crate::state_machine::{Function, Stage};
 use crate::variables::{self, A_G, Source, VARIABLES, Variable};
 use model_description::Causality;
-use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE, GroundAcceleration, Progress, TransitionKind};
+use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE, GroundAcceleration, Motion, Progress, TransitionKind};
 use rocking::quantity::Quantity;
 use rocking::{Detail, Engine, Parameters, Phase, Side, State, Structure, Transition};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::FRAC_PI_2;
 use std::mem::MaybeUninit;
 
 /// How close two times (s) are that mean the same: relative to the time, or to the step if that is longer.
 const SAME_TIME: f64 = 1e-9;
+
+/// Largest |θ| of a structure in motion, rad: that of overturning and its rounding.
+const MAX_ANGLE: f64 = FRAC_PI_2 + 1e-9;
+
+/// More than any other number of the motion (SI units) can be, and small enough to be squared.
+const BOUND: f64 = 1e100;
 
 /// One instance.
 pub struct Instance {
@@ -75,6 +82,26 @@ impl Condition {
             input: GroundAcceleration::default(),
             engine: None,
         }
+    }
+
+    /// Whether calls can lead here. What is read from bytes need not have come about by calls.
+    pub fn is_possible(&self) -> bool {
+        let Setup { parameters, initial, tolerance, start_time, stop_time, .. } = &self.setup;
+        let fits = |variable: &Variable| match variable.source {
+            Source::Input(quantity) => quantity.check((quantity.get)(&self.input)).is_ok(),
+            Source::Parameter(quantity) => quantity.check((quantity.get)(parameters)).is_ok(),
+            Source::InitialValue(quantity) => quantity.check((quantity.get)(initial)).is_ok(),
+            _ => true,
+        };
+        let moves = self.engine.as_ref().map(|engine| {
+            let &Motion { time, a_g, state: State { u, u_dot, theta, theta_dot }, .. } = engine.motion();
+            let is_bounded = [time, a_g, u, u_dot, theta_dot].iter().all(|x| x.abs() <= BOUND);
+            is_bounded && time >= *start_time && theta.abs() <= MAX_ANGLE
+        });
+        VARIABLES.iter().all(fits)
+            && self.input.slope.is_finite()
+            && check_experiment(*tolerance, *start_time, *stop_time).is_ok()
+            && moves.unwrap_or(matches!(self.stage, Stage::Instantiated | Stage::InitializationMode))
     }
 
     /// The structure in motion, or at its start with what has been set so far.
@@ -159,19 +186,8 @@ impl Instance {
         start_time: f64,
         stop_time: Option<f64>,
     ) -> Result<(), Failure> {
-        let refuse = |name, value, limit: &str| Failure::Experiment { name, value, limit: limit.to_owned() };
         let tolerance = tolerance.unwrap_or(DEFAULT_TOLERANCE);
-        if !(tolerance > 0.0 && tolerance < 1.0) {
-            return Err(refuse("tolerance", tolerance, "between 0 and 1, such as 1e-9"));
-        }
-        if !start_time.is_finite() {
-            return Err(refuse("startTime", start_time, "finite"));
-        }
-        if let Some(stop_time) = stop_time
-            && !(stop_time > start_time && stop_time.is_finite())
-        {
-            return Err(refuse("stopTime", stop_time, &format!("finite and later than startTime = {start_time} s")));
-        }
+        check_experiment(tolerance, start_time, stop_time)?;
         self.now.setup = Setup { tolerance, start_time, stop_time, ..self.now.setup };
         Ok(())
     }
@@ -254,11 +270,16 @@ impl Instance {
         values: &mut [MaybeUninit<i32>],
         is_of_type: fn(&Source) -> bool,
     ) -> Result<(), Failure> {
+        let mut is_computed = false;
         for reference in references {
             let variable = find(*reference)?;
             if !is_of_type(&variable.source) {
                 return Err(Failure::WrongType(variable));
             }
+            is_computed |= !matches!(variable.source, Source::Detail);
+        }
+        if is_computed {
+            self.now.engine()?;
         }
         for (reference, value) in references.iter().zip(values) {
             value.write(match find(*reference)?.source {
@@ -495,8 +516,25 @@ impl StatusKind {
     }
 }
 
+/// What `fmi2SetupExperiment` may say.
+fn check_experiment(tolerance: f64, start_time: f64, stop_time: Option<f64>) -> Result<(), Failure> {
+    let refuse = |name, value, limit: &str| Failure::Experiment { name, value, limit: limit.to_owned() };
+    if !(tolerance > 0.0 && tolerance < 1.0) {
+        return Err(refuse("tolerance", tolerance, "between 0 and 1, such as 1e-9"));
+    }
+    if !start_time.is_finite() {
+        return Err(refuse("startTime", start_time, "finite"));
+    }
+    if let Some(stop_time) = stop_time
+        && !(stop_time > start_time && stop_time.is_finite())
+    {
+        return Err(refuse("stopTime", stop_time, &format!("finite and later than startTime = {start_time} s")));
+    }
+    Ok(())
+}
+
 fn find(reference: u32) -> Result<&'static Variable, Failure> {
-    VARIABLES.get(reference as usize).ok_or(Failure::UnknownReference(reference))
+    VARIABLES.get(reference as usize).ok_or_else(|| Failure::UnknownReference(reference))
 }
 
 fn set<T>(quantity: &Quantity<T>, of: &mut T, value: f64) -> Result<(), Failure> {

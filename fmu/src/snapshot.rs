@@ -113,7 +113,11 @@ pub fn deserialize(bytes: &[u8]) -> Result<Condition, Failure> {
             Some(engine)
         }
     };
-    Ok(Condition { stage, setup, input, engine })
+    let condition = Condition { stage, setup, input, engine };
+    if !condition.is_possible() {
+        return Err(Failure::BadBytes("its content contradicts itself"));
+    }
+    Ok(condition)
 }
 
 /// Everything before the length.
