@@ -534,7 +534,8 @@ fn check_experiment(tolerance: f64, start_time: f64, stop_time: Option<f64>) -> 
 }
 
 fn find(reference: u32) -> Result<&'static Variable, Failure> {
-    VARIABLES.get(reference as usize).ok_or_else(|| Failure::UnknownReference(reference))
+    let Some(variable) = VARIABLES.get(reference as usize) else { return Err(Failure::UnknownReference(reference)) };
+    Ok(variable)
 }
 
 fn set<T>(quantity: &Quantity<T>, of: &mut T, value: f64) -> Result<(), Failure> {

@@ -1,14 +1,15 @@
 //! `simulate`: the response to a ground motion record, or free vibration, with the same engine as the FMU's.
 use crate::{
-    record_args::{RecordArgs, positive},
+    record_args::positive,
+    scene_args::{GroundArgs, InitialArgs},
     significant::significant,
     structure_args::StructureArgs,
     summary::Summary,
     tables::{self, Table},
 };
-use clap::ArgGroup;
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use indicatif::ProgressBar;
-use rocking::{Engine, Outputs, Phase, State, Transition, engine::DEFAULT_TOLERANCE, record::Record};
+use rocking::{Detail, Engine, Phase, Transition, engine::DEFAULT_TOLERANCE, record::Record};
 use std::path::{Path, PathBuf};
 
 /// What to simulate.
@@ -25,44 +26,11 @@ pub struct SimulateArgs {
 }
 
 #[derive(clap::Args)]
-#[command(next_help_heading = "Ground motion")]
-#[command(group(ArgGroup::new("ground motion").args(["record", "free"]).required(true)))]
-struct GroundArgs {
-    #[command(flatten)]
-    record: RecordArgs,
-    /// Simulated time; the ground is at rest after the record's end [default: to the record's end]
-    #[arg(long, value_name = "SECONDS", value_parser = positive)]
-    duration: Option<f64>,
-    /// Free vibration over this time instead of a record
-    #[arg(
-        long,
-        value_name = "SECONDS",
-        value_parser = positive,
-        conflicts_with_all = ["unit", "time_scale", "scale", "duration"]
-    )]
-    free: Option<f64>,
-}
-
-#[derive(clap::Args)]
-#[command(next_help_heading = "Initial values")]
-struct InitialArgs {
-    /// Rotation of the base; 0 is full contact
-    #[arg(long, value_name = "RAD", default_value_t = 0.0, allow_negative_numbers = true)]
-    theta_0: f64,
-    /// Angular velocity of the base
-    #[arg(long, value_name = "RAD/S", default_value_t = 0.0, allow_negative_numbers = true)]
-    theta_dot_0: f64,
-    /// Elastic displacement of the top mass
-    #[arg(long, value_name = "M", default_value_t = 0.0, allow_negative_numbers = true)]
-    u_0: f64,
-    /// Elastic velocity of the top mass
-    #[arg(long, value_name = "M/S", default_value_t = 0.0, allow_negative_numbers = true)]
-    u_dot_0: f64,
-}
-
-#[derive(clap::Args)]
 #[command(next_help_heading = "Results")]
 struct ResultArgs {
+    /// Level of detail: the equations that move the structure
+    #[arg(long, value_name = "LEVEL", default_value = Detail::default().name(), value_parser = detail_parser())]
+    detail: Detail,
     /// Relative tolerance
     #[arg(long, default_value = format!("{DEFAULT_TOLERANCE:e}"), value_parser = tolerance)]
     tolerance: f64,
@@ -77,6 +45,13 @@ struct ResultArgs {
     events: Option<PathBuf>,
 }
 
+fn detail_parser() -> impl TypedValueParser<Value = Detail> {
+    PossibleValuesParser::new(Detail::ALL.map(Detail::name)).map(|name| {
+        let is_named = |detail: &Detail| detail.name() == name;
+        Detail::ALL.into_iter().find(is_named).expect("clap accepts these names alone")
+    })
+}
+
 fn tolerance(text: &str) -> Result<f64, String> {
     positive(text).and_then(|tolerance| match tolerance {
         ..1.0 => Ok(tolerance),
@@ -84,26 +59,12 @@ fn tolerance(text: &str) -> Result<f64, String> {
     })
 }
 
-impl GroundArgs {
-    /// The ground motion; `g` (m/s²) is what a record's g stands for.
-    fn load(&self, g: f64) -> anyhow::Result<Record> {
-        let record = self.record.load(g)?;
-        Ok(record.unwrap_or_else(|| Record::at_rest(self.free.expect("clap asks for --record or --free"))))
-    }
-}
-
 impl SimulateArgs {
-    fn initial_state(&self) -> State {
-        let &InitialArgs { theta_0: theta, theta_dot_0: theta_dot, u_0: u, u_dot_0: u_dot } = &self.initial;
-        State { u, u_dot, theta, theta_dot }
-    }
-
     /// The instants of the output (s): the start, every interval from there, and `end`.
     fn output_times(&self, ground: &Record, end: f64) -> impl Iterator<Item = f64> {
-        const FREE_VIBRATION_INTERVAL: f64 = 1e-3;
         let samples = ground.times();
         let last = samples.len() - 1;
-        let (samples, interval) = match self.results.dt.or(self.ground.free.map(|_| FREE_VIBRATION_INTERVAL)) {
+        let (samples, interval) = match self.results.dt.or(self.ground.free_vibration_interval()) {
             Some(dt) => (&samples[..1], dt),
             None => (samples, samples[last] - samples[last - 1]),
         };
@@ -136,7 +97,7 @@ struct Recorder {
 impl Recorder {
     fn output(&mut self, engine: &Engine, a_g: f64) -> anyhow::Result<()> {
         let motion = engine.motion();
-        let outputs = Outputs::of(engine.structure(), motion.phase, &motion.state);
+        let outputs = engine.outputs();
         self.summary.see_outputs(motion.time, &outputs);
         self.response.write(tables::response_line(motion, a_g, outputs))
     }
@@ -152,9 +113,9 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let g = structure.parameters().g;
     let ground = args.ground.load(g)?;
-    let (start, record_end) = (ground.times()[0], ground.times()[ground.times().len() - 1]);
-    let end = args.ground.duration.map_or(record_end, |duration| start + duration);
-    let mut engine = Engine::new(structure, args.initial_state(), start, args.results.tolerance)?;
+    let (start, end) = args.ground.span(&ground);
+    let ResultArgs { tolerance, detail, .. } = args.results;
+    let mut engine = Engine::with_detail(structure, args.initial.state(), start, tolerance, detail)?;
 
     let output = args.output_path();
     let mut recorder = Recorder {

@@ -3,7 +3,6 @@
 
 mod fragilities;
 mod outcome;
-mod peaks;
 mod picture;
 mod plan;
 mod rows;

@@ -1,7 +1,8 @@
 //! One run: a structure at rest under a ground motion, to the end of the record or to overturning, and its peaks.
-use super::{peaks::Peaks, plan::Limit};
+use super::plan::Limit;
+use crate::peaks::{PART_OF_PERIOD, Peaks};
 use rocking::{
-    Engine, Phase, State, Structure, Transition,
+    Engine, Parameters, Phase, State, Structure, Transition,
     engine::{AdvanceError, DEFAULT_TOLERANCE},
     record::Record,
 };
@@ -32,9 +33,6 @@ pub struct Outcome {
     evaluations: u64,
 }
 
-/// Peaks are sought between instants at most this part of the vibration period 2π/ω_u apart.
-const PART_OF_PERIOD: f64 = 1.0 / 12.0;
-
 impl Outcome {
     /// Runs `structure` from rest under `ground`.
     pub fn of(structure: &Structure, ground: &Record) -> Result<Outcome, AdvanceError> {
@@ -42,7 +40,7 @@ impl Outcome {
         let (start, end) = (ground.times()[0], ground.times()[ground.times().len() - 1]);
         let mut engine = Engine::new(*structure, State::default(), start, DEFAULT_TOLERANCE)
             .expect("every structure may start at rest in full contact");
-        let mut peaks = Peaks::at_rest(*structure, start);
+        let mut peaks = Peaks::from(*structure, engine.motion());
         'run: for segment in ground.segments_until(end) {
             let parts = ((segment.end - segment.start) / interval).ceil().max(1.0);
             for part in 1..=parts as u64 {
@@ -63,7 +61,7 @@ impl Outcome {
         Ok(Outcome {
             overturned,
             overturned_at: overturned.then_some(motion.time),
-            peaks: peaks.measures(),
+            peaks: measures(structure, peaks.largest()),
             transitions: motion.transitions,
             steps: motion.work.steps,
             evaluations: motion.work.evaluations,
@@ -74,4 +72,10 @@ impl Outcome {
     pub fn exceeds(&self, limit: &Limit) -> bool {
         self.overturned || self.peaks[limit.measure] >= limit.value
     }
+}
+
+/// Each of [`MEASURES`] from the largest theta, u and a_t (uplift by Eq 25, V_t and M_t by Eqs 2, 3, 23, 24).
+fn measures(structure: &Structure, [theta, u, a_t]: [f64; 3]) -> [f64; MEASURES.len()] {
+    let &Parameters { m, H, B, .. } = structure.parameters();
+    [theta, theta / structure.tan_alpha_cg.atan(), 2.0 * B * theta.sin(), u, a_t, m * a_t, m * H * a_t]
 }

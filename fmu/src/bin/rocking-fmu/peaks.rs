@@ -1,8 +1,10 @@
 //! The largest magnitudes of a motion, also between the instants at which it is looked at.
-use super::outcome::MEASURES;
-use rocking::{Outputs, Parameters, Phase, State, Structure, Transition, TransitionKind};
+use rocking::{Motion, Outputs, Phase, State, Structure, Transition, TransitionKind};
 
-/// Peaks so far of theta, u and a_t, from which those of the other measures follow.
+/// A motion is to be looked at so often: instants at most this part of the vibration period 2π/ω_u apart.
+pub const PART_OF_PERIOD: f64 = 1.0 / 12.0;
+
+/// Peaks so far of theta, u and a_t, which depend on the state alone but for the rigid limit's a_t.
 ///
 /// Between two instants of one phase each is taken as the cubic with their values and rates at both ends.
 pub struct Peaks {
@@ -20,15 +22,15 @@ struct Instant {
 }
 
 impl Peaks {
-    /// Of `structure` at rest in full contact at `time` (s).
-    pub fn at_rest(structure: Structure, time: f64) -> Peaks {
-        let last = Instant { time, values: [0.0; 3], rates: [0.0; 3] };
-        Peaks { structure, phase: Phase::FullContact, last, largest: [0.0; 3] }
+    /// Of `structure` from `motion` on, whose rates are those under its own ground acceleration.
+    pub fn from(structure: Structure, motion: &Motion) -> Peaks {
+        let last = Instant::of(&structure, motion.time, motion.phase, &motion.state, motion.a_g);
+        Peaks { structure, phase: motion.phase, largest: last.values.map(f64::abs), last }
     }
 
     /// Takes in the motion up to `time` (s) and `state` in `phase`, without a transition on the way.
     pub fn reach(&mut self, time: f64, phase: Phase, state: &State, a_g: f64) {
-        let instant = self.instant(time, phase, state, a_g);
+        let instant = Instant::of(&self.structure, time, phase, state, a_g);
         for (i, largest) in self.largest.iter_mut().enumerate() {
             let (from, to) = (&self.last, &instant);
             let peak = cubic_peak([from.values[i], to.values[i]], [from.rates[i], to.rates[i]], to.time - from.time);
@@ -45,23 +47,23 @@ impl Peaks {
             TransitionKind::Landing | TransitionKind::Settling => Phase::FullContact,
             TransitionKind::Overturning(side) => Phase::Overturned(side),
         };
-        self.last = self.instant(at.time, self.phase, &at.after, a_g);
+        self.last = Instant::of(&self.structure, at.time, self.phase, &at.after, a_g);
     }
 
-    fn instant(&self, time: f64, phase: Phase, state: &State, a_g: f64) -> Instant {
+    /// The peaks of theta, u and a_t.
+    pub fn largest(&self) -> [f64; 3] {
+        self.largest
+    }
+}
+
+impl Instant {
+    fn of(structure: &Structure, time: f64, phase: Phase, state: &State, a_g: f64) -> Instant {
         let of_interest = |outputs: Outputs| [outputs.theta, outputs.u, outputs.a_t];
         Instant {
             time,
-            values: of_interest(Outputs::of(&self.structure, phase, state)),
-            rates: of_interest(Outputs::rates(&self.structure, phase, state, a_g)),
+            values: of_interest(Outputs::of(structure, phase, state)),
+            rates: of_interest(Outputs::rates(structure, phase, state, a_g)),
         }
-    }
-
-    /// The peak of each of [`MEASURES`] (uplift by Eq 25, V_t and M_t by Eqs 2, 3, 23, 24).
-    pub fn measures(&self) -> [f64; MEASURES.len()] {
-        let &Parameters { m, H, B, .. } = self.structure.parameters();
-        let [theta, u, a_t] = self.largest;
-        [theta, theta / self.structure.tan_alpha_cg.atan(), 2.0 * B * theta.sin(), u, a_t, m * a_t, m * H * a_t]
     }
 }
 
@@ -107,7 +109,7 @@ mod tests {
         assert_eq!(cubic_peak([0.0, 0.0], [0.0, 0.0], 0.1), 0.0);
     }
 
-    /// Twelve instants per period, as [`super::super::outcome`] has them at least.
+    /// Twelve instants per period, as [`PART_OF_PERIOD`] has them at least.
     #[test]
     fn a_vibration_peaks_between_the_instants() {
         let step = std::f64::consts::TAU / 12.0;

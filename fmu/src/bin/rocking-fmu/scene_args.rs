@@ -1,0 +1,69 @@
+//! The scene that a command simulates: a ground motion record or free vibration, and the initial values.
+use crate::record_args::{RecordArgs, positive};
+use clap::ArgGroup;
+use rocking::{State, record::Record};
+
+/// The ground motion, and how long it is followed.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Ground motion")]
+#[command(group(ArgGroup::new("ground motion").args(["record", "free"]).required(true)))]
+pub struct GroundArgs {
+    #[command(flatten)]
+    pub record: RecordArgs,
+    /// Simulated time; the ground is at rest after the record's end [default: to the record's end]
+    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    duration: Option<f64>,
+    /// Free vibration over this time instead of a record
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        value_parser = positive,
+        conflicts_with_all = ["unit", "time_scale", "scale", "duration"]
+    )]
+    free: Option<f64>,
+}
+
+/// The state at the start.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Initial values")]
+pub struct InitialArgs {
+    /// Rotation of the base; 0 is full contact
+    #[arg(long, value_name = "RAD", default_value_t = 0.0, allow_negative_numbers = true)]
+    theta_0: f64,
+    /// Angular velocity of the base
+    #[arg(long, value_name = "RAD/S", default_value_t = 0.0, allow_negative_numbers = true)]
+    theta_dot_0: f64,
+    /// Elastic displacement of the top mass
+    #[arg(long, value_name = "M", default_value_t = 0.0, allow_negative_numbers = true)]
+    u_0: f64,
+    /// Elastic velocity of the top mass
+    #[arg(long, value_name = "M/S", default_value_t = 0.0, allow_negative_numbers = true)]
+    u_dot_0: f64,
+}
+
+impl GroundArgs {
+    /// The ground motion; `g` (m/s²) is what a record's g stands for.
+    pub fn load(&self, g: f64) -> anyhow::Result<Record> {
+        let record = self.record.load(g)?;
+        Ok(record.unwrap_or_else(|| Record::at_rest(self.free.expect("clap asks for --record or --free"))))
+    }
+
+    /// First and last instant, s.
+    pub fn span(&self, ground: &Record) -> (f64, f64) {
+        let (start, record_end) = (ground.times()[0], ground.times()[ground.times().len() - 1]);
+        (start, self.duration.map_or(record_end, |duration| start + duration))
+    }
+
+    /// What stands for the interval of the samples (s) in free vibration, which has none.
+    pub fn free_vibration_interval(&self) -> Option<f64> {
+        self.free.map(|_| 1e-3)
+    }
+}
+
+impl InitialArgs {
+    /// The initial state.
+    pub fn state(&self) -> State {
+        let &InitialArgs { theta_0: theta, theta_dot_0: theta_dot, u_0: u, u_dot_0: u_dot } = self;
+        State { u, u_dot, theta, theta_dot }
+    }
+}
