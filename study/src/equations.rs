@@ -1,0 +1,44 @@
+//! The equations between two transitions, with their evaluations counted.
+
+use nalgebra::Vector2;
+use rocking::{GroundAcceleration, Phase, State, Structure, full_contact, nonlinear_rocking};
+use std::cell::Cell;
+
+/// Two second-order equations for the positions (u, θ).
+pub trait Equations {
+    /// (ü, θ̈) at `tau` s after the start of the interval.
+    fn acceleration(&self, tau: f64, position: Vector2<f64>, velocity: Vector2<f64>) -> Vector2<f64>;
+}
+
+/// The equations of one phase over one interval: Eq 1 in full contact, Eqs 5 and 6 while rocking.
+pub struct PhaseEquations<'a> {
+    /// The structure.
+    pub structure: &'a Structure,
+    /// The phase.
+    pub phase: Phase,
+    /// Ground acceleration from the start of the interval on.
+    pub a_g: GroundAcceleration,
+    /// Evaluations so far.
+    pub evaluations: &'a Cell<u64>,
+}
+
+impl Equations for PhaseEquations<'_> {
+    fn acceleration(&self, tau: f64, position: Vector2<f64>, velocity: Vector2<f64>) -> Vector2<f64> {
+        self.evaluations.set(self.evaluations.get() + 1);
+        let state = state(position, velocity);
+        match self.phase {
+            Phase::FullContact => {
+                Vector2::new(full_contact::acceleration(self.structure, &state, self.a_g.at(tau)), 0.0)
+            }
+            Phase::Rocking(side) | Phase::Overturned(side) => {
+                nonlinear_rocking::accelerations(self.structure, side, &state, self.a_g.at(tau))
+                    .unwrap_or_else(|| Vector2::repeat(f64::NAN))
+            }
+        }
+    }
+}
+
+/// Positions (u, θ) and velocities (u̇, θ̇) as a state.
+pub fn state(position: Vector2<f64>, velocity: Vector2<f64>) -> State {
+    State { u: position[0], u_dot: velocity[0], theta: position[1], theta_dot: velocity[1] }
+}

@@ -1,0 +1,113 @@
+//! Chatter after a landing with |u| > u_cr.
+
+use super::history::exact;
+use super::{Exhibit, RIGHT, WRONG};
+use crate::chart::{Axis, Entry, Figure, Panel, Style, colour};
+use crate::fixed_step::runge_kutta_4::RungeKutta4;
+use crate::guards::{displacement_excess, uplift_excess};
+use crate::hybrid::{self, Grid, Transitions};
+use crate::scene::Scene;
+use anyhow::{Context, Result};
+use rocking::{Detail, State, TransitionKind};
+
+/// Steps of RK4 to a sample.
+const STEPS: f64 = 64.0;
+
+/// Results between two samples for the close view.
+const CUTS: usize = 1000;
+
+/// The uplift rule |u| ≥ u_cr alone, against the complete one.
+pub fn show(scene: &Scene) -> Result<Exhibit> {
+    let grid = Grid { method: &RungeKutta4, h: scene.dt / STEPS };
+    let mut times = Vec::new();
+    let naive = hybrid::run(scene, &grid, Transitions::Located, displacement_excess, &mut |time, _| times.push(time));
+    naive.failure.context("the incomplete rule gets through")?;
+    let stuck = times[times.len() - 1];
+    let before = times.iter().filter(|time| **time < stuck - 1e-9).count();
+
+    let fine = exact(&scene.resampled(CUTS), Detail::Nonlinear)?;
+    let landing = fine
+        .transitions
+        .iter()
+        .find(|transition| transition.kind == TransitionKind::Landing && (transition.time - stuck).abs() < 0.01);
+    let landing = landing.context("the exact response lands where the incomplete rule gets stuck")?;
+    let uplift = fine
+        .transitions
+        .iter()
+        .find(|transition| transition.time >= landing.time && matches!(transition.kind, TransitionKind::Uplift(_)));
+    let held = uplift.map(|uplift| 1e3 * (uplift.time - landing.time)).context("it lifts off again")?;
+
+    let count = |times: &[f64]| times.iter().enumerate().map(|(k, t)| (*t, (k + 1) as f64)).collect::<Vec<_>>();
+    let all: Vec<_> = fine.transitions.iter().map(|transition| transition.time).collect();
+    let duration = scene.dt * scene.intervals() as f64;
+    let counts = Panel::new(
+        "transitions so far",
+        Axis::linear("time, s", 0.0, duration),
+        Axis::logarithmic("number", 1.0, 2000.0),
+    )
+    .with("|u| ≥ u_cr alone", count(&times), WRONG)
+    .with("this project", count(&all), RIGHT)
+    .label((stuck, 1500.0), format!("no end at t = {stuck:.3} s"), colour::VERMILLION);
+
+    // From the landing to twice the time at which |u| falls below u_cr.
+    let structure = &scene.structure;
+    let [mut displacement, mut moment] = [Vec::new(), Vec::new()];
+    let mut below = None;
+    let after = fine.u.windows(2).filter(|pair| pair[0].0 > landing.time);
+    for (t, u, u_dot) in after.map(|pair| (pair[0].0, pair[0].1, (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0))) {
+        let state = State { u, u_dot, ..State::default() };
+        let microseconds = 1e6 * (t - landing.time);
+        let excess = displacement_excess(structure, &state);
+        if excess < 0.0 && below.is_none() {
+            below = Some(microseconds);
+        }
+        if below.is_some_and(|below| microseconds > 2.0 * below) {
+            break;
+        }
+        displacement.push((microseconds, excess));
+        moment.push((microseconds, uplift_excess(structure, &state)));
+    }
+    let end = 2.0 * below.context("|u| falls below u_cr")?;
+    let lowest = moment.iter().map(|(_, y)| *y).fold(0.0, f64::min);
+    let dashed = Style::dashed(colour::GREY, 1);
+    let conditions = Panel::new(
+        "after that landing: both must be ≥ 0 to lift off",
+        Axis::linear("time from the landing, µs", 0.0, end),
+        Axis::linear("condition", 1.2 * lowest, -0.4 * lowest),
+    )
+    .with("zero", [(0.0, 0.0), (end, 0.0)], dashed)
+    .with("|u|/u_cr − 1", displacement, Style::line(colour::BLUE, 2))
+    .with("s θ̈ H/g", moment, Style::line(colour::ORANGE, 2));
+    Ok(Exhibit {
+        key: "chatter",
+        title: "Chatter after a landing with |u| > u_cr",
+        cause: format!(
+            "A landing can leave |u| above u_cr while u̇ is such that the moment still holds the base down. The rule \
+             `uplift when |u| ≥ u_cr` alone lifts it off at once, gravity brings it down at once, and so on without \
+             end and without time passing: here at t = {stuck:.3} s, after {before} transitions."
+        ),
+        remedy: "Uplift needs both |u| ≥ u_cr and s θ̈ > 0 by Eqs 5 and 6. And whatever a structure does, no vibration \
+                 period sees more than a fixed number of transitions: the engine then holds contact to the end of the \
+                 period and reports it."
+            .into(),
+        caption: format!(
+            "McManus's specimen under El Centro, RK4 with transitions located exactly. Left: with |u| ≥ u_cr alone the \
+             count runs away; the complete rule makes {} transitions in {duration:.0} s. Right: the two conditions \
+             after that landing: |u| is beyond u_cr, but the moment is not; uplift comes {held:.0} ms later.",
+            all.len()
+        ),
+        figure: Figure {
+            title: "Chatter after a landing with |u| > u_cr".into(),
+            panel: (600, 380),
+            columns: 2,
+            panels: vec![counts, conditions],
+            legend_columns: 2,
+            legend: vec![
+                Entry::new("this project: both conditions", RIGHT),
+                Entry::new("|u| ≥ u_cr alone", WRONG),
+                Entry::new("|u|/u_cr − 1", Style::line(colour::BLUE, 2)),
+                Entry::new("s θ̈ H/g, from Eqs 5 and 6", Style::line(colour::ORANGE, 2)),
+            ],
+        },
+    })
+}

@@ -1,0 +1,88 @@
+//! Zeno at rest in the rigid limit.
+
+use super::Exhibit;
+use super::history::{at_rest, exact, is_impact};
+use crate::chart::{Axis, Entry, Figure, Marker, Panel, Style, colour};
+use anyhow::Result;
+use rocking::{Detail, Parameters, State, Transition};
+
+/// Evison's specimen with a coefficient of restitution low enough to come to rest soon.
+pub const STRUCTURE: Parameters = Parameters { r: 0.9, ..Parameters::EVISON };
+
+/// Natural frequencies, Hz.
+const FREQUENCIES: [f64; 4] = [11.0, 50.0, 200.0, 1000.0];
+
+const STYLES: [Style; 4] = [
+    Style::marked(colour::ORANGE, 0, Marker::Circle),
+    Style::marked(colour::GREEN, 0, Marker::Square),
+    Style::marked(colour::BLUE, 0, Marker::Triangle),
+    Style::marked(colour::PURPLE, 0, Marker::Diamond),
+];
+
+const RIGID: Style = Style::line(colour::BLACK, 2);
+
+/// Times (s) between successive impacts before the first landing, by number.
+pub fn intervals(transitions: &[Transition]) -> Vec<(f64, f64)> {
+    let impacts: Vec<_> = transitions.iter().take_while(|transition| is_impact(transition)).collect();
+    impacts.windows(2).enumerate().map(|(k, pair)| ((k + 1) as f64, pair[1].time - pair[0].time)).collect()
+}
+
+/// A rigid block that comes to rest, and flexible structures ever stiffer.
+pub fn show() -> Result<Exhibit> {
+    let released =
+        |parameters: Parameters, u: f64| at_rest(parameters, State { theta: 0.04, u, ..State::default() }, 4.0, 2000);
+    let rigid = exact(&released(STRUCTURE, 0.0), Detail::Rigid)?;
+    let last = rigid.transitions.iter().rfind(|transition| is_impact(transition)).map_or(0.0, |impact| impact.time);
+    let number = rigid.transitions.iter().filter(|transition| is_impact(transition)).count();
+    let theta: Vec<_> = rigid.theta.iter().map(|(t, theta)| (*t, 1e3 * theta)).collect();
+    let history = Panel::new(
+        "a rigid block comes to rest",
+        Axis::linear("time, s", 0.0, 4.0),
+        Axis::linear("θ, mrad", -40.0, 40.0),
+    )
+    .with("rigid", theta, RIGID)
+    .note((last, 25.0), format!("last impact: {last:.3} s"), colour::BLACK);
+    let mut times = Panel::new(
+        "time between impacts",
+        Axis::linear("impact", 0.0, number as f64 + 10.0),
+        Axis::logarithmic("time to the next, s", 1e-12, 1.0),
+    );
+    let mut legend = vec![Entry::new("rigid", RIGID)];
+    let mut counts = Vec::new();
+    times = times.with("rigid", intervals(&rigid.transitions), RIGID);
+    for (f_fc, style) in FREQUENCIES.into_iter().zip(STYLES) {
+        let parameters = Parameters { f_fc, ..STRUCTURE };
+        let u_cr = super::history::structure(parameters).u_cr;
+        let flexible = exact(&released(parameters, u_cr), Detail::Nonlinear)?;
+        let gaps = intervals(&flexible.transitions);
+        counts.push(format!("{} at {f_fc} Hz", gaps.len() + 1));
+        times = times.with(format!("{f_fc} Hz"), gaps.last().copied(), style);
+        legend.push(Entry::new(format!("{f_fc} Hz: lands here"), style));
+    }
+    Ok(Exhibit {
+        key: "zeno",
+        title: "Zeno at rest in the rigid limit",
+        cause: "Each impact of a rigid block leaves the fraction r of its angular velocity, so that the times between \
+                impacts shrink like rⁿ: infinitely many fit into a finite time, and a solver that stops at each never \
+                gets beyond. A flexible structure lands as soon as its momentum about the incoming pivot has the \
+                other sign, but the stiffer it is the later."
+            .into(),
+        remedy:
+            "The rigid level ends the series where the energy left is below the tolerance, and says so as a landing; \
+                 at all levels the number of transitions in a vibration period is bounded."
+                .into(),
+        caption: format!(
+            "Evison's specimen with r = 0.9, released at θ = 0.04 rad. The rigid level makes {number} impacts, the last \
+             at {last:.3} s, and rests. Flexible structures land after {}.",
+            counts.join(", ")
+        ),
+        figure: Figure {
+            title: "Zeno at rest in the rigid limit".into(),
+            panel: (600, 380),
+            columns: 2,
+            panels: vec![history, times],
+            legend_columns: 5,
+            legend,
+        },
+    })
+}

