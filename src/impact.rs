@@ -28,6 +28,20 @@ pub fn resolve(structure: &Structure, side: Side, before: &State) -> (Phase, Sta
     }
 }
 
+/// The coefficient of restitution below which this rule can raise the energy at an impact with u = 0:
+///
+/// ```text
+/// r < 1 − 4 (m + m0) B²/J_P
+/// ```
+///
+/// Where u̇ and θ̇ differ in sign, taking momentum from the base and not from the top mass adds to the energy, by
+/// ΔE = −(1−r) m H u̇ θ̇ − ½ (1−r²) J_P θ̇². Rocking goes on only for L θ̇ > 0, which bounds u̇/θ̇ from below; at that bound
+/// ΔE > 0 is this condition.
+pub fn gaining_restitution(structure: &Structure) -> f64 {
+    let &crate::Parameters { m, m0, B, .. } = structure.parameters();
+    1.0 - 4.0 * (m + m0) * B * B / structure.J_P
+}
+
 /// The state just after landing: both pivots down, horizontal momentum kept.
 pub fn land(structure: &Structure, before: &State) -> State {
     let u_dot = before.u_dot + structure.parameters().H * before.theta_dot;
@@ -38,6 +52,7 @@ pub fn land(structure: &Structure, before: &State) -> State {
 mod tests {
     use super::*;
     use crate::Parameters;
+    use crate::energy::energy;
     use approx::assert_relative_eq;
     use nalgebra::Vector2;
 
@@ -64,6 +79,25 @@ mod tests {
                 + m0 * clockwise(middle, velocity(middle))
                 + J0 * state.theta_dot;
             assert_relative_eq!(angular_momentum(&structure, &state), expected, max_relative = 1e-13);
+        }
+    }
+
+    /// Just below that restitution an impact at the least u̇/θ̇ with L θ̇ > 0 raises the energy; just above none does.
+    #[test]
+    fn energy_can_grow_below_the_gaining_restitution() {
+        for parameters in [Parameters::EVISON, Parameters::MCMANUS] {
+            let limit = gaining_restitution(&Structure::new(parameters).unwrap());
+            for (r, can_gain) in [(limit - 1e-6, true), (limit + 1e-6, false)] {
+                let structure = Structure::new(Parameters { r, ..parameters }).unwrap();
+                let &Parameters { m, m0, H, B, J0, .. } = structure.parameters();
+                let least = ((m + m0) * B * B - J0 - m * H * H) / (m * H);
+                let theta_dot = -0.3;
+                let before = State { u: 0.0, u_dot: theta_dot * (least + 1e-9), theta: 0.0, theta_dot };
+                let (phase, after) = resolve(&structure, Side::Right, &before);
+                assert_eq!(phase, Phase::Rocking(Side::Left));
+                let gain = energy(&structure, phase, &after) - energy(&structure, Phase::Rocking(Side::Right), &before);
+                assert_eq!(gain > 0.0, can_gain, "r = {r}: {gain} J");
+            }
         }
     }
 

@@ -9,6 +9,7 @@ use crate::state_machine::{Function, Stage};
 use crate::variables::{self, A_G, Source, VARIABLES, Variable};
 use model_description::Causality;
 use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE, GroundAcceleration, Motion, Progress, TransitionKind};
+use rocking::impact::gaining_restitution;
 use rocking::quantity::Quantity;
 use rocking::{Detail, Engine, Parameters, Phase, Side, State, Structure, Transition};
 use serde::{Deserialize, Serialize};
@@ -200,7 +201,14 @@ impl Instance {
 
     /// `fmi2ExitInitializationMode`: from here on parameters and initial values are fixed, and fit together.
     pub fn exit_initialization_mode(&mut self) -> Result<(), Failure> {
-        self.now.engine()?;
+        let structure = self.now.engine()?.structure();
+        let (r, gaining) = (structure.parameters().r, gaining_restitution(structure));
+        if r < gaining {
+            self.logger.warning(&format!(
+                "r = {r} is below 1 - 4 (m + m0) B^2/J_P = {gaining}: impacts of this structure can raise its energy; \
+                 raise r, or lower H/B"
+            ));
+        }
         self.now.stage = Stage::StepComplete;
         Ok(())
     }

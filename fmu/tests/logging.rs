@@ -77,6 +77,15 @@ fn events_are_told_if_asked_for_and_errors_always() {
     }
 }
 
+/// A restitution with which impacts can raise the energy is a warning at the start, whatever is asked for.
+#[test]
+fn an_impact_that_can_raise_the_energy_is_warned_of() {
+    for (r, expected) in [(0.63, vec!["logStatusWarning".to_owned()]), (0.64, vec![])] {
+        let host = Host::started(&[("r", r)]); // Evison's geometry: below 0.638
+        assert_eq!(categories(&host), expected);
+    }
+}
+
 #[test]
 fn an_unknown_category_is_refused_and_the_others_with_it() {
     let host = released(0);

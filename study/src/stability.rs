@@ -58,7 +58,7 @@ pub struct Grid {
 }
 
 /// The map of the full study.
-pub const FULL: Grid = Grid { columns: 49, rows: 40 };
+pub const FULL: Grid = Grid { columns: 49, rows: 20 };
 
 /// Right edge of the map.
 pub const MOST_BETA: f64 = 0.98;

@@ -7,7 +7,7 @@ use approx::assert_relative_eq;
 use rocking::energy::energy;
 use rocking::{Detail, Parameters, Phase, Side, State, Structure, impact};
 use study::failures::energy_gain::{
-    change_when_landing, change_when_rocking_goes_on, greatest_gain, greatest_raising_restitution, some_impact_raises,
+    change_when_landing, change_when_rocking_goes_on, greatest_gain, some_impact_raises,
 };
 use study::failures::{Exhibit, double_crossing, grazing, history, overturning, zeno};
 use study::fixed_step::runge_kutta_4::RungeKutta4;
@@ -118,7 +118,7 @@ fn the_change_of_energy_at_impact_is_its_closed_form() {
 #[test]
 fn energy_can_be_gained_below_the_limit_of_restitution_only() {
     for parameters in [Parameters::EVISON, Parameters::MCMANUS, Parameters { J0: 80.0, ..Parameters::MCMANUS }] {
-        let limit = greatest_raising_restitution(&Structure::new(parameters).unwrap());
+        let limit = rocking::impact::gaining_restitution(&Structure::new(parameters).unwrap());
         for (r, raises) in [(limit - 0.01, true), (limit + 0.01, false)] {
             let structure = Structure::new(Parameters { r, ..parameters }).unwrap();
             assert_eq!(greatest_gain(&structure, 0.0) > 0.0, raises);

@@ -39,6 +39,7 @@ use super::{Exhibit, RIGHT, WRONG};
 use crate::chart::{Axis, Entry, Figure, Marker, Panel, Style, colour};
 use anyhow::{Context, Result};
 use rocking::energy::energy;
+use rocking::impact::gaining_restitution;
 use rocking::{
     Engine, GroundAcceleration, Motion, Parameters, Phase, Side, State, Structure, Transition, TransitionKind,
 };
@@ -66,12 +67,6 @@ pub fn greatest_gain(structure: &Structure, u: f64) -> f64 {
     let &Parameters { m, m0, H, B, J0, r, .. } = structure.parameters();
     let (a, f) = (m * H * H + J0 + m * u * u, (m + m0) * B * B);
     0.5 * (1.0 - r) * ((1.0 - r) * a - (3.0 + r) * f) + (1.0 + r * r) * m * B * u
-}
-
-/// Equation (d): the coefficient of restitution below which an impact with u = 0 can raise the energy.
-pub fn greatest_raising_restitution(structure: &Structure) -> f64 {
-    let &Parameters { m, m0, B, .. } = structure.parameters();
-    1.0 - 4.0 * (m + m0) * B * B / structure.J_P
 }
 
 /// Whether any impact with u = 0 after which rocking goes on raises the energy, found by trying states through the
@@ -179,7 +174,7 @@ pub fn show() -> Result<Exhibit> {
     )
     .with("energy", history, WRONG)
     .note((time, 0.42 * highest), format!("impact: +{change:.2} J"), colour::VERMILLION);
-    let limit = |parameters| greatest_raising_restitution(&structure(parameters));
+    let limit = |parameters| gaining_restitution(&structure(parameters));
     Ok(Exhibit {
         key: "energy-gain",
         title: "Energy gained at impact",

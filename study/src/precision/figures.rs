@@ -114,15 +114,19 @@ const LIBRARIES: &[Family] = &[Family::Ours, Family::Library];
 const LEVELS: &[Family] = &[Family::Ours, Family::Level];
 const FMU: &[Family] = &[Family::Ours, Family::Fmu];
 
+/// What a legend explains: everything, or what is compared with the engine alone.
+const ALL: [Family; 5] = [Family::Ours, Family::Level, Family::Located, Family::Fmu, Family::Library];
+const COMPARED: [Family; 3] = [Family::Ours, Family::Located, Family::Library];
+
 /// Writes the pictures and the numbers of one scene.
 pub fn save(diagram: &Diagram, docs: &Path) -> Result<()> {
-    let figure = |panels: Vec<Panel>| Figure {
+    let figure = |panels: Vec<Panel>, families: &[Family]| Figure {
         title: diagram.title.into(),
         panel: (600, 440),
         columns: 2,
         panels,
         legend_columns: 3,
-        legend: legend(diagram),
+        legend: legend(diagram, families),
     };
     let first = [
         diagram.panel("textbook methods, fixed step", BY_HAND, COST, THETA),
@@ -130,28 +134,33 @@ pub fn save(diagram: &Diagram, docs: &Path) -> Result<()> {
         diagram.panel("this project's levels of detail", LEVELS, COST, THETA),
         diagram.panel("the FMU, over its communication steps", FMU, COST, THETA),
     ];
-    figure(first.into()).save(&docs.join(format!("accuracy-{}.svg", diagram.key)))?;
+    figure(first.into(), &ALL).save(&docs.join(format!("accuracy-{}.svg", diagram.key)))?;
     let more = [(EVALUATIONS, THETA), (COST, U), (COST, A_T)].map(|(x, y)| {
         [
             diagram.panel("textbook methods, fixed step", BY_HAND, x, y),
             diagram.panel("solvers of other libraries", LIBRARIES, x, y),
         ]
     });
-    figure(more.concat()).save(&docs.join(format!("accuracy-{}-more.svg", diagram.key)))?;
+    figure(more.concat(), &COMPARED).save(&docs.join(format!("accuracy-{}-more.svg", diagram.key)))?;
     save_numbers(diagram, &docs.join(format!("accuracy-{}.csv", diagram.key)))
 }
 
-/// One column for this project and what lines mean, one for the textbook and the FMU, one for libraries.
-fn legend(diagram: &Diagram) -> Vec<Entry> {
+/// One column for this project and what lines mean, one for the textbook and the FMU, one for libraries; of these
+/// `families`.
+fn legend(diagram: &Diagram, families: &[Family]) -> Vec<Entry> {
+    let of = |wanted: &[Family]| {
+        let wanted: Vec<_> = wanted.iter().copied().filter(|family| families.contains(family)).collect();
+        diagram.legend(&wanted)
+    };
     let meanings = [
         Entry::new("textbook: transitions located", Style::line(GREY, 2)),
         Entry::new("textbook: transitions at step ends", Style::dashed(GREY, 2)),
         Entry::new("fails; its colour tells which", Style::marked(GREY, 0, Marker::Cross)),
     ];
     let columns = [
-        diagram.legend(&[Family::Ours, Family::Level]).into_iter().chain(meanings).collect(),
-        diagram.legend(&[Family::Located, Family::Fmu]),
-        diagram.legend(&[Family::Library]),
+        of(&[Family::Ours, Family::Level]).into_iter().chain(meanings).collect(),
+        of(&[Family::Located, Family::Fmu]),
+        of(&[Family::Library]),
     ];
     let rows = columns.iter().map(Vec::len).max().unwrap_or(0);
     let blank = Entry::new("", Style::line(GREY, 0));

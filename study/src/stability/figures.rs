@@ -90,11 +90,14 @@ fn maps(cells: &[Cell], grid: Grid) -> Figure {
         let mut panel = Panel::new(TEXTBOOK[method].name, x, y);
         for cell in cells.iter().filter(|cell| cell.method == method && cell.vibration.zeta_fc > 0.0) {
             let (beta, zeta) = (cell.vibration.beta, cell.vibration.zeta_fc);
-            panel.areas.push(Area {
-                x: (beta - OVERLAP * width, (beta + OVERLAP * width).min(MOST_BETA)),
-                y: (zeta - OVERLAP * height, (zeta + OVERLAP * height).min(MOST_ZETA)),
-                colour: class(periods(cell)),
-            });
+            let (left, right) = (beta - OVERLAP * width, (beta + OVERLAP * width).min(MOST_BETA));
+            let y = (zeta - OVERLAP * height, (zeta + OVERLAP * height).min(MOST_ZETA));
+            let colour = class(periods(cell));
+            match panel.areas.last_mut() {
+                // a neighbour of the same class
+                Some(area) if area.y == y && area.colour == colour => area.x.1 = right,
+                _ => panel.areas.push(Area { x: (left, right), y, colour }),
+            }
         }
         for (name, parameters) in [("Evison", Parameters::EVISON), ("McManus", Parameters::MCMANUS)] {
             let beta = Structure::new(parameters).expect("the specimens are in range").beta;
