@@ -187,7 +187,8 @@ pub fn show() -> Result<Exhibit> {
         ),
         remedy:
             "The measured coefficients of restitution of both specimens are far above their limits. Below it the rule \
-                 itself is at fault and no solver can help: do not choose r below 1 − 4 (m + m0) B²/J_P."
+                 itself is at fault and no solver can help: do not choose r below 1 − 4 (m + m0) B²/J_P. The FMU \
+                 warns of it at the start."
                 .into(),
         caption:
             "Left: grey where trying states through the engine's own reset finds a gain; the line is the closed form. \
