@@ -16,8 +16,6 @@ pub enum Method {
     Bdf,
     /// An ESDIRK pair of orders 3(4).
     Esdirk34,
-    /// Trapezoidal rule and backward differences.
-    TrBdf2,
 }
 
 /// One of them, to a relative tolerance.
@@ -88,7 +86,6 @@ impl Diffsol {
             Method::Esdirk34 => {
                 self.steps(&mut problem.esdirk34::<Lu>().map_err(|error| error.to_string())?, end, until)
             }
-            Method::TrBdf2 => self.steps(&mut problem.tr_bdf2::<Lu>().map_err(|error| error.to_string())?, end, until),
         };
         stretch.map_err(|error| error.to_string())
     }
