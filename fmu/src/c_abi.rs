@@ -572,7 +572,7 @@ pub unsafe extern "C" fn fmi2GetStringStatus(c: *mut c_void, s: c_int, _value: *
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::GUID;
+    use crate::guid;
     use crate::resources::PARAMETERS_FILE;
     use rocking::Parameters;
 
@@ -580,8 +580,8 @@ mod tests {
     fn a_panic_is_fatal_and_the_instance_can_only_be_freed() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join(PARAMETERS_FILE), toml::to_string(&Parameters::EVISON).unwrap()).unwrap();
-        let [guid, location] =
-            [GUID.to_owned(), format!("file://{}", folder.path().display())].map(|text| CString::new(text).unwrap());
+        let [guid, location] = [guid(&Parameters::EVISON), format!("file://{}", folder.path().display())]
+            .map(|text| CString::new(text).unwrap());
         let functions = CallbackFunctions {
             logger: None,
             allocate_memory: ptr::null(),

@@ -55,15 +55,16 @@ pub enum Failure {
     /// An empty name.
     #[error("instanceName must not be empty")]
     NoName,
-    /// A model description of another build.
+    /// A model description of another FMU.
     #[error(
-        "fmuGUID = {given:?} is not that of this library, {}: modelDescription.xml and the library are of different \
-         builds; export the FMU again",
-        crate::GUID
+        "fmuGUID = {given:?} is not {needed}: modelDescription.xml, the library and resources/parameters.toml are not of \
+         one FMU; export it again, and unpack every FMU into a folder of its own"
     )]
     WrongGuid {
         /// What the host passed.
         given: String,
+        /// What follows from the library's build and the parameters.
+        needed: String,
     },
     /// The archive's own parameters.
     #[error(transparent)]

@@ -1,7 +1,7 @@
 //! One instance of the FMU: what each function does, in safe code.
 
-use crate::GUID;
 use crate::failure::Failure;
+use crate::guid;
 use crate::logger::{Category, Logger, Status};
 use crate::resources;
 use crate::snapshot::{self, Snapshots};
@@ -133,10 +133,12 @@ impl Instance {
             if arguments.name.is_empty() {
                 return Err(Failure::NoName);
             }
-            if arguments.guid != GUID {
-                return Err(Failure::WrongGuid { given: arguments.guid.to_owned() });
+            let parameters = resources::parameters(arguments.resource_location)?;
+            let needed = guid(&parameters);
+            if arguments.guid != needed {
+                return Err(Failure::WrongGuid { given: arguments.guid.to_owned(), needed });
             }
-            Ok(resources::parameters(arguments.resource_location)?)
+            Ok(parameters)
         };
         match arguments.and_then(|arguments| Ok((parameters(&arguments)?, arguments.logging_on))) {
             Ok((shipped, events_at_start)) => {

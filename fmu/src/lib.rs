@@ -15,5 +15,16 @@ pub mod snapshot;
 pub mod state_machine;
 pub mod variables;
 
-/// Binds the library to the model description written for it.
-pub const GUID: &str = env!("FLEXIBLE_ROCKING_GUID");
+use rocking::Parameters;
+use uuid::Uuid;
+
+/// Names the build: the sources that the library and the model description are made from.
+pub const BUILD: &str = env!("FLEXIBLE_ROCKING_BUILD");
+
+/// The GUID of an FMU of the structure `parameters`: binds the model description, the library and the parameters that
+/// the archive carries to each other. Hosts take two FMUs of one GUID for the same, so that structures must differ in it.
+pub fn guid(parameters: &Parameters) -> String {
+    let build = Uuid::try_parse(BUILD).expect("the build script wrote it");
+    let bytes = postcard::to_stdvec(parameters).expect("numbers can always be written");
+    Uuid::new_v5(&build, &bytes).braced().to_string()
+}

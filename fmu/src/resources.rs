@@ -59,7 +59,8 @@ pub fn parameters(location: &str) -> Result<Parameters, ResourceError> {
     }
 }
 
-/// The local path of a file URI (RFC 8089): `file:/path`, `file:///path`, `file://localhost/path`.
+/// The local path of a file URI (RFC 8089): `file:/path`, `file:///path`, `file://localhost/path`; on Windows
+/// `file:///C:/path` is `C:/path`.
 fn path(uri: &str) -> Option<PathBuf> {
     let (scheme, rest) = uri.split_once(':')?;
     if !scheme.eq_ignore_ascii_case("file") {
@@ -72,7 +73,9 @@ fn path(uri: &str) -> Option<PathBuf> {
     if !path.starts_with('/') {
         return None;
     }
-    Some(Path::new(&*percent_decode_str(path).decode_utf8().ok()?).to_owned())
+    let path = percent_decode_str(path).decode_utf8().ok()?;
+    let drive = path.strip_prefix('/').filter(|path| cfg!(windows) && path.get(1..2) == Some(":"));
+    Some(Path::new(drive.unwrap_or(&path)).to_owned())
 }
 
 #[cfg(test)]

@@ -3,13 +3,13 @@
 //! ```text
 //! "FlexRock"   8 bytes
 //! version      4 bytes, little endian
-//! GUID         38 bytes
+//! build        38 bytes
 //! length       4 bytes, little endian: of the payload
 //! payload      postcard
 //! CRC32        4 bytes, little endian: of everything before
 //! ```
 
-use crate::GUID;
+use crate::BUILD;
 use crate::failure::Failure;
 use crate::instance::{Condition, Setup};
 use crate::state_machine::Stage;
@@ -125,6 +125,6 @@ fn header() -> [u8; 50] {
     let mut header = [0; 50];
     header[..8].copy_from_slice(&MAGIC);
     header[8..12].copy_from_slice(&VERSION.to_le_bytes());
-    header[12..].copy_from_slice(GUID.as_bytes());
+    header[12..].copy_from_slice(BUILD.as_bytes());
     header
 }

@@ -3,7 +3,7 @@
 
 mod host;
 
-use FlexibleRocking::GUID;
+use FlexibleRocking::BUILD;
 use FlexibleRocking::c_abi::*;
 use host::*;
 use std::ffi::c_void;
@@ -127,7 +127,7 @@ fn bytes_that_are_no_state_of_this_build_are_refused() {
             format!("fmi2DeSerializeFMUstate: serializedState is not a serialized state of this FMU: {reason}");
         host.assert_refused(|| host.deserialize(&bytes), Err(ERROR), &message);
     };
-    assert_eq!(&bytes[12..50], GUID.as_bytes());
+    assert_eq!(&bytes[12..50], BUILD.as_bytes());
     refused(&|bytes| bytes.clear(), "it is too short");
     refused(&|bytes| bytes.truncate(49), "it is too short");
     refused(&|bytes| bytes.truncate(53), "it is too short");

@@ -6,13 +6,13 @@
 
 mod host;
 
-use FlexibleRocking::GUID;
 use FlexibleRocking::c_abi::*;
 use FlexibleRocking::state_machine::{Function, Stage};
 use FlexibleRocking::variables::{DataType, VARIABLES};
 use fastrand::Rng;
 use host::{DISCARD, ERROR, OK};
 use libc::{c_char, c_int, c_uint, c_void};
+use rocking::Parameters;
 use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -344,7 +344,8 @@ impl Sequence<'_> {
         let rng = &mut self.rng;
         let names = [c"wall", c"%s%n#", c"\xff", c""];
         let name = if wrong(rng) { names[rng.usize(..4)] } else { names[0] };
-        let guid = CString::new(if wrong(rng) { "{00000000-0000-0000-0000-000000000000}" } else { GUID }).unwrap();
+        let guid = if wrong(rng) { Parameters::MCMANUS } else { Parameters::EVISON };
+        let guid = CString::new(FlexibleRocking::guid(&guid)).unwrap();
         let locations = [c"", c"file:///nowhere", c"file:///%00", c"http://localhost/", c"file:///dev", c"\xfe"];
         let location = if wrong(rng) { locations[rng.usize(..6)] } else { self.location };
         let mut texts = [name.as_ptr(), guid.as_ptr(), location.as_ptr()];

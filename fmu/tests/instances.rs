@@ -3,9 +3,10 @@
 
 mod host;
 
-use FlexibleRocking::GUID;
 use FlexibleRocking::c_abi::*;
+use FlexibleRocking::{BUILD, guid};
 use host::*;
+use rocking::Parameters;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 use std::thread;
@@ -21,19 +22,27 @@ fn refusal(arguments: Instantiate) -> String {
 fn the_library_says_what_it_is() {
     let [platform, version] = [fmi2GetTypesPlatform(), fmi2GetVersion()].map(|text| unsafe { CStr::from_ptr(text) });
     assert_eq!((platform, version), (c"default", c"2.0"));
-    assert_eq!((GUID.len(), &GUID[..1], &GUID[15..16], &GUID[37..]), (38, "{", "5", "}"));
+    let [evison, mcmanus] = [Parameters::EVISON, Parameters::MCMANUS].map(|parameters| guid(&parameters));
+    for guid in [BUILD, &evison, &mcmanus] {
+        assert_eq!((guid.len(), &guid[..1], &guid[15..16], &guid[37..]), (38, "{", "5", "}"));
+    }
+    assert_eq!(evison, guid(&Parameters::EVISON));
+    assert!(evison != mcmanus && evison != BUILD && mcmanus != BUILD);
 }
 
 #[test]
 fn an_instance_that_cannot_be_made_is_null_and_the_log_says_why() {
-    let guid = "{00000000-0000-0000-0000-000000000000}";
-    assert_eq!(
-        refusal(Instantiate { guid: guid.to_owned(), ..Instantiate::default() }),
-        format!(
-            "fmi2Instantiate: fmuGUID = \"{guid}\" is not that of this library, {GUID}: modelDescription.xml and the \
-             library are of different builds; export the FMU again"
-        )
-    );
+    for other in [BUILD.to_owned(), guid(&Parameters::MCMANUS)] {
+        assert_eq!(
+            refusal(Instantiate { guid: other.clone(), ..Instantiate::default() }),
+            format!(
+                "fmi2Instantiate: fmuGUID = \"{other}\" is not {}: modelDescription.xml, the library and \
+                 resources/parameters.toml are not of one FMU; export it again, and unpack every FMU into a folder of \
+                 its own",
+                guid(&Parameters::EVISON)
+            )
+        );
+    }
     assert_eq!(
         refusal(Instantiate { name: "", ..Instantiate::default() }),
         "fmi2Instantiate: instanceName must not be empty"
@@ -63,7 +72,7 @@ fn an_instance_that_cannot_be_made_is_null_and_the_log_says_why() {
 #[test]
 fn null_and_misaligned_pointers_are_errors() {
     let no_text: *const c_char = null();
-    let guid = CString::new(GUID).unwrap();
+    let guid = CString::new(guid(&Parameters::EVISON)).unwrap();
     let log = std::cell::RefCell::new(Vec::<Message>::new());
     let functions = callbacks((&raw const log).cast_mut().cast());
     unsafe {
@@ -135,7 +144,7 @@ fn what_is_no_component_is_an_error_and_freeing_it_does_nothing() {
 fn a_host_without_a_logger_gets_its_statuses() {
     let folder = resources();
     let location = CString::new(format!("file://{}", folder.path().display())).unwrap();
-    let guid = CString::new(GUID).unwrap();
+    let guid = CString::new(guid(&Parameters::EVISON)).unwrap();
     let functions = CallbackFunctions { logger: None, ..callbacks(null_mut()) };
     unsafe {
         let c = fmi2Instantiate(c"quiet".as_ptr(), 1, guid.as_ptr(), location.as_ptr(), &functions, 0, 1);
@@ -174,7 +183,7 @@ fn a_call_from_within_the_logger_is_refused() {
     };
     let folder = resources();
     let location = CString::new(format!("file://{}", folder.path().display())).unwrap();
-    let guid = CString::new(GUID).unwrap();
+    let guid = CString::new(guid(&Parameters::EVISON)).unwrap();
     unsafe {
         let c = fmi2Instantiate(c"talkative".as_ptr(), 1, guid.as_ptr(), location.as_ptr(), &functions, 0, 0);
         environment.component.set(c.expose_provenance());

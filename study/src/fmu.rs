@@ -3,7 +3,6 @@
 
 use crate::response::{Failure, Response, Sample};
 use crate::scene::{Input, Scene};
-use FlexibleRocking::GUID;
 use FlexibleRocking::c_abi::{self, CallbackFunctions};
 use FlexibleRocking::resources::PARAMETERS_FILE;
 use FlexibleRocking::variables::VARIABLES;
@@ -36,7 +35,8 @@ impl<'a> Fmu<'a> {
         let resources = tempfile::tempdir()?;
         std::fs::write(resources.path().join(PARAMETERS_FILE), toml::to_string(scene.structure.parameters())?)?;
         let location = CString::new(format!("file://{}", resources.path().display()))?;
-        let (name, guid) = (CString::new(scene.key)?, CString::new(GUID)?);
+        let (name, guid) =
+            (CString::new(scene.key)?, CString::new(FlexibleRocking::guid(scene.structure.parameters()))?);
         let callbacks = CallbackFunctions {
             logger: None,
             allocate_memory: ptr::null(),

@@ -1,8 +1,8 @@
 //! A host: loads nothing, calls the C functions directly, keeps what is logged.
 #![allow(unsafe_code, dead_code)] // the C interface; every test file uses a part of this
 
-use FlexibleRocking::GUID;
 use FlexibleRocking::c_abi::*;
+use FlexibleRocking::guid;
 use FlexibleRocking::resources::PARAMETERS_FILE;
 use FlexibleRocking::variables::VARIABLES;
 use libc::{c_char, c_int, c_uint, c_void};
@@ -45,7 +45,7 @@ pub struct Instantiate {
 
 impl Default for Instantiate {
     fn default() -> Instantiate {
-        Instantiate { name: "wall", fmu_type: 1, guid: GUID.to_owned(), location: None, logging_on: 0 }
+        Instantiate { name: "wall", fmu_type: 1, guid: guid(&Parameters::EVISON), location: None, logging_on: 0 }
     }
 }
 

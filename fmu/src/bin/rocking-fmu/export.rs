@@ -1,12 +1,12 @@
-//! `export`: packs the shared library, with all that describes it, into an FMU.
+//! `export`: packs the shared libraries, with all that describes them, into an FMU.
 
 mod documentation;
 mod model_description;
 
 use crate::archive::{self, Entry};
 use crate::structure_args::StructureArgs;
-use FlexibleRocking::GUID;
 use FlexibleRocking::resources::PARAMETERS_FILE;
+use FlexibleRocking::{BUILD, guid};
 use anyhow::{Context, bail};
 use rocking::Structure;
 use rocking::parameters::PARAMETERS;
@@ -16,6 +16,9 @@ use std::{env, fs};
 
 /// File name of the shared library as cargo builds it.
 const LIBRARY_FILE: &str = "libFlexibleRocking.so";
+
+/// Licences of all that the shared library is made of.
+const LICENSES: &str = include_str!(concat!(env!("OUT_DIR"), "/license.txt"));
 
 const ICON: &[u8] = include_bytes!("../../../resources/model.png");
 
@@ -30,6 +33,9 @@ pub struct ExportArgs {
     /// Shared library to pack [default: libFlexibleRocking.so beside this program]
     #[arg(long, value_name = "PATH")]
     library: Option<PathBuf>,
+    /// Library for 64-bit Windows to pack as well: FlexibleRocking.dll, cross-compiled from the same sources
+    #[arg(long, value_name = "PATH")]
+    windows_library: Option<PathBuf>,
 }
 
 /// Writes the FMU and prints what was written.
@@ -39,10 +45,11 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
         Some(path) => read_library(path)?,
         None => read_library(&library_of(&env::current_exe()?))?,
     };
-    let size = archive::write(&args.output, &entries(&structure, library)?)?;
+    let windows_library = args.windows_library.as_deref().map(read_library).transpose()?;
+    let size = archive::write(&args.output, &entries(&structure, library, windows_library)?)?;
     let mut out = stdout().lock();
     writeln!(out, "{}: {} kB", args.output.display(), size.div_ceil(1000))?;
-    writeln!(out, "  GUID       {GUID}")?;
+    writeln!(out, "  GUID       {}", guid(structure.parameters()))?;
     writeln!(out, "  structure  {}", start_values(&structure))?;
     Ok(())
 }
@@ -63,9 +70,9 @@ fn read_library(path: &Path) -> anyhow::Result<Vec<u8>> {
         ),
         result => result.with_context(|| format!("cannot read the shared library {}", path.display()))?,
     };
-    if !library.windows(GUID.len()).any(|bytes| bytes == GUID.as_bytes()) {
+    if !library.windows(BUILD.len()).any(|bytes| bytes == BUILD.as_bytes()) {
         bail!(
-            "the shared library {} is of another build: the GUID of this one, {GUID}, does not occur in it; build both \
+            "the shared library {} is of another build: the name of this one, {BUILD}, does not occur in it; build both \
              together with `cargo build --release`",
             path.display()
         );
@@ -74,16 +81,19 @@ fn read_library(path: &Path) -> anyhow::Result<Vec<u8>> {
 }
 
 /// The content of the archive.
-fn entries(structure: &Structure, library: Vec<u8>) -> anyhow::Result<Vec<Entry>> {
+fn entries(structure: &Structure, library: Vec<u8>, windows_library: Option<Vec<u8>>) -> anyhow::Result<Vec<Entry>> {
     let parameters = structure.parameters();
     let entry = |path: &str, content| Entry { path: path.to_owned(), content };
-    Ok(vec![
+    let mut entries = vec![
         entry("modelDescription.xml", model_description::model_description(parameters).to_xml()?.into()),
         entry("model.png", ICON.to_vec()),
         entry("binaries/linux64/FlexibleRocking.so", library),
         entry("documentation/index.html", documentation::documentation(structure)?.into()),
+        entry("documentation/licenses/license.txt", LICENSES.into()),
         entry(&format!("resources/{PARAMETERS_FILE}"), toml::to_string(parameters)?.into()),
-    ])
+    ];
+    entries.extend(windows_library.map(|library| entry("binaries/win64/FlexibleRocking.dll", library)));
+    Ok(entries)
 }
 
 /// The structure's parameters in one line.
@@ -118,7 +128,7 @@ mod tests {
     /// A file that passes for the library of this build.
     fn library(folder: &Path) -> PathBuf {
         let path = folder.join(LIBRARY_FILE);
-        fs::write(&path, format!("some code{GUID}more code")).unwrap();
+        fs::write(&path, format!("some code{BUILD}more code")).unwrap();
         path
     }
 
@@ -139,20 +149,46 @@ mod tests {
 
     #[test]
     fn the_archive_holds_what_the_standard_and_the_library_look_for() {
-        let entries = entries(&Structure::new(Parameters::EVISON).unwrap(), b"code".to_vec()).unwrap();
+        let windows = Some(b"Windows code".to_vec());
+        let entries = entries(&Structure::new(Parameters::EVISON).unwrap(), b"code".to_vec(), windows).unwrap();
         let paths: Vec<_> = entries.iter().map(|entry| entry.path.as_str()).collect();
         let expected = [
             "modelDescription.xml",
             "model.png",
             "binaries/linux64/FlexibleRocking.so",
             "documentation/index.html",
+            "documentation/licenses/license.txt",
             "resources/parameters.toml",
+            "binaries/win64/FlexibleRocking.dll",
         ];
         assert_eq!(paths, expected);
         assert_eq!(entries[1].content[..8], *b"\x89PNG\r\n\x1a\n");
         assert_eq!(entries[2].content, b"code");
-        let parameters: Parameters = toml::from_slice(&entries[4].content).unwrap();
+        let parameters: Parameters = toml::from_slice(&entries[5].content).unwrap();
         assert_eq!(parameters, Parameters::EVISON);
+        assert_eq!(entries[6].content, b"Windows code");
+    }
+
+    /// Every package that the library needs, none that only the program does, and the texts that go with them.
+    #[test]
+    fn the_licenses_are_those_of_the_library() {
+        let (list, texts) = LICENSES.split_once("====").unwrap();
+        for package in ["rocking", "nalgebra", "postcard", "serde", "toml"] {
+            assert!(list.contains(&format!("  {package} v")), "{package}");
+            assert!(texts.contains(&format!("{package} v")), "{package}");
+        }
+        for package in ["clap", "zip", "thiserror-impl", "cargo_metadata", "proptest"] {
+            assert!(!list.contains(&format!("  {package} v")), "{package}");
+        }
+        for words in
+            ["Permission is hereby granted, free of charge", "Apache License\n", "the FlexibleRocking contributors"]
+        {
+            assert!(texts.contains(words), "{words}");
+        }
+        for line in list.lines().filter(|line| line.starts_with("  ")) {
+            let package = line.trim().split(':').next().unwrap();
+            assert!(texts.contains(package), "the text of {line} is missing");
+        }
     }
 
     #[test]
@@ -182,13 +218,13 @@ mod tests {
     fn a_library_of_another_build_is_refused_and_nothing_is_written() {
         let folder = tempfile::tempdir().unwrap();
         let library = library(folder.path());
-        let other = fs::read_to_string(&library).unwrap().replace(GUID, "{00000000-0000-5000-8000-000000000000}");
+        let other = fs::read_to_string(&library).unwrap().replace(BUILD, "{00000000-0000-5000-8000-000000000000}");
         fs::write(&library, other).unwrap();
         let target = folder.path().join("FlexibleRocking.fmu");
         let [path, output] = [&library, &target].map(|path| path.to_str().unwrap());
         let message = export(&["--library", path, "--output", output]).unwrap_err().to_string();
         let start =
-            format!("the shared library {path} is of another build: the GUID of this one, {GUID}, does not occur");
+            format!("the shared library {path} is of another build: the name of this one, {BUILD}, does not occur");
         assert!(message.starts_with(&start), "{message}");
         assert!(!target.exists());
     }

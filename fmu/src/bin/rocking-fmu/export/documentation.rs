@@ -2,7 +2,6 @@
 
 use super::model_description::{DESCRIPTION, MODEL_NAME};
 use crate::significant::significant;
-use FlexibleRocking::GUID;
 use FlexibleRocking::logger::Category;
 use FlexibleRocking::variables::{DataType, VARIABLES, Variable};
 use minijinja::value::Serde;
@@ -23,7 +22,7 @@ struct Page<'a> {
     model_name: &'a str,
     description: &'a str,
     version: &'a str,
-    guid: &'a str,
+    guid: String,
     icon: &'a str,
     groups: Vec<Group>,
     tolerance: String,
@@ -61,7 +60,7 @@ pub fn documentation(structure: &Structure) -> Result<String, minijinja::Error> 
         model_name: MODEL_NAME,
         description: DESCRIPTION,
         version: env!("CARGO_PKG_VERSION"),
-        guid: GUID,
+        guid: FlexibleRocking::guid(structure.parameters()),
         icon: ICON,
         groups: [
             ("Input", Causality::Input),

@@ -1,6 +1,5 @@
 //! `modelDescription.xml`, from the table of variables.
 
-use FlexibleRocking::GUID;
 use FlexibleRocking::logger;
 use FlexibleRocking::variables::{DETAILS, DataType, Enumeration, PHASES, VARIABLES, Variable};
 use model_description as fmi;
@@ -32,7 +31,7 @@ pub fn model_description(parameters: &Parameters) -> fmi::FmiModelDescription {
     fmi::FmiModelDescription {
         fmi_version: fmi::FmiVersion::V2_0,
         model_name: MODEL_NAME.into(),
-        guid: GUID.into(),
+        guid: FlexibleRocking::guid(parameters),
         description: DESCRIPTION.into(),
         version: env!("CARGO_PKG_VERSION").into(),
         license: env!("CARGO_PKG_LICENSE").into(),

@@ -6,7 +6,7 @@ use super::{
     outcome::{MEASURES, Outcome},
     plan::{Plan, Run, heading},
 };
-use FlexibleRocking::GUID;
+use FlexibleRocking::BUILD;
 use anyhow::{Context, bail, ensure};
 use csv::{StringRecord, WriterBuilder};
 use std::{
@@ -73,7 +73,7 @@ impl Rows {
 
 /// The lines before the first row.
 fn header(plan: &Plan) -> anyhow::Result<Vec<u8>> {
-    let mut header = format!("# rocking-fmu sweep, build {GUID}, inputs {}\n", hex(plan.digest())).into_bytes();
+    let mut header = format!("# rocking-fmu sweep, build {BUILD}, inputs {}\n", hex(plan.digest())).into_bytes();
     let identity = ["run", "inputs", "structures"].map(String::from);
     let motion = ["record", "scale", "PGA[g]", "overturned", "overturned_at[s]"].map(String::from);
     let peaks = MEASURES.map(|(name, unit)| heading(&format!("peak_{name}"), unit));

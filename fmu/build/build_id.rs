@@ -2,7 +2,7 @@
 //! library refuses a model description that was not written for it.
 
 use std::path::{Path, PathBuf};
-use std::{env, fs, io};
+use std::{fs, io};
 use uuid::Uuid;
 
 /// Relative to the workspace.
@@ -10,19 +10,19 @@ const SOURCES: [&str; 8] = [
     "Cargo.lock",
     "Cargo.toml",
     "fmu/Cargo.toml",
-    "fmu/build.rs",
+    "fmu/build",
     "fmu/src",
     "modelDescription/Cargo.toml",
     "modelDescription/src",
     "src",
 ];
 
-fn main() -> io::Result<()> {
-    let workspace = PathBuf::from(env::var_os("CARGO_MANIFEST_DIR").expect("cargo sets it")).join("..");
+/// The GUID of the sources in `workspace`, which are watched from now on.
+pub fn build_id(workspace: &Path) -> io::Result<String> {
     let mut files = Vec::new();
     for source in SOURCES {
         println!("cargo::rerun-if-changed=../{source}");
-        collect(&workspace, Path::new(source), &mut files)?;
+        collect(workspace, Path::new(source), &mut files)?;
     }
     files.sort();
     let mut content = Vec::new();
@@ -31,9 +31,7 @@ fn main() -> io::Result<()> {
         content.extend(format!("{} {}\n", file.display(), bytes.len()).into_bytes());
         content.extend(bytes);
     }
-    let guid = Uuid::new_v5(&Uuid::NAMESPACE_OID, &content);
-    println!("cargo::rustc-env=FLEXIBLE_ROCKING_GUID={{{guid}}}");
-    Ok(())
+    Ok(Uuid::new_v5(&Uuid::NAMESPACE_OID, &content).braced().to_string())
 }
 
 /// Appends `path` (relative to `workspace`), or all files under it.
