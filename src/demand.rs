@@ -63,6 +63,7 @@ impl Demand {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::load::Load;
     use crate::nonlinear_rocking::accelerations;
     use crate::{Parameters, Side, State};
     use approx::assert_relative_eq;
@@ -98,7 +99,7 @@ mod tests {
         let structure = Structure::new(Parameters { f_fc: 1e3, ..Parameters::MCMANUS }).unwrap();
         let demand = Demand::new(&structure, 0.0, INSTANT_TRANSITION).unwrap();
         let quiet = State { u: structure.beta * structure.u_cr, ..State::default() };
-        let u_ddot = accelerations(&structure, Side::Left, &quiet, 0.0).unwrap()[0];
+        let u_ddot = accelerations(&structure, Side::Left, &quiet, Load::default()).unwrap()[0];
         assert_relative_eq!(u_ddot, -demand.u_ddot_gr, max_relative = 1e-5);
     }
 

@@ -12,6 +12,7 @@
 //! | `fixed_base` | 1, no uplift | exact flow |
 
 use crate::linear_rocking::LinearRocking;
+use crate::load::Load;
 use crate::modal_rocking::ModalRocking;
 use crate::nonlinear_rocking::{self, NonlinearRocking};
 use crate::taylor::{Arc, Start};
@@ -107,22 +108,23 @@ impl RockingEquations {
     }
 
     /// (ü, θ̈) in `phase`, m/s² and rad/s²; not a number where the equations have no solution.
-    pub(crate) fn accelerations(&self, structure: &Structure, phase: Phase, state: &State, a_g: f64) -> [f64; 2] {
+    pub(crate) fn accelerations(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2] {
+        let a_top = load.on_top(structure);
         match (self, phase) {
-            (RockingEquations::Rigid, _) => rigid_rocking::accelerations(structure, phase, state, a_g),
-            (RockingEquations::Linear(linear), Phase::Rocking(side)) => linear.system.accelerations(side, state, a_g),
-            (RockingEquations::Modal(modal), Phase::Rocking(side)) => modal.system.accelerations(side, state, a_g),
-            _ => full_accelerations(structure, phase, state, a_g),
+            (RockingEquations::Rigid, _) => rigid_rocking::accelerations(structure, phase, state, load),
+            (RockingEquations::Linear(linear), Phase::Rocking(side)) => linear.system.accelerations(side, state, a_top),
+            (RockingEquations::Modal(modal), Phase::Rocking(side)) => modal.system.accelerations(side, state, a_top),
+            _ => full_accelerations(structure, phase, state, load),
         }
     }
 }
 
 /// (ü, θ̈) by Eqs 1, 5 and 6 in `phase`, m/s² and rad/s²; not a number where they have no solution.
-pub(crate) fn full_accelerations(structure: &Structure, phase: Phase, state: &State, a_g: f64) -> [f64; 2] {
+pub(crate) fn full_accelerations(structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2] {
     match phase {
-        Phase::FullContact => [full_contact::acceleration(structure, state, a_g), 0.0],
+        Phase::FullContact => [full_contact::acceleration(structure, state, load), 0.0],
         Phase::Rocking(side) => {
-            nonlinear_rocking::accelerations(structure, side, state, a_g).map_or([f64::NAN; 2], Into::into)
+            nonlinear_rocking::accelerations(structure, side, state, load).map_or([f64::NAN; 2], Into::into)
         }
         Phase::Overturned(_) => [0.0; 2],
     }

@@ -29,7 +29,7 @@ pub fn effective_frequency(structure: &Structure, theta: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::GroundAcceleration;
+    use crate::load::GroundAcceleration;
     use crate::{Engine, Parameters, State, TransitionKind};
     use approx::assert_relative_eq;
 

@@ -18,6 +18,8 @@
 use crate::detail::{Detail, RockingEquations};
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::full_contact::ExactContact;
+use crate::load::{LinearLoad, Load};
+use crate::reactions::{Impulse, Reactions};
 use crate::state::InitialStateError;
 use crate::taylor::{Arc, Start};
 use crate::{Outputs, Phase, Side, State, Structure, full_contact, impact, rigid_rocking, uplift};
@@ -42,37 +44,6 @@ pub const MAX_STEPS_PER_ADVANCE: u64 = 2_000_000;
 
 /// A step shorter than this part of 1/ω_u is not the doing of the step's end or of a transition: the solution ends.
 const STALLED: f64 = 1e-12;
-
-/// Ground acceleration over one interval, positive to the right: `value + slope·(t − start of the interval)`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct GroundAcceleration {
-    /// At the start of the interval, m/s².
-    pub value: f64,
-    /// Its rate, m/s³.
-    pub slope: f64,
-}
-
-impl GroundAcceleration {
-    /// Its value `tau` seconds into the interval, m/s².
-    pub fn at(self, tau: f64) -> f64 {
-        self.value + self.slope * tau
-    }
-
-    /// The same ground motion, its interval started `tau` seconds later.
-    pub(crate) fn from(self, tau: f64) -> GroundAcceleration {
-        GroundAcceleration { value: self.at(tau), slope: self.slope }
-    }
-
-    /// Coefficient `k` of its series over a step of `span` s.
-    #[inline]
-    pub(crate) fn coefficient(self, k: usize, span: f64) -> f64 {
-        match k {
-            0 => self.value,
-            1 => self.slope * span,
-            _ => 0.0,
-        }
-    }
-}
 
 /// Work done since the start, counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -109,6 +80,8 @@ pub struct Motion {
     pub work: Work,
     /// Ground acceleration at that time, m/s², 0 before the first advance.
     pub a_g: f64,
+    /// Impulse of the impacts on the ground so far.
+    pub impulse: Impulse,
     burst: Burst,
 }
 
@@ -160,12 +133,16 @@ pub enum AdvanceError {
         /// The refused end, s.
         until: f64,
     },
-    /// The ground acceleration is not finite over the interval.
-    #[error("the ground acceleration {value} m/s2 with slope {slope} m/s3 is not finite up to t = {until} s")]
-    GroundAcceleration {
-        /// m/s².
+    /// The load is not finite over the interval.
+    #[error("{name} = {value} {unit} with slope {slope} {unit}/s is not finite up to t = {until} s: give finite loads")]
+    Load {
+        /// `a_g` or `F_t`.
+        name: &'static str,
+        /// Its unit.
+        unit: &'static str,
+        /// At the start.
         value: f64,
-        /// m/s³.
+        /// Per second.
         slope: f64,
         /// End of the interval, s.
         until: f64,
@@ -240,6 +217,7 @@ impl Engine {
             transitions: 0,
             work: Work::default(),
             a_g: 0.0,
+            impulse: Impulse::default(),
             burst: Burst { start: f64::MIN, transitions: 0, held_until: f64::MIN },
         };
         Ok(Engine {
@@ -268,12 +246,12 @@ impl Engine {
         self.motion = motion;
     }
 
-    /// Advances to the time `until` (s) under `a_g`, which is given from the present time on; every transition on the
+    /// Advances to the time `until` (s) under `load`, which is given from the present time on; every transition on the
     /// way is shown to `observe`.
     pub fn advance(
         &mut self,
         until: f64,
-        a_g: GroundAcceleration,
+        load: impl Into<LinearLoad>,
         observe: &mut dyn FnMut(&Transition),
     ) -> Result<Progress, AdvanceError> {
         let start = self.motion.time;
@@ -281,11 +259,19 @@ impl Engine {
         if !(interval > 0.0 && interval.is_finite()) {
             return Err(AdvanceError::NotAhead { from: start, until });
         }
-        if !(a_g.value.is_finite() && a_g.at(interval).is_finite()) {
-            return Err(AdvanceError::GroundAcceleration { value: a_g.value, slope: a_g.slope, until });
+        let load: LinearLoad = load.into();
+        let (first, last) = (load.value, load.at(interval));
+        for (name, unit, ends, slope) in [
+            ("a_g", "m/s2", [first.a_g, last.a_g], load.slope.a_g),
+            ("F_t", "N", [first.F_t, last.F_t], load.slope.F_t),
+        ] {
+            if !ends.iter().all(|end| end.is_finite()) {
+                return Err(AdvanceError::Load { name, unit, value: ends[0], slope, until });
+            }
         }
+        let (a_g, a_top) = (load.on_foundation(), load.on_top(&self.structure));
         let local_error = (LOCAL_SHARE * self.tolerance).max(f64::EPSILON / 2.0);
-        if let Some(state) = self.leap(&Start { state: self.motion.state, a_g, interval, local_error }) {
+        if let Some(state) = self.leap(&Start { state: self.motion.state, a_g, a_top, interval, local_error }) {
             self.motion.state = state;
             self.motion.time = until;
             self.motion.a_g = a_g.at(interval);
@@ -298,8 +284,13 @@ impl Engine {
         let mut elapsed = 0.0;
         while elapsed < interval {
             let left = interval - elapsed;
-            let here = a_g.from(elapsed);
-            let begin = Start { state: motion.state, a_g: here, interval: left, local_error };
+            let begin = Start {
+                state: motion.state,
+                a_g: a_g.from(elapsed),
+                a_top: a_top.from(elapsed),
+                interval: left,
+                local_error,
+            };
             let end = match motion.phase {
                 Phase::FullContact => self.step_in_full_contact(begin, motion.burst.held_until - motion.time),
                 Phase::Rocking(side) => self.step_while_rocking(&begin, side),
@@ -331,24 +322,54 @@ impl Engine {
         }
     }
 
-    /// The outputs now.
-    pub fn outputs(&self) -> Outputs {
+    /// The outputs now, with the force `F_t` (N) on the top mass.
+    pub fn outputs(&self, F_t: f64) -> Outputs {
         let Motion { phase, state, a_g, .. } = &self.motion;
         match self.detail {
-            Detail::Rigid => Outputs::of_rigid(&self.structure, *phase, state, *a_g),
-            _ => Outputs::of(&self.structure, *phase, state),
+            Detail::Rigid => Outputs::of_rigid(&self.structure, *phase, state, Load { a_g: *a_g, F_t }),
+            _ => Outputs::of(&self.structure, *phase, state, F_t),
         }
     }
 
-    /// Their time derivatives now under `a_g`, from the equations of motion; 0 once overturned. At a transition they are
-    /// those just after it.
-    pub fn output_rates(&self, a_g: GroundAcceleration) -> Outputs {
+    /// The reactions now under `load`; once overturned, those of the instant before.
+    pub fn reactions(&self, load: Load) -> Reactions {
         let Motion { phase, state, .. } = &self.motion;
-        if self.detail == Detail::Rigid {
-            return Outputs::rates_of_rigid(&self.structure, *phase, state, a_g);
+        let phase = match *phase {
+            Phase::Overturned(side) => Phase::Rocking(side),
+            phase => phase,
+        };
+        let accelerations = self.rocking.accelerations(&self.structure, phase, state, load);
+        Reactions::of(&self.structure, phase, state, accelerations, load)
+    }
+
+    /// Time derivatives of the outputs and reactions now under `load`, from the equations of motion; 0 once overturned. At a transition
+    /// they are those just after it.
+    pub fn rates(&mut self, load: LinearLoad) -> (Outputs, Reactions) {
+        let derivatives = self.derivatives(load);
+        let (structure, Motion { phase, state, .. }) = (&self.structure, &self.motion);
+        let outputs = match self.detail {
+            Detail::Rigid => Outputs::rates_of_rigid(structure, *phase, state, derivatives, load),
+            _ => Outputs::rates_by(structure, *phase, state, derivatives[0], load),
+        };
+        (outputs, Reactions::rates(structure, *phase, state, derivatives, load))
+    }
+
+    /// (ü, θ̈) and (u⃛, θ⃛) now under `load`, from the first terms of the series; 0 once overturned.
+    fn derivatives(&mut self, load: LinearLoad) -> [[f64; 2]; 2] {
+        let Motion { phase, state, .. } = self.motion;
+        let (a_g, a_top) = (load.on_foundation(), load.on_top(&self.structure));
+        let start = Start { state, a_g, a_top, interval: 1.0, local_error: 1.0 };
+        let (structure, arc) = (&self.structure, &mut self.arc);
+        match phase {
+            Phase::FullContact if self.detail == Detail::Rigid => rigid_rocking::rest(&start, arc),
+            Phase::FullContact => full_contact::series(structure, &start, arc),
+            Phase::Rocking(side) => self.rocking.series(structure, side, &start, arc),
+            Phase::Overturned(_) => return [[0.0; 2]; 2],
         }
-        let accelerations = self.rocking.accelerations(&self.structure, *phase, state, a_g.value);
-        Outputs::rates_by(&self.structure, *phase, state, accelerations)
+        let derivative = |k: i32, factor: f64| {
+            [arc.u_dot[k as usize], arc.theta_dot[k as usize]].map(|c| factor * c / arc.span.powi(k))
+        };
+        [derivative(1, 1.0), derivative(2, 2.0)]
     }
 
     /// The state at the end of `start` where it is known exactly and no transition can happen until then.
@@ -383,7 +404,7 @@ impl Engine {
         }
         let (crossing, side) = match self.detail {
             Detail::FixedBase => return StepEnd::Quiet,
-            Detail::Rigid => rigid_rocking::first_uplift(structure, start.a_g, arc.span),
+            Detail::Rigid => rigid_rocking::first_uplift(structure, start.a_top, arc.span),
             _ => uplift::first_on(structure, &self.rocking.turning_moment(structure), arc),
         };
         cut(arc, crossing, StepEnd::Uplift(side))
@@ -424,6 +445,7 @@ impl Engine {
         }
         motion.burst.transitions += 1;
         motion.transitions += 1;
+        motion.impulse = motion.impulse.and(Impulse::of(&self.structure, (motion.phase, &before), (phase, &after)));
         motion.phase = phase;
         motion.state = after;
         Some(Transition { time: motion.time, kind, before, after })

@@ -1,17 +1,18 @@
 //! Full contact (Eq 1): a damped oscillator on the ground.
 //!
 //! ```text
-//! ü + 2 ζ_fc ω_fc u̇ + ω_fc² u = −a_g,      θ = θ̇ = 0                                            (1)
+//! ü + 2 ζ_fc ω_fc u̇ + ω_fc² u = −a_g + F_t/m,      θ = θ̇ = 0                                    (1)
 //! ```
 
+use crate::load::Load;
 use crate::oscillator::{Driven, Kept, Oscillator};
 use crate::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
 use crate::{State, Structure};
 use nalgebra::Matrix2;
 
-/// Elastic acceleration ü (m/s²) under the ground acceleration `a_g` (m/s²) by Eq 1.
-pub fn acceleration(structure: &Structure, state: &State, a_g: f64) -> f64 {
-    -a_g - structure.damping_fc * state.u_dot - structure.stiffness * state.u
+/// Elastic acceleration ü (m/s²) under the `load` by Eq 1.
+pub fn acceleration(structure: &Structure, state: &State, load: Load) -> f64 {
+    -load.on_top(structure) - structure.damping_fc * state.u_dot - structure.stiffness * state.u
 }
 
 /// Part of the velocity at uplift, ω_fc u_cr, below which motion is as good as none.
@@ -19,17 +20,17 @@ const NEGLIGIBLE: f64 = 1e-30;
 
 /// Writes the motion from `start` into `arc`.
 pub fn series(structure: &Structure, start: &Start, arc: &mut Arc) {
-    let &Start { state, a_g, interval, local_error } = start;
+    let &Start { state, a_top, interval, local_error, .. } = start;
     let &Structure { stiffness, damping_fc, omega_fc, .. } = structure;
     let span = interval.min(LONGEST_SPAN / omega_fc);
-    let forcing = a_g.value.abs() + a_g.slope.abs() * span;
+    let forcing = a_top.value.abs() + a_top.slope.abs() * span;
     let response_time = span.min(1.0 / omega_fc);
     let u_dot = state.u_dot.abs() + response_time * (stiffness * state.u.abs() + forcing);
     // a structure that comes to rest must not ask for less than numbers can tell
     let u_dot = u_dot.max(NEGLIGIBLE * omega_fc * structure.u_cr);
     let truncation = Truncation { u_dot: local_error * u_dot, theta_dot: 0.0 };
     arc.expand(&state, span, truncation, |arc, k, per| {
-        let u_ddot = -a_g.coefficient(k - 1, span) - damping_fc * arc.u_dot[k - 1] - stiffness * arc.u[k - 1];
+        let u_ddot = -a_top.coefficient(k - 1, span) - damping_fc * arc.u_dot[k - 1] - stiffness * arc.u[k - 1];
         (u_ddot * per, 0.0)
     });
 }
@@ -51,13 +52,13 @@ impl ExactContact {
     /// The state after the interval of `start` if |u| certainly stays below `limit` (m) until then.
     #[inline]
     pub fn leap(&mut self, start: &Start, limit: f64) -> Option<State> {
-        let &Start { state: State { u, u_dot, .. }, a_g, interval, .. } = start;
+        let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
         if !self.oscillator.can_leap(interval) {
             return None;
         }
         let flow = self.flows.over(interval, || self.oscillator.flow(interval));
         let Driven { end: [u, u_dot], following, amplitude } =
-            self.oscillator.driven(flow, [u, u_dot], a_g.value, a_g.slope, interval);
+            self.oscillator.driven(flow, [u, u_dot], a_top.value, a_top.slope, interval);
         let highest = following[0].abs().max(following[1].abs()) + amplitude;
         (highest < limit).then_some(State { u, u_dot, theta: 0.0, theta_dot: 0.0 })
     }
@@ -67,7 +68,7 @@ impl ExactContact {
 mod tests {
     use super::*;
     use crate::Parameters;
-    use crate::engine::GroundAcceleration;
+    use crate::load::GroundAcceleration;
     use approx::assert_relative_eq;
     use proptest::prelude::*;
 
@@ -82,7 +83,7 @@ mod tests {
     }
 
     fn from(state: State, a_g: GroundAcceleration, interval: f64) -> Start {
-        Start { state, a_g, interval, local_error: 1e-15 }
+        Start { state, a_g, a_top: a_g, interval, local_error: 1e-15 }
     }
 
     const RAMP: GroundAcceleration = GroundAcceleration { value: 0.7, slope: -30.0 };

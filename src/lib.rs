@@ -14,6 +14,8 @@
 //! | [`detail`] | levels of detail: which of these equations move the structure |
 //! | [`uplift`], [`impact`] | the transitions' guards and resets |
 //! | [`outputs`] | Eqs 2, 3, 23–27 |
+//! | [`load`] | ground acceleration and the force on the top mass |
+//! | [`reactions`] | what the structure exerts on the ground |
 //! | [`energy`] | the energy that is conserved between impacts |
 //! | [`taylor`], [`first_crossing`], [`engine`] | the solver: series, guards, hybrid engine |
 //! | [`modal_split`] | Eqs 10–20: rocking and vibration mode |
@@ -34,8 +36,10 @@ pub mod first_crossing;
 pub mod fragility;
 pub mod full_contact;
 pub mod impact;
+mod kinematics;
 pub mod linear_rocking;
 mod linear_system;
+pub mod load;
 pub mod modal_rocking;
 pub mod modal_split;
 pub mod nonlinear_rocking;
@@ -44,6 +48,7 @@ pub mod outputs;
 pub mod parameters;
 pub mod pushover;
 pub mod quantity;
+pub mod reactions;
 pub mod record;
 pub mod response_spectrum;
 pub mod rigid_rocking;
@@ -53,9 +58,11 @@ pub mod taylor;
 pub mod uplift;
 
 pub use detail::Detail;
-pub use engine::{Engine, GroundAcceleration, Motion, Progress, Transition, TransitionKind};
+pub use engine::{Engine, Motion, Progress, Transition, TransitionKind};
+pub use load::{GroundAcceleration, LinearLoad, Load};
 pub use outputs::Outputs;
 pub use parameters::Parameters;
 pub use quantity::{OutOfRange, Quantity};
+pub use reactions::{Impulse, Reactions};
 pub use state::{Phase, Side, State};
 pub use structure::Structure;

@@ -11,7 +11,7 @@
 //! θ̈ = [H κ + g u − s γ g B]/i,      ü = −a_g + g θ − κ − H θ̈
 //! ```
 //!
-//! Under a ground acceleration that is linear in time the exact solution is a matrix exponential, kept for the step
+//! A force F_t on the top mass makes a_g − F_t/m of a_g. Under loads that are linear in time the exact solution is a matrix exponential, kept for the step
 //! lengths used last; series serve the steps on which a transition may happen.
 
 use crate::linear_system::{LinearSystem, Row};
@@ -60,19 +60,19 @@ impl LinearRocking {
 
     /// The state after the interval of `start` if rocking about `side` certainly goes on until then.
     ///
-    /// With f = g θ − a_g + s U_s, the vibration about f/Ω² has an energy that grows by the change of f alone, which
+    /// With f = g θ − a_top + s U_s, the vibration about f/Ω² has an energy that grows by the change of f alone, which
     /// bounds |θ̈| by M and with it the distance of θ from its chord by M h²/8.
     #[inline]
     pub fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
-        let &Start { state: State { u, u_dot, theta, theta_dot }, a_g, interval: h, .. } = start;
+        let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
         let LinearSystem { u_ddot, theta_ddot } = &self.system;
         let s = side.sign();
         let flow = self.flows.over(h, || flow(&self.system, self.omega, h));
-        let end = flow * SVector::from([u, u_dot, theta, theta_dot, a_g.value, a_g.slope, s]);
+        let end = flow * SVector::from([u, u_dot, theta, theta_dot, a_top.value, a_top.slope, s]);
 
-        let following = (self.g * theta - a_g.value + s * u_ddot.side) / (self.omega * self.omega);
+        let following = (self.g * theta - a_top.value + s * u_ddot.side) / (self.omega * self.omega);
         let swing = self.omega * (u - following);
-        let speed = (u_dot * u_dot + swing * swing).sqrt() + h * h * (a_g.slope.abs() + self.g * theta_dot.abs());
+        let speed = (u_dot * u_dot + swing * swing).sqrt() + h * h * (a_top.slope.abs() + self.g * theta_dot.abs());
         let per_speed = theta_ddot.u / self.omega + theta_ddot.u_dot;
         let feedback = per_speed * self.g * h * h * h / 2.0;
         let steady = (theta_ddot.u * following + s * theta_ddot.side).abs();
@@ -109,7 +109,7 @@ fn flow(system: &LinearSystem, omega: f64, duration: f64) -> Flow {
 mod tests {
     use super::*;
     use crate::Parameters;
-    use crate::engine::GroundAcceleration;
+    use crate::load::{GroundAcceleration, Load};
     use crate::nonlinear_rocking::accelerations;
     use crate::taylor::Arc;
     use approx::assert_relative_eq;
@@ -130,7 +130,7 @@ mod tests {
             assert_relative_eq!(u_ddot + H * theta_ddot + elastic - g * theta, -a_g * scale, epsilon = 1e-12);
             let left = H * u_ddot + structure.J_P / m * theta_ddot - g * u - g * H * theta;
             assert_relative_eq!(left, -H * a_g * scale + structure.gamma * g * B, max_relative = 1e-12);
-            let full = accelerations(&structure, side, &state, a_g * scale).unwrap();
+            let full = accelerations(&structure, side, &state, Load::ground(a_g * scale)).unwrap();
             (full[1] - theta_ddot).abs()
         };
         // The weight's moment stays as the rest shrinks: it leaves an error of first order in u/B.
@@ -146,7 +146,8 @@ mod tests {
         ) {
             let structure = Structure::new(Parameters { zeta_fc, ..Parameters::MCMANUS }).unwrap();
             let state = State { u, u_dot, theta, theta_dot };
-            let start = Start { state, a_g: GroundAcceleration { value, slope }, interval, local_error: 1e-15 };
+            let a_g = GroundAcceleration { value, slope };
+            let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15 };
             let mut rocking = LinearRocking::new(&structure);
             let mut arc = Arc::default();
             rocking.system.series(&structure, Side::Right, &start, &mut arc);

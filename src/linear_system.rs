@@ -1,8 +1,8 @@
 //! A linear model of rocking about side s: what the levels of detail with linear equations share.
 //!
 //! ```text
-//! ü = U_u u + U_u̇ u̇ + U_θ θ + U_a a_g + s U_s
-//! θ̈ = T_u u + T_u̇ u̇ + T_θ θ + T_a a_g + s T_s
+//! ü = U_u u + U_u̇ u̇ + U_θ θ + U_a (a_g − F_t/m) + s U_s
+//! θ̈ = T_u u + T_u̇ u̇ + T_θ θ + T_a (a_g − F_t/m) + s T_s
 //! ```
 
 use crate::nonlinear_rocking::{longest_span, truncation};
@@ -10,7 +10,7 @@ use crate::taylor::{Arc, Start};
 use crate::uplift::TurningMoment;
 use crate::{Side, State, Structure};
 
-/// One of the two equations: the coefficients of u, u̇, θ, a_g and s.
+/// One of the two equations: the coefficients of u, u̇, θ, a_g − F_t/m and s.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Row {
     pub u: f64,
@@ -35,19 +35,20 @@ impl Row {
 }
 
 impl LinearSystem {
-    /// (ü, θ̈) in m/s² and rad/s² in `state` about `side` under `a_g` (m/s²).
-    pub(crate) fn accelerations(&self, side: Side, state: &State, a_g: f64) -> [f64; 2] {
+    /// (ü, θ̈) in m/s² and rad/s² in `state` about `side` under the ground acceleration `a_top`
+    /// (m/s²) that the top mass feels.
+    pub(crate) fn accelerations(&self, side: Side, state: &State, a_top: f64) -> [f64; 2] {
         let &State { u, u_dot, theta, .. } = state;
-        [&self.u_ddot, &self.theta_ddot].map(|row| row.apply(u, u_dot, theta, a_g, side.sign()))
+        [&self.u_ddot, &self.theta_ddot].map(|row| row.apply(u, u_dot, theta, a_top, side.sign()))
     }
 
     /// Writes the motion from `start` about `side` into `arc`.
     pub(crate) fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
-        let &Start { state, a_g, interval, .. } = start;
+        let &Start { state, a_top, interval, .. } = start;
         let span = interval.min(longest_span(structure));
         arc.expand(&state, span, truncation(structure, start, span), |arc, k, per| {
             let side = if k == 1 { side.sign() } else { 0.0 };
-            let load = a_g.coefficient(k - 1, span);
+            let load = a_top.coefficient(k - 1, span);
             let (u, u_dot, theta) = (arc.u[k - 1], arc.u_dot[k - 1], arc.theta[k - 1]);
             let u_ddot = self.u_ddot.apply(u, u_dot, theta, load, side);
             let theta_ddot = self.theta_ddot.apply(u, u_dot, theta, load, side);

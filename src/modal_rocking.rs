@@ -6,7 +6,7 @@
 //! θ = q_r + q_u,      q_u = −(p_l²/g) u                                                                    (16)
 //! ```
 //!
-//! Both have closed forms under a ground acceleration that is linear in time; series serve the steps on which a
+//! A force F_t on the top mass makes a_g − F_t/m of a_g. Both have closed forms under loads that are linear in time; series serve the steps on which a
 //! transition may happen, from the same equations written for θ = q_r − (p_l²/g) u.
 
 use crate::linear_system::{LinearSystem, Row};
@@ -63,7 +63,7 @@ impl ModalRocking {
     /// |q̈_r|; u stays within its amplitude of the line that it follows.
     #[inline]
     pub fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
-        let &Start { state: State { u, u_dot, theta, theta_dot }, a_g, interval, .. } = start;
+        let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval, .. } = start;
         let &mut ModalRocking { vibration, p_l, g, tan_alpha_cg, gravity_forcing, .. } = self;
         if !vibration.can_leap(interval) {
             return None;
@@ -71,12 +71,12 @@ impl ModalRocking {
         let s = side.sign();
         let (flow, cosh, sinh) =
             self.flows.over(interval, || (vibration.flow(interval), (p_l * interval).cosh(), (p_l * interval).sinh()));
-        let load = a_g.value - s * gravity_forcing;
-        let Driven { end, following, amplitude } = vibration.driven(flow, [u, u_dot], load, a_g.slope, interval);
+        let load = a_top.value - s * gravity_forcing;
+        let Driven { end, following, amplitude } = vibration.driven(flow, [u, u_dot], load, a_top.slope, interval);
 
         let shape = p_l * p_l / g;
-        let line = |tau: f64| a_g.at(tau) / g + s * tan_alpha_cg;
-        let line_rate = a_g.slope / g;
+        let line = |tau: f64| a_top.at(tau) / g + s * tan_alpha_cg;
+        let line_rate = a_top.slope / g;
         let off = theta + shape * u - line(0.0);
         let off_rate = theta_dot + shape * u_dot - line_rate;
         let off_end = cosh * off + sinh * off_rate / p_l;
@@ -101,7 +101,7 @@ impl ModalRocking {
 mod tests {
     use super::*;
     use crate::Parameters;
-    use crate::engine::GroundAcceleration;
+    use crate::load::GroundAcceleration;
     use crate::taylor::Arc;
     use approx::assert_relative_eq;
     use proptest::prelude::*;
@@ -132,7 +132,8 @@ mod tests {
         ) {
             let structure = Structure::new(Parameters::MCMANUS).unwrap();
             let state = State { u, u_dot, theta, theta_dot };
-            let start = Start { state, a_g: GroundAcceleration { value, slope }, interval, local_error: 1e-15 };
+            let a_g = GroundAcceleration { value, slope };
+            let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15 };
             let mut rocking = ModalRocking::new(&structure);
             let mut arc = Arc::default();
             rocking.system.series(&structure, Side::Left, &start, &mut arc);

@@ -8,23 +8,27 @@
 //!       − a_g [ m H cos θ + (s (m + m0) B − m u) sin θ ]                                            (6)
 //! ```
 //!
+//! A force F_t on the top mass adds F_t cos θ to (5) and F_t [H cos θ + (sB − u) sin θ] to (6).
+//!
 //! The series are those of momenta rather than velocities, which takes the fewest products. With w = sB − u, κ = (c_u u̇ +
 //! k u)/m, i = (J0 + m0 B²)/m, and y = u̇ + H θ̇ (over m the momentum along u), L = (i + w²) θ̇ (over m the angular momentum
-//! about the pivot of all but y), F = g sin θ − a_g cos θ and G = g cos θ + a_g sin θ, Eq 5 and (6) − H (5) read
+//! about the pivot of all but y), a = a_g − F_t/m, F = g sin θ − a cos θ, G = g cos θ + a sin θ and G₀ = g cos θ + a_g sin θ, Eq 5 and (6) − H (5) read
 //!
 //! ```text
 //! ẏ = F − κ − w θ̇²
-//! L̇ = H (κ + w θ̇²) − [w + s(γ−1)B] G
+//! L̇ = H (κ + w θ̇²) − w G − s(γ−1)B G₀
 //! ```
 
+use crate::load::Load;
 use crate::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
 use crate::{Side, State, Structure};
 use nalgebra::{Matrix2, Vector2};
 use wide::f64x2;
 
-/// (ü, θ̈) in m/s² and rad/s² under the ground acceleration `a_g` (m/s²): Eqs 5 and 6 as they stand, solved for the
+/// (ü, θ̈) in m/s² and rad/s² under `load`: Eqs 5 and 6 as they stand, solved for the
 /// accelerations. `None` where the mass matrix is singular: m0 = J0 = 0 and u = sB, the top mass above the pivot.
-pub fn accelerations(structure: &Structure, side: Side, state: &State, a_g: f64) -> Option<Vector2<f64>> {
+pub fn accelerations(structure: &Structure, side: Side, state: &State, load: Load) -> Option<Vector2<f64>> {
+    let Load { a_g, F_t } = load;
     let &crate::Parameters { m, m0, H, B, J0, g, .. } = structure.parameters();
     let &State { u, u_dot, theta, theta_dot } = state;
     let s = side.sign();
@@ -32,10 +36,13 @@ pub fn accelerations(structure: &Structure, side: Side, state: &State, a_g: f64)
     let lever = s * B - u;
     let mass = Matrix2::new(m, m * H, m * H, J0 + m * H * H + m * lever * lever + m0 * B * B);
     let force = Vector2::new(
-        -structure.c_u * u_dot - structure.k * u - m * theta_dot * theta_dot * lever - m * a_g * cos + m * g * sin,
+        -structure.c_u * u_dot - structure.k * u - m * theta_dot * theta_dot * lever - m * a_g * cos
+            + m * g * sin
+            + F_t * cos,
         2.0 * m * lever * u_dot * theta_dot + m * g * H * sin + m * g * u * cos
             - s * (m + m0) * g * B * cos
-            - a_g * (m * H * cos + (s * (m + m0) * B - m * u) * sin),
+            - a_g * (m * H * cos + (s * (m + m0) * B - m * u) * sin)
+            + F_t * (H * cos + lever * sin),
     );
     Some(mass.try_inverse()? * force)
 }
@@ -80,11 +87,11 @@ fn products(a: &Factors, b: &Factors, newest_a: &Row, newest_b: &Row, n: usize) 
 ///
 /// ```text
 /// left:   θ̇       θ̇      θ̇         w θ̇       w θ̇     w
-/// right:  cos θ   sin θ   w, next   w, next   θ̇       g cos θ + a_g sin θ
+/// right:  cos θ   sin θ   w, next   w, next   θ̇       G
 /// ```
 ///
 /// of order i ("next": of order i + 1). Column by column they multiply to the rates of sin θ and −cos θ, to what the
-/// later coefficients of w contribute to w θ̇ and w² θ̇, to w θ̇² and to the moment of the weight.
+/// later coefficients of w contribute to w θ̇ and w² θ̇, to w θ̇² and to the moment of the top mass's weight.
 #[derive(Clone, Debug)]
 pub struct NonlinearRocking {
     left: Factors,
@@ -100,11 +107,11 @@ impl Default for NonlinearRocking {
 impl NonlinearRocking {
     /// Writes the motion from `start` about `side` into `arc`.
     pub fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
-        let &Start { state, a_g, interval, .. } = start;
+        let &Start { state, a_g, a_top, interval, .. } = start;
         let &crate::Parameters { H, B, g, .. } = structure.parameters();
         let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
         let span = interval.min(longest_span(structure));
-        let (a, slope) = (a_g.value, a_g.slope * span);
+        let [(a, slope), (a_ground, slope_ground)] = [a_top, a_g].map(|a| (a.value, a.slope * span));
         let weight_offset = side.sign() * (gamma - 1.0) * B; // s(γ−1)B
         let lever = side.sign() * B - state.u; // w at the start
         let per_inertia = 1.0 / (foundation + lever * lever);
@@ -114,6 +121,7 @@ impl NonlinearRocking {
         let State { u, u_dot, theta, theta_dot } = state;
         let (mut sin, mut cos) = theta.sin_cos();
         let mut weight = g * cos + a * sin; // G
+        let mut weight_below = g * cos + a_ground * sin; // G₀
         let mut along = g * sin - a * cos; // F
         let mut elastic = damping_u * u_dot + stiffness * u; // κ
         let (left, right) = (&mut self.left, &mut self.right);
@@ -129,7 +137,8 @@ impl NonlinearRocking {
             let [sin_rate, minus_cos_rate, w_turning, w_w_turning, centrifugal, weight_moment] =
                 products(left, right, &newest_left, &newest_right, before);
             let y = (along - elastic - centrifugal) * per;
-            let moment = (height * elastic - offset * weight) + (height * centrifugal - per_inertia * weight_moment);
+            let moment =
+                (height * elastic - offset * weight_below) + (height * centrifugal - per_inertia * weight_moment);
             theta_dot = moment * per - (lever_start * w_turning + per_inertia * w_w_turning);
             let u_dot = y - H * theta_dot;
 
@@ -137,6 +146,7 @@ impl NonlinearRocking {
             (sin, cos) = (sin_rate * per, -minus_cos_rate * per);
             let lever_turning = lever * theta_dot + w_turning;
             weight = g * cos + a * sin + slope * sin_before;
+            weight_below = g * cos + a_ground * sin + slope_ground * sin_before;
             along = g * sin - a * cos - slope * cos_before;
             elastic = damping_u * u_dot + stiffness * arc.u[k];
             newest_left = row([theta_dot, theta_dot, theta_dot, lever_turning, lever_turning, -arc.u[k]]);
@@ -152,11 +162,11 @@ pub(crate) fn longest_span(structure: &Structure) -> f64 {
 
 /// The truncation that `start` asks for over a step of `span` s while rocking.
 pub(crate) fn truncation(structure: &Structure, start: &Start, span: f64) -> Truncation {
-    let &Start { state, a_g, local_error, .. } = start;
+    let &Start { state, a_top, local_error, .. } = start;
     let omega = structure.omega_u;
     let response_time = span.min(1.0 / omega);
     let gravity = structure.parameters().g * structure.tan_alpha_cg;
-    let forcing = a_g.value.abs() + a_g.slope.abs() * span + gravity;
+    let forcing = a_top.value.abs() + a_top.slope.abs() * span + gravity;
     let u_dot = state.u_dot.abs() + response_time * (omega * omega * state.u.abs() + forcing);
     let theta_dot = state.theta_dot.abs() + u_dot / structure.parameters().H;
     Truncation { u_dot: local_error * u_dot, theta_dot: local_error * theta_dot }
@@ -166,7 +176,7 @@ pub(crate) fn truncation(structure: &Structure, start: &Start, span: f64) -> Tru
 mod tests {
     use super::*;
     use crate::Parameters;
-    use crate::engine::GroundAcceleration;
+    use crate::load::LinearLoad;
     use crate::taylor::Series;
     use approx::assert_relative_eq;
     use proptest::prelude::*;
@@ -177,18 +187,20 @@ mod tests {
         #[test]
         fn the_series_satisfies_equations_5_and_6(
             u in -0.05..0.05f64, u_dot in -2.0..2.0f64, theta in -1.2..1.2f64, theta_dot in -3.0..3.0f64,
-            value in -20.0..20.0f64, slope in -500.0..500.0f64,
+            value in -20.0..20.0f64, slope in -500.0..500.0f64, force in -3e3..3e3f64, force_slope in -1e5..1e5f64,
         ) {
             let structure = Structure::new(Parameters::MCMANUS).unwrap();
             let side = Side::of(theta);
             let state = State { u, u_dot, theta, theta_dot };
             let mut arc = Arc::default();
-            let a_g = GroundAcceleration { value, slope };
-            let start = Start { state, a_g, interval: 2e-3, local_error: 1e-16 };
+            let value = Load { a_g: value, F_t: force };
+            let load = LinearLoad { value, slope: Load { a_g: slope, F_t: force_slope } };
+            let (a_g, a_top) = (load.on_foundation(), load.on_top(&structure));
+            let start = Start { state, a_g, a_top, interval: 2e-3, local_error: 1e-16 };
             NonlinearRocking::default().series(&structure, side, &start, &mut arc);
             for sigma in [0.0, 0.2, 0.55, 1.0] {
-                let a_g = a_g.at(sigma * arc.span);
-                let expected = accelerations(&structure, side, &arc.at(sigma), a_g).unwrap();
+                let load = load.at(sigma * arc.span);
+                let expected = accelerations(&structure, side, &arc.at(sigma), load).unwrap();
                 let derivative = |series: &Series| -> f64 {
                     (1..=arc.order).map(|k| k as f64 * series[k] * sigma.powi(k as i32 - 1)).sum::<f64>() / arc.span
                 };
@@ -203,7 +215,7 @@ mod tests {
     fn the_mass_matrix_is_singular_with_the_top_mass_above_the_pivot_of_a_massless_foundation() {
         let structure = Structure::new(Parameters { m0: 0.0, J0: 0.0, B: 0.25, ..Parameters::EVISON }).unwrap();
         let above_the_pivot = State { u: 0.25, theta: 0.01, ..State::default() };
-        assert_eq!(accelerations(&structure, Side::Right, &above_the_pivot, 0.0), None);
+        assert_eq!(accelerations(&structure, Side::Right, &above_the_pivot, Load::default()), None);
     }
 
     #[test]
@@ -211,8 +223,8 @@ mod tests {
         let structure = Structure::new(Parameters::EVISON).unwrap();
         let state = State { u: 1e-3, u_dot: 0.02, theta: 0.03, theta_dot: -0.1 };
         let mirrored = State { u: -1e-3, u_dot: -0.02, theta: -0.03, theta_dot: 0.1 };
-        let right = accelerations(&structure, Side::Right, &state, 1.5).unwrap();
-        let left = accelerations(&structure, Side::Left, &mirrored, -1.5).unwrap();
+        let right = accelerations(&structure, Side::Right, &state, Load { a_g: 1.5, F_t: 200.0 }).unwrap();
+        let left = accelerations(&structure, Side::Left, &mirrored, Load { a_g: -1.5, F_t: -200.0 }).unwrap();
         assert_relative_eq!(right, -left, max_relative = 1e-15);
     }
 }

@@ -4,14 +4,15 @@
 //! a_t = ü + H θ̈ + θ̇² (sB − u) + a_g cos θ          (full contact: ü + a_g)                       (27)
 //! ```
 //!
-//! By (5) that is g sin θ − (c_u u̇ + k u)/m, and by (1) −(c_fc u̇ + k u)/m in full contact: the outputs depend on
-//! the state alone and are computed so; only their rates need the ground acceleration. The levels with linear equations
+//! By (5) that is g sin θ − (c_u u̇ + k u)/m + (F_t/m) cos θ, and by (1) −(c_fc u̇ + k u)/m + F_t/m in full contact: the
+//! outputs depend on the state and on F_t and are computed so; only their rates need the ground acceleration. The levels with linear equations
 //! have the same outputs, by Eq 5 rather than by their own ü and θ̈. The rigid limit, where u is 0 whatever the forces, is the
 //! exception: there (27) is taken as it stands, with the ground acceleration at the end of the last advance.
 
-use crate::{GroundAcceleration, Phase, Side, State, Structure, detail, rigid_rocking};
+use crate::load::{LinearLoad, Load};
+use crate::{Phase, Side, State, Structure, detail, rigid_rocking};
 
-/// The outputs at one instant; from [`crate::Engine::output_rates`], their time derivatives in the same fields.
+/// The outputs at one instant; from [`crate::Engine::rates`], their time derivatives in the same fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Outputs {
     /// Rotation of the base θ, rad.
@@ -32,6 +33,8 @@ pub struct Outputs {
     pub uplift: f64,
     /// Lateral displacement of the top mass δ_t = sB (1 − cos θ) + u cos θ + H sin θ, m (Eq 26).
     pub delta_t: f64,
+    /// Its rate, the lateral velocity of the top mass relative to the ground, m/s: u̇ cos θ + [(sB − u) sin θ + H cos θ] θ̇.
+    pub v_t: f64,
 }
 
 /// s and the damping in force: c_fc in full contact, where s does not matter, c_u otherwise.
@@ -43,13 +46,13 @@ fn sign_and_damping(structure: &Structure, phase: Phase) -> (f64, f64) {
 }
 
 impl Outputs {
-    /// The outputs of `structure` in `phase` and `state`.
-    pub fn of(structure: &Structure, phase: Phase, state: &State) -> Outputs {
+    /// The outputs of `structure` in `phase` and `state` with the force `F_t` (N) on the top mass.
+    pub fn of(structure: &Structure, phase: Phase, state: &State, F_t: f64) -> Outputs {
         let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
         let &State { u, u_dot, theta, theta_dot } = state;
         let (s, damping) = sign_and_damping(structure, phase);
         let (sin, cos) = theta.sin_cos();
-        let a_t = g * sin - (damping * u_dot + structure.k * u) / m;
+        let a_t = g * sin - (damping * u_dot + structure.k * u) / m + F_t / m * cos;
         let one_minus_cos = 2.0 * (0.5 * theta).sin().powi(2);
         Outputs {
             theta,
@@ -61,27 +64,35 @@ impl Outputs {
             u_dot,
             uplift: 2.0 * B * sin.abs(),
             delta_t: s * B * one_minus_cos + u * cos + H * sin,
+            v_t: u_dot * cos + ((s * B - u) * sin + H * cos) * theta_dot,
         }
     }
 
     /// The outputs of the rigid limit, where u says nothing of the forces: Eq 27 from the equation of motion, with the
-    /// ground acceleration `a_g` (m/s²) of that instant.
-    pub(crate) fn of_rigid(structure: &Structure, phase: Phase, state: &State, a_g: f64) -> Outputs {
+    /// `load` of that instant.
+    pub(crate) fn of_rigid(structure: &Structure, phase: Phase, state: &State, load: Load) -> Outputs {
         let &crate::Parameters { m, H, B, .. } = structure.parameters();
         let (s, _) = sign_and_damping(structure, phase);
-        let [_, theta_ddot] = rigid_rocking::accelerations(structure, phase, state, a_g);
-        let a_t = H * theta_ddot + state.theta_dot.powi(2) * s * B + a_g * state.theta.cos();
-        Outputs { a_t, V_t: m * a_t, M_t: m * H * a_t, ..Outputs::of(structure, phase, state) }
+        let [_, theta_ddot] = rigid_rocking::accelerations(structure, phase, state, load);
+        let a_t = H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * state.theta.cos();
+        Outputs { a_t, V_t: m * a_t, M_t: m * H * a_t, ..Outputs::of(structure, phase, state, load.F_t) }
     }
 
     /// Time derivatives of the outputs by Eqs 1, 5 and 6 under the ground acceleration `a_g` (m/s²); 0 once overturned,
     /// where motion has ended.
     pub fn rates(structure: &Structure, phase: Phase, state: &State, a_g: f64) -> Outputs {
-        Outputs::rates_by(structure, phase, state, detail::full_accelerations(structure, phase, state, a_g))
+        let accelerations = detail::full_accelerations(structure, phase, state, Load::ground(a_g));
+        Outputs::rates_by(structure, phase, state, accelerations, LinearLoad::default())
     }
 
-    /// Time derivatives of the outputs, given `accelerations` (ü, θ̈).
-    pub(crate) fn rates_by(structure: &Structure, phase: Phase, state: &State, accelerations: [f64; 2]) -> Outputs {
+    /// Time derivatives of the outputs, given `accelerations` (ü, θ̈) under `load`.
+    pub(crate) fn rates_by(
+        structure: &Structure,
+        phase: Phase,
+        state: &State,
+        accelerations: [f64; 2],
+        load: LinearLoad,
+    ) -> Outputs {
         let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
         let moves = if let Phase::Overturned(_) = phase { 0.0 } else { 1.0 };
         let &State { u, .. } = state;
@@ -89,7 +100,10 @@ impl Outputs {
         let [u_ddot, theta_ddot] = accelerations;
         let (s, damping) = sign_and_damping(structure, phase);
         let (sin, cos) = state.theta.sin_cos();
-        let a_t = g * cos * theta_dot - (damping * u_ddot + structure.k * u_dot) / m;
+        let force_rate = moves * (load.slope.F_t * cos - load.value.F_t * sin * theta_dot);
+        let a_t = g * cos * theta_dot - (damping * u_ddot + structure.k * u_dot) / m + force_rate / m;
+        let lever = s * B - u;
+        let (height, height_rate) = (lever * sin + H * cos, (lever * cos - H * sin) * theta_dot - u_dot * sin);
         Outputs {
             theta: theta_dot,
             u: u_dot,
@@ -99,33 +113,31 @@ impl Outputs {
             theta_dot: theta_ddot,
             u_dot: u_ddot,
             uplift: 2.0 * B * s * cos * theta_dot,
-            delta_t: s * B * sin * theta_dot + u_dot * cos - u * sin * theta_dot + H * cos * theta_dot,
+            delta_t: u_dot * cos + height * theta_dot,
+            v_t: u_ddot * cos - u_dot * sin * theta_dot + height_rate * theta_dot + height * theta_ddot,
         }
     }
 
-    /// [`Outputs::rates`] of the rigid limit under `a_g`.
+    /// [`Outputs::rates`] of the rigid limit under `load`, given (ü, θ̈) and (u⃛, θ⃛).
     pub(crate) fn rates_of_rigid(
         structure: &Structure,
         phase: Phase,
         state: &State,
-        a_g: GroundAcceleration,
+        [accelerations, jerks]: [[f64; 2]; 2],
+        load: LinearLoad,
     ) -> Outputs {
         let &crate::Parameters { m, H, B, .. } = structure.parameters();
         let &State { theta, theta_dot, .. } = state;
-        let accelerations = rigid_rocking::accelerations(structure, phase, state, a_g.value);
-        let jerk = match phase {
-            Phase::Rocking(side) => rigid_rocking::jerk(structure, side, state, a_g),
-            Phase::FullContact | Phase::Overturned(_) => 0.0,
-        };
         let (s, _) = sign_and_damping(structure, phase);
         let a_t = match phase {
             Phase::Overturned(_) => 0.0,
             _ => {
-                H * jerk + 2.0 * s * B * theta_dot * accelerations[1] + a_g.slope * theta.cos()
-                    - a_g.value * theta.sin() * theta_dot
+                H * jerks[1] + 2.0 * s * B * theta_dot * accelerations[1] + load.slope.a_g * theta.cos()
+                    - load.value.a_g * theta.sin() * theta_dot
             }
         };
-        Outputs { a_t, V_t: m * a_t, M_t: m * H * a_t, ..Outputs::rates_by(structure, phase, state, accelerations) }
+        let others = Outputs::rates_by(structure, phase, state, accelerations, load);
+        Outputs { a_t, V_t: m * a_t, M_t: m * H * a_t, ..others }
     }
 }
 
@@ -133,7 +145,7 @@ impl Outputs {
 mod tests {
     use super::*;
     use crate::detail::Detail;
-    use crate::{Engine, Parameters, full_contact, nonlinear_rocking};
+    use crate::{Engine, Parameters, Reactions, full_contact, nonlinear_rocking};
     use approx::assert_relative_eq;
 
     /// Eq 27 with ü and θ̈ from Eqs 5 and 6 is what the state alone gives, and Eq 1 in full contact.
@@ -142,20 +154,20 @@ mod tests {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
         let &Parameters { H, B, .. } = structure.parameters();
         let state = State { u: 3e-3, u_dot: -0.2, theta: -0.08, theta_dot: 0.6 };
-        let a_g = 7.0;
-        let accelerations = nonlinear_rocking::accelerations(&structure, Side::Left, &state, a_g).unwrap();
+        let load = Load { a_g: 7.0, F_t: 300.0 };
+        let accelerations = nonlinear_rocking::accelerations(&structure, Side::Left, &state, load).unwrap();
         let expected = accelerations[0]
             + H * accelerations[1]
             + state.theta_dot.powi(2) * (-B - state.u)
-            + a_g * state.theta.cos();
-        let outputs = Outputs::of(&structure, Phase::Rocking(Side::Left), &state);
+            + load.a_g * state.theta.cos();
+        let outputs = Outputs::of(&structure, Phase::Rocking(Side::Left), &state, load.F_t);
         assert_relative_eq!(outputs.a_t, expected, max_relative = 1e-12);
 
         let down = State { theta: 0.0, theta_dot: 0.0, ..state };
-        let outputs = Outputs::of(&structure, Phase::FullContact, &down);
+        let outputs = Outputs::of(&structure, Phase::FullContact, &down, load.F_t);
         assert_relative_eq!(
             outputs.a_t,
-            full_contact::acceleration(&structure, &down, a_g) + a_g,
+            full_contact::acceleration(&structure, &down, load) + load.a_g,
             max_relative = 1e-12
         );
     }
@@ -177,18 +189,19 @@ mod tests {
             (Detail::FixedBase, down),
         ];
         for (detail, initial) in scenes {
-            let a_g = GroundAcceleration { value: 1.2, slope: 40.0 };
+            let start = LinearLoad { value: Load { a_g: 1.2, F_t: 90.0 }, slope: Load { a_g: 40.0, F_t: -700.0 } };
             let h = 1e-5;
             let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-11, detail).unwrap();
             let mut show = |until: f64| {
-                let here = |time: f64| GroundAcceleration { value: a_g.at(time), ..a_g };
+                let here = |time: f64| LinearLoad { value: start.at(time), ..start };
                 engine.advance(until, here(engine.motion().time), &mut |_| ()).unwrap();
-                (engine.outputs(), engine.output_rates(here(until)))
+                let load = here(until);
+                ((engine.outputs(load.value.F_t), engine.reactions(load.value)), engine.rates(load))
             };
             let (before, _) = show(1e-3 - h);
             let (_, rates) = show(1e-3);
             let (after, _) = show(1e-3 + h);
-            let slope = |get: fn(&Outputs) -> f64| (get(&after) - get(&before)) / (2.0 * h);
+            let slope = |get: fn(&Outputs) -> f64| (get(&after.0) - get(&before.0)) / (2.0 * h);
             for get in [
                 |o: &Outputs| o.theta,
                 |o: &Outputs| o.u,
@@ -199,8 +212,13 @@ mod tests {
                 |o: &Outputs| o.u_dot,
                 |o: &Outputs| o.uplift,
                 |o: &Outputs| o.delta_t,
+                |o: &Outputs| o.v_t,
             ] {
-                assert_relative_eq!(get(&rates), slope(get), max_relative = 1e-4, epsilon = 1e-9);
+                assert_relative_eq!(get(&rates.0), slope(get), max_relative = 1e-4, epsilon = 1e-9);
+            }
+            for get in [|r: &Reactions| r.R_h, |r: &Reactions| r.R_v, |r: &Reactions| r.R_m] {
+                let slope = (get(&after.1) - get(&before.1)) / (2.0 * h);
+                assert_relative_eq!(get(&rates.1), slope, max_relative = 1e-4, epsilon = 1e-5);
             }
         }
     }

@@ -65,7 +65,7 @@ pub fn at_rotation(structure: &Structure, theta: f64) -> Option<Equilibrium> {
     let moment = force * (H * cos + (B - u) * sin);
     let phase = Phase::Rocking(side);
     let state = State { u: s * u, theta, ..State::default() };
-    let delta_t = Outputs::of(structure, phase, &state).delta_t;
+    let delta_t = Outputs::of(structure, phase, &state, 0.0).delta_t;
     Some(Equilibrium { phase, theta, u: state.u, delta_t, force: s * force, moment: s * moment })
 }
 
@@ -96,6 +96,7 @@ mod tests {
     use super::*;
     use crate::Parameters;
     use crate::energy::energy;
+    use crate::load::Load;
     use crate::nonlinear_rocking::accelerations;
     use approx::assert_relative_eq;
     use nalgebra::{Matrix2, Vector2};
@@ -115,7 +116,7 @@ mod tests {
             let side = Side::of(theta);
             let lever = side.sign() * B - u;
             let state = State { u, theta, ..State::default() };
-            let released = accelerations(&structure, side, &state, 0.0).unwrap();
+            let released = accelerations(&structure, side, &state, Load::default()).unwrap();
             let mass = Matrix2::new(m, m * H, m * H, J0 + m * H * H + m * lever * lever + m0 * B * B);
             let direction = Vector2::new(theta.cos(), H * theta.cos() + lever * theta.sin());
             let unbalanced = mass * released + force * direction;
@@ -197,7 +198,7 @@ mod tests {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
         let there = at_rotation(&structure, 0.1).unwrap();
         let state = State { u: there.u, theta: there.theta, ..State::default() };
-        let shear = Outputs::of(&structure, there.phase, &state).V_t;
+        let shear = Outputs::of(&structure, there.phase, &state, 0.0).V_t;
         assert_relative_eq!(-shear, there.force * 0.1f64.cos(), max_relative = 1e-13);
     }
 

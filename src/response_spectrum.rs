@@ -92,6 +92,7 @@ impl Oscillator {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::load::Load;
     use crate::taylor::{Arc, Start};
     use crate::{GroundAcceleration, Parameters, State, Structure, full_contact};
     use approx::assert_relative_eq;
@@ -186,12 +187,12 @@ mod tests {
                     let (mut now, until) = (at(i), at(i + 1));
                     while now < until {
                         let interval = until - now;
-                        let start = Start { state, a_g: segment.from(now), interval, local_error: 1e-15 };
+                        let start = Start { state, a_g: segment.from(now), a_top: segment.from(now), interval, local_error: 1e-15 };
                         full_contact::series(&structure, &start, &mut arc);
                         state = arc.end();
                         now = if arc.duration() == interval { until } else { now + arc.duration() };
                     }
-                    let acceleration = full_contact::acceleration(&structure, &state, 0.0);
+                    let acceleration = full_contact::acceleration(&structure, &state, Load::default());
                     seen = seen.max(acceleration.abs());
                     fastest = fastest.max((until - at(i)).powi(2) * (structure.omega_fc.powi(2) * 20.0));
                 }

@@ -6,8 +6,9 @@
 //! θ̈ = p_l² [P − (a_g/g) Q],      P = sin θ − s tan α_cg cos θ,   Q = cos θ + s tan α_cg sin θ
 //! ```
 //!
-//! P' = Q θ̇ and Q' = −P θ̇, so that its series take two products. The base lifts off when |a_g| ≥ g tan α_cg, towards the side
-//! away from the push; an impact leaves r θ̇ about the other pivot, also of a structure so squat that the momentum rule of
+//! P' = Q θ̇ and Q' = −P θ̇, so that its series take two products. A force F_t on the top mass adds p_l² (F_t/(m g)) T to
+//! θ̈, T = cos θ + s (B/H) sin θ, a combination of P and Q. The base lifts off when |a_g − F_t/m| ≥ g tan α_cg, towards the
+//! side away from the push; an impact leaves r θ̇ about the other pivot, also of a structure so squat that the momentum rule of
 //! the other levels would end rocking: with u = 0 that rule speaks of the shape alone.
 //!
 //! # Zeno
@@ -16,52 +17,61 @@
 //! impact after which |θ̇| ≤ ε p_l tan α_cg, ε the relative tolerance. The kinetic energy left behind, ½ J_P θ̇², is then
 //! at most ε² of ½ m g H tan² α_cg, which overturning takes at small angles: far below the tolerance.
 
-use crate::engine::GroundAcceleration;
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
+use crate::load::{GroundAcceleration, Load};
 use crate::taylor::{Arc, LONGEST_SPAN, Series, Start, Truncation, ZERO};
 use crate::uplift::LEAST_EXCESS;
 use crate::{Phase, Side, State, Structure};
 
-/// Angular acceleration θ̈ (rad/s²) of the rigid structure about `side` under `a_g` (m/s²), and the (P, Q) of its angle.
-fn acceleration(structure: &Structure, side: Side, theta: f64, a_g: f64) -> (f64, [f64; 2]) {
+/// P and Q at `theta`.
+fn shape(structure: &Structure, side: Side, theta: f64) -> [f64; 2] {
     let (sin, cos) = theta.sin_cos();
     let slenderness = side.sign() * structure.tan_alpha_cg;
-    let [p, q] = [sin - slenderness * cos, cos + slenderness * sin];
-    (structure.p_l * structure.p_l * (p - a_g / structure.parameters().g * q), [p, q])
+    [sin - slenderness * cos, cos + slenderness * sin]
+}
+
+/// The coefficients of P and Q in T.
+fn lever(structure: &Structure, side: Side) -> [f64; 2] {
+    let &crate::Parameters { H, B, .. } = structure.parameters();
+    let [slenderness, aspect] = [structure.tan_alpha_cg, B / H].map(|tangent| side.sign() * tangent);
+    [aspect - slenderness, 1.0 + aspect * slenderness].map(|part| part / (1.0 + slenderness * slenderness))
 }
 
 /// (ü, θ̈) = (0, θ̈) in m/s² and rad/s² in `phase`; nothing moves relative to the ground in full contact.
-pub(crate) fn accelerations(structure: &Structure, phase: Phase, state: &State, a_g: f64) -> [f64; 2] {
+pub(crate) fn accelerations(structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2] {
+    let &crate::Parameters { m, g, .. } = structure.parameters();
     match phase {
-        Phase::Rocking(side) => [0.0, acceleration(structure, side, state.theta, a_g).0],
+        Phase::Rocking(side) => {
+            let [p, q] = shape(structure, side, state.theta);
+            let [of_p, of_q] = lever(structure, side);
+            [0.0, structure.p_l.powi(2) * (p - load.a_g / g * q + load.F_t / (m * g) * (of_p * p + of_q * q))]
+        }
         Phase::FullContact | Phase::Overturned(_) => [0.0; 2],
     }
 }
 
-/// θ⃛ (rad/s³) while rocking about `side`.
-pub(crate) fn jerk(structure: &Structure, side: Side, state: &State, a_g: GroundAcceleration) -> f64 {
-    let (_, [p, q]) = acceleration(structure, side, state.theta, a_g.value);
-    let g = structure.parameters().g;
-    let turning = (q + a_g.value / g * p) * state.theta_dot;
-    structure.p_l * structure.p_l * (turning - a_g.slope / g * q)
-}
-
 /// Writes the motion from `start` about `side` into `arc`.
 pub(crate) fn series(structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
-    let &Start { state, a_g, interval, local_error } = start;
+    let &Start { state, a_g, a_top, interval, local_error } = start;
     let &Structure { p_l, tan_alpha_cg, .. } = structure;
     let g = structure.parameters().g;
     let span = interval.min(LONGEST_SPAN / p_l.max(state.theta_dot.abs()));
-    let (stiffness, push, push_slope) = (p_l * p_l, a_g.value / g, a_g.slope * span / g);
-    let forcing = stiffness * (tan_alpha_cg + push.abs() + push_slope.abs() + state.theta.abs());
+    let stiffness = p_l * p_l;
+    let (push, push_slope) = (a_g.value / g, a_g.slope * span / g);
+    let (pull, pull_slope) = ((a_g.value - a_top.value) / g, (a_g.slope - a_top.slope) * span / g);
+    let [of_p, of_q] = lever(structure, side);
+    let loads = [push, push_slope, pull, pull_slope].map(f64::abs).iter().sum::<f64>();
+    let forcing = stiffness * (tan_alpha_cg + loads + state.theta.abs());
     let theta_dot = state.theta_dot.abs() + span.min(1.0 / p_l) * forcing;
     let (mut p, mut q) = (ZERO, ZERO);
-    (_, [p[0], q[0]]) = acceleration(structure, side, state.theta, 0.0);
-    let mut q_before = 0.0;
+    [p[0], q[0]] = shape(structure, side, state.theta);
+    let (mut q_before, mut t_before) = (0.0, 0.0);
     let truncation = Truncation { u_dot: 0.0, theta_dot: local_error * theta_dot };
     arc.expand(&State { u: 0.0, u_dot: 0.0, ..state }, span, truncation, |arc, k, per| {
-        let theta_dot = stiffness * (p[k - 1] - push * q[k - 1] - push_slope * q_before) * per;
-        q_before = q[k - 1];
+        let t = of_p * p[k - 1] + of_q * q[k - 1];
+        let pulled = pull * t + pull_slope * t_before;
+        let theta_dot = stiffness * (p[k - 1] - push * q[k - 1] - push_slope * q_before + pulled) * per;
+        (q_before, t_before) = (q[k - 1], t);
         p[k] = product(&q, &arc.theta_dot, k - 1) * per;
         q[k] = -product(&p, &arc.theta_dot, k - 1) * per;
         (0.0, theta_dot)
@@ -78,10 +88,11 @@ pub(crate) fn rest(start: &Start, arc: &mut Arc) {
     arc.expand(&State::default(), start.interval, Truncation { u_dot: 0.0, theta_dot: 0.0 }, |_, _, _| (0.0, 0.0));
 }
 
-/// The first instant over `span` s at which |a_g| exceeds g tan α_cg, and the side about which the structure rocks.
-pub(crate) fn first_uplift(structure: &Structure, a_g: GroundAcceleration, span: f64) -> (Crossing, Side) {
+/// The first instant over `span` s at which |a_top|, a_top = a_g − F_t/m, exceeds g tan α_cg, and the side about which the
+/// structure rocks.
+pub(crate) fn first_uplift(structure: &Structure, a_top: GroundAcceleration, span: f64) -> (Crossing, Side) {
     let limit = (1.0 + LEAST_EXCESS) * structure.parameters().g * structure.tan_alpha_cg;
-    let push = [a_g.value, a_g.slope * span];
+    let push = [a_top.value, a_top.slope * span];
     let first = |side: Side| first_time_all_closed([Guard::new(&push, side.sign(), limit)], 1.0);
     let (right, left) = (first(Side::Right), first(Side::Left));
     if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }

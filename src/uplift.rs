@@ -6,7 +6,7 @@
 //! s u ≥ u_cr      and      s θ̈ > 0,   θ̈ by (5, 6) at θ = θ̇ = 0
 //! ```
 //!
-//! There the equations leave [(J0 + m0 B²)/m + (sB − u)²] θ̈ = H (c_u u̇ + k u)/m + g u − sγ g B, whatever a_g is: the
+//! There the equations leave [(J0 + m0 B²)/m + (sB − u)²] θ̈ = H (c_u u̇ + k u)/m + g u − sγ g B, whatever a_g and F_t are: the
 //! second condition is that the moment which turns the structure about the pivot exceeds that of its weight. While |u|
 //! grows through u_cr it always does; after a landing with |u| > u_cr it may not, and leaving it out makes contact
 //! open and shut without end. "> 0" is taken as more than 1e-12 of the weight's moment, far above rounding.
@@ -65,7 +65,7 @@ fn first_about(structure: &Structure, turning: &TurningMoment, arc: &Arc, side: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::engine::GroundAcceleration;
+    use crate::load::{GroundAcceleration, Load};
     use crate::nonlinear_rocking::accelerations;
     use crate::taylor::Start;
     use crate::{Parameters, State, full_contact};
@@ -74,20 +74,24 @@ mod tests {
     fn first_from(structure: &Structure, state: State) -> (Crossing, Side) {
         let mut arc = Arc::default();
         let a_g = GroundAcceleration::default();
-        full_contact::series(structure, &Start { state, a_g, interval: 1e-9, local_error: 1e-13 }, &mut arc);
+        full_contact::series(
+            structure,
+            &Start { state, a_g, a_top: a_g, interval: 1e-9, local_error: 1e-13 },
+            &mut arc,
+        );
         first_on(structure, &TurningMoment::new(structure), &arc)
     }
 
     proptest! {
-        /// The condition on the moment is the condition s θ̈ > 0 of Eqs 5 and 6, for every a_g.
+        /// The condition on the moment is the condition s θ̈ > 0 of Eqs 5 and 6, for every load.
         #[test]
         fn the_moment_condition_is_that_of_equations_5_and_6(
-            u in -0.02..0.02f64, u_dot in -3.0..3.0f64, a_g in -20.0..20.0f64,
+            u in -0.02..0.02f64, u_dot in -3.0..3.0f64, a_g in -20.0..20.0f64, F_t in -3e3..3e3f64,
         ) {
             let structure = Structure::new(Parameters { zeta_fc: 0.1, ..Parameters::MCMANUS }).unwrap();
             let state = State { u, u_dot, ..State::default() };
             let side = Side::of(u);
-            let theta_ddot = accelerations(&structure, side, &state, a_g).unwrap()[1];
+            let theta_ddot = accelerations(&structure, side, &state, Load { a_g, F_t }).unwrap()[1];
             prop_assume!(theta_ddot.abs() > 1e-6 && (u.abs() - structure.u_cr).abs() > 1e-8);
             let both = u.abs() >= structure.u_cr && side.sign() * theta_ddot > 0.0;
             let expected = if both { (Crossing::At(0.0), side) } else { (Crossing::None, Side::Right) };
@@ -112,12 +116,16 @@ mod tests {
         let state = State { u: 1.05 * structure.u_cr, u_dot: -0.02, ..State::default() };
         let push = GroundAcceleration { value: -40.0, slope: 0.0 }; // turns the velocity round
         let mut arc = Arc::default();
-        full_contact::series(&structure, &Start { state, a_g: push, interval: 2e-3, local_error: 1e-15 }, &mut arc);
+        full_contact::series(
+            &structure,
+            &Start { state, a_g: push, a_top: push, interval: 2e-3, local_error: 1e-15 },
+            &mut arc,
+        );
         let (Crossing::At(sigma), Side::Right) = first_on(&structure, &TurningMoment::new(&structure), &arc) else {
             panic!("no uplift")
         };
         let there = arc.at(sigma);
-        let theta_ddot = accelerations(&structure, Side::Right, &there, push.value).unwrap()[1];
+        let theta_ddot = accelerations(&structure, Side::Right, &there, Load::ground(push.value)).unwrap()[1];
         assert!(sigma * arc.span > 1e-5 && there.u > structure.u_cr);
         assert!((0.0..1e-9).contains(&theta_ddot), "{theta_ddot}");
     }

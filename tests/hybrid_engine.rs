@@ -45,7 +45,7 @@ fn evisons_free_vibration_has_its_impacts_and_its_peak() {
     for k in 1..=200_000 {
         advance(&mut engine, k as f64 * 1e-5, STILL);
         let Motion { time, phase, state, .. } = *engine.motion();
-        let a_t = Outputs::of(&structure, phase, &state).a_t.abs();
+        let a_t = Outputs::of(&structure, phase, &state, 0.0).a_t.abs();
         if a_t > peak {
             (peak, instant) = (a_t, time);
         }
@@ -178,7 +178,7 @@ proptest! {
                 most = most.max(in_this_period.len());
             }).unwrap();
             let Motion { state, phase, .. } = *engine.motion();
-            let outputs = Outputs::of(&structure, phase, &state);
+            let outputs = Outputs::of(&structure, phase, &state, 0.0);
             prop_assert!([outputs.theta, outputs.u, outputs.a_t, outputs.delta_t].iter().all(|x| x.is_finite()));
             // any period overlaps at most two of those that the engine counts in
             prop_assert!(most <= 2 * (MAX_TRANSITIONS_PER_PERIOD as usize + 2));

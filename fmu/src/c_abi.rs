@@ -472,14 +472,20 @@ pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
     c: *mut c_void,
-    _vUnknown_ref: *const c_uint,
-    _nUnknown: size_t,
-    _vKnown_ref: *const c_uint,
-    _nKnown: size_t,
-    _dvKnown: *const c_double,
-    _dvUnknown: *mut c_double,
+    vUnknown_ref: *const c_uint,
+    nUnknown: size_t,
+    vKnown_ref: *const c_uint,
+    nKnown: size_t,
+    dvKnown: *const c_double,
+    dvUnknown: *mut c_double,
 ) -> c_int {
-    unsafe { call(c, Function::GetDirectionalDerivative, |_| Err(Failure::NoDirectionalDerivatives)) }
+    unsafe {
+        call(c, Function::GetDirectionalDerivative, |instance| {
+            let unknowns = values("vUnknown_ref", vUnknown_ref, nUnknown)?;
+            let (knowns, seed) = (values("vKnown_ref", vKnown_ref, nKnown)?, values("dvKnown", dvKnown, nKnown)?);
+            instance.get_directional_derivative(unknowns, knowns, seed, room("dvUnknown", dvUnknown, nUnknown)?)
+        })
+    }
 }
 
 /// `fmi2SetRealInputDerivatives`

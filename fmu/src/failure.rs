@@ -128,8 +128,8 @@ pub enum Failure {
         /// The order asked for.
         order: i32,
     },
-    /// A derivative of something else than the input.
-    #[error("{} has no derivative that can be set: only the input has", .0.name)]
+    /// A derivative by time or a direction of something else than an input.
+    #[error("{} has no derivative that can be set: only the inputs have", .0.name)]
     NoInput(&'static Variable),
     /// A derivative that is not a number.
     #[error("the derivative of {}, {value}, is out of range: it must be finite", variable.name)]
@@ -139,8 +139,8 @@ pub enum Failure {
         /// Its derivative.
         value: f64,
     },
-    /// A derivative of something else than a real output.
-    #[error("{} has no derivative: only Real outputs have", .0.name)]
+    /// A derivative of something else than a continuous output.
+    #[error("{} has no derivative: only continuous Real outputs have", .0.name)]
     NoOutput(&'static Variable),
     /// The equations of motion are singular here.
     #[error("the derivative of {} does not exist at t = {time} s", variable.name)]
@@ -194,9 +194,6 @@ pub enum Failure {
          fmi2LastSuccessfulTime, fmi2GetBooleanStatus knows fmi2Terminated"
     )]
     NoAnswer(StatusKind),
-    /// Directional derivatives are not provided.
-    #[error("directional derivatives are not provided (providesDirectionalDerivative is false)")]
-    NoDirectionalDerivatives,
     /// Not one of the instance's FMU states.
     #[error(
         "FMUstate {0:#x} is not one that this instance has handed out and not freed; pass a pointer to NULL for a new one"

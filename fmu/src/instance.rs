@@ -6,12 +6,12 @@ use crate::logger::{Category, Logger, Status};
 use crate::resources;
 use crate::snapshot::{self, Snapshots};
 use crate::state_machine::{Function, Stage};
-use crate::variables::{self, A_G, Source, VARIABLES, Variable};
+use crate::variables::{self, INPUTS, Source, VARIABLES, Variable};
 use model_description::Causality;
-use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE, GroundAcceleration, Motion, Progress, TransitionKind};
+use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE, Motion, Progress, TransitionKind};
 use rocking::impact::gaining_restitution;
 use rocking::quantity::Quantity;
-use rocking::{Detail, Engine, Parameters, Phase, Side, State, Structure, Transition};
+use rocking::{Detail, Engine, Impulse, LinearLoad, Load, Parameters, Phase, Side, State, Structure, Transition};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 use std::mem::MaybeUninit;
@@ -41,8 +41,8 @@ pub struct Condition {
     pub stage: Stage,
     /// What was set before the start.
     pub setup: Setup,
-    /// The input, from the present time on. After a step the slope is 0: the value is held.
-    pub input: GroundAcceleration,
+    /// The inputs, from the present time on. After a step the slopes are 0: the values are held.
+    pub input: LinearLoad,
     /// The structure in motion. Until initialization ends it is built when an output is asked for, and dropped when
     /// what it was built from is set anew.
     pub engine: Option<Engine>,
@@ -80,7 +80,7 @@ impl Condition {
                 start_time: 0.0,
                 stop_time: None,
             },
-            input: GroundAcceleration::default(),
+            input: LinearLoad::default(),
             engine: None,
         }
     }
@@ -89,18 +89,21 @@ impl Condition {
     pub fn is_possible(&self) -> bool {
         let Setup { parameters, initial, tolerance, start_time, stop_time, .. } = &self.setup;
         let fits = |variable: &Variable| match variable.source {
-            Source::Input(quantity) => quantity.check((quantity.get)(&self.input)).is_ok(),
+            Source::Input(quantity) => {
+                let (value, slope) = ((quantity.get)(&self.input.value), (quantity.get)(&self.input.slope));
+                quantity.check(value).is_ok() && slope.is_finite()
+            }
             Source::Parameter(quantity) => quantity.check((quantity.get)(parameters)).is_ok(),
             Source::InitialValue(quantity) => quantity.check((quantity.get)(initial)).is_ok(),
             _ => true,
         };
         let moves = self.engine.as_ref().map(|engine| {
-            let &Motion { time, a_g, state: State { u, u_dot, theta, theta_dot }, .. } = engine.motion();
-            let is_bounded = [time, a_g, u, u_dot, theta_dot].iter().all(|x| x.abs() <= BOUND);
+            let &Motion { time, a_g, state: State { u, u_dot, theta, theta_dot }, impulse, .. } = engine.motion();
+            let Impulse { I_h, I_v, I_m } = impulse;
+            let is_bounded = [time, a_g, u, u_dot, theta_dot, I_h, I_v, I_m].iter().all(|x| x.abs() <= BOUND);
             is_bounded && time >= *start_time && theta.abs() <= MAX_ANGLE
         });
         VARIABLES.iter().all(fits)
-            && self.input.slope.is_finite()
             && check_experiment(*tolerance, *start_time, *stop_time).is_ok()
             && moves.unwrap_or(matches!(self.stage, Stage::Instantiated | Stage::InitializationMode))
     }
@@ -235,28 +238,31 @@ impl Instance {
             let variable = find(*reference)?;
             match variable.source {
                 Source::Input(_) | Source::Parameter(_) | Source::InitialValue(_) => (),
-                Source::Output(_) | Source::Derived(_) => is_computed = true,
+                Source::Output(_) | Source::Reaction(_) | Source::Impulse(_) | Source::Derived(_) => is_computed = true,
                 Source::Integer(_) | Source::Boolean(_) | Source::Detail => return Err(Failure::WrongType(variable)),
             }
         }
         if is_computed {
             self.now.engine()?;
         }
-        let mut outputs = None;
+        let load = self.now.input.value;
+        let (mut outputs, mut reactions) = (None, None);
         for (reference, value) in references.iter().zip(values) {
             let variable = find(*reference)?;
             value.write(match variable.source {
-                Source::Input(quantity) => (quantity.get)(&self.now.input),
+                Source::Input(quantity) => (quantity.get)(&load),
                 Source::Parameter(quantity) => (quantity.get)(&self.now.setup.parameters),
                 Source::InitialValue(quantity) => (quantity.get)(&self.now.setup.initial),
                 Source::Derived(derived) => (derived.value)(self.now.engine()?.structure()),
-                Source::Output(of) => match &outputs {
-                    Some(outputs) => of(outputs),
-                    None => {
-                        let engine = self.now.engine()?;
-                        of(outputs.insert(engine.outputs()))
-                    }
-                },
+                Source::Output(of) => {
+                    let engine = self.now.engine()?;
+                    of(outputs.get_or_insert_with(|| engine.outputs(load.F_t)))
+                }
+                Source::Reaction(of) => {
+                    let engine = self.now.engine()?;
+                    of(reactions.get_or_insert_with(|| engine.reactions(load)))
+                }
+                Source::Impulse(of) => of(&self.now.engine()?.motion().impulse),
                 Source::Integer(_) | Source::Boolean(_) | Source::Detail => return Err(Failure::WrongType(variable)),
             });
         }
@@ -312,7 +318,7 @@ impl Instance {
         for (reference, &value) in references.iter().zip(values) {
             let variable = find(*reference)?;
             match variable.source {
-                Source::Input(quantity) => set(quantity, &mut input, value)?,
+                Source::Input(quantity) => set(quantity, &mut input.value, value)?,
                 Source::Parameter(_) | Source::InitialValue(_) if stage == Stage::StepComplete => {
                     return Err(Failure::Fixed(variable));
                 }
@@ -364,7 +370,7 @@ impl Instance {
         self.get_string(references)
     }
 
-    /// `fmi2SetRealInputDerivatives`: slopes of the input over the next step.
+    /// `fmi2SetRealInputDerivatives`: slopes of the inputs over the next step.
     pub fn set_real_input_derivatives(
         &mut self,
         references: &[u32],
@@ -374,45 +380,92 @@ impl Instance {
         let mut input = self.now.input;
         for ((reference, &order), &value) in references.iter().zip(orders).zip(values) {
             let variable = find(*reference)?;
-            if !matches!(variable.source, Source::Input(_)) {
-                return Err(Failure::NoInput(variable));
-            }
+            let Source::Input(quantity) = variable.source else { return Err(Failure::NoInput(variable)) };
             if order != 1 {
                 return Err(Failure::WrongOrder { variable, order });
             }
             if !value.is_finite() {
                 return Err(Failure::BadSlope { variable, value });
             }
-            input.slope = value;
+            (quantity.set)(&mut input.slope, value);
         }
         self.now.input = input;
         Ok(())
     }
 
-    /// `fmi2GetRealOutputDerivatives`: from the equations of motion, under the present value of the input.
+    /// `fmi2GetRealOutputDerivatives`: from the equations of motion, under the present values of the inputs.
     pub fn get_real_output_derivatives(
         &mut self,
         references: &[u32],
         orders: &[i32],
         values: &mut [MaybeUninit<f64>],
     ) -> Result<(), Failure> {
-        let a_g = self.now.input;
+        let load = self.now.input;
         let engine = self.now.engine()?;
         let time = engine.motion().time;
-        let rates = engine.output_rates(a_g);
+        let (outputs, reactions) = engine.rates(load);
         let rate = |reference: &u32, order: i32| {
             let variable = find(*reference)?;
-            let Source::Output(of) = variable.source else { return Err(Failure::NoOutput(variable)) };
+            let rate = match variable.source {
+                Source::Output(of) => of(&outputs),
+                Source::Reaction(of) => of(&reactions),
+                _ => return Err(Failure::NoOutput(variable)),
+            };
             if order != 1 {
                 return Err(Failure::WrongOrder { variable, order });
             }
-            Some(of(&rates)).filter(|rate| rate.is_finite()).ok_or(Failure::NoRate { variable, time })
+            Some(rate).filter(|rate| rate.is_finite()).ok_or(Failure::NoRate { variable, time })
         };
         for (reference, order) in references.iter().zip(orders) {
             rate(reference, *order)?;
         }
         for ((reference, order), value) in references.iter().zip(orders).zip(values) {
             value.write(rate(reference, *order)?);
+        }
+        Ok(())
+    }
+
+    /// `fmi2GetDirectionalDerivative`: of outputs by inputs. The outputs are affine in the inputs, so that a difference is
+    /// the derivative; it is taken over a change of the size of gravity, which keeps its digits.
+    pub fn get_directional_derivative(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        seed: &[f64],
+        values: &mut [MaybeUninit<f64>],
+    ) -> Result<(), Failure> {
+        let mut direction = Load::default();
+        for (reference, &value) in knowns.iter().zip(seed) {
+            let variable = find(*reference)?;
+            let Source::Input(quantity) = variable.source else { return Err(Failure::NoInput(variable)) };
+            if !value.is_finite() {
+                return Err(Failure::BadSlope { variable, value });
+            }
+            let sum = (quantity.get)(&direction) + value;
+            (quantity.set)(&mut direction, sum);
+        }
+        let engine = self.now.engine()?;
+        let time = engine.motion().time;
+        let &Parameters { m, g, .. } = engine.structure().parameters();
+        let size = (direction.a_g.abs() / g).max(direction.F_t.abs() / (m * g));
+        let of_size_one = |part: f64| if size > 0.0 { part / size } else { 0.0 };
+        let change = Load { a_g: of_size_one(direction.a_g), F_t: of_size_one(direction.F_t) };
+        let [outputs, outputs_before] = [change, Load::default()].map(|load| engine.outputs(load.F_t));
+        let [reactions, reactions_before] = [change, Load::default()].map(|load| engine.reactions(load));
+        let derivative = |reference: &u32| {
+            let variable = find(*reference)?;
+            let difference = match variable.source {
+                Source::Output(of) => of(&outputs) - of(&outputs_before),
+                Source::Reaction(of) => of(&reactions) - of(&reactions_before),
+                _ => return Err(Failure::NoOutput(variable)),
+            };
+            Some(size * difference).filter(|value| value.is_finite()).ok_or(Failure::NoRate { variable, time })
+        };
+        for reference in unknowns {
+            derivative(reference)?;
+        }
+        for (reference, value) in unknowns.iter().zip(values) {
+            value.write(derivative(reference)?);
         }
         Ok(())
     }
@@ -439,7 +492,10 @@ impl Instance {
         {
             return Err(Failure::PastStop { until, stop });
         }
-        A_G.check(input.at(until - time)).map_err(Failure::InputRunsOut)?;
+        let last = input.at(until - time);
+        for quantity in &INPUTS {
+            quantity.check((quantity.get)(&last)).map_err(Failure::InputRunsOut)?;
+        }
 
         let progress = engine.advance(until, input, &mut |transition| log(logger, transition));
         let end = engine.motion().time;
@@ -554,9 +610,9 @@ fn set<T>(quantity: &Quantity<T>, of: &mut T, value: f64) -> Result<(), Failure>
     Ok(())
 }
 
-/// The input at the end of a step of `duration` (s), held from there on until it is set anew.
-fn held(input: GroundAcceleration, duration: f64) -> GroundAcceleration {
-    GroundAcceleration { value: input.at(duration), slope: 0.0 }
+/// The inputs at the end of a step of `duration` (s), held from there on until they are set anew.
+fn held(input: LinearLoad, duration: f64) -> LinearLoad {
+    LinearLoad { value: input.at(duration), slope: Load::default() }
 }
 
 /// Hosts add up steps or multiply them: their times (s) differ in the last digits.

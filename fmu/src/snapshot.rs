@@ -13,7 +13,8 @@ use crate::BUILD;
 use crate::failure::Failure;
 use crate::instance::{Condition, Setup};
 use crate::state_machine::Stage;
-use rocking::engine::{GroundAcceleration, Motion};
+use rocking::LinearLoad;
+use rocking::engine::Motion;
 use std::collections::HashMap;
 use std::hash::BuildHasher;
 
@@ -58,10 +59,10 @@ impl Snapshots {
 }
 
 const MAGIC: [u8; 8] = *b"FlexRock";
-const VERSION: u32 = 1;
+const VERSION: u32 = 2;
 
 /// What the payload holds: a condition, with the engine's motion for the engine.
-type Stored = (Stage, Setup, GroundAcceleration, Option<Motion>);
+type Stored = (Stage, Setup, LinearLoad, Option<Motion>);
 
 /// A condition as bytes.
 pub fn serialize(condition: &Condition) -> Vec<u8> {

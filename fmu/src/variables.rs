@@ -3,12 +3,12 @@
 //! through it. A value reference is a position in the table.
 
 use model_description::{Causality, Initial, Variability};
-use rocking::engine::{GroundAcceleration, Motion};
+use rocking::engine::Motion;
 use rocking::parameters::PARAMETERS;
 use rocking::quantity::Quantity;
 use rocking::state::INITIAL_VALUES;
 use rocking::structure::{DERIVED, Derived};
-use rocking::{Detail, Outputs, Parameters, Phase, Side, State};
+use rocking::{Detail, Impulse, Load, Outputs, Parameters, Phase, Reactions, Side, State};
 use std::sync::LazyLock;
 
 /// One variable.
@@ -26,8 +26,9 @@ pub struct Variable {
     pub variability: Variability,
     /// How its initial value comes about; inputs have none.
     pub initial: Option<Initial>,
-    /// The parameters and initial values that its value at the start of a simulation depends on, by name. From then on
-    /// the outputs depend on the state alone, on no input.
+    /// The inputs that its value depends on at any time, the state given, by name: direct feedthrough.
+    pub feedthrough: &'static [&'static str],
+    /// The parameters and initial values that its value at the start of a simulation depends on as well, by name.
     pub initial_dependencies: &'static [&'static str],
     /// Where its value is.
     pub(crate) source: Source,
@@ -68,8 +69,10 @@ pub(crate) type OfMotion = fn(&Motion) -> i32;
 /// Where the value of a variable is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Source {
-    Input(&'static Quantity<GroundAcceleration>),
+    Input(&'static Quantity<Load>),
     Output(fn(&Outputs) -> f64),
+    Reaction(fn(&Reactions) -> f64),
+    Impulse(fn(&Impulse) -> f64),
     Integer(OfMotion),
     Boolean(OfMotion),
     Parameter(&'static Quantity<Parameters>),
@@ -126,20 +129,32 @@ fn overturned(motion: &Motion) -> i32 {
     i32::from(matches!(motion.phase, Phase::Overturned(_)))
 }
 
-/// The input. Its slope is set by a call of its own, before or after, and anew for every step.
-pub(crate) static A_G: Quantity<GroundAcceleration> = Quantity {
-    name: "a_g",
-    unit: "m/s2",
-    description: "horizontal ground acceleration, positive to the right",
-    min: -1e4,
-    max: 1e4,
-    get: |a_g| a_g.value,
-    set: |a_g, value| a_g.value = value,
-};
+/// The inputs. Their slopes are set by a call of its own, before or after, and anew for every step.
+pub(crate) static INPUTS: [Quantity<Load>; 2] = [
+    Quantity {
+        name: "a_g",
+        unit: "m/s2",
+        description: "horizontal ground acceleration, positive to the right",
+        min: -1e4,
+        max: 1e4,
+        get: |load| load.a_g,
+        set: |load, value| load.a_g = value,
+    },
+    Quantity {
+        name: "F_t",
+        unit: "N",
+        description: "external horizontal force on the top mass, positive to the right",
+        min: -1e15,
+        max: 1e15,
+        get: |load| load.F_t,
+        set: |load, value| load.F_t = value,
+    },
+];
 
 /// All variables, in the order of the model description.
 pub static VARIABLES: LazyLock<Vec<Variable>> = LazyLock::new(|| {
-    std::iter::once(input())
+    let inputs = const { &INPUTS }.iter().map(input);
+    inputs
         .chain(outputs())
         .chain(const { &PARAMETERS }.iter().map(|quantity| fixed(quantity, Source::Parameter(quantity))))
         .chain(std::iter::once(detail_parameter()))
@@ -148,22 +163,23 @@ pub static VARIABLES: LazyLock<Vec<Variable>> = LazyLock::new(|| {
         .collect()
 });
 
-fn input() -> Variable {
+fn input(quantity: &'static Quantity<Load>) -> Variable {
     Variable {
-        name: A_G.name,
-        description: A_G.description,
-        data_type: DataType::Real { unit: A_G.unit, range: Some((A_G.min, A_G.max)) },
+        name: quantity.name,
+        description: quantity.description,
+        data_type: DataType::Real { unit: quantity.unit, range: Some((quantity.min, quantity.max)) },
         causality: Causality::Input,
         variability: Variability::Continuous,
         initial: None,
+        feedthrough: &[],
         initial_dependencies: &[],
-        source: Source::Input(&A_G),
+        source: Source::Input(quantity),
     }
 }
 
-fn outputs() -> [Variable; 12] {
+fn outputs() -> Vec<Variable> {
     // The masses, the geometry and theta_dot_0 by the rigid level, the others by the elastic ones.
-    const A_T: &[&str] = &[
+    const ACCELERATIONS: &[&str] = &[
         "m",
         "m0",
         "H",
@@ -180,16 +196,36 @@ fn outputs() -> [Variable; 12] {
         "u_dot_0",
     ];
     const DELTA_T: &[&str] = &["H", "B", "theta_0", "u_0"];
-    [
-        real("theta", "rad", "rotation of the base, positive about the right edge", |o| o.theta, &["theta_0"]),
-        real("u", "m", "elastic displacement of the top mass in the frame that turns with the base", |o| o.u, &["u_0"]),
-        real("a_t", "m/s2", "acceleration of the top mass, ground included (Eq 27)", |o| o.a_t, A_T),
-        real("V_t", "N", "base shear m a_t (Eqs 2, 23)", |o| o.V_t, A_T),
-        real("M_t", "N.m", "overturning moment m H a_t (Eqs 3, 24)", |o| o.M_t, A_T),
-        real("theta_dot", "rad/s", "angular velocity of the base", |o| o.theta_dot, &["theta_dot_0"]),
-        real("u_dot", "m/s", "elastic velocity of the top mass", |o| o.u_dot, &["u_dot_0"]),
-        real("uplift", "m", "height of the free edge of the base (Eq 25)", |o| o.uplift, &["B", "theta_0"]),
-        real("delta_t", "m", "lateral displacement of the top mass (Eq 26)", |o| o.delta_t, DELTA_T),
+    const V_T: &[&str] = &["H", "B", "theta_0", "theta_dot_0", "u_0", "u_dot_0"];
+    let of_state = |name, unit, description, of, initial_dependencies| {
+        output(name, unit, description, Source::Output(of), &[], initial_dependencies)
+    };
+    let force =
+        |name, unit, description, of| output(name, unit, description, Source::Output(of), &["F_t"], ACCELERATIONS);
+    let reaction = |name, unit, description, of| {
+        output(name, unit, description, Source::Reaction(of), &["a_g", "F_t"], ACCELERATIONS)
+    };
+    let impulse = |name, unit, description, of| {
+        discrete(name, description, DataType::Real { unit, range: None }, Source::Impulse(of), &[])
+    };
+    let elastic = "elastic displacement of the top mass in the frame that turns with the base";
+    vec![
+        of_state("theta", "rad", "rotation of the base, positive about the right edge", |o| o.theta, &["theta_0"]),
+        of_state("u", "m", elastic, |o| o.u, &["u_0"]),
+        force("a_t", "m/s2", "acceleration of the top mass, ground included (Eq 27)", |o| o.a_t),
+        force("V_t", "N", "base shear m a_t (Eqs 2, 23)", |o| o.V_t),
+        force("M_t", "N.m", "overturning moment m H a_t (Eqs 3, 24)", |o| o.M_t),
+        of_state("theta_dot", "rad/s", "angular velocity of the base", |o| o.theta_dot, &["theta_dot_0"]),
+        of_state("u_dot", "m/s", "elastic velocity of the top mass", |o| o.u_dot, &["u_dot_0"]),
+        of_state("uplift", "m", "height of the free edge of the base (Eq 25)", |o| o.uplift, &["B", "theta_0"]),
+        of_state("delta_t", "m", "lateral displacement of the top mass (Eq 26)", |o| o.delta_t, DELTA_T),
+        of_state("v_t", "m/s", "lateral velocity of the top mass relative to the ground", |o| o.v_t, V_T),
+        reaction("R_h", "N", "horizontal force on the ground, positive to the right", |r| r.R_h),
+        reaction("R_v", "N", "vertical force on the ground, positive downwards", |r| r.R_v),
+        reaction("R_m", "N.m", "moment on the ground about the middle of the base, positive as theta", |r| r.R_m),
+        impulse("I_h", "N.s", "horizontal impulse of the impacts on the ground so far", |i| i.I_h),
+        impulse("I_v", "N.s", "vertical impulse of the impacts on the ground so far, downwards", |i| i.I_v),
+        impulse("I_m", "N.m.s", "moment impulse of the impacts on the ground so far, positive as theta", |i| i.I_m),
         discrete(
             "phase",
             PHASES.description,
@@ -222,6 +258,7 @@ fn detail_parameter() -> Variable {
         causality: Causality::Parameter,
         variability: Variability::Fixed,
         initial: Some(Initial::Exact),
+        feedthrough: &[],
         initial_dependencies: &[],
         source: Source::Detail,
     }
@@ -237,11 +274,12 @@ fn calculated_parameters() -> [Variable; 5] {
     ]
 }
 
-fn real(
+fn output(
     name: &'static str,
     unit: &'static str,
     description: &'static str,
-    of: fn(&Outputs) -> f64,
+    source: Source,
+    feedthrough: &'static [&'static str],
     initial_dependencies: &'static [&'static str],
 ) -> Variable {
     Variable {
@@ -251,8 +289,9 @@ fn real(
         causality: Causality::Output,
         variability: Variability::Continuous,
         initial: Some(Initial::Calculated),
+        feedthrough,
         initial_dependencies,
-        source: Source::Output(of),
+        source,
     }
 }
 
@@ -270,6 +309,7 @@ fn discrete(
         causality: Causality::Output,
         variability: Variability::Discrete,
         initial: Some(Initial::Calculated),
+        feedthrough: &[],
         initial_dependencies,
         source,
     }
@@ -283,6 +323,7 @@ fn fixed<T>(quantity: &'static Quantity<T>, source: Source) -> Variable {
         causality: Causality::Parameter,
         variability: Variability::Fixed,
         initial: Some(Initial::Exact),
+        feedthrough: &[],
         initial_dependencies: &[],
         source,
     }
@@ -298,16 +339,17 @@ fn calculated(name: &'static str, initial_dependencies: &'static [&'static str])
         causality: Causality::CalculatedParameter,
         variability: Variability::Fixed,
         initial: Some(Initial::Calculated),
+        feedthrough: &[],
         initial_dependencies,
         source: Source::Derived(derived),
     }
 }
 
 impl Variable {
-    /// The start value in an FMU of the structure `parameters`: of the input, the parameters and the initial values.
+    /// The start value in an FMU of the structure `parameters`: of the inputs, the parameters and the initial values.
     pub fn start(&self, parameters: &Parameters) -> Option<f64> {
         match self.source {
-            Source::Input(quantity) => Some((quantity.get)(&GroundAcceleration::default())),
+            Source::Input(quantity) => Some((quantity.get)(&Load::default())),
             Source::Parameter(quantity) => Some((quantity.get)(parameters)),
             Source::InitialValue(quantity) => Some((quantity.get)(&State::default())),
             Source::Detail => Some(f64::from(detail_number(Detail::default()))),

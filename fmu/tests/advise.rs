@@ -43,7 +43,7 @@ fn run(detail: Detail, tolerance: f64, parts: usize, mut see: impl FnMut(&Engine
 fn seen(detail: Detail, tolerance: f64) -> ([f64; 3], Vec<f64>) {
     let (mut peaks, mut theta) = ([0.0f64; 3], Vec::new());
     run(detail, tolerance, 100, |engine| {
-        let outputs = engine.outputs();
+        let outputs = engine.outputs(0.0);
         for (peak, value) in peaks.iter_mut().zip([outputs.theta, outputs.u, outputs.a_t]) {
             *peak = peak.max(value.abs());
         }
@@ -153,7 +153,7 @@ fn simulate_moves_by_the_equations_of_the_level() {
         let text = fs::read_to_string(folder.path().join(format!("{name}.csv"))).unwrap();
         let mut lines = text.lines().skip(2);
         run(detail, DEFAULT_TOLERANCE, 1, |engine| {
-            let outputs = engine.outputs();
+            let outputs = engine.outputs(0.0);
             let line: Vec<&str> = lines.next().unwrap().split(',').collect();
             for (shown, value) in
                 line[2..7].iter().zip([outputs.theta, outputs.u, outputs.a_t, outputs.V_t, outputs.M_t])

@@ -215,11 +215,6 @@ fn questions_without_an_answer_are_discarded() {
          fmi2GetRealStatus knows fmi2LastSuccessfulTime, fmi2GetBooleanStatus knows fmi2Terminated"
     );
     assert_eq!(host.bytes(), before);
-    host.assert_refused(
-        || unsafe { fmi2GetDirectionalDerivative(c, &1, 1, &0, 1, &1.0, &mut 0.0) },
-        ERROR,
-        "fmi2GetDirectionalDerivative: directional derivatives are not provided (providesDirectionalDerivative is false)",
-    );
 }
 
 /// Sixty steps of 20 ms of an instance that is a little different from all others, one after the other by `turn`.

@@ -142,7 +142,6 @@ fn outcome(function: Function, stage: Stage) -> (i32, Stage) {
         Function::ExitInitializationMode => (OK, Stage::StepComplete),
         Function::Terminate => (OK, Stage::Terminated),
         Function::Reset => (OK, Stage::Instantiated),
-        Function::GetDirectionalDerivative => (ERROR, stage),
         Function::GetStatus | Function::GetIntegerStatus | Function::GetStringStatus => (DISCARD, stage),
         _ => (OK, stage),
     }

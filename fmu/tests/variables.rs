@@ -19,10 +19,10 @@ fn the_table_holds_the_variables_in_their_order() {
         of_causality.map(|variable| variable.name).collect::<Vec<_>>().join(" ")
     };
     assert_eq!(VARIABLES[0].name, "a_g");
-    assert_eq!(names(Causality::Input), "a_g");
+    assert_eq!(names(Causality::Input), "a_g F_t");
     assert_eq!(
         names(Causality::Output),
-        "theta u a_t V_t M_t theta_dot u_dot uplift delta_t phase transitions overturned"
+        "theta u a_t V_t M_t theta_dot u_dot uplift delta_t v_t R_h R_v R_m I_h I_v I_m phase transitions overturned"
     );
     assert_eq!(
         names(Causality::Parameter),

@@ -126,6 +126,9 @@ pub struct CoSimulation {
     /// The state can be turned into bytes and back.
     #[serde(rename = "@canSerializeFMUstate")]
     pub can_serialize_fmu_state: bool,
+    /// Derivatives of outputs by inputs can be asked for.
+    #[serde(rename = "@providesDirectionalDerivative")]
+    pub provides_directional_derivative: bool,
 }
 
 /// Log categories that can be switched on.

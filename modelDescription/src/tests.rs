@@ -21,6 +21,7 @@ fn spring() -> FmiModelDescription {
             can_not_use_memory_management_functions: true,
             can_get_and_set_fmu_state: true,
             can_serialize_fmu_state: true,
+            provides_directional_derivative: true,
         },
         unit_definitions: UnitDefinitions {
             units: vec![
@@ -137,7 +138,7 @@ fn spring() -> FmiModelDescription {
 
 const SPRING: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="2.0" modelName="Spring" guid="{1-2}" description="force &lt; &quot;yield&quot; &amp; so on" version="0.1.0" license="MIT" generationTool="a test" variableNamingConvention="flat">
-  <CoSimulation modelIdentifier="Spring" canHandleVariableCommunicationStepSize="true" canInterpolateInputs="true" maxOutputDerivativeOrder="1" canBeInstantiatedOnlyOncePerProcess="false" canNotUseMemoryManagementFunctions="true" canGetAndSetFMUstate="true" canSerializeFMUstate="true"/>
+  <CoSimulation modelIdentifier="Spring" canHandleVariableCommunicationStepSize="true" canInterpolateInputs="true" maxOutputDerivativeOrder="1" canBeInstantiatedOnlyOncePerProcess="false" canNotUseMemoryManagementFunctions="true" canGetAndSetFMUstate="true" canSerializeFMUstate="true" providesDirectionalDerivative="true"/>
   <UnitDefinitions>
     <Unit name="N">
       <BaseUnit kg="1" m="1" s="-2"/>

@@ -36,7 +36,7 @@ pub fn run(
             break;
         }
         if step.ends_interval {
-            samples.push(Sample::of(&engine.outputs()));
+            samples.push(Sample::of(&engine.outputs(0.0)));
         }
     }
     let Motion { work, transitions, .. } = *engine.motion();

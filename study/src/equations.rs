@@ -1,7 +1,7 @@
 //! The equations between two transitions, with their evaluations counted.
 
 use nalgebra::Vector2;
-use rocking::{GroundAcceleration, Phase, State, Structure, full_contact, nonlinear_rocking};
+use rocking::{GroundAcceleration, Load, Phase, State, Structure, full_contact, nonlinear_rocking};
 use std::cell::Cell;
 
 /// Two second-order equations for the positions (u, θ).
@@ -28,10 +28,10 @@ impl Equations for PhaseEquations<'_> {
         let state = state(position, velocity);
         match self.phase {
             Phase::FullContact => {
-                Vector2::new(full_contact::acceleration(self.structure, &state, self.a_g.at(tau)), 0.0)
+                Vector2::new(full_contact::acceleration(self.structure, &state, Load::ground(self.a_g.at(tau))), 0.0)
             }
             Phase::Rocking(side) | Phase::Overturned(side) => {
-                nonlinear_rocking::accelerations(self.structure, side, &state, self.a_g.at(tau))
+                nonlinear_rocking::accelerations(self.structure, side, &state, Load::ground(self.a_g.at(tau)))
                     .unwrap_or_else(|| Vector2::repeat(f64::NAN))
             }
         }

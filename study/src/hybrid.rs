@@ -104,7 +104,7 @@ pub fn run(
             failure = Some(reason);
             break;
         }
-        samples.push(Sample::of(&Outputs::of(&scene.structure, motion.phase, &motion.point.state())));
+        samples.push(Sample::of(&Outputs::of(&scene.structure, motion.phase, &motion.point.state(), 0.0)));
     }
     Response { samples, evaluations: motion.evaluations.get(), transitions: motion.transitions, failure }
 }

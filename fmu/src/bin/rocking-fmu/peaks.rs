@@ -61,7 +61,7 @@ impl Instant {
         let of_interest = |outputs: Outputs| [outputs.theta, outputs.u, outputs.a_t];
         Instant {
             time,
-            values: of_interest(Outputs::of(structure, phase, state)),
+            values: of_interest(Outputs::of(structure, phase, state, 0.0)),
             rates: of_interest(Outputs::rates(structure, phase, state, a_g)),
         }
     }

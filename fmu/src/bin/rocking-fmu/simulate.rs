@@ -9,7 +9,7 @@ use crate::{
 };
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use indicatif::ProgressBar;
-use rocking::{Detail, Engine, Phase, Transition, engine::DEFAULT_TOLERANCE, record::Record};
+use rocking::{Detail, Engine, Load, Phase, Transition, engine::DEFAULT_TOLERANCE, record::Record};
 use std::path::{Path, PathBuf};
 
 /// What to simulate.
@@ -97,9 +97,9 @@ struct Recorder {
 impl Recorder {
     fn output(&mut self, engine: &Engine, a_g: f64) -> anyhow::Result<()> {
         let motion = engine.motion();
-        let outputs = engine.outputs();
+        let outputs = engine.outputs(0.0);
         self.summary.see_outputs(motion.time, &outputs);
-        self.response.write(tables::response_line(motion, a_g, outputs))
+        self.response.write(tables::response_line(motion, a_g, outputs, engine.reactions(Load::ground(a_g))))
     }
 
     fn transition(&mut self, transition: &Transition) -> anyhow::Result<()> {

@@ -1,6 +1,6 @@
 //! The tables that `simulate` writes: the response and its transitions as CSV.
 use anyhow::Context;
-use rocking::{Motion, Outputs, Phase, Side, State, Transition, TransitionKind};
+use rocking::{Impulse, Motion, Outputs, Phase, Reactions, Side, State, Transition, TransitionKind};
 use serde::Serialize;
 use std::{
     fs::File,
@@ -44,7 +44,7 @@ fn cannot_be_written(path: &Path) -> String {
 }
 
 /// Headings of the response: the ground acceleration, and the outputs of the FMU under their names and units.
-pub const RESPONSE: [&str; 13] = [
+pub const RESPONSE: [&str; 20] = [
     "time[s]",
     "a_g[m/s2]",
     "theta[rad]",
@@ -56,13 +56,22 @@ pub const RESPONSE: [&str; 13] = [
     "u_dot[m/s]",
     "uplift[m]",
     "delta_t[m]",
+    "v_t[m/s]",
+    "R_h[N]",
+    "R_v[N]",
+    "R_m[N.m]",
+    "I_h[N.s]",
+    "I_v[N.s]",
+    "I_m[N.m.s]",
     "phase",
     "transitions",
 ];
 
-/// A line of the response: `motion` with its `outputs` under the ground acceleration `a_g` (m/s²).
-pub fn response_line(motion: &Motion, a_g: f64, outputs: Outputs) -> impl Serialize + use<> {
-    let Outputs { theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t } = outputs;
+/// A line of the response: `motion` with its `outputs` and `reactions` under the ground acceleration `a_g` (m/s²).
+pub fn response_line(motion: &Motion, a_g: f64, outputs: Outputs, reactions: Reactions) -> impl Serialize + use<> {
+    let Outputs { theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t } = outputs;
+    let Reactions { R_h, R_v, R_m } = reactions;
+    let Impulse { I_h, I_v, I_m } = motion.impulse;
     let phase = match motion.phase {
         Phase::FullContact => "full contact",
         Phase::Rocking(Side::Left) => "rocking left",
@@ -70,7 +79,8 @@ pub fn response_line(motion: &Motion, a_g: f64, outputs: Outputs) -> impl Serial
         Phase::Overturned(_) => "overturned",
     };
     let transitions = motion.transitions;
-    (motion.time, a_g, theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, phase, transitions)
+    let of_motion = (theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t);
+    (motion.time, a_g, of_motion, (R_h, R_v, R_m, I_h, I_v, I_m), phase, transitions)
 }
 
 /// Headings of the transitions.

@@ -39,7 +39,7 @@ impl Scene {
     /// The response of `engine`, which stands at the start.
     pub fn response(&self, mut engine: Engine) -> Result<Response, AdvanceError> {
         let mut peaks = Peaks::from(*engine.structure(), engine.motion());
-        let mut a_t = engine.outputs().a_t.abs();
+        let mut a_t = engine.outputs(0.0).a_t.abs();
         let mut theta = vec![engine.motion().state.theta];
         for &Step { until, a_g } in &self.fine {
             let from = engine.motion().time;
@@ -49,7 +49,7 @@ impl Scene {
                 break;
             }
             peaks.reach(motion.time, motion.phase, &motion.state, motion.a_g);
-            a_t = a_t.max(engine.outputs().a_t.abs());
+            a_t = a_t.max(engine.outputs(0.0).a_t.abs());
             theta.push(motion.state.theta);
         }
         let motion = engine.motion();

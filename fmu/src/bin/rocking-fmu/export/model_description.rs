@@ -13,7 +13,7 @@ pub const MODEL_NAME: &str = "FlexibleRocking";
 pub const DESCRIPTION: &str = "A flexible structure that rocks freely on rigid ground under earthquake ground motion";
 
 /// The units of the variables, as exponents of kg, m, s, rad.
-const UNITS: [(&str, [i32; 4]); 10] = [
+const UNITS: [(&str, [i32; 4]); 12] = [
     ("kg", [1, 0, 0, 0]),
     ("m", [0, 1, 0, 0]),
     ("Hz", [0, 0, -1, 0]),
@@ -23,6 +23,8 @@ const UNITS: [(&str, [i32; 4]); 10] = [
     ("m/s2", [0, 1, -2, 0]),
     ("N", [1, 1, -2, 0]),
     ("N.m", [1, 2, -2, 0]),
+    ("N.s", [1, 1, -1, 0]),
+    ("N.m.s", [1, 2, -1, 0]),
     ("kg.m2", [1, 2, 0, 0]),
 ];
 
@@ -46,6 +48,7 @@ pub fn model_description(parameters: &Parameters) -> fmi::FmiModelDescription {
             can_not_use_memory_management_functions: true,
             can_get_and_set_fmu_state: true,
             can_serialize_fmu_state: true,
+            provides_directional_derivative: true,
         },
         unit_definitions: fmi::UnitDefinitions { units: UNITS.map(unit).into() },
         type_definitions: fmi::TypeDefinitions { simple_types: [&PHASES, &DETAILS].map(enumeration_type).into() },
@@ -105,19 +108,24 @@ fn scalar_variable(at: u32, variable: &Variable, parameters: &Parameters) -> fmi
     }
 }
 
-/// At a communication point the outputs depend on the state alone, so on no variable; at initialization on what the
-/// table says.
+/// At a communication point the outputs depend on the state, which is no variable, and on their feedthrough; at
+/// initialization on what the table says as well.
 fn model_structure() -> fmi::ModelStructure {
     let unknowns = |is_one: fn(&Variable) -> bool, dependencies: fn(&Variable) -> Vec<usize>| {
         let calculated = (1..).zip(&*VARIABLES).filter(|(_, variable)| is_one(variable));
         calculated.map(|(index, variable)| unknown(index, dependencies(variable))).collect()
     };
     fmi::ModelStructure {
-        outputs: fmi::Outputs { unknowns: unknowns(|v| v.causality == fmi::Causality::Output, |_| vec![]) },
+        outputs: fmi::Outputs {
+            unknowns: unknowns(
+                |v| v.causality == fmi::Causality::Output,
+                |v| v.feedthrough.iter().map(|name| index(name)).collect(),
+            ),
+        },
         initial_unknowns: fmi::InitialUnknowns {
             unknowns: unknowns(
                 |v| v.initial == Some(fmi::Initial::Calculated),
-                |v| v.initial_dependencies.iter().map(|name| index(name)).collect(),
+                |v| v.feedthrough.iter().chain(v.initial_dependencies).map(|name| index(name)).collect(),
             ),
         },
     }
@@ -156,11 +164,19 @@ mod tests {
         let name = |index: &usize| variables[index - 1].name.as_str();
         let names = |unknowns: &[fmi::Unknown]| unknowns.iter().map(|u| name(&u.index).to_owned()).collect::<Vec<_>>();
 
-        let outputs = "theta u a_t V_t M_t theta_dot u_dot uplift delta_t phase transitions overturned";
+        let outputs = "theta u a_t V_t M_t theta_dot u_dot uplift delta_t v_t R_h R_v R_m I_h I_v I_m phase transitions overturned";
         let calculated_parameters = "alpha_cg p_l beta u_cr f_u";
         let structure = &description.model_structure;
         assert_eq!(names(&structure.outputs.unknowns).join(" "), outputs);
-        assert!(structure.outputs.unknowns.iter().all(|unknown| unknown.dependencies.is_empty()));
+        for unknown in &structure.outputs.unknowns {
+            let dependencies = unknown.dependencies.iter().map(name).collect::<Vec<_>>();
+            let expected: &[&str] = match name(&unknown.index) {
+                "a_t" | "V_t" | "M_t" => &["F_t"],
+                "R_h" | "R_v" | "R_m" => &["a_g", "F_t"],
+                _ => &[],
+            };
+            assert_eq!(dependencies, expected, "{}", name(&unknown.index));
+        }
         let initial = &structure.initial_unknowns.unknowns;
         assert_eq!(names(initial).join(" "), format!("{outputs} {calculated_parameters}"));
 
@@ -169,7 +185,12 @@ mod tests {
         for unknown in initial {
             assert_eq!(unknown.dependencies.len(), unknown.dependencies_kind.len());
             for known in &unknown.dependencies {
-                assert_eq!(variables[known - 1].initial, Some(fmi::Initial::Exact), "{}", name(known));
+                let known = &variables[known - 1];
+                assert!(
+                    known.initial == Some(fmi::Initial::Exact) || known.causality == fmi::Causality::Input,
+                    "{}",
+                    known.name
+                );
             }
         }
     }
