@@ -2,7 +2,8 @@
 //!
 //! A guard is open while its polynomial g is positive. From σ on, with |g''| ≤ M over the step, g stays positive at
 //! least for δ, the positive root of g(σ) + g'(σ) δ − M δ²/2 = 0. Marching by δ cannot pass a root, however close two of
-//! them are, and converges to a simple one quadratically, from the left.
+//! them are, and converges to a simple one quadratically, from the left. Where a guard has only just opened its first terms
+//! are so small that marching would hardly move; their signs then say how far it is open.
 
 /// A guard over one step: the polynomial `offset + sign·Σ c_k σ^k`.
 #[derive(Clone, Copy, Debug)]
@@ -49,6 +50,24 @@ impl<'a> Guard<'a> {
         self.offset + self.sign * self.coefficients[0] > excursion * reach
     }
 
+    /// The σ up to which (but no further than 1) the signs of its first terms prove it positive: while no term up to order
+    /// j is negative, they outweigh the others up to c_j/Σ_{k>j} |c_k|.
+    fn open_by_signs(&self) -> f64 {
+        let term = |k: usize| self.sign * self.coefficients[k] + if k == 0 { self.offset } else { 0.0 };
+        let orders = self.coefficients.len();
+        if term(0) <= 0.0 {
+            return 0.0;
+        }
+        let first_negative = (1..orders).find(|k| term(*k) < 0.0).unwrap_or(orders);
+        let mut others = (first_negative..orders).fold(0.0, |sum, k| sum + term(k).abs());
+        let mut open: f64 = 0.0;
+        for k in (0..first_negative).rev() {
+            open = open.max(term(k) / others);
+            others += term(k);
+        }
+        open
+    }
+
     /// Bound M of its second derivative up to σ = `reach`.
     fn curvature(&self, reach: f64) -> f64 {
         let terms = self.coefficients.iter().enumerate().skip(2).rev();
@@ -85,8 +104,11 @@ pub fn first_time_all_closed<const N: usize>(guards: [Guard; N], reach: f64) -> 
     if guards.iter().any(|guard| guard.is_open_throughout(reach)) {
         return Crossing::None;
     }
+    let mut sigma = guards.iter().map(Guard::open_by_signs).fold(0.0, f64::max);
+    if sigma > reach {
+        return Crossing::None;
+    }
     let curvatures = guards.map(|guard| guard.curvature(reach));
-    let mut sigma = 0.0;
     for _ in 0..MAX_EVALUATIONS {
         let still_open = guards.iter().zip(curvatures).map(|(guard, curvature)| guard.open_for(sigma, curvature));
         let next = sigma + still_open.fold(0.0, f64::max);
@@ -142,6 +164,15 @@ mod tests {
     fn a_root_at_the_very_end_is_found_and_one_beyond_is_not() {
         assert_eq!(first(&[1.0, -1.0], 1.0), Crossing::At(1.0));
         assert_eq!(first(&[1.0, -1.0], 1.0 - 1e-12), Crossing::None);
+    }
+
+    /// As just after an uplift: a triple root at the start, but for terms that are next to nothing.
+    #[test]
+    fn a_guard_that_has_just_opened_is_not_searched_in_vain() {
+        assert_eq!(first(&[4e-46, 3e-34, 7e-23, 1e-15, -2e-16], 1.0), Crossing::None);
+        let Crossing::At(sigma) = first(&[4e-46, 3e-34, 7e-23, 1e-15, -2e-15], 1.0) else { panic!("missed") };
+        assert_abs_diff_eq!(sigma, 0.5, epsilon = 1e-7);
+        assert_eq!(first(&[4e-46, 3e-34, 7e-23, 1e-15], 1.0), Crossing::None);
     }
 
     #[test]

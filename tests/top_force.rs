@@ -1,0 +1,108 @@
+//! The force on the top mass, against ground motion that does the same, against its work and against statics.
+#![allow(non_snake_case)]
+
+use approx::assert_relative_eq;
+use rocking::energy::energy;
+use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::{Detail, Engine, LinearLoad, Load, Parameters, Phase, State, Structure, TransitionKind};
+
+fn start(parameters: Parameters, initial: State, detail: Detail) -> Engine {
+    Engine::with_detail(Structure::new(parameters).unwrap(), initial, 0.0, DEFAULT_TOLERANCE, detail).unwrap()
+}
+
+/// Linear between samples of `load` every 10 ms; `each` sees the engine after every one of `steps`.
+fn follow(
+    engine: &mut Engine,
+    steps: usize,
+    load: impl Fn(f64) -> Load,
+    mut each: impl FnMut(&Engine, Option<TransitionKind>),
+) {
+    for k in 0..steps {
+        let [from, to] = [k, k + 1].map(|k| k as f64 * 0.01);
+        let (value, next) = (load(from), load(to));
+        let slope = Load { a_g: (next.a_g - value.a_g) / 0.01, F_t: (next.F_t - value.F_t) / 0.01 };
+        let mut last = None;
+        engine.advance(to, LinearLoad { value, slope }, &mut |transition| last = Some(transition.kind)).unwrap();
+        each(engine, last);
+    }
+}
+
+/// On a foundation without mass −m a_g on the top mass is the same as a_g, at every level of detail.
+#[test]
+fn without_a_foundation_mass_it_is_as_good_as_ground_motion() {
+    let parameters = Parameters { m0: 0.0, ..Parameters::MCMANUS };
+    let a_g = |t: f64| 4.0 * (25.0 * t).sin() + 1.0 * (11.0 * t).cos();
+    for detail in Detail::ALL {
+        let [mut shaken, mut pushed] = [(); 2].map(|()| start(parameters, State::default(), detail));
+        let mut states = Vec::new();
+        follow(&mut shaken, 300, |t| Load::ground(a_g(t)), |engine, _| states.push(engine.motion().state));
+        let size = states.iter().fold(0.0, |most: f64, state| most.max(state.theta.abs()).max(state.u.abs()));
+        let mut expected = states.iter();
+        let force = |t: f64| Load { a_g: 0.0, F_t: -parameters.m * a_g(t) };
+        follow(&mut pushed, 300, force, |engine, _| {
+            let (found, expected) = (engine.motion().state, expected.next().unwrap());
+            assert_relative_eq!(found.theta, expected.theta, epsilon = 1e-8 * size);
+            assert_relative_eq!(found.u, expected.u, epsilon = 1e-8 * size);
+        });
+        assert_eq!(pushed.motion().transitions, shaken.motion().transitions);
+        assert_eq!(shaken.motion().transitions > 3, detail != Detail::FixedBase, "{}", detail.name());
+    }
+}
+
+/// Without damping and between transitions, energy grows by the work of the force alone: E − F_t δ_t is constant.
+#[test]
+fn energy_grows_by_its_work() {
+    for detail in [Detail::Auto, Detail::Nonlinear] {
+        let parameters = Parameters { zeta_fc: 0.0, ..Parameters::MCMANUS };
+        let initial = State { u: 1e-3, u_dot: 0.1, theta: -0.01, theta_dot: 0.02 };
+        let mut engine = start(parameters, initial, detail);
+        let F_t = 90.0;
+        let total = |engine: &Engine| {
+            let motion = engine.motion();
+            energy(engine.structure(), motion.phase, &motion.state) - F_t * engine.outputs(F_t).delta_t
+        };
+        let (mut before, mut pieces, mut moved) = (total(&engine), 0, 0.0_f64);
+        follow(
+            &mut engine,
+            400,
+            |_| Load { a_g: 0.0, F_t },
+            |engine, transition| {
+                let now = total(engine);
+                if transition.is_none() {
+                    assert_relative_eq!(now, before, max_relative = 1e-10);
+                    pieces += 1;
+                    moved = moved.max(engine.outputs(F_t).delta_t.abs());
+                }
+                before = now;
+            },
+        );
+        assert!(pieces > 300 && engine.motion().transitions > 2 && F_t * moved > 0.5);
+    }
+}
+
+/// Held below uplift, the force bends the strut to F_t/k; the weight alone resists it beyond (u = u_cr).
+#[test]
+fn a_force_that_is_held_bends_the_strut_or_lifts_the_base() {
+    let parameters = Parameters { zeta_fc: 0.3, ..Parameters::EVISON };
+    let structure = Structure::new(parameters).unwrap();
+    let limit = structure.k * structure.u_cr;
+    let mut engine = start(parameters, State::default(), Detail::Auto);
+    follow(&mut engine, 300, |t| Load { a_g: 0.0, F_t: 0.95 * limit * (t / 2.0).min(1.0) }, |_, _| ());
+    assert_eq!((engine.motion().phase, engine.motion().transitions), (Phase::FullContact, 0));
+    assert_relative_eq!(engine.motion().state.u, 0.95 * structure.u_cr, max_relative = 1e-9);
+    assert!(engine.outputs(0.95 * limit).a_t.abs() < 1e-6);
+
+    let mut engine = start(parameters, State::default(), Detail::Auto);
+    let mut first = None;
+    follow(
+        &mut engine,
+        300,
+        |t| Load { a_g: 0.0, F_t: 1.05 * limit * (t / 2.0).min(1.0) },
+        |engine, kind| {
+            if first.is_none() && kind.is_some() {
+                first = Some(engine.motion().time);
+            }
+        },
+    );
+    assert_relative_eq!(first.unwrap(), 2.0 / 1.05, epsilon = 0.02);
+}
