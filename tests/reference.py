@@ -85,10 +85,17 @@ class Response:
 
     @property
     def a_t(self) -> np.ndarray:
-        """Acceleration of the top mass by (5), in full contact by (1), m/s2."""
+        """Acceleration of the top mass by (5), in full contact by (1), m/s2, where no force acts on it."""
         p = self.structure
         damping = np.where(self.phase == FULL_CONTACT, p.c_fc, p.c_u)
         return p.g * np.sin(self.theta) - (damping * self.u_dot + p.k * self.u) / p.m
+
+    @property
+    def v_t(self) -> np.ndarray:
+        """Lateral velocity of the top mass, m/s."""
+        p, sn, cs = self.structure, np.sin(self.theta), np.cos(self.theta)
+        arm = self.phase * p.B - self.u
+        return self.u_dot * cs + self.theta_dot * (p.H * cs + arm * sn)
 
     @property
     def uplift(self) -> np.ndarray:
@@ -105,29 +112,42 @@ class Response:
         return [transition.time for transition in self.transitions if transition.kind == kind]
 
 
-def full_contact(p: Structure, a0: float, slope: float, t0: float):
-    """Right-hand side of (1) under a_g = a0 + slope (t - t0)."""
+@dataclass(frozen=True)
+class Load:
+    """Ground acceleration (m/s2) and force on the top mass (N) at t0, and their rates."""
+
+    t0: float
+    a_g: float
+    a_g_rate: float = 0.0
+    F_t: float = 0.0
+    F_t_rate: float = 0.0
+
+
+def full_contact(p: Structure, load: Load):
+    """Right-hand side of (1) under a load linear in time."""
     stiffness, damping = p.omega**2, 2 * p.zeta_fc * p.omega
+    push, push_rate = load.F_t / p.m - load.a_g, load.F_t_rate / p.m - load.a_g_rate
 
     def rates(t, y):
         u, u_dot, _, _ = y.tolist()
-        return [u_dot, -(a0 + slope * (t - t0)) - damping * u_dot - stiffness * u, 0.0, 0.0]
+        return [u_dot, push + push_rate * (t - load.t0) - damping * u_dot - stiffness * u, 0.0, 0.0]
 
     return rates
 
 
-def rocking(p: Structure, s: int, a0: float, slope: float, t0: float):
-    """Right-hand side of (5, 6) about side s under a_g = a0 + slope (t - t0)."""
+def rocking(p: Structure, s: int, load: Load):
+    """Right-hand side of (5, 6) about side s under a load linear in time."""
     m, H, B, g, M = p.m, p.H, p.B, p.g, p.m + p.m0
     sin, cos = math.sin, math.cos
 
     def rates(t, y):
         u, u_dot, theta, theta_dot = y.tolist()
-        a_g = a0 + slope * (t - t0)
+        a_g = load.a_g + load.a_g_rate * (t - load.t0)
+        F_t = load.F_t + load.F_t_rate * (t - load.t0)
         sn, cs, arm = sin(theta), cos(theta), s * B - u
-        force = -p.c_u * u_dot - p.k * u - m * theta_dot**2 * arm - m * a_g * cs + m * g * sn
+        force = -p.c_u * u_dot - p.k * u - m * theta_dot**2 * arm - m * a_g * cs + m * g * sn + F_t * cs
         moment = (2 * m * arm * u_dot * theta_dot + m * g * H * sn + m * g * u * cs - s * M * g * B * cs
-                  - a_g * (m * H * cs + (s * M * B - m * u) * sn))
+                  - a_g * (m * H * cs + (s * M * B - m * u) * sn) + F_t * (H * cs + arm * sn))
         # (6) - H (5) leaves theta_ddot alone, with the inertia that does not turn with the strut's height
         theta_ddot = (moment - H * force) / (p.J0 + m * arm**2 + p.m0 * B**2)
         return [u_dot, force / m - H * theta_ddot, theta_dot, theta_ddot]
@@ -253,17 +273,19 @@ def _first_touch(s: int, step: _Step, zeros_at_start: int) -> tuple[float, tuple
     return min(touches, key=lambda touch: touch[0], default=None)
 
 
-def integrate(p: Structure, knots, a_g, initial=(0.0, 0.0, 0.0, 0.0), *, per_sample: int = 1,
+def integrate(p: Structure, knots, a_g, initial=(0.0, 0.0, 0.0, 0.0), *, F_t=None, per_sample: int = 1,
               rtol: float = RTOL, atol: float = ATOL) -> Response:
-    """The response to the ground acceleration `a_g` (m/s2) at `knots` (s), linear between them.
+    """The response to the ground acceleration `a_g` (m/s2) and the force `F_t` (N) on the top mass at `knots` (s), both
+    linear between them.
 
     `initial` is (u, u_dot, theta, theta_dot). The response is given at the knots and at per_sample - 1 instants
     evenly between each two. It ends early, at that instant, when the structure overturns.
     """
     run = _Run(p, np.array(initial, dtype=float), float(knots[0]), float(knots[1] - knots[0]), rtol, atol)
     rows = [run.row()]
-    for t0, t1, a0, a1 in zip(knots[:-1], knots[1:], a_g[:-1], a_g[1:]):
-        load = (float(a0), float((a1 - a0) / (t1 - t0)), float(t0))
+    F_t = np.zeros(len(knots)) if F_t is None else F_t
+    for t0, t1, a0, a1, F0, F1 in zip(knots[:-1], knots[1:], a_g[:-1], a_g[1:], F_t[:-1], F_t[1:]):
+        load = Load(*map(float, (t0, a0, (a1 - a0) / (t1 - t0), F0, (F1 - F0) / (t1 - t0))))
         budget = len(run.transitions) + TRANSITIONS_PER_SAMPLE
         for part in range(1, per_sample + 1):
             end = float(t0 + (t1 - t0) * part / per_sample) if part < per_sample else float(t1)
@@ -304,9 +326,9 @@ class _Run:
         self.enter("uplift", s, s, self.y)
         return True
 
-    def advance(self, end: float, load: tuple):
+    def advance(self, end: float, load: Load):
         """Gets on to `end` or to the first transition before it, whichever comes first."""
-        rates = full_contact(self.p, *load) if self.phase == FULL_CONTACT else rocking(self.p, self.phase, *load)
+        rates = full_contact(self.p, load) if self.phase == FULL_CONTACT else rocking(self.p, self.phase, load)
         solver = DOP853(rates, self.t, self.y, end, rtol=self.rtol, atol=self.atol,
                         first_step=min(self.h, end - self.t))
         while solver.status == "running":
@@ -341,6 +363,36 @@ class _Run:
                 self.enter(kind, self.phase, phase, y)
                 self.test_uplift()
         return found is not None
+
+
+def reactions(p: Structure, s: int, y, load: Load) -> tuple[float, float, float]:
+    """(R_h, R_v, R_m) on the ground at load.t0, body by body: the strut pulls the foundation as it pulls the top mass."""
+    u, u_dot, theta, theta_dot = y
+    if s == FULL_CONTACT:
+        shear = p.c_fc * u_dot + p.k * u
+        return shear - p.m0 * load.a_g, (p.m + p.m0) * p.g, p.H * shear + p.m * p.g * u
+    sn, cs = math.sin(theta), math.cos(theta)
+    theta_ddot = rocking(p, s, load)(load.t0, np.asarray(y))[3]
+    shear = p.c_u * u_dot + p.k * u
+    away = (s * p.B - u) * theta_ddot - p.H * theta_dot**2 - 2 * theta_dot * u_dot  # of the top mass along the strut
+    thrust = p.m * (away + load.a_g * sn + p.g * cs) - load.F_t * sn
+    x_ddot = s * p.B * (sn * theta_ddot + cs * theta_dot**2)
+    y_ddot = s * p.B * (cs * theta_ddot - sn * theta_dot**2)
+    R_v = shear * sn + thrust * cs + p.m0 * (p.g + y_ddot)
+    return shear * cs - thrust * sn - p.m0 * (x_ddot + load.a_g), R_v, s * p.B * R_v
+
+
+def impulses(p: Structure, transition: Transition) -> tuple[float, float, float]:
+    """(I_h, I_v, I_m) on the ground: the momentum that the masses lose at theta = 0, where the foundation lies at 0."""
+
+    def momentum(s, y):
+        u, u_dot, _, theta_dot = y
+        right, down = p.m * (u_dot + p.H * theta_dot), -(p.m * (s * p.B - u) + p.m0 * s * p.B) * theta_dot
+        about_middle = p.H * right - p.m * u * (s * p.B - u) * theta_dot + p.J0 * theta_dot
+        return np.array([right, down, about_middle])
+
+    after = {"impact": -transition.side}.get(transition.kind, transition.side)
+    return tuple(momentum(transition.side, transition.before) - momentum(after, transition.after))
 
 
 def _response(p, rows, transitions) -> Response:

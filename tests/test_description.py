@@ -9,11 +9,13 @@ from fmpy.validation import validate_fmu
 from host import PHASES, REALS
 
 KINDS = {
-    ("input", "continuous", "Real"): {"a_g": "m/s2"},
+    ("input", "continuous", "Real"): {"a_g": "m/s2", "F_t": "N"},
     ("output", "continuous", "Real"): {
         "theta": "rad", "u": "m", "a_t": "m/s2", "V_t": "N", "M_t": "N.m",
         "theta_dot": "rad/s", "u_dot": "m/s", "uplift": "m", "delta_t": "m",
+        "v_t": "m/s", "R_h": "N", "R_v": "N", "R_m": "N.m",
     },
+    ("output", "discrete", "Real"): {"I_h": "N.s", "I_v": "N.s", "I_m": "N.m.s"},
     ("output", "discrete", "Enumeration"): {"phase": None},
     ("output", "discrete", "Integer"): {"transitions": None},
     ("output", "discrete", "Boolean"): {"overturned": None},
@@ -82,12 +84,13 @@ def test_phases(fmu):
     assert items == PHASES
 
 
-def test_no_output_depends_on_the_input(fmu):
+def test_feedthrough(fmu):
     unknowns = fmu.description.outputs
     assert sorted(unknown.variable.name for unknown in unknowns) == sorted([*REALS, "phase", "transitions", "overturned"])
+    feedthrough = {name: ["F_t"] for name in ("a_t", "V_t", "M_t")} | {name: ["a_g", "F_t"] for name in ("R_h", "R_v", "R_m")}
     for unknown in unknowns:
         # no attribute would mean "on all of the inputs"
-        assert unknown.dependencies == [], unknown.variable.name
+        assert [known.name for known in unknown.dependencies] == feedthrough.get(unknown.variable.name, [])
 
 
 def test_initial_dependencies_are_the_true_ones(fmu):
@@ -134,6 +137,7 @@ def test_capabilities(fmu):
     assert capabilities.canInterpolateInputs
     assert capabilities.canGetAndSetFMUstate
     assert capabilities.canSerializeFMUstate
+    assert capabilities.providesDirectionalDerivative
     assert not capabilities.canBeInstantiatedOnlyOncePerProcess
 
 
@@ -173,7 +177,7 @@ def test_info(fmu):
     assert re.search(r"Description +\S", info)
     # no date: it would tell two exports of the same thing apart
     assert re.findall(r"^  (.*?) +None$", info, re.MULTILINE) == ["Generation Date"]
-    for name in ("a_g", *REALS, "phase", "transitions", "overturned"):
+    for name in ("a_g", "F_t", *REALS, "phase", "transitions", "overturned"):
         variable = fmu.variables[name]
         line = re.search(rf"^  {name} +{variable.causality} .*$", info, re.MULTILINE)
         assert line and variable.description in line[0], name

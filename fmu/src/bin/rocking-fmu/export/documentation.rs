@@ -63,7 +63,7 @@ pub fn documentation(structure: &Structure) -> Result<String, minijinja::Error> 
         guid: FlexibleRocking::guid(structure.parameters()),
         icon: ICON,
         groups: [
-            ("Input", Causality::Input),
+            ("Inputs", Causality::Input),
             ("Outputs", Causality::Output),
             ("Parameters and initial values", Causality::Parameter),
             ("Calculated parameters", Causality::CalculatedParameter),
