@@ -8,8 +8,8 @@
 //! ```
 //!
 //! S_a is the absolute acceleration spectrum of the ground motion at the vibration mode while rocking
-//! ([`crate::response_spectrum`]). C is the dynamic amplification of the weight's change of sides at an impact: 2 for an
-//! instant change that meets a quiet structure, down to 0 for a slow one.
+//! ([`crate::response_spectrum`]). C is the dynamic amplification of the weight's change of sides at an impact: 2 for
+//! an instant change that meets a quiet structure, down to 0 for a slow one.
 
 use crate::Structure;
 use crate::quantity::OutOfRange;

@@ -8,12 +8,12 @@
 //! # Progress
 //!
 //! Transitions are counted from the first of them on for a vibration period 2π/ω_u, then anew. After
-//! [`MAX_TRANSITIONS_PER_PERIOD`] the next impact is a landing whatever its momentum, and contact is held to the end of the
-//! period ([`TransitionKind::Settling`]): it sees two more at most. Bounces that fast are the start of infinitely many
-//! in finite time, which end in contact; neither specimen comes near them. Steps are then bounded too: an advance takes
-//! at most one for itself, two for each transition, and one for each 1/Ω of time, Ω the largest of ω_u, 2 ζ_u ω_u and p_l. The rigid limit, which has no vibration and does come to rest by ever faster impacts,
-//! has [`MAX_RIGID_TRANSITIONS_PER_PERIOD`] for each 1/p_l instead. One call takes at most [`MAX_STEPS_PER_ADVANCE`]
-//! steps.
+//! [`MAX_TRANSITIONS_PER_PERIOD`] the next impact is a landing whatever its momentum, and contact is held to the end of
+//! the period ([`TransitionKind::Settling`]): it sees two more at most. Bounces that fast are the start of infinitely
+//! many in finite time, which end in contact; neither specimen comes near them. Steps are then bounded too: an advance
+//! takes at most one for itself, two for each transition, and one for each 1/Ω of time, Ω the largest of ω_u, 2 ζ_u ω_u
+//! and p_l. The rigid limit, which has no vibration and does come to rest by ever faster impacts, has
+//! [`MAX_RIGID_TRANSITIONS_PER_PERIOD`] for each 1/p_l instead. One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps.
 
 use crate::detail::{Detail, RockingEquations};
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
@@ -36,7 +36,8 @@ const LOCAL_SHARE: f64 = 1e-5;
 /// Transitions within one period of the vibration mode (2π/ω_u) after which contact is held.
 pub const MAX_TRANSITIONS_PER_PERIOD: u32 = 1000;
 
-/// Transitions within 1/p_l after which contact is held at the rigid level: coming to rest with r = 0.9998 takes as many.
+/// Transitions within 1/p_l after which contact is held at the rigid level: coming to rest with r = 0.9998 takes as
+/// many.
 pub const MAX_RIGID_TRANSITIONS_PER_PERIOD: u32 = 100_000;
 
 /// Steps that one advance may take, about a second of computing; a longer interval has to be cut.
@@ -322,28 +323,32 @@ impl Engine {
         }
     }
 
-    /// The outputs now, with the force `F_t` (N) on the top mass.
+    /// The outputs now, with the force `F_t` (N) on the top mass; once overturned, those of the instant before.
     pub fn outputs(&self, F_t: f64) -> Outputs {
-        let Motion { phase, state, a_g, .. } = &self.motion;
+        let Motion { state, a_g, .. } = &self.motion;
         match self.detail {
-            Detail::Rigid => Outputs::of_rigid(&self.structure, *phase, state, Load { a_g: *a_g, F_t }),
-            _ => Outputs::of(&self.structure, *phase, state, F_t),
+            Detail::Rigid => Outputs::of_rigid(&self.structure, self.moving_phase(), state, Load { a_g: *a_g, F_t }),
+            _ => Outputs::of(&self.structure, self.moving_phase(), state, F_t),
         }
     }
 
     /// The reactions now under `load`; once overturned, those of the instant before.
     pub fn reactions(&self, load: Load) -> Reactions {
-        let Motion { phase, state, .. } = &self.motion;
-        let phase = match *phase {
-            Phase::Overturned(side) => Phase::Rocking(side),
-            phase => phase,
-        };
+        let (phase, state) = (self.moving_phase(), &self.motion.state);
         let accelerations = self.rocking.accelerations(&self.structure, phase, state, load);
         Reactions::of(&self.structure, phase, state, accelerations, load)
     }
 
-    /// Time derivatives of the outputs and reactions now under `load`, from the equations of motion; 0 once overturned. At a transition
-    /// they are those just after it.
+    /// The phase now, or that in which the structure overturned.
+    fn moving_phase(&self) -> Phase {
+        match self.motion.phase {
+            Phase::Overturned(side) => Phase::Rocking(side),
+            phase => phase,
+        }
+    }
+
+    /// Time derivatives of the outputs and reactions now under `load`, from the equations of motion; 0 once overturned.
+    /// At a transition they are those just after it.
     pub fn rates(&mut self, load: LinearLoad) -> (Outputs, Reactions) {
         let derivatives = self.derivatives(load);
         let (structure, Motion { phase, state, .. }) = (&self.structure, &self.motion);
@@ -511,10 +516,13 @@ fn first_overturning(arc: &Arc, side: Side) -> Crossing {
     first_time_all_closed([Guard::new(theta, -side.sign(), FRAC_PI_2)], arc.reach)
 }
 
-/// The first instant of a rocking `arc` at which s θ returns to 0. A start at θ = 0 is divided out: s θ/σ^z is searched,
-/// z the number of leading zeros, so that the start is no return and a return right after it is not missed.
+/// The first instant of a rocking `arc` at which s θ returns to 0. A start at θ = 0 is divided out: s θ/σ^z is
+/// searched, z the number of leading zeros, so that the start is no return and a return right after it is not missed.
+/// What underflows counts as zero; a θ that is zero throughout, over a step of 1e-200 s say, has not returned.
 fn first_return(arc: &Arc, side: Side) -> Crossing {
     let theta = arc.used(&arc.theta);
-    let zeros = theta.iter().take_while(|c| **c == 0.0).count().min(arc.order);
-    first_time_all_closed([Guard::new(&theta[zeros..], side.sign(), 0.0)], arc.reach)
+    match theta.iter().position(|c| c.is_normal()) {
+        Some(zeros) => first_time_all_closed([Guard::new(&theta[zeros..], side.sign(), 0.0)], arc.reach),
+        None => Crossing::None,
+    }
 }

@@ -1,9 +1,9 @@
 //! The first instant at which guards close, found without ever stepping over it.
 //!
 //! A guard is open while its polynomial g is positive. From σ on, with |g''| ≤ M over the step, g stays positive at
-//! least for δ, the positive root of g(σ) + g'(σ) δ − M δ²/2 = 0. Marching by δ cannot pass a root, however close two of
-//! them are, and converges to a simple one quadratically, from the left. Where a guard has only just opened its first terms
-//! are so small that marching would hardly move; their signs then say how far it is open.
+//! least for δ, the positive root of g(σ) + g'(σ) δ − M δ²/2 = 0. Marching by δ cannot pass a root, however close two
+//! of them are, and converges to a simple one quadratically, from the left. Where a guard has only just opened its
+//! first terms are so small that marching would hardly move; their signs then say how far it is open.
 
 /// A guard over one step: the polynomial `offset + sign·Σ c_k σ^k`.
 #[derive(Clone, Copy, Debug)]
@@ -50,8 +50,8 @@ impl<'a> Guard<'a> {
         self.offset + self.sign * self.coefficients[0] > excursion * reach
     }
 
-    /// The σ up to which (but no further than 1) the signs of its first terms prove it positive: while no term up to order
-    /// j is negative, they outweigh the others up to c_j/Σ_{k>j} |c_k|.
+    /// The σ up to which (but no further than 1) the signs of its first terms prove it positive: while no term up to
+    /// order j is negative, they outweigh the others up to c_j/Σ_{k>j} |c_k|.
     fn open_by_signs(&self) -> f64 {
         let term = |k: usize| self.sign * self.coefficients[k] + if k == 0 { self.offset } else { 0.0 };
         let orders = self.coefficients.len();
@@ -104,7 +104,17 @@ pub fn first_time_all_closed<const N: usize>(guards: [Guard; N], reach: f64) -> 
     if guards.iter().any(|guard| guard.is_open_throughout(reach)) {
         return Crossing::None;
     }
-    let mut sigma = guards.iter().map(Guard::open_by_signs).fold(0.0, f64::max);
+    match march(&guards, 0.0, reach) {
+        Crossing::NoneUntil(cleared) => {
+            let open = guards.iter().map(Guard::open_by_signs).fold(cleared, f64::max);
+            march(&guards, open, reach)
+        }
+        crossing => crossing,
+    }
+}
+
+/// The same from `sigma` on, up to where the guards are known not to close at once.
+fn march<const N: usize>(guards: &[Guard; N], mut sigma: f64, reach: f64) -> Crossing {
     if sigma > reach {
         return Crossing::None;
     }

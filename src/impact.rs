@@ -34,7 +34,7 @@ pub fn resolve(structure: &Structure, side: Side, before: &State) -> (Phase, Sta
 /// r < 1 − 4 (m + m0) B²/J_P
 /// ```
 ///
-/// Where u̇ and θ̇ differ in sign, taking momentum from the base and not from the top mass adds to the energy, by
+/// Where u̇ and θ̇ differ in sign, taking momentum from the base and not from the top mass adds to the energy:
 /// ΔE = −(1−r) m H u̇ θ̇ − ½ (1−r²) J_P θ̇². Rocking goes on only for L θ̇ > 0, which bounds u̇/θ̇ from below; at that bound
 /// ΔE > 0 is this condition.
 pub fn gaining_restitution(structure: &Structure) -> f64 {

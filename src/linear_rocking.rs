@@ -11,8 +11,8 @@
 //! θ̈ = [H κ + g u − s γ g B]/i,      ü = −a_g + g θ − κ − H θ̈
 //! ```
 //!
-//! A force F_t on the top mass makes a_g − F_t/m of a_g. Under loads that are linear in time the exact solution is a matrix exponential, kept for the step
-//! lengths used last; series serve the steps on which a transition may happen.
+//! A force F_t on the top mass makes a_g − F_t/m of a_g. Under loads that are linear in time the exact solution is a
+//! matrix exponential, kept for the step lengths used last; series serve the steps on which a transition may happen.
 
 use crate::linear_system::{LinearSystem, Row};
 use crate::oscillator::Kept;
@@ -44,14 +44,14 @@ impl LinearRocking {
             u: (H * stiffness + g) / inertia,
             u_dot: H * damping_u / inertia,
             theta: 0.0,
-            a_g: 0.0,
+            a_top: 0.0,
             side: -gamma * g * B / inertia,
         };
         let u_ddot = Row {
             u: -stiffness - H * theta_ddot.u,
             u_dot: -damping_u - H * theta_ddot.u_dot,
             theta: g,
-            a_g: -1.0,
+            a_top: -1.0,
             side: -H * theta_ddot.side,
         };
         let omega = (-u_ddot.u).sqrt();
@@ -83,8 +83,8 @@ impl LinearRocking {
     }
 }
 
-/// The flow of `system` over `duration` (s): the exponential of the system augmented by its inputs. Velocities are taken
-/// over ω, in s⁻¹, which keeps its entries of one size and with them the digits of small results.
+/// The flow of `system` over `duration` (s): the exponential of the system augmented by its inputs. Velocities are
+/// taken over ω, in s⁻¹, which keeps its entries of one size and with them the digits of small results.
 fn flow(system: &LinearSystem, omega: f64, duration: f64) -> Flow {
     let mut rates = SMatrix::<f64, 7, 7>::zeros();
     rates[(0, 1)] = 1.0;
@@ -94,7 +94,7 @@ fn flow(system: &LinearSystem, omega: f64, duration: f64) -> Flow {
         rates[(equation, 0)] = row.u;
         rates[(equation, 1)] = row.u_dot;
         rates[(equation, 2)] = row.theta;
-        rates[(equation, 4)] = row.a_g;
+        rates[(equation, 4)] = row.a_top;
         rates[(equation, 6)] = row.side;
     }
     let scale = SVector::<f64, 7>::from([1.0, omega, 1.0, omega, 1.0, 1.0, 1.0]);

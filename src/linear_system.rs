@@ -16,7 +16,7 @@ pub(crate) struct Row {
     pub u: f64,
     pub u_dot: f64,
     pub theta: f64,
-    pub a_g: f64,
+    pub a_top: f64,
     pub side: f64,
 }
 
@@ -29,8 +29,8 @@ pub(crate) struct LinearSystem {
 
 impl Row {
     #[inline]
-    fn apply(&self, u: f64, u_dot: f64, theta: f64, a_g: f64, side: f64) -> f64 {
-        self.u * u + self.u_dot * u_dot + self.theta * theta + (self.a_g * a_g + self.side * side)
+    fn apply(&self, u: f64, u_dot: f64, theta: f64, a_top: f64, side: f64) -> f64 {
+        self.u * u + self.u_dot * u_dot + self.theta * theta + (self.a_top * a_top + self.side * side)
     }
 }
 

@@ -6,8 +6,8 @@
 //! θ = q_r + q_u,      q_u = −(p_l²/g) u                                                                    (16)
 //! ```
 //!
-//! A force F_t on the top mass makes a_g − F_t/m of a_g. Both have closed forms under loads that are linear in time; series serve the steps on which a
-//! transition may happen, from the same equations written for θ = q_r − (p_l²/g) u.
+//! A force F_t on the top mass makes a_g − F_t/m of a_g. Both have closed forms under loads that are linear in time;
+//! series serve the steps on which a transition may happen, from the same equations written for θ = q_r − (p_l²/g) u.
 
 use crate::linear_system::{LinearSystem, Row};
 use crate::oscillator::{Driven, Kept, Oscillator};
@@ -36,14 +36,19 @@ impl ModalRocking {
         let &Structure { p_l, omega_u, zeta_u, tan_alpha_cg, beta, one_minus_beta, .. } = structure;
         let g = structure.parameters().g;
         let gravity_forcing = beta / one_minus_beta * g * tan_alpha_cg;
-        let u_ddot =
-            Row { u: -omega_u * omega_u, u_dot: -2.0 * zeta_u * omega_u, theta: 0.0, a_g: -1.0, side: gravity_forcing };
+        let u_ddot = Row {
+            u: -omega_u * omega_u,
+            u_dot: -2.0 * zeta_u * omega_u,
+            theta: 0.0,
+            a_top: -1.0,
+            side: gravity_forcing,
+        };
         let shape = p_l * p_l / g; // −q_u/u
         let theta_ddot = Row {
             u: shape * (p_l * p_l - u_ddot.u),
             u_dot: -shape * u_ddot.u_dot,
             theta: p_l * p_l,
-            a_g: 0.0,
+            a_top: 0.0,
             side: -p_l * p_l * tan_alpha_cg - shape * gravity_forcing,
         };
         ModalRocking {

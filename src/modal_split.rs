@@ -1,7 +1,7 @@
 //! Rocking and vibration mode of a rocking state (Eqs 10–20).
 //!
-//! The linearised equations (7, 8) are uncoupled, but for small geometric stiffness terms, by the shapes (u, θ) = (0, 1)
-//! of the rocking mode and (1, −p_l²/g) of the vibration mode:
+//! The linearised equations (7, 8) are uncoupled, but for small geometric stiffness terms, by the shapes (u, θ) = (0,
+//! 1) of the rocking mode and (1, −p_l²/g) of the vibration mode:
 //!
 //! ```text
 //! θ = q_r + q_u,      q_u = −(p_l²/g) u                                                                (16)
@@ -17,8 +17,8 @@
 //! a_t = a_r + a_u                                                                                      (20)
 //! ```
 //!
-//! The paper's (13) and (20) are these with q_r → 0. The sum needs no a_g: it is β g q_r − (c_u u̇ + k u)/m, and differs
-//! from that of the full equations by g (θ − β q_r) to first order.
+//! The paper's (13) and (20) are these with q_r → 0. The sum needs no a_g: it is β g q_r − (c_u u̇ + k u)/m, and
+//! differs from that of the full equations by g (θ − β q_r) to first order.
 
 use crate::{Side, State, Structure};
 
@@ -93,8 +93,8 @@ mod tests {
         assert_eq!(Modes::of(&structure, &rigid), alone);
     }
 
-    /// The linearised equations (7, 8), their gravity terms replaced by those which the modes keep: g H q_r in (8), and in
-    /// (7) β g q_r, whose moment about the vibration mode's node is the same.
+    /// The linearised equations (7, 8), their gravity terms replaced by those which the modes keep: g H q_r in (8), and
+    /// in (7) β g q_r, whose moment about the vibration mode's node is the same.
     #[test]
     fn the_modes_solve_the_linearised_equations() {
         let structure = Structure::new(Parameters::EVISON).unwrap();

@@ -10,9 +10,10 @@
 //!
 //! A force F_t on the top mass adds F_t cos θ to (5) and F_t [H cos θ + (sB − u) sin θ] to (6).
 //!
-//! The series are those of momenta rather than velocities, which takes the fewest products. With w = sB − u, κ = (c_u u̇ +
-//! k u)/m, i = (J0 + m0 B²)/m, and y = u̇ + H θ̇ (over m the momentum along u), L = (i + w²) θ̇ (over m the angular momentum
-//! about the pivot of all but y), a = a_g − F_t/m, F = g sin θ − a cos θ, G = g cos θ + a sin θ and G₀ = g cos θ + a_g sin θ, Eq 5 and (6) − H (5) read
+//! The series are those of momenta rather than velocities, which takes the fewest products. With w = sB − u, κ = (c_u
+//! u̇ + k u)/m, i = (J0 + m0 B²)/m, and y = u̇ + H θ̇ (over m the momentum along u), L = (i + w²) θ̇ (over m the
+//! angular momentum about the pivot of all but y), a = a_g − F_t/m, F = g sin θ − a cos θ, G = g cos θ + a sin θ and G₀
+//! = g cos θ + a_g sin θ, Eq 5 and (6) − H (5) read
 //!
 //! ```text
 //! ẏ = F − κ − w θ̇²

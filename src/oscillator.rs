@@ -47,9 +47,9 @@ impl Oscillator {
         self.omega * interval > 0.03 * (1.0 + self.zeta)
     }
 
-    /// Where it is after `tau` (s) of a load a + b τ that pushes against w, over its mass: `value` = a in m/s², `slope` = b
-    /// in m/s³; `flow` is its flow over `tau`. About the motion that follows such a load, w = −(a + b (τ − 2ζ/ω))/ω², the
-    /// rest vibrates freely.
+    /// Where it is after `tau` (s) of a load a + b τ that pushes against w, over its mass: `value` = a in m/s², `slope`
+    /// = b in m/s³; `flow` is its flow over `tau`. About the motion that follows such a load, w = −(a + b (τ −
+    /// 2ζ/ω))/ω², the rest vibrates freely.
     #[inline]
     pub(crate) fn driven(&self, flow: &Matrix2<f64>, start: [f64; 2], value: f64, slope: f64, tau: f64) -> Driven {
         let per_stiffness = 1.0 / (self.omega * self.omega);
@@ -82,8 +82,8 @@ pub(crate) struct Driven {
 /// Flows kept at once. Records sampled at t = i·dt have a handful of step lengths, which differ in their last bits.
 const KEPT: usize = 16;
 
-/// The flows used last, by the exact length of time; what is not kept is computed anew, so that results do not depend on
-/// what is.
+/// The flows used last, by the exact length of time; what is not kept is computed anew, so that results do not depend
+/// on what is.
 #[derive(Clone, Debug)]
 pub(crate) struct Kept<Flow> {
     flows: [(f64, Flow); KEPT],

@@ -4,10 +4,11 @@
 //! a_t = ü + H θ̈ + θ̇² (sB − u) + a_g cos θ          (full contact: ü + a_g)                       (27)
 //! ```
 //!
-//! By (5) that is g sin θ − (c_u u̇ + k u)/m + (F_t/m) cos θ, and by (1) −(c_fc u̇ + k u)/m + F_t/m in full contact: the
-//! outputs depend on the state and on F_t and are computed so; only their rates need the ground acceleration. The levels with linear equations
-//! have the same outputs, by Eq 5 rather than by their own ü and θ̈. The rigid limit, where u is 0 whatever the forces, is the
-//! exception: there (27) is taken as it stands, with the ground acceleration at the end of the last advance.
+//! By (5) that is g sin θ − (c_u u̇ + k u)/m + (F_t/m) cos θ, and by (1) −(c_fc u̇ + k u)/m + F_t/m in full contact:
+//! the outputs depend on the state and on F_t and are computed so; only their rates need the ground acceleration. The
+//! levels with linear equations have the same outputs, by Eq 5 rather than by their own ü and θ̈. The rigid limit,
+//! where u is 0 whatever the forces, is the exception: there (27) is taken as it stands, with the ground acceleration
+//! at the end of the last advance.
 
 use crate::load::{LinearLoad, Load};
 use crate::{Phase, Side, State, Structure, detail, rigid_rocking};
@@ -33,7 +34,8 @@ pub struct Outputs {
     pub uplift: f64,
     /// Lateral displacement of the top mass δ_t = sB (1 − cos θ) + u cos θ + H sin θ, m (Eq 26).
     pub delta_t: f64,
-    /// Its rate, the lateral velocity of the top mass relative to the ground, m/s: u̇ cos θ + [(sB − u) sin θ + H cos θ] θ̇.
+    /// Its rate, the lateral velocity of the top mass relative to the ground, m/s: u̇ cos θ + [(sB − u) sin θ + H cos
+    /// θ] θ̇.
     pub v_t: f64,
 }
 

@@ -46,8 +46,8 @@ pub fn in_full_contact(structure: &Structure, u: f64) -> Equilibrium {
     Equilibrium { phase: Phase::FullContact, theta: 0.0, u, delta_t: u, force, moment }
 }
 
-/// Rocking at the rotation `theta` (rad), |θ| < π/2; 0 is the start of rocking to the right. `None` for a strut too soft
-/// to hold the structure there.
+/// Rocking at the rotation `theta` (rad), |θ| < π/2; 0 is the start of rocking to the right. `None` for a strut too
+/// soft to hold the structure there.
 pub fn at_rotation(structure: &Structure, theta: f64) -> Option<Equilibrium> {
     let &crate::Parameters { m, m0, H, B, g, .. } = structure.parameters();
     let k = structure.k;
@@ -83,8 +83,8 @@ pub fn at_displacement(structure: &Structure, delta_t: f64) -> Option<Equilibriu
     at_rotation(structure, theta.copysign(delta_t))
 }
 
-/// The unstable equilibrium without a force, beyond which the structure overturns (to the right). `None` for a strut too
-/// soft to hold the structure on the way there.
+/// The unstable equilibrium without a force, beyond which the structure overturns (to the right). `None` for a strut
+/// too soft to hold the structure on the way there.
 pub fn at_overturning(structure: &Structure) -> Option<Equilibrium> {
     let tan_alpha_cg = structure.tan_alpha_cg;
     let restores = |theta| at_rotation(structure, theta).is_some_and(|there| there.force >= 0.0);

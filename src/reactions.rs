@@ -1,7 +1,7 @@
 //! What the structure exerts on the ground, from its momentum balance (d'Alembert).
 //!
-//! With x, y of the top mass and x₀, y₀ of the foundation in the ground's frame ([`crate::kinematics`]), the forces that
-//! are left for the ground are
+//! With x, y of the top mass and x₀, y₀ of the foundation in the ground's frame ([`crate::kinematics`]), the forces
+//! that are left for the ground are
 //!
 //! ```text
 //! R_h = F_t − m (ẍ + a_g) − m0 (ẍ₀ + a_g)              to the right

@@ -25,8 +25,8 @@ use crate::record::{Record, Segment};
 use nalgebra::{Matrix2, Vector2};
 use std::f64::consts::{PI, TAU};
 
-/// S_a of `record` at the period `T` (s) and the damping ratio `zeta`, m/s². The oscillator starts at rest and swings on
-/// for a period after the record's end: its largest swing comes within a quarter of one.
+/// S_a of `record` at the period `T` (s) and the damping ratio `zeta`, m/s². The oscillator starts at rest and swings
+/// on for a period after the record's end: its largest swing comes within a quarter of one.
 pub fn spectral_acceleration(record: &Record, T: f64, zeta: f64) -> f64 {
     let record_end = record.times()[record.times().len() - 1];
     Oscillator { omega: TAU / T, zeta }.peak(record.segments_until(record_end + T))
@@ -60,7 +60,8 @@ impl Oscillator {
         Vector2::new(free[1], -2.0 * self.zeta * self.omega * free[1] - self.omega * self.omega * free[0])
     }
 
-    /// The instants in (0, `step`] that hold the extremes of b τ + ẇ with b = `slope`: its stationary points, and the end.
+    /// The instants in (0, `step`] that hold the extremes of b τ + ẇ with b = `slope`: its stationary points, and the
+    /// end.
     fn extremes(&self, free: Vector2<f64>, slope: f64, step: f64) -> impl Iterator<Item = f64> {
         let swing = self.rate(self.rate(free)); // (ẅ, its rate)
         let turns = self.zeros(self.rate(swing), step).chain([step]);

@@ -6,16 +6,16 @@
 //! θ̈ = p_l² [P − (a_g/g) Q],      P = sin θ − s tan α_cg cos θ,   Q = cos θ + s tan α_cg sin θ
 //! ```
 //!
-//! P' = Q θ̇ and Q' = −P θ̇, so that its series take two products. A force F_t on the top mass adds p_l² (F_t/(m g)) T to
-//! θ̈, T = cos θ + s (B/H) sin θ, a combination of P and Q. The base lifts off when |a_g − F_t/m| ≥ g tan α_cg, towards the
-//! side away from the push; an impact leaves r θ̇ about the other pivot, also of a structure so squat that the momentum rule of
-//! the other levels would end rocking: with u = 0 that rule speaks of the shape alone.
+//! P' = Q θ̇ and Q' = −P θ̇, so that its series take two products. A force F_t on the top mass adds p_l² (F_t/(m g)) T
+//! to θ̈, T = cos θ + s (B/H) sin θ, a combination of P and Q. The base lifts off when |a_g − F_t/m| ≥ g tan α_cg,
+//! towards the side away from the push; an impact leaves r θ̇ about the other pivot, also of a structure so squat that
+//! the momentum rule of the other levels would end rocking: with u = 0 that rule speaks of the shape alone.
 //!
 //! # Zeno
 //!
 //! With r < 1 the structure comes to rest by infinitely many impacts in finite time. It is brought to rest at the first
-//! impact after which |θ̇| ≤ ε p_l tan α_cg, ε the relative tolerance. The kinetic energy left behind, ½ J_P θ̇², is then
-//! at most ε² of ½ m g H tan² α_cg, which overturning takes at small angles: far below the tolerance.
+//! impact after which |θ̇| ≤ ε p_l tan α_cg, ε the relative tolerance. The kinetic energy left behind, ½ J_P θ̇², is
+//! then at most ε² of ½ m g H tan² α_cg, which overturning takes at small angles: far below the tolerance.
 
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::load::{GroundAcceleration, Load};
@@ -31,7 +31,7 @@ fn shape(structure: &Structure, side: Side, theta: f64) -> [f64; 2] {
 }
 
 /// The coefficients of P and Q in T.
-fn lever(structure: &Structure, side: Side) -> [f64; 2] {
+fn force_by_shape(structure: &Structure, side: Side) -> [f64; 2] {
     let &crate::Parameters { H, B, .. } = structure.parameters();
     let [slenderness, aspect] = [structure.tan_alpha_cg, B / H].map(|tangent| side.sign() * tangent);
     [aspect - slenderness, 1.0 + aspect * slenderness].map(|part| part / (1.0 + slenderness * slenderness))
@@ -43,7 +43,7 @@ pub(crate) fn accelerations(structure: &Structure, phase: Phase, state: &State, 
     match phase {
         Phase::Rocking(side) => {
             let [p, q] = shape(structure, side, state.theta);
-            let [of_p, of_q] = lever(structure, side);
+            let [of_p, of_q] = force_by_shape(structure, side);
             [0.0, structure.p_l.powi(2) * (p - load.a_g / g * q + load.F_t / (m * g) * (of_p * p + of_q * q))]
         }
         Phase::FullContact | Phase::Overturned(_) => [0.0; 2],
@@ -59,19 +59,21 @@ pub(crate) fn series(structure: &Structure, side: Side, start: &Start, arc: &mut
     let stiffness = p_l * p_l;
     let (push, push_slope) = (a_g.value / g, a_g.slope * span / g);
     let (pull, pull_slope) = ((a_g.value - a_top.value) / g, (a_g.slope - a_top.slope) * span / g);
-    let [of_p, of_q] = lever(structure, side);
+    let [of_p, of_q] = force_by_shape(structure, side);
+    // θ̈ is p_l² of these times P, Q and, for the slopes, times what P and Q were one order before
+    let (p_now, q_now) = (1.0 + pull * of_p, pull * of_q - push);
+    let (p_slope, q_slope) = (pull_slope * of_p, pull_slope * of_q - push_slope);
     let loads = [push, push_slope, pull, pull_slope].map(f64::abs).iter().sum::<f64>();
     let forcing = stiffness * (tan_alpha_cg + loads + state.theta.abs());
     let theta_dot = state.theta_dot.abs() + span.min(1.0 / p_l) * forcing;
     let (mut p, mut q) = (ZERO, ZERO);
     [p[0], q[0]] = shape(structure, side, state.theta);
-    let (mut q_before, mut t_before) = (0.0, 0.0);
+    let (mut p_before, mut q_before) = (0.0, 0.0);
     let truncation = Truncation { u_dot: 0.0, theta_dot: local_error * theta_dot };
     arc.expand(&State { u: 0.0, u_dot: 0.0, ..state }, span, truncation, |arc, k, per| {
-        let t = of_p * p[k - 1] + of_q * q[k - 1];
-        let pulled = pull * t + pull_slope * t_before;
-        let theta_dot = stiffness * (p[k - 1] - push * q[k - 1] - push_slope * q_before + pulled) * per;
-        (q_before, t_before) = (q[k - 1], t);
+        let shaped = p_now * p[k - 1] + q_now * q[k - 1] + q_slope * q_before + p_slope * p_before;
+        let theta_dot = stiffness * shaped * per;
+        (p_before, q_before) = (p[k - 1], q[k - 1]);
         p[k] = product(&q, &arc.theta_dot, k - 1) * per;
         q[k] = -product(&p, &arc.theta_dot, k - 1) * per;
         (0.0, theta_dot)
@@ -88,8 +90,8 @@ pub(crate) fn rest(start: &Start, arc: &mut Arc) {
     arc.expand(&State::default(), start.interval, Truncation { u_dot: 0.0, theta_dot: 0.0 }, |_, _, _| (0.0, 0.0));
 }
 
-/// The first instant over `span` s at which |a_top|, a_top = a_g − F_t/m, exceeds g tan α_cg, and the side about which the
-/// structure rocks.
+/// The first instant over `span` s at which |a_top|, a_top = a_g − F_t/m, exceeds g tan α_cg, and the side about which
+/// the structure rocks.
 pub(crate) fn first_uplift(structure: &Structure, a_top: GroundAcceleration, span: f64) -> (Crossing, Side) {
     let limit = (1.0 + LEAST_EXCESS) * structure.parameters().g * structure.tan_alpha_cg;
     let push = [a_top.value, a_top.slope * span];
@@ -98,7 +100,8 @@ pub(crate) fn first_uplift(structure: &Structure, a_top: GroundAcceleration, spa
     if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
 }
 
-/// Phase and state just after an impact that ends rocking about `side` in the state `before`, to the relative `tolerance`.
+/// Phase and state just after an impact that ends rocking about `side` in the state `before`, to the relative
+/// `tolerance`.
 pub(crate) fn resolve_impact(structure: &Structure, side: Side, before: &State, tolerance: f64) -> (Phase, State) {
     let theta_dot = structure.parameters().r * before.theta_dot;
     if theta_dot.abs() <= tolerance * structure.p_l * structure.tan_alpha_cg {

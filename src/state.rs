@@ -99,8 +99,8 @@ impl State {
         (self.u + self.u_dot + self.theta + self.theta_dot).is_finite()
     }
 
-    /// The phase that this state starts in at the level `detail`: full contact for θ = 0, otherwise rocking about the side
-    /// of θ's sign.
+    /// The phase that this state starts in at the level `detail`: full contact for θ = 0, otherwise rocking about the
+    /// side of θ's sign.
     pub fn initial_phase(&self, detail: Detail) -> Result<Phase, InitialStateError> {
         for quantity in &INITIAL_VALUES {
             quantity.check((quantity.get)(self))?;

@@ -134,12 +134,12 @@ fn reciprocal(k: usize) -> f64 {
 }
 
 impl Arc {
-    /// Expands the motion from `state` over `span` (s), order by order, until its last two terms are within `truncation`;
-    /// coefficients of an earlier use are overwritten.
+    /// Expands the motion from `state` over `span` (s), order by order, until its last two terms are within
+    /// `truncation`; coefficients of an earlier use are overwritten.
     ///
-    /// `velocities(arc, k, per)` gives the coefficients of (u̇, θ̇) at order k ≥ 1, from u and θ to order k and from u̇ and
-    /// θ̇ to order k − 1; `per` is span/k, which integrates a coefficient of order k − 1. When [`MAX_ORDER`] is not enough
-    /// for the span, the arc reaches as far as its last two terms allow.
+    /// `velocities(arc, k, per)` gives the coefficients of (u̇, θ̇) at order k ≥ 1, from u and θ to order k and from u̇
+    /// and θ̇ to order k − 1; `per` is span/k, which integrates a coefficient of order k − 1. When [`MAX_ORDER`] is not
+    /// enough for the span, the arc reaches as far as its last two terms allow.
     #[inline(always)]
     pub fn expand(
         &mut self,

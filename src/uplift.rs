@@ -6,10 +6,10 @@
 //! s u ≥ u_cr      and      s θ̈ > 0,   θ̈ by (5, 6) at θ = θ̇ = 0
 //! ```
 //!
-//! There the equations leave [(J0 + m0 B²)/m + (sB − u)²] θ̈ = H (c_u u̇ + k u)/m + g u − sγ g B, whatever a_g and F_t are: the
-//! second condition is that the moment which turns the structure about the pivot exceeds that of its weight. While |u|
-//! grows through u_cr it always does; after a landing with |u| > u_cr it may not, and leaving it out makes contact
-//! open and shut without end. "> 0" is taken as more than 1e-12 of the weight's moment, far above rounding.
+//! There the equations leave [(J0 + m0 B²)/m + (sB − u)²] θ̈ = H (c_u u̇ + k u)/m + g u − sγ g B, whatever a_g and F_t
+//! are: the second condition is that the moment which turns the structure about the pivot exceeds that of its weight.
+//! While |u| grows through u_cr it always does; after a landing with |u| > u_cr it may not, and leaving it out makes
+//! contact open and shut without end. "> 0" is taken as more than 1e-12 of the weight's moment, far above rounding.
 
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::taylor::{Arc, Series};

@@ -128,10 +128,13 @@ pub enum Failure {
         /// The order asked for.
         order: i32,
     },
-    /// A derivative by time or a direction of something else than an input.
+    /// A slope of something else than an input.
     #[error("{} has no derivative that can be set: only the inputs have", .0.name)]
     NoInput(&'static Variable),
-    /// A derivative that is not a number.
+    /// A known that is no input.
+    #[error("{} cannot be a known of a directional derivative: only the inputs can", .0.name)]
+    NoKnown(&'static Variable),
+    /// A slope or a part of a direction that is not a number.
     #[error("the derivative of {}, {value}, is out of range: it must be finite", variable.name)]
     BadSlope {
         /// The input.
@@ -142,6 +145,18 @@ pub enum Failure {
     /// A derivative of something else than a continuous output.
     #[error("{} has no derivative: only continuous Real outputs have", .0.name)]
     NoOutput(&'static Variable),
+    /// The equations of motion are singular here, and with them the reactions.
+    #[error(
+        "{} does not exist at t = {time} s: the top mass is above the pivot of a foundation without inertia (m0, J0 too \
+         small)",
+        variable.name
+    )]
+    NoReaction {
+        /// The output.
+        variable: &'static Variable,
+        /// s.
+        time: f64,
+    },
     /// The equations of motion are singular here.
     #[error("the derivative of {} does not exist at t = {time} s", variable.name)]
     NoRate {

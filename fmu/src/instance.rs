@@ -234,19 +234,29 @@ impl Instance {
     /// `fmi2GetReal`: all of the values, or none if one is refused.
     pub fn get_real(&mut self, references: &[u32], values: &mut [MaybeUninit<f64>]) -> Result<(), Failure> {
         let mut is_computed = false;
+        let mut reaction = None;
         for reference in references {
             let variable = find(*reference)?;
+            if let Source::Reaction(_) = variable.source {
+                reaction = Some(variable);
+            }
             match variable.source {
                 Source::Input(_) | Source::Parameter(_) | Source::InitialValue(_) => (),
                 Source::Output(_) | Source::Reaction(_) | Source::Impulse(_) | Source::Derived(_) => is_computed = true,
                 Source::Integer(_) | Source::Boolean(_) | Source::Detail => return Err(Failure::WrongType(variable)),
             }
         }
-        if is_computed {
-            self.now.engine()?;
-        }
         let load = self.now.input.value;
         let (mut outputs, mut reactions) = (None, None);
+        if is_computed {
+            let engine = self.now.engine()?;
+            if let Some(variable) = reaction {
+                let exerted = reactions.insert(engine.reactions(load));
+                if !(exerted.R_h + exerted.R_v + exerted.R_m).is_finite() {
+                    return Err(Failure::NoReaction { variable, time: engine.motion().time });
+                }
+            }
+        }
         for (reference, value) in references.iter().zip(values) {
             let variable = find(*reference)?;
             value.write(match variable.source {
@@ -336,8 +346,8 @@ impl Instance {
         Ok(())
     }
 
-    /// `fmi2SetInteger`: all of the values, or none if one is refused. Of enumerations alone, the parameter `detail` can be
-    /// set.
+    /// `fmi2SetInteger`: all of the values, or none if one is refused. Of enumerations alone, the parameter `detail`
+    /// can be set.
     pub fn set_integer(&mut self, references: &[u32], values: &[i32]) -> Result<(), Failure> {
         let mut detail = self.now.setup.detail;
         for (reference, &value) in references.iter().zip(values) {
@@ -425,8 +435,9 @@ impl Instance {
         Ok(())
     }
 
-    /// `fmi2GetDirectionalDerivative`: of outputs by inputs. The outputs are affine in the inputs, so that a difference is
-    /// the derivative; it is taken over a change of the size of gravity, which keeps its digits.
+    /// `fmi2GetDirectionalDerivative`: of outputs by inputs. The outputs are affine in the inputs, so that a difference
+    /// is the derivative; it is taken over a change of the size of gravity and the strut's force, which keeps its
+    /// digits.
     pub fn get_directional_derivative(
         &mut self,
         unknowns: &[u32],
@@ -437,7 +448,7 @@ impl Instance {
         let mut direction = Load::default();
         for (reference, &value) in knowns.iter().zip(seed) {
             let variable = find(*reference)?;
-            let Source::Input(quantity) = variable.source else { return Err(Failure::NoInput(variable)) };
+            let Source::Input(quantity) = variable.source else { return Err(Failure::NoKnown(variable)) };
             if !value.is_finite() {
                 return Err(Failure::BadSlope { variable, value });
             }
@@ -447,10 +458,11 @@ impl Instance {
         let engine = self.now.engine()?;
         let time = engine.motion().time;
         let &Parameters { m, g, .. } = engine.structure().parameters();
-        let size = (direction.a_g.abs() / g).max(direction.F_t.abs() / (m * g));
+        let outputs_before = engine.outputs(0.0);
+        let size = direction.a_g.abs().max(direction.F_t.abs() / m) / (g + outputs_before.a_t.abs());
         let of_size_one = |part: f64| if size > 0.0 { part / size } else { 0.0 };
         let change = Load { a_g: of_size_one(direction.a_g), F_t: of_size_one(direction.F_t) };
-        let [outputs, outputs_before] = [change, Load::default()].map(|load| engine.outputs(load.F_t));
+        let outputs = engine.outputs(change.F_t);
         let [reactions, reactions_before] = [change, Load::default()].map(|load| engine.reactions(load));
         let derivative = |reference: &u32| {
             let variable = find(*reference)?;

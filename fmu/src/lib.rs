@@ -2,8 +2,8 @@
 //!
 //! A call of the host enters by [`c_abi`], which turns pointers into slices and nothing else. [`instance`] asks
 //! [`state_machine`] whether the call is legal, finds its variables in [`variables`], and lets [`rocking`] do the
-//! physics; what goes wrong is a [`failure::Failure`], which [`logger`] hands to the host. [`snapshot`] keeps FMU states
-//! and [`resources`] reads the parameters that the archive carries.
+//! physics; what goes wrong is a [`failure::Failure`], which [`logger`] hands to the host. [`snapshot`] keeps FMU
+//! states and [`resources`] reads the parameters that the archive carries.
 #![allow(non_snake_case)] // the shared library's name, and the standard's names of arguments
 
 pub mod c_abi;
@@ -22,7 +22,8 @@ use uuid::Uuid;
 pub const BUILD: &str = env!("FLEXIBLE_ROCKING_BUILD");
 
 /// The GUID of an FMU of the structure `parameters`: binds the model description, the library and the parameters that
-/// the archive carries to each other. Hosts take two FMUs of one GUID for the same, so that structures must differ in it.
+/// the archive carries to each other. Hosts take two FMUs of one GUID for the same, so that structures must differ in
+/// it.
 pub fn guid(parameters: &Parameters) -> String {
     let build = Uuid::try_parse(BUILD).expect("the build script wrote it");
     let bytes = postcard::to_stdvec(parameters).expect("numbers can always be written");

@@ -129,7 +129,7 @@ fn overturned(motion: &Motion) -> i32 {
     i32::from(matches!(motion.phase, Phase::Overturned(_)))
 }
 
-/// The inputs. Their slopes are set by a call of its own, before or after, and anew for every step.
+/// The inputs. Their slopes are set by a call of their own, before or after, and anew for every step.
 pub(crate) static INPUTS: [Quantity<Load>; 2] = [
     Quantity {
         name: "a_g",
@@ -213,8 +213,10 @@ fn outputs() -> Vec<Variable> {
         of_state("theta", "rad", "rotation of the base, positive about the right edge", |o| o.theta, &["theta_0"]),
         of_state("u", "m", elastic, |o| o.u, &["u_0"]),
         force("a_t", "m/s2", "acceleration of the top mass, ground included (Eq 27)", |o| o.a_t),
-        force("V_t", "N", "base shear m a_t (Eqs 2, 23)", |o| o.V_t),
-        force("M_t", "N.m", "overturning moment m H a_t (Eqs 3, 24)", |o| o.M_t),
+        force("V_t", "N", "m a_t, the base shear where no force acts on the top mass (Eqs 2, 23)", |o| o.V_t),
+        force("M_t", "N.m", "m H a_t, the overturning moment where no force acts on the top mass (Eqs 3, 24)", |o| {
+            o.M_t
+        }),
         of_state("theta_dot", "rad/s", "angular velocity of the base", |o| o.theta_dot, &["theta_dot_0"]),
         of_state("u_dot", "m/s", "elastic velocity of the top mass", |o| o.u_dot, &["u_dot_0"]),
         of_state("uplift", "m", "height of the free edge of the base (Eq 25)", |o| o.uplift, &["B", "theta_0"]),

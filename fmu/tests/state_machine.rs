@@ -9,8 +9,9 @@ use host::*;
 use std::ptr::{null, null_mut};
 
 /// The table of FMI 2.0.4, section 4.2.4, without the columns of a step in progress or canceled, which a slave with
-/// synchronous steps never sees: instantiated, initialization mode, step complete, step failed, terminated, error. x: allowed; a number: allowed for some variables only (1 start values, 2 outputs,
-/// 3 start values and inputs, 6 inputs), or its values are good for debugging only (7, 8).
+/// synchronous steps never sees: instantiated, initialization mode, step complete, step failed, terminated, error. x:
+/// allowed; a number: allowed for some variables only (1 start values, 2 outputs, 3 start values and inputs, 6 inputs),
+/// or its values are good for debugging only (7, 8).
 const STANDARD: &str = "
     SetDebugLogging           x x x x x x
     SetupExperiment           x - - - - -

@@ -1,4 +1,5 @@
-//! Charts: panels with linear or logarithmic axes, a legend beside the data, colours that the colour-blind can tell apart.
+//! Charts: panels with linear or logarithmic axes, a legend beside the data, colours that the colour-blind can tell
+//! apart.
 
 use anyhow::{Result, anyhow};
 use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};

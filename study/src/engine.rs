@@ -7,8 +7,8 @@ use rocking::{Detail, Engine, Motion, Progress, State, Transition};
 /// The tolerance of reference responses, two orders below the tightest that is charted.
 pub const REFERENCE_TOLERANCE: f64 = 1e-14;
 
-/// The response of `scene` at the level `detail`, to `tolerance`, in communication steps of 1/`cuts` of the time between samples; transitions
-/// are shown to `observe`.
+/// The response of `scene` at the level `detail`, to `tolerance`, in communication steps of 1/`cuts` of the time
+/// between samples; transitions are shown to `observe`.
 pub fn run(
     scene: &Scene,
     detail: Detail,

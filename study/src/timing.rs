@@ -26,8 +26,8 @@ pub fn fastest<T>(mut run: impl FnMut() -> T) -> (T, f64) {
     unreachable!("the repeats end")
 }
 
-/// Time per sample, s, of one 4×6 matrix-vector product: the recurrence x ← [Φ Γ](x, a₀, a₁) of a linear structure under
-/// the ground acceleration of `scene`. Nothing that steps from sample to sample is faster.
+/// Time per sample, s, of one 4×6 matrix-vector product: the recurrence x ← [Φ Γ](x, a₀, a₁) of a linear structure
+/// under the ground acceleration of `scene`. Nothing that steps from sample to sample is faster.
 pub fn floor(scene: &Scene) -> f64 {
     let decay = SMatrix::<f64, 4, 6>::from_fn(|i, j| if i == j { 0.9 } else { 0.01 * (i as f64 - j as f64) });
     let (_, time) = fastest(|| {

@@ -12,8 +12,8 @@
 //! ΔE = −(1−r) m H u̇ θ̇ − ½ (1−r²) (J_P + m u²) θ̇² + (1+r²) m s B u θ̇²                                   (a)
 //! ```
 //!
-//! The first term is positive where u̇ and θ̇ differ in sign. How much they may differ is bounded, because rocking goes on
-//! only if L θ̇ > 0, L = m H (u̇ + Hθ̇) − [m (B²−u²) + m0 B² − J0] θ̇:
+//! The first term is positive where u̇ and θ̇ differ in sign. How much they may differ is bounded, because rocking goes
+//! on only if L θ̇ > 0, L = m H (u̇ + Hθ̇) − [m (B²−u²) + m0 B² − J0] θ̇:
 //!
 //! ```text
 //! m H u̇/θ̇ > (m + m0) B² − J0 − m u² − m H²                                                            (b)
@@ -44,8 +44,8 @@ use rocking::{
     Engine, GroundAcceleration, Motion, Parameters, Phase, Side, State, Structure, Transition, TransitionKind,
 };
 
-/// Equation (a): change of energy, J, at an impact that ends rocking about `side` in the state `before` and is followed by
-/// rocking about the other pivot.
+/// Equation (a): change of energy, J, at an impact that ends rocking about `side` in the state `before` and is followed
+/// by rocking about the other pivot.
 pub fn change_when_rocking_goes_on(structure: &Structure, side: Side, before: &State) -> f64 {
     let &Parameters { m, H, B, r, .. } = structure.parameters();
     let &State { u, u_dot, theta_dot, .. } = before;

@@ -46,8 +46,8 @@ pub fn exact(scene: &Scene, detail: Detail) -> Result<History> {
     Ok(History { theta: over_time(|s| s.theta), u: over_time(|s| s.u), transitions })
 }
 
-/// What is visible of `points` between two instants, with the axes' units: x − `origin` in units of `x_unit`, y in units
-/// of `y_unit`.
+/// What is visible of `points` between two instants, with the axes' units: x − `origin` in units of `x_unit`, y in
+/// units of `y_unit`.
 pub fn window(
     points: &[(f64, f64)],
     (from, to): (f64, f64),

@@ -7,8 +7,8 @@ use crate::fixed_step::{OneStep, TEXTBOOK};
 /// Steps of one trial.
 const STEPS: usize = 8192;
 
-/// Growth of the energy from one stretch of a trial to the next that counts as such; a stable method's energy swings, but
-/// its maximum over a quarter of the trial stays.
+/// Growth of the energy from one stretch of a trial to the next that counts as such; a stable method's energy swings,
+/// but its maximum over a quarter of the trial stays.
 const GROWTH: f64 = 1e-3;
 
 /// Steps tried, as ω_u h: a method stable at the largest is taken to be so at all; one unstable at the smallest, never.

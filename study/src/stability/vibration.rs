@@ -1,5 +1,5 @@
-//! The vibration of a structure that rocks, alone: Eqs 7 and 8 without ground motion and gravity, which only adds the slow
-//! fall of the rocking mode.
+//! The vibration of a structure that rocks, alone: Eqs 7 and 8 without ground motion and gravity, which only adds the
+//! slow fall of the rocking mode.
 //!
 //! ```text
 //! ü + H θ̈ + (c_u/m) u̇ + ω_fc² u = 0,      H ü + (J_P/m) θ̈ = 0
@@ -7,8 +7,8 @@
 //! E/m = ½ (u̇ + Hθ̇)² + ½ (J_P/m − H²) θ̇² + ½ ω_fc² u²
 //! ```
 //!
-//! With β = m H²/J_P this is an oscillator of frequency ω_u = ω_fc/√(1−β) and damping ratio ζ_u = ζ_fc/√(1−β) (c_u = c_fc);
-//! β = 0 is full contact. Here H = 1 m and ω_u = 1 rad/s, so that steps are in units of 1/ω_u.
+//! With β = m H²/J_P this is an oscillator of frequency ω_u = ω_fc/√(1−β) and damping ratio ζ_u = ζ_fc/√(1−β) (c_u =
+//! c_fc); β = 0 is full contact. Here H = 1 m and ω_u = 1 rad/s, so that steps are in units of 1/ω_u.
 
 use crate::equations::Equations;
 use crate::fixed_step::Point;

@@ -9,7 +9,8 @@ pub struct StructureArgs {
     /// Specimen of the paper
     #[arg(long, value_enum, default_value_t = Preset::Mcmanus, conflicts_with = "parameters")]
     preset: Preset,
-    /// TOML file with m, m0, H, B, f_fc, zeta_fc, r (SI units) and, where they differ from 0, 1 and 9.81, J0, c_ratio, g
+    /// TOML file with m, m0, H, B, f_fc, zeta_fc, r (SI units) and, where they differ from 0, 1 and 9.81, J0, c_ratio,
+    /// g
     #[arg(long, value_name = "FILE.toml")]
     parameters: Option<PathBuf>,
 }

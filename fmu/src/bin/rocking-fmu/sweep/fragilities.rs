@@ -1,4 +1,5 @@
-//! How often the structures of a sweep overturn or exceed its limits, scale factor by scale factor, and fragility curves.
+//! How often the structures of a sweep overturn or exceed its limits, scale factor by scale factor, and fragility
+//! curves.
 use super::{
     outcome::{MEASURES, Outcome},
     plan::{Limit, Plan, Run},
