@@ -1,0 +1,126 @@
+"""The bridge as an SSP archive, run by fmpy: two piers and the deck, an FMU each, and the ground motion as input.
+
+fmpy hands every value on after the step, and holds it: the master is Jacobi's, of first order. The deck's FMU is built
+by pythonfmu. Writes the archive, runs it with two steps, draws the deck's displacement beside the iterated master's.
+
+    PYTHONPATH=examples python -m coupling.bridge_ssp
+"""
+
+import argparse
+import functools
+import tempfile
+import zipfile
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+from first_run import pacoima_dam
+from fmpy.ssp.simulation import simulate_ssp
+from pythonfmu.builder import FmuBuilder
+from validation.figures import FIXED, ROCKING, SMOOTH, save, subplots
+
+from .bridge import PIERS, Bridge, deck, pier, simulate
+from .masters import MASTERS, between_transitions, extrapolate
+
+SSD, SSC = (f"http://ssp-standard.org/SSP1/SystemStructure{name}" for name in ("Description", "Common"))
+STEPS = {2e-3: FIXED, 0.2e-3: SMOOTH}  # s
+DECK = "deck"
+
+
+def write_archive(path: Path, fmus: list[str]) -> None:
+    """The SSP archive of the bridge on these piers."""
+    here, mass = Path(__file__).parent, deck()
+    with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        built = FmuBuilder.build_FMU(here / "deck_fmu.py", dest=folder, project_files=[here / "swaying_mass.py"],
+                                     newargs=dict(M=mass.M, k=mass.k, c=mass.c))
+        for name, fmu in zip([*PIERS, DECK], [*fmus, built]):
+            archive.write(fmu, f"resources/{name}.fmu")
+        archive.writestr("SystemStructure.ssd", system_structure())
+
+
+def system_structure() -> bytes:
+    """SystemStructure.ssd: the ground motion to all, the piers' tops to the deck, its bearings' forces to the piers."""
+    root = ElementTree.Element(f"{{{SSD}}}SystemStructureDescription", name="bridge", version="1.0")
+    system = ElementTree.SubElement(root, f"{{{SSD}}}System", name="bridge")
+    connectors(system, {"a_g": "input"})
+    elements = ElementTree.SubElement(system, f"{{{SSD}}}Elements")
+    connections = ElementTree.SubElement(system, f"{{{SSD}}}Connections")
+    of_deck = {"a_g": "input", "x": "output"}
+    for i, name in enumerate(PIERS):
+        component(elements, name, {"a_g": "input", "F_t": "input", "delta_t": "output", "v_t": "output"})
+        of_deck |= {f"delta_t_{i}": "input", f"v_t_{i}": "input", f"F_{i}": "output"}
+        connect(connections, (None, "a_g"), (name, "a_g"))
+        connect(connections, (name, "delta_t"), (DECK, f"delta_t_{i}"))
+        connect(connections, (name, "v_t"), (DECK, f"v_t_{i}"))
+        connect(connections, (DECK, f"F_{i}"), (name, "F_t"))
+    component(elements, DECK, of_deck)
+    connect(connections, (None, "a_g"), (DECK, "a_g"))
+    return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+
+
+def component(elements, name: str, reals: dict[str, str]) -> None:
+    fmu = ElementTree.SubElement(elements, f"{{{SSD}}}Component", name=name, source=f"resources/{name}.fmu",
+                                 type="application/x-fmu-sharedlibrary")
+    connectors(fmu, reals)
+
+
+def connectors(parent, reals: dict[str, str]) -> None:
+    """The Real connectors of a system or component, by name and kind."""
+    found = ElementTree.SubElement(parent, f"{{{SSD}}}Connectors")
+    for name, kind in reals.items():
+        connector = ElementTree.SubElement(found, f"{{{SSD}}}Connector", name=name, kind=kind)
+        ElementTree.SubElement(connector, f"{{{SSC}}}Real")
+
+
+def connect(connections, start: tuple, end: tuple) -> None:
+    """From one (element, connector) to another; no element stands for the system itself."""
+    ends = dict(zip(("startElement", "startConnector", "endElement", "endConnector"), (*start, *end)))
+    ElementTree.SubElement(connections, f"{{{SSD}}}Connection", {key: name for key, name in ends.items() if name})
+
+
+def run(archive: Path, time, a_g, h: float) -> np.ndarray:
+    """fmpy's result; its rows are the outputs at the ends of the steps. It is a step late with the system's input."""
+    return simulate_ssp(str(archive), stop_time=time[-1] - h / 2, step_size=h,
+                        input={"a_g": lambda t: np.interp(t + h, time, a_g)})
+
+
+def plot(path: Path, time, reference, results: dict[float, np.ndarray]) -> None:
+    figure, axes = subplots(2, 1, 4.2, sharex=True)
+    axes[0].plot(time, 1e3 * reference, color=ROCKING, label="iterated master")
+    for h, result in results.items():
+        ends = result["time"] + h
+        label = f"fmpy, SSP, {1e3 * h:g} ms"
+        axes[0].plot(ends, 1e3 * result["deck.x"], color=STEPS[h], linewidth=0.8, label=label)
+        axes[1].plot(ends, 1e3 * (result["deck.x"] - np.interp(ends, time, reference)), color=STEPS[h], label=label)
+    axes[0].set_ylabel("displacement of\nthe deck (mm)")
+    axes[1].set(ylabel="its error (mm)", xlabel="time (s)", xlim=(0, time[-1]))
+    axes[0].legend(loc="lower right", ncols=3)
+    figure.align_ylabels()
+    save(figure, path)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0],
+                                     formatter_class=argparse.ArgumentDefaultsHelpFormatter)
+    parser.add_argument("fmus", nargs="*", default=list(PIERS.values()), help="of the piers")
+    parser.add_argument("--archive", type=Path, default=Path("out/bridge.ssp"), help="SSP archive to write")
+    parser.add_argument("--figure", type=Path, default=Path("docs/coupling/bridge_ssp.png"), help="where to save it")
+    arguments = parser.parse_args()
+
+    time, a_g = pacoima_dam()
+    write_archive(arguments.archive, arguments.fmus)
+    print(f"archive: {arguments.archive}")
+    bridge = Bridge([pier(fmu) for fmu in arguments.fmus], deck(), lambda t, h: np.interp((t, t + h), time, a_g))
+    step = functools.partial(between_transitions, MASTERS["iqn-ils"]())
+    reference = simulate(bridge, step, extrapolate, time, 1, lambda: bridge.deck.x)
+    results = {h: run(arguments.archive, time, a_g, h) for h in STEPS}
+    for h, result in results.items():
+        error = np.max(np.abs(result["deck.x"] - np.interp(result["time"] + h, time, reference)))
+        part = error / np.max(np.abs(reference))
+        print(f"step {1e3 * h:g} ms: error of the deck's displacement {part:.2%} of its peak")
+    plot(arguments.figure, time, reference, results)
+    print(f"figure: {arguments.figure}")
+
+
+if __name__ == "__main__":
+    main()

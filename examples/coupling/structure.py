@@ -1,0 +1,64 @@
+"""A rocking structure: one instance of the FMU."""
+
+import contextlib
+import shutil
+import tempfile
+import weakref
+
+import fmpy
+import numpy as np
+from fmpy.fmi2 import fmi2False
+from fmpy.simulation import instantiate_fmu
+
+
+class Structure:
+    """Steps under inputs that are lines in time, and goes back to a state when asked."""
+
+    def __init__(self, fmu: str, inputs: list[str], outputs: list[str], **start_values: float):
+        folder = tempfile.mkdtemp()
+        fmpy.extract(fmu, unzipdir=folder)
+        description = fmpy.read_model_description(folder)
+        self.references = {variable.name: variable.valueReference for variable in description.modelVariables}
+        self.instance = instantiate_fmu(folder, description, "CoSimulation")
+        weakref.finalize(self, _free, self.instance, folder)
+        self.instance.setupExperiment()
+        self.instance.setReal([self.references[name] for name in start_values], list(start_values.values()))
+        self.instance.enterInitializationMode()
+        self.instance.exitInitializationMode()
+        self.inputs = [self.references[name] for name in inputs]
+        self.outputs = [self.references[name] for name in outputs]
+
+    def read(self, *names: str) -> list[float]:
+        return self.instance.getReal([self.references[name] for name in names])
+
+    def derivative(self, output: str, of: str) -> float:
+        """Of an output by an input, at the present state."""
+        return self.instance.getDirectionalDerivative([self.references[output]], [self.references[of]], [1.0])[0]
+
+    def transitions(self) -> int:
+        return self.instance.getInteger([self.references["transitions"]])[0]
+
+    def step(self, t: float, h: float, line) -> list[float]:
+        """The outputs at the end of the step under `line`, the inputs at its start and at its end."""
+        start, end = line
+        self.instance.setReal(self.inputs, start)
+        self.instance.setRealInputDerivatives(self.inputs, [1] * len(start), (np.subtract(end, start) / h).tolist())
+        self.instance.doStep(t, h, fmi2False)
+        return self.instance.getReal(self.outputs)
+
+    @contextlib.contextmanager
+    def checkpoint(self):
+        """The present state, for `restore` to go back to."""
+        state = self.instance.getFMUstate()
+        try:
+            yield state
+        finally:
+            self.instance.freeFMUstate(state)
+
+    def restore(self, state) -> None:
+        self.instance.setFMUstate(state)
+
+
+def _free(instance, folder):
+    instance.freeInstance()
+    shutil.rmtree(folder)

@@ -1,0 +1,233 @@
+"""Coupled structures by the masters of examples/coupling, against the same systems integrated as one."""
+
+import functools
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import monolithic
+import numpy as np
+import pytest
+import reference
+from coupling import bridge_ssp, building_on_soil, convergence, stability
+from coupling.bridge import MASS, Bridge, deck, pier, simulate
+from coupling.building_on_soil import OnSoil
+from coupling.masters import MASTERS, TOLERANCE, Diverged, Iterated, between_transitions
+from coupling.masters import extrapolate, gauss_seidel, hold, jacobi
+from coupling.structure import Structure
+from coupling.swaying_mass import SwayingMass
+from first_run import pacoima_dam
+from reference import EVISON, MCMANUS
+from scipy.linalg import expm
+
+TIME, A_G = pacoima_dam()
+ROOT = Path(__file__).parents[1]
+SHORT = slice(700)  # of the record: uplifts, impacts and landings of both piers
+
+
+@pytest.fixture(scope="module")
+def piers(mcmanus, evison):
+    return mcmanus.path, evison.path
+
+
+def strong_motion():
+    return TIME[SHORT], A_G[SHORT]
+
+
+@functools.cache
+def as_one(motion):
+    """The bridge integrated as one system: time, a_g, the response."""
+    time, a_g = motion()
+    return time, a_g, monolithic.integrate(convergence.monolithic_bridge(deck()), time, a_g)
+
+
+def test_without_a_deck_the_monolithic_piers_are_the_single_ones():
+    alone = monolithic.Bridge((MCMANUS, EVISON), M=1.0, k=0.0, c=0.0)
+    together = monolithic.integrate(alone, TIME[SHORT], A_G[SHORT])
+    for i, p in enumerate((MCMANUS, EVISON)):
+        single = reference.integrate(p, TIME[SHORT], A_G[SHORT])
+        assert len(together.transitions[i]) == len(single.transitions) >= 10
+        for column, expected in zip(together.y[:, 2 + 4 * i:].T, (single.u, single.u_dot, single.theta)):
+            assert column == pytest.approx(expected, abs=1e-11 * np.max(np.abs(expected)))
+
+
+def test_the_monolithic_bridge_with_bases_down_is_a_linear_system():
+    """Three masses on springs and dashpots, by a matrix exponential, under a steadily growing ground acceleration."""
+    M, k, c = MASS, 2e4, 300.0
+    stiffness, damping = np.zeros((3, 3)), np.zeros((3, 3))
+    for i, p in enumerate((MCMANUS, EVISON), start=1):
+        spring = np.array([[1.0, -1.0], [-1.0, 1.0]])
+        stiffness[np.ix_((0, i), (0, i))] += k * spring
+        damping[np.ix_((0, i), (0, i))] += c * spring
+        stiffness[i, i] += p.k
+        damping[i, i] += p.c_fc
+    inverse = np.diag(1 / np.array([M, MCMANUS.m, EVISON.m]))
+    rates = np.zeros((8, 8))
+    rates[:3, 3:6] = np.eye(3)
+    rates[3:6, :3], rates[3:6, 3:6], rates[3:6, 6] = -inverse @ stiffness, -inverse @ damping, -1
+    rates[6, 7] = 1
+    slope, end = 0.7, 0.6
+    x = (expm(rates * end) @ [0, 0, 0, 0, 0, 0, 0, slope])[:6]
+    time = np.linspace(0, end, 31)
+    y = monolithic.integrate(monolithic.Bridge((MCMANUS, EVISON), M, k, c), time, slope * time).y[-1]
+    assert y[[0, 2, 6, 1, 3, 7]] == pytest.approx(x, rel=1e-11)
+
+
+@pytest.mark.parametrize("variant", convergence.VARIANTS)
+def test_error_falls_with_the_step_at_the_masters_order(piers, variant):
+    time, a_g, expected = as_one(convergence.smooth)
+    assert expected.transitions == [[], []]
+    found = [convergence.cosimulated(time, a_g, piers, deck(), variant, n) for n in (2, 4)]
+    errors = [convergence.error(response, convergence.columns(expected)) for response in found]
+    order = convergence.VARIANTS[variant][-1]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.12)
+
+
+def test_iterated_master_follows_uplifts_impacts_and_landings(piers):
+    """Fourth order through them, to 1e-8 of every peak."""
+    time, a_g, expected = as_one(strong_motion)
+    for transitions in expected.transitions:
+        assert {transition.kind for transition in transitions} == {"uplift", "impact", "landing"}
+    halved = "the same, steps with transitions halved"
+    found = [convergence.cosimulated(time, a_g, piers, deck(), halved, n) for n in (1, 2, 4)]
+    errors = [convergence.error(response, convergence.columns(expected)) for response in found]
+    assert errors[2] < 1e-8
+    assert np.log2(errors[0] / errors[2]) / 2 == pytest.approx(4, abs=0.4)
+
+
+def test_accelerated_iterations_find_the_fixed_point_in_fewer_sweeps(piers):
+    """A stiff and heavy deck: a sweep leaves the sixth part of an error, as the linear bridge tells."""
+    left = stability.contraction(3000.0 / (MCMANUS.m + EVISON.m), TIME[1], False, frequency=25.0)
+    assert left == pytest.approx(1 / 6, rel=0.1)
+    found, sweeps = {}, {}
+    for name in ("fixed-point", "anderson", "iqn-ils"):
+        master, of_deck = MASTERS[name](), deck(3000.0, frequency=25.0)
+        bridge = Bridge([pier(fmu) for fmu in piers], of_deck, lambda t, h: np.interp((t, t + h), TIME, A_G))
+        found[name] = simulate(bridge, master, extrapolate, TIME[:300], 1, lambda: [of_deck.x, *bridge.y[1]])
+        sweeps[name] = master.sweeps / 299
+    for name in ("anderson", "iqn-ils"):
+        assert convergence.error(found[name], found["fixed-point"]) < 1e-9
+    assert sweeps["fixed-point"] == pytest.approx(np.log(TOLERANCE) / np.log(left), rel=0.2)
+    assert sweeps["anderson"] < 7
+    assert sweeps["iqn-ils"] < 3
+
+
+@pytest.mark.parametrize("master, guess", [(jacobi, extrapolate), (gauss_seidel, hold), (gauss_seidel, extrapolate)])
+def test_weak_coupling_blows_up_at_the_step_that_theory_gives(piers, master, guess):
+    """Free vibration, bases down: it dies out below the limit of the amplification matrix and grows above it."""
+    ratio = 10.0
+    limit = stability.largest_step(lambda h: stability.growth(master, guess, ratio, h, False) > 0,
+                                   np.geomspace(1e-3, 30e-3, 70))
+    for part, grows in ((0.9, False), (1.05, True)):
+        h = part * limit
+        bridge = Bridge([pier(fmu) for fmu in piers], deck(stability.mass(ratio), stability.FREQUENCY),
+                        lambda t, h: np.zeros(2), moments=False)
+        bridge.deck.v = 1e-6
+        size = []
+        for n in range(3000):
+            master(bridge, n * h, h, guess)
+            size.append(np.max(np.abs(bridge.w[1])))
+            if not size[-1] < 1.0:
+                break
+        assert (max(size[-50:]) > max(size[:50])) == grows
+
+
+@functools.cache
+def on_soil_as_one(M: float, motion):
+    """McManus's specimen on soil integrated as one system: time, a_g; the foundation's x, theta, u; transitions."""
+    time, a_g = motion()
+    system = monolithic.OnSoil((MCMANUS,), M, building_on_soil.STIFFNESS, building_on_soil.DAMPING)
+    response = monolithic.integrate(system, time, a_g)
+    return time, a_g, response.y[:, [0, 4, 2]], response.transitions[0]
+
+
+def on_soil(fmu, M, time, a_g, step, per_sample, solve_loop=True):
+    foundation = SwayingMass(M, building_on_soil.STIFFNESS, building_on_soil.DAMPING)
+    structure = building_on_soil.structure(fmu)
+    system = OnSoil(structure, foundation, lambda t, h: np.interp((t, t + h), time, a_g), solve_loop)
+    return simulate(system, step, extrapolate, time, per_sample,
+                    lambda: [foundation.x, *structure.read("theta", "u")])
+
+
+@pytest.mark.parametrize("M", [20.0, 50.0, 200.0])
+def test_a_structure_on_soil_with_the_loop_solved(mcmanus, M):
+    """Of second order without iteration, whether the foundation mass is more or less than m0 = 65.4 kg."""
+    time, a_g, expected, transitions = on_soil_as_one(M, convergence.smooth)
+    assert not transitions
+    errors = [convergence.error(on_soil(mcmanus.path, M, time, a_g, gauss_seidel, n), expected) for n in (8, 16)]
+    assert np.log2(errors[0] / errors[1]) == pytest.approx(2, abs=0.2)
+
+
+def test_impacts_push_the_soil(mcmanus):
+    """Of second order through them, with the steps in which they fall halved."""
+    time, a_g, expected, transitions = on_soil_as_one(50.0, strong_motion)
+    assert {"impact", "landing"} <= {transition.kind for transition in transitions}
+    step = functools.partial(between_transitions, MASTERS["iqn-ils"]())
+    errors = [convergence.error(on_soil(mcmanus.path, 50.0, time, a_g, step, n), expected) for n in (1, 2, 4)]
+    assert np.log2(errors[0] / errors[2]) / 2 == pytest.approx(2, abs=0.3)
+    assert errors[2] < 1e-3
+
+
+def test_passed_around_as_it_is_the_soils_loop_blows_up_at_any_step(mcmanus):
+    """Each exchange multiplies an error by m0/M."""
+    time, a_g = convergence.smooth()
+    for per_sample in (1, 100):
+        with pytest.raises(Diverged):
+            on_soil(mcmanus.path, 50.0, time, a_g, Iterated(), per_sample, solve_loop=False)
+    time, a_g, expected, _ = on_soil_as_one(200.0, convergence.smooth)
+    for solve_loop in (False, True):
+        found = on_soil(mcmanus.path, 200.0, time, a_g, Iterated(), 4, solve_loop)
+        assert convergence.error(found, expected) < 1e-3
+
+
+def test_ssp_archive_of_the_bridge(piers, tmp_path):
+    """fmpy runs it as what it is: every value held, and handed on after the step."""
+    archive, h, time = tmp_path / "bridge.ssp", 1e-3, TIME[SHORT]
+    bridge_ssp.write_archive(archive, piers)
+    result = bridge_ssp.run(archive, TIME[SHORT], A_G[SHORT], h)
+    mass = deck()
+    structures = [Structure(fmu, ["a_g", "F_t"], ["delta_t", "v_t"]) for fmu in piers]
+    forces, tops, x = [0.0, 0.0], np.zeros((2, 2)), []
+    for n in range(len(result)):
+        a_g = 0.0 if n == 0 else np.interp(n * h, time, A_G[SHORT])
+        after = [pier.step(n * h, h, [[a_g, F_t]] * 2) for pier, F_t in zip(structures, forces)]
+        force = np.sum(mass.k / 2 * tops[:, 0] + mass.c / 2 * tops[:, 1]) - mass.M * a_g
+        mass.step(h, (force, force))
+        forces = (mass.k * (mass.x - tops[:, 0]) + mass.c * (mass.v - tops[:, 1])) / 2
+        tops = np.array(after)
+        x.append(mass.x)
+    assert sum(pier.transitions() for pier in structures) > 15
+    assert result["deck.x"] == pytest.approx(np.array(x), abs=1e-9 * np.max(np.abs(x)))
+
+
+def printed(example: str, *arguments) -> list[float]:
+    """The numbers in what an example prints."""
+    command = [sys.executable, "-m", f"coupling.{example}", *map(str, arguments)]
+    environment = os.environ | {"PYTHONPATH": str(ROOT / "examples")}
+    text = subprocess.run(command, env=environment, check=True, capture_output=True, text=True).stdout
+    return [float(number) for number in re.findall(r"(?<![\w.])\d+(?:\.\d+)?(?=[ %\n])", text)]
+
+
+def test_the_bridge_example_prints_the_peaks_of_the_monolithic_bridge(piers, tmp_path):
+    found = printed("bridge", *piers, "--figure", tmp_path / "bridge.png")
+    system, response = convergence.monolithic_bridge(deck()), as_one(pacoima_dam)[-1]
+    expected = [1e3 * np.max(np.abs(response.y[:, 0]))]
+    forces = [system.bearing_forces(phases, y) for phases, y in zip(response.phases, response.y)]
+    for i, p in enumerate(system.structures):
+        uplift = 2 * p.B * np.sin(np.max(np.abs(response.y[:, 4 + 4 * i])))
+        expected += [1e3 * uplift, np.max(np.abs(forces), axis=0)[i], len(response.transitions[i])]
+    assert found[:7] == pytest.approx(expected, rel=1e-3)
+
+
+def test_the_example_on_soil_prints_the_peaks_of_the_monolithic_system(mcmanus, tmp_path):
+    found = printed("building_on_soil", mcmanus.path, "--figure", tmp_path / "soil.png")
+    system = monolithic.OnSoil((MCMANUS,), building_on_soil.MASS, building_on_soil.STIFFNESS, building_on_soil.DAMPING)
+    response = monolithic.integrate(system, TIME, A_G)
+    rigid = reference.integrate(MCMANUS, TIME, A_G)
+    _, _, u, u_dot, theta, theta_dot = response.y.T
+    soft = reference.Response(MCMANUS, TIME, u, u_dot, theta, theta_dot, response.phases[:, 0])
+    expected = [peak for found in (soft, rigid)
+                for peak in (1e3 * np.max(found.uplift), np.max(np.abs(found.a_t)) / MCMANUS.g)]
+    assert found == pytest.approx(expected, rel=5e-3)
