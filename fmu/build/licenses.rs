@@ -9,10 +9,12 @@ use std::{env, error, fs, io};
 /// What begins the name of a file with a licence.
 const LICENSE_FILES: [&str; 5] = ["LICENSE", "LICENCE", "UNLICENSE", "COPYING", "NOTICE"];
 
-/// A list of the crates, then every text once, under the names of the crates that it holds for.
-pub fn licenses(workspace: &Path) -> Result<String, Box<dyn error::Error>> {
-    let linked = linked(workspace)?;
-    let metadata = MetadataCommand::new().current_dir(workspace).other_options(["--offline".to_owned()]).exec()?;
+/// A list of the crates, then every text once, under the names of the crates that it holds for. `folder` is scratch.
+pub fn licenses(workspace: &Path, folder: &Path) -> Result<String, Box<dyn error::Error>> {
+    depend_on_the_library(workspace, folder)?;
+    let options = ["--offline".to_owned(), "--filter-platform".to_owned(), env::var("TARGET")?];
+    let metadata = MetadataCommand::new().current_dir(folder).other_options(options).exec()?;
+    let linked = linked(folder)?;
     let mut list = String::new();
     let mut texts: BTreeMap<String, (String, Vec<String>)> = BTreeMap::new();
     for package in &metadata.packages {
@@ -36,13 +38,26 @@ pub fn licenses(workspace: &Path) -> Result<String, Box<dyn error::Error>> {
     Ok(licenses)
 }
 
-/// The names and versions of what the library alone depends on, without the program, build scripts and macros.
-fn linked(workspace: &Path) -> Result<BTreeSet<String>, Box<dyn error::Error>> {
-    let arguments = "tree --offline --no-default-features --edges normal,no-proc-macro --prefix none";
+/// Makes `folder` a package that depends on the library alone. Asked from within the workspace, cargo wants every
+/// package of every member, and this build may not have downloaded those.
+fn depend_on_the_library(workspace: &Path, folder: &Path) -> io::Result<()> {
+    let (name, path) = (env!("CARGO_PKG_NAME"), workspace.join("fmu"));
+    let manifest = format!(
+        "[workspace]\n[package]\nname = \"links-the-library\"\nedition = \"2024\"\n[lib]\npath = \"none.rs\"\n\
+         [dependencies]\n{name} = {{ path = {path:?}, default-features = false }}\n"
+    );
+    fs::write(folder.join("Cargo.toml"), manifest)?;
+    fs::copy(workspace.join("Cargo.lock"), folder.join("Cargo.lock"))?;
+    Ok(())
+}
+
+/// The names and versions of what the library depends on, without build scripts and macros.
+fn linked(folder: &Path) -> Result<BTreeSet<String>, Box<dyn error::Error>> {
+    let arguments = "tree --offline --edges normal,no-proc-macro --prefix none --format {p} --package";
     let tree = Command::new(env::var_os("CARGO").ok_or("CARGO is not set")?)
         .args(arguments.split(' '))
-        .args(["--package", env!("CARGO_PKG_NAME"), "--format", "{p}"])
-        .current_dir(workspace)
+        .args([env!("CARGO_PKG_NAME"), "--target", &env::var("TARGET")?])
+        .current_dir(folder)
         .output()?;
     if !tree.status.success() {
         return Err(String::from_utf8_lossy(&tree.stderr).into());

@@ -10,6 +10,7 @@ fn main() -> Result<(), Box<dyn error::Error>> {
     let variable = |name| env::var(name).map(PathBuf::from);
     let workspace = variable("CARGO_MANIFEST_DIR")?.join("..");
     println!("cargo::rustc-env=FLEXIBLE_ROCKING_BUILD={}", build_id::build_id(&workspace)?);
-    fs::write(variable("OUT_DIR")?.join("license.txt"), licenses::licenses(&workspace)?)?;
+    let folder = variable("OUT_DIR")?;
+    fs::write(folder.join("license.txt"), licenses::licenses(&workspace, &folder)?)?;
     Ok(())
 }

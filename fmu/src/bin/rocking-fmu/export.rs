@@ -20,6 +20,10 @@ const LIBRARY_FILE: &str = "libFlexibleRocking.so";
 /// Licences of all that the shared library is made of.
 const LICENSES: &str = include_str!(concat!(env!("OUT_DIR"), "/license.txt"));
 
+/// How to get the shared library, and the one for Windows.
+const LIBRARY_REMEDY: &str = "build it with `cargo build --release`, or say where it is with --library PATH";
+const WINDOWS_LIBRARY_REMEDY: &str = "`make dist` builds it";
+
 const ICON: &[u8] = include_bytes!("../../../resources/model.png");
 
 /// What to export.
@@ -42,10 +46,11 @@ pub struct ExportArgs {
 pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let library = match &args.library {
-        Some(path) => read_library(path)?,
-        None => read_library(&library_of(&env::current_exe()?))?,
+        Some(path) => read_library(path, LIBRARY_REMEDY)?,
+        None => read_library(&library_of(&env::current_exe()?), LIBRARY_REMEDY)?,
     };
-    let windows_library = args.windows_library.as_deref().map(read_library).transpose()?;
+    let windows_library = args.windows_library.as_deref().map(|path| read_library(path, WINDOWS_LIBRARY_REMEDY));
+    let windows_library = windows_library.transpose()?;
     let size = archive::write(&args.output, &entries(&structure, library, windows_library)?)?;
     let mut out = stdout().lock();
     writeln!(out, "{}: {} kB", args.output.display(), size.div_ceil(1000))?;
@@ -54,26 +59,24 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The shared library that was built with `executable`: beside it, where `cargo build` leaves it, or in the folder `deps`
-/// there. `cargo run` brings only the latter up to date.
+/// The shared library that was built with `executable`: beside it, where `cargo build` leaves it, or in the folder
+/// `deps` there. `cargo run` brings only the latter up to date.
 fn library_of(executable: &Path) -> PathBuf {
     let in_deps = executable.with_file_name("deps").join(LIBRARY_FILE);
     if in_deps.exists() { in_deps } else { executable.with_file_name(LIBRARY_FILE) }
 }
 
 /// The shared library at `path`, if it is there and of this build.
-fn read_library(path: &Path) -> anyhow::Result<Vec<u8>> {
+fn read_library(path: &Path, remedy: &str) -> anyhow::Result<Vec<u8>> {
     let library = match fs::read(path) {
-        Err(error) if error.kind() == io::ErrorKind::NotFound => bail!(
-            "the shared library {} does not exist: build it with `cargo build --release`, or say where it is with --library PATH",
-            path.display()
-        ),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            bail!("the shared library {} does not exist: {remedy}", path.display())
+        }
         result => result.with_context(|| format!("cannot read the shared library {}", path.display()))?,
     };
     if !library.windows(BUILD.len()).any(|bytes| bytes == BUILD.as_bytes()) {
         bail!(
-            "the shared library {} is of another build: the name of this one, {BUILD}, does not occur in it; build both \
-             together with `cargo build --release`",
+            "the shared library {} is of another build: the name of this one, {BUILD}, does not occur in it; {remedy}",
             path.display()
         );
     }
@@ -206,11 +209,17 @@ mod tests {
 
     #[test]
     fn a_missing_library_is_refused_with_what_to_do() {
-        let path = Path::new("/nowhere/libFlexibleRocking.so");
+        let refusal = |arguments: &[&str]| export(arguments).unwrap_err().to_string();
         assert_eq!(
-            read_library(path).unwrap_err().to_string(),
+            refusal(&["--library", "/nowhere/libFlexibleRocking.so"]),
             "the shared library /nowhere/libFlexibleRocking.so does not exist: build it with `cargo build --release`, \
              or say where it is with --library PATH"
+        );
+        let folder = tempfile::tempdir().unwrap();
+        let library = library(folder.path());
+        assert_eq!(
+            refusal(&["--library", library.to_str().unwrap(), "--windows-library", "/nowhere/FlexibleRocking.dll"]),
+            "the shared library /nowhere/FlexibleRocking.dll does not exist: `make dist` builds it"
         );
     }
 

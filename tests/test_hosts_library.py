@@ -1,0 +1,120 @@
+"""The shared library itself: what it offers and what it needs, on Linux and Windows; the same numbers on both."""
+
+import os
+import re
+import shutil
+import subprocess
+import zipfile
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from pacoima import OUTPUTS, distance, linear, write_record
+
+WINDOWS = "x86_64-pc-windows-gnu"
+MINGW = "x86_64-w64-mingw32"
+HOST = "tests/hosts/load_library/Cargo.toml"
+
+# FMI 2.0: the functions of both interfaces and those of co-simulation.
+FUNCTIONS = {f"fmi2{name}" for name in """
+    GetTypesPlatform GetVersion SetDebugLogging Instantiate FreeInstance SetupExperiment EnterInitializationMode
+    ExitInitializationMode Terminate Reset
+    GetReal GetInteger GetBoolean GetString SetReal SetInteger SetBoolean SetString
+    GetFMUstate SetFMUstate FreeFMUstate SerializedFMUstateSize SerializeFMUstate DeSerializeFMUstate
+    GetDirectionalDerivative SetRealInputDerivatives GetRealOutputDerivatives DoStep CancelStep GetStatus GetRealStatus
+    GetIntegerStatus GetBooleanStatus GetStringStatus""".split()}
+
+# The C library, its mathematics and start-up, and the compiler's run time.
+LINUX_RUN_TIME = {"libc.so.6", "libm.so.6", "libgcc_s.so.1", "ld-linux-x86-64.so.2"}
+
+# The C library, and what every Windows has had since version 10.
+WINDOWS_RUN_TIME = {"msvcrt.dll", "kernel32.dll", "ntdll.dll", "ws2_32.dll", "userenv.dll", "bcryptprimitives.dll",
+                    "api-ms-win-core-synch-l1-2-0.dll"}
+
+
+def output(*command, cwd=ROOT, **arguments) -> str:
+    return subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True, cwd=cwd, **arguments).stdout
+
+
+def cargo_build(*arguments):
+    """Builds for release and returns the target folder."""
+    target = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
+    output("cargo", "build", "--release", "--locked", "--target-dir", target, *arguments)
+    return target
+
+
+@pytest.fixture(scope="module")
+def run(mcmanus, tmp_path_factory):
+    """Runs tests/hosts/load_library on Pacoima Dam and returns OUTPUTS."""
+    scene = tmp_path_factory.mktemp("scene") / "pacoima.csv"
+    write_record(scene)
+    references = {name: str(variable.valueReference) for name, variable in mcmanus.variables.items()}
+
+    def run(*command, library, **arguments) -> np.ndarray:
+        printed = output(*command, library, mcmanus.description.guid, f"{mcmanus.folder}/resources", scene,
+                         references["a_g"], ",".join(references[name] for name in OUTPUTS), **arguments)
+        return np.loadtxt(printed.splitlines(), delimiter=",")[:, 1:]
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def linux_library(mcmanus):
+    return f"{mcmanus.folder}/binaries/linux64/FlexibleRocking.so"
+
+
+@pytest.fixture(scope="module")
+def on_linux(run, linux_library):
+    host = cargo_build("--manifest-path", HOST) / "release" / "load-library"
+    return run(host, library=linux_library)
+
+
+@pytest.fixture(scope="module")
+def windows():
+    """The folder of the Windows build, with FlexibleRocking.dll and load-library.exe."""
+    if shutil.which("rustup") is None or WINDOWS not in output("rustup", "target", "list", "--installed").split():
+        pytest.skip(f"Rust's target {WINDOWS} is missing")
+    if shutil.which(f"{MINGW}-gcc") is None:
+        pytest.skip(f"{MINGW}-gcc is missing")
+    cargo_build("--target", WINDOWS, "--manifest-path", HOST)
+    return cargo_build("--target", WINDOWS, "--no-default-features", "--lib") / WINDOWS / "release"
+
+
+def test_linux_library(linux_library):
+    assert {line.split()[-1] for line in output("nm", "-D", "--defined-only", linux_library).splitlines()} == FUNCTIONS
+    needed = re.findall(r"NEEDED\s+(\S+)", output("objdump", "-p", linux_library))
+    assert set(needed) <= LINUX_RUN_TIME
+
+
+def test_linux_host(on_linux, mcmanus):
+    assert distance(on_linux, linear(mcmanus)) < 1e-12
+
+
+def test_windows_library(windows):
+    table = output(f"{MINGW}-objdump", "-p", windows / "FlexibleRocking.dll")
+    assert set(re.findall(r"^\t\[ *\d+\].* (\S+)$", table.partition("Ordinal/Name")[2], re.MULTILINE)) == FUNCTIONS
+    assert {name.lower() for name in re.findall(r"DLL Name: (\S+)", table)} <= WINDOWS_RUN_TIME
+
+
+def test_one_archive_for_both(windows, exporter, mcmanus, tmp_path):
+    path = tmp_path / "both.fmu"
+    output(exporter, "export", "--preset", "mcmanus", "--windows-library", windows / "FlexibleRocking.dll", "-o", path)
+    with zipfile.ZipFile(mcmanus.path) as linux, zipfile.ZipFile(path) as both:
+        content = {name: both.read(name) for name in both.namelist()}
+        assert content.pop("binaries/win64/FlexibleRocking.dll") == (windows / "FlexibleRocking.dll").read_bytes()
+        assert content == {name: linux.read(name) for name in linux.namelist()}
+
+
+def test_windows_gives_the_numbers_of_linux(windows, on_linux, run, tmp_path):
+    """Under wine. Wine 8 has no bcryptprimitives.dll, of which Rust needs one function, for the keys of hash maps."""
+    if shutil.which("wine") is None:
+        pytest.skip("wine is missing")
+    source = tmp_path / "bcryptprimitives.c"
+    source.write_text("__declspec(dllexport) int ProcessPrng(unsigned char *data, unsigned long long size) {"
+                      "for (unsigned long long i = 0; i < size; i++) data[i] = 37 * i; return 1; }")
+    output(f"{MINGW}-gcc", "-shared", "-nostdlib", "-Wl,--entry=0", "-o", tmp_path / "bcryptprimitives.dll", source)
+    for file in ("FlexibleRocking.dll", "load-library.exe"):
+        shutil.copy(windows / file, tmp_path)
+    environment = os.environ | {"WINEPREFIX": str(tmp_path / "wine"), "WINEDEBUG": "-all"}
+    on_windows = run("wine", "load-library.exe", library="FlexibleRocking.dll", cwd=tmp_path, env=environment)
+    assert distance(on_windows, on_linux) < 1e-12

@@ -1,0 +1,44 @@
+"""The Rust import crate `fmi`, over Pacoima Dam: inputs held over each step; FMU states and their bytes."""
+
+import os
+import subprocess
+
+import clang.native
+import numpy as np
+import pytest
+from conftest import ROOT
+from pacoima import A_G, OUTPUTS, TIME, distance, held, write_record
+
+
+@pytest.fixture(scope="module")
+def run(mcmanus, tmp_path_factory):
+    """Runs the host in tests/hosts/fmi_crate on a record and returns time and OUTPUTS."""
+    folder = ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "fmi_crate"
+    # the package libclang brings the library, the C compiler its own headers
+    headers = subprocess.run(["cc", "-print-file-name=include"], check=True, stdout=subprocess.PIPE, text=True).stdout
+    libclang = {"LIBCLANG_PATH": clang.native.__path__[0], "BINDGEN_EXTRA_CLANG_ARGS": f"-isystem {headers.strip()}"}
+    subprocess.run(["cargo", "build", "--locked", "--target-dir", folder, "--manifest-path",
+                    ROOT / "tests/hosts/fmi_crate/Cargo.toml"], env=os.environ | libclang, check=True)
+    record = tmp_path_factory.mktemp("fmi_crate") / "record.csv"
+
+    def run(time, a_g, **start_values) -> np.ndarray:
+        write_record(record, time, a_g)
+        command = [folder / "debug" / "fmi-crate-host", mcmanus.path, record, ",".join(OUTPUTS)]
+        command += [f"{name}={value}" for name, value in start_values.items()]
+        return np.loadtxt(subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines(),
+                          delimiter=",")
+
+    return run
+
+
+def test_pacoima_with_every_step_taken_back_twice(run, mcmanus):
+    result = run(TIME, A_G)
+    assert np.array_equal(result[:, 0], TIME)
+    assert distance(result[:, 1:], held(mcmanus)) < 1e-10
+
+
+def test_a_run_ends_where_the_structure_overturns(run):
+    time = np.linspace(0, 5, 501)
+    result = run(time, np.zeros_like(time), theta_0=0.3)
+    assert time[len(result) - 2] < result[-1, 0] < time[len(result) - 1] < 2.0
+    assert result[-1, 1] == pytest.approx(np.pi / 2, abs=1e-14)

@@ -1,0 +1,122 @@
+"""A system of two specimens on the same ground, as an SSP archive, in three hosts.
+
+libcosim and Ecos know no connection from the system's own input: for them the specimens' inputs are left open.
+"""
+
+import zipfile
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+from fmpy.ssp.simulation import simulate_ssp
+from libcosimpy._internal import get_last_error_message
+from libcosimpy.CosimExecution import CosimExecution
+from libcosimpy.CosimManipulator import CosimManipulator
+from libcosimpy.CosimObserver import CosimObserver
+from pacoima import A_G, OUTPUTS, STEP, TIME, distance, held
+
+SPECIMENS = ("mcmanus", "evison")
+SSD, SSC = (f"http://ssp-standard.org/SSP1/SystemStructure{name}" for name in ("Description", "Common"))
+ElementTree.register_namespace("ssd", SSD)  # Ecos knows the elements by these prefixes
+ElementTree.register_namespace("ssc", SSC)
+
+
+def connectors(parent, reals: dict[str, str]):
+    """The Real connectors of a system or component, by name and kind."""
+    connectors = ElementTree.SubElement(parent, f"{{{SSD}}}Connectors")
+    for name, kind in reals.items():
+        connector = ElementTree.SubElement(connectors, f"{{{SSD}}}Connector", name=name, kind=kind)
+        ElementTree.SubElement(connector, f"{{{SSC}}}Real")
+
+
+def system_structure(connected: bool) -> bytes:
+    """SystemStructure.ssd: every specimen's a_g is connected to that of the system, or open."""
+    root = ElementTree.Element(f"{{{SSD}}}SystemStructureDescription", name="shake table", version="1.0")
+    system = ElementTree.SubElement(root, f"{{{SSD}}}System", name="table")
+    if connected:
+        connectors(system, {"a_g": "input"})
+    elements = ElementTree.SubElement(system, f"{{{SSD}}}Elements")
+    for name in SPECIMENS:
+        component = ElementTree.SubElement(elements, f"{{{SSD}}}Component", name=name, source=f"resources/{name}.fmu",
+                                           type="application/x-fmu-sharedlibrary")
+        connectors(component, {"a_g": "input"} | dict.fromkeys(OUTPUTS, "output"))
+    connections = ElementTree.SubElement(system, f"{{{SSD}}}Connections")
+    for name in SPECIMENS if connected else ():
+        ElementTree.SubElement(connections, f"{{{SSD}}}Connection",
+                               startConnector="a_g", endElement=name, endConnector="a_g")
+    return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
+
+
+@pytest.fixture(scope="module")
+def fmus(mcmanus, evison):
+    return dict(zip(SPECIMENS, (mcmanus, evison)))
+
+
+@pytest.fixture(scope="module")
+def ssp(fmus, tmp_path_factory):
+    """Writes the archive and returns its path."""
+
+    def write(connected: bool):
+        path = tmp_path_factory.mktemp("ssp") / "shake_table.ssp"
+        with zipfile.ZipFile(path, "w") as archive:
+            archive.writestr("SystemStructure.ssd", system_structure(connected))
+            for name, fmu in fmus.items():
+                archive.write(fmu.path, f"resources/{name}.fmu")
+        return path
+
+    return write
+
+
+def test_fmpy(ssp, fmus):
+    """It hands a connection's value on after the step, so that the input is a step late."""
+    a_g = dict(zip(np.round(TIME / STEP), A_G))
+    result = simulate_ssp(str(ssp(connected=True)), stop_time=TIME[-1] - STEP / 2, step_size=STEP,
+                          input={"a_g": lambda time: a_g[round(time / STEP)]})
+    for name, fmu in fmus.items():
+        found = np.column_stack([result[f"{name}.{output}"] for output in OUTPUTS])
+        assert distance(found, held(fmu, delay=1)[1:]) < 1e-9
+
+
+def test_libcosim(ssp, fmus, tmp_path):
+    """It wants the archive unpacked."""
+    for connected in (True, False):
+        with zipfile.ZipFile(ssp(connected)) as archive:
+            archive.extractall(tmp_path / str(connected))
+    with pytest.raises(AssertionError, match="Unable to create execution"):
+        CosimExecution.from_ssp_file(str(tmp_path / "True"), step_size=round(STEP * 1e9))
+    assert get_last_error_message() == "No such node (<xmlattr>.startElement)"
+    execution = CosimExecution.from_ssp_file(str(tmp_path / "False"), step_size=round(STEP * 1e9))
+    values, override = CosimObserver.create_last_value(), CosimManipulator.create_override()
+    execution.add_observer(values)
+    execution.add_manipulator(override)
+    indices = {name: execution.slave_index_from_instance_name(name) for name in fmus}
+    samples = {name: [[0.0] * len(OUTPUTS)] for name in fmus}
+    for a_g in A_G[:-1]:
+        for name, fmu in fmus.items():
+            override.slave_real_values(indices[name], [fmu.variables["a_g"].valueReference], [a_g])
+        assert execution.step()
+        for name, fmu in fmus.items():
+            references = [fmu.variables[output].valueReference for output in OUTPUTS]
+            samples[name].append(values.last_real_values(indices[name], references))
+    for name, fmu in fmus.items():
+        assert distance(np.array(samples[name]), held(fmu)) < 1e-9
+
+
+def test_ecos(ssp, fmus):
+    pytest.importorskip("ecospy", reason="ecospy needs libtbb12", exc_type=(ImportError, OSError))
+    from ecospy import EcosSimulation
+
+    with pytest.raises(Exception, match="No element named:"):
+        EcosSimulation(ssp_path=str(ssp(connected=True)), step_size=STEP)
+    with EcosSimulation(ssp_path=str(ssp(connected=False)), step_size=STEP) as table:
+        assert table.init()
+        samples = {name: [[0.0] * len(OUTPUTS)] for name in fmus}
+        for a_g in A_G[:-1]:
+            for name in fmus:
+                table.set_real(f"{name}::a_g", a_g)
+            table.step()
+            for name in fmus:
+                samples[name].append([table.get_real(f"{name}::{output}") for output in OUTPUTS])
+        table.terminate()
+    for name, fmu in fmus.items():
+        assert distance(np.array(samples[name]), held(fmu)) < 1e-9
