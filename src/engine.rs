@@ -11,9 +11,11 @@
 //! [`MAX_TRANSITIONS_PER_PERIOD`] the next impact is a landing whatever its momentum, and contact is held to the end of
 //! the period ([`TransitionKind::Settling`]): it sees two more at most. Bounces that fast are the start of infinitely
 //! many in finite time, which end in contact; neither specimen comes near them. Steps are then bounded too: an advance
-//! takes at most one for itself, two for each transition, and one for each 1/Ω of time, Ω the largest of ω_u, 2 ζ_u ω_u
-//! and p_l. The rigid limit, which has no vibration and does come to rest by ever faster impacts, has
-//! [`MAX_RIGID_TRANSITIONS_PER_PERIOD`] for each 1/p_l instead. One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps.
+//! takes at most one for itself, two for each transition, and one for each 1/Ω of time, Ω the largest of ω_u, 2 ζ_u ω_u,
+//! 2 ζ_fc ω_fc and p_l. Only what is thrown about takes more, up to four for each 1/Ω with |θ̇|, |u̇|/ρ and √(|ü|/ρ) among
+//! them, ρ² = (J0 + m0 B²)/m + (sB − u)². The rigid limit, which has no vibration and does come to rest by ever faster
+//! impacts, has [`MAX_RIGID_TRANSITIONS_PER_PERIOD`] for each 1/p_l instead. One call takes at most
+//! [`MAX_STEPS_PER_ADVANCE`] steps.
 
 use crate::detail::{Detail, RockingEquations};
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
@@ -45,6 +47,10 @@ pub const MAX_STEPS_PER_ADVANCE: u64 = 2_000_000;
 
 /// A step shorter than this part of 1/ω_u is not the doing of the step's end or of a transition: the solution ends.
 const STALLED: f64 = 1e-12;
+
+/// Part of its inertia at u = 0, height apart, that a structure must keep about its pivot: with less of it, (6) − H (5)
+/// asks for steps without number on the way to a singularity.
+const LEAST_INERTIA: f64 = 1e-6;
 
 /// Work done since the start, counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -299,7 +305,8 @@ impl Engine {
             };
             let (arc, duration) = (&self.arc, self.arc.duration());
             let has_stalled = arc.reach < 1.0 && duration <= STALLED / self.structure.omega_u;
-            if !arc.is_finite() || (has_stalled && matches!(end, StepEnd::Quiet)) {
+            let has_ended = has_stalled && matches!(end, StepEnd::Quiet);
+            if !arc.is_finite() || has_ended || self.is_above_massless_pivot(&motion) {
                 let State { u, theta, .. } = motion.state;
                 return Err(AdvanceError::Singular { time: motion.time, u, theta });
             }
@@ -391,6 +398,16 @@ impl Engine {
             _ => None,
         };
         state.filter(State::is_finite)
+    }
+
+    /// Whether next to nothing but its height keeps the structure from turning about its pivot.
+    fn is_above_massless_pivot(&self, motion: &Motion) -> bool {
+        let (Phase::Rocking(side), RockingEquations::Nonlinear(_)) = (motion.phase, &self.rocking) else {
+            return false;
+        };
+        let (foundation, B) = (self.structure.foundation, self.structure.parameters().B);
+        let lever = side.sign() * B - motion.state.u;
+        foundation + lever * lever < LEAST_INERTIA * (foundation + B * B)
     }
 
     /// Motion in full contact, cut at uplift; none of it for the first `held` seconds.

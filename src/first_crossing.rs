@@ -34,8 +34,11 @@ impl Crossing {
     }
 }
 
-/// Evaluations after which a search hands back what it has cleared so far.
+/// Evaluations after which a march ends where it is.
 const MAX_EVALUATIONS: usize = 100;
+
+/// Part of its way that a march clears, or it goes on over a quarter of that way, for which M is smaller.
+const LEAST_CLEARED: f64 = 1.0 / 16.0;
 
 impl<'a> Guard<'a> {
     /// The guard `offset + sign·Σ c_k σ^k`.
@@ -107,9 +110,21 @@ pub fn first_time_all_closed<const N: usize>(guards: [Guard; N], reach: f64) -> 
     match march(&guards, 0.0, reach) {
         Crossing::NoneUntil(cleared) => {
             let open = guards.iter().map(Guard::open_by_signs).fold(cleared, f64::max);
-            march(&guards, open, reach)
+            march_over_parts(&guards, open, reach)
         }
         crossing => crossing,
+    }
+}
+
+/// The same from `sigma` on, over as much of the way as can be cleared.
+fn march_over_parts<const N: usize>(guards: &[Guard; N], mut sigma: f64, reach: f64) -> Crossing {
+    let mut end = reach;
+    loop {
+        match march(guards, sigma, end) {
+            Crossing::NoneUntil(cleared) if cleared < LEAST_CLEARED * end => (sigma, end) = (cleared, 0.25 * end),
+            Crossing::None if end < reach => return Crossing::NoneUntil(end),
+            crossing => return crossing,
+        }
     }
 }
 

@@ -13,6 +13,7 @@ use rocking::impact::gaining_restitution;
 use rocking::quantity::Quantity;
 use rocking::{Detail, Engine, Impulse, LinearLoad, Load, Parameters, Phase, Side, State, Structure, Transition};
 use serde::{Deserialize, Serialize};
+use std::borrow::Cow;
 use std::f64::consts::FRAC_PI_2;
 use std::mem::MaybeUninit;
 
@@ -22,7 +23,7 @@ const SAME_TIME: f64 = 1e-9;
 /// Largest |θ| of a structure in motion, rad: that of overturning and its rounding.
 const MAX_ANGLE: f64 = FRAC_PI_2 + 1e-9;
 
-/// More than any other number of the motion (SI units) can be, and small enough to be squared.
+/// More than any other number of the motion (SI units) but its time can be, and small enough to be squared.
 const BOUND: f64 = 1e100;
 
 /// One instance.
@@ -100,8 +101,8 @@ impl Condition {
         let moves = self.engine.as_ref().map(|engine| {
             let &Motion { time, a_g, state: State { u, u_dot, theta, theta_dot }, impulse, .. } = engine.motion();
             let Impulse { I_h, I_v, I_m } = impulse;
-            let is_bounded = [time, a_g, u, u_dot, theta_dot, I_h, I_v, I_m].iter().all(|x| x.abs() <= BOUND);
-            is_bounded && time >= *start_time && theta.abs() <= MAX_ANGLE
+            let is_bounded = [a_g, u, u_dot, theta_dot, I_h, I_v, I_m].iter().all(|x| x.abs() <= BOUND);
+            is_bounded && time.is_finite() && time >= *start_time && theta.abs() <= MAX_ANGLE
         });
         VARIABLES.iter().all(fits)
             && check_experiment(*tolerance, *start_time, *stop_time).is_ok()
@@ -114,6 +115,14 @@ impl Condition {
             Some(engine) => Ok(engine),
             none => Ok(none.insert(self.setup.start()?)),
         }
+    }
+
+    /// The same, only looked at: what may still be refused leaves nothing behind.
+    fn as_it_stands(&self) -> Result<Cow<'_, Engine>, Failure> {
+        Ok(match &self.engine {
+            Some(engine) => Cow::Borrowed(engine),
+            None => Cow::Owned(self.setup.start()?),
+        })
     }
 }
 
@@ -249,13 +258,14 @@ impl Instance {
         let load = self.now.input.value;
         let (mut outputs, mut reactions) = (None, None);
         if is_computed {
-            let engine = self.now.engine()?;
             if let Some(variable) = reaction {
+                let engine = self.now.as_it_stands()?;
                 let exerted = reactions.insert(engine.reactions(load));
                 if !(exerted.R_h + exerted.R_v + exerted.R_m).is_finite() {
                     return Err(Failure::NoReaction { variable, time: engine.motion().time });
                 }
             }
+            self.now.engine()?;
         }
         for (reference, value) in references.iter().zip(values) {
             let variable = find(*reference)?;
@@ -439,7 +449,7 @@ impl Instance {
     /// is the derivative; it is taken over a change of the size of gravity and the strut's force, which keeps its
     /// digits.
     pub fn get_directional_derivative(
-        &mut self,
+        &self,
         unknowns: &[u32],
         knowns: &[u32],
         seed: &[f64],
@@ -455,7 +465,7 @@ impl Instance {
             let sum = (quantity.get)(&direction) + value;
             (quantity.set)(&mut direction, sum);
         }
-        let engine = self.now.engine()?;
+        let engine = self.now.as_it_stands()?;
         let time = engine.motion().time;
         let &Parameters { m, g, .. } = engine.structure().parameters();
         let outputs_before = engine.outputs(0.0);

@@ -7,12 +7,16 @@
 mod host;
 
 use FlexibleRocking::c_abi::*;
+use FlexibleRocking::snapshot;
 use FlexibleRocking::state_machine::{Function, Stage};
 use FlexibleRocking::variables::{DataType, VARIABLES};
 use fastrand::Rng;
 use host::{DISCARD, ERROR, OK};
 use libc::{c_char, c_int, c_uint, c_void};
+use model_description::Causality;
 use rocking::Parameters;
+use rocking::engine::{MAX_STEPS_PER_ADVANCE, Work};
+use rocking::taylor::MAX_ORDER;
 use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
@@ -65,6 +69,8 @@ fn no_call_does_harm() {
     });
     println!("{tally}");
     assert!(tally.calls() >= calls);
+    let freed_in = tally.freed_in;
+    assert!(calls < CALLS || freed_in.iter().all(|count| *count > 0), "freed in {:?}: {freed_in:?}", Stage::ALL);
 }
 
 /// What came of the calls: OK, Discard and Error of every function.
@@ -73,6 +79,10 @@ struct Tally {
     statuses: [[u64; 3]; Function::ALL.len()],
     instances: u64,
     refused_instances: u64,
+    /// Instances freed, by stage.
+    freed_in: [u64; Stage::ALL.len()],
+    /// Most steps of the solver in one call.
+    most_steps: u64,
     longest: Duration,
     longest_function: &'static str,
 }
@@ -86,6 +96,10 @@ impl Tally {
         for (sum, more) in self.statuses.iter_mut().flatten().zip(other.statuses.iter().flatten()) {
             *sum += more;
         }
+        for (sum, more) in self.freed_in.iter_mut().zip(other.freed_in) {
+            *sum += more;
+        }
+        self.most_steps = self.most_steps.max(other.most_steps);
         self.instances += other.instances;
         self.refused_instances += other.refused_instances;
         if other.longest > self.longest {
@@ -101,6 +115,7 @@ impl fmt::Display for Tally {
         for (function, [ok, discard, error]) in Function::ALL.iter().zip(self.statuses) {
             writeln!(f, "{:28}{ok:12}{discard:12}{error:12}", function.name())?;
         }
+        writeln!(f, "most steps in one call: {} of {MAX_STEPS_PER_ADVANCE}", self.most_steps)?;
         write!(f, "longest call: {:?}, {}", self.longest, self.longest_function)
     }
 }
@@ -121,7 +136,11 @@ unsafe extern "C" fn tell(
     text: *const c_char,
 ) {
     let told = unsafe { &*environment.cast::<Told>() };
-    told.messages.borrow_mut().push((status, unsafe { CStr::from_ptr(text) }.to_str().unwrap().to_owned()));
+    let text = unsafe { CStr::from_ptr(text) }.to_str().unwrap();
+    // not the events, of which one call may have two million
+    if status != OK {
+        told.messages.borrow_mut().push((status, text.to_owned()));
+    }
     let c = told.call_back.get();
     if !c.is_null() {
         unsafe {
@@ -138,6 +157,8 @@ struct Slot {
     told: Box<Told>,
     /// The FMU states that it has handed out.
     states: Vec<*mut c_void>,
+    /// One that it has handed out and freed.
+    freed: *mut c_void,
 }
 
 /// A run of calls on two instances.
@@ -152,7 +173,7 @@ struct Sequence<'a> {
 
 impl Sequence<'_> {
     fn new(number: u64, location: &CStr) -> Sequence<'_> {
-        let slot = || Slot { c: null_mut(), told: Box::default(), states: Vec::new() };
+        let slot = || Slot { c: null_mut(), told: Box::default(), states: Vec::new(), freed: null_mut() };
         Sequence {
             rng: Rng::with_seed(number),
             location,
@@ -258,6 +279,7 @@ impl Sequence<'_> {
                 "r" => self.between(0.5, 1.0),
                 "g" => 9.81,
                 "a_g" => self.sign() * self.between(0.1, 50.0),
+                "F_t" => self.sign() * self.between(1.0, 1e4),
                 _ => self.sign() * self.between(1e-4, 0.5),
             },
         }
@@ -270,6 +292,11 @@ impl Sequence<'_> {
             2 => c_uint::MAX,
             _ => self.rng.u32(..VARIABLES.len() as c_uint),
         }
+    }
+
+    fn input(&mut self) -> c_uint {
+        let is_input = |reference: &c_uint| VARIABLES[*reference as usize].causality == Causality::Input;
+        self.rng.choice((0..VARIABLES.len() as c_uint).filter(is_input).collect::<Vec<_>>()).unwrap()
     }
 
     fn references(&mut self) -> Vec<c_uint> {
@@ -304,12 +331,13 @@ impl Sequence<'_> {
         }
     }
 
-    /// An FMU state of the instance, of the other one, or none at all.
+    /// An FMU state of the instance, of the other one, one that is freed, or none at all.
     fn state(&mut self, at: usize) -> *mut c_void {
         let of = if self.one_in(20) { 1 - at } else { at };
         match self.rng.u8(..20) {
             0 => without_provenance_mut(self.rng.usize(..)),
             1 => null_mut(),
+            2 => self.slots[of].freed,
             _ => self.rng.choice(&self.slots[of].states).copied().unwrap_or(null_mut()),
         }
     }
@@ -342,8 +370,9 @@ impl Sequence<'_> {
     fn instantiate(&mut self, at: usize) {
         let wrong = |rng: &mut Rng| rng.u8(..20) == 0;
         let rng = &mut self.rng;
-        let names = [c"wall", c"%s%n#", c"\xff", c""];
-        let name = if wrong(rng) { names[rng.usize(..4)] } else { names[0] };
+        let too_long = CString::new(vec![b'a'; 70_000]).unwrap();
+        let names = [c"wall", c"%s%n#", c"\xff", c"", &too_long];
+        let name = if wrong(rng) { names[rng.usize(..5)] } else { names[0] };
         let guid = if wrong(rng) { Parameters::MCMANUS } else { Parameters::EVISON };
         let guid = CString::new(FlexibleRocking::guid(&guid)).unwrap();
         let locations = [c"", c"file:///nowhere", c"file:///%00", c"http://localhost/", c"file:///dev", c"\xfe"];
@@ -368,10 +397,14 @@ impl Sequence<'_> {
 
     /// In whatever state, with the FMU states that it has handed out.
     fn free(&mut self, at: usize) {
+        if let Some(stage) = self.told_stage(at) {
+            self.tally.freed_in[stage as usize] += 1;
+        }
         let slot = &mut self.slots[at];
         unsafe { fmi2FreeInstance(slot.c) };
         slot.c = null_mut();
         slot.states.clear();
+        slot.freed = null_mut();
     }
 
     /// The instance as bytes.
@@ -396,14 +429,24 @@ impl Sequence<'_> {
         }
     }
 
-    /// The stage, which the refusal of a function that is never allowed tells. That of a null or silent instance is
-    /// of no interest.
+    /// The solver's work since the start. Whatever calls have led to can be read back from its bytes.
+    fn work(&self, at: usize) -> Work {
+        let condition = snapshot::deserialize(&self.serialized(at)).unwrap();
+        condition.engine.map_or_else(Work::default, |engine| engine.motion().work)
+    }
+
+    /// The stage. That of a null or silent instance is of no interest.
     fn stage(&self, at: usize) -> Stage {
+        self.told_stage(at).unwrap_or(Stage::Error)
+    }
+
+    /// The stage, as the refusal of a function that is never allowed tells it.
+    fn told_stage(&self, at: usize) -> Option<Stage> {
         let slot = &self.slots[at];
         assert_eq!(unsafe { fmi2CancelStep(slot.c) }, ERROR);
         let messages = slot.told.messages.take();
         let is_told = |stage: &Stage| messages.iter().any(|(_, text)| text.contains(&format!("\"{stage}\"")));
-        Stage::ALL.into_iter().find(is_told).unwrap_or(Stage::Error)
+        Stage::ALL.into_iter().find(is_told)
     }
 
     /// Where the instance is in time, if it can be asked.
@@ -466,7 +509,8 @@ impl Sequence<'_> {
             GetInteger | GetBoolean => self.get_discrete(at, function),
             SetReal | SetRealInputDerivatives => self.set_reals(at, function),
             SetInteger => self.set_integers(at),
-            GetString | SetBoolean | SetString | GetDirectionalDerivative => self.ask_in_vain(at, function),
+            GetString | SetBoolean | SetString => self.ask_in_vain(at, function),
+            GetDirectionalDerivative => self.get_directional_derivative(at),
             GetFMUstate => self.get_state(at),
             SetFMUstate => self.set_state(at),
             FreeFMUstate => self.free_state(at),
@@ -539,11 +583,16 @@ impl Sequence<'_> {
     fn set_reals(&mut self, at: usize, function: Function) {
         let mut references = self.references();
         if self.rng.bool() {
-            references = vec![0];
+            references = vec![self.input()];
+        }
+        let mut values: Vec<_> = references.iter().map(|r| self.value(*r)).collect();
+        if self.one_in(40) {
+            // the top mass above the pivot of a foundation without inertia: no step can be made
+            references = ["m0", "J0", "B", "theta_0", "u_0"].map(host::reference).into();
+            values = vec![0.0, 0.0, 0.3, 0.1, 0.3];
         }
         let n = references.len();
-        let (mut values, mut orders): (Vec<_>, _) =
-            (references.iter().map(|r| self.value(*r)).collect(), self.orders(n));
+        let mut orders = self.orders(n);
         let nvr = self.length(n);
         let (vr, order, value) = (self.pointer(&mut references), self.pointer(&mut orders), self.pointer(&mut values));
         self.call(at, function, |c| unsafe {
@@ -571,17 +620,32 @@ impl Sequence<'_> {
     fn ask_in_vain(&mut self, at: usize, function: Function) {
         let mut references = self.references();
         let n = references.len();
-        let (mut reals, mut integers, mut texts) = (vec![0.0; n], vec![0; n], vec![null(); n]);
+        let (mut integers, mut texts) = (vec![0; n], vec![null(); n]);
         let (nvr, vr) = (self.length(n), self.pointer(&mut references));
-        let (real, integer, text) = (self.pointer(&mut reals), self.pointer(&mut integers), self.pointer(&mut texts));
+        let (integer, text) = (self.pointer(&mut integers), self.pointer(&mut texts));
         self.call(at, function, |c| unsafe {
             match function {
                 Function::GetString => fmi2GetString(c, vr, nvr, text),
                 Function::SetBoolean => fmi2SetBoolean(c, vr, nvr, integer),
-                Function::SetString => fmi2SetString(c, vr, nvr, text),
-                _ => fmi2GetDirectionalDerivative(c, vr, nvr, vr, nvr, real, real),
+                _ => fmi2SetString(c, vr, nvr, text),
             }
         });
+    }
+
+    /// Values are finite, or left alone.
+    fn get_directional_derivative(&mut self, at: usize) {
+        let mut unknowns = self.references();
+        let mut knowns = if self.one_in(8) { self.references() } else { vec![self.input()] };
+        let mut seed: Vec<_> = knowns.iter().map(|_| self.number()).collect();
+        let mut values = vec![f64::NEG_INFINITY; unknowns.len()];
+        let (n_unknown, n_known) = (self.length(unknowns.len()), self.length(knowns.len()));
+        let (unknown, known) = (self.pointer(&mut unknowns), self.pointer(&mut knowns));
+        let (from, to) = (self.pointer(&mut seed), self.pointer(&mut values));
+        let status = self.call(at, Function::GetDirectionalDerivative, |c| unsafe {
+            fmi2GetDirectionalDerivative(c, unknown, n_unknown, known, n_known, from, to)
+        });
+        let is_right = |value: &f64| if status == OK { value.is_finite() } else { *value == f64::NEG_INFINITY };
+        assert!(values.iter().all(is_right), "{unknowns:?} by {knowns:?} {seed:?}: {status} {values:?}");
     }
 
     fn get_state(&mut self, at: usize) {
@@ -621,6 +685,7 @@ impl Sequence<'_> {
         if status == OK && !place.is_null() {
             assert!(state.is_null());
             self.slots[at].states.retain(|state| *state != freed);
+            self.slots[at].freed = freed;
         }
     }
 
@@ -659,23 +724,30 @@ impl Sequence<'_> {
         }
     }
 
-    /// Mostly from where the instance is, mostly over some ten milliseconds.
+    /// Mostly from where the instance is, mostly over some ten milliseconds. The work is bounded.
     fn do_step(&mut self, at: usize) {
         let before = self.time(at);
+        let work_before = before.map(|_| self.work(at));
         let mut point = before.unwrap_or(0.0);
         if self.one_in(16) {
             point += self.number();
         }
-        let step = match self.rng.u16(..1000) {
+        // a long one takes as much work as a thousand others
+        let step = match self.rng.u16(..4000) {
             0 => 1e9,
-            1..100 => self.number(),
-            100..120 => 1e-300,
+            1..40 => self.number(),
+            40..120 => 1e-300,
             _ => self.between(1e-4, 0.1),
         };
         let go_back = self.choice();
         let status = self.call(at, Function::DoStep, |c| unsafe { fmi2DoStep(c, point, step, go_back) });
         if let (Some(before), Some(after)) = (before, self.time(at)) {
             assert!(if status == OK { after > before } else { after >= before }, "from {before} to {after}");
+            let (work, work_before) = (self.work(at), work_before.unwrap());
+            let steps = work.steps - work_before.steps;
+            assert!(steps <= MAX_STEPS_PER_ADVANCE, "{steps} steps");
+            assert!(work.evaluations - work_before.evaluations <= steps * MAX_ORDER as u64);
+            self.tally.most_steps = self.tally.most_steps.max(steps);
         }
     }
 

@@ -1,0 +1,225 @@
+"""The edges of the parameters' ranges, 100 g and long steps, at every level of detail, against the independent integration."""
+
+import re
+import subprocess
+from dataclasses import replace
+from math import pi
+
+import numpy as np
+import pytest
+import reference
+from fmpy.fmi1 import FMICallException
+from host import G, Instance, simulate
+from reference import EVISON
+
+LEVELS = {"auto": 1, "nonlinear": 2, "linear": 3, "modal": 4, "rigid": 5, "fixed_base": 6}
+
+
+def start(fmu, level, *, tolerance=1e-11, **start_values) -> Instance:
+    instance = fmu.instance()
+    instance.slave.setInteger([fmu.variables["detail"].valueReference], [LEVELS[level]])
+    return instance.initialize(tolerance, **start_values)
+
+
+def ground(load, t):
+    return load.a_g + load.a_g_rate * (t - load.t0)
+
+
+def linear_rocking(p, s, load):
+    """Eqs 7 and 8, solved for the accelerations."""
+    gamma, inertia = (p.m + p.m0) / p.m, (p.J0 + p.m0 * p.B**2) / p.m + p.B**2
+
+    def rates(t, y):
+        u, u_dot, theta, theta_dot = y.tolist()
+        elastic = p.c_u / p.m * u_dot + p.omega**2 * u
+        # (8) - H (7)
+        theta_ddot = (p.H * elastic + p.g * u - s * gamma * p.g * p.B) / inertia
+        return [u_dot, -ground(load, t) - elastic + p.g * theta - p.H * theta_ddot, theta_dot, theta_ddot]
+
+    return rates
+
+
+def vibration_mode(p):
+    """1 - beta, without the digits that beta has lost; omega_u and zeta_u of Eq 18."""
+    rest = (p.J0 + (p.m + p.m0) * p.B**2) / p.J_P
+    return rest, p.omega / rest**0.5, p.c_u / (2 * (p.k * p.m * rest) ** 0.5)
+
+
+def modal_rocking(p, s, load):
+    """Eqs 11 and 18, and 16 differentiated twice."""
+    rest, omega_u, zeta_u = vibration_mode(p)
+
+    def rates(t, y):
+        u, u_dot, theta, theta_dot = y.tolist()
+        a_g = ground(load, t)
+        u_ddot = -2 * zeta_u * omega_u * u_dot - omega_u**2 * u - a_g + s * p.beta / rest * p.g * p.tan_alpha
+        q_r = theta + p.p_l**2 / p.g * u
+        q_r_ddot = p.p_l**2 * (q_r - a_g / p.g - s * p.tan_alpha)
+        return [u_dot, u_ddot, theta_dot, q_r_ddot - p.p_l**2 / p.g * u_ddot]
+
+    return rates
+
+
+def modal_uplift_margin(p, s):
+    """s theta_ddot at theta = theta_dot = 0 by Eqs 11, 16 and 18, over p_l^2/g."""
+    rest, omega_u, zeta_u = vibration_mode(p)
+    return s * (p.p_l**2 + omega_u**2), s * 2 * zeta_u * omega_u, -p.g * p.tan_alpha / rest
+
+
+def rigid_rocking(p, s, load):
+    """Eq 6 with u = 0."""
+
+    def rates(t, y):
+        theta, theta_dot = y.tolist()[2:]
+        sn, cs, a_g, M = np.sin(theta), np.cos(theta), ground(load, t), p.m + p.m0
+        moment = p.m * p.g * p.H * sn - s * M * p.g * p.B * cs - a_g * (p.m * p.H * cs + s * M * p.B * sn)
+        return [0.0, 0.0, theta_dot, moment / p.J_P]
+
+    return rates
+
+
+def rigid_impact(p, s, y):
+    return "impact", -s, np.array([0.0, 0.0, 0.0, p.r * y[3]])
+
+
+@pytest.fixture
+def by(monkeypatch):
+    """Makes the independent integration go by the equations of one level."""
+
+    def choose(level):
+        if level == "linear":
+            monkeypatch.setattr(reference, "rocking", linear_rocking)
+        elif level == "modal":
+            monkeypatch.setattr(reference, "rocking", modal_rocking)
+            monkeypatch.setattr(reference, "uplift_margin", modal_uplift_margin)
+        elif level == "rigid":
+            monkeypatch.setattr(reference, "rocking", rigid_rocking)
+            monkeypatch.setattr(reference, "impact", rigid_impact)
+        elif level == "fixed_base":
+            monkeypatch.setattr(reference, "lifts", lambda *_: False)
+            monkeypatch.setattr(reference, "_first_uplift", lambda *_: None)
+
+    return choose
+
+
+def compare(fmu, level, p, time, a_g, initial, limit):
+    """Runs both; the largest distance of theta and u over their peaks, or of an overturning's instant, is below `limit`."""
+    exact = reference.integrate(p, time, a_g, initial)
+    values = {name: getattr(p, name) for name in ("m", "m0", "H", "B", "J0", "f_fc", "zeta_fc", "r", "c_ratio")}
+    values |= dict(zip(("u_0", "u_dot_0", "theta_0", "theta_dot_0"), initial))
+    with start(fmu, level, **values) as instance:
+        overturns = bool(exact.transitions) and exact.transitions[-1].kind == "overturned"
+        count = len(exact.t) - 1 if overturns else len(exact.t)
+        rows = instance.follow(time[:count], a_g[:count])
+        assert all(np.isfinite(rows[name]).all() for name in rows.dtype.names)
+        if overturns:
+            slope = (a_g[count] - a_g[count - 1]) / (time[count] - time[count - 1])
+            instance.load(a_g[count - 1], slope)
+            with pytest.raises(FMICallException, match="discard"):
+                instance.step(time[count])
+            assert instance.events[-1].time == pytest.approx(exact.transitions[-1].time, rel=limit)
+        kinds = {"overturned": "overturning"}
+        assert [event.kind for event in instance.events] == [kinds.get(t.kind, t.kind) for t in exact.transitions]
+        for name in ("theta", "u"):
+            expected = getattr(exact, name)
+            error = np.max(np.abs(rows[name] - expected[:count]))
+            assert error <= limit * np.max(np.abs(expected)), f"{name}: {error:.1e} of {np.max(np.abs(expected)):.1e}"
+    return exact
+
+
+CORNERS = {
+    "H/B = 50": dict(H=14.25),
+    "f_fc = 1e-3 Hz": dict(f_fc=1e-3),
+    "f_fc = 1e4 Hz": dict(f_fc=1e4),
+    "m0 = 0": dict(m0=0.0),
+    "m0 = 0, f_fc = 1 Hz": dict(m0=0.0, f_fc=1.0),
+    "J0 large": dict(J0=1e5),
+    "r = 1": dict(r=1.0),
+    "zeta = 0": dict(zeta_fc=0.0),
+    "zeta = 2": dict(zeta_fc=2.0),
+}
+
+
+@pytest.mark.parametrize("corner", CORNERS)
+@pytest.mark.parametrize("level", LEVELS)
+def test_corners(evison, by, level, corner):
+    """Falls back from a small angle (in full contact on a fixed base) and is shaken, over up to 600 rad of vibration."""
+    p = replace(EVISON, **CORNERS[corner])
+    by(level)
+    duration = 1.0 if level == "rigid" else min(1.0, 600 / vibration_mode(p)[1])
+    time = np.linspace(0, duration, 41)
+    a_g = 1.5 * G * p.tan_alpha * np.sin(2 * pi * 3 * time / duration)
+    theta = 0.0 if level == "fixed_base" else p.tan_alpha * min(1e-3, (0.2 * p.p_l * duration) ** 2)
+    u = 0.0 if level == "rigid" else min(0.5 * p.u_cr, 0.1 * p.B)
+    # theta is rounded to 1e-16 of tan alpha at the modal level, which decides instants: at 2e5 rad/s u feels it
+    limit = 1e-7 if p.f_fc == 1e4 else 1e-8
+    exact = compare(evison, level, p, time, a_g, (u, 0.0, theta, 0.0), limit)
+    assert len(exact.transitions) > 0 or level == "fixed_base"
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_100_g(evison, by, level):
+    """One pulse and back: all levels overturn but the fixed base."""
+    by(level)
+    time = np.linspace(0, 0.2, 21)
+    a_g = -100 * G * np.sin(2 * pi * time / 0.2)
+    theta = 1e-3 if level == "rigid" else 0.0
+    exact = compare(evison, level, EVISON, time, a_g, (0.0, 0.0, theta, 0.0), 1e-8)
+    assert [t.kind for t in exact.transitions][-1:] == ([] if level == "fixed_base" else ["overturned"])
+
+
+def test_a_record_that_ends_within_a_step(evison, exporter, tmp_path):
+    """A master hands over the record's last slope for the whole step, and holds its last value from then on; the
+    program, which knows the record, leaves the ground at rest from its end on."""
+    time = np.append(np.linspace(0, 0.5, 51), 0.5037)
+    a_g = 5.0 * np.sin(20 * time)
+    last_slope = (a_g[-1] - a_g[-2]) / (time[-1] - time[-2])
+    table = np.array(list(zip(time - 1e-12, a_g)), dtype=[("time", float), ("a_g", float)])
+    result, _ = simulate(evison, stop_time=0.6, output_interval=0.01, input=table, set_input_derivatives=True,
+                         relative_tolerance=1e-11, output=["theta", "u"])
+    knots = np.concatenate([time[:-1], [0.51, 0.51 + 1e-12, 0.6]])
+    exact = reference.integrate(EVISON, knots, np.concatenate([a_g[:-1], [a_g[-2] + 0.01 * last_slope], 2 * [a_g[-1]]]))
+    assert exact.transitions
+    assert result["u"][-1] == pytest.approx(exact.u[-1], rel=1e-7)
+    assert result["theta"][-1] == pytest.approx(exact.theta[-1], abs=1e-10)
+
+    record, response = tmp_path / "record.csv", tmp_path / "response.csv"
+    np.savetxt(record, np.column_stack([time, a_g]), delimiter=",", fmt="%.17g")
+    subprocess.run([exporter, "simulate", "--preset", "evison", "--record", record, "--unit", "m/s2", "--dt", "0.01",
+                    "--tolerance", "1e-11", "--duration", "0.6", "-o", response], check=True)
+    rows = np.genfromtxt(response, delimiter=",", names=True)
+    exact = reference.integrate(EVISON, np.append(time, [time[-1] + 1e-12, 0.6]), np.append(a_g, [0.0, 0.0]))
+    assert len(rows) == 61
+    assert rows["um"][-1] == pytest.approx(exact.u[-1], rel=1e-7)
+    assert rows["thetarad"][-1] == pytest.approx(exact.theta[-1], abs=1e-10)
+
+
+@pytest.mark.parametrize("level", LEVELS)
+def test_a_step_of_ten_hours_ends_at_rest(evison, level):
+    """Tilted or deformed, under a constant push that does not lift it: u = -a_g/omega^2 in the end, and not a bit less."""
+    u_0 = 0.0 if level == "rigid" else 0.9 * EVISON.u_cr
+    theta_0 = 0.0 if level == "fixed_base" else 0.04
+    with start(evison, level, tolerance=1e-9, u_0=u_0, theta_0=theta_0) as instance:
+        instance.load(0.1)
+        instance.step(36_000.0)
+        assert instance.get("phase") == 1
+        assert instance.reals(("theta", "theta_dot")) == (0.0, 0.0)
+        assert instance.get("u") == pytest.approx(0.0 if level == "rigid" else -0.1 / EVISON.omega**2, rel=1e-12)
+        assert instance.get("a_t") == pytest.approx(0.1, rel=1e-12)
+
+
+def test_a_step_of_too_much_work_is_refused_and_a_shorter_one_is_not(evison):
+    """2,000,000 series of 8 rad each: what `nonlinear` takes for a structure at rest."""
+    omega = 2 * pi * 1e4
+    with start(evison, "nonlinear", f_fc=1e4) as instance:
+        before = instance.reals()
+        with pytest.raises(FMICallException, match="fmi2DoStep failed with status 3"):
+            instance.step(7200.0)
+        (message,) = instance.errors
+        words = re.fullmatch(r"fmi2DoStep: one advance may take 2000000 steps; they ended at t = (\S+) s of 7200 s: advance in "
+                             r"shorter intervals", message)
+        assert words, message
+        assert float(words[1]) == pytest.approx(2_000_000 * 8 / omega, rel=1e-9)
+        assert instance.reals() == before
+        instance.time = 0.0
+        instance.step(250.0)
