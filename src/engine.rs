@@ -42,7 +42,8 @@ pub const MAX_TRANSITIONS_PER_PERIOD: u32 = 1000;
 /// many.
 pub const MAX_RIGID_TRANSITIONS_PER_PERIOD: u32 = 100_000;
 
-/// Steps that one advance may take, about a second of computing; a longer interval has to be cut.
+/// Steps that one advance may take, a second or two of computing, and some ten of what is thrown about so wildly that every
+/// step has to be searched for transitions throughout; a longer interval has to be cut.
 pub const MAX_STEPS_PER_ADVANCE: u64 = 2_000_000;
 
 /// A step shorter than this part of 1/ω_u is not the doing of the step's end or of a transition: the solution ends.
