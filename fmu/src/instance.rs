@@ -10,7 +10,6 @@ use crate::variables::{self, INPUTS, Source, VARIABLES, Variable};
 use model_description::Causality;
 use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE, Motion, Progress, TransitionKind};
 use rocking::impact::gaining_restitution;
-use rocking::quantity::Quantity;
 use rocking::{Detail, Engine, Impulse, LinearLoad, Load, Parameters, Phase, Side, State, Structure, Transition};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -333,25 +332,32 @@ impl Instance {
 
     /// `fmi2SetReal`: all of the values, or none if one is refused.
     pub fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
-        let Condition { stage, mut setup, mut input, .. } = self.now;
-        let mut is_set_up_anew = false;
         for (reference, &value) in references.iter().zip(values) {
             let variable = find(*reference)?;
             match variable.source {
-                Source::Input(quantity) => set(quantity, &mut input.value, value)?,
-                Source::Parameter(_) | Source::InitialValue(_) if stage == Stage::StepComplete => {
+                Source::Input(quantity) => quantity.check(value)?,
+                Source::Parameter(_) | Source::InitialValue(_) if self.now.stage == Stage::StepComplete => {
                     return Err(Failure::Fixed(variable));
                 }
-                Source::Parameter(quantity) => set(quantity, &mut setup.parameters, value)?,
-                Source::InitialValue(quantity) => set(quantity, &mut setup.initial, value)?,
+                Source::Parameter(quantity) => quantity.check(value)?,
+                Source::InitialValue(quantity) => quantity.check(value)?,
                 _ => return Err(Failure::NotSettable(variable)),
             }
-            is_set_up_anew |= variable.causality == Causality::Parameter;
         }
-        self.now.input = input;
-        if is_set_up_anew {
-            self.now.setup = setup;
-            self.now.engine = None;
+        let now = &mut self.now;
+        for (reference, &value) in references.iter().zip(values) {
+            match find(*reference)?.source {
+                Source::Input(quantity) => (quantity.set)(&mut now.input.value, value),
+                Source::Parameter(quantity) => {
+                    (quantity.set)(&mut now.setup.parameters, value);
+                    now.engine = None;
+                }
+                Source::InitialValue(quantity) => {
+                    (quantity.set)(&mut now.setup.initial, value);
+                    now.engine = None;
+                }
+                _ => (),
+            }
         }
         Ok(())
     }
@@ -624,12 +630,6 @@ fn check_experiment(tolerance: f64, start_time: f64, stop_time: Option<f64>) -> 
 fn find(reference: u32) -> Result<&'static Variable, Failure> {
     let Some(variable) = VARIABLES.get(reference as usize) else { return Err(Failure::UnknownReference(reference)) };
     Ok(variable)
-}
-
-fn set<T>(quantity: &Quantity<T>, of: &mut T, value: f64) -> Result<(), Failure> {
-    quantity.check(value)?;
-    (quantity.set)(of, value);
-    Ok(())
 }
 
 /// The inputs at the end of a step of `duration` (s), held from there on until they are set anew.
