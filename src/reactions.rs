@@ -13,6 +13,8 @@
 //! R_h = c_fc u̇ + k u − m0 a_g, R_v = (m + m0) g and R_m = H (c_fc u̇ + k u) + m g u. While rocking the pivot is the
 //! only contact: by Eqs 5 and 6 R_m = sB R_v; the levels with linear equations miss that by what they leave out.
 //!
+//! The edge that the model rocks about stays on the ground: R_v < 0 tells where it would jump in truth.
+//!
 //! Impacts are not in them. Each leaves an impulse, the opposite of what it changes of the structure's momentum:
 //!
 //! ```text

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 import itertools
 import re
 from ctypes import byref
@@ -9,6 +10,7 @@ from dataclasses import dataclass
 
 import fmpy
 import numpy as np
+import pytest
 from fmpy import calloc, free
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackAllocateMemoryTYPE, fmi2CallbackFreeMemoryTYPE, fmi2CallbackFunctions
 from fmpy.fmi2 import fmi2CallbackLoggerTYPE
@@ -20,6 +22,14 @@ G = 9.81
 REALS = ("theta", "u", "a_t", "V_t", "M_t", "theta_dot", "u_dot", "uplift", "delta_t", "v_t", "R_h", "R_v", "R_m",
          "I_h", "I_v", "I_m")
 PHASES = {"full contact": 1, "rocking left": 2, "rocking right": 3, "overturned": 4}
+
+
+def need_libtbb():
+    """Skips where the one library that ecospy does not bring is missing."""
+    try:
+        ctypes.CDLL("libtbb.so.12")
+    except OSError:
+        pytest.skip("ecospy needs libtbb12, which cannot be installed here", allow_module_level=True)
 
 
 def ground_motion(event: str, component: str, samples: int | None = None, *, time_scale=1.0, scale=1.0):

@@ -101,6 +101,10 @@ def test_accelerated_iterations_find_the_fixed_point_in_fewer_sweeps(piers):
     """A stiff and heavy deck: a sweep leaves the sixth part of an error, as the linear bridge tells."""
     left = stability.contraction(3000.0 / (MCMANUS.m + EVISON.m), TIME[1], False, frequency=25.0)
     assert left == pytest.approx(1 / 6, rel=0.1)
+    for h in (0.05e-3, TIME[1]):  # the estimate for short steps
+        k, c, m = deck(3000.0, 25.0).k / 2, deck(3000.0, 25.0).c / 2, EVISON.m
+        contraction = stability.contraction(3000.0 / (MCMANUS.m + EVISON.m), h, True, frequency=25.0)
+        assert contraction == pytest.approx(k * h**2 / (15.5 * m) + c * h / (3.5 * m), rel=0.1)
     found, sweeps = {}, {}
     for name in ("fixed-point", "anderson", "iqn-ils"):
         master, of_deck = MASTERS[name](), deck(3000.0, frequency=25.0)
@@ -118,7 +122,7 @@ def test_accelerated_iterations_find_the_fixed_point_in_fewer_sweeps(piers):
 def test_weak_coupling_blows_up_at_the_step_that_theory_gives(piers, master, guess):
     """Free vibration, bases down: it dies out below the limit of the amplification matrix and grows above it."""
     ratio = 10.0
-    limit = stability.largest_step(lambda h: stability.growth(master, guess, ratio, h, False) > 0,
+    limit = stability.first_unstable(lambda h: stability.growth(master, guess, ratio, h, False) > 0,
                                    np.geomspace(1e-3, 30e-3, 70))
     for part, grows in ((0.9, False), (1.05, True)):
         h = part * limit
@@ -211,7 +215,7 @@ def printed(example: str, *arguments) -> list[float]:
 
 
 def test_the_bridge_example_prints_the_peaks_of_the_monolithic_bridge(piers, tmp_path):
-    found = printed("bridge", *piers, "--figure", tmp_path / "bridge.png")
+    found = printed("bridge", "--piers", *piers, "--figure", tmp_path / "bridge.png")
     system, response = convergence.monolithic_bridge(deck()), as_one(pacoima_dam)[-1]
     expected = [1e3 * np.max(np.abs(response.y[:, 0]))]
     forces = [system.bearing_forces(phases, y) for phases, y in zip(response.phases, response.y)]

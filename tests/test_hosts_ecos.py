@@ -2,9 +2,10 @@
 
 import numpy as np
 import pytest
+from host import need_libtbb
 from pacoima import A_G, OUTPUTS, STEP, distance, held
 
-pytest.importorskip("ecospy", reason="ecospy needs libtbb12", exc_type=(ImportError, OSError))
+need_libtbb()
 
 from ecospy import EcosLib, EcosSimulation, EcosSimulationStructure
 

@@ -8,7 +8,9 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from coupling.bridge_ssp import SSC, SSD, component, connect, connectors
 from fmpy.ssp.simulation import simulate_ssp
+from host import need_libtbb
 from libcosimpy._internal import get_last_error_message
 from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimManipulator import CosimManipulator
@@ -16,17 +18,8 @@ from libcosimpy.CosimObserver import CosimObserver
 from pacoima import A_G, OUTPUTS, STEP, TIME, distance, held
 
 SPECIMENS = ("mcmanus", "evison")
-SSD, SSC = (f"http://ssp-standard.org/SSP1/SystemStructure{name}" for name in ("Description", "Common"))
 ElementTree.register_namespace("ssd", SSD)  # Ecos knows the elements by these prefixes
 ElementTree.register_namespace("ssc", SSC)
-
-
-def connectors(parent, reals: dict[str, str]):
-    """The Real connectors of a system or component, by name and kind."""
-    connectors = ElementTree.SubElement(parent, f"{{{SSD}}}Connectors")
-    for name, kind in reals.items():
-        connector = ElementTree.SubElement(connectors, f"{{{SSD}}}Connector", name=name, kind=kind)
-        ElementTree.SubElement(connector, f"{{{SSC}}}Real")
 
 
 def system_structure(connected: bool) -> bytes:
@@ -37,13 +30,10 @@ def system_structure(connected: bool) -> bytes:
         connectors(system, {"a_g": "input"})
     elements = ElementTree.SubElement(system, f"{{{SSD}}}Elements")
     for name in SPECIMENS:
-        component = ElementTree.SubElement(elements, f"{{{SSD}}}Component", name=name, source=f"resources/{name}.fmu",
-                                           type="application/x-fmu-sharedlibrary")
-        connectors(component, {"a_g": "input"} | dict.fromkeys(OUTPUTS, "output"))
+        component(elements, name, {"a_g": "input"} | dict.fromkeys(OUTPUTS, "output"))
     connections = ElementTree.SubElement(system, f"{{{SSD}}}Connections")
     for name in SPECIMENS if connected else ():
-        ElementTree.SubElement(connections, f"{{{SSD}}}Connection",
-                               startConnector="a_g", endElement=name, endConnector="a_g")
+        connect(connections, (None, "a_g"), (name, "a_g"))
     return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
 
 
@@ -103,7 +93,7 @@ def test_libcosim(ssp, fmus, tmp_path):
 
 
 def test_ecos(ssp, fmus):
-    pytest.importorskip("ecospy", reason="ecospy needs libtbb12", exc_type=(ImportError, OSError))
+    need_libtbb()
     from ecospy import EcosSimulation
 
     with pytest.raises(Exception, match="No element named:"):

@@ -1,4 +1,7 @@
-"""Writes docs/coupling.md and its pictures but for those of the three examples: see `make coupling`."""
+"""Writes docs/coupling.md and its pictures but for those of the three examples: see `make coupling`.
+
+    PYTHONPATH=examples:tests python -m coupling
+"""
 
 import argparse
 from pathlib import Path
@@ -24,7 +27,7 @@ def limits_table() -> str:
     rows = []
     for frequency in frequencies:
         for name in ("Jacobi, extrapolated", "Gauss-Seidel, extrapolated", "fixed point"):
-            limits = [stability.largest_step(lambda h: unstable(name, ratio, h, frequency)) for ratio in ratios]
+            limits = [stability.first_unstable(lambda h: unstable(name, ratio, h, frequency)) for ratio in ratios]
             bearings = [deck(stability.mass(ratio), frequency).k / len(convergence.STRUCTURES) for ratio in ratios]
             numbers = [f"{h * np.sqrt(k / lightest):.2f}".replace("nan", "–") for h, k in zip(limits, bearings)]
             rows.append([f"{frequency:g} Hz", name, *numbers])

@@ -121,7 +121,7 @@ def plot(path: Path, time, a_g, x, tops, uplifts, forces) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0],
                                      formatter_class=argparse.ArgumentDefaultsHelpFormatter)
-    parser.add_argument("fmus", nargs="*", default=list(PIERS.values()), help="of the two piers")
+    parser.add_argument("--piers", nargs=2, metavar="FMU", default=list(PIERS.values()), help="of the two piers")
     parser.add_argument("--master", choices=MASTERS, default="iqn-ils", help="how the two sides are stepped")
     parser.add_argument("--steps", type=int, default=1, help="communication steps per sample of the record (2 ms)")
     parser.add_argument("--figure", type=Path, default=Path("docs/coupling/bridge.png"), help="where to save it")
@@ -129,7 +129,7 @@ def main() -> None:
 
     time, a_g = pacoima_dam()
     master = MASTERS[arguments.master]()
-    bridge = Bridge([pier(fmu) for fmu in arguments.fmus], deck(), lambda t, h: np.interp((t, t + h), time, a_g),
+    bridge = Bridge([pier(fmu) for fmu in arguments.piers], deck(), lambda t, h: np.interp((t, t + h), time, a_g),
                     moments=isinstance(master, Iterated))
     step = functools.partial(between_transitions, master) if isinstance(master, Iterated) else master
 

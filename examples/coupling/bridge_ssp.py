@@ -30,6 +30,7 @@ DECK = "deck"
 def write_archive(path: Path, fmus: list[str]) -> None:
     """The SSP archive of the bridge on these piers."""
     here, mass = Path(__file__).parent, deck()
+    path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
         built = FmuBuilder.build_FMU(here / "deck_fmu.py", dest=folder, project_files=[here / "swaying_mass.py"],
                                      newargs=dict(M=mass.M, k=mass.k, c=mass.c))
@@ -102,15 +103,15 @@ def plot(path: Path, time, reference, results: dict[float, np.ndarray]) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0],
                                      formatter_class=argparse.ArgumentDefaultsHelpFormatter)
-    parser.add_argument("fmus", nargs="*", default=list(PIERS.values()), help="of the piers")
+    parser.add_argument("--piers", nargs=2, metavar="FMU", default=list(PIERS.values()), help="of the two piers")
     parser.add_argument("--archive", type=Path, default=Path("out/bridge.ssp"), help="SSP archive to write")
     parser.add_argument("--figure", type=Path, default=Path("docs/coupling/bridge_ssp.png"), help="where to save it")
     arguments = parser.parse_args()
 
     time, a_g = pacoima_dam()
-    write_archive(arguments.archive, arguments.fmus)
+    write_archive(arguments.archive, arguments.piers)
     print(f"archive: {arguments.archive}")
-    bridge = Bridge([pier(fmu) for fmu in arguments.fmus], deck(), lambda t, h: np.interp((t, t + h), time, a_g))
+    bridge = Bridge([pier(fmu) for fmu in arguments.piers], deck(), lambda t, h: np.interp((t, t + h), time, a_g))
     step = functools.partial(between_transitions, MASTERS["iqn-ils"]())
     reference = simulate(bridge, step, extrapolate, time, 1, lambda: bridge.deck.x)
     results = {h: run(arguments.archive, time, a_g, h) for h in STEPS}

@@ -106,7 +106,7 @@ def contraction(ratio: float, h: float, rocking: bool, frequency: float = FREQUE
     return np.max(np.abs(np.linalg.eigvals(np.transpose(columns))))
 
 
-def largest_step(unstable, steps=np.geomspace(0.05e-3, 64e-3, 100)) -> float:
+def first_unstable(unstable, steps=np.geomspace(0.05e-3, 64e-3, 100)) -> float:
     """The least of the steps that is `unstable`, nan if none is."""
     return next((h for h in steps if unstable(h)), np.nan)
 
@@ -169,7 +169,7 @@ def plot_weak(path: Path, found: dict[str, np.ndarray]) -> None:
         colors = mesh(axis, found[name], norm, "YlOrRd")
         for rocking, style in ((False, "-"), (True, "--")):
             threshold = GROWTH if rocking else 1e-6
-            limits = [largest_step(lambda h: growth(master, guess, ratio, h, rocking) > threshold) for ratio in RATIOS]
+            limits = [first_unstable(lambda h: growth(master, guess, ratio, h, rocking) > threshold) for ratio in RATIOS]
             axis.loglog(RATIOS, 1e3 * np.array(limits), style, color="black",
                         label="limit in theory, " + ("rocking" if rocking else "bases down"))
         axis.set_title(name)
@@ -190,7 +190,7 @@ def plot_iterated(path: Path, found: dict[str, np.ndarray]) -> None:
             if i % 3 == 1 and j % 3 == 0 and np.isfinite(found[name][i, j]):
                 axis.text(ratio, 1e3 * h, f"{found[name][i, j]:.1f}", ha="center", va="center", fontsize=6)
         if name == "fixed point":
-            limits = [largest_step(lambda h: contraction(ratio, h, True) > 1) for ratio in RATIOS]
+            limits = [first_unstable(lambda h: contraction(ratio, h, True) > 1) for ratio in RATIOS]
             axis.loglog(RATIOS, 1e3 * np.array(limits), "--", color="black", label="diverges beyond, in theory")
         axis.set_title(name)
     finish(axes.reshape(1, -1), [0.1, 1, 10])

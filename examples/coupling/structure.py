@@ -1,7 +1,6 @@
 """A rocking structure: one instance of the FMU."""
 
 import contextlib
-import shutil
 import tempfile
 import weakref
 
@@ -15,11 +14,11 @@ class Structure:
     """Steps under inputs that are lines in time, and goes back to a state when asked."""
 
     def __init__(self, fmu: str, inputs: list[str], outputs: list[str], **start_values: float):
-        folder = tempfile.mkdtemp()
-        fmpy.extract(fmu, unzipdir=folder)
-        description = fmpy.read_model_description(folder)
+        folder = tempfile.TemporaryDirectory()
+        fmpy.extract(fmu, unzipdir=folder.name)
+        description = fmpy.read_model_description(folder.name)
         self.references = {variable.name: variable.valueReference for variable in description.modelVariables}
-        self.instance = instantiate_fmu(folder, description, "CoSimulation")
+        self.instance = instantiate_fmu(folder.name, description, "CoSimulation")
         weakref.finalize(self, _free, self.instance, folder)
         self.instance.setupExperiment()
         self.instance.setReal([self.references[name] for name in start_values], list(start_values.values()))
@@ -61,4 +60,4 @@ class Structure:
 
 def _free(instance, folder):
     instance.freeInstance()
-    shutil.rmtree(folder)
+    folder.cleanup()

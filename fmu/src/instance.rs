@@ -10,7 +10,9 @@ use crate::variables::{self, INPUTS, Source, VARIABLES, Variable};
 use model_description::Causality;
 use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE, Motion, Progress, TransitionKind};
 use rocking::impact::gaining_restitution;
-use rocking::{Detail, Engine, Impulse, LinearLoad, Load, Parameters, Phase, Side, State, Structure, Transition};
+use rocking::{
+    Detail, Engine, Impulse, LinearLoad, Load, Parameters, Phase, Reactions, Side, State, Structure, Transition,
+};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 use std::f64::consts::FRAC_PI_2;
@@ -256,14 +258,14 @@ impl Instance {
         }
         let load = self.now.input.value;
         let (mut outputs, mut reactions) = (None, None);
-        if is_computed {
-            if let Some(variable) = reaction {
-                let engine = self.now.as_it_stands()?;
-                let exerted = reactions.insert(engine.reactions(load));
-                if !(exerted.R_h + exerted.R_v + exerted.R_m).is_finite() {
-                    return Err(Failure::NoReaction { variable, time: engine.motion().time });
-                }
+        if let Some(variable) = reaction {
+            let engine = self.now.as_it_stands()?;
+            let Reactions { R_h, R_v, R_m } = *reactions.insert(engine.reactions(load));
+            if !(R_h + R_v + R_m).is_finite() {
+                return Err(Failure::NoReaction { variable, time: engine.motion().time });
             }
+        }
+        if is_computed {
             self.now.engine()?;
         }
         for (reference, value) in references.iter().zip(values) {
@@ -277,10 +279,7 @@ impl Instance {
                     let engine = self.now.engine()?;
                     of(outputs.get_or_insert_with(|| engine.outputs(load.F_t)))
                 }
-                Source::Reaction(of) => {
-                    let engine = self.now.engine()?;
-                    of(reactions.get_or_insert_with(|| engine.reactions(load)))
-                }
+                Source::Reaction(of) => reactions.as_ref().map_or(f64::NAN, of), // there is one if it is asked for
                 Source::Impulse(of) => of(&self.now.engine()?.motion().impulse),
                 Source::Integer(_) | Source::Boolean(_) | Source::Detail => return Err(Failure::WrongType(variable)),
             });
