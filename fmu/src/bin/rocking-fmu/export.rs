@@ -20,9 +20,22 @@ const LIBRARY_FILE: &str = "libFlexibleRocking.so";
 /// Licences of all that the shared library is made of.
 const LICENSES: &str = include_str!(concat!(env!("OUT_DIR"), "/license.txt"));
 
-/// How to get the shared library, and the one for Windows.
-const LIBRARY_REMEDY: &str = "build it with `cargo build --release`, or say where it is with --library PATH";
-const WINDOWS_LIBRARY_REMEDY: &str = "`make dist` builds it";
+/// A platform for which an archive can have a shared library.
+struct Platform {
+    name: &'static str,
+    /// What its shared libraries begin with.
+    magic: &'static [u8],
+    /// How to get ours.
+    remedy: &'static str,
+}
+
+const LINUX: Platform = Platform {
+    name: "Linux",
+    magic: b"\x7fELF",
+    remedy: "build it with `cargo build --release`, or say where it is with --library PATH",
+};
+
+const WINDOWS: Platform = Platform { name: "Windows", magic: b"MZ", remedy: "`make dist` builds it" };
 
 const ICON: &[u8] = include_bytes!("../../../resources/model.png");
 
@@ -46,10 +59,10 @@ pub struct ExportArgs {
 pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let library = match &args.library {
-        Some(path) => read_library(path, LIBRARY_REMEDY)?,
-        None => read_library(&library_of(&env::current_exe()?), LIBRARY_REMEDY)?,
+        Some(path) => read_library(path, &LINUX)?,
+        None => read_library(&library_of(&env::current_exe()?), &LINUX)?,
     };
-    let windows_library = args.windows_library.as_deref().map(|path| read_library(path, WINDOWS_LIBRARY_REMEDY));
+    let windows_library = args.windows_library.as_deref().map(|path| read_library(path, &WINDOWS));
     let windows_library = windows_library.transpose()?;
     let size = archive::write(&args.output, &entries(&structure, library, windows_library)?)?;
     let mut out = stdout().lock();
@@ -66,14 +79,18 @@ fn library_of(executable: &Path) -> PathBuf {
     if in_deps.exists() { in_deps } else { executable.with_file_name(LIBRARY_FILE) }
 }
 
-/// The shared library at `path`, if it is there and of this build.
-fn read_library(path: &Path, remedy: &str) -> anyhow::Result<Vec<u8>> {
+/// The shared library at `path`, if it is there, for `platform` and of this build.
+fn read_library(path: &Path, platform: &Platform) -> anyhow::Result<Vec<u8>> {
+    let &Platform { name, magic, remedy } = platform;
     let library = match fs::read(path) {
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             bail!("the shared library {} does not exist: {remedy}", path.display())
         }
         result => result.with_context(|| format!("cannot read the shared library {}", path.display()))?,
     };
+    if !library.starts_with(magic) {
+        bail!("{} is not a shared library for {name}: {remedy}", path.display());
+    }
     if !library.windows(BUILD.len()).any(|bytes| bytes == BUILD.as_bytes()) {
         bail!(
             "the shared library {} is of another build: the name of this one, {BUILD}, does not occur in it; {remedy}",
@@ -131,7 +148,7 @@ mod tests {
     /// A file that passes for the library of this build.
     fn library(folder: &Path) -> PathBuf {
         let path = folder.join(LIBRARY_FILE);
-        fs::write(&path, format!("some code{BUILD}more code")).unwrap();
+        fs::write(&path, format!("\x7fELF, some code{BUILD}more code")).unwrap();
         path
     }
 
@@ -220,6 +237,17 @@ mod tests {
         assert_eq!(
             refusal(&["--library", library.to_str().unwrap(), "--windows-library", "/nowhere/FlexibleRocking.dll"]),
             "the shared library /nowhere/FlexibleRocking.dll does not exist: `make dist` builds it"
+        );
+    }
+
+    #[test]
+    fn a_library_for_another_platform_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let library = library(folder.path());
+        let path = library.to_str().unwrap();
+        assert_eq!(
+            export(&["--library", path, "--windows-library", path]).unwrap_err().to_string(),
+            format!("{path} is not a shared library for Windows: `make dist` builds it")
         );
     }
 
