@@ -1,6 +1,6 @@
 //! Mechanical energy: constant between impacts when c_u = 0 and a_g = 0.
 
-use crate::{Phase, Side, State, Structure};
+use crate::{Phase, State, Structure};
 
 /// Energy in J, zero at height zero:
 ///
@@ -12,10 +12,7 @@ use crate::{Phase, Side, State, Structure};
 pub fn energy(structure: &Structure, phase: Phase, state: &State) -> f64 {
     let &crate::Parameters { m, m0, H, B, J0, g, .. } = structure.parameters();
     let &State { u, u_dot, theta, theta_dot } = state;
-    let s = match phase {
-        Phase::FullContact => Side::Right.sign(),
-        Phase::Rocking(side) | Phase::Overturned(side) => side.sign(),
-    };
+    let s = phase.side().sign();
     let (sin, cos) = theta.sin_cos();
     let lever = s * B - u;
     let kinetic = 0.5 * m * ((u_dot + H * theta_dot).powi(2) + (lever * theta_dot).powi(2))

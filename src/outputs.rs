@@ -11,7 +11,7 @@
 //! at the end of the last advance.
 
 use crate::load::{LinearLoad, Load};
-use crate::{Phase, Side, State, Structure, detail, rigid_rocking};
+use crate::{Phase, State, Structure, detail, rigid_rocking};
 
 /// The outputs at one instant; from [`crate::Engine::rates`], their time derivatives in the same fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -39,11 +39,11 @@ pub struct Outputs {
     pub v_t: f64,
 }
 
-/// s and the damping in force: c_fc in full contact, where s does not matter, c_u otherwise.
-fn sign_and_damping(structure: &Structure, phase: Phase) -> (f64, f64) {
+/// The damping in force: c_fc in full contact, c_u otherwise, N·s/m.
+fn damping(structure: &Structure, phase: Phase) -> f64 {
     match phase {
-        Phase::FullContact => (Side::Right.sign(), structure.c_fc),
-        Phase::Rocking(side) | Phase::Overturned(side) => (side.sign(), structure.c_u),
+        Phase::FullContact => structure.c_fc,
+        Phase::Rocking(_) | Phase::Overturned(_) => structure.c_u,
     }
 }
 
@@ -52,7 +52,7 @@ impl Outputs {
     pub fn of(structure: &Structure, phase: Phase, state: &State, F_t: f64) -> Outputs {
         let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
         let &State { u, u_dot, theta, theta_dot } = state;
-        let (s, damping) = sign_and_damping(structure, phase);
+        let (s, damping) = (phase.side().sign(), damping(structure, phase));
         let (sin, cos) = theta.sin_cos();
         let a_t = g * sin - (damping * u_dot + structure.k * u) / m + F_t / m * cos;
         let one_minus_cos = 2.0 * (0.5 * theta).sin().powi(2);
@@ -74,7 +74,7 @@ impl Outputs {
     /// `load` of that instant.
     pub(crate) fn of_rigid(structure: &Structure, phase: Phase, state: &State, load: Load) -> Outputs {
         let &crate::Parameters { m, H, B, .. } = structure.parameters();
-        let (s, _) = sign_and_damping(structure, phase);
+        let s = phase.side().sign();
         let [_, theta_ddot] = rigid_rocking::accelerations(structure, phase, state, load);
         let a_t = H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * state.theta.cos();
         Outputs { a_t, V_t: m * a_t, M_t: m * H * a_t, ..Outputs::of(structure, phase, state, load.F_t) }
@@ -100,7 +100,7 @@ impl Outputs {
         let &State { u, .. } = state;
         let (u_dot, theta_dot) = (moves * state.u_dot, moves * state.theta_dot);
         let [u_ddot, theta_ddot] = accelerations;
-        let (s, damping) = sign_and_damping(structure, phase);
+        let (s, damping) = (phase.side().sign(), damping(structure, phase));
         let (sin, cos) = state.theta.sin_cos();
         let force_rate = moves * (load.slope.F_t * cos - load.value.F_t * sin * theta_dot);
         let a_t = g * cos * theta_dot - (damping * u_ddot + structure.k * u_dot) / m + force_rate / m;
@@ -130,7 +130,7 @@ impl Outputs {
     ) -> Outputs {
         let &crate::Parameters { m, H, B, .. } = structure.parameters();
         let &State { theta, theta_dot, .. } = state;
-        let (s, _) = sign_and_damping(structure, phase);
+        let s = phase.side().sign();
         let a_t = match phase {
             Phase::Overturned(_) => 0.0,
             _ => {
@@ -147,7 +147,7 @@ impl Outputs {
 mod tests {
     use super::*;
     use crate::detail::Detail;
-    use crate::{Engine, Parameters, Reactions, full_contact, nonlinear_rocking};
+    use crate::{Engine, Parameters, Reactions, Side, full_contact, nonlinear_rocking};
     use approx::assert_relative_eq;
 
     /// Eq 27 with ü and θ̈ from Eqs 5 and 6 is what the state alone gives, and Eq 1 in full contact.

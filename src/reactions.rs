@@ -23,7 +23,7 @@
 
 use crate::kinematics::points;
 use crate::load::{LinearLoad, Load};
-use crate::{Phase, Side, State, Structure};
+use crate::{Phase, State, Structure};
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
@@ -49,14 +49,6 @@ pub struct Impulse {
     pub I_m: f64,
 }
 
-/// s; in full contact, where it does not matter, +1.
-fn side(phase: Phase) -> Side {
-    match phase {
-        Phase::FullContact => Side::Right,
-        Phase::Rocking(side) | Phase::Overturned(side) => side,
-    }
-}
-
 /// y f_x − x f_y: the moment about the origin, positive as θ, of a force f at z.
 fn moment(z: Complex<f64>, f: Complex<f64>) -> f64 {
     (z * f.conj()).im
@@ -72,7 +64,7 @@ impl Reactions {
         load: Load,
     ) -> Reactions {
         let &crate::Parameters { m, m0, J0, g, .. } = structure.parameters();
-        let points = points(structure, side(phase), state, accelerations, [0.0; 2]);
+        let points = points(structure, phase.side(), state, accelerations, [0.0; 2]);
         let mut reactions = Reactions { R_h: 0.0, R_v: 0.0, R_m: -J0 * accelerations[1] };
         for (point, mass, push) in [(points[0], m, load.F_t), (points[1], m0, 0.0)] {
             let force = -mass * (point.acceleration + Complex::new(load.a_g, g)) + push;
@@ -95,7 +87,7 @@ impl Reactions {
             return Reactions { R_h: 0.0, R_v: 0.0, R_m: 0.0 };
         }
         let &crate::Parameters { m, m0, J0, g, .. } = structure.parameters();
-        let points = points(structure, side(phase), state, accelerations, jerks);
+        let points = points(structure, phase.side(), state, accelerations, jerks);
         let LinearLoad { value, slope } = load;
         let mut rates = Reactions { R_h: 0.0, R_v: 0.0, R_m: -J0 * jerks[1] };
         for (point, mass, push, push_rate) in [(points[0], m, value.F_t, slope.F_t), (points[1], m0, 0.0, 0.0)] {
@@ -125,7 +117,7 @@ impl Impulse {
 /// Momentum of the structure relative to the ground: to the right, downwards and about the middle of the base.
 fn momentum(structure: &Structure, phase: Phase, state: &State) -> Impulse {
     let &crate::Parameters { m, m0, J0, .. } = structure.parameters();
-    let [top, base] = points(structure, side(phase), state, [0.0; 2], [0.0; 2]);
+    let [top, base] = points(structure, phase.side(), state, [0.0; 2], [0.0; 2]);
     let total = m * top.velocity + m0 * base.velocity;
     Impulse {
         I_h: total.re,

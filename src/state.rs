@@ -60,6 +60,16 @@ pub enum Phase {
     Overturned(Side),
 }
 
+impl Phase {
+    /// The pivot; in full contact, where it does not matter, the right one.
+    pub fn side(self) -> Side {
+        match self {
+            Phase::FullContact => Side::Right,
+            Phase::Rocking(side) | Phase::Overturned(side) => side,
+        }
+    }
+}
+
 /// The initial values with their units and ranges, under their names in files and in the FMU.
 pub const INITIAL_VALUES: [Quantity<State>; 4] = [
     quantity!("theta_0", theta["rad"] - 1.5, 1.5, "initial rotation of the base; 0 is full contact"),

@@ -1,8 +1,7 @@
 """Coupled structures integrated as one system: what co-simulation is held against.
 
-Two systems, over the same equations and transitions as reference.py (numbers in brackets are the paper's), with a force
-F_t on the top mass: a bridge, piers that carry one deck through elastic bearings, and a structure on a foundation mass
-that sways on soil. The state is (x, x_dot) of the deck or foundation, then (u, u_dot, theta, theta_dot) of every
+Two systems, over the equations and transitions of reference.py: a bridge, piers that carry one deck through elastic
+bearings, and a structure on a foundation mass that sways on soil. The state is (x, x_dot) of the deck or foundation, then (u, u_dot, theta, theta_dot) of every
 structure. DOP853 restarts at every sample of the ground motion and at every transition of any structure.
 """
 
@@ -14,42 +13,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import reference
-from reference import ATOL, FULL_CONTACT, RTOL, Structure, Transition, impact, lifts
+from reference import ATOL, FULL_CONTACT, RTOL, Load, Structure, Transition
+from reference import accelerations, impact, lifts, reactions, top
 from scipy.integrate import DOP853
-
-
-def accelerations(p: Structure, s: int, y, a_g: float, F_t: float) -> tuple[float, float]:
-    """u_ddot and theta_ddot by (1), or by (5, 6) about side s, with F_t."""
-    u, u_dot, theta, theta_dot = y
-    if s == FULL_CONTACT:
-        return F_t / p.m - a_g - 2 * p.zeta_fc * p.omega * u_dot - p.omega**2 * u, 0.0
-    m, H, B, g, M = p.m, p.H, p.B, p.g, p.m + p.m0
-    sn, cs, arm = math.sin(theta), math.cos(theta), s * B - u
-    force = -p.c_u * u_dot - p.k * u - m * theta_dot**2 * arm - m * a_g * cs + m * g * sn + F_t * cs
-    moment = (2 * m * arm * u_dot * theta_dot + m * g * H * sn + m * g * u * cs - s * M * g * B * cs
-              - a_g * (m * H * cs + (s * M * B - m * u) * sn) + F_t * (H * cs + arm * sn))
-    theta_ddot = (moment - H * force) / (p.J0 + m * arm**2 + p.m0 * B**2)
-    return force / m - H * theta_ddot, theta_ddot
-
-
-def top(p: Structure, s: int, y) -> tuple[float, float]:
-    """Displacement and velocity of the top mass relative to the ground (26)."""
-    u, u_dot, theta, theta_dot = y
-    sn, cs = math.sin(theta), math.cos(theta)
-    return (s * p.B * (1 - cs) + u * cs + p.H * sn,
-            u_dot * cs + ((s * p.B - u) * sn + p.H * cs) * theta_dot)
-
-
-def horizontal_reaction(p: Structure, s: int, y, a_g: float) -> float:
-    """The horizontal force on the ground: what the two masses' accelerations leave of it."""
-    u, u_dot, theta, theta_dot = y
-    u_ddot, theta_ddot = accelerations(p, s, y, a_g, 0.0)
-    sn, cs = math.sin(theta), math.cos(theta)
-    arm = s * p.B - u
-    of_top = (u_ddot * cs - 2 * u_dot * sn * theta_dot + (arm * cs - p.H * sn) * theta_dot**2
-              + (arm * sn + p.H * cs) * theta_ddot)
-    of_base = s * p.B * (cs * theta_dot**2 + sn * theta_ddot)
-    return -p.m * (of_top + a_g) - p.m0 * (of_base + a_g)
 
 
 @dataclass(frozen=True)
@@ -90,8 +56,8 @@ class OnSoil:
 
     def rates(self, phases, y, a_g: float) -> list[float]:
         (p,), (s,), (part,) = self.structures, phases, _parts(y)
-        at_rest = horizontal_reaction(p, s, part, 0.0)
-        carried = at_rest - horizontal_reaction(p, s, part, 1.0)  # the mass that follows the ground at once
+        at_rest = reactions(p, s, part, Load(0.0, a_g=0.0))[0]
+        carried = at_rest - reactions(p, s, part, Load(0.0, a_g=1.0))[0]  # the mass that follows the ground at once
         felt = (at_rest - self.k * y[0] - self.c * y[1]) / (self.M + carried)
         u_ddot, theta_ddot = accelerations(p, s, part, felt, 0.0)
         return [y[1], felt - a_g, part[1], u_ddot, part[3], theta_ddot]

@@ -4,7 +4,7 @@
 use approx::assert_relative_eq;
 use proptest::prelude::*;
 use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::{Detail, Engine, LinearLoad, Load, Parameters, Phase, Reactions, Side, State, Structure};
+use rocking::{Detail, Engine, LinearLoad, Load, Parameters, Reactions, Side, State, Structure};
 
 fn start(parameters: Parameters, initial: State, detail: Detail) -> Engine {
     Engine::with_detail(Structure::new(parameters).unwrap(), initial, 0.0, DEFAULT_TOLERANCE, detail).unwrap()
@@ -66,10 +66,7 @@ fn balance(engine: &Engine) -> Balance {
     let &Parameters { m, m0, H, B, J0, .. } = engine.structure().parameters();
     let motion = engine.motion();
     let State { u, u_dot, theta, theta_dot } = motion.state;
-    let s = match motion.phase {
-        Phase::FullContact => 1.0,
-        Phase::Rocking(side) | Phase::Overturned(side) => side.sign(),
-    };
+    let s = motion.phase.side().sign();
     let (sin, cos) = theta.sin_cos();
     let x = [s * B * (1.0 - cos) + u * cos + H * sin, s * B * (1.0 - cos)];
     let y = [(s * B - u) * sin + H * cos, s * B * sin];

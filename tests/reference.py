@@ -93,9 +93,7 @@ class Response:
     @property
     def v_t(self) -> np.ndarray:
         """Lateral velocity of the top mass, m/s."""
-        p, sn, cs = self.structure, np.sin(self.theta), np.cos(self.theta)
-        arm = self.phase * p.B - self.u
-        return self.u_dot * cs + self.theta_dot * (p.H * cs + arm * sn)
+        return self._tops()[:, 1]
 
     @property
     def uplift(self) -> np.ndarray:
@@ -105,8 +103,11 @@ class Response:
     @property
     def delta_t(self) -> np.ndarray:
         """Lateral displacement of the top mass (26), m."""
-        p, s = self.structure, self.phase
-        return s * p.B * (1 - np.cos(self.theta)) + self.u * np.cos(self.theta) + p.H * np.sin(self.theta)
+        return self._tops()[:, 0]
+
+    def _tops(self) -> np.ndarray:
+        states = zip(self.u, self.u_dot, self.theta, self.theta_dot)
+        return np.array([top(self.structure, s, y) for s, y in zip(self.phase, states)])
 
     def times(self, kind: str) -> list[float]:
         return [transition.time for transition in self.transitions if transition.kind == kind]
@@ -123,36 +124,49 @@ class Load:
     F_t_rate: float = 0.0
 
 
-def full_contact(p: Structure, load: Load):
-    """Right-hand side of (1) under a load linear in time."""
-    stiffness, damping = p.omega**2, 2 * p.zeta_fc * p.omega
-    push, push_rate = load.F_t / p.m - load.a_g, load.F_t_rate / p.m - load.a_g_rate
+def accelerations(p: Structure, s: int, y, a_g: float, F_t: float) -> tuple[float, float]:
+    """u_ddot and theta_ddot by (1), or by (5, 6) about side s, with a force F_t on the top mass."""
+    u, u_dot, theta, theta_dot = y
+    if s == FULL_CONTACT:
+        return F_t / p.m - a_g - 2 * p.zeta_fc * p.omega * u_dot - p.omega**2 * u, 0.0
+    m, H, B, g, M = p.m, p.H, p.B, p.g, p.m + p.m0
+    sn, cs, arm = math.sin(theta), math.cos(theta), s * B - u
+    force = -p.c_u * u_dot - p.k * u - m * theta_dot**2 * arm - m * a_g * cs + m * g * sn + F_t * cs
+    moment = (2 * m * arm * u_dot * theta_dot + m * g * H * sn + m * g * u * cs - s * M * g * B * cs
+              - a_g * (m * H * cs + (s * M * B - m * u) * sn) + F_t * (H * cs + arm * sn))
+    # (6) - H (5) leaves theta_ddot alone, with the inertia that does not turn with the strut's height
+    theta_ddot = (moment - H * force) / (p.J0 + m * arm**2 + p.m0 * B**2)
+    return force / m - H * theta_ddot, theta_ddot
+
+
+def _rates(p: Structure, s: int, load: Load):
 
     def rates(t, y):
-        u, u_dot, _, _ = y.tolist()
-        return [u_dot, push + push_rate * (t - load.t0) - damping * u_dot - stiffness * u, 0.0, 0.0]
+        y = y.tolist()
+        a_g = load.a_g + load.a_g_rate * (t - load.t0)
+        F_t = load.F_t + load.F_t_rate * (t - load.t0)
+        u_ddot, theta_ddot = accelerations(p, s, y, a_g, F_t)
+        return [y[1], u_ddot, y[3], theta_ddot]
 
     return rates
+
+
+def full_contact(p: Structure, load: Load):
+    """Right-hand side of (1) under a load linear in time."""
+    return _rates(p, FULL_CONTACT, load)
 
 
 def rocking(p: Structure, s: int, load: Load):
     """Right-hand side of (5, 6) about side s under a load linear in time."""
-    m, H, B, g, M = p.m, p.H, p.B, p.g, p.m + p.m0
-    sin, cos = math.sin, math.cos
+    return _rates(p, s, load)
 
-    def rates(t, y):
-        u, u_dot, theta, theta_dot = y.tolist()
-        a_g = load.a_g + load.a_g_rate * (t - load.t0)
-        F_t = load.F_t + load.F_t_rate * (t - load.t0)
-        sn, cs, arm = sin(theta), cos(theta), s * B - u
-        force = -p.c_u * u_dot - p.k * u - m * theta_dot**2 * arm - m * a_g * cs + m * g * sn + F_t * cs
-        moment = (2 * m * arm * u_dot * theta_dot + m * g * H * sn + m * g * u * cs - s * M * g * B * cs
-                  - a_g * (m * H * cs + (s * M * B - m * u) * sn) + F_t * (H * cs + arm * sn))
-        # (6) - H (5) leaves theta_ddot alone, with the inertia that does not turn with the strut's height
-        theta_ddot = (moment - H * force) / (p.J0 + m * arm**2 + p.m0 * B**2)
-        return [u_dot, force / m - H * theta_ddot, theta_dot, theta_ddot]
 
-    return rates
+def top(p: Structure, s: int, y) -> tuple[float, float]:
+    """Displacement and velocity of the top mass relative to the ground (26)."""
+    u, u_dot, theta, theta_dot = y
+    sn, cs = math.sin(theta), math.cos(theta)
+    return (s * p.B * (1 - cs) + u * cs + p.H * sn,
+            u_dot * cs + ((s * p.B - u) * sn + p.H * cs) * theta_dot)
 
 
 def uplift_margin(p: Structure, s: int) -> tuple[float, float, float]:
@@ -372,7 +386,7 @@ def reactions(p: Structure, s: int, y, load: Load) -> tuple[float, float, float]
         shear = p.c_fc * u_dot + p.k * u
         return shear - p.m0 * load.a_g, (p.m + p.m0) * p.g, p.H * shear + p.m * p.g * u
     sn, cs = math.sin(theta), math.cos(theta)
-    theta_ddot = rocking(p, s, load)(load.t0, np.asarray(y))[3]
+    _, theta_ddot = accelerations(p, s, y, load.a_g, load.F_t)
     shear = p.c_u * u_dot + p.k * u
     away = (s * p.B - u) * theta_ddot - p.H * theta_dot**2 - 2 * theta_dot * u_dot  # of the top mass along the strut
     thrust = p.m * (away + load.a_g * sn + p.g * cs) - load.F_t * sn

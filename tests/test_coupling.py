@@ -12,11 +12,10 @@ import numpy as np
 import pytest
 import reference
 from coupling import bridge_ssp, building_on_soil, convergence, stability
-from coupling.bridge import MASS, Bridge, deck, pier, simulate
+from coupling.bridge import MASS, Bridge, deck, linear, pier, simulate
 from coupling.building_on_soil import OnSoil
 from coupling.masters import MASTERS, TOLERANCE, Diverged, Iterated, between_transitions
 from coupling.masters import extrapolate, gauss_seidel, hold, jacobi
-from coupling.structure import Structure
 from coupling.swaying_mass import SwayingMass
 from first_run import pacoima_dam
 from reference import EVISON, MCMANUS
@@ -108,7 +107,7 @@ def test_accelerated_iterations_find_the_fixed_point_in_fewer_sweeps(piers):
     found, sweeps = {}, {}
     for name in ("fixed-point", "anderson", "iqn-ils"):
         master, of_deck = MASTERS[name](), deck(3000.0, frequency=25.0)
-        bridge = Bridge([pier(fmu) for fmu in piers], of_deck, lambda t, h: np.interp((t, t + h), TIME, A_G))
+        bridge = Bridge([pier(fmu) for fmu in piers], of_deck, linear(TIME, A_G))
         found[name] = simulate(bridge, master, extrapolate, TIME[:300], 1, lambda: [of_deck.x, *bridge.y[1]])
         sweeps[name] = master.sweeps / 299
     for name in ("anderson", "iqn-ils"):
@@ -150,7 +149,7 @@ def on_soil_as_one(M: float, motion):
 def on_soil(fmu, M, time, a_g, step, per_sample, solve_loop=True):
     foundation = SwayingMass(M, building_on_soil.STIFFNESS, building_on_soil.DAMPING)
     structure = building_on_soil.structure(fmu)
-    system = OnSoil(structure, foundation, lambda t, h: np.interp((t, t + h), time, a_g), solve_loop)
+    system = OnSoil(structure, foundation, linear(time, a_g), solve_loop)
     return simulate(system, step, extrapolate, time, per_sample,
                     lambda: [foundation.x, *structure.read("theta", "u")])
 
@@ -192,11 +191,11 @@ def test_ssp_archive_of_the_bridge(piers, tmp_path):
     bridge_ssp.write_archive(archive, piers)
     result = bridge_ssp.run(archive, TIME[SHORT], A_G[SHORT], h)
     mass = deck()
-    structures = [Structure(fmu, ["a_g", "F_t"], ["delta_t", "v_t"]) for fmu in piers]
+    structures = [pier(fmu) for fmu in piers]
     forces, tops, x = [0.0, 0.0], np.zeros((2, 2)), []
     for n in range(len(result)):
         a_g = 0.0 if n == 0 else np.interp(n * h, time, A_G[SHORT])
-        after = [pier.step(n * h, h, [[a_g, F_t]] * 2) for pier, F_t in zip(structures, forces)]
+        after = [each.step(n * h, h, [[a_g, F_t]] * 2) for each, F_t in zip(structures, forces)]
         force = np.sum(mass.k / 2 * tops[:, 0] + mass.c / 2 * tops[:, 1]) - mass.M * a_g
         mass.step(h, (force, force))
         forces = (mass.k * (mass.x - tops[:, 0]) + mass.c * (mass.v - tops[:, 1])) / 2

@@ -8,8 +8,10 @@ from math import pi
 import numpy as np
 import pytest
 import reference
+from first_run import fmpy_input
 from fmpy.fmi1 import FMICallException
 from host import G, Instance, simulate
+from pacoima import write_record
 from reference import EVISON
 
 LEVELS = {"auto": 1, "nonlinear": 2, "linear": 3, "modal": 4, "rigid": 5, "fixed_base": 6}
@@ -174,8 +176,7 @@ def test_a_record_that_ends_within_a_step(evison, exporter, tmp_path):
     time = np.append(np.linspace(0, 0.5, 51), 0.5037)
     a_g = 5.0 * np.sin(20 * time)
     last_slope = (a_g[-1] - a_g[-2]) / (time[-1] - time[-2])
-    table = np.array(list(zip(time - 1e-12, a_g)), dtype=[("time", float), ("a_g", float)])
-    result, _ = simulate(evison, stop_time=0.6, output_interval=0.01, input=table, set_input_derivatives=True,
+    result, _ = simulate(evison, stop_time=0.6, output_interval=0.01, input=fmpy_input(time, a_g), set_input_derivatives=True,
                          relative_tolerance=1e-11, output=["theta", "u"])
     knots = np.concatenate([time[:-1], [0.51, 0.51 + 1e-12, 0.6]])
     exact = reference.integrate(EVISON, knots, np.concatenate([a_g[:-1], [a_g[-2] + 0.01 * last_slope], 2 * [a_g[-1]]]))
@@ -184,7 +185,7 @@ def test_a_record_that_ends_within_a_step(evison, exporter, tmp_path):
     assert result["theta"][-1] == pytest.approx(exact.theta[-1], abs=1e-10)
 
     record, response = tmp_path / "record.csv", tmp_path / "response.csv"
-    np.savetxt(record, np.column_stack([time, a_g]), delimiter=",", fmt="%.17g")
+    write_record(record, time, a_g)
     subprocess.run([exporter, "simulate", "--preset", "evison", "--record", record, "--unit", "m/s2", "--dt", "0.01",
                     "--tolerance", "1e-11", "--duration", "0.6", "-o", response], check=True)
     rows = np.genfromtxt(response, delimiter=",", names=True)

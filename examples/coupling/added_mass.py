@@ -7,7 +7,7 @@ import numpy as np
 import reference
 from first_run import pacoima_dam
 
-from .bridge import simulate
+from .bridge import linear, simulate
 from .building_on_soil import DAMPING, STIFFNESS, OnSoil, structure
 from .convergence import error
 from .masters import extrapolate, gauss_seidel
@@ -32,7 +32,7 @@ def run(fmu: str, M: float, step, solve_loop: bool) -> float | None:
     """The largest error over its peak, None if the master blows up."""
     time, a_g = (values[:SAMPLES] for values in pacoima_dam())
     foundation = SwayingMass(M, STIFFNESS, DAMPING)
-    system = OnSoil(structure(fmu), foundation, lambda t, h: np.interp((t, t + h), time, a_g), solve_loop)
+    system = OnSoil(structure(fmu), foundation, linear(time, a_g), solve_loop)
     try:
         found = simulate(system, step, extrapolate, time, PER_SAMPLE,
                          lambda: [foundation.x, *system.structure.read("theta", "u")])

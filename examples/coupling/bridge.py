@@ -89,6 +89,11 @@ def lines_of_same_moments(h, d, v):
     return np.array([mean - half, mean + half]), np.array([mean_rate - half_rate, mean_rate + half_rate])
 
 
+def linear(time, a_g):
+    """What gives the ground acceleration at the start and the end of a step, linear between samples."""
+    return lambda t, h: np.interp((t, t + h), time, a_g)
+
+
 def simulate(system, step, guess, time, per_sample, row) -> np.ndarray:
     """Steps to every sample of `time` with a master's `step`; what `row` gives at each of them."""
     h = time[1] / per_sample
@@ -129,7 +134,7 @@ def main() -> None:
 
     time, a_g = pacoima_dam()
     master = MASTERS[arguments.master]()
-    bridge = Bridge([pier(fmu) for fmu in arguments.piers], deck(), lambda t, h: np.interp((t, t + h), time, a_g),
+    bridge = Bridge([pier(fmu) for fmu in arguments.piers], deck(), linear(time, a_g),
                     moments=isinstance(master, Iterated))
     step = functools.partial(between_transitions, master) if isinstance(master, Iterated) else master
 

@@ -19,7 +19,7 @@ from fmpy.ssp.simulation import simulate_ssp
 from pythonfmu.builder import FmuBuilder
 from validation.figures import FIXED, ROCKING, SMOOTH, save, subplots
 
-from .bridge import PIERS, Bridge, deck, pier, simulate
+from .bridge import PIERS, Bridge, deck, linear, pier, simulate
 from .masters import MASTERS, between_transitions, extrapolate
 
 SSD, SSC = (f"http://ssp-standard.org/SSP1/SystemStructure{name}" for name in ("Description", "Common"))
@@ -111,7 +111,7 @@ def main() -> None:
     time, a_g = pacoima_dam()
     write_archive(arguments.archive, arguments.piers)
     print(f"archive: {arguments.archive}")
-    bridge = Bridge([pier(fmu) for fmu in arguments.piers], deck(), lambda t, h: np.interp((t, t + h), time, a_g))
+    bridge = Bridge([pier(fmu) for fmu in arguments.piers], deck(), linear(time, a_g))
     step = functools.partial(between_transitions, MASTERS["iqn-ils"]())
     reference = simulate(bridge, step, extrapolate, time, 1, lambda: bridge.deck.x)
     results = {h: run(arguments.archive, time, a_g, h) for h in STEPS}

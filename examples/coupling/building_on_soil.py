@@ -17,7 +17,7 @@ import numpy as np
 from first_run import G, pacoima_dam
 from validation.figures import FIXED, QUIET, ROCKING, save, subplots
 
-from .bridge import simulate
+from .bridge import linear, simulate
 from .masters import extrapolate, gauss_seidel
 from .structure import Structure
 from .swaying_mass import SwayingMass
@@ -97,7 +97,7 @@ def main() -> None:
 
     time, a_g = pacoima_dam()
     foundation = SwayingMass(arguments.mass, STIFFNESS, DAMPING)
-    system = OnSoil(structure(arguments.fmu), foundation, lambda t, h: np.interp((t, t + h), time, a_g))
+    system = OnSoil(structure(arguments.fmu), foundation, linear(time, a_g))
     rows = simulate(system, gauss_seidel, extrapolate, time, arguments.steps,
                     lambda: [foundation.x, system.w[1, 0], *system.structure.read("uplift", "a_t")])
     rigid = structure(arguments.fmu)

@@ -9,7 +9,7 @@ import reference
 from first_run import pacoima_dam
 from validation.figures import FIXED, QUIET, ROCKING, SMOOTH, save, subplots
 
-from .bridge import Bridge, deck, pier, simulate
+from .bridge import Bridge, deck, linear, pier, simulate
 from .masters import MASTERS, between_transitions, extrapolate, hold
 
 STRUCTURES = (reference.MCMANUS, reference.EVISON)
@@ -45,7 +45,7 @@ def columns(response) -> np.ndarray:
 def cosimulated(time, a_g, fmus, of_deck, variant: str, per_sample: int) -> np.ndarray:
     """The same of a co-simulation."""
     master, guess, moments, _ = VARIANTS[variant]
-    bridge = Bridge([pier(fmu) for fmu in fmus], of_deck, lambda t, h: np.interp((t, t + h), time, a_g), moments)
+    bridge = Bridge([pier(fmu) for fmu in fmus], of_deck, linear(time, a_g), moments)
 
     def row():
         return [of_deck.x, *(value for pier in bridge.piers for value in pier.read("theta", "u"))]

@@ -14,7 +14,6 @@ use rocking::{
     Detail, Engine, Impulse, LinearLoad, Load, Parameters, Phase, Reactions, Side, State, Structure, Transition,
 };
 use serde::{Deserialize, Serialize};
-use std::borrow::Cow;
 use std::f64::consts::FRAC_PI_2;
 use std::mem::MaybeUninit;
 
@@ -107,7 +106,7 @@ impl Condition {
         });
         VARIABLES.iter().all(fits)
             && check_experiment(*tolerance, *start_time, *stop_time).is_ok()
-            && moves.unwrap_or(matches!(self.stage, Stage::Instantiated | Stage::InitializationMode))
+            && moves.map_or(!self.has_started(), |is_possible| is_possible && self.has_started())
     }
 
     /// The structure in motion, or at its start with what has been set so far.
@@ -118,12 +117,13 @@ impl Condition {
         }
     }
 
-    /// The same, only looked at: what may still be refused leaves nothing behind.
-    fn as_it_stands(&self) -> Result<Cow<'_, Engine>, Failure> {
-        Ok(match &self.engine {
-            Some(engine) => Cow::Borrowed(engine),
-            None => Cow::Owned(self.setup.start()?),
-        })
+    fn has_started(&self) -> bool {
+        !matches!(self.stage, Stage::Instantiated | Stage::InitializationMode)
+    }
+
+    /// The motion, once it has started: until then it follows from the setup.
+    pub fn motion(&self) -> Option<&Motion> {
+        self.engine.as_ref().filter(|_| self.has_started()).map(Engine::motion)
     }
 }
 
@@ -258,15 +258,14 @@ impl Instance {
         }
         let load = self.now.input.value;
         let (mut outputs, mut reactions) = (None, None);
-        if let Some(variable) = reaction {
-            let engine = self.now.as_it_stands()?;
-            let Reactions { R_h, R_v, R_m } = *reactions.insert(engine.reactions(load));
-            if !(R_h + R_v + R_m).is_finite() {
-                return Err(Failure::NoReaction { variable, time: engine.motion().time });
-            }
-        }
         if is_computed {
-            self.now.engine()?;
+            let engine = self.now.engine()?;
+            if let Some(variable) = reaction {
+                let Reactions { R_h, R_v, R_m } = *reactions.insert(engine.reactions(load));
+                if !(R_h + R_v + R_m).is_finite() {
+                    return Err(Failure::NoReaction { variable, time: engine.motion().time });
+                }
+            }
         }
         for (reference, value) in references.iter().zip(values) {
             let variable = find(*reference)?;
@@ -454,7 +453,7 @@ impl Instance {
     /// is the derivative; it is taken over a change of the size of gravity and the strut's force, which keeps its
     /// digits.
     pub fn get_directional_derivative(
-        &self,
+        &mut self,
         unknowns: &[u32],
         knowns: &[u32],
         seed: &[f64],
@@ -470,7 +469,7 @@ impl Instance {
             let sum = (quantity.get)(&direction) + value;
             (quantity.set)(&mut direction, sum);
         }
-        let engine = self.now.as_it_stands()?;
+        let engine = self.now.engine()?;
         let time = engine.motion().time;
         let &Parameters { m, g, .. } = engine.structure().parameters();
         let outputs_before = engine.outputs(0.0);

@@ -61,13 +61,12 @@ impl Snapshots {
 const MAGIC: [u8; 8] = *b"FlexRock";
 const VERSION: u32 = 2;
 
-/// What the payload holds: a condition, with the engine's motion for the engine.
+/// What the payload holds: a condition, with the motion for the engine.
 type Stored = (Stage, Setup, LinearLoad, Option<Motion>);
 
 /// A condition as bytes.
 pub fn serialize(condition: &Condition) -> Vec<u8> {
-    let motion = condition.engine.as_ref().map(|engine| *engine.motion());
-    let stored: Stored = (condition.stage, condition.setup, condition.input, motion);
+    let stored: Stored = (condition.stage, condition.setup, condition.input, condition.motion().copied());
     let payload = postcard::to_stdvec(&stored).expect("numbers and enumerations can always be written");
     let length = u32::try_from(payload.len()).expect("the payload is a few hundred bytes");
     let mut bytes = header().to_vec();
