@@ -44,12 +44,12 @@ impl Demand {
             return Err(OutOfRange { name: "C", value: C, unit: "1", min: 0.0, max: INSTANT_TRANSITION, description });
         }
         let &crate::Parameters { m, H, g, .. } = structure.parameters();
-        let ground = structure.one_minus_beta * S_a;
-        let rocking = structure.beta * g * structure.tan_alpha_cg;
+        let ground = structure.one_minus_chi * S_a;
+        let rocking = structure.chi * g * structure.tan_alpha_cg;
         let impact = C * rocking;
         let a_t = ground + rocking + impact;
         Ok(Demand {
-            u_ddot_gr: impact / structure.one_minus_beta,
+            u_ddot_gr: impact / structure.one_minus_chi,
             ground,
             rocking,
             impact,
@@ -86,7 +86,7 @@ mod tests {
         let structure = Structure::new(Parameters::EVISON).unwrap();
         let &Parameters { m, H, g, .. } = structure.parameters();
         let demand = Demand::new(&structure, 30.0, 1.4).unwrap();
-        let expected = (1.0 - structure.beta) * 30.0 + 2.4 * structure.beta * g * structure.tan_alpha_cg;
+        let expected = (1.0 - structure.chi) * 30.0 + 2.4 * structure.chi * g * structure.tan_alpha_cg;
         assert_relative_eq!(demand.a_t, expected, max_relative = 1e-14);
         assert_relative_eq!(demand.V_t, m * expected, max_relative = 1e-14);
         assert_relative_eq!(demand.M_t, m * H * expected, max_relative = 1e-14);
@@ -98,7 +98,7 @@ mod tests {
     fn an_instant_change_of_sides_accelerates_as_equation_21_says() {
         let structure = Structure::new(Parameters { f_fc: 1e3, ..Parameters::MCMANUS }).unwrap();
         let demand = Demand::new(&structure, 0.0, INSTANT_TRANSITION).unwrap();
-        let quiet = State { u: structure.beta * structure.u_cr, ..State::default() };
+        let quiet = State { u: structure.chi * structure.u_cr, ..State::default() };
         let u_ddot = accelerations(&structure, Side::Left, &quiet, Load::default()).unwrap()[0];
         assert_relative_eq!(u_ddot, -demand.u_ddot_gr, max_relative = 1e-5);
     }

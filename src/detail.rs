@@ -1,6 +1,6 @@
 //! Levels of detail: which equations a structure moves by. Transitions are found and applied by the same code at all of
-//! them; the rigid limit, where u decides nothing, has its own condition of uplift and its own end of bouncing, and a
-//! fixed base has no uplift.
+//! them; what depends on the level is in one type for each: the rigid limit, where u decides nothing, has its own
+//! condition of uplift and its own end of bouncing, and a fixed base has no uplift.
 //!
 //! | level | equations | solved by |
 //! |---|---|---|
@@ -11,14 +11,23 @@
 //! | `rigid` | 6 with u = 0 | series |
 //! | `fixed_base` | 1, no uplift | exact flow |
 
+use crate::first_crossing::Crossing;
+use crate::full_contact::{self, ExactContact};
 use crate::linear_rocking::LinearRocking;
-use crate::load::Load;
+use crate::load::{LinearLoad, Load};
 use crate::modal_rocking::ModalRocking;
-use crate::nonlinear_rocking::{self, NonlinearRocking};
-use crate::taylor::{Arc, Start};
-use crate::uplift::TurningMoment;
-use crate::{Phase, Side, State, Structure, full_contact, rigid_rocking};
+use crate::nonlinear_rocking::NonlinearRocking;
+use crate::output_series::{self, Turn};
+use crate::piece::Bounds;
+use crate::rigid_rocking::Rigid;
+use crate::state::InitialStateError;
+use crate::taylor::{Arc, Series, Start};
+use crate::transition::{ChatterLimit, MAX_TRANSITIONS_PER_PERIOD};
+use crate::uplift::{self, TurningMoment};
+use crate::{Outputs, Phase, Side, State, Structure, impact};
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
+use std::fmt::Debug;
 
 /// A level of detail.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -57,75 +66,197 @@ impl Detail {
     }
 }
 
-/// The equations by which a level rocks.
-#[derive(Clone, Debug)]
-pub(crate) enum RockingEquations {
-    Nonlinear(Box<NonlinearRocking>),
-    Linear(Box<LinearRocking>),
-    Modal(Box<ModalRocking>),
-    Rigid,
+impl Detail {
+    /// What moves `structure` at this level, to the relative `tolerance`.
+    pub(crate) fn level(self, structure: &Structure, tolerance: f64) -> Box<dyn Level> {
+        let contact = Some(ExactContact::new(structure));
+        match self {
+            Detail::Auto => Box::new(Elastic { contact, rocking: NonlinearRocking::default() }),
+            Detail::Nonlinear => Box::new(Elastic { contact: None, rocking: NonlinearRocking::default() }),
+            Detail::Linear => Box::new(Elastic { contact, rocking: LinearRocking::new(structure) }),
+            Detail::Modal => Box::new(Elastic { contact, rocking: ModalRocking::new(structure) }),
+            Detail::Rigid => Box::new(Rigid { tolerance }),
+            Detail::FixedBase => Box::new(FixedBase { contact: ExactContact::new(structure) }),
+        }
+    }
 }
 
-impl RockingEquations {
-    pub(crate) fn new(detail: Detail, structure: &Structure) -> RockingEquations {
-        match detail {
-            // a fixed base never rocks; what it does not use must still be something
-            Detail::Auto | Detail::Nonlinear | Detail::FixedBase => RockingEquations::Nonlinear(Box::default()),
-            Detail::Linear => RockingEquations::Linear(Box::new(LinearRocking::new(structure))),
-            Detail::Modal => RockingEquations::Modal(Box::new(ModalRocking::new(structure))),
-            Detail::Rigid => RockingEquations::Rigid,
-        }
+/// Everything that depends on the level of detail. Where nothing else is said it is as at the levels with an elastic
+/// strut.
+pub(crate) trait Level: Debug + Send {
+    /// Whether a motion may start from `initial`.
+    fn check_start(&self, _initial: &State) -> Result<(), InitialStateError> {
+        Ok(())
     }
 
-    /// The state after the interval of `start` if it is known exactly and no transition can happen until then.
-    #[inline]
-    pub(crate) fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
-        match self {
-            RockingEquations::Linear(linear) => linear.leap(side, start),
-            RockingEquations::Modal(modal) => modal.leap(side, start),
-            RockingEquations::Nonlinear(_) | RockingEquations::Rigid => None,
-        }
+    /// The state at the end of `start` where it is known exactly and no transition can happen until then.
+    fn leap(&mut self, structure: &Structure, phase: Phase, start: &Start) -> Option<State>;
+
+    /// Bounds of what changes on such a leap from `start` to `end`.
+    fn bounds(&self, phase: Phase, start: &Start, end: &State) -> Bounds;
+
+    /// Writes the motion from `start` in `phase` into `arc`; there is none once overturned.
+    fn series(&mut self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc);
+
+    /// Whether the equations of rocking are about to have no solution.
+    fn is_singular(&self, _structure: &Structure, _phase: Phase, _state: &State) -> bool {
+        false
     }
 
-    /// Writes the motion from `start` about `side` into `arc`.
-    #[inline]
-    pub(crate) fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
-        match self {
-            RockingEquations::Nonlinear(nonlinear) => nonlinear.series(structure, side, start, arc),
-            RockingEquations::Linear(linear) => linear.system.series(structure, side, start, arc),
-            RockingEquations::Modal(modal) => modal.system.series(structure, side, start, arc),
-            RockingEquations::Rigid => rigid_rocking::series(structure, side, start, arc),
-        }
+    /// The first instant of `arc`, a motion in full contact from `start`, at which uplift is due, and about which side.
+    fn first_uplift(&self, structure: &Structure, start: &Start, arc: &Arc) -> (Crossing, Side);
+
+    /// Phase and state just after an impact that ends rocking about `side` in the state `before`.
+    fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
+        impact::resolve(structure, side, before)
+    }
+
+    /// The state just after a landing.
+    fn land(&self, structure: &Structure, before: &State) -> State {
+        impact::land(structure, before)
+    }
+
+    /// How many transitions may happen how fast.
+    fn chatter_limit(&self, structure: &Structure) -> ChatterLimit {
+        ChatterLimit { period: TAU / structure.omega_u, transitions: MAX_TRANSITIONS_PER_PERIOD }
+    }
+
+    /// Whether a structure in full contact in `state` stays there while nothing acts on it.
+    fn stays_down(&self, structure: &Structure, state: &State) -> bool {
+        state.u.hypot(state.u_dot / structure.omega_fc) < structure.u_cr
+    }
+
+    /// (ü, θ̈) in `phase` under `load`, m/s² and rad/s²; not a number where the equations have no solution.
+    fn accelerations(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2];
+
+    /// The outputs in `phase` and `state` under `load`.
+    fn outputs(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> Outputs {
+        Outputs::of(structure, phase, state, load.F_t)
+    }
+
+    /// Time derivatives of the outputs under `load`, given (ü, θ̈) and (u⃛, θ⃛).
+    fn output_rates(
+        &self,
+        structure: &Structure,
+        phase: Phase,
+        state: &State,
+        [accelerations, _]: [[f64; 2]; 2],
+        load: LinearLoad,
+    ) -> Outputs {
+        Outputs::rates_by(structure, phase, state, accelerations, load)
+    }
+
+    /// a_t over `arc` under `load`, which is given from its start on, as a series in σ.
+    fn a_t_series(&self, structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc, turn: &Turn) -> Series {
+        output_series::a_t(structure, phase, load, arc, turn)
+    }
+
+    /// Bound of |a_t| over the same; `theta` and `u` bound |θ| and |u|.
+    fn a_t_bound(&self, structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc, theta: f64) -> f64 {
+        output_series::a_t_bound(structure, phase, load, arc, theta)
+    }
+}
+
+/// Equations of rocking with an elastic strut.
+pub(crate) trait ElasticRocking: Debug + Send {
+    fn leap(&mut self, _side: Side, _start: &Start) -> Option<State> {
+        None
+    }
+
+    fn bounds(&self, side: Side, start: &Start, end: &State) -> Bounds;
+
+    fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc);
+
+    fn is_singular(&self, _structure: &Structure, _side: Side, _state: &State) -> bool {
+        false
     }
 
     /// What decides the sign of θ̈ at the start of rocking.
-    pub(crate) fn turning_moment(&self, structure: &Structure) -> TurningMoment {
-        match self {
-            RockingEquations::Linear(linear) => linear.system.turning_moment(),
-            RockingEquations::Modal(modal) => modal.system.turning_moment(),
-            RockingEquations::Nonlinear(_) | RockingEquations::Rigid => TurningMoment::new(structure),
+    fn turning_moment(&self, structure: &Structure) -> TurningMoment;
+
+    fn accelerations(&self, structure: &Structure, side: Side, state: &State, load: Load) -> [f64; 2];
+}
+
+/// A level with an elastic strut: by exact flow in full contact where there is one, otherwise by series.
+#[derive(Debug)]
+struct Elastic<Rocking> {
+    contact: Option<ExactContact>,
+    rocking: Rocking,
+}
+
+impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
+    fn leap(&mut self, structure: &Structure, phase: Phase, start: &Start) -> Option<State> {
+        match phase {
+            Phase::FullContact => self.contact.as_mut()?.leap(start, structure.u_cr),
+            Phase::Rocking(side) => self.rocking.leap(side, start),
+            Phase::Overturned(_) => None,
         }
     }
 
-    /// (ü, θ̈) in `phase`, m/s² and rad/s²; not a number where the equations have no solution.
-    pub(crate) fn accelerations(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2] {
-        let a_top = load.on_top(structure);
-        match (self, phase) {
-            (RockingEquations::Rigid, _) => rigid_rocking::accelerations(structure, phase, state, load),
-            (RockingEquations::Linear(linear), Phase::Rocking(side)) => linear.system.accelerations(side, state, a_top),
-            (RockingEquations::Modal(modal), Phase::Rocking(side)) => modal.system.accelerations(side, state, a_top),
-            _ => full_accelerations(structure, phase, state, load),
+    fn bounds(&self, phase: Phase, start: &Start, end: &State) -> Bounds {
+        match (phase, &self.contact) {
+            (Phase::Rocking(side), _) => self.rocking.bounds(side, start, end),
+            (_, Some(contact)) => contact.bounds(start),
+            (_, None) => Bounds::NONE,
+        }
+    }
+
+    fn series(&mut self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc) {
+        match phase {
+            Phase::Rocking(side) => self.rocking.series(structure, side, start, arc),
+            Phase::FullContact | Phase::Overturned(_) => full_contact::series(structure, start, arc),
+        }
+    }
+
+    fn is_singular(&self, structure: &Structure, phase: Phase, state: &State) -> bool {
+        matches!(phase, Phase::Rocking(side) if self.rocking.is_singular(structure, side, state))
+    }
+
+    fn first_uplift(&self, structure: &Structure, _start: &Start, arc: &Arc) -> (Crossing, Side) {
+        uplift::first_on(structure, &self.rocking.turning_moment(structure), arc)
+    }
+
+    fn accelerations(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2] {
+        match phase {
+            Phase::FullContact => [full_contact::acceleration(structure, state, load), 0.0],
+            Phase::Rocking(side) => self.rocking.accelerations(structure, side, state, load),
+            Phase::Overturned(_) => [0.0; 2],
         }
     }
 }
 
-/// (ü, θ̈) by Eqs 1, 5 and 6 in `phase`, m/s² and rad/s²; not a number where they have no solution.
-pub(crate) fn full_accelerations(structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2] {
-    match phase {
-        Phase::FullContact => [full_contact::acceleration(structure, state, load), 0.0],
-        Phase::Rocking(side) => {
-            nonlinear_rocking::accelerations(structure, side, state, load).map_or([f64::NAN; 2], Into::into)
-        }
-        Phase::Overturned(_) => [0.0; 2],
+/// Full contact throughout.
+#[derive(Debug)]
+struct FixedBase {
+    contact: ExactContact,
+}
+
+impl Level for FixedBase {
+    fn check_start(&self, initial: &State) -> Result<(), InitialStateError> {
+        if initial.theta == 0.0 { Ok(()) } else { Err(InitialStateError::TurnedFixedBase(initial.theta)) }
+    }
+
+    fn leap(&mut self, _structure: &Structure, _phase: Phase, start: &Start) -> Option<State> {
+        self.contact.leap(start, f64::INFINITY)
+    }
+
+    fn bounds(&self, _phase: Phase, start: &Start, _end: &State) -> Bounds {
+        self.contact.bounds(start)
+    }
+
+    fn series(&mut self, structure: &Structure, _phase: Phase, start: &Start, arc: &mut Arc) {
+        full_contact::series(structure, start, arc);
+    }
+
+    fn first_uplift(&self, _structure: &Structure, _start: &Start, _arc: &Arc) -> (Crossing, Side) {
+        (Crossing::None, Side::Right)
+    }
+
+    fn stays_down(&self, _structure: &Structure, _state: &State) -> bool {
+        true
+    }
+
+    fn accelerations(&self, structure: &Structure, _phase: Phase, state: &State, load: Load) -> [f64; 2] {
+        [full_contact::acceleration(structure, state, load), 0.0]
     }
 }

@@ -29,7 +29,7 @@ pub fn effective_frequency(structure: &Structure, theta: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::load::GroundAcceleration;
+    use crate::load::Ramp;
     use crate::{Engine, Parameters, State, TransitionKind};
     use approx::assert_relative_eq;
 
@@ -69,11 +69,11 @@ mod tests {
     fn a_stiff_structure_comes_down_after_that_time() {
         let structure = Structure::new(Parameters { f_fc: 300.0, ..Parameters::EVISON }).unwrap();
         let theta = 0.01;
-        let initial = State { theta, u: structure.beta * structure.u_cr, ..State::default() };
+        let initial = State { theta, u: structure.chi * structure.u_cr, ..State::default() };
         let mut engine = Engine::new(structure, initial, 0.0, 1e-9).unwrap();
         let mut impacts = Vec::new();
         let mut observe = |transition: &crate::Transition| impacts.push(*transition);
-        engine.advance(0.1, GroundAcceleration::default(), &mut observe).unwrap();
+        engine.advance(0.1, Ramp::default(), &mut observe).unwrap();
         assert!(matches!(impacts[0].kind, TransitionKind::Impact(_)));
         assert_relative_eq!(impacts[0].time, time_to_impact(&structure, theta), max_relative = 1e-3);
     }

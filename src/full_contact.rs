@@ -5,10 +5,10 @@
 //! ```
 
 use crate::load::Load;
-use crate::oscillator::{Driven, Kept, Oscillator};
+use crate::oscillator::{Flow, Kept, Oscillator};
+use crate::piece::Bounds;
 use crate::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
 use crate::{State, Structure};
-use nalgebra::Matrix2;
 
 /// Elastic acceleration ü (m/s²) under the `load` by Eq 1.
 pub fn acceleration(structure: &Structure, state: &State, load: Load) -> f64 {
@@ -19,7 +19,7 @@ pub fn acceleration(structure: &Structure, state: &State, load: Load) -> f64 {
 const NEGLIGIBLE: f64 = 1e-30;
 
 /// Writes the motion from `start` into `arc`.
-pub fn series(structure: &Structure, start: &Start, arc: &mut Arc) {
+pub(crate) fn series(structure: &Structure, start: &Start, arc: &mut Arc) {
     let &Start { state, a_top, interval, local_error, .. } = start;
     let &Structure { stiffness, damping_fc, omega_fc, .. } = structure;
     let span = interval.min(LONGEST_SPAN / omega_fc);
@@ -37,30 +37,36 @@ pub fn series(structure: &Structure, start: &Start, arc: &mut Arc) {
 
 /// Exact propagation over intervals during which the base certainly stays down.
 #[derive(Clone, Debug)]
-pub struct ExactContact {
+pub(crate) struct ExactContact {
     oscillator: Oscillator,
-    flows: Kept<Matrix2<f64>>,
+    flows: Kept<Flow>,
 }
 
 impl ExactContact {
     /// For `structure`.
-    pub fn new(structure: &Structure) -> ExactContact {
+    pub(crate) fn new(structure: &Structure) -> ExactContact {
         let oscillator = Oscillator { omega: structure.omega_fc, zeta: structure.parameters().zeta_fc };
-        ExactContact { oscillator, flows: Kept::new(Matrix2::identity()) }
+        ExactContact { oscillator, flows: Kept::new(Flow::NONE) }
     }
 
     /// The state after the interval of `start` if |u| certainly stays below `limit` (m) until then.
     #[inline]
-    pub fn leap(&mut self, start: &Start, limit: f64) -> Option<State> {
+    pub(crate) fn leap(&mut self, start: &Start, limit: f64) -> Option<State> {
         let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
-        if !self.oscillator.can_leap(interval) {
+        if self.oscillator.swing([u, u_dot], a_top.value, a_top.slope, interval).farthest() >= limit {
             return None;
         }
         let flow = self.flows.over(interval, || self.oscillator.flow(interval));
-        let Driven { end: [u, u_dot], following, amplitude } =
-            self.oscillator.driven(flow, [u, u_dot], a_top.value, a_top.slope, interval);
-        let highest = following[0].abs().max(following[1].abs()) + amplitude;
-        (highest < limit).then_some(State { u, u_dot, theta: 0.0, theta_dot: 0.0 })
+        let [u, u_dot] = flow.driven([u, u_dot], a_top.value, a_top.slope);
+        Some(State { u, u_dot, theta: 0.0, theta_dot: 0.0 })
+    }
+
+    /// Bounds of what changes over the interval of `start`.
+    pub(crate) fn bounds(&self, start: &Start) -> Bounds {
+        let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
+        let swing = self.oscillator.swing([u, u_dot], a_top.value, a_top.slope, interval);
+        let [u_dot, u_ddot, u_dddot] = self.oscillator.rates(&swing, a_top.slope);
+        Bounds { u: swing.farthest(), u_dot, u_ddot, u_dddot, ..Bounds::default() }
     }
 }
 
@@ -68,12 +74,12 @@ impl ExactContact {
 mod tests {
     use super::*;
     use crate::Parameters;
-    use crate::load::GroundAcceleration;
+    use crate::load::Ramp;
     use approx::assert_relative_eq;
     use proptest::prelude::*;
 
     /// Closed form from rest: free decay plus the particular solution of a linear ramp.
-    fn ramp_from_rest(structure: &Structure, a_g: GroundAcceleration, t: f64) -> f64 {
+    fn ramp_from_rest(structure: &Structure, a_g: Ramp, t: f64) -> f64 {
         let (w, z) = (structure.omega_fc, structure.parameters().zeta_fc);
         let wd = w * (1.0 - z * z).sqrt();
         let offset = -a_g.value / (w * w) + 2.0 * z * a_g.slope / w.powi(3);
@@ -82,11 +88,11 @@ mod tests {
         offset + rate * t + (-z * w * t).exp() * (a * (wd * t).cos() + b * (wd * t).sin())
     }
 
-    fn from(state: State, a_g: GroundAcceleration, interval: f64) -> Start {
+    fn from(state: State, a_g: Ramp, interval: f64) -> Start {
         Start { state, a_g, a_top: a_g, interval, local_error: 1e-15 }
     }
 
-    const RAMP: GroundAcceleration = GroundAcceleration { value: 0.7, slope: -30.0 };
+    const RAMP: Ramp = Ramp { value: 0.7, slope: -30.0 };
 
     #[test]
     fn the_series_follows_the_closed_form() {
@@ -95,7 +101,7 @@ mod tests {
         let mut time = 0.0;
         let mut arc = Arc::default();
         while time < 0.3 {
-            let a_g = GroundAcceleration { value: RAMP.at(time), ..RAMP };
+            let a_g = Ramp { value: RAMP.at(time), ..RAMP };
             series(&structure, &from(state, a_g, 0.3 - time), &mut arc);
             state = arc.end();
             time += arc.duration();
@@ -120,7 +126,7 @@ mod tests {
         ) {
             let structure = Structure::new(Parameters { zeta_fc, ..Parameters::EVISON }).unwrap();
             let state = State { u, u_dot, ..State::default() };
-            let a_g = GroundAcceleration { value, slope };
+            let a_g = Ramp { value, slope };
             let mut arc = Arc::default();
             series(&structure, &from(state, a_g, interval), &mut arc);
             prop_assert_eq!(arc.reach, 1.0);

@@ -14,9 +14,13 @@
 //! A force F_t on the top mass makes a_g − F_t/m of a_g. Under loads that are linear in time the exact solution is a
 //! matrix exponential, kept for the step lengths used last; series serve the steps on which a transition may happen.
 
+use crate::detail::ElasticRocking;
 use crate::linear_system::{LinearSystem, Row};
+use crate::load::Load;
 use crate::oscillator::Kept;
-use crate::taylor::Start;
+use crate::piece::Bounds;
+use crate::taylor::{Arc, Start};
+use crate::uplift::TurningMoment;
 use crate::{Side, State, Structure};
 use nalgebra::{SMatrix, SVector};
 use std::f64::consts::FRAC_PI_2;
@@ -26,7 +30,7 @@ type Flow = SMatrix<f64, 4, 7>;
 
 /// Exact propagation by Eqs 7 and 8.
 #[derive(Clone, Debug)]
-pub struct LinearRocking {
+pub(crate) struct LinearRocking {
     pub(crate) system: LinearSystem,
     flows: Kept<Flow>,
     /// Circular frequency of u for θ held, rad/s.
@@ -36,7 +40,7 @@ pub struct LinearRocking {
 
 impl LinearRocking {
     /// For `structure`.
-    pub fn new(structure: &Structure) -> LinearRocking {
+    pub(crate) fn new(structure: &Structure) -> LinearRocking {
         let &crate::Parameters { H, B, g, .. } = structure.parameters();
         let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
         let inertia = foundation + B * B;
@@ -58,33 +62,76 @@ impl LinearRocking {
         LinearRocking { system: LinearSystem { u_ddot, theta_ddot }, flows: Kept::new(Flow::zeros()), omega, g }
     }
 
-    /// The state after the interval of `start` if rocking about `side` certainly goes on until then.
+    /// Bounds of what changes over the interval of `start` about `side`; none where θ turns too far back on u.
     ///
     /// With f = g θ − a_top + s U_s, the vibration about f/Ω² has an energy that grows by the change of f alone, which
-    /// bounds |θ̈| by M and with it the distance of θ from its chord by M h²/8.
+    /// bounds its speed v and with it |θ̈|, on which the change of f depends in turn.
     #[inline]
-    pub fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
+    fn bounds_of(&self, side: Side, start: &Start) -> Option<Bounds> {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
         let LinearSystem { u_ddot, theta_ddot } = &self.system;
         let s = side.sign();
-        let flow = self.flows.over(h, || flow(&self.system, self.omega, h));
-        let end = flow * SVector::from([u, u_dot, theta, theta_dot, a_top.value, a_top.slope, s]);
-
         let following = (self.g * theta - a_top.value + s * u_ddot.side) / (self.omega * self.omega);
         let swing = self.omega * (u - following);
         let speed = (u_dot * u_dot + swing * swing).sqrt() + h * h * (a_top.slope.abs() + self.g * theta_dot.abs());
         let per_speed = theta_ddot.u / self.omega + theta_ddot.u_dot;
         let feedback = per_speed * self.g * h * h * h / 2.0;
+        if feedback >= 0.5 {
+            return None;
+        }
         let steady = (theta_ddot.u * following + s * theta_ddot.side).abs();
-        let off_chord = (steady + per_speed * speed) / (1.0 - feedback) * h * h / 8.0;
-        let (first, last) = (s * theta, s * end[2]);
-        let goes_on = feedback < 0.5 && first.min(last) > off_chord && first.max(last) + off_chord < FRAC_PI_2;
-        goes_on.then(|| State { u: end[0], u_dot: end[1], theta: end[2], theta_dot: end[3] })
+        let turning = (steady + per_speed * speed) / (1.0 - feedback);
+        let speed = speed + self.g * h * h * h / 2.0 * turning;
+        let theta_dot = theta_dot.abs() + turning * h;
+        let force_rate = a_top.slope.abs() + self.g * theta_dot;
+        let elastic = (self.omega - u_ddot.u_dot) * speed + h * force_rate;
+        Some(Bounds {
+            u: following.abs() + speed / self.omega,
+            u_dot: speed,
+            u_ddot: elastic,
+            u_dddot: self.omega * self.omega * speed - u_ddot.u_dot * elastic + force_rate,
+            theta: theta.abs() + theta_dot * h,
+            theta_dot,
+            theta_ddot: turning,
+        })
     }
 }
 
-/// The flow of `system` over `duration` (s): the exponential of the system augmented by its inputs. Velocities are
-/// taken over ω, in s⁻¹, which keeps its entries of one size and with them the digits of small results.
+impl ElasticRocking for LinearRocking {
+    /// The state after the interval of `start` if rocking about `side` certainly goes on until then: θ is no farther
+    /// from its chord than |θ̈| h²/8.
+    #[inline]
+    fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
+        let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
+        let off_chord = self.bounds_of(side, start)?.theta_ddot * h * h / 8.0;
+        let s = side.sign();
+        let flow = self.flows.over(h, || flow(&self.system, self.omega, h));
+        let end = flow * SVector::from([u, u_dot, theta, theta_dot, a_top.value, a_top.slope, s]);
+        let (first, last) = (s * theta, s * end[2]);
+        let goes_on = first.min(last) > off_chord && first.max(last) + off_chord < FRAC_PI_2;
+        goes_on.then(|| State { u: end[0], u_dot: end[1], theta: end[2], theta_dot: end[3] })
+    }
+
+    fn bounds(&self, side: Side, start: &Start, _end: &State) -> Bounds {
+        self.bounds_of(side, start).unwrap_or(Bounds::NONE)
+    }
+
+    fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
+        self.system.series(structure, side, start, arc);
+    }
+
+    fn turning_moment(&self, _structure: &Structure) -> TurningMoment {
+        self.system.turning_moment()
+    }
+
+    fn accelerations(&self, structure: &Structure, side: Side, state: &State, load: Load) -> [f64; 2] {
+        self.system.accelerations(side, state, load.on_top(structure))
+    }
+}
+
+/// The flow of `system` over `duration` (s): the exponential of the system augmented by its inputs. Derivatives are
+/// taken over powers of ω, or of 1/h over steps shorter than that, which keeps the entries of one size and with them the
+/// digits of small results.
 fn flow(system: &LinearSystem, omega: f64, duration: f64) -> Flow {
     let mut rates = SMatrix::<f64, 7, 7>::zeros();
     rates[(0, 1)] = 1.0;
@@ -97,7 +144,10 @@ fn flow(system: &LinearSystem, omega: f64, duration: f64) -> Flow {
         rates[(equation, 4)] = row.a_top;
         rates[(equation, 6)] = row.side;
     }
-    let scale = SVector::<f64, 7>::from([1.0, omega, 1.0, omega, 1.0, 1.0, 1.0]);
+    let rate = omega.max(1.0 / duration);
+    let turn = (system.theta_ddot.u / system.u_ddot.u).abs();
+    let (square, cube) = (rate * rate, rate * rate * rate);
+    let scale = SVector::<f64, 7>::from([1.0, rate, turn, turn * rate, square, cube, square / system.u_ddot.side.abs()]);
     let scaled = |matrix: &SMatrix<f64, 7, 7>, scale: &SVector<f64, 7>| {
         SMatrix::<f64, 7, 7>::from_fn(|i, j| matrix[(i, j)] * scale[j] / scale[i])
     };
@@ -109,9 +159,8 @@ fn flow(system: &LinearSystem, omega: f64, duration: f64) -> Flow {
 mod tests {
     use super::*;
     use crate::Parameters;
-    use crate::load::{GroundAcceleration, Load};
+    use crate::load::Ramp;
     use crate::nonlinear_rocking::accelerations;
-    use crate::taylor::Arc;
     use approx::assert_relative_eq;
     use proptest::prelude::*;
 
@@ -146,7 +195,7 @@ mod tests {
         ) {
             let structure = Structure::new(Parameters { zeta_fc, ..Parameters::MCMANUS }).unwrap();
             let state = State { u, u_dot, theta, theta_dot };
-            let a_g = GroundAcceleration { value, slope };
+            let a_g = Ramp { value, slope };
             let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15 };
             let mut rocking = LinearRocking::new(&structure);
             let mut arc = Arc::default();

@@ -11,26 +11,27 @@
 //! Uplift asks for s u ≥ u_cr and s θ̈ > 0, which neither of them enters; impacts are too short for both.
 
 use crate::Structure;
+use crate::quantity::{Quantity, quantity};
 use serde::{Deserialize, Serialize};
 
-/// Ground acceleration over one interval, positive to the right: `value + slope·(t − start of the interval)`.
+/// An acceleration over one interval, positive to the right: `value + slope·(t − start of the interval)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct GroundAcceleration {
+pub struct Ramp {
     /// At the start of the interval, m/s².
     pub value: f64,
     /// Its rate, m/s³.
     pub slope: f64,
 }
 
-impl GroundAcceleration {
+impl Ramp {
     /// Its value `tau` seconds into the interval, m/s².
     pub fn at(self, tau: f64) -> f64 {
         self.value + self.slope * tau
     }
 
-    /// The same ground motion, its interval started `tau` seconds later.
-    pub(crate) fn from(self, tau: f64) -> GroundAcceleration {
-        GroundAcceleration { value: self.at(tau), slope: self.slope }
+    /// The same, its interval started `tau` seconds later.
+    pub(crate) fn from(self, tau: f64) -> Ramp {
+        Ramp { value: self.at(tau), slope: self.slope }
     }
 
     /// Coefficient `k` of its series over a step of `span` s.
@@ -43,6 +44,12 @@ impl GroundAcceleration {
         }
     }
 }
+
+/// What may act, with units and ranges.
+pub const LOADS: [Quantity<Load>; 2] = [
+    quantity!(a_g ["m/s2"] -1e4, 1e4, "horizontal ground acceleration, positive to the right"),
+    quantity!(F_t ["N"] -1e15, 1e15, "external horizontal force on the top mass, positive to the right"),
+];
 
 /// What acts at one instant, or its rate.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -81,21 +88,26 @@ impl LinearLoad {
         Load { a_g: self.value.a_g + self.slope.a_g * tau, F_t: self.value.F_t + self.slope.F_t * tau }
     }
 
+    /// The same, its interval started `tau` seconds later.
+    pub fn from(self, tau: f64) -> LinearLoad {
+        LinearLoad { value: self.at(tau), ..self }
+    }
+
     /// Its ground acceleration.
-    pub(crate) fn on_foundation(self) -> GroundAcceleration {
-        GroundAcceleration { value: self.value.a_g, slope: self.slope.a_g }
+    pub(crate) fn on_foundation(self) -> Ramp {
+        Ramp { value: self.value.a_g, slope: self.slope.a_g }
     }
 
     /// The ground acceleration that the top mass feels.
     #[inline]
-    pub(crate) fn on_top(self, structure: &Structure) -> GroundAcceleration {
-        GroundAcceleration { value: self.value.on_top(structure), slope: self.slope.on_top(structure) }
+    pub(crate) fn on_top(self, structure: &Structure) -> Ramp {
+        Ramp { value: self.value.on_top(structure), slope: self.slope.on_top(structure) }
     }
 }
 
 /// The ground motion alone.
-impl From<GroundAcceleration> for LinearLoad {
-    fn from(a_g: GroundAcceleration) -> LinearLoad {
+impl From<Ramp> for LinearLoad {
+    fn from(a_g: Ramp) -> LinearLoad {
         LinearLoad { value: Load::ground(a_g.value), slope: Load::ground(a_g.slope) }
     }
 }

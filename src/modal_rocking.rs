@@ -2,40 +2,66 @@
 //!
 //! ```text
 //! q̈_r − p_l² q_r = −p_l² a_g/g − s p_l² tan α_cg                                                           (11)
-//! ü + 2 ζ_u ω_u u̇ + ω_u² u = −a_g + s (β/(1−β)) g tan α_cg                                                 (18)
+//! ü + 2 ζ_u ω_u u̇ + ω_u² u = −a_g + s (χ/(1−χ)) g tan α_cg                                                 (18)
 //! θ = q_r + q_u,      q_u = −(p_l²/g) u                                                                    (16)
 //! ```
 //!
 //! A force F_t on the top mass makes a_g − F_t/m of a_g. Both have closed forms under loads that are linear in time;
 //! series serve the steps on which a transition may happen, from the same equations written for θ = q_r − (p_l²/g) u.
 
+use crate::detail::ElasticRocking;
 use crate::linear_system::{LinearSystem, Row};
-use crate::oscillator::{Driven, Kept, Oscillator};
-use crate::taylor::Start;
+use crate::load::Load;
+use crate::oscillator::{Flow, Kept, Oscillator, Swing};
+use crate::piece::Bounds;
+use crate::taylor::{Arc, Start};
+use crate::uplift::TurningMoment;
 use crate::{Side, State, Structure};
-use nalgebra::Matrix2;
 use std::f64::consts::FRAC_PI_2;
 
 /// Propagation by the closed forms of Eqs 11 and 18.
 #[derive(Clone, Debug)]
-pub struct ModalRocking {
+pub(crate) struct ModalRocking {
     pub(crate) system: LinearSystem,
     vibration: Oscillator,
-    /// (β/(1−β)) g tan α_cg, m/s².
+    /// (χ/(1−χ)) g tan α_cg, m/s².
     gravity_forcing: f64,
     tan_alpha_cg: f64,
     g: f64,
     p_l: f64,
-    /// Flows of the vibration mode, and cosh and sinh of p_l h.
-    flows: Kept<(Matrix2<f64>, f64, f64)>,
+    flows: Kept<(Flow, Growth)>,
+}
+
+/// What takes the rocking mode over a length of time h: q_r grows from q by cosh(p_l h) and is driven by the load from 0.
+#[derive(Clone, Copy, Debug, Default)]
+struct Growth {
+    sinh: f64,
+    /// cosh − 1, which a load that is held drives.
+    step: f64,
+    /// (sinh − p_l h)/p_l, which its slope drives, s.
+    ramp: f64,
+}
+
+impl Growth {
+    fn over(p_l: f64, h: f64) -> Growth {
+        let x = p_l * h;
+        let sinh = x.sinh();
+        // sinh x − x loses its digits where x is small: x³/3! + x⁵/5! + …
+        let excess = if x < 1.0 {
+            (1..=9).rev().fold(0.0, |sum, k| (1.0 + sum) * x * x / f64::from(2 * k * (2 * k + 1))) * x
+        } else {
+            sinh - x
+        };
+        Growth { sinh, step: 2.0 * (0.5 * x).sinh().powi(2), ramp: excess / p_l }
+    }
 }
 
 impl ModalRocking {
     /// For `structure`.
-    pub fn new(structure: &Structure) -> ModalRocking {
-        let &Structure { p_l, omega_u, zeta_u, tan_alpha_cg, beta, one_minus_beta, .. } = structure;
+    pub(crate) fn new(structure: &Structure) -> ModalRocking {
+        let &Structure { p_l, omega_u, zeta_u, tan_alpha_cg, chi, one_minus_chi, .. } = structure;
         let g = structure.parameters().g;
-        let gravity_forcing = beta / one_minus_beta * g * tan_alpha_cg;
+        let gravity_forcing = chi / one_minus_chi * g * tan_alpha_cg;
         let u_ddot = Row {
             u: -omega_u * omega_u,
             u_dot: -2.0 * zeta_u * omega_u,
@@ -58,47 +84,78 @@ impl ModalRocking {
             tan_alpha_cg,
             g,
             p_l,
-            flows: Kept::new((Matrix2::identity(), 1.0, 0.0)),
+            flows: Kept::new((Flow::NONE, Growth::default())),
         }
     }
+}
 
+impl ElasticRocking for ModalRocking {
     /// The state after the interval of `start` if rocking about `side` certainly goes on until then.
     ///
     /// q_r leaves the line that follows the load by a hyperbolic arc, which is farthest from it at an end and bounds
     /// |q̈_r|; u stays within its amplitude of the line that it follows.
     #[inline]
-    pub fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
+    fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval, .. } = start;
         let &mut ModalRocking { vibration, p_l, g, tan_alpha_cg, gravity_forcing, .. } = self;
-        if !vibration.can_leap(interval) {
-            return None;
-        }
         let s = side.sign();
-        let (flow, cosh, sinh) =
-            self.flows.over(interval, || (vibration.flow(interval), (p_l * interval).cosh(), (p_l * interval).sinh()));
-        let load = a_top.value - s * gravity_forcing;
-        let Driven { end, following, amplitude } = vibration.driven(flow, [u, u_dot], load, a_top.slope, interval);
-
+        let (flow, Growth { sinh, step, ramp }) =
+            self.flows.over(interval, || (vibration.flow(interval), Growth::over(p_l, interval)));
         let shape = p_l * p_l / g;
-        let line = |tau: f64| a_top.at(tau) / g + s * tan_alpha_cg;
-        let line_rate = a_top.slope / g;
-        let off = theta + shape * u - line(0.0);
-        let off_rate = theta_dot + shape * u_dot - line_rate;
-        let off_end = cosh * off + sinh * off_rate / p_l;
-        let off_rate_end = p_l * sinh * off + cosh * off_rate;
-        let end_of = |q_r: f64, u: f64| q_r - shape * u;
-        let (q_r, q_r_dot) = (line(interval) + off_end, line_rate + off_rate_end);
+        let (line, line_slope) = (a_top.value / g + s * tan_alpha_cg, a_top.slope / g);
+        let (q_r, q_r_dot) = (theta + shape * u, theta_dot + shape * u_dot);
+        let off = q_r - line;
+        let q_r_end = q_r + sinh * q_r_dot / p_l + (step * off - ramp * line_slope);
+        let q_r_dot_end = q_r_dot + p_l * sinh * off + step * (q_r_dot - line_slope);
+        let off_end = q_r_end - line - line_slope * interval;
 
+        let load = a_top.value - s * gravity_forcing;
+        let Swing { following, amplitude } = vibration.swing([u, u_dot], load, a_top.slope, interval);
         let off_chord = off.abs().max(off_end.abs()) * (p_l * interval).powi(2) / 8.0 + shape * amplitude;
-        let first = s * (theta + shape * (u - following[0]));
-        let last = s * end_of(q_r, following[1]);
+        let [first, last] = [q_r - shape * following[0], q_r_end - shape * following[1]].map(|theta| s * theta);
         let goes_on = first.min(last) > off_chord && first.max(last) + off_chord < FRAC_PI_2;
-        goes_on.then(|| State {
-            u: end[0],
-            u_dot: end[1],
-            theta: end_of(q_r, end[0]),
-            theta_dot: end_of(q_r_dot, end[1]),
+        goes_on.then(|| {
+            let [u, u_dot] = flow.driven([u, u_dot], load, a_top.slope);
+            State { u, u_dot, theta: q_r_end - shape * u, theta_dot: q_r_dot_end - shape * u_dot }
         })
+    }
+
+    /// Bounds of what changes on the way from `start` about `side` to `end`.
+    fn bounds(&self, side: Side, start: &Start, end: &State) -> Bounds {
+        let &Start { state, a_top, interval, .. } = start;
+        let &ModalRocking { vibration, p_l, g, tan_alpha_cg, gravity_forcing, .. } = self;
+        let s = side.sign();
+        let load = a_top.value - s * gravity_forcing;
+        let swing = vibration.swing([state.u, state.u_dot], load, a_top.slope, interval);
+        let [u_dot, u_ddot, u_dddot] = vibration.rates(&swing, a_top.slope);
+        let shape = p_l * p_l / g;
+        // off the line that q_r follows, and the rate of that, are largest at an end
+        let off = |state: &State, a: f64| (state.theta + shape * state.u - a / g - s * tan_alpha_cg).abs();
+        let off_rate = |state: &State| (state.theta_dot + shape * state.u_dot - a_top.slope / g).abs();
+        let off = off(&state, a_top.value).max(off(end, a_top.at(interval)));
+        let q_r = off + a_top.value.abs().max(a_top.at(interval).abs()) / g + tan_alpha_cg;
+        let q_r_dot = off_rate(&state).max(off_rate(end)) + a_top.slope.abs() / g;
+        Bounds {
+            u: swing.farthest(),
+            u_dot,
+            u_ddot,
+            u_dddot,
+            theta: q_r + shape * swing.farthest(),
+            theta_dot: q_r_dot + shape * u_dot,
+            theta_ddot: p_l * p_l * off + shape * u_ddot,
+        }
+    }
+
+    fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
+        self.system.series(structure, side, start, arc);
+    }
+
+    fn turning_moment(&self, _structure: &Structure) -> TurningMoment {
+        self.system.turning_moment()
+    }
+
+    fn accelerations(&self, structure: &Structure, side: Side, state: &State, load: Load) -> [f64; 2] {
+        self.system.accelerations(side, state, load.on_top(structure))
     }
 }
 
@@ -106,8 +163,7 @@ impl ModalRocking {
 mod tests {
     use super::*;
     use crate::Parameters;
-    use crate::load::GroundAcceleration;
-    use crate::taylor::Arc;
+    use crate::load::Ramp;
     use approx::assert_relative_eq;
     use proptest::prelude::*;
 
@@ -115,12 +171,12 @@ mod tests {
     #[test]
     fn the_accelerations_satisfy_equations_11_and_18() {
         let structure = Structure::new(Parameters::EVISON).unwrap();
-        let &Structure { p_l, omega_u, zeta_u, tan_alpha_cg, beta, .. } = &structure;
+        let &Structure { p_l, omega_u, zeta_u, tan_alpha_cg, chi, .. } = &structure;
         let g = structure.parameters().g;
         let state = State { u: 8e-4, u_dot: -0.03, theta: 0.02, theta_dot: 0.3 };
         let (s, a_g) = (1.0, -2.5);
         let [u_ddot, theta_ddot] = ModalRocking::new(&structure).system.accelerations(Side::Right, &state, a_g);
-        let forcing = -a_g + s * beta / (1.0 - beta) * g * tan_alpha_cg;
+        let forcing = -a_g + s * chi / (1.0 - chi) * g * tan_alpha_cg;
         let left = u_ddot + 2.0 * zeta_u * omega_u * state.u_dot + omega_u * omega_u * state.u;
         assert_relative_eq!(left, forcing, max_relative = 1e-12);
         let (q_r, q_r_ddot) = (state.theta + p_l * p_l / g * state.u, theta_ddot + p_l * p_l / g * u_ddot);
@@ -137,7 +193,7 @@ mod tests {
         ) {
             let structure = Structure::new(Parameters::MCMANUS).unwrap();
             let state = State { u, u_dot, theta, theta_dot };
-            let a_g = GroundAcceleration { value, slope };
+            let a_g = Ramp { value, slope };
             let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15 };
             let mut rocking = ModalRocking::new(&structure);
             let mut arc = Arc::default();

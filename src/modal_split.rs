@@ -57,13 +57,13 @@ pub struct ModalAccelerations {
 impl ModalAccelerations {
     /// The modes' accelerations while rocking about `side` under the ground acceleration `a_g` (m/s²).
     pub fn of(structure: &Structure, side: Side, state: &State, a_g: f64) -> ModalAccelerations {
-        let &Structure { beta, one_minus_beta, omega_u, zeta_u, tan_alpha_cg, .. } = structure;
+        let &Structure { chi, one_minus_chi, omega_u, zeta_u, tan_alpha_cg, .. } = structure;
         let g = structure.parameters().g;
         let step = side.sign() * g * tan_alpha_cg;
-        let a_r = beta * (g * Modes::of(structure, state).q_r - a_g - step);
+        let a_r = chi * (g * Modes::of(structure, state).q_r - a_g - step);
         let u_ddot =
-            beta / one_minus_beta * step - a_g - 2.0 * zeta_u * omega_u * state.u_dot - omega_u * omega_u * state.u;
-        ModalAccelerations { a_r, a_u: one_minus_beta * u_ddot + a_g }
+            chi / one_minus_chi * step - a_g - 2.0 * zeta_u * omega_u * state.u_dot - omega_u * omega_u * state.u;
+        ModalAccelerations { a_r, a_u: one_minus_chi * u_ddot + a_g }
     }
 
     /// Of both modes together, a_t (Eq 20).
@@ -87,7 +87,7 @@ mod tests {
         let modes = Modes::of(&structure, &STATE);
         assert_relative_eq!(modes.q_r + modes.q_u, STATE.theta, max_relative = 1e-15);
         assert_relative_eq!(modes.q_r_dot + modes.q_u_dot, STATE.theta_dot, max_relative = 1e-15);
-        assert_relative_eq!(structure.parameters().H * modes.q_u, -structure.beta * STATE.u, max_relative = 1e-14);
+        assert_relative_eq!(structure.parameters().H * modes.q_u, -structure.chi * STATE.u, max_relative = 1e-14);
         let rigid = State { u: 0.0, u_dot: 0.0, ..STATE };
         let alone = Modes { q_r: 0.02, q_u: 0.0, q_r_dot: 0.15, q_u_dot: 0.0 };
         assert_eq!(Modes::of(&structure, &rigid), alone);
@@ -104,14 +104,14 @@ mod tests {
             let q_r = Modes::of(&structure, &STATE).q_r;
             let mass = Matrix2::new(1.0, H, H, structure.J_P / m);
             let force = Vector2::new(
-                structure.beta * g * q_r - (structure.c_u * STATE.u_dot + structure.k * STATE.u) / m - a_g,
+                structure.chi * g * q_r - (structure.c_u * STATE.u_dot + structure.k * STATE.u) / m - a_g,
                 g * H * q_r - H * a_g - side.sign() * structure.gamma * g * B,
             );
             let accelerations = mass.try_inverse().unwrap() * force;
             let modal = ModalAccelerations::of(&structure, side, &STATE, a_g);
             let a_t = accelerations[0] + H * accelerations[1] + a_g;
             assert_relative_eq!(modal.a_t(), a_t, max_relative = 1e-12);
-            assert_relative_eq!(modal.a_u, structure.one_minus_beta * accelerations[0] + a_g, max_relative = 1e-12);
+            assert_relative_eq!(modal.a_u, structure.one_minus_chi * accelerations[0] + a_g, max_relative = 1e-12);
         }
     }
 
@@ -123,7 +123,7 @@ mod tests {
         let step = |side, a_g| ModalAccelerations::of(&structure, side, &State::default(), a_g).a_r / g;
         assert_relative_eq!(step(Side::Left, 0.0), 0.33326, max_relative = 1e-4);
         assert_relative_eq!(step(Side::Right, 0.0), -0.33326, max_relative = 1e-4);
-        assert_relative_eq!(step(Side::Right, g), -0.33326 - structure.beta, max_relative = 1e-4);
+        assert_relative_eq!(step(Side::Right, g), -0.33326 - structure.chi, max_relative = 1e-4);
     }
 
     /// The sum depends on the state alone.
@@ -132,7 +132,7 @@ mod tests {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
         let &Parameters { m, g, .. } = structure.parameters();
         let q_r = Modes::of(&structure, &STATE).q_r;
-        let expected = structure.beta * g * q_r - (structure.c_u * STATE.u_dot + structure.k * STATE.u) / m;
+        let expected = structure.chi * g * q_r - (structure.c_u * STATE.u_dot + structure.k * STATE.u) / m;
         for a_g in [-15.0, 0.0, 8.0] {
             let modal = ModalAccelerations::of(&structure, Side::Right, &STATE, a_g);
             assert_relative_eq!(modal.a_t(), expected, max_relative = 1e-12);

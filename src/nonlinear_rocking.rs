@@ -20,8 +20,11 @@
 //! L̇ = H (κ + w θ̇²) − w G − s(γ−1)B G₀
 //! ```
 
+use crate::detail::ElasticRocking;
 use crate::load::Load;
+use crate::piece::Bounds;
 use crate::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
+use crate::uplift::TurningMoment;
 use crate::{Side, State, Structure};
 use nalgebra::{Matrix2, Vector2};
 use wide::f64x2;
@@ -47,6 +50,10 @@ pub fn accelerations(structure: &Structure, side: Side, state: &State, load: Loa
     );
     Some(mass.try_inverse()? * force)
 }
+
+/// Part of its inertia at u = 0, height apart, that a structure must keep about its pivot: with less of it, (6) − H (5)
+/// asks for steps without number on the way to a singularity.
+const LEAST_INERTIA: f64 = 1e-6;
 
 /// One order of the factors of six products.
 type Row = [f64x2; 3];
@@ -94,7 +101,7 @@ fn products(a: &Factors, b: &Factors, newest_a: &Row, newest_b: &Row, n: usize) 
 /// of order i ("next": of order i + 1). Column by column they multiply to the rates of sin θ and −cos θ, to what the
 /// later coefficients of w contribute to w θ̇ and w² θ̇, to w θ̇² and to the moment of the top mass's weight.
 #[derive(Clone, Debug)]
-pub struct NonlinearRocking {
+pub(crate) struct NonlinearRocking {
     left: Factors,
     right: Factors,
 }
@@ -105,9 +112,26 @@ impl Default for NonlinearRocking {
     }
 }
 
-impl NonlinearRocking {
-    /// Writes the motion from `start` about `side` into `arc`.
-    pub fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
+impl ElasticRocking for NonlinearRocking {
+    fn bounds(&self, _side: Side, _start: &Start, _end: &State) -> Bounds {
+        Bounds::NONE
+    }
+
+    fn is_singular(&self, structure: &Structure, side: Side, state: &State) -> bool {
+        let (foundation, B) = (structure.foundation, structure.parameters().B);
+        let lever = side.sign() * B - state.u;
+        foundation + lever * lever < LEAST_INERTIA * (foundation + B * B)
+    }
+
+    fn turning_moment(&self, structure: &Structure) -> TurningMoment {
+        TurningMoment::new(structure)
+    }
+
+    fn accelerations(&self, structure: &Structure, side: Side, state: &State, load: Load) -> [f64; 2] {
+        accelerations(structure, side, state, load).map_or([f64::NAN; 2], Into::into)
+    }
+
+    fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
         let &Start { state, a_g, a_top, interval, .. } = start;
         let &crate::Parameters { H, B, g, .. } = structure.parameters();
         let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;

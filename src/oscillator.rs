@@ -1,8 +1,9 @@
 //! The damped oscillator and its exact flow, which full contact, the vibration mode and response spectra share.
 //!
 //! ```text
-//! ẅ + 2 ζ ω ẇ + ω² w = 0
-//! w(τ) = (C + ζω S) w₀ + S ẇ₀,   ẇ(τ) = −ω² S w₀ + (C − ζω S) ẇ₀,   C = e^{−ζωτ} cos dτ,  S = e^{−ζωτ} sin(dτ)/d
+//! ẅ + 2 ζ ω ẇ + ω² w = −(a + b τ)
+//! w(τ) = (C + ζω S) w₀ + S ẇ₀ − W a − R b,   ẇ(τ) = −ω² S w₀ + (C − ζω S) ẇ₀ − S a − W b
+//! C = e^{−ζωτ} cos dτ,   S = e^{−ζωτ} sin(dτ)/d,   W = [1 − (C + ζω S)]/ω²,   R = ∫ W dτ = [τ − S − 2ζω W]/ω²
 //! ```
 //!
 //! with d = ω √(1 − ζ²), hyperbolic functions for ζ > 1 and S = τ e^{−ωτ} for ζ = 1.
@@ -16,9 +17,34 @@ pub(crate) struct Oscillator {
     pub zeta: f64,
 }
 
+/// What takes an oscillator over a length of time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flow {
+    free: Matrix2<f64>,
+    /// W, s².
+    step: f64,
+    /// R, s³.
+    ramp: f64,
+}
+
+impl Flow {
+    /// Over no time at all.
+    pub(crate) const NONE: Flow = Flow { free: Matrix2::new(1.0, 0.0, 0.0, 1.0), step: 0.0, ramp: 0.0 };
+
+    /// (w, ẇ) at the end, from `start` under the load a + b τ: `value` = a in m/s², `slope` = b in m/s³.
+    #[inline]
+    pub(crate) fn driven(&self, start: [f64; 2], value: f64, slope: f64) -> [f64; 2] {
+        let Flow { free, step, ramp } = self;
+        [
+            free.m11 * start[0] + free.m12 * start[1] - (step * value + ramp * slope),
+            free.m21 * start[0] + free.m22 * start[1] - (free.m12 * value + step * slope),
+        ]
+    }
+}
+
 impl Oscillator {
     /// The matrix that takes free vibration (w, ẇ) `tau` seconds ahead.
-    pub(crate) fn flow(&self, tau: f64) -> Matrix2<f64> {
+    pub(crate) fn free(&self, tau: f64) -> Matrix2<f64> {
         let &Oscillator { omega, zeta } = self;
         let d = self.d();
         let (C, S) = if zeta < 1.0 {
@@ -40,43 +66,70 @@ impl Oscillator {
         self.omega * ((1.0 - self.zeta) * (1.0 + self.zeta)).abs().sqrt()
     }
 
-    /// Whether [`Oscillator::driven`] keeps its digits over `interval` (s): what follows the load is larger than what
-    /// moves by 1/(ωh)², or ζ/(ωh)³ for a slope, and is lost to rounding over too short an interval.
-    #[inline]
-    pub(crate) fn can_leap(&self, interval: f64) -> bool {
-        self.omega * interval > 0.03 * (1.0 + self.zeta)
+    /// What takes it `tau` seconds ahead.
+    pub(crate) fn flow(&self, tau: f64) -> Flow {
+        let &Oscillator { omega, zeta } = self;
+        let free = self.free(tau);
+        let [step, ramp] = if (1.0 + 2.0 * zeta) * omega * tau < 1.0 {
+            self.short_response(tau)
+        } else {
+            let step = (1.0 - free.m11) / (omega * omega);
+            [step, (tau - free.m12 - 2.0 * zeta * omega * step) / (omega * omega)]
+        };
+        Flow { free, step, ramp }
     }
 
-    /// Where it is after `tau` (s) of a load a + b τ that pushes against w, over its mass: `value` = a in m/s², `slope`
-    /// = b in m/s³; `flow` is its flow over `tau`. About the motion that follows such a load, w = −(a + b (τ −
-    /// 2ζ/ω))/ω², the rest vibrates freely.
+    /// W and R over a short time, whose differences would be lost to rounding, by their series in τ.
+    fn short_response(&self, tau: f64) -> [f64; 2] {
+        const TERMS: u32 = 20; // of at most 1/k! for (1 + 2ζ) ωτ < 1
+        let (x, damping) = (self.omega * tau, 2.0 * self.zeta * self.omega * tau);
+        let (mut before, mut term) = (0.0, 0.5); // coefficients of τ^{k−1} and τ^k in W/τ²
+        let (mut step, mut ramp) = (term, term / 3.0);
+        for k in 2..TERMS {
+            let k = f64::from(k);
+            (before, term) = (term, -(damping * k * term + x * x * before) / (k * (k + 1.0)));
+            step += term;
+            ramp += term / (k + 2.0);
+        }
+        [step * tau * tau, ramp * tau * tau * tau]
+    }
+
+    /// About the motion that follows the load a + b τ, w = −(a + b (τ − 2ζ/ω))/ω², the rest vibrates freely, and the
+    /// energy of free vibration does not grow: where it is bound to stay for `tau` seconds from `start`.
     #[inline]
-    pub(crate) fn driven(&self, flow: &Matrix2<f64>, start: [f64; 2], value: f64, slope: f64, tau: f64) -> Driven {
+    pub(crate) fn swing(&self, start: [f64; 2], value: f64, slope: f64, tau: f64) -> Swing {
         let per_stiffness = 1.0 / (self.omega * self.omega);
         let lag = 2.0 * self.zeta / self.omega;
-        let following = |tau: f64| -(value + slope * (tau - lag)) * per_stiffness;
-        let following_dot = -slope * per_stiffness;
-        let (rest, rest_dot) = (start[0] - following(0.0), start[1] - following_dot);
-        Driven {
-            end: [
-                following(tau) + flow.m11 * rest + flow.m12 * rest_dot,
-                following_dot + flow.m21 * rest + flow.m22 * rest_dot,
-            ],
-            following: [following(0.0), following(tau)],
-            amplitude: (rest * rest + rest_dot * rest_dot * per_stiffness).sqrt(),
-        }
+        let following = [0.0, tau].map(|tau| -(value + slope * (tau - lag)) * per_stiffness);
+        let (rest, rest_dot) = (start[0] - following[0], start[1] + slope * per_stiffness);
+        Swing { following, amplitude: (rest * rest + rest_dot * rest_dot * per_stiffness).sqrt() }
+    }
+
+    /// Bounds of |ẇ|, |ẅ| and |w⃛| of a `swing` of this oscillator under a load of this `slope`.
+    pub(crate) fn rates(&self, swing: &Swing, slope: f64) -> [f64; 3] {
+        let &Oscillator { omega, zeta } = self;
+        let velocity = omega * swing.amplitude;
+        let acceleration = omega * velocity * (1.0 + 2.0 * zeta);
+        let jerk = omega * (omega * velocity + 2.0 * zeta * acceleration);
+        [velocity + slope.abs() / (omega * omega), acceleration, jerk]
     }
 }
 
-/// Motion of an oscillator under a linear load.
+/// Where a driven oscillator is bound to be.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Driven {
-    /// (w, ẇ) at the end.
-    pub end: [f64; 2],
+pub(crate) struct Swing {
     /// Position that follows the load, at the start and at the end; linear in between.
     pub following: [f64; 2],
-    /// Bound of the distance from it: the energy of free vibration does not grow.
+    /// Bound of the distance from it.
     pub amplitude: f64,
+}
+
+impl Swing {
+    /// Bound of |w|.
+    #[inline]
+    pub(crate) fn farthest(&self) -> f64 {
+        self.following[0].abs().max(self.following[1].abs()) + self.amplitude
+    }
 }
 
 /// Flows kept at once. Records sampled at t = i·dt have a handful of step lengths, which differ in their last bits.
@@ -105,5 +158,29 @@ impl<Flow: Copy> Kept<Flow> {
             *kept = (duration, compute());
         }
         &kept.1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// On both sides of the limit between series and closed form W and R are the same to rounding, and for a motion
+    /// much shorter than the period they are τ²/2 and τ³/6.
+    #[test]
+    fn loads_keep_their_digits_over_short_times() {
+        for zeta in [0.0, 0.02, 0.7, 1.0, 4.0] {
+            let oscillator = Oscillator { omega: 30.0, zeta };
+            let limit = 1.0 / ((1.0 + 2.0 * zeta) * oscillator.omega);
+            let [below, above] = [1.0 - 1e-15, 1.0 + 1e-15].map(|part| oscillator.flow(part * limit));
+            let rounding = 50.0 * (1.0 + 2.0 * zeta).powi(2) * f64::EPSILON;
+            assert_relative_eq!(below.step, above.step, max_relative = rounding);
+            assert_relative_eq!(below.ramp, above.ramp, max_relative = rounding);
+            let tau = 1e-9 * limit;
+            let [step, ramp] = [oscillator.flow(tau).step, oscillator.flow(tau).ramp];
+            assert_relative_eq!(step, tau.powi(2) / 2.0, max_relative = 2e-9);
+            assert_relative_eq!(ramp, tau.powi(3) / 6.0, max_relative = 2e-9);
+        }
     }
 }

@@ -7,11 +7,10 @@
 //! By (5) that is g sin θ − (c_u u̇ + k u)/m + (F_t/m) cos θ, and by (1) −(c_fc u̇ + k u)/m + F_t/m in full contact:
 //! the outputs depend on the state and on F_t and are computed so; only their rates need the ground acceleration. The
 //! levels with linear equations have the same outputs, by Eq 5 rather than by their own ü and θ̈. The rigid limit,
-//! where u is 0 whatever the forces, is the exception: there (27) is taken as it stands, with the ground acceleration
-//! at the end of the last advance.
+//! where u is 0 whatever the forces, is the exception: there (27) is taken as it stands, with the ground acceleration.
 
-use crate::load::{LinearLoad, Load};
-use crate::{Phase, State, Structure, detail, rigid_rocking};
+use crate::load::LinearLoad;
+use crate::{Phase, State, Structure};
 
 /// The outputs at one instant; from [`crate::Engine::rates`], their time derivatives in the same fields.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,7 +39,7 @@ pub struct Outputs {
 }
 
 /// The damping in force: c_fc in full contact, c_u otherwise, N·s/m.
-fn damping(structure: &Structure, phase: Phase) -> f64 {
+pub(crate) fn damping(structure: &Structure, phase: Phase) -> f64 {
     match phase {
         Phase::FullContact => structure.c_fc,
         Phase::Rocking(_) | Phase::Overturned(_) => structure.c_u,
@@ -70,24 +69,14 @@ impl Outputs {
         }
     }
 
-    /// The outputs of the rigid limit, where u says nothing of the forces: Eq 27 from the equation of motion, with the
-    /// `load` of that instant.
-    pub(crate) fn of_rigid(structure: &Structure, phase: Phase, state: &State, load: Load) -> Outputs {
-        let &crate::Parameters { m, H, B, .. } = structure.parameters();
-        let s = phase.side().sign();
-        let [_, theta_ddot] = rigid_rocking::accelerations(structure, phase, state, load);
-        let a_t = H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * state.theta.cos();
-        Outputs { a_t, V_t: m * a_t, M_t: m * H * a_t, ..Outputs::of(structure, phase, state, load.F_t) }
+    /// The same with another a_t (m/s²), or its rate, and the forces that follow from it.
+    pub(crate) fn with_a_t(self, structure: &Structure, a_t: f64) -> Outputs {
+        let &crate::Parameters { m, H, .. } = structure.parameters();
+        Outputs { a_t, V_t: m * a_t, M_t: m * H * a_t, ..self }
     }
 
-    /// Time derivatives of the outputs by Eqs 1, 5 and 6 under the ground acceleration `a_g` (m/s²); 0 once overturned,
-    /// where motion has ended.
-    pub fn rates(structure: &Structure, phase: Phase, state: &State, a_g: f64) -> Outputs {
-        let accelerations = detail::full_accelerations(structure, phase, state, Load::ground(a_g));
-        Outputs::rates_by(structure, phase, state, accelerations, LinearLoad::default())
-    }
-
-    /// Time derivatives of the outputs, given `accelerations` (ü, θ̈) under `load`.
+    /// Time derivatives of the outputs, given `accelerations` (ü, θ̈) under `load`; 0 once overturned, where motion has
+    /// ended.
     pub(crate) fn rates_by(
         structure: &Structure,
         phase: Phase,
@@ -119,34 +108,13 @@ impl Outputs {
             v_t: u_ddot * cos - u_dot * sin * theta_dot + height_rate * theta_dot + height * theta_ddot,
         }
     }
-
-    /// [`Outputs::rates`] of the rigid limit under `load`, given (ü, θ̈) and (u⃛, θ⃛).
-    pub(crate) fn rates_of_rigid(
-        structure: &Structure,
-        phase: Phase,
-        state: &State,
-        [accelerations, jerks]: [[f64; 2]; 2],
-        load: LinearLoad,
-    ) -> Outputs {
-        let &crate::Parameters { m, H, B, .. } = structure.parameters();
-        let &State { theta, theta_dot, .. } = state;
-        let s = phase.side().sign();
-        let a_t = match phase {
-            Phase::Overturned(_) => 0.0,
-            _ => {
-                H * jerks[1] + 2.0 * s * B * theta_dot * accelerations[1] + load.slope.a_g * theta.cos()
-                    - load.value.a_g * theta.sin() * theta_dot
-            }
-        };
-        let others = Outputs::rates_by(structure, phase, state, accelerations, load);
-        Outputs { a_t, V_t: m * a_t, M_t: m * H * a_t, ..others }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::detail::Detail;
+    use crate::load::Load;
     use crate::{Engine, Parameters, Reactions, Side, full_contact, nonlinear_rocking};
     use approx::assert_relative_eq;
 
@@ -196,9 +164,10 @@ mod tests {
             let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-11, detail).unwrap();
             let mut show = |until: f64| {
                 let here = |time: f64| LinearLoad { value: start.at(time), ..start };
-                engine.advance(until, here(engine.motion().time), &mut |_| ()).unwrap();
+                let now = engine.motion().time;
+                engine.advance(until - now, here(now), &mut ()).unwrap();
                 let load = here(until);
-                ((engine.outputs(load.value.F_t), engine.reactions(load.value)), engine.rates(load))
+                ((engine.outputs(load.value), engine.reactions(load.value)), engine.rates(load))
             };
             let (before, _) = show(1e-3 - h);
             let (_, rates) = show(1e-3);

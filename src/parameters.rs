@@ -56,7 +56,7 @@ pub const PARAMETERS: [Quantity<Parameters>; 10] = [
     quantity!(g ["m/s2"] 1e-3, 1e3, "acceleration of gravity"),
 ];
 
-/// The slenderest structure accepted: H/B beyond it leaves 1 − β (after Eq 13) without significant digits.
+/// The slenderest structure accepted: H/B beyond it leaves 1 − χ (after Eq 13) without significant digits.
 pub const MAX_SLENDERNESS: f64 = 1e3;
 
 /// Why a set of parameters is refused.

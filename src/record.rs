@@ -2,7 +2,7 @@
 //!
 //! A record is a list of samples; between two samples the ground acceleration is linear.
 
-use crate::GroundAcceleration;
+use crate::Ramp;
 use std::{
     fs,
     path::{Path, PathBuf},
@@ -24,7 +24,7 @@ pub struct Segment {
     /// Last instant, s.
     pub end: f64,
     /// Ground acceleration from `start` on.
-    pub a_g: GroundAcceleration,
+    pub a_g: Ramp,
 }
 
 /// Unit of the accelerations in a CSV file.
@@ -194,13 +194,13 @@ impl Record {
         let linear = samples.map(|(times, acceleration)| Segment {
             start: times[0],
             end: times[1],
-            a_g: GroundAcceleration {
+            a_g: Ramp {
                 value: acceleration[0],
                 slope: (acceleration[1] - acceleration[0]) / (times[1] - times[0]),
             },
         });
         let at_rest =
-            Segment { start: self.times[self.times.len() - 1], end: f64::INFINITY, a_g: GroundAcceleration::default() };
+            Segment { start: self.times[self.times.len() - 1], end: f64::INFINITY, a_g: Ramp::default() };
         linear
             .chain([at_rest])
             .take_while(move |segment| segment.start < end)
@@ -210,8 +210,8 @@ impl Record {
 
 impl Segment {
     /// The ground acceleration as it is given from `time` (s) on.
-    pub fn from(&self, time: f64) -> GroundAcceleration {
-        GroundAcceleration { value: self.a_g.at(time - self.start), slope: self.a_g.slope }
+    pub fn from(&self, time: f64) -> Ramp {
+        Ramp { value: self.a_g.at(time - self.start), slope: self.a_g.slope }
     }
 }
 
@@ -479,14 +479,14 @@ mod tests {
     fn segments_are_linear_between_samples_and_at_rest_after_them() {
         let record = csv("1,2\n2,4\n4,0\n").unwrap().scaled(0.5, 10.0);
         assert_eq!(record.times(), [0.5, 1.0, 2.0]);
-        let segment = |start, end, value, slope| Segment { start, end, a_g: GroundAcceleration { value, slope } };
+        let segment = |start, end, value, slope| Segment { start, end, a_g: Ramp { value, slope } };
         let first = segment(0.5, 1.0, 20.0, 40.0);
         let until = |end| record.segments_until(end).collect::<Vec<_>>();
         assert_eq!(until(0.5), []);
         assert_eq!(until(1.0), [first]);
         assert_eq!(until(1.5), [first, segment(1.0, 1.5, 40.0, -40.0)]);
         assert_eq!(until(3.0), [first, segment(1.0, 2.0, 40.0, -40.0), segment(2.0, 3.0, 0.0, 0.0)]);
-        assert_eq!(first.from(0.75), GroundAcceleration { value: 30.0, slope: 40.0 });
+        assert_eq!(first.from(0.75), Ramp { value: 30.0, slope: 40.0 });
     }
 
     /// Any finite value as AT2 files write them: 1.5E-3, -.15D-2, fixed point.

@@ -41,13 +41,13 @@ impl Oscillator {
         for Segment { start, end, a_g } in segments {
             let step = end - start;
             if step != flow_over.0 {
-                flow_over = (step, self.flow(step));
+                flow_over = (step, self.free(step));
             }
             let follow_ground = |a_g_now: f64| Vector2::new(-a_g.slope / self.omega.powi(2), a_g_now);
             let free = motion - follow_ground(a_g.value);
             let swing = free[1].hypot(self.rate(free)[1] / self.omega); // bounds |ẇ| from here on
             if a_g.value.abs().max(a_g.at(step).abs()) + swing > peak {
-                let acceleration = |tau: f64| a_g.at(tau) + (self.flow(tau) * free)[1];
+                let acceleration = |tau: f64| a_g.at(tau) + (self.free(tau) * free)[1];
                 peak = self.extremes(free, a_g.slope, step).map(|tau| acceleration(tau).abs()).fold(peak, f64::max);
             }
             motion = follow_ground(a_g.at(step)) + flow_over.1 * free;
@@ -65,7 +65,7 @@ impl Oscillator {
     fn extremes(&self, free: Vector2<f64>, slope: f64, step: f64) -> impl Iterator<Item = f64> {
         let swing = self.rate(self.rate(free)); // (ẅ, its rate)
         let turns = self.zeros(self.rate(swing), step).chain([step]);
-        let rises = move |tau: f64| slope + (self.flow(tau) * swing)[0] > 0.0;
+        let rises = move |tau: f64| slope + (self.free(tau) * swing)[0] > 0.0;
         let stationary = turns.scan(0.0, move |from, to| {
             let low = std::mem::replace(from, to);
             let rises_at_first = rises(low);
@@ -95,7 +95,7 @@ mod tests {
     use super::*;
     use crate::load::Load;
     use crate::taylor::{Arc, Start};
-    use crate::{GroundAcceleration, Parameters, State, Structure, full_contact};
+    use crate::{Ramp, Parameters, State, Structure, full_contact};
     use approx::assert_relative_eq;
     use proptest::prelude::*;
 
@@ -106,7 +106,7 @@ mod tests {
     fn segments(times: &[f64], a_g: &[f64]) -> Vec<Segment> {
         let samples = times.windows(2).zip(a_g.windows(2));
         let segment = |(t, a): (&[f64], &[f64])| {
-            let a_g = GroundAcceleration { value: a[0], slope: (a[1] - a[0]) / (t[1] - t[0]) };
+            let a_g = Ramp { value: a[0], slope: (a[1] - a[0]) / (t[1] - t[0]) };
             Segment { start: t[0], end: t[1], a_g }
         };
         samples.map(segment).collect()
@@ -157,7 +157,7 @@ mod tests {
     fn the_swing_after_the_record_counts() {
         let record_end = 1e-4;
         let load = segments(&[0.0, record_end], &[5.0, 5.0]);
-        let rest = Segment { start: record_end, end: record_end + 1.0, a_g: GroundAcceleration::default() };
+        let rest = Segment { start: record_end, end: record_end + 1.0, a_g: Ramp::default() };
         let peak = oscillator(1.0, 0.0).peak(load.into_iter().chain([rest]));
         assert_relative_eq!(peak, TAU * 5.0 * record_end, max_relative = 1e-6);
     }

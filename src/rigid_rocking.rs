@@ -17,11 +17,17 @@
 //! impact after which |θ̇| ≤ ε p_l tan α_cg, ε the relative tolerance. The kinetic energy left behind, ½ J_P θ̇², is
 //! then at most ε² of ½ m g H tan² α_cg, which overturning takes at small angles: far below the tolerance.
 
+use crate::detail::Level;
+use crate::extremes::bound;
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
-use crate::load::{GroundAcceleration, Load};
-use crate::taylor::{Arc, LONGEST_SPAN, Series, Start, Truncation, ZERO};
+use crate::load::{LinearLoad, Load};
+use crate::output_series::Turn;
+use crate::piece::Bounds;
+use crate::state::InitialStateError;
+use crate::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Series, Start, Truncation, ZERO};
+use crate::transition::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD};
 use crate::uplift::LEAST_EXCESS;
-use crate::{Phase, Side, State, Structure};
+use crate::{Outputs, Phase, Side, State, Structure};
 
 /// P and Q at `theta`.
 fn shape(structure: &Structure, side: Side, theta: f64) -> [f64; 2] {
@@ -38,7 +44,7 @@ fn force_by_shape(structure: &Structure, side: Side) -> [f64; 2] {
 }
 
 /// (ü, θ̈) = (0, θ̈) in m/s² and rad/s² in `phase`; nothing moves relative to the ground in full contact.
-pub(crate) fn accelerations(structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2] {
+fn accelerations(structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2] {
     let &crate::Parameters { m, g, .. } = structure.parameters();
     match phase {
         Phase::Rocking(side) => {
@@ -51,7 +57,7 @@ pub(crate) fn accelerations(structure: &Structure, phase: Phase, state: &State, 
 }
 
 /// Writes the motion from `start` about `side` into `arc`.
-pub(crate) fn series(structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
+fn series(structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
     let &Start { state, a_g, a_top, interval, local_error } = start;
     let &Structure { p_l, tan_alpha_cg, .. } = structure;
     let g = structure.parameters().g;
@@ -85,27 +91,120 @@ fn product(a: &Series, b: &Series, k: usize) -> f64 {
     a[..=k].iter().zip(b[..=k].iter().rev()).map(|(a, b)| a * b).sum()
 }
 
-/// Writes rest on the ground over the interval of `start` into `arc`.
-pub(crate) fn rest(start: &Start, arc: &mut Arc) {
-    arc.expand(&State::default(), start.interval, Truncation { u_dot: 0.0, theta_dot: 0.0 }, |_, _, _| (0.0, 0.0));
+/// The rigid limit as a level of detail.
+#[derive(Debug)]
+pub(crate) struct Rigid {
+    /// Relative tolerance ε of the results.
+    pub tolerance: f64,
 }
 
-/// The first instant over `span` s at which |a_top|, a_top = a_g − F_t/m, exceeds g tan α_cg, and the side about which
-/// the structure rocks.
-pub(crate) fn first_uplift(structure: &Structure, a_top: GroundAcceleration, span: f64) -> (Crossing, Side) {
-    let limit = (1.0 + LEAST_EXCESS) * structure.parameters().g * structure.tan_alpha_cg;
-    let push = [a_top.value, a_top.slope * span];
-    let first = |side: Side| first_time_all_closed([Guard::new(&push, side.sign(), limit)], 1.0);
-    let (right, left) = (first(Side::Right), first(Side::Left));
-    if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
-}
-
-/// Phase and state just after an impact that ends rocking about `side` in the state `before`, to the relative
-/// `tolerance`.
-pub(crate) fn resolve_impact(structure: &Structure, side: Side, before: &State, tolerance: f64) -> (Phase, State) {
-    let theta_dot = structure.parameters().r * before.theta_dot;
-    if theta_dot.abs() <= tolerance * structure.p_l * structure.tan_alpha_cg {
-        return (Phase::FullContact, State::default());
+impl Level for Rigid {
+    fn check_start(&self, &State { u, u_dot, .. }: &State) -> Result<(), InitialStateError> {
+        if (u, u_dot) == (0.0, 0.0) { Ok(()) } else { Err(InitialStateError::DeformedRigid { u, u_dot }) }
     }
-    (Phase::Rocking(side.opposite()), State { theta_dot, ..State::default() })
+
+    fn leap(&mut self, _structure: &Structure, _phase: Phase, _start: &Start) -> Option<State> {
+        None
+    }
+
+    fn bounds(&self, _phase: Phase, _start: &Start, _end: &State) -> Bounds {
+        Bounds::NONE
+    }
+
+    /// Rest on the ground in full contact.
+    fn series(&mut self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc) {
+        match phase {
+            Phase::Rocking(side) => series(structure, side, start, arc),
+            Phase::FullContact | Phase::Overturned(_) => {
+                let nothing = Truncation { u_dot: 0.0, theta_dot: 0.0 };
+                arc.expand(&State::default(), start.interval, nothing, |_, _, _| (0.0, 0.0));
+            }
+        }
+    }
+
+    /// |a_top|, a_top = a_g − F_t/m, exceeds g tan α_cg.
+    fn first_uplift(&self, structure: &Structure, start: &Start, arc: &Arc) -> (Crossing, Side) {
+        let limit = (1.0 + LEAST_EXCESS) * structure.parameters().g * structure.tan_alpha_cg;
+        let push = [start.a_top.value, start.a_top.slope * arc.span];
+        let first = |side: Side| first_time_all_closed([Guard::new(&push, side.sign(), limit)], 1.0);
+        let (right, left) = (first(Side::Right), first(Side::Left));
+        if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
+    }
+
+    fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
+        let theta_dot = structure.parameters().r * before.theta_dot;
+        if theta_dot.abs() <= self.tolerance * structure.p_l * structure.tan_alpha_cg {
+            return (Phase::FullContact, State::default());
+        }
+        (Phase::Rocking(side.opposite()), State { theta_dot, ..State::default() })
+    }
+
+    fn land(&self, _structure: &Structure, _before: &State) -> State {
+        State::default()
+    }
+
+    fn chatter_limit(&self, structure: &Structure) -> ChatterLimit {
+        ChatterLimit { period: 1.0 / structure.p_l, transitions: MAX_RIGID_TRANSITIONS_PER_PERIOD }
+    }
+
+    fn stays_down(&self, _structure: &Structure, _state: &State) -> bool {
+        true
+    }
+
+    fn accelerations(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2] {
+        accelerations(structure, phase, state, load)
+    }
+
+    /// Here u says nothing of the forces: a_t is that of Eq 27 as it stands, which follows the ground.
+    fn outputs(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> Outputs {
+        let &crate::Parameters { H, B, .. } = structure.parameters();
+        let s = phase.side().sign();
+        let [_, theta_ddot] = accelerations(structure, phase, state, load);
+        let a_t = H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * state.theta.cos();
+        Outputs::of(structure, phase, state, load.F_t).with_a_t(structure, a_t)
+    }
+
+    fn output_rates(
+        &self,
+        structure: &Structure,
+        phase: Phase,
+        state: &State,
+        [accelerations, jerks]: [[f64; 2]; 2],
+        load: LinearLoad,
+    ) -> Outputs {
+        let &crate::Parameters { H, B, .. } = structure.parameters();
+        let &State { theta, theta_dot, .. } = state;
+        let s = phase.side().sign();
+        let a_t = match phase {
+            Phase::Overturned(_) => 0.0,
+            _ => {
+                H * jerks[1] + 2.0 * s * B * theta_dot * accelerations[1] + load.slope.a_g * theta.cos()
+                    - load.value.a_g * theta.sin() * theta_dot
+            }
+        };
+        Outputs::rates_by(structure, phase, state, accelerations, load).with_a_t(structure, a_t)
+    }
+
+    fn a_t_series(&self, structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc, turn: &Turn) -> Series {
+        let &crate::Parameters { H, B, .. } = structure.parameters();
+        let offset = phase.side().sign() * B;
+        let (now, slope) = (load.value.a_g, load.slope.a_g * arc.span);
+        let theta_dot = |k: usize| if k <= arc.order { arc.theta_dot[k] } else { 0.0 };
+        let mut a_t = ZERO;
+        for k in 0..MAX_ORDER {
+            let theta_ddot = (k + 1) as f64 * theta_dot(k + 1) / arc.span;
+            let centripetal: f64 = (0..=k).map(|i| theta_dot(i) * theta_dot(k - i)).sum();
+            let ground = now * turn.cos[k] + if k > 0 { slope * turn.cos[k - 1] } else { 0.0 };
+            a_t[k] = H * theta_ddot + offset * centripetal + ground;
+        }
+        a_t
+    }
+
+    fn a_t_bound(&self, structure: &Structure, _phase: Phase, load: LinearLoad, arc: &Arc, _theta: f64) -> f64 {
+        let &crate::Parameters { H, B, .. } = structure.parameters();
+        let theta_dot = arc.used(&arc.theta_dot);
+        let theta_ddot = (1..).zip(&theta_dot[1..]).map(|(k, c)| f64::from(k) * c / arc.span);
+        let ground = load.value.a_g.abs().max(load.at(arc.duration()).a_g.abs());
+        H * bound(theta_ddot, arc.reach) + B * bound(theta_dot.iter().copied(), arc.reach).powi(2) + ground
+    }
 }

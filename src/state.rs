@@ -1,6 +1,5 @@
 //! The state of the structure and the phase it is in.
 
-use crate::Detail;
 use crate::quantity::{OutOfRange, Quantity, quantity};
 use serde::{Deserialize, Serialize};
 
@@ -61,6 +60,16 @@ pub enum Phase {
 }
 
 impl Phase {
+    /// What it is called.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Phase::FullContact => "full contact",
+            Phase::Rocking(Side::Left) => "rocking left",
+            Phase::Rocking(Side::Right) => "rocking right",
+            Phase::Overturned(_) => "overturned",
+        }
+    }
+
     /// The pivot; in full contact, where it does not matter, the right one.
     pub fn side(self) -> Side {
         match self {
@@ -109,18 +118,10 @@ impl State {
         (self.u + self.u_dot + self.theta + self.theta_dot).is_finite()
     }
 
-    /// The phase that this state starts in at the level `detail`: full contact for θ = 0, otherwise rocking about the
-    /// side of θ's sign.
-    pub fn initial_phase(&self, detail: Detail) -> Result<Phase, InitialStateError> {
+    /// The phase that this state starts in: full contact for θ = 0, otherwise rocking about the side of θ's sign.
+    pub fn initial_phase(&self) -> Result<Phase, InitialStateError> {
         for quantity in &INITIAL_VALUES {
             quantity.check((quantity.get)(self))?;
-        }
-        let &State { u, u_dot, theta, .. } = self;
-        if detail == Detail::FixedBase && theta != 0.0 {
-            return Err(InitialStateError::TurnedFixedBase(theta));
-        }
-        if detail == Detail::Rigid && (u, u_dot) != (0.0, 0.0) {
-            return Err(InitialStateError::DeformedRigid { u, u_dot });
         }
         if self.theta != 0.0 {
             Ok(Phase::Rocking(Side::of(self.theta)))

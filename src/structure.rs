@@ -23,13 +23,13 @@ pub struct Structure {
     pub p_l: f64,
     /// Slenderness of the centre of gravity: tan α_cg = γ B/H (before Eq 11).
     pub tan_alpha_cg: f64,
-    /// Modal participation β = H p_l²/g (after Eq 13).
-    pub beta: f64,
-    /// 1 − β = (J_P − m H²)/J_P, free of cancellation.
-    pub one_minus_beta: f64,
+    /// Modal participation χ = H p_l²/g (after Eq 13).
+    pub chi: f64,
+    /// 1 − χ = (J_P − m H²)/J_P, free of cancellation.
+    pub one_minus_chi: f64,
     /// Critical displacement u_cr = g tan α_cg/ω_fc², m (after Eq 4).
     pub u_cr: f64,
-    /// Circular frequency of the vibration mode while rocking ω_u = ω_fc/√(1−β), rad/s (before Eq 18).
+    /// Circular frequency of the vibration mode while rocking ω_u = ω_fc/√(1−χ), rad/s (before Eq 18).
     pub omega_u: f64,
     /// ω_fc² = k/m, 1/s².
     pub(crate) stiffness: f64,
@@ -39,7 +39,7 @@ pub struct Structure {
     pub(crate) damping_u: f64,
     /// (J0 + m0 B²)/m, m².
     pub(crate) foundation: f64,
-    /// Damping ratio of the vibration mode ζ_u = c_u/(2√(k m (1−β))) (before Eq 18).
+    /// Damping ratio of the vibration mode ζ_u = c_u/(2√(k m (1−χ))) (before Eq 18).
     pub zeta_u: f64,
 }
 
@@ -75,7 +75,7 @@ pub const DERIVED: [Derived; 13] = [
     derived!("J_P" ["kg.m2"] "inertia about a pivot", "after Eq 8", |s| s.J_P),
     derived!("p_l" ["rad/s"] "frequency parameter", "before Eq 11", |s| s.p_l),
     derived!("alpha_cg" ["rad"] "slenderness of the centre of gravity", "before Eq 11", |s| s.tan_alpha_cg.atan()),
-    derived!("beta" ["1"] "modal participation of rocking", "after Eq 13", |s| s.beta),
+    derived!("chi" ["1"] "modal participation of rocking", "after Eq 13", |s| s.chi),
     derived!("f_u" ["Hz"] "frequency of the vibration mode while rocking", "before Eq 18", |s| s.omega_u / TAU),
     derived!("zeta_u" ["1"] "damping ratio of the vibration mode while rocking", "before Eq 18", |s| s.zeta_u),
     derived!("period_fc" ["s"] "natural period in full contact", "before Eq 4", |s| TAU / s.omega_fc),
@@ -93,8 +93,8 @@ impl Structure {
         let c_u = c_ratio * c_fc;
         let foundation_and_offset = J0 + (m + m0) * B * B;
         let J_P = foundation_and_offset + m * H * H;
-        let beta = m * H * H / J_P;
-        let one_minus_beta = foundation_and_offset / J_P;
+        let chi = m * H * H / J_P;
+        let one_minus_chi = foundation_and_offset / J_P;
         let tan_alpha_cg = gamma * B / H;
         Ok(Structure {
             parameters,
@@ -106,15 +106,15 @@ impl Structure {
             J_P,
             p_l: (m * g * H / J_P).sqrt(),
             tan_alpha_cg,
-            beta,
-            one_minus_beta,
+            chi,
+            one_minus_chi,
             u_cr: g * tan_alpha_cg / (omega_fc * omega_fc),
-            omega_u: omega_fc / one_minus_beta.sqrt(),
+            omega_u: omega_fc / one_minus_chi.sqrt(),
             stiffness: omega_fc * omega_fc,
             damping_fc: c_fc / m,
             damping_u: c_u / m,
             foundation: (J0 + m0 * B * B) / m,
-            zeta_u: c_u / (2.0 * (k * m * one_minus_beta).sqrt()),
+            zeta_u: c_u / (2.0 * (k * m * one_minus_chi).sqrt()),
         })
     }
 
@@ -132,14 +132,14 @@ mod tests {
     /// Tables 1 and 2, in the digits to which their own values determine them.
     #[test]
     fn the_specimens_have_the_papers_derived_quantities() {
-        // J_P, p_l, alpha_cg, beta, f_u, u_cr
+        // J_P, p_l, alpha_cg, chi, f_u, u_cr
         let tables = [
             (Parameters::EVISON, [152.488, 2.9151, 0.35122, 0.90954, 36.574, 0.752467e-3]),
             (Parameters::MCMANUS, [467.046, 2.24234, 0.22868, 0.94309, 20.959, 2.313480e-3]),
         ];
         for (parameters, expected) in tables {
             let structure = Structure::new(parameters).unwrap();
-            for (name, expected) in ["J_P", "p_l", "alpha_cg", "beta", "f_u", "u_cr"].into_iter().zip(expected) {
+            for (name, expected) in ["J_P", "p_l", "alpha_cg", "chi", "f_u", "u_cr"].into_iter().zip(expected) {
                 let derived = DERIVED.iter().find(|derived| derived.name == name).unwrap();
                 assert_relative_eq!((derived.value)(&structure), expected, max_relative = 2e-5);
             }

@@ -7,7 +7,7 @@
 //! are then the terms themselves at the end, which can be compared with the tolerance and summed as they are.
 
 use crate::State;
-use crate::load::GroundAcceleration;
+use crate::load::Ramp;
 
 /// Highest order of an expansion. At a local error of 1e-16 it carries ω·h of more than 3 rad per step.
 pub const MAX_ORDER: usize = 28;
@@ -97,9 +97,9 @@ pub struct Start {
     /// The state there.
     pub state: State,
     /// Ground acceleration from there on.
-    pub a_g: GroundAcceleration,
+    pub a_g: Ramp,
     /// The ground acceleration that the top mass feels from there on.
-    pub a_top: GroundAcceleration,
+    pub a_top: Ramp,
     /// How far it may go at most, s.
     pub interval: f64,
     /// Truncation error over the largest velocities that the step can bring.

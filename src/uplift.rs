@@ -65,7 +65,7 @@ fn first_about(structure: &Structure, turning: &TurningMoment, arc: &Arc, side: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::load::{GroundAcceleration, Load};
+    use crate::load::{Ramp, Load};
     use crate::nonlinear_rocking::accelerations;
     use crate::taylor::Start;
     use crate::{Parameters, State, full_contact};
@@ -73,7 +73,7 @@ mod tests {
 
     fn first_from(structure: &Structure, state: State) -> (Crossing, Side) {
         let mut arc = Arc::default();
-        let a_g = GroundAcceleration::default();
+        let a_g = Ramp::default();
         full_contact::series(
             structure,
             &Start { state, a_g, a_top: a_g, interval: 1e-9, local_error: 1e-13 },
@@ -114,7 +114,7 @@ mod tests {
     fn a_landing_beyond_u_cr_waits_for_the_moment() {
         let structure = Structure::new(Parameters { zeta_fc: 0.2, ..Parameters::EVISON }).unwrap();
         let state = State { u: 1.05 * structure.u_cr, u_dot: -0.02, ..State::default() };
-        let push = GroundAcceleration { value: -40.0, slope: 0.0 }; // turns the velocity round
+        let push = Ramp { value: -40.0, slope: 0.0 }; // turns the velocity round
         let mut arc = Arc::default();
         full_contact::series(
             &structure,

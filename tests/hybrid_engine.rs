@@ -6,15 +6,15 @@ use proptest::prelude::*;
 use rocking::energy::energy;
 use rocking::engine::{DEFAULT_TOLERANCE, MAX_TRANSITIONS_PER_PERIOD};
 use rocking::{
-    Engine, GroundAcceleration, Motion, Outputs, Parameters, Phase, Progress, Side, State, Structure, Transition,
+    Engine, Ramp, Motion, Outputs, Parameters, Phase, Progress, Side, State, Structure, Transition,
     TransitionKind,
 };
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-const STILL: GroundAcceleration = GroundAcceleration { value: 0.0, slope: 0.0 };
+const STILL: Ramp = Ramp { value: 0.0, slope: 0.0 };
 
 /// Advances and collects the transitions.
-fn advance(engine: &mut Engine, until: f64, a_g: GroundAcceleration) -> Vec<Transition> {
+fn advance(engine: &mut Engine, until: f64, a_g: Ramp) -> Vec<Transition> {
     let mut transitions = Vec::new();
     engine.advance(until, a_g, &mut |transition| transitions.push(*transition)).unwrap();
     transitions
@@ -82,7 +82,7 @@ fn energy_is_kept_between_impacts() {
 fn a_tall_push_overturns_at_a_right_angle_and_stays_there() {
     let structure = Structure::new(Parameters::MCMANUS).unwrap();
     let mut engine = Engine::new(structure, State::default(), 10.0, DEFAULT_TOLERANCE).unwrap();
-    let push = GroundAcceleration { value: -6.0, slope: 0.0 };
+    let push = Ramp { value: -6.0, slope: 0.0 };
     let mut last = None;
     let progress = engine.advance(20.0, push, &mut |transition| last = Some(*transition)).unwrap();
     assert_eq!(progress, Progress::Overturned);
@@ -98,7 +98,7 @@ fn a_tall_push_overturns_at_a_right_angle_and_stays_there() {
 #[test]
 fn the_result_does_not_depend_on_how_time_is_cut() {
     let structure = Structure::new(Parameters::MCMANUS).unwrap();
-    let a_g = GroundAcceleration { value: 0.3, slope: -0.06 };
+    let a_g = Ramp { value: 0.3, slope: -0.06 };
     let released = State { theta: 0.03, ..State::default() };
     let start = || Engine::new(structure, released, 0.0, 1e-10).unwrap();
     let mut whole = start();
@@ -106,7 +106,7 @@ fn the_result_does_not_depend_on_how_time_is_cut() {
     let mut cut = start();
     let mut cut_transitions = Vec::new();
     for k in 1..=10_000 {
-        let here = GroundAcceleration { value: a_g.at(cut.motion().time), ..a_g };
+        let here = Ramp { value: a_g.at(cut.motion().time), ..a_g };
         cut_transitions.extend(advance(&mut cut, k as f64 * 1e-3, here));
     }
     assert!(whole_transitions.len() > 10);
@@ -167,7 +167,7 @@ proptest! {
         let period = TAU / structure.omega_u;
         let mut settled = 0;
         for (k, pair) in samples.windows(2).enumerate() {
-            let a_g = GroundAcceleration { value: scale * pair[0], slope: scale * (pair[1] - pair[0]) / dt };
+            let a_g = Ramp { value: scale * pair[0], slope: scale * (pair[1] - pair[0]) / dt };
             let mut most = 0;
             let progress = engine.advance((k + 1) as f64 * dt, a_g, &mut |transition| {
                 settled += u32::from(transition.kind == TransitionKind::Settling);

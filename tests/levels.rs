@@ -4,10 +4,10 @@
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use rocking::effective_frequency::time_to_impact;
 use rocking::{
-    Detail, Engine, GroundAcceleration, Parameters, Phase, Progress, Side, State, Structure, Transition, TransitionKind,
+    Detail, Engine, Ramp, Parameters, Phase, Progress, Side, State, Structure, Transition, TransitionKind,
 };
 
-const STILL: GroundAcceleration = GroundAcceleration { value: 0.0, slope: 0.0 };
+const STILL: Ramp = Ramp { value: 0.0, slope: 0.0 };
 
 fn mcmanus() -> Structure {
     Structure::new(Parameters::MCMANUS).unwrap()
@@ -37,7 +37,7 @@ fn run(
     let mut engine = Engine::with_detail(structure, State::default(), 0.0, tolerance, detail).unwrap();
     let mut states = vec![State::default()];
     for (i, pair) in samples.windows(2).enumerate() {
-        let a_g = GroundAcceleration { value: pair[0], slope: (pair[1] - pair[0]) / dt };
+        let a_g = Ramp { value: pair[0], slope: (pair[1] - pair[0]) / dt };
         engine.advance((i + 1) as f64 * dt, a_g, &mut |transition| transitions.push(*transition)).unwrap();
         states.push(engine.motion().state);
     }
@@ -126,7 +126,7 @@ fn a_stiff_structure_falls_back_in_the_time_of_equation_14() {
 fn rigid_rocks_as_its_equation_says() {
     let structure = mcmanus();
     let &Parameters { m, m0, H, B, g, r, .. } = structure.parameters();
-    let a_g = GroundAcceleration { value: 1.0, slope: -2.0 };
+    let a_g = Ramp { value: 1.0, slope: -2.0 };
     let acceleration = |t: f64, theta: f64| {
         // Eq 6 with u = 0, about the left pivot
         let (sin, cos) = theta.sin_cos();
@@ -196,7 +196,7 @@ fn rigid_comes_to_rest_with_less_energy_than_the_tolerance() {
 fn rigid_lifts_off_when_the_push_exceeds_its_slenderness() {
     let structure = mcmanus();
     let limit = 9.81 * structure.tan_alpha_cg;
-    let ramp = GroundAcceleration { value: 0.0, slope: 2.0 * limit };
+    let ramp = Ramp { value: 0.0, slope: 2.0 * limit };
     let mut engine = Engine::with_detail(structure, State::default(), 0.0, 1e-9, Detail::Rigid).unwrap();
     let mut first = None;
     engine.advance(0.55, ramp, &mut |transition| first = first.or(Some(*transition))).unwrap();
@@ -277,7 +277,7 @@ fn stepping_allocates_nothing() {
         let mut transitions = 0;
         let counted = allocation_counter::measure(|| {
             for (i, pair) in samples.windows(2).enumerate() {
-                let a_g = GroundAcceleration { value: pair[0], slope: (pair[1] - pair[0]) / 0.01 };
+                let a_g = Ramp { value: pair[0], slope: (pair[1] - pair[0]) / 0.01 };
                 let progress = engine.advance((i + 1) as f64 * 0.01, a_g, &mut |_| transitions += 1).unwrap();
                 if progress == Progress::Overturned {
                     break;

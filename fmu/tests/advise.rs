@@ -5,7 +5,7 @@ mod command_line;
 
 use command_line::{DT, SAMPLES, fail, folder, pulse, succeed};
 use rocking::{
-    Detail, Engine, GroundAcceleration, Parameters, State, Structure,
+    Detail, Engine, Ramp, Parameters, State, Structure,
     demand::Demand,
     effective_frequency::effective_frequency,
     engine::DEFAULT_TOLERANCE,
@@ -30,7 +30,7 @@ fn run(detail: Detail, tolerance: f64, parts: usize, mut see: impl FnMut(&Engine
         for part in 1..=parts {
             let elapsed = engine.motion().time - start;
             let a_g =
-                GroundAcceleration { value: from + (to - from) * elapsed / duration, slope: (to - from) / duration };
+                Ramp { value: from + (to - from) * elapsed / duration, slope: (to - from) / duration };
             let until = if part == parts { i as f64 * DT } else { start + duration * part as f64 / parts as f64 };
             engine.advance(until, a_g, &mut |_| ()).unwrap();
             see(&engine);

@@ -6,7 +6,7 @@ use FlexibleRocking::variables::{DataType, PHASES, VARIABLES};
 use command_line::{DT, SAMPLES, command, fail, folder, pulse, succeed};
 use model_description::Causality;
 use rocking::{
-    Engine, GroundAcceleration, Impulse, Load, Outputs, Parameters, Phase, Reactions, State, Structure,
+    Engine, Ramp, Impulse, Load, Outputs, Parameters, Phase, Reactions, State, Structure,
     engine::DEFAULT_TOLERANCE,
 };
 use std::{
@@ -84,7 +84,7 @@ fn the_response_reads_back_to_the_engines_numbers() {
     for (i, line) in lines.iter().enumerate() {
         if i > 0 {
             let slope = (acceleration(i) - acceleration(i - 1)) / (time(i) - time(i - 1));
-            let a_g = GroundAcceleration { value: acceleration(i - 1), slope };
+            let a_g = Ramp { value: acceleration(i - 1), slope };
             engine.advance(time(i), a_g, &mut |_| ()).unwrap();
         }
         let motion = engine.motion();

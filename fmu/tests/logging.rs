@@ -3,7 +3,7 @@
 mod host;
 
 use host::*;
-use rocking::{Engine, GroundAcceleration, Parameters, State, Structure, TransitionKind};
+use rocking::{Engine, Ramp, Parameters, State, Structure, TransitionKind};
 
 /// Released at an angle: impacts, landings, uplifts.
 fn released(logging_on: i32) -> Host {
@@ -25,7 +25,7 @@ fn every_transition_is_told_as_the_engine_shows_it() {
     let mut engine = Engine::new(structure, State { theta: 0.01, ..State::default() }, 0.0, 1e-9).unwrap();
     let mut expected = Vec::new();
     engine
-        .advance(0.5, GroundAcceleration::default(), &mut |transition| {
+        .advance(0.5, Ramp::default(), &mut |transition| {
             let what = match transition.kind {
                 TransitionKind::Uplift(side) => format!("uplift, rocking about the {side:?} edge"),
                 TransitionKind::Impact(side) => format!("impact, rocking on about the {side:?} edge"),

@@ -4,7 +4,7 @@ mod host;
 
 use approx::assert_relative_eq;
 use host::*;
-use rocking::GroundAcceleration;
+use rocking::Ramp;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::{Engine, Outputs, Parameters, Phase, State, Structure};
 
@@ -13,7 +13,7 @@ fn engine(initial: State, start: f64, tolerance: f64) -> Engine {
 }
 
 fn advance(engine: &mut Engine, until: f64, value: f64, slope: f64) {
-    engine.advance(until, GroundAcceleration { value, slope }, &mut |_| ()).unwrap();
+    engine.advance(until, Ramp { value, slope }, &mut |_| ()).unwrap();
 }
 
 /// Every output of the instance is, bit for bit, that of the engine.

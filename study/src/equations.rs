@@ -1,7 +1,7 @@
 //! The equations between two transitions, with their evaluations counted.
 
 use nalgebra::Vector2;
-use rocking::{GroundAcceleration, Load, Phase, State, Structure, full_contact, nonlinear_rocking};
+use rocking::{Ramp, Load, Phase, State, Structure, full_contact, nonlinear_rocking};
 use std::cell::Cell;
 
 /// Two second-order equations for the positions (u, θ).
@@ -17,7 +17,7 @@ pub struct PhaseEquations<'a> {
     /// The phase.
     pub phase: Phase,
     /// Ground acceleration from the start of the interval on.
-    pub a_g: GroundAcceleration,
+    pub a_g: Ramp,
     /// Evaluations so far.
     pub evaluations: &'a Cell<u64>,
 }

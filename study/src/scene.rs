@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, bail};
 use rocking::record::{Record, Unit};
-use rocking::{GroundAcceleration, Parameters, Phase, Side, State, Structure};
+use rocking::{Ramp, Parameters, Phase, Side, State, Structure};
 use std::path::{Path, PathBuf};
 
 /// A structure on moving ground. The ground acceleration is linear between samples `dt` apart.
@@ -39,7 +39,7 @@ pub struct Step {
     /// s.
     pub end: f64,
     /// What the ground is said to do, from the start on.
-    pub a_g: GroundAcceleration,
+    pub a_g: Ramp,
     /// Whether there is a sample at its end.
     pub ends_interval: bool,
 }
@@ -121,8 +121,8 @@ impl Scene {
     }
 
     /// Ground acceleration over the interval `k`, from its start on.
-    pub fn ground(&self, k: usize) -> GroundAcceleration {
-        GroundAcceleration { value: self.a_g[k], slope: (self.a_g[k + 1] - self.a_g[k]) / self.dt }
+    pub fn ground(&self, k: usize) -> Ramp {
+        Ramp { value: self.a_g[k], slope: (self.a_g[k + 1] - self.a_g[k]) / self.dt }
     }
 
     /// The scene cut into communication steps, `cuts` to an interval.
@@ -136,7 +136,7 @@ impl Scene {
             Step {
                 start: j as f64 * h,
                 end: (j + 1) as f64 * h,
-                a_g: GroundAcceleration { value, slope },
+                a_g: Ramp { value, slope },
                 ends_interval,
             }
         })

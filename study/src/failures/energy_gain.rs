@@ -41,7 +41,7 @@ use anyhow::{Context, Result};
 use rocking::energy::energy;
 use rocking::impact::gaining_restitution;
 use rocking::{
-    Engine, GroundAcceleration, Motion, Parameters, Phase, Side, State, Structure, Transition, TransitionKind,
+    Engine, Ramp, Motion, Parameters, Phase, Side, State, Structure, Transition, TransitionKind,
 };
 
 /// Equation (a): change of energy, J, at an impact that ends rocking about `side` in the state `before` and is followed
@@ -103,7 +103,7 @@ fn energy_history() -> Result<(Vec<Instant>, Vec<Transition>)> {
     let mut engine = Engine::new(structure, State { theta: RELEASE, ..State::default() }, 0.0, 1e-12)?;
     let (mut history, mut transitions) = (Vec::new(), Vec::new());
     for k in 1..=1000 {
-        engine.advance(f64::from(k) * 1e-3 * DURATION, GroundAcceleration::default(), &mut |t| transitions.push(*t))?;
+        engine.advance(f64::from(k) * 1e-3 * DURATION, Ramp::default(), &mut |t| transitions.push(*t))?;
         let Motion { time, state, phase, .. } = *engine.motion();
         history.push((time, energy(&structure, phase, &state) - rest));
     }

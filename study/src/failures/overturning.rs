@@ -4,7 +4,7 @@ use super::history::structure;
 use super::{Exhibit, RIGHT, WRONG};
 use crate::chart::{Axis, Entry, Figure, Panel, Style, colour};
 use anyhow::Result;
-use rocking::{Engine, GroundAcceleration, Parameters, Phase, State};
+use rocking::{Engine, Ramp, Parameters, Phase, State};
 
 /// How long the structure is followed, s.
 const DURATION: f64 = 14.0;
@@ -21,7 +21,7 @@ fn released(theta: f64) -> Result<(Vec<(f64, f64)>, bool)> {
     let mut engine = Engine::new(structure(Parameters::MCMANUS), initial, 0.0, 1e-14)?;
     let mut history = Vec::new();
     for k in 1..=(DURATION / SAMPLE) as usize {
-        engine.advance(k as f64 * SAMPLE, GroundAcceleration::default(), &mut |_| ())?;
+        engine.advance(k as f64 * SAMPLE, Ramp::default(), &mut |_| ())?;
         let motion = engine.motion();
         history.push((motion.time, motion.state.theta));
         if let Phase::Overturned(_) = motion.phase {

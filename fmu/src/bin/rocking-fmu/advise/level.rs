@@ -1,7 +1,7 @@
 //! One level of detail on a scene: its response, its distance from another response, its cost.
 use crate::peaks::{PART_OF_PERIOD, Peaks};
 use rocking::{
-    Engine, GroundAcceleration, Phase, Structure, Transition,
+    Engine, Ramp, Phase, Structure, Transition,
     engine::{AdvanceError, Work},
     record::Record,
 };
@@ -19,7 +19,7 @@ pub struct Scene {
 /// Ground acceleration up to an instant.
 struct Step {
     until: f64,
-    a_g: GroundAcceleration,
+    a_g: Ramp,
 }
 
 impl Scene {
