@@ -147,7 +147,8 @@ fn flow(system: &LinearSystem, omega: f64, duration: f64) -> Flow {
     let rate = omega.max(1.0 / duration);
     let turn = (system.theta_ddot.u / system.u_ddot.u).abs();
     let (square, cube) = (rate * rate, rate * rate * rate);
-    let scale = SVector::<f64, 7>::from([1.0, rate, turn, turn * rate, square, cube, square / system.u_ddot.side.abs()]);
+    let scale =
+        SVector::<f64, 7>::from([1.0, rate, turn, turn * rate, square, cube, square / system.u_ddot.side.abs()]);
     let scaled = |matrix: &SMatrix<f64, 7, 7>, scale: &SVector<f64, 7>| {
         SMatrix::<f64, 7, 7>::from_fn(|i, j| matrix[(i, j)] * scale[j] / scale[i])
     };

@@ -30,7 +30,7 @@ impl Ramp {
     }
 
     /// The same, its interval started `tau` seconds later.
-    pub(crate) fn from(self, tau: f64) -> Ramp {
+    pub fn from(self, tau: f64) -> Ramp {
         Ramp { value: self.at(tau), slope: self.slope }
     }
 
@@ -47,8 +47,8 @@ impl Ramp {
 
 /// What may act, with units and ranges.
 pub const LOADS: [Quantity<Load>; 2] = [
-    quantity!(a_g ["m/s2"] -1e4, 1e4, "horizontal ground acceleration, positive to the right"),
-    quantity!(F_t ["N"] -1e15, 1e15, "external horizontal force on the top mass, positive to the right"),
+    quantity!(a_g["m/s2"] - 1e4, 1e4, "horizontal ground acceleration, positive to the right"),
+    quantity!(F_t["N"] - 1e15, 1e15, "external horizontal force on the top mass, positive to the right"),
 ];
 
 /// What acts at one instant, or its rate.

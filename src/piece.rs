@@ -209,17 +209,15 @@ impl Piece<'_> {
         let ends = [(&rest.state, load), (&self.end, last)]
             .map(|(state, load)| self.level.outputs(self.structure, self.phase, state, load));
         let chord = |measure: Measure| ends.each_ref().map(|end| measure.of(end).abs()).into_iter().fold(0.0, f64::max);
-        let delta_t_bend =
-            u_ddot + 2.0 * u_dot * theta_dot * theta + (B + u) * turn + H * (theta_ddot + theta * theta_dot * theta_dot);
+        let delta_t_bend = u_ddot
+            + 2.0 * u_dot * theta_dot * theta
+            + (B + u) * turn
+            + H * (theta_ddot + theta * theta_dot * theta_dot);
         let push_bend = push * turn + 2.0 * self.load.slope.F_t.abs() / m * theta_dot * theta;
         let a_t_bend =
             g * (theta_ddot + theta * theta_dot * theta_dot) + damping * u_dddot + stiffness * u_ddot + push_bend;
-        let within = [
-            theta,
-            u,
-            u + H * theta + B * theta * theta / 2.0,
-            g * theta + damping * u_dot + stiffness * u + push,
-        ];
+        let within =
+            [theta, u, u + H * theta + B * theta * theta / 2.0, g * theta + damping * u_dot + stiffness * u + push];
         let bends = [theta_ddot, u_ddot, delta_t_bend, a_t_bend];
         std::array::from_fn(|i| f64::min(within[i], chord(Measure::ALL[i]) + bends[i] * bend))
     }
@@ -231,9 +229,7 @@ impl Piece<'_> {
             Measure::Theta => used(self.arc, &self.arc.theta),
             Measure::U => used(self.arc, &self.arc.u),
             Measure::DeltaT => output_series::delta_t(self.structure, self.phase, self.arc, &turn()),
-            Measure::At => {
-                self.level.a_t_series(self.structure, self.phase, self.rest_load(), self.arc, &turn())
-            }
+            Measure::At => self.level.a_t_series(self.structure, self.phase, self.rest_load(), self.arc, &turn()),
         }
     }
 

@@ -95,7 +95,7 @@ mod tests {
     use super::*;
     use crate::load::Load;
     use crate::taylor::{Arc, Start};
-    use crate::{Ramp, Parameters, State, Structure, full_contact};
+    use crate::{Parameters, Ramp, State, Structure, full_contact};
     use approx::assert_relative_eq;
     use proptest::prelude::*;
 

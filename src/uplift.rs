@@ -65,7 +65,7 @@ fn first_about(structure: &Structure, turning: &TurningMoment, arc: &Arc, side: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::load::{Ramp, Load};
+    use crate::load::{Load, Ramp};
     use crate::nonlinear_rocking::accelerations;
     use crate::taylor::Start;
     use crate::{Parameters, State, full_contact};

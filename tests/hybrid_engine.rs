@@ -4,10 +4,10 @@
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use proptest::prelude::*;
 use rocking::energy::energy;
-use rocking::engine::{DEFAULT_TOLERANCE, MAX_TRANSITIONS_PER_PERIOD};
+use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::transition::MAX_TRANSITIONS_PER_PERIOD;
 use rocking::{
-    Engine, Ramp, Motion, Outputs, Parameters, Phase, Progress, Side, State, Structure, Transition,
-    TransitionKind,
+    Engine, Motion, Outputs, Parameters, Phase, Progress, Ramp, Side, State, Structure, Transition, TransitionKind,
 };
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -16,7 +16,9 @@ const STILL: Ramp = Ramp { value: 0.0, slope: 0.0 };
 /// Advances and collects the transitions.
 fn advance(engine: &mut Engine, until: f64, a_g: Ramp) -> Vec<Transition> {
     let mut transitions = Vec::new();
-    engine.advance(until, a_g, &mut |transition| transitions.push(*transition)).unwrap();
+    engine
+        .advance(until - engine.motion().time, a_g, &mut |transition: &Transition| transitions.push(*transition))
+        .unwrap();
     transitions
 }
 
@@ -84,13 +86,13 @@ fn a_tall_push_overturns_at_a_right_angle_and_stays_there() {
     let mut engine = Engine::new(structure, State::default(), 10.0, DEFAULT_TOLERANCE).unwrap();
     let push = Ramp { value: -6.0, slope: 0.0 };
     let mut last = None;
-    let progress = engine.advance(20.0, push, &mut |transition| last = Some(*transition)).unwrap();
+    let progress = engine.advance(20.0, push, &mut |transition: &Transition| last = Some(*transition)).unwrap();
     assert_eq!(progress, Progress::Overturned);
     let end = *engine.motion();
     assert_eq!(last.unwrap().kind, TransitionKind::Overturning(Side::Right));
     assert_abs_diff_eq!(end.state.theta, FRAC_PI_2, epsilon = 1e-14);
     assert!(end.time > 10.0 && end.time < 20.0);
-    assert_eq!(engine.advance(30.0, STILL, &mut |_| ()).unwrap(), Progress::Overturned);
+    assert_eq!(engine.advance(30.0, STILL, &mut ()).unwrap(), Progress::Overturned);
     assert_eq!(*engine.motion(), end);
 }
 
@@ -169,7 +171,7 @@ proptest! {
         for (k, pair) in samples.windows(2).enumerate() {
             let a_g = Ramp { value: scale * pair[0], slope: scale * (pair[1] - pair[0]) / dt };
             let mut most = 0;
-            let progress = engine.advance((k + 1) as f64 * dt, a_g, &mut |transition| {
+            let progress = engine.advance((k + 1) as f64 * dt - engine.motion().time, a_g, &mut |transition: &Transition| {
                 settled += u32::from(transition.kind == TransitionKind::Settling);
                 in_this_period.push_back(transition.time);
                 while transition.time - in_this_period[0] > period {

@@ -3,9 +3,7 @@
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use rocking::effective_frequency::time_to_impact;
-use rocking::{
-    Detail, Engine, Ramp, Parameters, Phase, Progress, Side, State, Structure, Transition, TransitionKind,
-};
+use rocking::{Detail, Engine, Parameters, Phase, Progress, Ramp, Side, State, Structure, Transition, TransitionKind};
 
 const STILL: Ramp = Ramp { value: 0.0, slope: 0.0 };
 
@@ -38,7 +36,11 @@ fn run(
     let mut states = vec![State::default()];
     for (i, pair) in samples.windows(2).enumerate() {
         let a_g = Ramp { value: pair[0], slope: (pair[1] - pair[0]) / dt };
-        engine.advance((i + 1) as f64 * dt, a_g, &mut |transition| transitions.push(*transition)).unwrap();
+        engine
+            .advance((i + 1) as f64 * dt - engine.motion().time, a_g, &mut |transition: &Transition| {
+                transitions.push(*transition)
+            })
+            .unwrap();
         states.push(engine.motion().state);
     }
     states
@@ -111,7 +113,7 @@ fn a_stiff_structure_falls_back_in_the_time_of_equation_14() {
         let mut engine = Engine::with_detail(structure, released, 0.0, 1e-10, detail).unwrap();
         let mut first_impact = f64::NAN;
         engine
-            .advance(0.2, STILL, &mut |impact| {
+            .advance(0.2, STILL, &mut |impact: &Transition| {
                 if first_impact.is_nan() {
                     first_impact = impact.time;
                 }
@@ -161,7 +163,7 @@ fn rigid_rocks_as_its_equation_says() {
     let initial = State { theta: -0.05, theta_dot: 0.1, ..State::default() };
     let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-10, Detail::Rigid).unwrap();
     let mut impacts = Vec::new();
-    engine.advance(t + 0.01, a_g, &mut |impact| impacts.push(*impact)).unwrap();
+    engine.advance(t + 0.01 - engine.motion().time, a_g, &mut |impact: &Transition| impacts.push(*impact)).unwrap();
     assert_eq!(impacts[0].kind, TransitionKind::Impact(Side::Right));
     assert_abs_diff_eq!(impacts[0].time, t, epsilon = 1e-10);
     assert_abs_diff_eq!(impacts[0].before.theta_dot, theta_dot, epsilon = 1e-10);
@@ -177,7 +179,7 @@ fn rigid_comes_to_rest_with_less_energy_than_the_tolerance() {
         let released = State { theta: 0.1, ..State::default() };
         let mut engine = Engine::with_detail(structure, released, 0.0, tolerance, Detail::Rigid).unwrap();
         let mut transitions = Vec::new();
-        engine.advance(30.0, STILL, &mut |transition| transitions.push(*transition)).unwrap();
+        engine.advance(30.0, STILL, &mut |transition: &Transition| transitions.push(*transition)).unwrap();
         let landing = transitions.last().unwrap();
         assert_eq!(landing.kind, TransitionKind::Landing);
         assert_eq!(engine.motion().phase, Phase::FullContact);
@@ -199,7 +201,7 @@ fn rigid_lifts_off_when_the_push_exceeds_its_slenderness() {
     let ramp = Ramp { value: 0.0, slope: 2.0 * limit };
     let mut engine = Engine::with_detail(structure, State::default(), 0.0, 1e-9, Detail::Rigid).unwrap();
     let mut first = None;
-    engine.advance(0.55, ramp, &mut |transition| first = first.or(Some(*transition))).unwrap();
+    engine.advance(0.55, ramp, &mut |transition: &Transition| first = first.or(Some(*transition))).unwrap();
     let first = first.unwrap();
     assert_eq!(first.kind, TransitionKind::Uplift(Side::Left)); // ground to the right, structure to the left
     assert_abs_diff_eq!(first.time, 0.5, epsilon = 1e-11);
@@ -246,10 +248,10 @@ fn rest_lasts_at_every_level() {
             let initial = State { theta, u, ..State::default() };
             let start = || Engine::with_detail(structure, initial, 0.0, 1e-9, detail).unwrap();
             let mut at_once = start();
-            at_once.advance(1000.0, STILL, &mut |_| ()).unwrap();
+            at_once.advance(1000.0, STILL, &mut ()).unwrap();
             let mut bit_by_bit = start();
             for k in 1..=20_000 {
-                bit_by_bit.advance(f64::from(k) * 0.05, STILL, &mut |_| ()).unwrap();
+                bit_by_bit.advance(f64::from(k) * 0.05 - bit_by_bit.motion().time, STILL, &mut ()).unwrap();
             }
             for engine in [at_once, bit_by_bit] {
                 let State { u, u_dot, theta, theta_dot } = engine.motion().state;
@@ -278,7 +280,9 @@ fn stepping_allocates_nothing() {
         let counted = allocation_counter::measure(|| {
             for (i, pair) in samples.windows(2).enumerate() {
                 let a_g = Ramp { value: pair[0], slope: (pair[1] - pair[0]) / 0.01 };
-                let progress = engine.advance((i + 1) as f64 * 0.01, a_g, &mut |_| transitions += 1).unwrap();
+                let progress = engine
+                    .advance((i + 1) as f64 * 0.01 - engine.motion().time, a_g, &mut |_: &Transition| transitions += 1)
+                    .unwrap();
                 if progress == Progress::Overturned {
                     break;
                 }

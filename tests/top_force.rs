@@ -4,7 +4,7 @@
 use approx::assert_relative_eq;
 use rocking::energy::energy;
 use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::{Detail, Engine, LinearLoad, Load, Parameters, Phase, State, Structure, TransitionKind};
+use rocking::{Detail, Engine, LinearLoad, Load, Parameters, Phase, State, Structure, Transition, TransitionKind};
 
 fn start(parameters: Parameters, initial: State, detail: Detail) -> Engine {
     Engine::with_detail(Structure::new(parameters).unwrap(), initial, 0.0, DEFAULT_TOLERANCE, detail).unwrap()
@@ -22,7 +22,11 @@ fn follow(
         let (value, next) = (load(from), load(to));
         let slope = Load { a_g: (next.a_g - value.a_g) / 0.01, F_t: (next.F_t - value.F_t) / 0.01 };
         let mut last = None;
-        engine.advance(to, LinearLoad { value, slope }, &mut |transition| last = Some(transition.kind)).unwrap();
+        engine
+            .advance(to - engine.motion().time, LinearLoad { value, slope }, &mut |transition: &Transition| {
+                last = Some(transition.kind)
+            })
+            .unwrap();
         each(engine, last);
     }
 }
@@ -59,7 +63,8 @@ fn energy_grows_by_its_work() {
         let F_t = 90.0;
         let total = |engine: &Engine| {
             let motion = engine.motion();
-            energy(engine.structure(), motion.phase, &motion.state) - F_t * engine.outputs(F_t).delta_t
+            energy(engine.structure(), motion.phase, &motion.state)
+                - F_t * engine.outputs(Load { a_g: 0.0, F_t }).delta_t
         };
         let (mut before, mut pieces, mut moved) = (total(&engine), 0, 0.0_f64);
         follow(
@@ -71,7 +76,7 @@ fn energy_grows_by_its_work() {
                 if transition.is_none() {
                     assert_relative_eq!(now, before, max_relative = 1e-10);
                     pieces += 1;
-                    moved = moved.max(engine.outputs(F_t).delta_t.abs());
+                    moved = moved.max(engine.outputs(Load { a_g: 0.0, F_t }).delta_t.abs());
                 }
                 before = now;
             },
@@ -90,7 +95,7 @@ fn a_force_that_is_held_bends_the_strut_or_lifts_the_base() {
     follow(&mut engine, 300, |t| Load { a_g: 0.0, F_t: 0.95 * limit * (t / 2.0).min(1.0) }, |_, _| ());
     assert_eq!((engine.motion().phase, engine.motion().transitions), (Phase::FullContact, 0));
     assert_relative_eq!(engine.motion().state.u, 0.95 * structure.u_cr, max_relative = 1e-9);
-    assert!(engine.outputs(0.95 * limit).a_t.abs() < 1e-6);
+    assert!(engine.outputs(Load { a_g: 0.0, F_t: 0.95 * limit }).a_t.abs() < 1e-6);
 
     let mut engine = start(parameters, State::default(), Detail::Auto);
     let mut first = None;

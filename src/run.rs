@@ -1,0 +1,141 @@
+//! A run: one structure under one ground motion, from its first sample to the end.
+//!
+//! The engine goes from sample to sample, between which the ground acceleration is linear; whoever watches sees every
+//! piece and every transition of it. What is known of a run without a watcher is how it ended.
+
+mod history;
+pub mod levels;
+pub mod peaks;
+
+use crate::engine::{AdvanceError, DEFAULT_TOLERANCE};
+use crate::record::Record;
+use crate::state::InitialStateError;
+use crate::{Detail, Engine, Motion, Progress, Ramp, State, Structure, Watch};
+use peaks::Peaks;
+
+/// For how long a structure may rock on after its record, in units of 1/p_l: amplitudes change by e^±1 in each.
+pub const LONGEST_REST: f64 = 100.0;
+
+/// What is run.
+#[derive(Clone, Debug)]
+pub struct Run<'a> {
+    /// The structure.
+    pub structure: Structure,
+    /// The ground motion.
+    pub ground: &'a Record,
+    /// State at the first sample.
+    pub initial: State,
+    /// Level of detail.
+    pub detail: Detail,
+    /// Relative tolerance of the results.
+    pub tolerance: f64,
+    /// When it ends, unless the structure overturns.
+    pub end: End,
+}
+
+/// When a run ends.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum End {
+    /// When the record is over and the structure stands in full contact, its energy too small to lift it: nothing more
+    /// can happen. It is given [`LONGEST_REST`] for that.
+    AtRest,
+    /// At this time, s. After the record the ground is at rest.
+    At(f64),
+}
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// The structure stands, and will.
+    AtRest,
+    /// |θ| reached π/2.
+    Overturned,
+    /// The time asked for was over.
+    AtTime,
+    /// It still rocked [`LONGEST_REST`] after the record: what becomes of it is not known.
+    StillRocking,
+}
+
+/// Where a run has come to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Finish {
+    /// How it ended.
+    pub ending: Ending,
+    /// The motion then.
+    pub motion: Motion,
+}
+
+/// Why there is no result.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum RunError {
+    /// The run cannot start.
+    #[error(transparent)]
+    Initial(#[from] InitialStateError),
+    /// The run cannot go on.
+    #[error(transparent)]
+    Advance(#[from] AdvanceError),
+}
+
+impl<'a> Run<'a> {
+    /// Of `structure` under `ground` from rest, at the level of detail `auto` to the default tolerance, until nothing
+    /// more can happen.
+    pub fn new(structure: Structure, ground: &'a Record) -> Run<'a> {
+        Run {
+            structure,
+            ground,
+            initial: State::default(),
+            detail: Detail::Auto,
+            tolerance: DEFAULT_TOLERANCE,
+            end: End::AtRest,
+        }
+    }
+
+    /// Follows the motion to the end.
+    pub fn follow<W: Watch + ?Sized>(&self, watch: &mut W) -> Result<Finish, RunError> {
+        let (structure, start) = (self.structure, self.ground.start());
+        let mut engine = Engine::with_detail(structure, self.initial, start, self.tolerance, self.detail)?;
+        let ending = self.follow_ground(&mut engine, watch)?;
+        Ok(Finish { ending, motion: *engine.motion() })
+    }
+
+    fn follow_ground<W: Watch + ?Sized>(&self, engine: &mut Engine, watch: &mut W) -> Result<Ending, AdvanceError> {
+        let end = match self.end {
+            End::AtRest => self.ground.end(),
+            End::At(end) => end,
+        };
+        for segment in self.ground.segments_until(end) {
+            let progress = engine.advance(segment.end - segment.start, segment.a_g, watch)?;
+            if progress == Progress::Overturned {
+                return Ok(Ending::Overturned);
+            }
+            engine.set_time(segment.end);
+        }
+        match self.end {
+            End::AtRest => come_to_rest(engine, watch),
+            End::At(_) => Ok(Ending::AtTime),
+        }
+    }
+
+    /// The exact peaks of the run, and how it ended.
+    pub fn peaks(&self) -> Result<(Peaks, Finish), RunError> {
+        let mut peaks = Peaks::new(&self.structure);
+        let finish = self.follow(&mut peaks)?;
+        Ok((peaks, finish))
+    }
+}
+
+/// Follows a structure on ground at rest until nothing more can happen.
+fn come_to_rest<W: Watch + ?Sized>(engine: &mut Engine, watch: &mut W) -> Result<Ending, AdvanceError> {
+    let p_l = engine.structure().p_l;
+    let mut left = LONGEST_REST;
+    while !engine.stays_down() {
+        if left == 0.0 {
+            return Ok(Ending::StillRocking);
+        }
+        if engine.advance(1.0 / p_l, Ramp::default(), watch)? == Progress::Overturned {
+            return Ok(Ending::Overturned);
+        }
+        left -= 1.0;
+    }
+    Ok(Ending::AtRest)
+}

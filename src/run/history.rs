@@ -1,0 +1,99 @@
+//! θ, u and a_t over a whole run as series in time, and how far two runs are apart, exactly.
+
+use crate::Phase;
+use crate::extremes;
+use crate::piece::{Measure, Piece, Watch};
+use crate::taylor::Series;
+
+/// What is kept of a motion.
+const MEASURES: [Measure; 3] = [Measure::Theta, Measure::U, Measure::At];
+
+/// Part of the vibration period 2π/ω_u: u̇, and with it a_t, jumps at a landing. Where one motion has landed and the other
+/// does so within this time, their distance is that jump and says nothing of either.
+const SAME_LANDING: f64 = 1e-3;
+
+/// A motion from its start on.
+#[derive(Clone, Debug)]
+pub struct History {
+    omega_u: f64,
+    stretches: Vec<Stretch>,
+}
+
+/// One of its series.
+#[derive(Clone, Debug)]
+struct Stretch {
+    start: f64,
+    end: f64,
+    phase: Phase,
+    /// Duration of σ = 1, s.
+    span: f64,
+    series: [Series; 3],
+}
+
+impl History {
+    /// Of a structure whose vibration mode has the circular frequency `omega_u` (rad/s), nothing seen yet.
+    pub fn new(omega_u: f64) -> History {
+        History { omega_u, stretches: Vec::new() }
+    }
+
+    /// The largest |Δθ| (rad), |Δu| (m) and |Δa_t| (m/s²) over the time that both cover.
+    pub fn differences(&self, other: &History) -> [f64; 3] {
+        let mut largest = [0.0; 3];
+        let (mut ours, mut theirs) = (self.stretches.iter().peekable(), other.stretches.iter().peekable());
+        while let (Some(a), Some(b)) = (ours.peek(), theirs.peek()) {
+            let (from, to) = (a.start.max(b.start), a.end.min(b.end));
+            let is_same_landing =
+                a.phase != b.phase && (to - from) * self.omega_u < SAME_LANDING * std::f64::consts::TAU;
+            if to > from && !is_same_landing {
+                for (i, largest) in largest.iter_mut().enumerate() {
+                    *largest = f64::max(*largest, difference(a, b, i, from, to, *largest));
+                }
+            }
+            if a.end <= b.end {
+                ours.next()
+            } else {
+                theirs.next()
+            };
+        }
+        largest
+    }
+}
+
+/// The largest difference of series `i` from time `from` to time `to`, if it is more than `least`.
+fn difference(a: &Stretch, b: &Stretch, i: usize, from: f64, to: f64, least: f64) -> f64 {
+    let (mut difference, subtracted) = (a.over(i, from, to), b.over(i, from, to));
+    difference.iter_mut().zip(subtracted).for_each(|(a, b)| *a -= b);
+    if extremes::bound(difference.iter().copied(), 1.0) <= least {
+        return least;
+    }
+    extremes::largest(&difference, 1.0)
+}
+
+impl Stretch {
+    /// Series `i` with σ = 0 at time `from` and σ = 1 at time `to`.
+    fn over(&self, i: usize, from: f64, to: f64) -> Series {
+        let mut series = self.series[i];
+        let order = series.iter().rposition(|c| *c != 0.0).unwrap_or(0);
+        extremes::shift(&mut series[..=order], (from - self.start) / self.span);
+        let (part, mut power) = ((to - from) / self.span, 1.0);
+        for c in &mut series[..=order] {
+            *c *= power;
+            power *= part;
+        }
+        series
+    }
+}
+
+impl Watch for History {
+    fn piece(&mut self, piece: &mut Piece) {
+        loop {
+            let (duration, span) = (piece.arc().duration(), piece.arc().span);
+            let start = piece.time + piece.passed();
+            let series = MEASURES.map(|measure| piece.series(measure));
+            self.stretches.push(Stretch { start, end: start + duration, phase: piece.phase, span, series });
+            if !piece.skip() {
+                break;
+            }
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! Levels of detail compared on one run: the errors of each, what it costs, and the cheapest that will do.
+
+use super::history::History;
+use super::peaks::Peaks;
+use super::{Ending, Run, RunError};
+use crate::Detail;
+use crate::engine::Work;
+
+/// Tolerance of the run that all others are measured by.
+pub const REFERENCE_TOLERANCE: f64 = 1e-12;
+
+/// The levels that are compared, the one of the fewest equations first.
+pub const SIMPLEST_FIRST: [Detail; 6] =
+    [Detail::FixedBase, Detail::Rigid, Detail::Modal, Detail::Linear, Detail::Auto, Detail::Nonlinear];
+
+/// Costs within this factor of the least count as the same: the equations then decide.
+const SAME_COST: f64 = 2.0;
+
+/// What a level's error is measured by.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Criterion {
+    /// Peak of |θ|.
+    Theta,
+    /// Peak of |u|.
+    U,
+    /// Peak of |a_t|, and with it of V_t and M_t.
+    At,
+    /// θ over time: largest difference over the largest |θ|, while both structures stand.
+    ThetaHistory,
+    /// u over time, likewise.
+    UHistory,
+    /// a_t over time, likewise.
+    AtHistory,
+}
+
+impl Criterion {
+    /// All of them.
+    pub const ALL: [Criterion; 6] = [
+        Criterion::Theta,
+        Criterion::U,
+        Criterion::At,
+        Criterion::ThetaHistory,
+        Criterion::UHistory,
+        Criterion::AtHistory,
+    ];
+}
+
+/// What a level makes of a run.
+#[derive(Clone, Debug)]
+pub struct Response {
+    /// The level.
+    pub detail: Detail,
+    /// Its peaks.
+    pub peaks: Peaks,
+    /// How it ended.
+    pub ending: Ending,
+    /// Transitions.
+    pub transitions: u64,
+    /// What it took, counted: steps, and right-hand-side evaluations.
+    pub work: Work,
+}
+
+/// A level beside the reference.
+#[derive(Clone, Debug)]
+pub struct Verdict {
+    /// What the level makes of the run.
+    pub response: Response,
+    /// Relative errors, in the order of [`Criterion::ALL`].
+    pub errors: [f64; 6],
+    /// Whether it predicts overturning, or none, as the reference does.
+    pub is_right_about_overturning: bool,
+}
+
+/// All levels on one run.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// Eqs 1, 5, 6 to [`REFERENCE_TOLERANCE`].
+    pub reference: Response,
+    /// In the order of [`SIMPLEST_FIRST`], each to the tolerance of the run.
+    pub verdicts: Vec<Verdict>,
+    /// Levels that cannot do the run, and why.
+    pub refused: Vec<(Detail, RunError)>,
+}
+
+/// Does `run` at every level.
+pub fn compare(run: &Run) -> Result<Comparison, RunError> {
+    let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..run.clone() };
+    let (reference, exact_history) = respond(&exact)?;
+    let (mut verdicts, mut refused) = (Vec::new(), Vec::new());
+    for detail in SIMPLEST_FIRST {
+        match respond(&Run { detail, ..run.clone() }) {
+            Ok((response, history)) => {
+                let peaks = [Peaks::theta, Peaks::u, Peaks::a_t].map(|of| {
+                    let [found, expected] = [&response.peaks, &reference.peaks].map(|peaks| of(peaks).magnitude);
+                    ((found - expected).abs(), expected)
+                });
+                let differences = history.differences(&exact_history);
+                let histories = std::array::from_fn(|i| (differences[i], peaks[i].1));
+                let [theta, u, a_t] = peaks.map(relative);
+                let [theta_history, u_history, a_t_history] = <[_; 3]>::map(histories, relative);
+                verdicts.push(Verdict {
+                    is_right_about_overturning: response.has_overturned() == reference.has_overturned(),
+                    errors: [theta, u, a_t, theta_history, u_history, a_t_history],
+                    response,
+                });
+            }
+            Err(error) => refused.push((detail, error)),
+        }
+    }
+    Ok(Comparison { reference, verdicts, refused })
+}
+
+fn respond(run: &Run) -> Result<(Response, History), RunError> {
+    let (mut peaks, mut history) = (Peaks::new(&run.structure), History::new(run.structure.omega_u));
+    let finish = run.follow(&mut (&mut peaks, &mut history))?;
+    let response = Response {
+        detail: run.detail,
+        peaks,
+        ending: finish.ending,
+        transitions: finish.motion.transitions,
+        work: finish.motion.work,
+    };
+    Ok((response, history))
+}
+
+/// A difference in proportion to what is expected: 0 where there is none, ∞ where nothing is expected.
+pub fn relative((difference, expected): (f64, f64)) -> f64 {
+    if difference == 0.0 { 0.0 } else { difference / expected }
+}
+
+impl Response {
+    /// Whether the structure overturned.
+    pub fn has_overturned(&self) -> bool {
+        self.ending == Ending::Overturned
+    }
+
+    /// Steps and evaluations together: an exact leap costs about as much as an evaluation.
+    pub fn cost(&self) -> u64 {
+        self.work.steps + self.work.evaluations
+    }
+}
+
+impl Verdict {
+    /// Whether it is right about overturning and its errors by every one of `criteria` are at most `within`.
+    pub fn is_within(&self, within: f64, criteria: &[Criterion]) -> bool {
+        let error = |criterion: &Criterion| self.errors[*criterion as usize];
+        self.is_right_about_overturning && criteria.iter().map(error).all(|error| error <= within)
+    }
+}
+
+impl Comparison {
+    /// The cheapest level whose errors by every one of `criteria` are at most `within`; of those of about the same cost
+    /// the one of the fewest equations.
+    pub fn recommended(&self, within: f64, criteria: &[Criterion]) -> Option<&Verdict> {
+        let admitted = || self.verdicts.iter().filter(|verdict| verdict.is_within(within, criteria));
+        let least = admitted().map(|verdict| verdict.response.cost()).min()? as f64;
+        admitted().find(|verdict| verdict.response.cost() as f64 <= SAME_COST * least)
+    }
+}

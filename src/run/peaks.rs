@@ -1,0 +1,147 @@
+//! The largest magnitudes of a motion and their instants, exact: between the ends of its pieces too.
+//!
+//! A bound on a piece tells most of the time that it holds nothing larger than what has been seen. Where it does not,
+//! each output is a series in time ([`crate::output_series`]), which rises or falls throughout between the points where
+//! it is stationary ([`crate::extremes`]): the largest magnitude is at one of these or at an end.
+
+use crate::piece::{Measure, Piece, Watch};
+use crate::{Outputs, Structure, extremes};
+use serde::{Deserialize, Serialize};
+
+/// A bound above the largest magnitude by no more than this part of it may be rounding.
+const ROUNDING: f64 = 1e-14;
+
+/// The largest magnitude of a quantity, and its instant.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Peak {
+    /// In the quantity's unit.
+    pub magnitude: f64,
+    /// The first instant that has it, s.
+    pub time: f64,
+}
+
+/// Peaks of the motion that has been watched.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Peaks {
+    /// In the order of [`Measure::ALL`].
+    largest: [Peak; 4],
+    /// Of the structure: m, H and B.
+    m: f64,
+    H: f64,
+    B: f64,
+    /// Right-hand-side evaluations that it took to find them.
+    evaluations: u64,
+}
+
+/// A peak's name and unit, and which it is.
+#[derive(Debug)]
+pub struct Peaking {
+    /// Symbol of the quantity.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: &'static str,
+    /// Its peak.
+    pub of: fn(&Peaks) -> Peak,
+}
+
+/// All peaks: what to call them, in which unit.
+pub const PEAKS: [Peaking; 7] = [
+    Peaking { name: "theta", unit: "rad", of: |peaks| peaks.theta() },
+    Peaking { name: "u", unit: "m", of: |peaks| peaks.u() },
+    Peaking { name: "delta_t", unit: "m", of: |peaks| peaks.delta_t() },
+    Peaking { name: "uplift", unit: "m", of: |peaks| peaks.uplift() },
+    Peaking { name: "a_t", unit: "m/s2", of: |peaks| peaks.a_t() },
+    Peaking { name: "V_t", unit: "N", of: |peaks| peaks.V_t() },
+    Peaking { name: "M_t", unit: "N.m", of: |peaks| peaks.M_t() },
+];
+
+impl Peaks {
+    /// Of `structure`, nothing seen yet.
+    pub fn new(structure: &Structure) -> Peaks {
+        let &crate::Parameters { m, H, B, .. } = structure.parameters();
+        Peaks { largest: [Peak::default(); 4], m, H, B, evaluations: 0 }
+    }
+
+    /// Of the rotation |θ|, rad.
+    pub fn theta(&self) -> Peak {
+        self.largest[Measure::Theta as usize]
+    }
+
+    /// Of the elastic displacement |u|, m.
+    pub fn u(&self) -> Peak {
+        self.largest[Measure::U as usize]
+    }
+
+    /// Of the lateral displacement of the top mass |δ_t|, m (Eq 26).
+    pub fn delta_t(&self) -> Peak {
+        self.largest[Measure::DeltaT as usize]
+    }
+
+    /// Of the uplift δ_u = 2 B sin|θ|, m (Eq 25): with |θ|, which never exceeds π/2.
+    pub fn uplift(&self) -> Peak {
+        let theta = self.theta();
+        Peak { magnitude: 2.0 * self.B * theta.magnitude.sin(), ..theta }
+    }
+
+    /// Of the acceleration of the top mass |a_t|, m/s² (Eq 27).
+    pub fn a_t(&self) -> Peak {
+        self.largest[Measure::At as usize]
+    }
+
+    /// Of |V_t| = m |a_t|, N (Eqs 2, 23).
+    pub fn V_t(&self) -> Peak {
+        self.times_a_t(self.m)
+    }
+
+    /// Of |M_t| = m H |a_t|, N·m (Eqs 3, 24).
+    pub fn M_t(&self) -> Peak {
+        self.times_a_t(self.m * self.H)
+    }
+
+    fn times_a_t(&self, factor: f64) -> Peak {
+        let a_t = self.a_t();
+        Peak { magnitude: factor * a_t.magnitude, ..a_t }
+    }
+
+    /// Right-hand-side evaluations that finding them took beside those of the motion itself.
+    pub fn evaluations(&self) -> u64 {
+        self.evaluations
+    }
+
+    fn see(&mut self, measure: Measure, time: f64, outputs: &Outputs) {
+        let magnitude = measure.of(outputs).abs();
+        let largest = &mut self.largest[measure as usize];
+        if magnitude > largest.magnitude {
+            *largest = Peak { magnitude, time };
+        }
+    }
+}
+
+impl Watch for Peaks {
+    fn piece(&mut self, piece: &mut Piece) {
+        let asked_before = piece.evaluations();
+        loop {
+            let bounds = piece.bounds();
+            let can_be_beaten = |measure: &Measure| {
+                let largest = self.largest[*measure as usize].magnitude;
+                bounds[*measure as usize] > largest * (1.0 + ROUNDING)
+            };
+            let measures = Measure::ALL.map(|measure| Some(measure).filter(can_be_beaten));
+            if measures.iter().all(Option::is_none) {
+                break;
+            }
+            let (reach, span) = (piece.arc().reach, piece.arc().span);
+            let start = piece.time + piece.passed();
+            for measure in measures.into_iter().flatten() {
+                let mut look = |sigma: f64| self.see(measure, start + sigma * span, &piece.outputs(sigma));
+                look(0.0);
+                extremes::stationary_points(&piece.series(measure), reach, &mut look);
+                look(reach);
+            }
+            if !piece.skip() {
+                break;
+            }
+        }
+        self.evaluations += piece.evaluations() - asked_before;
+    }
+}
