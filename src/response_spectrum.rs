@@ -28,8 +28,7 @@ use std::f64::consts::{PI, TAU};
 /// S_a of `record` at the period `T` (s) and the damping ratio `zeta`, m/s². The oscillator starts at rest and swings
 /// on for a period after the record's end: its largest swing comes within a quarter of one.
 pub fn spectral_acceleration(record: &Record, T: f64, zeta: f64) -> f64 {
-    let record_end = record.times()[record.times().len() - 1];
-    Oscillator { omega: TAU / T, zeta }.peak(record.segments_until(record_end + T))
+    Oscillator { omega: TAU / T, zeta }.peak(record.segments_until(record.end() + T))
 }
 
 impl Oscillator {
@@ -95,7 +94,7 @@ mod tests {
     use super::*;
     use crate::load::Load;
     use crate::taylor::{Arc, Start};
-    use crate::{Ramp, Parameters, State, Structure, full_contact};
+    use crate::{Parameters, Ramp, State, Structure, full_contact};
     use approx::assert_relative_eq;
     use proptest::prelude::*;
 
