@@ -6,7 +6,7 @@
 //!
 //! Of the two accelerations in use this is the absolute one, not the pseudo-acceleration ω² max|u|: it is ü + a_g that
 //! stands in Eqs 2 and 20 and that S_a bounds in Eqs 4 and 22, and the damper's force is part of it. The two are close
-//! at small damping, but ζ_u = ζ_fc c_ratio/√(1−β) of a slender structure need not be small.
+//! at small damping, but ζ_u = ζ_fc c_ratio/√(1−χ) of a slender structure need not be small.
 //!
 //! On ground whose acceleration is a + b τ between two samples, the motion that follows the ground without swinging
 //! has ü + a_g = a + b τ and u̇ = −b/ω². What is left of (u̇, ü + a_g) is free vibration (w, ẇ):
