@@ -76,13 +76,13 @@ def main() -> None:
         output_interval=time[1] / STEPS_PER_SAMPLE,
         input=fmpy_input(time, a_g),
         set_input_derivatives=True,
-        output=["a_t", "uplift", "transitions", "beta", "alpha_cg"],
+        output=["a_t", "uplift", "transitions", "chi", "alpha_cg"],
     )
     result = fmpy.simulate_fmu(arguments.fmu, **common)
     fixed = fmpy.simulate_fmu(arguments.fmu, start_values={"detail": FIXED_BASE}, **common)
-    beta, alpha_cg = result["beta"][0], result["alpha_cg"][0]
+    chi, alpha_cg = result["chi"][0], result["alpha_cg"][0]
 
-    demand = 3 * beta * np.tan(alpha_cg)  # Eq 22, second term, C = 2, in g
+    demand = 3 * chi * np.tan(alpha_cg)  # Eq 22, second term, C = 2, in g
     print(f"{'':44}{'paper':>10}{'computed':>12}")
     for label, paper, computed in [
         ("peak ground acceleration (g)", "-", np.max(np.abs(a_g)) / G),

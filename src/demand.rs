@@ -1,8 +1,8 @@
 //! Demands without a time history (Eqs 21–24).
 //!
 //! ```text
-//! ü_gr,max = C β/(1−β) g tan α_cg                                                                      (21)
-//! a_t,max  = (1−β) S_a(T_u, ζ_u) + (1+C) β g tan α_cg                                                  (22)
+//! ü_gr,max = C χ/(1−χ) g tan α_cg                                                                      (21)
+//! a_t,max  = (1−χ) S_a(T_u, ζ_u) + (1+C) χ g tan α_cg                                                  (22)
 //! V_t,max  = m a_t,max                                                                                 (23)
 //! M_t,max  = m H a_t,max                                                                               (24)
 //! ```
@@ -22,11 +22,11 @@ pub const INSTANT_TRANSITION: f64 = 2.0;
 pub struct Demand {
     /// Largest elastic acceleration excited by the weight's change of sides, ü_gr,max, m/s² (Eq 21).
     pub u_ddot_gr: f64,
-    /// Vibration that the ground excites: (1−β) S_a, m/s² (Eq 22).
+    /// Vibration that the ground excites: (1−χ) S_a, m/s² (Eq 22).
     pub ground: f64,
-    /// Rocking mode: β g tan α_cg, m/s² (Eq 22).
+    /// Rocking mode: χ g tan α_cg, m/s² (Eq 22).
     pub rocking: f64,
-    /// Vibration that the change of sides excites: C β g tan α_cg = (1−β) ü_gr,max, m/s² (Eq 22).
+    /// Vibration that the change of sides excites: C χ g tan α_cg = (1−χ) ü_gr,max, m/s² (Eq 22).
     pub impact: f64,
     /// Lateral acceleration of the top mass: the sum of the three terms, m/s² (Eq 22).
     pub a_t: f64,
@@ -68,7 +68,7 @@ mod tests {
     use crate::{Parameters, Side, State};
     use approx::assert_relative_eq;
 
-    /// The paper: 0.66 g for McManus with C = 2; Eq 13 gives 0.34 g for Evison with the β of its table, 0.92 for 0.91.
+    /// The paper: 0.66 g for McManus with C = 2; Eq 13 gives 0.34 g for Evison with the χ of its table, 0.92 for 0.91.
     #[test]
     fn the_specimens_have_the_numbers_of_the_paper() {
         let in_g = |parameters, C| {

@@ -22,7 +22,7 @@
 //! | [`effective_frequency`] | Eq 14 |
 //! | [`demand`], [`response_spectrum`] | Eqs 21–24: demands without a time history |
 //! | [`pushover`] | Fig 1: equilibrium under a lateral force |
-//! | [`record`] | ground motion records: PEER AT2, CSV |
+//! | [`record`] | ground motion records: samples in memory, PEER AT2, CSV |
 //! | [`fragility`] | fragility curve of many runs |
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 

@@ -6,19 +6,19 @@
 //! ```text
 //! θ = q_r + q_u,      q_u = −(p_l²/g) u                                                                (16)
 //! q̈_r − p_l² q_r = −p_l² a_g/g − s p_l² tan α_cg                                                       (11)
-//! ü + 2 ζ_u ω_u u̇ + ω_u² u = −a_g + s (β/(1−β)) g tan α_cg                                             (18)
+//! ü + 2 ζ_u ω_u u̇ + ω_u² u = −a_g + s (χ/(1−χ)) g tan α_cg                                             (18)
 //! ```
 //!
 //! The lateral accelerations at the height of the top mass that belong to them, and their sum:
 //!
 //! ```text
-//! a_r = H q̈_r = β g q_r − β a_g − s β g tan α_cg                                                       (12)
-//! a_u = ü + H q̈_u + a_g = (1−β) ü + a_g                                                                (19)
+//! a_r = H q̈_r = χ g q_r − χ a_g − s χ g tan α_cg                                                       (12)
+//! a_u = ü + H q̈_u + a_g = (1−χ) ü + a_g                                                                (19)
 //! a_t = a_r + a_u                                                                                      (20)
 //! ```
 //!
-//! The paper's (13) and (20) are these with q_r → 0. The sum needs no a_g: it is β g q_r − (c_u u̇ + k u)/m, and
-//! differs from that of the full equations by g (θ − β q_r) to first order.
+//! The paper's (13) and (20) are these with q_r → 0. The sum needs no a_g: it is χ g q_r − (c_u u̇ + k u)/m, and
+//! differs from that of the full equations by g (θ − χ q_r) to first order.
 
 use crate::{Side, State, Structure};
 
@@ -94,7 +94,7 @@ mod tests {
     }
 
     /// The linearised equations (7, 8), their gravity terms replaced by those which the modes keep: g H q_r in (8), and
-    /// in (7) β g q_r, whose moment about the vibration mode's node is the same.
+    /// in (7) χ g q_r, whose moment about the vibration mode's node is the same.
     #[test]
     fn the_modes_solve_the_linearised_equations() {
         let structure = Structure::new(Parameters::EVISON).unwrap();
@@ -115,7 +115,7 @@ mod tests {
         }
     }
 
-    /// Eq 13: the step of the rocking mode, 0.34 g in the paper with β = 0.92, and its sign.
+    /// Eq 13: the step of the rocking mode, 0.34 g in the paper with χ = 0.92, and its sign.
     #[test]
     fn a_small_rotation_leaves_the_step_of_equation_13() {
         let structure = Structure::new(Parameters::EVISON).unwrap();

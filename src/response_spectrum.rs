@@ -6,7 +6,7 @@
 //!
 //! Of the two accelerations in use this is the absolute one, not the pseudo-acceleration ω² max|u|: it is ü + a_g that
 //! stands in Eqs 2 and 20 and that S_a bounds in Eqs 4 and 22, and the damper's force is part of it. The two are close
-//! at small damping, but ζ_u = ζ_fc c_ratio/√(1−β) of a slender structure need not be small.
+//! at small damping, but ζ_u = ζ_fc c_ratio/√(1−χ) of a slender structure need not be small.
 //!
 //! On ground whose acceleration is a + b τ between two samples, the motion that follows the ground without swinging
 //! has ü + a_g = a + b τ and u̇ = −b/ω². What is left of (u̇, ü + a_g) is free vibration (w, ẇ):
@@ -28,8 +28,7 @@ use std::f64::consts::{PI, TAU};
 /// S_a of `record` at the period `T` (s) and the damping ratio `zeta`, m/s². The oscillator starts at rest and swings
 /// on for a period after the record's end: its largest swing comes within a quarter of one.
 pub fn spectral_acceleration(record: &Record, T: f64, zeta: f64) -> f64 {
-    let record_end = record.times()[record.times().len() - 1];
-    Oscillator { omega: TAU / T, zeta }.peak(record.segments_until(record_end + T))
+    Oscillator { omega: TAU / T, zeta }.peak(record.segments_until(record.end() + T))
 }
 
 impl Oscillator {

@@ -41,16 +41,16 @@ class Structure:
     g: float = 9.81
 
     def __post_init__(self):
-        omega = 2 * math.pi * self.f_fc
-        k = self.m * omega**2
+        omega_fc = 2 * math.pi * self.f_fc
+        k = self.m * omega_fc**2
         c_fc = 2 * self.zeta_fc * math.sqrt(k * self.m)
         J_P = self.J0 + self.m * (self.H**2 + self.B**2) + self.m0 * self.B**2
-        tan_alpha = (self.m + self.m0) / self.m * self.B / self.H
+        tan_alpha_cg = (self.m + self.m0) / self.m * self.B / self.H
         p_l = math.sqrt(self.m * self.g * self.H / J_P)
-        beta = self.H * p_l**2 / self.g
-        derived = dict(omega=omega, k=k, c_fc=c_fc, c_u=self.c_ratio * c_fc, J_P=J_P, tan_alpha=tan_alpha,
-                       alpha_cg=math.atan(tan_alpha), p_l=p_l, beta=beta, u_cr=self.g * tan_alpha / omega**2,
-                       f_u=self.f_fc / math.sqrt(1 - beta))
+        chi = self.H * p_l**2 / self.g
+        derived = dict(omega_fc=omega_fc, k=k, c_fc=c_fc, c_u=self.c_ratio * c_fc, J_P=J_P, tan_alpha_cg=tan_alpha_cg,
+                       alpha_cg=math.atan(tan_alpha_cg), p_l=p_l, chi=chi, u_cr=self.g * tan_alpha_cg / omega_fc**2,
+                       f_u=self.f_fc / math.sqrt(1 - chi))
         for name, value in derived.items():
             object.__setattr__(self, name, value)
 
@@ -128,7 +128,7 @@ def accelerations(p: Structure, s: int, y, a_g: float, F_t: float) -> tuple[floa
     """u_ddot and theta_ddot by (1), or by (5, 6) about side s, with a force F_t on the top mass."""
     u, u_dot, theta, theta_dot = y
     if s == FULL_CONTACT:
-        return F_t / p.m - a_g - 2 * p.zeta_fc * p.omega * u_dot - p.omega**2 * u, 0.0
+        return F_t / p.m - a_g - 2 * p.zeta_fc * p.omega_fc * u_dot - p.omega_fc**2 * u, 0.0
     m, H, B, g, M = p.m, p.H, p.B, p.g, p.m + p.m0
     sn, cs, arm = math.sin(theta), math.cos(theta), s * B - u
     force = -p.c_u * u_dot - p.k * u - m * theta_dot**2 * arm - m * a_g * cs + m * g * sn + F_t * cs

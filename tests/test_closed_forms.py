@@ -16,7 +16,7 @@ def damped_oscillator(p, time, a_g):
 
     Under -a_g = -(a + b t) the particular solution is c0 + c1 t; what is left over oscillates freely.
     """
-    omega, zeta = p.omega, p.zeta_fc
+    omega, zeta = p.omega_fc, p.zeta_fc
     omega_d = omega * sqrt(1 - zeta**2)
     u, u_dot, history = 0.0, 0.0, [0.0]
     for t0, t1, a0, a1 in zip(time[:-1], time[1:], a_g[:-1], a_g[1:]):

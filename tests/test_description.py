@@ -24,7 +24,7 @@ KINDS = {
         "g": "m/s2", "theta_0": "rad", "theta_dot_0": "rad/s", "u_0": "m", "u_dot_0": "m/s",
     },
     ("parameter", "fixed", "Enumeration"): {"detail": None},
-    ("calculatedParameter", "fixed", "Real"): {"alpha_cg": "rad", "p_l": "rad/s", "beta": "1", "u_cr": "m", "f_u": "Hz"},
+    ("calculatedParameter", "fixed", "Real"): {"alpha_cg": "rad", "p_l": "rad/s", "chi": "1", "u_cr": "m", "f_u": "Hz"},
 }
 
 STARTS = {

@@ -54,15 +54,15 @@ def test_spectral_acceleration_is_that_of_the_fmu_on_a_fixed_base(estimate, mcma
 
 
 def test_demand_is_the_sum_of_its_terms(estimate):
-    one_minus_beta, rocking = 1 - MCMANUS.beta, MCMANUS.beta * G * MCMANUS.tan_alpha
+    one_minus_chi, rocking = 1 - MCMANUS.chi, MCMANUS.chi * G * MCMANUS.tan_alpha_cg
     expected = {
         "PGA": np.max(np.abs(pacoima_dam()[1])),
         "T_u": 1 / MCMANUS.f_u,
-        "u_ddot_gr": 2 * rocking / one_minus_beta,
-        "(1-beta) S_a": one_minus_beta * estimate["S_a(T_u, zeta_u)"],
-        "beta g tan": rocking,
-        "C beta g tan": 2 * rocking,
-        "a_t": one_minus_beta * estimate["S_a(T_u, zeta_u)"] + 3 * rocking,
+        "u_ddot_gr": 2 * rocking / one_minus_chi,
+        "(1-chi) S_a": one_minus_chi * estimate["S_a(T_u, zeta_u)"],
+        "chi g tan": rocking,
+        "C chi g tan": 2 * rocking,
+        "a_t": one_minus_chi * estimate["S_a(T_u, zeta_u)"] + 3 * rocking,
         "V_t": MCMANUS.m * estimate["a_t"],
         "M_t": MCMANUS.m * MCMANUS.H * estimate["a_t"],
     }
@@ -78,7 +78,7 @@ def test_effective_frequency_is_equation_14(rocking_fmu):
 
 def test_without_a_record_the_ground_is_at_rest(rocking_fmu):
     lines = values(rocking_fmu("estimate", "--preset", "evison", "--amplification", "1.4", "--csv"))
-    assert lines["a_t"] == pytest.approx(2.4 * EVISON.beta * G * EVISON.tan_alpha, rel=1e-12)
+    assert lines["a_t"] == pytest.approx(2.4 * EVISON.chi * G * EVISON.tan_alpha_cg, rel=1e-12)
     assert "PGA" not in lines
 
 
@@ -119,7 +119,7 @@ def test_modes_add_up_to_the_response(rocking_fmu, tmp_path):
         assert float(line["q_u[rad]"]) == pytest.approx(-EVISON.p_l**2 / G * float(of["u[m]"]), rel=1e-12)
         total = float(line["q_r[rad]"]) + float(line["q_u[rad]"])
         assert total == pytest.approx(float(of["theta[rad]"]), rel=1e-12, abs=1e-15)
-        # Eq 20 differs from the model's own a_t by what the modes neglect, g (theta - beta q_r)
-        neglected = G * (float(of["theta[rad]"]) - EVISON.beta * float(line["q_r[rad]"]))
+        # Eq 20 differs from the model's own a_t by what the modes neglect, g (theta - chi q_r)
+        neglected = G * (float(of["theta[rad]"]) - EVISON.chi * float(line["q_r[rad]"]))
         a_t = float(line["a_t[m/s2]"]) + neglected
         assert a_t == pytest.approx(float(of["a_t[m/s2]"]), abs=2e-4 * G)

@@ -26,8 +26,8 @@ def mcmanus_pacoima(mcmanus):
 @pytest.mark.parametrize(
     ("preset", "numbers"),
     [
-        ("evison", dict(p_l="2.9151", alpha_cg="0.35122", beta="0.90954", f_u="36.574", u_cr="0.000752467")),
-        ("mcmanus", dict(p_l="2.24234", alpha_cg="0.22868", beta="0.94309", f_u="20.959", u_cr="0.002313480")),
+        ("evison", dict(p_l="2.9151", alpha_cg="0.35122", chi="0.90954", f_u="36.574", u_cr="0.000752467")),
+        ("mcmanus", dict(p_l="2.24234", alpha_cg="0.22868", chi="0.94309", f_u="20.959", u_cr="0.002313480")),
     ],
 )
 def test_derived_quantities(preset, numbers, request):
@@ -87,5 +87,5 @@ def test_pacoima_fixed_base(mcmanus):
 def test_demand_of_rocking(mcmanus):
     """Second term of Eq 22 with C = 2, in g."""
     with mcmanus.start() as instance:
-        beta, alpha_cg = instance.get("beta", "alpha_cg")
-    assert f"{3 * beta * np.tan(alpha_cg):.4f}" == "0.6585"
+        chi, alpha_cg = instance.get("chi", "alpha_cg")
+    assert f"{3 * chi * np.tan(alpha_cg):.4f}" == "0.6585"

@@ -11,8 +11,8 @@ from reference import EVISON, MCMANUS
 
 def test_derived_quantities():
     for p, numbers in [
-        (EVISON, dict(J_P=152.488, p_l=2.9151, alpha_cg=0.35122, beta=0.90954, f_u=36.574, u_cr=0.752467e-3)),
-        (MCMANUS, dict(J_P=467.046, p_l=2.24234, alpha_cg=0.22868, beta=0.94309, f_u=20.959, u_cr=2.313480e-3)),
+        (EVISON, dict(J_P=152.488, p_l=2.9151, alpha_cg=0.35122, chi=0.90954, f_u=36.574, u_cr=0.752467e-3)),
+        (MCMANUS, dict(J_P=467.046, p_l=2.24234, alpha_cg=0.22868, chi=0.94309, f_u=20.959, u_cr=2.313480e-3)),
     ]:
         for name, number in numbers.items():
             assert getattr(p, name) == pytest.approx(number, rel=2e-5), name

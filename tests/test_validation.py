@@ -26,11 +26,11 @@ NUMBERS = [
     (derived_quantities, "Evison, Table 1: J_P", "152.5", "152.49"),
     (derived_quantities, "Evison, Table 1: p_l", "2.92", "2.9151"),
     (derived_quantities, "Evison, Table 1: α_cg", "0.35", "0.3512"),
-    (derived_quantities, "Evison, Table 1: β", "0.92", "0.9095"),
+    (derived_quantities, "Evison, Table 1: χ", "0.92", "0.9095"),
     (derived_quantities, "McManus, Table 2: J_P", "467", "467.05"),
     (derived_quantities, "McManus, Table 2: p_l", "2.24", "2.2423"),
     (derived_quantities, "McManus, Table 2: α_cg", "0.23", "0.2287"),
-    (derived_quantities, "McManus, Table 2: β", "0.94", "0.9431"),
+    (derived_quantities, "McManus, Table 2: χ", "0.94", "0.9431"),
     (free_vibration, "peak a_t of the first three", "0.85", "0.921"),
     (modal_components, "step of the rocking mode", "0.34", "0.3333"),
     (modal_components, "vibration frequency while rocking", "39", "36.57"),
@@ -44,7 +44,7 @@ NUMBERS = [
     (isolation, "Pacoima Dam: peak a_t on a fixed base", "2.1", "2.098"),
     (isolation, "Pacoima Dam: peak a_t, rocking, measured", "0.55", "0.538"),
     (isolation, "Pacoima Dam: Eq 22, first term", "0.10", "0.141"),
-    (isolation, "Pacoima Dam: (1−β) PGA", "0.10", "0.101"),
+    (isolation, "Pacoima Dam: (1−χ) PGA", "0.10", "0.101"),
     (isolation, "Eq 22, second term", "0.66", "0.6585"),
     (isolation, "Pacoima Dam: Eq 22, C = 2", "0.76", "0.800"),
     (isolation, "Bucharest stand-in: peak a_t on a fixed base", "1.1", "1.100"),
@@ -133,8 +133,8 @@ def test_a_case_is_what_the_reference_integration_and_the_formulas_give(few):
     response = reference.integrate(p, np.arange(len(record.a_g)) * record.dt, record.a_g, per_sample=16)
     assert case.peak == pytest.approx(np.max(np.abs(response.a_t)) / G, rel=3e-3)
     assert case.transitions == len(response.transitions)
-    assert case.step == pytest.approx(p.beta * p.tan_alpha, rel=1e-12)
-    assert case.amplitude == pytest.approx(np.max(np.abs(response.delta_t)) / (p.H * p.tan_alpha), rel=3e-3)
+    assert case.step == pytest.approx(p.chi * p.tan_alpha_cg, rel=1e-12)
+    assert case.amplitude == pytest.approx(np.max(np.abs(response.delta_t)) / (p.H * p.tan_alpha_cg), rel=3e-3)
     assert case.pga == pytest.approx(np.max(np.abs(record.a_g)) / G, rel=1e-12)
 
 

@@ -52,10 +52,10 @@ def propagator(p, rocking: bool, h: float) -> np.ndarray:
     rates = np.zeros((6, 6))
     rates[0, 1] = rates[2, 3] = rates[4, 5] = 1.0
     if rocking:
-        forces = [[-p.omega**2, -p.c_u / p.m, p.g, 0, 1, 0], [p.g, 0, p.g * p.H, 0, p.H, 0]]
+        forces = [[-p.omega_fc**2, -p.c_u / p.m, p.g, 0, 1, 0], [p.g, 0, p.g * p.H, 0, p.H, 0]]
         rates[[1, 3]] = np.linalg.solve([[1, p.H], [p.H, p.J_P / p.m]], forces)
     else:
-        rates[1] = [-p.omega**2, -2 * p.zeta_fc * p.omega, 0, 0, 1, 0]
+        rates[1] = [-p.omega_fc**2, -2 * p.zeta_fc * p.omega_fc, 0, 0, 1, 0]
     return expm(rates * h)[:4]
 
 

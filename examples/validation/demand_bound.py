@@ -51,8 +51,8 @@ def rows(results: Results) -> list[Row]:
             f"the largest is {largest:.2f} of it"),
         Row("cases within the second term alone", None, bounded(cases, lambda case: 3 * case.step), ".1f", "%",
             "“may be sufficient”, says the paper"),
-        Row("cases within Eq 22 with the paper's own first term, (1−β) PGA", None,
-            bounded(cases, lambda case: case.one_minus_beta * case.pga + 3 * case.step), ".1f", "%", "see section 6"),
+        Row("cases within Eq 22 with the paper's own first term, (1−χ) PGA", None,
+            bounded(cases, lambda case: case.one_minus_chi * case.pga + 3 * case.step), ".1f", "%", "see section 6"),
         Row(f"cases within Eq 22 with C = 2 exp(−π ζ_u/√(1−ζ_u²)), ζ_u ≥ {100 * SMALL_DAMPING:g} %", None,
             bounded(damped, damped_demand), ".1f", "%", "an instant transition, damped to the first swing"),
         Row("peak a_t over Eq 22, median", None, np.median(ratios), ".2f", "", "how conservative it is"),
@@ -167,7 +167,7 @@ half cycle before that of the peak leaves. Bottom: frequency of half cycles agai
 structure. A lightly damped vibration mode is not quiet at the next impact: in the cases beyond Eq 22 the half cycle
 before that of the peak leaves {100 * np.median([case.left_over for case in beyond]):.0f} % of its vibration
 (median), which the next impact adds to. So Eq 22 is exceeded
-where ζ_u = ζ_fc c_ratio/√(1−β) is small and the half cycles are short, and C is not bounded by 2 there. Of the
+where ζ_u = ζ_fc c_ratio/√(1−χ) is small and the half cycles are short, and C is not bounded by 2 there. Of the
 {len(damped)} cases with ζ_u ≥ {100 * SMALL_DAMPING:g} %, {damped_beyond} exceed it. All this is about the model, with
 its instant transition; C was smaller in the test (section 4).""",
                   f"""**Where it is conservative.** Half of the cases stay below {median:.2f} of it. The lower edge,

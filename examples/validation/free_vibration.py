@@ -37,8 +37,8 @@ class Release:
 
     @property
     def step(self) -> float:
-        """The rocking mode's acceleration at small rotation, β tan α_cg, g (Eq 13)."""
-        return self.derived["beta"] * self.tangent
+        """The rocking mode's acceleration at small rotation, χ tan α_cg, g (Eq 13)."""
+        return self.derived["chi"] * self.tangent
 
     def peak(self, name: str, cycle: int) -> float:
         """Largest magnitude of an output within a half cycle after the first crossing (0, 1, ...)."""
@@ -81,7 +81,7 @@ def rows(of: Release) -> list[Row]:
         Row("peak a_t of the whole decay", None, np.max(np.abs(of.response["a_t"])) / G, ".3f", "g",
             "later impacts meet vibrations that have not died out"),
         Row("peak a_t before the first impact", None, np.max(np.abs(of.before_impact("a_t"))) / G, ".3f", "g",
-            f"β tan α_cg is {of.step:.3f} g: no vibrations before the first impact, as the paper observes"),
+            f"χ tan α_cg is {of.step:.3f} g: no vibrations before the first impact, as the paper observes"),
         Row("uplift at release", None, 1e3 * of.response["uplift"][0], ".1f", "mm", "Eq 25"),
     ]
 

@@ -52,8 +52,8 @@ def pacoima(project: Project) -> Test:
 
 def stand_in(project: Project) -> tuple[Test, float]:
     """A pulse with the peak and the fixed-base response that the text gives for Bucharest, and its period (s)."""
-    beta = project.calculated("mcmanus")["beta"]
-    peak = FIRST_TERM_BUCHAREST / (1 - beta) * G
+    chi = project.calculated("mcmanus")["chi"]
+    peak = FIRST_TERM_BUCHAREST / (1 - chi) * G
 
     def excess(T_p: float) -> float:
         return _estimate(project, *single_pulse(T_p, peak))["S_a(T_fc, zeta_fc)"] - FIXED_BASE_BUCHAREST * G
@@ -78,8 +78,8 @@ def _test(project: Project, time: np.ndarray, a_g: np.ndarray, per_sample: int) 
 def rows(dam: Test, pulse: Test) -> list[Row]:
     """What the text says of both tests; of Bucharest only what does not define the stand-in."""
     e, p = dam.estimate, pulse.estimate
-    beta_of_ground = e["(1-beta) S_a"] / e["S_a(T_u, zeta_u)"]
-    second = (e["beta g tan"] + e["C beta g tan"]) / G
+    chi_of_ground = e["(1-chi) S_a"] / e["S_a(T_u, zeta_u)"]
+    second = (e["chi g tan"] + e["C chi g tan"]) / G
     return [
         Row("Pacoima Dam: peak a_t on a fixed base", "2.1", dam.fixed_peak, ".3f", "g", "Eq 1"),
         Row("Pacoima Dam: the same by the spectrum, S_a(T_fc, ζ_fc) (Eq 4)", "2.1", e["S_a(T_fc, zeta_fc)"] / G, ".3f",
@@ -87,18 +87,18 @@ def rows(dam: Test, pulse: Test) -> list[Row]:
         Row("Pacoima Dam: peak a_t, rocking", "0.5", dam.peak("a_t") / G, ".3f", "g", "“limited to 0.5 g”"),
         Row("Pacoima Dam: peak a_t, rocking, measured", "0.55", dam.peak("a_t") / G, ".3f", "g", "“around 0.55 g”"),
         Row("Pacoima Dam: peak uplift", None, 1e3 * dam.peak("uplift"), ".2f", "mm"),
-        Row("Pacoima Dam: Eq 22, first term (1−β) S_a(T_u, ζ_u)", "0.10", e["(1-beta) S_a"] / G, ".3f", "g",
-            f"the printed value is (1−β) PGA; S_a(T_u, ζ_u) is {e['S_a(T_u, zeta_u)'] / G:.2f} g"),
-        Row("Pacoima Dam: (1−β) PGA", "0.10", beta_of_ground * dam.pga, ".3f", "g", "what the printed value is"),
+        Row("Pacoima Dam: Eq 22, first term (1−χ) S_a(T_u, ζ_u)", "0.10", e["(1-chi) S_a"] / G, ".3f", "g",
+            f"the printed value is (1−χ) PGA; S_a(T_u, ζ_u) is {e['S_a(T_u, zeta_u)'] / G:.2f} g"),
+        Row("Pacoima Dam: (1−χ) PGA", "0.10", chi_of_ground * dam.pga, ".3f", "g", "what the printed value is"),
         Row("Eq 22, second term, C = 2", "0.66", second, ".4f", "g"),
         Row("Pacoima Dam: Eq 22, C = 2", "0.76", e["a_t"] / G, ".3f", "g",
-            f"{beta_of_ground * dam.pga + second:.2f} g with the printed first term"),
+            f"{chi_of_ground * dam.pga + second:.2f} g with the printed first term"),
         Row("Bucharest stand-in: peak a_t on a fixed base", "1.1", pulse.fixed_peak, ".3f", "g",
             "put in, not reproduced: the stand-in is fitted to it"),
         Row("Bucharest stand-in: peak a_t, rocking", "0.5", pulse.peak("a_t") / G, ".3f", "g", "stand-in"),
         Row("Bucharest stand-in: peak a_t, rocking, measured", "0.55", pulse.peak("a_t") / G, ".3f", "g", "stand-in"),
-        Row("Bucharest stand-in: Eq 22, first term (1−β) S_a(T_u, ζ_u)", "0.02", p["(1-beta) S_a"] / G, ".3f", "g",
-            "stand-in; (1−β) PGA is 0.02 g by its definition"),
+        Row("Bucharest stand-in: Eq 22, first term (1−χ) S_a(T_u, ζ_u)", "0.02", p["(1-chi) S_a"] / G, ".3f", "g",
+            "stand-in; (1−χ) PGA is 0.02 g by its definition"),
         Row("Bucharest stand-in: Eq 22, C = 2", "0.68", p["a_t"] / G, ".3f", "g", "stand-in"),
     ]
 
@@ -136,7 +136,7 @@ def section(project: Project, folder: Path) -> Section:
     """The section with its figure."""
     dam = pacoima(project)
     pulse, T_p = stand_in(project)
-    evison, mcmanus_step = release(project), dam.estimate["beta g tan"] / G
+    evison, mcmanus_step = release(project), dam.estimate["chi g tan"] / G
     draw(dam, pulse, folder / "isolation.png")
     return Section(
         title="Isolation on the shake table (Fig 9)",
@@ -145,8 +145,8 @@ def section(project: Project, folder: Path) -> Section:
 
 The Bucharest record of 1977 is not to be had openly. In its place stands **a pulse of the same kind, not the
 record**: a Mavroeidis-Papageorgiou velocity pulse of one cycle (γ = 1, ν = 0), with the two values that the text
-gives: a peak ground acceleration of {FIRST_TERM_BUCHAREST:g} g/(1−β) = {pulse.pga:.2f} g (its first term of Eq 22,
-which is (1−β) PGA, see below), and a fixed-base response of {FIXED_BASE_BUCHAREST:g} g, which fixes its period at
+gives: a peak ground acceleration of {FIRST_TERM_BUCHAREST:g} g/(1−χ) = {pulse.pga:.2f} g (its first term of Eq 22,
+which is (1−χ) PGA, see below), and a fixed-base response of {FIXED_BASE_BUCHAREST:g} g, which fixes its period at
 {T_p:.3f} s. What follows from these two is compared; the fixed-base 1.1 g itself cannot be reproduced, only put in.""",
         rows=rows(dam, pulse),
         figure="isolation.png",
@@ -157,8 +157,8 @@ Eq 22. The paper puts Evison's larger acceleration, 0.85 g to 0.55 g measured, a
 the second terms of Eq 22 are in the ratio {evison.step / mcmanus_step:.2f}, the computed peaks in the ratio
 {evison.first_peak / dam.peak('a_t') * G:.2f}.""",
                   f"""The first term of Eq 22 is where the paper's number does not follow from its equation. 0.10 g
-is (1−β) × {dam.pga:.2f} g, the peak ground acceleration, as if the vibration mode were rigid; 0.02 g for Bucharest
+is (1−χ) × {dam.pga:.2f} g, the peak ground acceleration, as if the vibration mode were rigid; 0.02 g for Bucharest
 fits the same reading. S_a at T_u = {dam.estimate['T_u']:.4f} s and ζ_u = {100 * dam.estimate['zeta_u']:.0f} % is
-{dam.estimate['S_a(T_u, zeta_u)'] / G:.2f} g, and the term {dam.estimate['(1-beta) S_a'] / G:.2f} g. The conclusion
+{dam.estimate['S_a(T_u, zeta_u)'] / G:.2f} g, and the term {dam.estimate['(1-chi) S_a'] / G:.2f} g. The conclusion
 stands: it is the smaller term by far."""],
     )

@@ -74,12 +74,12 @@ def rows(of: Release, c: Components) -> list[Row]:
     """What the text says of Fig 6."""
     second_cycle = of.peak("a_t", 0) / G
     return [
-        Row("step of the rocking mode, β tan α_cg (Eq 13)", "0.34", of.step, ".4f", "g",
-            "0.337 with the printed β = 0.92 (section 2)"),
+        Row("step of the rocking mode, χ tan α_cg (Eq 13)", "0.34", of.step, ".4f", "g",
+            "0.337 with the printed χ = 0.92 (section 2)"),
         Row("mean of the rocking mode's a_r over the half cycle (Eq 12)", None, np.mean(np.abs(c.a_r)) / G, ".3f", "g",
             f"from {np.min(np.abs(c.a_r)) / G:.3f} to {np.max(np.abs(c.a_r)) / G:.3f} g: “near-constant”"),
-        Row("vibration frequency while rocking, f_fc/√(1−β) (Eq 18)", "39", of.derived["f_u"], ".2f", "Hz",
-            "38.9 with the printed β = 0.92; measured 35"),
+        Row("vibration frequency while rocking, f_fc/√(1−χ) (Eq 18)", "39", of.derived["f_u"], ".2f", "Hz",
+            "38.9 with the printed χ = 0.92; measured 35"),
         Row("frequency in the spectrum of a_t", "35", dominant_frequency(c.time, c.a_t), ".1f", "Hz",
             "measured; a half cycle of 0.32 s resolves 3 Hz"),
         Row("frequency of the uplift's oscillation, by empirical mode decomposition", "35",
@@ -87,10 +87,10 @@ def rows(of: Release, c: Components) -> list[Row]:
         Row("vibration frequency in full contact", "11", c.f_full_contact, ".2f", "Hz", "measured; set in the model"),
         Row("peak acceleration of the vibration after the first impact, a_t less the step", "0.48",
             second_cycle - of.step, ".3f", "g", "measured; the transition takes time in the test, none in the model"),
-        Row("C from the first vibration cycle after the impact, a_t/(β tan α_cg) − 1", "1.4",
+        Row("C from the first vibration cycle after the impact, a_t/(χ tan α_cg) − 1", "1.4",
             second_cycle / of.step - 1, ".2f", "",
             "measured; half a vibration cycle at ζ_u = 5 % leaves 2 exp(−π ζ_u) = 1.71 of 2"),
-        Row("C at the instant of the impact, a_u/(β tan α_cg)", "2", abs(c.a_u[0]) / G / of.step, ".2f", "",
+        Row("C at the instant of the impact, a_u/(χ tan α_cg)", "2", abs(c.a_u[0]) / G / of.step, ".2f", "",
             "an instant transition (Eq 21)"),
     ]
 
@@ -113,7 +113,7 @@ def draw(of: Release, c: Components, path: Path) -> None:
     shown = of.response[of.response["time"] <= c.time[-1]]
     acceleration.plot(shown["time"], shown["a_t"] / G, color=figures.ROCKING, label=r"$a_t$")
     step = np.where(shown["theta"] > 0, -of.step, of.step)
-    acceleration.plot(shown["time"], step, color=figures.SMOOTH, label=r"rocking mode, $\beta\,\tan\alpha_{cg}$")
+    acceleration.plot(shown["time"], step, color=figures.SMOOTH, label=r"rocking mode, $\chi\,\tan\alpha_{cg}$")
     acceleration.set(ylabel=r"acceleration (g)", title="release to second impact")
     acceleration.legend(loc="lower right")
     vibration.plot(c.time, c.a_u / G, color=figures.SMOOTH, label=r"vibration mode, $a_u$")
@@ -145,7 +145,7 @@ second impact with the rocking mode's step, and the vibration mode's part after 
 oscillation, whose correlation with the model's vibration mode over the middle half of the half cycle is
 {likeness:.3f}; at the ends the decomposition has no neighbours to lean on. Both oscillate at f_u,
 {of.derived['f_u']:.1f} Hz, not at the 11 Hz of full contact. Of the three frequencies, the measured 35 Hz lies
-nearer to the model's than to the printed 39 Hz, which follows from the printed β = 0.92.""",
+nearer to the model's than to the printed 39 Hz, which follows from the printed χ = 0.92.""",
                   f"""C is where model and test part. In the model the weight changes sides at once, C = 2, and
 damping takes it to 1.7 by the first peak; the test had 1.4. The paper concludes that the transition in the test was
 gradual. In the model the same peak would need ζ_u = {100 * zeta_for_1_4:.0f} % instead of {100 * zeta_u:.0f} %,

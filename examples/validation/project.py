@@ -48,7 +48,7 @@ class Project:
     @cache
     def calculated(self, preset: str) -> dict[str, float]:
         """The calculated parameters of a specimen, from its FMU."""
-        names = ["alpha_cg", "p_l", "beta", "u_cr", "f_u"]
+        names = ["alpha_cg", "p_l", "chi", "u_cr", "f_u"]
         result = fmpy.simulate_fmu(str(self.fmu(preset)), stop_time=1e-3, output=names)
         return {name: float(result[name][0]) for name in names}
 

@@ -115,6 +115,6 @@ down to vibration in full contact. As in the paper, f_t is the inverse of twice 
         figure="rocking_frequency.png",
         caption="Effective frequency of each half cycle over its largest displacement, with Eq 14 and f_fc (Fig 7).",
         findings=["""Eq 14 does better than the paper asks of it: from a few u_cr to near overturning it is the
-frequency of the full nonlinear model, because δ_t/H is the rotation of the rocking mode to within (1−β) u/H. It
+frequency of the full nonlinear model, because δ_t/H is the rotation of the rocking mode to within (1−χ) u/H. It
 fails where the paper says, below u_cr, where the frequency is that of full contact, f_fc."""],
     )

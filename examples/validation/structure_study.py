@@ -49,9 +49,9 @@ class Case:
     record: str
     peak: float  # a_t, g
     ground: float  # first term of Eq 22, g
-    step: float  # beta tan alpha_cg, g
+    step: float  # chi tan alpha_cg, g
     pga: float  # g
-    one_minus_beta: float
+    one_minus_chi: float
     zeta_u: float
     transitions: int
     overturned: bool
@@ -139,14 +139,14 @@ class Study:
             if before_peak >= 0:
                 damping = derived["zeta_u"] * 2 * np.pi * derived["f_u"]
                 left_over = np.exp(-damping / (2 * cycles.frequency[before_peak]))
-        return Case(structure, record.name, history.peak_acceleration / G, estimate["(1-beta) S_a"] / G,
-                    estimate["beta g tan"] / G, estimate["PGA"] / G, 1 - derived["beta"], derived["zeta_u"],
+        return Case(structure, record.name, history.peak_acceleration / G, estimate["(1-chi) S_a"] / G,
+                    estimate["chi g tan"] / G, estimate["PGA"] / G, 1 - derived["chi"], derived["zeta_u"],
                     history.transitions, history.overturned, amplitude, left_over, ratio)
 
     def _release(self, structure: Structure, named, derived: dict[str, float]) -> tuple[float, float]:
         """Of the first half cycle after a release at rest: frequency over Eq 14, amplitude over H tan alpha_cg."""
         tangent = np.tan(derived["alpha_cg"])
-        quiet = derived["beta"] * derived["u_cr"]
+        quiet = derived["chi"] * derived["u_cr"]
         start = structure.parameters | {"theta_0": structure.release * tangent, "u_0": quiet}
         dt = min(1 / derived["f_u"] / STEPS_PER_VIBRATION, 1 / self._eq_14(named, structure.release) / 400)
         duration = 1.2 / self._eq_14(named, structure.release)

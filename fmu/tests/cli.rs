@@ -39,7 +39,7 @@ fn describe_shows_the_specimen_with_units_and_equations() {
         "  u_cr         0.00231348 m      after Eq 4    critical displacement: uplift",
         "  J_P             467.046 kg.m2  after Eq 8    inertia about a pivot",
         "  p_l             2.24234 rad/s  before Eq 11  frequency parameter",
-        "  beta           0.943090 -      after Eq 13   modal participation of rocking",
+        "  chi            0.943090 -      after Eq 13   modal participation of rocking",
     ] {
         assert!(mcmanus.lines().any(|found| found == line), "{line}\n{mcmanus}");
     }

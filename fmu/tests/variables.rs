@@ -28,7 +28,7 @@ fn the_table_holds_the_variables_in_their_order() {
         names(Causality::Parameter),
         "m m0 H B J0 f_fc zeta_fc c_ratio r g detail theta_0 theta_dot_0 u_0 u_dot_0"
     );
-    assert_eq!(names(Causality::CalculatedParameter), "alpha_cg p_l beta u_cr f_u");
+    assert_eq!(names(Causality::CalculatedParameter), "alpha_cg p_l chi u_cr f_u");
     assert_eq!(VARIABLES.iter().map(|variable| variable.name).collect::<BTreeSet<_>>().len(), VARIABLES.len());
 }
 
@@ -129,7 +129,7 @@ fn the_stated_dependencies_are_the_true_ones() {
 #[test]
 fn values_during_initialization_follow_what_is_set() {
     let host = Host::initializing(&[]);
-    let calculated = ["alpha_cg", "p_l", "beta", "u_cr", "f_u"];
+    let calculated = ["alpha_cg", "p_l", "chi", "u_cr", "f_u"];
     for (value, expected) in
         host.try_get(&calculated).unwrap().into_iter().zip([0.35122, 2.9151, 0.90954, 0.752467e-3, 36.574])
     {
@@ -172,7 +172,7 @@ fn a_value_out_of_range_is_refused_with_all_that_come_with_it() {
         ),
         ("theta", 0.1, "theta cannot be set: it is an output, computed by the FMU"),
         ("phase", 1.0, "phase cannot be set: it is an output, computed by the FMU"),
-        ("beta", 0.9, "beta cannot be set: it is a calculated parameter, computed by the FMU"),
+        ("chi", 0.9, "chi cannot be set: it is a calculated parameter, computed by the FMU"),
     ] {
         let message = format!("fmi2SetReal: {message}");
         host.assert_refused(|| host.set(&[("H", 2.0), ("a_g", 1.0), ("u_0", 1e-3), (name, value)]), ERROR, &message);

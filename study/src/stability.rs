@@ -51,7 +51,7 @@ impl Cell {
 /// Modal participations and damping ratios of the map: centres of its cells.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid {
-    /// Cells over β from 0 to [`MOST_BETA`].
+    /// Cells over χ from 0 to [`MOST_CHI`].
     pub columns: usize,
     /// Cells over ζ_fc from 0 to [`MOST_ZETA`].
     pub rows: usize,
@@ -61,7 +61,7 @@ pub struct Grid {
 pub const FULL: Grid = Grid { columns: 49, rows: 20 };
 
 /// Right edge of the map.
-pub const MOST_BETA: f64 = 0.98;
+pub const MOST_CHI: f64 = 0.98;
 
 /// Upper edge of the map.
 pub const MOST_ZETA: f64 = 0.2;
@@ -70,7 +70,7 @@ impl Grid {
     fn vibrations(self) -> impl ParallelIterator<Item = Vibration> {
         let centre = |k: usize, number: usize, most: f64| (k as f64 + 0.5) / number as f64 * most;
         (0..self.columns * self.rows).into_par_iter().map(move |k| Vibration {
-            beta: centre(k % self.columns, self.columns, MOST_BETA),
+            chi: centre(k % self.columns, self.columns, MOST_CHI),
             zeta_fc: centre(k / self.columns, self.rows, MOST_ZETA),
         })
     }
@@ -81,7 +81,7 @@ pub fn map(grid: Grid, progress: &ProgressBar) -> Vec<Cell> {
     progress.inc_length(TEXTBOOK.len() as u64);
     let of_method = |method: usize| {
         progress.set_message(TEXTBOOK[method].name);
-        let undamped = [0.0, 0.5, 0.9].map(|beta| Vibration { beta, zeta_fc: 0.0 });
+        let undamped = [0.0, 0.5, 0.9].map(|chi| Vibration { chi, zeta_fc: 0.0 });
         let vibrations: Vec<_> = grid.vibrations().chain(undamped).collect();
         let cells: Vec<_> = vibrations.into_par_iter().map(|vibration| Cell::measure(method, vibration)).collect();
         progress.inc(1);
@@ -128,8 +128,8 @@ const SPECIMENS: [(&str, Parameters); 3] = [
 /// The largest stable step (s) of a method on a structure, with both pivots down and while rocking.
 fn steps(method: usize, parameters: Parameters) -> Result<[Limit; 2]> {
     let structure = Structure::new(parameters)?;
-    let down = measure(TEXTBOOK[method].method, &Vibration { beta: 0.0, zeta_fc: parameters.zeta_fc });
-    let up = measure(TEXTBOOK[method].method, &Vibration { beta: structure.beta, zeta_fc: parameters.zeta_fc });
+    let down = measure(TEXTBOOK[method].method, &Vibration { chi: 0.0, zeta_fc: parameters.zeta_fc });
+    let up = measure(TEXTBOOK[method].method, &Vibration { chi: structure.chi, zeta_fc: parameters.zeta_fc });
     let in_seconds = |limit, omega: f64| if let Limit::At(limit) = limit { Limit::At(limit / omega) } else { limit };
     Ok([in_seconds(down, structure.omega_fc), in_seconds(up, structure.omega_u)])
 }

@@ -40,8 +40,8 @@ pub fn growth() -> f64 {
 /// Two releases on either side of the angle that balances.
 pub fn show() -> Result<Exhibit> {
     let structure = structure(Parameters::MCMANUS);
-    let alpha = structure.tan_alpha_cg.atan();
-    let (mut low, mut high) = (0.5 * alpha, 1.5 * alpha);
+    let alpha_cg = structure.tan_alpha_cg.atan();
+    let (mut low, mut high) = (0.5 * alpha_cg, 1.5 * alpha_cg);
     loop {
         let middle = 0.5 * (low + high);
         if middle <= low || middle >= high {
@@ -62,10 +62,10 @@ pub fn show() -> Result<Exhibit> {
         Axis::linear("time, s", 0.0, DURATION),
         Axis::linear("θ, rad", -0.5, 1.6),
     )
-    .with("unstable equilibrium", [(0.0, alpha), (DURATION, alpha)], balance)
+    .with("unstable equilibrium", [(0.0, alpha_cg), (DURATION, alpha_cg)], balance)
     .with("overturns", outside.iter().copied(), WRONG)
     .with("falls back", inside.iter().copied(), RIGHT)
-    .note((0.0, alpha + 0.09), "α_cg", colour::GREY);
+    .note((0.0, alpha_cg + 0.09), "α_cg", colour::GREY);
     let growth = Panel::new(
         "their difference",
         Axis::linear("time, s", 0.0, DURATION),

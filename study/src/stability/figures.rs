@@ -1,7 +1,7 @@
 //! The maps as pictures and as numbers.
 
 use super::limits::{Limit, THEORY};
-use super::{Cell, Grid, MOST_BETA, MOST_ZETA};
+use super::{Cell, Grid, MOST_CHI, MOST_ZETA};
 use crate::chart::{Area, Axis, Entry, Figure, Marker, Panel, Style, colour};
 use crate::fixed_step::TEXTBOOK;
 use anyhow::Result;
@@ -78,19 +78,19 @@ fn against_theory(cells: &[Cell]) -> Figure {
     }
 }
 
-/// The largest stable step in fixed-base periods over β and ζ_fc, for each method that has one.
+/// The largest stable step in fixed-base periods over χ and ζ_fc, for each method that has one.
 fn maps(cells: &[Cell], grid: Grid) -> Figure {
-    let (width, height) = (MOST_BETA / grid.columns as f64, MOST_ZETA / grid.rows as f64);
+    let (width, height) = (MOST_CHI / grid.columns as f64, MOST_ZETA / grid.rows as f64);
     let panels = LIMITED.map(|(method, _)| {
         // The first map is dark where the specimens are.
         let ink = if method == LIMITED[0].0 { colour::WHITE } else { colour::BLACK };
         let specimen = Style::marked(ink, 0, Marker::Circle);
-        let x = Axis::linear("modal participation β (0: both pivots down)", 0.0, MOST_BETA);
+        let x = Axis::linear("modal participation χ (0: both pivots down)", 0.0, MOST_CHI);
         let y = Axis::linear("damping ratio in full contact, ζ_fc", 0.0, MOST_ZETA);
         let mut panel = Panel::new(TEXTBOOK[method].name, x, y);
         for cell in cells.iter().filter(|cell| cell.method == method && cell.vibration.zeta_fc > 0.0) {
-            let (beta, zeta) = (cell.vibration.beta, cell.vibration.zeta_fc);
-            let (left, right) = (beta - OVERLAP * width, (beta + OVERLAP * width).min(MOST_BETA));
+            let (chi, zeta) = (cell.vibration.chi, cell.vibration.zeta_fc);
+            let (left, right) = (chi - OVERLAP * width, (chi + OVERLAP * width).min(MOST_CHI));
             let y = (zeta - OVERLAP * height, (zeta + OVERLAP * height).min(MOST_ZETA));
             let colour = class(periods(cell));
             match panel.areas.last_mut() {
@@ -100,9 +100,9 @@ fn maps(cells: &[Cell], grid: Grid) -> Figure {
             }
         }
         for (name, parameters) in [("Evison", Parameters::EVISON), ("McManus", Parameters::MCMANUS)] {
-            let beta = Structure::new(parameters).expect("the specimens are in range").beta;
-            panel = panel.with(name, [(beta, parameters.zeta_fc)], specimen).label(
-                (beta, parameters.zeta_fc + if name == "Evison" { -0.006 } else { 0.009 }),
+            let chi = Structure::new(parameters).expect("the specimens are in range").chi;
+            panel = panel.with(name, [(chi, parameters.zeta_fc)], specimen).label(
+                (chi, parameters.zeta_fc + if name == "Evison" { -0.006 } else { 0.009 }),
                 name,
                 ink,
             );
@@ -128,7 +128,7 @@ fn maps(cells: &[Cell], grid: Grid) -> Figure {
 /// The measured limit in periods 2π/ω_fc.
 fn periods(cell: &Cell) -> f64 {
     let limit = if let Limit::At(limit) = cell.measured { limit } else { 0.0 };
-    limit * (1.0 - cell.vibration.beta).sqrt() / TAU
+    limit * (1.0 - cell.vibration.chi).sqrt() / TAU
 }
 
 fn class(periods: f64) -> RGBColor {
@@ -138,7 +138,7 @@ fn class(periods: f64) -> RGBColor {
 
 fn save_numbers(cells: &[Cell], path: &Path) -> Result<()> {
     let mut csv = csv::Writer::from_path(path)?;
-    csv.write_record(["method", "beta", "zeta_fc", "zeta_u", "measured_omega_u_h", "theory_omega_u_h"])?;
+    csv.write_record(["method", "chi", "zeta_fc", "zeta_u", "measured_omega_u_h", "theory_omega_u_h"])?;
     for Cell { method, vibration, measured, theory } in cells {
         let measured = match measured {
             Limit::Never => "0".into(),
@@ -147,7 +147,7 @@ fn save_numbers(cells: &[Cell], path: &Path) -> Result<()> {
         };
         csv.write_record([
             TEXTBOOK[*method].name.into(),
-            format!("{:.4}", vibration.beta),
+            format!("{:.4}", vibration.chi),
             format!("{:.5}", vibration.zeta_fc),
             format!("{:.5}", vibration.zeta_u()),
             measured,

@@ -85,10 +85,9 @@ pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
 
 /// The ground motion, and what it asks of the structure on a fixed base.
 fn on_fixed_base(structure: &Structure, record: &Record) -> Vec<Line> {
-    let peak = record.acceleration().iter().fold(0.0, |peak: f64, a_g| peak.max(a_g.abs()));
     let S_a = spectral_acceleration(record, TAU / structure.omega_fc, structure.parameters().zeta_fc);
     vec![
-        Line::new("PGA", peak, "m/s2", "", "peak ground acceleration"),
+        Line::new("PGA", record.pga(), "m/s2", "", "peak ground acceleration"),
         Line::new("S_a(T_fc, zeta_fc)", S_a, "m/s2", "Eq 4", "lateral acceleration on a fixed base"),
         Line::new("V_fc", structure.parameters().m * S_a, "N", "Eq 4", "base shear on a fixed base"),
     ]

@@ -50,8 +50,7 @@ impl GroundArgs {
 
     /// First and last instant, s.
     pub fn span(&self, ground: &Record) -> (f64, f64) {
-        let (start, record_end) = (ground.times()[0], ground.times()[ground.times().len() - 1]);
-        (start, self.duration.map_or(record_end, |duration| start + duration))
+        (ground.start(), self.duration.map_or(ground.end(), |duration| ground.start() + duration))
     }
 
     /// What stands for the interval of the samples (s) in free vibration, which has none.

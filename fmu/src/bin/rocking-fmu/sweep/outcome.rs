@@ -37,11 +37,10 @@ impl Outcome {
     /// Runs `structure` from rest under `ground`.
     pub fn of(structure: &Structure, ground: &Record) -> Result<Outcome, AdvanceError> {
         let interval = PART_OF_PERIOD * TAU / structure.omega_u;
-        let (start, end) = (ground.times()[0], ground.times()[ground.times().len() - 1]);
-        let mut engine = Engine::new(*structure, State::default(), start, DEFAULT_TOLERANCE)
+        let mut engine = Engine::new(*structure, State::default(), ground.start(), DEFAULT_TOLERANCE)
             .expect("every structure may start at rest in full contact");
         let mut peaks = Peaks::from(*structure, engine.motion());
-        'run: for segment in ground.segments_until(end) {
+        'run: for segment in ground.segments_until(ground.end()) {
             let parts = ((segment.end - segment.start) / interval).ceil().max(1.0);
             for part in 1..=parts as u64 {
                 let until = segment.start + (segment.end - segment.start) * (part as f64 / parts);

@@ -309,7 +309,7 @@ fn motions(
         for path in glob::glob(&in_folder.to_string_lossy()).with_context(|| format!("records {pattern:?}"))? {
             let path = path?;
             let record = read(&path)?;
-            let pga = record.acceleration().iter().fold(0.0, |peak: f64, a_g| peak.max(a_g.abs())) / g;
+            let pga = record.pga() / g;
             ensure!(pga > 0.0, "{}: the ground acceleration is 0 throughout", path.display());
             let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
             motions.push(Motion { name, digest: digest(&(record.times(), record.acceleration())), record, pga });
