@@ -39,13 +39,11 @@ impl Turn {
 pub(crate) fn delta_t(structure: &Structure, phase: Phase, arc: &Arc, turn: &Turn) -> Series {
     let &crate::Parameters { H, B, .. } = structure.parameters();
     let offset = phase.side().sign() * B;
-    let mut delta_t = ZERO;
-    delta_t[0] = offset;
-    for k in 0..=MAX_ORDER {
+    std::array::from_fn(|k| {
         let elastic: f64 = (0..=k.min(arc.order)).map(|i| arc.u[i] * turn.cos[k - i]).sum();
-        delta_t[k] += elastic + H * turn.sin[k] - offset * turn.cos[k];
-    }
-    delta_t
+        let one = if k == 0 { 1.0 } else { 0.0 };
+        offset * (one - turn.cos[k]) + elastic + H * turn.sin[k]
+    })
 }
 
 /// Bound of |δ_t| over `arc`, `theta` and `u` being those of |θ| and |u|: u + Hθ and what is of second order.
@@ -60,13 +58,11 @@ pub(crate) fn a_t(structure: &Structure, phase: Phase, load: LinearLoad, arc: &A
     let &crate::Parameters { m, g, .. } = structure.parameters();
     let damping = damping(structure, phase) / m;
     let (push, push_slope) = (load.value.F_t / m, load.slope.F_t / m * arc.span);
-    let mut a_t = ZERO;
-    for k in 0..=MAX_ORDER {
+    std::array::from_fn(|k| {
         let elastic = if k <= arc.order { damping * arc.u_dot[k] + structure.stiffness * arc.u[k] } else { 0.0 };
         let pushed = push * turn.cos[k] + if k > 0 { push_slope * turn.cos[k - 1] } else { 0.0 };
-        a_t[k] = g * turn.sin[k] - elastic + pushed;
-    }
-    a_t
+        g * turn.sin[k] - elastic + pushed
+    })
 }
 
 /// Bound of |a_t| over `arc`, `theta` being that of |θ|: its linear part and what is of second order.

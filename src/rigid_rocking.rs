@@ -24,7 +24,7 @@ use crate::load::{LinearLoad, Load};
 use crate::output_series::Turn;
 use crate::piece::Bounds;
 use crate::state::InitialStateError;
-use crate::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Series, Start, Truncation, ZERO};
+use crate::taylor::{Arc, LONGEST_SPAN, Series, Start, Truncation, ZERO};
 use crate::transition::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD};
 use crate::uplift::LEAST_EXCESS;
 use crate::{Outputs, Phase, Side, State, Structure};
@@ -190,14 +190,12 @@ impl Level for Rigid {
         let offset = phase.side().sign() * B;
         let (now, slope) = (load.value.a_g, load.slope.a_g * arc.span);
         let theta_dot = |k: usize| if k <= arc.order { arc.theta_dot[k] } else { 0.0 };
-        let mut a_t = ZERO;
-        for k in 0..MAX_ORDER {
+        std::array::from_fn(|k| {
             let theta_ddot = (k + 1) as f64 * theta_dot(k + 1) / arc.span;
             let centripetal: f64 = (0..=k).map(|i| theta_dot(i) * theta_dot(k - i)).sum();
             let ground = now * turn.cos[k] + if k > 0 { slope * turn.cos[k - 1] } else { 0.0 };
-            a_t[k] = H * theta_ddot + offset * centripetal + ground;
-        }
-        a_t
+            H * theta_ddot + offset * centripetal + ground
+        })
     }
 
     fn a_t_bound(&self, structure: &Structure, _phase: Phase, load: LinearLoad, arc: &Arc, _theta: f64) -> f64 {
