@@ -4,6 +4,7 @@
 # make report  regenerate docs/validation.md and its figures
 # make coupling  regenerate docs/coupling.md and its figures (minutes)
 # make bench   criterion benchmark of a whole record
+# make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
 # make fuzz    ten million hostile calls of the C interface, on all cores (CI makes 200,000)
 # make records the ground motion records alone, for the charts: cargo run --release -p study -- precision
 #
@@ -22,7 +23,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test dist report coupling bench fuzz records exporter mingw hosts
+.PHONY: demo test dist report coupling bench licenses fuzz records exporter mingw hosts
 
 demo: .venv/ready out/mcmanus.fmu out/evison.fmu
 	$(PYTHON) examples/first_run.py out/mcmanus.fmu
@@ -40,7 +41,7 @@ test: .venv/ready exporter hosts dist
 dist: exporter mingw
 	mkdir -p out
 	@if $(HAS_MINGW) && rustup target list --installed | grep -q $(WINDOWS); then \
-		cargo build --release --lib --no-default-features --target $(WINDOWS) && \
+		cargo build --release --package flexible-rocking-fmu --target $(WINDOWS) && \
 		$(TARGET)/release/rocking-fmu export -o out/FlexibleRocking.fmu \
 			--windows-library $(TARGET)/$(WINDOWS)/release/FlexibleRocking.dll; \
 	else \
@@ -59,6 +60,9 @@ records: .venv/ready
 
 bench: .venv/ready
 	RECORD="$$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/$(EL_CENTRO)" cargo bench --package rocking
+
+licenses:
+	WRITE_LICENSES=1 cargo test --package fmu-export --test licenses
 
 fuzz:
 	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release --package flexible-rocking-fmu --test hostile_calls -- --nocapture

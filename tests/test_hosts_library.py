@@ -77,7 +77,7 @@ def windows():
     if shutil.which(f"{MINGW}-gcc") is None:
         pytest.skip(f"{MINGW}-gcc is missing")
     cargo_build("--target", WINDOWS, "--manifest-path", HOST)
-    return cargo_build("--target", WINDOWS, "--no-default-features", "--lib") / WINDOWS / "release"
+    return cargo_build("--target", WINDOWS, "--package", "flexible-rocking-fmu") / WINDOWS / "release"
 
 
 def test_linux_library(linux_library):

@@ -1,16 +1,15 @@
-//! What the library and the exporter know of their own build: its name and its licences.
+//! Gives the library the name of its build.
 
 mod build_id;
-mod licenses;
 
+use std::error::Error;
 use std::path::PathBuf;
-use std::{env, error, fs};
 
-fn main() -> Result<(), Box<dyn error::Error>> {
-    let variable = |name| env::var(name).map(PathBuf::from);
-    let workspace = variable("CARGO_MANIFEST_DIR")?.join("..");
+fn main() -> Result<(), Box<dyn Error>> {
+    let workspace = PathBuf::from(std::env::var("CARGO_MANIFEST_DIR")?).join("..");
+    for read in [build_id::SOURCES.as_slice(), &build_id::MANIFESTS, &[build_id::LOCK]].concat() {
+        println!("cargo::rerun-if-changed=../{read}");
+    }
     println!("cargo::rustc-env=FLEXIBLE_ROCKING_BUILD={}", build_id::build_id(&workspace)?);
-    let folder = variable("OUT_DIR")?;
-    fs::write(folder.join("license.txt"), licenses::licenses(&workspace, &folder)?)?;
     Ok(())
 }

@@ -6,8 +6,7 @@ use crate::logger::{Category, Logger, Status};
 use crate::resources;
 use crate::snapshot::{self, Snapshots};
 use crate::state_machine::{Function, Stage};
-use crate::variables::{self, INPUTS, Source, VARIABLES, Variable};
-use model_description::Causality;
+use crate::variables::{self, Causality, INPUTS, Source, VARIABLES, Variable};
 use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE, Motion, Progress, TransitionKind};
 use rocking::impact::gaining_restitution;
 use rocking::{

@@ -18,7 +18,7 @@ pub mod variables;
 use rocking::Parameters;
 use uuid::Uuid;
 
-/// Names the build: the sources that the library and the model description are made from.
+/// Names the build: all that enters the library.
 pub const BUILD: &str = env!("FLEXIBLE_ROCKING_BUILD");
 
 /// The GUID of an FMU of the structure `parameters`: binds the model description, the library and the parameters that

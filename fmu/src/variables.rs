@@ -2,7 +2,6 @@
 //! stands here and nowhere else: the model description is written from this table, and the C functions read and write
 //! through it. A value reference is a position in the table.
 
-use model_description::{Causality, Initial, Variability};
 use rocking::engine::Motion;
 use rocking::parameters::PARAMETERS;
 use rocking::quantity::Quantity;
@@ -22,16 +21,26 @@ pub struct Variable {
     pub data_type: DataType,
     /// Who sets it.
     pub causality: Causality,
-    /// When it may change.
-    pub variability: Variability,
-    /// How its initial value comes about; inputs have none.
-    pub initial: Option<Initial>,
     /// The inputs that its value depends on at any time, the state given, by name: direct feedthrough.
     pub feedthrough: &'static [&'static str],
     /// The parameters and initial values that its value at the start of a simulation depends on as well, by name.
     pub initial_dependencies: &'static [&'static str],
     /// Where its value is.
     pub(crate) source: Source,
+}
+
+/// Who sets a variable. With it goes how its initial value comes about: parameters are given, what the FMU computes is
+/// calculated, inputs have none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Causality {
+    /// The user, before the simulation.
+    Parameter,
+    /// The FMU, from the parameters.
+    CalculatedParameter,
+    /// The host, during the simulation.
+    Input,
+    /// The FMU, for the host.
+    Output,
 }
 
 /// Data type of a variable.
@@ -169,8 +178,6 @@ fn input(quantity: &'static Quantity<Load>) -> Variable {
         description: quantity.description,
         data_type: DataType::Real { unit: quantity.unit, range: Some((quantity.min, quantity.max)) },
         causality: Causality::Input,
-        variability: Variability::Continuous,
-        initial: None,
         feedthrough: &[],
         initial_dependencies: &[],
         source: Source::Input(quantity),
@@ -258,8 +265,6 @@ fn detail_parameter() -> Variable {
         description: DETAILS.description,
         data_type: DataType::Enumeration(&DETAILS),
         causality: Causality::Parameter,
-        variability: Variability::Fixed,
-        initial: Some(Initial::Exact),
         feedthrough: &[],
         initial_dependencies: &[],
         source: Source::Detail,
@@ -289,8 +294,6 @@ fn output(
         description,
         data_type: DataType::Real { unit, range: None },
         causality: Causality::Output,
-        variability: Variability::Continuous,
-        initial: Some(Initial::Calculated),
         feedthrough,
         initial_dependencies,
         source,
@@ -309,8 +312,6 @@ fn discrete(
         description,
         data_type,
         causality: Causality::Output,
-        variability: Variability::Discrete,
-        initial: Some(Initial::Calculated),
         feedthrough: &[],
         initial_dependencies,
         source,
@@ -323,8 +324,6 @@ fn fixed<T>(quantity: &'static Quantity<T>, source: Source) -> Variable {
         description: quantity.description,
         data_type: DataType::Real { unit: quantity.unit, range: Some((quantity.min, quantity.max)) },
         causality: Causality::Parameter,
-        variability: Variability::Fixed,
-        initial: Some(Initial::Exact),
         feedthrough: &[],
         initial_dependencies: &[],
         source,
@@ -339,8 +338,6 @@ fn calculated(name: &'static str, initial_dependencies: &'static [&'static str])
         description: derived.description,
         data_type: DataType::Real { unit: derived.unit, range: None },
         causality: Causality::CalculatedParameter,
-        variability: Variability::Fixed,
-        initial: Some(Initial::Calculated),
         feedthrough: &[],
         initial_dependencies,
         source: Source::Derived(derived),
@@ -348,6 +345,11 @@ fn calculated(name: &'static str, initial_dependencies: &'static [&'static str])
 }
 
 impl Variable {
+    /// Whether it may change at any time, and not at transitions alone.
+    pub fn is_continuous(&self) -> bool {
+        matches!(self.source, Source::Input(_) | Source::Output(_) | Source::Reaction(_))
+    }
+
     /// The start value in an FMU of the structure `parameters`: of the inputs, the parameters and the initial values.
     pub fn start(&self, parameters: &Parameters) -> Option<f64> {
         match self.source {

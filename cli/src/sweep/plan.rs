@@ -10,7 +10,7 @@ use rocking::{
 };
 use serde::Deserialize;
 use std::{collections::BTreeMap, path::Path};
-use xxhash_rust::xxh3::{Xxh3, xxh3_64};
+use uuid::Uuid;
 
 /// The file.
 #[derive(Deserialize)]
@@ -190,9 +190,7 @@ impl Plan {
 
     /// Identifies the inputs of all runs, in their order.
     pub fn digest(&self) -> u64 {
-        let mut hash = Xxh3::new();
-        self.runs().for_each(|run| hash.update(&run.digest().to_le_bytes()));
-        hash.digest()
+        digest(&self.runs().map(|run| run.digest()).collect::<Vec<_>>())
     }
 
     /// Headings of what varies from structure to structure.
@@ -340,5 +338,6 @@ pub fn heading(name: &str, unit: &str) -> String {
 }
 
 fn digest(of: &impl serde::Serialize) -> u64 {
-    xxh3_64(&postcard::to_allocvec(of).expect("numbers and slices can be serialized"))
+    let bytes = postcard::to_allocvec(of).expect("numbers and slices can be serialized");
+    Uuid::new_v5(&Uuid::NAMESPACE_OID, &bytes).as_u64_pair().0
 }

@@ -1,7 +1,7 @@
 //! `modelDescription.xml`, from the table of variables.
 
 use FlexibleRocking::logger;
-use FlexibleRocking::variables::{DETAILS, DataType, Enumeration, PHASES, VARIABLES, Variable};
+use FlexibleRocking::variables::{Causality, DETAILS, DataType, Enumeration, PHASES, VARIABLES, Variable};
 use model_description as fmi;
 use rocking::Parameters;
 use rocking::engine::DEFAULT_TOLERANCE;
@@ -88,9 +88,9 @@ fn scalar_variable(at: u32, variable: &Variable, parameters: &Parameters) -> fmi
         name: variable.name.into(),
         value_reference: at,
         description: variable.description.into(),
-        causality: variable.causality,
-        variability: variable.variability,
-        initial: variable.initial,
+        causality: causality(variable),
+        variability: variability(variable),
+        initial: initial(variable),
         variable_type: match variable.data_type {
             DataType::Real { unit, range } => fmi::VariableType::Real(fmi::Real {
                 unit: (unit != "1").then(|| unit.into()),
@@ -108,6 +108,31 @@ fn scalar_variable(at: u32, variable: &Variable, parameters: &Parameters) -> fmi
     }
 }
 
+fn causality(variable: &Variable) -> fmi::Causality {
+    match variable.causality {
+        Causality::Parameter => fmi::Causality::Parameter,
+        Causality::CalculatedParameter => fmi::Causality::CalculatedParameter,
+        Causality::Input => fmi::Causality::Input,
+        Causality::Output => fmi::Causality::Output,
+    }
+}
+
+fn variability(variable: &Variable) -> fmi::Variability {
+    match variable.causality {
+        Causality::Parameter | Causality::CalculatedParameter => fmi::Variability::Fixed,
+        Causality::Input | Causality::Output if variable.is_continuous() => fmi::Variability::Continuous,
+        Causality::Input | Causality::Output => fmi::Variability::Discrete,
+    }
+}
+
+fn initial(variable: &Variable) -> Option<fmi::Initial> {
+    match variable.causality {
+        Causality::Parameter => Some(fmi::Initial::Exact),
+        Causality::CalculatedParameter | Causality::Output => Some(fmi::Initial::Calculated),
+        Causality::Input => None,
+    }
+}
+
 /// At a communication point the outputs depend on the state, which is no variable, and on their feedthrough; at
 /// initialization on what the table says as well.
 fn model_structure() -> fmi::ModelStructure {
@@ -118,13 +143,13 @@ fn model_structure() -> fmi::ModelStructure {
     fmi::ModelStructure {
         outputs: fmi::Outputs {
             unknowns: unknowns(
-                |v| v.causality == fmi::Causality::Output,
+                |v| v.causality == Causality::Output,
                 |v| v.feedthrough.iter().map(|name| index(name)).collect(),
             ),
         },
         initial_unknowns: fmi::InitialUnknowns {
             unknowns: unknowns(
-                |v| v.initial == Some(fmi::Initial::Calculated),
+                |v| initial(v) == Some(fmi::Initial::Calculated),
                 |v| v.feedthrough.iter().chain(v.initial_dependencies).map(|name| index(name)).collect(),
             ),
         },

@@ -1,12 +1,36 @@
 //! Archives that depend on nothing but what is in them: the same entries give the same bytes.
 
-use anyhow::Context;
 use std::fs::Permissions;
-use std::io::{Seek, Write};
+use std::io::{self, Seek, Write};
 use std::os::unix::fs::PermissionsExt;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, DateTime, ZipWriter};
+
+/// Why an archive could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum ArchiveError {
+    /// No file can be made where the archive is to be.
+    #[error("cannot create a file in {folder}: {error}", folder = .folder.display())]
+    Folder {
+        /// The folder.
+        folder: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// The archive cannot be completed.
+    #[error("cannot write the archive: {0}")]
+    Content(#[from] ZipError),
+    /// The complete archive cannot get its name.
+    #[error("cannot write {target}: {error}", target = .target.display())]
+    Target {
+        /// The archive.
+        target: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+}
 
 /// A file of an archive.
 pub struct Entry {
@@ -19,7 +43,7 @@ pub struct Entry {
 /// Writes `entries`, in their order, as the archive `target`, and returns its size in bytes.
 ///
 /// An archive that was there before is replaced once the new one is complete, and kept if it cannot be completed.
-pub fn write(target: &Path, entries: &[Entry]) -> anyhow::Result<u64> {
+pub fn write(target: &Path, entries: &[Entry]) -> Result<u64, ArchiveError> {
     let folder = match target.parent() {
         Some(folder) if !folder.as_os_str().is_empty() => folder,
         _ => Path::new("."),
@@ -29,14 +53,16 @@ pub fn write(target: &Path, entries: &[Entry]) -> anyhow::Result<u64> {
         .prefix(".rocking-fmu-")
         .permissions(readable)
         .tempfile_in(folder)
-        .with_context(|| format!("cannot create a file in {}", folder.display()))?;
-    let size = compress(entries, file.as_file_mut()).context("cannot write the archive")?;
-    file.persist(target).with_context(|| format!("cannot write {}", target.display()))?;
-    Ok(size)
+        .map_err(|error| ArchiveError::Folder { folder: folder.to_owned(), error })?;
+    let size = compress(entries, file.as_file_mut())?;
+    match file.persist(target) {
+        Ok(_) => Ok(size),
+        Err(failed) => Err(ArchiveError::Target { target: target.to_owned(), error: failed.error }),
+    }
 }
 
 /// Writes `entries` with fixed times and permissions, and returns the number of bytes.
-fn compress(entries: &[Entry], to: impl Write + Seek) -> anyhow::Result<u64> {
+fn compress(entries: &[Entry], to: impl Write + Seek) -> Result<u64, ZipError> {
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)
         .last_modified_time(DateTime::DEFAULT) // 1980-01-01, the first day that an archive can express
@@ -87,12 +113,12 @@ mod tests {
         let target = folder.path().join("one.zip");
         fs::write(&target, "before").unwrap();
         let twice = [entries(), entries()].into_iter().flatten().collect::<Vec<_>>();
-        assert!(format!("{:#}", write(&target, &twice).unwrap_err()).contains("Duplicate filename"));
+        assert!(write(&target, &twice).unwrap_err().to_string().contains("Duplicate filename"));
         assert_eq!(fs::read(&target).unwrap(), b"before");
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
 
         let nowhere = folder.path().join("nowhere");
-        let message = format!("{:#}", write(&nowhere.join("one.zip"), &entries()).unwrap_err());
+        let message = write(&nowhere.join("one.zip"), &entries()).unwrap_err().to_string();
         assert!(
             message.starts_with(&format!("cannot create a file in {}: No such file", nowhere.display())),
             "{message}"

@@ -2,9 +2,8 @@
 
 mod command_line;
 
-use FlexibleRocking::variables::{DataType, PHASES, VARIABLES};
+use FlexibleRocking::variables::{Causality, DataType, PHASES, VARIABLES};
 use command_line::{DT, SAMPLES, command, fail, folder, pulse, succeed};
-use model_description::Causality;
 use rocking::{
     Engine, Ramp, Impulse, Load, Outputs, Parameters, Phase, Reactions, State, Structure,
     engine::DEFAULT_TOLERANCE,

@@ -1,20 +1,19 @@
 //! `documentation/index.html`: the model, its variables and how to use it.
 
-use super::model_description::{DESCRIPTION, MODEL_NAME};
+use crate::model_description::{DESCRIPTION, MODEL_NAME};
 use crate::significant::significant;
 use FlexibleRocking::logger::Category;
-use FlexibleRocking::variables::{DataType, VARIABLES, Variable};
+use FlexibleRocking::variables::{Causality, DataType, VARIABLES, Variable};
 use minijinja::value::Serde;
 use minijinja::{Environment, UndefinedBehavior};
-use model_description::Causality;
 use rocking::Structure;
 use rocking::engine::{DEFAULT_TOLERANCE, MAX_TRANSITIONS_PER_PERIOD};
 use rocking::parameters::MAX_SLENDERNESS;
 use rocking::structure::DERIVED;
 use serde::Serialize;
 
-const TEMPLATE: &str = include_str!("../../../../resources/index.html");
-const ICON: &str = include_str!("../../../../resources/model.svg");
+const TEMPLATE: &str = include_str!("../resources/index.html");
+const ICON: &str = include_str!("../resources/model.svg");
 
 /// What the template fills in.
 #[derive(Serialize)]

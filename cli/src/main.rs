@@ -2,7 +2,6 @@
 #![allow(non_snake_case)] // H, B, V_t: the paper's own letters
 
 mod advise;
-mod archive;
 mod describe;
 mod estimate;
 mod export;
@@ -12,7 +11,6 @@ mod pushover;
 mod quantities;
 mod record_args;
 mod scene_args;
-mod significant;
 mod simulate;
 mod structure_args;
 mod summary;
@@ -20,6 +18,7 @@ mod sweep;
 mod tables;
 
 use clap::Parser;
+use fmu_export::significant;
 use std::{io, process::ExitCode};
 
 /// A flexible structure that rocks on its foundation: FMU exporter and simulator.

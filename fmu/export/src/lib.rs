@@ -1,0 +1,246 @@
+//! Writes the FMU: an archive of the shared libraries with all that describes them.
+#![allow(non_snake_case)] // the shared library's name
+
+mod archive;
+mod documentation;
+mod model_description;
+pub mod significant;
+
+use FlexibleRocking::BUILD;
+use FlexibleRocking::resources::PARAMETERS_FILE;
+pub use archive::ArchiveError;
+use archive::Entry;
+use rocking::Structure;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::{fs, io};
+
+/// Licences of all that the shared library is made of, on every [`Platform`]; `make licenses` writes it.
+const LICENSES: &str = include_str!("../resources/licenses.txt");
+
+const ICON: &[u8] = include_bytes!("../resources/model.png");
+
+/// A platform for which an archive can have a shared library.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Platform {
+    /// Linux on x86-64.
+    Linux64,
+    /// Windows on x86-64.
+    Windows64,
+}
+
+impl Platform {
+    /// Name, for people.
+    fn name(self) -> &'static str {
+        match self {
+            Platform::Linux64 => "Linux",
+            Platform::Windows64 => "Windows",
+        }
+    }
+
+    /// Where the archive has the library.
+    fn path(self) -> &'static str {
+        match self {
+            Platform::Linux64 => "binaries/linux64/FlexibleRocking.so",
+            Platform::Windows64 => "binaries/win64/FlexibleRocking.dll",
+        }
+    }
+
+    /// What shared libraries begin with.
+    fn magic(self) -> &'static [u8] {
+        match self {
+            Platform::Linux64 => b"\x7fELF",
+            Platform::Windows64 => b"MZ",
+        }
+    }
+
+    /// How to get ours.
+    fn remedy(self) -> &'static str {
+        match self {
+            Platform::Linux64 => "`cargo build --release` builds it",
+            Platform::Windows64 => "`make dist` builds it",
+        }
+    }
+}
+
+/// Why an FMU could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum ExportError {
+    /// No such library.
+    #[error("the shared library {path} does not exist: {remedy}", path = .0.display(), remedy = .1.remedy())]
+    Missing(PathBuf, Platform),
+    /// A library that cannot be read.
+    #[error("cannot read the shared library {path}: {error}", path = .path.display())]
+    Unreadable {
+        /// The library.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// A file of another kind, or for another platform.
+    #[error("{path} is not a shared library for {name}: {remedy}", path = .0.display(), name = .1.name(), remedy = .1.remedy())]
+    OtherPlatform(PathBuf, Platform),
+    /// A library from other sources than this exporter, so that its variables may be others.
+    #[error(
+        "the shared library {path} is of another build: the name of this one, {BUILD}, does not occur in it; {remedy}",
+        path = .0.display(),
+        remedy = .1.remedy()
+    )]
+    OtherBuild(PathBuf, Platform),
+    /// The model description cannot be written.
+    #[error("modelDescription.xml: {0}")]
+    Description(#[from] ::model_description::SeError),
+    /// The documentation cannot be written.
+    #[error("documentation/index.html: {0}")]
+    Documentation(#[from] minijinja::Error),
+    /// The parameters cannot be written.
+    #[error("resources/{PARAMETERS_FILE}: {0}")]
+    Parameters(#[from] toml::ser::Error),
+    /// The archive cannot be written.
+    #[error(transparent)]
+    Archive(#[from] ArchiveError),
+}
+
+/// Writes the FMU of `structure` as the archive `target`, with the shared libraries that `libraries` names, and returns
+/// its size in bytes. The same structure and libraries give the same bytes.
+pub fn export(
+    structure: &Structure,
+    libraries: &BTreeMap<Platform, PathBuf>,
+    target: &Path,
+) -> Result<u64, ExportError> {
+    let libraries = libraries.iter().map(|(&platform, path)| Ok((platform, read(path, platform)?)));
+    let libraries = libraries.collect::<Result<Vec<_>, ExportError>>()?;
+    Ok(archive::write(target, &entries(structure, libraries)?)?)
+}
+
+/// The shared library at `path`, if it is there, for `platform` and of this build.
+fn read(path: &Path, platform: Platform) -> Result<Vec<u8>, ExportError> {
+    let library = fs::read(path).map_err(|error| match error.kind() {
+        io::ErrorKind::NotFound => ExportError::Missing(path.to_owned(), platform),
+        _ => ExportError::Unreadable { path: path.to_owned(), error },
+    })?;
+    if !library.starts_with(platform.magic()) {
+        return Err(ExportError::OtherPlatform(path.to_owned(), platform));
+    }
+    if !library.windows(BUILD.len()).any(|bytes| bytes == BUILD.as_bytes()) {
+        return Err(ExportError::OtherBuild(path.to_owned(), platform));
+    }
+    Ok(library)
+}
+
+/// The content of the archive.
+fn entries(structure: &Structure, libraries: Vec<(Platform, Vec<u8>)>) -> Result<Vec<Entry>, ExportError> {
+    let parameters = structure.parameters();
+    let entry = |path: &str, content| Entry { path: path.to_owned(), content };
+    let mut entries = vec![
+        entry("modelDescription.xml", model_description::model_description(parameters).to_xml()?.into()),
+        entry("model.png", ICON.to_vec()),
+        entry("documentation/index.html", documentation::documentation(structure)?.into()),
+        entry("documentation/licenses/license.txt", LICENSES.into()),
+        entry(&format!("resources/{PARAMETERS_FILE}"), toml::to_string(parameters)?.into()),
+    ];
+    entries.extend(libraries.into_iter().map(|(platform, library)| entry(platform.path(), library)));
+    Ok(entries)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rocking::Parameters;
+
+    fn structure(parameters: Parameters) -> Structure {
+        Structure::new(parameters).unwrap()
+    }
+
+    /// A file that passes for the library of this build.
+    fn library(folder: &Path) -> PathBuf {
+        let path = folder.join("library.so");
+        fs::write(&path, format!("\x7fELF, some code{BUILD}more code")).unwrap();
+        path
+    }
+
+    /// Why the library at `path` is refused.
+    fn refusal(platform: Platform, path: &Path) -> String {
+        let target = path.with_file_name("refused.fmu");
+        let libraries = BTreeMap::from([(platform, path.to_owned())]);
+        let message = export(&structure(Parameters::EVISON), &libraries, &target).unwrap_err().to_string();
+        assert!(!target.exists());
+        message
+    }
+
+    #[test]
+    fn two_exports_of_the_same_are_the_same_bytes() {
+        let folder = tempfile::tempdir().unwrap();
+        let libraries = BTreeMap::from([(Platform::Linux64, library(folder.path()))]);
+        let exported = |parameters, name: &str| {
+            let target = folder.path().join(name);
+            let size = export(&structure(parameters), &libraries, &target).unwrap();
+            let archive = fs::read(target).unwrap();
+            assert_eq!(size, archive.len() as u64);
+            archive
+        };
+        let first = exported(Parameters::EVISON, "first.fmu");
+        assert_eq!(first, exported(Parameters::EVISON, "second.fmu"));
+        assert_ne!(first, exported(Parameters::MCMANUS, "third.fmu"));
+    }
+
+    #[test]
+    fn the_archive_holds_what_the_standard_and_the_library_look_for() {
+        let libraries = vec![(Platform::Linux64, b"code".to_vec()), (Platform::Windows64, b"Windows code".to_vec())];
+        let entries = entries(&structure(Parameters::EVISON), libraries).unwrap();
+        let paths: Vec<_> = entries.iter().map(|entry| entry.path.as_str()).collect();
+        let expected = [
+            "modelDescription.xml",
+            "model.png",
+            "documentation/index.html",
+            "documentation/licenses/license.txt",
+            "resources/parameters.toml",
+            "binaries/linux64/FlexibleRocking.so",
+            "binaries/win64/FlexibleRocking.dll",
+        ];
+        assert_eq!(paths, expected);
+        assert_eq!(entries[1].content[..8], *b"\x89PNG\r\n\x1a\n");
+        let parameters: Parameters = toml::from_slice(&entries[4].content).unwrap();
+        assert_eq!(parameters, Parameters::EVISON);
+        assert_eq!(entries[5].content, b"code");
+        assert_eq!(entries[6].content, b"Windows code");
+    }
+
+    #[test]
+    fn a_missing_library_is_refused_with_what_to_do() {
+        for (platform, remedy) in
+            [(Platform::Linux64, "`cargo build --release` builds it"), (Platform::Windows64, "`make dist` builds it")]
+        {
+            assert_eq!(
+                refusal(platform, Path::new("/nowhere/library")),
+                format!("the shared library /nowhere/library does not exist: {remedy}")
+            );
+        }
+    }
+
+    #[test]
+    fn a_library_for_another_platform_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let library = library(folder.path());
+        assert_eq!(
+            refusal(Platform::Windows64, &library),
+            format!("{} is not a shared library for Windows: `make dist` builds it", library.display())
+        );
+    }
+
+    #[test]
+    fn a_library_of_another_build_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let library = library(folder.path());
+        let other = fs::read_to_string(&library).unwrap().replace(BUILD, "{00000000-0000-5000-8000-000000000000}");
+        fs::write(&library, other).unwrap();
+        assert_eq!(
+            refusal(Platform::Linux64, &library),
+            format!(
+                "the shared library {} is of another build: the name of this one, {BUILD}, does not occur in it; \
+                 `cargo build --release` builds it",
+                library.display()
+            )
+        );
+    }
+}
