@@ -102,7 +102,8 @@ fn collect(workspace: &Path, path: &Path, files: &mut Vec<PathBuf>) -> io::Resul
 
 /// Adds the packages of `lock` that `package` depends on by a name that `is_linked`, and all that these depend on. What
 /// a member of the workspace depends on for its tests, too, is in its entry; other entries have no such dependencies.
-/// Macros and build scripts count: what they write is compiled. Members do not: their sources do.
+/// Macros and build scripts count: what they write is compiled. Members do not: their sources do. An entry also names
+/// optional dependencies that another member has switched on, or may have: the few of these count without need.
 fn add_dependencies<'a>(
     lock: &'a Lock,
     package: &Package,
