@@ -48,8 +48,8 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
 }
 
 /// The shared library that was built with `executable`. Cargo makes it in the folder `deps` beside the program, and
-/// links it to where the program is if the library itself was asked for: by `cargo build`, but not by `cargo run`, so
-/// that only the former is always up to date. Once installed, the two are side by side.
+/// links it to where the program is only if the package of the FMU was asked for as well: by `cargo build` and
+/// `cargo run` in the root, but not with `-p rocking-cli`. Once installed elsewhere, the two are side by side.
 fn library_of(executable: &Path) -> anyhow::Result<PathBuf> {
     let paths = [executable.with_file_name("deps").join(LIBRARY_FILE), executable.with_file_name(LIBRARY_FILE)];
     let [in_deps, beside] = &paths;
