@@ -201,11 +201,9 @@ impl Engine {
         let begin = Start { state, a_g, a_top, interval, local_error };
         if let Some(end) = self.leap(phase, &begin) {
             watch.piece(&mut Piece {
-                time: start,
+                before: self.motion,
                 duration: interval,
-                phase,
                 load,
-                start: state,
                 end,
                 structure: &self.structure,
                 level: &mut *self.level,
@@ -253,11 +251,9 @@ impl Engine {
             motion.work.evaluations += arc.order as u64;
             let state = arc.end();
             watch.piece(&mut Piece {
-                time: motion.time,
+                before: motion,
                 duration,
-                phase: motion.phase,
                 load: load.from(elapsed),
-                start: motion.state,
                 end: state,
                 structure: &self.structure,
                 level: &mut *self.level,

@@ -4,11 +4,12 @@
 //! sees; where it leapt by an exact flow, there are bounds, and polynomials only for a watcher that asks for them.
 
 use crate::detail::Level;
+use crate::engine::Motion;
 use crate::load::LinearLoad;
 use crate::output_series::{self, Turn};
 use crate::taylor::{Arc, Series, Start};
 use crate::transition::Transition;
-use crate::{Outputs, Phase, State, Structure, extremes, outputs};
+use crate::{Outputs, Reactions, State, Structure, extremes, outputs};
 
 /// Watches a motion go by.
 pub trait Watch {
@@ -100,16 +101,12 @@ impl Measure {
 /// [`Piece::skip`] leaves behind what the arc covers.
 #[derive(Debug)]
 pub struct Piece<'a> {
-    /// Time at its start, s.
-    pub time: f64,
+    /// The motion at its start: time, state, and the phase that it is in throughout.
+    pub before: Motion,
     /// How long it lasts, s.
     pub duration: f64,
-    /// Its phase.
-    pub phase: Phase,
     /// What acts, from its start on.
     pub load: LinearLoad,
-    /// State at its start.
-    pub start: State,
     /// State at its end.
     pub end: State,
     pub(crate) structure: &'a Structure,
@@ -137,7 +134,7 @@ impl Piece<'_> {
 
     /// Back to its start.
     pub fn rewind(&mut self) {
-        self.passed = (0.0, self.start);
+        self.passed = (0.0, self.before.state);
     }
 
     /// Seconds from its start to that of the arc.
@@ -165,7 +162,7 @@ impl Piece<'_> {
     /// The motion from the start of the rest on, as far as one polynomial reaches.
     pub fn arc(&mut self) -> &Arc {
         if !self.is_expanded {
-            self.level.series(self.structure, self.phase, &self.rest(), self.arc);
+            self.level.series(self.structure, self.before.phase, &self.rest(), self.arc);
             self.evaluations += self.arc.order as u64;
         }
         self.arc
@@ -191,23 +188,23 @@ impl Piece<'_> {
         let (structure, arc) = (self.structure, &*self.arc);
         let [theta, u] = [&arc.theta, &arc.u].map(|of| extremes::bound(arc.used(of).iter().copied(), arc.reach));
         let delta_t = output_series::delta_t_bound(structure, arc, theta, u);
-        [theta, u, delta_t, self.level.a_t_bound(structure, self.phase, self.load, arc, theta)]
+        [theta, u, delta_t, self.level.a_t_bound(structure, self.before.phase, self.load, arc, theta)]
     }
 
     /// What changes no faster than its second derivative leaves its chord by no more than that over 8/h².
     fn bounds_of_leap(&self) -> [f64; 4] {
         let rest = self.rest();
         let Bounds { u, u_dot, u_ddot, u_dddot, theta, theta_dot, theta_ddot } =
-            self.level.bounds(self.phase, &rest, &self.end);
+            self.level.bounds(self.before.phase, &rest, &self.end);
         let &crate::Parameters { m, H, B, g, .. } = self.structure.parameters();
-        let (stiffness, damping) = (self.structure.stiffness, outputs::damping(self.structure, self.phase) / m);
+        let (stiffness, damping) = (self.structure.stiffness, outputs::damping(self.structure, self.before.phase) / m);
         let [load, last] = [self.rest_load().value, self.load.at(self.duration)];
         let push = load.F_t.abs().max(last.F_t.abs()) / m;
         let bend = rest.interval * rest.interval / 8.0;
         let turn = theta_dot * theta_dot + theta * theta_ddot; // bounds |θ̈ sin θ + θ̇² cos θ|
 
         let ends = [(&rest.state, load), (&self.end, last)]
-            .map(|(state, load)| self.level.outputs(self.structure, self.phase, state, load));
+            .map(|(state, load)| self.level.outputs(self.structure, self.before.phase, state, load));
         let chord = |measure: Measure| ends.each_ref().map(|end| measure.of(end).abs()).into_iter().fold(0.0, f64::max);
         let delta_t_bend = u_ddot
             + 2.0 * u_dot * theta_dot * theta
@@ -228,24 +225,42 @@ impl Piece<'_> {
         match measure {
             Measure::Theta => used(self.arc, &self.arc.theta),
             Measure::U => used(self.arc, &self.arc.u),
-            Measure::DeltaT => output_series::delta_t(self.structure, self.phase, self.arc, &turn()),
-            Measure::At => self.level.a_t_series(self.structure, self.phase, self.rest_load(), self.arc, &turn()),
+            Measure::DeltaT => output_series::delta_t(self.structure, self.before.phase, self.arc, &turn()),
+            Measure::At => {
+                self.level.a_t_series(self.structure, self.before.phase, self.rest_load(), self.arc, &turn())
+            }
         }
-    }
-
-    /// The outputs at the start of the piece and at its end.
-    pub fn outputs_at_ends(&self) -> [Outputs; 2] {
-        [(&self.start, 0.0), (&self.end, self.duration)].map(|(state, tau)| self.outputs_of(state, tau))
     }
 
     /// The outputs at `sigma` on the arc.
     pub fn outputs(&self, sigma: f64) -> Outputs {
-        self.outputs_of(&self.arc.at(sigma), self.passed.0 + sigma * self.arc.span)
+        let load = self.load.at(self.passed.0 + sigma * self.arc.span);
+        self.level.outputs(self.structure, self.before.phase, &self.arc.at(sigma), load)
     }
 
-    /// The outputs in `state`, which is that `tau` seconds into the piece.
-    pub fn outputs_of(&self, state: &State, tau: f64) -> Outputs {
-        self.level.outputs(self.structure, self.phase, state, self.load.at(tau))
+    /// The state `tau` seconds into it. Nothing may have been left behind that is later.
+    pub fn state_at(&mut self, tau: f64) -> State {
+        if tau <= 0.0 {
+            return self.before.state;
+        }
+        loop {
+            let from = self.passed.0;
+            let arc = self.arc();
+            if tau <= from + arc.duration() {
+                return arc.at((tau - from) / arc.span);
+            }
+            if !self.skip() {
+                return self.end;
+            }
+        }
+    }
+
+    /// The outputs and reactions `tau` seconds into it, where the structure is in `state`.
+    pub fn shown(&self, state: &State, tau: f64) -> (Outputs, Reactions) {
+        let (structure, phase, load) = (self.structure, self.before.phase, self.load.at(tau));
+        let accelerations = self.level.accelerations(structure, phase, state, load);
+        let reactions = Reactions::of(structure, phase, state, accelerations, load);
+        (self.level.outputs(structure, phase, state, load), reactions)
     }
 }
 

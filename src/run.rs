@@ -6,12 +6,14 @@
 mod history;
 pub mod levels;
 pub mod peaks;
+pub mod samples;
 
 use crate::engine::{AdvanceError, DEFAULT_TOLERANCE};
 use crate::record::Record;
 use crate::state::InitialStateError;
 use crate::{Detail, Engine, Motion, Progress, Ramp, State, Structure, Watch};
 use peaks::Peaks;
+use samples::{Sample, Samples};
 
 /// For how long a structure may rock on after its record, in units of 1/p_l: amplitudes change by e^±1 in each.
 pub const LONGEST_REST: f64 = 100.0;
@@ -92,10 +94,14 @@ impl<'a> Run<'a> {
 
     /// Follows the motion to the end.
     pub fn follow<W: Watch + ?Sized>(&self, watch: &mut W) -> Result<Finish, RunError> {
-        let (structure, start) = (self.structure, self.ground.start());
-        let mut engine = Engine::with_detail(structure, self.initial, start, self.tolerance, self.detail)?;
+        let mut engine = self.start()?;
         let ending = self.follow_ground(&mut engine, watch)?;
         Ok(Finish { ending, motion: *engine.motion() })
+    }
+
+    /// The structure at the first sample.
+    fn start(&self) -> Result<Engine, InitialStateError> {
+        Engine::with_detail(self.structure, self.initial, self.ground.start(), self.tolerance, self.detail)
     }
 
     fn follow_ground<W: Watch + ?Sized>(&self, engine: &mut Engine, watch: &mut W) -> Result<Ending, AdvanceError> {
@@ -114,6 +120,21 @@ impl<'a> Run<'a> {
             End::AtRest => come_to_rest(engine, watch),
             End::At(_) => Ok(Ending::AtTime),
         }
+    }
+
+    /// Follows the motion to the end and shows it at `times` (s), which rise; those before the start and after the end
+    /// are left out, and the end itself is shown last. What is shown is read from the pieces: it changes nothing.
+    pub fn sample<W: Watch>(
+        &self,
+        times: impl IntoIterator<Item = f64>,
+        show: impl FnMut(&Sample),
+        watch: &mut W,
+    ) -> Result<Finish, RunError> {
+        let mut engine = self.start()?;
+        let mut samples = Samples::new(times, show);
+        let ending = self.follow_ground(&mut engine, &mut (watch, &mut samples))?;
+        samples.end(&engine);
+        Ok(Finish { ending, motion: *engine.motion() })
     }
 
     /// The exact peaks of the run, and how it ended.

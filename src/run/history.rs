@@ -88,9 +88,9 @@ impl Watch for History {
     fn piece(&mut self, piece: &mut Piece) {
         loop {
             let (duration, span) = (piece.arc().duration(), piece.arc().span);
-            let start = piece.time + piece.passed();
+            let start = piece.before.time + piece.passed();
             let series = MEASURES.map(|measure| piece.series(measure));
-            self.stretches.push(Stretch { start, end: start + duration, phase: piece.phase, span, series });
+            self.stretches.push(Stretch { start, end: start + duration, phase: piece.before.phase, span, series });
             if !piece.skip() {
                 break;
             }

@@ -20,11 +20,20 @@ pub struct Peak {
     pub time: f64,
 }
 
+impl Peak {
+    fn see(&mut self, value: f64, time: f64) {
+        if value.abs() > self.magnitude {
+            *self = Peak { magnitude: value.abs(), time };
+        }
+    }
+}
+
 /// Peaks of the motion that has been watched.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peaks {
     /// In the order of [`Measure::ALL`].
     largest: [Peak; 4],
+    ground: Peak,
     /// Of the structure: m, H and B.
     m: f64,
     H: f64,
@@ -59,7 +68,7 @@ impl Peaks {
     /// Of `structure`, nothing seen yet.
     pub fn new(structure: &Structure) -> Peaks {
         let &crate::Parameters { m, H, B, .. } = structure.parameters();
-        Peaks { largest: [Peak::default(); 4], m, H, B, evaluations: 0 }
+        Peaks { largest: [Peak::default(); 4], ground: Peak::default(), m, H, B, evaluations: 0 }
     }
 
     /// Of the rotation |θ|, rad.
@@ -103,22 +112,26 @@ impl Peaks {
         Peak { magnitude: factor * a_t.magnitude, ..a_t }
     }
 
+    /// Of the ground acceleration |a_g|, m/s²: linear in a piece.
+    pub fn a_g(&self) -> Peak {
+        self.ground
+    }
+
     /// Right-hand-side evaluations that finding them took beside those of the motion itself.
     pub fn evaluations(&self) -> u64 {
         self.evaluations
     }
 
     fn see(&mut self, measure: Measure, time: f64, outputs: &Outputs) {
-        let magnitude = measure.of(outputs).abs();
-        let largest = &mut self.largest[measure as usize];
-        if magnitude > largest.magnitude {
-            *largest = Peak { magnitude, time };
-        }
+        self.largest[measure as usize].see(measure.of(outputs), time);
     }
 }
 
 impl Watch for Peaks {
     fn piece(&mut self, piece: &mut Piece) {
+        for tau in [0.0, piece.duration] {
+            self.ground.see(piece.load.at(tau).a_g, piece.before.time + tau);
+        }
         let asked_before = piece.evaluations();
         loop {
             let bounds = piece.bounds();
@@ -131,7 +144,7 @@ impl Watch for Peaks {
                 break;
             }
             let (reach, span) = (piece.arc().reach, piece.arc().span);
-            let start = piece.time + piece.passed();
+            let start = piece.before.time + piece.passed();
             for measure in measures.into_iter().flatten() {
                 let mut look = |sigma: f64| self.see(measure, start + sigma * span, &piece.outputs(sigma));
                 look(0.0);
