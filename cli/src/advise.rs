@@ -1,22 +1,23 @@
 //! `advise`: every level of detail on the user's own scene, its errors and its cost, and the cheapest that will do.
 
-mod level;
-
 use crate::{
     scene_args::{GroundArgs, InitialArgs},
-    significant::significant,
     structure_args::StructureArgs,
 };
 use anyhow::Context;
 use clap::{ValueEnum, builder::PossibleValue};
-use level::{Response, Scene};
+use fmu_export::significant::significant;
 use rocking::{
-    Detail, Engine, Parameters, Structure,
+    Detail, Structure,
     demand::{Demand, INSTANT_TRANSITION},
     effective_frequency::effective_frequency,
-    engine::{DEFAULT_TOLERANCE, Work},
+    engine::DEFAULT_TOLERANCE,
     record::Record,
     response_spectrum::spectral_acceleration,
+    run::{
+        Run,
+        levels::{self, Comparison, Criterion, REFERENCE_TOLERANCE, Verdict},
+    },
 };
 use std::f64::consts::TAU;
 use std::io::{self, Write, stdout};
@@ -46,7 +47,8 @@ struct AllowedArgs {
 }
 
 /// What a level's error is measured by.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, ValueEnum)]
+#[value(rename_all = "snake_case")]
 enum Measure {
     /// Peak rotation
     Theta,
@@ -56,7 +58,18 @@ enum Measure {
     #[value(name = "a_t", aliases = ["V_t", "M_t"])]
     At,
     /// Rotation over time: largest difference over the largest rotation
-    History,
+    ThetaHistory,
+    /// Elastic displacement over time, likewise
+    UHistory,
+    /// Acceleration of the top mass over time, likewise
+    #[value(name = "a_t_history")]
+    AtHistory,
+}
+
+impl Measure {
+    fn criterion(&self) -> Criterion {
+        Criterion::ALL[*self as usize]
+    }
 }
 
 fn relative_error(text: &str) -> Result<f64, String> {
@@ -70,106 +83,37 @@ fn relative_error(text: &str) -> Result<f64, String> {
     })
 }
 
-/// The levels that are compared, the one of the fewest equations first.
-const SIMPLEST_FIRST: [Detail; 6] =
-    [Detail::FixedBase, Detail::Rigid, Detail::Modal, Detail::Linear, Detail::Auto, Detail::Nonlinear];
-
-/// Tolerance of the run that all others are measured by.
-const REFERENCE_TOLERANCE: f64 = 1e-12;
-
-/// Costs within this factor of the least count as the same: the equations then decide, not what the clock shows.
-const SAME_COST: f64 = 2.0;
-
-/// Timed runs per level, of which the fastest counts: whatever else the machine does only slows a run down.
-const TIMED_RUNS: usize = 7;
-
-/// How a level did.
-struct Verdict {
-    detail: Detail,
-    /// Relative errors, in the order of [`Measure`].
-    errors: [f64; 4],
-    overturned: bool,
-    is_right_about_overturning: bool,
-    seconds_per_sample: f64,
-    work: Work,
-}
-
-impl Verdict {
-    /// Of the level's `response`, its cost not known yet.
-    fn of(detail: Detail, response: &Response, reference: &Response) -> Verdict {
-        Verdict {
-            detail,
-            errors: response.errors(reference),
-            overturned: response.overturned,
-            is_right_about_overturning: response.overturned == reference.overturned,
-            seconds_per_sample: f64::INFINITY,
-            work: Work::default(),
-        }
-    }
-
-    fn is_within(&self, allowed: &AllowedArgs) -> bool {
-        let error = |measure: &Measure| self.errors[*measure as usize];
-        self.is_right_about_overturning && allowed.of.iter().map(error).all(|error| error <= allowed.within)
-    }
-}
-
-/// The cheapest of `verdicts`, which come in the order of [`SIMPLEST_FIRST`], that stays within what is allowed; of
-/// those of the same cost the simplest.
-fn recommended<'a>(verdicts: &'a [Verdict], allowed: &AllowedArgs) -> Option<&'a Verdict> {
-    let admitted = || verdicts.iter().filter(|verdict| verdict.is_within(allowed));
-    let least = admitted().map(|verdict| verdict.seconds_per_sample).fold(f64::INFINITY, f64::min);
-    admitted().find(|verdict| verdict.seconds_per_sample <= SAME_COST * least)
-}
-
 /// Runs the levels and prints the table and the advice.
 pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let ground = args.ground.load(structure.parameters().g)?;
-    let initial = args.initial.state();
-    let (start, end) = args.ground.span(&ground);
-    let scene = Scene::new(&structure, &ground, end, args.ground.free_vibration_interval());
-    let engine = |detail, tolerance| Engine::with_detail(structure, initial, start, tolerance, detail);
-    let reference = scene.response(engine(Detail::Nonlinear, REFERENCE_TOLERANCE)?).context("detail = nonlinear")?;
-
-    let mut verdicts = Vec::new();
-    let mut refusals = Vec::new();
-    for detail in SIMPLEST_FIRST {
-        let judge =
-            || anyhow::Ok(Verdict::of(detail, &scene.response(engine(detail, DEFAULT_TOLERANCE)?)?, &reference));
-        match judge() {
-            Ok(verdict) => verdicts.push(verdict),
-            Err(error) => refusals.push((detail, error)),
-        }
-    }
-    for _ in 0..TIMED_RUNS {
-        for verdict in &mut verdicts {
-            let (seconds_per_sample, work) = scene.cost(engine(verdict.detail, DEFAULT_TOLERANCE)?)?;
-            verdict.seconds_per_sample = verdict.seconds_per_sample.min(seconds_per_sample);
-            verdict.work = work;
-        }
-    }
+    let (initial, end) = (args.initial.state(), args.ground.end(&ground));
+    let run = Run { initial, end, ..Run::new(structure, &ground) };
+    let comparison = levels::compare(&run).context("detail = nonlinear")?;
 
     let mut out = stdout().lock();
-    let [start, end] = [start, end].map(significant);
-    writeln!(out, "Ground motion: {}, {start} to {end} s, {} samples", ground.title(), scene.samples())?;
-    print_reference(&mut out, &structure, &reference)?;
-    let advised = recommended(&verdicts, &args.allowed);
-    print_levels(&mut out, &verdicts, advised)?;
-    print_estimate(&mut out, &structure, &ground, &reference)?;
-    for (detail, error) in refusals {
+    writeln!(out, "Ground motion: {}, {} samples", ground.title(), ground.times().len())?;
+    print_reference(&mut out, &structure, &comparison)?;
+    let criteria: Vec<_> = args.allowed.of.iter().map(Measure::criterion).collect();
+    let advised = comparison.recommended(args.allowed.within, &criteria);
+    print_levels(&mut out, &comparison, advised)?;
+    print_estimate(&mut out, &structure, &ground, &comparison)?;
+    for (detail, error) in &comparison.refused {
         writeln!(out, "  {:<10} not possible here: {error:#}", detail.name())?;
     }
-    print_advice(&mut out, &verdicts, advised, &args.allowed)?;
+    print_advice(&mut out, &comparison, advised, &args.allowed)?;
     Ok(())
 }
 
-fn print_reference(out: &mut impl Write, structure: &Structure, reference: &Response) -> io::Result<()> {
-    let &Parameters { m, H, g, .. } = structure.parameters();
-    let [theta, u, a_t] = reference.peaks;
-    let shown = [theta, 1e3 * u, a_t / g, m * a_t, m * H * a_t].map(significant);
-    let [theta_shown, u, a_t, V_t, M_t] = shown;
+fn print_reference(out: &mut impl Write, structure: &Structure, comparison: &Comparison) -> io::Result<()> {
+    let reference = &comparison.reference;
+    let (peaks, g) = (&reference.peaks, structure.parameters().g);
+    let theta = peaks.theta().magnitude;
+    let [u, a_t, V_t, M_t] =
+        [1e3 * peaks.u().magnitude, peaks.a_t().magnitude / g, peaks.V_t().magnitude, peaks.M_t().magnitude]
+            .map(significant);
     writeln!(out, "Reference: nonlinear, tolerance {REFERENCE_TOLERANCE:e}, {} transitions", reference.transitions)?;
-    writeln!(out, "  peaks: theta {theta_shown} rad, u {u} mm, a_t {a_t} g, V_t {V_t} N, M_t {M_t} N.m")?;
+    writeln!(out, "  peaks: theta {} rad, u {u} mm, a_t {a_t} g, V_t {V_t} N, M_t {M_t} N.m", significant(theta))?;
     if theta == 0.0 {
         return writeln!(out, "  the base never lifts off; the estimate is that of a base that does\n");
     }
@@ -177,31 +121,45 @@ fn print_reference(out: &mut impl Write, structure: &Structure, reference: &Resp
     writeln!(out, "  effective frequency of rocking at that theta: {f_r} Hz (Eq 14)\n")
 }
 
-fn print_levels(out: &mut impl Write, verdicts: &[Verdict], advised: Option<&Verdict>) -> io::Result<()> {
-    writeln!(out, "  {:<10} {:^39} {:>10} {:>17}", "", "error, % of the reference", "", "cost")?;
-    writeln!(
-        out,
-        "  {:<10} {:>8} {:>8} {:>13} {:>8} {:>10} {:>10} {:>7} {:>11}",
-        "level", "theta", "u", "a_t, V_t, M_t", "history", "overturns", "us/sample", "of auto", "evaluations"
-    )?;
-    let auto = verdicts.iter().find(|verdict| verdict.detail == Detail::Auto);
-    for verdict in verdicts {
-        let mark = if advised.is_some_and(|advised| advised.detail == verdict.detail) { '>' } else { ' ' };
-        let [theta, u, a_t, history] = verdict.errors.map(percent);
-        let overturned = if verdict.overturned { "yes" } else { "no" };
-        let overturns =
-            if verdict.is_right_about_overturning { overturned.into() } else { format!("{overturned}, wrong") };
-        let ratio =
-            auto.map_or("-".into(), |auto| format!("{:.2}", verdict.seconds_per_sample / auto.seconds_per_sample));
+fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&Verdict>) -> io::Result<()> {
+    let row = |out: &mut dyn Write, mark: char, cells: [&str; 11]| {
+        let [level, theta, u, a_t, theta_history, u_history, a_t_history, overturns, steps, evaluations, ratio] = cells;
         writeln!(
             out,
-            "{mark} {:<10} {theta:>8} {u:>8} {a_t:>13} {history:>8} {overturns:>10} {:>10.3} {ratio:>7} {:>11}",
-            verdict.detail.name(),
-            1e6 * verdict.seconds_per_sample,
-            verdict.work.evaluations
+            "{mark} {level:<10} {theta:>8} {u:>8} {a_t:>13} {theta_history:>8} {u_history:>8} {a_t_history:>8} \
+             {overturns:>10} {steps:>8} {evaluations:>11} {ratio:>7}"
+        )
+    };
+    writeln!(out, "  {:<10} {:^31} {:^26} {:>10} {:^28}", "", "error of peaks, %", "of histories, %", "", "cost")?;
+    row(
+        out,
+        ' ',
+        ["level", "theta", "u", "a_t, V_t, M_t", "theta", "u", "a_t", "overturns", "steps", "evaluations", "of auto"],
+    )?;
+    let auto = cost_of_auto(comparison);
+    for verdict in &comparison.verdicts {
+        let response = &verdict.response;
+        let mark = if advised.is_some_and(|advised| advised.response.detail == response.detail) { '>' } else { ' ' };
+        let overturned = if response.has_overturned() { "yes" } else { "no" };
+        let overturns =
+            if verdict.is_right_about_overturning { overturned.into() } else { format!("{overturned}, wrong") };
+        let errors = verdict.errors.map(percent);
+        let [theta, u, a_t, theta_history, u_history, a_t_history] = errors.each_ref().map(String::as_str);
+        let counts = [response.work.steps, response.work.evaluations].map(|count| count.to_string());
+        let ratio = auto.map_or("-".into(), |auto| format!("{:.2}", response.cost() as f64 / auto));
+        let (level, [steps, evaluations]) = (response.detail.name(), counts.each_ref().map(String::as_str));
+        row(
+            out,
+            mark,
+            [level, theta, u, a_t, theta_history, u_history, a_t_history, &overturns, steps, evaluations, &ratio],
         )?;
     }
     Ok(())
+}
+
+fn cost_of_auto(comparison: &Comparison) -> Option<f64> {
+    let auto = comparison.verdicts.iter().find(|verdict| verdict.response.detail == Detail::Auto);
+    auto.map(|auto| auto.response.cost() as f64)
 }
 
 /// The demand of the whole record without a time history (Eqs 21 to 24) as one more row.
@@ -209,39 +167,35 @@ fn print_estimate(
     out: &mut impl Write,
     structure: &Structure,
     ground: &Record,
-    reference: &Response,
+    comparison: &Comparison,
 ) -> anyhow::Result<()> {
     let S_a = spectral_acceleration(ground, TAU / structure.omega_u, structure.zeta_u);
     let demand = Demand::new(structure, S_a, INSTANT_TRANSITION)?;
-    let [_, _, a_t] = reference.peaks;
-    let error = percent(level::relative_error(demand.a_t, a_t));
-    writeln!(
-        out,
-        "  {:<10} {:>8} {:>8} {error:>13} {:>8} {:>10} {:>10} {:>7} {:>11}",
-        "estimate", "-", "-", "-", "-", "-", "-", "-"
-    )?;
+    let a_t = comparison.reference.peaks.a_t().magnitude;
+    let error = percent(levels::relative(((demand.a_t - a_t).abs(), a_t)));
+    writeln!(out, "  {:<10} {:>8} {:>8} {error:>13}", "estimate", "-", "-")?;
     Ok(())
 }
 
 fn print_advice(
     out: &mut impl Write,
-    verdicts: &[Verdict],
+    comparison: &Comparison,
     advised: Option<&Verdict>,
     allowed: &AllowedArgs,
 ) -> io::Result<()> {
     let named: Vec<_> = allowed.of.iter().filter_map(ValueEnum::to_possible_value).collect();
     let names: Vec<_> = named.iter().map(PossibleValue::get_name).collect();
     let limit = format!("within {} % in {}", shortest_percent(allowed.within), names.join(", "));
-    let Some(Verdict { detail, seconds_per_sample, .. }) = advised else {
+    let Some(Verdict { response, .. }) = advised else {
         return writeln!(
             out,
             "\nno level stays {limit}: use detail = nonlinear with a tolerance below {DEFAULT_TOLERANCE:e}"
         );
     };
-    write!(out, "\nuse detail = {}: of the cheapest levels {limit} the simplest", detail.name())?;
-    match verdicts.iter().find(|verdict| verdict.detail == Detail::Auto) {
-        Some(auto) if *detail != Detail::Auto => {
-            writeln!(out, ", at {:.2} times the cost of auto", seconds_per_sample / auto.seconds_per_sample)
+    write!(out, "\nuse detail = {}: of the cheapest levels {limit} the simplest", response.detail.name())?;
+    match cost_of_auto(comparison) {
+        Some(auto) if response.detail != Detail::Auto => {
+            writeln!(out, ", at {:.2} times the cost of auto", response.cost() as f64 / auto)
         }
         _ => writeln!(out),
     }
@@ -267,41 +221,6 @@ fn percent(ratio: f64) -> String {
 mod tests {
     use super::*;
 
-    fn verdict(detail: Detail, errors: [f64; 4], cost: f64) -> Verdict {
-        Verdict {
-            detail,
-            errors,
-            overturned: false,
-            is_right_about_overturning: true,
-            seconds_per_sample: cost,
-            work: Work::default(),
-        }
-    }
-
-    fn advice(verdicts: &[Verdict], within: f64, of: &[Measure]) -> Option<Detail> {
-        recommended(verdicts, &AllowedArgs { within, of: of.into() }).map(|verdict| verdict.detail)
-    }
-
-    #[test]
-    fn the_cheapest_level_within_the_limit_is_advised_and_of_equals_the_simplest() {
-        let all = Measure::value_variants();
-        let mut verdicts = [
-            verdict(Detail::FixedBase, [1.0, 0.5, 0.5, 1.0], 1.0),
-            verdict(Detail::Rigid, [0.01, 1.0, 0.2, 0.01], 9.0),
-            verdict(Detail::Modal, [0.04, 0.03, 0.03, 0.06], 2.9),
-            verdict(Detail::Linear, [0.02, 0.01, 0.01, 0.03], 2.0),
-            verdict(Detail::Auto, [0.0; 4], 8.0),
-        ];
-        assert_eq!(advice(&verdicts, 0.1, all), Some(Detail::Modal), "1.45 times the least cost counts as the same");
-        assert_eq!(advice(&verdicts, 0.05, all), Some(Detail::Linear), "the history of modal is off by 6 %");
-        assert_eq!(advice(&verdicts, 0.05, &[Measure::Theta, Measure::At]), Some(Detail::Modal));
-        assert_eq!(advice(&verdicts, 0.015, &[Measure::Theta]), Some(Detail::Rigid));
-        assert_eq!(advice(&verdicts, 0.001, all), Some(Detail::Auto));
-        verdicts[3].is_right_about_overturning = false;
-        assert_eq!(advice(&verdicts, 0.05, all), Some(Detail::Auto));
-        assert_eq!(advice(&verdicts[..4], 0.001, all), None);
-    }
-
     #[test]
     fn a_percent_sign_or_a_ratio() {
         assert_eq!(relative_error("5%"), Ok(0.05));
@@ -313,13 +232,18 @@ mod tests {
     }
 
     #[test]
-    fn nothing_is_not_a_number() {
-        assert_eq!(level::relative_error(0.0, 0.0), 0.0);
-        assert_eq!(level::relative_error(0.1, 0.0), f64::INFINITY);
+    fn percentages_fit_their_column() {
         assert_eq!([0.0, 3e-14, 2.4e-5, 0.0354, f64::INFINITY].map(percent), ["0", "<1e-9", "2e-3", "3.54", "inf"]);
         assert_eq!(
             [0.07, 0.05, 1e-7, 1e-3].map(|ratio| shortest_percent(ratio).to_string()),
             ["7", "5", "0.00001", "0.1"]
         );
+    }
+
+    #[test]
+    fn a_measure_is_the_criterion_of_its_name() {
+        assert_eq!(Measure::value_variants().len(), Criterion::ALL.len());
+        assert_eq!(Measure::At.criterion(), Criterion::At);
+        assert_eq!(Measure::AtHistory.criterion(), Criterion::AtHistory);
     }
 }

@@ -6,7 +6,6 @@ mod describe;
 mod estimate;
 mod export;
 mod modes;
-mod peaks;
 mod pushover;
 mod quantities;
 mod record_args;

@@ -1,7 +1,7 @@
 //! The scene that a command simulates: a ground motion record or free vibration, and the initial values.
 use crate::record_args::{RecordArgs, positive};
 use clap::ArgGroup;
-use rocking::{State, record::Record};
+use rocking::{State, record::Record, run::End};
 
 /// The ground motion, and how long it is followed.
 #[derive(clap::Args)]
@@ -10,7 +10,7 @@ use rocking::{State, record::Record};
 pub struct GroundArgs {
     #[command(flatten)]
     pub record: RecordArgs,
-    /// Simulated time; the ground is at rest after the record's end [default: to the record's end]
+    /// Simulated time; the ground is at rest after the record's end [default: until the structure stands for good]
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     duration: Option<f64>,
     /// Free vibration over this time instead of a record
@@ -48,9 +48,10 @@ impl GroundArgs {
         Ok(record.unwrap_or_else(|| Record::at_rest(self.free.expect("clap asks for --record or --free"))))
     }
 
-    /// First and last instant, s.
-    pub fn span(&self, ground: &Record) -> (f64, f64) {
-        (ground.start(), self.duration.map_or(ground.end(), |duration| ground.start() + duration))
+    /// When the run ends.
+    pub fn end(&self, ground: &Record) -> End {
+        let duration = self.duration.or(self.free);
+        duration.map_or(End::AtRest, |duration| End::At(ground.start() + duration))
     }
 
     /// What stands for the interval of the samples (s) in free vibration, which has none.

@@ -2,14 +2,14 @@
 use crate::{
     record_args::positive,
     scene_args::{GroundArgs, InitialArgs},
-    significant::significant,
     structure_args::StructureArgs,
     summary::Summary,
     tables::{self, Table},
 };
 use clap::builder::{PossibleValuesParser, TypedValueParser};
+use fmu_export::significant::significant;
 use indicatif::ProgressBar;
-use rocking::{Detail, Engine, Load, Phase, Transition, engine::DEFAULT_TOLERANCE, record::Record};
+use rocking::{Detail, Transition, engine::DEFAULT_TOLERANCE, record::Record, run::Run};
 use std::path::{Path, PathBuf};
 
 /// What to simulate.
@@ -60,8 +60,8 @@ fn tolerance(text: &str) -> Result<f64, String> {
 }
 
 impl SimulateArgs {
-    /// The instants of the output (s): the start, every interval from there, and `end`.
-    fn output_times(&self, ground: &Record, end: f64) -> impl Iterator<Item = f64> {
+    /// The instants of the output (s), the end left out: the samples and as often after them, or every interval.
+    fn output_times(&self, ground: &Record) -> impl Iterator<Item = f64> {
         let samples = ground.times();
         let last = samples.len() - 1;
         let (samples, interval) = match self.results.dt.or(self.ground.free_vibration_interval()) {
@@ -69,13 +69,7 @@ impl SimulateArgs {
             None => (samples, samples[last] - samples[last - 1]),
         };
         let from = samples[samples.len() - 1];
-        let rounding = 1e-6 * interval;
-        samples
-            .iter()
-            .copied()
-            .chain((1_u64..).map(move |i| from + i as f64 * interval))
-            .take_while(move |time| *time < end - rounding)
-            .chain([end])
+        samples.iter().copied().chain((1_u64..).map(move |i| from + i as f64 * interval))
     }
 
     fn output_path(&self) -> PathBuf {
@@ -87,89 +81,44 @@ impl SimulateArgs {
     }
 }
 
-/// Where a run's results go.
-struct Recorder {
-    response: Table,
-    events: Option<Table>,
-    summary: Summary,
-}
-
-impl Recorder {
-    fn output(&mut self, engine: &Engine, a_g: f64) -> anyhow::Result<()> {
-        let motion = engine.motion();
-        let outputs = engine.outputs(0.0);
-        self.summary.see_outputs(motion.time, &outputs);
-        self.response.write(tables::response_line(motion, a_g, outputs, engine.reactions(Load::ground(a_g))))
-    }
-
-    fn transition(&mut self, transition: &Transition) -> anyhow::Result<()> {
-        self.summary.see_transition(transition);
-        self.events.as_mut().map_or(Ok(()), |events| events.write(tables::event_line(transition)))
-    }
-}
-
 /// Writes the response and prints its summary.
 pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
-    let g = structure.parameters().g;
-    let ground = args.ground.load(g)?;
-    let (start, end) = args.ground.span(&ground);
+    let ground = args.ground.load(structure.parameters().g)?;
     let ResultArgs { tolerance, detail, .. } = args.results;
-    let mut engine = Engine::with_detail(structure, args.initial.state(), start, tolerance, detail)?;
+    let (initial, end) = (args.initial.state(), args.ground.end(&ground));
+    let run = Run { initial, detail, tolerance, end, ..Run::new(structure, &ground) };
 
     let output = args.output_path();
-    let mut recorder = Recorder {
-        response: Table::create(&output, &tables::RESPONSE)?,
-        events: args.results.events.as_deref().map(|path| Table::create(path, &tables::EVENTS)).transpose()?,
-        summary: Summary::new(g),
+    let mut response = Table::create(&output, &tables::RESPONSE)?;
+    let mut events = args.results.events.as_deref().map(|path| Table::create(path, &tables::EVENTS)).transpose()?;
+    let progress = ProgressBar::new(ground.times().len() as u64);
+    let (mut summary, mut written) = (Summary::new(&structure), Ok(()));
+    let mut transition = |transition: &Transition| {
+        if let (Some(events), Ok(())) = (&mut events, &written) {
+            written = events.write(tables::event_line(transition));
+        }
     };
-    follow(&mut engine, &ground, args.output_times(&ground, end), end, &mut recorder)?;
-    let Recorder { response, events, summary } = recorder;
+    let mut rows = Ok(());
+    let finish = run.sample(
+        args.output_times(&ground),
+        |sample| {
+            progress.inc(1);
+            if rows.is_ok() {
+                rows = response.write(tables::response_line(sample));
+            }
+        },
+        &mut (&mut summary, &mut transition),
+    );
+    progress.finish_and_clear();
+    let finish = finish?;
+    rows.and(written)?;
     response.finish()?;
     events.map_or(Ok(()), Table::finish)?;
-    eprintln!("{}, {} to {} s", ground.title(), significant(start), significant(end));
-    summary.print(engine.motion());
+    eprintln!("{}, {} to {} s", ground.title(), significant(ground.start()), significant(finish.motion.time));
+    summary.print(&finish);
     if output != Path::new("-") {
         eprintln!("response       {}", output.display());
     }
-    Ok(())
-}
-
-/// Follows the ground motion up to `end` (s), or to overturning.
-fn follow(
-    engine: &mut Engine,
-    ground: &Record,
-    output_times: impl Iterator<Item = f64>,
-    end: f64,
-    recorder: &mut Recorder,
-) -> anyhow::Result<()> {
-    let progress = ProgressBar::new(100);
-    let start = engine.motion().time;
-    let mut output_times = output_times.peekable();
-    let mut transitions = Vec::new();
-    'run: for segment in ground.segments_until(end) {
-        recorder.summary.see_ground(&segment);
-        loop {
-            let now = engine.motion().time;
-            progress.set_position((100.0 * (now - start) / (end - start)) as u64);
-            let a_g = segment.from(now);
-            let is_overturned = matches!(engine.motion().phase, Phase::Overturned(_));
-            if output_times.next_if_eq(&now).is_some() || is_overturned {
-                recorder.output(engine, a_g.value)?;
-            }
-            if is_overturned {
-                break 'run;
-            }
-            if now == segment.end {
-                break;
-            }
-            let until = output_times.peek().map_or(segment.end, |next| next.min(segment.end));
-            engine.advance(until, a_g, &mut |transition| transitions.push(*transition))?;
-            for transition in transitions.drain(..) {
-                recorder.transition(&transition)?;
-            }
-        }
-    }
-    progress.finish_and_clear();
     Ok(())
 }

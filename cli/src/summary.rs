@@ -1,52 +1,22 @@
 //! What `simulate` prints at the end of a run.
-use crate::significant::significant;
-use rocking::{Motion, Outputs, Phase, Side, Transition, TransitionKind, record::Segment};
+use fmu_export::significant::significant;
+use rocking::run::{Ending, Finish, LONGEST_REST, peaks::Peaks};
+use rocking::{Parameters, Phase, Piece, Side, Structure, Transition, TransitionKind, Watch};
 
 /// Peaks and first transitions of a run.
 pub struct Summary {
-    g: f64,
-    peaks: Vec<Peak>,
+    structure: Structure,
+    peaks: Peaks,
     first_uplift: Option<f64>,
     first_impact: Option<f64>,
 }
 
-/// The largest magnitude of a quantity so far, and its instant.
-struct Peak {
-    name: &'static str,
-    unit: &'static str,
-    magnitude: f64,
-    time: f64,
-}
-
-impl Summary {
-    /// Nothing seen yet; accelerations are shown in `g` (m/s²).
-    pub fn new(g: f64) -> Summary {
-        Summary { g, peaks: Vec::new(), first_uplift: None, first_impact: None }
+impl Watch for Summary {
+    fn piece(&mut self, piece: &mut Piece) {
+        self.peaks.piece(piece);
     }
 
-    /// Takes in a part of the ground motion: linear, so that its ends hold its peak.
-    pub fn see_ground(&mut self, segment: &Segment) {
-        for time in [segment.start, segment.end] {
-            self.see("a_g", "g", segment.from(time).value / self.g, time);
-        }
-    }
-
-    /// Takes in the outputs at `time` (s).
-    pub fn see_outputs(&mut self, time: f64, outputs: &Outputs) {
-        for (name, unit, value) in [
-            ("theta", "rad", outputs.theta),
-            ("u", "mm", 1e3 * outputs.u),
-            ("a_t", "g", outputs.a_t / self.g),
-            ("V_t", "N", outputs.V_t),
-            ("M_t", "N.m", outputs.M_t),
-            ("uplift", "mm", 1e3 * outputs.uplift),
-        ] {
-            self.see(name, unit, value, time);
-        }
-    }
-
-    /// Takes in a transition.
-    pub fn see_transition(&mut self, transition: &Transition) {
+    fn transition(&mut self, transition: &Transition) {
         let first = match transition.kind {
             TransitionKind::Uplift(_) => &mut self.first_uplift,
             TransitionKind::Impact(_) | TransitionKind::Landing | TransitionKind::Settling => &mut self.first_impact,
@@ -54,21 +24,30 @@ impl Summary {
         };
         first.get_or_insert(transition.time);
     }
+}
 
-    fn see(&mut self, name: &'static str, unit: &'static str, value: f64, time: f64) {
-        let magnitude = value.abs();
-        match self.peaks.iter_mut().find(|peak| peak.name == name) {
-            Some(peak) if magnitude > peak.magnitude => (peak.magnitude, peak.time) = (magnitude, time),
-            Some(_) => {}
-            None => self.peaks.push(Peak { name, unit, magnitude, time }),
-        }
+impl Summary {
+    /// Of a run of `structure`, nothing seen yet.
+    pub fn new(structure: &Structure) -> Summary {
+        Summary { structure: *structure, peaks: Peaks::new(structure), first_uplift: None, first_impact: None }
     }
 
-    /// Prints it all, with what `motion` counted and came to, on standard error.
-    pub fn print(&self, motion: &Motion) {
-        for Peak { name, unit, magnitude, time } in &self.peaks {
-            let name = format!("peak |{name}|");
-            eprintln!("{name:<14} {:>12} {unit:<4} at {} s", significant(*magnitude), significant(*time));
+    /// Prints it all, with what the run counted and came to, on standard error.
+    pub fn print(&self, &Finish { ending, motion }: &Finish) {
+        let peaks = &self.peaks;
+        let &Parameters { g, .. } = self.structure.parameters();
+        for (name, peak, unit, per_unit) in [
+            ("a_g", peaks.a_g(), "g", g),
+            ("theta", peaks.theta(), "rad", 1.0),
+            ("u", peaks.u(), "mm", 1e-3),
+            ("delta_t", peaks.delta_t(), "mm", 1e-3),
+            ("uplift", peaks.uplift(), "mm", 1e-3),
+            ("a_t", peaks.a_t(), "g", g),
+            ("V_t", peaks.V_t(), "N", 1.0),
+            ("M_t", peaks.M_t(), "N.m", 1.0),
+        ] {
+            let [magnitude, time] = [peak.magnitude / per_unit, peak.time].map(significant);
+            eprintln!("{:<14} {magnitude:>12} {unit:<4} at {time} s", format!("peak |{name}|"));
         }
         let instant = |time: Option<f64>| time.map_or("none".into(), |time| format!("at {} s", significant(time)));
         eprintln!("first uplift   {}", instant(self.first_uplift));
@@ -77,7 +56,14 @@ impl Summary {
         let overturned = match motion.phase {
             Phase::Overturned(Side::Left) => format!("to the left at {} s", significant(motion.time)),
             Phase::Overturned(Side::Right) => format!("to the right at {} s", significant(motion.time)),
-            Phase::FullContact | Phase::Rocking(_) => "no".into(),
+            Phase::FullContact | Phase::Rocking(_) => match ending {
+                Ending::StillRocking => {
+                    let limit = significant(LONGEST_REST / self.structure.p_l);
+                    format!("not known: it still rocks {limit} s after the record; see --duration")
+                }
+                Ending::AtTime => "not by then".into(),
+                Ending::AtRest | Ending::Overturned => "no".into(),
+            },
         };
         eprintln!("overturned     {overturned}");
         eprintln!("work           {} steps, {} evaluations", motion.work.steps, motion.work.evaluations);

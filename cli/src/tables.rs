@@ -1,6 +1,7 @@
 //! The tables that `simulate` writes: the response and its transitions as CSV.
 use anyhow::Context;
-use rocking::{Impulse, Motion, Outputs, Phase, Reactions, Side, State, Transition, TransitionKind};
+use rocking::run::samples::Sample;
+use rocking::{Impulse, Outputs, Reactions, Side, State, Transition, TransitionKind};
 use serde::Serialize;
 use std::{
     fs::File,
@@ -67,20 +68,13 @@ pub const RESPONSE: [&str; 20] = [
     "transitions",
 ];
 
-/// A line of the response: `motion` with its `outputs` and `reactions` under the ground acceleration `a_g` (m/s²).
-pub fn response_line(motion: &Motion, a_g: f64, outputs: Outputs, reactions: Reactions) -> impl Serialize + use<> {
+/// A line of the response.
+pub fn response_line(&Sample { motion, load, outputs, reactions }: &Sample) -> impl Serialize + use<> {
     let Outputs { theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t } = outputs;
     let Reactions { R_h, R_v, R_m } = reactions;
     let Impulse { I_h, I_v, I_m } = motion.impulse;
-    let phase = match motion.phase {
-        Phase::FullContact => "full contact",
-        Phase::Rocking(Side::Left) => "rocking left",
-        Phase::Rocking(Side::Right) => "rocking right",
-        Phase::Overturned(_) => "overturned",
-    };
-    let transitions = motion.transitions;
     let of_motion = (theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t);
-    (motion.time, a_g, of_motion, (R_h, R_v, R_m, I_h, I_v, I_m), phase, transitions)
+    (motion.time, load.a_g, of_motion, (R_h, R_v, R_m, I_h, I_v, I_m), motion.phase.name(), motion.transitions)
 }
 
 /// Headings of the transitions.

@@ -5,7 +5,7 @@ mod command_line;
 
 use command_line::{DT, SAMPLES, fail, folder, pulse, succeed};
 use rocking::{
-    Detail, Engine, Ramp, Parameters, State, Structure,
+    Detail, Engine, Parameters, Ramp, State, Structure,
     demand::Demand,
     effective_frequency::effective_frequency,
     engine::DEFAULT_TOLERANCE,
@@ -29,8 +29,7 @@ fn run(detail: Detail, tolerance: f64, parts: usize, mut see: impl FnMut(&Engine
         let (start, duration) = ((i - 1) as f64 * DT, i as f64 * DT - (i - 1) as f64 * DT);
         for part in 1..=parts {
             let elapsed = engine.motion().time - start;
-            let a_g =
-                Ramp { value: from + (to - from) * elapsed / duration, slope: (to - from) / duration };
+            let a_g = Ramp { value: from + (to - from) * elapsed / duration, slope: (to - from) / duration };
             let until = if part == parts { i as f64 * DT } else { start + duration * part as f64 / parts as f64 };
             engine.advance(until, a_g, &mut |_| ()).unwrap();
             see(&engine);

@@ -5,8 +5,7 @@ mod command_line;
 use FlexibleRocking::variables::{Causality, DataType, PHASES, VARIABLES};
 use command_line::{DT, SAMPLES, command, fail, folder, pulse, succeed};
 use rocking::{
-    Engine, Ramp, Impulse, Load, Outputs, Parameters, Phase, Reactions, State, Structure,
-    engine::DEFAULT_TOLERANCE,
+    Engine, Impulse, Load, Outputs, Parameters, Phase, Ramp, Reactions, State, Structure, engine::DEFAULT_TOLERANCE,
 };
 use std::{
     fs,

@@ -3,7 +3,7 @@
 mod host;
 
 use host::*;
-use rocking::{Engine, Ramp, Parameters, State, Structure, TransitionKind};
+use rocking::{Engine, Parameters, Ramp, State, Structure, TransitionKind};
 
 /// Released at an angle: impacts, landings, uplifts.
 fn released(logging_on: i32) -> Host {

@@ -157,3 +157,50 @@ impl Comparison {
         admitted().find(|verdict| verdict.response.cost() as f64 <= SAME_COST * least)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Parameters, Structure};
+
+    fn verdict(detail: Detail, errors: [f64; 6], cost: u64) -> Verdict {
+        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let work = Work { steps: 0, evaluations: cost };
+        let response = Response { detail, peaks: Peaks::new(&structure), ending: Ending::AtRest, transitions: 0, work };
+        Verdict { response, errors, is_right_about_overturning: true }
+    }
+
+    #[test]
+    fn the_cheapest_level_within_the_limit_is_advised_and_of_equals_the_simplest() {
+        let mut comparison = Comparison {
+            reference: verdict(Detail::Nonlinear, [0.0; 6], 100).response,
+            verdicts: vec![
+                verdict(Detail::FixedBase, [1.0, 0.5, 0.5, 1.0, 1.0, 1.0], 10),
+                verdict(Detail::Rigid, [0.01, 1.0, 0.2, 0.01, 1.0, 1.0], 90),
+                verdict(Detail::Modal, [0.04, 0.03, 0.03, 0.03, 0.06, 0.03], 29),
+                verdict(Detail::Linear, [0.02, 0.01, 0.01, 0.03, 0.01, 0.03], 20),
+                verdict(Detail::Auto, [0.0; 6], 80),
+            ],
+            refused: Vec::new(),
+        };
+        let all = Criterion::ALL;
+        let advice = |of: &Comparison, within: f64, criteria: &[Criterion]| {
+            of.recommended(within, criteria).map(|verdict| verdict.response.detail)
+        };
+        assert_eq!(advice(&comparison, 0.1, &all), Some(Detail::Modal), "1.45 times the least cost counts as the same");
+        assert_eq!(advice(&comparison, 0.05, &all), Some(Detail::Linear), "the history of u by modal is off by 6 %");
+        assert_eq!(advice(&comparison, 0.05, &[Criterion::Theta, Criterion::At]), Some(Detail::Modal));
+        assert_eq!(advice(&comparison, 0.015, &[Criterion::Theta]), Some(Detail::Rigid));
+        assert_eq!(advice(&comparison, 0.001, &all), Some(Detail::Auto));
+        comparison.verdicts[3].is_right_about_overturning = false;
+        assert_eq!(advice(&comparison, 0.05, &all), Some(Detail::Auto));
+        comparison.verdicts.pop();
+        assert_eq!(advice(&comparison, 0.001, &all), None);
+    }
+
+    #[test]
+    fn nothing_is_not_a_number() {
+        assert_eq!(relative((0.0, 0.0)), 0.0);
+        assert_eq!(relative((0.1, 0.0)), f64::INFINITY);
+    }
+}

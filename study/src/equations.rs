@@ -1,7 +1,7 @@
 //! The equations between two transitions, with their evaluations counted.
 
 use nalgebra::Vector2;
-use rocking::{Ramp, Load, Phase, State, Structure, full_contact, nonlinear_rocking};
+use rocking::{Load, Phase, Ramp, State, Structure, full_contact, nonlinear_rocking};
 use std::cell::Cell;
 
 /// Two second-order equations for the positions (u, θ).

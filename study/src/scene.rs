@@ -2,7 +2,7 @@
 
 use anyhow::{Context, Result, bail};
 use rocking::record::{Record, Unit};
-use rocking::{Ramp, Parameters, Phase, Side, State, Structure};
+use rocking::{Parameters, Phase, Ramp, Side, State, Structure};
 use std::path::{Path, PathBuf};
 
 /// A structure on moving ground. The ground acceleration is linear between samples `dt` apart.
@@ -133,12 +133,7 @@ impl Scene {
             let value = exact.at((j % cuts) as f64 * h);
             let slope = if input == Input::Linear { exact.slope } else { 0.0 };
             let ends_interval = (j + 1) % cuts == 0;
-            Step {
-                start: j as f64 * h,
-                end: (j + 1) as f64 * h,
-                a_g: Ramp { value, slope },
-                ends_interval,
-            }
+            Step { start: j as f64 * h, end: (j + 1) as f64 * h, a_g: Ramp { value, slope }, ends_interval }
         })
     }
 

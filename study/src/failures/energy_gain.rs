@@ -40,9 +40,7 @@ use crate::chart::{Axis, Entry, Figure, Marker, Panel, Style, colour};
 use anyhow::{Context, Result};
 use rocking::energy::energy;
 use rocking::impact::gaining_restitution;
-use rocking::{
-    Engine, Ramp, Motion, Parameters, Phase, Side, State, Structure, Transition, TransitionKind,
-};
+use rocking::{Engine, Motion, Parameters, Phase, Ramp, Side, State, Structure, Transition, TransitionKind};
 
 /// Equation (a): change of energy, J, at an impact that ends rocking about `side` in the state `before` and is followed
 /// by rocking about the other pivot.

@@ -4,7 +4,7 @@ use super::history::structure;
 use super::{Exhibit, RIGHT, WRONG};
 use crate::chart::{Axis, Entry, Figure, Panel, Style, colour};
 use anyhow::Result;
-use rocking::{Engine, Ramp, Parameters, Phase, State};
+use rocking::{Engine, Parameters, Phase, Ramp, State};
 
 /// How long the structure is followed, s.
 const DURATION: f64 = 14.0;
