@@ -1,6 +1,8 @@
 //! The C interface of FMI 2.0 for co-simulation. Only here are pointers followed: each function turns its arguments
 //! into slices and text, and calls the instance.
 //!
+//! Messages begin with the function that was called and end with the one to call instead: the instance knows neither.
+//!
 //! What C cannot promise is checked: null and misaligned pointers, lengths, numbers that stand for an enumeration, an
 //! `fmi2Component` that is none (as far as that can be told), a call from within the logger callback. A panic becomes
 //! `fmi2Fatal`.
@@ -8,20 +10,22 @@
 //! # Safety
 //!
 //! The rest is the host's, for every function: a component is null or what `fmi2Instantiate` returned, not freed
-//! before; other pointers are null or point to as many values, or to a text, as the standard says; no two threads call
-//! one instance at the same time.
+//! before nor while it is called; other pointers are null or point to as many values, or to a text, as the standard
+//! says. A call while another one is under way, from the logger or another thread, is an `fmi2Error`.
 #![allow(unsafe_code, clippy::missing_safety_doc)] // the section above
 
 use crate::failure::Failure;
-use crate::instance::{Arguments, Instance, StatusKind};
+use crate::instance::{self, Instance};
 use crate::logger::{Logger, Sink, Status};
 use crate::state_machine::Function;
+use crate::variables::{DataType, Variable};
 use libc::{c_char, c_double, c_int, c_uint, c_void, size_t};
 use std::any::Any;
 use std::cell::{Cell, UnsafeCell};
 use std::ffi::CString;
 use std::mem::MaybeUninit;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicU8, Ordering};
 use std::{ptr, slice};
 
 /// `fmi2CallbackLogger`
@@ -45,18 +49,18 @@ pub struct CallbackFunctions {
 /// What an `fmi2Component` points to.
 struct Component {
     magic: Cell<u64>,
-    availability: Cell<Availability>,
+    /// One of the following.
+    availability: AtomicU8,
     instance: UnsafeCell<Instance>,
 }
 
-#[derive(Clone, Copy, PartialEq)]
-enum Availability {
-    Ready,
-    /// A call is under way: the host calls from within its logger.
-    Busy,
-    /// A call panicked.
-    Broken,
-}
+const READY: u8 = 0;
+
+/// A call is under way: the host calls from within its logger, or from another thread.
+const BUSY: u8 = 1;
+
+/// A call panicked.
+const BROKEN: u8 = 2;
 
 const MAGIC: u64 = 0x526f_636b_696e_6732;
 
@@ -82,25 +86,55 @@ unsafe fn component<'a>(c: *mut c_void) -> Option<&'a Component> {
 /// Calls `body` with the instance that `c` points to, if `function` is allowed in its state. No panic gets out.
 unsafe fn call(c: *mut c_void, function: Function, body: impl FnOnce(&mut Instance) -> Result<(), Failure>) -> c_int {
     let Some(component) = (unsafe { component(c) }) else { return Status::Error as c_int };
-    match component.availability.get() {
-        Availability::Ready => component.availability.set(Availability::Busy),
-        Availability::Busy => return Status::Error as c_int,
-        Availability::Broken => return Status::Fatal as c_int,
+    match component.availability.compare_exchange(READY, BUSY, Ordering::Acquire, Ordering::Relaxed) {
+        Ok(_) => (),
+        Err(BROKEN) => return Status::Fatal as c_int,
+        Err(_) => return Status::Error as c_int,
     }
     // The one reference to the instance: nobody gets here while the component is busy.
     let instance = unsafe { &mut *component.instance.get() };
-    match catch_unwind(AssertUnwindSafe(|| instance.call(function, body))) {
-        Ok(status) => {
-            component.availability.set(Availability::Ready);
-            status as c_int
-        }
+    let guarded = || {
+        let stage = instance.stage();
+        let refused = || Err(Failure::WrongStage { stage, allowed_in: function.stages() });
+        let result = if function.is_allowed_in(stage) { body(instance) } else { refused() };
+        result.map_or_else(|failure| report(instance, function, &failure), |()| Status::Ok)
+    };
+    let (status, availability) = match catch_unwind(AssertUnwindSafe(guarded)) {
+        Ok(status) => (status, READY),
         Err(panic) => {
-            let report = || instance.report(function, &Failure::Panicked(panic_message(&*panic).to_owned()));
+            let failure = Failure::Panicked(panic_message(&*panic).to_owned());
             // Whatever becomes of the message, the status is known.
-            let _ = catch_unwind(AssertUnwindSafe(report));
-            component.availability.set(Availability::Broken);
-            Status::Fatal as c_int
+            let _ = catch_unwind(AssertUnwindSafe(|| report(instance, function, &failure)));
+            (Status::Fatal, BROKEN)
         }
+    };
+    component.availability.store(availability, Ordering::Release);
+    status as c_int
+}
+
+/// Logs why `function` is not done, and returns its status.
+fn report(instance: &Instance, function: Function, failure: &Failure) -> Status {
+    instance.report(failure.status(), &format!("{}: {failure}{}", function.name(), remedy(failure)));
+    failure.status()
+}
+
+/// What to call instead.
+fn remedy(failure: &Failure) -> &'static str {
+    match failure {
+        Failure::WrongType(Variable { data_type, .. }) => match data_type {
+            DataType::Real { .. } => ": call fmi2GetReal or fmi2SetReal instead",
+            DataType::Integer | DataType::Enumeration(_) => ": call fmi2GetInteger instead",
+            DataType::Boolean => ": call fmi2GetBoolean instead",
+        },
+        Failure::Fixed(_) => ": set it before fmi2ExitInitializationMode, or call fmi2Reset",
+        Failure::WrongPoint { .. } => ": step from there, or go back with fmi2SetFMUstate",
+        Failure::PastStop { .. } => " given to fmi2SetupExperiment: shorten it",
+        Failure::WrongSize { .. } => " (fmi2SerializedFMUstateSize)",
+        Failure::NoAnswer(_) => {
+            ": fmi2DoStep never returns fmi2Pending, fmi2GetRealStatus knows fmi2LastSuccessfulTime, \
+             fmi2GetBooleanStatus knows fmi2Terminated"
+        }
+        _ => "",
     }
 }
 
@@ -176,9 +210,16 @@ fn boolean(name: &'static str, value: c_int) -> Result<bool, Failure> {
     }
 }
 
-fn status_kind(value: c_int) -> Result<StatusKind, Failure> {
+/// The items of `fmi2StatusKind`, by number.
+const STATUS_KINDS: [&str; 4] = ["fmi2DoStepStatus", "fmi2PendingStatus", LAST_SUCCESSFUL_TIME, TERMINATED];
+const LAST_SUCCESSFUL_TIME: &str = "fmi2LastSuccessfulTime";
+const TERMINATED: &str = "fmi2Terminated";
+
+/// The item of `fmi2StatusKind` that a host asks for.
+fn status_kind(value: c_int) -> Result<&'static str, Failure> {
     let accepted = "0 (fmi2DoStepStatus), 1 (fmi2PendingStatus), 2 (fmi2LastSuccessfulTime), 3 (fmi2Terminated)";
-    StatusKind::from_number(value).ok_or(Failure::BadChoice { name: "fmi2StatusKind", value, accepted })
+    let kind = usize::try_from(value).ok().and_then(|at| STATUS_KINDS.get(at));
+    kind.copied().ok_or(Failure::BadChoice { name: "fmi2StatusKind", value, accepted })
 }
 
 /// `fmi2GetTypesPlatform`
@@ -212,21 +253,25 @@ pub unsafe extern "C" fn fmi2Instantiate(
             if fmuType != CO_SIMULATION {
                 return Err(Failure::BadChoice { name: "fmuType", value: fmuType, accepted: "1 (fmi2CoSimulation)" });
             }
-            Ok(Arguments {
-                name: name?,
-                guid: unsafe { text("fmuGUID", fmuGUID) }?,
-                resource_location: unsafe { text("fmuResourceLocation", fmuResourceLocation) }?,
-                logging_on: boolean("loggingOn", loggingOn)?,
-            })
+            let guid = unsafe { text("fmuGUID", fmuGUID) };
+            let location = unsafe { text("fmuResourceLocation", fmuResourceLocation) };
+            let events = boolean("loggingOn", loggingOn);
+            if name?.is_empty() {
+                return Err(Failure::NoName);
+            }
+            Ok((instance::shipped("fmuGUID", guid?, location?)?, events?))
         };
-        Instance::new(arguments(), logger)
+        match arguments() {
+            Ok((parameters, events)) => Some(Instance::new(parameters, events, logger)),
+            Err(failure) => {
+                logger.failure(failure.status(), &format!("fmi2Instantiate: {failure}"));
+                None
+            }
+        }
     };
     let Some(instance) = catch_unwind(create).ok().flatten() else { return ptr::null_mut() };
-    let component = Component {
-        magic: Cell::new(MAGIC),
-        availability: Cell::new(Availability::Ready),
-        instance: UnsafeCell::new(instance),
-    };
+    let component =
+        Component { magic: Cell::new(MAGIC), availability: AtomicU8::new(READY), instance: UnsafeCell::new(instance) };
     Box::into_raw(Box::new(component)).cast()
 }
 
@@ -239,11 +284,11 @@ fn sink(functions: &CallbackFunctions, instance_name: &str) -> Sink {
     })
 }
 
-/// `fmi2FreeInstance`. Ignored for null, and from within the logger of the same instance.
+/// `fmi2FreeInstance`. Ignored for null, and while a call is under way, as from within the logger.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2FreeInstance(c: *mut c_void) {
     let Some(component) = (unsafe { component(c) }) else { return };
-    if component.availability.get() == Availability::Busy {
+    if component.availability.swap(BUSY, Ordering::Acquire) == BUSY {
         return;
     }
     // Volatile, so that a call with the freed component finds no magic number as long as the memory is not used anew.
@@ -543,7 +588,10 @@ pub unsafe extern "C" fn fmi2CancelStep(c: *mut c_void) -> c_int {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetRealStatus(c: *mut c_void, s: c_int, value: *mut c_double) -> c_int {
     unsafe {
-        call(c, Function::GetRealStatus, |instance| write("value", value, instance.real_status(status_kind(s)?)?))
+        call(c, Function::GetRealStatus, |instance| match status_kind(s)? {
+            LAST_SUCCESSFUL_TIME => write("value", value, instance.time()?),
+            other => Err(Failure::NoAnswer(other)),
+        })
     }
 }
 
@@ -551,8 +599,9 @@ pub unsafe extern "C" fn fmi2GetRealStatus(c: *mut c_void, s: c_int, value: *mut
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi2GetBooleanStatus(c: *mut c_void, s: c_int, value: *mut c_int) -> c_int {
     unsafe {
-        call(c, Function::GetBooleanStatus, |instance| {
-            write("value", value, c_int::from(instance.boolean_status(status_kind(s)?)?))
+        call(c, Function::GetBooleanStatus, |instance| match status_kind(s)? {
+            TERMINATED => write("value", value, c_int::from(instance.has_overturned()?)),
+            other => Err(Failure::NoAnswer(other)),
         })
     }
 }

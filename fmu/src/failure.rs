@@ -1,26 +1,25 @@
-//! Why a call does not return `fmi2OK`: every message of that kind, in one place.
+//! Why a call is not done: every message of that kind, in one place. What to call instead, the C interface adds.
 
-use crate::instance::StatusKind;
 use crate::logger::Status;
 use crate::resources::ResourceError;
-use crate::state_machine::{Function, Stage};
+use crate::state_machine::Stage;
 use crate::variables::{Causality, DataType, Enumeration, VARIABLES, Variable};
 use rocking::engine::AdvanceError;
 use rocking::parameters::ParameterError;
 use rocking::quantity::OutOfRange;
 use rocking::state::InitialStateError;
 
-/// Why a call does not return `fmi2OK`. But for [`Failure::Overturned`] and [`AdvanceError::Singular`], nothing has
+/// Why a call is not done. But for [`Failure::Overturned`] and [`AdvanceError::Singular`], nothing has
 /// changed.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
     /// Not in this stage.
-    #[error("not allowed in the state \"{stage}\"; allowed in: {}", function.stages())]
+    #[error("not allowed in the state \"{stage}\"; allowed in: {allowed_in}")]
     WrongStage {
-        /// The function.
-        function: Function,
         /// The present stage.
         stage: Stage,
+        /// Where it would be.
+        allowed_in: String,
     },
     /// A pointer that must not be null or is not aligned.
     #[error("{0} must be a valid pointer; it is null or misaligned")]
@@ -56,10 +55,12 @@ pub enum Failure {
     NoName,
     /// A model description of another FMU.
     #[error(
-        "fmuGUID = {given:?} is not {needed}: modelDescription.xml, the library and resources/parameters.toml are not of \
+        "{name} = {given:?} is not {needed}: modelDescription.xml, the library and resources/parameters.toml are not of \
          one FMU; export it again, and unpack every FMU into a folder of its own"
     )]
     WrongGuid {
+        /// The argument.
+        name: &'static str,
         /// What the host passed.
         given: String,
         /// What follows from the library's build and the parameters.
@@ -75,7 +76,7 @@ pub enum Failure {
     #[error("value reference {0} does not exist; they run from 0 to {last}", last = VARIABLES.len() - 1)]
     UnknownReference(u32),
     /// A variable of another type.
-    #[error("{} is {}: call {} instead", .0.name, type_name(.0), type_function(.0))]
+    #[error("{} is {}", .0.name, type_name(.0))]
     WrongType(&'static Variable),
     /// A variable that is not set by the host.
     #[error("{} cannot be set: it is {}, computed by the FMU", .0.name, causality_name(.0))]
@@ -92,10 +93,7 @@ pub enum Failure {
     #[error("value reference {0} is no String: this FMU has no String variables")]
     NoStrings(u32),
     /// A fixed parameter, too late.
-    #[error(
-        "{} is fixed once the simulation has started: set it before fmi2ExitInitializationMode, or call fmi2Reset",
-        .0.name
-    )]
+    #[error("{} is fixed once the simulation has started", .0.name)]
     Fixed(&'static Variable),
     /// A value out of range.
     #[error(transparent)]
@@ -130,8 +128,12 @@ pub enum Failure {
     /// A slope of something else than an input.
     #[error("{} has no derivative that can be set: only the inputs have", .0.name)]
     NoInput(&'static Variable),
-    /// A known that is no input.
-    #[error("{} cannot be a known of a directional derivative: only the inputs can", .0.name)]
+    /// A known that is none.
+    #[error(
+        "{} cannot be a known of a directional derivative: only the inputs can, and in initialization mode Real \
+         parameters and initial values",
+        .0.name
+    )]
     NoKnown(&'static Variable),
     /// A slope or a part of a direction that is not a number.
     #[error("the derivative of {}, {value}, is out of range: it must be finite", variable.name)]
@@ -156,6 +158,18 @@ pub enum Failure {
         /// s.
         time: f64,
     },
+    /// No derivative by this parameter or initial value, by steps within the ranges to either side.
+    #[error(
+        "the derivative of {} by {known} does not exist here: {known} cannot change, or not to both sides alike",
+        variable.name,
+        known = known.name
+    )]
+    NoSensitivity {
+        /// The output or calculated parameter.
+        variable: &'static Variable,
+        /// The parameter or initial value.
+        known: &'static Variable,
+    },
     /// The equations of motion are singular here.
     #[error("the derivative of {} does not exist at t = {time} s", variable.name)]
     NoRate {
@@ -165,10 +179,7 @@ pub enum Failure {
         time: f64,
     },
     /// A step from the wrong time.
-    #[error(
-        "currentCommunicationPoint = {given} s is not where the FMU is, t = {time} s: step from there, or go back with \
-         fmi2SetFMUstate"
-    )]
+    #[error("currentCommunicationPoint = {given} s is not where the FMU is, t = {time} s")]
     WrongPoint {
         /// What the host passed, s.
         given: f64,
@@ -186,7 +197,7 @@ pub enum Failure {
         time: f64,
     },
     /// A step past the end.
-    #[error("the step would end at t = {until} s, past stopTime = {stop} s given to fmi2SetupExperiment: shorten it")]
+    #[error("the step would end at t = {until} s, past stopTime = {stop} s")]
     PastStop {
         /// End of the step, s.
         until: f64,
@@ -203,18 +214,15 @@ pub enum Failure {
         time: f64,
     },
     /// A question that has no answer.
-    #[error(
-        "fmi2{0:?} has no answer here: fmi2DoStep never returns fmi2Pending, fmi2GetRealStatus knows \
-         fmi2LastSuccessfulTime, fmi2GetBooleanStatus knows fmi2Terminated"
-    )]
-    NoAnswer(StatusKind),
+    #[error("{0} has no answer here")]
+    NoAnswer(&'static str),
     /// Not one of the instance's FMU states.
     #[error(
         "FMUstate {0:#x} is not one that this instance has handed out and not freed; pass a pointer to NULL for a new one"
     )]
     UnknownSnapshot(usize),
     /// A buffer of the wrong size.
-    #[error("size = {given} does not fit: the serialized FMU state takes {needed} bytes (fmi2SerializedFMUstateSize)")]
+    #[error("size = {given} does not fit: the serialized FMU state takes {needed} bytes")]
     WrongSize {
         /// What the host passed.
         given: usize,
@@ -252,14 +260,6 @@ fn type_name(variable: &Variable) -> &'static str {
         DataType::Integer => "an Integer",
         DataType::Boolean => "a Boolean",
         DataType::Enumeration(_) => "an Enumeration",
-    }
-}
-
-fn type_function(variable: &Variable) -> &'static str {
-    match variable.data_type {
-        DataType::Real { .. } => "fmi2GetReal or fmi2SetReal",
-        DataType::Integer | DataType::Enumeration(_) => "fmi2GetInteger",
-        DataType::Boolean => "fmi2GetBoolean",
     }
 }
 

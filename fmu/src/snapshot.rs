@@ -5,18 +5,16 @@
 //! version      4 bytes, little endian
 //! build        38 bytes
 //! length       4 bytes, little endian: of the payload
-//! payload      postcard
-//! CRC32        4 bytes, little endian: of everything before
+//! payload      a condition, by postcard
+//! checksum     16 bytes: UUID v5 of everything before
 //! ```
 
 use crate::BUILD;
+use crate::condition::Condition;
 use crate::failure::Failure;
-use crate::instance::{Condition, Setup};
-use crate::state_machine::Stage;
-use rocking::LinearLoad;
-use rocking::engine::Motion;
 use std::collections::HashMap;
 use std::hash::BuildHasher;
+use uuid::Uuid;
 
 /// The FMU states that one instance has handed out and not freed.
 ///
@@ -59,20 +57,16 @@ impl Snapshots {
 }
 
 const MAGIC: [u8; 8] = *b"FlexRock";
-const VERSION: u32 = 2;
-
-/// What the payload holds: a condition, with the motion for the engine.
-type Stored = (Stage, Setup, LinearLoad, Option<Motion>);
+const VERSION: u32 = 3;
 
 /// A condition as bytes.
 pub fn serialize(condition: &Condition) -> Vec<u8> {
-    let stored: Stored = (condition.stage, condition.setup, condition.input, condition.motion().copied());
-    let payload = postcard::to_stdvec(&stored).expect("numbers and enumerations can always be written");
+    let payload = postcard::to_stdvec(condition).expect("numbers and enumerations can always be written");
     let length = u32::try_from(payload.len()).expect("the payload is a few hundred bytes");
     let mut bytes = header().to_vec();
     bytes.extend(length.to_le_bytes());
     bytes.extend(payload);
-    bytes.extend(crc32fast::hash(&bytes).to_le_bytes());
+    bytes.extend(checksum(&bytes));
     bytes
 }
 
@@ -91,33 +85,26 @@ pub fn deserialize(bytes: &[u8]) -> Result<Condition, Failure> {
     if given_header != header {
         return Err(Failure::BadBytes("it was written by another build of the FMU"));
     }
-    let Some((length, rest)) = rest.split_first_chunk::<4>() else {
-        return Err(Failure::BadBytes("it is too short"));
-    };
-    let Some((payload, crc)) = rest.split_last_chunk::<4>() else {
+    let parts = rest.split_first_chunk().and_then(|(length, rest)| Some((length, rest.split_last_chunk()?)));
+    let Some((length, (payload, given_checksum))) = parts else {
         return Err(Failure::BadBytes("it is too short"));
     };
     if payload.len() != u32::from_le_bytes(*length) as usize {
         return Err(Failure::BadBytes("its length is not the one that it states"));
     }
-    if crc32fast::hash(&bytes[..bytes.len() - crc.len()]) != u32::from_le_bytes(*crc) {
+    if checksum(&bytes[..bytes.len() - given_checksum.len()]) != *given_checksum {
         return Err(Failure::BadBytes("its checksum is wrong"));
     }
-    let (stage, setup, input, motion): Stored =
+    let condition: Condition =
         postcard::from_bytes(payload).map_err(|_| Failure::BadBytes("its content cannot be read"))?;
-    let engine = match motion {
-        None => None,
-        Some(motion) => {
-            let mut engine = setup.start()?;
-            engine.set_motion(motion);
-            Some(engine)
-        }
-    };
-    let condition = Condition { stage, setup, input, engine };
     if !condition.is_possible() {
         return Err(Failure::BadBytes("its content contradicts itself"));
     }
     Ok(condition)
+}
+
+fn checksum(bytes: &[u8]) -> [u8; 16] {
+    Uuid::new_v5(&Uuid::NAMESPACE_OID, bytes).into_bytes()
 }
 
 /// Everything before the length.

@@ -31,6 +31,11 @@ impl Stage {
         Stage::Terminated,
         Stage::Error,
     ];
+
+    /// Whether initialization has ended.
+    pub const fn has_started(self) -> bool {
+        !matches!(self, Stage::Instantiated | Stage::InitializationMode)
+    }
 }
 
 impl fmt::Display for Stage {

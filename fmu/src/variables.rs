@@ -3,6 +3,7 @@
 //! through it. A value reference is a position in the table.
 
 use rocking::engine::Motion;
+use rocking::load::LOADS;
 use rocking::parameters::PARAMETERS;
 use rocking::quantity::Quantity;
 use rocking::state::INITIAL_VALUES;
@@ -94,7 +95,12 @@ pub(crate) enum Source {
 pub static PHASES: Enumeration = Enumeration {
     name: "Phase",
     description: "what holds of the base",
-    items: &["full contact", "rocking left", "rocking right", "overturned"],
+    items: &[
+        Phase::FullContact.name(),
+        Phase::Rocking(Side::Left).name(),
+        Phase::Rocking(Side::Right).name(),
+        Phase::Overturned(Side::Right).name(),
+    ],
 };
 
 /// The levels of detail, in the order of [`Detail::ALL`].
@@ -138,31 +144,9 @@ fn overturned(motion: &Motion) -> i32 {
     i32::from(matches!(motion.phase, Phase::Overturned(_)))
 }
 
-/// The inputs. Their slopes are set by a call of their own, before or after, and anew for every step.
-pub(crate) static INPUTS: [Quantity<Load>; 2] = [
-    Quantity {
-        name: "a_g",
-        unit: "m/s2",
-        description: "horizontal ground acceleration, positive to the right",
-        min: -1e4,
-        max: 1e4,
-        get: |load| load.a_g,
-        set: |load, value| load.a_g = value,
-    },
-    Quantity {
-        name: "F_t",
-        unit: "N",
-        description: "external horizontal force on the top mass, positive to the right",
-        min: -1e15,
-        max: 1e15,
-        get: |load| load.F_t,
-        set: |load, value| load.F_t = value,
-    },
-];
-
 /// All variables, in the order of the model description.
 pub static VARIABLES: LazyLock<Vec<Variable>> = LazyLock::new(|| {
-    let inputs = const { &INPUTS }.iter().map(input);
+    let inputs = const { &LOADS }.iter().map(input);
     inputs
         .chain(outputs())
         .chain(const { &PARAMETERS }.iter().map(|quantity| fixed(quantity, Source::Parameter(quantity))))
@@ -207,8 +191,9 @@ fn outputs() -> Vec<Variable> {
     let of_state = |name, unit, description, of, initial_dependencies| {
         output(name, unit, description, Source::Output(of), &[], initial_dependencies)
     };
-    let force =
-        |name, unit, description, of| output(name, unit, description, Source::Output(of), &["F_t"], ACCELERATIONS);
+    let force = |name, unit, description, of| {
+        output(name, unit, description, Source::Output(of), &["a_g", "F_t"], ACCELERATIONS)
+    };
     let reaction = |name, unit, description, of| {
         output(name, unit, description, Source::Reaction(of), &["a_g", "F_t"], ACCELERATIONS)
     };
@@ -275,7 +260,7 @@ fn calculated_parameters() -> [Variable; 5] {
     [
         calculated("alpha_cg", &["m", "m0", "H", "B"]),
         calculated("p_l", &["m", "m0", "H", "B", "J0", "g"]),
-        calculated("beta", &["m", "m0", "H", "B", "J0"]),
+        calculated("chi", &["m", "m0", "H", "B", "J0"]),
         calculated("u_cr", &["m", "m0", "H", "B", "f_fc", "g"]),
         calculated("f_u", &["m", "m0", "H", "B", "J0", "f_fc"]),
     ]

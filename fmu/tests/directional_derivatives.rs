@@ -4,8 +4,11 @@
 mod host;
 
 use FlexibleRocking::c_abi::fmi2GetDirectionalDerivative;
+use FlexibleRocking::sensitivity::ACCURACY;
+use FlexibleRocking::variables::{Causality, DataType, VARIABLES, Variable};
 use approx::assert_relative_eq;
 use host::*;
+use std::f64::consts::TAU;
 
 /// The derivatives of `unknowns` where each of `knowns` changes by so much, or the status.
 fn derivatives(host: &Host, unknowns: &[&str], knowns: &[(&str, f64)]) -> Result<Vec<f64>, i32> {
@@ -85,9 +88,12 @@ fn they_exist_from_initialization_to_overturning() {
 #[test]
 fn what_is_no_known_or_unknown_is_refused() {
     let host = rocking();
+    let can = "only the inputs can, and in initialization mode Real parameters and initial values";
+    let no_known = |name: &str| format!("{name} cannot be a known of a directional derivative: {can}");
     for (unknowns, knowns, message) in [
-        (["a_t"], [("theta", 1.0)], "theta cannot be a known of a directional derivative: only the inputs can"),
-        (["a_t"], [("m", 1.0)], "m cannot be a known of a directional derivative: only the inputs can"),
+        (["a_t"], [("theta", 1.0)], &no_known("theta")[..]),
+        (["a_t"], [("m", 1.0)], &no_known("m")),
+        (["p_l"], [("a_g", 1.0)], "p_l has no derivative: only continuous Real outputs have"),
         (["a_t"], [("F_t", f64::NAN)], "the derivative of F_t, NaN, is out of range: it must be finite"),
         (["I_v"], [("F_t", 1.0)], "I_v has no derivative: only continuous Real outputs have"),
         (["phase"], [("a_g", 1.0)], "phase has no derivative: only continuous Real outputs have"),
@@ -95,6 +101,106 @@ fn what_is_no_known_or_unknown_is_refused() {
     ] {
         let message = format!("fmi2GetDirectionalDerivative: {message}");
         host.assert_refused(|| derivatives(&host, &unknowns, &knowns), Err(ERROR), &message);
+    }
+    let host = Host::initializing(&[]);
+    let message = format!("fmi2GetDirectionalDerivative: {}", no_known("detail"));
+    host.assert_refused(|| derivatives(&host, &["a_t"], &[("detail", 1.0)]), Err(ERROR), &message);
+    // free edges rise to either side, and a base in full contact cannot turn
+    for (unknown, known) in [("uplift", "theta_0"), ("theta_dot", "theta_dot_0")] {
+        let message = format!(
+            "fmi2GetDirectionalDerivative: the derivative of {unknown} by {known} does not exist here: {known} cannot \
+             change, or not to both sides alike"
+        );
+        host.assert_refused(|| derivatives(&host, &[unknown], &[(known, 1.0)]), Err(ERROR), &message);
+    }
+}
+
+/// In initialization mode, what InitialUnknowns lists: outputs and calculated parameters by parameters and initial
+/// values. J0 = 0, c_ratio = 0 and theta_0 = 1.5 are at the ends of their ranges, theta_0 = 0 is where phases change.
+#[test]
+fn those_by_start_values_are_the_closed_forms() {
+    for (theta, J0, c_ratio) in [(0.3_f64, 2.0, 0.7), (-0.3, 0.0, 0.0), (1.5, 1e-9, 1.0), (1e-9, 0.0, 1e-3)] {
+        let u = 2e-3;
+        let host = Host::initializing(&[("theta_0", theta), ("u_0", u), ("u_dot_0", 0.3), ("J0", J0)]);
+        assert_eq!(host.set(&[("c_ratio", c_ratio), ("a_g", 3.0), ("F_t", -50.0)]), OK);
+        let [m, H, B, f, zeta, g, u_dot] = ["m", "H", "B", "f_fc", "zeta_fc", "g", "u_dot"].map(|name| host.get(name));
+        let [F_t, h_cg, p_l, chi, u_cr, f_u] = [
+            host.get("F_t"),
+            B / host.get("alpha_cg").tan(),
+            host.get("p_l"),
+            host.get("chi"),
+            host.get("u_cr"),
+            host.get("f_u"),
+        ];
+        let (s, sin, cos) = (theta.signum(), theta.sin(), theta.cos());
+        let (omega, J_P) = (TAU * f, m * g * H / (p_l * p_l));
+        for (unknown, known, expected) in [
+            ("theta", "theta_0", 1.0),
+            ("theta", "m", 0.0),
+            ("u_dot", "u_dot_0", 1.0),
+            ("I_v", "m", 0.0),
+            ("a_t", "g", sin),
+            ("a_t", "m", -F_t / (m * m) * cos),
+            ("a_t", "u_0", -omega * omega),
+            ("a_t", "theta_0", g * cos - F_t / m * sin),
+            ("a_t", "f_fc", -2.0 * TAU * (zeta * c_ratio * u_dot + omega * u)),
+            ("a_t", "c_ratio", -2.0 * zeta * omega * u_dot),
+            ("V_t", "g", m * sin),
+            ("M_t", "g", m * H * sin),
+            ("uplift", "B", 2.0 * sin.abs()),
+            ("uplift", "theta_0", 2.0 * B * s * cos),
+            ("delta_t", "H", sin),
+            ("delta_t", "u_0", cos),
+            ("delta_t", "theta_0", (s * B - u) * sin + H * cos),
+            ("v_t", "u_dot_0", cos),
+            ("v_t", "theta_dot_0", (s * B - u) * sin + H * cos),
+            ("alpha_cg", "B", h_cg / (h_cg * h_cg + B * B)),
+            ("alpha_cg", "J0", 0.0),
+            ("p_l", "J0", -0.5 * p_l / J_P),
+            ("chi", "J0", -chi / J_P),
+            ("f_u", "J0", -0.5 * f_u * chi / ((1.0 - chi) * J_P)),
+            ("u_cr", "f_fc", -2.0 * u_cr / f),
+        ] {
+            let found = derivatives(&host, &[unknown], &[(known, 1.0)]).unwrap()[0];
+            let value = host.get(unknown).abs();
+            assert_relative_eq!(found, expected, max_relative = ACCURACY, epsilon = ACCURACY * value);
+        }
+    }
+}
+
+/// Of everything by everything, beside differences of the values; together they add up, with the inputs' share.
+#[test]
+fn those_by_start_values_are_the_slopes_of_the_values() {
+    let start =
+        [("theta_0", 0.3), ("theta_dot_0", -0.4), ("u_0", 2e-3), ("u_dot_0", 0.3), ("J0", 2.0), ("c_ratio", 0.7)];
+    let host = Host::initializing(&start);
+    assert_eq!(host.set(&[("a_g", 3.0), ("F_t", -50.0)]), OK);
+    let is_real = |variable: &&Variable| matches!(variable.data_type, DataType::Real { .. });
+    let named = |causality: &[Causality]| {
+        let of = VARIABLES.iter().filter(is_real).filter(|variable| causality.contains(&variable.causality));
+        of.map(|variable| variable.name).collect::<Vec<_>>()
+    };
+    let unknowns = named(&[Causality::Output, Causality::CalculatedParameter]);
+    let mut sum = derivatives(&host, &unknowns, &[("a_g", 0.5)]).unwrap();
+    let mut all = vec![("a_g", 0.5)];
+    for known in named(&[Causality::Parameter]) {
+        let (value, values) = (host.get(known), host.try_get(&unknowns).unwrap());
+        let step = 1e-4 * value;
+        let [more, less] = [step, -step].map(|step| {
+            assert_eq!(host.set(&[(known, value + step)]), OK);
+            host.try_get(&unknowns).unwrap()
+        });
+        assert_eq!(host.set(&[(known, value)]), OK);
+        let found = derivatives(&host, &unknowns, &[(known, 1.0)]).unwrap();
+        for (at, found) in found.into_iter().enumerate() {
+            let (expected, floor) = (0.5 * (more[at] - less[at]) / step, 1e-6 * values[at].abs() / value.abs());
+            assert_relative_eq!(found, expected, max_relative = 1e-5, epsilon = floor);
+            sum[at] += -2.0 * found;
+        }
+        all.push((known, -2.0));
+    }
+    for (found, expected) in derivatives(&host, &unknowns, &all).unwrap().into_iter().zip(sum) {
+        assert_relative_eq!(found, expected, max_relative = 1e-12);
     }
 }
 

@@ -5,6 +5,7 @@ mod host;
 
 use FlexibleRocking::BUILD;
 use FlexibleRocking::c_abi::*;
+use FlexibleRocking::condition::Condition;
 use host::*;
 use std::ffi::c_void;
 use std::ptr::{null_mut, without_provenance_mut};
@@ -46,6 +47,37 @@ fn going_back_repeats_the_same_bits() {
     assert_eq!(host.terminate(), OK);
     assert_eq!(host.go_back(state), OK);
     assert_eq!(host.step(1.0, 0.01), OK, "the state of the state machine went back, too");
+}
+
+/// The slope that the last step followed, of which the rates tell, is part of the state.
+#[test]
+fn a_state_remembers_the_ramp() {
+    let host = rocking();
+    assert_eq!(host.step(1.0, 0.01), OK);
+    let rate = host.rate("R_h", 1);
+    let other = Host::new();
+    assert_eq!(other.go_back(other.deserialize(&host.bytes()).unwrap()), OK);
+    assert_eq!(other.rate("R_h", 1), rate);
+    assert_eq!(
+        (host.set(&[("a_g", host.get("a_g"))]), other.go_back(other.deserialize(&host.bytes()).unwrap())),
+        (OK, OK)
+    );
+    assert_eq!(other.rate("R_h", 1), host.rate("R_h", 1));
+    assert_ne!(other.rate("R_h", 1), rate);
+}
+
+/// Nor is the engine built anew where only the motion differs.
+#[test]
+fn a_state_is_a_few_dozen_numbers() {
+    assert!(size_of::<Condition>() <= 64 * size_of::<f64>(), "{} bytes", size_of::<Condition>());
+    let host = rocking();
+    let state = host.keep();
+    assert_eq!(host.step(1.0, 0.01), OK);
+    let allocated = allocation_counter::measure(|| {
+        assert_eq!(host.try_keep(state), Ok(state));
+        assert_eq!(host.go_back(state), OK);
+    });
+    assert_eq!(allocated.count_total, 0);
 }
 
 #[test]

@@ -23,6 +23,7 @@ use std::ptr::{null, null_mut, without_provenance_mut};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use std::{env, fmt, slice, thread};
+use uuid::Uuid;
 
 /// Calls without `FUZZ_CALLS`.
 const CALLS: u64 = 200_000;
@@ -359,9 +360,9 @@ impl Sequence<'_> {
         }
         // A checksum that is right again lets the damage through to what lies behind it.
         if self.rng.bool()
-            && let Some((damaged, crc)) = bytes.split_last_chunk_mut::<4>()
+            && let Some((damaged, checksum)) = bytes.split_last_chunk_mut::<16>()
         {
-            *crc = crc32fast::hash(damaged).to_le_bytes();
+            *checksum = Uuid::new_v5(&Uuid::NAMESPACE_OID, damaged).into_bytes();
         }
         bytes
     }
@@ -431,7 +432,7 @@ impl Sequence<'_> {
     /// The solver's work since the start. Whatever calls have led to can be read back from its bytes.
     fn work(&self, at: usize) -> Work {
         let condition = snapshot::deserialize(&self.serialized(at)).unwrap();
-        condition.engine.map_or_else(Work::default, |engine| engine.motion().work)
+        condition.motion.map_or_else(Work::default, |motion| motion.work)
     }
 
     /// The stage. That of a null or silent instance is of no interest.
@@ -634,7 +635,7 @@ impl Sequence<'_> {
     /// Values are finite, or left alone.
     fn get_directional_derivative(&mut self, at: usize) {
         let mut unknowns = self.references();
-        let mut knowns = if self.one_in(8) { self.references() } else { vec![self.input()] };
+        let mut knowns = if self.one_in(4) { self.references() } else { vec![self.input()] };
         let mut seed: Vec<_> = knowns.iter().map(|_| self.number()).collect();
         let mut values = vec![f64::NEG_INFINITY; unknowns.len()];
         let (n_unknown, n_known) = (self.length(unknowns.len()), self.length(knowns.len()));
@@ -741,7 +742,9 @@ impl Sequence<'_> {
         let go_back = self.choice();
         let status = self.call(at, Function::DoStep, |c| unsafe { fmi2DoStep(c, point, step, go_back) });
         if let (Some(before), Some(after)) = (before, self.time(at)) {
-            assert!(if status == OK { after > before } else { after >= before }, "from {before} to {after}");
+            // the host's clock is right, in which the structure may overturn before the end of the last step
+            let is_on = if status == OK { after > before } else { after >= before.min(point) };
+            assert!(is_on, "from {before} to {after}");
             let (work, work_before) = (self.work(at), work_before.unwrap());
             let steps = work.steps - work_before.steps;
             assert!(steps <= MAX_STEPS_PER_ADVANCE, "{steps} steps");

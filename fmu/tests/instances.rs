@@ -7,6 +7,7 @@ use FlexibleRocking::c_abi::*;
 use FlexibleRocking::{BUILD, guid};
 use host::*;
 use rocking::Parameters;
+use std::collections::BTreeSet;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::ptr::{null, null_mut};
 use std::thread;
@@ -193,6 +194,32 @@ fn a_call_from_within_the_logger_is_refused() {
         assert_eq!(fmi2ExitInitializationMode(c), OK, "neither reset nor freed");
         fmi2FreeInstance(c);
     }
+}
+
+/// Of two threads that call one instance, one is served and the other refused: never both, never a third thing.
+#[test]
+fn a_call_while_another_thread_calls_is_refused() {
+    const CALLS: usize = 50_000;
+    let host = Host::started(&[]);
+    let c = host.component.expose_provenance();
+    let keep = move || {
+        let c = std::ptr::with_exposed_provenance_mut(c);
+        let mut kept = Vec::new();
+        for _ in 0..CALLS {
+            let mut state = null_mut();
+            match unsafe { fmi2GetFMUstate(c, &mut state) } {
+                OK => kept.push(state.addr()),
+                status => assert_eq!((status, state.is_null()), (ERROR, true)),
+            }
+        }
+        kept
+    };
+    let threads = [thread::spawn(keep), thread::spawn(keep)];
+    let [first, second] = threads.map(|thread| thread.join().unwrap());
+    let served = first.len() + second.len();
+    assert!(served < 2 * CALLS, "the threads never met");
+    assert_eq!(first.into_iter().chain(second).collect::<BTreeSet<_>>().len(), served, "one state handed out twice");
+    assert!(host.log.borrow().is_empty());
 }
 
 #[test]

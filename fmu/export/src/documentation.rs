@@ -7,9 +7,10 @@ use FlexibleRocking::variables::{Causality, DataType, VARIABLES, Variable};
 use minijinja::value::Serde;
 use minijinja::{Environment, UndefinedBehavior};
 use rocking::Structure;
-use rocking::engine::{DEFAULT_TOLERANCE, MAX_TRANSITIONS_PER_PERIOD};
+use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::parameters::MAX_SLENDERNESS;
 use rocking::structure::DERIVED;
+use rocking::transition::MAX_TRANSITIONS_PER_PERIOD;
 use serde::Serialize;
 
 const TEMPLATE: &str = include_str!("../resources/index.html");

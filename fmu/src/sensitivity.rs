@@ -1,0 +1,135 @@
+//! Derivatives of initial values and calculated parameters by what is set before the start.
+//!
+//! Differences to either side of the value are extrapolated to the limit of no difference (Neville's scheme, its entry
+//! of least change), each within the value's range and without passing 0, at which phases change and ranges end. Where
+//! both sides have room, they must agree; a step or a kink has no derivative. What is returned is exact to
+//! [`ACCURACY`].
+
+use crate::condition::Setup;
+use crate::failure::Failure;
+use crate::variables::{DataType, Source, Variable};
+use rocking::{Engine, Load, Outputs, Parameters, Reactions};
+
+/// Relative to the derivative, or to the unknown's value over the known's scale where that is more.
+pub const ACCURACY: f64 = 1e-8;
+
+/// First difference, in parts of the known's scale.
+const FIRST: f64 = 0.1;
+
+/// Differences, each half of the one before.
+const DIFFERENCES: i32 = 12;
+
+/// What an engine shows under a load.
+pub(crate) struct Shown<'a> {
+    engine: &'a Engine,
+    pub outputs: Outputs,
+    reactions: Reactions,
+}
+
+impl Shown<'_> {
+    pub fn new(engine: &Engine, load: Load) -> Shown<'_> {
+        Shown { engine, outputs: engine.outputs(load), reactions: engine.reactions(load) }
+    }
+
+    /// The value of a computed Real; 0 for others.
+    pub fn get(&self, variable: &Variable) -> f64 {
+        match variable.source {
+            Source::Output(of) => of(&self.outputs),
+            Source::Reaction(of) => of(&self.reactions),
+            Source::Derived(derived) => (derived.value)(self.engine.structure()),
+            _ => 0.0,
+        }
+    }
+}
+
+/// The derivatives of `unknowns` by `known` at the start that `setup` describes, under `load`.
+pub(crate) fn sensitivities(
+    setup: &Setup,
+    load: Load,
+    unknowns: &[&'static Variable],
+    known: &'static Variable,
+) -> Result<Vec<f64>, Failure> {
+    let depends = |variable: &Variable| variable.initial_dependencies.contains(&known.name);
+    let shown = |value: f64| {
+        let engine = setup.with(&known.source, value).start()?;
+        let shown = Shown::new(&engine, load);
+        Ok::<Vec<_>, Failure>(unknowns.iter().map(|variable| shown.get(variable)).collect())
+    };
+    let x = setup.get(&known.source);
+    let scale = scale(known, x, &setup.parameters);
+    let here = shown(x)?;
+    let sides = if unknowns.iter().any(|variable| depends(variable)) {
+        [1.0, -1.0].map(|sign| {
+            let steps = (0..DIFFERENCES).scan(first_step(known, x, sign, scale), |step, _| {
+                let now = *step;
+                *step *= 0.5;
+                Some(x + sign * now)
+            });
+            steps.filter(|to| *to != x).filter_map(|to| Some((to - x, shown(to).ok()?))).collect::<Vec<_>>()
+        })
+    } else {
+        [Vec::new(), Vec::new()]
+    };
+    let reach = |side: &[(f64, Vec<f64>)]| side.first().map_or(0.0, |(step, _)| step.abs());
+    let farthest = reach(&sides[0]).max(reach(&sides[1]));
+    let derivative = |at: usize, variable: &&'static Variable| {
+        if !depends(variable) {
+            return Ok(0.0);
+        }
+        let does_not_exist = Failure::NoSensitivity { variable, known };
+        let floor = here[at].abs() / scale;
+        let limits = sides.iter().filter(|side| !side.is_empty() && reach(side) >= FIRST * farthest).map(|side| {
+            limit(side.iter().map(|(step, values)| (*step, (values[at] - here[at]) / step)))
+                .filter(|(limit, change)| *change <= ACCURACY * limit.abs().max(floor))
+        });
+        match limits.collect::<Option<Vec<_>>>().as_deref() {
+            Some([(limit, _)]) => Ok(*limit),
+            Some([(a, _), (b, _)]) if (a - b).abs() <= ACCURACY * a.abs().max(floor) => Ok(0.5 * (a + b)),
+            _ => Err(does_not_exist),
+        }
+    };
+    unknowns.iter().enumerate().map(|(at, variable)| derivative(at, variable)).collect()
+}
+
+/// What counts as a change of size one: the value itself, or more where it is small beside the structure.
+fn scale(known: &Variable, x: f64, &Parameters { m, H, B, g, .. }: &Parameters) -> f64 {
+    let DataType::Real { unit, .. } = known.data_type else { return x.abs() };
+    let natural = match unit {
+        "kg" => m,
+        "kg.m2" => m * B * B,
+        "m" => B,
+        "m/s" => B * (g / H).sqrt(),
+        "rad/s" => (g / H).sqrt(),
+        "rad" | "1" => 1.0,
+        _ => 0.0,
+    };
+    natural.max(x.abs())
+}
+
+/// The largest step from `x` towards `sign`.
+fn first_step(known: &Variable, x: f64, sign: f64, scale: f64) -> f64 {
+    let DataType::Real { range: Some((min, max)), .. } = known.data_type else { return 0.0 };
+    let room = if sign > 0.0 { max - x } else { x - min };
+    let to_zero = if x * sign < 0.0 { 0.5 * x.abs() } else { f64::INFINITY };
+    (FIRST * scale).min(room).min(to_zero)
+}
+
+/// The limit of `quotients`, given with their steps, at the step 0, and the change that the scheme last made to it.
+fn limit(quotients: impl Iterator<Item = (f64, f64)>) -> Option<(f64, f64)> {
+    let (mut steps, mut row) = (Vec::new(), Vec::<f64>::new());
+    let mut best: Option<(f64, f64)> = None;
+    for (step, quotient) in quotients {
+        let before = std::mem::replace(&mut row, vec![quotient]);
+        steps.push(step);
+        for (column, diagonal) in before.iter().enumerate() {
+            let farther = steps[steps.len() - 2 - column];
+            let value = row[column] + (row[column] - diagonal) * step / (farther - step);
+            let change = (value - row[column]).abs().max((value - diagonal).abs());
+            if best.is_none_or(|(_, least)| change < least) {
+                best = Some((value, change));
+            }
+            row.push(value);
+        }
+    }
+    best
+}
