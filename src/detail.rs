@@ -260,3 +260,46 @@ impl Level for FixedBase {
         [full_contact::acceleration(structure, state, load), 0.0]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Parameters, Ramp};
+
+    /// Numbers between −1 and 1: a linear congruential generator.
+    fn noise() -> impl Iterator<Item = f64> {
+        let next = |x: &u64| Some(x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407));
+        std::iter::successors(Some(1), next).map(|x| (x >> 11) as f64 / (1_u64 << 52) as f64 - 1.0)
+    }
+
+    /// Steep loads, white noise at 0.21 ms, leave an exact flow the digits that a series has: 1e-12 of the peaks of u̇ and
+    /// θ̇ after a thousand leaps.
+    #[test]
+    fn exact_flows_keep_their_digits_under_steep_loads() {
+        let parameters = Parameters { H: 30.3, B: 5.11, f_fc: 48.2, ..Parameters::MCMANUS };
+        let structure = Structure::new(parameters).unwrap();
+        let rocking = State { u: 1e-5, u_dot: 0.01, theta: 0.1, theta_dot: 0.02 };
+        let down = State { theta: 0.0, theta_dot: 0.0, ..rocking };
+        for (detail, phase, mut state) in [
+            (Detail::Modal, Phase::Rocking(Side::Right), rocking),
+            (Detail::Linear, Phase::Rocking(Side::Right), rocking),
+            (Detail::FixedBase, Phase::FullContact, down),
+        ] {
+            let mut level = detail.level(&structure, 1e-9);
+            let (mut expected, mut arc) = (state, Arc::default());
+            let (mut u_dot, mut theta_dot) = (0.0_f64, 0.0_f64);
+            for (k, pair) in noise().map(|x| 20.0 * x).take(1001).collect::<Vec<_>>().windows(2).enumerate() {
+                let a_g = Ramp { value: pair[0], slope: (pair[1] - pair[0]) / 2.1e-4 };
+                let start = |state| Start { state, a_g, a_top: a_g, interval: 2.1e-4, local_error: 1e-17 };
+                state = level.leap(&structure, phase, &start(state)).unwrap_or_else(|| panic!("{detail:?} at {k}"));
+                level.series(&structure, phase, &start(expected), &mut arc);
+                expected = arc.end();
+                (u_dot, theta_dot) = (u_dot.max(expected.u_dot.abs()), theta_dot.max(expected.theta_dot.abs()));
+            }
+            let off = (state.u_dot - expected.u_dot).abs() / u_dot;
+            assert!(off < 1e-12, "{detail:?}: u_dot is off by {off:e}");
+            let off = (state.theta_dot - expected.theta_dot).abs();
+            assert!(off <= 1e-12 * theta_dot, "{detail:?}: theta_dot is off by {off:e} of {theta_dot:e}");
+        }
+    }
+}

@@ -9,7 +9,12 @@ use crate::{
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fmu_export::significant::significant;
 use indicatif::ProgressBar;
-use rocking::{Detail, Transition, engine::DEFAULT_TOLERANCE, record::Record, run::Run};
+use rocking::{
+    Detail, Transition,
+    engine::DEFAULT_TOLERANCE,
+    record::Record,
+    run::{End, Run},
+};
 use std::path::{Path, PathBuf};
 
 /// What to simulate.
@@ -61,7 +66,7 @@ fn tolerance(text: &str) -> Result<f64, String> {
 
 impl SimulateArgs {
     /// The instants of the output (s), the end left out: the samples and as often after them, or every interval.
-    fn output_times(&self, ground: &Record) -> impl Iterator<Item = f64> {
+    fn output_times(&self, ground: &Record, end: End) -> impl Iterator<Item = f64> {
         let samples = ground.times();
         let last = samples.len() - 1;
         let (samples, interval) = match self.results.dt.or(self.ground.free_vibration_interval()) {
@@ -69,7 +74,13 @@ impl SimulateArgs {
             None => (samples, samples[last] - samples[last - 1]),
         };
         let from = samples[samples.len() - 1];
-        samples.iter().copied().chain((1_u64..).map(move |i| from + i as f64 * interval))
+        // an instant that misses the end by rounding is the end
+        let before = if let End::At(end) = end { end - 1e-6 * interval } else { f64::INFINITY };
+        samples
+            .iter()
+            .copied()
+            .chain((1_u64..).map(move |i| from + i as f64 * interval))
+            .take_while(move |time| *time < before)
     }
 
     fn output_path(&self) -> PathBuf {
@@ -101,7 +112,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     };
     let mut rows = Ok(());
     let finish = run.sample(
-        args.output_times(&ground),
+        args.output_times(&ground, end),
         |sample| {
             progress.inc(1);
             if rows.is_ok() {

@@ -1,13 +1,8 @@
 //! One run: a structure at rest under a ground motion, to the end of the record or to overturning, and its peaks.
 use super::plan::Limit;
-use crate::peaks::{PART_OF_PERIOD, Peaks};
-use rocking::{
-    Engine, Parameters, Phase, State, Structure, Transition,
-    engine::{AdvanceError, DEFAULT_TOLERANCE},
-    record::Record,
-};
+use rocking::run::{Ending, Finish, Run, RunError};
+use rocking::{Parameters, Structure, record::Record};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
 
 /// What a run is measured by, with units: the largest magnitudes on the way.
 pub const MEASURES: [(&str, &str); 7] = [
@@ -35,32 +30,13 @@ pub struct Outcome {
 
 impl Outcome {
     /// Runs `structure` from rest under `ground`.
-    pub fn of(structure: &Structure, ground: &Record) -> Result<Outcome, AdvanceError> {
-        let interval = PART_OF_PERIOD * TAU / structure.omega_u;
-        let mut engine = Engine::new(*structure, State::default(), ground.start(), DEFAULT_TOLERANCE)
-            .expect("every structure may start at rest in full contact");
-        let mut peaks = Peaks::from(*structure, engine.motion());
-        'run: for segment in ground.segments_until(ground.end()) {
-            let parts = ((segment.end - segment.start) / interval).ceil().max(1.0);
-            for part in 1..=parts as u64 {
-                let until = segment.start + (segment.end - segment.start) * (part as f64 / parts);
-                let until = if part as f64 == parts { segment.end } else { until };
-                let a_g = segment.from(engine.motion().time);
-                let mut on_the_way = |at: &Transition| peaks.pass(at, segment.from(at.time).value);
-                engine.advance(until, a_g, &mut on_the_way)?;
-                let motion = engine.motion();
-                if let Phase::Overturned(_) = motion.phase {
-                    break 'run;
-                }
-                peaks.reach(motion.time, motion.phase, &motion.state, segment.from(motion.time).value);
-            }
-        }
-        let motion = engine.motion();
-        let overturned = matches!(motion.phase, Phase::Overturned(_));
+    pub fn of(structure: &Structure, ground: &Record) -> Result<Outcome, RunError> {
+        let (peaks, Finish { ending, motion }) = Run::new(*structure, ground).peaks()?;
+        let overturned = ending == Ending::Overturned;
         Ok(Outcome {
             overturned,
             overturned_at: overturned.then_some(motion.time),
-            peaks: measures(structure, peaks.largest()),
+            peaks: measures(structure, [peaks.theta(), peaks.u(), peaks.a_t()].map(|peak| peak.magnitude)),
             transitions: motion.transitions,
             steps: motion.work.steps,
             evaluations: motion.work.evaluations,
