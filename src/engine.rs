@@ -17,7 +17,7 @@ use crate::piece::{Piece, Watch};
 use crate::reactions::{Impulse, Reactions};
 use crate::state::InitialStateError;
 use crate::taylor::{Arc, Start};
-use crate::transition::{self, Chatter, StepEnd};
+use crate::transition::{self, Chatter, Event};
 use crate::{Outputs, Phase, Side, State, Structure};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
@@ -185,7 +185,7 @@ impl Engine {
 
     /// Advances by `interval` (s) under `load`, which is given from the present time on. Every piece and every
     /// transition on the way is shown to `watch`, once.
-    pub fn advance<W: Watch + ?Sized>(
+    pub fn advance<W: Watch>(
         &mut self,
         interval: f64,
         load: impl Into<LinearLoad>,
@@ -196,23 +196,13 @@ impl Engine {
         let until = start + interval;
         self.check(interval, &load)?;
         let (a_g, a_top) = (load.on_foundation(), load.on_top(&self.structure));
-        let local_error = (LOCAL_SHARE * self.tolerance).max(f64::EPSILON / 2.0);
+        let local_error = self.local_error();
         let Motion { state, phase, .. } = self.motion;
         let begin = Start { state, a_g, a_top, interval, local_error };
         if let Some(end) = self.leap(phase, &begin) {
-            watch.piece(&mut Piece {
-                before: self.motion,
-                duration: interval,
-                load,
-                end,
-                structure: &self.structure,
-                level: &mut *self.level,
-                arc: &mut self.arc,
-                is_expanded: false,
-                local_error,
-                passed: (0.0, state),
-                evaluations: 0,
-            });
+            if W::SEES_PIECES {
+                watch.piece(&mut self.piece(self.motion, interval, load, end, false));
+            }
             self.motion.state = end;
             self.motion.time = until;
             self.motion.work.steps += 1;
@@ -232,15 +222,13 @@ impl Engine {
                 interval: left,
                 local_error,
             };
-            let end = match motion.phase {
+            let event = match motion.phase {
                 Phase::FullContact => self.step_in_full_contact(begin, motion.chatter.held),
                 Phase::Rocking(side) => self.step_while_rocking(&begin, side),
                 Phase::Overturned(_) => break,
             };
             let (arc, duration) = (&self.arc, self.arc.duration());
-            let has_stalled = arc.reach < 1.0 && duration <= STALLED / self.structure.omega_u;
-            let has_ended = has_stalled && matches!(end, StepEnd::Quiet);
-            if !arc.is_finite() || has_ended || self.level.is_singular(&self.structure, motion.phase, &motion.state) {
+            if !arc.is_finite() || arc.reach < 1.0 && self.is_at_its_end(&motion, event) {
                 let State { u, theta, .. } = motion.state;
                 return Err(AdvanceError::Singular { time: motion.time, u, theta });
             }
@@ -250,25 +238,15 @@ impl Engine {
             motion.work.steps += 1;
             motion.work.evaluations += arc.order as u64;
             let state = arc.end();
-            watch.piece(&mut Piece {
-                before: motion,
-                duration,
-                load: load.from(elapsed),
-                end: state,
-                structure: &self.structure,
-                level: &mut *self.level,
-                arc: &mut self.arc,
-                is_expanded: true,
-                local_error,
-                passed: (0.0, motion.state),
-                evaluations: 0,
-            });
+            if W::SEES_PIECES {
+                watch.piece(&mut self.piece(motion, duration, load.from(elapsed), state, true));
+            }
             motion.state = state;
             motion.chatter.pass(duration);
             elapsed = if duration == left { interval } else { elapsed + duration };
             motion.time = if elapsed < interval { start + elapsed } else { until };
-            if let Some(transition) = transition::resolve(&*self.level, &self.structure, &mut motion, end) {
-                watch.transition(&transition);
+            if let Some(event) = event {
+                watch.transition(&transition::resolve(&*self.level, &self.structure, &mut motion, event));
             }
         }
         self.motion = motion;
@@ -278,21 +256,38 @@ impl Engine {
         }
     }
 
+    /// Truncation error that a step may have.
+    fn local_error(&self) -> f64 {
+        (LOCAL_SHARE * self.tolerance).max(f64::EPSILON / 2.0)
+    }
+
+    /// What watchers are shown of a stretch of `duration` (s) under `load` from the motion `before` to the state `end`.
+    fn piece(&mut self, before: Motion, duration: f64, load: LinearLoad, end: State, is_expanded: bool) -> Piece<'_> {
+        Piece {
+            before,
+            duration,
+            load,
+            end,
+            structure: &self.structure,
+            local_error: self.local_error(),
+            level: &mut *self.level,
+            arc: &mut self.arc,
+            is_expanded,
+            passed: (0.0, before.state),
+            evaluations: 0,
+        }
+    }
+
     /// Whether `load` can act over `interval` (s).
     #[inline]
     fn check(&self, interval: f64, load: &LinearLoad) -> Result<(), AdvanceError> {
         if !(interval > 0.0 && interval.is_finite()) {
             return Err(AdvanceError::NotAhead { from: self.motion.time, interval });
         }
-        let last = load.at(interval);
-        for quantity in const { &LOADS } {
-            let [first, last, slope] = [&load.value, &last, &load.slope].map(quantity.get);
-            if !(first.is_finite() && last.is_finite()) {
-                let &crate::Quantity { name, unit, .. } = quantity;
-                return Err(AdvanceError::Load { name, unit, value: first, slope, interval });
-            }
+        if load.value.is_finite() && load.at(interval).is_finite() {
+            return Ok(());
         }
-        Ok(())
+        Err(bad_load(interval, load))
     }
 
     /// Whether the structure, in full contact now, stays there while nothing acts on it.
@@ -353,8 +348,14 @@ impl Engine {
         leap.filter(State::is_finite)
     }
 
+    /// Whether the step in hand, which goes from `motion` to less than what was asked for, is the last that there can be.
+    fn is_at_its_end(&self, motion: &Motion, event: Option<Event>) -> bool {
+        let has_stalled = self.arc.duration() <= STALLED / self.structure.omega_u;
+        has_stalled && event.is_none() || self.level.is_singular(&self.structure, motion.phase, &motion.state)
+    }
+
     /// Motion in full contact, cut at uplift; none of it for the first `held` seconds.
-    fn step_in_full_contact(&mut self, mut start: Start, held: f64) -> StepEnd {
+    fn step_in_full_contact(&mut self, mut start: Start, held: f64) -> Option<Event> {
         let is_held = held > 0.0;
         if is_held {
             start.interval = start.interval.min(held);
@@ -362,39 +363,50 @@ impl Engine {
         let arc = &mut self.arc;
         self.level.series(&self.structure, Phase::FullContact, &start, arc);
         if is_held {
-            return StepEnd::Quiet;
+            return None;
         }
         let (crossing, side) = self.level.first_uplift(&self.structure, &start, arc);
-        cut(arc, crossing, StepEnd::Uplift(side))
+        cut(arc, crossing, Event::Uplift(side))
     }
 
     /// Rocking about `side`, cut at impact or overturning.
-    fn step_while_rocking(&mut self, start: &Start, side: Side) -> StepEnd {
+    fn step_while_rocking(&mut self, start: &Start, side: Side) -> Option<Event> {
         let arc = &mut self.arc;
         self.level.series(&self.structure, Phase::Rocking(side), start, arc);
         if stays_about(arc, side) {
-            return StepEnd::Quiet;
+            return None;
         }
         let overturning = first_overturning(arc, side);
-        let end = cut(arc, overturning, StepEnd::Overturning(side));
+        let end = cut(arc, overturning, Event::Overturning(side));
         match first_return(arc, side) {
             Crossing::None => end,
-            crossing => cut(arc, crossing, StepEnd::Impact(side)),
+            crossing => cut(arc, crossing, Event::Impact(side)),
         }
     }
 }
 
-/// Ends `arc` at `crossing`, and says whether the transition `end` happens there.
-fn cut(arc: &mut Arc, crossing: Crossing, end: StepEnd) -> StepEnd {
+/// Which part of a `load` that is not finite over `interval` (s) is not.
+#[cold]
+fn bad_load(interval: f64, load: &LinearLoad) -> AdvanceError {
+    let is_bad = |quantity: &&crate::Quantity<Load>| {
+        ![load.value, load.at(interval)].iter().all(|load| (quantity.get)(load).is_finite())
+    };
+    let bad = const { &LOADS }.iter().find(is_bad).expect("one of them is not");
+    let [value, slope] = [&load.value, &load.slope].map(bad.get);
+    AdvanceError::Load { name: bad.name, unit: bad.unit, value, slope, interval }
+}
+
+/// Ends `arc` at `crossing`; `event` is what happens there.
+fn cut(arc: &mut Arc, crossing: Crossing, event: Event) -> Option<Event> {
     match crossing {
-        Crossing::None => StepEnd::Quiet,
+        Crossing::None => None,
         Crossing::NoneUntil(sigma) => {
             arc.reach = sigma;
-            StepEnd::Quiet
+            None
         }
         Crossing::At(sigma) => {
             arc.reach = sigma;
-            end
+            Some(event)
         }
     }
 }

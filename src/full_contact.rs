@@ -53,7 +53,8 @@ impl ExactContact {
     #[inline]
     pub(crate) fn leap(&mut self, start: &Start, limit: f64) -> Option<State> {
         let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
-        if self.oscillator.swing([u, u_dot], a_top.value, a_top.slope, interval).farthest() >= limit {
+        let is_low = || self.oscillator.swing([u, u_dot], a_top.value, a_top.slope, interval).farthest() < limit;
+        if limit < f64::INFINITY && !is_low() {
             return None;
         }
         let flow = self.flows.over(interval, || self.oscillator.flow(interval));

@@ -62,12 +62,13 @@ impl LinearRocking {
         LinearRocking { system: LinearSystem { u_ddot, theta_ddot }, flows: Kept::new(Flow::zeros()), omega, g }
     }
 
-    /// Bounds of what changes over the interval of `start` about `side`; none where θ turns too far back on u.
+    /// Bounds of the speed of the vibration and of |θ̈| over the interval of `start` about `side`, and where the vibration is
+    /// about; none where θ turns too far back on u.
     ///
     /// With f = g θ − a_top + s U_s, the vibration about f/Ω² has an energy that grows by the change of f alone, which
     /// bounds its speed v and with it |θ̈|, on which the change of f depends in turn.
-    #[inline]
-    fn bounds_of(&self, side: Side, start: &Start) -> Option<Bounds> {
+    #[inline(always)]
+    fn swing(&self, side: Side, start: &Start) -> Option<Swing> {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
         let LinearSystem { u_ddot, theta_ddot } = &self.system;
         let s = side.sign();
@@ -76,25 +77,18 @@ impl LinearRocking {
         let speed = (u_dot * u_dot + swing * swing).sqrt() + h * h * (a_top.slope.abs() + self.g * theta_dot.abs());
         let per_speed = theta_ddot.u / self.omega + theta_ddot.u_dot;
         let feedback = per_speed * self.g * h * h * h / 2.0;
-        if feedback >= 0.5 {
-            return None;
-        }
         let steady = (theta_ddot.u * following + s * theta_ddot.side).abs();
         let turning = (steady + per_speed * speed) / (1.0 - feedback);
-        let speed = speed + self.g * h * h * h / 2.0 * turning;
-        let theta_dot = theta_dot.abs() + turning * h;
-        let force_rate = a_top.slope.abs() + self.g * theta_dot;
-        let elastic = (self.omega - u_ddot.u_dot) * speed + h * force_rate;
-        Some(Bounds {
-            u: following.abs() + speed / self.omega,
-            u_dot: speed,
-            u_ddot: elastic,
-            u_dddot: self.omega * self.omega * speed - u_ddot.u_dot * elastic + force_rate,
-            theta: theta.abs() + theta_dot * h,
-            theta_dot,
-            theta_ddot: turning,
-        })
+        (feedback < 0.5).then_some(Swing { following, speed, turning })
     }
+}
+
+/// Bounds of a leap, from [`LinearRocking::swing`].
+struct Swing {
+    following: f64,
+    /// But for what θ̈ adds.
+    speed: f64,
+    turning: f64,
 }
 
 impl ElasticRocking for LinearRocking {
@@ -103,7 +97,7 @@ impl ElasticRocking for LinearRocking {
     #[inline]
     fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
-        let off_chord = self.bounds_of(side, start)?.theta_ddot * h * h / 8.0;
+        let off_chord = self.swing(side, start)?.turning * h * h / 8.0;
         let s = side.sign();
         let flow = self.flows.over(h, || flow(&self.system, self.omega, h));
         let end = flow * SVector::from([u, u_dot, theta, theta_dot, a_top.value, a_top.slope, s]);
@@ -113,7 +107,22 @@ impl ElasticRocking for LinearRocking {
     }
 
     fn bounds(&self, side: Side, start: &Start, _end: &State) -> Bounds {
-        self.bounds_of(side, start).unwrap_or(Bounds::NONE)
+        let &Start { state: State { theta, theta_dot, .. }, a_top, interval: h, .. } = start;
+        let Some(Swing { following, speed, turning }) = self.swing(side, start) else { return Bounds::NONE };
+        let u_ddot = &self.system.u_ddot;
+        let speed = speed + self.g * h * h * h / 2.0 * turning;
+        let theta_dot = theta_dot.abs() + turning * h;
+        let force_rate = a_top.slope.abs() + self.g * theta_dot;
+        let elastic = (self.omega - u_ddot.u_dot) * speed + h * force_rate;
+        Bounds {
+            u: following.abs() + speed / self.omega,
+            u_dot: speed,
+            u_ddot: elastic,
+            u_dddot: self.omega * self.omega * speed - u_ddot.u_dot * elastic + force_rate,
+            theta: theta.abs() + theta_dot * h,
+            theta_dot,
+            theta_ddot: turning,
+        }
     }
 
     fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {

@@ -66,6 +66,12 @@ impl Load {
         Load { a_g, F_t: 0.0 }
     }
 
+    /// Whether both are numbers.
+    #[inline]
+    pub fn is_finite(&self) -> bool {
+        self.a_g.is_finite() && self.F_t.is_finite()
+    }
+
     /// a_g − F_t/m, the ground acceleration that the top mass feels, m/s².
     #[inline]
     pub fn on_top(self, structure: &Structure) -> f64 {

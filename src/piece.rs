@@ -13,6 +13,9 @@ use crate::{Outputs, Reactions, State, Structure, extremes, outputs};
 
 /// Watches a motion go by.
 pub trait Watch {
+    /// Whether it looks at pieces: who does not does not pay for them.
+    const SEES_PIECES: bool;
+
     /// The next piece of it.
     #[inline]
     fn piece(&mut self, _piece: &mut Piece) {}
@@ -23,10 +26,14 @@ pub trait Watch {
 }
 
 /// Nobody.
-impl Watch for () {}
+impl Watch for () {
+    const SEES_PIECES: bool = false;
+}
 
 /// Whoever wants the transitions alone.
 impl<F: FnMut(&Transition)> Watch for F {
+    const SEES_PIECES: bool = false;
+
     fn transition(&mut self, transition: &Transition) {
         self(transition);
     }
@@ -34,6 +41,8 @@ impl<F: FnMut(&Transition)> Watch for F {
 
 /// Two at once.
 impl<A: Watch, B: Watch> Watch for (&mut A, &mut B) {
+    const SEES_PIECES: bool = A::SEES_PIECES || B::SEES_PIECES;
+
     #[inline]
     fn piece(&mut self, piece: &mut Piece) {
         self.0.piece(piece);

@@ -93,7 +93,7 @@ impl<'a> Run<'a> {
     }
 
     /// Follows the motion to the end.
-    pub fn follow<W: Watch + ?Sized>(&self, watch: &mut W) -> Result<Finish, RunError> {
+    pub fn follow<W: Watch>(&self, watch: &mut W) -> Result<Finish, RunError> {
         let mut engine = self.start()?;
         let ending = self.follow_ground(&mut engine, watch)?;
         Ok(Finish { ending, motion: *engine.motion() })
@@ -104,7 +104,7 @@ impl<'a> Run<'a> {
         Engine::with_detail(self.structure, self.initial, self.ground.start(), self.tolerance, self.detail)
     }
 
-    fn follow_ground<W: Watch + ?Sized>(&self, engine: &mut Engine, watch: &mut W) -> Result<Ending, AdvanceError> {
+    fn follow_ground<W: Watch>(&self, engine: &mut Engine, watch: &mut W) -> Result<Ending, AdvanceError> {
         let end = match self.end {
             End::AtRest => self.ground.end(),
             End::At(end) => end,
@@ -146,7 +146,7 @@ impl<'a> Run<'a> {
 }
 
 /// Follows a structure on ground at rest until nothing more can happen.
-fn come_to_rest<W: Watch + ?Sized>(engine: &mut Engine, watch: &mut W) -> Result<Ending, AdvanceError> {
+fn come_to_rest<W: Watch>(engine: &mut Engine, watch: &mut W) -> Result<Ending, AdvanceError> {
     let p_l = engine.structure().p_l;
     let mut left = LONGEST_REST;
     while !engine.stays_down() {

@@ -49,11 +49,9 @@ pub struct Transition {
     pub after: State,
 }
 
-/// What the end of a step is.
+/// What happens at the end of a step.
 #[derive(Clone, Copy)]
-pub(crate) enum StepEnd {
-    /// Nothing happens there.
-    Quiet,
+pub(crate) enum Event {
     /// The base lifts off about this side.
     Uplift(Side),
     /// Rocking about this side is back at the ground.
@@ -103,24 +101,18 @@ impl Chatter {
     }
 }
 
-/// Applies to `motion` what happens at the `end` of a step; a transition is returned to be reported.
-pub(crate) fn resolve(
-    level: &dyn Level,
-    structure: &Structure,
-    motion: &mut Motion,
-    end: StepEnd,
-) -> Option<Transition> {
+/// Applies what `event` leads to, to `motion`; the transition is returned to be reported.
+pub(crate) fn resolve(level: &dyn Level, structure: &Structure, motion: &mut Motion, event: Event) -> Transition {
     let before = motion.state;
     let limit = level.chatter_limit(structure);
-    let (kind, phase, after) = match end {
-        StepEnd::Quiet => return None,
-        StepEnd::Uplift(side) => (TransitionKind::Uplift(side), Phase::Rocking(side), before),
-        StepEnd::Overturning(side) => (TransitionKind::Overturning(side), Phase::Overturned(side), before),
-        StepEnd::Impact(_) if motion.chatter.is_too_much(limit) => {
+    let (kind, phase, after) = match event {
+        Event::Uplift(side) => (TransitionKind::Uplift(side), Phase::Rocking(side), before),
+        Event::Overturning(side) => (TransitionKind::Overturning(side), Phase::Overturned(side), before),
+        Event::Impact(_) if motion.chatter.is_too_much(limit) => {
             motion.chatter.held = limit.period - motion.chatter.age;
             (TransitionKind::Settling, Phase::FullContact, level.land(structure, &before))
         }
-        StepEnd::Impact(side) => match level.after_impact(structure, side, &before) {
+        Event::Impact(side) => match level.after_impact(structure, side, &before) {
             (Phase::Rocking(side), after) => (TransitionKind::Impact(side), Phase::Rocking(side), after),
             (phase, after) => (TransitionKind::Landing, phase, after),
         },
@@ -130,5 +122,5 @@ pub(crate) fn resolve(
     motion.impulse = motion.impulse.and(Impulse::of(structure, (motion.phase, &before), (phase, &after)));
     motion.phase = phase;
     motion.state = after;
-    Some(Transition { time: motion.time, kind, before, after })
+    Transition { time: motion.time, kind, before, after }
 }

@@ -12,6 +12,8 @@ pub struct Summary {
 }
 
 impl Watch for Summary {
+    const SEES_PIECES: bool = true;
+
     fn piece(&mut self, piece: &mut Piece) {
         self.peaks.piece(piece);
     }

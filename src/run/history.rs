@@ -85,6 +85,8 @@ impl Stretch {
 }
 
 impl Watch for History {
+    const SEES_PIECES: bool = true;
+
     fn piece(&mut self, piece: &mut Piece) {
         loop {
             let (duration, span) = (piece.arc().duration(), piece.arc().span);

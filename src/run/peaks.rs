@@ -128,6 +128,8 @@ impl Peaks {
 }
 
 impl Watch for Peaks {
+    const SEES_PIECES: bool = true;
+
     fn piece(&mut self, piece: &mut Piece) {
         for tau in [0.0, piece.duration] {
             self.ground.see(piece.load.at(tau).a_g, piece.before.time + tau);

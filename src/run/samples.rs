@@ -41,6 +41,8 @@ impl<Times: Iterator<Item = f64>, Show: FnMut(&Sample)> Samples<Times, Show> {
 }
 
 impl<Times: Iterator<Item = f64>, Show: FnMut(&Sample)> Watch for Samples<Times, Show> {
+    const SEES_PIECES: bool = true;
+
     fn piece(&mut self, piece: &mut Piece) {
         let before = piece.before;
         self.load = piece.load.at(piece.duration);
