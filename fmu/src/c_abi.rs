@@ -298,330 +298,180 @@ pub unsafe extern "C" fn fmi2FreeInstance(c: *mut c_void) {
     let _ = catch_unwind(AssertUnwindSafe(free));
 }
 
-/// `fmi2SetDebugLogging`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetDebugLogging(
-    c: *mut c_void,
-    loggingOn: c_int,
-    nCategories: size_t,
-    categories: *const *const c_char,
-) -> c_int {
-    unsafe {
-        call(c, Function::SetDebugLogging, |instance| {
-            let names = values("categories", categories, nCategories)?;
-            let names = names.iter().map(|name| text("category", *name)).collect::<Result<Vec<_>, _>>()?;
-            instance.set_debug_logging(boolean("loggingOn", loggingOn)?, &names)
-        })
-    }
-}
-
-/// `fmi2SetupExperiment`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetupExperiment(
-    c: *mut c_void,
-    toleranceDefined: c_int,
-    tolerance: c_double,
-    startTime: c_double,
-    stopTimeDefined: c_int,
-    stopTime: c_double,
-) -> c_int {
-    unsafe {
-        call(c, Function::SetupExperiment, |instance| {
-            let tolerance = boolean("toleranceDefined", toleranceDefined)?.then_some(tolerance);
-            let stop_time = boolean("stopTimeDefined", stopTimeDefined)?.then_some(stopTime);
-            instance.setup_experiment(tolerance, startTime, stop_time)
-        })
-    }
-}
-
-/// `fmi2EnterInitializationMode`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2EnterInitializationMode(c: *mut c_void) -> c_int {
-    unsafe { call(c, Function::EnterInitializationMode, |instance| instance.enter_initialization_mode()) }
-}
-
-/// `fmi2ExitInitializationMode`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2ExitInitializationMode(c: *mut c_void) -> c_int {
-    unsafe { call(c, Function::ExitInitializationMode, |instance| instance.exit_initialization_mode()) }
-}
-
-/// `fmi2Terminate`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2Terminate(c: *mut c_void) -> c_int {
-    unsafe { call(c, Function::Terminate, |instance| instance.terminate()) }
-}
-
-/// `fmi2Reset`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2Reset(c: *mut c_void) -> c_int {
-    unsafe { call(c, Function::Reset, |instance| instance.reset()) }
-}
-
-/// `fmi2GetReal`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetReal(c: *mut c_void, vr: *const c_uint, nvr: size_t, value: *mut c_double) -> c_int {
-    unsafe {
-        call(c, Function::GetReal, |instance| instance.get_real(values("vr", vr, nvr)?, room("value", value, nvr)?))
-    }
-}
-
-/// `fmi2GetInteger`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetInteger(c: *mut c_void, vr: *const c_uint, nvr: size_t, value: *mut c_int) -> c_int {
-    unsafe {
-        call(c, Function::GetInteger, |instance| {
-            instance.get_integer(values("vr", vr, nvr)?, room("value", value, nvr)?)
-        })
-    }
-}
-
-/// `fmi2GetBoolean`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetBoolean(c: *mut c_void, vr: *const c_uint, nvr: size_t, value: *mut c_int) -> c_int {
-    unsafe {
-        call(c, Function::GetBoolean, |instance| {
-            instance.get_boolean(values("vr", vr, nvr)?, room("value", value, nvr)?)
-        })
-    }
-}
-
-/// `fmi2GetString`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetString(
-    c: *mut c_void,
-    vr: *const c_uint,
-    nvr: size_t,
-    _value: *mut *const c_char,
-) -> c_int {
-    unsafe { call(c, Function::GetString, |instance| instance.get_string(values("vr", vr, nvr)?)) }
-}
-
-/// `fmi2SetReal`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetReal(c: *mut c_void, vr: *const c_uint, nvr: size_t, value: *const c_double) -> c_int {
-    unsafe {
-        call(c, Function::SetReal, |instance| instance.set_real(values("vr", vr, nvr)?, values("value", value, nvr)?))
-    }
-}
-
-/// `fmi2SetInteger`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetInteger(c: *mut c_void, vr: *const c_uint, nvr: size_t, value: *const c_int) -> c_int {
-    unsafe {
-        call(c, Function::SetInteger, |instance| {
-            instance.set_integer(values("vr", vr, nvr)?, values("value", value, nvr)?)
-        })
-    }
-}
-
-/// `fmi2SetBoolean`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetBoolean(c: *mut c_void, vr: *const c_uint, nvr: size_t, _value: *const c_int) -> c_int {
-    unsafe { call(c, Function::SetBoolean, |instance| instance.set_boolean(values("vr", vr, nvr)?)) }
-}
-
-/// `fmi2SetString`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetString(
-    c: *mut c_void,
-    vr: *const c_uint,
-    nvr: size_t,
-    _value: *const *const c_char,
-) -> c_int {
-    unsafe { call(c, Function::SetString, |instance| instance.set_string(values("vr", vr, nvr)?)) }
-}
-
-/// `fmi2GetFMUstate`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetFMUstate(c: *mut c_void, FMUstate: *mut *mut c_void) -> c_int {
-    unsafe {
-        call(c, Function::GetFMUstate, |instance| {
-            let handle = instance.get_fmu_state(read("FMUstate", FMUstate)?.addr())?;
-            write("FMUstate", FMUstate, ptr::without_provenance_mut(handle))
-        })
-    }
-}
-
-/// `fmi2SetFMUstate`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetFMUstate(c: *mut c_void, FMUstate: *mut c_void) -> c_int {
-    unsafe { call(c, Function::SetFMUstate, |instance| instance.set_fmu_state(FMUstate.addr())) }
-}
-
-/// `fmi2FreeFMUstate`. Ignored for null.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2FreeFMUstate(c: *mut c_void, FMUstate: *mut *mut c_void) -> c_int {
-    unsafe {
-        call(c, Function::FreeFMUstate, |instance| {
-            if FMUstate.is_null() || read("FMUstate", FMUstate)?.is_null() {
-                return Ok(());
+/// The functions of an instance: the name, the [`Function`] that it is, the arguments after the component, and what is
+/// asked of the instance.
+macro_rules! functions {
+    ($(
+        $(#[$doc:meta])*
+        $name:ident = $function:ident($($argument:ident: $type:ty),* $(,)?) |$instance:ident| $body:block
+    )*) => {
+        $(
+            #[doc = concat!("`", stringify!($name), "`")]
+            #[doc = ""]
+            $(#[$doc])*
+            #[unsafe(no_mangle)]
+            pub unsafe extern "C" fn $name(c: *mut c_void $(, $argument: $type)*) -> c_int {
+                unsafe { call(c, Function::$function, |$instance| $body) }
             }
-            instance.free_fmu_state(read("FMUstate", FMUstate)?.addr())?;
-            write("FMUstate", FMUstate, ptr::null_mut())
-        })
+        )*
+    };
+}
+
+functions! {
+    fmi2SetDebugLogging = SetDebugLogging(
+        loggingOn: c_int, nCategories: size_t, categories: *const *const c_char,
+    ) |instance| {
+        let names = values("categories", categories, nCategories)?;
+        let names = names.iter().map(|name| text("category", *name)).collect::<Result<Vec<_>, _>>()?;
+        instance.set_debug_logging(boolean("loggingOn", loggingOn)?, &names)
     }
-}
 
-/// `fmi2SerializedFMUstateSize`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SerializedFMUstateSize(c: *mut c_void, FMUstate: *mut c_void, size: *mut size_t) -> c_int {
-    unsafe {
-        call(c, Function::SerializedFMUstateSize, |instance| {
-            let bytes = instance.serialize_fmu_state(FMUstate.addr())?;
-            write("size", size, bytes.len())
-        })
+    fmi2SetupExperiment = SetupExperiment(
+        toleranceDefined: c_int, tolerance: c_double, startTime: c_double, stopTimeDefined: c_int, stopTime: c_double,
+    ) |instance| {
+        let tolerance = boolean("toleranceDefined", toleranceDefined)?.then_some(tolerance);
+        let stop_time = boolean("stopTimeDefined", stopTimeDefined)?.then_some(stopTime);
+        instance.setup_experiment(tolerance, startTime, stop_time)
     }
-}
 
-/// `fmi2SerializeFMUstate`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SerializeFMUstate(
-    c: *mut c_void,
-    FMUstate: *mut c_void,
-    serializedState: *mut u8,
-    size: size_t,
-) -> c_int {
-    unsafe {
-        call(c, Function::SerializeFMUstate, |instance| {
-            let bytes = instance.serialize_fmu_state(FMUstate.addr())?;
-            if size != bytes.len() {
-                return Err(Failure::WrongSize { given: size, needed: bytes.len() });
-            }
-            check_pointer("serializedState", serializedState)?;
-            ptr::copy_nonoverlapping(bytes.as_ptr(), serializedState, size);
-            Ok(())
-        })
+    fmi2EnterInitializationMode = EnterInitializationMode() |instance| { instance.enter_initialization_mode() }
+
+    fmi2ExitInitializationMode = ExitInitializationMode() |instance| { instance.exit_initialization_mode() }
+
+    fmi2Terminate = Terminate() |instance| { instance.terminate() }
+
+    fmi2Reset = Reset() |instance| { instance.reset() }
+
+    fmi2GetReal = GetReal(vr: *const c_uint, nvr: size_t, value: *mut c_double) |instance| {
+        instance.get_real(values("vr", vr, nvr)?, room("value", value, nvr)?)
     }
-}
 
-/// `fmi2DeSerializeFMUstate`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2DeSerializeFMUstate(
-    c: *mut c_void,
-    serializedState: *const u8,
-    size: size_t,
-    FMUstate: *mut *mut c_void,
-) -> c_int {
-    unsafe {
-        call(c, Function::DeSerializeFMUstate, |instance| {
-            let bytes = values("serializedState", serializedState, size)?;
-            let handle = read("FMUstate", FMUstate)?.addr();
-            let handle = instance.deserialize_fmu_state(bytes, handle)?;
-            write("FMUstate", FMUstate, ptr::without_provenance_mut(handle))
-        })
+    fmi2GetInteger = GetInteger(vr: *const c_uint, nvr: size_t, value: *mut c_int) |instance| {
+        instance.get_integer(values("vr", vr, nvr)?, room("value", value, nvr)?)
     }
-}
 
-/// `fmi2GetDirectionalDerivative`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetDirectionalDerivative(
-    c: *mut c_void,
-    vUnknown_ref: *const c_uint,
-    nUnknown: size_t,
-    vKnown_ref: *const c_uint,
-    nKnown: size_t,
-    dvKnown: *const c_double,
-    dvUnknown: *mut c_double,
-) -> c_int {
-    unsafe {
-        call(c, Function::GetDirectionalDerivative, |instance| {
-            let unknowns = values("vUnknown_ref", vUnknown_ref, nUnknown)?;
-            let (knowns, seed) = (values("vKnown_ref", vKnown_ref, nKnown)?, values("dvKnown", dvKnown, nKnown)?);
-            instance.get_directional_derivative(unknowns, knowns, seed, room("dvUnknown", dvUnknown, nUnknown)?)
-        })
+    fmi2GetBoolean = GetBoolean(vr: *const c_uint, nvr: size_t, value: *mut c_int) |instance| {
+        instance.get_boolean(values("vr", vr, nvr)?, room("value", value, nvr)?)
     }
-}
 
-/// `fmi2SetRealInputDerivatives`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2SetRealInputDerivatives(
-    c: *mut c_void,
-    vr: *const c_uint,
-    nvr: size_t,
-    order: *const c_int,
-    value: *const c_double,
-) -> c_int {
-    unsafe {
-        call(c, Function::SetRealInputDerivatives, |instance| {
-            let (orders, slopes) = (values("order", order, nvr)?, values("value", value, nvr)?);
-            instance.set_real_input_derivatives(values("vr", vr, nvr)?, orders, slopes)
-        })
+    fmi2GetString = GetString(vr: *const c_uint, nvr: size_t, _value: *mut *const c_char) |instance| {
+        instance.get_string(values("vr", vr, nvr)?)
     }
-}
 
-/// `fmi2GetRealOutputDerivatives`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetRealOutputDerivatives(
-    c: *mut c_void,
-    vr: *const c_uint,
-    nvr: size_t,
-    order: *const c_int,
-    value: *mut c_double,
-) -> c_int {
-    unsafe {
-        call(c, Function::GetRealOutputDerivatives, |instance| {
-            let (orders, rates) = (values("order", order, nvr)?, room("value", value, nvr)?);
-            instance.get_real_output_derivatives(values("vr", vr, nvr)?, orders, rates)
-        })
+    fmi2SetReal = SetReal(vr: *const c_uint, nvr: size_t, value: *const c_double) |instance| {
+        instance.set_real(values("vr", vr, nvr)?, values("value", value, nvr)?)
     }
-}
 
-/// `fmi2DoStep`. Whether the host will go back makes no difference: FMU states are kept until it frees them.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2DoStep(
-    c: *mut c_void,
-    currentCommunicationPoint: c_double,
-    communicationStepSize: c_double,
-    _noSetFMUStatePriorToCurrentPoint: c_int,
-) -> c_int {
-    unsafe { call(c, Function::DoStep, |instance| instance.do_step(currentCommunicationPoint, communicationStepSize)) }
-}
+    fmi2SetInteger = SetInteger(vr: *const c_uint, nvr: size_t, value: *const c_int) |instance| {
+        instance.set_integer(values("vr", vr, nvr)?, values("value", value, nvr)?)
+    }
 
-/// `fmi2CancelStep`. Never allowed: no step is ever pending.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2CancelStep(c: *mut c_void) -> c_int {
-    unsafe { call(c, Function::CancelStep, |_| Ok(())) }
-}
+    fmi2SetBoolean = SetBoolean(vr: *const c_uint, nvr: size_t, _value: *const c_int) |instance| {
+        instance.set_boolean(values("vr", vr, nvr)?)
+    }
 
-/// `fmi2GetRealStatus`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetRealStatus(c: *mut c_void, s: c_int, value: *mut c_double) -> c_int {
-    unsafe {
-        call(c, Function::GetRealStatus, |instance| match status_kind(s)? {
+    fmi2SetString = SetString(vr: *const c_uint, nvr: size_t, _value: *const *const c_char) |instance| {
+        instance.set_string(values("vr", vr, nvr)?)
+    }
+
+    fmi2GetFMUstate = GetFMUstate(FMUstate: *mut *mut c_void) |instance| {
+        let handle = instance.get_fmu_state(read("FMUstate", FMUstate)?.addr())?;
+        write("FMUstate", FMUstate, ptr::without_provenance_mut(handle))
+    }
+
+    fmi2SetFMUstate = SetFMUstate(FMUstate: *mut c_void) |instance| { instance.set_fmu_state(FMUstate.addr()) }
+
+    /// Ignored for null.
+    fmi2FreeFMUstate = FreeFMUstate(FMUstate: *mut *mut c_void) |instance| {
+        if FMUstate.is_null() || read("FMUstate", FMUstate)?.is_null() {
+            return Ok(());
+        }
+        instance.free_fmu_state(read("FMUstate", FMUstate)?.addr())?;
+        write("FMUstate", FMUstate, ptr::null_mut())
+    }
+
+    fmi2SerializedFMUstateSize = SerializedFMUstateSize(FMUstate: *mut c_void, size: *mut size_t) |instance| {
+        let bytes = instance.serialize_fmu_state(FMUstate.addr())?;
+        write("size", size, bytes.len())
+    }
+
+    fmi2SerializeFMUstate = SerializeFMUstate(
+        FMUstate: *mut c_void, serializedState: *mut u8, size: size_t,
+    ) |instance| {
+        let bytes = instance.serialize_fmu_state(FMUstate.addr())?;
+        if size != bytes.len() {
+            return Err(Failure::WrongSize { given: size, needed: bytes.len() });
+        }
+        check_pointer("serializedState", serializedState)?;
+        ptr::copy_nonoverlapping(bytes.as_ptr(), serializedState, size);
+        Ok(())
+    }
+
+    fmi2DeSerializeFMUstate = DeSerializeFMUstate(
+        serializedState: *const u8, size: size_t, FMUstate: *mut *mut c_void,
+    ) |instance| {
+        let bytes = values("serializedState", serializedState, size)?;
+        let handle = read("FMUstate", FMUstate)?.addr();
+        let handle = instance.deserialize_fmu_state(bytes, handle)?;
+        write("FMUstate", FMUstate, ptr::without_provenance_mut(handle))
+    }
+
+    fmi2GetDirectionalDerivative = GetDirectionalDerivative(
+        vUnknown_ref: *const c_uint, nUnknown: size_t, vKnown_ref: *const c_uint, nKnown: size_t,
+        dvKnown: *const c_double, dvUnknown: *mut c_double,
+    ) |instance| {
+        let unknowns = values("vUnknown_ref", vUnknown_ref, nUnknown)?;
+        let (knowns, seed) = (values("vKnown_ref", vKnown_ref, nKnown)?, values("dvKnown", dvKnown, nKnown)?);
+        instance.get_directional_derivative(unknowns, knowns, seed, room("dvUnknown", dvUnknown, nUnknown)?)
+    }
+
+    fmi2SetRealInputDerivatives = SetRealInputDerivatives(
+        vr: *const c_uint, nvr: size_t, order: *const c_int, value: *const c_double,
+    ) |instance| {
+        let (orders, slopes) = (values("order", order, nvr)?, values("value", value, nvr)?);
+        instance.set_real_input_derivatives(values("vr", vr, nvr)?, orders, slopes)
+    }
+
+    fmi2GetRealOutputDerivatives = GetRealOutputDerivatives(
+        vr: *const c_uint, nvr: size_t, order: *const c_int, value: *mut c_double,
+    ) |instance| {
+        let (orders, rates) = (values("order", order, nvr)?, room("value", value, nvr)?);
+        instance.get_real_output_derivatives(values("vr", vr, nvr)?, orders, rates)
+    }
+
+    /// Whether the host will go back makes no difference: FMU states are kept until it frees them.
+    fmi2DoStep = DoStep(
+        currentCommunicationPoint: c_double, communicationStepSize: c_double, _noSetFMUStatePriorToCurrentPoint: c_int,
+    ) |instance| {
+        instance.do_step(currentCommunicationPoint, communicationStepSize)
+    }
+
+    /// Never allowed: no step is ever pending.
+    fmi2CancelStep = CancelStep() |_instance| { Ok(()) }
+
+    fmi2GetRealStatus = GetRealStatus(s: c_int, value: *mut c_double) |instance| {
+        match status_kind(s)? {
             LAST_SUCCESSFUL_TIME => write("value", value, instance.time()?),
             other => Err(Failure::NoAnswer(other)),
-        })
+        }
     }
-}
 
-/// `fmi2GetBooleanStatus`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetBooleanStatus(c: *mut c_void, s: c_int, value: *mut c_int) -> c_int {
-    unsafe {
-        call(c, Function::GetBooleanStatus, |instance| match status_kind(s)? {
+    fmi2GetBooleanStatus = GetBooleanStatus(s: c_int, value: *mut c_int) |instance| {
+        match status_kind(s)? {
             TERMINATED => write("value", value, c_int::from(instance.has_overturned()?)),
             other => Err(Failure::NoAnswer(other)),
-        })
+        }
     }
-}
 
-/// `fmi2GetStatus`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetStatus(c: *mut c_void, s: c_int, _value: *mut c_int) -> c_int {
-    unsafe { call(c, Function::GetStatus, |_| Err(Failure::NoAnswer(status_kind(s)?))) }
-}
+    fmi2GetStatus = GetStatus(s: c_int, _value: *mut c_int) |_instance| { Err(Failure::NoAnswer(status_kind(s)?)) }
 
-/// `fmi2GetIntegerStatus`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetIntegerStatus(c: *mut c_void, s: c_int, _value: *mut c_int) -> c_int {
-    unsafe { call(c, Function::GetIntegerStatus, |_| Err(Failure::NoAnswer(status_kind(s)?))) }
-}
+    fmi2GetIntegerStatus = GetIntegerStatus(s: c_int, _value: *mut c_int) |_instance| {
+        Err(Failure::NoAnswer(status_kind(s)?))
+    }
 
-/// `fmi2GetStringStatus`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2GetStringStatus(c: *mut c_void, s: c_int, _value: *mut *const c_char) -> c_int {
-    unsafe { call(c, Function::GetStringStatus, |_| Err(Failure::NoAnswer(status_kind(s)?))) }
+    fmi2GetStringStatus = GetStringStatus(s: c_int, _value: *mut *const c_char) |_instance| {
+        Err(Failure::NoAnswer(status_kind(s)?))
+    }
 }
 
 #[cfg(test)]

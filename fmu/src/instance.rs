@@ -408,24 +408,23 @@ impl Instance {
         }
 
         engine.set_time(point);
-        let progress = engine.advance(step, inputs.next, &mut |transition: &Transition| log(logger, transition));
-        if let Err(error) = progress {
-            engine.set_time(time);
-            if matches!(error, AdvanceError::Singular { .. }) {
-                self.now.stage = Stage::Error;
-            }
-            return Err(error.into());
-        }
-        match progress? {
-            Progress::Complete => {
+        match engine.advance(step, inputs.next, &mut |transition: &Transition| log(logger, transition)) {
+            Ok(Progress::Complete) => {
                 self.now.inputs = inputs.after(step);
                 Ok(())
             }
-            Progress::Overturned => {
+            Ok(Progress::Overturned) => {
                 let end = engine.motion().time;
                 self.now.inputs = inputs.after(end - point);
                 self.now.stage = Stage::StepFailed;
                 Err(Failure::Overturned { time: end })
+            }
+            Err(error) => {
+                engine.set_time(time);
+                if matches!(error, AdvanceError::Singular { .. }) {
+                    self.now.stage = Stage::Error;
+                }
+                Err(error.into())
             }
         }
     }

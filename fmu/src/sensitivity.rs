@@ -2,8 +2,8 @@
 //!
 //! Differences to either side of the value are extrapolated to the limit of no difference (Neville's scheme, its entry
 //! of least change), each within the value's range and without passing 0, at which phases change and ranges end. Where
-//! both sides have room, they must agree; a step or a kink has no derivative. What is returned is exact to
-//! [`ACCURACY`].
+//! both sides have room, they must agree: at a step or a kink there is no derivative. What is returned is exact to
+//! [`ACCURACY`], or to what rounding leaves of reactions that are small beside the forces they are made of.
 
 use crate::condition::Setup;
 use crate::failure::Failure;
@@ -12,6 +12,9 @@ use rocking::{Engine, Load, Outputs, Parameters, Reactions};
 
 /// Relative to the derivative, or to the unknown's value over the known's scale where that is more.
 pub const ACCURACY: f64 = 1e-8;
+
+/// The same, of what is not taken for a step or a kink.
+const AGREEMENT: f64 = 1e-4;
 
 /// First difference, in parts of the known's scale.
 const FIRST: f64 = 0.1;
@@ -55,21 +58,17 @@ pub(crate) fn sensitivities(
         let shown = Shown::new(&engine, load);
         Ok::<Vec<_>, Failure>(unknowns.iter().map(|variable| shown.get(variable)).collect())
     };
+    if !unknowns.iter().any(|variable| depends(variable)) {
+        return Ok(vec![0.0; unknowns.len()]);
+    }
     let x = setup.get(&known.source);
     let scale = scale(known, x, &setup.parameters);
     let here = shown(x)?;
-    let sides = if unknowns.iter().any(|variable| depends(variable)) {
-        [1.0, -1.0].map(|sign| {
-            let steps = (0..DIFFERENCES).scan(first_step(known, x, sign, scale), |step, _| {
-                let now = *step;
-                *step *= 0.5;
-                Some(x + sign * now)
-            });
-            steps.filter(|to| *to != x).filter_map(|to| Some((to - x, shown(to).ok()?))).collect::<Vec<_>>()
-        })
-    } else {
-        [Vec::new(), Vec::new()]
-    };
+    let sides = [1.0, -1.0].map(|sign| {
+        let first = first_step(known, x, sign, scale);
+        let places = (0..DIFFERENCES).map(|k| x + sign * first * 0.5_f64.powi(k));
+        places.filter(|place| *place != x).filter_map(|place| Some((place - x, shown(place).ok()?))).collect::<Vec<_>>()
+    });
     let reach = |side: &[(f64, Vec<f64>)]| side.first().map_or(0.0, |(step, _)| step.abs());
     let farthest = reach(&sides[0]).max(reach(&sides[1]));
     let derivative = |at: usize, variable: &&'static Variable| {
@@ -78,13 +77,14 @@ pub(crate) fn sensitivities(
         }
         let does_not_exist = Failure::NoSensitivity { variable, known };
         let floor = here[at].abs() / scale;
+        let agree = |distance: f64, value: f64| distance <= AGREEMENT * value.abs().max(floor);
         let limits = sides.iter().filter(|side| !side.is_empty() && reach(side) >= FIRST * farthest).map(|side| {
             limit(side.iter().map(|(step, values)| (*step, (values[at] - here[at]) / step)))
-                .filter(|(limit, change)| *change <= ACCURACY * limit.abs().max(floor))
+                .filter(|(limit, change)| agree(*change, *limit))
         });
         match limits.collect::<Option<Vec<_>>>().as_deref() {
             Some([(limit, _)]) => Ok(*limit),
-            Some([(a, _), (b, _)]) if (a - b).abs() <= ACCURACY * a.abs().max(floor) => Ok(0.5 * (a + b)),
+            Some([(a, of_a), (b, of_b)]) if agree((a - b).abs(), *a) => Ok(if of_a < of_b { *a } else { *b }),
             _ => Err(does_not_exist),
         }
     };

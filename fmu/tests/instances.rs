@@ -7,10 +7,12 @@ use FlexibleRocking::c_abi::*;
 use FlexibleRocking::{BUILD, guid};
 use host::*;
 use rocking::Parameters;
-use std::collections::BTreeSet;
 use std::ffi::{CStr, CString, c_char, c_void};
-use std::ptr::{null, null_mut};
+use std::hint::spin_loop;
+use std::ptr::{null, null_mut, with_exposed_provenance_mut};
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 use std::thread;
+use tempfile::TempDir;
 
 /// The one message of a refused instantiation.
 fn refusal(arguments: Instantiate) -> String {
@@ -155,6 +157,21 @@ fn a_host_without_a_logger_gets_its_statuses() {
     }
 }
 
+type Logger = unsafe extern "C" fn(*mut c_void, *const c_char, i32, *const c_char, *const c_char);
+
+/// An instance, and the folder that it needs.
+fn instance_that_logs_to(logger: Logger, environment: *mut c_void) -> (*mut c_void, TempDir) {
+    let functions = CallbackFunctions {
+        logger: Some(unsafe { std::mem::transmute::<*const (), CallbackLogger>(logger as *const ()) }),
+        ..callbacks(environment)
+    };
+    let folder = resources();
+    let location = CString::new(format!("file://{}", folder.path().display())).unwrap();
+    let guid = CString::new(guid(&Parameters::EVISON)).unwrap();
+    let c = unsafe { fmi2Instantiate(c"talkative".as_ptr(), 1, guid.as_ptr(), location.as_ptr(), &functions, 0, 0) };
+    (c, folder)
+}
+
 /// A logger that calls the instance it is told about.
 #[test]
 fn a_call_from_within_the_logger_is_refused() {
@@ -171,22 +188,14 @@ fn a_call_from_within_the_logger_is_refused() {
         _: *const c_char,
     ) {
         let environment = unsafe { &*environment.cast::<Environment>() };
-        let c = std::ptr::with_exposed_provenance_mut(environment.component.get());
+        let c = with_exposed_provenance_mut(environment.component.get());
         let status = unsafe { fmi2Reset(c) };
         unsafe { fmi2FreeInstance(c) };
         environment.statuses.borrow_mut().push(status);
     }
     let environment = Environment::default();
-    let logger: unsafe extern "C" fn(_, _, _, _, _) = call_back;
-    let functions = CallbackFunctions {
-        logger: Some(unsafe { std::mem::transmute::<*const (), CallbackLogger>(logger as *const ()) }),
-        ..callbacks((&raw const environment).cast_mut().cast())
-    };
-    let folder = resources();
-    let location = CString::new(format!("file://{}", folder.path().display())).unwrap();
-    let guid = CString::new(guid(&Parameters::EVISON)).unwrap();
+    let (c, folder) = instance_that_logs_to(call_back, (&raw const environment).cast_mut().cast());
     unsafe {
-        let c = fmi2Instantiate(c"talkative".as_ptr(), 1, guid.as_ptr(), location.as_ptr(), &functions, 0, 0);
         environment.component.set(c.expose_provenance());
         assert_eq!(fmi2EnterInitializationMode(c), OK);
         assert_eq!(fmi2DoStep(c, 0.0, 1.0, 0), ERROR);
@@ -194,32 +203,37 @@ fn a_call_from_within_the_logger_is_refused() {
         assert_eq!(fmi2ExitInitializationMode(c), OK, "neither reset nor freed");
         fmi2FreeInstance(c);
     }
+    drop(folder);
 }
 
-/// Of two threads that call one instance, one is served and the other refused: never both, never a third thing.
+/// Of two threads that call one instance at the same time, one is served and the other refused: never both.
 #[test]
 fn a_call_while_another_thread_calls_is_refused() {
-    const CALLS: usize = 50_000;
-    let host = Host::started(&[]);
-    let c = host.component.expose_provenance();
-    let keep = move || {
-        let c = std::ptr::with_exposed_provenance_mut(c);
-        let mut kept = Vec::new();
-        for _ in 0..CALLS {
-            let mut state = null_mut();
-            match unsafe { fmi2GetFMUstate(c, &mut state) } {
-                OK => kept.push(state.addr()),
-                status => assert_eq!((status, state.is_null()), (ERROR, true)),
-            }
-        }
-        kept
-    };
-    let threads = [thread::spawn(keep), thread::spawn(keep)];
-    let [first, second] = threads.map(|thread| thread.join().unwrap());
-    let served = first.len() + second.len();
-    assert!(served < 2 * CALLS, "the threads never met");
-    assert_eq!(first.into_iter().chain(second).collect::<BTreeSet<_>>().len(), served, "one state handed out twice");
-    assert!(host.log.borrow().is_empty());
+    const CALLS: usize = 200_000;
+    #[derive(Default)]
+    struct Inside {
+        now: AtomicUsize,
+        most: AtomicUsize,
+        calls: AtomicUsize,
+    }
+    unsafe extern "C" fn look(inside: *mut c_void, _: *const c_char, _: i32, _: *const c_char, _: *const c_char) {
+        let inside = unsafe { &*inside.cast::<Inside>() };
+        inside.most.fetch_max(inside.now.fetch_add(1, Relaxed) + 1, Relaxed);
+        inside.calls.fetch_add(1, Relaxed);
+        (0..20).for_each(|_| spin_loop());
+        inside.now.fetch_sub(1, Relaxed);
+    }
+    let inside = Inside::default();
+    let (c, folder) = instance_that_logs_to(look, (&raw const inside).cast_mut().cast());
+    let c = c.expose_provenance();
+    // each is refused, with a message if it is served
+    let call = || (0..CALLS).for_each(|_| assert_eq!(unsafe { fmi2CancelStep(with_exposed_provenance_mut(c)) }, ERROR));
+    thread::scope(|scope| [(); 2].map(|()| scope.spawn(call)).map(|thread| thread.join().unwrap()));
+    assert_eq!(inside.most.into_inner(), 1);
+    let served = inside.calls.into_inner();
+    assert!((1..2 * CALLS).contains(&served), "{served} calls were served");
+    unsafe { fmi2FreeInstance(with_exposed_provenance_mut(c)) };
+    drop(folder);
 }
 
 #[test]

@@ -190,14 +190,13 @@ mod tests {
         let names = |unknowns: &[fmi::Unknown]| unknowns.iter().map(|u| name(&u.index).to_owned()).collect::<Vec<_>>();
 
         let outputs = "theta u a_t V_t M_t theta_dot u_dot uplift delta_t v_t R_h R_v R_m I_h I_v I_m phase transitions overturned";
-        let calculated_parameters = "alpha_cg p_l beta u_cr f_u";
+        let calculated_parameters = "alpha_cg p_l chi u_cr f_u";
         let structure = &description.model_structure;
         assert_eq!(names(&structure.outputs.unknowns).join(" "), outputs);
         for unknown in &structure.outputs.unknowns {
             let dependencies = unknown.dependencies.iter().map(name).collect::<Vec<_>>();
             let expected: &[&str] = match name(&unknown.index) {
-                "a_t" | "V_t" | "M_t" => &["F_t"],
-                "R_h" | "R_v" | "R_m" => &["a_g", "F_t"],
+                "a_t" | "V_t" | "M_t" | "R_h" | "R_v" | "R_m" => &["a_g", "F_t"],
                 _ => &[],
             };
             assert_eq!(dependencies, expected, "{}", name(&unknown.index));
