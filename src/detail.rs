@@ -68,15 +68,48 @@ impl Detail {
 
 impl Detail {
     /// What moves `structure` at this level, to the relative `tolerance`.
-    pub(crate) fn level(self, structure: &Structure, tolerance: f64) -> Box<dyn Level> {
+    pub(crate) fn level(self, structure: &Structure, tolerance: f64) -> AnyLevel {
         let contact = Some(ExactContact::new(structure));
         match self {
-            Detail::Auto => Box::new(Elastic { contact, rocking: NonlinearRocking::default() }),
-            Detail::Nonlinear => Box::new(Elastic { contact: None, rocking: NonlinearRocking::default() }),
-            Detail::Linear => Box::new(Elastic { contact, rocking: LinearRocking::new(structure) }),
-            Detail::Modal => Box::new(Elastic { contact, rocking: ModalRocking::new(structure) }),
-            Detail::Rigid => Box::new(Rigid { tolerance }),
-            Detail::FixedBase => Box::new(FixedBase { contact: ExactContact::new(structure) }),
+            Detail::Auto => AnyLevel::Nonlinear(Elastic { contact, rocking: NonlinearRocking::default() }),
+            Detail::Nonlinear => AnyLevel::Nonlinear(Elastic { contact: None, rocking: NonlinearRocking::default() }),
+            Detail::Linear => AnyLevel::Linear(Elastic { contact, rocking: LinearRocking::new(structure) }),
+            Detail::Modal => AnyLevel::Modal(Elastic { contact, rocking: ModalRocking::new(structure) }),
+            Detail::Rigid => AnyLevel::Rigid(Rigid { tolerance }),
+            Detail::FixedBase => AnyLevel::FixedBase(FixedBase { contact: ExactContact::new(structure) }),
+        }
+    }
+}
+
+/// A level of any type.
+#[derive(Debug)]
+#[allow(clippy::large_enum_variant)] // an engine keeps one, behind a pointer
+pub(crate) enum AnyLevel {
+    Nonlinear(Elastic<NonlinearRocking>),
+    Linear(Elastic<LinearRocking>),
+    Modal(Elastic<ModalRocking>),
+    Rigid(Rigid),
+    FixedBase(FixedBase),
+}
+
+impl AnyLevel {
+    pub(crate) fn get(&self) -> &dyn Level {
+        match self {
+            AnyLevel::Nonlinear(level) => level,
+            AnyLevel::Linear(level) => level,
+            AnyLevel::Modal(level) => level,
+            AnyLevel::Rigid(level) => level,
+            AnyLevel::FixedBase(level) => level,
+        }
+    }
+
+    pub(crate) fn get_mut(&mut self) -> &mut dyn Level {
+        match self {
+            AnyLevel::Nonlinear(level) => level,
+            AnyLevel::Linear(level) => level,
+            AnyLevel::Modal(level) => level,
+            AnyLevel::Rigid(level) => level,
+            AnyLevel::FixedBase(level) => level,
         }
     }
 }
@@ -179,12 +212,13 @@ pub(crate) trait ElasticRocking: Debug + Send {
 
 /// A level with an elastic strut: by exact flow in full contact where there is one, otherwise by series.
 #[derive(Debug)]
-struct Elastic<Rocking> {
+pub(crate) struct Elastic<Rocking> {
     contact: Option<ExactContact>,
     rocking: Rocking,
 }
 
 impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
+    #[inline(always)]
     fn leap(&mut self, structure: &Structure, phase: Phase, start: &Start) -> Option<State> {
         match phase {
             Phase::FullContact => self.contact.as_mut()?.leap(start, structure.u_cr),
@@ -201,6 +235,7 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
         }
     }
 
+    #[inline(always)]
     fn series(&mut self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc) {
         match phase {
             Phase::Rocking(side) => self.rocking.series(structure, side, start, arc),
@@ -227,7 +262,7 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
 
 /// Full contact throughout.
 #[derive(Debug)]
-struct FixedBase {
+pub(crate) struct FixedBase {
     contact: ExactContact,
 }
 
@@ -236,6 +271,7 @@ impl Level for FixedBase {
         if initial.theta == 0.0 { Ok(()) } else { Err(InitialStateError::TurnedFixedBase(initial.theta)) }
     }
 
+    #[inline(always)]
     fn leap(&mut self, _structure: &Structure, _phase: Phase, start: &Start) -> Option<State> {
         self.contact.leap(start, f64::INFINITY)
     }
@@ -286,6 +322,7 @@ mod tests {
             (Detail::FixedBase, Phase::FullContact, down),
         ] {
             let mut level = detail.level(&structure, 1e-9);
+            let level = level.get_mut();
             let (mut expected, mut arc) = (state, Arc::default());
             let (mut u_dot, mut theta_dot) = (0.0_f64, 0.0_f64);
             for (k, pair) in noise().map(|x| 20.0 * x).take(1001).collect::<Vec<_>>().windows(2).enumerate() {

@@ -94,7 +94,7 @@ struct Swing {
 impl ElasticRocking for LinearRocking {
     /// The state after the interval of `start` if rocking about `side` certainly goes on until then: θ is no farther
     /// from its chord than |θ̈| h²/8.
-    #[inline]
+    #[inline(always)]
     fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
         let off_chord = self.swing(side, start)?.turning * h * h / 8.0;

@@ -131,6 +131,7 @@ impl ElasticRocking for NonlinearRocking {
         accelerations(structure, side, state, load).map_or([f64::NAN; 2], Into::into)
     }
 
+    #[inline(always)]
     fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
         let &Start { state, a_g, a_top, interval, .. } = start;
         let &crate::Parameters { H, B, g, .. } = structure.parameters();

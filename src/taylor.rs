@@ -120,7 +120,7 @@ const MIN_ORDER: usize = 5;
 
 /// 1/k, looked up.
 #[inline]
-fn reciprocal(k: usize) -> f64 {
+pub(crate) fn reciprocal(k: usize) -> f64 {
     const RECIPROCAL: Series = {
         let mut reciprocal = ZERO;
         let mut k = 1;
