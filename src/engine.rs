@@ -13,7 +13,7 @@
 use crate::detail::{AnyLevel, Detail, Level};
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::load::{LOADS, LinearLoad, Load};
-use crate::piece::{Piece, Watch};
+use crate::piece::{Piece, Sample, Watch};
 use crate::reactions::{Impulse, Reactions};
 use crate::state::InitialStateError;
 use crate::taylor::{Arc, Start};
@@ -232,24 +232,19 @@ impl Engine {
         self.motion.phase == Phase::FullContact && self.level.get().stays_down(&self.structure, &self.motion.state)
     }
 
+    /// The motion now, under `load`.
+    pub fn sample(&self, load: Load) -> Sample<'_> {
+        Sample { motion: self.motion, load, structure: &self.structure, level: self.level.get() }
+    }
+
     /// The outputs now under `load`; once overturned, those of the instant before.
     pub fn outputs(&self, load: Load) -> Outputs {
-        self.level.get().outputs(&self.structure, self.moving_phase(), &self.motion.state, load)
+        self.sample(load).outputs()
     }
 
     /// The reactions now under `load`; once overturned, those of the instant before.
     pub fn reactions(&self, load: Load) -> Reactions {
-        let (phase, state) = (self.moving_phase(), &self.motion.state);
-        let accelerations = self.level.get().accelerations(&self.structure, phase, state, load);
-        Reactions::of(&self.structure, phase, state, accelerations, load)
-    }
-
-    /// The phase now, or that in which the structure overturned.
-    fn moving_phase(&self) -> Phase {
-        match self.motion.phase {
-            Phase::Overturned(side) => Phase::Rocking(side),
-            phase => phase,
-        }
+        self.sample(load).reactions()
     }
 
     /// Time derivatives of the outputs and reactions now under `load`, from the equations of motion; 0 once overturned.

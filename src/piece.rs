@@ -5,11 +5,11 @@
 
 use crate::detail::Level;
 use crate::engine::Motion;
-use crate::load::LinearLoad;
+use crate::load::{LinearLoad, Load};
 use crate::output_series::{self, Turn};
 use crate::taylor::{Arc, Series, Start};
 use crate::transition::Transition;
-use crate::{Outputs, Reactions, State, Structure, extremes, outputs};
+use crate::{Outputs, Phase, Reactions, State, Structure, extremes, outputs};
 
 /// Watches a motion go by.
 pub trait Watch {
@@ -100,6 +100,39 @@ impl Measure {
             Measure::U => outputs.u,
             Measure::DeltaT => outputs.delta_t,
             Measure::At => outputs.a_t,
+        }
+    }
+}
+
+/// A motion at one instant; at a transition, just after it.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample<'a> {
+    /// Time, state and phase, transitions and impulses so far.
+    pub motion: Motion,
+    /// What acts.
+    pub load: Load,
+    pub(crate) structure: &'a Structure,
+    pub(crate) level: &'a dyn Level,
+}
+
+impl Sample<'_> {
+    /// The outputs; once overturned, those of the instant before.
+    pub fn outputs(&self) -> Outputs {
+        self.level.outputs(self.structure, self.moving_phase(), &self.motion.state, self.load)
+    }
+
+    /// The reactions; once overturned, those of the instant before.
+    pub fn reactions(&self) -> Reactions {
+        let (phase, state) = (self.moving_phase(), &self.motion.state);
+        let accelerations = self.level.accelerations(self.structure, phase, state, self.load);
+        Reactions::of(self.structure, phase, state, accelerations, self.load)
+    }
+
+    /// The phase, or that in which the structure overturned.
+    fn moving_phase(&self) -> Phase {
+        match self.motion.phase {
+            Phase::Overturned(side) => Phase::Rocking(side),
+            phase => phase,
         }
     }
 }
@@ -247,8 +280,8 @@ impl Piece<'_> {
         self.level.outputs(self.structure, self.before.phase, &self.arc.at(sigma), load)
     }
 
-    /// The state `tau` seconds into it. Nothing may have been left behind that is later.
-    pub fn state_at(&mut self, tau: f64) -> State {
+    /// The state `tau` seconds into it.
+    fn state_at(&mut self, tau: f64) -> State {
         if tau <= 0.0 {
             return self.before.state;
         }
@@ -264,12 +297,11 @@ impl Piece<'_> {
         }
     }
 
-    /// The outputs and reactions `tau` seconds into it, where the structure is in `state`.
-    pub fn shown(&self, state: &State, tau: f64) -> (Outputs, Reactions) {
-        let (structure, phase, load) = (self.structure, self.before.phase, self.load.at(tau));
-        let accelerations = self.level.accelerations(structure, phase, state, load);
-        let reactions = Reactions::of(structure, phase, state, accelerations, load);
-        (self.level.outputs(structure, phase, state, load), reactions)
+    /// The motion at `time` (s), within it. Nothing may have been left behind that is later.
+    pub fn sample(&mut self, time: f64) -> Sample<'_> {
+        let tau = time - self.before.time;
+        let motion = Motion { time, state: self.state_at(tau), ..self.before };
+        Sample { motion, load: self.load.at(tau), structure: self.structure, level: self.level }
     }
 }
 

@@ -6,14 +6,15 @@
 mod history;
 pub mod levels;
 pub mod peaks;
-pub mod samples;
+mod samples;
 
 use crate::engine::{AdvanceError, DEFAULT_TOLERANCE};
+use crate::piece::Sample;
 use crate::record::Record;
 use crate::state::InitialStateError;
 use crate::{Detail, Engine, Motion, Progress, Ramp, State, Structure, Watch};
 use peaks::Peaks;
-use samples::{Sample, Samples};
+use samples::Samples;
 
 /// For how long a structure may rock on after its record, in units of 1/p_l: amplitudes change by e^±1 in each.
 pub const LONGEST_REST: f64 = 100.0;
