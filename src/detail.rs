@@ -11,6 +11,7 @@
 //! | `rigid` | 6 with u = 0 | series |
 //! | `fixed_base` | 1, no uplift | exact flow |
 
+use crate::extremes::Bound;
 use crate::first_crossing::Crossing;
 use crate::full_contact::{self, ExactContact};
 use crate::linear_rocking::LinearRocking;
@@ -18,7 +19,7 @@ use crate::load::{LinearLoad, Load};
 use crate::modal_rocking::ModalRocking;
 use crate::nonlinear_rocking::NonlinearRocking;
 use crate::output_series::{self, Turn};
-use crate::piece::Bounds;
+use crate::piece::Rates;
 use crate::rigid_rocking::Rigid;
 use crate::state::InitialStateError;
 use crate::taylor::{Arc, Series, Start};
@@ -126,7 +127,7 @@ pub(crate) trait Level: Debug + Send {
     fn leap(&mut self, structure: &Structure, phase: Phase, start: &Start) -> Option<State>;
 
     /// Bounds of what changes on such a leap from `start` to `end`.
-    fn bounds(&self, phase: Phase, start: &Start, end: &State) -> Bounds;
+    fn rates(&self, phase: Phase, start: &Start, end: &State) -> Rates;
 
     /// Writes the motion from `start` in `phase` into `arc`; there is none once overturned.
     fn series(&mut self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc);
@@ -184,9 +185,14 @@ pub(crate) trait Level: Debug + Send {
         output_series::a_t(structure, phase, load, arc, turn)
     }
 
-    /// Bound of |a_t| over the same; `theta` and `u` bound |θ| and |u|.
-    fn a_t_bound(&self, structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc, theta: f64) -> f64 {
-        output_series::a_t_bound(structure, phase, load, arc, theta)
+    /// Bounds of |θ|, |u|, |δ_t| and |a_t| that follow from those of |θ|, |u| and |u̇|; `push` is that of |F_t|/m.
+    fn crude_output_bounds(&self, structure: &Structure, phase: Phase, push: f64, of_state: [f64; 3]) -> [f64; 4] {
+        output_series::crude_bounds(structure, phase, push, of_state)
+    }
+
+    /// Bounds of |θ|, |u|, |δ_t| and |a_t| over `arc` under `load`, which is given from its start on.
+    fn output_bounds(&self, structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc) -> [Bound; 4] {
+        output_series::bounds(structure, phase, load, arc)
     }
 }
 
@@ -196,7 +202,7 @@ pub(crate) trait ElasticRocking: Debug + Send {
         None
     }
 
-    fn bounds(&self, side: Side, start: &Start, end: &State) -> Bounds;
+    fn rates(&self, side: Side, start: &Start, end: &State) -> Rates;
 
     fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc);
 
@@ -227,11 +233,11 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
         }
     }
 
-    fn bounds(&self, phase: Phase, start: &Start, end: &State) -> Bounds {
+    fn rates(&self, phase: Phase, start: &Start, end: &State) -> Rates {
         match (phase, &self.contact) {
-            (Phase::Rocking(side), _) => self.rocking.bounds(side, start, end),
-            (_, Some(contact)) => contact.bounds(start),
-            (_, None) => Bounds::NONE,
+            (Phase::Rocking(side), _) => self.rocking.rates(side, start, end),
+            (_, Some(contact)) => contact.rates(start),
+            (_, None) => Rates::NONE,
         }
     }
 
@@ -276,8 +282,8 @@ impl Level for FixedBase {
         self.contact.leap(start, f64::INFINITY)
     }
 
-    fn bounds(&self, _phase: Phase, start: &Start, _end: &State) -> Bounds {
-        self.contact.bounds(start)
+    fn rates(&self, _phase: Phase, start: &Start, _end: &State) -> Rates {
+        self.contact.rates(start)
     }
 
     fn series(&mut self, structure: &Structure, _phase: Phase, start: &Start, arc: &mut Arc) {

@@ -13,7 +13,7 @@
 use crate::detail::{AnyLevel, Detail, Level};
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::load::{LOADS, LinearLoad, Load};
-use crate::piece::{Piece, Sample, Watch};
+use crate::piece::{Part, Piece, Sample, Watch};
 use crate::reactions::{Impulse, Reactions};
 use crate::state::InitialStateError;
 use crate::taylor::{Arc, Start};
@@ -297,7 +297,7 @@ impl<L: Level> Hand<'_, L> {
         let begin = Start { state: now.state, a_g, a_top, interval, local_error };
         if let Some(end) = self.leap(now, &begin) {
             if W::SEES_PIECES {
-                watch.piece(&mut self.piece(*now, interval, load, end, false));
+                watch.piece(&mut self.piece(now, interval, load, end, false));
             }
             now.state = end;
             now.time += interval;
@@ -355,7 +355,7 @@ impl<L: Level> Hand<'_, L> {
             motion.work.evaluations += self.arc.order as u64;
             let state = self.arc.end();
             if W::SEES_PIECES {
-                watch.piece(&mut self.piece(*motion, duration, load.from(elapsed), state, true));
+                watch.piece(&mut self.piece(motion, duration, load.from(elapsed), state, true));
             }
             motion.state = state;
             motion.chatter.pass(duration);
@@ -374,7 +374,14 @@ impl<L: Level> Hand<'_, L> {
     }
 
     /// What watchers are shown of a stretch of `duration` (s) under `load` from the motion `before` to the state `end`.
-    fn piece(&mut self, before: Motion, duration: f64, load: LinearLoad, end: State, is_expanded: bool) -> Piece<'_> {
+    fn piece<'a>(
+        &'a mut self,
+        before: &'a Motion,
+        duration: f64,
+        load: LinearLoad,
+        end: State,
+        is_expanded: bool,
+    ) -> Piece<'a> {
         Piece {
             before,
             duration,
@@ -385,7 +392,7 @@ impl<L: Level> Hand<'_, L> {
             level: self.level,
             arc: self.arc,
             is_expanded,
-            passed: (0.0, before.state),
+            part: Part { start: (0.0, before.state), end: (duration, end) },
             evaluations: 0,
         }
     }

@@ -13,7 +13,7 @@ use crate::detail::ElasticRocking;
 use crate::linear_system::{LinearSystem, Row};
 use crate::load::Load;
 use crate::oscillator::{Flow, Kept, Oscillator, Swing};
-use crate::piece::Bounds;
+use crate::piece::Rates;
 use crate::taylor::{Arc, Start, reciprocal};
 use crate::uplift::TurningMoment;
 use crate::{Side, State, Structure};
@@ -122,7 +122,7 @@ impl ElasticRocking for ModalRocking {
     }
 
     /// Bounds of what changes on the way from `start` about `side` to `end`.
-    fn bounds(&self, side: Side, start: &Start, end: &State) -> Bounds {
+    fn rates(&self, side: Side, start: &Start, end: &State) -> Rates {
         let &Start { state, a_top, interval, .. } = start;
         let &ModalRocking { vibration, p_l, g, tan_alpha_cg, gravity_forcing, .. } = self;
         let s = side.sign();
@@ -136,7 +136,7 @@ impl ElasticRocking for ModalRocking {
         let off = off(&state, a_top.value).max(off(end, a_top.at(interval)));
         let q_r = off + a_top.value.abs().max(a_top.at(interval).abs()) / g + tan_alpha_cg;
         let q_r_dot = off_rate(&state).max(off_rate(end)) + a_top.slope.abs() / g;
-        Bounds {
+        Rates {
             u: swing.farthest(),
             u_dot,
             u_ddot,

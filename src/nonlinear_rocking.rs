@@ -22,7 +22,7 @@
 
 use crate::detail::ElasticRocking;
 use crate::load::Load;
-use crate::piece::Bounds;
+use crate::piece::Rates;
 use crate::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
 use crate::uplift::TurningMoment;
 use crate::{Side, State, Structure};
@@ -113,8 +113,8 @@ impl Default for NonlinearRocking {
 }
 
 impl ElasticRocking for NonlinearRocking {
-    fn bounds(&self, _side: Side, _start: &Start, _end: &State) -> Bounds {
-        Bounds::NONE
+    fn rates(&self, _side: Side, _start: &Start, _end: &State) -> Rates {
+        Rates::NONE
     }
 
     fn is_singular(&self, structure: &Structure, side: Side, state: &State) -> bool {
