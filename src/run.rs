@@ -5,7 +5,9 @@
 
 mod history;
 pub mod levels;
+pub mod outcome;
 pub mod peaks;
+pub mod plan;
 mod samples;
 
 use crate::engine::{AdvanceError, DEFAULT_TOLERANCE};
@@ -15,6 +17,7 @@ use crate::state::InitialStateError;
 use crate::{Detail, Engine, Motion, Progress, Ramp, State, Structure, Watch};
 use peaks::Peaks;
 use samples::Samples;
+use serde::{Deserialize, Serialize};
 
 /// For how long a structure may rock on after its record, in units of 1/p_l: amplitudes change by e^±1 in each.
 pub const LONGEST_REST: f64 = 100.0;
@@ -47,15 +50,19 @@ pub enum End {
 }
 
 /// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Ending {
     /// The structure stands, and will.
+    #[serde(rename = "at rest")]
     AtRest,
     /// |θ| reached π/2.
+    #[serde(rename = "overturned")]
     Overturned,
     /// The time asked for was over.
+    #[serde(rename = "at time")]
     AtTime,
     /// It still rocked [`LONGEST_REST`] after the record: what becomes of it is not known.
+    #[serde(rename = "still rocking")]
     StillRocking,
 }
 
