@@ -239,6 +239,11 @@ impl Plan {
         &self.populations
     }
 
+    /// The ground motions.
+    pub fn motions(&self) -> &[GroundMotion] {
+        &self.motions
+    }
+
     /// The scale factors.
     pub fn scales(&self) -> &[f64] {
         &self.scales
@@ -376,11 +381,21 @@ mod tests {
 
     #[test]
     fn trials_are_counted_from_outcomes() {
+        let scales = [0.1, 1.25, 3.0];
         let piers = Population::new("piers", Parameters::MCMANUS).vary("f_fc", vec![3.0, 4.0, 5.0]).unwrap();
-        let plan = Plan::new(vec![piers], vec![pulse()], vec![0.1, 1.2, 3.0]).unwrap();
+        let plan = Plan::new(vec![piers], vec![pulse()], scales.into()).unwrap();
         let overturned = |case: Case| (case.intensity(), case.outcome().exceeds(&Limit::Overturning));
         let trials = Trials::count(plan.cases().map(overturned));
-        assert_eq!(trials.iter().map(|at| (at.runs, at.exceedances)).collect::<Vec<_>>(), [(3, 0), (3, 2), (3, 3)]);
+        let expected = scales.map(|scale| {
+            let ground = pulse().record.scaled(1.0, scale);
+            let overturns = |f_fc: &&f64| {
+                let structure = Structure::new(Parameters { f_fc: **f_fc, ..Parameters::MCMANUS }).unwrap();
+                Run::new(structure, &ground).peaks().unwrap().1.ending == Ending::Overturned
+            };
+            (3, [3.0, 4.0, 5.0].iter().filter(overturns).count())
+        });
+        assert_eq!(trials.iter().map(|at| (at.runs, at.exceedances)).collect::<Vec<_>>(), expected);
+        assert_ne!(expected[0], expected[2]);
     }
 
     #[test]
