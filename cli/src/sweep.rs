@@ -75,23 +75,16 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let picture = output.with_extension("svg");
     picture::draw(&picture, &populations).with_context(|| format!("{} cannot be written", picture.display()))?;
     eprintln!("rows {}, picture {}", output.display(), picture.display());
-    refuse_failures(&plan, &outcomes)
+    refuse_failures(&plan, &keys, &outcomes)
 }
 
-/// Says how many runs failed, and why the first did.
-fn refuse_failures(plan: &Plan, outcomes: &[Outcome]) -> anyhow::Result<()> {
-    let failed = || plan.cases().zip(outcomes).filter(|(_, outcome)| matches!(outcome, Outcome::Failed(_)));
-    if let Some((Case { population, structure, motion, scale, .. }, Outcome::Failed(reason))) = failed().next() {
-        bail!(
-            "{} of {} runs failed; the first: {} with {:?}, {}, scale {scale}: {reason}",
-            failed().count(),
-            plan.len(),
-            population.name(),
-            structure.parameters(),
-            motion.name()
-        );
-    }
-    Ok(())
+/// Says how many runs failed, and which the first is.
+fn refuse_failures(plan: &Plan, keys: &[Uuid], outcomes: &[Outcome]) -> anyhow::Result<()> {
+    let failed = || (0..plan.len()).filter(|index| matches!(outcomes[*index], Outcome::Failed(_)));
+    let Some(first) = failed().next() else { return Ok(()) };
+    let (count, Case { population, motion, scale, .. }) = (failed().count(), plan.case(first));
+    let (name, motion, key) = (population.name(), motion.name(), keys[first]);
+    bail!("{count} of {} runs failed; the first: {name}, {motion}, scale {scale}, see row {key}", plan.len())
 }
 
 /// Does the runs numbered `missing` and appends them to `rows` as they end.

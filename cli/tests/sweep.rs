@@ -153,14 +153,10 @@ preset = 'mcmanus'
         assert_eq!(status.code(), Some(1));
         assert!(message.starts_with(&format!("sweep.csv: {done} of 4 runs done")), "{message}");
         let (_, error) = message.split_once("error: ").unwrap();
-        assert!(
-            error.starts_with("1 of 4 runs failed; the first: light with Parameters { m: 130.1, m0: 0.0"),
-            "{error}"
-        );
-        assert!(error.contains("}, pulse.AT2, scale 6: the motion cannot be continued beyond t = 0.51"), "{error}");
+        assert!(error.starts_with("1 of 4 runs failed; the first: light, pulse.AT2, scale 6, see row "), "{error}");
         assert!(summary.contains("1 failed and are not counted"), "{summary}");
         let line = |start: &str| summary.lines().find(|line| line.trim().starts_with(start)).unwrap().to_owned();
-        assert!(line("6 ").ends_with("none") && line("1 ").ends_with("0.0000"), "{summary}");
+        assert!(line("6.0").ends_with("none") && line("1.0").ends_with("0.0000"), "{summary}");
 
         let text = read(&folder, "sweep.csv");
         assert_eq!(column(&text, "ending"), ["at rest", "failed", "at rest", "overturned"]);
@@ -355,7 +351,7 @@ fn the_headings_are_checked() {
 fn a_record_that_two_patterns_name_counts_once() {
     let folder = sweep(SWEEP);
     let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
-    let twice = SWEEP.replace("'pulse.AT2'", "'pulse.AT2', '*.AT2', '../*/pulse.AT2'");
+    let twice = SWEEP.replace("'pulse.AT2'", "'pulse.AT2', '*.AT2'");
     fs::write(folder.path().join("sweep.toml"), twice).unwrap();
     let (again, progress) = succeed(folder.path(), "sweep sweep.toml");
     assert_eq!(again, summary);
@@ -409,21 +405,38 @@ fn probabilities_and_curve_are_those_of_the_rows() {
 fn a_refused_sweep_says_what_to_change() {
     for (from, to, expected) in [
         ("pulse.AT2", "absent*.AT2", "records: there is no file absent*.AT2"),
-        ("'pulse.AT2'", "", "records is empty: name one or more"),
-        ("[0.5, 1, 2, 3, 4, 6]", "[]", "scale: the list is empty: give one or more numbers"),
+        ("'pulse.AT2'", "", "records is empty: give one or more"),
+        ("[0.5, 1, 2, 3, 4, 6]", "[]", "scale is empty: give one or more"),
         ("[0.5, 1, 2, 3, 4, 6]", "[0, 1]", "scale = 0 leaves no ground motion: leave it out"),
-        ("[0.5, 1, 2, 3, 4, 6]", "{ from = 1, to = 2, count = 1 }", "scale: count = 1 is out of range: 2 or more"),
-        ("[0.5, 1, 2, 3, 4, 6]", "[nan]", "scale: NaN is not a finite number"),
+        (
+            "[0.5, 1, 2, 3, 4, 6]",
+            "{ from = 1, to = 2, count = 1 }",
+            "scale: count = 1 is out of range: 2 to 10000000 v",
+        ),
+        ("[0.5, 1, 2, 3, 4, 6]", "[nan]", "scale = NaN is not a finite number"),
         ("records", "time_scale = -1\nrecords", "time_scale = -1 is out of range: a finite number greater than 0"),
-        ("name = 'wall'", "name = 'pier'", "two entries of structures have the name \"pier\": rename one"),
+        ("name = 'wall'", "name = 'pier'", "two populations have the name \"pier\": rename one"),
         ("preset = 'mcmanus'\n", "", "structures \"pier\": give either preset or parameters"),
         ("[4, 6, 8], r", "[4], H = [1], r", "structures \"pier\": H and slenderness cannot both vary"),
         ("r = [0.9, 1]", "q = [1]", "structures \"pier\": \"q\" cannot vary: these can: m, m0, H, B, J0, f_fc"),
         ("r = [0.9, 1]", "r = [0, 1]", "structures \"pier\": r = 0 1 is out of range: it must lie between 0.001"),
-        ("r = [0.9, 1]", "r = []", "structures \"pier\": r: the list is empty"),
+        ("r = [0.9, 1]", "r = []", "structures \"pier\": r is empty: give one or more"),
         ("r = 0.96", "r = 0.96, g = 1.62", "g = 1.62 m/s2 and g = 9.81 m/s2: a sweep has one g"),
-        ("\"theta/alpha_cg\"", "drift", "limits: \"drift\" is unknown; these are known: theta, theta/alpha_cg"),
+        ("\"theta/alpha_cg\"", "drift", "limits: \"drift\" is unknown; these are known: theta, u, delta_t, uplift"),
         ("[0.6]", "[0]", "limits: theta/alpha_cg = 0 is out of range"),
+        ("[0.5, 1, 2, 3, 4, 6]", "[1, 2, 1]", "scale = 1 is there twice and would count twice: leave one out"),
+        (
+            "[0.5, 1, 2, 3, 4, 6]",
+            "{ from = 1, to = 2, count = 100000000000 }",
+            "scale: count = 100000000000 is out of range: 2 to 10000000 values are possible from 1 to 2",
+        ),
+        (
+            "[0.5, 1, 2, 3, 4, 6]",
+            "{ from = 1, to = 2, count = 2000000 }",
+            "9 structures x 1 ground motions x 2000000 scale factors: more than 10000000 runs",
+        ),
+        ("r = [0.9, 1]", "g = [9.81]", "structures \"pier\": g cannot vary: a sweep has one g"),
+        ("name = 'wall'", "name = \"wa\\nll\"", "the name \"wa\\nll\" must be a line of text, for it is written into"),
         ("records", "record", "TOML parse error at line 2, column 1"),
         ("[0.5, 1, 2, 3, 4, 6]", "'all'", "TOML parse error at line 3, column 9"),
     ] {
