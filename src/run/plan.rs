@@ -109,7 +109,7 @@ pub enum PlanError {
     #[error("{0}: the ground acceleration is 0 throughout")]
     NoMotion(String),
     /// A structure is impossible.
-    #[error("{population:?}: {source}")]
+    #[error("structures {population:?}: {source}")]
     Structure {
         /// Its population.
         population: String,
@@ -313,8 +313,8 @@ fn check_list(name: &str, values: &[f64]) -> Result<(), PlanError> {
 mod tests {
     use super::*;
     use crate::fragility::Trials;
-    use crate::run::Ending;
     use crate::run::outcome::{Limit, MEASURES, Summary};
+    use crate::run::{End, Ending};
     use std::f64::consts::{FRAC_PI_2, TAU};
 
     /// A full sine of 0.5 s and 0.6 g that ends with its last sample.
@@ -342,6 +342,19 @@ mod tests {
         let Outcome::Ended(standing) = only(Parameters::MCMANUS, 1.0) else { panic!() };
         assert_eq!(standing.ending, Ending::AtRest);
         assert!(standing.end > 0.5 && standing.transitions > 0);
+    }
+
+    /// A slow structure has hardly begun to vibrate when the record ends.
+    #[test]
+    fn the_vibration_after_a_record_counts() {
+        let slow = Parameters { m0: 0.0, J0: 0.0, f_fc: 0.2, ..Parameters::MCMANUS };
+        let Outcome::Ended(found) = only(slow, 1.0) else { panic!() };
+        let long = Run { end: End::At(20.0), ..Run::new(Structure::new(slow).unwrap(), &pulse().record) }.peaks();
+        let (peaks, _) = long.unwrap();
+        assert_eq!(found.ending, Ending::AtRest);
+        for (name, found, expected) in [("u", found.peaks[1], peaks.u()), ("a_t", found.peaks[4], peaks.a_t())] {
+            assert!((found - expected.magnitude).abs() < 1e-12 * found, "{name}: {found}, {expected:?}");
+        }
     }
 
     #[test]
@@ -418,7 +431,7 @@ mod tests {
             "the ground motion \"pulse\" is there twice and would count twice: leave one out"
         );
         let slender = pier().vary("slenderness", vec![1.0, 2000.0]).unwrap();
-        assert!(plan(vec![slender], vec![pulse()], vec![1.0]).starts_with("\"pier\": H/B = 2000"));
+        assert!(plan(vec![slender], vec![pulse()], vec![1.0]).starts_with("structures \"pier\": H/B = 2000"));
 
         let many = || (1..=4000).map(f64::from).collect::<Vec<_>>();
         let huge = PARAMETERS.iter().fold(pier(), |pier, axis| pier.vary(axis.name, many()).unwrap());
