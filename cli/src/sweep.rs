@@ -75,11 +75,11 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let picture = output.with_extension("svg");
     picture::draw(&picture, &populations).with_context(|| format!("{} cannot be written", picture.display()))?;
     eprintln!("rows {}, picture {}", output.display(), picture.display());
-    refuse_failures(&plan, &keys, &outcomes)
+    report_failures(&plan, &keys, &outcomes)
 }
 
 /// Says how many runs failed, and which the first is.
-fn refuse_failures(plan: &Plan, keys: &[Uuid], outcomes: &[Outcome]) -> anyhow::Result<()> {
+fn report_failures(plan: &Plan, keys: &[Uuid], outcomes: &[Outcome]) -> anyhow::Result<()> {
     let failed = || (0..plan.len()).filter(|index| matches!(outcomes[*index], Outcome::Failed(_)));
     let Some(first) = failed().next() else { return Ok(()) };
     let (count, Case { population, motion, scale, .. }) = (failed().count(), plan.case(first));

@@ -161,6 +161,10 @@ fn read(rows: &[u8], keys: &[Uuid]) -> anyhow::Result<Found> {
             .with_context(|| format!("line {line} is not a row as it was written: remove it, to do its run again"))?;
     }
     let numbers: HashMap<_, _> = keys.iter().zip(0..).collect();
+    ensure!(
+        numbers.len() == keys.len(),
+        "two runs are the same: values that vary differ by less than a rounding error"
+    );
     let mut found = Found { outcomes: vec![None; keys.len()], ..Found::default() };
     for (line, row) in (2..).zip(ReaderBuilder::new().has_headers(false).from_reader(rows).into_records()) {
         let (key, outcome) = parse(&row?).with_context(|| format!("line {line} cannot be read"))?;
