@@ -23,7 +23,14 @@
 //! | [`demand`], [`response_spectrum`] | Eqs 21–24: demands without a time history |
 //! | [`pushover`] | Fig 1: equilibrium under a lateral force |
 //! | [`record`] | ground motion records: samples in memory, PEER AT2, CSV |
+//! | [`run`] | a structure under a ground motion: exact peaks, levels compared, plans of many runs and their outcomes |
 //! | [`fragility`] | fragility curve of many runs |
+//!
+//! In short, `examples/first_run.rs`:
+//!
+//! ```
+#![doc = include_str!("../examples/first_run.rs")]
+//! ```
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
 mod bisection;
