@@ -41,9 +41,9 @@ pub struct Population {
     varying: Vec<(usize, Vec<f64>)>,
 }
 
-/// A ground motion, by name.
+/// A ground motion record under a name.
 #[derive(Clone, Debug)]
-pub struct GroundMotion {
+pub struct NamedRecord {
     name: String,
     record: Record,
     /// Peak ground acceleration, m/s².
@@ -54,7 +54,7 @@ pub struct GroundMotion {
 #[derive(Clone, Debug)]
 pub struct Plan {
     populations: Vec<Population>,
-    motions: Vec<GroundMotion>,
+    motions: Vec<NamedRecord>,
     scales: Vec<f64>,
 }
 
@@ -68,7 +68,7 @@ pub struct Case<'a> {
     /// The structure.
     pub structure: Structure,
     /// The ground motion before it is scaled.
-    pub motion: &'a GroundMotion,
+    pub motion: &'a NamedRecord,
     /// Factor on its acceleration.
     pub scale: f64,
 }
@@ -177,11 +177,11 @@ impl Population {
     }
 }
 
-impl GroundMotion {
+impl NamedRecord {
     /// The ground motion `record`, which must not be at rest throughout.
-    pub fn new(name: impl Into<String>, record: Record) -> Result<GroundMotion, PlanError> {
+    pub fn new(name: impl Into<String>, record: Record) -> Result<NamedRecord, PlanError> {
         let (name, pga) = (name.into(), record.pga());
-        if pga > 0.0 { Ok(GroundMotion { name, record, pga }) } else { Err(PlanError::NoMotion(name)) }
+        if pga > 0.0 { Ok(NamedRecord { name, record, pga }) } else { Err(PlanError::NoMotion(name)) }
     }
 
     /// What it is called.
@@ -197,7 +197,7 @@ impl GroundMotion {
 
 impl Plan {
     /// Every structure of `populations` under each of `motions` times each of `scales`.
-    pub fn new(populations: Vec<Population>, motions: Vec<GroundMotion>, scales: Vec<f64>) -> Result<Plan, PlanError> {
+    pub fn new(populations: Vec<Population>, motions: Vec<NamedRecord>, scales: Vec<f64>) -> Result<Plan, PlanError> {
         check_list("scale", &scales)?;
         if scales.contains(&0.0) {
             return Err(PlanError::NoScale);
@@ -240,7 +240,7 @@ impl Plan {
     }
 
     /// The ground motions.
-    pub fn motions(&self) -> &[GroundMotion] {
+    pub fn motions(&self) -> &[NamedRecord] {
         &self.motions
     }
 
@@ -318,10 +318,10 @@ mod tests {
     use std::f64::consts::{FRAC_PI_2, TAU};
 
     /// A full sine of 0.5 s and 0.6 g that ends with its last sample.
-    fn pulse() -> GroundMotion {
+    fn pulse() -> NamedRecord {
         let times: Vec<_> = (0..=50).map(|i| f64::from(i) * 0.01).collect();
         let acceleration = times.iter().map(|time| 0.6 * 9.81 * (TAU * time / 0.5).sin()).collect();
-        GroundMotion::new("pulse", Record::from_samples("", times, acceleration).unwrap()).unwrap()
+        NamedRecord::new("pulse", Record::from_samples("", times, acceleration).unwrap()).unwrap()
     }
 
     fn only(base: Parameters, scale: f64) -> Outcome {
@@ -371,7 +371,7 @@ mod tests {
         let piers = Population::new("piers", Parameters::MCMANUS).vary("slenderness", vec![4.0, 6.3]).unwrap();
         let piers = piers.vary("B", vec![0.3, 0.2, 0.1]).unwrap();
         let wall = Population::new("wall", Parameters::EVISON);
-        let scaled = GroundMotion::new("half", pulse().record.scaled(1.0, 0.5)).unwrap();
+        let scaled = NamedRecord::new("half", pulse().record.scaled(1.0, 0.5)).unwrap();
         let plan = Plan::new(vec![piers, wall], vec![pulse(), scaled], vec![1.0, -2.0]).unwrap();
         assert_eq!((plan.size(), plan.len()), ([7, 2, 2], 28));
         let [axis_B, slenderness] = [AXES[3], AXES[10]];
@@ -448,7 +448,7 @@ mod tests {
         assert_eq!(vary("H", vec![4.0]), "H is there twice and would count twice: leave one out");
         assert_eq!(vary("r", vec![]), "r is empty: give one or more");
         assert_eq!(vary("m0", vec![0.0, -0.0]), "m0 = -0 is there twice and would count twice: leave one out");
-        let at_rest = GroundMotion::new("rest", Record::at_rest(1.0)).unwrap_err();
+        let at_rest = NamedRecord::new("rest", Record::at_rest(1.0)).unwrap_err();
         assert_eq!(at_rest.to_string(), "rest: the ground acceleration is 0 throughout");
     }
 }

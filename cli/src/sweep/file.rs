@@ -5,7 +5,7 @@ use rocking::{
     Parameters,
     record::{Record, Unit},
     run::outcome::Limit,
-    run::plan::{GroundMotion, MAX_RUNS, Plan, Population},
+    run::plan::{MAX_RUNS, NamedRecord, Plan, Population},
 };
 use serde::Deserialize;
 use std::{collections::BTreeMap, collections::HashSet, path::Path};
@@ -139,7 +139,7 @@ fn motions(
     patterns: &[String],
     folder: &Path,
     read: impl Fn(&Path) -> anyhow::Result<Record>,
-) -> anyhow::Result<Vec<GroundMotion>> {
+) -> anyhow::Result<Vec<NamedRecord>> {
     let (mut motions, mut files) = (Vec::new(), HashSet::new());
     for pattern in patterns {
         let in_folder = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
@@ -153,7 +153,7 @@ fn motions(
                 continue;
             }
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            let motion = GroundMotion::new(is_one_line(&name)?, read(&path)?);
+            let motion = NamedRecord::new(is_one_line(&name)?, read(&path)?);
             motions.push(motion.with_context(|| path.display().to_string())?);
         }
     }

@@ -11,7 +11,7 @@ use anyhow::{Context, bail, ensure};
 use csv::{ReaderBuilder, StringRecord, WriterBuilder};
 use rocking::run::{
     outcome::{MEASURES, Outcome},
-    plan::{AXES, Case, GroundMotion, Plan},
+    plan::{AXES, Case, NamedRecord, Plan},
 };
 use serde::Serialize;
 use std::{
@@ -52,7 +52,7 @@ pub struct Found {
 /// The key of each run of `plan`.
 pub fn keys(plan: &Plan) -> Vec<Uuid> {
     let build = Uuid::try_parse(BUILD).expect("the build script wrote it");
-    let digest = |of: &GroundMotion| {
+    let digest = |of: &NamedRecord| {
         let samples = (of.record().times(), of.record().acceleration());
         (ptr::from_ref(of), key(&Uuid::NAMESPACE_OID, &samples).into_bytes())
     };
