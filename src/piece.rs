@@ -228,9 +228,10 @@ impl Piece<'_> {
 
     /// Leaves behind what the arc covers; false if that is all of the part.
     pub fn skip(&mut self) -> bool {
-        let passed = self.passed() + self.arc.duration();
-        let is_left = !self.is_expanded && self.arc.reach < 1.0 && passed < self.part.end.0;
-        self.part.start = if is_left { (passed, self.arc.end()) } else { self.part.end };
+        let (passed, covered) = (self.passed(), self.arc.duration());
+        // an arc may end before the part does although it reaches the end of its span
+        let is_left = !self.is_expanded && covered < self.part.end.0 - passed;
+        self.part.start = if is_left { (passed + covered, self.arc.end()) } else { self.part.end };
         is_left
     }
 
