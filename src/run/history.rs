@@ -97,7 +97,13 @@ impl Watch for History {
             piece.series(Measure::At, &mut |from, arc, a_t| {
                 let start = start + from * span;
                 let series = [arc.series(|k| arc.theta[k]), arc.series(|k| arc.u[k]), *a_t];
-                self.stretches.push(Stretch { start, end: start + arc.duration(), transitions, span: arc.span, series });
+                self.stretches.push(Stretch {
+                    start,
+                    end: start + arc.duration(),
+                    transitions,
+                    span: arc.span,
+                    series,
+                });
             });
             if !piece.skip() {
                 break;
