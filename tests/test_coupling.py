@@ -17,9 +17,9 @@ from coupling.building_on_soil import OnSoil
 from coupling.masters import MASTERS, TOLERANCE, Diverged, Iterated, between_transitions
 from coupling.masters import extrapolate, gauss_seidel, hold, jacobi
 from coupling.swaying_mass import SwayingMass
-from first_run import pacoima_dam
 from reference import EVISON, MCMANUS
 from scipy.linalg import expm
+from validation.records import pacoima_dam
 
 TIME, A_G = pacoima_dam()
 ROOT = Path(__file__).parents[1]

@@ -14,10 +14,10 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
-from first_run import pacoima_dam
 from fmpy.ssp.simulation import simulate_ssp
 from pythonfmu.builder import FmuBuilder
 from validation.figures import FIXED, ROCKING, SMOOTH, save, subplots
+from validation.records import pacoima_dam
 
 from .bridge import PIERS, Bridge, deck, linear, pier, simulate
 from .masters import MASTERS, between_transitions, extrapolate

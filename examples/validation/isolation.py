@@ -4,13 +4,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from first_run import G, pacoima_dam
+from first_run import G
 from scipy.optimize import brentq
 
 from . import figures
 from .free_vibration import release
 from .project import FIXED_BASE, Project
-from .records import single_pulse
+from .records import pacoima_dam, single_pulse
 from .report import Row, Section
 
 PER_SAMPLE = 16  # communication steps of Pacoima Dam
