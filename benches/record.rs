@@ -13,7 +13,7 @@ const DURATION: f64 = 15.0;
 fn run(structure: Structure, segments: &[Segment], detail: Detail, tolerance: f64) -> Motion {
     let mut engine = Engine::with_detail(structure, State::default(), segments[0].start, tolerance, detail).unwrap();
     for segment in segments {
-        engine.advance(segment.end, segment.a_g, &mut ()).unwrap();
+        engine.advance(segment.end - segment.start, segment.a_g, &mut ()).unwrap();
     }
     *engine.motion()
 }

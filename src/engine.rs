@@ -191,7 +191,19 @@ impl Engine {
         load: impl Into<LinearLoad>,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
-        let load: LinearLoad = load.into();
+        let last_step = self.motion.work.steps + MAX_STEPS_PER_ADVANCE;
+        self.advance_within(last_step, interval, load.into(), watch)
+    }
+
+    /// The same, until `last_step` steps have been taken since the start.
+    #[inline]
+    pub(crate) fn advance_within<W: Watch>(
+        &mut self,
+        last_step: u64,
+        interval: f64,
+        load: LinearLoad,
+        watch: &mut W,
+    ) -> Result<Progress, AdvanceError> {
         let start = self.motion.time;
         let until = start + interval;
         self.check(interval, &load)?;
@@ -200,6 +212,9 @@ impl Engine {
         let Motion { state, phase, .. } = self.motion;
         let begin = Start { state, a_g, a_top, interval, local_error };
         if let Some(end) = self.leap(phase, &begin) {
+            if self.motion.work.steps == last_step {
+                return Err(AdvanceError::TooLong { time: start, until });
+            }
             if W::SEES_PIECES {
                 watch.piece(&mut self.piece(self.motion, interval, load, end, false));
             }
@@ -210,7 +225,6 @@ impl Engine {
             return Ok(Progress::Complete);
         }
         let mut motion = self.motion;
-        let last_step = motion.work.steps + MAX_STEPS_PER_ADVANCE;
         // Time runs from the start of the interval: transitions are then as sharp at t = 1000 s as at 0.
         let mut elapsed = 0.0;
         while elapsed < interval {
@@ -280,7 +294,7 @@ impl Engine {
 
     /// Whether `load` can act over `interval` (s).
     #[inline]
-    fn check(&self, interval: f64, load: &LinearLoad) -> Result<(), AdvanceError> {
+    pub(crate) fn check(&self, interval: f64, load: &LinearLoad) -> Result<(), AdvanceError> {
         if !(interval > 0.0 && interval.is_finite()) {
             return Err(AdvanceError::NotAhead { from: self.motion.time, interval });
         }

@@ -23,6 +23,7 @@
 //! | [`demand`], [`response_spectrum`] | Eqs 21–24: demands without a time history |
 //! | [`pushover`] | Fig 1: equilibrium under a lateral force |
 //! | [`record`] | ground motion records: samples in memory, PEER AT2, CSV |
+//! | [`ground_motion`] | a record scaled, placed in time and followed whatever the steps |
 //! | [`fragility`] | fragility curve of many runs |
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
@@ -36,6 +37,7 @@ mod extremes;
 pub mod first_crossing;
 pub mod fragility;
 pub mod full_contact;
+pub mod ground_motion;
 pub mod impact;
 mod kinematics;
 mod linear_rocking;
@@ -64,6 +66,7 @@ pub mod uplift;
 
 pub use detail::Detail;
 pub use engine::{Engine, Motion, Progress};
+pub use ground_motion::GroundMotion;
 pub use load::{LinearLoad, Load, Ramp};
 pub use outputs::Outputs;
 pub use parameters::Parameters;

@@ -99,6 +99,14 @@ impl LinearLoad {
         LinearLoad { value: self.at(tau), ..self }
     }
 
+    /// The same on ground that has the acceleration `a_g` beside its own.
+    pub fn on_ground(self, a_g: Ramp) -> LinearLoad {
+        LinearLoad {
+            value: Load { a_g: self.value.a_g + a_g.value, ..self.value },
+            slope: Load { a_g: self.slope.a_g + a_g.slope, ..self.slope },
+        }
+    }
+
     /// Its ground acceleration.
     pub(crate) fn on_foundation(self) -> Ramp {
         Ramp { value: self.value.a_g, slope: self.slope.a_g }

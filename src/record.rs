@@ -5,11 +5,16 @@
 mod at2;
 mod csv;
 
-use crate::Ramp;
-use std::{
-    fs,
-    path::{Path, PathBuf},
-};
+use crate::{GroundMotion, Ramp};
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+/// Largest file that is read, bytes: 256 MiB.
+pub const MAX_FILE: u64 = 1 << 28;
+
+/// Most samples that are read from a file.
+pub const MAX_SAMPLES: usize = 10_000_000;
 
 /// A ground motion: at least two samples, finite, at strictly increasing times.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,7 +53,21 @@ pub enum RecordError {
         /// The file.
         path: PathBuf,
         /// What the system says.
-        source: std::io::Error,
+        source: io::Error,
+    },
+    /// A folder, a device or a pipe: nothing is read of these.
+    #[error("{} is not a file", path.display())]
+    NotAFile {
+        /// What is no file.
+        path: PathBuf,
+    },
+    /// The file is larger than any record.
+    #[error("{} has {size} bytes; a record may have {MAX_FILE}", path.display())]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Its size.
+        size: u64,
     },
     /// The extension names no known format.
     #[error(
@@ -105,19 +124,28 @@ impl Record {
     /// Reads a record in the format that its extension tells. An acceleration in g is multiplied by `g` (m/s²);
     /// `csv_unit` is the unit of a CSV file, where an AT2 file states its own.
     pub fn read(path: &Path, csv_unit: Unit, g: f64) -> Result<Record, RecordError> {
-        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-        let parse: fn(&str, Unit, f64) -> Result<Record, BadLine> = match extension.as_deref() {
-            Some("at2") => |text, _, g| at2::parse(text, g),
-            Some("csv" | "txt") => csv::parse,
-            _ => return Err(RecordError::UnknownFormat { path: path.into() }),
+        let format = Format::of(path)?;
+        let bytes = read_file(path)?;
+        let text = String::from_utf8_lossy(&bytes);
+        let parsed = match format {
+            Format::At2 => at2::parse(&text, g),
+            Format::Csv => csv::parse(&text, csv_unit, g),
         };
-        let bytes = fs::read(path).map_err(|source| RecordError::Unreadable { path: path.into(), source })?;
-        let mut record = parse(&String::from_utf8_lossy(&bytes), csv_unit, g)
-            .map_err(|BadLine { line, problem }| RecordError::Malformed { path: path.into(), line, problem })?;
+        let mut record =
+            parsed.map_err(|BadLine { line, problem }| RecordError::Malformed { path: path.into(), line, problem })?;
         if record.title.is_empty() {
             record.title = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         }
         Ok(record)
+    }
+
+    /// The same with its accelerations as the file gives them, and their unit.
+    pub fn read_raw(path: &Path, csv_unit: Unit) -> Result<(Record, Unit), RecordError> {
+        let unit = match Format::of(path)? {
+            Format::At2 => Unit::G,
+            Format::Csv => csv_unit,
+        };
+        Ok((Record::read(path, csv_unit, 1.0)?, unit))
     }
 
     /// Ground at rest for `duration` (s), greater than 0: free vibration.
@@ -165,11 +193,11 @@ impl Record {
 
     /// The ground motion from its first sample until `end` (s); after its last sample the ground is at rest.
     pub fn segments_until(&self, end: f64) -> impl Iterator<Item = Segment> {
-        let samples = self.times.windows(2).zip(self.acceleration.windows(2));
-        let linear = samples.map(|(times, acceleration)| Segment {
-            start: times[0],
-            end: times[1],
-            a_g: Ramp { value: acceleration[0], slope: (acceleration[1] - acceleration[0]) / (times[1] - times[0]) },
+        let ground = GroundMotion::from(self);
+        let linear = (1..self.times.len()).map(move |next| Segment {
+            start: self.times[next - 1],
+            end: self.times[next],
+            a_g: ground.ramp(next),
         });
         let at_rest = Segment { start: self.end(), end: f64::INFINITY, a_g: Ramp::default() };
         linear
@@ -184,6 +212,39 @@ impl Segment {
     pub fn from(&self, time: f64) -> Ramp {
         self.a_g.from(time - self.start)
     }
+}
+
+/// A format of files.
+enum Format {
+    At2,
+    Csv,
+}
+
+impl Format {
+    /// What the extension of `path` tells.
+    fn of(path: &Path) -> Result<Format, RecordError> {
+        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+        match extension.as_deref() {
+            Some("at2") => Ok(Format::At2),
+            Some("csv" | "txt") => Ok(Format::Csv),
+            _ => Err(RecordError::UnknownFormat { path: path.into() }),
+        }
+    }
+}
+
+/// The bytes of a file. Whether `path` is one is asked before it is opened, for opening a pipe may last for ever.
+fn read_file(path: &Path) -> Result<Vec<u8>, RecordError> {
+    let unreadable = |source| RecordError::Unreadable { path: path.into(), source };
+    let told = fs::metadata(path).map_err(unreadable)?;
+    if !told.is_file() {
+        return Err(RecordError::NotAFile { path: path.into() });
+    }
+    if told.len() > MAX_FILE {
+        return Err(RecordError::TooLarge { path: path.into(), size: told.len() });
+    }
+    let mut bytes = Vec::with_capacity(told.len() as usize);
+    File::open(path).and_then(|file| file.take(MAX_FILE).read_to_end(&mut bytes)).map_err(unreadable)?;
+    Ok(bytes)
 }
 
 fn check_samples(times: &[f64], acceleration: &[f64]) -> Result<(), String> {
@@ -226,9 +287,9 @@ fn in_m_s2(word: &str, unit: f64) -> Result<f64, String> {
     acceleration.ok_or_else(|| format!("the acceleration {} is not a number", quote(word)))
 }
 
-/// What was found, short enough for a message.
+/// What was found, short enough for a message, which shows a field of a file and no more of it.
 fn quote(found: &str) -> String {
-    const SHOWN: usize = 60;
+    const SHOWN: usize = 40;
     let found = found.trim();
     match found.char_indices().nth(SHOWN) {
         Some((end, _)) => format!("{:?}...", &found[..end]),
@@ -263,6 +324,26 @@ mod tests {
         assert_eq!(read(&broken).unwrap_err().to_string(), expected);
         assert!(matches!(read(&folder.join("a.VT2")), Err(RecordError::UnknownFormat { .. })));
         assert!(matches!(read(&folder.join("absent.at2")), Err(RecordError::Unreadable { .. })));
+        assert_eq!(Record::read_raw(&latin, Unit::MetrePerSecondSquared).unwrap().1, Unit::G);
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    /// Nothing is read of what is no file, or too large for a record: neither hangs.
+    #[test]
+    #[cfg(unix)]
+    fn what_is_no_file_is_refused_unread() {
+        let folder = std::env::temp_dir().join(format!("rocking-no-record-{}", std::process::id()));
+        fs::create_dir_all(folder.join("folder.csv")).unwrap();
+        let [zero, pipe, large] = ["zero.csv", "pipe.csv", "large.csv"].map(|name| folder.join(name));
+        std::os::unix::fs::symlink("/dev/zero", &zero).unwrap();
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let refusal = |path: &Path| Record::read(path, Unit::G, 9.81).unwrap_err().to_string();
+        for path in [&folder.join("folder.csv"), &zero, &pipe] {
+            assert_eq!(refusal(path), format!("{} is not a file", path.display()));
+        }
+        File::create(&large).unwrap().set_len(MAX_FILE + 1).unwrap();
+        let expected = format!("{} has 268435457 bytes; a record may have 268435456", large.display());
+        assert_eq!(refusal(&large), expected);
         fs::remove_dir_all(folder).unwrap();
     }
 

@@ -15,7 +15,7 @@
 #![allow(unsafe_code, clippy::missing_safety_doc)] // the section above
 
 use crate::failure::Failure;
-use crate::instance::{self, Instance};
+use crate::instance::{self, Instance, boolean};
 use crate::logger::{Logger, Sink, Status};
 use crate::state_machine::Function;
 use crate::variables::{DataType, Variable};
@@ -123,10 +123,12 @@ fn remedy(failure: &Failure) -> &'static str {
     match failure {
         Failure::WrongType(Variable { data_type, .. }) => match data_type {
             DataType::Real { .. } => ": call fmi2GetReal or fmi2SetReal instead",
-            DataType::Integer | DataType::Enumeration(_) => ": call fmi2GetInteger instead",
-            DataType::Boolean => ": call fmi2GetBoolean instead",
+            DataType::Integer => ": call fmi2GetInteger instead",
+            DataType::Enumeration(_) => ": call fmi2GetInteger or fmi2SetInteger instead",
+            DataType::Boolean => ": call fmi2GetBoolean or fmi2SetBoolean instead",
+            DataType::String => ": call fmi2GetString or fmi2SetString instead",
         },
-        Failure::Fixed(_) => ": set it before fmi2ExitInitializationMode, or call fmi2Reset",
+        Failure::Fixed(_) | Failure::NotWatched(_) => ": set it before fmi2ExitInitializationMode, or call fmi2Reset",
         Failure::WrongPoint { .. } => ": step from there, or go back with fmi2SetFMUstate",
         Failure::PastStop { .. } => " given to fmi2SetupExperiment: shorten it",
         Failure::WrongSize { .. } => " (fmi2SerializedFMUstateSize)",
@@ -202,14 +204,6 @@ unsafe fn text<'a>(name: &'static str, pointer: *const c_char) -> Result<&'a str
     }
 }
 
-fn boolean(name: &'static str, value: c_int) -> Result<bool, Failure> {
-    match value {
-        0 => Ok(false),
-        1 => Ok(true),
-        _ => Err(Failure::BadChoice { name, value, accepted: "0 (fmi2False), 1 (fmi2True)" }),
-    }
-}
-
 /// The items of `fmi2StatusKind`, by number.
 const STATUS_KINDS: [&str; 4] = ["fmi2DoStepStatus", "fmi2PendingStatus", LAST_SUCCESSFUL_TIME, TERMINATED];
 const LAST_SUCCESSFUL_TIME: &str = "fmi2LastSuccessfulTime";
@@ -259,10 +253,10 @@ pub unsafe extern "C" fn fmi2Instantiate(
             if name?.is_empty() {
                 return Err(Failure::NoName);
             }
-            Ok((instance::shipped("fmuGUID", guid?, location?)?, events?))
+            Ok((instance::open("fmuGUID", guid?, location?)?, events?))
         };
         match arguments() {
-            Ok((parameters, events)) => Some(Instance::new(parameters, events, logger)),
+            Ok((archive, events)) => Some(Instance::new(archive, events, logger)),
             Err(failure) => {
                 logger.failure(failure.status(), &format!("fmi2Instantiate: {failure}"));
                 None
@@ -354,8 +348,8 @@ functions! {
         instance.get_boolean(values("vr", vr, nvr)?, room("value", value, nvr)?)
     }
 
-    fmi2GetString = GetString(vr: *const c_uint, nvr: size_t, _value: *mut *const c_char) |instance| {
-        instance.get_string(values("vr", vr, nvr)?)
+    fmi2GetString = GetString(vr: *const c_uint, nvr: size_t, value: *mut *const c_char) |instance| {
+        instance.get_string(values("vr", vr, nvr)?, room("value", value, nvr)?)
     }
 
     fmi2SetReal = SetReal(vr: *const c_uint, nvr: size_t, value: *const c_double) |instance| {
@@ -366,12 +360,13 @@ functions! {
         instance.set_integer(values("vr", vr, nvr)?, values("value", value, nvr)?)
     }
 
-    fmi2SetBoolean = SetBoolean(vr: *const c_uint, nvr: size_t, _value: *const c_int) |instance| {
-        instance.set_boolean(values("vr", vr, nvr)?)
+    fmi2SetBoolean = SetBoolean(vr: *const c_uint, nvr: size_t, value: *const c_int) |instance| {
+        instance.set_boolean(values("vr", vr, nvr)?, values("value", value, nvr)?)
     }
 
-    fmi2SetString = SetString(vr: *const c_uint, nvr: size_t, _value: *const *const c_char) |instance| {
-        instance.set_string(values("vr", vr, nvr)?)
+    fmi2SetString = SetString(vr: *const c_uint, nvr: size_t, value: *const *const c_char) |instance| {
+        let texts = values("value", value, nvr)?.iter().map(|value| text("value", *value)).collect::<Result<Vec<_>, _>>()?;
+        instance.set_string(values("vr", vr, nvr)?, &texts)
     }
 
     fmi2GetFMUstate = GetFMUstate(FMUstate: *mut *mut c_void) |instance| {
@@ -485,7 +480,7 @@ mod tests {
     fn a_panic_is_fatal_and_the_instance_can_only_be_freed() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join(PARAMETERS_FILE), toml::to_string(&Parameters::EVISON).unwrap()).unwrap();
-        let [guid, location] = [guid(&Parameters::EVISON), format!("file://{}", folder.path().display())]
+        let [guid, location] = [guid(&Parameters::EVISON.into()), format!("file://{}", folder.path().display())]
             .map(|text| CString::new(text).unwrap());
         let functions = CallbackFunctions {
             logger: None,

@@ -1,13 +1,19 @@
 //! Where an instance stands: everything that its future depends on.
 
 use crate::failure::Failure;
+use crate::ground::{Digest, GroundRecord};
+use crate::inputs::Inputs;
+use crate::resources::Archive;
+use crate::setup::Setup;
 use crate::state_machine::Stage;
-use crate::variables::{Source, VARIABLES, Variable};
-use rocking::engine::{DEFAULT_TOLERANCE, Motion};
-use rocking::quantity::Quantity;
-use rocking::{Detail, Engine, Impulse, LinearLoad, Load, Parameters, State, Structure};
+use crate::variables::{DataType, VARIABLES, Variable};
+use rocking::engine::{AdvanceError, Motion, Progress};
+use rocking::ground_motion::Elapsed;
+use rocking::run::peaks::{PEAKS, Peaks};
+use rocking::{Engine, Impulse, LinearLoad, Load, Phase, State, Watch};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
+use std::sync::Arc;
 
 /// Largest |θ| of a structure in motion, rad: that of overturning and its rounding.
 const MAX_ANGLE: f64 = FRAC_PI_2 + 1e-9;
@@ -15,8 +21,11 @@ const MAX_ANGLE: f64 = FRAC_PI_2 + 1e-9;
 /// More than any other number of the motion (SI units) but its time can be, and small enough to be squared.
 const BOUND: f64 = 1e100;
 
+/// More than anything that is counted can come to.
+const MAX_COUNT: u64 = 1 << 60;
+
 /// A few dozen numbers from which an instance goes on to the same bits: what an FMU state holds.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Condition {
     /// State of FMI's state machine.
     pub stage: Stage,
@@ -24,185 +33,203 @@ pub struct Condition {
     pub setup: Setup,
     /// What acts from the present time on.
     pub inputs: Inputs,
-    /// The motion, once it has started: until then it follows from the setup.
-    pub motion: Option<Motion>,
+    /// How far the simulation has come, once it has started: until then all follows from the setup.
+    pub course: Option<Course>,
 }
 
-/// What is set before a simulation starts.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Setup {
-    pub(crate) parameters: Parameters,
-    pub(crate) initial: State,
-    pub(crate) detail: Detail,
-    pub(crate) tolerance: f64,
-    pub(crate) start_time: f64,
-    pub(crate) stop_time: Option<f64>,
+/// How far a simulation has come.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct Course {
+    /// The motion.
+    pub motion: Motion,
+    /// Time since the start.
+    pub elapsed: Elapsed,
+    /// Peaks so far, if they are watched.
+    pub peaks: Peaks,
+    /// Of the record that the ground follows.
+    pub record: Option<Digest>,
 }
 
-/// The inputs. A slope is followed for one step, after which the value that it led to is held.
-#[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
-pub struct Inputs {
-    /// Now, with the slopes that the next step follows.
-    pub next: LinearLoad,
-    /// The slopes that the last step followed, of inputs of which nothing has been set since.
-    pub followed: Load,
-}
-
-/// A condition with the engine that it is the condition of.
+/// A condition with what it is the condition of.
 pub(crate) struct Present {
     pub stage: Stage,
     pub setup: Setup,
     pub inputs: Inputs,
     /// Until initialization ends it is built when an output is asked for, and dropped when what it was built from is
     /// set anew.
-    pub engine: Option<Engine>,
+    pub model: Option<Model>,
 }
 
-impl Setup {
-    /// The structure at the start time.
-    pub(crate) fn start(&self) -> Result<Engine, Failure> {
-        let structure = Structure::new(self.parameters)?;
-        Ok(Engine::with_detail(structure, self.initial, self.start_time, self.tolerance, self.detail)?)
-    }
-
-    /// The parameter or initial value of `source`.
-    pub(crate) fn get(&self, source: &Source) -> f64 {
-        match source {
-            Source::Parameter(quantity) => (quantity.get)(&self.parameters),
-            Source::InitialValue(quantity) => (quantity.get)(&self.initial),
-            _ => f64::NAN,
-        }
-    }
-
-    /// The same but for the parameter or initial value of `source`.
-    pub(crate) fn with(mut self, source: &Source, value: f64) -> Setup {
-        match source {
-            Source::Parameter(quantity) => (quantity.set)(&mut self.parameters, value),
-            Source::InitialValue(quantity) => (quantity.set)(&mut self.initial, value),
-            _ => (),
-        }
-        self
-    }
-
-    /// Whether tolerance, start and stop time can be.
-    pub(crate) fn check_experiment(&self) -> Result<(), Failure> {
-        let &Setup { tolerance, start_time, stop_time, .. } = self;
-        let refuse = |name, value, limit: &str| Failure::Experiment { name, value, limit: limit.to_owned() };
-        if !(tolerance > 0.0 && tolerance < 1.0) {
-            return Err(refuse("tolerance", tolerance, "between 0 and 1, such as 1e-9"));
-        }
-        if !start_time.is_finite() {
-            return Err(refuse("startTime", start_time, "finite"));
-        }
-        match stop_time.filter(|stop_time| !(*stop_time >= start_time && stop_time.is_finite())) {
-            Some(stop_time) => {
-                Err(refuse("stopTime", stop_time, &format!("finite and not before startTime = {start_time} s")))
-            }
-            None => Ok(()),
-        }
-    }
+/// The structure on its ground.
+pub(crate) struct Model {
+    pub engine: Engine,
+    pub ground: Option<Arc<GroundRecord>>,
+    /// Time since the start.
+    pub elapsed: Elapsed,
+    pub peaks: Peaks,
 }
 
-impl Inputs {
-    /// Sets the value of one, which ends its slope.
-    pub(crate) fn set(&mut self, input: &Quantity<Load>, value: f64) {
-        (input.set)(&mut self.next.value, value);
-        (input.set)(&mut self.followed, 0.0);
+impl Model {
+    /// At the start that `setup` describes, on ground that follows `ground`.
+    pub fn new(setup: &Setup, ground: Option<Arc<GroundRecord>>) -> Result<Model, Failure> {
+        let engine = setup.engine()?;
+        ground.as_deref().map_or(Ok(()), |ground| setup.check_ground(ground))?;
+        let peaks = Peaks::since(setup.start_time, engine.structure());
+        Ok(Model { engine, ground, elapsed: Elapsed::default(), peaks })
     }
 
-    /// Sets the slope of one over the next step.
-    pub(crate) fn set_slope(&mut self, input: &Quantity<Load>, slope: f64) {
-        (input.set)(&mut self.next.slope, slope);
-        (input.set)(&mut self.followed, 0.0);
+    /// What acts now: `inputs` and the record.
+    pub fn load(&self, setup: &Setup, inputs: LinearLoad) -> LinearLoad {
+        match &self.ground {
+            Some(ground) => inputs.on_ground(setup.ground_motion(ground).at(self.elapsed)),
+            None => inputs,
+        }
     }
 
-    /// What they are now and how they change: as they are about to, or as they just did.
-    pub(crate) fn now(&self) -> LinearLoad {
-        let LinearLoad { value, slope } = self.next;
-        let Load { a_g, F_t } = self.followed;
-        LinearLoad { value, slope: Load { a_g: slope.a_g + a_g, F_t: slope.F_t + F_t } }
+    /// The peaks since the start; before the first step, the values under `load`.
+    pub fn peaks(&self, setup: &Setup, load: Load) -> Peaks {
+        let mut peaks = self.peaks;
+        if self.engine.motion().work.steps == 0 {
+            peaks.see_instant(setup.start_time, &self.engine.outputs(load));
+        }
+        peaks
     }
 
-    /// After a step of `duration` (s).
-    pub(crate) fn after(&self, duration: f64) -> Inputs {
-        let next = LinearLoad { value: self.next.at(duration), slope: Load::default() };
-        Inputs { next, followed: self.next.slope }
+    /// From the first to the last sample of the record, s; 0 without one.
+    pub fn record_duration(&self, setup: &Setup) -> f64 {
+        self.ground.as_ref().map_or(0.0, |ground| setup.ground_motion(ground).duration())
+    }
+
+    /// Whether the structure has overturned, which ends the simulation.
+    pub fn has_overturned(&self) -> bool {
+        matches!(self.engine.motion().phase, Phase::Overturned(_))
+    }
+
+    /// Advances by `step` (s) under `inputs` and the record. If it fails, nothing has changed.
+    pub fn advance<W: Watch>(
+        &mut self,
+        setup: &Setup,
+        step: f64,
+        inputs: LinearLoad,
+        watch: &mut W,
+    ) -> Result<Progress, AdvanceError> {
+        if !setup.peaks {
+            return self.follow(setup, step, inputs, watch);
+        }
+        let mut peaks = self.peaks;
+        let progress = self.follow(setup, step, inputs, &mut (&mut peaks, watch))?;
+        self.peaks = peaks;
+        Ok(progress)
+    }
+
+    fn follow<W: Watch>(
+        &mut self,
+        setup: &Setup,
+        step: f64,
+        inputs: LinearLoad,
+        watch: &mut W,
+    ) -> Result<Progress, AdvanceError> {
+        let Model { engine, ground, elapsed, .. } = self;
+        let start = engine.motion().time;
+        let progress = match ground {
+            Some(ground) => setup.ground_motion(ground).advance(engine, *elapsed, step, inputs, watch)?,
+            None => engine.advance(step, inputs, watch)?,
+        };
+        *elapsed = elapsed.and(if progress == Progress::Complete { step } else { engine.motion().time - start });
+        Ok(progress)
     }
 }
 
 impl Condition {
     /// Whether calls can lead here. What is read from bytes need not have come about by calls.
     pub fn is_possible(&self) -> bool {
-        let Setup { parameters, initial, .. } = &self.setup;
-        let Inputs { next: LinearLoad { value, slope }, followed } = &self.inputs;
-        let fits = |variable: &Variable| match variable.source {
-            Source::Input(quantity) => {
-                let slopes = (quantity.get)(slope) + (quantity.get)(followed);
-                quantity.check((quantity.get)(value)).is_ok() && slopes.is_finite()
-            }
-            Source::Parameter(quantity) => quantity.check((quantity.get)(parameters)).is_ok(),
-            Source::InitialValue(quantity) => quantity.check((quantity.get)(initial)).is_ok(),
+        let fits = |variable: &Variable| match (variable.data_type, variable.source.setting(&self.setup)) {
+            (DataType::Real { range: Some((min, max)), .. }, Some(value)) => (min..=max).contains(&value),
             _ => true,
         };
-        let moves = |motion: &Motion| {
-            let &Motion { time, state: State { u, u_dot, theta, theta_dot }, impulse, .. } = motion;
-            let Impulse { I_h, I_v, I_m } = impulse;
-            let is_bounded = [u, u_dot, theta_dot, I_h, I_v, I_m].iter().all(|x| x.abs() <= BOUND);
-            is_bounded && time.is_finite() && theta.abs() <= MAX_ANGLE
-        };
         VARIABLES.iter().all(fits)
+            && self.inputs.are_possible()
             && self.setup.check_experiment().is_ok()
-            && self.motion.is_some() == self.stage.has_started()
-            && self.motion.as_ref().is_none_or(|motion| moves(motion) && self.setup.start().is_ok())
+            && self.course.is_some() == self.stage.has_started()
+            && self.course.as_ref().is_none_or(|course| course.is_possible(&self.setup))
+    }
+}
+
+impl Course {
+    fn is_possible(&self, setup: &Setup) -> bool {
+        let Course { motion, elapsed, peaks, record } = self;
+        let &Motion { time, state: State { u, u_dot, theta, theta_dot }, impulse, transitions, work, .. } = motion;
+        let Impulse { I_h, I_v, I_m } = impulse;
+        [u, u_dot, theta_dot, I_h, I_v, I_m, elapsed.seconds()].iter().all(|x| x.abs() <= BOUND)
+            && PEAKS
+                .iter()
+                .map(|peaking| (peaking.of)(peaks))
+                .all(|peak| peak.magnitude <= BOUND && peak.time.is_finite())
+            && [transitions, work.steps, work.evaluations, peaks.evaluations()].iter().all(|count| *count < MAX_COUNT)
+            && time.is_finite()
+            && theta.abs() <= MAX_ANGLE
+            && record.is_none() == setup.record.is_empty()
+            && setup.engine().is_ok_and(|engine| peaks.are_of(engine.structure()))
     }
 }
 
 impl Present {
-    /// As instantiated, with the parameters that the archive carries.
-    pub fn new(parameters: Parameters) -> Present {
-        Present {
-            stage: Stage::Instantiated,
-            setup: Setup {
-                parameters,
-                initial: State::default(),
-                detail: Detail::default(),
-                tolerance: DEFAULT_TOLERANCE,
-                start_time: 0.0,
-                stop_time: None,
-            },
-            inputs: Inputs::default(),
-            engine: None,
-        }
+    /// As instantiated from `archive`.
+    pub fn new(archive: &Archive) -> Present {
+        let setup = Setup::new(&archive.contents);
+        Present { stage: Stage::Instantiated, setup, inputs: Inputs::default(), model: None }
     }
 
-    /// The structure in motion, or at its start with what has been set so far.
-    pub fn engine(&mut self) -> Result<&mut Engine, Failure> {
-        match &mut self.engine {
-            Some(engine) => Ok(engine),
-            none => Ok(none.insert(self.setup.start()?)),
-        }
+    /// The structure in motion, or at its start with what has been set so far; its record is in `archive`, or on disk.
+    pub fn model(&mut self, archive: &Archive) -> Result<&mut Model, Failure> {
+        self.parts(archive).map(|(model, ..)| model)
+    }
+
+    /// The same with what else there is.
+    pub fn parts(&mut self, archive: &Archive) -> Result<(&mut Model, &Setup, &mut Inputs, &mut Stage), Failure> {
+        let Present { stage, setup, inputs, model } = self;
+        let model = match model {
+            Some(model) => model,
+            none => none.insert(Model::new(setup, archive.record(&setup.record)?)?),
+        };
+        Ok((model, setup, inputs, stage))
     }
 
     /// Its condition.
     pub fn condition(&self) -> Condition {
-        let &Present { stage, setup, inputs, .. } = self;
-        let motion = self.engine.as_ref().filter(|_| stage.has_started()).map(|engine| *engine.motion());
-        Condition { stage, setup, inputs, motion }
+        let Present { stage, setup, inputs, model } = self;
+        let course = model.as_ref().filter(|_| stage.has_started()).map(|model| Course {
+            motion: *model.engine.motion(),
+            elapsed: model.elapsed,
+            peaks: model.peaks,
+            record: model.digest(),
+        });
+        Condition { stage: *stage, setup: setup.clone(), inputs: *inputs, course }
     }
 
-    /// Goes to `condition`. The engine is built anew only for another setup.
-    pub fn go_to(&mut self, condition: &Condition) -> Result<(), Failure> {
-        let &Condition { stage, setup, inputs, motion } = condition;
-        let engine = match motion {
-            Some(motion) => {
-                let kept = self.engine.take_if(|_| self.setup == setup);
-                let mut engine = kept.map_or_else(|| setup.start(), Ok)?;
-                engine.set_motion(motion);
-                Some(engine)
+    /// Goes to `condition`. The model is built anew only for another setup.
+    pub fn go_to(&mut self, condition: &Condition, archive: &Archive) -> Result<(), Failure> {
+        let Condition { stage, setup, inputs, course } = condition;
+        let mut model = None;
+        if let Some(course) = course {
+            let is_the_same = |model: &mut Model| self.setup == *setup && model.digest() == course.record;
+            let kept = self.model.take_if(is_the_same);
+            let mut found = kept.map_or_else(|| Model::new(setup, archive.record(&setup.record)?), Ok)?;
+            if found.digest() != course.record {
+                return Err(Failure::OtherRecord(setup.record.to_string()));
             }
-            None => None,
-        };
-        *self = Present { stage, setup, inputs, engine };
+            found.engine.set_motion(course.motion);
+            (found.elapsed, found.peaks) = (course.elapsed, course.peaks);
+            model = Some(found);
+        }
+        *self = Present { stage: *stage, setup: setup.clone(), inputs: *inputs, model };
         Ok(())
+    }
+}
+
+impl Model {
+    /// Of the record that the ground follows.
+    fn digest(&self) -> Option<Digest> {
+        self.ground.as_ref().map(|ground| ground.digest)
     }
 }

@@ -1,5 +1,6 @@
 //! Why a call is not done: every message of that kind, in one place. What to call instead, the C interface adds.
 
+use crate::ground::GroundError;
 use crate::logger::Status;
 use crate::resources::ResourceError;
 use crate::state_machine::Stage;
@@ -89,9 +90,20 @@ pub enum Failure {
         /// The number.
         value: i32,
     },
-    /// A string.
-    #[error("value reference {0} is no String: this FMU has no String variables")]
-    NoStrings(u32),
+    /// No such record.
+    #[error(transparent)]
+    Ground(#[from] GroundError),
+    /// The record is out of the range of an input.
+    #[error("the record, as it is scaled: {0}")]
+    StrongRecord(OutOfRange),
+    /// The record has changed since a state was kept.
+    #[error(
+        "the FMU state was kept under another record = {0:?}: its samples are not those of the file that is there now"
+    )]
+    OtherRecord(String),
+    /// A peak that nobody watches.
+    #[error("{} is not watched while the parameter peaks is false", .0.name)]
+    NotWatched(&'static Variable),
     /// A fixed parameter, too late.
     #[error("{} is fixed once the simulation has started", .0.name)]
     Fixed(&'static Variable),
@@ -259,6 +271,7 @@ fn type_name(variable: &Variable) -> &'static str {
         DataType::Real { .. } => "a Real",
         DataType::Integer => "an Integer",
         DataType::Boolean => "a Boolean",
+        DataType::String => "a String",
         DataType::Enumeration(_) => "an Enumeration",
     }
 }
@@ -266,6 +279,7 @@ fn type_name(variable: &Variable) -> &'static str {
 fn causality_name(variable: &Variable) -> &'static str {
     match variable.causality {
         Causality::CalculatedParameter => "a calculated parameter",
+        Causality::Local => "a local variable",
         _ => "an output",
     }
 }

@@ -1,18 +1,21 @@
 //! One instance of the FMU: what each function does, in safe code, whatever a version of the standard calls it.
 
-use crate::condition::{Present, Setup};
+use crate::condition::{Model, Present};
 use crate::failure::Failure;
+use crate::inputs::Inputs;
 use crate::logger::{Category, Logger, Status};
-use crate::resources;
+use crate::resources::Archive;
 use crate::sensitivity::{Shown, sensitivities};
+use crate::setup::Setup;
 use crate::snapshot::{self, Snapshots};
 use crate::state_machine::Stage;
 use crate::variables::{self, Causality, Source, VARIABLES, Variable};
 use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE, Progress};
 use rocking::impact::gaining_restitution;
 use rocking::load::LOADS;
-use rocking::{Load, Parameters, Phase, Reactions, Side, Transition, TransitionKind};
+use rocking::{Load, Parameters, Reactions, Side, Transition, TransitionKind};
 use std::collections::BTreeMap;
+use std::ffi::{CString, c_char};
 use std::mem::MaybeUninit;
 
 /// How close two times that mean the same are, in units in the last place, or in parts of the step if that is more.
@@ -22,27 +25,30 @@ const SAME_TIME: (f64, f64) = (8.0, 1e-4);
 pub struct Instance {
     logger: Logger,
     events_at_start: bool,
-    shipped: Parameters,
+    archive: Archive,
     now: Present,
     snapshots: Snapshots,
+    /// The text that the host was shown last, which is its until the next call.
+    shown: CString,
 }
 
-/// The parameters in the archive's folder `resources` (a URI), if `guid`, the argument `name`, is theirs.
-pub fn shipped(name: &'static str, guid: &str, resources: &str) -> Result<Parameters, Failure> {
-    let parameters = resources::parameters(resources)?;
-    let needed = crate::guid(&parameters);
+/// The archive with the folder `resources` (a URI), if `guid`, the argument `name`, is its.
+pub fn open(name: &'static str, guid: &str, resources: &str) -> Result<Archive, Failure> {
+    let archive = Archive::open(resources)?;
+    let needed = crate::guid(&archive.contents);
     if guid != needed {
         return Err(Failure::WrongGuid { name, given: guid.to_owned(), needed });
     }
-    Ok(parameters)
+    Ok(archive)
 }
 
 impl Instance {
-    /// Just instantiated, with the parameters that the archive carries; `events` says whether events are logged.
-    pub fn new(shipped: Parameters, events: bool, mut logger: Logger) -> Instance {
+    /// Just instantiated from `archive`; `events` says whether events are logged.
+    pub fn new(archive: Archive, events: bool, mut logger: Logger) -> Instance {
         logger.set_events(events);
-        let now = Present::new(shipped);
-        Instance { logger, events_at_start: events, shipped, now, snapshots: Snapshots::default() }
+        let now = Present::new(&archive);
+        let (snapshots, shown) = Default::default();
+        Instance { logger, events_at_start: events, archive, now, snapshots, shown }
     }
 
     /// State of FMI's state machine.
@@ -75,7 +81,7 @@ impl Instance {
         stop_time: Option<f64>,
     ) -> Result<(), Failure> {
         let tolerance = tolerance.unwrap_or(DEFAULT_TOLERANCE);
-        let setup = Setup { tolerance, start_time, stop_time, ..self.now.setup };
+        let setup = Setup { tolerance, start_time, stop_time, ..self.now.setup.clone() };
         setup.check_experiment()?;
         self.now.setup = setup;
         Ok(())
@@ -89,7 +95,7 @@ impl Instance {
 
     /// From here on parameters and initial values are fixed, and fit together.
     pub fn exit_initialization_mode(&mut self) -> Result<(), Failure> {
-        let structure = self.now.engine()?.structure();
+        let structure = self.now.model(&self.archive)?.engine.structure();
         let (r, gaining) = (structure.parameters().r, gaining_restitution(structure));
         if r < gaining {
             self.logger.warning(&format!(
@@ -109,7 +115,7 @@ impl Instance {
 
     /// As instantiated. FMU states stay the host's until it frees them.
     pub fn reset(&mut self) -> Result<(), Failure> {
-        self.now = Present::new(self.shipped);
+        self.now = Present::new(&self.archive);
         self.logger.set_events(self.events_at_start);
         Ok(())
     }
@@ -120,40 +126,52 @@ impl Instance {
         let mut reaction = None;
         for reference in references {
             let variable = find(*reference)?;
-            if let Source::Reaction(_) = variable.source {
-                reaction = Some(variable);
-            }
             match variable.source {
-                Source::Input(_) | Source::Parameter(_) | Source::InitialValue(_) => (),
-                Source::Output(_) | Source::Reaction(_) | Source::Impulse(_) | Source::Derived(_) => is_computed = true,
-                Source::Integer(_) | Source::Boolean(_) | Source::Detail => return Err(Failure::WrongType(variable)),
-            }
-        }
-        let load = self.now.inputs.next.value;
-        let (mut outputs, mut reactions) = (None, None);
-        if is_computed {
-            let engine = self.now.engine()?;
-            if let Some(variable) = reaction {
-                let Reactions { R_h, R_v, R_m } = *reactions.insert(engine.reactions(load));
-                if !(R_h + R_v + R_m).is_finite() {
-                    return Err(Failure::NoReaction { variable, time: engine.motion().time });
+                Source::Input(_) | Source::Parameter(_) | Source::InitialValue(_) | Source::Placement(_) => (),
+                Source::Peak(_) if !self.now.setup.peaks => return Err(Failure::NotWatched(variable)),
+                Source::Reaction(_) => (reaction, is_computed) = (Some(variable), true),
+                Source::Output(_) | Source::Impulse(_) | Source::Derived(_) | Source::Ground | Source::Peak(_) => {
+                    is_computed = true;
+                }
+                Source::Overturning | Source::RecordDuration => is_computed = true,
+                Source::Integer(_) | Source::Boolean(_) | Source::Detail | Source::Record | Source::Switch(_) => {
+                    return Err(Failure::WrongType(variable));
                 }
             }
         }
+        if is_computed {
+            self.now.model(&self.archive)?;
+        }
+        let Present { setup, inputs, model, .. } = &self.now;
+        let acting = model.as_ref().map(|model| (model, model.load(setup, inputs.now(false)).value));
+        let reactions = acting.filter(|_| reaction.is_some()).map(|(model, load)| model.engine.reactions(load));
+        if let (Some(Reactions { R_h, R_v, R_m }), Some(variable), Some((model, _))) = (reactions, reaction, acting)
+            && !(R_h + R_v + R_m).is_finite()
+        {
+            return Err(Failure::NoReaction { variable, time: model.engine.motion().time });
+        }
+        let (mut outputs, mut peaks) = (None, None);
         for (reference, value) in references.iter().zip(values) {
             let variable = find(*reference)?;
-            value.write(match variable.source {
-                Source::Input(quantity) => (quantity.get)(&load),
-                Source::Parameter(_) | Source::InitialValue(_) => self.now.setup.get(&variable.source),
-                Source::Derived(derived) => (derived.value)(self.now.engine()?.structure()),
-                Source::Output(of) => {
-                    let engine = self.now.engine()?;
-                    of(outputs.get_or_insert_with(|| engine.outputs(load)))
-                }
-                Source::Reaction(of) => reactions.as_ref().map_or(f64::NAN, of), // there is one if it is asked for
-                Source::Impulse(of) => of(&self.now.engine()?.motion().impulse),
-                Source::Integer(_) | Source::Boolean(_) | Source::Detail => return Err(Failure::WrongType(variable)),
-            });
+            let known = match variable.source {
+                Source::Input(quantity) => Some((quantity.get)(&inputs.values())),
+                Source::Reaction(of) => reactions.as_ref().map(of),
+                source => source.setting(setup).or_else(|| {
+                    let (model, load) = acting?;
+                    Some(match source {
+                        Source::Output(of) => of(outputs.get_or_insert_with(|| model.engine.outputs(load))),
+                        Source::Peak(of) => of(peaks.get_or_insert_with(|| model.peaks(setup, load))),
+                        Source::Impulse(of) => of(&model.engine.motion().impulse),
+                        Source::Derived(derived) => (derived.value)(model.engine.structure()),
+                        Source::Ground => load.a_g,
+                        Source::Overturning if model.has_overturned() => model.engine.motion().time,
+                        Source::Overturning => setup.start_time,
+                        Source::RecordDuration => model.record_duration(setup),
+                        _ => return None,
+                    })
+                }),
+            };
+            value.write(known.expect("all that is asked for is a Real and has been computed"));
         }
         Ok(())
     }
@@ -165,7 +183,7 @@ impl Instance {
 
     /// Booleans, as 0 or 1.
     pub fn get_boolean(&mut self, references: &[u32], values: &mut [MaybeUninit<i32>]) -> Result<(), Failure> {
-        self.get_discrete(references, values, |source| matches!(source, Source::Boolean(_)))
+        self.get_discrete(references, values, |source| matches!(source, Source::Boolean(_) | Source::Switch(_)))
     }
 
     /// All of the values, or none if one is refused. `is_of_type` tells the sources of one type.
@@ -181,37 +199,45 @@ impl Instance {
             if !is_of_type(&variable.source) {
                 return Err(Failure::WrongType(variable));
             }
-            is_computed |= !matches!(variable.source, Source::Detail);
+            is_computed |= !matches!(variable.source, Source::Detail | Source::Switch(_));
         }
         if is_computed {
-            self.now.engine()?;
+            self.now.model(&self.archive)?;
         }
         for (reference, value) in references.iter().zip(values) {
             value.write(match find(*reference)?.source {
-                Source::Integer(of) | Source::Boolean(of) => of(self.now.engine()?.motion()),
+                Source::Integer(of) | Source::Boolean(of) => of(self.now.model(&self.archive)?.engine.motion()),
+                Source::Switch(switch) => (switch.get)(&self.now.setup).into(),
                 _ => variables::detail_number(self.now.setup.detail),
             });
         }
         Ok(())
     }
 
-    /// There are no strings.
-    pub fn get_string(&self, references: &[u32]) -> Result<(), Failure> {
-        references.first().map_or(Ok(()), |reference| Err(Failure::NoStrings(*reference)))
+    /// Texts, good until the next call.
+    pub fn get_string(&mut self, references: &[u32], values: &mut [MaybeUninit<*const c_char>]) -> Result<(), Failure> {
+        for reference in references {
+            is_text(find(*reference)?)?;
+        }
+        self.shown = CString::new(self.now.setup.record.as_bytes()).unwrap_or_default(); // it came without NUL
+        values.iter_mut().for_each(|value| _ = value.write(self.shown.as_ptr()));
+        Ok(())
     }
 
     /// All of the values, or none if one is refused.
     pub fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
+        let has_started = self.now.stage.has_started();
         for (reference, &value) in references.iter().zip(values) {
             let variable = find(*reference)?;
             match variable.source {
                 Source::Input(quantity) => quantity.check(value)?,
-                Source::Parameter(_) | Source::InitialValue(_) if self.now.stage == Stage::StepComplete => {
+                Source::Parameter(_) | Source::InitialValue(_) | Source::Placement(_) if has_started => {
                     return Err(Failure::Fixed(variable));
                 }
                 Source::Parameter(quantity) => quantity.check(value)?,
                 Source::InitialValue(quantity) => quantity.check(value)?,
-                _ => return Err(Failure::NotSettable(variable)),
+                Source::Placement(quantity) => quantity.check(value)?,
+                _ => return Err(refused(variable)),
             }
         }
         let now = &mut self.now;
@@ -219,46 +245,62 @@ impl Instance {
             match &find(*reference)?.source {
                 Source::Input(quantity) => now.inputs.set(quantity, value),
                 source => {
-                    now.setup = now.setup.with(source, value);
-                    now.engine = None;
+                    source.set(&mut now.setup, value);
+                    now.model = None;
                 }
             }
         }
         Ok(())
     }
 
-    /// All of the values, or none if one is refused. Of enumerations alone, the parameter `detail`
-    /// can be set.
+    /// Parameters and initial values are fixed once the simulation has started.
+    fn check_not_fixed(&self, variable: &'static Variable) -> Result<(), Failure> {
+        if self.now.stage.has_started() { Err(Failure::Fixed(variable)) } else { Ok(()) }
+    }
+
+    /// All of the values, or none if one is refused. Of integers and enumerations, the parameter `detail` can be set.
     pub fn set_integer(&mut self, references: &[u32], values: &[i32]) -> Result<(), Failure> {
-        let mut detail = self.now.setup.detail;
+        let mut setup = self.now.setup.clone();
         for (reference, &value) in references.iter().zip(values) {
             let variable = find(*reference)?;
-            match variable.source {
-                Source::Detail if self.now.stage == Stage::StepComplete => return Err(Failure::Fixed(variable)),
-                Source::Detail => detail = variables::detail(value).ok_or(Failure::NoSuchItem { variable, value })?,
-                _ => self.set_boolean(std::slice::from_ref(reference))?,
-            }
+            let Source::Detail = variable.source else { return Err(refused(variable)) };
+            self.check_not_fixed(variable)?;
+            setup.detail = variables::detail(value).ok_or(Failure::NoSuchItem { variable, value })?;
         }
-        if detail != self.now.setup.detail {
-            self.now.setup.detail = detail;
-            self.now.engine = None;
+        self.set_up(setup);
+        Ok(())
+    }
+
+    /// All of the values, or none if one is refused.
+    pub fn set_boolean(&mut self, references: &[u32], values: &[i32]) -> Result<(), Failure> {
+        let mut setup = self.now.setup.clone();
+        for (reference, &value) in references.iter().zip(values) {
+            let variable = find(*reference)?;
+            let Source::Switch(switch) = variable.source else { return Err(refused(variable)) };
+            self.check_not_fixed(variable)?;
+            (switch.set)(&mut setup, boolean(variable.name, value)?);
+        }
+        self.set_up(setup);
+        Ok(())
+    }
+
+    /// All of the values, or none if one is refused. A record is looked for when it is needed.
+    pub fn set_string(&mut self, references: &[u32], values: &[&str]) -> Result<(), Failure> {
+        for reference in references {
+            let variable = find(*reference)?;
+            is_text(variable)?;
+            self.check_not_fixed(variable)?;
+        }
+        if let Some(&record) = values.last() {
+            self.set_up(Setup { record: record.into(), ..self.now.setup.clone() });
         }
         Ok(())
     }
 
-    /// No Boolean can be set.
-    pub fn set_boolean(&self, references: &[u32]) -> Result<(), Failure> {
-        let Some(reference) = references.first() else { return Ok(()) };
-        let variable = find(*reference)?;
-        Err(match variable.causality {
-            Causality::Output | Causality::CalculatedParameter => Failure::NotSettable(variable),
-            Causality::Input | Causality::Parameter => Failure::WrongType(variable),
-        })
-    }
-
-    /// There are no strings.
-    pub fn set_string(&self, references: &[u32]) -> Result<(), Failure> {
-        self.get_string(references)
+    fn set_up(&mut self, setup: Setup) {
+        if setup != self.now.setup {
+            (self.now.setup, self.now.model) = (setup, None);
+        }
     }
 
     /// Slopes of the inputs over the next step.
@@ -292,15 +334,16 @@ impl Instance {
         orders: &[i32],
         values: &mut [MaybeUninit<f64>],
     ) -> Result<(), Failure> {
-        let load = self.now.inputs.now();
-        let engine = self.now.engine()?;
-        let time = engine.motion().time;
-        let (outputs, reactions) = engine.rates(load);
+        let (model, setup, inputs, _) = self.now.parts(&self.archive)?;
+        let load = model.load(setup, inputs.now(setup.extrapolate));
+        let time = model.engine.motion().time;
+        let (outputs, reactions) = model.engine.rates(load);
         let rate = |reference: &u32, order: i32| {
             let variable = find(*reference)?;
             let rate = match variable.source {
                 Source::Output(of) => of(&outputs),
                 Source::Reaction(of) => of(&reactions),
+                Source::Ground => load.slope.a_g,
                 _ => return Err(Failure::NoOutput(variable)),
             };
             if order != 1 {
@@ -328,7 +371,6 @@ impl Instance {
         seed: &[f64],
         values: &mut [MaybeUninit<f64>],
     ) -> Result<(), Failure> {
-        let (setup, load) = (self.now.setup, self.now.inputs.next.value);
         let is_initializing = self.now.stage == Stage::InitializationMode;
         let mut direction = Load::default();
         let mut of_setup = BTreeMap::<u32, f64>::new();
@@ -342,7 +384,7 @@ impl Instance {
                     let sum = (quantity.get)(&direction) + value;
                     (quantity.set)(&mut direction, sum);
                 }
-                Source::Parameter(_) | Source::InitialValue(_) if is_initializing => {
+                Source::Parameter(_) | Source::InitialValue(_) | Source::Placement(_) if is_initializing => {
                     *of_setup.entry(*reference).or_default() += value;
                 }
                 _ => return Err(Failure::NoKnown(variable)),
@@ -351,23 +393,25 @@ impl Instance {
         let unknown = |reference: &u32| {
             let variable = find(*reference)?;
             match variable.source {
-                Source::Output(_) | Source::Reaction(_) => Ok(variable),
-                Source::Derived(_) | Source::Impulse(_) if is_initializing => Ok(variable),
+                Source::Output(_) | Source::Reaction(_) | Source::Ground => Ok(variable),
+                Source::Derived(_) | Source::RecordDuration | Source::Impulse(_) if is_initializing => Ok(variable),
                 _ => Err(Failure::NoOutput(variable)),
             }
         };
         let unknowns = unknowns.iter().map(unknown).collect::<Result<Vec<_>, _>>()?;
 
-        let engine = self.now.engine()?;
+        let (model, setup, inputs, _) = self.now.parts(&self.archive)?;
+        let (model, inputs) = (&*model, inputs.now(false));
+        let Model { engine, ground, .. } = model;
         let time = engine.motion().time;
         let &Parameters { m, g, .. } = engine.structure().parameters();
-        let before = Shown::new(engine, Load::default());
+        let before = Shown::new(model, setup, Load::default());
         let size = direction.a_g.abs().max(direction.F_t.abs() / m) / (g + before.outputs.a_t.abs());
         let of_size_one = |part: f64| if size > 0.0 { part / size } else { 0.0 };
-        let after = Shown::new(engine, Load { a_g: of_size_one(direction.a_g), F_t: of_size_one(direction.F_t) });
+        let after = Shown::new(model, setup, Load { a_g: of_size_one(direction.a_g), F_t: of_size_one(direction.F_t) });
         let mut found: Vec<_> = unknowns.iter().map(|of| size * (after.get(of) - before.get(of))).collect();
         for (reference, seed) in of_setup {
-            let by = sensitivities(&setup, load, &unknowns, find(reference)?)?;
+            let by = sensitivities(setup, ground, inputs, &unknowns, find(reference)?)?;
             found.iter_mut().zip(by).for_each(|(sum, by)| *sum += seed * by);
         }
         if let Some(at) = found.iter().position(|derivative| !derivative.is_finite()) {
@@ -383,9 +427,8 @@ impl Instance {
     /// the instance's.
     pub fn do_step(&mut self, point: f64, step: f64) -> Result<(), Failure> {
         let logger = &self.logger;
-        let Present { inputs, setup: Setup { stop_time, .. }, .. } = self.now;
-        let engine = self.now.engine()?;
-        let time = engine.motion().time;
+        let (model, setup, inputs, stage) = self.now.parts(&self.archive)?;
+        let time = model.engine.motion().time;
         let until = point + step;
         if !(step > 0.0 && step.is_finite()) {
             return Err(Failure::BadStep { step, time });
@@ -396,33 +439,34 @@ impl Instance {
         if until <= point {
             return Err(Failure::BadStep { step, time });
         }
-        if let Some(stop) = stop_time
+        if let Some(stop) = setup.stop_time
             && until > stop
             && !is_same_time(until, stop, step)
         {
             return Err(Failure::PastStop { until, stop });
         }
-        let last = inputs.next.at(step);
+        let load = inputs.over(step, setup.extrapolate);
+        let last = load.at(step);
         for quantity in &LOADS {
             quantity.check((quantity.get)(&last)).map_err(Failure::InputRunsOut)?;
         }
 
-        engine.set_time(point);
-        match engine.advance(step, inputs.next, &mut |transition: &Transition| log(logger, transition)) {
+        model.engine.set_time(point);
+        match model.advance(setup, step, load, &mut |transition: &Transition| log(logger, transition)) {
             Ok(Progress::Complete) => {
-                self.now.inputs = inputs.after(step);
+                *inputs = Inputs::after(load, step);
                 Ok(())
             }
             Ok(Progress::Overturned) => {
-                let end = engine.motion().time;
-                self.now.inputs = inputs.after(end - point);
-                self.now.stage = Stage::StepFailed;
+                let end = model.engine.motion().time;
+                *inputs = Inputs::after(load, end - point);
+                *stage = Stage::StepFailed;
                 Err(Failure::Overturned { time: end })
             }
             Err(error) => {
-                engine.set_time(time);
+                model.engine.set_time(time);
                 if matches!(error, AdvanceError::Singular { .. }) {
-                    self.now.stage = Stage::Error;
+                    *stage = Stage::Error;
                 }
                 Err(error.into())
             }
@@ -431,12 +475,12 @@ impl Instance {
 
     /// Where it is, s.
     pub fn time(&mut self) -> Result<f64, Failure> {
-        Ok(self.now.engine()?.motion().time)
+        Ok(self.now.model(&self.archive)?.engine.motion().time)
     }
 
     /// Whether the structure has overturned, which ends the simulation.
     pub fn has_overturned(&mut self) -> Result<bool, Failure> {
-        Ok(matches!(self.now.engine()?.motion().phase, Phase::Overturned(_)))
+        Ok(self.now.model(&self.archive)?.has_overturned())
     }
 
     /// Keeps the condition: into the state `handle`, or into a new one for 0.
@@ -446,7 +490,7 @@ impl Instance {
 
     /// Goes back to the state `handle`.
     pub fn set_fmu_state(&mut self, handle: usize) -> Result<(), Failure> {
-        self.now.go_to(self.snapshots.find(handle)?)
+        self.now.go_to(self.snapshots.find(handle)?, &self.archive)
     }
 
     /// Forgets the state `handle`.
@@ -468,6 +512,28 @@ impl Instance {
 fn find(reference: u32) -> Result<&'static Variable, Failure> {
     let Some(variable) = VARIABLES.get(reference as usize) else { return Err(Failure::UnknownReference(reference)) };
     Ok(variable)
+}
+
+/// Refuses what is no String.
+fn is_text(variable: &'static Variable) -> Result<(), Failure> {
+    if let Source::Record = variable.source { Ok(()) } else { Err(Failure::WrongType(variable)) }
+}
+
+/// Why a function of another type cannot set `variable`.
+fn refused(variable: &'static Variable) -> Failure {
+    match variable.causality {
+        Causality::Input | Causality::Parameter => Failure::WrongType(variable),
+        Causality::Output | Causality::CalculatedParameter | Causality::Local => Failure::NotSettable(variable),
+    }
+}
+
+/// What `value`, given as `name`, stands for.
+pub(crate) fn boolean(name: &'static str, value: i32) -> Result<bool, Failure> {
+    match value {
+        0 => Ok(false),
+        1 => Ok(true),
+        _ => Err(Failure::BadChoice { name, value, accepted: "0 (fmi2False), 1 (fmi2True)" }),
+    }
 }
 
 /// Hosts add up steps or multiply them: their times (s) differ in the last digits.

@@ -3,32 +3,35 @@
 //! A call of the host enters by [`c_abi`], which asks [`state_machine`] whether it is legal and turns pointers into
 //! slices. [`instance`] finds its variables in [`variables`] and lets [`rocking`] do the physics; what goes wrong is a
 //! [`failure::Failure`], which [`logger`] hands to the host. All that the future depends on is a
-//! [`condition::Condition`], which [`snapshot`] keeps. [`sensitivity`] differentiates by parameters, and [`resources`]
-//! reads those that the archive carries.
+//! [`condition::Condition`], which [`snapshot`] keeps: what was set before the start, in [`setup`], the [`inputs`], and
+//! how far the motion has come. [`sensitivity`] differentiates by parameters. [`resources`] reads what the archive
+//! carries, and [`ground`] the records, of the archive or on disk.
 #![allow(non_snake_case)] // the shared library's name, and the standard's names of arguments
 
 pub mod c_abi;
 pub mod condition;
 pub mod failure;
+pub mod ground;
+pub mod inputs;
 pub mod instance;
 pub mod logger;
 pub mod resources;
 pub mod sensitivity;
+pub mod setup;
 pub mod snapshot;
 pub mod state_machine;
 pub mod variables;
 
-use rocking::Parameters;
+use resources::Contents;
 use uuid::Uuid;
 
 /// Names the build: all that enters the library.
 pub const BUILD: &str = env!("FLEXIBLE_ROCKING_BUILD");
 
-/// The GUID of an FMU of the structure `parameters`: binds the model description, the library and the parameters that
-/// the archive carries to each other. Hosts take two FMUs of one GUID for the same, so that structures must differ in
-/// it.
-pub fn guid(parameters: &Parameters) -> String {
+/// The GUID of an FMU with these `contents`: binds the model description, the library and what the archive carries to
+/// each other. Hosts take two FMUs of one GUID for the same, so that structures and records must differ in it.
+pub fn guid(contents: &Contents) -> String {
     let build = Uuid::try_parse(BUILD).expect("the build script wrote it");
-    let bytes = postcard::to_stdvec(parameters).expect("numbers can always be written");
+    let bytes = postcard::to_stdvec(contents).expect("numbers and text can always be written");
     Uuid::new_v5(&build, &bytes).braced().to_string()
 }

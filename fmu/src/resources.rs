@@ -1,13 +1,69 @@
-//! The parameters that the archive carries: `resources/parameters.toml`, found through the URI that the host gives.
+//! What the archive carries in its folder `resources`, found through the URI that the host gives: the parameters, and
+//! the list of the records that were packed.
 
 use percent_encoding::percent_decode_str;
 use rocking::Parameters;
 use rocking::parameters::ParameterError;
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
 /// The file with the parameters, in the archive's folder `resources`.
 pub const PARAMETERS_FILE: &str = "parameters.toml";
+
+/// The file with the names of the records, in the same folder; there is none without records.
+pub const RECORDS_FILE: &str = "records.toml";
+
+/// An archive that a host has unpacked.
+#[derive(Clone, Debug)]
+pub struct Archive {
+    /// Its folder `resources`.
+    pub folder: PathBuf,
+    /// What it carries.
+    pub contents: Contents,
+}
+
+/// What an archive carries.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Contents {
+    /// Start values.
+    pub parameters: Parameters,
+    /// The first is the one that the ground follows unless the host sets another.
+    pub records: Vec<PackedRecord>,
+}
+
+/// A record of an archive.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PackedRecord {
+    /// Its file in the folder `resources`.
+    pub file: String,
+    /// Names its samples.
+    pub digest: String,
+}
+
+/// The content of [`RECORDS_FILE`].
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Records {
+    /// The records, the default first.
+    pub record: Vec<PackedRecord>,
+}
+
+impl Contents {
+    /// The record that the ground follows unless the host sets another; none if empty.
+    pub fn default_record(&self) -> &str {
+        self.records.first().map_or("", |packed| &packed.file)
+    }
+}
+
+/// Without records.
+impl From<Parameters> for Contents {
+    fn from(parameters: Parameters) -> Contents {
+        Contents { parameters, records: Vec::new() }
+    }
+}
 
 /// Why the parameters could not be read.
 #[derive(Debug, thiserror::Error)]
@@ -41,27 +97,34 @@ pub enum ResourceError {
     },
 }
 
-/// The parameters in the folder that `location`, a file URI, points to.
-pub fn parameters(location: &str) -> Result<Parameters, ResourceError> {
-    let folder = path(location).ok_or_else(|| ResourceError::NotAFileUri(location.to_owned()))?;
-    let file = folder.join(PARAMETERS_FILE);
-    let text = match fs::read_to_string(&file) {
-        Ok(text) => text,
-        Err(error) => return Err(ResourceError::Unreadable { file, error }),
-    };
-    let parameters: Parameters = match toml::from_str(&text) {
-        Ok(parameters) => parameters,
-        Err(error) => return Err(ResourceError::Malformed { file, error: Box::new(error) }),
-    };
-    match parameters.check() {
-        Ok(()) => Ok(parameters),
-        Err(error) => Err(ResourceError::Refused { file, error }),
+impl Archive {
+    /// The one whose folder `resources` the file URI `location` points to.
+    pub fn open(location: &str) -> Result<Archive, ResourceError> {
+        let folder = path(location).ok_or_else(|| ResourceError::NotAFileUri(location.to_owned()))?;
+        let file = folder.join(PARAMETERS_FILE);
+        let parameters: Parameters = read(&file)?;
+        if let Err(error) = parameters.check() {
+            return Err(ResourceError::Refused { file, error });
+        }
+        let list = folder.join(RECORDS_FILE);
+        let Records { record: records } = if list.exists() { read(&list)? } else { Records::default() };
+        Ok(Archive { folder, contents: Contents { parameters, records } })
+    }
+}
+
+/// The content of the TOML file `file`.
+fn read<T: DeserializeOwned>(file: &Path) -> Result<T, ResourceError> {
+    let file = file.to_owned();
+    match fs::read_to_string(&file).map(|text| toml::from_str(&text)) {
+        Ok(Ok(content)) => Ok(content),
+        Ok(Err(error)) => Err(ResourceError::Malformed { file, error: Box::new(error) }),
+        Err(error) => Err(ResourceError::Unreadable { file, error }),
     }
 }
 
 /// The local path of a file URI (RFC 8089): `file:/path`, `file:///path`, `file://localhost/path`; on Windows
 /// `file:///C:/path` is `C:/path`.
-fn path(uri: &str) -> Option<PathBuf> {
+pub(crate) fn path(uri: &str) -> Option<PathBuf> {
     let (scheme, rest) = uri.split_once(':')?;
     if !scheme.eq_ignore_ascii_case("file") {
         return None;
@@ -96,12 +159,13 @@ mod tests {
     fn a_refusal_names_the_file_and_the_reason() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join(PARAMETERS_FILE);
-        let refusal = || parameters(&format!("file://{}", folder.path().display())).unwrap_err().to_string();
+        let refusal = || Archive::open(&format!("file://{}", folder.path().display())).unwrap_err().to_string();
         assert!(refusal().starts_with(&format!("{}: No such file", file.display())), "{}", refusal());
 
         let evison = "m = 125.8\nm0 = 44.02\nH = 1.05\nB = 0.285\nf_fc = 11\nzeta_fc = 0.015\nr = 0.96\n";
         fs::write(&file, evison).unwrap();
-        assert_eq!(parameters(&format!("file:{}/", folder.path().display())).unwrap(), Parameters::EVISON);
+        let archive = Archive::open(&format!("file:{}/", folder.path().display())).unwrap();
+        assert_eq!(archive.contents, Contents::from(Parameters::EVISON));
 
         fs::write(&file, evison.replace("r = 0.96", "r = 1.5")).unwrap();
         assert!(refusal().contains("r = 1.5 1 is out of range"), "{}", refusal());

@@ -5,10 +5,13 @@
 //! both sides have room, they must agree: at a step or a kink there is no derivative. What is returned is exact to
 //! [`ACCURACY`], or to what rounding leaves of reactions that are small beside the forces they are made of.
 
-use crate::condition::Setup;
+use crate::condition::Model;
 use crate::failure::Failure;
+use crate::ground::GroundRecord;
+use crate::setup::Setup;
 use crate::variables::{DataType, Source, Variable};
-use rocking::{Engine, Load, Outputs, Parameters, Reactions};
+use rocking::{LinearLoad, Load, Outputs, Parameters, Reactions};
+use std::sync::Arc;
 
 /// Relative to the derivative, or to the unknown's value over the known's scale where that is more.
 pub const ACCURACY: f64 = 1e-8;
@@ -22,16 +25,19 @@ const FIRST: f64 = 0.1;
 /// Differences, each half of the one before.
 const DIFFERENCES: i32 = 12;
 
-/// What an engine shows under a load.
+/// What a model shows under a load.
 pub(crate) struct Shown<'a> {
-    engine: &'a Engine,
+    model: &'a Model,
+    setup: &'a Setup,
+    load: Load,
     pub outputs: Outputs,
     reactions: Reactions,
 }
 
 impl Shown<'_> {
-    pub fn new(engine: &Engine, load: Load) -> Shown<'_> {
-        Shown { engine, outputs: engine.outputs(load), reactions: engine.reactions(load) }
+    pub fn new<'a>(model: &'a Model, setup: &'a Setup, load: Load) -> Shown<'a> {
+        let (outputs, reactions) = (model.engine.outputs(load), model.engine.reactions(load));
+        Shown { model, setup, load, outputs, reactions }
     }
 
     /// The value of a computed Real; 0 for others.
@@ -39,29 +45,34 @@ impl Shown<'_> {
         match variable.source {
             Source::Output(of) => of(&self.outputs),
             Source::Reaction(of) => of(&self.reactions),
-            Source::Derived(derived) => (derived.value)(self.engine.structure()),
+            Source::Derived(derived) => (derived.value)(self.model.engine.structure()),
+            Source::Ground => self.load.a_g,
+            Source::RecordDuration => self.model.record_duration(self.setup),
             _ => 0.0,
         }
     }
 }
 
-/// The derivatives of `unknowns` by `known` at the start that `setup` describes, under `load`.
+/// The derivatives of `unknowns` by `known` at the start that `setup` describes, under `ground` and `inputs`.
 pub(crate) fn sensitivities(
     setup: &Setup,
-    load: Load,
+    ground: &Option<Arc<GroundRecord>>,
+    inputs: LinearLoad,
     unknowns: &[&'static Variable],
     known: &'static Variable,
 ) -> Result<Vec<f64>, Failure> {
     let depends = |variable: &Variable| variable.initial_dependencies.contains(&known.name);
     let shown = |value: f64| {
-        let engine = setup.with(&known.source, value).start()?;
-        let shown = Shown::new(&engine, load);
+        let mut setup = setup.clone();
+        known.source.set(&mut setup, value);
+        let model = Model::new(&setup, ground.clone())?;
+        let shown = Shown::new(&model, &setup, model.load(&setup, inputs).value);
         Ok::<Vec<_>, Failure>(unknowns.iter().map(|variable| shown.get(variable)).collect())
     };
     if !unknowns.iter().any(|variable| depends(variable)) {
         return Ok(vec![0.0; unknowns.len()]);
     }
-    let x = setup.get(&known.source);
+    let x = known.source.setting(setup).ok_or(Failure::NoKnown(known))?;
     let scale = scale(known, x, &setup.parameters);
     let here = shown(x)?;
     let sides = [1.0, -1.0].map(|sign| {
@@ -100,6 +111,7 @@ fn scale(known: &Variable, x: f64, &Parameters { m, H, B, g, .. }: &Parameters) 
         "m" => B,
         "m/s" => B * (g / H).sqrt(),
         "rad/s" => (g / H).sqrt(),
+        "s" => (H / g).sqrt(),
         "rad" | "1" => 1.0,
         _ => 0.0,
     };

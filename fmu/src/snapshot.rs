@@ -57,12 +57,12 @@ impl Snapshots {
 }
 
 const MAGIC: [u8; 8] = *b"FlexRock";
-const VERSION: u32 = 3;
+const VERSION: u32 = 4;
 
 /// A condition as bytes.
 pub fn serialize(condition: &Condition) -> Vec<u8> {
     let payload = postcard::to_stdvec(condition).expect("numbers and enumerations can always be written");
-    let length = u32::try_from(payload.len()).expect("the payload is a few hundred bytes");
+    let length = u32::try_from(payload.len()).expect("the payload is a few hundred bytes and a name");
     let mut bytes = header().to_vec();
     bytes.extend(length.to_le_bytes());
     bytes.extend(payload);

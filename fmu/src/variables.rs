@@ -2,10 +2,14 @@
 //! stands here and nowhere else: the model description is written from this table, and the C functions read and write
 //! through it. A value reference is a position in the table.
 
+use crate::resources::Contents;
+use crate::setup::Setup;
 use rocking::engine::Motion;
+use rocking::ground_motion::{PLACEMENT, Placement};
 use rocking::load::LOADS;
 use rocking::parameters::PARAMETERS;
 use rocking::quantity::Quantity;
+use rocking::run::peaks::Peaks;
 use rocking::state::INITIAL_VALUES;
 use rocking::structure::{DERIVED, Derived};
 use rocking::{Detail, Impulse, Load, Outputs, Parameters, Phase, Reactions, Side, State};
@@ -40,8 +44,10 @@ pub enum Causality {
     CalculatedParameter,
     /// The host, during the simulation.
     Input,
-    /// The FMU, for the host.
+    /// The FMU, for other models.
     Output,
+    /// The FMU, for whoever looks at it.
+    Local,
 }
 
 /// Data type of a variable.
@@ -58,8 +64,23 @@ pub enum DataType {
     Integer,
     /// True or false.
     Boolean,
+    /// Text.
+    String,
     /// One of these, numbered from 1.
     Enumeration(&'static Enumeration),
+}
+
+/// A value of any type.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Value {
+    /// A real number.
+    Real(f64),
+    /// The number of an item of an enumeration.
+    Item(i32),
+    /// True or false.
+    Boolean(bool),
+    /// Text.
+    String(String),
 }
 
 /// An enumeration.
@@ -89,6 +110,45 @@ pub(crate) enum Source {
     InitialValue(&'static Quantity<State>),
     Derived(&'static Derived),
     Detail,
+    /// The ground's acceleration: the input and the record.
+    Ground,
+    Peak(fn(&Peaks) -> f64),
+    /// The instant of overturning.
+    Overturning,
+    /// Which record.
+    Record,
+    RecordDuration,
+    Placement(&'static Quantity<Placement>),
+    Switch(&'static Switch),
+}
+
+/// A Boolean parameter.
+#[derive(Debug)]
+pub(crate) struct Switch {
+    pub get: fn(&Setup) -> bool,
+    pub set: fn(&mut Setup, bool),
+}
+
+impl Source {
+    /// The value of a Real parameter or an initial value.
+    pub fn setting(&self, setup: &Setup) -> Option<f64> {
+        match self {
+            Source::Parameter(quantity) => Some((quantity.get)(&setup.parameters)),
+            Source::InitialValue(quantity) => Some((quantity.get)(&setup.initial)),
+            Source::Placement(quantity) => Some((quantity.get)(&setup.placement)),
+            _ => None,
+        }
+    }
+
+    /// Sets it.
+    pub fn set(&self, setup: &mut Setup, value: f64) {
+        match self {
+            Source::Parameter(quantity) => (quantity.set)(&mut setup.parameters, value),
+            Source::InitialValue(quantity) => (quantity.set)(&mut setup.initial, value),
+            Source::Placement(quantity) => (quantity.set)(&mut setup.placement, value),
+            _ => (),
+        }
+    }
 }
 
 /// The phases, as [`phase_number`] numbers them.
@@ -149,12 +209,21 @@ pub static VARIABLES: LazyLock<Vec<Variable>> = LazyLock::new(|| {
     let inputs = const { &LOADS }.iter().map(input);
     inputs
         .chain(outputs())
+        .chain(locals())
+        .chain(peaks())
         .chain(const { &PARAMETERS }.iter().map(|quantity| fixed(quantity, Source::Parameter(quantity))))
-        .chain(std::iter::once(detail_parameter()))
+        .chain([parameter("detail", DETAILS.description, DataType::Enumeration(&DETAILS), Source::Detail)])
         .chain(const { &INITIAL_VALUES }.iter().map(|quantity| fixed(quantity, Source::InitialValue(quantity))))
+        .chain([parameter("record", RECORD, DataType::String, Source::Record)])
+        .chain(const { &PLACEMENT }.iter().map(|quantity| fixed(quantity, Source::Placement(quantity))))
+        .chain(switches())
         .chain(calculated_parameters())
         .collect()
 });
+
+const RECORD: &str = "ground motion record that the ground follows beside a_g: the name of a file in the archive's \
+                      resources, or the path or URI of one on disk; PEER .AT2 in g, or .csv/.txt of s and m/s2; none \
+                      if empty";
 
 fn input(quantity: &'static Quantity<Load>) -> Variable {
     Variable {
@@ -185,6 +254,10 @@ fn outputs() -> Vec<Variable> {
         "theta_dot_0",
         "u_0",
         "u_dot_0",
+        "record",
+        "record_scale",
+        "record_time_scale",
+        "record_start",
     ];
     const DELTA_T: &[&str] = &["H", "B", "theta_0", "u_0"];
     const V_T: &[&str] = &["H", "B", "theta_0", "theta_dot_0", "u_0", "u_dot_0"];
@@ -209,8 +282,6 @@ fn outputs() -> Vec<Variable> {
         force("M_t", "N.m", "m H a_t, the overturning moment where no force acts on the top mass (Eqs 3, 24)", |o| {
             o.M_t
         }),
-        of_state("theta_dot", "rad/s", "angular velocity of the base", |o| o.theta_dot, &["theta_dot_0"]),
-        of_state("u_dot", "m/s", "elastic velocity of the top mass", |o| o.u_dot, &["u_dot_0"]),
         of_state("uplift", "m", "height of the free edge of the base (Eq 25)", |o| o.uplift, &["B", "theta_0"]),
         of_state("delta_t", "m", "lateral displacement of the top mass (Eq 26)", |o| o.delta_t, DELTA_T),
         of_state("v_t", "m/s", "lateral velocity of the top mass relative to the ground", |o| o.v_t, V_T),
@@ -220,49 +291,107 @@ fn outputs() -> Vec<Variable> {
         impulse("I_h", "N.s", "horizontal impulse of the impacts on the ground so far", |i| i.I_h),
         impulse("I_v", "N.s", "vertical impulse of the impacts on the ground so far, downwards", |i| i.I_v),
         impulse("I_m", "N.m.s", "moment impulse of the impacts on the ground so far, positive as theta", |i| i.I_m),
-        discrete(
-            "phase",
-            PHASES.description,
-            DataType::Enumeration(&PHASES),
-            Source::Integer(phase_number),
-            &["theta_0"],
-        ),
-        discrete(
+    ]
+}
+
+/// What no other model needs.
+fn locals() -> [Variable; 7] {
+    const GROUND: &[&str] = &["g", "record", "record_scale", "record_time_scale", "record_start"];
+    let local = |name, unit, description, source, feedthrough, initial_dependencies| Variable {
+        causality: Causality::Local,
+        ..output(name, unit, description, source, feedthrough, initial_dependencies)
+    };
+    let counted = |name, description, data_type, source, initial_dependencies| Variable {
+        causality: Causality::Local,
+        ..discrete(name, description, data_type, source, initial_dependencies)
+    };
+    let (turning, swaying) = (Source::Output(|o| o.theta_dot), Source::Output(|o| o.u_dot));
+    let phases = DataType::Enumeration(&PHASES);
+    [
+        local("theta_dot", "rad/s", "angular velocity of the base", turning, &[], &["theta_dot_0"]),
+        local("u_dot", "m/s", "elastic velocity of the top mass", swaying, &[], &["u_dot_0"]),
+        local("a_ground", "m/s2", "ground acceleration: a_g and the record", Source::Ground, &["a_g"], GROUND),
+        counted("phase", PHASES.description, phases, Source::Integer(phase_number), &["theta_0"]),
+        counted(
             "transitions",
             "uplifts, impacts and landings so far",
             DataType::Integer,
             Source::Integer(transitions),
             &[],
         ),
-        discrete(
+        counted(
             "overturned",
             "whether the structure has overturned",
             DataType::Boolean,
             Source::Boolean(overturned),
             &[],
         ),
+        counted(
+            "t_overturned",
+            "instant of overturning; startTime while the structure stands",
+            DataType::Real { unit: "s", range: None },
+            Source::Overturning,
+            &[],
+        ),
     ]
 }
 
-fn detail_parameter() -> Variable {
-    Variable {
-        name: "detail",
-        description: DETAILS.description,
-        data_type: DataType::Enumeration(&DETAILS),
-        causality: Causality::Parameter,
-        feedthrough: &[],
-        initial_dependencies: &[],
-        source: Source::Detail,
+/// Largest magnitudes and their instants.
+fn peaks() -> Vec<Variable> {
+    let peak = |name, unit, description, of| Variable {
+        causality: Causality::Local,
+        ..discrete(name, description, DataType::Real { unit, range: None }, Source::Peak(of), &[])
+    };
+    macro_rules! peaks {
+        ($($name:ident $unit:literal)*) => {
+            vec![$(
+                peak(
+                    concat!(stringify!($name), "_max"),
+                    $unit,
+                    concat!("largest |", stringify!($name), "| since startTime, exact: within steps, too"),
+                    |peaks| peaks.$name().magnitude,
+                ),
+                peak(
+                    concat!("t_", stringify!($name), "_max"),
+                    "s",
+                    concat!("first instant of ", stringify!($name), "_max"),
+                    |peaks| peaks.$name().time,
+                ),
+            )*]
+        };
     }
+    peaks!(theta "rad" u "m" delta_t "m" uplift "m" a_t "m/s2" V_t "N" M_t "N.m")
 }
 
-fn calculated_parameters() -> [Variable; 5] {
+fn switches() -> [Variable; 2] {
+    static EXTRAPOLATE: Switch = Switch { get: |setup| setup.extrapolate, set: |setup, on| setup.extrapolate = on };
+    static PEAKS: Switch = Switch { get: |setup| setup.peaks, set: |setup, on| setup.peaks = on };
+    let extrapolate = "whether an input that is set without its derivative goes on with the slope of its values at the \
+                       last two communication points, and is not held";
+    [
+        parameter("extrapolate", extrapolate, DataType::Boolean, Source::Switch(&EXTRAPOLATE)),
+        parameter("peaks", "whether largest magnitudes are watched", DataType::Boolean, Source::Switch(&PEAKS)),
+    ]
+}
+
+fn calculated_parameters() -> [Variable; 6] {
     [
         calculated("alpha_cg", &["m", "m0", "H", "B"]),
         calculated("p_l", &["m", "m0", "H", "B", "J0", "g"]),
         calculated("chi", &["m", "m0", "H", "B", "J0"]),
         calculated("u_cr", &["m", "m0", "H", "B", "f_fc", "g"]),
         calculated("f_u", &["m", "m0", "H", "B", "J0", "f_fc"]),
+        Variable {
+            causality: Causality::CalculatedParameter,
+            ..output(
+                "record_duration",
+                "s",
+                "from the record's first to its last sample; 0 without a record",
+                Source::RecordDuration,
+                &[],
+                &["record", "record_time_scale"],
+            )
+        },
     ]
 }
 
@@ -303,16 +432,13 @@ fn discrete(
     }
 }
 
+fn parameter(name: &'static str, description: &'static str, data_type: DataType, source: Source) -> Variable {
+    Variable { causality: Causality::Parameter, ..discrete(name, description, data_type, source, &[]) }
+}
+
 fn fixed<T>(quantity: &'static Quantity<T>, source: Source) -> Variable {
-    Variable {
-        name: quantity.name,
-        description: quantity.description,
-        data_type: DataType::Real { unit: quantity.unit, range: Some((quantity.min, quantity.max)) },
-        causality: Causality::Parameter,
-        feedthrough: &[],
-        initial_dependencies: &[],
-        source,
-    }
+    let data_type = DataType::Real { unit: quantity.unit, range: Some((quantity.min, quantity.max)) };
+    parameter(quantity.name, quantity.description, data_type, source)
 }
 
 fn calculated(name: &'static str, initial_dependencies: &'static [&'static str]) -> Variable {
@@ -332,17 +458,18 @@ fn calculated(name: &'static str, initial_dependencies: &'static [&'static str])
 impl Variable {
     /// Whether it may change at any time, and not at transitions alone.
     pub fn is_continuous(&self) -> bool {
-        matches!(self.source, Source::Input(_) | Source::Output(_) | Source::Reaction(_))
+        matches!(self.source, Source::Input(_) | Source::Output(_) | Source::Reaction(_) | Source::Ground)
     }
 
-    /// The start value in an FMU of the structure `parameters`: of the inputs, the parameters and the initial values.
-    pub fn start(&self, parameters: &Parameters) -> Option<f64> {
+    /// The start value in an FMU with these `contents`: of the inputs, the parameters and the initial values.
+    pub fn start(&self, contents: &Contents) -> Option<Value> {
+        let setup = Setup::new(contents);
         match self.source {
-            Source::Input(quantity) => Some((quantity.get)(&Load::default())),
-            Source::Parameter(quantity) => Some((quantity.get)(parameters)),
-            Source::InitialValue(quantity) => Some((quantity.get)(&State::default())),
-            Source::Detail => Some(f64::from(detail_number(Detail::default()))),
-            _ => None,
+            Source::Input(quantity) => Some(Value::Real((quantity.get)(&Load::default()))),
+            Source::Detail => Some(Value::Item(detail_number(setup.detail))),
+            Source::Record => Some(Value::String(setup.record.to_string())),
+            Source::Switch(switch) => Some(Value::Boolean((switch.get)(&setup))),
+            _ => self.source.setting(&setup).map(Value::Real),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! AT2, the acceleration records of PEER.
 
-use super::{BadLine, Record, bad, in_m_s2, number, numbered, quote};
+use super::{BadLine, MAX_SAMPLES, Record, bad, in_m_s2, number, numbered, quote};
 
 /// A title on line 2, the unit on line 3, NPTS and DT on line 4, then NPTS accelerations.
 pub(super) fn parse(text: &str, g: f64) -> Result<Record, BadLine> {
@@ -56,8 +56,8 @@ fn npts_and_dt(line: &str) -> Result<(usize, f64), String> {
         }
     };
     let npts: usize = match npts.parse() {
-        Ok(npts) if npts >= 2 => npts,
-        _ => return Err(format!("NPTS = {} must be a whole number, 2 or more", quote(npts))),
+        Ok(npts) if (2..=MAX_SAMPLES).contains(&npts) => npts,
+        _ => return Err(format!("NPTS = {} must be a whole number, 2 to {MAX_SAMPLES}", quote(npts))),
     };
     match number(dt) {
         Some(dt) if dt > 0.0 && (npts as f64 * dt).is_finite() => Ok((npts, dt)),
@@ -163,8 +163,8 @@ mod tests {
                 format!("6: the acceleration {not_a_number:?} is not a number")
             );
         }
-        assert_eq!(at2_problem("NPTS= 1, DT= .01 SEC", ".1"), "4: NPTS = \"1\" must be a whole number, 2 or more");
-        assert_eq!(at2_problem("3.5 .01 NPTS, DT", ".1"), "4: NPTS = \"3.5\" must be a whole number, 2 or more");
+        assert_eq!(at2_problem("NPTS= 1, DT= .01 SEC", ".1"), "4: NPTS = \"1\" must be a whole number, 2 to 10000000");
+        assert_eq!(at2_problem("3.5 .01 NPTS, DT", ".1"), "4: NPTS = \"3.5\" must be a whole number, 2 to 10000000");
         for dt in ["0.0", "-.01", "NAN", "1E308", "X"] {
             assert_eq!(
                 at2_problem(&format!("NPTS= 3, DT= {dt} SEC"), ".1 .2 .3"),
@@ -178,7 +178,7 @@ mod tests {
         );
         assert_eq!(
             at2_problem(THREE, &"9".repeat(400)),
-            format!("5: the acceleration \"{}\"... is not a number", "9".repeat(60))
+            format!("5: the acceleration \"{}\"... is not a number", "9".repeat(40))
         );
     }
 

@@ -1,6 +1,6 @@
 //! CSV: lines of time and acceleration.
 
-use super::{BadLine, Record, Unit, bad, in_m_s2, number, numbered, quote};
+use super::{BadLine, MAX_SAMPLES, Record, Unit, bad, in_m_s2, number, numbered, quote};
 
 /// Time (s) and acceleration on each line, after at most one line of headings; `#` begins a comment line.
 pub(super) fn parse(text: &str, unit: Unit, g: f64) -> Result<Record, BadLine> {
@@ -21,11 +21,14 @@ pub(super) fn parse(text: &str, unit: Unit, g: f64) -> Result<Record, BadLine> {
         let &[time, value] = columns.as_slice() else {
             let found = columns.len();
             let expected = "time and acceleration with a comma, semicolon or tab between them";
-            return Err(bad(line, format!("{} has {found} column(s) instead of {expected}", quote(sample))));
+            return Err(bad(line, format!("{found} column(s) instead of {expected}")));
         };
         let time = number(time).ok_or_else(|| bad(line, format!("the time {} is not a number", quote(time))))?;
         if let Some(before) = times.last().filter(|before| time <= **before) {
             return Err(bad(line, format!("the time {time} s does not come after the one before it, {before} s")));
+        }
+        if times.len() == MAX_SAMPLES {
+            return Err(bad(line, format!("more than {MAX_SAMPLES} samples")));
         }
         times.push(time);
         acceleration.push(in_m_s2(value, unit_in_m_s2).map_err(|problem| bad(line, problem))?);
@@ -79,9 +82,9 @@ mod tests {
         assert_eq!(csv_problem("0,1\n.5,2\n0.5,3\n"), "3: the time 0.5 s does not come after the one before it, 0.5 s");
         assert_eq!(
             csv_problem("0;1\n0,5;2\n"),
-            "2: \"0,5;2\" has 3 column(s) instead of time and acceleration with a comma, semicolon or tab between them"
+            "2: 3 column(s) instead of time and acceleration with a comma, semicolon or tab between them"
         );
-        assert!(csv_problem("0 1\n1 2\n2 3\n").starts_with("2: \"1 2\" has 1 column(s)"));
+        assert!(csv_problem("0 1\n1 2\n2 3\n").starts_with("2: 1 column(s) instead"));
     }
 
     proptest! {

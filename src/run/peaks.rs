@@ -67,8 +67,25 @@ pub const PEAKS: [Peaking; 7] = [
 impl Peaks {
     /// Of `structure`, nothing seen yet.
     pub fn new(structure: &Structure) -> Peaks {
+        Peaks::since(0.0, structure)
+    }
+
+    /// The same from `time` (s) on, which is the instant of what stays 0.
+    pub fn since(time: f64, structure: &Structure) -> Peaks {
         let &crate::Parameters { m, H, B, .. } = structure.parameters();
-        Peaks { largest: [Peak::default(); 4], ground: Peak::default(), m, H, B, evaluations: 0 }
+        let none = Peak { magnitude: 0.0, time };
+        Peaks { largest: [none; 4], ground: none, m, H, B, evaluations: 0 }
+    }
+
+    /// Whether they are those of a structure with these masses and lengths.
+    pub fn are_of(&self, structure: &Structure) -> bool {
+        let &crate::Parameters { m, H, B, .. } = structure.parameters();
+        (self.m, self.H, self.B) == (m, H, B)
+    }
+
+    /// The `outputs` at `time` (s), which need not be in a piece.
+    pub fn see_instant(&mut self, time: f64, outputs: &Outputs) {
+        Measure::ALL.into_iter().for_each(|measure| self.see(measure, time, outputs));
     }
 
     /// Of the rotation |θ|, rad.

@@ -1,0 +1,300 @@
+//! A ground motion as a structure meets it: a record, scaled and placed in time, followed from sample to sample however
+//! time is cut into steps.
+//!
+//! Where a step is in the record follows from the time elapsed since the start, a compensated sum of the steps, and not
+//! from a clock: the same steps give the same bits at every start time. Hosts whose steps are those of the record meet
+//! its samples but for rounding: what is that close to a sample counts as there, and no sliver of a step is made of it.
+
+use crate::engine::{AdvanceError, MAX_STEPS_PER_ADVANCE};
+use crate::quantity::{Quantity, quantity};
+use crate::record::Record;
+use crate::{Engine, LinearLoad, Progress, Ramp, Watch};
+use serde::{Deserialize, Serialize};
+
+/// Part of the time between two samples that is taken for rounding.
+const SAME_INSTANT: f64 = 1e-9;
+
+/// How a record is scaled, and when it comes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Placement {
+    /// Multiplies its accelerations.
+    pub scale: f64,
+    /// Multiplies its times.
+    pub time_scale: f64,
+    /// When its first sample comes, s after the start.
+    pub start: f64,
+}
+
+impl Default for Placement {
+    fn default() -> Placement {
+        Placement { scale: 1.0, time_scale: 1.0, start: 0.0 }
+    }
+}
+
+/// The numbers of a placement, with ranges.
+pub const PLACEMENT: [Quantity<Placement>; 3] = [
+    quantity!("record_scale", scale["1"] - 1e6, 1e6, "multiplies the record's accelerations"),
+    quantity!("record_time_scale", time_scale["1"] 1e-6, 1e6, "multiplies the record's times"),
+    quantity!("record_start", start["s"] - 1e9, 1e9, "when the record's first sample comes, counted from startTime"),
+];
+
+/// Seconds since a start: the exact sum of the steps, but for the last digit of its rounding.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Elapsed {
+    sum: f64,
+    rounding: f64,
+}
+
+impl Elapsed {
+    /// After another `step` (s).
+    pub fn and(self, step: f64) -> Elapsed {
+        let sum = self.sum + step;
+        let part = sum - self.sum;
+        Elapsed { sum, rounding: self.rounding + ((self.sum - (sum - part)) + (step - part)) }
+    }
+
+    /// In one number, s.
+    pub fn seconds(self) -> f64 {
+        self.sum + self.rounding
+    }
+}
+
+/// A record as it acts.
+#[derive(Clone, Copy, Debug)]
+pub struct GroundMotion<'a> {
+    /// The record.
+    pub record: &'a Record,
+    /// What its accelerations are given in, m/s²: 1, or g.
+    pub unit: f64,
+    /// How it is scaled, and when it comes.
+    pub placement: Placement,
+}
+
+/// A part of an interval over which the ground's acceleration is linear.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Stretch {
+    /// From the start of the interval, s.
+    start: f64,
+    duration: f64,
+    /// From the start of the stretch on.
+    a_g: Ramp,
+}
+
+impl GroundMotion<'_> {
+    /// From its first to its last sample, s.
+    pub fn duration(&self) -> f64 {
+        self.time(self.record.times().len() - 1) - self.time(0)
+    }
+
+    /// Peak ground acceleration, m/s².
+    pub fn pga(&self) -> f64 {
+        self.record.pga() * self.unit * self.placement.scale.abs()
+    }
+
+    /// The ground acceleration as it is given from `elapsed` on; 0 before the first sample and from the last one on.
+    pub fn at(&self, elapsed: Elapsed) -> Ramp {
+        self.ramp_from(self.reached(elapsed), elapsed)
+    }
+
+    /// Advances `engine`, which is at `elapsed`, by `interval` (s) under the record and `load`, as one advance: the
+    /// bound on its work is for all samples together, and if it fails the motion is as it was before.
+    pub fn advance<W: Watch>(
+        &self,
+        engine: &mut Engine,
+        elapsed: Elapsed,
+        interval: f64,
+        load: LinearLoad,
+        watch: &mut W,
+    ) -> Result<Progress, AdvanceError> {
+        engine.check(interval, &load)?;
+        let before = *engine.motion();
+        let last_step = before.work.steps + MAX_STEPS_PER_ADVANCE;
+        for Stretch { start, duration, a_g } in self.stretches(elapsed, interval) {
+            engine.set_time(before.time + start);
+            match engine.advance_within(last_step, duration, load.from(start).on_ground(a_g), watch) {
+                Ok(Progress::Complete) => (),
+                Ok(Progress::Overturned) => return Ok(Progress::Overturned),
+                Err(mut error) => {
+                    engine.set_motion(before);
+                    if let AdvanceError::TooLong { until, .. } = &mut error {
+                        *until = before.time + interval;
+                    }
+                    return Err(error);
+                }
+            }
+        }
+        engine.set_time(before.time + interval);
+        Ok(Progress::Complete)
+    }
+
+    /// `interval` (s) from `elapsed` on, cut at the samples.
+    fn stretches(&self, elapsed: Elapsed, interval: f64) -> impl Iterator<Item = Stretch> {
+        let (this, samples) = (*self, self.record.times().len());
+        let mut next = this.reached(elapsed);
+        let mut a_g = this.ramp_from(next, elapsed);
+        let (mut start, mut is_first) = (0.0, true);
+        std::iter::from_fn(move || {
+            if start >= interval {
+                return None;
+            }
+            let ahead = |i: usize| if i < samples { this.ahead(i, elapsed) } else { f64::INFINITY };
+            while ahead(next) <= start {
+                next += 1; // times that are the same once they are scaled
+            }
+            let end = ahead(next);
+            let is_last = end >= interval - this.rounding(next);
+            let duration = if is_last {
+                interval - start
+            } else if is_first {
+                end
+            } else {
+                this.time(next) - this.time(next - 1)
+            };
+            let stretch = Stretch { start, duration, a_g };
+            start = if is_last { interval } else { end };
+            next += usize::from(!is_last);
+            (a_g, is_first) = (this.ramp(next), false);
+            Some(stretch)
+        })
+    }
+
+    /// Time of sample `i` in the record, s.
+    fn time(&self, i: usize) -> f64 {
+        self.record.times()[i] * self.placement.time_scale
+    }
+
+    fn acceleration(&self, i: usize) -> f64 {
+        self.record.acceleration()[i] * self.unit * self.placement.scale
+    }
+
+    /// Seconds from `elapsed` to sample `i`.
+    fn ahead(&self, i: usize, elapsed: Elapsed) -> f64 {
+        self.placement.start + (self.time(i) - self.time(0)) - elapsed.sum - elapsed.rounding
+    }
+
+    /// How close to sample `next` an instant before it is not told from it, s.
+    fn rounding(&self, next: usize) -> f64 {
+        let i = next.clamp(1, self.record.times().len() - 1);
+        SAME_INSTANT * (self.time(i) - self.time(i - 1))
+    }
+
+    /// How many samples have come.
+    fn reached(&self, elapsed: Elapsed) -> usize {
+        let times = self.record.times();
+        let time = (elapsed.sum - self.placement.start + elapsed.rounding) + self.time(0);
+        let reached = times.partition_point(|of_sample| of_sample * self.placement.time_scale <= time);
+        let is_next_here = reached < times.len() && self.ahead(reached, elapsed) <= self.rounding(reached);
+        reached + usize::from(is_next_here)
+    }
+
+    /// The ground acceleration from the last of `reached` samples to the next.
+    pub(crate) fn ramp(&self, reached: usize) -> Ramp {
+        if reached == 0 || reached >= self.record.times().len() {
+            return Ramp::default();
+        }
+        let [a, b] = [reached - 1, reached].map(|i| (self.time(i), self.acceleration(i)));
+        Ramp { value: a.1, slope: (b.1 - a.1) / (b.0 - a.0) }
+    }
+
+    /// The same as it is given from `elapsed` on.
+    fn ramp_from(&self, reached: usize, elapsed: Elapsed) -> Ramp {
+        let ramp = self.ramp(reached);
+        let passed = if reached == 0 { 0.0 } else { -self.ahead(reached - 1, elapsed) };
+        if passed <= self.rounding(reached) { ramp } else { ramp.from(passed) }
+    }
+}
+
+impl<'a> From<&'a Record> for GroundMotion<'a> {
+    fn from(record: &'a Record) -> GroundMotion<'a> {
+        GroundMotion { record, unit: 1.0, placement: Placement::default() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Parameters, State, Structure};
+
+    fn after(steps: impl IntoIterator<Item = f64>) -> Elapsed {
+        steps.into_iter().fold(Elapsed::default(), Elapsed::and)
+    }
+
+    fn record(times: &[f64], acceleration: &[f64]) -> Record {
+        Record::from_samples("", times.into(), acceleration.into()).unwrap()
+    }
+
+    #[test]
+    fn a_sum_of_steps_keeps_what_rounding_takes() {
+        let elapsed = after((0..1_000_000).map(|_| 0.01));
+        assert_eq!(elapsed.sum + elapsed.rounding, 1e6 * 0.01);
+        assert!((elapsed.sum - 1e4).abs() > 1e-9, "there was nothing to compensate");
+    }
+
+    #[test]
+    fn an_interval_is_cut_at_the_samples() {
+        let record = record(&[1.0, 1.5, 2.5], &[2.0, 4.0, -4.0]);
+        let stretches = |placement, from: f64, interval| {
+            let ground = GroundMotion { placement, unit: 10.0, ..GroundMotion::from(&record) };
+            ground.stretches(after([from]), interval).collect::<Vec<_>>()
+        };
+        let stretch = |start, duration, value, slope| Stretch { start, duration, a_g: Ramp { value, slope } };
+        let as_it_is = Placement::default();
+        let all = [stretch(0.0, 0.5, 20.0, 40.0), stretch(0.5, 1.0, 40.0, -80.0), stretch(1.5, 0.5, 0.0, 0.0)];
+        assert_eq!(stretches(as_it_is, 0.0, 2.0), all);
+        assert_eq!(stretches(as_it_is, 0.0, 1.5), all[..2]);
+        assert_eq!(stretches(as_it_is, 0.25, 0.125), [stretch(0.0, 0.125, 30.0, 40.0)]);
+        assert_eq!(stretches(as_it_is, 0.25, 0.5), [stretch(0.0, 0.25, 30.0, 40.0), stretch(0.25, 0.25, 40.0, -80.0)]);
+        assert_eq!(stretches(as_it_is, 7.0, 1.0), [stretch(0.0, 1.0, 0.0, 0.0)]);
+        let late = Placement { scale: -0.5, time_scale: 2.0, start: 3.0 };
+        assert_eq!(
+            stretches(late, 1.0, 4.0),
+            [stretch(0.0, 2.0, 0.0, 0.0), stretch(2.0, 1.0, -10.0, -10.0), stretch(3.0, 1.0, -20.0, 20.0)]
+        );
+        let early = Placement { start: -1.0, ..as_it_is };
+        assert_eq!(stretches(early, 0.0, 0.25), [stretch(0.0, 0.25, 0.0, -80.0)]);
+    }
+
+    /// A host's steps add up to the record's times but for rounding: each is then one stretch, whatever the start.
+    #[test]
+    fn steps_of_the_records_own_are_not_cut() {
+        let times: Vec<_> = (0..5000).map(|i| f64::from(i) * 0.01).collect();
+        let record = record(&times, &times);
+        for start in [0.0, 0.03, 1234.56] {
+            let ground =
+                GroundMotion { placement: Placement { start, ..Placement::default() }, ..GroundMotion::from(&record) };
+            let mut elapsed = Elapsed::default().and(start);
+            for i in 0..4999 {
+                let stretches: Vec<_> = ground.stretches(elapsed, 0.01).collect();
+                let [Stretch { start: 0.0, duration: 0.01, a_g }] = stretches[..] else { panic!("{i}: {stretches:?}") };
+                assert_eq!(a_g, ground.ramp(i + 1), "sample {i} from {start} s");
+                elapsed = elapsed.and(0.01);
+            }
+            assert_eq!(ground.at(elapsed), Ramp::default());
+        }
+    }
+
+    /// The bound on the work of a step holds for all samples within it, and a step that is refused changes nothing.
+    #[test]
+    fn one_bound_holds_for_all_samples() {
+        let samples = MAX_STEPS_PER_ADVANCE as usize + 2;
+        let times: Vec<_> = (0..samples).map(|i| i as f64 * 1e-3).collect();
+        let record = Record::from_samples("", times, vec![1e-3; samples]).unwrap();
+        let ground = GroundMotion::from(&record);
+        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let mut engine = Engine::new(structure, State::default(), 5.0, 1e-9).unwrap();
+        let before = *engine.motion();
+        let mut advance = |interval| {
+            let done = ground.advance(&mut engine, Elapsed::default(), interval, LinearLoad::default(), &mut ());
+            (done, *engine.motion())
+        };
+        let (refused, motion) = advance(ground.duration());
+        let until = 5.0 + ground.duration();
+        assert!(matches!(refused, Err(AdvanceError::TooLong { until: told, .. }) if told == until), "{refused:?}");
+        assert_eq!(motion, before);
+        for none in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+            assert!(matches!(advance(none).0, Err(AdvanceError::NotAhead { .. })), "{none}");
+        }
+        let (done, motion) = advance(1.0);
+        assert_eq!((done, motion.time, motion.work.steps), (Ok(Progress::Complete), 6.0, 1000));
+    }
+}
