@@ -37,6 +37,11 @@ def pacoima_dam() -> tuple[np.ndarray, np.ndarray]:
     return np.arange(len(a_g)) * (motion.dt * TIME_SCALE), a_g
 
 
+def write_csv(path: Path, time: np.ndarray, a_g: np.ndarray) -> None:
+    """A record as the FMU and the command line read it, to the last digit."""
+    np.savetxt(path, np.column_stack([time, a_g]), fmt="%.17g", delimiter=",")
+
+
 def single_pulse(T_p: float, peak: float) -> tuple[np.ndarray, np.ndarray]:
     """Time (s) and acceleration (m/s2) of a Mavroeidis-Papageorgiou velocity pulse of one cycle (gamma = 1, nu = 0).
 
