@@ -19,6 +19,10 @@ const LIBRARY_FILE: &str = "libFlexibleRocking.so";
 pub struct ExportArgs {
     #[command(flatten)]
     structure: StructureArgs,
+    /// Ground motion records to pack: PEER .AT2, or .csv/.txt with lines of time (s) and acceleration (m/s2); the FMU
+    /// follows the first, and the others by their names
+    #[arg(long, value_name = "FILE", num_args = 1..)]
+    record: Vec<PathBuf>,
     /// Archive to write; one that is there is replaced
     #[arg(short, long, value_name = "FILE.fmu", default_value = "FlexibleRocking.fmu")]
     output: PathBuf,
@@ -39,11 +43,14 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     };
     let mut libraries = BTreeMap::from([(Platform::Linux64, library)]);
     libraries.extend(args.windows_library.clone().map(|path| (Platform::Windows64, path)));
-    let size = fmu_export::export(&structure, &libraries, &args.output)?;
+    let (contents, size) = fmu_export::export(&structure, &args.record, &libraries, &args.output)?;
     let mut out = stdout().lock();
     writeln!(out, "{}: {} kB", args.output.display(), size.div_ceil(1000))?;
-    writeln!(out, "  GUID       {}", guid(structure.parameters()))?;
+    writeln!(out, "  GUID       {}", guid(&contents))?;
     writeln!(out, "  structure  {}", start_values(&structure))?;
+    for packed in &contents.records {
+        writeln!(out, "  record     {}", packed.file)?;
+    }
     Ok(())
 }
 

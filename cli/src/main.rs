@@ -31,6 +31,7 @@ enum Command {
     #[command(after_help = "Examples:
   rocking-fmu export
   rocking-fmu export --preset evison -o Evison.fmu
+  rocking-fmu export --record RSN77_SFERN_PUL164.AT2 RSN6_IMPVALL.I_I-ELC180.AT2
   rocking-fmu export --parameters pier.toml -o pier.fmu")]
     Export(export::ExportArgs),
     /// Simulate the response to a ground motion record, or free vibration

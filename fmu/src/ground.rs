@@ -63,6 +63,11 @@ impl GroundRecord {
         let digest = Uuid::new_v5(&Uuid::NAMESPACE_OID, &bytes).into_bytes();
         Ok(GroundRecord { record, unit, digest })
     }
+
+    /// The digest, as archives have it.
+    pub fn name(&self) -> String {
+        Uuid::from_bytes(self.digest).to_string()
+    }
 }
 
 /// Records that have been read, the latest last.
@@ -102,9 +107,7 @@ impl Archive {
         }
         let record = read_once(&path)?;
         match self.contents.records.iter().find(|packed| packed.file == text) {
-            Some(packed) if packed.digest != Uuid::from_bytes(record.digest).to_string() => {
-                Err(GroundError::Changed(text.to_owned()))
-            }
+            Some(packed) if packed.digest != record.name() => Err(GroundError::Changed(text.to_owned())),
             _ => Ok(Some(record)),
         }
     }

@@ -458,7 +458,10 @@ fn calculated(name: &'static str, initial_dependencies: &'static [&'static str])
 impl Variable {
     /// Whether it may change at any time, and not at transitions alone.
     pub fn is_continuous(&self) -> bool {
-        matches!(self.source, Source::Input(_) | Source::Output(_) | Source::Reaction(_) | Source::Ground)
+        matches!(
+            self.source,
+            Source::Input(_) | Source::Output(_) | Source::Reaction(_) | Source::Ground | Source::Peak(_)
+        )
     }
 
     /// The start value in an FMU with these `contents`: of the inputs, the parameters and the initial values.

@@ -374,7 +374,7 @@ impl Sequence<'_> {
         let names = [c"wall", c"%s%n#", c"\xff", c"", &too_long];
         let name = if wrong(rng) { names[rng.usize(..5)] } else { names[0] };
         let guid = if wrong(rng) { Parameters::MCMANUS } else { Parameters::EVISON };
-        let guid = CString::new(FlexibleRocking::guid(&guid)).unwrap();
+        let guid = CString::new(FlexibleRocking::guid(&guid.into())).unwrap();
         let locations = [c"", c"file:///nowhere", c"file:///%00", c"http://localhost/", c"file:///dev", c"\xfe"];
         let location = if wrong(rng) { locations[rng.usize(..6)] } else { self.location };
         let mut texts = [name.as_ptr(), guid.as_ptr(), location.as_ptr()];
@@ -432,7 +432,7 @@ impl Sequence<'_> {
     /// The solver's work since the start. Whatever calls have led to can be read back from its bytes.
     fn work(&self, at: usize) -> Work {
         let condition = snapshot::deserialize(&self.serialized(at)).unwrap();
-        condition.motion.map_or_else(Work::default, |motion| motion.work)
+        condition.course.map_or_else(Work::default, |course| course.motion.work)
     }
 
     /// The stage. That of a null or silent instance is of no interest.

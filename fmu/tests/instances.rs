@@ -25,24 +25,24 @@ fn refusal(arguments: Instantiate) -> String {
 fn the_library_says_what_it_is() {
     let [platform, version] = [fmi2GetTypesPlatform(), fmi2GetVersion()].map(|text| unsafe { CStr::from_ptr(text) });
     assert_eq!((platform, version), (c"default", c"2.0"));
-    let [evison, mcmanus] = [Parameters::EVISON, Parameters::MCMANUS].map(|parameters| guid(&parameters));
+    let [evison, mcmanus] = [Parameters::EVISON, Parameters::MCMANUS].map(|parameters| guid(&parameters.into()));
     for guid in [BUILD, &evison, &mcmanus] {
         assert_eq!((guid.len(), &guid[..1], &guid[15..16], &guid[37..]), (38, "{", "5", "}"));
     }
-    assert_eq!(evison, guid(&Parameters::EVISON));
+    assert_eq!(evison, guid(&Parameters::EVISON.into()));
     assert!(evison != mcmanus && evison != BUILD && mcmanus != BUILD);
 }
 
 #[test]
 fn an_instance_that_cannot_be_made_is_null_and_the_log_says_why() {
-    for other in [BUILD.to_owned(), guid(&Parameters::MCMANUS)] {
+    for other in [BUILD.to_owned(), guid(&Parameters::MCMANUS.into())] {
         assert_eq!(
             refusal(Instantiate { guid: other.clone(), ..Instantiate::default() }),
             format!(
                 "fmi2Instantiate: fmuGUID = \"{other}\" is not {}: modelDescription.xml, the library and \
                  resources/parameters.toml are not of one FMU; export it again, and unpack every FMU into a folder of \
                  its own",
-                guid(&Parameters::EVISON)
+                guid(&Parameters::EVISON.into())
             )
         );
     }
@@ -75,7 +75,7 @@ fn an_instance_that_cannot_be_made_is_null_and_the_log_says_why() {
 #[test]
 fn null_and_misaligned_pointers_are_errors() {
     let no_text: *const c_char = null();
-    let guid = CString::new(guid(&Parameters::EVISON)).unwrap();
+    let guid = CString::new(guid(&Parameters::EVISON.into())).unwrap();
     let log = std::cell::RefCell::new(Vec::<Message>::new());
     let functions = callbacks((&raw const log).cast_mut().cast());
     unsafe {
@@ -147,7 +147,7 @@ fn what_is_no_component_is_an_error_and_freeing_it_does_nothing() {
 fn a_host_without_a_logger_gets_its_statuses() {
     let folder = resources();
     let location = CString::new(format!("file://{}", folder.path().display())).unwrap();
-    let guid = CString::new(guid(&Parameters::EVISON)).unwrap();
+    let guid = CString::new(guid(&Parameters::EVISON.into())).unwrap();
     let functions = CallbackFunctions { logger: None, ..callbacks(null_mut()) };
     unsafe {
         let c = fmi2Instantiate(c"quiet".as_ptr(), 1, guid.as_ptr(), location.as_ptr(), &functions, 0, 1);
@@ -167,7 +167,7 @@ fn instance_that_logs_to(logger: Logger, environment: *mut c_void) -> (*mut c_vo
     };
     let folder = resources();
     let location = CString::new(format!("file://{}", folder.path().display())).unwrap();
-    let guid = CString::new(guid(&Parameters::EVISON)).unwrap();
+    let guid = CString::new(guid(&Parameters::EVISON.into())).unwrap();
     let c = unsafe { fmi2Instantiate(c"talkative".as_ptr(), 1, guid.as_ptr(), location.as_ptr(), &functions, 0, 0) };
     (c, folder)
 }

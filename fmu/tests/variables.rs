@@ -4,7 +4,8 @@
 mod host;
 
 use FlexibleRocking::c_abi::*;
-use FlexibleRocking::variables::{Causality, DataType, PHASES, VARIABLES, Variable};
+use FlexibleRocking::resources::Contents;
+use FlexibleRocking::variables::{Causality, DataType, PHASES, VARIABLES, Value, Variable};
 use approx::assert_relative_eq;
 use host::*;
 use rocking::Parameters;
@@ -19,38 +20,45 @@ fn the_table_holds_the_variables_in_their_order() {
     };
     assert_eq!(VARIABLES[0].name, "a_g");
     assert_eq!(names(Causality::Input), "a_g F_t");
+    assert_eq!(names(Causality::Output), "theta u a_t V_t M_t uplift delta_t v_t R_h R_v R_m I_h I_v I_m");
     assert_eq!(
-        names(Causality::Output),
-        "theta u a_t V_t M_t theta_dot u_dot uplift delta_t v_t R_h R_v R_m I_h I_v I_m phase transitions overturned"
+        names(Causality::Local),
+        "theta_dot u_dot a_ground phase transitions overturned t_overturned theta_max t_theta_max u_max t_u_max \
+         delta_t_max t_delta_t_max uplift_max t_uplift_max a_t_max t_a_t_max V_t_max t_V_t_max M_t_max t_M_t_max"
     );
     assert_eq!(
         names(Causality::Parameter),
-        "m m0 H B J0 f_fc zeta_fc c_ratio r g detail theta_0 theta_dot_0 u_0 u_dot_0"
+        "m m0 H B J0 f_fc zeta_fc c_ratio r g detail theta_0 theta_dot_0 u_0 u_dot_0 record record_scale \
+         record_time_scale record_start extrapolate peaks"
     );
-    assert_eq!(names(Causality::CalculatedParameter), "alpha_cg p_l chi u_cr f_u");
+    assert_eq!(names(Causality::CalculatedParameter), "alpha_cg p_l chi u_cr f_u record_duration");
     assert_eq!(VARIABLES.iter().map(|variable| variable.name).collect::<BTreeSet<_>>().len(), VARIABLES.len());
 }
 
 /// FMI 2.0: what is given has a start value, what is calculated has none.
 #[test]
 fn start_values_are_where_the_standard_wants_them() {
+    let contents = Contents::from(Parameters::MCMANUS);
     for variable in VARIABLES.iter() {
-        let start = variable.start(&Parameters::MCMANUS);
+        let start = variable.start(&contents);
         match variable.causality {
-            Causality::Input => assert_eq!(start, Some(0.0)),
-            Causality::Parameter => {
-                let (min, max) = match variable.data_type {
-                    DataType::Real { range, .. } => range.unwrap(),
-                    DataType::Enumeration(enumeration) => (1.0, enumeration.items.len() as f64),
-                    _ => panic!("{}", variable.name),
-                };
-                assert!((min..=max).contains(&start.unwrap()), "{}", variable.name);
-            }
-            Causality::CalculatedParameter | Causality::Output => assert_eq!(start, None, "{}", variable.name),
+            Causality::Input => assert_eq!(start, Some(Value::Real(0.0))),
+            Causality::Parameter => match (variable.data_type, start.unwrap()) {
+                (DataType::Real { range: Some((min, max)), .. }, Value::Real(start)) => {
+                    assert!((min..=max).contains(&start), "{}", variable.name);
+                }
+                (DataType::Enumeration(_), start) => assert_eq!(start, Value::Item(1)),
+                (DataType::Boolean, start) => assert_eq!(start, Value::Boolean(variable.name == "peaks")),
+                (DataType::String, start) => assert_eq!(start, Value::String(String::new())),
+                (_, start) => panic!("{}: {start:?}", variable.name),
+            },
+            _ => assert_eq!(start, None, "{}", variable.name),
         }
     }
-    let start = |name: &str| VARIABLES[reference(name) as usize].start(&Parameters::MCMANUS);
-    assert_eq!((start("H"), start("J0"), start("theta_0")), (Some(1.84), Some(10.7), Some(0.0)));
+    let start = |name: &str| VARIABLES[reference(name) as usize].start(&contents);
+    for (name, value) in [("H", 1.84), ("J0", 10.7), ("theta_0", 0.0), ("record_scale", 1.0), ("record_start", 0.0)] {
+        assert_eq!(start(name), Some(Value::Real(value)));
+    }
 }
 
 /// A change of one parameter or initial value changes the initial value of exactly those variables that state it.
@@ -58,38 +66,53 @@ fn start_values_are_where_the_standard_wants_them() {
 fn the_stated_dependencies_are_the_true_ones() {
     let u_cr = 7.52467e-4;
     let rigid = 5.0;
-    let bases: [&[(&str, f64)]; 5] = [
+    let bases: [&[(&str, f64)]; 6] = [
+        &[("detail", rigid), ("theta_0", 0.3), ("record_scale", 2.0), ("record_start", -0.25)],
         &[("detail", rigid), ("theta_0", 0.3), ("theta_dot_0", -0.4), ("J0", 2.0)],
         &[("u_0", 3e-4), ("u_dot_0", 0.2)],
         &[("theta_0", 0.3), ("theta_dot_0", -0.4), ("u_0", 2e-3), ("u_dot_0", 0.3), ("c_ratio", 0.7), ("J0", 2.0)],
         &[("u_0", u_cr * (1.0 - 1e-4)), ("u_dot_0", 0.01)],
         &[("u_0", u_cr * (1.0 + 1e-4)), ("u_dot_0", -0.01)],
     ];
-    let show = |values: &[(&str, f64)]| {
+    // in g; the ground follows it where the base says when
+    let pulse = "-\n-\nACCELERATION IN UNITS OF G\n3, .5 NPTS, DT\n.1 .2 .4\n";
+    let show = |values: &[(&str, f64)], record: &str| {
         let host = Host::initializing(values);
+        host.write("pulse.AT2", pulse);
+        assert_eq!(host.set_record(record), OK);
         let show = |name: &&str| match VARIABLES[reference(name) as usize].data_type {
             DataType::Real { .. } => host.get(name),
             DataType::Boolean => host.try_boolean(name).unwrap().into(),
             DataType::Integer | DataType::Enumeration(_) => host.integer(name).into(),
+            DataType::String => panic!("{name}"),
         };
         computed().map(|name| (name, show(&name))).collect::<Vec<_>>()
     };
     fn computed() -> impl Iterator<Item = &'static str> {
-        let is_computed = |v: &&Variable| matches!(v.causality, Causality::Output | Causality::CalculatedParameter);
+        use Causality::{CalculatedParameter, Local, Output};
+        let is_computed = |variable: &&Variable| {
+            let is_peak = variable.name.ends_with("_max");
+            matches!(variable.causality, Output | CalculatedParameter | Local) && !is_peak
+        };
         VARIABLES.iter().filter(is_computed).map(|variable| variable.name)
     }
     let mut found: BTreeSet<(&str, &str)> = BTreeSet::new();
     for base in bases {
         let host = Host::initializing(base);
-        let before = show(base);
+        let record = if base.iter().any(|(name, _)| *name == "record_start") { "pulse.AT2" } else { "" };
+        let before = show(base, record);
         for known in VARIABLES.iter().filter(|variable| variable.causality == Causality::Parameter) {
             // In full contact the base does not turn, and what is rigid is not deformed.
             let is_rigid = f64::from(host.integer("detail")) == rigid;
             if known.name == "theta_dot_0" && host.get("theta_0") == 0.0 || is_rigid && known.name.starts_with("u_") {
                 continue;
             }
+            if let DataType::Boolean = known.data_type {
+                continue;
+            }
+            let other_record = if known.name == "record" { "" } else { record };
             let value = match known.data_type {
-                DataType::Enumeration(_) => rigid,
+                DataType::Enumeration(_) | DataType::String => rigid,
                 _ => host.get(known.name),
             };
             if known.name == "detail" && !is_rigid {
@@ -104,8 +127,10 @@ fn the_stated_dependencies_are_the_true_ones() {
             };
             let mut values = base.to_vec();
             values.retain(|(name, _)| *name != known.name);
-            values.push((known.name, changed));
-            for ((name, before), (_, after)) in before.iter().zip(show(&values)) {
+            if known.name != "record" {
+                values.push((known.name, changed));
+            }
+            for ((name, before), (_, after)) in before.iter().zip(show(&values, other_record)) {
                 if (after - before).abs() > 1e-9 * before.abs() {
                     found.insert((name, known.name));
                 }
@@ -166,7 +191,7 @@ fn a_value_out_of_range_is_refused_with_all_that_come_with_it() {
             "a_g = inf m/s2 is out of range: it must lie between -10000 and 10000 m/s2 (horizontal ground acceleration, positive to the right)",
         ),
         ("theta", 0.1, "theta cannot be set: it is an output, computed by the FMU"),
-        ("phase", 1.0, "phase cannot be set: it is an output, computed by the FMU"),
+        ("phase", 1.0, "phase cannot be set: it is a local variable, computed by the FMU"),
         ("chi", 0.9, "chi cannot be set: it is a calculated parameter, computed by the FMU"),
     ] {
         let message = format!("fmi2SetReal: {message}");
@@ -212,9 +237,9 @@ fn parameters_are_fixed_once_the_simulation_has_started() {
 #[test]
 fn a_variable_is_read_as_what_it_is() {
     let host = Host::started(&[]);
-    let message = "fmi2GetReal: phase is an Enumeration: call fmi2GetInteger instead";
+    let message = "fmi2GetReal: phase is an Enumeration: call fmi2GetInteger or fmi2SetInteger instead";
     host.assert_refused(|| host.try_get(&["theta", "phase"]), Err(ERROR), message);
-    let message = "fmi2GetReal: overturned is a Boolean: call fmi2GetBoolean instead";
+    let message = "fmi2GetReal: overturned is a Boolean: call fmi2GetBoolean or fmi2SetBoolean instead";
     host.assert_refused(|| host.try_get(&["overturned"]), Err(ERROR), message);
     let message = "fmi2GetInteger: theta is a Real: call fmi2GetReal or fmi2SetReal instead";
     host.assert_refused(|| host.try_integer("theta"), Err(ERROR), message);
@@ -223,18 +248,36 @@ fn a_variable_is_read_as_what_it_is() {
 }
 
 #[test]
-fn there_is_nothing_to_set_but_reals() {
-    let host = Host::started(&[]);
+fn a_variable_is_set_as_what_it_is() {
+    let host = Host::initializing(&[]);
     let c = host.component;
     let set = |name: &str| unsafe { fmi2SetInteger(c, &reference(name), 1, &1) };
-    let message = "fmi2SetInteger: phase cannot be set: it is an output, computed by the FMU";
+    let message = "fmi2SetInteger: phase cannot be set: it is a local variable, computed by the FMU";
     host.assert_refused(|| set("phase"), ERROR, message);
     let message = "fmi2SetInteger: a_g is a Real: call fmi2GetReal or fmi2SetReal instead";
     host.assert_refused(|| set("a_g"), ERROR, message);
-    let message = "fmi2SetBoolean: overturned cannot be set: it is an output, computed by the FMU";
-    host.assert_refused(|| unsafe { fmi2SetBoolean(c, &reference("overturned"), 1, &1) }, ERROR, message);
-    let message = "fmi2SetString: value reference 0 is no String: this FMU has no String variables";
-    host.assert_refused(|| unsafe { fmi2SetString(c, &0, 1, &null()) }, ERROR, message);
-    let message = "fmi2GetString: value reference 3 is no String: this FMU has no String variables";
-    host.assert_refused(|| unsafe { fmi2GetString(c, &3, 1, &mut null()) }, ERROR, message);
+    let message = "fmi2SetBoolean: overturned cannot be set: it is a local variable, computed by the FMU";
+    host.assert_refused(|| host.set_boolean("overturned", 1), ERROR, message);
+    let message = "fmi2SetBoolean: detail is an Enumeration: call fmi2GetInteger or fmi2SetInteger instead";
+    host.assert_refused(|| host.set_boolean("detail", 1), ERROR, message);
+    let message = "fmi2SetBoolean: peaks = 2 is not one of 0 (fmi2False), 1 (fmi2True)";
+    host.assert_refused(|| host.set_boolean("peaks", 2), ERROR, message);
+    let message = "fmi2SetReal: record is a String: call fmi2GetString or fmi2SetString instead";
+    host.assert_refused(|| host.set(&[("record", 1.0)]), ERROR, message);
+    let message = "fmi2SetString: value must be a valid pointer; it is null or misaligned";
+    host.assert_refused(|| unsafe { fmi2SetString(c, &reference("record"), 1, &null()) }, ERROR, message);
+    let message = "fmi2SetString: a_g is a Real: call fmi2GetReal or fmi2SetReal instead";
+    host.assert_refused(|| unsafe { fmi2SetString(c, &0, 1, &c"a".as_ptr()) }, ERROR, message);
+    let message = "fmi2GetString: V_t is a Real: call fmi2GetReal or fmi2SetReal instead";
+    host.assert_refused(|| unsafe { fmi2GetString(c, &reference("V_t"), 1, &mut null()) }, ERROR, message);
+
+    for on in [1, 0] {
+        assert_eq!((host.set_boolean("extrapolate", on), host.try_boolean("extrapolate")), (OK, Ok(on)));
+    }
+    assert_eq!((host.record().as_str(), host.set_record("a ü.csv"), host.record().as_str()), ("", OK, "a ü.csv"));
+    assert_eq!((host.set_record(""), host.exit()), (OK, OK));
+    let fixed = "is fixed once the simulation has started: set it before fmi2ExitInitializationMode, or call fmi2Reset";
+    host.assert_refused(|| host.set_record("b.csv"), ERROR, &format!("fmi2SetString: record {fixed}"));
+    host.assert_refused(|| host.set_boolean("peaks", 0), ERROR, &format!("fmi2SetBoolean: peaks {fixed}"));
+    host.assert_refused(|| host.set_integer("detail", 2), ERROR, &format!("fmi2SetInteger: detail {fixed}"));
 }

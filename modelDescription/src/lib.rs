@@ -11,7 +11,8 @@ mod unit_definitions;
 
 pub use model_structure::{DependenciesKind, InitialUnknowns, ModelStructure, Outputs, Unknown};
 pub use model_variables::{
-    Boolean, Causality, Enumeration, Initial, Integer, ModelVariables, Real, ScalarVariable, Variability, VariableType,
+    Boolean, Causality, Enumeration, Initial, Integer, ModelVariables, Real, ScalarVariable, Text, Variability,
+    VariableType,
 };
 pub use quick_xml::SeError;
 pub use type_definitions::{EnumerationType, Item, SimpleType, TypeAttributes, TypeDefinitions};

@@ -47,6 +47,8 @@ pub enum Causality {
     Input,
     /// The model, for the environment.
     Output,
+    /// The model, for whoever looks at it.
+    Local,
 }
 
 /// When a variable changes.
@@ -80,6 +82,8 @@ pub enum VariableType {
     Integer(Integer),
     /// True or false.
     Boolean(Boolean),
+    /// Text.
+    String(Text),
     /// A literal of a declared enumeration.
     Enumeration(Enumeration),
 }
@@ -109,9 +113,21 @@ pub struct Integer {
     pub min: Option<i32>,
 }
 
-/// Attributes of a Boolean variable: none.
+/// Attributes of a Boolean variable.
 #[derive(Clone, Debug, Default, Serialize)]
-pub struct Boolean {}
+pub struct Boolean {
+    /// Value unless the environment sets another.
+    #[serde(rename = "@start", skip_serializing_if = "Option::is_none")]
+    pub start: Option<bool>,
+}
+
+/// Attributes of a string variable.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Text {
+    /// Value unless the environment sets another.
+    #[serde(rename = "@start", skip_serializing_if = "Option::is_none")]
+    pub start: Option<String>,
+}
 
 /// Attributes of an enumeration variable.
 #[derive(Clone, Debug, Serialize)]

@@ -108,7 +108,34 @@ fn spring() -> FmiModelDescription {
                     causality: Causality::Output,
                     variability: Variability::Discrete,
                     initial: Some(Initial::Calculated),
-                    variable_type: VariableType::Boolean(Boolean {}),
+                    variable_type: VariableType::Boolean(Boolean::default()),
+                },
+                ScalarVariable {
+                    name: "soft".into(),
+                    value_reference: 1,
+                    description: "whether it softens".into(),
+                    causality: Causality::Parameter,
+                    variability: Variability::Fixed,
+                    initial: Some(Initial::Exact),
+                    variable_type: VariableType::Boolean(Boolean { start: Some(true) }),
+                },
+                ScalarVariable {
+                    name: "history".into(),
+                    value_reference: 0,
+                    description: "file of forces".into(),
+                    causality: Causality::Parameter,
+                    variability: Variability::Fixed,
+                    initial: Some(Initial::Exact),
+                    variable_type: VariableType::String(Text { start: Some("a & b.csv".into()) }),
+                },
+                ScalarVariable {
+                    name: "largest".into(),
+                    value_reference: 3,
+                    description: "largest force".into(),
+                    causality: Causality::Local,
+                    variability: Variability::Continuous,
+                    initial: Some(Initial::Calculated),
+                    variable_type: VariableType::Real(Real::default()),
                 },
             ],
         },
@@ -177,6 +204,15 @@ const SPRING: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
     </ScalarVariable>
     <ScalarVariable name="broken" valueReference="0" description="beyond repair" causality="output" variability="discrete" initial="calculated">
       <Boolean/>
+    </ScalarVariable>
+    <ScalarVariable name="soft" valueReference="1" description="whether it softens" causality="parameter" variability="fixed" initial="exact">
+      <Boolean start="true"/>
+    </ScalarVariable>
+    <ScalarVariable name="history" valueReference="0" description="file of forces" causality="parameter" variability="fixed" initial="exact">
+      <String start="a &amp; b.csv"/>
+    </ScalarVariable>
+    <ScalarVariable name="largest" valueReference="3" description="largest force" causality="local" variability="continuous" initial="calculated">
+      <Real/>
     </ScalarVariable>
   </ModelVariables>
   <ModelStructure>

@@ -3,7 +3,8 @@
 use crate::model_description::{DESCRIPTION, MODEL_NAME};
 use crate::significant::significant;
 use FlexibleRocking::logger::Category;
-use FlexibleRocking::variables::{Causality, DataType, VARIABLES, Variable};
+use FlexibleRocking::resources::Contents;
+use FlexibleRocking::variables::{Causality, DataType, VARIABLES, Value, Variable};
 use minijinja::value::Serde;
 use minijinja::{Environment, UndefinedBehavior};
 use rocking::Structure;
@@ -54,21 +55,22 @@ struct LogCategory {
     description: &'static str,
 }
 
-/// The page of an FMU whose start values are those of `structure`.
-pub fn documentation(structure: &Structure) -> Result<String, minijinja::Error> {
+/// The page of an FMU of `structure` with these `contents`.
+pub fn documentation(structure: &Structure, contents: &Contents) -> Result<String, minijinja::Error> {
     let page = Page {
         model_name: MODEL_NAME,
         description: DESCRIPTION,
         version: env!("CARGO_PKG_VERSION"),
-        guid: FlexibleRocking::guid(structure.parameters()),
+        guid: FlexibleRocking::guid(contents),
         icon: ICON,
         groups: [
             ("Inputs", Causality::Input),
             ("Outputs", Causality::Output),
+            ("Local variables", Causality::Local),
             ("Parameters and initial values", Causality::Parameter),
             ("Calculated parameters", Causality::CalculatedParameter),
         ]
-        .map(|(title, causality)| group(title, causality, structure))
+        .map(|(title, causality)| group(title, causality, structure, contents))
         .into(),
         tolerance: format!("{DEFAULT_TOLERANCE:e}"),
         log_categories: Category::ALL.map(log_category).into(),
@@ -81,16 +83,16 @@ pub fn documentation(structure: &Structure) -> Result<String, minijinja::Error> 
     environment.render_named_str(name, TEMPLATE, Serde(page))
 }
 
-fn group(title: &'static str, causality: Causality, structure: &Structure) -> Group {
+fn group(title: &'static str, causality: Causality, structure: &Structure, contents: &Contents) -> Group {
     let variables = VARIABLES.iter().filter(|variable| variable.causality == causality);
-    Group { title, rows: variables.map(|variable| row(variable, structure)).collect() }
+    Group { title, rows: variables.map(|variable| row(variable, structure, contents)).collect() }
 }
 
 fn log_category(category: Category) -> LogCategory {
     LogCategory { name: category.name().to_string_lossy().into_owned(), description: category.description() }
 }
 
-fn row(variable: &Variable, structure: &Structure) -> Row {
+fn row(variable: &Variable, structure: &Structure, contents: &Contents) -> Row {
     let (unit, range) = match variable.data_type {
         DataType::Real { unit, range } => (if unit == "1" { "–" } else { unit }, range),
         _ => ("", None),
@@ -99,6 +101,7 @@ fn row(variable: &Variable, structure: &Structure) -> Row {
         DataType::Real { .. } => variable.description.to_owned(),
         DataType::Integer => format!("{} (Integer)", variable.description),
         DataType::Boolean => format!("{} (Boolean)", variable.description),
+        DataType::String => format!("{} (String)", variable.description),
         DataType::Enumeration(literals) => {
             let literals: Vec<_> =
                 (1..).zip(literals.items).map(|(number, name): (u32, _)| format!("{number} {name}")).collect();
@@ -108,16 +111,20 @@ fn row(variable: &Variable, structure: &Structure) -> Row {
     Row {
         name: variable.name,
         unit,
-        value: value(variable, structure),
+        value: value(variable, structure, contents),
         range: range.map_or(String::new(), |(min, max)| format!("{} … {}", short(min), short(max))),
         meaning,
     }
 }
 
 /// What is known of a variable's value before the simulation: its start value, or what follows from the parameters.
-fn value(variable: &Variable, structure: &Structure) -> String {
-    if let Some(start) = variable.start(structure.parameters()) {
-        return short(start);
+fn value(variable: &Variable, structure: &Structure, contents: &Contents) -> String {
+    match variable.start(contents) {
+        Some(Value::Real(start)) => return short(start),
+        Some(Value::Item(start)) => return start.to_string(),
+        Some(Value::Boolean(start)) => return start.to_string(),
+        Some(Value::String(start)) => return start,
+        None => (),
     }
     let derived = DERIVED.iter().find(|derived| derived.name == variable.name);
     derived.map_or(String::new(), |derived| significant((derived.value)(structure)))
@@ -135,7 +142,7 @@ mod tests {
 
     #[test]
     fn the_page_has_a_row_for_every_variable() {
-        let page = documentation(&Structure::new(Parameters::EVISON).unwrap()).unwrap();
+        let page = documentation(&Structure::new(Parameters::EVISON).unwrap(), &Parameters::EVISON.into()).unwrap();
         for variable in VARIABLES.iter() {
             let cell = format!("<tr><td class=\"n\"><code>{}</code></td><td class=\"n\">", variable.name);
             assert_eq!(page.matches(&cell).count(), 1, "{}", variable.name);

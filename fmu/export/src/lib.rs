@@ -7,11 +7,14 @@ mod model_description;
 pub mod significant;
 
 use FlexibleRocking::BUILD;
-use FlexibleRocking::resources::PARAMETERS_FILE;
+use FlexibleRocking::ground::GroundRecord;
+use FlexibleRocking::resources::{Contents, PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records};
 pub use archive::ArchiveError;
 use archive::Entry;
 use rocking::Structure;
+use rocking::record::RecordError;
 use std::collections::BTreeMap;
+use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
@@ -87,30 +90,57 @@ pub enum ExportError {
         remedy = .1.remedy()
     )]
     OtherBuild(PathBuf, Platform),
+    /// A file that is no record.
+    #[error("{error}{cause}", cause = .error.source().map(|cause| format!(": {cause}")).unwrap_or_default())]
+    NoRecord {
+        /// Why.
+        #[from]
+        error: RecordError,
+    },
+    /// A file whose name is not text.
+    #[error("the record {path} needs a name in UTF-8", path = .0.display())]
+    RecordName(PathBuf),
+    /// Two records of one name, which is what the FMU knows them by.
+    #[error("two records are called {0}: rename one of them; capitals and small letters are the same here")]
+    SameName(String),
     /// The model description cannot be written.
     #[error("modelDescription.xml: {0}")]
     Description(#[from] ::model_description::SeError),
     /// The documentation cannot be written.
     #[error("documentation/index.html: {0}")]
     Documentation(#[from] minijinja::Error),
-    /// The parameters cannot be written.
-    #[error("resources/{PARAMETERS_FILE}: {0}")]
-    Parameters(#[from] toml::ser::Error),
+    /// The parameters, or the names of the records, cannot be written.
+    #[error("resources: {0}")]
+    Resources(#[from] toml::ser::Error),
     /// The archive cannot be written.
     #[error(transparent)]
     Archive(#[from] ArchiveError),
 }
 
-/// Writes the FMU of `structure` as the archive `target`, with the shared libraries that `libraries` names, and returns
-/// its size in bytes. The same structure and libraries give the same bytes.
+/// Writes the FMU of `structure` as the archive `target`, with the shared libraries that `libraries` names and the
+/// `records`, of which the first is what its ground follows. Returns what it carries and its size in bytes. The same
+/// structure, libraries and records give the same bytes.
 pub fn export(
     structure: &Structure,
+    records: &[PathBuf],
     libraries: &BTreeMap<Platform, PathBuf>,
     target: &Path,
-) -> Result<u64, ExportError> {
+) -> Result<(Contents, u64), ExportError> {
     let libraries = libraries.iter().map(|(&platform, path)| Ok((platform, read(path, platform)?)));
     let libraries = libraries.collect::<Result<Vec<_>, ExportError>>()?;
-    Ok(archive::write(target, &entries(structure, libraries)?)?)
+    let (mut contents, mut files) = (Contents::from(*structure.parameters()), Vec::new());
+    for path in records {
+        let record = GroundRecord::read(path)?;
+        let name = path.file_name().and_then(|name| name.to_str());
+        let file = name.ok_or_else(|| ExportError::RecordName(path.clone()))?.to_owned();
+        if contents.records.iter().any(|packed| packed.file.to_lowercase() == file.to_lowercase()) {
+            return Err(ExportError::SameName(file));
+        }
+        files.push(fs::read(path).map_err(|source| RecordError::Unreadable { path: path.clone(), source })?);
+        contents.records.push(PackedRecord { file, digest: record.name() });
+    }
+    let size = archive::write(target, &entries(structure, &contents, files, libraries)?)?;
+    Ok((contents, size))
 }
 
 /// The shared library at `path`, if it is there, for `platform` and of this build.
@@ -128,17 +158,27 @@ fn read(path: &Path, platform: Platform) -> Result<Vec<u8>, ExportError> {
     Ok(library)
 }
 
-/// The content of the archive.
-fn entries(structure: &Structure, libraries: Vec<(Platform, Vec<u8>)>) -> Result<Vec<Entry>, ExportError> {
-    let parameters = structure.parameters();
+/// The content of the archive, with the `records` as they are.
+fn entries(
+    structure: &Structure,
+    contents: &Contents,
+    records: Vec<Vec<u8>>,
+    libraries: Vec<(Platform, Vec<u8>)>,
+) -> Result<Vec<Entry>, ExportError> {
     let entry = |path: &str, content| Entry { path: path.to_owned(), content };
     let mut entries = vec![
-        entry("modelDescription.xml", model_description::model_description(parameters).to_xml()?.into()),
+        entry("modelDescription.xml", model_description::model_description(contents).to_xml()?.into()),
         entry("model.png", ICON.to_vec()),
-        entry("documentation/index.html", documentation::documentation(structure)?.into()),
+        entry("documentation/index.html", documentation::documentation(structure, contents)?.into()),
         entry("documentation/licenses/license.txt", LICENSES.into()),
-        entry(&format!("resources/{PARAMETERS_FILE}"), toml::to_string(parameters)?.into()),
+        entry(&format!("resources/{PARAMETERS_FILE}"), toml::to_string(&contents.parameters)?.into()),
     ];
+    if !contents.records.is_empty() {
+        let names = Records { record: contents.records.clone() };
+        entries.push(entry(&format!("resources/{RECORDS_FILE}"), toml::to_string(&names)?.into()));
+    }
+    let packed = contents.records.iter().zip(records);
+    entries.extend(packed.map(|(packed, file)| entry(&format!("resources/{}", packed.file), file)));
     entries.extend(libraries.into_iter().map(|(platform, library)| entry(platform.path(), library)));
     Ok(entries)
 }
@@ -163,7 +203,7 @@ mod tests {
     fn refusal(platform: Platform, path: &Path) -> String {
         let target = path.with_file_name("refused.fmu");
         let libraries = BTreeMap::from([(platform, path.to_owned())]);
-        let message = export(&structure(Parameters::EVISON), &libraries, &target).unwrap_err().to_string();
+        let message = export(&structure(Parameters::EVISON), &[], &libraries, &target).unwrap_err().to_string();
         assert!(!target.exists());
         message
     }
@@ -174,7 +214,7 @@ mod tests {
         let libraries = BTreeMap::from([(Platform::Linux64, library(folder.path()))]);
         let exported = |parameters, name: &str| {
             let target = folder.path().join(name);
-            let size = export(&structure(parameters), &libraries, &target).unwrap();
+            let (_, size) = export(&structure(parameters), &[], &libraries, &target).unwrap();
             let archive = fs::read(target).unwrap();
             assert_eq!(size, archive.len() as u64);
             archive
@@ -187,7 +227,8 @@ mod tests {
     #[test]
     fn the_archive_holds_what_the_standard_and_the_library_look_for() {
         let libraries = vec![(Platform::Linux64, b"code".to_vec()), (Platform::Windows64, b"Windows code".to_vec())];
-        let entries = entries(&structure(Parameters::EVISON), libraries).unwrap();
+        let contents = Contents::from(Parameters::EVISON);
+        let entries = entries(&structure(Parameters::EVISON), &contents, Vec::new(), libraries).unwrap();
         let paths: Vec<_> = entries.iter().map(|entry| entry.path.as_str()).collect();
         let expected = [
             "modelDescription.xml",
@@ -204,6 +245,44 @@ mod tests {
         assert_eq!(parameters, Parameters::EVISON);
         assert_eq!(entries[5].content, b"code");
         assert_eq!(entries[6].content, b"Windows code");
+    }
+
+    #[test]
+    fn records_are_packed_as_they_are_and_the_first_is_the_default() {
+        let folder = tempfile::tempdir().unwrap();
+        let libraries = BTreeMap::from([(Platform::Linux64, library(folder.path()))]);
+        let write = |name: &str, text: &str| {
+            let path = folder.path().join(name);
+            fs::create_dir_all(path.parent().unwrap()).unwrap();
+            fs::write(&path, text).unwrap();
+            path
+        };
+        let [pulse, sine] = [write("pulse 1.csv", "0,1\r\n1,2\r\n"), write("sine.txt", "0,1\n1,-1\n")];
+        let [same, broken] = [write("other/Sine.TXT", "0,2\n1,0\n"), write("broken.csv", "0,1\n1,?\n")];
+        let target = folder.path().join("records.fmu");
+        let export = |records: &[&PathBuf]| {
+            let records: Vec<_> = records.iter().map(|path| path.to_path_buf()).collect();
+            super::export(&structure(Parameters::EVISON), &records, &libraries, &target)
+        };
+        let (contents, _) = export(&[&pulse, &sine]).unwrap();
+        assert_eq!(contents.default_record(), "pulse 1.csv");
+        let mut archive = zip::ZipArchive::new(fs::File::open(&target).unwrap()).unwrap();
+        let mut read = |name: &str| io::read_to_string(archive.by_name(name).unwrap()).unwrap();
+        assert_eq!(read("resources/pulse 1.csv"), "0,1\r\n1,2\r\n");
+        assert_eq!(read("resources/sine.txt"), "0,1\n1,-1\n");
+        assert!(read("modelDescription.xml").contains("<String start=\"pulse 1.csv\"/>"));
+        let names: Records = toml::from_str(&read("resources/records.toml")).unwrap();
+        assert_eq!(names.record, contents.records);
+        let (swapped, _) = export(&[&sine, &pulse]).unwrap();
+        assert_ne!(FlexibleRocking::guid(&swapped), FlexibleRocking::guid(&contents));
+
+        let refusal = |records: &[&PathBuf]| export(records).unwrap_err().to_string();
+        assert_eq!(
+            refusal(&[&sine, &same]),
+            "two records are called Sine.TXT: rename one of them; capitals and small letters are the same here"
+        );
+        let expected = format!("{}, line 2: the acceleration \"?\" is not a number", broken.display());
+        assert_eq!(refusal(&[&sine, &broken]), expected);
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! `modelDescription.xml`, from the table of variables.
 
 use FlexibleRocking::logger;
-use FlexibleRocking::variables::{Causality, DETAILS, DataType, Enumeration, PHASES, VARIABLES, Variable};
+use FlexibleRocking::resources::Contents;
+use FlexibleRocking::variables::{Causality, DETAILS, DataType, Enumeration, PHASES, VARIABLES, Value, Variable};
 use model_description as fmi;
-use rocking::Parameters;
 use rocking::engine::DEFAULT_TOLERANCE;
 
 /// Name of the model, and of its library without extension.
@@ -13,9 +13,10 @@ pub const MODEL_NAME: &str = "FlexibleRocking";
 pub const DESCRIPTION: &str = "A flexible structure that rocks freely on rigid ground under earthquake ground motion";
 
 /// The units of the variables, as exponents of kg, m, s, rad.
-const UNITS: [(&str, [i32; 4]); 12] = [
+const UNITS: [(&str, [i32; 4]); 13] = [
     ("kg", [1, 0, 0, 0]),
     ("m", [0, 1, 0, 0]),
+    ("s", [0, 0, 1, 0]),
     ("Hz", [0, 0, -1, 0]),
     ("rad", [0, 0, 0, 1]),
     ("rad/s", [0, 0, -1, 1]),
@@ -28,12 +29,12 @@ const UNITS: [(&str, [i32; 4]); 12] = [
     ("kg.m2", [1, 2, 0, 0]),
 ];
 
-/// The description of an FMU whose start values are `parameters`.
-pub fn model_description(parameters: &Parameters) -> fmi::FmiModelDescription {
+/// The description of an FMU with these `contents`.
+pub fn model_description(contents: &Contents) -> fmi::FmiModelDescription {
     fmi::FmiModelDescription {
         fmi_version: fmi::FmiVersion::V2_0,
         model_name: MODEL_NAME.into(),
-        guid: FlexibleRocking::guid(parameters),
+        guid: FlexibleRocking::guid(contents),
         description: DESCRIPTION.into(),
         version: env!("CARGO_PKG_VERSION").into(),
         license: env!("CARGO_PKG_LICENSE").into(),
@@ -57,7 +58,7 @@ pub fn model_description(parameters: &Parameters) -> fmi::FmiModelDescription {
         model_variables: fmi::ModelVariables {
             scalar_variables: (0..)
                 .zip(&*VARIABLES)
-                .map(|(at, variable)| scalar_variable(at, variable, parameters))
+                .map(|(at, variable)| scalar_variable(at, variable, contents))
                 .collect(),
         },
         model_structure: model_structure(),
@@ -83,7 +84,8 @@ fn log_category(category: logger::Category) -> fmi::Category {
 }
 
 /// The variable at position `at` of the table, which is its value reference.
-fn scalar_variable(at: u32, variable: &Variable, parameters: &Parameters) -> fmi::ScalarVariable {
+fn scalar_variable(at: u32, variable: &Variable, contents: &Contents) -> fmi::ScalarVariable {
+    let start = variable.start(contents);
     fmi::ScalarVariable {
         name: variable.name.into(),
         value_reference: at,
@@ -91,18 +93,23 @@ fn scalar_variable(at: u32, variable: &Variable, parameters: &Parameters) -> fmi
         causality: causality(variable),
         variability: variability(variable),
         initial: initial(variable),
-        variable_type: match variable.data_type {
-            DataType::Real { unit, range } => fmi::VariableType::Real(fmi::Real {
+        variable_type: match (variable.data_type, start) {
+            (DataType::Real { unit, range }, start) => fmi::VariableType::Real(fmi::Real {
                 unit: (unit != "1").then(|| unit.into()),
                 min: range.map(|(min, _)| min),
                 max: range.map(|(_, max)| max),
-                start: variable.start(parameters),
+                start: start.and_then(|value| if let Value::Real(value) = value { Some(value) } else { None }),
             }),
-            DataType::Integer => fmi::VariableType::Integer(fmi::Integer { min: Some(0) }),
-            DataType::Boolean => fmi::VariableType::Boolean(fmi::Boolean {}),
-            DataType::Enumeration(enumeration) => fmi::VariableType::Enumeration(fmi::Enumeration {
+            (DataType::Integer, _) => fmi::VariableType::Integer(fmi::Integer { min: Some(0) }),
+            (DataType::Boolean, start) => fmi::VariableType::Boolean(fmi::Boolean {
+                start: start.and_then(|value| if let Value::Boolean(value) = value { Some(value) } else { None }),
+            }),
+            (DataType::String, start) => fmi::VariableType::String(fmi::Text {
+                start: start.and_then(|value| if let Value::String(value) = value { Some(value) } else { None }),
+            }),
+            (DataType::Enumeration(enumeration), start) => fmi::VariableType::Enumeration(fmi::Enumeration {
                 declared_type: enumeration.name.into(),
-                start: variable.start(parameters).map(|number| number as i32),
+                start: start.and_then(|value| if let Value::Item(value) = value { Some(value) } else { None }),
             }),
         },
     }
@@ -114,27 +121,28 @@ fn causality(variable: &Variable) -> fmi::Causality {
         Causality::CalculatedParameter => fmi::Causality::CalculatedParameter,
         Causality::Input => fmi::Causality::Input,
         Causality::Output => fmi::Causality::Output,
+        Causality::Local => fmi::Causality::Local,
     }
 }
 
 fn variability(variable: &Variable) -> fmi::Variability {
     match variable.causality {
         Causality::Parameter | Causality::CalculatedParameter => fmi::Variability::Fixed,
-        Causality::Input | Causality::Output if variable.is_continuous() => fmi::Variability::Continuous,
-        Causality::Input | Causality::Output => fmi::Variability::Discrete,
+        _ if variable.is_continuous() => fmi::Variability::Continuous,
+        Causality::Input | Causality::Output | Causality::Local => fmi::Variability::Discrete,
     }
 }
 
 fn initial(variable: &Variable) -> Option<fmi::Initial> {
     match variable.causality {
         Causality::Parameter => Some(fmi::Initial::Exact),
-        Causality::CalculatedParameter | Causality::Output => Some(fmi::Initial::Calculated),
+        Causality::CalculatedParameter | Causality::Output | Causality::Local => Some(fmi::Initial::Calculated),
         Causality::Input => None,
     }
 }
 
 /// At a communication point the outputs depend on the state, which is no variable, and on their feedthrough; at
-/// initialization on what the table says as well.
+/// initialization on what the table says as well, as calculated parameters do. Local variables are in neither list.
 fn model_structure() -> fmi::ModelStructure {
     let unknowns = |is_one: fn(&Variable) -> bool, dependencies: fn(&Variable) -> Vec<usize>| {
         let calculated = (1..).zip(&*VARIABLES).filter(|(_, variable)| is_one(variable));
@@ -149,7 +157,7 @@ fn model_structure() -> fmi::ModelStructure {
         },
         initial_unknowns: fmi::InitialUnknowns {
             unknowns: unknowns(
-                |v| initial(v) == Some(fmi::Initial::Calculated),
+                |v| matches!(v.causality, Causality::Output | Causality::CalculatedParameter),
                 |v| v.feedthrough.iter().chain(v.initial_dependencies).map(|name| index(name)).collect(),
             ),
         },
@@ -170,11 +178,13 @@ fn index(name: &str) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use FlexibleRocking::resources::PackedRecord;
+    use rocking::Parameters;
     use std::collections::BTreeSet;
 
     #[test]
     fn every_variable_is_there_once_in_the_order_of_the_table() {
-        let written = model_description(&Parameters::MCMANUS).model_variables.scalar_variables;
+        let written = model_description(&Parameters::MCMANUS.into()).model_variables.scalar_variables;
         let names: Vec<_> = written.iter().map(|variable| variable.name.as_str()).collect();
         assert_eq!(names, VARIABLES.iter().map(|variable| variable.name).collect::<Vec<_>>());
         assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len());
@@ -184,13 +194,13 @@ mod tests {
 
     #[test]
     fn the_structure_points_at_the_outputs_and_at_what_initialization_calculates() {
-        let description = model_description(&Parameters::MCMANUS);
+        let description = model_description(&Parameters::MCMANUS.into());
         let variables = &description.model_variables.scalar_variables;
         let name = |index: &usize| variables[index - 1].name.as_str();
         let names = |unknowns: &[fmi::Unknown]| unknowns.iter().map(|u| name(&u.index).to_owned()).collect::<Vec<_>>();
 
-        let outputs = "theta u a_t V_t M_t theta_dot u_dot uplift delta_t v_t R_h R_v R_m I_h I_v I_m phase transitions overturned";
-        let calculated_parameters = "alpha_cg p_l chi u_cr f_u";
+        let outputs = "theta u a_t V_t M_t uplift delta_t v_t R_h R_v R_m I_h I_v I_m";
+        let calculated_parameters = "alpha_cg p_l chi u_cr f_u record_duration";
         let structure = &description.model_structure;
         assert_eq!(names(&structure.outputs.unknowns).join(" "), outputs);
         for unknown in &structure.outputs.unknowns {
@@ -233,7 +243,9 @@ mod tests {
 
     #[test]
     fn start_values_are_those_of_the_structure() {
-        let xml = model_description(&Parameters::EVISON).to_xml().unwrap();
+        let record = PackedRecord { file: "pulse & rest.csv".into(), digest: "any".into() };
+        let contents = Contents { parameters: Parameters::EVISON, records: vec![record] };
+        let xml = model_description(&contents).to_xml().unwrap();
         for element in [
             r#"name="a_g" valueReference="0" description="horizontal ground acceleration, positive to the right" causality="input" variability="continuous">
       <Real unit="m/s2" min="-10000.0" max="10000.0" start="0.0"/>"#,
@@ -243,9 +255,14 @@ mod tests {
       <Real min="0.0" max="10.0" start="0.015"/>"#,
             r#"description="modal participation of rocking" causality="calculatedParameter" variability="fixed" initial="calculated">
       <Real/>"#,
-            r#"description="what holds of the base" causality="output" variability="discrete" initial="calculated">
+            r#"description="what holds of the base" causality="local" variability="discrete" initial="calculated">
       <Enumeration declaredType="Phase"/>"#,
             r#"<Item name="rocking left" value="2"/>"#,
+            r#"<String start="pulse &amp; rest.csv"/>"#,
+            r#"description="whether largest magnitudes are watched" causality="parameter" variability="fixed" initial="exact">
+      <Boolean start="true"/>"#,
+            r#"exact: within steps, too" causality="local" variability="continuous" initial="calculated">
+      <Real unit="rad"/>"#,
             r#"<DefaultExperiment startTime="0.0" tolerance="1e-9"/>"#,
         ] {
             assert!(xml.contains(element), "{element}\n{xml}");

@@ -31,7 +31,8 @@ type Log = RefCell<Vec<Message>>;
 pub struct Host {
     pub component: *mut c_void,
     pub log: Box<Log>,
-    resources: TempDir,
+    /// Its folder `resources`.
+    pub resources: TempDir,
 }
 
 /// The arguments of `fmi2Instantiate` that tests vary.
@@ -45,7 +46,7 @@ pub struct Instantiate {
 
 impl Default for Instantiate {
     fn default() -> Instantiate {
-        Instantiate { name: "wall", fmu_type: 1, guid: guid(&Parameters::EVISON), location: None, logging_on: 0 }
+        Instantiate { name: "wall", fmu_type: 1, guid: guid(&Parameters::EVISON.into()), location: None, logging_on: 0 }
     }
 }
 
@@ -177,6 +178,28 @@ impl Host {
 
     pub fn set_integer(&self, name: &str, value: c_int) -> c_int {
         unsafe { fmi2SetInteger(self.component, &reference(name), 1, &value) }
+    }
+
+    pub fn set_boolean(&self, name: &str, value: c_int) -> c_int {
+        unsafe { fmi2SetBoolean(self.component, &reference(name), 1, &value) }
+    }
+
+    /// Sets the record.
+    pub fn set_record(&self, record: &str) -> c_int {
+        let record = CString::new(record).unwrap();
+        unsafe { fmi2SetString(self.component, &reference("record"), 1, &record.as_ptr()) }
+    }
+
+    /// The record.
+    pub fn record(&self) -> String {
+        let mut text = ptr::null();
+        assert_eq!(unsafe { fmi2GetString(self.component, &reference("record"), 1, &mut text) }, OK);
+        unsafe { CStr::from_ptr(text) }.to_str().unwrap().to_owned()
+    }
+
+    /// Writes `text` as the file `name` of the archive's resources.
+    pub fn write(&self, name: &str, text: &str) {
+        std::fs::write(self.resources.path().join(name), text).unwrap();
     }
 
     pub fn set_slope(&self, name: &str, order: c_int, slope: f64) -> c_int {
