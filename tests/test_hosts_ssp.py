@@ -1,4 +1,5 @@
-"""A system of two specimens on the same ground, as an SSP archive, in three hosts.
+"""A system of two specimens on the same ground, as an SSP archive, in three hosts: with the record inside the specimens,
+and with a_g passed on.
 
 libcosim and Ecos know no connection from the system's own input: for them the specimens' inputs are left open.
 """
@@ -15,7 +16,7 @@ from libcosimpy._internal import get_last_error_message
 from libcosimpy.CosimExecution import CosimExecution
 from libcosimpy.CosimManipulator import CosimManipulator
 from libcosimpy.CosimObserver import CosimObserver
-from pacoima import A_G, OUTPUTS, STEP, TIME, distance, held
+from pacoima import A_G, END, OUTPUTS, STEP, STEPS, TIME, distance, held, instants
 
 SPECIMENS = ("mcmanus", "evison")
 ElementTree.register_namespace("ssd", SSD)  # Ecos knows the elements by these prefixes
@@ -46,7 +47,7 @@ def fmus(mcmanus, evison):
 def ssp(fmus, tmp_path_factory):
     """Writes the archive and returns its path."""
 
-    def write(connected: bool):
+    def write(connected: bool, fmus=fmus):
         path = tmp_path_factory.mktemp("ssp") / "shake_table.ssp"
         with zipfile.ZipFile(path, "w") as archive:
             archive.writestr("SystemStructure.ssd", system_structure(connected))
@@ -55,6 +56,49 @@ def ssp(fmus, tmp_path_factory):
         return path
 
     return write
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_fmpy_with_the_record_inside(ssp, shaken, exact, step):
+    result = simulate_ssp(str(ssp(False, shaken)), stop_time=END - step / 2, step_size=step)
+    for name in SPECIMENS:
+        found = np.column_stack([result[f"{name}.{output}"] for output in OUTPUTS])
+        assert distance(found, exact(step, name)[1:]) < 1e-9
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_libcosim_with_the_record_inside(ssp, shaken, exact, tmp_path, step):
+    with zipfile.ZipFile(ssp(False, shaken)) as archive:
+        archive.extractall(tmp_path)
+    execution = CosimExecution.from_ssp_file(str(tmp_path), step_size=round(step * 1e9))
+    values = CosimObserver.create_last_value()
+    execution.add_observer(values)
+    samples = {name: [] for name in SPECIMENS}
+    for _ in instants(step)[1:]:
+        assert execution.step()
+        for name, fmu in shaken.items():
+            references = [fmu.variables[output].valueReference for output in OUTPUTS]
+            index = execution.slave_index_from_instance_name(name)
+            samples[name].append(values.last_real_values(index, references))
+    for name in SPECIMENS:
+        assert distance(np.array(samples[name]), exact(step, name)[1:]) < 1e-9
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_ecos_with_the_record_inside(ssp, shaken, exact, step):
+    need_libtbb()
+    from ecospy import EcosSimulation
+
+    with EcosSimulation(ssp_path=str(ssp(False, shaken)), step_size=step) as table:
+        assert table.init()
+        samples = {name: [] for name in SPECIMENS}
+        for _ in instants(step)[1:]:
+            table.step()
+            for name in SPECIMENS:
+                samples[name].append([table.get_real(f"{name}::{output}") for output in OUTPUTS])
+        table.terminate()
+    for name in SPECIMENS:
+        assert distance(np.array(samples[name]), exact(step, name)[1:]) < 1e-9
 
 
 def test_fmpy(ssp, fmus):
