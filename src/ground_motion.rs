@@ -48,7 +48,7 @@ pub struct Elapsed {
 impl Elapsed {
     /// After another `step` (s).
     pub fn and(self, step: f64) -> Elapsed {
-        let sum = self.sum + step;
+        let sum = (self.sum + step).min(f64::MAX);
         let part = sum - self.sum;
         Elapsed { sum, rounding: self.rounding + ((self.sum - (sum - part)) + (step - part)) }
     }

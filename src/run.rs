@@ -139,7 +139,7 @@ impl<'a> Run<'a> {
 
     /// The exact peaks of the run, and how it ended.
     pub fn peaks(&self) -> Result<(Peaks, Finish), RunError> {
-        let mut peaks = Peaks::new(&self.structure);
+        let mut peaks = Peaks::since(self.ground.start(), &self.structure);
         let finish = self.follow(&mut peaks)?;
         Ok((peaks, finish))
     }

@@ -13,3 +13,23 @@ fn the_library_of_the_same_build_is_found_and_packed() {
     let start = format!("FlexibleRocking.fmu: {} kB\n  GUID       {{", size.div_ceil(1000));
     assert!(stdout.starts_with(&start) && stdout.contains("  structure  m = 125.8 kg, "), "{stdout}");
 }
+
+/// `--record` packs files that are records, and says which.
+#[test]
+fn records_are_packed_and_named() {
+    let folder = tempfile::tempdir().unwrap();
+    let export = |arguments: &[&str]| {
+        let mut export = Command::new(env!("CARGO_BIN_EXE_rocking-fmu"));
+        export.current_dir(folder.path()).arg("export").args(arguments).output().unwrap()
+    };
+    for (name, text) in [("pulse.csv", "0,1\n1,2\n"), ("sine.txt", "0,1\n1,2\n"), ("broken.csv", "0,1\n1,?\n")] {
+        std::fs::write(folder.path().join(name), text).unwrap();
+    }
+    let output = export(&["--record", "pulse.csv", "sine.txt", "-o", "quakes.fmu"]);
+    let stdout = String::from_utf8(output.stdout).unwrap();
+    assert!(stdout.ends_with("\n  record     pulse.csv\n  record     sine.txt\n"), "{stdout}");
+    let output = export(&["--record", "broken.csv", "-o", "broken.fmu"]);
+    let stderr = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(stderr, "error: broken.csv, line 2: the acceleration \"?\" is not a number\n");
+    assert!(!output.status.success() && !folder.path().join("broken.fmu").exists());
+}

@@ -160,7 +160,8 @@ impl Course {
         let Course { motion, elapsed, peaks, record } = self;
         let &Motion { time, state: State { u, u_dot, theta, theta_dot }, impulse, transitions, work, .. } = motion;
         let Impulse { I_h, I_v, I_m } = impulse;
-        [u, u_dot, theta_dot, I_h, I_v, I_m, elapsed.seconds()].iter().all(|x| x.abs() <= BOUND)
+        [u, u_dot, theta_dot, I_h, I_v, I_m].iter().all(|x| x.abs() <= BOUND)
+            && elapsed.seconds().is_finite()
             && PEAKS
                 .iter()
                 .map(|peaking| (peaking.of)(peaks))

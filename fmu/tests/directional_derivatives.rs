@@ -174,13 +174,16 @@ fn those_by_start_values_are_the_slopes_of_the_values() {
     let start =
         [("theta_0", 0.3), ("theta_dot_0", -0.4), ("u_0", 2e-3), ("u_dot_0", 0.3), ("J0", 2.0), ("c_ratio", 0.7)];
     let host = Host::initializing(&start);
+    host.write("pulse.AT2", "-\n-\nACCELERATION IN UNITS OF G\n3, .5 NPTS, DT\n.1 .2 .4\n");
+    let placement = [("record_scale", 0.8), ("record_time_scale", 1.25), ("record_start", -0.3)];
+    assert_eq!((host.set_record("pulse.AT2"), host.set(&placement)), (OK, OK));
     assert_eq!(host.set(&[("a_g", 3.0), ("F_t", -50.0)]), OK);
     let is_real = |variable: &&Variable| matches!(variable.data_type, DataType::Real { .. });
     let named = |causality: &[Causality]| {
         let of = VARIABLES.iter().filter(is_real).filter(|variable| causality.contains(&variable.causality));
         of.map(|variable| variable.name).collect::<Vec<_>>()
     };
-    let unknowns = named(&[Causality::Output, Causality::CalculatedParameter]);
+    let unknowns = [named(&[Causality::Output, Causality::CalculatedParameter]), vec!["a_ground"]].concat();
     let mut sum = derivatives(&host, &unknowns, &[("a_g", 0.5)]).unwrap();
     let mut all = vec![("a_g", 0.5)];
     for known in named(&[Causality::Parameter]) {

@@ -19,10 +19,11 @@ use rocking::taylor::MAX_ORDER;
 use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString};
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::path::Path;
 use std::ptr::{null, null_mut, without_provenance_mut};
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
-use std::{env, fmt, slice, thread};
+use std::{env, fmt, fs, slice, thread};
 use uuid::Uuid;
 
 /// Calls without `FUZZ_CALLS`.
@@ -36,7 +37,8 @@ fn no_call_does_harm() {
     let calls = env::var("FUZZ_CALLS").map_or(CALLS, |calls| calls.parse().expect("FUZZ_CALLS is a number"));
     let resources = host::resources();
     let location = CString::new(format!("file://{}", resources.path().display())).unwrap();
-    Sequence::new(0, &location).run(); // what is allocated once per process is no leak
+    let records = records(resources.path());
+    (0..20).for_each(|number| _ = Sequence::new(number, &location, &records).run()); // what a process keeps is no leak
     let sequences = AtomicU64::new(0);
     let work = || {
         let mut tally = Tally::default();
@@ -47,7 +49,8 @@ fn no_call_does_harm() {
             }
             let run = || {
                 let mut of_sequence = Tally::default();
-                let left = allocation_counter::measure(|| of_sequence = Sequence::new(number, &location).run());
+                let left =
+                    allocation_counter::measure(|| of_sequence = Sequence::new(number, &location, &records).run());
                 assert_eq!((left.count_current, left.bytes_current), (0, 0), "something is left behind");
                 of_sequence
             };
@@ -71,6 +74,49 @@ fn no_call_does_harm() {
     assert!(tally.calls() >= calls);
     let freed_in = tally.freed_in;
     assert!(calls < CALLS || freed_in.iter().all(|count| *count > 0), "freed in {:?}: {freed_in:?}", Stage::ALL);
+}
+
+/// What `record` is set to: files of the archive in `folder` and elsewhere, sound and broken, and what is no file.
+fn records(folder: &Path) -> Vec<CString> {
+    let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
+    let samples: String =
+        (0..300).map(|i| format!("{:.3},{:.3}\n", 0.01 * f64::from(i), f64::from(i * i % 19 - 9))).collect();
+    write("quake.csv", &samples);
+    write("Quake 2.AT2", "-\n-\nACCELERATION IN UNITS OF G\n4, .005 NPTS, DT\n.1 -.2 .4 1e-3\n");
+    write("broken.csv", "0,1\n1,%s%n#\n");
+    write("huge.csv", "-1e308,1\n1e308,2\n");
+    write("dense.csv", "0,1e-300\n5e-324,1e3\n1e-323,2\n1,-1e4\n");
+    fs::create_dir(folder.join("folder.csv")).unwrap();
+    let inside = folder.join("quake.csv").display().to_string();
+    let mut texts: Vec<_> = [
+        "quake.csv",
+        "quake.csv",
+        "Quake 2.AT2",
+        "Quake 2.AT2",
+        "broken.csv",
+        "huge.csv",
+        "dense.csv",
+        "folder.csv",
+        "absent.csv",
+        "",
+        ".",
+        "..",
+        "../quake.csv",
+        "/dev/zero",
+        "/dev/full",
+        "/dev/stdin",
+        "/",
+        "/etc/passwd",
+        "file:///dev/zero",
+        "file:",
+        "file:///%00.csv",
+        &inside,
+    ]
+    .map(|text| CString::new(text).unwrap())
+    .into();
+    texts.push(CString::new(format!("file://{inside}")).unwrap());
+    texts.push(CString::new(vec![b'a'; 70_000]).unwrap());
+    texts
 }
 
 /// What came of the calls: OK, Discard and Error of every function.
@@ -165,18 +211,20 @@ struct Slot {
 struct Sequence<'a> {
     rng: Rng,
     location: &'a CStr,
+    records: &'a [CString],
     slots: [Slot; 2],
     /// Serialized states of both.
     bytes: Vec<Vec<u8>>,
     tally: Tally,
 }
 
-impl Sequence<'_> {
-    fn new(number: u64, location: &CStr) -> Sequence<'_> {
+impl<'a> Sequence<'a> {
+    fn new(number: u64, location: &'a CStr, records: &'a [CString]) -> Sequence<'a> {
         let slot = || Slot { c: null_mut(), told: Box::default(), states: Vec::new(), freed: null_mut() };
         Sequence {
             rng: Rng::with_seed(number),
             location,
+            records,
             slots: [slot(), slot()],
             bytes: Vec::new(),
             tally: Tally::default(),
@@ -207,7 +255,9 @@ impl Sequence<'_> {
     fn function(&mut self, at: usize) -> Function {
         use Function::*;
         let leading_on: &[Function] = match self.stage(at) {
-            Stage::Instantiated => &[SetReal, SetReal, SetInteger, SetupExperiment, EnterInitializationMode],
+            Stage::Instantiated => {
+                &[SetReal, SetReal, SetInteger, SetBoolean, SetString, SetupExperiment, EnterInitializationMode]
+            }
             Stage::InitializationMode => &[SetReal, GetReal, ExitInitializationMode, ExitInitializationMode],
             Stage::StepComplete => {
                 &[SetReal, SetRealInputDerivatives, DoStep, DoStep, GetReal, GetRealOutputDerivatives]
@@ -280,6 +330,7 @@ impl Sequence<'_> {
                 "g" => 9.81,
                 "a_g" => self.sign() * self.between(0.1, 50.0),
                 "F_t" => self.sign() * self.between(1.0, 1e4),
+                "record_scale" | "record_time_scale" => self.between(0.1, 3.0),
                 _ => self.sign() * self.between(1e-4, 0.5),
             },
         }
@@ -508,8 +559,8 @@ impl Sequence<'_> {
             GetReal | GetRealOutputDerivatives => self.get_reals(at, function),
             GetInteger | GetBoolean => self.get_discrete(at, function),
             SetReal | SetRealInputDerivatives => self.set_reals(at, function),
-            SetInteger => self.set_integers(at),
-            GetString | SetBoolean | SetString => self.ask_in_vain(at, function),
+            SetInteger | SetBoolean => self.set_integers(at, function),
+            GetString | SetString => self.pass_strings(at, function),
             GetDirectionalDerivative => self.get_directional_derivative(at),
             GetFMUstate => self.get_state(at),
             SetFMUstate => self.set_state(at),
@@ -603,33 +654,57 @@ impl Sequence<'_> {
         });
     }
 
-    fn set_integers(&mut self, at: usize) {
+    fn set_integers(&mut self, at: usize, function: Function) {
         let mut references = self.references();
         if self.rng.bool() {
-            references = vec![host::reference("detail")];
+            let names: &[&str] =
+                if function == Function::SetInteger { &["detail"] } else { &["extrapolate", "extrapolate", "peaks"] };
+            references = vec![host::reference(names[self.rng.usize(..names.len())])];
         }
-        let mut values: Vec<_> = references.iter().map(|_| self.rng.i32(0..8)).collect();
+        let most = if function == Function::SetInteger { 8 } else { 3 };
+        let mut values: Vec<_> = references.iter().map(|_| self.rng.i32(0..most)).collect();
         if self.one_in(16) {
             values.fill(self.rng.i32(..));
         }
         let (nvr, vr, value) = (self.length(values.len()), self.pointer(&mut references), self.pointer(&mut values));
-        self.call(at, Function::SetInteger, |c| unsafe { fmi2SetInteger(c, vr, nvr, value) });
-    }
-
-    /// What this FMU has nothing of.
-    fn ask_in_vain(&mut self, at: usize, function: Function) {
-        let mut references = self.references();
-        let n = references.len();
-        let (mut integers, mut texts) = (vec![0; n], vec![null(); n]);
-        let (nvr, vr) = (self.length(n), self.pointer(&mut references));
-        let (integer, text) = (self.pointer(&mut integers), self.pointer(&mut texts));
         self.call(at, function, |c| unsafe {
             match function {
+                Function::SetInteger => fmi2SetInteger(c, vr, nvr, value),
+                _ => fmi2SetBoolean(c, vr, nvr, value),
+            }
+        });
+    }
+
+    /// Names and paths, or any bytes; what is read is text.
+    fn pass_strings(&mut self, at: usize, function: Function) {
+        let mut references = self.references();
+        if self.rng.bool() {
+            references = vec![host::reference("record")];
+        }
+        let garbage: Vec<u8> = (0..self.rng.usize(..40)).map(|_| self.rng.u8(1..)).collect();
+        let garbage = CString::new(garbage).unwrap();
+        let mut texts: Vec<_> = references
+            .iter()
+            .map(|_| match self.rng.u8(..40) {
+                0 => null(),
+                1..4 => garbage.as_ptr(),
+                4..20 => self.records[self.rng.usize(..4)].as_ptr(),
+                _ => self.records[self.rng.usize(..self.records.len())].as_ptr(),
+            })
+            .collect();
+        if function == Function::GetString {
+            texts.fill(null());
+        }
+        let (nvr, vr, text) = (self.length(texts.len()), self.pointer(&mut references), self.pointer(&mut texts));
+        let status = self.call(at, function, |c| unsafe {
+            match function {
                 Function::GetString => fmi2GetString(c, vr, nvr, text),
-                Function::SetBoolean => fmi2SetBoolean(c, vr, nvr, integer),
                 _ => fmi2SetString(c, vr, nvr, text),
             }
         });
+        if function == Function::GetString {
+            assert!(texts.iter().all(|text| text.is_null() == (status != OK)), "{references:?} {status} {texts:?}");
+        }
     }
 
     /// Values are finite, or left alone.
@@ -736,6 +811,8 @@ impl Sequence<'_> {
         let step = match self.rng.u16(..4000) {
             0 => 1e9,
             1..40 => self.number(),
+            // over a record
+            120..200 => self.between(0.1, 10.0),
             40..120 => 1e-300,
             _ => self.between(1e-4, 0.1),
         };

@@ -36,7 +36,7 @@ impl<'a> Fmu<'a> {
         std::fs::write(resources.path().join(PARAMETERS_FILE), toml::to_string(scene.structure.parameters())?)?;
         let location = CString::new(format!("file://{}", resources.path().display()))?;
         let (name, guid) =
-            (CString::new(scene.key)?, CString::new(FlexibleRocking::guid(scene.structure.parameters()))?);
+            (CString::new(scene.key)?, CString::new(FlexibleRocking::guid(&(*scene.structure.parameters()).into()))?);
         let callbacks = CallbackFunctions {
             logger: None,
             allocate_memory: ptr::null(),

@@ -8,8 +8,9 @@ use FlexibleRocking::variables::{Causality, DataType, VARIABLES, Value, Variable
 use minijinja::value::Serde;
 use minijinja::{Environment, UndefinedBehavior};
 use rocking::Structure;
-use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::engine::{DEFAULT_TOLERANCE, MAX_STEPS_PER_ADVANCE};
 use rocking::parameters::MAX_SLENDERNESS;
+use rocking::record::{MAX_FILE, MAX_SAMPLES};
 use rocking::structure::DERIVED;
 use rocking::transition::MAX_TRANSITIONS_PER_PERIOD;
 use serde::Serialize;
@@ -30,6 +31,9 @@ struct Page<'a> {
     log_categories: Vec<LogCategory>,
     max_slenderness: String,
     max_transitions: u32,
+    max_steps: u64,
+    max_samples: usize,
+    max_file: u64,
 }
 
 /// The variables of one kind.
@@ -76,6 +80,9 @@ pub fn documentation(structure: &Structure, contents: &Contents) -> Result<Strin
         log_categories: Category::ALL.map(log_category).into(),
         max_slenderness: MAX_SLENDERNESS.to_string(),
         max_transitions: MAX_TRANSITIONS_PER_PERIOD,
+        max_steps: MAX_STEPS_PER_ADVANCE,
+        max_samples: MAX_SAMPLES,
+        max_file: MAX_FILE >> 20,
     };
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);

@@ -14,7 +14,6 @@ use archive::Entry;
 use rocking::Structure;
 use rocking::record::RecordError;
 use std::collections::BTreeMap;
-use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::{fs, io};
 
@@ -91,12 +90,8 @@ pub enum ExportError {
     )]
     OtherBuild(PathBuf, Platform),
     /// A file that is no record.
-    #[error("{error}{cause}", cause = .error.source().map(|cause| format!(": {cause}")).unwrap_or_default())]
-    NoRecord {
-        /// Why.
-        #[from]
-        error: RecordError,
-    },
+    #[error(transparent)]
+    NoRecord(#[from] RecordError),
     /// A file whose name is not text.
     #[error("the record {path} needs a name in UTF-8", path = .0.display())]
     RecordName(PathBuf),

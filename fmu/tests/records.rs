@@ -1,0 +1,399 @@
+//! The record inside: against the same record through `a_g`, at any steps; its peaks; states; what is refused.
+//!
+//! Records are synthetic; `RECORDS`, a list of paths as `PATH` is one, names further ones.
+#![allow(unsafe_code, non_snake_case)] // the C interface; F_t
+
+mod host;
+
+use FlexibleRocking::snapshot;
+use approx::assert_relative_eq;
+use host::*;
+use rocking::record::{Record, Unit};
+use rocking::run::peaks::{PEAKS, Peaks};
+use rocking::run::{End, Run};
+use rocking::{Detail, LinearLoad, Load, Parameters, Ramp, Structure};
+use std::path::{Path, PathBuf};
+use std::{env, fs};
+use tempfile::TempDir;
+
+const SHOWN: [&str; 6] = ["theta", "u", "a_t", "theta_dot", "u_dot", "R_h"];
+
+/// Numbers between −1 and 1: a linear congruential generator.
+fn noise() -> impl Iterator<Item = f64> {
+    let next = |x: &u64| Some(x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407));
+    std::iter::successors(Some(1), next).map(|x| (x >> 11) as f64 / (1_u64 << 52) as f64 - 1.0)
+}
+
+/// A quake of `samples` accelerations, from another one than 0 on.
+fn quake(samples: usize) -> impl Iterator<Item = f64> {
+    noise().take(samples).enumerate().map(move |(i, noise)| {
+        let part = i as f64 / samples as f64;
+        (1.0 - part) * (0.4 * noise + 0.5 * (0.6 * i as f64).cos())
+    })
+}
+
+/// In g, at every 20 ms.
+fn at2(samples: usize) -> String {
+    let values: String = quake(samples).map(|a_g| format!("{a_g:e}\n")).collect();
+    format!("PEER\nmade up\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= {samples}, DT= .0200 SEC\n{values}")
+}
+
+/// In m/s², at uneven times from 3 s on.
+fn csv(samples: usize) -> String {
+    let mut time = 3.0;
+    let lines = quake(samples).zip(noise().skip(99)).map(|(a_g, noise)| {
+        time += 0.015 + 0.01 * noise;
+        format!("{time},{}\n", 9.0 * a_g)
+    });
+    lines.collect()
+}
+
+/// Files of records.
+fn records() -> (TempDir, Vec<PathBuf>) {
+    let folder = tempfile::tempdir().unwrap();
+    let mut paths = Vec::new();
+    for (name, text) in [("even.AT2", at2(600)), ("uneven.csv", csv(400))] {
+        paths.push(folder.path().join(name));
+        fs::write(paths.last().unwrap(), text).unwrap();
+    }
+    let others = env::var_os("RECORDS").unwrap_or_default();
+    paths.extend(env::split_paths(&others).filter(|path| path.is_file()));
+    (folder, paths)
+}
+
+/// Multiply a record's times and accelerations: a specimen is smaller than what quakes meet.
+const SCALES: (f64, f64) = (0.4, 1.25);
+
+fn read(path: &Path) -> Record {
+    let record = Record::read(path, Unit::MetrePerSecondSquared, Parameters::EVISON.g).unwrap();
+    record.scaled(SCALES.0, SCALES.1)
+}
+
+/// Relative tolerance: what differs is then not the solver's.
+const TOLERANCE: f64 = 1e-12;
+
+/// Ready to step at the level `detail` under the record in the file `path`, if any.
+fn following(path: Option<&Path>, detail: Detail) -> Host {
+    let host = Host::new();
+    let scales = [("record_time_scale", SCALES.0), ("record_scale", SCALES.1)];
+    assert_eq!((host.set_integer("detail", detail as i32 + 1), host.set(&scales)), (OK, OK));
+    assert_eq!(host.set_record(path.map_or("", |path| path.to_str().unwrap())), OK);
+    assert_eq!((host.setup(Some(TOLERANCE), 0.0, None), host.enter(), host.exit()), (OK, OK, OK), "{:?}", host.log);
+    host
+}
+
+/// What is shown after each of `steps`.
+fn step_through(host: &Host, steps: impl IntoIterator<Item = f64>) -> Vec<Vec<f64>> {
+    let mut time = host.last_successful_time();
+    let step = |step| {
+        assert_eq!(host.step(time, step), OK, "{:?}", host.log);
+        time += step;
+        host.try_get(&SHOWN).unwrap()
+    };
+    steps.into_iter().map(step).collect()
+}
+
+/// The largest difference of what is shown to the end of `all`, in parts of the largest value there.
+fn apart(all: &[Vec<f64>], last: &[Vec<f64>]) -> f64 {
+    let of = |i: usize| {
+        let largest = all.iter().fold(f64::MIN_POSITIVE, |largest, shown| largest.max(shown[i].abs()));
+        let pairs = all[all.len() - last.len()..].iter().zip(last);
+        pairs.map(|(a, b)| (a[i] - b[i]).abs() / largest).fold(0.0, f64::max)
+    };
+    (0..SHOWN.len()).map(of).fold(0.0, f64::max)
+}
+
+/// Sample by sample, what the record does inside is what it does through the input with its slopes.
+#[test]
+fn the_record_inside_is_the_record_through_the_input() {
+    let (_folder, records) = records();
+    let mut most_transitions = 0;
+    for path in &records {
+        let record = read(path);
+        let segments: Vec<_> = record.segments_until(record.end()).collect();
+        for detail in Detail::ALL {
+            let inside = following(Some(path), detail);
+            let steps = segments.iter().map(|segment| segment.end - segment.start);
+            let inside = step_through(&inside, steps);
+            let host = following(None, detail);
+            let outside: Vec<_> = segments
+                .iter()
+                .flat_map(|segment| {
+                    let Ramp { value, slope } = segment.a_g;
+                    assert_eq!((host.set(&[("a_g", value)]), host.set_slope("a_g", 1, slope)), (OK, OK));
+                    let mut shown = step_through(&host, [segment.end - segment.start]);
+                    // inside, the next sample acts at once
+                    let next =
+                        segments.iter().find(|next| next.start == segment.end).map_or(0.0, |next| next.a_g.value);
+                    assert_eq!(host.set(&[("a_g", next)]), OK);
+                    shown[0] = host.try_get(&SHOWN).unwrap();
+                    shown
+                })
+                .collect();
+            let apart = apart(&outside, &inside);
+            assert!(apart <= 1e-12, "{} at {}: {apart:e}", path.display(), detail.name());
+            most_transitions = most_transitions.max(host.integer("transitions"));
+        }
+    }
+    assert!(most_transitions > 40, "{most_transitions} transitions");
+}
+
+/// One step over everything, steps of the samples, and steps that miss them all: the same, and with the peaks of a run.
+#[test]
+fn any_step_meets_every_sample() {
+    let (_folder, records) = records();
+    for path in &records {
+        let record = read(path);
+        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let duration = record.end() - record.start();
+        for detail in Detail::ALL {
+            let run = Run { detail, tolerance: TOLERANCE, end: End::At(record.end()), ..Run::new(structure, &record) };
+            let (expected, _) = run.peaks().unwrap();
+            let one = following(Some(path), detail);
+            let shown = step_through(&one, [duration]);
+            assert_eq!(one.get("record_duration"), duration);
+            for Peak { name, magnitude, time } in peaks(&expected) {
+                assert_relative_eq!(one.get(&format!("{name}_max")), magnitude, max_relative = 1e-12);
+                let found = one.get(&format!("t_{name}_max"));
+                assert_relative_eq!(found, time - record.start(), max_relative = 1e-9, epsilon = 1e-9);
+            }
+            let samples = record.times().windows(2).map(|pair| pair[1] - pair[0]);
+            let of_samples = step_through(&following(Some(path), detail), samples);
+            assert!(apart(&of_samples, &shown) <= 1e-12, "{}, {detail:?}", path.display());
+            for count in [7_u32, 1000] {
+                let host = following(Some(path), detail);
+                let shown_last = step_through(&host, vec![duration / f64::from(count); count as usize]).pop().unwrap();
+                let apart = apart(&of_samples, &[shown_last]);
+                assert!(apart <= 1e-9, "{count} steps over {} at {}: {apart:e}", path.display(), detail.name());
+                for Peak { name, magnitude, .. } in peaks(&expected) {
+                    assert_relative_eq!(host.get(&format!("{name}_max")), magnitude, max_relative = 1e-9);
+                }
+            }
+        }
+    }
+}
+
+struct Peak {
+    name: &'static str,
+    magnitude: f64,
+    time: f64,
+}
+
+fn peaks(peaks: &Peaks) -> impl Iterator<Item = Peak> {
+    PEAKS.iter().map(|peaking| {
+        let peak = (peaking.of)(peaks);
+        Peak { name: peaking.name, magnitude: peak.magnitude, time: peak.time }
+    })
+}
+
+/// The ground is at rest before the record and after it; both jumps are where they belong, in the reactions and in the
+/// rates as well, whatever the start time.
+#[test]
+fn a_record_comes_when_it_is_asked_for() {
+    let mut shown = Vec::new();
+    for start_time in [0.0, -7.0, 1048576.0] {
+        let host = Host::new();
+        host.write("steps.csv", "5,2\n6,4\n7,1\n");
+        let placement = [("record_scale", -0.5), ("record_time_scale", 0.5), ("record_start", 0.25)];
+        assert_eq!((host.set(&placement), host.set_record("steps.csv")), (OK, OK));
+        assert_eq!((host.setup(None, start_time, None), host.enter()), (OK, OK));
+        assert_eq!((host.get("record_duration"), host.get("a_ground")), (1.0, 0.0));
+        assert_eq!(host.exit(), OK);
+        for (step, a_ground, slope) in [
+            (0.125, 0.0, 0.0),
+            (0.125, -1.0, -2.0),
+            (0.25, -1.5, -2.0),
+            (0.25, -2.0, 3.0),
+            (0.375, -0.875, 3.0),
+            (0.125, 0.0, 0.0),
+            (10.0, 0.0, 0.0),
+        ] {
+            assert_eq!((host.set(&[("a_g", 0.75)]), host.step(host.last_successful_time(), step)), (OK, OK));
+            assert_eq!((host.get("a_ground"), host.rate("a_ground", 1)), (a_ground + 0.75, Ok(slope)));
+            assert_eq!((host.get("a_g"), host.rate("R_h", 1).is_ok()), (0.75, true));
+            shown.push((host.try_get(&SHOWN).unwrap(), host.rate("R_h", 1)));
+        }
+        assert_relative_eq!(host.get("t_u_max") - start_time, 0.25 + 0.6, epsilon = 0.4);
+    }
+    let (first, others) = shown.split_at(7);
+    assert!(others.chunks(7).all(|other| other == first));
+
+    // what is in the midst of its record at the start
+    let host = Host::initializing(&[("record_start", -0.25)]);
+    host.write("steps.csv", "5,2\n6,4\n7,1\n");
+    assert_eq!(host.set_record("steps.csv"), OK);
+    assert_eq!(host.get("a_ground"), 2.5);
+    let at_rest = host.get("R_h");
+    assert_relative_eq!(at_rest, -Parameters::EVISON.m0 * 2.5, max_relative = 1e-12);
+}
+
+/// An input comes on top, each followed along its slope.
+#[test]
+fn the_input_adds_to_the_record() {
+    let host = Host::initializing(&[]);
+    host.write("line.csv", "0,1\n1,2\n2,0\n");
+    assert_eq!((host.set_record("line.csv"), host.exit()), (OK, OK));
+    assert_eq!((host.set(&[("a_g", 0.5), ("F_t", 30.0)]), host.set_slope("a_g", 1, -0.25)), (OK, OK));
+    assert_eq!(host.set_slope("F_t", 1, 8.0), OK);
+    assert_eq!(host.step(0.0, 1.5), OK);
+    let mut engine = rocking::Engine::new(
+        Structure::new(Parameters::EVISON).unwrap(),
+        rocking::State::default(),
+        0.0,
+        rocking::engine::DEFAULT_TOLERANCE,
+    )
+    .unwrap();
+    for (duration, value, slope) in [(1.0, (1.5, 30.0), (0.75, 8.0)), (0.5, (2.25, 38.0), (-2.25, 8.0))] {
+        let load = |(a_g, F_t)| Load { a_g, F_t };
+        engine.advance(duration, LinearLoad { value: load(value), slope: load(slope) }, &mut ()).unwrap();
+    }
+    let state = engine.motion().state;
+    assert_eq!(host.try_get(&["theta", "u", "u_dot"]).unwrap(), [state.theta, state.u, state.u_dot]);
+    assert_relative_eq!(host.get("a_g"), 0.125);
+    assert_relative_eq!(host.get("a_ground"), 1.125);
+}
+
+/// Mid-record, in another instance whose archive has the record, too, a state goes on with the same bits; with another
+/// record it is refused.
+#[test]
+fn a_state_goes_on_in_the_midst_of_its_record() {
+    let host = |text: &str| {
+        let host = Host::initializing(&[]);
+        host.write("quake.AT2", text);
+        assert_eq!((host.set_record("quake.AT2"), host.exit()), (OK, OK), "{:?}", host.log);
+        host
+    };
+    let first = host(&at2(600));
+    step_through(&first, [4.0, 0.013]);
+    let (bytes, going_on) = (first.bytes(), step_through(&first, [0.1, 5.0]));
+    let peaks = |host: &Host| PEAKS.map(|peaking| host.get(&format!("{}_max", peaking.name)));
+    let second = Host::new();
+    second.write("quake.AT2", &at2(600));
+    assert_eq!(second.go_back(second.deserialize(&bytes).unwrap()), OK, "{:?}", second.log);
+    assert_eq!((second.bytes(), second.record()), (bytes.clone(), "quake.AT2".to_owned()));
+    assert_eq!(step_through(&second, [0.1, 5.0]), going_on);
+    assert_eq!((peaks(&second), second.bytes()), (peaks(&first), first.bytes()));
+
+    let other = host(&at2(599));
+    let state = other.deserialize(&bytes).unwrap();
+    let message = "fmi2SetFMUstate: the FMU state was kept under another record = \"quake.AT2\": its samples are not \
+                   those of the file that is there now";
+    other.assert_refused(|| other.go_back(state), ERROR, message);
+    let without = Host::new();
+    let state = without.deserialize(&bytes).unwrap();
+    assert_eq!(without.go_back(state), ERROR);
+    assert!(without.log.take()[0].text.contains("record = \"quake.AT2\" is not in "));
+}
+
+/// What cannot be followed is told when initialization ends, or before if its values are asked for; nothing changes.
+#[test]
+fn a_record_that_cannot_be_followed_is_refused() {
+    let host = Host::initializing(&[]);
+    let folder = host.resources.path().display().to_string();
+    host.write("broken.csv", "t,a\n0,1\n0.1,root:x:0\n0.2,3\n");
+    host.write("strong.csv", "0,1\n1,-6000\n");
+    fs::create_dir(host.resources.path().join("folder.csv")).unwrap();
+    let is_no_file = |path: &str| format!("record: {path} is not a file");
+    for (record, message) in [
+        (
+            "broken.csv",
+            format!("record: {folder}/broken.csv, line 3: the acceleration \"root:x:0\" is not a number"),
+        ),
+        ("folder.csv", is_no_file(&format!("{folder}/folder.csv"))),
+        (
+            "/etc/passwd",
+            "record: /etc/passwd: the extension tells a record's format: .AT2 for an acceleration record of PEER, .csv \
+             or .txt for lines of time and acceleration; rename the file or convert it"
+                .to_owned(),
+        ),
+        (
+            "strong.csv",
+            "the record, as it is scaled: a_g = 12000 m/s2 is out of range: it must lie between -10000 and 10000 m/s2 \
+             (horizontal ground acceleration, positive to the right)"
+                .to_owned(),
+        ),
+    ] {
+        assert_eq!((host.set_record(record), host.set(&[("record_scale", 2.0)])), (OK, OK));
+        host.assert_refused(|| host.exit(), ERROR, &format!("fmi2ExitInitializationMode: {message}"));
+        host.assert_refused(|| host.try_get(&["a_ground"]), Err(ERROR), &format!("fmi2GetReal: {message}"));
+        assert_eq!((host.get("record_scale"), host.record().as_str()), (2.0, record));
+    }
+    assert_eq!((host.set(&[("record_scale", -1.0)]), host.exit()), (OK, OK));
+    assert_eq!((host.get("a_ground"), host.get("record_duration")), (-1.0, 1.0));
+}
+
+/// A process reads a record once: neither another run nor another instance reads it again.
+#[test]
+fn a_record_is_shared_by_runs_and_instances() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("long.AT2");
+    fs::write(&path, at2(20_000)).unwrap();
+    let size = fs::metadata(&path).unwrap().len();
+    let allocated = |host: &Host| {
+        assert_eq!((host.set_record(path.to_str().unwrap()), host.enter()), (OK, OK));
+        allocation_counter::measure(|| assert_eq!(host.exit(), OK)).bytes_total
+    };
+    let first = Host::new();
+    assert!(allocated(&first) > size);
+    assert_eq!(first.reset(), OK);
+    for again in [allocated(&first), allocated(&Host::new())] {
+        assert!(again < size / 10, "{again} bytes for a file of {size}");
+    }
+}
+
+/// Peaks are those of the whole time since the start, and go back with a state; of the start itself before any step.
+#[test]
+fn peaks_go_back_with_a_state() {
+    let host = Host::initializing(&[("theta_0", -0.05)]);
+    host.write("quake.AT2", &at2(600));
+    assert_eq!((host.set_record("quake.AT2"), host.get("theta_max"), host.exit()), (OK, 0.05, OK));
+    assert_eq!((host.get("theta_max"), host.get("t_theta_max"), host.get("t_u_max")), (0.05, 0.0, 0.0));
+    step_through(&host, [2.0]);
+    let names: Vec<_> =
+        PEAKS.iter().flat_map(|of| [format!("{}_max", of.name), format!("t_{}_max", of.name)]).collect();
+    let read = || names.iter().map(|name| host.get(name)).collect::<Vec<_>>();
+    let (state, before) = (host.keep(), read());
+    step_through(&host, [5.0]);
+    let after = read();
+    assert_ne!(after, before);
+    assert_eq!((host.go_back(state), read()), (OK, before));
+    step_through(&host, [1.0, 2.5, 1.5]);
+    for (found, expected) in read().into_iter().zip(after) {
+        assert_relative_eq!(found, expected, max_relative = 1e-9);
+    }
+}
+
+/// Who does not ask for peaks does not pay: nobody watches.
+#[test]
+fn peaks_that_nobody_asks_for_are_not_watched() {
+    let run = |peaks| {
+        let host = Host::initializing(&[("theta_0", 0.05)]);
+        assert_eq!((host.set_boolean("peaks", peaks), host.exit(), host.step(0.0, 2.0)), (OK, OK, OK));
+        let course = snapshot::deserialize(&host.bytes()).unwrap().course.unwrap();
+        (host, course)
+    };
+    let ((watched, with), (silent, without)) = (run(1), run(0));
+    assert_eq!(with.motion, without.motion);
+    assert_eq!(without.peaks, Peaks::new(&Structure::new(Parameters::EVISON).unwrap()));
+    assert!(with.peaks.theta().magnitude > 0.0 && watched.get("a_t_max") > 0.0);
+    for name in ["theta_max", "t_M_t_max"] {
+        let message = format!(
+            "fmi2GetReal: {name} is not watched while the parameter peaks is false: set it before \
+             fmi2ExitInitializationMode, or call fmi2Reset"
+        );
+        silent.assert_refused(|| silent.try_get(&["theta", name]), Err(ERROR), &message);
+    }
+    assert_eq!(silent.get("t_overturned"), 0.0);
+}
+
+#[test]
+fn the_instant_of_overturning_is_told() {
+    let host = Host::new();
+    assert_eq!((host.set(&[("theta_0", 1.5), ("theta_dot_0", 1.0)]), host.setup(None, 3.0, None)), (OK, OK));
+    assert_eq!((host.enter(), host.exit(), host.get("t_overturned")), (OK, OK, 3.0));
+    assert_eq!(host.step(3.0, 2.0), DISCARD);
+    assert_eq!(host.get("t_overturned"), host.last_successful_time());
+    assert!(host.get("t_overturned") > 3.0 && host.get("t_overturned") < 3.2);
+    assert_relative_eq!(host.get("theta_max"), std::f64::consts::FRAC_PI_2, max_relative = 1e-12);
+    assert_relative_eq!(host.get("t_theta_max"), host.get("t_overturned"), max_relative = 1e-15);
+}
