@@ -11,6 +11,7 @@
 //! | `rigid` | 6 with u = 0 | series |
 //! | `fixed_base` | 1, no uplift | exact flow |
 
+use crate::extremes::Bound;
 use crate::first_crossing::Crossing;
 use crate::full_contact::{self, ExactContact};
 use crate::linear_rocking::LinearRocking;
@@ -18,7 +19,7 @@ use crate::load::{LinearLoad, Load};
 use crate::modal_rocking::ModalRocking;
 use crate::nonlinear_rocking::NonlinearRocking;
 use crate::output_series::{self, Turn};
-use crate::piece::Bounds;
+use crate::piece::Rates;
 use crate::rigid_rocking::Rigid;
 use crate::state::InitialStateError;
 use crate::taylor::{Arc, Series, Start};
@@ -68,15 +69,48 @@ impl Detail {
 
 impl Detail {
     /// What moves `structure` at this level, to the relative `tolerance`.
-    pub(crate) fn level(self, structure: &Structure, tolerance: f64) -> Box<dyn Level> {
+    pub(crate) fn level(self, structure: &Structure, tolerance: f64) -> AnyLevel {
         let contact = Some(ExactContact::new(structure));
         match self {
-            Detail::Auto => Box::new(Elastic { contact, rocking: NonlinearRocking::default() }),
-            Detail::Nonlinear => Box::new(Elastic { contact: None, rocking: NonlinearRocking::default() }),
-            Detail::Linear => Box::new(Elastic { contact, rocking: LinearRocking::new(structure) }),
-            Detail::Modal => Box::new(Elastic { contact, rocking: ModalRocking::new(structure) }),
-            Detail::Rigid => Box::new(Rigid { tolerance }),
-            Detail::FixedBase => Box::new(FixedBase { contact: ExactContact::new(structure) }),
+            Detail::Auto => AnyLevel::Nonlinear(Elastic { contact, rocking: NonlinearRocking::default() }),
+            Detail::Nonlinear => AnyLevel::Nonlinear(Elastic { contact: None, rocking: NonlinearRocking::default() }),
+            Detail::Linear => AnyLevel::Linear(Elastic { contact, rocking: LinearRocking::new(structure) }),
+            Detail::Modal => AnyLevel::Modal(Elastic { contact, rocking: ModalRocking::new(structure) }),
+            Detail::Rigid => AnyLevel::Rigid(Rigid { tolerance }),
+            Detail::FixedBase => AnyLevel::FixedBase(FixedBase { contact: ExactContact::new(structure) }),
+        }
+    }
+}
+
+/// A level of any type.
+#[derive(Debug)]
+#[allow(clippy::large_enum_variant)] // an engine keeps one, behind a pointer
+pub(crate) enum AnyLevel {
+    Nonlinear(Elastic<NonlinearRocking>),
+    Linear(Elastic<LinearRocking>),
+    Modal(Elastic<ModalRocking>),
+    Rigid(Rigid),
+    FixedBase(FixedBase),
+}
+
+impl AnyLevel {
+    pub(crate) fn get(&self) -> &dyn Level {
+        match self {
+            AnyLevel::Nonlinear(level) => level,
+            AnyLevel::Linear(level) => level,
+            AnyLevel::Modal(level) => level,
+            AnyLevel::Rigid(level) => level,
+            AnyLevel::FixedBase(level) => level,
+        }
+    }
+
+    pub(crate) fn get_mut(&mut self) -> &mut dyn Level {
+        match self {
+            AnyLevel::Nonlinear(level) => level,
+            AnyLevel::Linear(level) => level,
+            AnyLevel::Modal(level) => level,
+            AnyLevel::Rigid(level) => level,
+            AnyLevel::FixedBase(level) => level,
         }
     }
 }
@@ -93,7 +127,7 @@ pub(crate) trait Level: Debug + Send {
     fn leap(&mut self, structure: &Structure, phase: Phase, start: &Start) -> Option<State>;
 
     /// Bounds of what changes on such a leap from `start` to `end`.
-    fn bounds(&self, phase: Phase, start: &Start, end: &State) -> Bounds;
+    fn rates(&self, phase: Phase, start: &Start, end: &State) -> Rates;
 
     /// Writes the motion from `start` in `phase` into `arc`; there is none once overturned.
     fn series(&mut self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc);
@@ -151,9 +185,14 @@ pub(crate) trait Level: Debug + Send {
         output_series::a_t(structure, phase, load, arc, turn)
     }
 
-    /// Bound of |a_t| over the same; `theta` and `u` bound |θ| and |u|.
-    fn a_t_bound(&self, structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc, theta: f64) -> f64 {
-        output_series::a_t_bound(structure, phase, load, arc, theta)
+    /// Bounds of |θ|, |u|, |δ_t| and |a_t| that follow from those of |θ|, |u| and |u̇|; `push` is that of |F_t|/m.
+    fn crude_output_bounds(&self, structure: &Structure, phase: Phase, push: f64, of_state: [f64; 3]) -> [f64; 4] {
+        output_series::crude_bounds(structure, phase, push, of_state)
+    }
+
+    /// Bounds of |θ|, |u|, |δ_t| and |a_t| over `arc` under `load`, which is given from its start on.
+    fn output_bounds(&self, structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc) -> [Bound; 4] {
+        output_series::bounds(structure, phase, load, arc)
     }
 }
 
@@ -163,7 +202,7 @@ pub(crate) trait ElasticRocking: Debug + Send {
         None
     }
 
-    fn bounds(&self, side: Side, start: &Start, end: &State) -> Bounds;
+    fn rates(&self, side: Side, start: &Start, end: &State) -> Rates;
 
     fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc);
 
@@ -179,12 +218,13 @@ pub(crate) trait ElasticRocking: Debug + Send {
 
 /// A level with an elastic strut: by exact flow in full contact where there is one, otherwise by series.
 #[derive(Debug)]
-struct Elastic<Rocking> {
+pub(crate) struct Elastic<Rocking> {
     contact: Option<ExactContact>,
     rocking: Rocking,
 }
 
 impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
+    #[inline(always)]
     fn leap(&mut self, structure: &Structure, phase: Phase, start: &Start) -> Option<State> {
         match phase {
             Phase::FullContact => self.contact.as_mut()?.leap(start, structure.u_cr),
@@ -193,14 +233,15 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
         }
     }
 
-    fn bounds(&self, phase: Phase, start: &Start, end: &State) -> Bounds {
+    fn rates(&self, phase: Phase, start: &Start, end: &State) -> Rates {
         match (phase, &self.contact) {
-            (Phase::Rocking(side), _) => self.rocking.bounds(side, start, end),
-            (_, Some(contact)) => contact.bounds(start),
-            (_, None) => Bounds::NONE,
+            (Phase::Rocking(side), _) => self.rocking.rates(side, start, end),
+            (_, Some(contact)) => contact.rates(start),
+            (_, None) => Rates::NONE,
         }
     }
 
+    #[inline(always)]
     fn series(&mut self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc) {
         match phase {
             Phase::Rocking(side) => self.rocking.series(structure, side, start, arc),
@@ -227,7 +268,7 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
 
 /// Full contact throughout.
 #[derive(Debug)]
-struct FixedBase {
+pub(crate) struct FixedBase {
     contact: ExactContact,
 }
 
@@ -236,12 +277,13 @@ impl Level for FixedBase {
         if initial.theta == 0.0 { Ok(()) } else { Err(InitialStateError::TurnedFixedBase(initial.theta)) }
     }
 
+    #[inline(always)]
     fn leap(&mut self, _structure: &Structure, _phase: Phase, start: &Start) -> Option<State> {
         self.contact.leap(start, f64::INFINITY)
     }
 
-    fn bounds(&self, _phase: Phase, start: &Start, _end: &State) -> Bounds {
-        self.contact.bounds(start)
+    fn rates(&self, _phase: Phase, start: &Start, _end: &State) -> Rates {
+        self.contact.rates(start)
     }
 
     fn series(&mut self, structure: &Structure, _phase: Phase, start: &Start, arc: &mut Arc) {
@@ -286,6 +328,7 @@ mod tests {
             (Detail::FixedBase, Phase::FullContact, down),
         ] {
             let mut level = detail.level(&structure, 1e-9);
+            let level = level.get_mut();
             let (mut expected, mut arc) = (state, Arc::default());
             let (mut u_dot, mut theta_dot) = (0.0_f64, 0.0_f64);
             for (k, pair) in noise().map(|x| 20.0 * x).take(1001).collect::<Vec<_>>().windows(2).enumerate() {

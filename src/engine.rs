@@ -10,10 +10,10 @@
 //! about takes more, up to four for each 1/Ω with |θ̇|, |u̇|/ρ and √(|ü|/ρ) among them, ρ² = (J0 + m0 B²)/m + (sB − u)².
 //! One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps.
 
-use crate::detail::{Detail, Level};
+use crate::detail::{AnyLevel, Detail, Level};
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::load::{LOADS, LinearLoad, Load};
-use crate::piece::{Piece, Watch};
+use crate::piece::{Part, Piece, Sample, Watch};
 use crate::reactions::{Impulse, Reactions};
 use crate::state::InitialStateError;
 use crate::taylor::{Arc, Start};
@@ -127,7 +127,7 @@ pub enum AdvanceError {
 #[derive(Debug)]
 pub struct Engine {
     structure: Structure,
-    level: Box<dyn Level>,
+    level: Box<AnyLevel>,
     tolerance: f64,
     motion: Motion,
     /// The step in hand.
@@ -149,8 +149,8 @@ impl Engine {
         detail: Detail,
     ) -> Result<Engine, InitialStateError> {
         let phase = initial.initial_phase()?;
-        let level = detail.level(&structure, tolerance);
-        level.check_start(&initial)?;
+        let level = Box::new(detail.level(&structure, tolerance));
+        level.get().check_start(&initial)?;
         let motion = Motion {
             time,
             state: initial,
@@ -204,91 +204,26 @@ impl Engine {
         load: LinearLoad,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
-        let start = self.motion.time;
-        let until = start + interval;
         self.check(interval, &load)?;
-        let (a_g, a_top) = (load.on_foundation(), load.on_top(&self.structure));
-        let local_error = self.local_error();
-        let Motion { state, phase, .. } = self.motion;
-        let begin = Start { state, a_g, a_top, interval, local_error };
-        if let Some(end) = self.leap(phase, &begin) {
-            if self.motion.work.steps == last_step {
-                return Err(AdvanceError::TooLong { time: start, until });
+        let local_error = (LOCAL_SHARE * self.tolerance).max(f64::EPSILON / 2.0);
+        let Engine { structure, level, motion, arc, .. } = self;
+        // each level gets a loop of its own, so that nothing stands between the loop and the level's equations
+        match &mut **level {
+            AnyLevel::Nonlinear(level) => {
+                Hand { structure, level, arc, local_error, last_step }.advance(motion, interval, load, watch)
             }
-            if W::SEES_PIECES {
-                watch.piece(&mut self.piece(self.motion, interval, load, end, false));
+            AnyLevel::Linear(level) => {
+                Hand { structure, level, arc, local_error, last_step }.advance(motion, interval, load, watch)
             }
-            self.motion.state = end;
-            self.motion.time = until;
-            self.motion.work.steps += 1;
-            self.motion.chatter.pass(interval);
-            return Ok(Progress::Complete);
-        }
-        let mut motion = self.motion;
-        // Time runs from the start of the interval: transitions are then as sharp at t = 1000 s as at 0.
-        let mut elapsed = 0.0;
-        while elapsed < interval {
-            let left = interval - elapsed;
-            let begin = Start {
-                state: motion.state,
-                a_g: a_g.from(elapsed),
-                a_top: a_top.from(elapsed),
-                interval: left,
-                local_error,
-            };
-            let event = match motion.phase {
-                Phase::FullContact => self.step_in_full_contact(begin, motion.chatter.held),
-                Phase::Rocking(side) => self.step_while_rocking(&begin, side),
-                Phase::Overturned(_) => break,
-            };
-            let (arc, duration) = (&self.arc, self.arc.duration());
-            if !arc.is_finite() || arc.reach < 1.0 && self.is_at_its_end(&motion, event) {
-                let State { u, theta, .. } = motion.state;
-                return Err(AdvanceError::Singular { time: motion.time, u, theta });
+            AnyLevel::Modal(level) => {
+                Hand { structure, level, arc, local_error, last_step }.advance(motion, interval, load, watch)
             }
-            if motion.work.steps == last_step {
-                return Err(AdvanceError::TooLong { time: motion.time, until });
+            AnyLevel::Rigid(level) => {
+                Hand { structure, level, arc, local_error, last_step }.advance(motion, interval, load, watch)
             }
-            motion.work.steps += 1;
-            motion.work.evaluations += arc.order as u64;
-            let state = arc.end();
-            if W::SEES_PIECES {
-                watch.piece(&mut self.piece(motion, duration, load.from(elapsed), state, true));
+            AnyLevel::FixedBase(level) => {
+                Hand { structure, level, arc, local_error, last_step }.advance(motion, interval, load, watch)
             }
-            motion.state = state;
-            motion.chatter.pass(duration);
-            elapsed = if duration == left { interval } else { elapsed + duration };
-            motion.time = if elapsed < interval { start + elapsed } else { until };
-            if let Some(event) = event {
-                watch.transition(&transition::resolve(&*self.level, &self.structure, &mut motion, event));
-            }
-        }
-        self.motion = motion;
-        match motion.phase {
-            Phase::Overturned(_) => Ok(Progress::Overturned),
-            _ => Ok(Progress::Complete),
-        }
-    }
-
-    /// Truncation error that a step may have.
-    fn local_error(&self) -> f64 {
-        (LOCAL_SHARE * self.tolerance).max(f64::EPSILON / 2.0)
-    }
-
-    /// What watchers are shown of a stretch of `duration` (s) under `load` from the motion `before` to the state `end`.
-    fn piece(&mut self, before: Motion, duration: f64, load: LinearLoad, end: State, is_expanded: bool) -> Piece<'_> {
-        Piece {
-            before,
-            duration,
-            load,
-            end,
-            structure: &self.structure,
-            local_error: self.local_error(),
-            level: &mut *self.level,
-            arc: &mut self.arc,
-            is_expanded,
-            passed: (0.0, before.state),
-            evaluations: 0,
         }
     }
 
@@ -306,27 +241,22 @@ impl Engine {
 
     /// Whether the structure, in full contact now, stays there while nothing acts on it.
     pub fn stays_down(&self) -> bool {
-        self.motion.phase == Phase::FullContact && self.level.stays_down(&self.structure, &self.motion.state)
+        self.motion.phase == Phase::FullContact && self.level.get().stays_down(&self.structure, &self.motion.state)
+    }
+
+    /// The motion now, under `load`.
+    pub fn sample(&self, load: Load) -> Sample<'_> {
+        Sample { motion: self.motion, load, structure: &self.structure, level: self.level.get() }
     }
 
     /// The outputs now under `load`; once overturned, those of the instant before.
     pub fn outputs(&self, load: Load) -> Outputs {
-        self.level.outputs(&self.structure, self.moving_phase(), &self.motion.state, load)
+        self.sample(load).outputs()
     }
 
     /// The reactions now under `load`; once overturned, those of the instant before.
     pub fn reactions(&self, load: Load) -> Reactions {
-        let (phase, state) = (self.moving_phase(), &self.motion.state);
-        let accelerations = self.level.accelerations(&self.structure, phase, state, load);
-        Reactions::of(&self.structure, phase, state, accelerations, load)
-    }
-
-    /// The phase now, or that in which the structure overturned.
-    fn moving_phase(&self) -> Phase {
-        match self.motion.phase {
-            Phase::Overturned(side) => Phase::Rocking(side),
-            phase => phase,
-        }
+        self.sample(load).reactions()
     }
 
     /// Time derivatives of the outputs and reactions now under `load`, from the equations of motion; 0 once overturned.
@@ -334,7 +264,7 @@ impl Engine {
     pub fn rates(&mut self, load: LinearLoad) -> (Outputs, Reactions) {
         let derivatives = self.derivatives(load);
         let (structure, Motion { phase, state, .. }) = (&self.structure, &self.motion);
-        let outputs = self.level.output_rates(structure, *phase, state, derivatives, load);
+        let outputs = self.level.get().output_rates(structure, *phase, state, derivatives, load);
         (outputs, Reactions::rates(structure, *phase, state, derivatives, load))
     }
 
@@ -346,26 +276,156 @@ impl Engine {
         }
         let (a_g, a_top) = (load.on_foundation(), load.on_top(&self.structure));
         let start = Start { state, a_g, a_top, interval: 1.0, local_error: 1.0 };
-        self.level.series(&self.structure, phase, &start, &mut self.arc);
+        self.level.get_mut().series(&self.structure, phase, &start, &mut self.arc);
         let arc = &self.arc;
         let derivative = |k: i32, factor: f64| {
             [arc.u_dot[k as usize], arc.theta_dot[k as usize]].map(|c| factor * c / arc.span.powi(k))
         };
         [derivative(1, 1.0), derivative(2, 2.0)]
     }
+}
+
+/// What an advance has in hand.
+struct Hand<'a, L> {
+    structure: &'a Structure,
+    level: &'a mut L,
+    /// The step.
+    arc: &'a mut Arc,
+    /// Truncation error that a step may have.
+    local_error: f64,
+    /// Steps since the start after which it ends.
+    last_step: u64,
+}
+
+impl<L: Level> Hand<'_, L> {
+    /// [`Engine::advance`] of `now`.
+    fn advance<W: Watch>(
+        &mut self,
+        now: &mut Motion,
+        interval: f64,
+        load: LinearLoad,
+        watch: &mut W,
+    ) -> Result<Progress, AdvanceError> {
+        let Hand { structure, local_error, .. } = *self;
+        let (a_g, a_top) = (load.on_foundation(), load.on_top(structure));
+        let begin = Start { state: now.state, a_g, a_top, interval, local_error };
+        if let Some(end) = self.leap(now, &begin) {
+            if now.work.steps == self.last_step {
+                return Err(AdvanceError::TooLong { time: now.time, until: now.time + interval });
+            }
+            if W::SEES_PIECES {
+                watch.piece(&mut self.piece(now, interval, load, end, false));
+            }
+            now.state = end;
+            now.time += interval;
+            now.work.steps += 1;
+            now.chatter.pass(interval);
+            return Ok(Progress::Complete);
+        }
+        let before = *now;
+        let result = self.step(now, interval, load, watch);
+        if result.is_err() {
+            *now = before;
+        }
+        result
+    }
+
+    /// The same, step by step.
+    #[inline(always)]
+    fn step<W: Watch>(
+        &mut self,
+        motion: &mut Motion,
+        interval: f64,
+        load: LinearLoad,
+        watch: &mut W,
+    ) -> Result<Progress, AdvanceError> {
+        let Hand { structure, local_error, .. } = *self;
+        let (a_g, a_top) = (load.on_foundation(), load.on_top(structure));
+        let start = motion.time;
+        let until = start + interval;
+        // Time runs from the start of the interval: transitions are then as sharp at t = 1000 s as at 0.
+        let mut elapsed = 0.0;
+        while elapsed < interval {
+            let left = interval - elapsed;
+            let begin = Start {
+                state: motion.state,
+                a_g: a_g.from(elapsed),
+                a_top: a_top.from(elapsed),
+                interval: left,
+                local_error,
+            };
+            let event = match motion.phase {
+                Phase::FullContact => self.step_in_full_contact(begin, motion.chatter.held),
+                Phase::Rocking(side) => self.step_while_rocking(&begin, side),
+                Phase::Overturned(_) => break,
+            };
+            let duration = self.arc.duration();
+            if !self.arc.is_finite() || self.arc.reach < 1.0 && self.is_at_its_end(motion.phase, motion.state, event) {
+                let State { u, theta, .. } = motion.state;
+                return Err(AdvanceError::Singular { time: motion.time, u, theta });
+            }
+            if motion.work.steps == self.last_step {
+                return Err(AdvanceError::TooLong { time: motion.time, until });
+            }
+            motion.work.steps += 1;
+            motion.work.evaluations += self.arc.order as u64;
+            let state = self.arc.end();
+            if W::SEES_PIECES {
+                watch.piece(&mut self.piece(motion, duration, load.from(elapsed), state, true));
+            }
+            motion.state = state;
+            motion.chatter.pass(duration);
+            elapsed = if duration == left { interval } else { elapsed + duration };
+            motion.time = if elapsed < interval { start + elapsed } else { until };
+            if let Some(event) = event {
+                let transition;
+                (*motion, transition) = transition::resolve(self.level, self.structure, *motion, event);
+                watch.transition(&transition);
+            }
+        }
+        match motion.phase {
+            Phase::Overturned(_) => Ok(Progress::Overturned),
+            _ => Ok(Progress::Complete),
+        }
+    }
+
+    /// What watchers are shown of a stretch of `duration` (s) under `load` from the motion `before` to the state `end`.
+    fn piece<'a>(
+        &'a mut self,
+        before: &'a Motion,
+        duration: f64,
+        load: LinearLoad,
+        end: State,
+        is_expanded: bool,
+    ) -> Piece<'a> {
+        Piece {
+            before,
+            duration,
+            load,
+            end,
+            structure: self.structure,
+            local_error: self.local_error,
+            level: self.level,
+            arc: self.arc,
+            is_expanded,
+            part: Part { start: (0.0, before.state), end: (duration, end) },
+            evaluations: 0,
+        }
+    }
 
     /// The state at the end of `start` where it is known exactly and no transition can happen until then.
     #[inline]
-    fn leap(&mut self, phase: Phase, start: &Start) -> Option<State> {
-        let is_held = self.motion.chatter.held > 0.0;
-        let leap = if is_held { None } else { self.level.leap(&self.structure, phase, start) };
-        leap.filter(State::is_finite)
+    fn leap(&mut self, now: &Motion, start: &Start) -> Option<State> {
+        if now.chatter.held > 0.0 {
+            return None;
+        }
+        self.level.leap(self.structure, now.phase, start).filter(State::is_finite)
     }
 
-    /// Whether the step in hand, which goes from `motion` to less than what was asked for, is the last that there can be.
-    fn is_at_its_end(&self, motion: &Motion, event: Option<Event>) -> bool {
+    /// Whether the step in hand, which goes from `state` to less than what was asked for, is the last that there can be.
+    fn is_at_its_end(&self, phase: Phase, state: State, event: Option<Event>) -> bool {
         let has_stalled = self.arc.duration() <= STALLED / self.structure.omega_u;
-        has_stalled && event.is_none() || self.level.is_singular(&self.structure, motion.phase, &motion.state)
+        has_stalled && event.is_none() || self.level.is_singular(self.structure, phase, &state)
     }
 
     /// Motion in full contact, cut at uplift; none of it for the first `held` seconds.
@@ -374,27 +434,25 @@ impl Engine {
         if is_held {
             start.interval = start.interval.min(held);
         }
-        let arc = &mut self.arc;
-        self.level.series(&self.structure, Phase::FullContact, &start, arc);
+        self.level.series(self.structure, Phase::FullContact, &start, self.arc);
         if is_held {
             return None;
         }
-        let (crossing, side) = self.level.first_uplift(&self.structure, &start, arc);
-        cut(arc, crossing, Event::Uplift(side))
+        let (crossing, side) = self.level.first_uplift(self.structure, &start, self.arc);
+        cut(self.arc, crossing, Event::Uplift(side))
     }
 
     /// Rocking about `side`, cut at impact or overturning.
     fn step_while_rocking(&mut self, start: &Start, side: Side) -> Option<Event> {
-        let arc = &mut self.arc;
-        self.level.series(&self.structure, Phase::Rocking(side), start, arc);
-        if stays_about(arc, side) {
+        self.level.series(self.structure, Phase::Rocking(side), start, self.arc);
+        if stays_about(self.arc, side) {
             return None;
         }
-        let overturning = first_overturning(arc, side);
-        let end = cut(arc, overturning, Event::Overturning(side));
-        match first_return(arc, side) {
+        let overturning = first_overturning(self.arc, side);
+        let end = cut(self.arc, overturning, Event::Overturning(side));
+        match first_return(self.arc, side) {
             Crossing::None => end,
-            crossing => cut(arc, crossing, Event::Impact(side)),
+            crossing => cut(self.arc, crossing, Event::Impact(side)),
         }
     }
 }

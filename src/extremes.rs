@@ -1,64 +1,176 @@
 //! Where a polynomial is largest: a bound over a step, and its stationary points, none of which is passed over.
 
-use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
-use crate::taylor::{Series, ZERO, evaluate};
+use crate::first_crossing::{Crossing, Guard, first_time_closed_from};
+use crate::taylor::{MAX_ORDER, Series, ZERO, evaluate};
 
-/// max (σ − σᵏ) over 0 ≤ σ ≤ 1 for k = 2 … 6, rounded up; below 1 for all k.
-const OFF_CHORD: [f64; 5] = [0.25, 0.385, 0.473, 0.536, 0.583];
+/// max (σ − σᵏ) over 0 ≤ σ ≤ 1 for each k, rounded up.
+const OFF_CHORD: Series = {
+    let mut off = [1.0; MAX_ORDER + 2];
+    let known =
+        [0.0, 0.0, 0.25, 0.385, 0.473, 0.535, 0.583, 0.62, 0.651, 0.676, 0.697, 0.716, 0.732, 0.746, 0.758, 0.77];
+    let mut k = 0;
+    while k < known.len() {
+        off[k] = known[k];
+        k += 1;
+    }
+    off
+};
 
-/// Bound of |Σ c_k σᵏ| up to σ = `reach`: its ends, and how far its terms can leave the chord between them.
-pub fn bound(coefficients: impl IntoIterator<Item = f64>, reach: f64) -> f64 {
-    let (mut start, mut end, mut off_chord, mut power) = (0.0, 0.0, 0.0, 1.0);
-    for (k, c) in coefficients.into_iter().enumerate() {
+/// What is known of |Σ c_k σᵏ| over a step without looking for its extremes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Bound {
+    /// The larger of its ends.
+    pub ends: f64,
+    /// By how much it may exceed that in between.
+    pub between: f64,
+    /// How fast it changes at least, and at most, per unit of σ/reach. The least is not above 0 where it may turn round.
+    pub rate: [f64; 2],
+}
+
+impl Bound {
+    /// The same where something else, of which `most` and its rate `most_rate` are bounds, is added.
+    pub fn and(self, most: f64, most_rate: f64) -> Bound {
+        let rate = [self.rate[0] - most_rate, self.rate[1] + most_rate];
+        Bound { ends: self.ends + most, between: self.between, rate }
+    }
+
+    /// Whether it may turn round.
+    pub fn may_turn(&self) -> bool {
+        self.rate[0] <= 0.0
+    }
+
+    /// Bound of its magnitude.
+    pub fn largest(&self) -> f64 {
+        self.ends + if self.may_turn() { self.between } else { 0.0 }
+    }
+}
+
+/// Bounds of several |Σ c_k σᵏ| up to σ = `reach`; `row` gives their coefficients of each order up to `order`.
+///
+/// Each is at its ends what its terms add up to there, and leaves the chord between them by no more than the terms of
+/// higher order do; where these are too small to turn it round it rises or falls throughout.
+#[inline]
+pub fn bounds<const N: usize>(row: impl Fn(usize) -> [f64; N], order: usize, reach: f64) -> [Bound; N] {
+    let start = row(0);
+    let [mut end, mut between, mut slope, mut turning] = [start, [0.0; N], [0.0; N], [0.0; N]];
+    let mut power = 1.0;
+    for (k, off_chord) in OFF_CHORD.iter().enumerate().take(order + 1).skip(1) {
+        power *= reach;
+        let terms = row(k);
+        for i in 0..N {
+            let term = terms[i] * power;
+            end[i] += term;
+            if k == 1 {
+                slope[i] = term.abs();
+            } else {
+                between[i] += off_chord * term.abs();
+                turning[i] += k as f64 * term.abs();
+            }
+        }
+    }
+    std::array::from_fn(|i| Bound {
+        ends: start[i].abs().max(end[i].abs()),
+        between: between[i],
+        rate: [slope[i] - turning[i], slope[i] + turning[i]],
+    })
+}
+
+/// How far several Σ c_k σᵏ can leave the chord between their ends up to σ = `reach`.
+#[inline]
+pub fn off_chord<const N: usize>(coefficients: [&[f64]; N], reach: f64) -> [f64; N] {
+    let mut off = [0.0; N];
+    let mut add = |k: usize, weight: f64| {
+        for i in 0..N {
+            off[i] += weight * coefficients[i][k].abs();
+        }
+    };
+    let weights = || OFF_CHORD.iter().enumerate().take(coefficients[0].len()).skip(2);
+    if reach == 1.0 {
+        weights().for_each(|(k, weight)| add(k, *weight));
+    } else {
+        let mut power = reach;
+        for (k, weight) in weights() {
+            power *= reach;
+            add(k, weight * power);
+        }
+    }
+    off
+}
+
+/// [`bounds`] of one.
+pub fn bound(coefficients: &[f64], reach: f64) -> f64 {
+    let [bound] = bounds(|k| [coefficients[k]], coefficients.len() - 1, reach);
+    bound.largest()
+}
+
+/// A tighter bound of |Σ c_k σᵏ| up to σ = `reach`: the largest of the cubic with its values and slopes at both ends, and
+/// how far the terms of higher order can leave that.
+pub fn bound_by_cubic(coefficients: &[f64], reach: f64) -> f64 {
+    let (mut end, mut slope_end, mut off_cubic, mut power) = (0.0, 0.0, 0.0, 1.0);
+    for (k, c) in coefficients.iter().enumerate() {
         let term = c * power;
         power *= reach;
         end += term;
-        match k {
-            0 => start = term,
-            1 => (),
-            _ => off_chord += term.abs() * OFF_CHORD.get(k - 2).unwrap_or(&1.0),
+        slope_end += k as f64 * term;
+        if k > 3 {
+            off_cubic += OFF_CUBIC * k as f64 * term.abs();
         }
     }
-    f64::max(f64::abs(start), f64::abs(end)) + off_chord
+    let slope_start = coefficients.get(1).map_or(0.0, |c| c * reach);
+    largest_of_cubic([coefficients[0], end], [slope_start, slope_end]) + off_cubic
+}
+
+/// max |σᵏ − its cubic| over 0 ≤ σ ≤ 1 is at most this times k.
+const OFF_CUBIC: f64 = 0.1295;
+
+/// The largest magnitude over 0 ≤ σ ≤ 1 of the cubic with these values and slopes at the ends.
+fn largest_of_cubic([start, end]: [f64; 2], [from, to]: [f64; 2]) -> f64 {
+    let rise = end - start;
+    // the slope is from + b σ + a σ²
+    let (a, b) = (3.0 * (from + to - 2.0 * rise), 2.0 * (3.0 * rise - 2.0 * from - to));
+    let q = -0.5 * (b + (b * b - 4.0 * a * from).max(0.0).sqrt().copysign(b));
+    let at = |sigma: f64| (start + sigma * (from + sigma * (b / 2.0 + sigma * a / 3.0))).abs();
+    let turns = [q / a, from / q].into_iter().filter(|sigma| (0.0..=1.0).contains(sigma));
+    turns.map(at).fold(start.abs().max(end.abs()), f64::max)
 }
 
 /// Shows every σ in (0, `reach`) at which Σ c_k σᵏ is stationary, in their order: between them it rises or falls
 /// throughout.
 pub fn stationary_points(coefficients: &[f64], reach: f64, mut show: impl FnMut(f64)) {
     let mut slope = ZERO;
-    let mut degree = coefficients.len().saturating_sub(1);
-    for k in 1..=degree {
+    let mut orders = coefficients.len().saturating_sub(1);
+    for k in 1..=orders {
         slope[k - 1] = k as f64 * coefficients[k];
     }
     let mut sigma = 0.0;
     // each turn divides a root out of the slope, or gets on
-    while degree > 0 {
-        if !slope[0].is_normal() {
-            if sigma > 0.0 {
-                show(sigma);
-            }
-            divide_by_sigma(&mut slope, &mut degree);
-            continue;
-        }
-        let guard = Guard::new(&slope[..degree], slope[0].signum(), 0.0);
-        let (on, is_root) = match first_time_all_closed([guard], reach - sigma) {
-            Crossing::None => return,
-            Crossing::At(on) => (on, true),
-            // no further without a root that cannot be told from where this is
-            Crossing::NoneUntil(on) => (on, on <= f64::EPSILON),
+    while orders > 1 {
+        let rises = evaluate(&slope[..orders], sigma);
+        let (at, is_root) = match rises.is_normal() {
+            false => (sigma, true),
+            true => match first_time_closed_from(Guard::new(&slope[..orders], rises.signum(), 0.0), sigma, reach) {
+                Crossing::None => return,
+                Crossing::At(at) => (at, true),
+                // no further without a root that cannot be told from where this is
+                Crossing::NoneUntil(at) => (at, at - sigma <= f64::EPSILON),
+            },
         };
-        shift(&mut slope[..degree], on);
-        sigma += on;
+        sigma = at;
         if is_root {
             show(sigma);
-            divide_by_sigma(&mut slope, &mut degree);
+            divide_out(&mut slope[..orders], sigma);
+            orders -= 1;
         }
     }
 }
 
-fn divide_by_sigma(slope: &mut Series, degree: &mut usize) {
-    slope.copy_within(1..*degree, 0);
-    *degree -= 1;
+/// Divides a polynomial by (σ − `root`); what is left over, which is rounding, is dropped. The last coefficient is then
+/// of no meaning.
+fn divide_out(coefficients: &mut [f64], root: f64) {
+    let mut quotient = 0.0;
+    for c in coefficients.iter_mut().rev() {
+        (*c, quotient) = (quotient, *c + root * quotient);
+    }
 }
 
 /// Coefficients of the same polynomial about `by`.
@@ -98,7 +210,8 @@ mod tests {
             let curvature: f64 = coefficients.iter().enumerate().map(|(k, c)| (k * k) as f64 * c.abs()).sum();
             let unseen = curvature * (reach / SAMPLES as f64).powi(2) / 8.0;
             prop_assert!(value >= sampled * (1.0 - 1e-14) && value <= sampled + unseen + 1e-14, "{value} {sampled}");
-            prop_assert!(bound(coefficients.iter().copied(), reach) >= value);
+            prop_assert!(bound(&coefficients, reach) >= value * (1.0 - 1e-14));
+            prop_assert!(bound_by_cubic(&coefficients, reach) >= value * (1.0 - 1e-14));
         }
     }
 

@@ -116,6 +116,14 @@ pub fn first_time_all_closed<const N: usize>(guards: [Guard; N], reach: f64) -> 
     }
 }
 
+/// The first σ from `sigma` to `reach` at which `guard` is closed.
+pub fn first_time_closed_from(guard: Guard, sigma: f64, reach: f64) -> Crossing {
+    match march(&[guard], sigma, reach) {
+        Crossing::NoneUntil(cleared) => march_over_parts(&[guard], cleared, reach),
+        crossing => crossing,
+    }
+}
+
 /// The same from `sigma` on, over as much of the way as can be cleared.
 fn march_over_parts<const N: usize>(guards: &[Guard; N], mut sigma: f64, reach: f64) -> Crossing {
     let mut end = reach;

@@ -12,6 +12,7 @@
 
 use libm::erfc;
 use nalgebra::{Matrix2, Vector2};
+use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 use std::iter;
 
@@ -61,6 +62,22 @@ pub enum FitError {
     /// Exceedances become fewer as the intensity grows.
     #[error("exceedances do not grow with the intensity")]
     NotGrowing,
+}
+
+impl Trials {
+    /// Counts runs, each given by its intensity and whether the limit was exceeded, if that is known, by intensity.
+    pub fn count(runs: impl IntoIterator<Item = (f64, Option<bool>)>) -> Vec<Trials> {
+        let mut trials = BTreeMap::new();
+        for (intensity, has_exceeded) in runs {
+            if let Some(has_exceeded) = has_exceeded {
+                let of_none = Trials { intensity, runs: 0, exceedances: 0 };
+                let at: &mut Trials = trials.entry(intensity.to_bits()).or_insert(of_none);
+                at.runs += 1;
+                at.exceedances += usize::from(has_exceeded);
+            }
+        }
+        trials.into_values().collect()
+    }
 }
 
 impl FragilityCurve {
@@ -168,6 +185,13 @@ mod tests {
 
     fn trials(counts: &[(f64, usize, usize)]) -> Vec<Trials> {
         counts.iter().map(|&(intensity, runs, exceedances)| Trials { intensity, runs, exceedances }).collect()
+    }
+
+    #[test]
+    fn runs_are_counted_by_intensity() {
+        let runs =
+            [(2.0, Some(true)), (0.5, Some(false)), (2.0, Some(false)), (0.5, None), (4.0, None), (2.0, Some(true))];
+        assert_eq!(Trials::count(runs), trials(&[(0.5, 1, 0), (2.0, 3, 2)]));
     }
 
     /// Two intensities, two unknowns: the most likely curve goes through both fractions.

@@ -6,7 +6,7 @@
 
 use crate::load::Load;
 use crate::oscillator::{Flow, Kept, Oscillator};
-use crate::piece::Bounds;
+use crate::piece::Rates;
 use crate::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
 use crate::{State, Structure};
 
@@ -63,11 +63,11 @@ impl ExactContact {
     }
 
     /// Bounds of what changes over the interval of `start`.
-    pub(crate) fn bounds(&self, start: &Start) -> Bounds {
+    pub(crate) fn rates(&self, start: &Start) -> Rates {
         let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
         let swing = self.oscillator.swing([u, u_dot], a_top.value, a_top.slope, interval);
         let [u_dot, u_ddot, u_dddot] = self.oscillator.rates(&swing, a_top.slope);
-        Bounds { u: swing.farthest(), u_dot, u_ddot, u_dddot, ..Bounds::default() }
+        Rates { u: swing.farthest(), u_dot, u_ddot, u_dddot, ..Rates::default() }
     }
 }
 

@@ -18,7 +18,7 @@ use crate::detail::ElasticRocking;
 use crate::linear_system::{LinearSystem, Row};
 use crate::load::Load;
 use crate::oscillator::Kept;
-use crate::piece::Bounds;
+use crate::piece::Rates;
 use crate::taylor::{Arc, Start};
 use crate::uplift::TurningMoment;
 use crate::{Side, State, Structure};
@@ -94,7 +94,7 @@ struct Swing {
 impl ElasticRocking for LinearRocking {
     /// The state after the interval of `start` if rocking about `side` certainly goes on until then: θ is no farther
     /// from its chord than |θ̈| h²/8.
-    #[inline]
+    #[inline(always)]
     fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
         let off_chord = self.swing(side, start)?.turning * h * h / 8.0;
@@ -106,15 +106,15 @@ impl ElasticRocking for LinearRocking {
         goes_on.then(|| State { u: end[0], u_dot: end[1], theta: end[2], theta_dot: end[3] })
     }
 
-    fn bounds(&self, side: Side, start: &Start, _end: &State) -> Bounds {
+    fn rates(&self, side: Side, start: &Start, _end: &State) -> Rates {
         let &Start { state: State { theta, theta_dot, .. }, a_top, interval: h, .. } = start;
-        let Some(Swing { following, speed, turning }) = self.swing(side, start) else { return Bounds::NONE };
+        let Some(Swing { following, speed, turning }) = self.swing(side, start) else { return Rates::NONE };
         let u_ddot = &self.system.u_ddot;
         let speed = speed + self.g * h * h * h / 2.0 * turning;
         let theta_dot = theta_dot.abs() + turning * h;
         let force_rate = a_top.slope.abs() + self.g * theta_dot;
         let elastic = (self.omega - u_ddot.u_dot) * speed + h * force_rate;
-        Bounds {
+        Rates {
             u: following.abs() + speed / self.omega,
             u_dot: speed,
             u_ddot: elastic,

@@ -13,8 +13,8 @@ use crate::detail::ElasticRocking;
 use crate::linear_system::{LinearSystem, Row};
 use crate::load::Load;
 use crate::oscillator::{Flow, Kept, Oscillator, Swing};
-use crate::piece::Bounds;
-use crate::taylor::{Arc, Start};
+use crate::piece::Rates;
+use crate::taylor::{Arc, Start, reciprocal};
 use crate::uplift::TurningMoment;
 use crate::{Side, State, Structure};
 use std::f64::consts::FRAC_PI_2;
@@ -48,7 +48,8 @@ impl Growth {
         let sinh = x.sinh();
         // sinh x − x loses its digits where x is small: x³/3! + x⁵/5! + …
         let excess = if x < 1.0 {
-            (1..=9).rev().fold(0.0, |sum, k| (1.0 + sum) * x * x / f64::from(2 * k * (2 * k + 1))) * x
+            let next = |sum: f64, k: usize| (1.0 + sum) * x * x * reciprocal(2 * k) * reciprocal(2 * k + 1);
+            (1..=9).rev().fold(0.0, next) * x
         } else {
             sinh - x
         };
@@ -94,7 +95,7 @@ impl ElasticRocking for ModalRocking {
     ///
     /// q_r leaves the line that follows the load by a hyperbolic arc, which is farthest from it at an end and bounds
     /// |q̈_r|; u stays within its amplitude of the line that it follows.
-    #[inline]
+    #[inline(always)]
     fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval, .. } = start;
         let &mut ModalRocking { vibration, p_l, g, tan_alpha_cg, gravity_forcing, .. } = self;
@@ -121,7 +122,7 @@ impl ElasticRocking for ModalRocking {
     }
 
     /// Bounds of what changes on the way from `start` about `side` to `end`.
-    fn bounds(&self, side: Side, start: &Start, end: &State) -> Bounds {
+    fn rates(&self, side: Side, start: &Start, end: &State) -> Rates {
         let &Start { state, a_top, interval, .. } = start;
         let &ModalRocking { vibration, p_l, g, tan_alpha_cg, gravity_forcing, .. } = self;
         let s = side.sign();
@@ -135,7 +136,7 @@ impl ElasticRocking for ModalRocking {
         let off = off(&state, a_top.value).max(off(end, a_top.at(interval)));
         let q_r = off + a_top.value.abs().max(a_top.at(interval).abs()) / g + tan_alpha_cg;
         let q_r_dot = off_rate(&state).max(off_rate(end)) + a_top.slope.abs() / g;
-        Bounds {
+        Rates {
             u: swing.farthest(),
             u_dot,
             u_ddot,

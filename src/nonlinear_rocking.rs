@@ -22,7 +22,7 @@
 
 use crate::detail::ElasticRocking;
 use crate::load::Load;
-use crate::piece::Bounds;
+use crate::piece::Rates;
 use crate::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
 use crate::uplift::TurningMoment;
 use crate::{Side, State, Structure};
@@ -113,8 +113,8 @@ impl Default for NonlinearRocking {
 }
 
 impl ElasticRocking for NonlinearRocking {
-    fn bounds(&self, _side: Side, _start: &Start, _end: &State) -> Bounds {
-        Bounds::NONE
+    fn rates(&self, _side: Side, _start: &Start, _end: &State) -> Rates {
+        Rates::NONE
     }
 
     fn is_singular(&self, structure: &Structure, side: Side, state: &State) -> bool {
@@ -131,6 +131,7 @@ impl ElasticRocking for NonlinearRocking {
         accelerations(structure, side, state, load).map_or([f64::NAN; 2], Into::into)
     }
 
+    #[inline(always)]
     fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
         let &Start { state, a_g, a_top, interval, .. } = start;
         let &crate::Parameters { H, B, g, .. } = structure.parameters();

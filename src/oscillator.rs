@@ -8,6 +8,7 @@
 //!
 //! with d = ω √(1 − ζ²), hyperbolic functions for ζ > 1 and S = τ e^{−ωτ} for ζ = 1.
 
+use crate::taylor::reciprocal;
 use nalgebra::Matrix2;
 
 /// An oscillator of circular frequency ω (rad/s) and damping ratio ζ.
@@ -81,15 +82,15 @@ impl Oscillator {
 
     /// W and R over a short time, whose differences would be lost to rounding, by their series in τ.
     fn short_response(&self, tau: f64) -> [f64; 2] {
-        const TERMS: u32 = 20; // of at most 1/k! for (1 + 2ζ) ωτ < 1
+        const TERMS: usize = 20; // of at most 1/k! for (1 + 2ζ) ωτ < 1
         let (x, damping) = (self.omega * tau, 2.0 * self.zeta * self.omega * tau);
         let (mut before, mut term) = (0.0, 0.5); // coefficients of τ^{k−1} and τ^k in W/τ²
         let (mut step, mut ramp) = (term, term / 3.0);
         for k in 2..TERMS {
-            let k = f64::from(k);
-            (before, term) = (term, -(damping * k * term + x * x * before) / (k * (k + 1.0)));
+            let rest = damping * k as f64 * term + x * x * before;
+            (before, term) = (term, -rest * reciprocal(k) * reciprocal(k + 1));
             step += term;
-            ramp += term / (k + 2.0);
+            ramp += term * reciprocal(k + 2);
         }
         [step * tau * tau, ramp * tau * tau * tau]
     }

@@ -4,11 +4,11 @@
 //! (Eq 27) are sums and products of these. They tell *where* an output is largest; what it is there is evaluated from
 //! the state.
 
-use crate::extremes::bound;
+use crate::extremes::Bound;
 use crate::load::LinearLoad;
 use crate::outputs::damping;
-use crate::taylor::{Arc, MAX_ORDER, Series, ZERO};
-use crate::{Phase, Structure};
+use crate::taylor::{Arc, Series, ZERO};
+use crate::{Phase, State, Structure, extremes};
 
 /// sin θ and cos θ.
 #[derive(Clone, Debug)]
@@ -18,11 +18,11 @@ pub(crate) struct Turn {
 }
 
 impl Turn {
-    /// Of `arc`.
+    /// Of `arc`, to its order: what is left out is of the size of what `arc` leaves out.
     pub(crate) fn of(arc: &Arc) -> Turn {
         let mut turn = Turn { sin: ZERO, cos: ZERO };
         (turn.sin[0], turn.cos[0]) = arc.theta[0].sin_cos();
-        for k in 1..=MAX_ORDER {
+        for k in 1..=arc.order {
             let (mut sin, mut cos) = (0.0, 0.0);
             for j in 1..=k.min(arc.order) {
                 let rate = j as f64 * arc.theta[j];
@@ -39,18 +39,11 @@ impl Turn {
 pub(crate) fn delta_t(structure: &Structure, phase: Phase, arc: &Arc, turn: &Turn) -> Series {
     let &crate::Parameters { H, B, .. } = structure.parameters();
     let offset = phase.side().sign() * B;
-    std::array::from_fn(|k| {
-        let elastic: f64 = (0..=k.min(arc.order)).map(|i| arc.u[i] * turn.cos[k - i]).sum();
+    arc.series(|k| {
+        let elastic: f64 = (0..=k).map(|i| arc.u[i] * turn.cos[k - i]).sum();
         let one = if k == 0 { 1.0 } else { 0.0 };
         offset * (one - turn.cos[k]) + elastic + H * turn.sin[k]
     })
-}
-
-/// Bound of |δ_t| over `arc`, `theta` and `u` being those of |θ| and |u|: u + Hθ and what is of second order.
-pub(crate) fn delta_t_bound(structure: &Structure, arc: &Arc, theta: f64, u: f64) -> f64 {
-    let &crate::Parameters { H, B, .. } = structure.parameters();
-    let sum = arc.used(&arc.u).iter().zip(arc.used(&arc.theta)).map(|(u, theta)| u + H * theta);
-    bound(sum, arc.reach) + theta * theta * ((B + u) / 2.0 + H * theta / 6.0)
 }
 
 /// a_t over `arc` under `load`, by Eq 5: g sin θ − (c u̇ + k u)/m + (F_t/m) cos θ.
@@ -58,21 +51,47 @@ pub(crate) fn a_t(structure: &Structure, phase: Phase, load: LinearLoad, arc: &A
     let &crate::Parameters { m, g, .. } = structure.parameters();
     let damping = damping(structure, phase) / m;
     let (push, push_slope) = (load.value.F_t / m, load.slope.F_t / m * arc.span);
-    std::array::from_fn(|k| {
-        let elastic = if k <= arc.order { damping * arc.u_dot[k] + structure.stiffness * arc.u[k] } else { 0.0 };
+    arc.series(|k| {
+        let elastic = damping * arc.u_dot[k] + structure.stiffness * arc.u[k];
         let pushed = push * turn.cos[k] + if k > 0 { push_slope * turn.cos[k - 1] } else { 0.0 };
         g * turn.sin[k] - elastic + pushed
     })
 }
 
-/// Bound of |a_t| over `arc`, `theta` being that of |θ|: its linear part and what is of second order.
-pub(crate) fn a_t_bound(structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc, theta: f64) -> f64 {
-    let &crate::Parameters { m, g, .. } = structure.parameters();
-    let damping = damping(structure, phase) / m;
+/// Bounds of |θ|, |u|, |δ_t| and |a_t| that follow from those of |θ|, |u| and |u̇|; `push` is that of |F_t|/m.
+pub(crate) fn crude_bounds(structure: &Structure, phase: Phase, push: f64, [theta, u, u_dot]: [f64; 3]) -> [f64; 4] {
+    let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
+    let a_t = g * theta + damping(structure, phase) / m * u_dot + structure.stiffness * u + push;
+    [theta, u, u + H * theta + B * theta * theta / 2.0, a_t]
+}
+
+/// Bounds of |θ|, |u| and |u̇| over `arc`, which ends in `end`.
+#[inline]
+pub(crate) fn crude_bounds_of_state(arc: &Arc, end: &State) -> [f64; 3] {
+    let series = [&arc.theta, &arc.u, &arc.u_dot].map(|series| arc.used(series));
+    let off = extremes::off_chord(series, arc.reach);
+    let ends = [end.theta, end.u, end.u_dot];
+    std::array::from_fn(|i| series[i][0].abs().max(ends[i].abs()) + off[i])
+}
+
+/// Bounds of |θ|, |u|, |δ_t| and |a_t| over `arc` under `load`: of what is linear in θ and u, and of the rest.
+#[inline]
+pub(crate) fn bounds(structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc) -> [Bound; 4] {
+    let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
+    let (stiffness, damping) = (structure.stiffness, damping(structure, phase) / m);
     let push = [load.value.F_t / m, load.slope.F_t / m * arc.span];
-    let linear = (0..=arc.order).map(|k| {
-        g * arc.theta[k] - damping * arc.u_dot[k] - structure.stiffness * arc.u[k] + push.get(k).unwrap_or(&0.0)
-    });
-    let most_push = push[0].abs() + push[1].abs();
-    bound(linear, arc.reach) + theta * theta * (g * theta / 6.0 + most_push / 2.0)
+    let row = |k: usize| {
+        let (theta, u) = (arc.theta[k], arc.u[k]);
+        let push = if k < 2 { push[k] } else { 0.0 };
+        [theta, u, u + H * theta, g * theta - damping * arc.u_dot[k] - stiffness * u + push]
+    };
+    let [theta, u, sway, pull] = extremes::bounds(row, arc.order, arc.reach);
+    let (most_theta, most_u, most_push) = (theta.largest(), u.largest(), push[0].abs() + push[1].abs());
+    let [theta_rate, u_rate] = [theta, u].map(|bound| bound.rate[1]);
+    let square = most_theta * most_theta;
+    let delta_t = square * ((B + most_u) / 2.0 + H * most_theta / 6.0);
+    let delta_t_rate = most_theta * theta_rate * (B + most_u + H * most_theta / 2.0) + square * u_rate / 2.0;
+    let a_t = square * (g * most_theta / 6.0 + most_push / 2.0);
+    let a_t_rate = most_theta * theta_rate * (g * most_theta / 2.0 + most_push) + square * push[1].abs() / 2.0;
+    [theta, u, sway.and(delta_t, delta_t_rate), pull.and(a_t, a_t_rate)]
 }

@@ -5,11 +5,12 @@
 
 use crate::detail::Level;
 use crate::engine::Motion;
-use crate::load::LinearLoad;
+use crate::extremes::Bound;
+use crate::load::{LinearLoad, Load};
 use crate::output_series::{self, Turn};
 use crate::taylor::{Arc, Series, Start};
 use crate::transition::Transition;
-use crate::{Outputs, Reactions, State, Structure, extremes, outputs};
+use crate::{Outputs, Phase, Reactions, State, Structure, outputs};
 
 /// Watches a motion go by.
 pub trait Watch {
@@ -58,7 +59,7 @@ impl<A: Watch, B: Watch> Watch for (&mut A, &mut B) {
 
 /// Bounds of |u|, |θ| and their derivatives over an exact leap.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Bounds {
+pub(crate) struct Rates {
     pub u: f64,
     pub u_dot: f64,
     pub u_ddot: f64,
@@ -68,11 +69,11 @@ pub(crate) struct Bounds {
     pub theta_ddot: f64,
 }
 
-impl Bounds {
+impl Rates {
     /// Nothing is known.
-    pub(crate) const NONE: Bounds = {
+    pub(crate) const NONE: Rates = {
         const ANY: f64 = f64::INFINITY;
-        Bounds { u: ANY, u_dot: ANY, u_ddot: ANY, u_dddot: ANY, theta: ANY, theta_dot: ANY, theta_ddot: ANY }
+        Rates { u: ANY, u_dot: ANY, u_ddot: ANY, u_dddot: ANY, theta: ANY, theta_dot: ANY, theta_ddot: ANY }
     };
 }
 
@@ -104,14 +105,47 @@ impl Measure {
     }
 }
 
+/// A motion at one instant; at a transition, just after it.
+#[derive(Clone, Copy, Debug)]
+pub struct Sample<'a> {
+    /// Time, state and phase, transitions and impulses so far.
+    pub motion: Motion,
+    /// What acts.
+    pub load: Load,
+    pub(crate) structure: &'a Structure,
+    pub(crate) level: &'a dyn Level,
+}
+
+impl Sample<'_> {
+    /// The outputs; once overturned, those of the instant before.
+    pub fn outputs(&self) -> Outputs {
+        self.level.outputs(self.structure, self.moving_phase(), &self.motion.state, self.load)
+    }
+
+    /// The reactions; once overturned, those of the instant before.
+    pub fn reactions(&self) -> Reactions {
+        let (phase, state) = (self.moving_phase(), &self.motion.state);
+        let accelerations = self.level.accelerations(self.structure, phase, state, self.load);
+        Reactions::of(self.structure, phase, state, accelerations, self.load)
+    }
+
+    /// The phase, or that in which the structure overturned.
+    fn moving_phase(&self) -> Phase {
+        match self.motion.phase {
+            Phase::Overturned(side) => Phase::Rocking(side),
+            phase => phase,
+        }
+    }
+}
+
 /// A stretch of time without a transition.
 ///
-/// It is gone through from its start: [`Piece::bounds`] and [`Piece::arc`] are about the rest of it, and
-/// [`Piece::skip`] leaves behind what the arc covers.
+/// It is gone through by parts, the first of which is all of it: [`Piece::bounds`] and [`Piece::arc`] are about the part in
+/// hand, and [`Piece::skip`] leaves behind of it what the arc covers.
 #[derive(Debug)]
 pub struct Piece<'a> {
     /// The motion at its start: time, state, and the phase that it is in throughout.
-    pub before: Motion,
+    pub before: &'a Motion,
     /// How long it lasts, s.
     pub duration: f64,
     /// What acts, from its start on.
@@ -124,10 +158,16 @@ pub struct Piece<'a> {
     /// Whether `arc` holds its polynomial: the engine did not leap over it.
     pub(crate) is_expanded: bool,
     pub(crate) local_error: f64,
-    /// How much of it is left behind, s, and the state there.
-    pub(crate) passed: (f64, State),
+    pub(crate) part: Part,
     /// Right-hand-side evaluations that watchers have asked for.
     pub(crate) evaluations: u64,
+}
+
+/// A part of a piece: seconds from the piece's start and states at its own start and end.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Part {
+    pub start: (f64, State),
+    pub end: (f64, State),
 }
 
 impl Piece<'_> {
@@ -143,117 +183,151 @@ impl Piece<'_> {
 
     /// Back to its start.
     pub fn rewind(&mut self) {
-        self.passed = (0.0, self.before.state);
+        self.part = Part { start: (0.0, self.before.state), end: (self.duration, self.end) };
     }
 
-    /// Seconds from its start to that of the arc.
+    /// Seconds from its start to that of the part in hand.
     pub fn passed(&self) -> f64 {
-        self.passed.0
+        self.part.start.0
     }
 
-    fn rest(&self) -> Start {
-        let (passed, state) = self.passed;
+    /// The part in hand as a step.
+    fn start_of_part(&self) -> Start {
+        let Part { start: (passed, state), end: (until, _) } = self.part;
         let load = self.load.from(passed);
         Start {
             state,
             a_g: load.on_foundation(),
             a_top: load.on_top(self.structure),
-            interval: self.duration - passed,
+            interval: until - passed,
             local_error: self.local_error,
         }
     }
 
-    /// What acts, from the start of the rest on.
-    fn rest_load(&self) -> LinearLoad {
-        self.load.from(self.passed.0)
+    /// The halves of the part in hand, where the state between them is known without expanding the motion.
+    pub(crate) fn halves(&mut self) -> Option<[Part; 2]> {
+        if self.is_expanded {
+            return None;
+        }
+        let Part { start, end } = self.part;
+        let mut half = self.start_of_part();
+        half.interval *= 0.5;
+        let middle = self.level.leap(self.structure, self.before.phase, &half)?;
+        let middle = (start.0 + half.interval, middle);
+        Some([Part { start, end: middle }, Part { start: middle, end }])
     }
 
-    /// The motion from the start of the rest on, as far as one polynomial reaches.
+    /// The motion from the start of the part on, as far as one polynomial reaches.
     pub fn arc(&mut self) -> &Arc {
         if !self.is_expanded {
-            self.level.series(self.structure, self.before.phase, &self.rest(), self.arc);
+            self.level.series(self.structure, self.before.phase, &self.start_of_part(), self.arc);
             self.evaluations += self.arc.order as u64;
         }
         self.arc
     }
 
-    /// Leaves the arc behind; false if nothing is left.
+    /// Leaves behind what the arc covers; false if that is all of the part.
     pub fn skip(&mut self) -> bool {
-        let passed = self.passed.0 + self.arc.duration();
-        if self.is_expanded || passed >= self.duration || self.arc.reach == 1.0 {
-            self.passed = (self.duration, self.end);
-            return false;
+        let passed = self.passed() + self.arc.duration();
+        let is_left = !self.is_expanded && self.arc.reach < 1.0 && passed < self.part.end.0;
+        self.part.start = if is_left { (passed, self.arc.end()) } else { self.part.end };
+        is_left
+    }
+
+    /// Bounds of the magnitudes of [`Measure::ALL`] over the part in hand.
+    pub(crate) fn bounds(&self) -> [Bound; 4] {
+        if self.is_expanded {
+            self.level.output_bounds(self.structure, self.before.phase, self.load, self.arc)
+        } else {
+            self.bounds_of_leap()
         }
-        self.passed = (passed, self.arc.end());
-        true
     }
 
-    /// Bounds of the magnitudes of [`Measure::ALL`] over the rest.
-    pub fn bounds(&self) -> [f64; 4] {
-        if self.is_expanded { self.bounds_of_arc() } else { self.bounds_of_leap() }
+    /// Bounds of the same that cost less.
+    pub(crate) fn crude_bounds(&self) -> [f64; 4] {
+        let of_state = if self.is_expanded {
+            output_series::crude_bounds_of_state(self.arc, &self.end)
+        } else {
+            let rates = self.level.rates(self.before.phase, &self.start_of_part(), &self.part.end.1);
+            [rates.theta, rates.u, rates.u_dot]
+        };
+        self.level.crude_output_bounds(self.structure, self.before.phase, self.most_push(), of_state)
     }
 
-    fn bounds_of_arc(&self) -> [f64; 4] {
-        let (structure, arc) = (self.structure, &*self.arc);
-        let [theta, u] = [&arc.theta, &arc.u].map(|of| extremes::bound(arc.used(of).iter().copied(), arc.reach));
-        let delta_t = output_series::delta_t_bound(structure, arc, theta, u);
-        [theta, u, delta_t, self.level.a_t_bound(structure, self.before.phase, self.load, arc, theta)]
+    /// The largest |F_t|/m in the part in hand, m/s².
+    fn most_push(&self) -> f64 {
+        let [first, last] = [self.part.start.0, self.part.end.0].map(|tau| self.load.at(tau).F_t.abs());
+        first.max(last) / self.structure.parameters().m
     }
 
-    /// What changes no faster than its second derivative leaves its chord by no more than that over 8/h².
-    fn bounds_of_leap(&self) -> [f64; 4] {
-        let rest = self.rest();
-        let Bounds { u, u_dot, u_ddot, u_dddot, theta, theta_dot, theta_ddot } =
-            self.level.bounds(self.before.phase, &rest, &self.end);
+    /// What changes no faster than its second derivative leaves its chord by no more than that over 8/h², and does not turn
+    /// round where its rate at an end is more than that times h.
+    fn bounds_of_leap(&self) -> [Bound; 4] {
+        let step = self.start_of_part();
+        let (phase, end, h) = (self.before.phase, &self.part.end.1, step.interval);
+        let Rates { u, u_dot, u_ddot, u_dddot, theta, theta_dot, theta_ddot } = self.level.rates(phase, &step, end);
         let &crate::Parameters { m, H, B, g, .. } = self.structure.parameters();
-        let (stiffness, damping) = (self.structure.stiffness, outputs::damping(self.structure, self.before.phase) / m);
-        let [load, last] = [self.rest_load().value, self.load.at(self.duration)];
-        let push = load.F_t.abs().max(last.F_t.abs()) / m;
-        let bend = rest.interval * rest.interval / 8.0;
+        let (stiffness, damping) = (self.structure.stiffness, outputs::damping(self.structure, phase) / m);
+        let loads = [self.part.start.0, self.part.end.0].map(|tau| self.load.at(tau));
+        let push = self.most_push();
         let turn = theta_dot * theta_dot + theta * theta_ddot; // bounds |θ̈ sin θ + θ̇² cos θ|
-
-        let ends = [(&rest.state, load), (&self.end, last)]
-            .map(|(state, load)| self.level.outputs(self.structure, self.before.phase, state, load));
-        let chord = |measure: Measure| ends.each_ref().map(|end| measure.of(end).abs()).into_iter().fold(0.0, f64::max);
-        let delta_t_bend = u_ddot
-            + 2.0 * u_dot * theta_dot * theta
-            + (B + u) * turn
-            + H * (theta_ddot + theta * theta_dot * theta_dot);
+        let sway = theta_ddot + theta * theta_dot * theta_dot; // and |θ̈ cos θ − θ̇² sin θ|
+        let delta_t_bend = u_ddot + 2.0 * u_dot * theta_dot * theta + (B + u) * turn + H * sway;
         let push_bend = push * turn + 2.0 * self.load.slope.F_t.abs() / m * theta_dot * theta;
-        let a_t_bend =
-            g * (theta_ddot + theta * theta_dot * theta_dot) + damping * u_dddot + stiffness * u_ddot + push_bend;
-        let within =
-            [theta, u, u + H * theta + B * theta * theta / 2.0, g * theta + damping * u_dot + stiffness * u + push];
+        let a_t_bend = g * sway + damping * u_dddot + stiffness * u_ddot + push_bend;
         let bends = [theta_ddot, u_ddot, delta_t_bend, a_t_bend];
-        std::array::from_fn(|i| f64::min(within[i], chord(Measure::ALL[i]) + bends[i] * bend))
+        let within = self.level.crude_output_bounds(self.structure, phase, push, [theta, u, u_dot]);
+
+        let [first, last] = [(&step.state, loads[0]), (end, loads[1])]
+            .map(|(state, load)| self.level.outputs(self.structure, phase, state, load));
+        let load = LinearLoad { value: loads[0], slope: self.load.slope };
+        let accelerations = self.level.accelerations(self.structure, phase, &step.state, load.value);
+        let rates = Outputs::rates_by(self.structure, phase, &step.state, accelerations, load);
+        std::array::from_fn(|i| {
+            let of = |outputs: &Outputs| Measure::ALL[i].of(outputs).abs();
+            let ends = of(&first).max(of(&last));
+            let between = (bends[i] * h * h / 8.0).min((within[i] - ends).max(0.0));
+            let rate = of(&rates) * h;
+            Bound { ends, between, rate: [rate - bends[i] * h * h, rate + bends[i] * h * h] }
+        })
     }
 
     /// `measure` over the arc, as a series in σ.
     pub fn series(&self, measure: Measure) -> Series {
         let turn = || Turn::of(self.arc);
         match measure {
-            Measure::Theta => used(self.arc, &self.arc.theta),
-            Measure::U => used(self.arc, &self.arc.u),
+            Measure::Theta => self.arc.series(|k| self.arc.theta[k]),
+            Measure::U => self.arc.series(|k| self.arc.u[k]),
             Measure::DeltaT => output_series::delta_t(self.structure, self.before.phase, self.arc, &turn()),
-            Measure::At => {
-                self.level.a_t_series(self.structure, self.before.phase, self.rest_load(), self.arc, &turn())
-            }
+            Measure::At => self.level.a_t_series(
+                self.structure,
+                self.before.phase,
+                self.load.from(self.passed()),
+                self.arc,
+                &turn(),
+            ),
         }
+    }
+
+    /// The outputs at both ends of the part in hand, with seconds from the start of the piece.
+    pub(crate) fn ends(&self) -> [(f64, Outputs); 2] {
+        [self.part.start, self.part.end]
+            .map(|(tau, state)| (tau, self.level.outputs(self.structure, self.before.phase, &state, self.load.at(tau))))
     }
 
     /// The outputs at `sigma` on the arc.
     pub fn outputs(&self, sigma: f64) -> Outputs {
-        let load = self.load.at(self.passed.0 + sigma * self.arc.span);
+        let load = self.load.at(self.passed() + sigma * self.arc.span);
         self.level.outputs(self.structure, self.before.phase, &self.arc.at(sigma), load)
     }
 
-    /// The state `tau` seconds into it. Nothing may have been left behind that is later.
-    pub fn state_at(&mut self, tau: f64) -> State {
+    /// The state `tau` seconds into it.
+    fn state_at(&mut self, tau: f64) -> State {
         if tau <= 0.0 {
             return self.before.state;
         }
         loop {
-            let from = self.passed.0;
+            let from = self.passed();
             let arc = self.arc();
             if tau <= from + arc.duration() {
                 return arc.at((tau - from) / arc.span);
@@ -264,18 +338,10 @@ impl Piece<'_> {
         }
     }
 
-    /// The outputs and reactions `tau` seconds into it, where the structure is in `state`.
-    pub fn shown(&self, state: &State, tau: f64) -> (Outputs, Reactions) {
-        let (structure, phase, load) = (self.structure, self.before.phase, self.load.at(tau));
-        let accelerations = self.level.accelerations(structure, phase, state, load);
-        let reactions = Reactions::of(structure, phase, state, accelerations, load);
-        (self.level.outputs(structure, phase, state, load), reactions)
+    /// The motion at `time` (s), within it. Nothing may have been left behind that is later.
+    pub fn sample(&mut self, time: f64) -> Sample<'_> {
+        let tau = time - self.before.time;
+        let motion = Motion { time, state: self.state_at(tau), ..*self.before };
+        Sample { motion, load: self.load.at(tau), structure: self.structure, level: self.level }
     }
-}
-
-/// `series` of `arc` with zeros for the orders that are not in use.
-fn used(arc: &Arc, series: &Series) -> Series {
-    let mut of = *series;
-    of[arc.order + 1..].fill(0.0);
-    of
 }

@@ -18,16 +18,16 @@
 //! then at most ε² of ½ m g H tan² α_cg, which overturning takes at small angles: far below the tolerance.
 
 use crate::detail::Level;
-use crate::extremes::bound;
+use crate::extremes::Bound;
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::load::{LinearLoad, Load};
-use crate::output_series::Turn;
-use crate::piece::Bounds;
+use crate::output_series::{self, Turn};
+use crate::piece::Rates;
 use crate::state::InitialStateError;
 use crate::taylor::{Arc, LONGEST_SPAN, Series, Start, Truncation, ZERO};
 use crate::transition::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD};
 use crate::uplift::LEAST_EXCESS;
-use crate::{Outputs, Phase, Side, State, Structure};
+use crate::{Outputs, Phase, Side, State, Structure, extremes};
 
 /// P and Q at `theta`.
 fn shape(structure: &Structure, side: Side, theta: f64) -> [f64; 2] {
@@ -107,8 +107,8 @@ impl Level for Rigid {
         None
     }
 
-    fn bounds(&self, _phase: Phase, _start: &Start, _end: &State) -> Bounds {
-        Bounds::NONE
+    fn rates(&self, _phase: Phase, _start: &Start, _end: &State) -> Rates {
+        Rates::NONE
     }
 
     /// Rest on the ground in full contact.
@@ -189,20 +189,42 @@ impl Level for Rigid {
         let &crate::Parameters { H, B, .. } = structure.parameters();
         let offset = phase.side().sign() * B;
         let (now, slope) = (load.value.a_g, load.slope.a_g * arc.span);
-        let theta_dot = |k: usize| if k <= arc.order { arc.theta_dot[k] } else { 0.0 };
-        std::array::from_fn(|k| {
-            let theta_ddot = (k + 1) as f64 * theta_dot(k + 1) / arc.span;
-            let centripetal: f64 = (0..=k).map(|i| theta_dot(i) * theta_dot(k - i)).sum();
+        arc.series(|k| {
+            let theta_ddot = if k < arc.order { (k + 1) as f64 * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
+            let centripetal: f64 = (0..=k).map(|i| arc.theta_dot[i] * arc.theta_dot[k - i]).sum();
             let ground = now * turn.cos[k] + if k > 0 { slope * turn.cos[k - 1] } else { 0.0 };
             H * theta_ddot + offset * centripetal + ground
         })
     }
 
-    fn a_t_bound(&self, structure: &Structure, _phase: Phase, load: LinearLoad, arc: &Arc, _theta: f64) -> f64 {
+    /// The state does not bound a_t here.
+    fn crude_output_bounds(&self, structure: &Structure, phase: Phase, push: f64, of_state: [f64; 3]) -> [f64; 4] {
+        let [theta, u, delta_t, _] = output_series::crude_bounds(structure, phase, push, of_state);
+        [theta, u, delta_t, f64::INFINITY]
+    }
+
+    /// a_t about H θ̈ + s B θ̇₀² + a_g cos θ₀, θ₀ and θ̇₀ those at the start.
+    fn output_bounds(&self, structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc) -> [Bound; 4] {
         let &crate::Parameters { H, B, .. } = structure.parameters();
-        let theta_dot = arc.used(&arc.theta_dot);
-        let theta_ddot = (1..).zip(&theta_dot[1..]).map(|(k, c)| f64::from(k) * c / arc.span);
-        let ground = load.value.a_g.abs().max(load.at(arc.duration()).a_g.abs());
-        H * bound(theta_ddot, arc.reach) + B * bound(theta_dot.iter().copied(), arc.reach).powi(2) + ground
+        let offset = phase.side().sign() * B;
+        let [theta, _, delta_t, _] = output_series::bounds(structure, phase, load, arc);
+        let cos = arc.theta[0].cos();
+        let ground = [load.value.a_g, load.slope.a_g * arc.span];
+        let row = |k: usize| {
+            let theta_ddot = if k < arc.order { (k + 1) as f64 * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
+            let centripetal = if k == 0 { offset * arc.theta_dot[0].powi(2) } else { 0.0 };
+            let ground = if k < 2 { cos * ground[k] } else { 0.0 };
+            [H * theta_ddot + centripetal + ground]
+        };
+        let [a_t] = extremes::bounds(row, arc.order, arc.reach);
+        let change = |of: &Series| arc.used(of)[1..].iter().map(|c| c.abs()).sum::<f64>();
+        let rate = |of: &Series| (1..).zip(&arc.used(of)[1..]).map(|(k, c)| f64::from(k) * c.abs()).sum::<f64>();
+        let (turned, hastened) = (change(&arc.theta), change(&arc.theta_dot));
+        let fastest = arc.theta_dot[0].abs() + hastened;
+        let ground_most = ground[0].abs() + ground[1].abs();
+        let most = B * hastened * (fastest + arc.theta_dot[0].abs()) + turned * ground_most;
+        let ground_rate = rate(&arc.theta) * ground_most + turned * ground[1].abs();
+        let most_rate = 2.0 * B * fastest * rate(&arc.theta_dot) + ground_rate;
+        [theta, Bound::default(), delta_t, a_t.and(most, most_rate)]
     }
 }

@@ -5,15 +5,20 @@
 
 mod history;
 pub mod levels;
+pub mod outcome;
 pub mod peaks;
-pub mod samples;
+pub mod plan;
+mod samples;
 
 use crate::engine::{AdvanceError, DEFAULT_TOLERANCE};
+use crate::piece::Sample;
 use crate::record::Record;
 use crate::state::InitialStateError;
 use crate::{Detail, Engine, Motion, Progress, Ramp, State, Structure, Watch};
 use peaks::Peaks;
-use samples::{Sample, Samples};
+use samples::Samples;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 
 /// For how long a structure may rock on after its record, in units of 1/p_l: amplitudes change by e^±1 in each.
 pub const LONGEST_REST: f64 = 100.0;
@@ -38,23 +43,27 @@ pub struct Run<'a> {
 /// When a run ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum End {
-    /// When the record is over and the structure stands in full contact, its energy too small to lift it: nothing more
-    /// can happen. It is given [`LONGEST_REST`] for that.
+    /// When the record is over, the structure stands in full contact with its energy too small to lift it, and has
+    /// vibrated there for a period: all that follows is smaller. It is given [`LONGEST_REST`] to come down.
     AtRest,
     /// At this time, s. After the record the ground is at rest.
     At(f64),
 }
 
 /// How a run ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Ending {
     /// The structure stands, and will.
+    #[serde(rename = "at rest")]
     AtRest,
     /// |θ| reached π/2.
+    #[serde(rename = "overturned")]
     Overturned,
     /// The time asked for was over.
+    #[serde(rename = "at time")]
     AtTime,
     /// It still rocked [`LONGEST_REST`] after the record: what becomes of it is not known.
+    #[serde(rename = "still rocking")]
     StillRocking,
 }
 
@@ -147,7 +156,7 @@ impl<'a> Run<'a> {
 
 /// Follows a structure on ground at rest until nothing more can happen.
 fn come_to_rest<W: Watch>(engine: &mut Engine, watch: &mut W) -> Result<Ending, AdvanceError> {
-    let p_l = engine.structure().p_l;
+    let &Structure { p_l, omega_fc, .. } = engine.structure();
     let mut left = LONGEST_REST;
     while !engine.stays_down() {
         if left == 0.0 {
@@ -158,5 +167,6 @@ fn come_to_rest<W: Watch>(engine: &mut Engine, watch: &mut W) -> Result<Ending, 
         }
         left -= 1.0;
     }
+    engine.advance(TAU / omega_fc, Ramp::default(), watch)?;
     Ok(Ending::AtRest)
 }

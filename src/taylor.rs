@@ -67,6 +67,13 @@ impl Arc {
         &series[..=self.order]
     }
 
+    /// A series of the same order, of these `coefficients`.
+    pub(crate) fn series(&self, coefficients: impl Fn(usize) -> f64) -> Series {
+        let mut series = ZERO;
+        series.iter_mut().enumerate().take(self.order + 1).for_each(|(k, c)| *c = coefficients(k));
+        series
+    }
+
     /// Whether the expansion consists of numbers: what is not one stays so from order to order.
     pub fn is_finite(&self) -> bool {
         let last = self.order;
@@ -120,7 +127,7 @@ const MIN_ORDER: usize = 5;
 
 /// 1/k, looked up.
 #[inline]
-fn reciprocal(k: usize) -> f64 {
+pub(crate) fn reciprocal(k: usize) -> f64 {
     const RECIPROCAL: Series = {
         let mut reciprocal = ZERO;
         let mut k = 1;

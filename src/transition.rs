@@ -101,8 +101,13 @@ impl Chatter {
     }
 }
 
-/// Applies what `event` leads to, to `motion`; the transition is returned to be reported.
-pub(crate) fn resolve(level: &dyn Level, structure: &Structure, motion: &mut Motion, event: Event) -> Transition {
+/// The `motion` after what `event` leads to, and the transition to be reported.
+pub(crate) fn resolve(
+    level: &dyn Level,
+    structure: &Structure,
+    mut motion: Motion,
+    event: Event,
+) -> (Motion, Transition) {
     let before = motion.state;
     let limit = level.chatter_limit(structure);
     let (kind, phase, after) = match event {
@@ -122,5 +127,5 @@ pub(crate) fn resolve(level: &dyn Level, structure: &Structure, motion: &mut Mot
     motion.impulse = motion.impulse.and(Impulse::of(structure, (motion.phase, &before), (phase, &after)));
     motion.phase = phase;
     motion.state = after;
-    Transition { time: motion.time, kind, before, after }
+    (motion, Transition { time: motion.time, kind, before, after })
 }

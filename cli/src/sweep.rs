@@ -1,20 +1,19 @@
 //! `sweep`: records × scale factors × structures, a row of CSV for every run; probabilities of overturning and of
 //! exceeding limits, and fragility curves.
 
+mod file;
 mod fragilities;
-mod outcome;
 mod picture;
-mod plan;
 mod rows;
 
 use crate::significant::significant;
-use anyhow::Context;
+use anyhow::{Context, bail};
 use indicatif::{ProgressBar, ProgressStyle};
-use outcome::Outcome;
-use plan::Plan;
 use rayon::{ThreadPoolBuilder, prelude::*};
+use rocking::run::{outcome::Outcome, plan::Case, plan::Plan};
 use rows::Rows;
 use std::{io::stdout, num::NonZeroUsize, path::PathBuf, sync::Mutex, time::Instant};
+use uuid::Uuid;
 
 /// What to run.
 #[derive(clap::Args)]
@@ -33,19 +32,33 @@ pub struct SweepArgs {
 
 /// Does the runs that are not in the file yet, then prints and draws the probabilities.
 pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
-    let plan = Plan::read(&args.file)?;
+    let (plan, limits) = file::read(&args.file)?;
     let output = match &args.output {
         Some(path) => path.clone(),
         None => PathBuf::from(args.file.file_stem().unwrap_or_default()).with_extension("csv"),
     };
-    let (rows, mut outcomes) = Rows::open(&output, &plan)?;
+    let keys = rows::keys(&plan);
+    let (rows, found) = Rows::open(&output, &keys)?;
+    let mut outcomes = found.outcomes;
     let missing: Vec<_> = (0..plan.len()).filter(|index| outcomes[*index].is_none()).collect();
     let done = plan.len() - missing.len();
-    eprintln!("{}: {done} of {} runs done, {}", output.display(), plan.len(), plan.describe());
+    let (name, [structures, records, scales]) = (output.display(), plan.size());
+    eprintln!(
+        "{name}: {done} of {} runs done, structures: {structures}, records: {records}, scale factors: {scales}",
+        plan.len()
+    );
+    for (count, what) in [
+        (found.others, "of runs that are not in this sweep (other inputs, or another build of the program): kept"),
+        (found.repeated, "there again: counted once"),
+    ] {
+        if count > 0 {
+            eprintln!("{name}: {count} row(s) are {what}");
+        }
+    }
 
     let pool = ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, NonZeroUsize::get)).build()?;
     let clock = Instant::now();
-    for (index, outcome) in pool.install(|| do_runs(&plan, &missing, rows))? {
+    for (index, outcome) in pool.install(|| do_runs(&plan, &keys, &missing, rows))? {
         outcomes[index] = Some(outcome);
     }
     if !missing.is_empty() {
@@ -56,24 +69,33 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     }
 
     let outcomes: Vec<_> = outcomes.into_iter().map(|outcome| outcome.expect("every run is done")).collect();
-    let populations = fragilities::count(&plan, &outcomes);
+    let populations = fragilities::count(&plan, &limits, &outcomes);
     let mut out = stdout().lock();
     populations.iter().try_for_each(|population| population.print(&mut out))?;
     let picture = output.with_extension("svg");
     picture::draw(&picture, &populations).with_context(|| format!("{} cannot be written", picture.display()))?;
     eprintln!("rows {}, picture {}", output.display(), picture.display());
-    Ok(())
+    report_failures(&plan, &keys, &outcomes)
+}
+
+/// Says how many runs failed, and which the first is.
+fn report_failures(plan: &Plan, keys: &[Uuid], outcomes: &[Outcome]) -> anyhow::Result<()> {
+    let failed = || (0..plan.len()).filter(|index| matches!(outcomes[*index], Outcome::Failed(_)));
+    let Some(first) = failed().next() else { return Ok(()) };
+    let (count, Case { population, motion, scale, .. }) = (failed().count(), plan.case(first));
+    let (name, motion, key) = (population.name(), motion.name(), keys[first]);
+    bail!("{count} of {} runs failed; the first: {name}, {motion}, scale {scale}, see row {key}", plan.len())
 }
 
 /// Does the runs numbered `missing` and appends them to `rows` as they end.
-fn do_runs(plan: &Plan, missing: &[usize], rows: Rows) -> anyhow::Result<Vec<(usize, Outcome)>> {
+fn do_runs(plan: &Plan, keys: &[Uuid], missing: &[usize], rows: Rows) -> anyhow::Result<Vec<(usize, Outcome)>> {
     let style = ProgressStyle::with_template("{elapsed_precise} {bar:40} {pos}/{len} runs, {per_sec}, {eta} left")?;
     let progress = ProgressBar::new(missing.len() as u64).with_style(style);
     let rows = Mutex::new(rows);
     let outcomes = missing.par_iter().map(|&index| {
-        let run = plan.run(index);
-        let outcome = Outcome::of(&run.point.structure, &run.ground()).with_context(|| run.describe())?;
-        rows.lock().expect("no thread panics with the file in hand").append(&run, &outcome)?;
+        let case = plan.case(index);
+        let outcome = case.outcome();
+        rows.lock().expect("no thread panics with the file in hand").append(&keys[index], &case, &outcome)?;
         progress.inc(1);
         Ok((index, outcome))
     });

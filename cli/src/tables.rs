@@ -1,6 +1,6 @@
 //! The tables that `simulate` writes: the response and its transitions as CSV.
 use anyhow::Context;
-use rocking::run::samples::Sample;
+use rocking::piece::Sample;
 use rocking::{Impulse, Outputs, Reactions, Side, State, Transition, TransitionKind};
 use serde::Serialize;
 use std::{
@@ -69,9 +69,10 @@ pub const RESPONSE: [&str; 20] = [
 ];
 
 /// A line of the response.
-pub fn response_line(&Sample { motion, load, outputs, reactions }: &Sample) -> impl Serialize + use<> {
-    let Outputs { theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t } = outputs;
-    let Reactions { R_h, R_v, R_m } = reactions;
+pub fn response_line(sample: &Sample) -> impl Serialize + use<> {
+    let &Sample { motion, load, .. } = sample;
+    let Outputs { theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t } = sample.outputs();
+    let Reactions { R_h, R_v, R_m } = sample.reactions();
     let Impulse { I_h, I_v, I_m } = motion.impulse;
     let of_motion = (theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t);
     (motion.time, load.a_g, of_motion, (R_h, R_v, R_m, I_h, I_v, I_m), motion.phase.name(), motion.transitions)

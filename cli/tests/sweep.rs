@@ -3,12 +3,12 @@
 
 mod command_line;
 
-use command_line::{fail, folder, succeed};
+use command_line::{command, fail, folder, pulse, succeed};
 use rocking::{Parameters, Structure, fragility::FragilityCurve, fragility::Trials};
 use std::{
     collections::HashSet,
     fs::{self, File},
-    process::Command,
+    process::{Command, Output},
 };
 use tempfile::TempDir;
 
@@ -43,17 +43,23 @@ fn read(folder: &TempDir, name: &str) -> String {
 /// The rows of a complete file, sorted.
 fn rows(text: &str) -> Vec<&str> {
     assert!(text.ends_with('\n'));
-    let mut rows: Vec<_> = text.lines().skip(2).collect();
+    let mut rows: Vec<_> = text.lines().skip(1).collect();
     rows.sort_unstable();
     rows
 }
 
 /// The values in the column `heading`, in the order of the runs.
 fn column<'a>(text: &'a str, heading: &str) -> Vec<&'a str> {
-    let mut rows: Vec<Vec<_>> = text.lines().skip(2).map(|row| row.split(',').collect()).collect();
-    rows.sort_by_key(|row| row[0].parse::<usize>().unwrap());
-    let position = text.lines().nth(1).unwrap().split(',').position(|found| found == heading).unwrap();
-    rows.into_iter().map(|row| row[position]).collect()
+    let headings: Vec<_> = text.lines().next().unwrap().split(',').collect();
+    let position = |heading| headings.iter().position(|found| *found == heading).unwrap();
+    let mut rows: Vec<Vec<_>> = text.lines().skip(1).map(|row| row.split(',').collect()).collect();
+    rows.sort_by(|a, b| {
+        let number = |row: &[&str], heading| row[position(heading)].parse::<f64>().unwrap();
+        let numbers = |row: &[&str]| ["B[m]", "r", "slenderness", "scale"].map(|heading| number(row, heading));
+        let population = position("structures");
+        a[population].cmp(b[population]).then(numbers(a).partial_cmp(&numbers(b)).unwrap())
+    });
+    rows.into_iter().map(|row| row[position(heading)]).collect()
 }
 
 #[test]
@@ -64,22 +70,21 @@ fn every_run_has_a_row_whatever_the_threads() {
     }
     succeed(folder.path(), "sweep sweep.toml");
     let one = read(&folder, "one.csv");
-    let headings = "run,inputs,structures,B[m],r,slenderness,record,scale,PGA[g],overturned,overturned_at[s],\
-                    peak_theta[rad],peak_theta/alpha_cg,peak_uplift[m],peak_u[m],peak_a_t[m/s2],peak_V_t[N],\
-                    peak_M_t[N.m],transitions,steps,evaluations";
-    assert_eq!(one.lines().nth(1), Some(headings));
+    let headings = "run,structures,m[kg],m0[kg],H[m],B[m],J0[kg.m2],f_fc[Hz],zeta_fc,c_ratio,r,g[m/s2],slenderness,\
+                    record,scale,PGA[g],ending,end[s],peak_theta[rad],peak_u[m],peak_delta_t[m],peak_uplift[m],\
+                    peak_a_t[m/s2],peak_V_t[N],peak_M_t[N.m],peak_theta/alpha_cg,transitions,steps,evaluations,reason,\
+                    checksum";
+    assert_eq!(one.lines().next(), Some(headings));
     assert_eq!(rows(&one).len(), RUNS);
     for other in ["two.csv", "seven.csv", "sweep.csv"] {
         assert_eq!(rows(&one), rows(&read(&folder, other)), "{other}");
     }
-    let expected: Vec<_> = (0..RUNS).map(|index| index.to_string()).collect();
-    assert_eq!(column(&one, "run"), expected);
-    assert_eq!(column(&one, "inputs").iter().collect::<HashSet<_>>().len(), RUNS);
+    assert_eq!(column(&one, "run").iter().collect::<HashSet<_>>().len(), RUNS);
 }
 
-/// Scale factors change first, slenderness is H/B, what does not vary in an entry is shown as it is there.
+/// Slenderness is H/B; what does not vary in an entry is shown as it is there.
 #[test]
-fn rows_hold_what_varies_and_peaks_that_belong_together() {
+fn rows_hold_the_structure_and_peaks_that_belong_together() {
     let folder = sweep(SWEEP);
     succeed(folder.path(), "sweep sweep.toml");
     let text = read(&folder, "sweep.csv");
@@ -90,6 +95,7 @@ fn rows_hold_what_varies_and_peaks_that_belong_together() {
     assert_eq!(each_sixth(numbers("r")), [0.9, 0.9, 0.9, 1.0, 1.0, 1.0, 0.96, 0.96, 0.96]);
     assert_eq!(each_sixth(numbers("slenderness"))[..7], [4.0, 6.0, 8.0, 4.0, 6.0, 8.0, 1.05 / 0.2]);
     assert_eq!(each_sixth(numbers("B[m]"))[5..], [0.285, 0.2, 0.25, 0.3]);
+    assert_eq!(each_sixth(numbers("J0[kg.m2]"))[5..7], [10.7, 0.0]);
     assert_eq!(column(&text, "structures")[35..37], ["pier", "wall"]);
 
     let (theta, uplift, a_t) = (numbers("peak_theta[rad]"), numbers("peak_uplift[m]"), numbers("peak_a_t[m/s2]"));
@@ -106,11 +112,57 @@ fn rows_hold_what_varies_and_peaks_that_belong_together() {
     let pga = numbers("PGA[g]");
     assert!((pga[1] - 0.6 * (std::f64::consts::TAU * 0.12 / 0.5).sin()).abs() < 1e-12);
     assert_eq!(pga[2], 2.0 * pga[1]);
-    for (overturned, (at, theta)) in
-        column(&text, "overturned").into_iter().zip(column(&text, "overturned_at[s]").into_iter().zip(theta))
-    {
-        assert_eq!(overturned == "true", !at.is_empty());
-        assert_eq!(overturned == "true", theta > 1.57);
+    for (ending, theta) in column(&text, "ending").into_iter().zip(theta) {
+        assert!(ending == "overturned" && theta > 1.57 || ending == "at rest" && theta < 1.57, "{ending} {theta}");
+    }
+}
+
+/// A record that ends while the structure still rocks: it has the time that it takes.
+#[test]
+fn a_run_does_not_end_with_its_record() {
+    let folder = sweep(
+        "records = ['short.csv']\nunit = 'g'\nscale = [1, 1.5]\n[[structures]]\nname = 'pier'\npreset = 'mcmanus'\n",
+    );
+    let samples: Vec<_> = (0..=50).map(|i| format!("{},{}\n", f64::from(i) * 0.01, pulse(i as usize))).collect();
+    fs::write(folder.path().join("short.csv"), samples.concat()).unwrap();
+    succeed(folder.path(), "sweep sweep.toml");
+    let text = read(&folder, "sweep.csv");
+    assert_eq!(column(&text, "ending"), ["at rest", "overturned"]);
+    let ends: Vec<f64> = column(&text, "end[s]").iter().map(|value| value.parse().unwrap()).collect();
+    assert!(ends[0] > 1.0 && (ends[1] - 2.96).abs() < 0.005, "{ends:?}");
+}
+
+/// A top mass that passes above the pivot of a foundation without inertia: the run is done, and not again.
+#[test]
+fn a_failed_run_is_an_outcome() {
+    let toml = "
+records = ['pulse.AT2']
+scale = [1, 6]
+[[structures]]
+name = 'light'
+parameters = { m = 130.1, m0 = 0, H = 1.84, B = 0.285, f_fc = 0.2, zeta_fc = 0.02, r = 0.99 }
+[[structures]]
+name = 'pier'
+preset = 'mcmanus'
+";
+    let folder = sweep(toml);
+    let mut before = None;
+    for done in [0, 4] {
+        let Output { status, stdout, stderr } = command(folder.path(), "sweep sweep.toml").output().unwrap();
+        let (summary, message) = (String::from_utf8(stdout).unwrap(), String::from_utf8(stderr).unwrap());
+        assert_eq!(status.code(), Some(1));
+        assert!(message.starts_with(&format!("sweep.csv: {done} of 4 runs done")), "{message}");
+        let (_, error) = message.split_once("error: ").unwrap();
+        assert!(error.starts_with("1 of 4 runs failed; the first: light, pulse.AT2, scale 6, see row "), "{error}");
+        assert!(summary.contains("1 failed and are not counted"), "{summary}");
+        let line = |start: &str| summary.lines().find(|line| line.trim().starts_with(start)).unwrap().to_owned();
+        assert!(line("6.0").ends_with("none") && line("1.0").ends_with("0.0000"), "{summary}");
+
+        let text = read(&folder, "sweep.csv");
+        assert_eq!(column(&text, "ending"), ["at rest", "failed", "at rest", "overturned"]);
+        let reasons = text.matches(",\"the motion cannot be continued beyond t = 0.51").count();
+        assert_eq!((reasons, text.matches(",failed,,,,,").count()), (1, 1));
+        assert_eq!(*before.get_or_insert(text.clone()), text);
     }
 }
 
@@ -135,7 +187,7 @@ fn a_sweep_killed_while_it_writes_goes_on_where_it_was() {
     }
     assert!(half_written > 0 && before.lines().count() > 10);
 
-    let done = before.lines().count() - 2;
+    let done = before.lines().count() - 1;
     let (_, progress) = succeed(folder.path(), "sweep sweep.toml --threads 2");
     assert!(progress.starts_with(&format!("sweep.csv: {done} of 54 runs done")), "{progress}");
     assert!(progress.contains(&format!("{} runs in ", RUNS - done)), "{progress}");
@@ -149,8 +201,8 @@ fn a_file_cut_anywhere_is_completed() {
     let folder = sweep(SWEEP);
     let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
     let whole = read(&folder, "sweep.csv");
-    let first_row = whole.match_indices('\n').nth(1).unwrap().0 + 1;
-    let second_row = whole.match_indices('\n').nth(2).unwrap().0 + 1;
+    let first_row = whole.match_indices('\n').next().unwrap().0 + 1;
+    let second_row = whole.match_indices('\n').nth(1).unwrap().0 + 1;
     for cut in [0, 30, first_row - 1, first_row, second_row - 1, whole.len() - 1] {
         fs::write(folder.path().join("sweep.csv"), &whole[..cut]).unwrap();
         assert_eq!(succeed(folder.path(), "sweep sweep.toml").0, summary);
@@ -161,62 +213,149 @@ fn a_file_cut_anywhere_is_completed() {
     assert!(progress.starts_with("sweep.csv: 54 of 54 runs done") && !progress.contains("runs in"), "{progress}");
 }
 
+/// A disk that is full, until there is room again: the system refuses to write beyond a size limit.
+#[cfg(unix)]
 #[test]
-fn rows_of_other_inputs_are_not_mixed() {
+fn the_first_row_that_cannot_be_written_is_the_last() {
     let folder = sweep(SWEEP);
-    succeed(folder.path(), "sweep sweep.toml");
-    let rows_before = read(&folder, "sweep.csv");
+    let (summary, _) = succeed(folder.path(), "sweep sweep.toml -o whole.csv");
+    let limited = "trap '' XFSZ; ulimit -f 8; exec \"$0\" sweep sweep.toml --threads 2";
+    let program = env!("CARGO_BIN_EXE_rocking-fmu");
+    let end = Command::new("sh").args(["-c", limited, program]).current_dir(folder.path()).output().unwrap();
+    let message = String::from_utf8(end.stderr).unwrap();
+    assert_eq!(end.status.code(), Some(1));
+    assert!(message.contains("error: sweep.csv cannot be written"), "{message}");
+    let text = read(&folder, "sweep.csv");
+    let whole = read(&folder, "whole.csv");
+    assert!(rows(&text).len() > 2 && rows(&text).iter().all(|row| rows(&whole).contains(row)), "whole rows only");
+    assert_eq!(succeed(folder.path(), "sweep sweep.toml").0, summary);
+    assert_eq!(rows(&read(&folder, "sweep.csv")), rows(&whole));
+}
+
+/// What changes brings rows of its own, and those that are there stay; they are not counted.
+#[test]
+fn rows_of_other_inputs_are_kept_and_not_counted() {
+    let folder = sweep(SWEEP);
+    let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
+    let original = read(&folder, "sweep.csv");
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
-    for changed in [
-        SWEEP.replace("0.5, 1, 2", "0.5, 1, 2.5"),
-        SWEEP.replace("zeta_fc = 0.015", "zeta_fc = 0.0150001"),
-        SWEEP.replace("r = [0.9, 1]", "r = [1, 0.9]"),
-        SWEEP.replace("records", "time_scale = 0.5\nrecords"),
-        SWEEP.replace("name = 'wall'", "name = 'shear wall'"),
-        SWEEP.replace("slenderness = [4, 6, 8]", "H = [1.14, 1.71, 2.28]"),
+    write("second.csv", "0,0\n0.1,3\n0.3,-2\n0.4,0\n");
+    let more = "[[structures]]\nname = 'other'\npreset = 'evison'\nvary.m0 = [0, 40]\n";
+    let pulse = read(&folder, "pulse.AT2");
+    for (changed, record, done, others) in [
+        (SWEEP.replace("0.5, 1, 2", "0.5, 1, 2, 2.5"), &pulse, 54, 0),
+        (SWEEP.replace("'pulse.AT2'", "'second.csv', 'pulse.AT2'"), &pulse, 54, 0),
+        (
+            SWEEP.replace("[[structures]]\nname = 'wall'", &format!("{more}[[structures]]\nname = 'wall'")),
+            &pulse,
+            54,
+            0,
+        ),
+        (SWEEP.replace("r = [0.9, 1]", "r = [1, 0.95, 0.9]"), &pulse, 54, 0),
+        (SWEEP.replace("0.5, 1, 2", "0.5, 1, 2.5"), &pulse, 45, 9),
+        (SWEEP.replace("zeta_fc = 0.015", "zeta_fc = 0.0150001"), &pulse, 36, 18),
+        (SWEEP.replace("name = 'wall'", "name = 'shear wall'"), &pulse, 36, 18),
+        (SWEEP.replace("records", "time_scale = 0.5\nrecords"), &pulse, 0, 54),
+        (SWEEP.into(), &pulse.replacen("0e0", "1e-9", 1), 0, 54),
+        // What leaves the runs as they are may change: limits, patterns, comments.
+        (format!("# ...\n{}", SWEEP.replace("[0.6]", "[0.1, 1.0]").replace("pulse.AT2", "p*.AT2")), &pulse, 54, 0),
     ] {
         write("sweep.toml", &changed);
-        let (code, message) = fail(folder.path(), "sweep sweep.toml");
-        assert_eq!(code, 1);
-        let start = "error: sweep.csv holds something else: it begins with \"# rocking-fmu sweep, build {";
-        assert!(message.starts_with(start), "{message}");
-        let advice = "The TOML file, a record or the program has changed: name another file with -o, or remove this one \
-                      to do all runs again\n";
-        assert!(message.ends_with(advice), "{message}");
+        write("pulse.AT2", record);
+        write("sweep.csv", &original);
+        let (_, progress) = succeed(folder.path(), "sweep sweep.toml");
+        assert!(progress.starts_with(&format!("sweep.csv: {done} of ")), "{changed}: {progress}");
+        let said = format!("{others} row(s) are of runs that are not in this sweep (other inputs, or another build");
+        assert_eq!(progress.contains(&said), others > 0, "{progress}");
+        assert!(read(&folder, "sweep.csv").starts_with(&original));
     }
     write("sweep.toml", SWEEP);
-    let record = read(&folder, "pulse.AT2");
-    write("pulse.AT2", &record.replacen("0e0", "1e-9", 1));
-    assert!(fail(folder.path(), "sweep sweep.toml").1.contains("holds something else"));
-    write("pulse.AT2", &record);
-    assert_eq!(read(&folder, "sweep.csv"), rows_before);
-
-    // What leaves the rows as they are may change: limits, patterns, comments.
-    write("sweep.toml", &format!("# ...\n{}", SWEEP.replace("[0.6]", "[0.1, 1.0]").replace("pulse.AT2", "p*.AT2")));
-    let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
-    assert!(summary.contains("theta/alpha_cg >= 0.1  theta/alpha_cg >= 1\n"), "{summary}");
-    assert_eq!(read(&folder, "sweep.csv"), rows_before);
+    write("pulse.AT2", &pulse);
+    assert_eq!(succeed(folder.path(), "sweep sweep.toml").0, summary);
 }
 
 #[test]
-fn a_row_that_does_not_belong_is_refused_by_its_line() {
+fn a_row_that_was_changed_is_refused_by_its_line() {
     let folder = sweep(SWEEP);
     succeed(folder.path(), "sweep sweep.toml --threads 1");
     let whole = read(&folder, "sweep.csv");
     let lines: Vec<_> = whole.lines().collect();
-    let row = lines[4];
-    let fields: Vec<_> = row.split(',').collect();
-    let refused = |damaged: &str, expected: &str| {
-        fs::write(folder.path().join("sweep.csv"), whole.replace(row, damaged)).unwrap();
-        let (_, message) = fail(folder.path(), "sweep sweep.toml");
-        assert!(message.starts_with(&format!("error: sweep.csv: {expected}")), "{message}");
+    let number = 5;
+    let row = lines[number - 1];
+    let (content, checksum) = row.rsplit_once(',').unwrap();
+    let refused = |damaged: &[u8], expected: &str| {
+        let (before, after) = whole.split_at(whole.find(row).unwrap());
+        let damaged = [before.as_bytes(), damaged, &after.as_bytes()[row.len()..]].concat();
+        fs::write(folder.path().join("sweep.csv"), &damaged).unwrap();
+        let (code, message) = fail(folder.path(), "sweep sweep.toml");
+        assert_eq!(code, 1);
+        let start = format!(
+            "error: sweep.csv: line {number} is not a row as it was written: remove it, to do its run again: {expected}"
+        );
+        assert!(message.starts_with(&start), "{message}");
+        assert_eq!(fs::read(folder.path().join("sweep.csv")).unwrap(), damaged, "it is left as it is");
     };
-    let not_a_row = "line 5 is not a row of this sweep: remove it: ";
-    refused(&row.replacen(fields[0], "54", 1), &format!("{not_a_row}run 54 does not exist: there are 54"));
-    let inputs = format!("{not_a_row}the inputs of run {} are {} and not \"0\"", fields[0], fields[1]);
-    refused(&row.replacen(fields[1], "0", 1), &inputs);
-    refused(&row.replacen("false", "maybe", 1).replacen("true", "maybe", 1), not_a_row);
-    refused(&format!("{row}\n{row}"), &format!("line 6 is a second row of run {}: remove it", fields[0]));
+    let sums = "its checksum is ";
+    let (ending, other) = if row.contains("at rest") { ("at rest", "overturned") } else { ("overturned", "at rest") };
+    refused(row.replacen(ending, other, 1).as_bytes(), sums);
+    refused(row.replacen("pier", "wall", 1).as_bytes(), sums);
+    let theta = row.split(',').nth(18).unwrap();
+    refused(row.replacen(theta, "NaN", 1).as_bytes(), sums);
+    refused(content.as_bytes(), sums);
+    refused(b"1,2", sums);
+    refused(b"short", "it has one column");
+    refused(b"", "it has one column");
+    refused(&row.as_bytes()[..row.len() - 1], &format!("{sums}{checksum} and not "));
+    for position in (0..row.len()).step_by(29).chain([row.len() - 1]) {
+        let mut flipped = row.as_bytes().to_vec();
+        flipped[position] ^= 1;
+        refused(&flipped, sums);
+        flipped[position] ^= 0x81;
+        refused(&flipped, sums);
+    }
+}
+
+#[test]
+fn rows_that_are_there_twice_count_once() {
+    let folder = sweep(SWEEP);
+    let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
+    let whole = read(&folder, "sweep.csv");
+    let twice = whole.clone() + &whole.lines().skip(1).take(3).map(|row| format!("{row}\n")).collect::<String>();
+    fs::write(folder.path().join("sweep.csv"), &twice).unwrap();
+    let (again, progress) = succeed(folder.path(), "sweep sweep.toml");
+    assert_eq!(again, summary);
+    assert!(progress.contains("sweep.csv: 3 row(s) are there again: counted once"), "{progress}");
+    assert_eq!(read(&folder, "sweep.csv"), twice);
+}
+
+/// The file of something else is left as it is.
+#[test]
+fn the_headings_are_checked() {
+    let folder = sweep(SWEEP);
+    succeed(folder.path(), "sweep sweep.toml");
+    let whole = read(&folder, "sweep.csv");
+    let (headings, rows) = whole.split_once('\n').unwrap();
+    for (content, expected) in [
+        (rows, format!("error: sweep.csv: line 1 is a row: put the headings back before it:\n{headings}\n")),
+        ("a,b\n1,2\n", "error: sweep.csv, line 1: \"a,b\" are not the headings of a sweep's rows: name ano".into()),
+        ("# rocking-fmu sweep, build\n", "error: sweep.csv, line 1: \"# rocking-fmu sweep, build\" are not".into()),
+    ] {
+        fs::write(folder.path().join("sweep.csv"), content).unwrap();
+        let (code, message) = fail(folder.path(), "sweep sweep.toml");
+        assert!(code == 1 && message.starts_with(&expected), "{message}");
+        assert_eq!(read(&folder, "sweep.csv"), content);
+    }
+}
+
+#[test]
+fn a_record_that_two_patterns_name_counts_once() {
+    let folder = sweep(SWEEP);
+    let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
+    let twice = SWEEP.replace("'pulse.AT2'", "'pulse.AT2', '*.AT2'");
+    fs::write(folder.path().join("sweep.toml"), twice).unwrap();
+    let (again, progress) = succeed(folder.path(), "sweep sweep.toml");
+    assert_eq!(again, summary);
+    assert!(progress.starts_with("pulse.AT2 is named twice in records: it counts once\n"), "{progress}");
 }
 
 #[test]
@@ -234,7 +373,7 @@ fn probabilities_and_curve_are_those_of_the_rows() {
     let folder = sweep(SWEEP);
     let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
     let text = read(&folder, "sweep.csv");
-    let overturned = column(&text, "overturned");
+    let ending = column(&text, "ending");
     let relative: Vec<f64> = column(&text, "peak_theta/alpha_cg").iter().map(|value| value.parse().unwrap()).collect();
     let pga: Vec<f64> = column(&text, "PGA[g]").iter().map(|value| value.parse().unwrap()).collect();
     let table: Vec<Vec<_>> = summary.lines().map(|line| line.split_whitespace().collect()).collect();
@@ -243,7 +382,7 @@ fn probabilities_and_curve_are_those_of_the_rows() {
     let pier = |scale: usize| (0..36).filter(move |run| run % 6 == scale);
     let mut trials = Vec::new();
     for scale in 0..6 {
-        let exceedances = pier(scale).filter(|run| overturned[*run] == "true").count();
+        let exceedances = pier(scale).filter(|run| ending[*run] == "overturned").count();
         let large = pier(scale).filter(|run| relative[*run] >= 0.6).count();
         let parts = [exceedances, large].map(|count| format!("{:.4}", count as f64 / 6.0));
         assert_eq!(table[2 + scale][2..], ["6", &parts[0], &parts[1]]);
@@ -266,21 +405,38 @@ fn probabilities_and_curve_are_those_of_the_rows() {
 fn a_refused_sweep_says_what_to_change() {
     for (from, to, expected) in [
         ("pulse.AT2", "absent*.AT2", "records: there is no file absent*.AT2"),
-        ("'pulse.AT2'", "", "records is empty: name one or more"),
-        ("[0.5, 1, 2, 3, 4, 6]", "[]", "scale: the list is empty: give one or more numbers"),
+        ("'pulse.AT2'", "", "records is empty: give one or more"),
+        ("[0.5, 1, 2, 3, 4, 6]", "[]", "scale is empty: give one or more"),
         ("[0.5, 1, 2, 3, 4, 6]", "[0, 1]", "scale = 0 leaves no ground motion: leave it out"),
-        ("[0.5, 1, 2, 3, 4, 6]", "{ from = 1, to = 2, count = 1 }", "scale: count = 1 is out of range: 2 or more"),
-        ("[0.5, 1, 2, 3, 4, 6]", "[nan]", "scale: NaN is not a finite number"),
+        (
+            "[0.5, 1, 2, 3, 4, 6]",
+            "{ from = 1, to = 2, count = 1 }",
+            "scale: count = 1 is out of range: 2 to 10000000 v",
+        ),
+        ("[0.5, 1, 2, 3, 4, 6]", "[nan]", "scale = NaN is not a finite number"),
         ("records", "time_scale = -1\nrecords", "time_scale = -1 is out of range: a finite number greater than 0"),
-        ("name = 'wall'", "name = 'pier'", "two entries of structures have the name \"pier\": rename one"),
+        ("name = 'wall'", "name = 'pier'", "two populations have the name \"pier\": rename one"),
         ("preset = 'mcmanus'\n", "", "structures \"pier\": give either preset or parameters"),
         ("[4, 6, 8], r", "[4], H = [1], r", "structures \"pier\": H and slenderness cannot both vary"),
         ("r = [0.9, 1]", "q = [1]", "structures \"pier\": \"q\" cannot vary: these can: m, m0, H, B, J0, f_fc"),
         ("r = [0.9, 1]", "r = [0, 1]", "structures \"pier\": r = 0 1 is out of range: it must lie between 0.001"),
-        ("r = [0.9, 1]", "r = []", "structures \"pier\": r: the list is empty"),
+        ("r = [0.9, 1]", "r = []", "structures \"pier\": r is empty: give one or more"),
         ("r = 0.96", "r = 0.96, g = 1.62", "g = 1.62 m/s2 and g = 9.81 m/s2: a sweep has one g"),
-        ("\"theta/alpha_cg\"", "drift", "limits: \"drift\" is unknown; these are known: theta, theta/alpha_cg"),
+        ("\"theta/alpha_cg\"", "drift", "limits: \"drift\" is unknown; these are known: theta, u, delta_t, uplift"),
         ("[0.6]", "[0]", "limits: theta/alpha_cg = 0 is out of range"),
+        ("[0.5, 1, 2, 3, 4, 6]", "[1, 2, 1]", "scale = 1 is there twice and would count twice: leave one out"),
+        (
+            "[0.5, 1, 2, 3, 4, 6]",
+            "{ from = 1, to = 2, count = 100000000000 }",
+            "scale: count = 100000000000 is out of range: 2 to 10000000 values are possible from 1 to 2",
+        ),
+        (
+            "[0.5, 1, 2, 3, 4, 6]",
+            "{ from = 1, to = 2, count = 2000000 }",
+            "9 structures x 1 ground motions x 2000000 scale factors: more than 10000000 runs",
+        ),
+        ("r = [0.9, 1]", "g = [9.81]", "structures \"pier\": g cannot vary: a sweep has one g"),
+        ("name = 'wall'", "name = \"wa\\nll\"", "the name \"wa\\nll\" must be a line of text, for it is written into"),
         ("records", "record", "TOML parse error at line 2, column 1"),
         ("[0.5, 1, 2, 3, 4, 6]", "'all'", "TOML parse error at line 3, column 9"),
     ] {

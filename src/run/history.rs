@@ -1,6 +1,5 @@
 //! θ, u and a_t over a whole run as series in time, and how far two runs are apart, exactly.
 
-use crate::Phase;
 use crate::extremes;
 use crate::piece::{Measure, Piece, Watch};
 use crate::taylor::Series;
@@ -24,7 +23,8 @@ pub struct History {
 struct Stretch {
     start: f64,
     end: f64,
-    phase: Phase,
+    /// Transitions before it.
+    transitions: u64,
     /// Duration of σ = 1, s.
     span: f64,
     series: [Series; 3],
@@ -43,7 +43,7 @@ impl History {
         while let (Some(a), Some(b)) = (ours.peek(), theirs.peek()) {
             let (from, to) = (a.start.max(b.start), a.end.min(b.end));
             let is_same_landing =
-                a.phase != b.phase && (to - from) * self.omega_u < SAME_LANDING * std::f64::consts::TAU;
+                a.transitions != b.transitions && (to - from) * self.omega_u < SAME_LANDING * std::f64::consts::TAU;
             if to > from && !is_same_landing {
                 for (i, largest) in largest.iter_mut().enumerate() {
                     *largest = f64::max(*largest, difference(a, b, i, from, to, *largest));
@@ -63,7 +63,7 @@ impl History {
 fn difference(a: &Stretch, b: &Stretch, i: usize, from: f64, to: f64, least: f64) -> f64 {
     let (mut difference, subtracted) = (a.over(i, from, to), b.over(i, from, to));
     difference.iter_mut().zip(subtracted).for_each(|(a, b)| *a -= b);
-    if extremes::bound(difference.iter().copied(), 1.0) <= least {
+    if extremes::bound(&difference, 1.0) <= least {
         return least;
     }
     extremes::largest(&difference, 1.0)
@@ -92,7 +92,13 @@ impl Watch for History {
             let (duration, span) = (piece.arc().duration(), piece.arc().span);
             let start = piece.before.time + piece.passed();
             let series = MEASURES.map(|measure| piece.series(measure));
-            self.stretches.push(Stretch { start, end: start + duration, phase: piece.before.phase, span, series });
+            self.stretches.push(Stretch {
+                start,
+                end: start + duration,
+                transitions: piece.before.transitions,
+                span,
+                series,
+            });
             if !piece.skip() {
                 break;
             }

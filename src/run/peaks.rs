@@ -4,12 +4,16 @@
 //! each output is a series in time ([`crate::output_series`]), which rises or falls throughout between the points where
 //! it is stationary ([`crate::extremes`]): the largest magnitude is at one of these or at an end.
 
+use crate::extremes::Bound;
 use crate::piece::{Measure, Piece, Watch};
 use crate::{Outputs, Structure, extremes};
 use serde::{Deserialize, Serialize};
 
 /// A bound above the largest magnitude by no more than this part of it may be rounding.
 const ROUNDING: f64 = 1e-14;
+
+/// How often an exact leap is halved before a polynomial is asked for: a bound on a half has a quarter of the slack.
+const HALVINGS: u32 = 2;
 
 /// The largest magnitude of a quantity, and its instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -139,6 +143,75 @@ impl Peaks {
         self.evaluations
     }
 
+    /// Looks at the part of `piece` in hand, where it may hold larger magnitudes; `halvings` are left.
+    fn look(&mut self, piece: &mut Piece, halvings: u32) {
+        let crude = piece.crude_bounds();
+        if !Measure::ALL.iter().any(|measure| self.may_be_beaten(*measure, crude[*measure as usize])) {
+            return;
+        }
+        let bounds = piece.bounds();
+        let mut is_open = false;
+        for measure in Measure::ALL {
+            let bound = &bounds[measure as usize];
+            if self.may_be_beaten(measure, bound.ends) {
+                self.see_ends(measure, piece);
+            }
+            is_open |= self.is_open(measure, bound);
+        }
+        if !is_open {
+            return;
+        }
+        if halvings > 0
+            && let Some(halves) = piece.halves()
+        {
+            for half in halves {
+                piece.part = half;
+                self.look(piece, halvings - 1);
+            }
+            return;
+        }
+        loop {
+            piece.arc();
+            for measure in Measure::ALL {
+                if self.is_open(measure, &bounds[measure as usize]) {
+                    self.search(measure, piece);
+                }
+            }
+            if !piece.skip() {
+                break;
+            }
+        }
+    }
+
+    /// Whether a magnitude of at most `bound` may be more than what has been seen.
+    fn may_be_beaten(&self, measure: Measure, bound: f64) -> bool {
+        bound > self.largest[measure as usize].magnitude * (1.0 + ROUNDING)
+    }
+
+    /// Whether it may be so between the ends.
+    fn is_open(&self, measure: Measure, bound: &Bound) -> bool {
+        bound.may_turn() && self.may_be_beaten(measure, bound.largest())
+    }
+
+    /// Looks at both ends of the part in hand.
+    fn see_ends(&mut self, measure: Measure, piece: &Piece) {
+        for (tau, outputs) in piece.ends() {
+            self.see(measure, piece.before.time + tau, &outputs);
+        }
+    }
+
+    /// Looks at the arc wherever `measure` is stationary.
+    fn search(&mut self, measure: Measure, piece: &Piece) {
+        let (start, series) = (piece.before.time + piece.passed(), piece.series(measure));
+        let series = piece.arc.used(&series);
+        if !self.may_be_beaten(measure, extremes::bound_by_cubic(series, piece.arc.reach)) {
+            return;
+        }
+        extremes::stationary_points(series, piece.arc.reach, |sigma| {
+            self.see(measure, start + sigma * piece.arc.span, &piece.outputs(sigma));
+        });
+    }
+
     fn see(&mut self, measure: Measure, time: f64, outputs: &Outputs) {
         self.largest[measure as usize].see(measure.of(outputs), time);
     }
@@ -152,28 +225,7 @@ impl Watch for Peaks {
             self.ground.see(piece.load.at(tau).a_g, piece.before.time + tau);
         }
         let asked_before = piece.evaluations();
-        loop {
-            let bounds = piece.bounds();
-            let can_be_beaten = |measure: &Measure| {
-                let largest = self.largest[*measure as usize].magnitude;
-                bounds[*measure as usize] > largest * (1.0 + ROUNDING)
-            };
-            let measures = Measure::ALL.map(|measure| Some(measure).filter(can_be_beaten));
-            if measures.iter().all(Option::is_none) {
-                break;
-            }
-            let (reach, span) = (piece.arc().reach, piece.arc().span);
-            let start = piece.before.time + piece.passed();
-            for measure in measures.into_iter().flatten() {
-                let mut look = |sigma: f64| self.see(measure, start + sigma * span, &piece.outputs(sigma));
-                look(0.0);
-                extremes::stationary_points(&piece.series(measure), reach, &mut look);
-                look(reach);
-            }
-            if !piece.skip() {
-                break;
-            }
-        }
+        self.look(piece, HALVINGS);
         self.evaluations += piece.evaluations() - asked_before;
     }
 }

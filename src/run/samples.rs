@@ -1,23 +1,9 @@
 //! A motion at given instants, read from its pieces.
 
-use crate::engine::Motion;
+use crate::Engine;
 use crate::load::Load;
-use crate::piece::{Piece, Watch};
-use crate::{Engine, Outputs, Reactions};
+use crate::piece::{Piece, Sample, Watch};
 use std::iter::Peekable;
-
-/// The motion at one instant; at a transition, just after it.
-#[derive(Clone, Copy, Debug)]
-pub struct Sample {
-    /// Time, state and phase, transitions and impulses so far.
-    pub motion: Motion,
-    /// What acts.
-    pub load: Load,
-    /// The outputs.
-    pub outputs: Outputs,
-    /// The reactions.
-    pub reactions: Reactions,
-}
 
 /// Shows a motion at given instants.
 pub(crate) struct Samples<Times: Iterator<Item = f64>, Show> {
@@ -34,9 +20,7 @@ impl<Times: Iterator<Item = f64>, Show: FnMut(&Sample)> Samples<Times, Show> {
 
     /// Shows the end, where `engine` is.
     pub(crate) fn end(mut self, engine: &Engine) {
-        let (motion, load) = (*engine.motion(), self.load);
-        let (outputs, reactions) = (engine.outputs(load), engine.reactions(load));
-        (self.show)(&Sample { motion, load, outputs, reactions });
+        (self.show)(&engine.sample(self.load));
     }
 }
 
@@ -44,17 +28,12 @@ impl<Times: Iterator<Item = f64>, Show: FnMut(&Sample)> Watch for Samples<Times,
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &mut Piece) {
-        let before = piece.before;
+        let start = piece.before.time;
         self.load = piece.load.at(piece.duration);
-        while let Some(time) = self.times.next_if(|time| *time < before.time + piece.duration) {
-            let tau = time - before.time;
-            if tau < 0.0 {
-                continue;
+        while let Some(time) = self.times.next_if(|time| *time < start + piece.duration) {
+            if time >= start {
+                (self.show)(&piece.sample(time));
             }
-            let state = piece.state_at(tau);
-            let (outputs, reactions) = piece.shown(&state, tau);
-            let load = piece.load.at(tau);
-            (self.show)(&Sample { motion: Motion { time, state, ..before }, load, outputs, reactions });
         }
     }
 }

@@ -2,48 +2,39 @@
 
 use crate::response::{Failure, Response, Sample};
 use crate::scene::{Input, Scene};
-use rocking::{Detail, Engine, Motion, Progress, State, Transition};
+use rocking::run::{Ending, Finish};
+use rocking::{Detail, Engine, Watch};
 
 /// The tolerance of reference responses, two orders below the tightest that is charted.
 pub const REFERENCE_TOLERANCE: f64 = 1e-14;
 
-/// The response of `scene` at the level `detail`, to `tolerance`, in communication steps of 1/`cuts` of the time
-/// between samples; transitions are shown to `observe`.
-pub fn run(
-    scene: &Scene,
-    detail: Detail,
-    tolerance: f64,
-    (input, cuts): (Input, usize),
-    observe: &mut dyn FnMut(&Transition),
-) -> Response {
-    let mut initial = scene.initial;
-    if detail == Detail::Rigid {
-        initial = State { u: 0.0, u_dot: 0.0, ..initial };
-    }
-    let mut engine = match Engine::with_detail(scene.structure, initial, 0.0, tolerance, detail) {
-        Ok(engine) => engine,
-        Err(error) => return Response::refused(error.to_string()),
-    };
+/// The response of `scene` at the level `detail`, to `tolerance`; pieces and transitions are shown to `watch`.
+pub fn run(scene: &Scene, detail: Detail, tolerance: f64, watch: &mut impl Watch) -> Response {
     let mut samples = Vec::with_capacity(scene.intervals());
-    let mut failure = None;
-    for step in scene.steps(input, cuts) {
-        match engine.advance(step.end, step.a_g, observe) {
-            Err(error) => failure = Some(Failure::GaveUp { time: step.start, message: error.to_string() }),
-            Ok(Progress::Overturned) => failure = Some(Failure::Overturned { time: engine.motion().time }),
-            Ok(Progress::Complete) => (),
+    let times = scene.ground.times()[1..].iter().copied();
+    let show = |sample: &rocking::piece::Sample| samples.push(Sample::of(&sample.outputs()));
+    match scene.run(detail, tolerance).sample(times, show, watch) {
+        Ok(Finish { ending, motion }) => {
+            let failure = (ending == Ending::Overturned).then_some(Failure::Overturned { time: motion.time });
+            Response { samples, evaluations: motion.work.evaluations, transitions: motion.transitions, failure }
         }
-        if failure.is_some() {
-            break;
-        }
-        if step.ends_interval {
-            samples.push(Sample::of(&engine.outputs(0.0)));
+        Err(error) => {
+            let failure = Failure::GaveUp { time: samples.len() as f64 * scene.dt(), message: error.to_string() };
+            Response { samples, evaluations: 0, transitions: 0, failure: Some(failure) }
         }
     }
-    let Motion { work, transitions, .. } = *engine.motion();
-    Response { samples, evaluations: work.evaluations, transitions, failure }
+}
+
+/// Evaluations of the engine as it is in the FMU, which counts none, on the same communication steps.
+pub fn evaluations(scene: &Scene, tolerance: f64, input: Input, cuts: usize) -> u64 {
+    let mut engine = Engine::new(scene.structure, scene.initial, 0.0, tolerance).expect("the scene can start");
+    for step in scene.steps(input, cuts) {
+        engine.advance(step.end - step.start, step.a_g, &mut ()).expect("the scene has an answer");
+    }
+    engine.motion().work.evaluations
 }
 
 /// The response against which all others are measured.
 pub fn reference(scene: &Scene) -> Response {
-    run(scene, Detail::Nonlinear, REFERENCE_TOLERANCE, (Input::Linear, 1), &mut |_| ())
+    run(scene, Detail::Nonlinear, REFERENCE_TOLERANCE, &mut ())
 }

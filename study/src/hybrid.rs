@@ -124,7 +124,7 @@ impl<'a> Motion<'a> {
         Motion {
             scene,
             uplift,
-            phase: scene.initial_phase(),
+            phase: scene.initial.initial_phase().expect("the study's own initial states are in range"),
             point: Point::start(&scene.initial),
             transitions: 0,
             evaluations: Cell::new(0),
@@ -139,17 +139,17 @@ impl<'a> Motion<'a> {
         transitions: Transitions,
         observe: &mut dyn FnMut(f64, Phase),
     ) -> Result<(), Failure> {
-        let Scene { structure, dt, .. } = self.scene;
+        let (structure, dt) = (&self.scene.structure, self.scene.dt());
         let start = k as f64 * dt;
         let most = self.transitions + MAX_TRANSITIONS_PER_INTERVAL;
-        let a_g = self.scene.ground(k);
+        let a_g = self.scene.ramp(k);
         let mut tau = 0.0;
-        while tau < *dt {
+        while tau < dt {
             let phase = self.phase;
             let equations = PhaseEquations { structure, phase, a_g, evaluations: &self.evaluations };
             let end = PhaseEnd { structure, uplift: self.uplift, phase };
             let gave_up = |message| Failure::GaveUp { time: start + tau, message };
-            let stretch = integrator.advance(&equations, tau, &self.point, *dt, &end).map_err(gave_up)?;
+            let stretch = integrator.advance(&equations, tau, &self.point, dt, &end).map_err(gave_up)?;
             let is_over = stretch.is_over;
             (tau, self.point) = match transitions {
                 Transitions::Located if is_over => locate(&equations, integrator, &end, &stretch).map_err(gave_up)?,

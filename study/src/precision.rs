@@ -109,7 +109,7 @@ pub fn measure(scene: &Scene, limits: Limits, progress: &ProgressBar) -> Result<
             Curve { name: method.name, family: method.family, setting: method.setting, points }
         })
         .collect();
-    let Scene { key, title, dt, .. } = *scene;
+    let (&Scene { key, title, .. }, dt) = (scene, scene.dt());
     Ok(Diagram { key, title, floor, conditioning, transitions: exact.transitions, dt, curves })
 }
 

@@ -15,14 +15,6 @@ pub struct Response {
     pub failure: Option<Failure>,
 }
 
-impl Response {
-    /// None at all, for the reason `message`.
-    pub fn refused(message: String) -> Response {
-        let failure = Some(Failure::GaveUp { time: 0.0, message });
-        Response { samples: Vec::new(), evaluations: 0, transitions: 0, failure }
-    }
-}
-
 /// The response at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {

@@ -2,10 +2,11 @@
 
 use anyhow::{Context, Result, bail};
 use rocking::record::{Record, Unit};
-use rocking::{Parameters, Phase, Ramp, Side, State, Structure};
+use rocking::run::End;
+use rocking::{Detail, Parameters, Ramp, Run, State, Structure};
 use std::path::{Path, PathBuf};
 
-/// A structure on moving ground. The ground acceleration is linear between samples `dt` apart.
+/// A structure on moving ground, whose samples are evenly spaced from t = 0 on.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// Name in file names.
@@ -16,10 +17,8 @@ pub struct Scene {
     pub structure: Structure,
     /// Its state at t = 0.
     pub initial: State,
-    /// Time between samples, s.
-    pub dt: f64,
-    /// Ground acceleration at the samples, m/s².
-    pub a_g: Vec<f64>,
+    /// The ground motion.
+    pub ground: Record,
 }
 
 /// How a host gives the ground acceleration over a communication step.
@@ -64,8 +63,7 @@ impl Scene {
             title: "Evison's specimen, free vibration",
             structure,
             initial,
-            dt: 0.01,
-            a_g: vec![0.0; 201],
+            ground: ground(0.01, vec![0.0; 201]),
         }
     }
 
@@ -105,31 +103,40 @@ impl Scene {
         let State { u, u_dot, theta, theta_dot } = self.initial;
         let initial =
             State { u: factor * u, u_dot: factor * u_dot, theta: factor * theta, theta_dot: factor * theta_dot };
-        let a_g = self.a_g.iter().map(|a_g| factor * a_g).collect();
-        Scene { initial, a_g, ..self.clone() }
+        Scene { initial, ground: self.ground.clone().scaled(1.0, factor), ..self.clone() }
     }
 
-    /// Its phase at t = 0.
-    pub fn initial_phase(&self) -> Phase {
-        let theta = self.initial.theta;
-        if theta == 0.0 { Phase::FullContact } else { Phase::Rocking(Side::of(theta)) }
+    /// The engine's run of it at the level `detail`, to `tolerance`. A rigid structure starts without elastic motion.
+    pub fn run(&self, detail: Detail, tolerance: f64) -> Run<'_> {
+        let initial = match detail {
+            Detail::Rigid => State { u: 0.0, u_dot: 0.0, ..self.initial },
+            _ => self.initial,
+        };
+        let end = End::At(self.ground.end());
+        Run { initial, detail, tolerance, end, ..Run::new(self.structure, &self.ground) }
+    }
+
+    /// Time between samples, s.
+    pub fn dt(&self) -> f64 {
+        self.ground.times()[1]
     }
 
     /// How many intervals between samples there are, each with a result at its end.
     pub fn intervals(&self) -> usize {
-        self.a_g.len() - 1
+        self.ground.times().len() - 1
     }
 
     /// Ground acceleration over the interval `k`, from its start on.
-    pub fn ground(&self, k: usize) -> Ramp {
-        Ramp { value: self.a_g[k], slope: (self.a_g[k + 1] - self.a_g[k]) / self.dt }
+    pub fn ramp(&self, k: usize) -> Ramp {
+        let a_g = self.ground.acceleration();
+        Ramp { value: a_g[k], slope: (a_g[k + 1] - a_g[k]) / self.dt() }
     }
 
     /// The scene cut into communication steps, `cuts` to an interval.
     pub fn steps(&self, input: Input, cuts: usize) -> impl Iterator<Item = Step> {
-        let h = self.dt / cuts as f64;
+        let h = self.dt() / cuts as f64;
         (0..self.intervals() * cuts).map(move |j| {
-            let exact = self.ground(j / cuts);
+            let exact = self.ramp(j / cuts);
             let value = exact.at((j % cuts) as f64 * h);
             let slope = if input == Input::Linear { exact.slope } else { 0.0 };
             let ends_interval = (j + 1) % cuts == 0;
@@ -139,13 +146,20 @@ impl Scene {
 
     /// The same scene with results at `cuts` instants between two samples.
     pub fn resampled(&self, cuts: usize) -> Scene {
-        let last = self.a_g[self.intervals()];
+        let last = self.ground.acceleration()[self.intervals()];
         let a_g = self.steps(Input::Linear, cuts).map(|step| step.a_g.value).chain([last]).collect();
-        Scene { dt: self.dt / cuts as f64, a_g, ..self.clone() }
+        Scene { ground: ground(self.dt() / cuts as f64, a_g), ..self.clone() }
     }
 }
 
-fn structure(parameters: Parameters) -> Structure {
+/// A ground motion of the samples `a_g` (m/s²), `dt` s apart.
+pub fn ground(dt: f64, a_g: Vec<f64>) -> Record {
+    let times = (0..a_g.len()).map(|k| k as f64 * dt).collect();
+    Record::from_samples("", times, a_g).expect("the study's own ground motions have samples")
+}
+
+/// A structure of parameters that are known to be in range.
+pub fn structure(parameters: Parameters) -> Structure {
     Structure::new(parameters).expect("the study's own parameters are in range")
 }
 
@@ -164,8 +178,7 @@ fn from_rest(
         title,
         structure: structure(parameters),
         initial: State::default(),
-        dt: record.times()[1] - record.times()[0],
-        a_g: a_g.to_vec(),
+        ground: ground(record.times()[1], a_g.to_vec()),
     })
 }
 

@@ -8,8 +8,8 @@ use crate::scene::{Input, Scene};
 use crate::timing;
 use anyhow::Result;
 use indicatif::ProgressBar;
+use rocking::Detail;
 use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::{Detail, Engine};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -28,15 +28,8 @@ pub struct Row {
 
 /// Time per sample, s, of the engine at `detail` to `tolerance`: from sample to sample, nothing else.
 fn engine_time(scene: &Scene, detail: Detail, tolerance: f64) -> f64 {
-    let steps: Vec<_> = scene.steps(Input::Linear, 1).collect();
-    let (_, time) = timing::fastest(|| {
-        let mut engine = Engine::with_detail(scene.structure, scene.initial, 0.0, tolerance, detail)
-            .expect("the scene's own initial state is in range");
-        for step in &steps {
-            engine.advance(step.end, step.a_g, &mut |_| ()).expect("the scene has an answer");
-        }
-        engine.motion().state
-    });
+    let run = scene.run(detail, tolerance);
+    let (_, time) = timing::fastest(|| run.follow(&mut ()).expect("the scene has an answer"));
     time / scene.intervals() as f64
 }
 
@@ -45,7 +38,7 @@ fn auto_time(scene: &Scene, error: f64) -> (f64, f64) {
     let exact = engine::reference(scene);
     let tolerances = (2..=26).map(|k| 10f64.powf(-0.5 * f64::from(k)));
     let good = tolerances.filter(|&tolerance| {
-        let response = engine::run(scene, Detail::Auto, tolerance, (Input::Linear, 1), &mut |_| ());
+        let response = engine::run(scene, Detail::Auto, tolerance, &mut ());
         Errors::of(&response, &exact).is_ok_and(|errors| errors.theta <= error)
     });
     good.map(|tolerance| (engine_time(scene, Detail::Auto, tolerance), tolerance))
@@ -74,8 +67,7 @@ pub fn measure(scene: &Scene, limits: precision::Limits, progress: &ProgressBar)
     }
     let fmu = Fmu::new(scene, DEFAULT_TOLERANCE)?;
     let (_, with_fmi) = timing::fastest(|| fmu.run(Input::Linear, 1));
-    let (_, without) =
-        timing::fastest(|| engine::run(scene, Detail::Auto, DEFAULT_TOLERANCE, (Input::Linear, 1), &mut |_| ()));
+    let (_, without) = timing::fastest(|| engine::run(scene, Detail::Auto, DEFAULT_TOLERANCE, &mut ()));
     in_floors("what the FMI layer adds to a step".into(), 10.0, (with_fmi - without) / scene.intervals() as f64);
 
     let diagram = precision::measure(scene, limits, progress)?;

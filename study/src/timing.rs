@@ -33,7 +33,7 @@ pub fn floor(scene: &Scene) -> f64 {
     let (_, time) = fastest(|| {
         let decay = black_box(decay);
         let mut state = SVector::<f64, 4>::repeat(0.01);
-        for pair in scene.a_g.windows(2) {
+        for pair in scene.ground.acceleration().windows(2) {
             state = decay * SVector::<f64, 6>::from([state[0], state[1], state[2], state[3], pair[0], pair[1]]);
         }
         black_box(state)

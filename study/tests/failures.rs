@@ -39,7 +39,7 @@ fn a_dip_between_two_looks_is_missed_and_the_engine_sees_it() {
 #[test]
 fn the_displacement_alone_makes_contact_chatter() {
     let scene = synthetic::scene().scaled(1.5);
-    let grid = Grid { method: &RungeKutta4, h: scene.dt / 16.0 };
+    let grid = Grid { method: &RungeKutta4, h: scene.dt() / 16.0 };
     let complete = run(&scene, &grid, Transitions::Located, uplift_excess, &mut |_, _| ());
     let mut phases = Vec::new();
     let naive = run(&scene, &grid, Transitions::Located, displacement_excess, &mut |time, phase| {
@@ -54,13 +54,13 @@ fn the_displacement_alone_makes_contact_chatter() {
 /// The times between a rigid block's impacts shrink by r each, in the end; flexible structures land.
 #[test]
 fn a_rigid_block_comes_to_rest_like_zeno() {
-    let released = history::at_rest(zeno::STRUCTURE, State { theta: 0.04, ..State::default() }, 4.0, 4);
-    let rigid = zeno::intervals(&history::exact(&released, Detail::Rigid).unwrap().transitions);
+    let released = history::at_rest(zeno::STRUCTURE, State { theta: 0.04, ..State::default() }, 4.0);
+    let rigid = zeno::intervals(&history::exact(&released, Detail::Rigid, []).unwrap().transitions);
     assert!(rigid.len() > 200);
     for pair in rigid[100..150].windows(2) {
         assert_relative_eq!(pair[1].1 / pair[0].1, zeno::STRUCTURE.r, max_relative = 1e-5);
     }
-    let flexible = zeno::intervals(&history::exact(&released, Detail::Nonlinear).unwrap().transitions);
+    let flexible = zeno::intervals(&history::exact(&released, Detail::Nonlinear, []).unwrap().transitions);
     assert!(flexible.len() < 20);
 }
 

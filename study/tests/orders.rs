@@ -10,11 +10,11 @@ use study::fmu::Fmu;
 use study::guards::uplift_excess;
 use study::hybrid::{self, Grid, Transitions};
 use study::response::{Errors, Response};
-use study::scene::{Input, Scene};
+use study::scene::{Input, Scene, ground};
 
 /// A textbook method's response with `steps` steps between samples.
 fn textbook(scene: &Scene, method: usize, transitions: Transitions, steps: u32) -> Response {
-    let grid = Grid { method: TEXTBOOK[method].method, h: scene.dt / f64::from(steps) };
+    let grid = Grid { method: TEXTBOOK[method].method, h: scene.dt() / f64::from(steps) };
     hybrid::run(scene, &grid, transitions, uplift_excess, &mut |_, _| ())
 }
 
@@ -34,8 +34,7 @@ fn smooth() -> Scene {
         title: "smooth",
         structure: Structure::new(Parameters::MCMANUS).unwrap(),
         initial: State { theta: 0.1, theta_dot: 0.2, u: 1e-3, u_dot: -0.1 },
-        dt: 0.02,
-        a_g: (0..6).map(|k| 0.3 - 0.1 * f64::from(k)).collect(),
+        ground: ground(0.02, (0..6).map(|k| 0.3 - 0.1 * f64::from(k)).collect()),
     }
 }
 
@@ -87,7 +86,7 @@ fn the_engines_error_follows_its_tolerance() {
     for detail in [Detail::Auto, Detail::Nonlinear] {
         let errors: Vec<f64> = tolerances
             .iter()
-            .map(|tolerance| error(&engine::run(&scene, detail, *tolerance, (Input::Linear, 1), &mut |_| ()), &exact))
+            .map(|tolerance| error(&engine::run(&scene, detail, *tolerance, &mut ()), &exact))
             .collect();
         for (tolerance, error) in tolerances.iter().zip(&errors) {
             assert!(error < tolerance, "{detail:?}: {error} at tolerance {tolerance}");

@@ -65,7 +65,7 @@ fn the_reference_is_confirmed_by_another_method() {
     use study::guards::uplift_excess;
     use study::hybrid::{Grid, Transitions, run};
     let scene = synthetic::scene();
-    let grid = Grid { method: &RungeKutta4, h: scene.dt / 512.0 };
+    let grid = Grid { method: &RungeKutta4, h: scene.dt() / 512.0 };
     let fine = run(&scene, &grid, Transitions::Located, uplift_excess, &mut |_, _| ());
     let exact = engine::reference(&scene);
     assert_eq!(fine.transitions, exact.transitions);
@@ -82,7 +82,7 @@ fn the_command_writes_what_it_has_measured() {
     let rows: Vec<_> = csv.records().map(Result::unwrap).collect();
     assert_eq!(rows.len(), 26 * 5);
     let row = rows.iter().find(|row| &row[0] == "this project, auto" && row[3].starts_with("1.000000e-3")).unwrap();
-    let response = engine::run(&scene, rocking::Detail::Auto, 1e-3, (study::scene::Input::Linear, 1), &mut |_| ());
+    let response = engine::run(&scene, rocking::Detail::Auto, 1e-3, &mut ());
     let errors = Errors::of(&response, &engine::reference(&scene)).unwrap();
     assert_eq!(row[8], format!("{:.3e}", errors.theta));
     assert_eq!(row[7], response.transitions.to_string());

@@ -1,12 +1,12 @@
 //! How often the structures of a sweep overturn or exceed its limits, scale factor by scale factor, and fragility
 //! curves.
-use super::{
-    outcome::{MEASURES, Outcome},
-    plan::{Limit, Plan, Run},
-};
 use crate::significant::significant;
 use rocking::fragility::{FitError, FragilityCurve, Trials};
-use std::collections::BTreeMap;
+use rocking::run::{
+    Ending, LONGEST_REST,
+    outcome::{Limit, Outcome},
+    plan::Plan,
+};
 use std::io::{self, Write};
 
 /// Structures that are counted together, and how they fared.
@@ -17,6 +17,8 @@ pub struct Population {
     pub stripes: Vec<Stripe>,
     /// Of overturning, then of the limits.
     pub fragilities: Vec<Fragility>,
+    failed: usize,
+    still_rocking: usize,
 }
 
 /// The runs at one scale factor.
@@ -29,61 +31,60 @@ pub struct Stripe {
 
 /// How often one limit is exceeded.
 pub struct Fragility {
-    /// The limit in words.
-    pub limit: String,
-    /// The part of the runs that exceed it, stripe by stripe.
-    pub probabilities: Vec<f64>,
+    /// The limit.
+    pub limit: Limit,
+    /// The part of the runs that exceed it, of those of which that is known, stripe by stripe.
+    pub probabilities: Vec<Option<f64>>,
     /// Against the peak ground acceleration of the single run, g.
     pub curve: Result<FragilityCurve, FitError>,
 }
 
+/// A run's peak ground acceleration, g, and what it came to.
+type Counted<'a> = (f64, &'a Outcome);
+
 /// Counts the `outcomes` of all runs of `plan`.
-pub fn count(plan: &Plan, outcomes: &[Outcome]) -> Vec<Population> {
-    let population = |(index, name): (usize, &String)| {
-        let mut by_scale: Vec<Vec<(Run, &Outcome)>> = plan.scales.iter().map(|_| Vec::new()).collect();
-        for (run, outcome) in plan.runs().zip(outcomes).filter(|(run, _)| run.point.population == index) {
-            by_scale[run.scale_index].push((run, outcome));
-        }
-        let limits = [None].into_iter().chain(plan.limits.iter().map(Some));
+pub fn count(plan: &Plan, limits: &[Limit], outcomes: &[Outcome]) -> Vec<Population> {
+    let mut by_scale: Vec<Vec<Vec<Counted>>> = vec![vec![Vec::new(); plan.scales().len()]; plan.populations().len()];
+    for (index, (case, outcome)) in plan.cases().zip(outcomes).enumerate() {
+        let is_its = |population: &rocking::run::plan::Population| population.name() == case.population.name();
+        let population = plan.populations().iter().position(is_its).expect("a case is of a population");
+        by_scale[population][index % plan.scales().len()].push((case.intensity(), outcome));
+    }
+    let population = |(population, by_scale): (&rocking::run::plan::Population, Vec<Vec<Counted>>)| {
+        let outcomes = || by_scale.iter().flatten().map(|(_, outcome)| outcome);
+        let is_still_rocking =
+            |outcome: &Outcome| matches!(outcome, Outcome::Ended(summary) if summary.ending == Ending::StillRocking);
         Population {
-            name: name.clone(),
-            stripes: by_scale.iter().map(|runs| stripe(runs)).collect(),
-            fragilities: limits.map(|limit| fragility(limit, &by_scale)).collect(),
+            name: population.name().into(),
+            stripes: plan.scales().iter().zip(&by_scale).map(|(scale, runs)| stripe(*scale, runs)).collect(),
+            fragilities: [&Limit::Overturning]
+                .into_iter()
+                .chain(limits)
+                .map(|limit| fragility(*limit, &by_scale))
+                .collect(),
+            failed: outcomes().filter(|outcome| matches!(outcome, Outcome::Failed(_))).count(),
+            still_rocking: outcomes().filter(|outcome| is_still_rocking(outcome)).count(),
         }
     };
-    plan.populations.iter().enumerate().map(population).collect()
+    plan.populations().iter().zip(by_scale).map(population).collect()
 }
 
-fn stripe(runs: &[(Run, &Outcome)]) -> Stripe {
-    let logarithms: f64 = runs.iter().map(|(run, _)| run.pga().ln()).sum();
-    Stripe { scale: runs[0].0.scale, runs: runs.len(), pga: (logarithms / runs.len() as f64).exp() }
+fn stripe(scale: f64, runs: &[Counted]) -> Stripe {
+    let logarithms: f64 = runs.iter().map(|(pga, _)| pga.ln()).sum();
+    Stripe { scale, runs: runs.len(), pga: (logarithms / runs.len() as f64).exp() }
 }
 
-/// How often `limit` is exceeded, or the structure overturned without one.
-fn fragility(limit: Option<&Limit>, by_scale: &[Vec<(Run, &Outcome)>]) -> Fragility {
-    let exceeds = |outcome: &Outcome| limit.map_or(outcome.overturned, |limit| outcome.exceeds(limit));
-    let mut trials = BTreeMap::new();
-    for (run, outcome) in by_scale.iter().flatten() {
-        let intensity = run.pga();
-        let of_none = Trials { intensity, runs: 0, exceedances: 0 };
-        let at: &mut Trials = trials.entry(intensity.to_bits()).or_insert(of_none);
-        at.runs += 1;
-        at.exceedances += usize::from(exceeds(outcome));
-    }
-    let part = |runs: &Vec<(Run, &Outcome)>| {
-        runs.iter().filter(|(_, outcome)| exceeds(outcome)).count() as f64 / runs.len() as f64
+fn fragility(limit: Limit, by_scale: &[Vec<Counted>]) -> Fragility {
+    let exceeds = |&(pga, outcome): &Counted| (pga, outcome.exceeds(&limit));
+    let part = |runs: &Vec<Counted>| {
+        let known: Vec<_> = runs.iter().filter_map(|run| exceeds(run).1).collect();
+        let exceedances = known.iter().filter(|exceeds| **exceeds).count();
+        (!known.is_empty()).then(|| exceedances as f64 / known.len() as f64)
     };
     Fragility {
-        limit: limit.map_or("overturned".into(), in_words),
+        limit,
         probabilities: by_scale.iter().map(part).collect(),
-        curve: FragilityCurve::fit(&trials.into_values().collect::<Vec<_>>()),
-    }
-}
-
-fn in_words(limit: &Limit) -> String {
-    match MEASURES[limit.measure] {
-        (name, "1") => format!("{name} >= {}", limit.value),
-        (name, unit) => format!("{name} >= {} {unit}", limit.value),
+        curve: FragilityCurve::fit(&Trials::count(by_scale.iter().flatten().map(exceeds))),
     }
 }
 
@@ -94,15 +95,16 @@ impl Population {
         let mut line = |cells: [&str; 3], of_limit: &dyn Fn(&Fragility) -> String| {
             write!(out, "{:>10} {:>12} {:>6}", cells[0], cells[1], cells[2])?;
             for fragility in &self.fragilities {
-                let width = fragility.limit.len().max(10);
+                let width = fragility.limit.to_string().len().max(10);
                 write!(out, "  {:>width$}", of_limit(fragility))?;
             }
             writeln!(out)
         };
-        line(["scale", "PGA (g)", "runs"], &|fragility| fragility.limit.clone())?;
+        line(["scale", "PGA (g)", "runs"], &|fragility| fragility.limit.to_string())?;
         for (i, Stripe { scale, runs, pga }) in self.stripes.iter().enumerate() {
             let cells = [significant(*scale), significant(*pga), runs.to_string()];
-            line(cells.each_ref().map(String::as_str), &|fragility| format!("{:.4}", fragility.probabilities[i]))?;
+            let part = |of: &Fragility| of.probabilities[i].map_or("none".into(), |part| format!("{part:.4}"));
+            line(cells.each_ref().map(String::as_str), &part)?;
         }
         let of_curve = |fragility: &Fragility, value: fn(&FragilityCurve) -> f64| {
             fragility.curve.as_ref().map_or("none".into(), |curve| significant(value(curve)))
@@ -113,6 +115,17 @@ impl Population {
             if let Err(reason) = curve {
                 writeln!(out, "{limit}: no curve: {reason}")?;
             }
+        }
+        if self.failed > 0 {
+            writeln!(out, "{} failed and are not counted", self.failed)?;
+        }
+        if self.still_rocking > 0 {
+            let still_rocking = self.still_rocking;
+            writeln!(
+                out,
+                "{still_rocking} still rocked {LONGEST_REST}/p_l after the record: counted where a limit was exceeded, \
+                 and else not"
+            )?;
         }
         writeln!(out)
     }

@@ -42,6 +42,7 @@ pub fn draw(path: &Path, populations: &[Population]) -> anyhow::Result<()> {
     for (i, (population, Fragility { limit, probabilities, curve })) in fragilities.enumerate() {
         let color = COLORS[i % COLORS.len()];
         let points = population.stripes.iter().zip(probabilities).map(|(stripe, part)| (stripe.pga, *part));
+        let points = points.filter_map(|(pga, part)| Some((pga, part?)));
         let circles = points.map(|point| Circle::new(point, 3, color.filled()));
         chart
             .draw_series(circles)?

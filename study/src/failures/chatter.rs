@@ -1,6 +1,6 @@
 //! Chatter after a landing with |u| > u_cr.
 
-use super::history::exact;
+use super::history::{every, exact};
 use super::{Exhibit, RIGHT, WRONG};
 use crate::chart::{Axis, Entry, Figure, Panel, Style, colour};
 use crate::fixed_step::runge_kutta_4::RungeKutta4;
@@ -8,38 +8,38 @@ use crate::guards::{displacement_excess, uplift_excess};
 use crate::hybrid::{self, Grid, Transitions};
 use crate::scene::Scene;
 use anyhow::{Context, Result};
-use rocking::{Detail, State, TransitionKind};
+use rocking::{Detail, Motion, TransitionKind};
 
 /// Steps of RK4 to a sample.
 const STEPS: f64 = 64.0;
 
-/// Results between two samples for the close view.
-const CUTS: usize = 1000;
+/// Instants of the close view, s from the landing.
+const CLOSE: f64 = 1e-5;
 
 /// The uplift rule |u| ≥ u_cr alone, against the complete one.
 pub fn show(scene: &Scene) -> Result<Exhibit> {
-    let grid = Grid { method: &RungeKutta4, h: scene.dt / STEPS };
+    let grid = Grid { method: &RungeKutta4, h: scene.dt() / STEPS };
     let mut times = Vec::new();
     let naive = hybrid::run(scene, &grid, Transitions::Located, displacement_excess, &mut |time, _| times.push(time));
     naive.failure.context("the incomplete rule gets through")?;
     let stuck = times[times.len() - 1];
     let before = times.iter().filter(|time| **time < stuck - 1e-9).count();
 
-    let fine = exact(&scene.resampled(CUTS), Detail::Nonlinear)?;
-    let landing = fine
+    let right = exact(scene, Detail::Nonlinear, [])?;
+    let landing = right
         .transitions
         .iter()
         .find(|transition| transition.kind == TransitionKind::Landing && (transition.time - stuck).abs() < 0.01);
     let landing = landing.context("the exact response lands where the incomplete rule gets stuck")?;
-    let uplift = fine
+    let uplift = right
         .transitions
         .iter()
         .find(|transition| transition.time >= landing.time && matches!(transition.kind, TransitionKind::Uplift(_)));
     let held = uplift.map(|uplift| 1e3 * (uplift.time - landing.time)).context("it lifts off again")?;
 
     let count = |times: &[f64]| times.iter().enumerate().map(|(k, t)| (*t, (k + 1) as f64)).collect::<Vec<_>>();
-    let all: Vec<_> = fine.transitions.iter().map(|transition| transition.time).collect();
-    let duration = scene.dt * scene.intervals() as f64;
+    let all: Vec<_> = right.transitions.iter().map(|transition| transition.time).collect();
+    let duration = scene.ground.end();
     let counts = Panel::new(
         "transitions so far",
         Axis::linear("time, s", 0.0, duration),
@@ -53,10 +53,8 @@ pub fn show(scene: &Scene) -> Result<Exhibit> {
     let structure = &scene.structure;
     let [mut displacement, mut moment] = [Vec::new(), Vec::new()];
     let mut below = None;
-    let after = fine.u.windows(2).filter(|pair| pair[0].0 > landing.time);
-    for (t, u, u_dot) in after.map(|pair| (pair[0].0, pair[0].1, (pair[1].1 - pair[0].1) / (pair[1].0 - pair[0].0))) {
-        let state = State { u, u_dot, ..State::default() };
-        let microseconds = 1e6 * (t - landing.time);
+    for Motion { time, state, .. } in exact(scene, Detail::Nonlinear, every(CLOSE).map(|t| landing.time + t))?.motions {
+        let microseconds = 1e6 * (time - landing.time);
         let excess = displacement_excess(structure, &state);
         if excess < 0.0 && below.is_none() {
             below = Some(microseconds);

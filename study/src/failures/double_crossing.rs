@@ -1,6 +1,6 @@
 //! Two crossings within one step.
 
-use super::history::{at_rest, exact, window};
+use super::history::{at_rest, every, exact, window};
 use super::{Exhibit, RIGHT, WRONG};
 use crate::chart::{Axis, Entry, Figure, Marker, Panel, Style, colour};
 use crate::equations::PhaseEquations;
@@ -65,12 +65,11 @@ impl Integrator for Blind {
 
 /// A dip that begins and ends between two looks.
 pub fn show() -> Result<Exhibit> {
-    let scene = at_rest(Parameters::MCMANUS, START, DURATION, 1600);
-    let right = exact(&scene, Detail::Nonlinear)?;
+    let scene = at_rest(Parameters::MCMANUS, START, DURATION);
+    let right = exact(&scene, Detail::Nonlinear, every(1e-3))?;
     let first = right.transitions.first().context("the exact response has transitions")?.time;
     let blind = Blind::default();
-    let whole = at_rest(Parameters::MCMANUS, START, DURATION, 1);
-    hybrid::run(&whole, &blind, Transitions::Located, uplift_excess, &mut |_, _| ());
+    hybrid::run(&scene, &blind, Transitions::Located, uplift_excess, &mut |_, _| ());
     let path = blind.path.take();
     let dip: Vec<f64> = path.iter().filter(|(t, theta)| *t < LOOK && *theta < 0.0).map(|(t, _)| *t).collect();
     let (begins, ends) = (dip[0], dip[dip.len() - 1]);
@@ -84,7 +83,7 @@ pub fn show() -> Result<Exhibit> {
         Panel::new(title, x, Axis::linear("θ, mrad", low, high))
             .with("floor", [(0.0, 0.0), (1e3 * duration, 0.0)], floor)
             .with("sign looked at every 20 ms", window(&path, (0.0, duration), units), WRONG)
-            .with("this project", window(&right.theta, (0.0, duration), units), RIGHT)
+            .with("this project", window(&right.theta(), (0.0, duration), units), RIGHT)
     };
     let close = panel("the crossings", 0.03, (-2.0, 6.0)).with("looks", window(&looks, (0.0, 0.03), units), look);
     let whole = panel("what becomes of it", DURATION, (-90.0, 110.0));

@@ -34,13 +34,14 @@
 //!
 //! A landing (u̇ ← u̇ + Hθ̇, θ̇ ← 0) always loses: ΔE = −½ [m (sB−u)² + J0 + m0 B²] θ̇².
 
-use super::history::structure;
+use super::history::{History, at_rest, every, exact};
 use super::{Exhibit, RIGHT, WRONG};
 use crate::chart::{Axis, Entry, Figure, Marker, Panel, Style, colour};
+use crate::scene::structure;
 use anyhow::{Context, Result};
 use rocking::energy::energy;
 use rocking::impact::gaining_restitution;
-use rocking::{Engine, Motion, Parameters, Phase, Ramp, Side, State, Structure, Transition, TransitionKind};
+use rocking::{Detail, Motion, Parameters, Phase, Side, State, Structure, Transition, TransitionKind};
 
 /// Equation (a): change of energy, J, at an impact that ends rocking about `side` in the state `before` and is followed
 /// by rocking about the other pivot.
@@ -96,16 +97,11 @@ type Instant = (f64, f64);
 
 /// The energy of the example over time, on ground at rest, and its transitions.
 fn energy_history() -> Result<(Vec<Instant>, Vec<Transition>)> {
-    let structure = structure(GAINER);
-    let rest = energy(&structure, Phase::FullContact, &State::default());
-    let mut engine = Engine::new(structure, State { theta: RELEASE, ..State::default() }, 0.0, 1e-12)?;
-    let (mut history, mut transitions) = (Vec::new(), Vec::new());
-    for k in 1..=1000 {
-        engine.advance(f64::from(k) * 1e-3 * DURATION, Ramp::default(), &mut |t| transitions.push(*t))?;
-        let Motion { time, state, phase, .. } = *engine.motion();
-        history.push((time, energy(&structure, phase, &state) - rest));
-    }
-    Ok((history, transitions))
+    let scene = at_rest(GAINER, State { theta: RELEASE, ..State::default() }, DURATION);
+    let rest = energy(&scene.structure, Phase::FullContact, &State::default());
+    let History { motions, transitions } = exact(&scene, Detail::Auto, every(1e-3 * DURATION))?;
+    let over_rest = |motion: &Motion| (motion.time, energy(&scene.structure, motion.phase, &motion.state) - rest);
+    Ok((motions.iter().map(over_rest).collect(), transitions))
 }
 
 /// Slenderness in which (d) is one curve: √((m H² + J0)/((m + m0) B²)), which is H/(B √γ) for J0 = 0.

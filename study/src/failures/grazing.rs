@@ -1,6 +1,6 @@
 //! Grazes that decide differently under a change of 1e-12.
 
-use super::history::{History, at_rest, exact};
+use super::history::{History, at_rest, every, exact};
 use super::{Exhibit, RIGHT, WRONG};
 use crate::chart::{Axis, Entry, Figure, Marker, Panel, Style, colour, scientific};
 use anyhow::{Context, Result};
@@ -12,7 +12,7 @@ const DURATION: f64 = 1.0;
 /// McManus's specimen shortly before an impact; what is varied is how fast it vibrates.
 fn released(theta_dot: f64, u_dot: f64) -> Result<History> {
     let initial = State { theta: 0.002, theta_dot, u_dot, ..State::default() };
-    exact(&at_rest(Parameters::MCMANUS, initial, DURATION, 1000), Detail::Nonlinear)
+    Ok(exact(&at_rest(Parameters::MCMANUS, initial, DURATION), Detail::Nonlinear, every(1e-3))?)
 }
 
 /// A family of releases: θ̇ at the start, rad/s, and what is examined, u̇ in m/s.
@@ -75,10 +75,10 @@ impl Family {
     /// How far the answer moves, relative to its largest value, when u̇ is changed by the fractions `changes`.
     pub fn sensitivity(&self, changes: &[f64]) -> Result<Vec<(f64, f64)>> {
         let critical = self.critical()?;
-        let base = released(self.theta_dot, critical)?.theta;
+        let base = released(self.theta_dot, critical)?.theta();
         let largest = base.iter().map(|(_, theta)| theta.abs()).fold(0.0, f64::max);
         let moved = |change: &f64| {
-            let moved = released(self.theta_dot, critical * (1.0 + self.towards * change))?.theta;
+            let moved = released(self.theta_dot, critical * (1.0 + self.towards * change))?.theta();
             let differences = base.iter().zip(moved).map(|((_, a), (_, b))| (a - b).abs());
             Ok((*change, differences.fold(0.0, f64::max) / largest))
         };
@@ -93,7 +93,7 @@ pub fn show() -> Result<Exhibit> {
     let (lower, upper) =
         (released(MOMENTUM.theta_dot, critical)?, released(MOMENTUM.theta_dot, critical * (1.0 + CHANGE))?);
     let impact = lower.transitions[0];
-    let mrad = |history: &History| history.theta.iter().map(|(t, theta)| (*t, 1e3 * theta)).collect::<Vec<_>>();
+    let mrad = |history: &History| history.theta().iter().map(|(t, theta)| (*t, 1e3 * theta)).collect::<Vec<_>>();
     let two = Panel::new(
         "two releases one part in 10¹² apart",
         Axis::linear("time, s", 0.0, 0.4),

@@ -1,49 +1,49 @@
 //! Exact histories for the pictures.
 
-use crate::engine;
-use crate::scene::{Input, Scene};
-use anyhow::{Result, ensure};
-use rocking::{Detail, Parameters, State, Structure, Transition, TransitionKind};
+use crate::engine::REFERENCE_TOLERANCE;
+use crate::scene::{Scene, structure};
+use rocking::record::Record;
+use rocking::run::RunError;
+use rocking::{Detail, Motion, Parameters, State, Transition, TransitionKind};
 
 /// A response over time, and its transitions.
 pub struct History {
-    /// (t, θ), s and rad.
-    pub theta: Vec<(f64, f64)>,
-    /// (t, u), s and m.
-    pub u: Vec<(f64, f64)>,
+    /// At the instants asked for, and at the end.
+    pub motions: Vec<Motion>,
     /// All of them, in order.
     pub transitions: Vec<Transition>,
 }
 
-/// A structure of parameters that are known to be in range.
-pub fn structure(parameters: Parameters) -> Structure {
-    Structure::new(parameters).expect("the study's own parameters are in range")
+impl History {
+    /// (t, θ), s and rad.
+    pub fn theta(&self) -> Vec<(f64, f64)> {
+        self.motions.iter().map(|motion| (motion.time, motion.state.theta)).collect()
+    }
 }
 
-/// A structure on ground at rest, with `samples` results over `duration` (s).
-pub fn at_rest(parameters: Parameters, initial: State, duration: f64, samples: usize) -> Scene {
+/// A structure on ground at rest for `duration` (s).
+pub fn at_rest(parameters: Parameters, initial: State, duration: f64) -> Scene {
     Scene {
         key: "at-rest",
         title: "ground at rest",
         structure: structure(parameters),
         initial,
-        dt: duration / samples as f64,
-        a_g: vec![0.0; samples + 1],
+        ground: Record::at_rest(duration),
     }
 }
 
-/// The exact response at the level `detail`, to its end.
-pub fn exact(scene: &Scene, detail: Detail) -> Result<History> {
-    let mut transitions = Vec::new();
-    let response = engine::run(scene, detail, engine::REFERENCE_TOLERANCE, (Input::Linear, 1), &mut |transition| {
-        transitions.push(*transition);
-    });
-    let ends = |k: usize| (k + 1) as f64 * scene.dt;
-    let over_time = |get: fn(&crate::response::Sample) -> f64| {
-        response.samples.iter().enumerate().map(|(k, sample)| (ends(k), get(sample))).collect()
-    };
-    ensure!(response.failure.is_none(), "the exact response fails: {:?}", response.failure);
-    Ok(History { theta: over_time(|s| s.theta), u: over_time(|s| s.u), transitions })
+/// Instants `interval` s apart.
+pub fn every(interval: f64) -> impl Iterator<Item = f64> {
+    (1..).map(move |k| f64::from(k) * interval)
+}
+
+/// The exact response at the level `detail`, seen at `times` (s), to its end.
+pub fn exact(scene: &Scene, detail: Detail, times: impl IntoIterator<Item = f64>) -> Result<History, RunError> {
+    let (mut motions, mut transitions) = (Vec::new(), Vec::new());
+    let show = |sample: &rocking::piece::Sample| motions.push(sample.motion);
+    let watch = &mut |transition: &Transition| transitions.push(*transition);
+    scene.run(detail, REFERENCE_TOLERANCE).sample(times, show, watch)?;
+    Ok(History { motions, transitions })
 }
 
 /// What is visible of `points` between two instants, with the axes' units: x − `origin` in units of `x_unit`, y in

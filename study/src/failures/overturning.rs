@@ -1,10 +1,12 @@
 //! Near-overturning: errors grow like e^{p t}.
 
-use super::history::structure;
+use super::history::{History, at_rest, every, exact};
 use super::{Exhibit, RIGHT, WRONG};
 use crate::chart::{Axis, Entry, Figure, Panel, Style, colour};
+use crate::scene::structure;
 use anyhow::Result;
-use rocking::{Engine, Parameters, Phase, Ramp, State};
+use rocking::run::RunError;
+use rocking::{Detail, Parameters, State, TransitionKind};
 
 /// How long the structure is followed, s.
 const DURATION: f64 = 14.0;
@@ -15,20 +17,13 @@ const SAMPLE: f64 = 0.02;
 /// Relative distance of the two release angles from the one that balances.
 const CHANGE: f64 = 1e-12;
 
-/// θ (rad) over time of McManus's specimen released at rest, to where it overturns.
-fn released(theta: f64) -> Result<(Vec<(f64, f64)>, bool)> {
-    let initial = State { theta, ..State::default() };
-    let mut engine = Engine::new(structure(Parameters::MCMANUS), initial, 0.0, 1e-14)?;
-    let mut history = Vec::new();
-    for k in 1..=(DURATION / SAMPLE) as usize {
-        engine.advance(k as f64 * SAMPLE, Ramp::default(), &mut |_| ())?;
-        let motion = engine.motion();
-        history.push((motion.time, motion.state.theta));
-        if let Phase::Overturned(_) = motion.phase {
-            return Ok((history, true));
-        }
-    }
-    Ok((history, false))
+/// McManus's specimen released at rest, to where it overturns.
+fn released(theta: f64) -> Result<History, RunError> {
+    exact(&at_rest(Parameters::MCMANUS, State { theta, ..State::default() }, DURATION), Detail::Auto, every(SAMPLE))
+}
+
+fn overturns(history: &History) -> bool {
+    history.transitions.iter().any(|transition| matches!(transition.kind, TransitionKind::Overturning(_)))
 }
 
 /// The rate at which a small error grows at the unstable equilibrium, 1/s: Eq 6 linearised at θ = α_cg.
@@ -47,10 +42,10 @@ pub fn show() -> Result<Exhibit> {
         if middle <= low || middle >= high {
             break;
         }
-        *(if released(middle)?.1 { &mut high } else { &mut low }) = middle;
+        *(if overturns(&released(middle)?) { &mut high } else { &mut low }) = middle;
     }
-    let (inside, _) = released(low * (1.0 - CHANGE))?;
-    let (outside, _) = released(low * (1.0 + CHANGE))?;
+    let inside = released(low * (1.0 - CHANGE))?.theta();
+    let outside = released(low * (1.0 + CHANGE))?.theta();
     let difference: Vec<_> = inside.iter().zip(&outside).map(|((t, a), (_, b))| (*t, (a - b).abs())).collect();
     let rate = growth();
     let start = difference[(2.0 / SAMPLE) as usize];

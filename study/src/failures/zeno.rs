@@ -1,8 +1,9 @@
 //! Zeno at rest in the rigid limit.
 
 use super::Exhibit;
-use super::history::{at_rest, exact, is_impact};
+use super::history::{at_rest, every, exact, is_impact};
 use crate::chart::{Axis, Entry, Figure, Marker, Panel, Style, colour};
+use crate::scene::structure;
 use anyhow::Result;
 use rocking::{Detail, Parameters, State, Transition};
 
@@ -29,12 +30,13 @@ pub fn intervals(transitions: &[Transition]) -> Vec<(f64, f64)> {
 
 /// A rigid block that comes to rest, and flexible structures ever stiffer.
 pub fn show() -> Result<Exhibit> {
-    let released =
-        |parameters: Parameters, u: f64| at_rest(parameters, State { theta: 0.04, u, ..State::default() }, 4.0, 2000);
-    let rigid = exact(&released(STRUCTURE, 0.0), Detail::Rigid)?;
+    let released = |parameters: Parameters| {
+        at_rest(parameters, State { theta: 0.04, u: structure(parameters).u_cr, ..State::default() }, 4.0)
+    };
+    let rigid = exact(&released(STRUCTURE), Detail::Rigid, every(2e-3))?;
     let last = rigid.transitions.iter().rfind(|transition| is_impact(transition)).map_or(0.0, |impact| impact.time);
     let number = rigid.transitions.iter().filter(|transition| is_impact(transition)).count();
-    let theta: Vec<_> = rigid.theta.iter().map(|(t, theta)| (*t, 1e3 * theta)).collect();
+    let theta: Vec<_> = rigid.theta().iter().map(|(t, theta)| (*t, 1e3 * theta)).collect();
     let history = Panel::new(
         "a rigid block comes to rest",
         Axis::linear("time, s", 0.0, 4.0),
@@ -51,9 +53,7 @@ pub fn show() -> Result<Exhibit> {
     let mut counts = Vec::new();
     times = times.with("rigid", intervals(&rigid.transitions), RIGID);
     for (f_fc, style) in FREQUENCIES.into_iter().zip(STYLES) {
-        let parameters = Parameters { f_fc, ..STRUCTURE };
-        let u_cr = super::history::structure(parameters).u_cr;
-        let flexible = exact(&released(parameters, u_cr), Detail::Nonlinear)?;
+        let flexible = exact(&released(Parameters { f_fc, ..STRUCTURE }), Detail::Nonlinear, [])?;
         let gaps = intervals(&flexible.transitions);
         counts.push(format!("{} at {f_fc} Hz", gaps.len() + 1));
         times = times.with(format!("{f_fc} Hz"), gaps.last().copied(), style);

@@ -47,9 +47,7 @@ pub fn methods(scene: &Scene) -> Result<Vec<Method<'_>>> {
         name: format!("this project, {}", detail.name()),
         family: if detail == Detail::Auto { Family::Ours } else { Family::Level },
         setting: "tolerance",
-        settings: tolerances(move |tolerance| {
-            Box::new(move || engine::run(scene, detail, tolerance, (Input::Linear, 1), &mut |_| ()))
-        }),
+        settings: tolerances(move |tolerance| Box::new(move || engine::run(scene, detail, tolerance, &mut ()))),
     });
     let mut methods: Vec<_> = ours.collect();
     for (family, transitions) in
@@ -62,7 +60,7 @@ pub fn methods(scene: &Scene) -> Result<Vec<Method<'_>>> {
                 setting: "step, s",
                 settings: (0..HALVINGS)
                     .map(|k| {
-                        let h = scene.dt / f64::from(1 << k);
+                        let h = scene.dt() / f64::from(1 << k);
                         let grid = Grid { method: textbook.method, h };
                         Setting { value: h, run: hybrid(scene, grid, transitions), evaluations: None }
                     })
@@ -120,12 +118,10 @@ fn fmu(scene: &Scene) -> Result<Vec<Method<'_>>> {
         settings: (0..HALVINGS)
             .map(|k| {
                 let cuts = 1 << k;
-                // The same engine on the same steps.
-                let evaluations =
-                    move || engine::run(scene, Detail::Auto, DEFAULT_TOLERANCE, (input, cuts), &mut |_| ()).evaluations;
+                let evaluations = move || engine::evaluations(scene, DEFAULT_TOLERANCE, input, cuts);
                 let fmu = Rc::clone(&fmu);
                 Setting {
-                    value: scene.dt / cuts as f64,
+                    value: scene.dt() / cuts as f64,
                     run: Box::new(move || fmu.run(input, cuts)),
                     evaluations: Some(Box::new(evaluations)),
                 }

@@ -6,9 +6,9 @@ use crate::fixed_step::TEXTBOOK;
 use crate::guards::uplift_excess;
 use crate::hybrid::{self, Grid, Transitions};
 use crate::response::Response;
-use crate::scene::{Input, Scene};
+use crate::scene::{Scene, ground};
 use anyhow::{Context, Result};
-use rocking::{Detail, Parameters, State, Structure, TransitionKind};
+use rocking::{Detail, Parameters, State, Structure, Transition, TransitionKind};
 use serde::Serialize;
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -48,8 +48,7 @@ pub fn scene() -> Result<Scene> {
         title: "Evison's specimen, ground that sways more and more",
         structure,
         initial: State::default(),
-        dt: STEP,
-        a_g: a_g.collect(),
+        ground: ground(STEP, a_g.collect()),
     })
 }
 
@@ -65,7 +64,7 @@ pub fn save(docs: &Path) -> Result<Facts> {
     const NEWMARK: usize = 4;
     let scene = scene()?;
     let mut transitions = Vec::new();
-    let exact = engine::run(&scene, Detail::Nonlinear, 1e-12, (Input::Linear, 1), &mut |t| transitions.push(*t));
+    let exact = engine::run(&scene, Detail::Nonlinear, 1e-12, &mut |t: &Transition| transitions.push(*t));
     let uplift = transitions.iter().find(|transition| matches!(transition.kind, TransitionKind::Uplift(_)));
     let uplift = uplift.context("the structure lifts off")?.time;
     let unstable = response(&scene, CENTRAL_DIFFERENCE);

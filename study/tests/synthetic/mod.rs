@@ -1,7 +1,7 @@
 //! A ground motion made for the tests.
 
 use rocking::{Parameters, State, Structure};
-use study::scene::Scene;
+use study::scene::{Scene, ground};
 
 /// McManus's specimen under four sines that swell and fade, sampled every 0.01 s for 4 s.
 pub fn scene() -> Scene {
@@ -18,7 +18,6 @@ pub fn scene() -> Scene {
         title: "McManus's specimen, four sines",
         structure: Structure::new(Parameters::MCMANUS).unwrap(),
         initial: State::default(),
-        dt,
-        a_g: a_g.collect(),
+        ground: ground(dt, a_g.collect()),
     }
 }
