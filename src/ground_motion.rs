@@ -138,10 +138,11 @@ impl GroundMotion<'_> {
                 return None;
             }
             let ahead = |i: usize| if i < samples { this.ahead(i, elapsed) } else { f64::INFINITY };
-            while ahead(next) <= start {
+            let mut end = ahead(next);
+            while end <= start {
                 next += 1; // times that are the same once they are scaled
+                (end, a_g) = (ahead(next), this.ramp(next));
             }
-            let end = ahead(next);
             let is_last = end >= interval - this.rounding(next);
             let duration = if is_last {
                 interval - start
@@ -252,6 +253,17 @@ mod tests {
         );
         let early = Placement { start: -1.0, ..as_it_is };
         assert_eq!(stretches(early, 0.0, 0.25), [stretch(0.0, 0.25, 0.0, -80.0)]);
+    }
+
+    #[test]
+    fn samples_that_scaling_makes_one_are_passed() {
+        let record = record(&[0.0, 5e-324, 1e-323, 1.0], &[1.0, 2.0, 3.0, 4.0]);
+        let placement = Placement { time_scale: 0.25, ..Placement::default() };
+        let ground = GroundMotion { placement, ..GroundMotion::from(&record) };
+        let stretches: Vec<_> = ground.stretches(Elapsed::default(), 1.0).collect();
+        let a_g = Ramp { value: 3.0, slope: 4.0 };
+        let rest = Stretch { start: 0.25, duration: 0.75, a_g: Ramp::default() };
+        assert_eq!(stretches, [Stretch { start: 0.0, duration: 0.25, a_g }, rest]);
     }
 
     /// A host's steps add up to the record's times but for rounding: each is then one stretch, whatever the start.

@@ -46,9 +46,13 @@ impl<A: Watch, B: Watch> Watch for (&mut A, &mut B) {
 
     #[inline]
     fn piece(&mut self, piece: &mut Piece) {
-        self.0.piece(piece);
-        piece.rewind();
-        self.1.piece(piece);
+        if A::SEES_PIECES {
+            self.0.piece(piece);
+        }
+        if B::SEES_PIECES {
+            piece.rewind();
+            self.1.piece(piece);
+        }
     }
 
     fn transition(&mut self, transition: &Transition) {

@@ -27,16 +27,16 @@ fn scenes() -> Vec<(Parameters, State, Detail, Record)> {
     let stiff = Parameters { f_fc: 40.0, ..mcmanus };
     let at_rest = State::default();
     vec![
-        (mcmanus, at_rest, Detail::Auto, shaking(1, 0.01, 200, 3.0)),
+        (mcmanus, at_rest, Detail::Auto, shaking(1, 0.01, 200, 1.3)),
         (mcmanus, at_rest, Detail::Nonlinear, shaking(2, 0.01, 200, 2.0)),
         (evison, released, Detail::Auto, Record::at_rest(1.0)),
-        (evison, at_rest, Detail::Linear, shaking(3, 0.02, 100, 5.0)),
-        (mcmanus, at_rest, Detail::Modal, shaking(4, 0.01, 200, 3.0)),
-        (mcmanus, turned, Detail::Rigid, shaking(5, 0.01, 150, 2.0)),
+        (evison, at_rest, Detail::Linear, shaking(3, 0.02, 100, 2.5)),
+        (mcmanus, at_rest, Detail::Modal, shaking(4, 0.01, 200, 2.0)),
+        (mcmanus, turned, Detail::Rigid, shaking(5, 0.01, 150, 1.0)),
         (mcmanus, bent, Detail::FixedBase, shaking(6, 0.01, 200, 3.0)),
         (undamped, bent, Detail::Auto, Record::at_rest(2.0)),
-        (stiff, at_rest, Detail::Auto, shaking(7, 0.005, 300, 4.0)),
-        (evison, at_rest, Detail::Rigid, shaking(8, 0.01, 200, 6.0)),
+        (stiff, at_rest, Detail::Auto, shaking(7, 0.005, 300, 2.0)),
+        (evison, at_rest, Detail::Rigid, shaking(8, 0.01, 200, 3.0)),
     ]
 }
 
@@ -104,16 +104,22 @@ fn peaks_are_those_of_brute_force() {
     check(1e-5);
 }
 
-/// Watching El Centro-like motion costs few evaluations beside those of the motion, and changes none of its bits.
+/// Watching changes no bit of the motion, and of what is rocked by series it asks for next to nothing.
 #[test]
 fn watching_costs_little_and_changes_nothing() {
     let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let ground = shaking(2, 0.01, 1500, 2.0);
     for detail in Detail::ALL {
-        let ground = shaking(1, 0.01, 1500, 3.0);
         let run = Run { detail, ..Run::new(structure, &ground) };
         let unwatched = run.follow(&mut ()).unwrap();
         let (peaks, watched) = run.peaks().unwrap();
         assert_eq!(watched, unwatched);
-        println!("{}: {} {}", detail.name(), peaks.evaluations(), watched.motion.work.evaluations);
+        let (evaluations, of_motion) = (peaks.evaluations(), watched.motion.work.evaluations);
+        match detail {
+            Detail::Nonlinear | Detail::Rigid => assert_eq!(evaluations, 0),
+            Detail::Auto => assert!(100 * evaluations < 15 * of_motion, "{evaluations} beside {of_motion}"),
+            // a sample leapt over costs no evaluation; one in ten or so is expanded for its peaks
+            _ => assert!(evaluations < 2 * 1500, "{}: {evaluations} beside {of_motion}", detail.name()),
+        }
     }
 }

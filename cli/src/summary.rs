@@ -68,6 +68,7 @@ impl Summary {
             },
         };
         eprintln!("overturned     {overturned}");
-        eprintln!("work           {} steps, {} evaluations", motion.work.steps, motion.work.evaluations);
+        let (work, of_peaks) = (motion.work, peaks.evaluations());
+        eprintln!("work           {} steps, {} evaluations; {of_peaks} more for peaks", work.steps, work.evaluations);
     }
 }

