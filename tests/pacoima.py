@@ -1,14 +1,39 @@
-"""The Pacoima Dam scene through fmpy: what the other hosts are compared with."""
+"""The Pacoima Dam scene: what the engine gives by itself, and what hosts are compared with that pass a_g on."""
 
 import functools
+import subprocess
 
 import numpy as np
-from first_run import pacoima_dam
 from host import Fmu
+from validation.records import pacoima_dam
+
+OUTPUTS = ("theta", "u", "a_t")
+STEPS = (0.5e-3, 2e-3, 10e-3)  # s, communication steps of the hosts
+END = 3.99  # s, a multiple of each of them
+
 
 TIME, A_G = pacoima_dam()
 STEP = TIME[1]
-OUTPUTS = ("theta", "u", "a_t")
+
+
+def write_record(path, time=TIME, a_g=A_G):
+    """A CSV file of time and ground acceleration, to the last digit."""
+    np.savetxt(path, np.column_stack([time, a_g]), "%.17g", delimiter=",", header="time,a_g", comments="")
+
+
+def instants(step: float) -> np.ndarray:
+    """The communication points of a host with this step."""
+    return np.arange(round(END / step) + 1) * step
+
+
+@functools.cache
+def engine(exporter, preset: str, record) -> np.ndarray:
+    """OUTPUTS at the shortest of STEPS from the command line, at a tolerance of 1e-12."""
+    command = [exporter, "simulate", "--preset", preset, "--record", record, "--tolerance", "1e-12",
+               "--dt", str(min(STEPS)), "--duration", str(END), "-o", "-"]
+    printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
+    table = np.genfromtxt(printed.splitlines(), delimiter=",", names=True)
+    return np.column_stack([table[name] for name in ("thetarad", "um", "a_tms2")])
 
 
 @functools.cache
@@ -29,11 +54,6 @@ def held(fmu: Fmu, delay: int = 0) -> np.ndarray:
             instance.step(until)
             samples.append(instance.reals(OUTPUTS))
     return np.array(samples)
-
-
-def write_record(path, time=TIME, a_g=A_G):
-    """A CSV file of time and ground acceleration, to the last digit."""
-    np.savetxt(path, np.column_stack([time, a_g]), "%.17g", delimiter=",", header="time,a_g", comments="")
 
 
 def rows(table: np.ndarray) -> np.ndarray:

@@ -17,9 +17,9 @@ from coupling.building_on_soil import OnSoil
 from coupling.masters import MASTERS, TOLERANCE, Diverged, Iterated, between_transitions
 from coupling.masters import extrapolate, gauss_seidel, hold, jacobi
 from coupling.swaying_mass import SwayingMass
-from first_run import pacoima_dam
 from reference import EVISON, MCMANUS
 from scipy.linalg import expm
+from validation.records import pacoima_dam
 
 TIME, A_G = pacoima_dam()
 ROOT = Path(__file__).parents[1]
@@ -185,24 +185,14 @@ def test_passed_around_as_it_is_the_soils_loop_blows_up_at_any_step(mcmanus):
         assert convergence.error(found, expected) < 1e-3
 
 
-def test_ssp_archive_of_the_bridge(piers, tmp_path):
-    """fmpy runs it as what it is: every value held, and handed on after the step."""
-    archive, h, time = tmp_path / "bridge.ssp", 1e-3, TIME[SHORT]
-    bridge_ssp.write_archive(archive, piers)
-    result = bridge_ssp.run(archive, TIME[SHORT], A_G[SHORT], h)
-    mass = deck()
-    structures = [pier(fmu) for fmu in piers]
-    forces, tops, x = [0.0, 0.0], np.zeros((2, 2)), []
-    for n in range(len(result)):
-        a_g = 0.0 if n == 0 else np.interp(n * h, time, A_G[SHORT])
-        after = [each.step(n * h, h, [[a_g, F_t]] * 2) for each, F_t in zip(structures, forces)]
-        force = np.sum(mass.k / 2 * tops[:, 0] + mass.c / 2 * tops[:, 1]) - mass.M * a_g
-        mass.step(h, (force, force))
-        forces = (mass.k * (mass.x - tops[:, 0]) + mass.c * (mass.v - tops[:, 1])) / 2
-        tops = np.array(after)
-        x.append(mass.x)
-    assert sum(pier.transitions() for pier in structures) > 15
-    assert result["deck.x"] == pytest.approx(np.array(x), abs=1e-9 * np.max(np.abs(x)))
+@pytest.mark.parametrize("variant", ["Jacobi, held", "Jacobi, extrapolated"])
+def test_ssp_archive_of_the_bridge(piers, exporter, tmp_path, variant):
+    """fmpy runs it as what it is: every value handed on after the step."""
+    archive, (time, a_g) = tmp_path / "bridge.ssp", strong_motion()
+    bridge_ssp.write_archive(archive, exporter, time, a_g)
+    result = bridge_ssp.run(archive, time[-1], time[1] / 2, variant == "Jacobi, extrapolated")
+    x = convergence.cosimulated(time, a_g, piers, deck(), variant, 2)[1:, 0]
+    assert result["deck.x"][1::2] == pytest.approx(x, abs=1e-9 * np.max(np.abs(x)))
 
 
 def printed(example: str, *arguments) -> list[float]:

@@ -4,27 +4,37 @@ import re
 import zipfile
 
 import pytest
+from first_run import RECORD
 from fmpy.util import fmu_info
 from fmpy.validation import validate_fmu
-from host import PHASES, REALS
+from host import OUTPUTS, PHASES
+
+PEAKS = {"theta": "rad", "u": "m", "delta_t": "m", "uplift": "m", "a_t": "m/s2", "V_t": "N", "M_t": "N.m"}
 
 KINDS = {
     ("input", "continuous", "Real"): {"a_g": "m/s2", "F_t": "N"},
     ("output", "continuous", "Real"): {
         "theta": "rad", "u": "m", "a_t": "m/s2", "V_t": "N", "M_t": "N.m",
-        "theta_dot": "rad/s", "u_dot": "m/s", "uplift": "m", "delta_t": "m",
-        "v_t": "m/s", "R_h": "N", "R_v": "N", "R_m": "N.m",
+        "uplift": "m", "delta_t": "m", "v_t": "m/s", "R_h": "N", "R_v": "N", "R_m": "N.m",
     },
     ("output", "discrete", "Real"): {"I_h": "N.s", "I_v": "N.s", "I_m": "N.m.s"},
-    ("output", "discrete", "Enumeration"): {"phase": None},
-    ("output", "discrete", "Integer"): {"transitions": None},
-    ("output", "discrete", "Boolean"): {"overturned": None},
+    ("local", "continuous", "Real"): {"theta_dot": "rad/s", "u_dot": "m/s", "a_ground": "m/s2"} | {
+        name: unit for of, unit in PEAKS.items() for name, unit in ((f"{of}_max", unit), (f"t_{of}_max", "s"))
+    },
+    ("local", "discrete", "Real"): {"t_overturned": "s"},
+    ("local", "discrete", "Enumeration"): {"phase": None},
+    ("local", "discrete", "Integer"): {"transitions": None},
+    ("local", "discrete", "Boolean"): {"overturned": None},
     ("parameter", "fixed", "Real"): {
         "m": "kg", "m0": "kg", "H": "m", "B": "m", "J0": "kg.m2", "f_fc": "Hz", "zeta_fc": "1", "c_ratio": "1", "r": "1",
         "g": "m/s2", "theta_0": "rad", "theta_dot_0": "rad/s", "u_0": "m", "u_dot_0": "m/s",
+        "record_scale": "1", "record_time_scale": "1", "record_start": "s",
     },
+    ("parameter", "fixed", "String"): {"record": None},
+    ("parameter", "fixed", "Boolean"): {"extrapolate": None, "peaks": None},
     ("parameter", "fixed", "Enumeration"): {"detail": None},
-    ("calculatedParameter", "fixed", "Real"): {"alpha_cg": "rad", "p_l": "rad/s", "chi": "1", "u_cr": "m", "f_u": "Hz"},
+    ("calculatedParameter", "fixed", "Real"): {"alpha_cg": "rad", "p_l": "rad/s", "chi": "1", "u_cr": "m", "f_u": "Hz",
+                                                "record_duration": "s"},
 }
 
 STARTS = {
@@ -60,7 +70,7 @@ def test_every_variable_is_described(fmu):
 @pytest.mark.parametrize("preset", STARTS)
 def test_start_values_are_those_of_the_structure(preset, request):
     fmu = request.getfixturevalue(preset)
-    starts = STARTS[preset] | dict(theta_0=0, theta_dot_0=0, u_0=0, u_dot_0=0)
+    starts = STARTS[preset] | dict(theta_0=0, theta_dot_0=0, u_0=0, u_dot_0=0, record_scale=1, record_time_scale=1, record_start=0)
     described = {variable.name: float(variable.start) for variable in fmu.variables.values()
                  if variable.causality == "parameter" and variable.type == "Real"}
     assert described == starts
@@ -86,7 +96,7 @@ def test_phases(fmu):
 
 def test_feedthrough(fmu):
     unknowns = fmu.description.outputs
-    assert sorted(unknown.variable.name for unknown in unknowns) == sorted([*REALS, "phase", "transitions", "overturned"])
+    assert sorted(unknown.variable.name for unknown in unknowns) == sorted(OUTPUTS)
     feedthrough = {name: ["a_g", "F_t"] for name in ("a_t", "V_t", "M_t", "R_h", "R_v", "R_m")}
     for unknown in unknowns:
         # no attribute would mean "on all of the inputs"
@@ -99,13 +109,14 @@ def test_initial_dependencies_are_the_true_ones(fmu):
     names = [name for name in unknowns if fmu.variables[name].type == "Real"]
     auto, rigid = 1, 5
     bases = [
-        (auto, dict(theta_0=0.01, theta_dot_0=0.02, u_0=0.0003, u_dot_0=0.004)),
-        (rigid, dict(theta_0=0.01, theta_dot_0=0.02)),
+        (auto, dict(theta_0=0.01, theta_dot_0=0.02, u_0=0.0003, u_dot_0=0.004, record_start=-1.2345)),
+        (rigid, dict(theta_0=0.01, theta_dot_0=0.02, record_start=-1.2345)),
     ]
 
     def initialized(instance, detail, start):
         instance.set(**start)
         instance.slave.setInteger([fmu.variables["detail"].valueReference], [detail])
+        instance.slave.setString([fmu.variables["record"].valueReference], [str(RECORD)])
         instance.slave.enterInitializationMode()
         return instance
 
@@ -126,7 +137,7 @@ def test_initial_dependencies_are_the_true_ones(fmu):
             after = values(detail, start | {known: number * 0.75 if number else 0.75})
             changed |= {(name, known) for name, old, new in zip(names, before, after)
                         if new != pytest.approx(old, rel=1e-12)}
-    stated = {(name, v.name) for name in names for v in unknowns[name].dependencies if v.name != "detail"}
+    stated = {(name, v.name) for name in names for v in unknowns[name].dependencies if v.name not in ("detail", "record")}
     assert changed == stated
 
 
@@ -177,7 +188,7 @@ def test_info(fmu):
     assert re.search(r"Description +\S", info)
     # no date: it would tell two exports of the same thing apart
     assert re.findall(r"^  (.*?) +None$", info, re.MULTILINE) == ["Generation Date"]
-    for name in ("a_g", "F_t", *REALS, "phase", "transitions", "overturned"):
+    for name in ("a_g", "F_t", *OUTPUTS):
         variable = fmu.variables[name]
         line = re.search(rf"^  {name} +{variable.causality} .*$", info, re.MULTILINE)
         assert line and variable.description in line[0], name

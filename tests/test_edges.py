@@ -8,7 +8,6 @@ from math import pi
 import numpy as np
 import pytest
 import reference
-from first_run import fmpy_input
 from fmpy.fmi1 import FMICallException
 from host import G, Instance, simulate
 from pacoima import write_record
@@ -171,18 +170,21 @@ def test_100_g(evison, by, level):
 
 
 def test_a_record_that_ends_within_a_step(evison, exporter, tmp_path):
-    """A master hands over the record's last slope for the whole step, and holds its last value from then on; the
-    program, which knows the record, leaves the ground at rest from its end on."""
+    """A master hands over the record's last slope for the whole step, and holds its last value from then on; who knows
+    the record, the program and the FMU that has it inside, leaves the ground at rest from its end on."""
     time = np.append(np.linspace(0, 0.5, 51), 0.5037)
     a_g = 5.0 * np.sin(20 * time)
     last_slope = (a_g[-1] - a_g[-2]) / (time[-1] - time[-2])
-    result, _ = simulate(evison, stop_time=0.6, output_interval=0.01, input=fmpy_input(time, a_g), set_input_derivatives=True,
-                         relative_tolerance=1e-11, output=["theta", "u"])
+    with evison.start(tolerance=1e-11) as instance:
+        instance.follow(np.append(time[:-1], 0.51), np.append(a_g[:-1], a_g[-2] + 0.01 * last_slope))
+        instance.load(a_g[-1])
+        instance.step(0.6)
+        theta, u = instance.get("theta", "u")
     knots = np.concatenate([time[:-1], [0.51, 0.51 + 1e-12, 0.6]])
     exact = reference.integrate(EVISON, knots, np.concatenate([a_g[:-1], [a_g[-2] + 0.01 * last_slope], 2 * [a_g[-1]]]))
     assert exact.transitions
-    assert result["u"][-1] == pytest.approx(exact.u[-1], rel=1e-7)
-    assert result["theta"][-1] == pytest.approx(exact.theta[-1], abs=1e-10)
+    assert u == pytest.approx(exact.u[-1], rel=1e-7)
+    assert theta == pytest.approx(exact.theta[-1], abs=1e-10)
 
     record, response = tmp_path / "record.csv", tmp_path / "response.csv"
     write_record(record, time, a_g)
@@ -191,8 +193,11 @@ def test_a_record_that_ends_within_a_step(evison, exporter, tmp_path):
     rows = np.genfromtxt(response, delimiter=",", names=True)
     exact = reference.integrate(EVISON, np.append(time, [time[-1] + 1e-12, 0.6]), np.append(a_g, [0.0, 0.0]))
     assert len(rows) == 61
-    assert rows["um"][-1] == pytest.approx(exact.u[-1], rel=1e-7)
-    assert rows["thetarad"][-1] == pytest.approx(exact.theta[-1], abs=1e-10)
+    result, _ = simulate(evison, stop_time=0.6, output_interval=0.01, relative_tolerance=1e-11,
+                         start_values={"record": str(record)}, output=["theta", "u"])
+    for theta, u in ((rows["thetarad"], rows["um"]), (result["theta"], result["u"])):
+        assert u[-1] == pytest.approx(exact.u[-1], rel=1e-7)
+        assert theta[-1] == pytest.approx(exact.theta[-1], abs=1e-10)
 
 
 @pytest.mark.parametrize("level", LEVELS)

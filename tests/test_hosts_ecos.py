@@ -1,9 +1,9 @@
-"""Ecos, over Pacoima Dam: a fixed step, inputs held over each."""
+"""Ecos, over Pacoima Dam: a fixed step, with the record inside and with a_g held over each."""
 
 import numpy as np
 import pytest
 from host import need_libtbb
-from pacoima import A_G, OUTPUTS, STEP, distance, held
+from pacoima import A_G, OUTPUTS, STEP, STEPS, distance, held, instants
 
 need_libtbb()
 
@@ -22,7 +22,19 @@ def simulation(fmu, step: float, **start_values) -> EcosSimulation:
     return simulation
 
 
-def test_pacoima(mcmanus):
+@pytest.mark.parametrize("step", STEPS)
+def test_the_record_inside(shaken, exact, step):
+    with simulation(shaken["mcmanus"], step) as pier:
+        get = lambda: [pier.get_real(f"pier::{name}") for name in OUTPUTS]
+        samples = [get()]
+        for _ in instants(step)[1:]:
+            pier.step()
+            samples.append(get())
+        pier.terminate()
+    assert distance(np.array(samples), exact(step)) < 1e-9
+
+
+def test_held(mcmanus):
     with simulation(mcmanus, STEP) as pier:
         get = lambda: [pier.get_real(f"pier::{name}") for name in OUTPUTS]
         samples = [get()]

@@ -1,5 +1,6 @@
 """The shared library itself: what it offers and what it needs, on Linux and Windows; the same numbers on both."""
 
+import functools
 import os
 import re
 import shutil
@@ -9,7 +10,7 @@ import zipfile
 import numpy as np
 import pytest
 from conftest import ROOT
-from pacoima import OUTPUTS, distance, linear, write_record
+from pacoima import A_G, OUTPUTS, STEPS, TIME, distance, instants, linear, write_record
 
 WINDOWS = "x86_64-pc-windows-gnu"
 MINGW = "x86_64-w64-mingw32"
@@ -45,13 +46,14 @@ def cargo_build(*arguments):
 
 @pytest.fixture(scope="module")
 def run(mcmanus, tmp_path_factory):
-    """Runs tests/hosts/load_library on Pacoima Dam and returns OUTPUTS."""
-    scene = tmp_path_factory.mktemp("scene") / "pacoima.csv"
-    write_record(scene)
+    """Runs tests/hosts/load_library under a_g of Pacoima Dam, linear between samples, or, at a step, under what an FMU
+    has inside, and returns OUTPUTS."""
+    scene = tmp_path_factory.mktemp("scene") / "a_g.csv"
     references = {name: str(variable.valueReference) for name, variable in mcmanus.variables.items()}
 
-    def run(*command, library, **arguments) -> np.ndarray:
-        printed = output(*command, library, mcmanus.description.guid, f"{mcmanus.folder}/resources", scene,
+    def run(*command, library, fmu=mcmanus, step=None, **arguments) -> np.ndarray:
+        write_record(scene, *(TIME, A_G) if step is None else (instants(step), 0 * instants(step)))
+        printed = output(*command, library, fmu.description.guid, f"{fmu.folder}/resources", scene,
                          references["a_g"], ",".join(references[name] for name in OUTPUTS), **arguments)
         return np.loadtxt(printed.splitlines(), delimiter=",")[:, 1:]
 
@@ -64,9 +66,13 @@ def linux_library(mcmanus):
 
 
 @pytest.fixture(scope="module")
-def on_linux(run, linux_library):
-    host = cargo_build("--manifest-path", HOST) / "release" / "load-library"
-    return run(host, library=linux_library)
+def linux_host():
+    return cargo_build("--manifest-path", HOST) / "release" / "load-library"
+
+
+@pytest.fixture(scope="module")
+def on_linux(run, linux_host, linux_library):
+    return run(linux_host, library=linux_library)
 
 
 @pytest.fixture(scope="module")
@@ -90,6 +96,12 @@ def test_linux_host(on_linux, mcmanus):
     assert distance(on_linux, linear(mcmanus)) < 1e-12
 
 
+@pytest.mark.parametrize("step", STEPS)
+def test_linux_host_with_the_record_inside(run, linux_host, linux_library, shaken, exact, step):
+    found = run(linux_host, library=linux_library, fmu=shaken["mcmanus"], step=step)
+    assert distance(found, exact(step)) < 1e-9
+
+
 def test_windows_library(windows):
     table = output(f"{MINGW}-objdump", "-p", windows / "FlexibleRocking.dll")
     assert set(re.findall(r"^\t\[ *\d+\].* (\S+)$", table.partition("Ordinal/Name")[2], re.MULTILINE)) == FUNCTIONS
@@ -105,16 +117,26 @@ def test_one_archive_for_both(windows, exporter, mcmanus, tmp_path):
         assert content == {name: linux.read(name) for name in linux.namelist()}
 
 
-def test_windows_gives_the_numbers_of_linux(windows, on_linux, run, tmp_path):
-    """Under wine. Wine 8 has no bcryptprimitives.dll, of which Rust needs one function, for the keys of hash maps."""
+@pytest.fixture(scope="module")
+def wine(windows, run, tmp_path_factory):
+    """Runs the host under wine. Wine 8 has no bcryptprimitives.dll, of which Rust needs one function, for the keys of hash maps."""
     if shutil.which("wine") is None:
         pytest.skip("wine is missing")
-    source = tmp_path / "bcryptprimitives.c"
+    folder = tmp_path_factory.mktemp("wine")
+    source = folder / "bcryptprimitives.c"
     source.write_text("__declspec(dllexport) int ProcessPrng(unsigned char *data, unsigned long long size) {"
                       "for (unsigned long long i = 0; i < size; i++) data[i] = 37 * i; return 1; }")
-    output(f"{MINGW}-gcc", "-shared", "-nostdlib", "-Wl,--entry=0", "-o", tmp_path / "bcryptprimitives.dll", source)
+    output(f"{MINGW}-gcc", "-shared", "-nostdlib", "-Wl,--entry=0", "-o", folder / "bcryptprimitives.dll", source)
     for file in ("FlexibleRocking.dll", "load-library.exe"):
-        shutil.copy(windows / file, tmp_path)
-    environment = os.environ | {"WINEPREFIX": str(tmp_path / "wine"), "WINEDEBUG": "-all"}
-    on_windows = run("wine", "load-library.exe", library="FlexibleRocking.dll", cwd=tmp_path, env=environment)
-    assert distance(on_windows, on_linux) < 1e-12
+        shutil.copy(windows / file, folder)
+    environment = os.environ | {"WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all"}
+    return functools.partial(run, "wine", "load-library.exe", library="FlexibleRocking.dll", cwd=folder, env=environment)
+
+
+def test_windows_gives_the_numbers_of_linux(wine, on_linux):
+    assert distance(wine(), on_linux) < 1e-12
+
+
+@pytest.mark.parametrize("step", STEPS)
+def test_windows_with_the_record_inside(wine, shaken, exact, step):
+    assert distance(wine(fmu=shaken["mcmanus"], step=step), exact(step)) < 1e-9

@@ -1,4 +1,4 @@
-"""OSP's libcosim, over Pacoima Dam: a fixed step, inputs held over each."""
+"""OSP's libcosim, over Pacoima Dam: a fixed step, with the record inside and with a_g held over each."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from libcosimpy.CosimLogging import CosimLogLevel, log_output_level
 from libcosimpy.CosimManipulator import CosimManipulator
 from libcosimpy.CosimObserver import CosimObserver
 from libcosimpy.CosimSlave import CosimLocalSlave
-from pacoima import A_G, OUTPUTS, STEP, distance, held
+from pacoima import A_G, OUTPUTS, STEP, STEPS, distance, held, instants
 
 log_output_level(CosimLogLevel.FATAL)
 
@@ -33,7 +33,16 @@ class Pier:
         return self.values.last_real_values(self.index, [self.references[name] for name in names])
 
 
-def test_pacoima(mcmanus):
+@pytest.mark.parametrize("step", STEPS)
+def test_the_record_inside(shaken, exact, step):
+    pier, samples = Pier(shaken["mcmanus"], step), []
+    for _ in instants(step)[1:]:
+        assert pier.execution.step()
+        samples.append(pier.get(OUTPUTS))
+    assert distance(np.array(samples), exact(step)[1:]) < 1e-9
+
+
+def test_held(mcmanus):
     pier, samples = Pier(mcmanus, STEP), [[0.0] * len(OUTPUTS)]
     for a_g in A_G[:-1]:
         pier.set("a_g", a_g)

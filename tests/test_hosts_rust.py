@@ -1,4 +1,5 @@
-"""The Rust import crate `fmi`, over Pacoima Dam: inputs held over each step; FMU states and their bytes."""
+"""The Rust import crate `fmi`, over Pacoima Dam, with the record inside and with a_g held over each step; FMU states
+and their bytes."""
 
 import os
 import subprocess
@@ -7,12 +8,12 @@ import clang.native
 import numpy as np
 import pytest
 from conftest import ROOT
-from pacoima import A_G, OUTPUTS, TIME, distance, held, write_record
+from pacoima import A_G, OUTPUTS, STEPS, TIME, distance, held, instants, write_record
 
 
 @pytest.fixture(scope="module")
 def run(mcmanus, tmp_path_factory):
-    """Runs the host in tests/hosts/fmi_crate on a record and returns time and OUTPUTS."""
+    """Runs the host in tests/hosts/fmi_crate under a ground acceleration and returns time and OUTPUTS."""
     folder = ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "fmi_crate"
     # the package libclang brings the library, the C compiler its own headers
     headers = subprocess.run(["cc", "-print-file-name=include"], check=True, stdout=subprocess.PIPE, text=True).stdout
@@ -21,9 +22,9 @@ def run(mcmanus, tmp_path_factory):
                     ROOT / "tests/hosts/fmi_crate/Cargo.toml"], env=os.environ | libclang, check=True)
     record = tmp_path_factory.mktemp("fmi_crate") / "record.csv"
 
-    def run(time, a_g, **start_values) -> np.ndarray:
+    def run(time, a_g, fmu=mcmanus, **start_values) -> np.ndarray:
         write_record(record, time, a_g)
-        command = [folder / "debug" / "fmi-crate-host", mcmanus.path, record, ",".join(OUTPUTS)]
+        command = [folder / "debug" / "fmi-crate-host", fmu.path, record, ",".join(OUTPUTS)]
         command += [f"{name}={value}" for name, value in start_values.items()]
         return np.loadtxt(subprocess.run(command, check=True, stdout=subprocess.PIPE, text=True).stdout.splitlines(),
                           delimiter=",")
@@ -31,7 +32,14 @@ def run(mcmanus, tmp_path_factory):
     return run
 
 
-def test_pacoima_with_every_step_taken_back_twice(run, mcmanus):
+@pytest.mark.parametrize("step", STEPS)
+def test_the_record_inside_with_every_step_taken_back_twice(run, shaken, exact, step):
+    time = instants(step)
+    result = run(time, 0 * time, shaken["mcmanus"])
+    assert distance(result[:, 1:], exact(step)) < 1e-9
+
+
+def test_held_with_every_step_taken_back_twice(run, mcmanus):
     result = run(TIME, A_G)
     assert np.array_equal(result[:, 0], TIME)
     assert distance(result[:, 1:], held(mcmanus)) < 1e-10

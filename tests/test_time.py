@@ -125,7 +125,7 @@ def test_overturning_is_a_discarded_step_that_terminates(evison, overturning):
 
 def test_fmpy_ends_the_run_at_overturning_and_keeps_the_results(evison, overturning):
     load = np.array([(0.0, 0.5 * G), (2.0, 0.5 * G)], dtype=[("time", float), ("a_g", float)])
-    result, events = simulate(evison, stop_time=2.0, output_interval=0.01, input=load, set_input_derivatives=True,
+    result, events = simulate(evison, stop_time=2.0, output_interval=0.01, input=load,
                               output=["theta", "overturned", "phase"])
     before = int(overturning.time / 0.01)
     assert len(result) == before + 2, "every sample before, and the instant itself"

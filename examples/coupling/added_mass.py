@@ -5,7 +5,7 @@ import functools
 import monolithic
 import numpy as np
 import reference
-from first_run import pacoima_dam
+from validation.records import pacoima_dam
 
 from .bridge import linear, simulate
 from .building_on_soil import DAMPING, STIFFNESS, OnSoil, structure

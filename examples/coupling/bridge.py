@@ -14,8 +14,9 @@ import math
 from pathlib import Path
 
 import numpy as np
-from first_run import G, pacoima_dam
+from first_run import G
 from validation.figures import FIXED, QUIET, ROCKING, save, subplots
+from validation.records import pacoima_dam
 
 from .masters import MASTERS, Iterated, between_transitions, extrapolate
 from .structure import Structure

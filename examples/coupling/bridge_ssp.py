@@ -1,23 +1,26 @@
-"""The bridge as an SSP archive, run by fmpy: two piers and the deck, an FMU each, and the ground motion as input.
+"""The bridge as an SSP archive, run by fmpy: two piers and the deck, an FMU each, with the ground motion inside them.
 
-fmpy hands every value on after the step, and holds it: the master is Jacobi's, of first order. The deck's FMU is built
-by pythonfmu. Writes the archive, runs it with two steps, draws the deck's displacement beside the iterated master's.
+fmpy hands every value on after the step; the piers (`extrapolate`) and the deck continue what they are given with the
+slope of its last two values: the master is Jacobi's, of second order. The deck's FMU is built by pythonfmu. Writes the
+archive, runs it with two steps, draws the deck's displacement beside the iterated master's.
 
     PYTHONPATH=examples python -m coupling.bridge_ssp
 """
 
 import argparse
 import functools
+import subprocess
 import tempfile
 import zipfile
 from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
-from first_run import pacoima_dam
 from fmpy.ssp.simulation import simulate_ssp
+from fmpy.ssp.ssd import Parameter, ParameterSet
 from pythonfmu.builder import FmuBuilder
 from validation.figures import FIXED, ROCKING, SMOOTH, save, subplots
+from validation.records import pacoima_dam, write_csv
 
 from .bridge import PIERS, Bridge, deck, linear, pier, simulate
 from .masters import MASTERS, between_transitions, extrapolate
@@ -27,35 +30,38 @@ STEPS = {2e-3: FIXED, 0.2e-3: SMOOTH}  # s
 DECK = "deck"
 
 
-def write_archive(path: Path, fmus: list[str]) -> None:
-    """The SSP archive of the bridge on these piers."""
+def write_archive(path: Path, exporter: Path, time, a_g) -> None:
+    """The SSP archive of the bridge on the specimens of McManus and Evison under this ground motion."""
     here, mass = Path(__file__).parent, deck()
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as folder, zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
-        built = FmuBuilder.build_FMU(here / "deck_fmu.py", dest=folder, project_files=[here / "swaying_mass.py"],
-                                     newargs=dict(M=mass.M, k=mass.k, c=mass.c))
-        for name, fmu in zip([*PIERS, DECK], [*fmus, built]):
+        record = Path(folder, "record.csv")
+        write_csv(record, time, a_g)
+        for name in PIERS:
+            fmu = Path(folder, f"{name}.fmu")
+            subprocess.run([exporter, "export", "--preset", name.lower(), "--record", record, "-o", fmu], check=True,
+                           capture_output=True)
             archive.write(fmu, f"resources/{name}.fmu")
+        built = FmuBuilder.build_FMU(here / "deck_fmu.py", dest=folder, project_files=[here / "swaying_mass.py", record],
+                                     newargs=dict(M=mass.M, k=mass.k, c=mass.c))
+        archive.write(built, f"resources/{DECK}.fmu")
         archive.writestr("SystemStructure.ssd", system_structure())
 
 
 def system_structure() -> bytes:
-    """SystemStructure.ssd: the ground motion to all, the piers' tops to the deck, its bearings' forces to the piers."""
+    """SystemStructure.ssd: the piers' tops to the deck, its bearings' forces to the piers."""
     root = ElementTree.Element(f"{{{SSD}}}SystemStructureDescription", name="bridge", version="1.0")
     system = ElementTree.SubElement(root, f"{{{SSD}}}System", name="bridge")
-    connectors(system, {"a_g": "input"})
     elements = ElementTree.SubElement(system, f"{{{SSD}}}Elements")
     connections = ElementTree.SubElement(system, f"{{{SSD}}}Connections")
-    of_deck = {"a_g": "input", "x": "output"}
+    of_deck = {"x": "output"}
     for i, name in enumerate(PIERS):
-        component(elements, name, {"a_g": "input", "F_t": "input", "delta_t": "output", "v_t": "output"})
+        component(elements, name, {"F_t": "input", "delta_t": "output", "v_t": "output"})
         of_deck |= {f"delta_t_{i}": "input", f"v_t_{i}": "input", f"F_{i}": "output"}
-        connect(connections, (None, "a_g"), (name, "a_g"))
         connect(connections, (name, "delta_t"), (DECK, f"delta_t_{i}"))
         connect(connections, (name, "v_t"), (DECK, f"v_t_{i}"))
         connect(connections, (DECK, f"F_{i}"), (name, "F_t"))
     component(elements, DECK, of_deck)
-    connect(connections, (None, "a_g"), (DECK, "a_g"))
     return ElementTree.tostring(root, encoding="utf-8", xml_declaration=True)
 
 
@@ -79,10 +85,11 @@ def connect(connections, start: tuple, end: tuple) -> None:
     ElementTree.SubElement(connections, f"{{{SSD}}}Connection", {key: name for key, name in ends.items() if name})
 
 
-def run(archive: Path, time, a_g, h: float) -> np.ndarray:
-    """fmpy's result; its rows are the outputs at the ends of the steps. It is a step late with the system's input."""
-    return simulate_ssp(str(archive), stop_time=time[-1] - h / 2, step_size=h,
-                        input={"a_g": lambda t: np.interp(t + h, time, a_g)})
+def run(archive: Path, stop_time: float, h: float, extrapolated: bool = True) -> np.ndarray:
+    """fmpy's result; its rows are the outputs at the ends of the steps."""
+    parameters = ParameterSet()
+    parameters.parameters = [Parameter(name=f"{name}.extrapolate", value=extrapolated) for name in (*PIERS, DECK)]
+    return simulate_ssp(str(archive), stop_time=stop_time - h / 2, step_size=h, parameter_set=parameters)
 
 
 def plot(path: Path, time, reference, results: dict[float, np.ndarray]) -> None:
@@ -103,18 +110,19 @@ def plot(path: Path, time, reference, results: dict[float, np.ndarray]) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0],
                                      formatter_class=argparse.ArgumentDefaultsHelpFormatter)
-    parser.add_argument("--piers", nargs=2, metavar="FMU", default=list(PIERS.values()), help="of the two piers")
+    parser.add_argument("--piers", nargs=2, metavar="FMU", default=list(PIERS.values()), help="for the iterated master")
+    parser.add_argument("--exporter", type=Path, default=Path("target/release/rocking-fmu"), help="the command line")
     parser.add_argument("--archive", type=Path, default=Path("out/bridge.ssp"), help="SSP archive to write")
     parser.add_argument("--figure", type=Path, default=Path("docs/coupling/bridge_ssp.png"), help="where to save it")
     arguments = parser.parse_args()
 
     time, a_g = pacoima_dam()
-    write_archive(arguments.archive, arguments.piers)
+    write_archive(arguments.archive, arguments.exporter, time, a_g)
     print(f"archive: {arguments.archive}")
     bridge = Bridge([pier(fmu) for fmu in arguments.piers], deck(), linear(time, a_g))
     step = functools.partial(between_transitions, MASTERS["iqn-ils"]())
     reference = simulate(bridge, step, extrapolate, time, 1, lambda: bridge.deck.x)
-    results = {h: run(arguments.archive, time, a_g, h) for h in STEPS}
+    results = {h: run(arguments.archive, time[-1], h) for h in STEPS}
     for h, result in results.items():
         error = np.max(np.abs(result["deck.x"] - np.interp(result["time"] + h, time, reference)))
         part = error / np.max(np.abs(reference))

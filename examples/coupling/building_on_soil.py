@@ -14,8 +14,9 @@ import contextlib
 from pathlib import Path
 
 import numpy as np
-from first_run import G, pacoima_dam
+from first_run import G
 from validation.figures import FIXED, QUIET, ROCKING, save, subplots
+from validation.records import pacoima_dam
 
 from .bridge import linear, simulate
 from .masters import extrapolate, gauss_seidel

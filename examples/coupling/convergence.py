@@ -6,8 +6,8 @@ from pathlib import Path
 import monolithic
 import numpy as np
 import reference
-from first_run import pacoima_dam
 from validation.figures import FIXED, QUIET, ROCKING, SMOOTH, save, subplots
+from validation.records import pacoima_dam
 
 from .bridge import Bridge, deck, linear, pier, simulate
 from .masters import MASTERS, between_transitions, extrapolate, hold

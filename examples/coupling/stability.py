@@ -13,12 +13,12 @@ from pathlib import Path
 
 import monolithic
 import numpy as np
-from first_run import pacoima_dam
 from fmpy.fmi1 import FMICallException
 from matplotlib.colors import BoundaryNorm, LogNorm
 from scipy.interpolate import PPoly
 from scipy.linalg import expm
 from validation.figures import save, subplots
+from validation.records import pacoima_dam
 
 from .bridge import Bridge, deck, pier
 from .convergence import STRUCTURES, monolithic_bridge

@@ -4,13 +4,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from first_run import G, pacoima_dam
+from first_run import G
 from scipy.optimize import brentq
 
 from . import figures
 from .free_vibration import release
 from .project import FIXED_BASE, Project
-from .records import single_pulse
+from .records import pacoima_dam, single_pulse, write_csv
 from .report import Row, Section
 
 PER_SAMPLE = 16  # communication steps of Pacoima Dam
@@ -66,7 +66,7 @@ def stand_in(project: Project) -> tuple[Test, float]:
 
 def _estimate(project: Project, time: np.ndarray, a_g: np.ndarray) -> dict[str, float]:
     record = project.folder / "record.csv"
-    np.savetxt(record, np.column_stack([time, a_g]), delimiter=",", fmt="%.17g")
+    write_csv(record, time, a_g)
     return project.values("estimate", "--preset", "mcmanus", "--record", record)
 
 

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import fmpy
 import numpy as np
-from first_run import fmpy_input
+
+from .records import write_csv
 
 TOLERANCE = 1e-10
 FIXED_BASE = {"B": 100.0}  # too wide to lift off
@@ -58,8 +59,10 @@ class Project:
 
     def earthquake(self, preset: str, time: np.ndarray, a_g: np.ndarray, per_sample: int, **start_values) -> np.ndarray:
         """The response to the ground acceleration `a_g` (m/s2) at the instants `time` (s), linear between them."""
+        record = self.folder / "record.csv"
+        write_csv(record, time, a_g)
         return self._simulate(preset, stop_time=time[-1], output_interval=time[1] / per_sample,
-                              start_values=start_values, input=fmpy_input(time, a_g), set_input_derivatives=True)
+                              start_values=start_values | {"record": str(record)})
 
     def _simulate(self, preset: str, **options) -> np.ndarray:
         return np.asarray(fmpy.simulate_fmu(str(self.fmu(preset)), relative_tolerance=TOLERANCE, output=OUTPUTS,
@@ -82,7 +85,8 @@ class Project:
     def parameters(self, preset: str) -> dict[str, float]:
         """The parameters of a specimen, as its FMU starts with them."""
         variables = fmpy.read_model_description(str(self.fmu(preset))).modelVariables
-        return {variable.name: float(variable.start) for variable in variables if variable.causality == "parameter"}
+        return {variable.name: float(variable.start) for variable in variables
+                if variable.causality == "parameter" and variable.type == "Real"}
 
 
 def _log(_environment, _instance, status, _category, message) -> None:

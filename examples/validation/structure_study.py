@@ -15,7 +15,7 @@ from .half_cycles import half_cycles
 from .project import Project
 from .records import Record, horizontal_records
 from .rocking_frequency import effective_frequency
-from .stepper import History, Stepper
+from .stepper import Stepper
 
 SEED = 1971
 RANGES = {  # of the Latin hypercube: lower, upper, whether evenly in the logarithm
@@ -29,7 +29,6 @@ RANGES = {  # of the Latin hypercube: lower, upper, whether evenly in the logari
 }
 TOLERANCE = 1e-8
 STEPS_PER_VIBRATION = 8  # communication steps in a period 1/f_u
-FINER = 4  # times as many, to see what the steps between the samples cost
 LARGE = 2.0  # amplitudes over u_cr from here on are compared with Eq 14
 
 
@@ -80,7 +79,6 @@ class Results:
     overturned: int
     free_ratios: np.ndarray  # frequency after a release over Eq 14
     free_amplitudes: np.ndarray  # over H tan alpha_cg
-    finer: float  # largest relative change of a peak with finer communication steps
 
 
 def population(count: int) -> list[Structure]:
@@ -106,26 +104,19 @@ class Study:
         self.records = records
         self.stepper = Stepper(project.fmu("mcmanus"), TOLERANCE)
 
-    def run(self, number: int, structure: Structure, check: bool) -> tuple[list[Case], float, float, float]:
-        """The cases of one structure; its release's frequency over Eq 14 and amplitude; the change with finer steps."""
+    def run(self, number: int, structure: Structure) -> tuple[list[Case], float, float]:
+        """The cases of one structure; its release's frequency over Eq 14 and amplitude."""
         file = self.project.folder / f"structure_{number}.toml"
         file.write_text("".join(f"{name} = {value!r}\n" for name, value in structure.parameters.items()))
         named = ("--parameters", file)
         derived = self.project.values("describe", *named)
-        cases, finer = [], 0.0
-        for record in self.records:
-            history = self._history(structure, derived, record, 1)
-            cases.append(self._case(structure, named, derived, record, history))
-            if check:
-                peak = self._history(structure, derived, record, FINER).peak_acceleration / G
-                finer = max(finer, abs(peak / cases[-1].peak - 1))
-        return cases, *self._release(structure, named, derived), finer
+        cases = [self._case(structure, named, derived, record) for record in self.records]
+        return cases, *self._release(structure, named, derived)
 
-    def _history(self, structure: Structure, derived: dict[str, float], record: Record, finer: int) -> History:
-        per_sample = int(np.ceil(record.dt * derived["f_u"] * STEPS_PER_VIBRATION)) * finer
-        return self.stepper.run(structure.parameters, record.a_g, record.dt, per_sample)
-
-    def _case(self, structure, named, derived, record: Record, history: History) -> Case:
+    def _case(self, structure: Structure, named, derived: dict[str, float], record: Record) -> Case:
+        per_sample = int(np.ceil(record.dt * derived["f_u"] * STEPS_PER_VIBRATION))
+        steps = (len(record.a_g) - 1) * per_sample
+        history = self.stepper.run(structure.parameters, record.dt / per_sample, steps, record.path)
         estimate = self.project.values("estimate", *named, "--record", record.path)
         reach = structure.parameters["H"] * np.tan(derived["alpha_cg"])
         amplitude, ratio, left_over = 0.0, np.nan, 0.0
@@ -135,7 +126,7 @@ class Study:
             amplitude = cycles.amplitude[largest] / reach
             if LARGE * derived["u_cr"] < cycles.amplitude[largest] < reach and not history.overturned:
                 ratio = cycles.frequency[largest] / self._eq_14(named, amplitude)
-            before_peak = np.searchsorted(cycles.first, np.argmax(np.abs(history.a_t)), side="right") - 2
+            before_peak = np.searchsorted(cycles.first, history.peak_time / history.time[1], side="right") - 2
             if before_peak >= 0:
                 damping = derived["zeta_u"] * 2 * np.pi * derived["f_u"]
                 left_over = np.exp(-damping / (2 * cycles.frequency[before_peak]))
@@ -150,7 +141,7 @@ class Study:
         start = structure.parameters | {"theta_0": structure.release * tangent, "u_0": quiet}
         dt = min(1 / derived["f_u"] / STEPS_PER_VIBRATION, 1 / self._eq_14(named, structure.release) / 400)
         duration = 1.2 / self._eq_14(named, structure.release)
-        history = self.stepper.run(start, np.zeros(int(duration / dt) + 2), dt, 1)
+        history = self.stepper.run(start, dt, int(duration / dt) + 1)
         cycles = half_cycles(history.time, history.delta_t)
         amplitude = cycles.amplitude[0] / (structure.parameters["H"] * tangent)
         return cycles.frequency[0] / self._eq_14(named, amplitude), amplitude
@@ -169,27 +160,22 @@ def _start(exporter: Path, folder: Path, records: list[Record]) -> None:
     _study = Study(Project(exporter, own), records)
 
 
-def _run(number: int, structure: Structure, check: bool) -> tuple[list[Case], float, float, float]:
-    return _study.run(number, structure, check)
+def _run(number: int, structure: Structure) -> tuple[list[Case], float, float]:
+    return _study.run(number, structure)
 
 
-def compute(project: Project, structures: list[Structure], checked: int, advance: Callable[[], None]) -> Results:
-    """Runs the study on all cores, the first `checked` structures with finer steps too.
-
-    `advance` is called after each structure.
-    """
+def compute(project: Project, structures: list[Structure], advance: Callable[[], None]) -> Results:
+    """Runs the study on all cores; `advance` is called after each structure."""
     records = horizontal_records()
-    cases, ratios, amplitudes, finer = [], [], [], 0.0
-    tasks = [(number, structure, number < checked) for number, structure in enumerate(structures)]
+    cases, ratios, amplitudes = [], [], []
     workers = len(os.sched_getaffinity(0))
     with ProcessPoolExecutor(workers, multiprocessing.get_context("spawn"), _start,
                              (project.exporter, project.folder, records)) as pool:
-        for found, ratio, amplitude, change in pool.map(_run, *zip(*tasks)):
+        for found, ratio, amplitude in pool.map(_run, range(len(structures)), structures):
             cases += found
             ratios.append(ratio)
             amplitudes.append(amplitude)
-            finer = max(finer, change)
             advance()
     rocked = [case for case in cases if case.transitions and not case.overturned]
     return Results(len(structures), len(records), rocked, sum(case.overturned for case in cases), np.array(ratios),
-                   np.array(amplitudes), finer)
+                   np.array(amplitudes))
