@@ -11,23 +11,20 @@
 //! | `rigid` | 6 with u = 0 | series |
 //! | `fixed_base` | 1, no uplift | exact flow |
 
-use crate::extremes::Bound;
 use crate::first_crossing::Crossing;
 use crate::full_contact::{self, ExactContact};
+use crate::level::{ElasticRocking, Level, Rates};
 use crate::linear_rocking::LinearRocking;
-use crate::load::{LinearLoad, Load};
+use crate::load::Load;
 use crate::modal_rocking::ModalRocking;
 use crate::nonlinear_rocking::NonlinearRocking;
-use crate::output_series::{self, Turn};
-use crate::piece::Rates;
 use crate::rigid_rocking::Rigid;
 use crate::state::InitialStateError;
-use crate::taylor::{Arc, Series, Start};
-use crate::transition::{ChatterLimit, MAX_TRANSITIONS_PER_PERIOD};
-use crate::uplift::{self, TurningMoment};
-use crate::{Outputs, Phase, Side, State, Structure, impact};
+use crate::taylor::{Arc, Start};
+use crate::transition::Rules;
+use crate::uplift;
+use crate::{Phase, Side, State, Structure};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::TAU;
 use std::fmt::Debug;
 
 /// A level of detail.
@@ -115,113 +112,14 @@ impl AnyLevel {
     }
 }
 
-/// Everything that depends on the level of detail. Where nothing else is said it is as at the levels with an elastic
-/// strut.
-pub(crate) trait Level: Debug + Send {
-    /// Whether a motion may start from `initial`.
-    fn check_start(&self, _initial: &State) -> Result<(), InitialStateError> {
-        Ok(())
-    }
-
-    /// The state at the end of `start` where it is known exactly and no transition can happen until then.
-    fn leap(&mut self, structure: &Structure, phase: Phase, start: &Start) -> Option<State>;
-
-    /// Bounds of what changes on such a leap from `start` to `end`.
-    fn rates(&self, phase: Phase, start: &Start, end: &State) -> Rates;
-
-    /// Writes the motion from `start` in `phase` into `arc`; there is none once overturned.
-    fn series(&mut self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc);
-
-    /// Whether the equations of rocking are about to have no solution.
-    fn is_singular(&self, _structure: &Structure, _phase: Phase, _state: &State) -> bool {
-        false
-    }
-
-    /// The first instant of `arc`, a motion in full contact from `start`, at which uplift is due, and about which side.
-    fn first_uplift(&self, structure: &Structure, start: &Start, arc: &Arc) -> (Crossing, Side);
-
-    /// Phase and state just after an impact that ends rocking about `side` in the state `before`.
-    fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
-        impact::resolve(structure, side, before)
-    }
-
-    /// The state just after a landing.
-    fn land(&self, structure: &Structure, before: &State) -> State {
-        impact::land(structure, before)
-    }
-
-    /// How many transitions may happen how fast.
-    fn chatter_limit(&self, structure: &Structure) -> ChatterLimit {
-        ChatterLimit { period: TAU / structure.omega_u, transitions: MAX_TRANSITIONS_PER_PERIOD }
-    }
-
-    /// Whether a structure in full contact in `state` stays there while nothing acts on it.
-    fn stays_down(&self, structure: &Structure, state: &State) -> bool {
-        state.u.hypot(state.u_dot / structure.omega_fc) < structure.u_cr
-    }
-
-    /// (ü, θ̈) in `phase` under `load`, m/s² and rad/s²; not a number where the equations have no solution.
-    fn accelerations(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2];
-
-    /// The outputs in `phase` and `state` under `load`.
-    fn outputs(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> Outputs {
-        Outputs::of(structure, phase, state, load.F_t)
-    }
-
-    /// Time derivatives of the outputs under `load`, given (ü, θ̈) and (u⃛, θ⃛).
-    fn output_rates(
-        &self,
-        structure: &Structure,
-        phase: Phase,
-        state: &State,
-        [accelerations, _]: [[f64; 2]; 2],
-        load: LinearLoad,
-    ) -> Outputs {
-        Outputs::rates_by(structure, phase, state, accelerations, load)
-    }
-
-    /// a_t over `arc` under `load`, which is given from its start on, as a series in σ.
-    fn a_t_series(&self, structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc, turn: &Turn) -> Series {
-        output_series::a_t(structure, phase, load, arc, turn)
-    }
-
-    /// Bounds of |θ|, |u|, |δ_t| and |a_t| that follow from those of |θ|, |u| and |u̇|; `push` is that of |F_t|/m.
-    fn crude_output_bounds(&self, structure: &Structure, phase: Phase, push: f64, of_state: [f64; 3]) -> [f64; 4] {
-        output_series::crude_bounds(structure, phase, push, of_state)
-    }
-
-    /// Bounds of |θ|, |u|, |δ_t| and |a_t| over `arc` under `load`, which is given from its start on.
-    fn output_bounds(&self, structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc) -> [Bound; 4] {
-        output_series::bounds(structure, phase, load, arc)
-    }
-}
-
-/// Equations of rocking with an elastic strut.
-pub(crate) trait ElasticRocking: Debug + Send {
-    fn leap(&mut self, _side: Side, _start: &Start) -> Option<State> {
-        None
-    }
-
-    fn rates(&self, side: Side, start: &Start, end: &State) -> Rates;
-
-    fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc);
-
-    fn is_singular(&self, _structure: &Structure, _side: Side, _state: &State) -> bool {
-        false
-    }
-
-    /// What decides the sign of θ̈ at the start of rocking.
-    fn turning_moment(&self, structure: &Structure) -> TurningMoment;
-
-    fn accelerations(&self, structure: &Structure, side: Side, state: &State, load: Load) -> [f64; 2];
-}
-
 /// A level with an elastic strut: by exact flow in full contact where there is one, otherwise by series.
 #[derive(Debug)]
 pub(crate) struct Elastic<Rocking> {
     contact: Option<ExactContact>,
     rocking: Rocking,
 }
+
+impl<Rocking: ElasticRocking> Rules for Elastic<Rocking> {}
 
 impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
     #[inline(always)]
@@ -271,6 +169,8 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
 pub(crate) struct FixedBase {
     contact: ExactContact,
 }
+
+impl Rules for FixedBase {}
 
 impl Level for FixedBase {
     fn check_start(&self, initial: &State) -> Result<(), InitialStateError> {

@@ -10,16 +10,17 @@
 //! about takes more, up to four for each 1/Ω with |θ̇|, |u̇|/ρ and √(|ü|/ρ) among them, ρ² = (J0 + m0 B²)/m + (sB − u)².
 //! One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps.
 
-use crate::detail::{AnyLevel, Detail, Level};
+use crate::detail::{AnyLevel, Detail};
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
+use crate::level::Level;
 use crate::load::{LOADS, LinearLoad, Load};
+use crate::motion::{Chatter, Motion, Work};
 use crate::piece::{Part, Piece, Sample, Watch};
 use crate::reactions::{Impulse, Reactions};
 use crate::state::InitialStateError;
 use crate::taylor::{Arc, Start};
-use crate::transition::{self, Chatter, Event};
+use crate::transition::{self, Event};
 use crate::{Outputs, Phase, Side, State, Structure};
-use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
 /// The default relative tolerance of the results.
@@ -35,33 +36,6 @@ pub const MAX_STEPS_PER_ADVANCE: u64 = 2_000_000;
 
 /// A step shorter than this part of 1/ω_u is not the doing of the step's end or of a transition: the solution ends.
 const STALLED: f64 = 1e-12;
-
-/// Work done since the start, counted.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Work {
-    /// Taylor steps taken.
-    pub steps: u64,
-    /// Right-hand-side evaluations: one for every order of every series.
-    pub evaluations: u64,
-}
-
-/// Everything about a structure that changes with time.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Motion {
-    /// Time, s.
-    pub time: f64,
-    /// State at that time.
-    pub state: State,
-    /// Phase at that time.
-    pub phase: Phase,
-    /// Transitions so far.
-    pub transitions: u64,
-    /// Work so far.
-    pub work: Work,
-    /// Impulse of the impacts on the ground so far.
-    pub impulse: Impulse,
-    pub(crate) chatter: Chatter,
-}
 
 /// How far an advance came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

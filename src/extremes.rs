@@ -173,16 +173,6 @@ fn divide_out(coefficients: &mut [f64], root: f64) {
     }
 }
 
-/// Coefficients of the same polynomial about `by`.
-pub fn shift(coefficients: &mut [f64], by: f64) {
-    let last = coefficients.len().saturating_sub(1);
-    for start in 0..last {
-        for k in (start..last).rev() {
-            coefficients[k] += by * coefficients[k + 1];
-        }
-    }
-}
-
 /// The largest |Σ c_k σᵏ| up to σ = `reach`.
 pub fn largest(coefficients: &[f64], reach: f64) -> f64 {
     let at = |sigma: f64| evaluate(coefficients, sigma).abs();
@@ -227,13 +217,5 @@ mod tests {
         for (found, expected) in found.into_iter().zip([a, b, c]) {
             assert_abs_diff_eq!(found, expected, epsilon = 2e-8); // where rounding puts roots 1e-7 apart
         }
-    }
-
-    #[test]
-    fn a_shift_moves_the_origin() {
-        let mut coefficients = [1.0, -2.0, 3.0, 0.5];
-        let expected = evaluate(&coefficients, 0.9);
-        shift(&mut coefficients, 0.4);
-        assert_abs_diff_eq!(evaluate(&coefficients, 0.5), expected, epsilon = 1e-15);
     }
 }

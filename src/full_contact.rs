@@ -4,9 +4,9 @@
 //! ü + 2 ζ_fc ω_fc u̇ + ω_fc² u = −a_g + F_t/m,      θ = θ̇ = 0                                    (1)
 //! ```
 
+use crate::level::Rates;
 use crate::load::Load;
 use crate::oscillator::{Flow, Kept, Oscillator};
-use crate::piece::Rates;
 use crate::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
 use crate::{State, Structure};
 

@@ -14,11 +14,10 @@
 //! A force F_t on the top mass makes a_g − F_t/m of a_g. Under loads that are linear in time the exact solution is a
 //! matrix exponential, kept for the step lengths used last; series serve the steps on which a transition may happen.
 
-use crate::detail::ElasticRocking;
+use crate::level::{ElasticRocking, Rates};
 use crate::linear_system::{LinearSystem, Row};
 use crate::load::Load;
 use crate::oscillator::Kept;
-use crate::piece::Rates;
 use crate::taylor::{Arc, Start};
 use crate::uplift::TurningMoment;
 use crate::{Side, State, Structure};

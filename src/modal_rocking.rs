@@ -9,11 +9,10 @@
 //! A force F_t on the top mass makes a_g − F_t/m of a_g. Both have closed forms under loads that are linear in time;
 //! series serve the steps on which a transition may happen, from the same equations written for θ = q_r − (p_l²/g) u.
 
-use crate::detail::ElasticRocking;
+use crate::level::{ElasticRocking, Rates};
 use crate::linear_system::{LinearSystem, Row};
 use crate::load::Load;
 use crate::oscillator::{Flow, Kept, Oscillator, Swing};
-use crate::piece::Rates;
 use crate::taylor::{Arc, Start, reciprocal};
 use crate::uplift::TurningMoment;
 use crate::{Side, State, Structure};

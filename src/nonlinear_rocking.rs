@@ -20,9 +20,8 @@
 //! L̇ = H (κ + w θ̇²) − w G − s(γ−1)B G₀
 //! ```
 
-use crate::detail::ElasticRocking;
+use crate::level::{ElasticRocking, Rates};
 use crate::load::Load;
-use crate::piece::Rates;
 use crate::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
 use crate::uplift::TurningMoment;
 use crate::{Side, State, Structure};

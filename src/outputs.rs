@@ -38,6 +38,34 @@ pub struct Outputs {
     pub v_t: f64,
 }
 
+/// The outputs whose peaks and histories are looked at; others follow from them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Measure {
+    /// θ, and with it the uplift (Eq 25).
+    Theta,
+    /// u.
+    U,
+    /// δ_t (Eq 26).
+    DeltaT,
+    /// a_t (Eq 27), and with it V_t and M_t.
+    At,
+}
+
+impl Measure {
+    /// All of them.
+    pub const ALL: [Measure; 4] = [Measure::Theta, Measure::U, Measure::DeltaT, Measure::At];
+
+    /// Its value among `outputs`.
+    pub fn of(self, outputs: &Outputs) -> f64 {
+        match self {
+            Measure::Theta => outputs.theta,
+            Measure::U => outputs.u,
+            Measure::DeltaT => outputs.delta_t,
+            Measure::At => outputs.a_t,
+        }
+    }
+}
+
 /// The damping in force: c_fc in full contact, c_u otherwise, N·s/m.
 pub(crate) fn damping(structure: &Structure, phase: Phase) -> f64 {
     match phase {

@@ -3,14 +3,15 @@
 //! Within a piece there is no transition. Where the engine expanded the motion into a polynomial, that is what a watcher
 //! sees; where it leapt by an exact flow, there are bounds, and polynomials only for a watcher that asks for them.
 
-use crate::detail::Level;
-use crate::engine::Motion;
 use crate::extremes::Bound;
+use crate::level::{Level, Rates};
 use crate::load::{LinearLoad, Load};
+use crate::motion::Motion;
 use crate::output_series::{self, Turn};
+use crate::outputs::{self, Measure};
 use crate::taylor::{Arc, Series, Start, evaluate};
 use crate::transition::Transition;
-use crate::{Outputs, Phase, Reactions, State, Structure, outputs};
+use crate::{Outputs, Phase, Reactions, State, Structure};
 
 /// Watches a motion go by.
 pub trait Watch {
@@ -58,54 +59,6 @@ impl<A: Watch, B: Watch> Watch for (&mut A, &mut B) {
     fn transition(&mut self, transition: &Transition) {
         self.0.transition(transition);
         self.1.transition(transition);
-    }
-}
-
-/// Bounds of |u|, |θ| and their derivatives over an exact leap.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Rates {
-    pub u: f64,
-    pub u_dot: f64,
-    pub u_ddot: f64,
-    pub u_dddot: f64,
-    pub theta: f64,
-    pub theta_dot: f64,
-    pub theta_ddot: f64,
-}
-
-impl Rates {
-    /// Nothing is known.
-    pub(crate) const NONE: Rates = {
-        const ANY: f64 = f64::INFINITY;
-        Rates { u: ANY, u_dot: ANY, u_ddot: ANY, u_dddot: ANY, theta: ANY, theta_dot: ANY, theta_ddot: ANY }
-    };
-}
-
-/// What a piece is looked at for: the outputs that others follow from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measure {
-    /// θ, and with it the uplift (Eq 25).
-    Theta,
-    /// u.
-    U,
-    /// δ_t (Eq 26).
-    DeltaT,
-    /// a_t (Eq 27), and with it V_t and M_t.
-    At,
-}
-
-impl Measure {
-    /// All of them.
-    pub const ALL: [Measure; 4] = [Measure::Theta, Measure::U, Measure::DeltaT, Measure::At];
-
-    /// Its value among `outputs`.
-    pub fn of(self, outputs: &Outputs) -> f64 {
-        match self {
-            Measure::Theta => outputs.theta,
-            Measure::U => outputs.u,
-            Measure::DeltaT => outputs.delta_t,
-            Measure::At => outputs.a_t,
-        }
     }
 }
 

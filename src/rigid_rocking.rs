@@ -17,15 +17,15 @@
 //! impact after which |θ̇| ≤ ε p_l tan α_cg, ε the relative tolerance. The kinetic energy left behind, ½ J_P θ̇², is
 //! then at most ε² of ½ m g H tan² α_cg, which overturning takes at small angles: far below the tolerance.
 
-use crate::detail::Level;
 use crate::extremes::Bound;
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
+use crate::level::{Level, Rates};
 use crate::load::{LinearLoad, Load};
+use crate::motion::ChatterLimit;
 use crate::output_series::{self, Turn};
-use crate::piece::Rates;
 use crate::state::InitialStateError;
 use crate::taylor::{Arc, LONGEST_SPAN, Series, Start, Truncation, ZERO};
-use crate::transition::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD};
+use crate::transition::{MAX_RIGID_TRANSITIONS_PER_PERIOD, Rules};
 use crate::uplift::LEAST_EXCESS;
 use crate::{Outputs, Phase, Side, State, Structure, extremes};
 
@@ -98,6 +98,24 @@ pub(crate) struct Rigid {
     pub tolerance: f64,
 }
 
+impl Rules for Rigid {
+    fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
+        let theta_dot = structure.parameters().r * before.theta_dot;
+        if theta_dot.abs() <= self.tolerance * structure.p_l * structure.tan_alpha_cg {
+            return (Phase::FullContact, State::default());
+        }
+        (Phase::Rocking(side.opposite()), State { theta_dot, ..State::default() })
+    }
+
+    fn land(&self, _structure: &Structure, _before: &State) -> State {
+        State::default()
+    }
+
+    fn chatter_limit(&self, structure: &Structure) -> ChatterLimit {
+        ChatterLimit { period: 1.0 / structure.p_l, transitions: MAX_RIGID_TRANSITIONS_PER_PERIOD }
+    }
+}
+
 impl Level for Rigid {
     fn check_start(&self, &State { u, u_dot, .. }: &State) -> Result<(), InitialStateError> {
         if (u, u_dot) == (0.0, 0.0) { Ok(()) } else { Err(InitialStateError::DeformedRigid { u, u_dot }) }
@@ -129,22 +147,6 @@ impl Level for Rigid {
         let first = |side: Side| first_time_all_closed([Guard::new(&push, side.sign(), limit)], 1.0);
         let (right, left) = (first(Side::Right), first(Side::Left));
         if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
-    }
-
-    fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
-        let theta_dot = structure.parameters().r * before.theta_dot;
-        if theta_dot.abs() <= self.tolerance * structure.p_l * structure.tan_alpha_cg {
-            return (Phase::FullContact, State::default());
-        }
-        (Phase::Rocking(side.opposite()), State { theta_dot, ..State::default() })
-    }
-
-    fn land(&self, _structure: &Structure, _before: &State) -> State {
-        State::default()
-    }
-
-    fn chatter_limit(&self, structure: &Structure) -> ChatterLimit {
-        ChatterLimit { period: 1.0 / structure.p_l, transitions: MAX_RIGID_TRANSITIONS_PER_PERIOD }
     }
 
     fn stays_down(&self, _structure: &Structure, _state: &State) -> bool {

@@ -6,8 +6,8 @@
 //! Time within a step is σ = τ/span, 0 at its start and 1 at the end of the span that was asked for; the coefficients
 //! are then the terms themselves at the end, which can be compared with the tolerance and summed as they are.
 
+use crate::State;
 use crate::load::Ramp;
-use crate::{State, extremes};
 
 /// Highest order of an expansion. At a local error of 1e-16 it carries ω·h of more than 3 rad per step.
 pub const MAX_ORDER: usize = 28;
@@ -28,6 +28,16 @@ pub fn evaluate(coefficients: &[f64], sigma: f64) -> f64 {
         return coefficients.iter().rev().sum();
     }
     coefficients.iter().rev().fold(0.0, |sum, c| sum * sigma + c)
+}
+
+/// Coefficients of the same polynomial about `by`.
+pub fn shift(coefficients: &mut [f64], by: f64) {
+    let last = coefficients.len().saturating_sub(1);
+    for start in 0..last {
+        for k in (start..last).rev() {
+            coefficients[k] += by * coefficients[k + 1];
+        }
+    }
 }
 
 /// The motion over one step: a polynomial in time for each component of the state.
@@ -85,7 +95,7 @@ impl Arc {
         let (mut part, scale) = (self.clone(), to - from);
         for series in [&mut part.u, &mut part.u_dot, &mut part.theta, &mut part.theta_dot] {
             let used = &mut series[..=self.order];
-            extremes::shift(used, from);
+            shift(used, from);
             used.iter_mut().fold(1.0, |power, c| {
                 *c *= power;
                 power * scale
@@ -241,5 +251,13 @@ mod tests {
     fn a_polynomial_is_evaluated_at_its_end_and_before() {
         assert_relative_eq!(evaluate(&[1.0, 2.0, 3.0], 2.0), 1.0 + 4.0 + 12.0);
         assert_relative_eq!(evaluate(&[1.0, 2.0, 3.0], 1.0), 6.0);
+    }
+
+    #[test]
+    fn a_shift_moves_the_origin() {
+        let mut coefficients = [1.0, -2.0, 3.0, 0.5];
+        let expected = evaluate(&coefficients, 0.9);
+        shift(&mut coefficients, 0.4);
+        assert_relative_eq!(evaluate(&coefficients, 0.5), expected, max_relative = 1e-15);
     }
 }

@@ -8,11 +8,10 @@
 //! many in finite time, which end in contact; neither specimen comes near them. The rigid limit, which has no vibration
 //! and does come to rest by ever faster impacts, has [`MAX_RIGID_TRANSITIONS_PER_PERIOD`] for each 1/p_l instead.
 
-use crate::detail::Level;
-use crate::engine::Motion;
+use crate::motion::{ChatterLimit, Motion};
 use crate::reactions::Impulse;
-use crate::{Phase, Side, State, Structure};
-use serde::{Deserialize, Serialize};
+use crate::{Phase, Side, State, Structure, impact};
+use std::f64::consts::TAU;
 
 /// Transitions within one period of the vibration mode (2π/ω_u) after which contact is held.
 pub const MAX_TRANSITIONS_PER_PERIOD: u32 = 1000;
@@ -60,64 +59,41 @@ pub(crate) enum Event {
     Overturning(Side),
 }
 
-/// How many transitions a period (s) may see.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct ChatterLimit {
-    pub period: f64,
-    pub transitions: u32,
-}
-
-/// Transitions in the present period, for the guarantee of progress.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Chatter {
-    /// Time since the first of them, s.
-    age: f64,
-    /// How many.
-    transitions: u32,
-    /// For how long contact is held from now on, s.
-    pub held: f64,
-}
-
-impl Chatter {
-    /// None so far.
-    pub(crate) const NONE: Chatter = Chatter { age: f64::MAX, transitions: 0, held: 0.0 };
-
-    /// Time goes by, s.
-    #[inline]
-    pub(crate) fn pass(&mut self, duration: f64) {
-        self.age += duration;
-        self.held = (self.held - duration).max(0.0);
+/// What follows from transitions. Where nothing else is said it is as with an elastic strut.
+pub(crate) trait Rules {
+    /// Phase and state just after an impact that ends rocking about `side` in the state `before`.
+    fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
+        impact::resolve(structure, side, before)
     }
 
-    fn count(&mut self, limit: ChatterLimit) {
-        if self.age >= limit.period {
-            (self.age, self.transitions) = (0.0, 0);
-        }
-        self.transitions += 1;
+    /// The state just after a landing.
+    fn land(&self, structure: &Structure, before: &State) -> State {
+        impact::land(structure, before)
     }
 
-    fn is_too_much(&self, limit: ChatterLimit) -> bool {
-        self.transitions >= limit.transitions && self.age < limit.period
+    /// How many transitions may happen how fast.
+    fn chatter_limit(&self, structure: &Structure) -> ChatterLimit {
+        ChatterLimit { period: TAU / structure.omega_u, transitions: MAX_TRANSITIONS_PER_PERIOD }
     }
 }
 
 /// The `motion` after what `event` leads to, and the transition to be reported.
 pub(crate) fn resolve(
-    level: &dyn Level,
+    rules: &dyn Rules,
     structure: &Structure,
     mut motion: Motion,
     event: Event,
 ) -> (Motion, Transition) {
     let before = motion.state;
-    let limit = level.chatter_limit(structure);
+    let limit = rules.chatter_limit(structure);
     let (kind, phase, after) = match event {
         Event::Uplift(side) => (TransitionKind::Uplift(side), Phase::Rocking(side), before),
         Event::Overturning(side) => (TransitionKind::Overturning(side), Phase::Overturned(side), before),
         Event::Impact(_) if motion.chatter.is_too_much(limit) => {
-            motion.chatter.held = limit.period - motion.chatter.age;
-            (TransitionKind::Settling, Phase::FullContact, level.land(structure, &before))
+            motion.chatter.hold(limit);
+            (TransitionKind::Settling, Phase::FullContact, rules.land(structure, &before))
         }
-        Event::Impact(side) => match level.after_impact(structure, side, &before) {
+        Event::Impact(side) => match rules.after_impact(structure, side, &before) {
             (Phase::Rocking(side), after) => (TransitionKind::Impact(side), Phase::Rocking(side), after),
             (phase, after) => (TransitionKind::Landing, phase, after),
         },

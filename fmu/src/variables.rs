@@ -4,7 +4,7 @@
 
 use crate::resources::Contents;
 use crate::setup::Setup;
-use rocking::engine::Motion;
+use rocking::Motion;
 use rocking::ground_motion::{PLACEMENT, Placement};
 use rocking::load::LOADS;
 use rocking::parameters::PARAMETERS;

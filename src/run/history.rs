@@ -1,8 +1,9 @@
 //! θ, u and a_t over a whole run as series in time, and how far two runs are apart, exactly.
 
 use crate::extremes;
-use crate::piece::{Measure, Piece, Watch};
-use crate::taylor::Series;
+use crate::outputs::Measure;
+use crate::piece::{Piece, Watch};
+use crate::taylor::{self, Series};
 
 /// Part of the vibration period 2π/ω_u: u̇, and with it a_t, jumps at a landing. Where one motion has landed and the other
 /// does so within this time, their distance is that jump and says nothing of either.
@@ -77,7 +78,7 @@ impl Stretch {
     fn over(&self, i: usize, from: f64, to: f64) -> Series {
         let mut series = self.series[i];
         let order = series.iter().rposition(|c| *c != 0.0).unwrap_or(0);
-        extremes::shift(&mut series[..=order], (from - self.start) / self.span);
+        taylor::shift(&mut series[..=order], (from - self.start) / self.span);
         let (part, mut power) = ((to - from) / self.span, 1.0);
         for c in &mut series[..=order] {
             *c *= power;

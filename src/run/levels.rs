@@ -4,7 +4,7 @@ use super::history::History;
 use super::peaks::Peaks;
 use super::{Ending, Run, RunError};
 use crate::Detail;
-use crate::engine::Work;
+use crate::motion::Work;
 
 /// Tolerance of the run that all others are measured by.
 pub const REFERENCE_TOLERANCE: f64 = 1e-12;

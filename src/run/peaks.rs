@@ -5,7 +5,8 @@
 //! it is stationary ([`crate::extremes`]): the largest magnitude is at one of these or at an end.
 
 use crate::extremes::Bound;
-use crate::piece::{Measure, Piece, Watch};
+use crate::outputs::Measure;
+use crate::piece::{Piece, Watch};
 use crate::{Outputs, Structure, extremes};
 use serde::{Deserialize, Serialize};
 
