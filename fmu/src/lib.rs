@@ -4,7 +4,7 @@
 //! slices. [`instance`] finds its variables in [`variables`] and lets [`rocking`] do the physics; what goes wrong is a
 //! [`failure::Failure`], which [`logger`] hands to the host. All that the future depends on is a
 //! [`condition::Condition`], which [`snapshot`] keeps: what was set before the start, in [`setup`], the [`inputs`], and
-//! how far the motion has come. [`sensitivity`] differentiates by parameters. [`resources`] reads what the archive
+//! how far the motion has come; whether it can start is in `start`. [`sensitivity`] differentiates by parameters. [`resources`] reads what the archive
 //! carries, and [`ground`] the records, of the archive or on disk.
 #![allow(non_snake_case)] // the shared library's name, and the standard's names of arguments
 
@@ -19,6 +19,7 @@ pub mod resources;
 pub mod sensitivity;
 pub mod setup;
 pub mod snapshot;
+mod start;
 pub mod state_machine;
 pub mod variables;
 
