@@ -12,6 +12,7 @@ use crate::outputs::{self, Measure};
 use crate::taylor::{Arc, Series, Start, evaluate};
 use crate::transition::Transition;
 use crate::{Outputs, Phase, Reactions, State, Structure};
+use std::f64::consts::TAU;
 
 /// Watches a motion go by.
 pub trait Watch {
@@ -193,9 +194,29 @@ impl Piece<'_> {
     pub fn skip(&mut self) -> bool {
         let (passed, covered) = (self.passed(), self.arc.duration());
         // an arc may end before the part does although it reaches the end of its span
-        let is_left = !self.is_expanded && covered < self.part.end.0 - passed;
+        let is_left = !self.is_expanded && covered < self.part.end.0 - passed && passed + covered > passed;
         self.part.start = if is_left { (passed + covered, self.arc.end()) } else { self.part.end };
         is_left
+    }
+
+    /// Leaves out the middle of what is left of a long leap, which has been looked at from `begin` (s) on.
+    ///
+    /// In full contact the motion is a line and a decaying vibration about it. The magnitude of the line and that of the
+    /// vibration are convex, and with them their sum, which the vibration touches once a period: what is largest is so
+    /// within a period of an end. Without vibration (ζ ≥ 1) the line is left once what decays is gone.
+    pub(crate) fn skip_middle(&mut self, begin: f64) {
+        let &Structure { omega_fc, .. } = self.structure;
+        let zeta = self.structure.parameters().zeta_fc;
+        let decay = if zeta < 1.0 { 0.0 } else { 80.0 * zeta };
+        let (periods, left) = ((2.0 * TAU + decay) / omega_fc, self.part.end.0 - self.passed());
+        if self.before.phase != Phase::FullContact || self.passed() - begin < periods || left <= 2.0 * periods {
+            return;
+        }
+        let mut middle = self.start_of_part();
+        middle.interval -= periods;
+        if let Some(state) = self.level.leap(self.structure, self.before.phase, &middle) {
+            self.part.start = (self.part.end.0 - periods, state);
+        }
     }
 
     /// Bounds of the magnitudes of [`Measure::ALL`] over the part in hand.
@@ -285,7 +306,7 @@ impl Piece<'_> {
         if halvings > 0 && matches!(measure, Measure::DeltaT | Measure::At) {
             let off = evaluate(arc.used(&series), arc.reach) - measure.of(&self.outputs(until));
             let terms = arc.used(&series).iter().rev().fold(0.0, |sum, c| sum * arc.reach + c.abs());
-            if off.abs() > CONVERGED * terms {
+            if off.abs() > (100.0 * self.local_error).max(CONVERGED) * terms {
                 let middle = 0.5 * arc.reach;
                 for [start, end] in [[0.0, middle], [middle, arc.reach]] {
                     let start_on_piece = from + start * arc.span / self.arc.span;
@@ -313,6 +334,14 @@ impl Piece<'_> {
     fn state_at(&mut self, tau: f64) -> State {
         if tau <= 0.0 {
             return self.before.state;
+        }
+        if self.is_leap() {
+            let step = Start { interval: tau - self.passed(), ..self.start_of_part() };
+            if step.interval > 0.0
+                && let Some(state) = self.level.leap(self.structure, self.before.phase, &step)
+            {
+                return state;
+            }
         }
         loop {
             let from = self.passed();

@@ -135,6 +135,26 @@ fn a_long_leap_is_read_to_its_end() {
     }
 }
 
+/// A leap of a million vibrations: its peaks are within a period of an end, and looking for them takes no time.
+#[test]
+fn a_leap_without_end_is_looked_at_at_its_ends() {
+    let undamped = Structure::new(Parameters { zeta_fc: 0.0, ..Parameters::MCMANUS }).unwrap();
+    let damped = Structure::new(Parameters::MCMANUS).unwrap();
+    let heavy = Structure::new(Parameters { zeta_fc: 3.0, ..Parameters::MCMANUS }).unwrap();
+    let initial = State { u: 1e-3, u_dot: 0.02, ..State::default() };
+    for structure in [undamped, damped, heavy] {
+        for duration in [20.0, 2e5, 1e12] {
+            let ground = Record::from_samples("ramp", vec![0.0, duration], vec![-0.3, 0.2]).unwrap();
+            let run = Run { initial, tolerance: 1e-12, end: End::At(duration), ..Run::new(structure, &ground) };
+            let (peaks, finish) = run.peaks().unwrap();
+            assert_eq!(finish.motion.work.steps, 1);
+            assert!(peaks.evaluations() < 20_000, "{}", peaks.evaluations());
+            let first = Run { end: End::At(2.0), ..run.clone() }.peaks().unwrap().0;
+            assert!((peaks.u().magnitude / first.u().magnitude - 1.0).abs() < 1e-9);
+        }
+    }
+}
+
 /// Watching changes no bit of the motion, and of what is rocked by series it asks for next to nothing.
 #[test]
 fn watching_costs_little_and_changes_nothing() {

@@ -171,6 +171,7 @@ impl Peaks {
             }
             return;
         }
+        let begin = piece.passed();
         loop {
             piece.arc();
             for measure in Measure::ALL {
@@ -181,6 +182,7 @@ impl Peaks {
             if !piece.skip() {
                 break;
             }
+            piece.skip_middle(begin);
         }
     }
 
