@@ -63,7 +63,7 @@ records: .venv/ready
 
 bench: .venv/ready out/mcmanus.fmu
 	record="$$(realpath $(RECORDS)/$(EL_CENTRO))" && RECORD="$$record" cargo bench --package rocking && \
-		$(PYTHON) benches/one_step.py out/mcmanus.fmu "$$record" "$(TARGET)/criterion/record/auto 1e-9/new/estimates.json"
+		$(PYTHON) benches/one_step.py out/mcmanus.fmu "$$record" "$(TARGET)/criterion/record/auto 1e-9/new/sample.json"
 
 licenses:
 	WRITE_LICENSES=1 cargo test --package fmu-export --test licenses
