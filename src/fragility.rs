@@ -42,6 +42,9 @@ pub enum FitError {
     /// An intensity has no logarithm.
     #[error("the intensity {0} must be a finite number greater than 0")]
     Intensity(f64),
+    /// No run.
+    #[error("no run is counted")]
+    NothingCounted,
     /// No exceedance.
     #[error("never exceeded: raise the intensity")]
     NeverExceeded,
@@ -90,6 +93,9 @@ impl FragilityCurve {
     pub fn fit(trials: &[Trials]) -> Result<FragilityCurve, FitError> {
         if let Some(refused) = trials.iter().find(|at| !(at.intensity > 0.0 && at.intensity.is_finite())) {
             return Err(FitError::Intensity(refused.intensity));
+        }
+        if trials.is_empty() {
+            return Err(FitError::NothingCounted);
         }
         check_overlap(trials)?;
         // Logarithms from their mean, so that a and b stay apart whatever the unit.
@@ -217,7 +223,7 @@ mod tests {
     #[test]
     fn counts_without_a_curve_are_refused_with_the_reason() {
         let refused = |counts: &[(f64, usize, usize)]| FragilityCurve::fit(&trials(counts)).unwrap_err();
-        assert_eq!(refused(&[]), FitError::NeverExceeded);
+        assert_eq!(refused(&[]), FitError::NothingCounted);
         assert_eq!(refused(&[(1.0, 5, 0), (2.0, 5, 0)]), FitError::NeverExceeded);
         assert_eq!(refused(&[(1.0, 5, 5), (2.0, 5, 5)]), FitError::AlwaysExceeded);
         let steep = FitError::NoOverlap { highest_without: 2.0, lowest_with: 2.0 };

@@ -25,6 +25,9 @@ use crate::{Side, State, Structure};
 use nalgebra::{SMatrix, SVector};
 use std::f64::consts::FRAC_PI_2;
 
+/// The longest leap, as Ω h in rad: beyond, the exponential loses digits of its small entries.
+const LONGEST_LEAP: f64 = 10.0;
+
 /// Takes (u, u̇, θ, θ̇, a_g, ȧ_g, s) from the start of a step to the state at its end, by columns.
 type Flow = SMatrix<f64, 4, 7>;
 
@@ -97,6 +100,9 @@ impl ElasticRocking for LinearRocking {
     #[inline(always)]
     fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
+        if self.omega * h > LONGEST_LEAP {
+            return None;
+        }
         let off_chord = self.swing(side, start)?.turning * h * h / 8.0;
         let s = side.sign();
         let flow = self.flows.over(h, || flow(&self.system, self.omega, h));

@@ -73,11 +73,33 @@ impl Oscillator {
         let free = self.free(tau);
         let [step, ramp] = if (1.0 + 2.0 * zeta) * omega * tau < 1.0 {
             self.short_response(tau)
+        } else if zeta > 1.5 {
+            self.slow_response(tau)
         } else {
             let step = (1.0 - free.m11) / (omega * omega);
             [step, (tau - free.m12 - 2.0 * zeta * omega * step) / (omega * omega)]
         };
         Flow { free, step, ramp }
+    }
+
+    /// W and R far beyond critical damping, where 2ζω W all but cancels τ, by the two rates of decay λ, λ':
+    /// W = [(1 − e^{−λτ})/λ − (1 − e^{−λ'τ})/λ']/2d, and R is its integral.
+    fn slow_response(&self, tau: f64) -> [f64; 2] {
+        let d = self.d();
+        let fast = self.zeta * self.omega + d;
+        let held = |x: f64| -(-x).exp_m1() / x;
+        // (x − 1 + e^{−x})/x² = 1/2! − x/3! + x²/4! − …
+        let ramped = |x: f64| {
+            if x < 1.0 {
+                let next = |sum: f64, k: usize| (1.0 - x * sum) * reciprocal(k);
+                0.5 * (3..19).rev().fold(0.0, next).mul_add(-x, 1.0)
+            } else {
+                (1.0 - held(x)) / x
+            }
+        };
+        let [slow, fast] = [self.omega * self.omega / fast, fast].map(|rate| rate * tau);
+        let per = tau / (2.0 * d);
+        [per * (held(slow) - held(fast)), per * tau * (ramped(slow) - ramped(fast))]
     }
 
     /// W and R over a short time, whose differences would be lost to rounding, by their series in τ.

@@ -18,7 +18,7 @@ pub(crate) struct Turn {
 }
 
 impl Turn {
-    /// Of `arc`, to its order: what is left out is of the size of what `arc` leaves out.
+    /// Of `arc`, to its order: [`Piece::series`](crate::piece::Piece::series) looks at what that leaves out.
     pub(crate) fn of(arc: &Arc) -> Turn {
         let mut turn = Turn { sin: ZERO, cos: ZERO };
         (turn.sin[0], turn.cos[0]) = arc.theta[0].sin_cos();

@@ -8,7 +8,7 @@ use crate::engine::Motion;
 use crate::extremes::Bound;
 use crate::load::{LinearLoad, Load};
 use crate::output_series::{self, Turn};
-use crate::taylor::{Arc, Series, Start};
+use crate::taylor::{Arc, Series, Start, evaluate};
 use crate::transition::Transition;
 use crate::{Outputs, Phase, Reactions, State, Structure, outputs};
 
@@ -142,6 +142,12 @@ impl Sample<'_> {
     }
 }
 
+/// A series of an output that is off by less than this part of its terms at its end has converged.
+const CONVERGED: f64 = 1e-12;
+
+/// How often an arc is halved before its outputs' series are taken as they are.
+const FINEST_PART: u32 = 5;
+
 /// A stretch of time without a transition.
 ///
 /// It is gone through by parts, the first of which is all of it: [`Piece::bounds`] and [`Piece::arc`] are about the part in
@@ -232,9 +238,10 @@ impl Piece<'_> {
 
     /// Leaves behind what the arc covers; false if that is all of the part.
     pub fn skip(&mut self) -> bool {
-        let passed = self.passed() + self.arc.duration();
-        let is_left = !self.is_expanded && self.arc.reach < 1.0 && passed < self.part.end.0;
-        self.part.start = if is_left { (passed, self.arc.end()) } else { self.part.end };
+        let (passed, covered) = (self.passed(), self.arc.duration());
+        // an arc may end before the part does although it reaches the end of its span
+        let is_left = !self.is_expanded && covered < self.part.end.0 - passed;
+        self.part.start = if is_left { (passed + covered, self.arc.end()) } else { self.part.end };
         is_left
     }
 
@@ -296,21 +303,45 @@ impl Piece<'_> {
         })
     }
 
-    /// `measure` over the arc, as a series in σ.
-    pub fn series(&self, measure: Measure) -> Series {
-        let turn = || Turn::of(self.arc);
-        match measure {
-            Measure::Theta => self.arc.series(|k| self.arc.theta[k]),
-            Measure::U => self.arc.series(|k| self.arc.u[k]),
-            Measure::DeltaT => output_series::delta_t(self.structure, self.before.phase, self.arc, &turn()),
-            Measure::At => self.level.a_t_series(
-                self.structure,
-                self.before.phase,
-                self.load.from(self.passed()),
-                self.arc,
-                &turn(),
-            ),
+    /// Shows `measure` over the arc as series in σ, each with the σ at which it starts and the arc that it is of: the arc
+    /// itself, or, where sin θ and cos θ take more terms than an arc has, parts of it.
+    pub(crate) fn series(&self, measure: Measure, show: &mut dyn FnMut(f64, &Arc, &Series)) {
+        self.series_over(self.arc, 0.0, measure, FINEST_PART, show);
+    }
+
+    /// The same over `arc`, which starts at `from` on the arc of the piece; `halvings` are left.
+    fn series_over(
+        &self,
+        arc: &Arc,
+        from: f64,
+        measure: Measure,
+        halvings: u32,
+        show: &mut dyn FnMut(f64, &Arc, &Series),
+    ) {
+        let (structure, phase) = (self.structure, self.before.phase);
+        let until = from + arc.duration() / self.arc.span;
+        let series = match measure {
+            Measure::Theta => arc.series(|k| arc.theta[k]),
+            Measure::U => arc.series(|k| arc.u[k]),
+            Measure::DeltaT => output_series::delta_t(structure, phase, arc, &Turn::of(arc)),
+            Measure::At => {
+                let load = self.load.from(self.passed() + from * self.arc.span);
+                self.level.a_t_series(structure, phase, load, arc, &Turn::of(arc))
+            }
+        };
+        if halvings > 0 && matches!(measure, Measure::DeltaT | Measure::At) {
+            let off = evaluate(arc.used(&series), arc.reach) - measure.of(&self.outputs(until));
+            let terms = arc.used(&series).iter().rev().fold(0.0, |sum, c| sum * arc.reach + c.abs());
+            if off.abs() > CONVERGED * terms {
+                let middle = 0.5 * arc.reach;
+                for [start, end] in [[0.0, middle], [middle, arc.reach]] {
+                    let start_on_piece = from + start * arc.span / self.arc.span;
+                    self.series_over(&arc.between(start, end), start_on_piece, measure, halvings - 1, show);
+                }
+                return;
+            }
         }
+        show(from, arc, &series);
     }
 
     /// The outputs at both ends of the part in hand, with seconds from the start of the piece.

@@ -82,6 +82,14 @@ pub enum RunError {
     /// The run cannot start.
     #[error(transparent)]
     Initial(#[from] InitialStateError),
+    /// The run ends before it starts, or never.
+    #[error("the run cannot end at {end} s: a finite time after the record's first sample, at {start} s, is needed")]
+    End {
+        /// The refused end, s.
+        end: f64,
+        /// First sample of the record, s.
+        start: f64,
+    },
     /// The run cannot go on.
     #[error(transparent)]
     Advance(#[from] AdvanceError),
@@ -109,8 +117,12 @@ impl<'a> Run<'a> {
     }
 
     /// The structure at the first sample.
-    fn start(&self) -> Result<Engine, InitialStateError> {
-        Engine::with_detail(self.structure, self.initial, self.ground.start(), self.tolerance, self.detail)
+    fn start(&self) -> Result<Engine, RunError> {
+        let start = self.ground.start();
+        match self.end {
+            End::At(end) if !(end > start && end.is_finite()) => Err(RunError::End { end, start }),
+            _ => Ok(Engine::with_detail(self.structure, self.initial, start, self.tolerance, self.detail)?),
+        }
     }
 
     fn follow_ground<W: Watch>(&self, engine: &mut Engine, watch: &mut W) -> Result<Ending, AdvanceError> {

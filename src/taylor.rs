@@ -6,8 +6,8 @@
 //! Time within a step is σ = τ/span, 0 at its start and 1 at the end of the span that was asked for; the coefficients
 //! are then the terms themselves at the end, which can be compared with the tolerance and summed as they are.
 
-use crate::State;
 use crate::load::Ramp;
+use crate::{State, extremes};
 
 /// Highest order of an expansion. At a local error of 1e-16 it carries ω·h of more than 3 rad per step.
 pub const MAX_ORDER: usize = 28;
@@ -78,6 +78,20 @@ impl Arc {
     pub fn is_finite(&self) -> bool {
         let last = self.order;
         (self.u_dot[last] + self.theta_dot[last] + self.reach).is_finite()
+    }
+
+    /// The same motion from σ = `from` to σ = `to` alone.
+    pub(crate) fn between(&self, from: f64, to: f64) -> Arc {
+        let (mut part, scale) = (self.clone(), to - from);
+        for series in [&mut part.u, &mut part.u_dot, &mut part.theta, &mut part.theta_dot] {
+            let used = &mut series[..=self.order];
+            extremes::shift(used, from);
+            used.iter_mut().fold(1.0, |power, c| {
+                *c *= power;
+                power * scale
+            });
+        }
+        Arc { span: self.span * scale, reach: 1.0, ..part }
     }
 
     /// The state at the end of the step.

@@ -80,7 +80,7 @@ pub(crate) struct Chatter {
 
 impl Chatter {
     /// None so far.
-    pub(crate) const NONE: Chatter = Chatter { age: f64::INFINITY, transitions: 0, held: 0.0 };
+    pub(crate) const NONE: Chatter = Chatter { age: f64::MAX, transitions: 0, held: 0.0 };
 
     /// Time goes by, s.
     #[inline]

@@ -104,6 +104,37 @@ fn peaks_are_those_of_brute_force() {
     check(1e-5);
 }
 
+/// A leap over many vibrations, which takes many polynomials: what is read of it is as if it had been cut.
+#[test]
+fn a_long_leap_is_read_to_its_end() {
+    let stiff = Parameters { m: 100.0, m0: 50.0, H: 2.0, B: 0.3, J0: 0.0, f_fc: 80.0, r: 0.97, ..Parameters::MCMANUS };
+    let structure = Structure::new(stiff).unwrap();
+    let initial = State { theta: 0.1, theta_dot: 0.15, u: 1e-5, u_dot: 0.02 };
+    for detail in [Detail::Modal, Detail::Linear, Detail::FixedBase] {
+        let initial =
+            if detail == Detail::FixedBase { State { theta: 0.0, theta_dot: 0.0, ..initial } } else { initial };
+        let results = [0.3, 1e-3].map(|dt| {
+            let times: Vec<f64> = (0..=(0.3 / dt) as u32).map(|i| f64::from(i) * dt).collect();
+            let ground = Record::from_samples("rest", times.clone(), vec![0.0; times.len()]).unwrap();
+            let run = Run { detail, initial, tolerance: 1e-12, end: End::At(0.3), ..Run::new(structure, &ground) };
+            let mut read = Vec::new();
+            let instants = (0..300).map(|i| f64::from(i) * 1e-3 + 3e-4);
+            let finish = run.sample(instants, |sample| read.push(sample.outputs().delta_t), &mut ()).unwrap();
+            (run.peaks().unwrap().0, read, finish.motion.work.steps)
+        });
+        let [(at_once, read_at_once, steps), (cut, read_cut, _)] = &results;
+        assert!(detail == Detail::Linear || *steps == 1, "{detail:?} takes {steps} steps");
+        for peaking in &rocking::run::peaks::PEAKS {
+            let [whole, cut] = [at_once, cut].map(|peaks| (peaking.of)(peaks).magnitude);
+            assert!((whole - cut).abs() <= 1e-11 * cut, "{detail:?}: {} = {whole} {cut}", peaking.name);
+        }
+        let largest = (cut.delta_t()).magnitude;
+        for (whole, cut) in read_at_once.iter().zip(read_cut) {
+            assert!((whole - cut).abs() <= 1e-10 * largest, "{detail:?}: {whole} {cut}");
+        }
+    }
+}
+
 /// Watching changes no bit of the motion, and of what is rocked by series it asks for next to nothing.
 #[test]
 fn watching_costs_little_and_changes_nothing() {

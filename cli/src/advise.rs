@@ -15,7 +15,7 @@ use rocking::{
     record::Record,
     response_spectrum::spectral_acceleration,
     run::{
-        Run,
+        LONGEST_REST, Run,
         levels::{self, Comparison, Criterion, REFERENCE_TOLERANCE, Verdict},
     },
 };
@@ -113,7 +113,17 @@ fn print_reference(out: &mut impl Write, structure: &Structure, comparison: &Com
         [1e3 * peaks.u().magnitude, peaks.a_t().magnitude / g, peaks.V_t().magnitude, peaks.M_t().magnitude]
             .map(significant);
     writeln!(out, "Reference: nonlinear, tolerance {REFERENCE_TOLERANCE:e}, {} transitions", reference.transitions)?;
+    if reference.overturns().is_none() {
+        let limit = significant(LONGEST_REST / structure.p_l);
+        writeln!(
+            out,
+            "  it still rocks {limit} s after the record: whether it overturns is not known; see --duration"
+        )?;
+    }
     writeln!(out, "  peaks: theta {} rad, u {u} mm, a_t {a_t} g, V_t {V_t} N, M_t {M_t} N.m", significant(theta))?;
+    if reference.overturns() == Some(true) {
+        return writeln!(out, "  the structure overturns\n");
+    }
     if theta == 0.0 {
         return writeln!(out, "  the base never lifts off; the estimate is that of a base that does\n");
     }
@@ -140,7 +150,11 @@ fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&
     for verdict in &comparison.verdicts {
         let response = &verdict.response;
         let mark = if advised.is_some_and(|advised| advised.response.detail == response.detail) { '>' } else { ' ' };
-        let overturned = if response.has_overturned() { "yes" } else { "no" };
+        let overturned = match response.overturns() {
+            Some(true) => "yes",
+            Some(false) => "no",
+            None => "unknown",
+        };
         let overturns =
             if verdict.is_right_about_overturning { overturned.into() } else { format!("{overturned}, wrong") };
         let errors = verdict.errors.map(percent);

@@ -10,7 +10,7 @@ use rocking::{State, record::Record, run::End};
 pub struct GroundArgs {
     #[command(flatten)]
     pub record: RecordArgs,
-    /// Simulated time; the ground is at rest after the record's end [default: until the structure stands for good]
+    /// Simulated time; the ground is at rest after the record's end [default: until the structure stands for good, or still rocks 100/p_l after the record]
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     duration: Option<f64>,
     /// Free vibration over this time instead of a record

@@ -378,7 +378,7 @@ fn probabilities_and_curve_are_those_of_the_rows() {
     let pga: Vec<f64> = column(&text, "PGA[g]").iter().map(|value| value.parse().unwrap()).collect();
     let table: Vec<Vec<_>> = summary.lines().map(|line| line.split_whitespace().collect()).collect();
     assert_eq!(summary.lines().next(), Some("pier"));
-    assert_eq!(table[1].join(" "), "scale PGA (g) runs overturned theta/alpha_cg >= 0.6");
+    assert_eq!(table[1].join(" "), "scale PGA (g) counted overturned theta/alpha_cg >= 0.6");
     let pier = |scale: usize| (0..36).filter(move |run| run % 6 == scale);
     let mut trials = Vec::new();
     for scale in 0..6 {

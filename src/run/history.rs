@@ -4,9 +4,6 @@ use crate::extremes;
 use crate::piece::{Measure, Piece, Watch};
 use crate::taylor::Series;
 
-/// What is kept of a motion.
-const MEASURES: [Measure; 3] = [Measure::Theta, Measure::U, Measure::At];
-
 /// Part of the vibration period 2π/ω_u: u̇, and with it a_t, jumps at a landing. Where one motion has landed and the other
 /// does so within this time, their distance is that jump and says nothing of either.
 const SAME_LANDING: f64 = 1e-3;
@@ -39,14 +36,20 @@ impl History {
     /// The largest |Δθ| (rad), |Δu| (m) and |Δa_t| (m/s²) over the time that both cover.
     pub fn differences(&self, other: &History) -> [f64; 3] {
         let mut largest = [0.0; 3];
+        // since the one has had a transition that the other has not: how long, and how far they have been apart
+        let mut apart = (0.0, largest);
         let (mut ours, mut theirs) = (self.stretches.iter().peekable(), other.stretches.iter().peekable());
         while let (Some(a), Some(b)) = (ours.peek(), theirs.peek()) {
             let (from, to) = (a.start.max(b.start), a.end.min(b.end));
-            let is_same_landing =
-                a.transitions != b.transitions && (to - from) * self.omega_u < SAME_LANDING * std::f64::consts::TAU;
-            if to > from && !is_same_landing {
-                for (i, largest) in largest.iter_mut().enumerate() {
-                    *largest = f64::max(*largest, difference(a, b, i, from, to, *largest));
+            if to > from {
+                let are_even = a.transitions == b.transitions;
+                apart = if are_even { (0.0, [0.0; 3]) } else { (apart.0 + (to - from), apart.1) };
+                let of_these = if are_even { &mut largest } else { &mut apart.1 };
+                for (i, of_these) in of_these.iter_mut().enumerate() {
+                    *of_these = f64::max(*of_these, difference(a, b, i, from, to, *of_these));
+                }
+                if apart.0 * self.omega_u >= SAME_LANDING * std::f64::consts::TAU {
+                    largest.iter_mut().zip(apart.1).for_each(|(largest, apart)| *largest = largest.max(apart));
                 }
             }
             if a.end <= b.end {
@@ -89,15 +92,18 @@ impl Watch for History {
 
     fn piece(&mut self, piece: &mut Piece) {
         loop {
-            let (duration, span) = (piece.arc().duration(), piece.arc().span);
-            let start = piece.before.time + piece.passed();
-            let series = MEASURES.map(|measure| piece.series(measure));
-            self.stretches.push(Stretch {
-                start,
-                end: start + duration,
-                transitions: piece.before.transitions,
-                span,
-                series,
+            let span = piece.arc().span;
+            let (start, transitions) = (piece.before.time + piece.passed(), piece.before.transitions);
+            piece.series(Measure::At, &mut |from, arc, a_t| {
+                let start = start + from * span;
+                let series = [arc.series(|k| arc.theta[k]), arc.series(|k| arc.u[k]), *a_t];
+                self.stretches.push(Stretch {
+                    start,
+                    end: start + arc.duration(),
+                    transitions,
+                    span: arc.span,
+                    series,
+                });
             });
             if !piece.skip() {
                 break;

@@ -202,13 +202,16 @@ impl Peaks {
 
     /// Looks at the arc wherever `measure` is stationary.
     fn search(&mut self, measure: Measure, piece: &Piece) {
-        let (start, series) = (piece.before.time + piece.passed(), piece.series(measure));
-        let series = piece.arc.used(&series);
-        if !self.may_be_beaten(measure, extremes::bound_by_cubic(series, piece.arc.reach)) {
-            return;
-        }
-        extremes::stationary_points(series, piece.arc.reach, |sigma| {
-            self.see(measure, start + sigma * piece.arc.span, &piece.outputs(sigma));
+        let (start, span) = (piece.before.time + piece.passed(), piece.arc.span);
+        piece.series(measure, &mut |from, arc, series| {
+            let series = arc.used(series);
+            if !self.may_be_beaten(measure, extremes::bound_by_cubic(series, arc.reach)) {
+                return;
+            }
+            extremes::stationary_points(series, arc.reach, |sigma| {
+                let sigma = from + sigma * arc.span / span;
+                self.see(measure, start + sigma * span, &piece.outputs(sigma));
+            });
         });
     }
 

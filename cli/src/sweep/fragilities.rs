@@ -24,7 +24,8 @@ pub struct Population {
 /// The runs at one scale factor.
 pub struct Stripe {
     scale: f64,
-    runs: usize,
+    /// Those that count: what became of the structure is known.
+    counted: usize,
     /// Geometric mean of the records' peak ground accelerations, g.
     pub pga: f64,
 }
@@ -71,7 +72,8 @@ pub fn count(plan: &Plan, limits: &[Limit], outcomes: &[Outcome]) -> Vec<Populat
 
 fn stripe(scale: f64, runs: &[Counted]) -> Stripe {
     let logarithms: f64 = runs.iter().map(|(pga, _)| pga.ln()).sum();
-    Stripe { scale, runs: runs.len(), pga: (logarithms / runs.len() as f64).exp() }
+    let counted = runs.iter().filter(|(_, outcome)| outcome.exceeds(&Limit::Overturning).is_some()).count();
+    Stripe { scale, counted, pga: (logarithms / runs.len() as f64).exp() }
 }
 
 fn fragility(limit: Limit, by_scale: &[Vec<Counted>]) -> Fragility {
@@ -93,16 +95,16 @@ impl Population {
     pub fn print(&self, out: &mut impl Write) -> io::Result<()> {
         writeln!(out, "{}", self.name)?;
         let mut line = |cells: [&str; 3], of_limit: &dyn Fn(&Fragility) -> String| {
-            write!(out, "{:>10} {:>12} {:>6}", cells[0], cells[1], cells[2])?;
+            write!(out, "{:>10} {:>12} {:>7}", cells[0], cells[1], cells[2])?;
             for fragility in &self.fragilities {
                 let width = fragility.limit.to_string().len().max(10);
                 write!(out, "  {:>width$}", of_limit(fragility))?;
             }
             writeln!(out)
         };
-        line(["scale", "PGA (g)", "runs"], &|fragility| fragility.limit.to_string())?;
-        for (i, Stripe { scale, runs, pga }) in self.stripes.iter().enumerate() {
-            let cells = [significant(*scale), significant(*pga), runs.to_string()];
+        line(["scale", "PGA (g)", "counted"], &|fragility| fragility.limit.to_string())?;
+        for (i, Stripe { scale, counted, pga }) in self.stripes.iter().enumerate() {
+            let cells = [significant(*scale), significant(*pga), counted.to_string()];
             let part = |of: &Fragility| of.probabilities[i].map_or("none".into(), |part| format!("{part:.4}"));
             line(cells.each_ref().map(String::as_str), &part)?;
         }

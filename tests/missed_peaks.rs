@@ -1,0 +1,124 @@
+//! Peaks against dense sampling of the same pieces: random structures, states and loads at all levels.
+#![allow(non_snake_case)]
+
+use rocking::run::peaks::{PEAKS, Peaks};
+use rocking::{Detail, Engine, LinearLoad, Load, Parameters, Piece, Progress, State, Structure, Watch};
+
+/// A xorshift generator.
+struct Rng(u64);
+impl Rng {
+    fn next(&mut self) -> f64 {
+        self.0 ^= self.0 << 13;
+        self.0 ^= self.0 >> 7;
+        self.0 ^= self.0 << 17;
+        (self.0 >> 11) as f64 / (1u64 << 53) as f64
+    }
+    fn range(&mut self, a: f64, b: f64) -> f64 {
+        a + (b - a) * self.next()
+    }
+    fn log(&mut self, a: f64, b: f64) -> f64 {
+        (self.range(a.ln(), b.ln())).exp()
+    }
+    fn sym(&mut self) -> f64 {
+        self.range(-1.0, 1.0)
+    }
+    fn pick(&mut self, n: usize) -> usize {
+        (self.next() * n as f64) as usize
+    }
+}
+
+/// Samples of each piece.
+#[derive(Default)]
+struct Dense {
+    largest: [f64; PEAKS.len()],
+    pieces: usize,
+}
+
+impl Watch for Dense {
+    const SEES_PIECES: bool = true;
+
+    fn piece(&mut self, piece: &mut Piece) {
+        const SAMPLES: u32 = 400;
+        self.pieces += 1;
+        let (start, duration) = (piece.before.time, piece.duration);
+        for i in 0..=SAMPLES {
+            let o = piece.sample(start + duration * f64::from(i) / f64::from(SAMPLES)).outputs();
+            let values = [o.theta, o.u, o.delta_t, o.uplift, o.a_t, o.V_t, o.M_t];
+            self.largest.iter_mut().zip(values).for_each(|(largest, value)| *largest = value.abs().max(*largest));
+        }
+    }
+}
+
+fn scene(seed: u64) -> (Parameters, State, Detail, Rng) {
+    let mut r = Rng(seed.wrapping_mul(0x9E3779B97F4A7C15) | 1);
+    for _ in 0..5 {
+        r.next();
+    }
+    let detail = Detail::ALL[r.pick(6)];
+    let B = r.log(0.05, 5.0);
+    let H = B * r.log(0.5, 12.0);
+    let m = r.log(1.0, 1e5);
+    let zetas = [0.0, 0.02, 0.3, 1.0, 1.7, 0.05];
+    let p = Parameters {
+        m,
+        H,
+        B,
+        m0: m * r.range(0.0, 1.5),
+        J0: if r.next() < 0.5 { 0.0 } else { m * B * B * r.next() },
+        f_fc: r.log(0.3, 60.0),
+        zeta_fc: zetas[r.pick(6)],
+        r: r.range(0.5, 1.0),
+        ..Parameters::MCMANUS
+    };
+    let s = Structure::new(p).unwrap();
+    let mut state = State::default();
+    if detail != Detail::Rigid {
+        state.u = s.u_cr * r.sym() * [0.0, 0.5, 1.0, 2.0][r.pick(4)];
+        state.u_dot = s.u_cr * s.omega_fc * r.sym() * [0.0, 0.5, 1.0, 2.0][r.pick(4)];
+    }
+    if detail != Detail::FixedBase && r.next() < 0.6 {
+        state.theta = r.sym() * [1e-4, 0.1, 1.0, 1.5][r.pick(4)];
+        state.theta_dot = r.sym() * s.p_l * [0.0, 0.1, 1.0, 1.0][r.pick(4)];
+        if state.theta == 0.0 {
+            state.theta_dot = 0.0;
+        }
+    }
+    (p, state, detail, r)
+}
+
+/// No peak lies below what is sampled. COUNT sets how many scenes are tried.
+#[test]
+fn no_peak_is_missed() {
+    let count = std::env::var("COUNT").map_or(600, |count| count.parse().unwrap());
+    for seed in 1..=count {
+        let (parameters, state, detail, mut r) = scene(seed);
+        let structure = Structure::new(parameters).unwrap();
+        let tolerance = [1e-12, 1e-9, 1e-6][r.pick(3)];
+        let mut engine = Engine::with_detail(structure, state, 0.0, tolerance, detail).unwrap();
+        let (mut peaks, mut dense) = (Peaks::new(&structure), Dense::default());
+        let weight = 9.81 * structure.tan_alpha_cg;
+        let amplitude = weight * [0.0, 0.3, 1.0, 3.0][r.pick(4)];
+        let force = parameters.m * weight * [0.0, 0.3, 1.0][r.pick(3)];
+        let longest = r.log(1e-4, 3.0) * if r.next() < 0.1 { 30.0 } else { 1.0 };
+        let mut load = Load::default();
+        for _ in 0..=r.log(3.0, 60.0) as usize {
+            let target = Load { a_g: amplitude * r.sym(), F_t: force * r.sym() };
+            let h = longest * if r.next() < 0.2 { r.next() + 1e-3 } else { 1.0 };
+            let slope = Load { a_g: (target.a_g - load.a_g) / h, F_t: (target.F_t - load.F_t) / h };
+            let progress = engine.advance(h, LinearLoad { value: load, slope }, &mut (&mut dense, &mut peaks));
+            if progress != Ok(Progress::Complete) || dense.pieces > 4000 {
+                break;
+            }
+            load = target;
+        }
+        for (peaking, sampled) in PEAKS.iter().zip(dense.largest) {
+            let peak = (peaking.of)(&peaks).magnitude;
+            assert!(
+                peak >= sampled * (1.0 - 1e-9),
+                "scene {seed}, {}: {} = {peak} < {sampled}",
+                detail.name(),
+                peaking.name
+            );
+        }
+    }
+}

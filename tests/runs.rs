@@ -1,0 +1,67 @@
+//! Runs from outside: levels compared on fine records, samples read from long leaps, ends, start times.
+
+use rocking::record::Record;
+use rocking::run::{End, Run, RunError, levels};
+use rocking::{Detail, Engine, Parameters, Ramp, State, Structure};
+
+/// However finely a record is sampled, the histories of two levels are as far apart.
+#[test]
+fn histories_do_not_depend_on_how_finely_a_record_is_sampled() {
+    let structure = Structure::new(Parameters { f_fc: 1.0, ..Parameters::MCMANUS }).unwrap();
+    let coarse = |i: usize| if i > 150 { 0.0 } else { 4.0 * (0.09 * i as f64).sin() };
+    let errors = [1, 100].map(|parts| {
+        let times = (0..=300 * parts).map(|i| i as f64 * 0.01 / parts as f64).collect();
+        let linear = |i: usize| {
+            let (k, part) = (i / parts, (i % parts) as f64 / parts as f64);
+            coarse(k) * (1.0 - part) + coarse(k + 1) * part
+        };
+        let ground = Record::from_samples("sine", times, (0..=300 * parts).map(linear).collect()).unwrap();
+        let run = Run { end: End::At(3.0), ..Run::new(structure, &ground) };
+        levels::compare(&run).unwrap().verdicts.into_iter().map(|verdict| verdict.errors).collect::<Vec<_>>()
+    });
+    for (coarse, fine) in errors[0].iter().zip(&errors[1]) {
+        for (coarse, fine) in coarse.iter().zip(fine) {
+            assert!((coarse - fine).abs() <= 1e-6 * coarse.max(1e-3), "{coarse} {fine}");
+        }
+    }
+    assert!(errors[1][0][3] > 0.99, "the fixed base has all of theta wrong");
+}
+
+/// One leap over ten seconds of a slow ramp, which the structure follows: a_t = a_g.
+#[test]
+fn samples_are_read_from_within_long_leaps() {
+    let structure = Structure::new(Parameters { f_fc: 28.0, zeta_fc: 1.0, ..Parameters::MCMANUS }).unwrap();
+    let ground = Record::from_samples("slow", vec![0.0, 10.0, 20.0], vec![0.0, 0.0, 1.0]).unwrap();
+    let run = Run { detail: Detail::FixedBase, end: End::At(20.0), ..Run::new(structure, &ground) };
+    let mut a_t = Vec::new();
+    run.sample([12.5, 15.0], |sample| a_t.push(sample.outputs().a_t), &mut ()).unwrap();
+    assert!((a_t[0] - 0.25).abs() < 2e-3 && (a_t[1] - 0.5).abs() < 2e-3, "{a_t:?}");
+}
+
+#[test]
+fn an_end_that_is_none_is_refused() {
+    let ground = Record::from_samples("x", vec![2.0, 3.0], vec![5.0, -3.0]).unwrap();
+    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    for end in [1.0, 2.0, f64::NAN, f64::INFINITY] {
+        let refused = Run { end: End::At(end), ..Run::new(structure, &ground) }.peaks();
+        assert!(matches!(refused, Err(RunError::End { start: 2.0, .. })), "{refused:?}");
+    }
+}
+
+/// The motion does not depend on the clock in any bit.
+#[test]
+fn the_same_bits_at_every_start_time() {
+    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    for detail in Detail::ALL {
+        let motions = [0.0, -1000.0, 1e6, 1.7e9, 1e12].map(|start| {
+            let mut engine = Engine::with_detail(structure, State::default(), start, 1e-9, detail).unwrap();
+            let a_g = |i: u32| 4.0 * (0.13 * f64::from(i)).sin() + 2.0 * (0.71 * f64::from(i)).cos();
+            for i in 0..1000 {
+                let ramp = Ramp { value: a_g(i), slope: (a_g(i + 1) - a_g(i)) / 0.01 };
+                engine.advance(0.01, ramp, &mut ()).unwrap();
+            }
+            (engine.motion().state, engine.motion().transitions, engine.motion().work)
+        });
+        assert!(motions.iter().all(|motion| *motion == motions[0]), "{detail:?}");
+    }
+}
