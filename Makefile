@@ -56,7 +56,8 @@ report: .venv/ready exporter
 	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
 
 coupling: .venv/ready out/mcmanus.fmu out/evison.fmu
-	for example in bridge building_on_soil bridge_ssp; do PYTHONPATH=examples $(PYTHON) -m coupling.$$example || exit; done
+	for example in bridge building_on_soil 'bridge_ssp --exporter $(TARGET)/release/rocking-fmu'; do \
+		PYTHONPATH=examples $(PYTHON) -m coupling.$$example || exit; done
 	PYTHONPATH=examples:tests OMP_NUM_THREADS=1 $(PYTHON) -m coupling
 
 records: .venv/ready
