@@ -56,14 +56,15 @@ report: .venv/ready exporter
 	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
 
 coupling: .venv/ready out/mcmanus.fmu out/evison.fmu
-	for example in bridge building_on_soil bridge_ssp; do PYTHONPATH=examples $(PYTHON) -m coupling.$$example || exit; done
+	for example in bridge building_on_soil 'bridge_ssp --exporter $(TARGET)/release/rocking-fmu'; do \
+		PYTHONPATH=examples $(PYTHON) -m coupling.$$example || exit; done
 	PYTHONPATH=examples:tests OMP_NUM_THREADS=1 $(PYTHON) -m coupling
 
 records: .venv/ready
 
 bench: .venv/ready out/mcmanus.fmu
 	record="$$(realpath $(RECORDS)/$(EL_CENTRO))" && RECORD="$$record" cargo bench --package rocking && \
-		$(PYTHON) benches/one_step.py out/mcmanus.fmu "$$record" "$(TARGET)/criterion/record/auto 1e-9/new/estimates.json"
+		$(PYTHON) benches/one_step.py out/mcmanus.fmu "$$record" "$(TARGET)/criterion/record/auto 1e-9/new/sample.json"
 
 licenses:
 	WRITE_LICENSES=1 cargo test --package fmu-export --test licenses
