@@ -10,14 +10,15 @@
 //! | [`structure`] | everything derived from them (before Eq 11, after 13, before 18) |
 //! | [`full_contact`] | Eq 1 |
 //! | [`nonlinear_rocking`] | Eqs 5, 6 |
-//! | [`linear_rocking`], [`modal_rocking`], [`rigid_rocking`] | Eqs 7–9; 11, 16, 18; 6 with u = 0 |
+//! | `linear_rocking`, `modal_rocking`, `rigid_rocking` | Eqs 7–9; 11, 16, 18; 6 with u = 0 |
 //! | [`detail`] | levels of detail: which of these equations move the structure |
-//! | [`uplift`], [`impact`] | the transitions' guards and resets |
+//! | [`uplift`], [`impact`], [`transition`] | the transitions' guards and resets, and what follows from each |
 //! | [`outputs`] | Eqs 2, 3, 23–27 |
 //! | [`load`] | ground acceleration and the force on the top mass |
 //! | [`reactions`] | what the structure exerts on the ground |
 //! | [`energy`] | the energy that is conserved between impacts |
-//! | [`taylor`], [`first_crossing`], [`engine`] | the solver: series, guards, hybrid engine |
+//! | [`taylor`], [`first_crossing`], [`engine`], [`motion`] | the solver: series, guards, hybrid engine, what changes with time |
+//! | [`piece`] | what the engine shows to whoever watches |
 //! | [`modal_split`] | Eqs 10–20: rocking and vibration mode |
 //! | [`effective_frequency`] | Eq 14 |
 //! | [`demand`], [`response_spectrum`] | Eqs 21–24: demands without a time history |

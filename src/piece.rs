@@ -104,8 +104,8 @@ const FINEST_PART: u32 = 5;
 
 /// A stretch of time without a transition.
 ///
-/// It is gone through by parts, the first of which is all of it: [`Piece::bounds`] and [`Piece::arc`] are about the part in
-/// hand, and [`Piece::skip`] leaves behind of it what the arc covers.
+/// It is gone through by parts, the first of which is all of it: [`Piece::arc`] is about the part in hand, and
+/// [`Piece::skip`] leaves behind of it what the arc covers.
 #[derive(Debug)]
 pub struct Piece<'a> {
     /// The motion at its start: time, state, and the phase that it is in throughout.

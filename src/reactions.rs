@@ -1,6 +1,6 @@
 //! What the structure exerts on the ground, from its momentum balance (d'Alembert).
 //!
-//! With x, y of the top mass and x₀, y₀ of the foundation in the ground's frame ([`crate::kinematics`]), the forces
+//! With x, y of the top mass and x₀, y₀ of the foundation in the ground's frame (`kinematics`), the forces
 //! that are left for the ground are
 //!
 //! ```text
