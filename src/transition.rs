@@ -78,8 +78,9 @@ pub(crate) trait Rules {
 }
 
 /// The `motion` after what `event` leads to, and the transition to be reported.
+#[inline]
 pub(crate) fn resolve(
-    rules: &dyn Rules,
+    rules: &impl Rules,
     structure: &Structure,
     mut motion: Motion,
     event: Event,
