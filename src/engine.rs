@@ -297,24 +297,23 @@ impl<L: Level> Hand<'_, L> {
             return Ok(Progress::Complete);
         }
         let before = *now;
-        let result = self.step(now, interval, load, watch);
+        let result = self.step(now, &begin, load, watch);
         if result.is_err() {
             *now = before;
         }
         result
     }
 
-    /// The same, step by step.
+    /// The same over the interval of `begin`, step by step.
     #[inline(always)]
     fn step<W: Watch>(
         &mut self,
         motion: &mut Motion,
-        interval: f64,
+        begin: &Start,
         load: LinearLoad,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
-        let Hand { structure, local_error, .. } = *self;
-        let (a_g, a_top) = (load.on_foundation(), load.on_top(structure));
+        let &Start { a_g, a_top, interval, local_error, .. } = begin;
         let start = motion.time;
         let until = start + interval;
         // Time runs from the start of the interval: transitions are then as sharp at t = 1000 s as at 0.

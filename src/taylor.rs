@@ -31,13 +31,22 @@ pub fn evaluate(coefficients: &[f64], sigma: f64) -> f64 {
 }
 
 /// Coefficients of the same polynomial about `by`.
-pub fn shift(coefficients: &mut [f64], by: f64) {
+fn shift(coefficients: &mut [f64], by: f64) {
     let last = coefficients.len().saturating_sub(1);
     for start in 0..last {
         for k in (start..last).rev() {
             coefficients[k] += by * coefficients[k + 1];
         }
     }
+}
+
+/// Coefficients of the same polynomial over `scale` from `from` on: 0 is then what `from` was, and 1 what lay `scale` beyond.
+pub fn stretch(coefficients: &mut [f64], from: f64, scale: f64) {
+    shift(coefficients, from);
+    coefficients.iter_mut().fold(1.0, |power, c| {
+        *c *= power;
+        power * scale
+    });
 }
 
 /// The motion over one step: a polynomial in time for each component of the state.
@@ -94,12 +103,7 @@ impl Arc {
     pub(crate) fn between(&self, from: f64, to: f64) -> Arc {
         let (mut part, scale) = (self.clone(), to - from);
         for series in [&mut part.u, &mut part.u_dot, &mut part.theta, &mut part.theta_dot] {
-            let used = &mut series[..=self.order];
-            shift(used, from);
-            used.iter_mut().fold(1.0, |power, c| {
-                *c *= power;
-                power * scale
-            });
+            stretch(&mut series[..=self.order], from, scale);
         }
         Arc { span: self.span * scale, reach: 1.0, ..part }
     }

@@ -78,12 +78,7 @@ impl Stretch {
     fn over(&self, i: usize, from: f64, to: f64) -> Series {
         let mut series = self.series[i];
         let order = series.iter().rposition(|c| *c != 0.0).unwrap_or(0);
-        taylor::shift(&mut series[..=order], (from - self.start) / self.span);
-        let (part, mut power) = ((to - from) / self.span, 1.0);
-        for c in &mut series[..=order] {
-            *c *= power;
-            power *= part;
-        }
+        taylor::stretch(&mut series[..=order], (from - self.start) / self.span, (to - from) / self.span);
         series
     }
 }
