@@ -1,10 +1,13 @@
 //! A record is read and run, the levels of detail are compared on it, and piers of four stiffnesses are swept.
 
 use rocking::run::{levels, outcome::Limit, peaks::PEAKS, plan::Case, plan::NamedRecord, plan::Plan, plan::Population};
-use rocking::{Parameters, Run, Structure, fragility::FragilityCurve, fragility::Trials, record::Record, record::Unit};
+use rocking::{
+    Parameters, Run, Structure, fragility::FragilityCurve, fragility::Trials, record::Reading, record::Record,
+};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let ground = Record::read("examples/pulse.csv".as_ref(), Unit::MetrePerSecondSquared, 9.81)?;
+    let (ground, source) = Record::read("examples/pulse.csv".as_ref(), &Reading::default(), 9.81)?;
+    println!("{}: {}", ground.title(), source.unit);
     let run = Run::new(Structure::new(Parameters::MCMANUS)?, &ground);
     let (peaks, finish) = run.peaks()?;
     PEAKS.iter().for_each(|peak| println!("{} in {}: {:?}", peak.name, peak.unit, (peak.of)(&peaks)));

@@ -8,7 +8,7 @@ mod host;
 use FlexibleRocking::snapshot;
 use approx::assert_relative_eq;
 use host::*;
-use rocking::record::{Record, Unit};
+use rocking::record::{Reading, Record};
 use rocking::run::peaks::{PEAKS, Peaks};
 use rocking::run::{End, Run};
 use rocking::{Detail, LinearLoad, Load, Parameters, Ramp, Structure};
@@ -65,7 +65,7 @@ fn records() -> (TempDir, Vec<PathBuf>) {
 const SCALES: (f64, f64) = (0.4, 1.25);
 
 fn read(path: &Path) -> Record {
-    let record = Record::read(path, Unit::MetrePerSecondSquared, Parameters::EVISON.g).unwrap();
+    let (record, _) = Record::read(path, &Reading::default(), Parameters::EVISON.g).unwrap();
     record.scaled(SCALES.0, SCALES.1)
 }
 

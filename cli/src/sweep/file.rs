@@ -3,7 +3,7 @@ use crate::{output_files::OutputFiles, structure_args::Preset, talk::say};
 use anyhow::{Context, bail, ensure};
 use rocking::{
     Parameters,
-    record::{Record, Unit},
+    record::{Reading, Record, Unit},
     run::outcome::Limit,
     run::plan::{MAX_RUNS, NamedRecord, Plan, Population},
 };
@@ -16,9 +16,8 @@ use std::{collections::BTreeMap, collections::HashSet, path::Path};
 struct SweepFile {
     /// Paths or patterns such as `records/*.AT2`, from the folder of the file.
     records: Vec<String>,
-    /// Unit of .csv and .txt records.
-    #[serde(default = "si", with = "UnitName")]
-    unit: Unit,
+    /// Unit of records that do not state theirs.
+    unit: Option<Unit>,
     /// Multiplies the records' times.
     #[serde(default = "one")]
     time_scale: f64,
@@ -28,19 +27,6 @@ struct SweepFile {
     /// By the name of a measure.
     #[serde(default)]
     limits: BTreeMap<String, Vec<f64>>,
-}
-
-#[derive(Deserialize)]
-#[serde(remote = "Unit")]
-enum UnitName {
-    #[serde(rename = "g")]
-    G,
-    #[serde(rename = "m/s2")]
-    MetrePerSecondSquared,
-}
-
-fn si() -> Unit {
-    Unit::MetrePerSecondSquared
 }
 
 fn one() -> f64 {
@@ -83,7 +69,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<(Plan, Vec<L
         let populations = structures.iter().map(StructureGrid::population).collect::<Result<_, _>>()?;
         let read = |path: &Path| {
             files.add_input(path);
-            Ok(Record::read(path, unit, g)?.scaled(time_scale, 1.0))
+            Ok(Record::read(path, &Reading { unit, ..Reading::default() }, g)?.0.scaled(time_scale, 1.0))
         };
         let motions = motions(&records, path.parent().unwrap_or(Path::new("")), read)?;
         Ok((Plan::new(populations, motions, scales)?, limits))
