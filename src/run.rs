@@ -90,9 +90,26 @@ pub enum RunError {
         /// First sample of the record, s.
         start: f64,
     },
+    /// It takes more steps than one stretch of it may.
+    #[error("the run needs too many steps: they ended at t = {time} s of {until} s; give it a shorter duration")]
+    TooLong {
+        /// Where the steps ended, s.
+        time: f64,
+        /// End of the stretch, s.
+        until: f64,
+    },
     /// The run cannot go on.
     #[error(transparent)]
-    Advance(#[from] AdvanceError),
+    Advance(AdvanceError),
+}
+
+impl From<AdvanceError> for RunError {
+    fn from(error: AdvanceError) -> RunError {
+        match error {
+            AdvanceError::TooLong { time, until } => RunError::TooLong { time, until },
+            error => RunError::Advance(error),
+        }
+    }
 }
 
 impl<'a> Run<'a> {

@@ -1,36 +1,45 @@
 //! `describe`: a structure's parameters and what follows from them.
 use crate::{
-    quantities::{Line, print_csv},
+    quantities::Line,
+    results::{Format, FormatArgs, print, print_rows},
     significant::significant,
     structure_args::StructureArgs,
 };
 use rocking::{
+    Structure,
     parameters::PARAMETERS,
     quantity::Quantity,
     structure::{DERIVED, Derived},
 };
-use std::io::{Write, stdout};
+use std::fmt::{self, Write};
 
 /// What to describe.
 #[derive(clap::Args)]
 pub struct DescribeArgs {
     #[command(flatten)]
     structure: StructureArgs,
-    /// Print the derived quantities as CSV
-    #[arg(long)]
-    csv: bool,
+    #[command(flatten)]
+    results: FormatArgs,
 }
 
 /// Prints the parameters as they were given and the derived quantities with the equations that define them.
 pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
-    if args.csv {
-        return print_csv(DERIVED.iter().map(|derived| {
-            let Derived { name, unit, description, equation, value } = derived;
-            Line::new(name, value(&structure), unit, equation, description)
-        }));
+    if args.results.format == Format::Text {
+        return print(&text(&structure)?);
     }
-    let mut out = stdout().lock();
+    let given = PARAMETERS.iter().map(|Quantity { name, unit, description, get, .. }| {
+        Line::new(name, get(structure.parameters()), unit, "", description)
+    });
+    let derived = DERIVED.iter().map(|Derived { name, unit, description, equation, value }| {
+        Line::new(name, value(&structure), unit, equation, description)
+    });
+    let lines: Vec<_> = given.chain(derived).collect();
+    print_rows(args.results.format, &lines)
+}
+
+fn text(structure: &Structure) -> Result<String, fmt::Error> {
+    let mut out = String::new();
     let unit = |unit| if unit == "1" { "-" } else { unit };
     writeln!(out, "Parameters")?;
     for Quantity { name, unit: of, description, get, .. } in &PARAMETERS {
@@ -39,8 +48,8 @@ pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
     }
     writeln!(out, "\nDerived quantities")?;
     for Derived { name, unit: of, description, equation, value } in &DERIVED {
-        let value = significant(value(&structure));
+        let value = significant(value(structure));
         writeln!(out, "  {name:<10} {value:>12} {:<6} {equation:<13} {description}", unit(of))?;
     }
-    Ok(())
+    Ok(out)
 }

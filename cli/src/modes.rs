@@ -1,8 +1,14 @@
 //! `modes`: a response split into rocking and vibration mode (Eqs 12, 16, 19).
-use crate::{output_files::OutputFiles, structure_args::StructureArgs, tables::Table};
-use anyhow::Context;
+use crate::{
+    output_files::OutputFiles,
+    structure_args::{StructureArgs, in_one_line},
+    tables::{self, Table},
+    talk::say,
+};
+use anyhow::{Context, bail};
+use csv::StringRecord;
 use rocking::{
-    Side, State,
+    Side, State, Structure,
     modal_split::{ModalAccelerations, Modes},
 };
 use serde::Deserialize;
@@ -47,18 +53,43 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let named = || args.response.display().to_string();
     let mut response = csv::Reader::from_path(&args.response).with_context(named)?;
     let inputs = args.structure.input().into_iter().chain([args.response.as_path()]);
-    let mut table = Table::create(&mut OutputFiles::of_inputs(inputs), &args.output, &HEADINGS)?;
+    let mut files = OutputFiles::of_inputs(inputs);
+    check_structure(response.headers().with_context(named)?, &structure).with_context(named)?;
+    let mut table = Table::create(&mut files, &args.output, &HEADINGS)?;
+    let (mut instants, mut rocking) = (0, 0);
     for instant in response.deserialize() {
         let Instant { time, a_g, theta, u, theta_dot, u_dot, phase } = instant.with_context(named)?;
+        instants += 1;
         let side = match phase.as_str() {
             "rocking left" => Side::Left,
             "rocking right" => Side::Right,
             _ => continue,
         };
+        rocking += 1;
         let state = State { u, u_dot, theta, theta_dot };
         let Modes { q_r, q_u, .. } = Modes::of(&structure, &state);
         let accelerations = ModalAccelerations::of(&structure, side, &state, a_g);
         table.write((time, q_r, q_u, accelerations.a_r, accelerations.a_u, accelerations.a_t()))?;
     }
-    table.finish()
+    table.finish()?;
+    say!(
+        "modes          {}: {rocking} of {instants} instants, those at which the structure rocks",
+        args.output.display()
+    );
+    if rocking == 0 {
+        say!("it rocks at none of them: there is nothing to split");
+    }
+    Ok(())
+}
+
+/// Refuses the response of another structure, which its last heading names; a table that names none is taken.
+fn check_structure(headings: &StringRecord, structure: &Structure) -> anyhow::Result<()> {
+    let Some(of) = headings.iter().find_map(|heading| heading.strip_prefix(tables::STRUCTURE)) else { return Ok(()) };
+    let (of, _) = of.split_once(';').unwrap_or((of, ""));
+    let here = in_one_line(structure);
+    let other = of.split(", ").zip(here.split(", ")).find(|(there, here)| there != here);
+    if let Some((there, here)) = other {
+        bail!("it is the response of another structure: {there} there, and {here} here; see --preset, --parameters");
+    }
+    Ok(())
 }

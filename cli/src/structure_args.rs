@@ -1,6 +1,6 @@
 //! Which structure a command works on: one of the paper's specimens, or parameters from a file.
 use anyhow::Context;
-use rocking::{Parameters, Structure};
+use rocking::{Parameters, Structure, parameters::PARAMETERS};
 use std::path::{Path, PathBuf};
 
 /// The structure asked for.
@@ -33,6 +33,16 @@ impl Preset {
             Preset::Mcmanus => Parameters::MCMANUS,
         }
     }
+}
+
+/// The structure's parameters in one line.
+pub fn in_one_line(structure: &Structure) -> String {
+    let values = PARAMETERS.iter().map(|parameter| {
+        let value = (parameter.get)(structure.parameters());
+        let unit = if parameter.unit == "1" { String::new() } else { format!(" {}", parameter.unit) };
+        format!("{} = {value}{unit}", parameter.name)
+    });
+    values.collect::<Vec<_>>().join(", ")
 }
 
 impl StructureArgs {

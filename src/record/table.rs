@@ -25,7 +25,8 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     };
     let layout =
         Layout::of(&mut numbered(text).skip(first - 1).map(|(_, line)| line).filter(|line| !is_comment(line)), how);
-    let count = layout.fields(sample).len();
+    let fields = layout.fields(sample);
+    let count = if fields.len() > 1 && fields.ends_with(&[""]) { fields.len() - 1 } else { fields.len() };
     let before: Vec<&str> = text.lines().take(first - 1).filter(|line| !line.trim().is_empty()).collect();
     let headings = before.iter().rev().map(|line| layout.headings(line)).find(|cells| cells.len() == count);
     let headings = headings.unwrap_or_default();
