@@ -123,7 +123,7 @@ mod tests {
             change(&mut parameters);
             parameters.check().unwrap_err().to_string()
         };
-        assert!(refused(|p| p.r = 0.0).starts_with("r = 0 1 is out of range: it must lie between 0.001 and 1 1"));
+        assert!(refused(|p| p.r = 0.0).starts_with("r = 0 is out of range: it must lie between 0.001 and 1 ("));
         assert!(refused(|p| p.B = -0.3).starts_with("B = -0.3 m is out of range: it must lie between 0.001"));
         assert!(refused(|p| p.m = f64::NAN).starts_with("m = NaN kg"));
         assert!(refused(|p| p.H = f64::INFINITY).starts_with("H = inf m"));

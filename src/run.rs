@@ -83,7 +83,9 @@ pub enum RunError {
     #[error(transparent)]
     Initial(#[from] InitialStateError),
     /// The run ends before it starts, or never.
-    #[error("the run cannot end at {end} s: a finite time after the record's first sample, at {start} s, is needed")]
+    #[error(
+        "the run cannot end at {end:?} s: a finite time after the record's first sample, at {start:?} s, is needed"
+    )]
     End {
         /// The refused end, s.
         end: f64,
@@ -91,7 +93,7 @@ pub enum RunError {
         start: f64,
     },
     /// It takes more steps than one stretch of it may.
-    #[error("the run needs too many steps: they ended at t = {time} s of {until} s; give it a shorter duration")]
+    #[error("the run needs too many steps: they ended at t = {time:?} s of {until:?} s; give it a shorter duration")]
     TooLong {
         /// Where the steps ended, s.
         time: f64,

@@ -33,7 +33,7 @@ def values(lines) -> dict[str, float]:
 
 @pytest.fixture(scope="module")
 def estimate(rocking_fmu, pacoima_record):
-    return values(rocking_fmu("estimate", "--record", pacoima_record, "--csv"))
+    return values(rocking_fmu("estimate", "--record", pacoima_record, "--format", "csv"))
 
 
 def test_spectral_acceleration_is_that_of_the_fmu_on_a_fixed_base(estimate, shaken):
@@ -60,13 +60,13 @@ def test_demand_is_the_sum_of_its_terms(estimate):
 
 def test_effective_frequency_is_equation_14(rocking_fmu):
     amplitudes = [0.01, 0.3, 0.95]
-    lines = values(rocking_fmu("estimate", "--preset", "evison", "--amplitudes", "0.01,0.3,0.95", "--csv"))
+    lines = values(rocking_fmu("estimate", "--preset", "evison", "--amplitudes", "0.01,0.3,0.95", "--format", "csv"))
     expected = [EVISON.p_l / (4 * np.arccosh(1 / (1 - amplitude))) for amplitude in amplitudes]
     assert [lines[f"f_r({amplitude})"] for amplitude in amplitudes] == pytest.approx(expected, rel=1e-12)
 
 
 def test_without_a_record_the_ground_is_at_rest(rocking_fmu):
-    lines = values(rocking_fmu("estimate", "--preset", "evison", "--amplification", "1.4", "--csv"))
+    lines = values(rocking_fmu("estimate", "--preset", "evison", "--amplification", "1.4", "--format", "csv"))
     assert lines["a_t"] == pytest.approx(2.4 * EVISON.chi * G * EVISON.tan_alpha_cg, rel=1e-12)
     assert "PGA" not in lines
 

@@ -85,9 +85,8 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
 /// Refuses the response of another structure, which its last heading names; a table that names none is taken.
 fn check_structure(headings: &StringRecord, structure: &Structure) -> anyhow::Result<()> {
     let Some(of) = headings.iter().find_map(|heading| heading.strip_prefix(tables::STRUCTURE)) else { return Ok(()) };
-    let (of, _) = of.split_once(';').unwrap_or((of, ""));
     let here = in_one_line(structure);
-    let other = of.split(", ").zip(here.split(", ")).find(|(there, here)| there != here);
+    let other = of.split("; ").zip(here.split(", ")).find(|(there, here)| there != here);
     if let Some((there, here)) = other {
         bail!("it is the response of another structure: {there} there, and {here} here; see --preset, --parameters");
     }

@@ -72,9 +72,11 @@ const RESPONSE: [&str; 20] = [
 /// How the last heading of a response begins, which says what responded to what.
 pub const STRUCTURE: &str = "structure: ";
 
-/// Headings of the response of `structure` to the ground motion called `title`: under the last there is nothing.
+/// Headings of the response of `structure` to the ground motion called `title`: under the last there is nothing. It has no
+/// letter that a reader of CSV takes for anything else.
 pub fn response_headings(structure: &Structure, title: &str) -> Vec<String> {
-    let of = format!("{STRUCTURE}{}; record: {title}", in_one_line(structure));
+    let plain = |text: String| text.replace(", ", "; ").replace([',', '"', '#'], " ");
+    let of = format!("{STRUCTURE}{}; record: {}", plain(in_one_line(structure)), plain(title.into()));
     RESPONSE.into_iter().map(String::from).chain([of]).collect()
 }
 

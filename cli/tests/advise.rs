@@ -109,7 +109,7 @@ fn a_level_that_contradicts_the_initial_values_is_named_with_its_reason() {
     for line in [
         "  fixed_base not possible here: theta_0 = 0.04 rad contradicts detail = fixed_base, where the base cannot turn: \
          set theta_0 to 0",
-        "  rigid      not possible here: u_0 = 0.001 m, u_dot_0 = 0 m/s contradict detail = rigid, where u is always 0: \
+        "  rigid      not possible here: u_0 = 0.001 m, u_dot_0 = 0.0 m/s contradict detail = rigid, where u is always 0: \
          set both to 0",
         "use detail = auto: of the cheapest levels within 0.001 % in theta, u, a_t, theta_history, u_history, a_t_history \
          the simplest",

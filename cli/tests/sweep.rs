@@ -419,7 +419,7 @@ fn a_refused_sweep_says_what_to_change() {
         ("preset = 'mcmanus'\n", "", "structures \"pier\": give either preset or parameters"),
         ("[4, 6, 8], r", "[4], H = [1], r", "structures \"pier\": H and slenderness cannot both vary"),
         ("r = [0.9, 1]", "q = [1]", "structures \"pier\": \"q\" cannot vary: these can: m, m0, H, B, J0, f_fc"),
-        ("r = [0.9, 1]", "r = [0, 1]", "structures \"pier\": r = 0 1 is out of range: it must lie between 0.001"),
+        ("r = [0.9, 1]", "r = [0, 1]", "structures \"pier\": r = 0 is out of range: it must lie between 0.001"),
         ("r = [0.9, 1]", "r = []", "structures \"pier\": r is empty: give one or more"),
         ("r = 0.96", "r = 0.96, g = 1.62", "g = 1.62 m/s2 and g = 9.81 m/s2: a sweep has one g"),
         ("\"theta/alpha_cg\"", "drift", "limits: \"drift\" is unknown; these are known: theta, u, delta_t, uplift"),

@@ -65,7 +65,7 @@ impl Parsed {
         if let (Times::Every(stated), Some(asked)) = (&times, how.dt)
             && *stated != asked
         {
-            let problem = format!("the file states a sample every {stated} s, and {asked} s is asked for");
+            let problem = format!("the file states a sample every {stated:?} s, and {asked:?} s is asked for");
             return Err(bad(last_line, problem));
         }
         let has_columns = matches!(source.format, Format::Table | Format::Cosmos);
@@ -88,7 +88,7 @@ impl Parsed {
             let (before, after) = (times[index], times[index + 1]);
             return Err(bad(
                 last_line,
-                format!("the time {after} s does not come after the one before it, {before} s"),
+                format!("the time {after:?} s does not come after the one before it, {before:?} s"),
             ));
         }
         Ok((Record { title, times, acceleration }, source))

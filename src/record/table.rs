@@ -61,7 +61,10 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
             let at = number(&layout.plain(field)).map(|time| time * second);
             let at = at.ok_or_else(|| bad(line, format!("the time {} is not a number", quote(field))))?;
             if let Some(before) = times.last().filter(|before| at <= **before) {
-                return Err(bad(line, format!("the time {at} s does not come after the one before it, {before} s")));
+                return Err(bad(
+                    line,
+                    format!("the time {at:?} s does not come after the one before it, {before:?} s"),
+                ));
             }
             times.push(at);
         }
