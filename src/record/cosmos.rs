@@ -82,7 +82,12 @@ fn channels(text: &str, format: Format) -> Result<Vec<Announced<'_>>, BadLine> {
             }
             Format::Cosmos if lower.contains("real-header values follow") => reals = Reals::announced(line, content)?,
             Format::Cosmos if reals.missing > 0 => reals.read(line, content)?,
-            Format::Cosmos if lower.contains("pts") && lower.contains("units=") && lower.contains("acc") => {
+            Format::Cosmos
+                if !content.starts_with('|')
+                    && lower.contains("pts")
+                    && lower.contains("units=")
+                    && lower.contains("acc") =>
+            {
                 channels.push(cosmos(line, content, &reals)?);
             }
             _ => {}
