@@ -112,6 +112,33 @@ fn a_channel_of_several_is_chosen() {
     assert!(read(Some(Column::Number(3))).is_err());
 }
 
+/// Where the largest count is the stated maximum there is no offset; a maximum that is neither is told.
+#[test]
+fn the_stated_maximum_tells_whether_there_is_an_offset() {
+    let layout = all(50).remove(3);
+    let text = String::from_utf8(layout.bytes).unwrap();
+    let start = text.find("Memo.").unwrap() + "Memo.             \n".len();
+    let read = |maximum: &str| {
+        let (before, line) = text[..start].split_once("Max. Acc. (gal)").unwrap();
+        let (_, after) = line.split_once('\n').unwrap();
+        let header = format!("{before}Max. Acc. (gal)   {maximum}\n{after}").replace("Time(s)  0.25", "Time(s)  0.02");
+        let text = header + "     1000     3000     1000     1000\n";
+        Record::from_bytes(&layout.path, text.as_bytes(), &layout.how).unwrap()
+    };
+    let gal = 3920.0 / 6182761.0;
+    let counts = |values: [f64; 4]| values.map(|count| count * gal);
+    for (maximum, expected, remarks) in [
+        ("1.902", counts([1000.0, 3000.0, 1000.0, 1000.0]), 0),
+        ("0.951", counts([-500.0, 1500.0, -500.0, -500.0]), 1),
+        ("7", counts([-500.0, 1500.0, -500.0, -500.0]), 2),
+    ] {
+        let (record, source) = read(maximum);
+        let errors = record.acceleration().iter().zip(expected).map(|(found, expected)| (found - expected).abs());
+        assert!(errors.fold(0.0, f64::max) < 1e-12, "{maximum}: {:?}", record.acceleration());
+        assert_eq!(source.remarks.len(), remarks, "{:?}", source.remarks);
+    }
+}
+
 /// Counts of the recorder are no accelerations.
 #[test]
 fn what_is_no_acceleration_is_refused() {

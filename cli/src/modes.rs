@@ -54,7 +54,7 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let mut response = csv::Reader::from_path(&args.response).with_context(named)?;
     let inputs = args.structure.input().into_iter().chain([args.response.as_path()]);
     let mut files = OutputFiles::of_inputs(inputs);
-    check_structure(response.headers().with_context(named)?, &structure).with_context(named)?;
+    check(response.headers().with_context(named)?, &structure).with_context(named)?;
     let mut table = Table::create(&mut files, &args.output, &HEADINGS)?;
     let (mut instants, mut rocking) = (0, 0);
     for instant in response.deserialize() {
@@ -82,8 +82,12 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// Refuses the response of another structure, which its last heading names; a table that names none is taken.
-fn check_structure(headings: &StringRecord, structure: &Structure) -> anyhow::Result<()> {
+/// Refuses what is no response, and the response of another structure, which its last heading names; a table that names none is taken.
+fn check(headings: &StringRecord, structure: &Structure) -> anyhow::Result<()> {
+    let needed = ["time[s]", "a_g[m/s2]", "theta[rad]", "u[m]", "theta_dot[rad/s]", "u_dot[m/s]", "phase"];
+    if let Some(missing) = needed.into_iter().find(|needed| headings.iter().all(|heading| heading != *needed)) {
+        bail!("it has no column {missing}, as a response of `simulate` has");
+    }
     let Some(of) = headings.iter().find_map(|heading| heading.strip_prefix(tables::STRUCTURE)) else { return Ok(()) };
     let here = in_one_line(structure);
     let other = of.split("; ").zip(here.split(", ")).find(|(there, here)| there != here);

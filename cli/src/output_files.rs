@@ -101,7 +101,8 @@ impl OutputFiles {
             }
         }
         if let Some((other, _)) = self.outputs.iter().find(|(_, other)| *other == place && place != Place::Through) {
-            let (path, other) = (path.display(), other.display());
+            let (path, other) = (name(path), name(other));
+            let other = if other == path { "something else".into() } else { other };
             bail!("{path}: {other} is written there, too; name another file");
         }
         self.outputs.push((path.into(), place.clone()));
@@ -147,9 +148,12 @@ impl OutputFile {
     }
 }
 
+fn name(path: &Path) -> String {
+    if path == Path::new("-") { "standard output".into() } else { path.display().to_string() }
+}
+
 fn cannot_be_written(path: &Path) -> String {
-    let name = if path == Path::new("-") { "standard output".into() } else { path.display().to_string() };
-    format!("{name} cannot be written")
+    format!("{} cannot be written", name(path))
 }
 
 fn identity(told: &Metadata) -> Identity {
@@ -293,7 +297,7 @@ mod tests {
         let _out = files.create(&at("out.csv")).unwrap();
         for name in ["out.csv", "out link.csv"] {
             let message = files.create(&at(name)).err().unwrap().to_string();
-            assert!(message.ends_with("out.csv is written there, too; name another file"), "{message}");
+            assert!(message.ends_with("is written there, too; name another file"), "{message}");
             assert!(files.reserve_rows(&at(name)).is_err());
         }
         files.reserve_rows(&at("rows.csv")).unwrap();

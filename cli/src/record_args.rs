@@ -75,7 +75,7 @@ pub fn described(path: &Path, record: &Record, source: &Source, g: f64) -> Strin
     let unit_from = match source.unit_from {
         UnitFrom::File => "as the file states",
         UnitFrom::User => "as --unit says",
-        UnitFrom::Assumed => "assumed, for the file does not state it (--unit)",
+        UnitFrom::Assumed => "assumed, for the file does not state it",
     };
     let remarks: String = source.remarks.iter().map(|remark| format!(", {remark}")).collect();
     let (format, unit, peak) = (source.format, source.unit, short(record.pga() / g));
@@ -98,7 +98,7 @@ fn with_remedy(error: RecordError) -> anyhow::Error {
         Remedy::IgnoreCount => "--ignore-npts takes those",
         Remedy::Step => "give it with --dt SECONDS",
         Remedy::Column => "choose with --column, by number or heading",
-        Remedy::Unit => "convert them, or say with --unit what they are",
+        Remedy::Unit => "say with --unit what they are",
     };
     anyhow!("{error}; {remedy}")
 }

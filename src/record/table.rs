@@ -3,7 +3,7 @@
 
 use super::parsed::{Parsed, Times};
 use super::text::{acceleration, number, numbered, quote, without_blanks};
-use super::unit::{Stated, bracketed, seconds};
+use super::unit::{Stated, bracketed, is_like_a_unit, seconds};
 use super::{BadLine, Column, Format, Reading, Remedy, Unit, bad, source::decide};
 
 const LONGEST_HEADER: usize = 1000;
@@ -32,7 +32,8 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     let headings = headings.unwrap_or_default();
     let (time, value) = columns(count, &headings, how).map_err(|problem| problem.at(first))?;
     let stated = stated(&before, &layout, count, value).map_err(|problem| bad(first, problem))?;
-    let contradiction = |problem| BadLine { remedy: how.unit.is_none().then_some(Remedy::Unit), ..bad(first, problem) };
+    let is_unclear = matches!(&stated, Stated::Other(other) if !is_like_a_unit(other));
+    let contradiction = |problem| BadLine { remedy: is_unclear.then_some(Remedy::Unit), ..bad(first, problem) };
     let (unit, unit_from) = decide(&stated, how.unit).map_err(contradiction)?;
     let second = time.map_or(Ok(1.0), |time| time_unit(headings.get(time))).map_err(|problem| bad(first, problem))?;
 

@@ -108,11 +108,13 @@ fn knet(cm: &[f64]) -> Layout {
     const GAL: f64 = 3920.0 / 6182761.0;
     let counts: Vec<i64> = cm.iter().map(|value| 8000 + (value / GAL).round() as i64).collect();
     let mean = counts.iter().sum::<i64>() as f64 / counts.len() as f64;
+    let expected: Vec<_> = counts.iter().map(|count| (*count as f64 - mean) * GAL).collect();
+    let maximum = expected.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
     let header = format!(
         "Origin Time       2011/03/11 14:46:00\nLat.              38.103\nLong.             142.860\nDepth. (km)       24\n\
          Mag.              9.0\nStation Code      MYG004\nStation Lat.      38.7292\nStation Long.     141.0217\n\
          Station Height(m) 40\nRecord Time       2011/03/11 14:46:51\nSampling Freq(Hz) 200Hz\n\
-         Duration Time(s)  {}\nDir.              N-S\nScale Factor      3920(gal)/6182761\nMax. Acc. (gal)   2699.895\n\
+         Duration Time(s)  {}\nDir.              N-S\nScale Factor      3920(gal)/6182761\nMax. Acc. (gal)   {maximum:.3}\n\
          Last Correction   2011/03/11 14:46:36\nMemo.             \n",
         counts.len() as f64 * DT
     );
@@ -124,7 +126,7 @@ fn knet(cm: &[f64]) -> Layout {
         how: Reading::default(),
         format: Format::KNet,
         unit: Unit::CentimetrePerSecondSquared,
-        expected: counts.iter().map(|count| (*count as f64 - mean) * GAL).collect(),
+        expected,
     }
 }
 
