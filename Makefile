@@ -28,7 +28,7 @@ install = $(sudo) apt-get -qq update && \
 .PHONY: demo test dist report coupling bench licenses fuzz records exporter mingw hosts
 
 demo: .venv/ready out/mcmanus.fmu out/evison.fmu
-	cp $(RECORDS)/$(PACOIMA) out/
+	cp $(RECORDS)/$(PACOIMA) $(RECORDS)/$(EL_CENTRO) out/
 	$(PYTHON) examples/first_run.py out/mcmanus.fmu
 
 test: .venv/ready exporter hosts dist

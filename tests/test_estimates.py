@@ -73,7 +73,7 @@ def test_without_a_record_the_ground_is_at_rest(rocking_fmu):
 
 def test_refusals_name_the_value_and_the_limit(exporter):
     message = refusal(exporter, "estimate", "--amplification", 2.5)
-    assert "C = 2.5 1 is out of range: it must lie between 0 and 2" in message
+    assert "C = 2.5 is out of range: it must lie between 0 and 2" in message
     assert "between 0 and 1" in refusal(exporter, "estimate", "--amplitudes", "0.5,1.5")
     assert "--record" in refusal(exporter, "estimate", "--scale", 2)
 

@@ -302,8 +302,8 @@ fn a_record_that_cannot_be_followed_is_refused() {
         ("folder.csv", is_no_file(&format!("{folder}/folder.csv"))),
         (
             "/etc/passwd",
-            "record: /etc/passwd: the extension tells a record's format: .AT2 for an acceleration record of PEER, .csv \
-             or .txt for lines of time and acceleration; rename the file or convert it"
+            "record: /etc/passwd: neither its content nor its extension is that of a record: PEER .AT2, ESM .ASC, K-NET, \
+             COSMOS, or columns of text in .csv, .txt, .dat; rename the file or convert it"
                 .to_owned(),
         ),
         (

@@ -5,6 +5,7 @@ use super::parsed::{Parsed, Times};
 use super::text::{acceleration, number, numbered, quote, without_blanks};
 use super::unit::{Stated, bracketed, is_like_a_unit, seconds};
 use super::{BadLine, Column, Format, Reading, Remedy, Unit, bad, source::decide};
+use std::borrow::Cow;
 
 const LONGEST_HEADER: usize = 1000;
 
@@ -156,8 +157,8 @@ impl Layout {
     }
 
     /// A number as Rust writes it.
-    fn plain(&self, field: &str) -> String {
-        if self.decimal_comma { field.replacen(',', ".", 1) } else { field.to_owned() }
+    fn plain<'a>(&self, field: &'a str) -> Cow<'a, str> {
+        if self.decimal_comma { Cow::Owned(field.replacen(',', ".", 1)) } else { Cow::Borrowed(field) }
     }
 }
 
