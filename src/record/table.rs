@@ -22,21 +22,22 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     let mut beginning = numbered(text).take(LONGEST_HEADER);
     let Some((first, sample)) = beginning.find(|(_, line)| !is_comment(line) && is_sample(line)) else {
         let last = text.lines().take(LONGEST_HEADER).count().max(1);
-        return Err(bad(last, "no sample up to here; two or more are needed"));
+        return Err(bad(last, "no line of numbers up to here; two or more samples are needed"));
     };
     let layout =
         Layout::of(&mut numbered(text).skip(first - 1).map(|(_, line)| line).filter(|line| !is_comment(line)), how);
     let fields = layout.fields(sample);
     let count = if fields.len() > 1 && fields.ends_with(&[""]) { fields.len() - 1 } else { fields.len() };
     let before: Vec<&str> = text.lines().take(first - 1).filter(|line| !line.trim().is_empty()).collect();
-    let headings = before.iter().rev().map(|line| layout.headings(line)).find(|cells| cells.len() == count);
-    let headings = headings.unwrap_or_default();
+    let rows: Vec<_> = before.iter().map(|line| layout.headings(line)).filter(|cells| cells.len() == count).collect();
+    let headings = rows.iter().rev().find(|cells| !cells.iter().all(|cell| is_unit(cell))).cloned().unwrap_or_default();
     let (time, value) = columns(count, &headings, how).map_err(|problem| problem.at(first))?;
     let stated = stated(&before, &layout, count, value).map_err(|problem| bad(first, problem))?;
     let is_unclear = matches!(&stated, Stated::Other(other) if !is_like_a_unit(other));
     let contradiction = |problem| BadLine { remedy: is_unclear.then_some(Remedy::Unit), ..bad(first, problem) };
     let (unit, unit_from) = decide(&stated, how.unit).map_err(contradiction)?;
-    let second = time.map_or(Ok(1.0), |time| time_unit(headings.get(time))).map_err(|problem| bad(first, problem))?;
+    let second =
+        time.map_or(Ok(1.0), |time| time_unit(&rows, &headings, time)).map_err(|problem| bad(first, problem))?;
 
     let times = how.dt.map_or(Times::At(Vec::new()), Times::Asked);
     let mut parsed = Parsed::new(Format::Table, "", unit, unit_from, times);
@@ -152,7 +153,7 @@ impl Layout {
 
     /// The fields of a line of headings, which may be a comment.
     fn headings(&self, line: &str) -> Vec<String> {
-        let line = line.trim_start().trim_start_matches('#');
+        let line = line.trim_start().trim_start_matches(['#', '%', '!', '/']);
         self.fields(line).into_iter().map(str::to_owned).collect()
     }
 
@@ -288,13 +289,25 @@ fn in_prose(line: &str) -> Result<Stated, String> {
     }
 }
 
-/// The unit of the times in s, as their heading states it.
-fn time_unit(heading: Option<&String>) -> Result<f64, String> {
-    let Some(heading) = heading else { return Ok(1.0) };
-    match bracketed(heading).into_iter().find(|text| !text.is_empty()) {
+/// The unit of the times in s, as a row of units states it, or their heading among `headings`.
+fn time_unit(rows: &[Vec<String>], headings: &[String], time: usize) -> Result<f64, String> {
+    if let Some(unit) = rows.iter().find_map(|cells| seconds(bare(&cells[time]))) {
+        return Ok(unit);
+    }
+    let brackets = headings.get(time).map_or(Vec::new(), |heading| bracketed(heading));
+    match brackets.into_iter().find(|text| !text.is_empty()) {
         Some(unit) => seconds(unit).ok_or_else(|| format!("the times are in {unit:?}, which is neither s nor ms")),
         None => Ok(1.0),
     }
+}
+
+/// Whether a heading is a unit and nothing else.
+fn is_unit(heading: &str) -> bool {
+    Unit::named(bare(heading)).is_some() || seconds(bare(heading)).is_some()
+}
+
+fn bare(heading: &str) -> &str {
+    heading.trim_matches(['(', ')', '[', ']', '{', '}'])
 }
 
 #[cfg(test)]
@@ -332,6 +345,8 @@ mod tests {
             "acc,time (s)\n0.25,0\n-0.001,0.02\n3,0.05\n",
             "time (ms),a\n0,0.25\n20,-0.001\n50,3\n",
             "0, 0.25,\n0.02, -0.001,\n0.05, 3.0,\n",
+            "% MATLAB\n% t a\n0 0.25\n0.02 -0.001\n0.05 3\n",
+            "a;t\nm/s2;ms\n0,25;0\n-0,001;20\n3;50\n",
         ] {
             let (record, source) = read(text, &AS_IT_IS).unwrap_or_else(|error| panic!("{text}: {error:?}"));
             assert_eq!(
@@ -339,7 +354,8 @@ mod tests {
                 (&[0.0, 0.02, 0.05][..], &[0.25, -1e-3, 3.0][..]),
                 "{text}"
             );
-            assert_eq!((source.unit, source.unit_from), (Unit::MetrePerSecondSquared, UnitFrom::Assumed), "{text}");
+            let from = if text.contains("m/s2") { UnitFrom::File } else { UnitFrom::Assumed };
+            assert_eq!((source.unit, source.unit_from), (Unit::MetrePerSecondSquared, from), "{text}");
         }
     }
 
@@ -418,11 +434,11 @@ mod tests {
     #[test]
     fn a_refused_table_says_what_was_found_on_which_line() {
         for (text, expected) in [
-            ("", "1: no sample up to here; two or more are needed"),
+            ("", "1: no line of numbers up to here; two or more samples are needed"),
             ("t,a\n\n0,1\n", "3: the file ends after 1 sample(s); two or more are needed"),
             ("# c\n0,1\nx,2\n", "3: the time \"x\" is not a number"),
             ("0,1\ninf,2\n", "2: the time \"inf\" is not a number"),
-            ("t,a\nt,a\n", "2: no sample up to here; two or more are needed"),
+            ("t,a\nt,a\n", "2: no line of numbers up to here; two or more samples are needed"),
             ("0,1\n1,NaN\n", "2: the acceleration \"NaN\" is not a number"),
             ("0,1\n1,\n", "2: the acceleration \"\" is not a number"),
             ("0,O.1\n1,0\n", "1: the acceleration \"O.1\" is not a number"),
