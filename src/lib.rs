@@ -7,6 +7,7 @@
 //! | read | for |
 //! |---|---|
 //! | [`parameters`] | the structure's numbers, their ranges, the two specimens |
+//! | [`natural_quantities`] | parameters from period, weights, width, slenderness, frequency parameter |
 //! | [`structure`] | everything derived from them (before Eq 11, after 13, before 18) |
 //! | [`full_contact`] | Eq 1 |
 //! | [`nonlinear_rocking`] | Eqs 5, 6 |
@@ -55,6 +56,7 @@ pub mod load;
 mod modal_rocking;
 pub mod modal_split;
 pub mod motion;
+pub mod natural_quantities;
 pub mod nonlinear_rocking;
 mod oscillator;
 mod output_series;

@@ -1,4 +1,7 @@
 //! `describe`: a structure's parameters and what follows from them.
+
+mod template;
+
 use crate::{
     quantities::{Line, print_csv},
     significant::significant,
@@ -19,6 +22,9 @@ pub struct DescribeArgs {
     /// Print the derived quantities as CSV
     #[arg(long)]
     csv: bool,
+    /// Print a commented file for --parameters instead: every parameter of this structure, with unit and range
+    #[arg(long, conflicts_with = "csv")]
+    template: bool,
 }
 
 /// Prints the parameters as they were given and the derived quantities with the equations that define them.
@@ -31,6 +37,9 @@ pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
         }));
     }
     let mut out = stdout().lock();
+    if args.template {
+        return Ok(template::write(&mut out, &structure)?);
+    }
     let unit = |unit| if unit == "1" { "-" } else { unit };
     writeln!(out, "Parameters")?;
     for Quantity { name, unit: of, description, get, .. } in &PARAMETERS {

@@ -22,8 +22,8 @@ use std::{io, process::ExitCode};
 
 /// A flexible structure that rocks on its foundation: FMU exporter and simulator.
 ///
-/// A command works on the McManus specimen of the paper unless --preset or --parameters says otherwise. SI units
-/// throughout, angles in rad.
+/// A command works on the McManus specimen of the paper unless --preset or --parameters says otherwise; single numbers
+/// such as --f-fc 8 take the place of theirs. SI units throughout, angles in rad.
 #[derive(Parser)]
 #[command(name = "rocking-fmu", version)]
 enum Command {
@@ -57,7 +57,9 @@ enum Command {
     /// Show the parameters and all that follows from them
     #[command(after_help = "Examples:
   rocking-fmu describe
-  rocking-fmu describe --preset evison
+  rocking-fmu describe --preset evison --f-fc 8 --r 0.9
+  rocking-fmu describe --weight 500 --weight0 0 --width 3 --alpha-cg 0.25 --J0 0
+  rocking-fmu describe --template > pier.toml
   rocking-fmu describe --parameters pier.toml")]
     Describe(describe::DescribeArgs),
     /// Estimate demands and frequency without a time history (Eqs 14, 21 to 24)

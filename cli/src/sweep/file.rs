@@ -3,6 +3,7 @@ use crate::structure_args::Preset;
 use anyhow::{Context, bail, ensure};
 use rocking::{
     Parameters,
+    natural_quantities::Given,
     record::{Record, Unit},
     run::outcome::Limit,
     run::plan::{MAX_RUNS, NamedRecord, Plan, Population},
@@ -53,7 +54,7 @@ fn one() -> f64 {
 struct StructureGrid {
     name: String,
     preset: Option<Preset>,
-    parameters: Option<Parameters>,
+    parameters: Option<Given>,
     /// By the name of a parameter, or `slenderness`; every combination is run.
     #[serde(default)]
     vary: BTreeMap<String, Values>,
@@ -120,7 +121,7 @@ impl StructureGrid {
     fn base(&self) -> anyhow::Result<Parameters> {
         match (&self.preset, &self.parameters) {
             (Some(preset), None) => Ok(preset.parameters()),
-            (None, Some(parameters)) => Ok(*parameters),
+            (None, Some(given)) => given.parameters().with_context(|| format!("structures {:?}", self.name)),
             _ => bail!("structures {:?}: give either preset or parameters", self.name),
         }
     }
