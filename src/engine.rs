@@ -97,6 +97,16 @@ pub enum AdvanceError {
     },
 }
 
+impl AdvanceError {
+    /// The instant from which on it cannot go on, s, where that lies within the interval.
+    pub fn time(&self) -> Option<f64> {
+        match *self {
+            AdvanceError::TooLong { time, .. } | AdvanceError::Singular { time, .. } => Some(time),
+            AdvanceError::NotAhead { .. } | AdvanceError::Load { .. } => None,
+        }
+    }
+}
+
 /// A structure in motion.
 #[derive(Debug)]
 pub struct Engine {

@@ -23,11 +23,12 @@
 //! | [`modal_split`] | Eqs 10–20: rocking and vibration mode |
 //! | [`effective_frequency`] | Eq 14 |
 //! | [`demand`], [`response_spectrum`] | Eqs 21–24: demands without a time history |
+//! | [`intensity`] | PGA, PGV, S_a: how strong a ground motion is |
 //! | [`pushover`] | Fig 1: equilibrium under a lateral force |
 //! | [`record`] | ground motion records: samples in memory, PEER AT2, CSV |
 //! | [`ground_motion`] | a record scaled, placed in time and followed whatever the steps |
-//! | [`run`] | a structure under a ground motion: exact peaks, levels compared, plans of many runs and their outcomes |
-//! | [`fragility`] | fragility curve of many runs |
+//! | [`run`] | a structure under a ground motion: exact peaks, levels compared, plans of many runs, their outcomes and exceedances |
+//! | [`fragility`] | fragility curve of many runs, and how sure it is |
 //!
 //! In short, `examples/first_run.rs`:
 //!
@@ -48,6 +49,7 @@ pub mod fragility;
 pub mod full_contact;
 pub mod ground_motion;
 pub mod impact;
+pub mod intensity;
 mod kinematics;
 mod level;
 mod linear_rocking;

@@ -90,7 +90,7 @@ pub enum GivenError {
         ways: Vec<String>,
     },
     /// A natural quantity asks for a parameter that is impossible.
-    #[error("{natural} = {value} {unit} does not fit: {source}")]
+    #[error("{natural} = {value} {unit} does not fit: {cause}")]
     Impossible {
         /// The natural quantity.
         natural: &'static str,
@@ -99,7 +99,7 @@ pub enum GivenError {
         /// Its unit.
         unit: &'static str,
         /// What is wrong with the parameter that it determines.
-        source: OutOfRange,
+        cause: OutOfRange,
     },
     /// The masses alone turn too slowly for this frequency parameter.
     #[error(
@@ -215,9 +215,9 @@ impl Given {
 /// `value` as the parameter called `name`, which `natural` determines.
 fn parameter_for(natural: &'static str, given: f64, name: &'static str, value: f64) -> Result<f64, GivenError> {
     let parameter = PARAMETERS.iter().find(|parameter| parameter.name == name).expect("it is one of them");
-    let impossible = |source| {
+    let impossible = |cause| {
         let natural = NATURAL.iter().find(|known| known.name == natural).expect("it is one of them");
-        GivenError::Impossible { natural: natural.name, value: given, unit: natural.derived().unit, source }
+        GivenError::Impossible { natural: natural.name, value: given, unit: natural.derived().unit, cause }
     };
     parameter.check(value).map_err(impossible)?;
     Ok(value)

@@ -3,6 +3,7 @@
 //! The engine goes from sample to sample, between which the ground acceleration is linear; whoever watches sees every
 //! piece and every transition of it. What is known of a run without a watcher is how it ended.
 
+pub mod exceedances;
 mod history;
 pub mod levels;
 pub mod outcome;
@@ -91,8 +92,20 @@ pub enum RunError {
         start: f64,
     },
     /// The run cannot go on.
-    #[error(transparent)]
-    Advance(#[from] AdvanceError),
+    #[error("{cause}")]
+    Advance {
+        /// From here, s.
+        time: f64,
+        /// Why.
+        cause: AdvanceError,
+    },
+}
+
+impl RunError {
+    /// Where a run that had begun could not go on, s.
+    pub fn time(&self) -> Option<f64> {
+        if let RunError::Advance { time, .. } = self { Some(*time) } else { None }
+    }
 }
 
 impl<'a> Run<'a> {
@@ -116,6 +129,11 @@ impl<'a> Run<'a> {
         Ok(Finish { ending, motion: *engine.motion() })
     }
 
+    fn follow_ground<W: Watch>(&self, engine: &mut Engine, watch: &mut W) -> Result<Ending, RunError> {
+        let ending = self.advance(engine, watch);
+        ending.map_err(|cause| RunError::Advance { time: cause.time().unwrap_or(engine.motion().time), cause })
+    }
+
     /// The structure at the first sample.
     fn start(&self) -> Result<Engine, RunError> {
         let start = self.ground.start();
@@ -125,7 +143,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn follow_ground<W: Watch>(&self, engine: &mut Engine, watch: &mut W) -> Result<Ending, AdvanceError> {
+    fn advance<W: Watch>(&self, engine: &mut Engine, watch: &mut W) -> Result<Ending, AdvanceError> {
         let end = match self.end {
             End::AtRest => self.ground.end(),
             End::At(end) => end,
