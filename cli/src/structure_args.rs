@@ -7,7 +7,7 @@ use rocking::parameters::PARAMETERS;
 use rocking::quantity::Quantity;
 use rocking::structure::Derived;
 use rocking::{Parameters, Structure};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The structure asked for.
 #[derive(clap::Args, Debug)]
@@ -47,6 +47,11 @@ impl Preset {
 }
 
 impl StructureArgs {
+    /// The file that is read, if any.
+    pub fn input(&self) -> Option<&Path> {
+        self.parameters.as_deref()
+    }
+
     /// Reads the parameters and derives the structure; a refusal names the file, the line and the key.
     pub fn load(&self) -> anyhow::Result<Structure> {
         let Some(path) = &self.parameters else {
