@@ -7,6 +7,7 @@ mod estimate;
 mod export;
 mod modes;
 mod output_files;
+mod picture;
 mod pushover;
 mod quantities;
 mod record_args;

@@ -2,27 +2,23 @@
 //! exceeding limits, and fragility curves.
 
 mod file;
-mod fragilities;
 mod picture;
 mod rows;
+mod table;
 
 use crate::{
-    output_files::{OutputFile, OutputFiles},
+    output_files::OutputFiles,
+    picture::Picture,
     significant::significant,
     talk::{self, say},
 };
-use anyhow::bail;
+use anyhow::{bail, ensure};
+use file::Sweep;
 use indicatif::ProgressStyle;
 use rayon::{ThreadPoolBuilder, prelude::*};
-use rocking::run::{outcome::Outcome, plan::Case, plan::Plan};
+use rocking::run::{exceedances, outcome::Outcome, plan::Case, plan::Plan};
 use rows::Rows;
-use std::{
-    io::{Write, stdout},
-    num::NonZeroUsize,
-    path::PathBuf,
-    sync::Mutex,
-    time::Instant,
-};
+use std::{io::stdout, num::NonZeroUsize, path::PathBuf, sync::Mutex, time::Instant};
 use uuid::Uuid;
 
 /// What to run.
@@ -43,14 +39,14 @@ pub struct SweepArgs {
 /// Does the runs that are not in the file yet, then prints and draws the probabilities.
 pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let mut files = OutputFiles::of_inputs([args.file.as_path()]);
-    let (plan, limits) = file::read(&args.file, &mut files)?;
+    let Sweep { plan, limits, measure } = file::read(&args.file, &mut files)?;
     let output = match &args.output {
         Some(path) => path.clone(),
         None => PathBuf::from(args.file.file_stem().unwrap_or_default()).with_extension("csv"),
     };
     let picture = output.with_extension("svg");
+    ensure!(picture != output, "{} is where the picture goes: name the rows otherwise, as .csv say", output.display());
     files.reserve_rows(&output)?;
-    let mut picture_file = files.create(&picture)?;
     let keys = rows::keys(&plan);
     let (rows, found) = Rows::open(&output, &keys)?;
     let mut outcomes = found.outcomes;
@@ -83,19 +79,17 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     }
 
     let outcomes: Vec<_> = outcomes.into_iter().map(|outcome| outcome.expect("every run is done")).collect();
-    let populations = fragilities::count(&plan, &limits, &outcomes);
+    let populations = exceedances::count(&plan, measure, &limits, &outcomes);
     let mut out = stdout().lock();
-    populations.iter().try_for_each(|population| population.print(&mut out))?;
-    let drawn = picture_file.write_all(picture::draw(&populations)?.as_bytes());
-    OutputFile::named(&picture, drawn)?;
-    picture_file.finish()?;
+    populations.iter().try_for_each(|population| table::print(&mut out, population, measure))?;
+    picture::draw(&Picture::svg(picture.clone()), &populations, measure)?;
     say!("rows {}, picture {}", output.display(), picture.display());
     report_failures(&plan, &keys, &outcomes)
 }
 
 /// Says how many runs failed, and which the first is.
 fn report_failures(plan: &Plan, keys: &[Uuid], outcomes: &[Outcome]) -> anyhow::Result<()> {
-    let failed = || (0..plan.len()).filter(|index| matches!(outcomes[*index], Outcome::Failed(_)));
+    let failed = || (0..plan.len()).filter(|index| matches!(outcomes[*index], Outcome::Failed { .. }));
     let Some(first) = failed().next() else { return Ok(()) };
     let (count, Case { population, motion, scale, .. }) = (failed().count(), plan.case(first));
     let (name, motion, key) = (population.name(), motion.name(), keys[first]);

@@ -10,6 +10,9 @@ use crate::intensity::IntensityMeasure;
 /// More bins than this are not made, however many runs there are.
 const MOST_BINS: usize = 20;
 
+/// Intensities with fewer runs than this each, on average, share bins.
+const FEWEST_RUNS: usize = 3;
+
 /// The runs of one population, counted.
 #[derive(Clone, Debug)]
 pub struct Exceedances {
@@ -110,13 +113,13 @@ fn fragility(limit: Limit, bins: &[Vec<Counted>]) -> Fragility {
     }
 }
 
-/// `runs` in bins of about the same number, by intensity: √n of them, at most [`MOST_BINS`], and one for each intensity
-/// where there are no more than that. Runs of the same intensity are in the same bin.
+/// `runs` in bins of about the same number, by intensity: √n of them, at most [`MOST_BINS`]. Runs of the same intensity
+/// are in the same bin; where there are few intensities with many runs each, each has a bin of its own.
 fn bins(mut runs: Vec<Counted>) -> Vec<Vec<Counted>> {
     let all = runs.len();
     runs.sort_by(|a, b| a.1.total_cmp(&b.1));
     let of_one_intensity: Vec<_> = runs.chunk_by(|a, b| a.1 == b.1).collect();
-    if of_one_intensity.len() <= MOST_BINS {
+    if of_one_intensity.len() <= MOST_BINS && FEWEST_RUNS * of_one_intensity.len() <= all {
         return of_one_intensity.into_iter().map(<[_]>::to_vec).collect();
     }
     let count = MOST_BINS.min((all as f64).sqrt().ceil() as usize);
@@ -162,21 +165,28 @@ mod tests {
             (0, 2.0, &falls),
             (1, 0.5, &stands),
             (1, 0.5, &rocks),
+            (1, 0.5, &stands),
             (1, 1.0, &falls),
             (0, 2.0, &stands),
+            (1, 1.0, &stands),
+            (0, 2.0, &falls),
+            (0, 4.0, &falls),
+            (0, 4.0, &falls),
             (0, 8.0, &failed),
         ];
         let limit = Limit::peak("theta", 0.5).unwrap();
         let Exceedances { bins, fragilities, failed, still_rocking, .. } = of_population("piers", &[limit], &runs);
         assert_eq!((failed, still_rocking), (1, 1));
         let at = |intensity, runs| Bin { lowest: intensity, mean: intensity, highest: intensity, runs };
-        assert_eq!(bins, [at(0.5, 2), at(1.0, 2), at(2.0, 2), at(4.0, 1)]);
+        assert_eq!(bins, [at(0.5, 3), at(1.0, 3), at(2.0, 3), at(4.0, 3)]);
         let tallies = |of: usize| fragilities[of].tallies.iter().map(|t| (t.exceedances, t.known)).collect::<Vec<_>>();
-        assert_eq!(tallies(0), [(0, 1), (1, 2), (1, 2), (1, 1)]);
-        assert_eq!(tallies(1), [(2, 2), (2, 2), (2, 2), (1, 1)]);
-        // 0 of 1 at 1/2, 1 of 2 at 1 and at 2, 1 of 1 at 4: symmetric about the square root of 2
-        let median = fragilities[0].curve.as_ref().unwrap().median;
-        assert!((median - 2_f64.sqrt()).abs() < 1e-9, "{median}");
+        assert_eq!(tallies(0), [(0, 2), (1, 3), (2, 3), (3, 3)]);
+        assert_eq!(tallies(1), [(3, 3); 4]);
+        let by_hand = [(0.5, 2, 0), (1.0, 3, 1), (2.0, 3, 2), (4.0, 3, 3)];
+        let trials = by_hand.map(|(intensity, runs, exceedances)| Trials { group: 0, intensity, runs, exceedances });
+        let (found, expected) =
+            (fragilities[0].curve.as_ref().unwrap().median, FragilityCurve::fit(&trials).unwrap().median);
+        assert!((found - expected).abs() < 1e-9 * expected, "{found} {expected}");
         assert_eq!(fragilities[1].curve, Err(FitError::AlwaysExceeded));
     }
 
@@ -196,7 +206,7 @@ mod tests {
             let mut most_of_one = 1;
             sorted.chunk_by(|a, b| a == b).for_each(|same| most_of_one = most_of_one.max(same.len()));
             sorted.dedup();
-            if sorted.len() > MOST_BINS {
+            if sorted.len() > MOST_BINS || 3 * sorted.len() > intensities.len() {
                 let share = intensities.len() as f64 / MOST_BINS.min((intensities.len() as f64).sqrt().ceil() as usize) as f64;
                 prop_assert!(bins.iter().all(|runs| runs.len() as f64 <= share + most_of_one as f64));
             } else {
