@@ -1,6 +1,9 @@
 //! `advise`: every level of detail on the user's own scene, its errors and its cost, and the cheapest that will do.
 
+mod picture;
+
 use crate::{
+    picture::Picture,
     scene_args::{GroundArgs, InitialArgs},
     structure_args::StructureArgs,
 };
@@ -33,6 +36,9 @@ pub struct AdviseArgs {
     initial: InitialArgs,
     #[command(flatten)]
     allowed: AllowedArgs,
+    /// Draw the errors of every level
+    #[arg(long, value_name = "FILE.svg|png", help_heading = "Results")]
+    picture: Option<Picture>,
 }
 
 #[derive(clap::Args)]
@@ -102,7 +108,8 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
         writeln!(out, "  {:<10} not possible here: {error:#}", detail.name())?;
     }
     print_advice(&mut out, &comparison, advised, &args.allowed)?;
-    Ok(())
+    let Some(picture) = &args.picture else { return Ok(()) };
+    picture::draw(picture, &comparison, (args.allowed.within, &criteria), advised, ground.title())
 }
 
 fn print_reference(out: &mut impl Write, structure: &Structure, comparison: &Comparison) -> io::Result<()> {
@@ -146,7 +153,7 @@ fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&
         ' ',
         ["level", "theta", "u", "a_t, V_t, M_t", "theta", "u", "a_t", "overturns", "steps", "evaluations", "of auto"],
     )?;
-    let auto = cost_of_auto(comparison);
+    let auto = comparison.cost_of_auto();
     for verdict in &comparison.verdicts {
         let response = &verdict.response;
         let mark = if advised.is_some_and(|advised| advised.response.detail == response.detail) { '>' } else { ' ' };
@@ -169,11 +176,6 @@ fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&
         )?;
     }
     Ok(())
-}
-
-fn cost_of_auto(comparison: &Comparison) -> Option<f64> {
-    let auto = comparison.verdicts.iter().find(|verdict| verdict.response.detail == Detail::Auto);
-    auto.map(|auto| auto.response.cost() as f64)
 }
 
 /// The demand of the whole record without a time history (Eqs 21 to 24) as one more row.
@@ -207,7 +209,7 @@ fn print_advice(
         );
     };
     write!(out, "\nuse detail = {}: of the cheapest levels {limit} the simplest", response.detail.name())?;
-    match cost_of_auto(comparison) {
+    match comparison.cost_of_auto() {
         Some(auto) if response.detail != Detail::Auto => {
             writeln!(out, ", at {:.2} times the cost of auto", response.cost() as f64 / auto)
         }

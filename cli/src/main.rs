@@ -6,6 +6,7 @@ mod describe;
 mod estimate;
 mod export;
 mod modes;
+mod picture;
 mod pushover;
 mod quantities;
 mod record_args;

@@ -1,5 +1,8 @@
 //! `simulate`: the response to a ground motion record, or free vibration, with the same engine as the FMU's.
+mod picture;
+
 use crate::{
+    picture::Picture,
     record_args::positive,
     scene_args::{GroundArgs, InitialArgs},
     structure_args::StructureArgs,
@@ -48,6 +51,9 @@ struct ResultArgs {
     /// Transitions as CSV: instant, kind, state before and after
     #[arg(long, value_name = "FILE.csv")]
     events: Option<PathBuf>,
+    /// Draw ground acceleration, uplift, acceleration and base shear over time, with marks at transitions
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<Picture>,
 }
 
 fn detail_parser() -> impl TypedValueParser<Value = Detail> {
@@ -126,10 +132,16 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     rows.and(written)?;
     response.finish()?;
     events.map_or(Ok(()), Table::finish)?;
+    if let Some(picture) = &args.results.picture {
+        picture::draw(picture, &run)?;
+    }
     eprintln!("{}, {} to {} s", ground.title(), significant(ground.start()), significant(finish.motion.time));
     summary.print(&finish);
     if output != Path::new("-") {
         eprintln!("response       {}", output.display());
+    }
+    if let Some(picture) = &args.results.picture {
+        eprintln!("picture        {}", picture.path().display());
     }
     Ok(())
 }
