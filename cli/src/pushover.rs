@@ -54,7 +54,7 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
         eprintln!("curve            {}", args.output.display());
     }
     if let Some(picture) = &args.picture {
-        picture::draw(picture, &structure, &curve, &corners)?;
+        picture::draw(picture, &structure, &curve, corners.map(|corner| corner.1))?;
         eprintln!("picture          {}", picture.path().display());
     }
     Ok(())

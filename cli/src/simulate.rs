@@ -4,17 +4,15 @@ mod picture;
 use crate::{
     picture::Picture,
     record_args::positive,
-    scene_args::{GroundArgs, InitialArgs},
+    scene_args::{GroundArgs, InitialArgs, LevelArgs},
     structure_args::StructureArgs,
     summary::Summary,
     tables::{self, Table},
 };
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fmu_export::significant::significant;
 use indicatif::ProgressBar;
 use rocking::{
-    Detail, Transition,
-    engine::DEFAULT_TOLERANCE,
+    Transition,
     record::Record,
     run::{End, Run},
 };
@@ -30,18 +28,14 @@ pub struct SimulateArgs {
     #[command(flatten)]
     initial: InitialArgs,
     #[command(flatten)]
+    level: LevelArgs,
+    #[command(flatten)]
     results: ResultArgs,
 }
 
 #[derive(clap::Args)]
 #[command(next_help_heading = "Results")]
 struct ResultArgs {
-    /// Level of detail: the equations that move the structure
-    #[arg(long, value_name = "LEVEL", default_value = Detail::default().name(), value_parser = detail_parser())]
-    detail: Detail,
-    /// Relative tolerance
-    #[arg(long, default_value = format!("{DEFAULT_TOLERANCE:e}"), value_parser = tolerance)]
-    tolerance: f64,
     /// Output interval [default: the record's samples; 0.001 in free vibration]
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     dt: Option<f64>,
@@ -54,20 +48,6 @@ struct ResultArgs {
     /// Draw ground acceleration, uplift, acceleration and base shear over time, with marks at transitions
     #[arg(long, value_name = "FILE.svg|png")]
     picture: Option<Picture>,
-}
-
-fn detail_parser() -> impl TypedValueParser<Value = Detail> {
-    PossibleValuesParser::new(Detail::ALL.map(Detail::name)).map(|name| {
-        let is_named = |detail: &Detail| detail.name() == name;
-        Detail::ALL.into_iter().find(is_named).expect("clap accepts these names alone")
-    })
-}
-
-fn tolerance(text: &str) -> Result<f64, String> {
-    positive(text).and_then(|tolerance| match tolerance {
-        ..1.0 => Ok(tolerance),
-        _ => Err("a number less than 1 is needed, such as 1e-9".into()),
-    })
 }
 
 impl SimulateArgs {
@@ -102,7 +82,7 @@ impl SimulateArgs {
 pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let ground = args.ground.load(structure.parameters().g)?;
-    let ResultArgs { tolerance, detail, .. } = args.results;
+    let LevelArgs { tolerance, detail } = args.level;
     let (initial, end) = (args.initial.state(), args.ground.end(&ground));
     let run = Run { initial, detail, tolerance, end, ..Run::new(structure, &ground) };
 

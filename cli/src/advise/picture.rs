@@ -21,10 +21,10 @@ const DOT: f64 = 4.5;
 /// What is drawn of a criterion: its symbol, its colour, and whether it is of a history instead of a peak.
 fn look(criterion: Criterion) -> (&'static str, RGBColor, bool) {
     match criterion {
-        Criterion::Theta => ("peak of theta", colour::BLUE, false),
+        Criterion::Theta => ("peak of θ", colour::BLUE, false),
         Criterion::U => ("of u", colour::GREEN, false),
         Criterion::At => ("of a_t", colour::VERMILLION, false),
-        Criterion::ThetaHistory => ("history of theta", colour::BLUE, true),
+        Criterion::ThetaHistory => ("history of θ", colour::BLUE, true),
         Criterion::UHistory => ("of u", colour::GREEN, true),
         Criterion::AtHistory => ("of a_t", colour::VERMILLION, true),
     }
@@ -63,10 +63,9 @@ fn draw_legend(area: &Area, criteria: &[Criterion]) -> anyhow::Result<()> {
 /// A dot for a peak, a ring for a history.
 fn mark(area: &Area, at: (i32, i32), colour: RGBColor, is_history: bool) -> anyhow::Result<()> {
     if is_history {
-        area.draw(&dot(at, DOT, WHITE))?;
         area.draw(&Circle::new(at, px(DOT), stroke(colour, 1.6)))?;
     } else {
-        area.draw(&dot(at, DOT, colour))?;
+        area.draw(&dot(at, 0.7 * DOT, colour))?;
     }
     Ok(())
 }
@@ -91,6 +90,8 @@ fn draw_lanes(
             let band = [(px(18.0), top), (px(f64::from(WIDTH) - 18.0), top + px(f64::from(LANE)))];
             area.draw(&Rectangle::new(band, colour::BLUE.mix(0.09).filled()))?;
         }
+        let middle = top + px(0.5 * f64::from(LANE));
+        area.draw(&PathElement::new([(left, middle), (right, middle)], stroke(colour::RULE, 1.0)))?;
     }
     for decade in -4..=3 {
         let error = 10f64.powi(decade);
@@ -115,13 +116,18 @@ fn draw_lanes(
             let cost = format!("{:.2} × auto", verdict.response.cost() as f64 / auto);
             area.draw(&Text::new(cost, (px(f64::from(WIDTH) - 28.0), y), words_before(SMALL, colour::INK)))?;
         }
-        area.draw(&PathElement::new([(left, y), (right, y)], stroke(colour::RULE, 1.0)))?;
         if !verdict.is_right_about_overturning {
-            area.draw(&Text::new("wrong about overturning", (left + px(8.0), y - px(10.0)), words(SMALL, colour::VERMILLION)))?;
+            area.draw(&Text::new("wrong about overturning", (left + px(12.0), y - px(11.0)), words(SMALL, colour::VERMILLION)))?;
         }
         for criterion in criteria {
             let (_, colour, is_history) = look(*criterion);
-            mark(area, (across(100.0 * verdict.errors[*criterion as usize]), y), colour, is_history)?;
+            // what is of one quantity is at one height: dots at the same error are both seen
+            let aside = match criterion {
+                Criterion::Theta | Criterion::ThetaHistory => -9.0,
+                Criterion::U | Criterion::UHistory => 0.0,
+                Criterion::At | Criterion::AtHistory => 9.0,
+            };
+            mark(area, (across(100.0 * verdict.errors[*criterion as usize]), y + px(aside)), colour, is_history)?;
         }
     }
     let cost = Text::new("cost", (px(f64::from(WIDTH) - 28.0), lanes + px(14.0)), words_before(SMALL, colour::GREY));

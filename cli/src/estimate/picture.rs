@@ -120,7 +120,7 @@ fn draw_frequency(area: &Area, structure: &Structure, amplitudes: &[f64]) -> any
     let highest = 1.1 * f_r(least);
     let curve = (1..POINTS).map(|i| (part(i), f_r(part(i)))).skip_while(|point| point.1 > highest);
     let mut chart = chart(area, BELOW).build_cartesian_2d(0.0..1.0, 0.0..highest)?;
-    axes(&mut chart, ["amplitude theta / tan(alpha_cg)", "effective frequency f_r (Hz)"], [10, 6])?;
+    axes(&mut chart, ["amplitude θ / tan α_cg", "effective frequency f_r (Hz)"], [10, 6])?;
     chart.draw_series([PathElement::new(curve.collect::<Vec<_>>(), line(colour::BLUE))])?;
     for amplitude in amplitudes {
         let label = EmptyElement::at((*amplitude, f_r(*amplitude)))
