@@ -35,8 +35,8 @@ pub struct ViewArgs {
     output: Option<PathBuf>,
 }
 
-/// Part of a peak by which what is drawn may miss the motion: less than the width of a line.
-const PART: f64 = 1e-3;
+/// Part of a peak by which what is shown may miss the motion: a unit of the last digit of its numbers.
+const PART: f64 = 1e-4;
 
 /// Part of a peak that a value on the page is rounded to, and the same of time, s.
 const QUANTUM: f64 = 1e-5;

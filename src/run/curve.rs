@@ -29,11 +29,11 @@ pub struct Point {
 /// A run as it is drawn.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// In the order of time; straight lines join them.
+    /// In the order of time; straight lines join them. The peaks of a_g, θ, u and a_t are among them.
     pub points: Vec<Point>,
     /// In the order of time, too.
     pub transitions: Vec<Transition>,
-    /// Exact peaks, which need not be at a point.
+    /// Exact peaks.
     pub peaks: Peaks,
     /// How the run ended.
     pub finish: Finish,
@@ -45,7 +45,8 @@ impl Run<'_> {
     pub fn curve(&self, part: f64) -> Result<Curve, RunError> {
         let (peaks, _) = self.peaks()?;
         let within = [peaks.theta(), peaks.u(), peaks.a_t()].map(|peak| part * peak.magnitude);
-        let mut tracer = Tracer { within, points: Vec::new(), transitions: Vec::new(), is_torn: true };
+        let exact = [peaks.a_g(), peaks.theta(), peaks.u(), peaks.a_t()].map(|peak| peak.time);
+        let mut tracer = Tracer { within, exact, points: Vec::new(), transitions: Vec::new(), is_torn: true };
         let finish = self.follow(&mut tracer)?;
         let Tracer { points, transitions, .. } = tracer;
         Ok(Curve { points, transitions, peaks, finish })
@@ -56,6 +57,8 @@ impl Run<'_> {
 struct Tracer {
     /// How far θ (rad), u (m) and a_t (m/s²) may leave the lines.
     within: [f64; 3],
+    /// Instants (s) that are to be points.
+    exact: [f64; 4],
     points: Vec<Point>,
     transitions: Vec<Transition>,
     /// Whether the next piece begins with a point of its own.
@@ -88,6 +91,9 @@ impl Watch for Tracer {
                 });
                 between.push(from + arc.reach * part);
             });
+            let instants = self.exact.map(|time| (time - piece.before.time - passed) / span);
+            between.extend(instants.iter().filter(|sigma| **sigma > 0.0 && **sigma < piece.arc().reach));
+            between.sort_by(f64::total_cmp);
             for sigma in between {
                 let outputs = piece.outputs(sigma);
                 self.see(piece, passed + sigma * span, outputs);
