@@ -3,7 +3,8 @@
 mod picture;
 
 use crate::{
-    picture::Picture,
+    output_files::OutputFiles,
+    picture::PictureFile,
     scene_args::{GroundArgs, InitialArgs},
     structure_args::StructureArgs,
 };
@@ -38,7 +39,7 @@ pub struct AdviseArgs {
     allowed: AllowedArgs,
     /// Draw the errors of every level
     #[arg(long, value_name = "FILE.svg|png", help_heading = "Results")]
-    picture: Option<Picture>,
+    picture: Option<PictureFile>,
 }
 
 #[derive(clap::Args)]
@@ -93,6 +94,9 @@ fn relative_error(text: &str) -> Result<f64, String> {
 pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let ground = args.ground.load(structure.parameters().g)?;
+    let inputs = args.structure.input().into_iter().chain(args.ground.record.record.as_deref());
+    let mut files = OutputFiles::of_inputs(inputs);
+    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let (initial, end) = (args.initial.state(), args.ground.end(&ground));
     let run = Run { initial, end, ..Run::new(structure, &ground) };
     let comparison = levels::compare(&run).context("detail = nonlinear")?;
@@ -108,8 +112,10 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
         writeln!(out, "  {:<10} not possible here: {error:#}", detail.name())?;
     }
     print_advice(&mut out, &comparison, advised, &args.allowed)?;
-    let Some(picture) = &args.picture else { return Ok(()) };
-    picture::draw(picture, &comparison, (args.allowed.within, &criteria), advised, ground.title())
+    match picture {
+        Some(picture) => picture::draw(picture, &comparison, (args.allowed.within, &criteria), advised, ground.title()),
+        None => Ok(()),
+    }
 }
 
 fn print_reference(out: &mut impl Write, structure: &Structure, comparison: &Comparison) -> io::Result<()> {

@@ -2,7 +2,8 @@
 mod picture;
 
 use crate::{
-    picture::Picture,
+    output_files::OutputFiles,
+    picture::PictureFile,
     quantities::{Line, print_columns, print_csv},
     record_args::RecordArgs,
     significant::significant,
@@ -42,7 +43,7 @@ pub struct EstimateArgs {
     csv: bool,
     /// Draw the record's response spectra, the demand and the effective frequency
     #[arg(long, value_name = "FILE.svg|png")]
-    picture: Option<Picture>,
+    picture: Option<PictureFile>,
 }
 
 fn amplitude(text: &str) -> Result<f64, String> {
@@ -57,13 +58,15 @@ pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let g = structure.parameters().g;
     let record = args.ground.load(g)?;
+    let inputs = args.structure.input().into_iter().chain(args.ground.record.as_deref());
+    let mut files = OutputFiles::of_inputs(inputs);
+    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let fixed_base = record.as_ref().map_or(Vec::new(), |record| on_fixed_base(&structure, record));
-    let S_a = record.as_ref().map_or(0.0, |record| {
-        spectral_acceleration(record, TAU / structure.omega_u, structure.zeta_u)
-    });
+    let S_a =
+        record.as_ref().map_or(0.0, |record| spectral_acceleration(record, TAU / structure.omega_u, structure.zeta_u));
     let demand = Demand::new(&structure, S_a, args.amplification)?;
     let rocking = while_rocking(&structure, S_a, args.amplification, &demand);
-    if let Some(picture) = &args.picture {
+    if let Some(picture) = picture {
         picture::draw(picture, &structure, record.as_ref(), &demand, &args.amplitudes)?;
     }
     if args.csv {

@@ -1,7 +1,7 @@
 //! `modes`: a response split into rocking and vibration mode (Eqs 12, 16, 19).
 mod picture;
 
-use crate::{picture::Picture, structure_args::StructureArgs, tables::Table};
+use crate::{output_files::OutputFiles, picture::PictureFile, structure_args::StructureArgs, tables::Table};
 use anyhow::Context;
 use rocking::{
     Side, State,
@@ -23,7 +23,7 @@ pub struct ModesArgs {
     output: PathBuf,
     /// Draw both modes over time
     #[arg(long, value_name = "FILE.svg|png")]
-    picture: Option<Picture>,
+    picture: Option<PictureFile>,
 }
 
 /// The columns of a response that the split needs.
@@ -51,7 +51,10 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let named = || args.response.display().to_string();
     let mut response = csv::Reader::from_path(&args.response).with_context(named)?;
-    let mut table = Table::create(&args.output, &HEADINGS)?;
+    let inputs = args.structure.input().into_iter().chain([args.response.as_path()]);
+    let mut files = OutputFiles::of_inputs(inputs);
+    let mut table = Table::create(&mut files, &args.output, &HEADINGS)?;
+    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let (mut stretches, mut rocks_about) = (Vec::new(), None);
     for instant in response.deserialize() {
         let Instant { time, a_g, theta, u, theta_dot, u_dot, phase } = instant.with_context(named)?;
@@ -73,6 +76,8 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
         stretches.last_mut().context("it has just begun")?.push((time, modes, accelerations));
     }
     table.finish()?;
-    let Some(picture) = &args.picture else { return Ok(()) };
-    picture::draw(picture, structure.parameters().g, &stretches, &named())
+    match picture {
+        Some(picture) => picture::draw(picture, structure.parameters().g, &stretches, &named()),
+        None => Ok(()),
+    }
 }

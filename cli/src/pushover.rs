@@ -1,7 +1,10 @@
 //! `pushover`: lateral force and moment against displacement (Fig 1).
 mod picture;
 
-use crate::{picture::Picture, significant::significant, structure_args::StructureArgs, tables::Table};
+use crate::{
+    output_files::OutputFiles, picture::PictureFile, significant::significant, structure_args::StructureArgs,
+    tables::Table, talk::say,
+};
 use anyhow::Context;
 use rocking::{
     Phase, Structure,
@@ -23,7 +26,7 @@ pub struct PushoverArgs {
     output: PathBuf,
     /// Draw force and moment against displacement
     #[arg(long, value_name = "FILE.svg|png")]
-    picture: Option<Picture>,
+    picture: Option<PictureFile>,
 }
 
 const HEADINGS: [&str; 6] = ["phase", "theta[rad]", "u[m]", "delta_t[m]", "P[N]", "M[N.m]"];
@@ -37,7 +40,9 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
         .map(|delta_t| at_displacement(&structure, delta_t))
         .collect();
     let curve = curve.context(too_soft)?;
-    let mut table = Table::create(&args.output, &HEADINGS)?;
+    let mut files = OutputFiles::of_inputs(args.structure.input());
+    let mut table = Table::create(&mut files, &args.output, &HEADINGS)?;
+    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     curve.iter().try_for_each(|at| table.write(line(at)))?;
     table.finish()?;
     let corners = [
@@ -48,16 +53,15 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     for (name, corner) in corners {
         let Equilibrium { theta, delta_t, force, moment, .. } = corner;
         let [theta, delta_t, force, moment] = [theta, 1e3 * delta_t, force, moment].map(significant);
-        eprintln!("{name:<16} delta_t {delta_t:>8} mm, theta {theta:>8} rad, P {force:>8} N, M {moment:>8} N.m");
+        say!("{name:<16} delta_t {delta_t:>8} mm, theta {theta:>8} rad, P {force:>8} N, M {moment:>8} N.m");
     }
     if args.output != Path::new("-") {
-        eprintln!("curve            {}", args.output.display());
+        say!("curve            {}", args.output.display());
     }
-    if let Some(picture) = &args.picture {
-        picture::draw(picture, &structure, &curve, corners.map(|corner| corner.1))?;
-        eprintln!("picture          {}", picture.path().display());
+    match picture {
+        Some(picture) => picture::draw(picture, &structure, &curve, corners.map(|corner| corner.1)),
+        None => Ok(()),
     }
-    Ok(())
 }
 
 /// Displacements (m) evenly on each branch: 0 to u_cr, and from just beyond to `end`.

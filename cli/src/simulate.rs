@@ -2,15 +2,16 @@
 mod picture;
 
 use crate::{
-    picture::Picture,
+    output_files::OutputFiles,
+    picture::PictureFile,
     record_args::positive,
     scene_args::{GroundArgs, InitialArgs, LevelArgs},
     structure_args::StructureArgs,
     summary::Summary,
     tables::{self, Table},
+    talk::{self, say},
 };
 use fmu_export::significant::significant;
-use indicatif::ProgressBar;
 use rocking::{
     Transition,
     record::Record,
@@ -47,7 +48,7 @@ struct ResultArgs {
     events: Option<PathBuf>,
     /// Draw ground acceleration, uplift, acceleration and base shear over time, with marks at transitions
     #[arg(long, value_name = "FILE.svg|png")]
-    picture: Option<Picture>,
+    picture: Option<PictureFile>,
 }
 
 impl SimulateArgs {
@@ -87,9 +88,13 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let run = Run { initial, detail, tolerance, end, ..Run::new(structure, &ground) };
 
     let output = args.output_path();
-    let mut response = Table::create(&output, &tables::RESPONSE)?;
-    let mut events = args.results.events.as_deref().map(|path| Table::create(path, &tables::EVENTS)).transpose()?;
-    let progress = ProgressBar::new(ground.times().len() as u64);
+    let inputs = args.structure.input().into_iter().chain(args.ground.record.record.as_deref());
+    let mut files = OutputFiles::of_inputs(inputs);
+    let mut response = Table::create(&mut files, &output, &tables::RESPONSE)?;
+    let events = args.results.events.as_deref();
+    let mut events = events.map(|path| Table::create(&mut files, path, &tables::EVENTS)).transpose()?;
+    let picture = args.results.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
+    let progress = talk::progress(ground.times().len());
     let (mut summary, mut written) = (Summary::new(&structure), Ok(()));
     let mut transition = |transition: &Transition| {
         if let (Some(events), Ok(())) = (&mut events, &written) {
@@ -112,16 +117,13 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     rows.and(written)?;
     response.finish()?;
     events.map_or(Ok(()), Table::finish)?;
-    if let Some(picture) = &args.results.picture {
-        picture::draw(picture, &run)?;
-    }
-    eprintln!("{}, {} to {} s", ground.title(), significant(ground.start()), significant(finish.motion.time));
+    say!("{}, {} to {} s", ground.title(), significant(ground.start()), significant(finish.motion.time));
     summary.print(&finish);
     if output != Path::new("-") {
-        eprintln!("response       {}", output.display());
+        say!("response       {}", output.display());
     }
-    if let Some(picture) = &args.results.picture {
-        eprintln!("picture        {}", picture.path().display());
+    match picture {
+        Some(picture) => picture::draw(picture, &run),
+        None => Ok(()),
     }
-    Ok(())
 }

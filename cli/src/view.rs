@@ -1,7 +1,9 @@
 //! `view`: a page that shows the structure in motion, one file that needs nothing else.
 use crate::{
+    output_files::{OutputFile, OutputFiles},
     scene_args::{GroundArgs, InitialArgs, LevelArgs},
     structure_args::StructureArgs,
+    talk::say,
 };
 use anyhow::Context;
 use rocking::{
@@ -15,7 +17,7 @@ use rocking::{
 };
 use serde::Serialize;
 use std::{
-    fs,
+    io::Write,
     path::{Path, PathBuf},
 };
 
@@ -30,7 +32,7 @@ pub struct ViewArgs {
     initial: InitialArgs,
     #[command(flatten)]
     level: LevelArgs,
-    /// The page [default: the record's name and _view.html, in this folder]
+    /// The page, `-` for standard output [default: the record's name and _view.html, in this folder]
     #[arg(short, long, value_name = "FILE.html", help_heading = "Results")]
     output: Option<PathBuf>,
 }
@@ -49,11 +51,16 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
     let LevelArgs { tolerance, detail } = args.level;
     let (initial, end) = (args.initial.state(), args.ground.end(&ground));
     let run = Run { initial, detail, tolerance, end, ..Run::new(structure, &ground) };
-    let curve = run.curve(PART)?;
     let path = args.output_path();
+    let inputs = args.structure.input().into_iter().chain(args.ground.record.record.as_deref());
+    let mut file = OutputFiles::of_inputs(inputs).create(&path)?;
+    let curve = run.curve(PART)?;
     let page = page(&Scene::new(&structure, &ground, &curve).context("a run has a start")?)?;
-    fs::write(&path, page).with_context(|| format!("{} cannot be written", path.display()))?;
-    eprintln!("view           {}", path.display());
+    OutputFile::named(&path, file.write_all(page.as_bytes()))?;
+    file.finish()?;
+    if path != Path::new("-") {
+        say!("view           {}", path.display());
+    }
     Ok(())
 }
 

@@ -116,13 +116,7 @@ impl Watch for Tracer {
 
 /// Shows, in their order, the σ between `from` and `to` at which the polynomials have to be known so that they leave the
 /// lines between them by no more than `within`.
-fn halve(
-    coefficients: [&[f64]; 3],
-    within: [f64; 3],
-    [from, to]: [f64; 2],
-    halvings: u32,
-    show: &mut impl FnMut(f64),
-) {
+fn halve(coefficients: [&[f64]; 3], within: [f64; 3], [from, to]: [f64; 2], halvings: u32, show: &mut impl FnMut(f64)) {
     let order = coefficients[0].len() - 1;
     let over = coefficients.map(|coefficients| {
         let mut series: Series = taylor::ZERO;

@@ -32,7 +32,7 @@ fn look(criterion: Criterion) -> (&'static str, RGBColor, bool) {
 
 /// Draws the errors by `criteria` of every level beside what is allowed, `within`; `advised` is the level to use.
 pub fn draw(
-    picture: &Picture,
+    picture: Picture,
     comparison: &Comparison,
     (within, criteria): (f64, &[Criterion]),
     advised: Option<&Verdict>,
@@ -40,7 +40,10 @@ pub fn draw(
 ) -> anyhow::Result<()> {
     let lanes = comparison.verdicts.len() as u32;
     let about = advised.map_or("no level is within what is allowed".into(), |advised| {
-        format!("use detail = {}: of the cheapest levels within what is allowed the simplest", advised.response.detail.name())
+        format!(
+            "use detail = {}: of the cheapest levels within what is allowed the simplest",
+            advised.response.detail.name()
+        )
     });
     picture.draw((WIDTH, TITLE + LEGEND + lanes * LANE + BELOW), |area| {
         let (legend, rest) = titled(area, title, &about)?.split_vertically(px(f64::from(LEGEND)));
@@ -117,7 +120,11 @@ fn draw_lanes(
             area.draw(&Text::new(cost, (px(f64::from(WIDTH) - 28.0), y), words_before(SMALL, colour::INK)))?;
         }
         if !verdict.is_right_about_overturning {
-            area.draw(&Text::new("wrong about overturning", (left + px(12.0), y - px(11.0)), words(SMALL, colour::VERMILLION)))?;
+            area.draw(&Text::new(
+                "wrong about overturning",
+                (left + px(12.0), y - px(11.0)),
+                words(SMALL, colour::VERMILLION),
+            ))?;
         }
         for criterion in criteria {
             let (_, colour, is_history) = look(*criterion);

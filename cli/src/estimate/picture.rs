@@ -1,11 +1,10 @@
 //! The picture of an estimate: the record's response spectra, the demand term by term, the frequency of rocking.
-use crate::picture::{Area, Picture, SMALL, TITLE, axes, chart, colour, dot, line, px, range, rounded, stroke, titled, words, words_about};
+use crate::picture::{
+    Area, Picture, SMALL, TITLE, axes, chart, colour, dot, line, px, range, rounded, stroke, titled, words, words_about,
+};
 use plotters::prelude::*;
 use rocking::{
-    Structure,
-    demand::Demand,
-    effective_frequency::effective_frequency,
-    record::Record,
+    Structure, demand::Demand, effective_frequency::effective_frequency, record::Record,
     response_spectrum::spectral_acceleration,
 };
 use std::f64::consts::TAU;
@@ -23,14 +22,18 @@ const POINTS: u32 = 400;
 /// Draws what `demand` consists of and, if there is a `record`, its spectra with both periods of the structure, and the
 /// effective frequency with marks at these `amplitudes`.
 pub fn draw(
-    picture: &Picture,
+    picture: Picture,
     structure: &Structure,
     record: Option<&Record>,
     demand: &Demand,
     amplitudes: &[f64],
 ) -> anyhow::Result<()> {
     let rows = if record.is_some() { 2 } else { 1 };
-    let about = format!("base shear {} kN, overturning moment {} kN m while rocking", rounded(1e-3 * demand.V_t), rounded(1e-3 * demand.M_t));
+    let about = format!(
+        "base shear {} kN, overturning moment {} kN m while rocking",
+        rounded(1e-3 * demand.V_t),
+        rounded(1e-3 * demand.M_t)
+    );
     let title = record.map_or("Demand while rocking, the ground at rest", Record::title);
     picture.draw((WIDTH, TITLE + rows * PANEL), |area| {
         let below = titled(area, title, &about)?;
@@ -56,7 +59,8 @@ fn draw_spectra(area: &Area, structure: &Structure, record: &Record) -> anyhow::
     ];
     let (shortest, longest) = (0.2 * of_mode[1].2, 10.0 * of_mode[0].2);
     let period = |i: u32| shortest * (longest / shortest).powf(f64::from(i) / f64::from(POINTS));
-    let spectra = of_mode.map(|(.., zeta, _)| (0..=POINTS).map(|i| (period(i), S_a(period(i), zeta))).collect::<Vec<_>>());
+    let spectra =
+        of_mode.map(|(.., zeta, _)| (0..=POINTS).map(|i| (period(i), S_a(period(i), zeta))).collect::<Vec<_>>());
     let highest = range(spectra.iter().flatten().map(|point| point.1));
     let mut chart = chart(area, BELOW).build_cartesian_2d((shortest..longest).log_scale(), highest.clone())?;
     axes(&mut chart, ["period T (s)", "spectral acceleration S_a (g)"], [6, 6])?;
@@ -79,9 +83,8 @@ fn draw_spectra(area: &Area, structure: &Structure, record: &Record) -> anyhow::
 /// The demand as a pile of its terms (Eq 22), beside the acceleration on a fixed base (Eq 4).
 fn draw_demand(area: &Area, structure: &Structure, record: Option<&Record>, demand: &Demand) -> anyhow::Result<()> {
     let g = structure.parameters().g;
-    let fixed_base = record.map(|record| {
-        spectral_acceleration(record, TAU / structure.omega_fc, structure.parameters().zeta_fc) / g
-    });
+    let fixed_base = record
+        .map(|record| spectral_acceleration(record, TAU / structure.omega_fc, structure.parameters().zeta_fc) / g);
     let terms = [
         ("ground", demand.ground / g, colour::BLUE),
         ("rocking", demand.rocking / g, colour::SKY),

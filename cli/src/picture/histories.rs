@@ -145,7 +145,8 @@ impl Histories {
         if let Some((time, value, peak)) = &panel.peak {
             chart.draw_series([dot((*time, *value), 3.0, colour::INK)])?;
             let is_late = *time > self.time.start + 0.85 * (self.time.end - self.time.start);
-            let (style, aside) = if is_late { (words_before(SMALL, colour::INK), -7.0) } else { (words(SMALL, colour::INK), 7.0) };
+            let (style, aside) =
+                if is_late { (words_before(SMALL, colour::INK), -7.0) } else { (words(SMALL, colour::INK), 7.0) };
             let above = if *value < 0.0 { 3.0 } else { -3.0 };
             let label = EmptyElement::at((*time, *value)) + Text::new(peak.clone(), (px(aside), px(above)), style);
             chart.draw_series([label])?;
@@ -156,13 +157,13 @@ impl Histories {
     /// A lane of ticks for each kind of mark, its name before it.
     fn draw_marks(&self, area: &Area) -> anyhow::Result<()> {
         let lanes = self.marks.len();
-        let mut chart = chart(area, f64::from(BELOW))
-            .margin_top(0)
-            .build_cartesian_2d(self.time.clone(), lanes as f64..0.0)?;
+        let mut chart =
+            chart(area, f64::from(BELOW)).margin_top(0).build_cartesian_2d(self.time.clone(), lanes as f64..0.0)?;
         axes(&mut chart, [TIME, ""], [10, 0])?;
         for (i, Marks { name, colour, times }) in self.marks.iter().enumerate() {
             let lane = i as f64;
-            let tick = |time: &f64| PathElement::new([(*time, lane + 0.18), (*time, lane + 0.82)], stroke(*colour, 1.2));
+            let tick =
+                |time: &f64| PathElement::new([(*time, lane + 0.18), (*time, lane + 0.82)], stroke(*colour, 1.2));
             chart.draw_series(times.iter().map(tick))?;
             let before = Text::new(name.to_owned(), (px(-8.0), 0), words_before(SMALL, *colour));
             chart.draw_series([EmptyElement::at((self.time.start, lane + 0.5)) + before])?;
@@ -176,7 +177,8 @@ impl Histories {
 fn thinned(points: &[(f64, f64)], column: f64) -> Points {
     let of_column = |column: &[(f64, f64)]| {
         let by_value = |a: &&(f64, f64), b: &&(f64, f64)| a.1.total_cmp(&b.1);
-        let extremes = [column.iter().min_by(by_value), column.iter().max_by(by_value)].map(|at| *at.expect("of one point at least"));
+        let extremes = [column.iter().min_by(by_value), column.iter().max_by(by_value)]
+            .map(|at| *at.expect("of one point at least"));
         let mut kept = [column[0], extremes[0], extremes[1], column[column.len() - 1]].to_vec();
         kept.sort_by(|a, b| a.0.total_cmp(&b.0));
         kept.dedup();
@@ -191,7 +193,8 @@ mod tests {
 
     #[test]
     fn thinning_loses_no_peak() {
-        let points: Points = (0..1000).map(|i| (f64::from(i) * 1e-3, (f64::from(i) * 1.7).sin() * f64::from(i % 37))).collect();
+        let points: Points =
+            (0..1000).map(|i| (f64::from(i) * 1e-3, (f64::from(i) * 1.7).sin() * f64::from(i % 37))).collect();
         let thin = thinned(&points, 0.05);
         assert!(thin.len() <= 4 * 21 && thin.is_sorted_by(|a, b| a.0 <= b.0));
         let largest = |points: &[(f64, f64)]| points.iter().fold(0.0, |most: f64, point| most.max(point.1.abs()));

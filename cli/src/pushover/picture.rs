@@ -1,6 +1,5 @@
 //! The picture of a pushover, as Fig 1: force and moment against displacement, all of it and the first part of it.
-use crate::picture::{
-    Area, Picture, SMALL, TITLE, axes, chart, colour, dot, line, px, range, rounded, titled, words};
+use crate::picture::{Area, Picture, SMALL, TITLE, axes, chart, colour, dot, line, px, range, rounded, titled, words};
 use plotters::prelude::*;
 use rocking::{Parameters, Structure, pushover::Equilibrium};
 use std::ops::Range;
@@ -22,7 +21,7 @@ const DISPLACEMENT: &str = "displacement δ_t (mm)";
 
 /// Draws the equilibria of `curve`, branch by branch, and its corners: uplift, the start of rocking, overturning.
 pub fn draw(
-    picture: &Picture,
+    picture: Picture,
     structure: &Structure,
     curve: &[Equilibrium],
     corners: [Equilibrium; 3],

@@ -19,7 +19,7 @@ const PART: f64 = 1e-3;
 const WIDTH: u32 = 860;
 
 /// Runs `run` once more, for its curve, and draws it.
-pub fn draw(picture: &Picture, run: &Run) -> anyhow::Result<()> {
+pub fn draw(picture: Picture, run: &Run) -> anyhow::Result<()> {
     let curve = run.curve(PART)?;
     let first = curve.points.first().context("a run has a start")?;
     let histories = Histories {
