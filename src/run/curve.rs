@@ -1,7 +1,8 @@
 //! A motion as points that straight lines join: what a picture of it is drawn from.
 //!
 //! Nothing is sampled at an interval: each stretch is halved until a bound says that its series leave the line between its
-//! ends by no more than is allowed. Where two points have the same instant there is a transition between them.
+//! ends by no more than is allowed. Where two points have the same instant there is a transition between them,
+//! or the record ends there.
 
 use super::peaks::Peaks;
 use super::{Finish, Run, RunError};
@@ -12,6 +13,9 @@ use crate::{Outputs, Phase, Transition, extremes};
 
 /// How often a stretch of one polynomial is halved at most.
 const HALVINGS: u32 = 30;
+
+/// Part of its peak by which a_g may differ between the end of a piece and the start of the next without a jump.
+const ROUNDING: f64 = 1e-9;
 
 /// The motion at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,7 +50,8 @@ impl Run<'_> {
         let (peaks, _) = self.peaks()?;
         let within = [peaks.theta(), peaks.u(), peaks.a_t()].map(|peak| part * peak.magnitude);
         let exact = [peaks.a_g(), peaks.theta(), peaks.u(), peaks.a_t()].map(|peak| peak.time);
-        let mut tracer = Tracer { within, exact, points: Vec::new(), transitions: Vec::new(), is_torn: true };
+        let pga = peaks.a_g().magnitude;
+        let mut tracer = Tracer { within, exact, pga, points: Vec::new(), transitions: Vec::new(), is_torn: true };
         let finish = self.follow(&mut tracer)?;
         let Tracer { points, transitions, .. } = tracer;
         Ok(Curve { points, transitions, peaks, finish })
@@ -59,6 +64,8 @@ struct Tracer {
     within: [f64; 3],
     /// Instants (s) that are to be points.
     exact: [f64; 4],
+    /// Peak of |a_g|, m/s².
+    pga: f64,
     points: Vec<Point>,
     transitions: Vec<Transition>,
     /// Whether the next piece begins with a point of its own.
@@ -77,7 +84,13 @@ impl Watch for Tracer {
 
     fn piece(&mut self, piece: &mut Piece) {
         let [(_, first), (duration, last)] = piece.ends();
-        if self.is_torn {
+        // after its last sample the ground is at rest at once
+        let a_g = piece.load.at(0.0).a_g;
+        let is_jolted = self.points.last_mut().is_some_and(|last| {
+            last.time = piece.before.time; // by the engine's clock, which rounds otherwise
+            (last.a_g - a_g).abs() > ROUNDING * self.pga
+        });
+        if self.is_torn || is_jolted {
             self.see(piece, 0.0, first);
         }
         loop {
