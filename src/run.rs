@@ -3,6 +3,7 @@
 //! The engine goes from sample to sample, between which the ground acceleration is linear; whoever watches sees every
 //! piece and every transition of it. What is known of a run without a watcher is how it ended.
 
+pub mod curve;
 pub mod exceedances;
 mod history;
 pub mod levels;

@@ -1,6 +1,10 @@
 //! `advise`: every level of detail on the user's own scene, its errors and its cost, and the cheapest that will do.
 
+mod picture;
+
 use crate::{
+    output_files::OutputFiles,
+    picture::PictureFile,
     scene_args::{GroundArgs, InitialArgs},
     structure_args::StructureArgs,
 };
@@ -33,6 +37,9 @@ pub struct AdviseArgs {
     initial: InitialArgs,
     #[command(flatten)]
     allowed: AllowedArgs,
+    /// Draw the errors of every level
+    #[arg(long, value_name = "FILE.svg|png", help_heading = "Results")]
+    picture: Option<PictureFile>,
 }
 
 #[derive(clap::Args)]
@@ -87,6 +94,9 @@ fn relative_error(text: &str) -> Result<f64, String> {
 pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let ground = args.ground.load(structure.parameters().g)?;
+    let inputs = args.structure.input().into_iter().chain(args.ground.record.record.as_deref());
+    let mut files = OutputFiles::of_inputs(inputs);
+    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let (initial, end) = (args.initial.state(), args.ground.end(&ground));
     let run = Run { initial, end, ..Run::new(structure, &ground) };
     let comparison = levels::compare(&run).context("detail = nonlinear")?;
@@ -102,7 +112,10 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
         writeln!(out, "  {:<10} not possible here: {error:#}", detail.name())?;
     }
     print_advice(&mut out, &comparison, advised, &args.allowed)?;
-    Ok(())
+    match picture {
+        Some(picture) => picture::draw(picture, &comparison, (args.allowed.within, &criteria), advised, ground.title()),
+        None => Ok(()),
+    }
 }
 
 fn print_reference(out: &mut impl Write, structure: &Structure, comparison: &Comparison) -> io::Result<()> {
@@ -146,7 +159,7 @@ fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&
         ' ',
         ["level", "theta", "u", "a_t, V_t, M_t", "theta", "u", "a_t", "overturns", "steps", "evaluations", "of auto"],
     )?;
-    let auto = cost_of_auto(comparison);
+    let auto = comparison.cost_of_auto();
     for verdict in &comparison.verdicts {
         let response = &verdict.response;
         let mark = if advised.is_some_and(|advised| advised.response.detail == response.detail) { '>' } else { ' ' };
@@ -169,11 +182,6 @@ fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&
         )?;
     }
     Ok(())
-}
-
-fn cost_of_auto(comparison: &Comparison) -> Option<f64> {
-    let auto = comparison.verdicts.iter().find(|verdict| verdict.response.detail == Detail::Auto);
-    auto.map(|auto| auto.response.cost() as f64)
 }
 
 /// The demand of the whole record without a time history (Eqs 21 to 24) as one more row.
@@ -207,7 +215,7 @@ fn print_advice(
         );
     };
     write!(out, "\nuse detail = {}: of the cheapest levels {limit} the simplest", response.detail.name())?;
-    match cost_of_auto(comparison) {
+    match comparison.cost_of_auto() {
         Some(auto) if response.detail != Detail::Auto => {
             writeln!(out, ", at {:.2} times the cost of auto", response.cost() as f64 / auto)
         }

@@ -18,6 +18,7 @@ mod summary;
 mod sweep;
 mod tables;
 mod talk;
+mod view;
 
 use clap::{Parser, Subcommand};
 use fmu_export::significant;
@@ -53,9 +54,17 @@ enum Command {
     #[command(after_help = "Examples:
   rocking-fmu simulate --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45
   rocking-fmu simulate --parameters pier.toml --record table.csv --unit g --dt 0.001 -o pier.csv
-  rocking-fmu simulate --preset evison --free 2 --theta-0 0.04 --events impacts.csv
+  rocking-fmu simulate --preset evison --free 2 --theta-0 0.04 --events impacts.csv --picture wall.svg
   rocking-fmu simulate --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45 --detail modal")]
     Simulate(simulate::SimulateArgs),
+    /// Write a page that shows the structure in motion, with its histories below
+    ///
+    /// One HTML file for any browser, which needs no network. Lengths are true to scale; how far the motion is
+    /// exaggerated is chosen on the page, and stated.
+    #[command(after_help = "Examples:
+  rocking-fmu view --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45
+  rocking-fmu view --preset evison --free 2 --theta-0 0.04 -o wall.html")]
+    View(view::ViewArgs),
     /// Compare the levels of detail on a ground motion record, or free vibration, and recommend one
     ///
     /// Runs every level and shows its error against `nonlinear` at the tolerance 1e-12, its cost, and which level is
@@ -110,6 +119,7 @@ fn main() -> ExitCode {
     let result = match command {
         Command::Export(args) => export::run(&args),
         Command::Simulate(args) => simulate::run(&args),
+        Command::View(args) => view::run(&args),
         Command::Advise(args) => advise::run(&args),
         Command::Describe(args) => describe::run(&args),
         Command::Estimate(args) => estimate::run(&args),

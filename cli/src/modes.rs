@@ -1,5 +1,7 @@
 //! `modes`: a response split into rocking and vibration mode (Eqs 12, 16, 19).
-use crate::{output_files::OutputFiles, structure_args::StructureArgs, tables::Table};
+mod picture;
+
+use crate::{output_files::OutputFiles, picture::PictureFile, structure_args::StructureArgs, tables::Table};
 use anyhow::Context;
 use rocking::{
     Side, State,
@@ -19,6 +21,9 @@ pub struct ModesArgs {
     /// Modes as CSV, `-` for standard output
     #[arg(short, long, value_name = "FILE.csv", default_value = "modes.csv")]
     output: PathBuf,
+    /// Draw both modes over time
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
 }
 
 /// The columns of a response that the split needs.
@@ -47,18 +52,32 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let named = || args.response.display().to_string();
     let mut response = csv::Reader::from_path(&args.response).with_context(named)?;
     let inputs = args.structure.input().into_iter().chain([args.response.as_path()]);
-    let mut table = Table::create(&mut OutputFiles::of_inputs(inputs), &args.output, &HEADINGS)?;
+    let mut files = OutputFiles::of_inputs(inputs);
+    let mut table = Table::create(&mut files, &args.output, &HEADINGS)?;
+    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
+    let (mut stretches, mut rocks_about) = (Vec::new(), None);
     for instant in response.deserialize() {
         let Instant { time, a_g, theta, u, theta_dot, u_dot, phase } = instant.with_context(named)?;
         let side = match phase.as_str() {
             "rocking left" => Side::Left,
             "rocking right" => Side::Right,
-            _ => continue,
+            _ => {
+                rocks_about = None;
+                continue;
+            }
         };
+        if rocks_about.replace(side) != Some(side) {
+            stretches.push(Vec::new());
+        }
         let state = State { u, u_dot, theta, theta_dot };
-        let Modes { q_r, q_u, .. } = Modes::of(&structure, &state);
+        let modes @ Modes { q_r, q_u, .. } = Modes::of(&structure, &state);
         let accelerations = ModalAccelerations::of(&structure, side, &state, a_g);
         table.write((time, q_r, q_u, accelerations.a_r, accelerations.a_u, accelerations.a_t()))?;
+        stretches.last_mut().context("it has just begun")?.push((time, modes, accelerations));
     }
-    table.finish()
+    table.finish()?;
+    match picture {
+        Some(picture) => picture::draw(picture, structure.parameters().g, &stretches, &named()),
+        None => Ok(()),
+    }
 }

@@ -3,17 +3,16 @@
 
 pub mod histories;
 
+use crate::{
+    output_files::{OutputFile, OutputFiles},
+    talk::say,
+};
 use anyhow::Context;
 use plotters::coord::{Shift, ranged1d::ValueFormatter};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use resvg::{tiny_skia, usvg};
-use std::{
-    fs,
-    path::{Path, PathBuf},
-    str::FromStr,
-    sync::Arc,
-};
+use std::{io::Write, path::PathBuf, str::FromStr, sync::Arc};
 
 /// Colours that all eyes tell apart (Okabe and Ito), and those of what is no data.
 #[allow(missing_docs)] // they are called what they are
@@ -58,58 +57,71 @@ pub fn px(pixels: f64) -> i32 {
 /// What is drawn on.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// The file that a picture goes into.
+/// Where a picture is asked for, and as what.
 #[derive(Clone, Debug)]
-pub struct Picture {
+pub struct PictureFile {
     path: PathBuf,
     is_png: bool,
 }
 
-impl FromStr for Picture {
+impl FromStr for PictureFile {
     type Err = String;
 
-    fn from_str(path: &str) -> Result<Picture, String> {
+    fn from_str(path: &str) -> Result<PictureFile, String> {
         let path = PathBuf::from(path);
         let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
         match extension.as_deref() {
-            Some("svg") => Ok(Picture { path, is_png: false }),
-            Some("png") => Ok(Picture { path, is_png: true }),
+            Some("svg") => Ok(PictureFile { path, is_png: false }),
+            Some("png") => Ok(PictureFile { path, is_png: true }),
             _ => Err("the extension tells what is drawn: .svg or .png is needed".into()),
         }
     }
 }
 
-impl Picture {
+impl PictureFile {
     /// An SVG file.
-    pub fn svg(path: PathBuf) -> Picture {
-        Picture { path, is_png: false }
+    pub fn svg(path: PathBuf) -> PictureFile {
+        PictureFile { path, is_png: false }
     }
 
-    /// Where it is.
-    pub fn path(&self) -> &Path {
-        &self.path
+    /// Begins the file.
+    pub fn create(&self, files: &mut OutputFiles) -> anyhow::Result<Picture> {
+        Ok(Picture { path: self.path.clone(), is_png: self.is_png, file: files.create(&self.path)? })
     }
+}
 
-    /// Writes what `draw` draws on an area of this size, in pixels.
-    pub fn draw(
-        &self,
-        (width, height): (u32, u32),
-        draw: impl FnOnce(&Area) -> anyhow::Result<()>,
-    ) -> anyhow::Result<()> {
-        let (wide, high) = (width * UNITS as u32, height * UNITS as u32);
-        let mut svg = String::new();
-        {
-            let area = SVGBackend::with_string(&mut svg, (wide, high)).into_drawing_area();
-            area.fill(&WHITE)?;
-            draw(&area)?;
-            area.present()?;
-        }
-        // the size to show it at; the view box stays in drawing units
-        let [drawn, shown] = [(wide, high), (width, height)].map(|(x, y)| format!("width=\"{x}\" height=\"{y}\""));
-        let svg = svg.replacen(&drawn, &shown, 1);
-        let content = if self.is_png { rasterized(&svg, (width, height))? } else { svg.into_bytes() };
-        fs::write(&self.path, content).with_context(|| format!("{} cannot be written", self.path.display()))
+/// A picture that is being made.
+pub struct Picture {
+    path: PathBuf,
+    is_png: bool,
+    file: OutputFile,
+}
+
+impl Picture {
+    /// Writes what `draw` draws on an area of `size`, in pixels.
+    pub fn draw(mut self, size: (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<()>) -> anyhow::Result<()> {
+        let svg = svg(size, draw)?;
+        let content = if self.is_png { rasterized(&svg, size)? } else { svg.into_bytes() };
+        OutputFile::named(&self.path, self.file.write_all(&content))?;
+        self.file.finish()?;
+        say!("picture        {}", self.path.display());
+        Ok(())
     }
+}
+
+/// What `draw` draws on an area of this size, in pixels, as SVG.
+pub fn svg((width, height): (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<()>) -> anyhow::Result<String> {
+    let (wide, high) = (width * UNITS as u32, height * UNITS as u32);
+    let mut svg = String::new();
+    {
+        let area = SVGBackend::with_string(&mut svg, (wide, high)).into_drawing_area();
+        area.fill(&WHITE)?;
+        draw(&area)?;
+        area.present()?;
+    }
+    // the size to show it at; the view box stays in drawing units
+    let [drawn, shown] = [(wide, high), (width, height)].map(|(x, y)| format!("width=\"{x}\" height=\"{y}\""));
+    Ok(svg.replacen(&drawn, &shown, 1))
 }
 
 /// `svg` as PNG, with the program's own font for its words.

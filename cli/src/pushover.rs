@@ -1,11 +1,14 @@
 //! `pushover`: lateral force and moment against displacement (Fig 1).
+mod picture;
+
 use crate::{
-    output_files::OutputFiles, significant::significant, structure_args::StructureArgs, tables::Table, talk::say,
+    output_files::OutputFiles, picture::PictureFile, significant::significant, structure_args::StructureArgs,
+    tables::Table, talk::say,
 };
 use anyhow::Context;
 use rocking::{
     Phase, Structure,
-    pushover::{Equilibrium, at_displacement, at_overturning, at_rotation},
+    pushover::{Equilibrium, at_displacement, at_overturning, at_rotation, in_full_contact},
 };
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -21,6 +24,9 @@ pub struct PushoverArgs {
     /// Curve as CSV, `-` for standard output
     #[arg(short, long, value_name = "FILE.csv", default_value = "pushover.csv")]
     output: PathBuf,
+    /// Draw force and moment against displacement
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
 }
 
 const HEADINGS: [&str; 6] = ["phase", "theta[rad]", "u[m]", "delta_t[m]", "P[N]", "M[N.m]"];
@@ -30,26 +36,32 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let too_soft = "the strut is too soft to hold the structure all the way to overturning: raise f_fc or lower m0";
     let end = at_overturning(&structure).context(too_soft)?;
+    let curve: Option<Vec<_>> = displacements(&structure, end.delta_t, args.points)
+        .map(|delta_t| at_displacement(&structure, delta_t))
+        .collect();
+    let curve = curve.context(too_soft)?;
     let mut files = OutputFiles::of_inputs(args.structure.input());
     let mut table = Table::create(&mut files, &args.output, &HEADINGS)?;
-    for delta_t in displacements(&structure, end.delta_t, args.points) {
-        table.write(line(&at_displacement(&structure, delta_t).context(too_soft)?))?;
-    }
+    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
+    curve.iter().try_for_each(|at| table.write(line(at)))?;
     table.finish()?;
     let corners = [
-        ("uplift", at_displacement(&structure, structure.u_cr)),
-        ("start of rocking", at_rotation(&structure, 0.0)),
-        ("overturning", Some(end)),
+        ("uplift", in_full_contact(&structure, structure.u_cr)),
+        ("start of rocking", at_rotation(&structure, 0.0).context(too_soft)?),
+        ("overturning", end),
     ];
     for (name, corner) in corners {
-        let Equilibrium { theta, delta_t, force, moment, .. } = corner.context(too_soft)?;
+        let Equilibrium { theta, delta_t, force, moment, .. } = corner;
         let [theta, delta_t, force, moment] = [theta, 1e3 * delta_t, force, moment].map(significant);
         say!("{name:<16} delta_t {delta_t:>8} mm, theta {theta:>8} rad, P {force:>8} N, M {moment:>8} N.m");
     }
     if args.output != Path::new("-") {
         say!("curve            {}", args.output.display());
     }
-    Ok(())
+    match picture {
+        Some(picture) => picture::draw(picture, &structure, &curve, corners.map(|corner| corner.1)),
+        None => Ok(()),
+    }
 }
 
 /// Displacements (m) evenly on each branch: 0 to u_cr, and from just beyond to `end`.

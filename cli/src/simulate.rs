@@ -1,18 +1,19 @@
 //! `simulate`: the response to a ground motion record, or free vibration, with the same engine as the FMU's.
+mod picture;
+
 use crate::{
     output_files::OutputFiles,
+    picture::PictureFile,
     record_args::positive,
-    scene_args::{GroundArgs, InitialArgs},
+    scene_args::{GroundArgs, InitialArgs, LevelArgs},
     structure_args::StructureArgs,
     summary::Summary,
     tables::{self, Table},
     talk::{self, say},
 };
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fmu_export::significant::significant;
 use rocking::{
-    Detail, Transition,
-    engine::DEFAULT_TOLERANCE,
+    Transition,
     record::Record,
     run::{End, Run},
 };
@@ -28,18 +29,14 @@ pub struct SimulateArgs {
     #[command(flatten)]
     initial: InitialArgs,
     #[command(flatten)]
+    level: LevelArgs,
+    #[command(flatten)]
     results: ResultArgs,
 }
 
 #[derive(clap::Args)]
 #[command(next_help_heading = "Results")]
 struct ResultArgs {
-    /// Level of detail: the equations that move the structure
-    #[arg(long, value_name = "LEVEL", default_value = Detail::default().name(), value_parser = detail_parser())]
-    detail: Detail,
-    /// Relative tolerance
-    #[arg(long, default_value = format!("{DEFAULT_TOLERANCE:e}"), value_parser = tolerance)]
-    tolerance: f64,
     /// Output interval [default: the record's samples; 0.001 in free vibration]
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     dt: Option<f64>,
@@ -49,20 +46,9 @@ struct ResultArgs {
     /// Transitions as CSV: instant, kind, state before and after
     #[arg(long, value_name = "FILE.csv")]
     events: Option<PathBuf>,
-}
-
-fn detail_parser() -> impl TypedValueParser<Value = Detail> {
-    PossibleValuesParser::new(Detail::ALL.map(Detail::name)).map(|name| {
-        let is_named = |detail: &Detail| detail.name() == name;
-        Detail::ALL.into_iter().find(is_named).expect("clap accepts these names alone")
-    })
-}
-
-fn tolerance(text: &str) -> Result<f64, String> {
-    positive(text).and_then(|tolerance| match tolerance {
-        ..1.0 => Ok(tolerance),
-        _ => Err("a number less than 1 is needed, such as 1e-9".into()),
-    })
+    /// Draw ground acceleration, uplift, acceleration and base shear over time, with marks at transitions
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
 }
 
 impl SimulateArgs {
@@ -97,7 +83,7 @@ impl SimulateArgs {
 pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let ground = args.ground.load(structure.parameters().g)?;
-    let ResultArgs { tolerance, detail, .. } = args.results;
+    let LevelArgs { tolerance, detail } = args.level;
     let (initial, end) = (args.initial.state(), args.ground.end(&ground));
     let run = Run { initial, detail, tolerance, end, ..Run::new(structure, &ground) };
 
@@ -107,6 +93,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let mut response = Table::create(&mut files, &output, &tables::RESPONSE)?;
     let events = args.results.events.as_deref();
     let mut events = events.map(|path| Table::create(&mut files, path, &tables::EVENTS)).transpose()?;
+    let picture = args.results.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let progress = talk::progress(ground.times().len());
     let (mut summary, mut written) = (Summary::new(&structure), Ok(()));
     let mut transition = |transition: &Transition| {
@@ -135,5 +122,8 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     if output != Path::new("-") {
         say!("response       {}", output.display());
     }
-    Ok(())
+    match picture {
+        Some(picture) => picture::draw(picture, &run),
+        None => Ok(()),
+    }
 }

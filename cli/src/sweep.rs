@@ -8,11 +8,11 @@ mod table;
 
 use crate::{
     output_files::OutputFiles,
-    picture::Picture,
+    picture::PictureFile,
     significant::significant,
     talk::{self, say},
 };
-use anyhow::{bail, ensure};
+use anyhow::{Context, bail};
 use file::Sweep;
 use indicatif::ProgressStyle;
 use rayon::{ThreadPoolBuilder, prelude::*};
@@ -27,10 +27,13 @@ pub struct SweepArgs {
     /// Records, scale factors, structures and limits
     #[arg(value_name = "FILE.toml")]
     file: PathBuf,
-    /// Rows as CSV; a file that holds some of this sweep's is completed. The picture goes beside it, as SVG
-    /// [default: the TOML file's name and .csv, in this folder]
+    /// Rows as CSV; a file that holds some of this sweep's is completed [default: the TOML file's name and .csv, in this
+    /// folder]
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
+    /// Picture of the probabilities and fragility curves [default: beside the rows, as SVG]
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
     /// Runs at a time [default: one per core]
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
@@ -44,9 +47,9 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
         Some(path) => path.clone(),
         None => PathBuf::from(args.file.file_stem().unwrap_or_default()).with_extension("csv"),
     };
-    let picture = output.with_extension("svg");
-    ensure!(picture != output, "{} is where the picture goes: name the rows otherwise, as .csv say", output.display());
+    let picture = args.picture.clone().unwrap_or(PictureFile::svg(output.with_extension("svg")));
     files.reserve_rows(&output)?;
+    let picture = picture.create(&mut files).context("picture of the sweep")?;
     let keys = rows::keys(&plan);
     let (rows, found) = Rows::open(&output, &keys)?;
     let mut outcomes = found.outcomes;
@@ -82,8 +85,8 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let populations = exceedances::count(&plan, measure, &limits, &outcomes);
     let mut out = stdout().lock();
     populations.iter().try_for_each(|population| table::print(&mut out, population, measure))?;
-    picture::draw(&Picture::svg(picture.clone()), &populations, measure)?;
-    say!("rows {}, picture {}", output.display(), picture.display());
+    say!("rows           {}", output.display());
+    picture::draw(picture, &populations, measure)?;
     report_failures(&plan, &keys, &outcomes)
 }
 

@@ -380,7 +380,9 @@ fn rows_and_picture_are_two_files() {
     let folder = sweep(SWEEP);
     let (code, message) = fail(folder.path(), "sweep sweep.toml -o z.svg");
     assert_eq!(code, 1);
-    assert!(message.starts_with("error: z.svg is where the picture goes: name the rows otherwise"), "{message}");
+    let expected =
+        "error: picture of the sweep: z.svg and z.svg are the same file, and both would be written: name two\n";
+    assert_eq!(message, expected);
     assert!(!folder.path().join("z.svg").exists());
 }
 

@@ -35,7 +35,7 @@ const COLORS: [RGBColor; 7] =
 type Plot<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// Draws `populations`, their intensities in `measure`.
-pub fn draw(picture: &Picture, populations: &[Exceedances], measure: IntensityMeasure) -> anyhow::Result<()> {
+pub fn draw(picture: Picture, populations: &[Exceedances], measure: IntensityMeasure) -> anyhow::Result<()> {
     let all = || populations.iter().flat_map(|of| of.fragilities.iter().map(move |fragility| (of, fragility)));
     let legend = 2.0 * LEGEND_MARGIN + LEGEND_LINE * (all().count() + 3) as f64;
     let runs = || populations.iter().flat_map(|of| &of.bins).map(|bin| bin.runs);
