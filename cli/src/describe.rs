@@ -1,8 +1,11 @@
 //! `describe`: a structure's parameters and what follows from them.
 
+mod picture;
 mod template;
 
 use crate::{
+    output_files::OutputFiles,
+    picture::PictureFile,
     quantities::{Line, print_csv},
     significant::significant,
     structure_args::StructureArgs,
@@ -25,11 +28,17 @@ pub struct DescribeArgs {
     /// Print a commented file for --parameters instead: every parameter of this structure, with unit and range
     #[arg(long, conflicts_with = "csv")]
     template: bool,
+    /// Draw the structure to scale
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
 }
 
 /// Prints the parameters as they were given and the derived quantities with the equations that define them.
 pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
+    if let Some(file) = &args.picture {
+        picture::draw(file.create(&mut OutputFiles::of_inputs(args.structure.input()))?, &structure)?;
+    }
     if args.csv {
         return print_csv(DERIVED.iter().map(|derived| {
             let Derived { name, unit, description, equation, value } = derived;
