@@ -79,9 +79,13 @@ fn draw_curve(
     let intensities = || (1..=POINTS_OF_A_CURVE).map(at);
     let band: Vec<_> = intensities().filter_map(|x| Some((x, curve.band(x)?))).collect();
     if !band.is_empty() {
-        let lower = band.iter().map(|(x, (low, _))| (*x, *low));
-        let upper = band.iter().rev().map(|(x, (_, high))| (*x, *high));
-        plot.draw_series([Polygon::new(lower.chain(upper).collect::<Vec<_>>(), colour.mix(0.16))])?;
+        let lower: Vec<_> = band.iter().map(|(x, (low, _))| (*x, *low)).collect();
+        let upper: Vec<_> = band.iter().map(|(x, (_, high))| (*x, *high)).collect();
+        let around = lower.iter().chain(upper.iter().rev()).copied().collect::<Vec<_>>();
+        plot.draw_series([Polygon::new(around, colour.mix(0.1))])?;
+        plot.draw_series(
+            [lower, upper].map(|edge| PathElement::new(edge, colour.mix(0.5).stroke_width(px(0.6) as u32))),
+        )?;
     }
     let points =
         || [0.0].into_iter().chain(intensities()).map(|x| (x, if x > 0.0 { curve.probability(x) } else { 0.0 }));
