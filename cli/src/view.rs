@@ -99,8 +99,8 @@ struct Scene<'a> {
     a_t: Column,
     /// Index of the first point of each phase, and the phase.
     phases: Vec<(usize, &'static str)>,
-    /// Instant (s) and kind.
-    transitions: Vec<(f64, &'static str)>,
+    /// Quanta of time from the start, and the kind.
+    transitions: Vec<(i64, &'static str)>,
     /// By name: magnitude in SI units, instant (s).
     peaks: Vec<(&'static str, f64, f64)>,
 }
@@ -121,10 +121,15 @@ impl Column {
 
     /// Of the time since `start` (s).
     fn of_time(curve: &Curve, start: f64) -> Column {
-        let instants = curve.points.iter().map(|at| ((at.time - start) / QUANTUM_OF_TIME).round() as i64);
+        let instants = curve.points.iter().map(|at| quanta(at.time - start));
         let differences = instants.scan(0, |before, instant| Some(instant - std::mem::replace(before, instant)));
         Column { quantum: QUANTUM_OF_TIME, values: differences.collect() }
     }
+}
+
+/// A length of time, s.
+fn quanta(duration: f64) -> i64 {
+    (duration / QUANTUM_OF_TIME).round() as i64
 }
 
 impl<'a> Scene<'a> {
@@ -147,7 +152,7 @@ impl<'a> Scene<'a> {
             u: column(peaks.u(), |outputs| outputs.u),
             a_t: column(peaks.a_t(), |outputs| outputs.a_t),
             phases,
-            transitions: curve.transitions.iter().map(|at| (at.time, at.kind.name())).collect(),
+            transitions: curve.transitions.iter().map(|at| (quanta(at.time - start), at.kind.name())).collect(),
             peaks: all_peaks.map(|(name, peak)| (name, peak.magnitude, peak.time)).collect(),
         })
     }

@@ -13,6 +13,7 @@
     return Float64Array.from(data.time.values, (difference) => start + (sum += difference) * data.time.quantum);
   })();
   const motion = { a_g: column(data.a_g), theta: column(data.theta), u: column(data.u), a_t: column(data.a_t) };
+  const transitions = data.transitions.map(([sum, kind]) => ({ instant: start + sum * data.time.quantum, kind }));
   const peaks = Object.fromEntries(data.peaks.map(([name, magnitude, instant]) => [name, { magnitude, instant }]));
 
   /** How many of the rising numbers are at most `value`. */
@@ -230,7 +231,7 @@
     { name: "overturning", colour: "--purple", is: (kind) => kind.startsWith("overturning") },
   ];
   const lanes = kinds
-    .map((kind) => ({ ...kind, times: data.transitions.filter((each) => kind.is(each[1])).map((each) => each[0]) }))
+    .map((kind) => ({ ...kind, times: transitions.filter((each) => kind.is(each.kind)).map((each) => each.instant) }))
     .filter((lane) => lane.times.length > 0);
 
   let shown = [start, end]; // the time that the histories show
@@ -394,7 +395,7 @@
   }
 
   function toTransition(step) {
-    const instants = data.transitions.map(([instant]) => instant);
+    const instants = transitions.map(({ instant }) => instant);
     const found = step > 0 ? instants.find((instant) => instant > t + 1e-9) : instants.findLast((instant) => instant < t - 1e-9);
     moveTo(found ?? (step > 0 ? end : start));
   }
@@ -498,7 +499,7 @@
 
   document.title = `${data.title}: rocking structure`;
   at("title").textContent = data.title;
-  const count = data.transitions.length;
+  const count = transitions.length;
   at("about").textContent =
     `masses ${significant(m)} and ${significant(m0)} kg, H = ${significant(H)} m, 2B = ${significant(2 * B)} m, ` +
     `${significant(f_fc)} Hz in full contact; ${count} transition${count === 1 ? "" : "s"}` +
