@@ -48,6 +48,8 @@
   };
   const significant = (value, digits = 3) => minus(String(Number(value.toPrecision(digits))));
 
+  const mass = (kilograms) => (kilograms < 1e4 ? `${significant(kilograms)} kg` : `${significant(kilograms / 1e3)} t`);
+
   /** How many decimals show `magnitude` with four digits. */
   const decimalsFor = (magnitude) =>
     magnitude > 0 ? Math.max(0, Math.min(8, 3 - Math.floor(Math.log10(magnitude)))) : 3;
@@ -501,7 +503,7 @@
   at("title").textContent = data.title;
   const count = transitions.length;
   at("about").textContent =
-    `masses ${significant(m)} and ${significant(m0)} kg, H = ${significant(H)} m, 2B = ${significant(2 * B)} m, ` +
+    `masses ${mass(m)} and ${mass(m0)}, H = ${significant(H)} m, 2B = ${significant(2 * B)} m, ` +
     `${significant(f_fc)} Hz in full contact; ${count} transition${count === 1 ? "" : "s"}` +
     { "at rest": ", at rest in the end", overturned: ", overturned", "still rocking": ", still rocking in the end", "at time": "" }[data.ending];
   chooseSpeed(1);
