@@ -252,7 +252,7 @@ pub fn rounded(value: f64) -> String {
 /// The least and the largest of `values` with room beyond them: about 0 where there are both signs, from 0 on where there
 /// is one.
 pub fn range(values: impl IntoIterator<Item = f64>) -> Range<f64> {
-    const ROOM: f64 = 1.22;
+    const ROOM: f64 = 1.3;
     let (least, most) =
         values.into_iter().fold((0.0, 0.0), |(least, most): (f64, f64), value| (least.min(value), most.max(value)));
     let largest = ROOM * most.max(-least);
@@ -283,8 +283,8 @@ mod tests {
 
     #[test]
     fn a_range_has_room_and_one_that_is_empty_is_drawn() {
-        assert_eq!(range([0.0, 2.0]), 0.0..2.44);
-        assert_eq!(range([1.0, -2.0]), -2.44..2.44);
+        assert_eq!(range([0.0, 2.0]), 0.0..2.6);
+        assert_eq!(range([1.0, -2.0]), -2.6..2.6);
         assert_eq!(range([]), -1.0..1.0);
     }
 }
