@@ -68,10 +68,8 @@ pub(crate) fn crude_bounds(structure: &Structure, phase: Phase, push: f64, [thet
 /// Bounds of |θ|, |u| and |u̇| over `arc`, which ends in `end`.
 #[inline]
 pub(crate) fn crude_bounds_of_state(arc: &Arc, end: &State) -> [f64; 3] {
-    let series = [&arc.theta, &arc.u, &arc.u_dot].map(|series| arc.used(series));
-    let off = extremes::off_chord(series, arc.reach);
-    let ends = [end.theta, end.u, end.u_dot];
-    std::array::from_fn(|i| series[i][0].abs().max(ends[i].abs()) + off[i])
+    [(&arc.theta, end.theta), (&arc.u, end.u), (&arc.u_dot, end.u_dot)]
+        .map(|(series, end)| series[0].abs().max(end.abs()) + extremes::off_chord(arc.used(series), arc.reach))
 }
 
 /// Bounds of |θ|, |u|, |δ_t| and |a_t| over `arc` under `load`: of what is linear in θ and u, and of the rest.

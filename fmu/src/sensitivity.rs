@@ -40,7 +40,9 @@ pub(crate) fn sensitivities(
         known.source.set(&mut setup, value);
         let model = Model::new(&setup, ground.clone())?;
         let shown = Shown::new(&model, &setup, model.load(&setup, inputs).value);
-        Ok::<Vec<_>, Failure>(unknowns.iter().map(|variable| shown.value(variable.source).unwrap_or_default()).collect())
+        Ok::<Vec<_>, Failure>(
+            unknowns.iter().map(|variable| shown.value(variable.source).unwrap_or_default()).collect(),
+        )
     };
     if !unknowns.iter().any(|variable| depends(variable)) {
         return Ok(vec![0.0; unknowns.len()]);

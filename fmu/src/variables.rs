@@ -372,7 +372,12 @@ fn switches() -> [Variable; 2] {
                        last two communication points, and is not held";
     [
         parameter("extrapolate", extrapolate, DataType::Boolean, Source::Switch(&EXTRAPOLATE)),
-        parameter("peaks", "whether the largest magnitudes theta_max, u_max, ... are watched for", DataType::Boolean, Source::Switch(&PEAKS)),
+        parameter(
+            "peaks",
+            "whether the largest magnitudes theta_max, u_max, ... are watched for",
+            DataType::Boolean,
+            Source::Switch(&PEAKS),
+        ),
     ]
 }
 
