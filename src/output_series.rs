@@ -58,10 +58,10 @@ pub(crate) fn a_t(structure: &Structure, phase: Phase, load: LinearLoad, arc: &A
     })
 }
 
-/// Bounds of |θ|, |u|, |δ_t| and |a_t| that follow from those of |θ|, |u| and |u̇|; `push` is that of |F_t|/m.
-pub(crate) fn crude_bounds(structure: &Structure, phase: Phase, push: f64, [theta, u, u_dot]: [f64; 3]) -> [f64; 4] {
+/// Bounds of |θ|, |u|, |δ_t| and |a_t| that follow from those of |θ|, |u| and |u̇|; `F_t` is that of |F_t|.
+pub(crate) fn crude_bounds(structure: &Structure, phase: Phase, F_t: f64, [theta, u, u_dot]: [f64; 3]) -> [f64; 4] {
     let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
-    let a_t = g * theta + damping(structure, phase) / m * u_dot + structure.stiffness * u + push;
+    let a_t = g * theta + structure.stiffness * u + (damping(structure, phase) * u_dot + F_t) / m;
     [theta, u, u + H * theta + B * theta * theta / 2.0, a_t]
 }
 

@@ -297,14 +297,14 @@ impl Piece<'_> {
                 bound(rates.u_dot, start.state.u_dot, end.u_dot, rates.u_dddot),
             ]
         };
-        let crude = self.level.crude_output_bounds(self.structure, self.before.phase, self.most_push(), of_state);
+        let crude = self.level.crude_output_bounds(self.structure, self.before.phase, self.most_force(), of_state);
         if crude[Measure::At as usize] < f64::INFINITY { crude } else { self.bounds().map(|bound| bound.largest()) }
     }
 
-    /// The largest |F_t|/m in the part in hand, m/s².
-    fn most_push(&self) -> f64 {
+    /// The largest |F_t| in the part in hand, N.
+    fn most_force(&self) -> f64 {
         let [first, last] = [self.part.start.0, self.part.end.0].map(|tau| self.load.at(tau).F_t.abs());
-        first.max(last) / self.structure.parameters().m
+        first.max(last)
     }
 
     /// What changes no faster than its second derivative leaves its chord by no more than that over 8/h², and does not turn
@@ -316,14 +316,14 @@ impl Piece<'_> {
         let &crate::Parameters { m, H, B, g, .. } = self.structure.parameters();
         let (stiffness, damping) = (self.structure.stiffness, outputs::damping(self.structure, phase) / m);
         let loads = [self.part.start.0, self.part.end.0].map(|tau| self.load.at(tau));
-        let push = self.most_push();
+        let force = self.most_force();
         let turn = theta_dot * theta_dot + theta * theta_ddot; // bounds |θ̈ sin θ + θ̇² cos θ|
         let sway = theta_ddot + theta * theta_dot * theta_dot; // and |θ̈ cos θ − θ̇² sin θ|
         let delta_t_bend = u_ddot + 2.0 * u_dot * theta_dot * theta + (B + u) * turn + H * sway;
-        let push_bend = push * turn + 2.0 * self.load.slope.F_t.abs() / m * theta_dot * theta;
+        let push_bend = (force * turn + 2.0 * self.load.slope.F_t.abs() * theta_dot * theta) / m;
         let a_t_bend = g * sway + damping * u_dddot + stiffness * u_ddot + push_bend;
         let bends = [theta_ddot, u_ddot, delta_t_bend, a_t_bend];
-        let within = self.level.crude_output_bounds(self.structure, phase, push, [theta, u, u_dot]);
+        let within = self.level.crude_output_bounds(self.structure, phase, force, [theta, u, u_dot]);
 
         let [first, last] = [(&step.state, loads[0]), (end, loads[1])]
             .map(|(state, load)| self.level.outputs(self.structure, phase, state, load));

@@ -13,7 +13,7 @@ use rocking::{
     Detail, Transition,
     engine::DEFAULT_TOLERANCE,
     record::Record,
-    run::{End, Run},
+    run::{End, Run, peaks::Peaks},
 };
 use std::path::{Path, PathBuf};
 
@@ -104,7 +104,8 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let mut response = Table::create(&output, &tables::RESPONSE)?;
     let mut events = args.results.events.as_deref().map(|path| Table::create(path, &tables::EVENTS)).transpose()?;
     let progress = ProgressBar::new(ground.times().len() as u64);
-    let (mut summary, mut written) = (Summary::new(&structure), Ok(()));
+    let (mut peaks, mut summary, mut written) =
+        (Peaks::since(ground.start(), &structure), Summary::new(&structure), Ok(()));
     let mut transition = |transition: &Transition| {
         if let (Some(events), Ok(())) = (&mut events, &written) {
             written = events.write(tables::event_line(transition));
@@ -119,7 +120,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
                 rows = response.write(tables::response_line(sample));
             }
         },
-        &mut (&mut summary, &mut transition),
+        &mut (&mut peaks.watch(), &mut (&mut summary, &mut transition)),
     );
     progress.finish_and_clear();
     let finish = finish?;
@@ -127,7 +128,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     response.finish()?;
     events.map_or(Ok(()), Table::finish)?;
     eprintln!("{}, {} to {} s", ground.title(), significant(ground.start()), significant(finish.motion.time));
-    summary.print(&finish);
+    summary.print(&peaks, &finish);
     if output != Path::new("-") {
         eprintln!("response       {}", output.display());
     }
