@@ -105,7 +105,7 @@ impl Picture {
 }
 
 /// What `draw` draws on an area of this size, in pixels, as SVG.
-pub fn svg((width, height): (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<()>) -> anyhow::Result<String> {
+fn svg((width, height): (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<()>) -> anyhow::Result<String> {
     let (wide, high) = (width * UNITS as u32, height * UNITS as u32);
     let mut svg = String::new();
     {
