@@ -46,13 +46,14 @@
     const text = value.toFixed(decimals);
     return minus(Number(text) === 0 ? text.replace("-", "") : text);
   };
-  const significant = (value, digits = 3) => minus(String(Number(value.toPrecision(digits))));
+  const significant = (value) => minus(String(Number(value.toPrecision(3))));
 
   const mass = (kilograms) => (kilograms < 1e4 ? `${significant(kilograms)} kg` : `${significant(kilograms / 1e3)} t`);
 
-  /** How many decimals show `magnitude` with four digits. */
+  /** How many decimals show `magnitude` with as many digits as the motion is exact to. */
+  const digits = -Math.round(Math.log10(data.part));
   const decimalsFor = (magnitude) =>
-    magnitude > 0 ? Math.max(0, Math.min(8, 3 - Math.floor(Math.log10(magnitude)))) : 3;
+    magnitude > 0 ? Math.max(0, Math.min(8, digits - 1 - Math.floor(Math.log10(magnitude)))) : digits - 1;
 
   /** [1, 2 or 5 times a power of ten] not below `step`. */
   function nice(step) {
