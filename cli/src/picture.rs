@@ -12,9 +12,9 @@ use plotters::coord::{Shift, ranged1d::ValueFormatter};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use resvg::{tiny_skia, usvg};
-use std::{io::Write, path::PathBuf, str::FromStr, sync::Arc};
+use std::{io::Write, ops::Range, path::PathBuf, str::FromStr, sync::Arc};
 
-/// Colours that all eyes tell apart (Okabe and Ito), and those of what is no data.
+/// Colours that all eyes tell apart (Okabe and Ito, their purple darker), and those of what is no data.
 #[allow(missing_docs)] // they are called what they are
 pub mod colour {
     use plotters::style::RGBColor;
@@ -22,7 +22,7 @@ pub mod colour {
     pub const BLUE: RGBColor = RGBColor(0, 114, 178);
     pub const VERMILLION: RGBColor = RGBColor(213, 94, 0);
     pub const GREEN: RGBColor = RGBColor(0, 158, 115);
-    pub const PURPLE: RGBColor = RGBColor(204, 121, 167);
+    pub const PURPLE: RGBColor = RGBColor(168, 72, 127);
     pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
     pub const SKY: RGBColor = RGBColor(86, 180, 233);
     pub const INK: RGBColor = RGBColor(34, 34, 34);
@@ -110,7 +110,7 @@ impl Picture {
 }
 
 /// What `draw` draws on an area of this size, in pixels, as SVG.
-pub fn svg((width, height): (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<()>) -> anyhow::Result<String> {
+fn svg((width, height): (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<()>) -> anyhow::Result<String> {
     let (wide, high) = (width * UNITS as u32, height * UNITS as u32);
     let mut svg = String::new();
     {
@@ -212,7 +212,8 @@ where
     X: Ranged<ValueType = f64> + ValueFormatter<f64>,
     Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
 {
-    let x_number = |x: &f64| if names[0].is_empty() { String::new() } else { number(*x) };
+    let (across, up) = (chart.as_coord_spec().get_x_range(), chart.as_coord_spec().get_y_range());
+    let x_number = |x: &f64| if names[0].is_empty() { String::new() } else { number(*x, &across) };
     chart
         .configure_mesh()
         .bold_line_style(stroke(colour::RULE, 1.0))
@@ -222,7 +223,7 @@ where
         .x_labels(numbers[0])
         .y_labels(numbers[1])
         .x_label_formatter(&x_number)
-        .y_label_formatter(&|y| number(*y))
+        .y_label_formatter(&|y| number(*y, &up))
         .label_style(words(SMALL, colour::INK))
         .axis_desc_style(words(TEXT, colour::INK))
         .x_desc(names[0])
@@ -231,26 +232,32 @@ where
     Ok(())
 }
 
-/// A number beside an axis.
-fn number(value: f64) -> String {
-    let size = value.abs();
-    if size != 0.0 && !(1e-4..1e6).contains(&size) {
-        return format!("{value:e}").replace('-', "−");
+/// A number beside an axis that has this range: what rounding has left of a round number is no part of it.
+fn number(value: f64, range: &Range<f64>) -> String {
+    if value.abs() < 1e-9 * (range.end - range.start).abs() {
+        return "0".into();
     }
-    // what rounding has left of a round number is no part of it
-    format!("{}", (value * 1e9).round() / 1e9).replace('-', "−")
+    let value: f64 = format!("{value:.8e}").parse().expect("a number in Rust's own notation");
+    let size = value.abs();
+    let text = if (1e-4..1e6).contains(&size) { format!("{value}") } else { format!("{value:e}") };
+    text.replace('-', "−")
+}
+
+/// A mass in kg or t.
+pub fn mass(kilograms: f64) -> String {
+    if kilograms < 1e4 { format!("{} kg", rounded(kilograms)) } else { format!("{} t", rounded(1e-3 * kilograms)) }
 }
 
 /// A number in a picture: three digits.
 pub fn rounded(value: f64) -> String {
-    let decimals = (2.0 - value.abs().log10().floor()).clamp(0.0, 6.0);
+    let decimals = if value == 0.0 { 0.0 } else { (2.0 - value.abs().log10().floor()).clamp(0.0, 6.0) };
     format!("{value:.*}", decimals as usize).replace('-', "−")
 }
 
 /// The least and the largest of `values` with room beyond them: about 0 where there are both signs, from 0 on where there
 /// is one.
-pub fn range(values: impl IntoIterator<Item = f64>) -> std::ops::Range<f64> {
-    const ROOM: f64 = 1.22;
+pub fn range(values: impl IntoIterator<Item = f64>) -> Range<f64> {
+    const ROOM: f64 = 1.3;
     let (least, most) =
         values.into_iter().fold((0.0, 0.0), |(least, most): (f64, f64), value| (least.min(value), most.max(value)));
     let largest = ROOM * most.max(-least);
@@ -258,5 +265,31 @@ pub fn range(values: impl IntoIterator<Item = f64>) -> std::ops::Range<f64> {
         (false, false) => -1.0..1.0,
         (false, true) => 0.0..largest,
         (true, _) => -largest..largest,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_beside_an_axis_are_round() {
+        let shown = [-0.4, 5.551115123125783e-17, 0.2, 0.30000000000000004, 1.2000000000000002]
+            .map(|value| number(value, &(-0.5..0.5)));
+        assert_eq!(shown, ["−0.4", "0", "0.2", "0.3", "1.2"]);
+        assert_eq!([2e-5, 4e7, 200_000.0].map(|value| number(value, &(0.0..1e-4))), ["2e−5", "4e7", "200000"]);
+    }
+
+    #[test]
+    fn three_digits_at_least() {
+        assert_eq!([0.0, 0.538228, -12.345, 6129.47, 7.5e-5].map(rounded), ["0", "0.538", "−12.3", "6129", "0.000075"]);
+        assert_eq!([130.1, 2.4e6].map(mass), ["130 kg", "2400 t"]);
+    }
+
+    #[test]
+    fn a_range_has_room_and_one_that_is_empty_is_drawn() {
+        assert_eq!(range([0.0, 2.0]), 0.0..2.6);
+        assert_eq!(range([1.0, -2.0]), -2.6..2.6);
+        assert_eq!(range([]), -1.0..1.0);
     }
 }

@@ -15,7 +15,7 @@ use fmu_export::significant::significant;
 use rocking::{
     Transition,
     record::Record,
-    run::{End, Run},
+    run::{End, Run, peaks::Peaks},
 };
 use std::path::{Path, PathBuf};
 
@@ -95,7 +95,8 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let mut events = events.map(|path| Table::create(&mut files, path, &tables::EVENTS)).transpose()?;
     let picture = args.results.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let progress = talk::progress(ground.times().len());
-    let (mut summary, mut written) = (Summary::new(&structure), Ok(()));
+    let (mut peaks, mut summary, mut written) =
+        (Peaks::since(ground.start(), &structure), Summary::new(&structure), Ok(()));
     let mut transition = |transition: &Transition| {
         if let (Some(events), Ok(())) = (&mut events, &written) {
             written = events.write(tables::event_line(transition));
@@ -110,7 +111,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
                 rows = response.write(tables::response_line(sample));
             }
         },
-        &mut (&mut summary, &mut transition),
+        &mut (&mut peaks.watch(), &mut (&mut summary, &mut transition)),
     );
     progress.finish_and_clear();
     let finish = finish?;
@@ -118,7 +119,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     response.finish()?;
     events.map_or(Ok(()), Table::finish)?;
     say!("{}, {} to {} s", ground.title(), significant(ground.start()), significant(finish.motion.time));
-    summary.print(&finish);
+    summary.print(&peaks, &finish);
     if output != Path::new("-") {
         say!("response       {}", output.display());
     }

@@ -10,7 +10,7 @@ use rocking::{
     Outputs, Run, Structure,
     record::Record,
     run::{
-        Ending,
+        Ending, RunError,
         curve::{Curve, Point},
         peaks::{PEAKS, Peak},
     },
@@ -37,8 +37,12 @@ pub struct ViewArgs {
     output: Option<PathBuf>,
 }
 
-/// Part of a peak by which what is shown may miss the motion: a unit of the last digit of its numbers.
-const PART: f64 = 1e-4;
+/// Parts of a peak by which what is shown may miss the motion: units of the last digit of its numbers. The first is taken
+/// that needs no more than [`MOST_POINTS`].
+const PARTS: [f64; 3] = [1e-4, 1e-3, 1e-2];
+
+/// About 4 MB.
+const MOST_POINTS: usize = 150_000;
 
 /// Part of a peak that a value on the page is rounded to, and the same of time, s.
 const QUANTUM: f64 = 1e-5;
@@ -54,14 +58,26 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
     let path = args.output_path();
     let inputs = args.structure.input().into_iter().chain(args.ground.record.record.as_deref());
     let mut file = OutputFiles::of_inputs(inputs).create(&path)?;
-    let curve = run.curve(PART)?;
-    let page = page(&Scene::new(&structure, &ground, &curve).context("a run has a start")?)?;
+    let (part, curve) = curve(&run)?;
+    let page = page(&Scene::new(&structure, &ground, part, &curve).context("a run has a start")?)?;
     OutputFile::named(&path, file.write_all(page.as_bytes()))?;
     file.finish()?;
     if path != Path::new("-") {
         say!("view           {}", path.display());
     }
     Ok(())
+}
+
+/// The run as a curve, and how exact it is.
+fn curve(run: &Run) -> Result<(f64, Curve), RunError> {
+    let [finest, coarser @ ..] = PARTS;
+    let mut found = (finest, run.curve(finest)?);
+    for part in coarser {
+        if found.1.points.len() > MOST_POINTS {
+            found = (part, run.curve(part)?);
+        }
+    }
+    Ok(found)
 }
 
 impl ViewArgs {
@@ -92,6 +108,7 @@ struct Scene<'a> {
     start: f64,
     end: f64,
     ending: Ending,
+    part: f64,
     time: Column,
     a_g: Column,
     theta: Column,
@@ -99,8 +116,8 @@ struct Scene<'a> {
     a_t: Column,
     /// Index of the first point of each phase, and the phase.
     phases: Vec<(usize, &'static str)>,
-    /// Instant (s) and kind.
-    transitions: Vec<(f64, &'static str)>,
+    /// Quanta of time from the start, and the kind.
+    transitions: Vec<(i64, &'static str)>,
     /// By name: magnitude in SI units, instant (s).
     peaks: Vec<(&'static str, f64, f64)>,
 }
@@ -121,14 +138,19 @@ impl Column {
 
     /// Of the time since `start` (s).
     fn of_time(curve: &Curve, start: f64) -> Column {
-        let instants = curve.points.iter().map(|at| ((at.time - start) / QUANTUM_OF_TIME).round() as i64);
+        let instants = curve.points.iter().map(|at| quanta(at.time - start));
         let differences = instants.scan(0, |before, instant| Some(instant - std::mem::replace(before, instant)));
         Column { quantum: QUANTUM_OF_TIME, values: differences.collect() }
     }
 }
 
+/// A length of time, s.
+fn quanta(duration: f64) -> i64 {
+    (duration / QUANTUM_OF_TIME).round() as i64
+}
+
 impl<'a> Scene<'a> {
-    fn new(structure: &'a Structure, ground: &'a Record, curve: &Curve) -> Option<Scene<'a>> {
+    fn new(structure: &'a Structure, ground: &'a Record, part: f64, curve: &Curve) -> Option<Scene<'a>> {
         let (start, peaks) = (curve.points.first()?.time, &curve.peaks);
         let column = |peak, value: fn(&Outputs) -> f64| Column::new(curve, peak, move |at| value(&at.outputs));
         let mut phases: Vec<_> = curve.points.iter().map(|at| at.phase.name()).enumerate().collect();
@@ -141,13 +163,14 @@ impl<'a> Scene<'a> {
             start,
             end: curve.finish.motion.time,
             ending: curve.finish.ending,
+            part,
             time: Column::of_time(curve, start),
             a_g: Column::new(curve, peaks.a_g(), |at| at.a_g),
             theta: column(peaks.theta(), |outputs| outputs.theta),
             u: column(peaks.u(), |outputs| outputs.u),
             a_t: column(peaks.a_t(), |outputs| outputs.a_t),
             phases,
-            transitions: curve.transitions.iter().map(|at| (at.time, at.kind.name())).collect(),
+            transitions: curve.transitions.iter().map(|at| (quanta(at.time - start), at.kind.name())).collect(),
             peaks: all_peaks.map(|(name, peak)| (name, peak.magnitude, peak.time)).collect(),
         })
     }

@@ -118,7 +118,7 @@ impl Model {
             return self.follow(setup, step, inputs, watch);
         }
         let mut peaks = self.peaks;
-        let progress = self.follow(setup, step, inputs, &mut (&mut peaks, watch))?;
+        let progress = self.follow(setup, step, inputs, &mut (&mut peaks.watch(), watch))?;
         self.peaks = peaks;
         Ok(progress)
     }

@@ -8,8 +8,7 @@ use super::peaks::Peaks;
 use super::{Finish, Run, RunError};
 use crate::outputs::Measure;
 use crate::piece::{Piece, Watch};
-use crate::taylor::{self, Series};
-use crate::{Outputs, Phase, Transition, extremes};
+use crate::{Outputs, Phase, Transition, extremes, taylor};
 
 /// How often a stretch of one polynomial is halved at most.
 const HALVINGS: u32 = 30;
@@ -130,15 +129,14 @@ impl Watch for Tracer {
 /// Shows, in their order, the σ between `from` and `to` at which the polynomials have to be known so that they leave the
 /// lines between them by no more than `within`.
 fn halve(coefficients: [&[f64]; 3], within: [f64; 3], [from, to]: [f64; 2], halvings: u32, show: &mut impl FnMut(f64)) {
-    let order = coefficients[0].len() - 1;
-    let over = coefficients.map(|coefficients| {
-        let mut series: Series = taylor::ZERO;
-        series[..=order].copy_from_slice(coefficients);
-        taylor::stretch(&mut series[..=order], from, to - from);
-        series
-    });
-    let off = extremes::off_chord(over.each_ref().map(|series| &series[..=order]), 1.0);
-    if halvings == 0 || off.iter().zip(within).all(|(off, within)| *off <= within) {
+    let is_within = |(coefficients, within): (&[f64], f64)| {
+        let mut series = taylor::ZERO;
+        let over = &mut series[..coefficients.len()];
+        over.copy_from_slice(coefficients);
+        taylor::stretch(over, from, to - from);
+        extremes::off_chord(over, 1.0) <= within
+    };
+    if halvings == 0 || coefficients.into_iter().zip(within).all(is_within) {
         return;
     }
     let middle = 0.5 * (from + to);

@@ -91,16 +91,20 @@ fn draw_demand(area: &Area, structure: &Structure, record: Option<&Record>, dema
         ("impact", demand.impact / g, colour::ORANGE),
     ];
     let a_t = demand.a_t / g;
-    let mut chart = chart(area, BELOW).build_cartesian_2d(0.0..2.0, range([a_t, fixed_base.unwrap_or(0.0)]))?;
+    let heights = range([a_t, fixed_base.unwrap_or(0.0)]);
+    let row = 0.06 * heights.end; // of words
+    let mut chart = chart(area, BELOW).build_cartesian_2d(0.0..2.0, heights)?;
     axes(&mut chart, ["", "lateral acceleration (g)"], [0, 6])?;
     let mut pile = |at: f64, name: &str, parts: &[(&str, f64, RGBColor)]| -> anyhow::Result<()> {
-        let mut from = 0.0;
+        let (mut from, mut free) = (0.0, 0.5 * row);
         for (of, height, colour) in parts {
             let bar = Rectangle::new([(at - 0.28, from), (at + 0.28, from + height)], colour.filled());
             chart.draw_series([bar])?;
             if !of.is_empty() && *height > 0.0 {
                 let label = Text::new((*of).to_owned(), (px(6.0), 0), words(SMALL, colour::INK));
-                chart.draw_series([EmptyElement::at((at + 0.28, from + 0.5 * height)) + label])?;
+                let beside = free.max(from + 0.5 * height);
+                chart.draw_series([EmptyElement::at((at + 0.28, beside)) + label])?;
+                free = beside + row;
             }
             from += height;
         }

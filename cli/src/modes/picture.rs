@@ -16,7 +16,8 @@ pub type Split = (f64, Modes, ModalAccelerations);
 /// Draws the modes of a response in its `stretches` of rocking about one pivot; `about` is the response that they are of.
 pub fn draw(picture: Picture, g: f64, stretches: &[Vec<Split>], about: &str) -> anyhow::Result<()> {
     let times = || stretches.iter().flatten().map(|at| at.0);
-    let (first, last) = times().next().zip(times().last()).context("it does not rock: there is nothing to draw")?;
+    let (first, last) =
+        times().next().zip(times().next_back()).context("it does not rock: there is nothing to draw")?;
     let line = |name, colour: RGBColor, value: &dyn Fn(&Split) -> f64| {
         let parts = stretches.iter().map(|stretch| stretch.iter().map(|at| (at.0, value(at))).collect());
         Line { name, colour, parts: parts.collect() }

@@ -147,7 +147,7 @@ impl Histories {
             let is_late = *time > self.time.start + 0.85 * (self.time.end - self.time.start);
             let (style, aside) =
                 if is_late { (words_before(SMALL, colour::INK), -7.0) } else { (words(SMALL, colour::INK), 7.0) };
-            let above = if *value < 0.0 { 3.0 } else { -3.0 };
+            let above = if *value < 0.0 { 7.5 } else { -8.0 };
             let label = EmptyElement::at((*time, *value)) + Text::new(peak.clone(), (px(aside), px(above)), style);
             chart.draw_series([label])?;
         }

@@ -1,5 +1,7 @@
 //! The picture of a pushover, as Fig 1: force and moment against displacement, all of it and the first part of it.
-use crate::picture::{Area, Picture, SMALL, TITLE, axes, chart, colour, dot, line, px, range, rounded, titled, words};
+use crate::picture::{
+    Area, Picture, SMALL, TITLE, axes, chart, colour, dot, line, mass, px, range, rounded, titled, words,
+};
 use plotters::prelude::*;
 use rocking::{Parameters, Structure, pushover::Equilibrium};
 use std::ops::Range;
@@ -27,8 +29,8 @@ pub fn draw(
     corners: [Equilibrium; 3],
 ) -> anyhow::Result<()> {
     let &Parameters { m, m0, H, B, .. } = structure.parameters();
-    let [m, m0, H, base, u_cr] = [m, m0, H, 2.0 * B, 1e3 * structure.u_cr].map(rounded);
-    let about = format!("masses {m} and {m0} kg, height {H} m, base {base} m wide; uplift at {u_cr} mm");
+    let ([m, m0], [H, base, u_cr]) = ([m, m0].map(mass), [H, 2.0 * B, 1e3 * structure.u_cr].map(rounded));
+    let about = format!("masses {m} and {m0}, height {H} m, base {base} m wide; uplift at {u_cr} mm");
     picture.draw(SIZE, |area| {
         let below = titled(area, "Static pushover", &about)?;
         let (upper, lower) = below.split_vertically(px(f64::from(PANEL)));

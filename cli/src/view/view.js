@@ -13,6 +13,7 @@
     return Float64Array.from(data.time.values, (difference) => start + (sum += difference) * data.time.quantum);
   })();
   const motion = { a_g: column(data.a_g), theta: column(data.theta), u: column(data.u), a_t: column(data.a_t) };
+  const transitions = data.transitions.map(([sum, kind]) => ({ instant: start + sum * data.time.quantum, kind }));
   const peaks = Object.fromEntries(data.peaks.map(([name, magnitude, instant]) => [name, { magnitude, instant }]));
 
   /** How many of the rising numbers are at most `value`. */
@@ -45,11 +46,14 @@
     const text = value.toFixed(decimals);
     return minus(Number(text) === 0 ? text.replace("-", "") : text);
   };
-  const significant = (value, digits = 3) => minus(String(Number(value.toPrecision(digits))));
+  const significant = (value) => minus(String(Number(value.toPrecision(3))));
 
-  /** How many decimals show `magnitude` with four digits. */
+  const mass = (kilograms) => (kilograms < 1e4 ? `${significant(kilograms)} kg` : `${significant(kilograms / 1e3)} t`);
+
+  /** How many decimals show `magnitude` with as many digits as the motion is exact to. */
+  const digits = -Math.round(Math.log10(data.part));
   const decimalsFor = (magnitude) =>
-    magnitude > 0 ? Math.max(0, Math.min(8, 3 - Math.floor(Math.log10(magnitude)))) : 3;
+    magnitude > 0 ? Math.max(0, Math.min(8, digits - 1 - Math.floor(Math.log10(magnitude)))) : digits - 1;
 
   /** [1, 2 or 5 times a power of ten] not below `step`. */
   function nice(step) {
@@ -230,7 +234,7 @@
     { name: "overturning", colour: "--purple", is: (kind) => kind.startsWith("overturning") },
   ];
   const lanes = kinds
-    .map((kind) => ({ ...kind, times: data.transitions.filter((each) => kind.is(each[1])).map((each) => each[0]) }))
+    .map((kind) => ({ ...kind, times: transitions.filter((each) => kind.is(each.kind)).map((each) => each.instant) }))
     .filter((lane) => lane.times.length > 0);
 
   let shown = [start, end]; // the time that the histories show
@@ -394,7 +398,7 @@
   }
 
   function toTransition(step) {
-    const instants = data.transitions.map(([instant]) => instant);
+    const instants = transitions.map(({ instant }) => instant);
     const found = step > 0 ? instants.find((instant) => instant > t + 1e-9) : instants.findLast((instant) => instant < t - 1e-9);
     moveTo(found ?? (step > 0 ? end : start));
   }
@@ -498,9 +502,9 @@
 
   document.title = `${data.title}: rocking structure`;
   at("title").textContent = data.title;
-  const count = data.transitions.length;
+  const count = transitions.length;
   at("about").textContent =
-    `masses ${significant(m)} and ${significant(m0)} kg, H = ${significant(H)} m, 2B = ${significant(2 * B)} m, ` +
+    `masses ${mass(m)} and ${mass(m0)}, H = ${significant(H)} m, 2B = ${significant(2 * B)} m, ` +
     `${significant(f_fc)} Hz in full contact; ${count} transition${count === 1 ? "" : "s"}` +
     { "at rest": ", at rest in the end", overturned: ", overturned", "still rocking": ", still rocking in the end", "at time": "" }[data.ending];
   chooseSpeed(1);
