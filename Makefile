@@ -20,12 +20,13 @@ WINDOWS := x86_64-pc-windows-gnu
 MINGW := x86_64-w64-mingw32-gcc
 HAS_MINGW := command -v $(MINGW) >/dev/null
 HAS_WINE := command -v wine >/dev/null
+HAS_CHROMIUM := command -v chromium >/dev/null
 HAS_TBB := PATH=$$PATH:/sbin ldconfig -p | grep -q 'libtbb\.so\.12'
 sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test dist report coupling bench licenses fuzz records exporter mingw hosts
+.PHONY: demo test browser dist report coupling bench licenses fuzz records exporter mingw hosts
 
 demo: .venv/ready out/mcmanus.fmu out/evison.fmu
 	cp $(RECORDS)/$(PACOIMA) $(RECORDS)/$(EL_CENTRO) out/
@@ -40,6 +41,12 @@ test: .venv/ready exporter hosts dist
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo test --workspace
 	$(PYTHON) -m pytest -rs
+
+# The page of `view` in Chromium; where that cannot be had, the tests are skipped and say so.
+browser: .venv/ready exporter
+	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
+	-$(PYTHON) -m pip install --quiet --disable-pip-version-check --requirement requirements.browser.txt
+	$(PYTHON) -m pytest -rs tests/test_view.py
 
 dist: exporter mingw
 	mkdir -p out

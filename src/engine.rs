@@ -15,7 +15,7 @@ use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::level::Level;
 use crate::load::{LOADS, LinearLoad, Load};
 use crate::motion::{Chatter, Motion, Work};
-use crate::piece::{Part, Piece, Sample, Watch};
+use crate::piece::{Equations, Part, Piece, Sample, Watch};
 use crate::quantity::with_unit;
 use crate::reactions::{Impulse, Reactions};
 use crate::state::InitialStateError;
@@ -103,6 +103,16 @@ pub enum AdvanceError {
     },
 }
 
+impl AdvanceError {
+    /// The instant from which on it cannot go on, s, where that lies within the interval.
+    pub fn time(&self) -> Option<f64> {
+        match *self {
+            AdvanceError::TooLong { time, .. } | AdvanceError::Singular { time, .. } => Some(time),
+            AdvanceError::NotAhead { .. } | AdvanceError::Load { .. } => None,
+        }
+    }
+}
+
 /// A structure in motion.
 #[derive(Debug)]
 pub struct Engine {
@@ -171,11 +181,29 @@ impl Engine {
         load: impl Into<LinearLoad>,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
-        let last_step = self.motion.work.steps + MAX_STEPS_PER_ADVANCE;
-        self.advance_within(last_step, interval, load.into(), watch)
+        let progress = self.go_on(interval, load, watch)?;
+        self.done(watch);
+        Ok(progress)
     }
 
-    /// The same, until `last_step` steps have been taken since the start.
+    /// The same as a part of what is asked for, of which [`Engine::done`] tells the end.
+    pub(crate) fn go_on<W: Watch>(
+        &mut self,
+        interval: f64,
+        load: impl Into<LinearLoad>,
+        watch: &mut W,
+    ) -> Result<Progress, AdvanceError> {
+        self.advance_within(self.motion.work.steps + MAX_STEPS_PER_ADVANCE, interval, load.into(), watch)
+    }
+
+    /// Tells `watch` that it has been shown all that was asked for.
+    pub(crate) fn done<W: Watch>(&mut self, watch: &mut W) {
+        if W::SEES_PIECES {
+            watch.done(&mut Equations { structure: &self.structure, level: self.level.get_mut() });
+        }
+    }
+
+    /// [`Engine::go_on`] until `last_step` steps have been taken since the start.
     #[inline]
     pub(crate) fn advance_within<W: Watch>(
         &mut self,
@@ -231,7 +259,8 @@ impl Engine {
 
     /// The outputs now under `load`; once overturned, those of the instant before.
     pub fn outputs(&self, load: Load) -> Outputs {
-        self.sample(load).outputs()
+        let Motion { phase, state, .. } = &self.motion;
+        self.level.get().outputs(&self.structure, phase.in_motion(), state, load)
     }
 
     /// The reactions now under `load`; once overturned, those of the instant before.
@@ -442,7 +471,7 @@ fn bad_load(interval: f64, load: &LinearLoad) -> AdvanceError {
     let is_bad = |quantity: &&crate::Quantity<Load>| {
         ![load.value, load.at(interval)].iter().all(|load| (quantity.get)(load).is_finite())
     };
-    let bad = const { &LOADS }.iter().find(is_bad).expect("one of them is not");
+    let bad = LOADS.iter().find(is_bad).expect("one of them is not");
     let [value, slope] = [&load.value, &load.slope].map(bad.get);
     AdvanceError::Load { name: bad.name, unit: bad.unit, value, slope, interval }
 }

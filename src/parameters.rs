@@ -4,10 +4,7 @@ use crate::quantity::{OutOfRange, Quantity, quantity};
 use serde::{Deserialize, Serialize};
 
 /// Parameters of a flexible rocking structure (Fig 2 of the paper). SI units.
-///
-/// As a file: the same names; `J0`, `c_ratio` and `g` may be left out, an unknown name is an error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Parameters {
     /// Top mass, kg.
     pub m: f64,
@@ -18,28 +15,17 @@ pub struct Parameters {
     /// Half-width of the base, m.
     pub B: f64,
     /// Rotational inertia of the foundation about the middle of the base, kg·m².
-    #[serde(default)]
     pub J0: f64,
     /// Natural frequency in full contact (fixed base), Hz.
     pub f_fc: f64,
     /// Damping ratio in full contact.
     pub zeta_fc: f64,
     /// Viscous damping while rocking over viscous damping in full contact, c_u/c_fc.
-    #[serde(default = "one")]
     pub c_ratio: f64,
     /// Coefficient of restitution on the angular velocity at impact.
     pub r: f64,
     /// Acceleration of gravity, m/s².
-    #[serde(default = "standard_gravity")]
     pub g: f64,
-}
-
-fn one() -> f64 {
-    1.0
-}
-
-fn standard_gravity() -> f64 {
-    9.81
 }
 
 /// Every parameter with its unit and range, in the order of the file and of the FMU.

@@ -3,6 +3,8 @@
 //! The engine goes from sample to sample, between which the ground acceleration is linear; whoever watches sees every
 //! piece and every transition of it. What is known of a run without a watcher is how it ended.
 
+pub mod curve;
+pub mod exceedances;
 mod history;
 pub mod levels;
 pub mod outcome;
@@ -101,15 +103,21 @@ pub enum RunError {
         until: f64,
     },
     /// The run cannot go on.
-    #[error(transparent)]
-    Advance(AdvanceError),
+    #[error("{cause}")]
+    Advance {
+        /// From here, s.
+        time: f64,
+        /// Why.
+        cause: AdvanceError,
+    },
 }
 
-impl From<AdvanceError> for RunError {
-    fn from(error: AdvanceError) -> RunError {
-        match error {
-            AdvanceError::TooLong { time, until } => RunError::TooLong { time, until },
-            error => RunError::Advance(error),
+impl RunError {
+    /// Where a run that had begun could not go on, s.
+    pub fn time(&self) -> Option<f64> {
+        match self {
+            RunError::Advance { time, .. } | RunError::TooLong { time, .. } => Some(*time),
+            RunError::Initial(_) | RunError::End { .. } => None,
         }
     }
 }
@@ -132,7 +140,16 @@ impl<'a> Run<'a> {
     pub fn follow<W: Watch>(&self, watch: &mut W) -> Result<Finish, RunError> {
         let mut engine = self.start()?;
         let ending = self.follow_ground(&mut engine, watch)?;
+        engine.done(watch);
         Ok(Finish { ending, motion: *engine.motion() })
+    }
+
+    fn follow_ground<W: Watch>(&self, engine: &mut Engine, watch: &mut W) -> Result<Ending, RunError> {
+        let ending = self.advance(engine, watch);
+        ending.map_err(|cause| match cause {
+            AdvanceError::TooLong { time, until } => RunError::TooLong { time, until },
+            cause => RunError::Advance { time: cause.time().unwrap_or(engine.motion().time), cause },
+        })
     }
 
     /// The structure at the first sample.
@@ -144,13 +161,13 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn follow_ground<W: Watch>(&self, engine: &mut Engine, watch: &mut W) -> Result<Ending, AdvanceError> {
+    fn advance<W: Watch>(&self, engine: &mut Engine, watch: &mut W) -> Result<Ending, AdvanceError> {
         let end = match self.end {
             End::AtRest => self.ground.end(),
             End::At(end) => end,
         };
         for segment in self.ground.segments_until(end) {
-            let progress = engine.advance(segment.end - segment.start, segment.a_g, watch)?;
+            let progress = engine.go_on(segment.end - segment.start, segment.a_g, watch)?;
             if progress == Progress::Overturned {
                 return Ok(Ending::Overturned);
             }
@@ -172,7 +189,8 @@ impl<'a> Run<'a> {
     ) -> Result<Finish, RunError> {
         let mut engine = self.start()?;
         let mut samples = Samples::new(times, show);
-        let ending = self.follow_ground(&mut engine, &mut (watch, &mut samples))?;
+        let ending = self.follow_ground(&mut engine, &mut (&mut *watch, &mut samples))?;
+        engine.done(watch);
         samples.end(&engine);
         Ok(Finish { ending, motion: *engine.motion() })
     }
@@ -180,7 +198,7 @@ impl<'a> Run<'a> {
     /// The exact peaks of the run, and how it ended.
     pub fn peaks(&self) -> Result<(Peaks, Finish), RunError> {
         let mut peaks = Peaks::since(self.ground.start(), &self.structure);
-        let finish = self.follow(&mut peaks)?;
+        let finish = self.follow(&mut peaks.watch())?;
         Ok((peaks, finish))
     }
 }
@@ -193,11 +211,11 @@ fn come_to_rest<W: Watch>(engine: &mut Engine, watch: &mut W) -> Result<Ending, 
         if left == 0.0 {
             return Ok(Ending::StillRocking);
         }
-        if engine.advance(1.0 / p_l, Ramp::default(), watch)? == Progress::Overturned {
+        if engine.go_on(1.0 / p_l, Ramp::default(), watch)? == Progress::Overturned {
             return Ok(Ending::Overturned);
         }
         left -= 1.0;
     }
-    engine.advance(TAU / omega_fc, Ramp::default(), watch)?;
+    engine.go_on(TAU / omega_fc, Ramp::default(), watch)?;
     Ok(Ending::AtRest)
 }

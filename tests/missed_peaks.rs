@@ -105,7 +105,7 @@ fn no_peak_is_missed() {
             let target = Load { a_g: amplitude * r.sym(), F_t: force * r.sym() };
             let h = longest * if r.next() < 0.2 { r.next() + 1e-3 } else { 1.0 };
             let slope = Load { a_g: (target.a_g - load.a_g) / h, F_t: (target.F_t - load.F_t) / h };
-            let progress = engine.advance(h, LinearLoad { value: load, slope }, &mut (&mut dense, &mut peaks));
+            let progress = engine.advance(h, LinearLoad { value: load, slope }, &mut (&mut dense, &mut peaks.watch()));
             if progress != Ok(Progress::Complete) || dense.pieces > 4000 {
                 break;
             }

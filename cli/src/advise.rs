@@ -1,6 +1,10 @@
 //! `advise`: every level of detail on the user's own scene, its errors and its cost, and the cheapest that will do.
 
+mod picture;
+
 use crate::{
+    output_files::OutputFiles,
+    picture::PictureFile,
     results::{Format, FormatArgs, print, print_rows},
     scene_args::{GroundArgs, InitialArgs},
     structure_args::StructureArgs,
@@ -38,6 +42,9 @@ pub struct AdviseArgs {
     allowed: AllowedArgs,
     #[command(flatten)]
     results: FormatArgs,
+    /// Draw the errors of every level
+    #[arg(long, value_name = "FILE.svg|png", help_heading = "Results")]
+    picture: Option<PictureFile>,
 }
 
 #[derive(clap::Args)]
@@ -92,6 +99,9 @@ fn relative_error(text: &str) -> Result<f64, String> {
 pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let ground = args.ground.load(structure.parameters().g)?;
+    let inputs = args.structure.input().into_iter().chain(args.ground.record.record.as_deref());
+    let mut files = OutputFiles::of_inputs(inputs);
+    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let (initial, end) = (args.initial.state(), args.ground.end(&ground));
     let run = Run { initial, end, ..Run::new(structure, &ground) };
     let comparison = levels::compare(&run).context("detail = nonlinear")?;
@@ -101,19 +111,35 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     }
     let criteria: Vec<_> = args.allowed.of.iter().map(Measure::criterion).collect();
     let advised = comparison.recommended(args.allowed.within, &criteria);
-    if args.results.format != Format::Text {
-        return print_rows(args.results.format, &rows(&comparison, advised));
+    if args.results.format == Format::Text {
+        print(&text(args, &structure, &ground, &comparison, advised)?)?;
+    } else {
+        print_rows(args.results.format, &rows(&comparison, advised))?;
     }
+    match picture {
+        Some(picture) => picture::draw(picture, &comparison, (args.allowed.within, &criteria), advised, ground.title()),
+        None => Ok(()),
+    }
+}
+
+/// The table and the advice, for people.
+fn text(
+    args: &AdviseArgs,
+    structure: &Structure,
+    ground: &Record,
+    comparison: &Comparison,
+    advised: Option<&Verdict>,
+) -> anyhow::Result<String> {
     let mut out = String::new();
-    writeln!(out, "Ground motion: {}", args.ground.title(&ground))?;
-    print_reference(&mut out, &structure, &comparison)?;
-    print_levels(&mut out, &comparison, advised)?;
-    print_estimate(&mut out, &structure, &ground, &comparison)?;
+    writeln!(out, "Ground motion: {}", args.ground.title(ground))?;
+    print_reference(&mut out, structure, comparison)?;
+    print_levels(&mut out, comparison, advised)?;
+    print_estimate(&mut out, structure, ground, comparison)?;
     for (detail, error) in &comparison.refused {
         writeln!(out, "  {:<10} not possible here: {error:#}", detail.name())?;
     }
-    print_advice(&mut out, &comparison, advised, &args.allowed)?;
-    print(&out)
+    print_advice(&mut out, comparison, advised, &args.allowed)?;
+    Ok(out)
 }
 
 fn print_reference(out: &mut impl Write, structure: &Structure, comparison: &Comparison) -> fmt::Result {
@@ -157,7 +183,7 @@ fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&
         ' ',
         ["level", "theta", "u", "a_t, V_t, M_t", "theta", "u", "a_t", "overturns", "steps", "evaluations", "of auto"],
     )?;
-    let auto = cost_of_auto(comparison);
+    let auto = comparison.cost_of_auto();
     for verdict in &comparison.verdicts {
         let response = &verdict.response;
         let mark = if advised.is_some_and(|advised| advised.response.detail == response.detail) { '>' } else { ' ' };
@@ -261,7 +287,7 @@ fn print_advice(
         );
     };
     write!(out, "\nuse detail = {}: of the cheapest levels {limit} the simplest", response.detail.name())?;
-    match cost_of_auto(comparison) {
+    match comparison.cost_of_auto() {
         Some(auto) if response.detail != Detail::Auto => {
             writeln!(out, ", at {:.2} times the cost of auto", response.cost() as f64 / auto)
         }

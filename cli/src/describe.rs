@@ -1,5 +1,11 @@
 //! `describe`: a structure's parameters and what follows from them.
+
+mod picture;
+mod template;
+
 use crate::{
+    output_files::OutputFiles,
+    picture::PictureFile,
     quantities::Line,
     results::{Format, FormatArgs, print, print_rows},
     significant::significant,
@@ -20,11 +26,25 @@ pub struct DescribeArgs {
     structure: StructureArgs,
     #[command(flatten)]
     results: FormatArgs,
+    /// Print a commented file for --parameters instead: every parameter of this structure, with unit and range
+    #[arg(long, conflicts_with = "format")]
+    template: bool,
+    /// Draw the structure to scale
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
 }
 
 /// Prints the parameters as they were given and the derived quantities with the equations that define them.
 pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
+    if let Some(file) = &args.picture {
+        picture::draw(file.create(&mut OutputFiles::of_inputs(args.structure.input()))?, &structure)?;
+    }
+    if args.template {
+        let mut out = String::new();
+        template::write(&mut out, &structure)?;
+        return print(&out);
+    }
     if args.results.format == Format::Text {
         return print(&text(&structure)?);
     }

@@ -1,5 +1,9 @@
 //! `estimate`: demands without a time history (Eqs 21–24) and the effective frequency of rocking (Eq 14).
+mod picture;
+
 use crate::{
+    output_files::OutputFiles,
+    picture::PictureFile,
     quantities::{Line, write_columns},
     record_args::RecordArgs,
     results::{Format, FormatArgs, print, print_rows},
@@ -39,6 +43,9 @@ pub struct EstimateArgs {
     amplitudes: Vec<f64>,
     #[command(flatten)]
     results: FormatArgs,
+    /// Draw the record's response spectra, the demand and the effective frequency
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
 }
 
 fn amplitude(text: &str) -> Result<f64, String> {
@@ -52,8 +59,17 @@ fn amplitude(text: &str) -> Result<f64, String> {
 pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let record = args.ground.load(structure.parameters().g)?;
+    let inputs = args.structure.input().into_iter().chain(args.ground.record.as_deref());
+    let mut files = OutputFiles::of_inputs(inputs);
+    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let fixed_base = record.as_ref().map_or(Vec::new(), |record| on_fixed_base(&structure, record));
-    let rocking = while_rocking(&structure, record.as_ref(), args.amplification)?;
+    let S_a =
+        record.as_ref().map_or(0.0, |record| spectral_acceleration(record, TAU / structure.omega_u, structure.zeta_u));
+    let demand = Demand::new(&structure, S_a, args.amplification)?;
+    let rocking = while_rocking(&structure, S_a, args.amplification, &demand);
+    if let Some(picture) = picture {
+        picture::draw(picture, &structure, record.as_ref(), &demand, &args.amplitudes)?;
+    }
     if args.results.format == Format::Text {
         return print(&text(args, &structure, record.as_ref(), &fixed_base, &rocking)?);
     }
@@ -114,13 +130,11 @@ fn on_fixed_base(structure: &Structure, record: &Record) -> Vec<Line> {
     ]
 }
 
-/// The demand while rocking, term by term; without a record the ground is at rest.
-fn while_rocking(structure: &Structure, record: Option<&Record>, C: f64) -> anyhow::Result<Vec<Line>> {
-    let T_u = TAU / structure.omega_u;
-    let S_a = record.map_or(0.0, |record| spectral_acceleration(record, T_u, structure.zeta_u));
-    let Demand { u_ddot_gr, ground, rocking, impact, a_t, V_t, M_t } = Demand::new(structure, S_a, C)?;
-    Ok(vec![
-        Line::new("T_u", T_u, "s", "before Eq 18", "period of the vibration mode while rocking"),
+/// The demand while rocking, term by term, and what it comes from.
+fn while_rocking(structure: &Structure, S_a: f64, C: f64, demand: &Demand) -> Vec<Line> {
+    let &Demand { u_ddot_gr, ground, rocking, impact, a_t, V_t, M_t } = demand;
+    vec![
+        Line::new("T_u", TAU / structure.omega_u, "s", "before Eq 18", "period of the vibration mode while rocking"),
         Line::new("zeta_u", structure.zeta_u, "1", "before Eq 18", "its damping ratio"),
         Line::new("S_a(T_u, zeta_u)", S_a, "m/s2", "after Eq 20", "its absolute spectral acceleration"),
         Line::new("C", C, "1", "Eq 21", "dynamic amplification at a transition between rocking phases"),
@@ -131,5 +145,5 @@ fn while_rocking(structure: &Structure, record: Option<&Record>, C: f64) -> anyh
         Line::new("a_t", a_t, "m/s2", "Eq 22", "lateral acceleration, the sum of these three"),
         Line::new("V_t", V_t, "N", "Eq 23", "base shear m a_t"),
         Line::new("M_t", M_t, "N.m", "Eq 24", "overturning moment m H a_t"),
-    ])
+    ]
 }

@@ -1,6 +1,9 @@
 //! `modes`: a response split into rocking and vibration mode (Eqs 12, 16, 19).
+mod picture;
+
 use crate::{
     output_files::OutputFiles,
+    picture::PictureFile,
     structure_args::{StructureArgs, in_one_line},
     tables::{self, Table},
     talk::say,
@@ -25,6 +28,9 @@ pub struct ModesArgs {
     /// Modes as CSV, `-` for standard output
     #[arg(short, long, value_name = "FILE.csv", default_value = "modes.csv")]
     output: PathBuf,
+    /// Draw both modes over time
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
 }
 
 /// The columns of a response that the split needs.
@@ -56,20 +62,29 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let mut files = OutputFiles::of_inputs(inputs);
     check(response.headers().with_context(named)?, &structure).with_context(named)?;
     let mut table = Table::create(&mut files, &args.output, &HEADINGS)?;
+    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let (mut instants, mut rocking) = (0, 0);
+    let (mut stretches, mut rocks_about) = (Vec::new(), None);
     for instant in response.deserialize() {
         let Instant { time, a_g, theta, u, theta_dot, u_dot, phase } = instant.with_context(named)?;
         instants += 1;
         let side = match phase.as_str() {
             "rocking left" => Side::Left,
             "rocking right" => Side::Right,
-            _ => continue,
+            _ => {
+                rocks_about = None;
+                continue;
+            }
         };
         rocking += 1;
+        if rocks_about.replace(side) != Some(side) {
+            stretches.push(Vec::new());
+        }
         let state = State { u, u_dot, theta, theta_dot };
-        let Modes { q_r, q_u, .. } = Modes::of(&structure, &state);
+        let modes @ Modes { q_r, q_u, .. } = Modes::of(&structure, &state);
         let accelerations = ModalAccelerations::of(&structure, side, &state, a_g);
         table.write((time, q_r, q_u, accelerations.a_r, accelerations.a_u, accelerations.a_t()))?;
+        stretches.last_mut().context("it has just begun")?.push((time, modes, accelerations));
     }
     table.finish()?;
     say!(
@@ -79,10 +94,14 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     if rocking == 0 {
         say!("it rocks at none of them: there is nothing to split");
     }
-    Ok(())
+    match picture {
+        Some(picture) => picture::draw(picture, structure.parameters().g, &stretches, &named()),
+        None => Ok(()),
+    }
 }
 
-/// Refuses what is no response, and the response of another structure, which its last heading names; a table that names none is taken.
+/// Refuses what is no response, and the response of another structure, which its last heading names; a table that names
+/// none is taken.
 fn check(headings: &StringRecord, structure: &Structure) -> anyhow::Result<()> {
     let needed = ["time[s]", "a_g[m/s2]", "theta[rad]", "u[m]", "theta_dot[rad/s]", "u_dot[m/s]", "phase"];
     if let Some(missing) = needed.into_iter().find(|needed| headings.iter().all(|heading| heading != *needed)) {

@@ -1,6 +1,9 @@
 //! `pushover`: lateral force and moment against displacement (Fig 1).
+mod picture;
+
 use crate::{
     output_files::OutputFiles,
+    picture::PictureFile,
     results::{Format, FormatArgs, print, print_rows},
     significant::significant,
     structure_args::StructureArgs,
@@ -10,7 +13,7 @@ use crate::{
 use anyhow::Context;
 use rocking::{
     Phase, Structure,
-    pushover::{Equilibrium, at_displacement, at_overturning, at_rotation},
+    pushover::{Equilibrium, at_displacement, at_overturning, at_rotation, in_full_contact},
 };
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -28,6 +31,9 @@ pub struct PushoverArgs {
     output: PathBuf,
     #[command(flatten)]
     results: FormatArgs,
+    /// Draw force and moment against displacement
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
 }
 
 /// Points on a branch, more than any curve needs.
@@ -40,21 +46,24 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let too_soft = "the strut is too soft to hold the structure all the way to overturning: raise f_fc or lower m0";
     let end = at_overturning(&structure).context(too_soft)?;
+    let curve: Option<Vec<_>> = displacements(&structure, end.delta_t, args.points)
+        .map(|delta_t| at_displacement(&structure, delta_t))
+        .collect();
+    let curve = curve.context(too_soft)?;
     let mut files = OutputFiles::of_inputs(args.structure.input());
     args.results.reserve(&mut files);
     let mut table = Table::create(&mut files, &args.output, &HEADINGS)?;
-    for delta_t in displacements(&structure, end.delta_t, args.points) {
-        table.write(line(&at_displacement(&structure, delta_t).context(too_soft)?))?;
-    }
+    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
+    curve.iter().try_for_each(|at| table.write(line(at)))?;
     table.finish()?;
     let corners = [
-        ("uplift", at_displacement(&structure, structure.u_cr)),
-        ("start of rocking", at_rotation(&structure, 0.0)),
-        ("overturning", Some(end)),
+        ("uplift", in_full_contact(&structure, structure.u_cr)),
+        ("start of rocking", at_rotation(&structure, 0.0).context(too_soft)?),
+        ("overturning", end),
     ];
     let mut rows = Vec::new();
     for (name, corner) in corners {
-        let Equilibrium { theta, delta_t, force: P, moment: M, .. } = corner.context(too_soft)?;
+        let Equilibrium { theta, delta_t, force: P, moment: M, .. } = corner;
         rows.push(Corner { name, delta_t, theta, P, M });
     }
     if args.results.format == Format::Text {
@@ -66,7 +75,10 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     if args.output != Path::new("-") {
         say!("curve            {}", args.output.display());
     }
-    Ok(())
+    match picture {
+        Some(picture) => picture::draw(picture, &structure, &curve, corners.map(|corner| corner.1)),
+        None => Ok(()),
+    }
 }
 
 /// A corner of the curve, in SI units.

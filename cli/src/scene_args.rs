@@ -3,8 +3,11 @@ use crate::{
     record_args::{RecordArgs, positive},
     significant::short,
 };
-use clap::ArgGroup;
-use rocking::{State, record::Record, run::End};
+use clap::{
+    ArgGroup,
+    builder::{PossibleValuesParser, TypedValueParser},
+};
+use rocking::{Detail, State, engine::DEFAULT_TOLERANCE, record::Record, run::End};
 
 /// The ground motion, and how long it is followed.
 #[derive(clap::Args)]
@@ -43,6 +46,32 @@ pub struct InitialArgs {
     /// Elastic velocity of the top mass
     #[arg(long, value_name = "M/S", default_value_t = 0.0, allow_negative_numbers = true)]
     u_dot_0: f64,
+}
+
+/// How the motion is computed.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Equations")]
+pub struct LevelArgs {
+    /// Level of detail: the equations that move the structure
+    #[arg(long, value_name = "LEVEL", default_value = Detail::default().name(), value_parser = detail_parser())]
+    pub detail: Detail,
+    /// Relative tolerance
+    #[arg(long, default_value = format!("{DEFAULT_TOLERANCE:e}"), value_parser = tolerance)]
+    pub tolerance: f64,
+}
+
+fn detail_parser() -> impl TypedValueParser<Value = Detail> {
+    PossibleValuesParser::new(Detail::ALL.map(Detail::name)).map(|name| {
+        let is_named = |detail: &Detail| detail.name() == name;
+        Detail::ALL.into_iter().find(is_named).expect("clap accepts these names alone")
+    })
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    positive(text).and_then(|tolerance| match tolerance {
+        ..1.0 => Ok(tolerance),
+        _ => Err("a number less than 1 is needed, such as 1e-9".into()),
+    })
 }
 
 impl GroundArgs {

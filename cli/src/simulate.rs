@@ -1,22 +1,23 @@
 //! `simulate`: the response to a ground motion record, or free vibration, with the same engine as the FMU's.
+mod picture;
+
 use crate::{
     output_files::OutputFiles,
+    picture::PictureFile,
     record_args::positive,
     results::{Format, FormatArgs, print},
-    scene_args::{GroundArgs, InitialArgs},
+    scene_args::{GroundArgs, InitialArgs, LevelArgs},
     significant::short,
     structure_args::StructureArgs,
-    summary::{Summary, instant},
+    summary::{self, Summary, instant},
     tables::{self, Table},
     talk::{self, say},
 };
 use anyhow::ensure;
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use rocking::{
-    Detail, Transition,
-    engine::DEFAULT_TOLERANCE,
+    Transition,
     record::Record,
-    run::{End, Run},
+    run::{End, Run, peaks::Peaks},
 };
 use std::path::{Path, PathBuf};
 
@@ -30,18 +31,14 @@ pub struct SimulateArgs {
     #[command(flatten)]
     initial: InitialArgs,
     #[command(flatten)]
+    level: LevelArgs,
+    #[command(flatten)]
     results: ResultArgs,
 }
 
 #[derive(clap::Args)]
 #[command(next_help_heading = "Results")]
 struct ResultArgs {
-    /// Level of detail: the equations that move the structure
-    #[arg(long, value_name = "LEVEL", default_value = Detail::default().name(), value_parser = detail_parser())]
-    detail: Detail,
-    /// Relative tolerance
-    #[arg(long, default_value = format!("{DEFAULT_TOLERANCE:e}"), value_parser = tolerance)]
-    tolerance: f64,
     /// Output interval [default: the record's samples; 0.001 in free vibration]
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     interval: Option<f64>,
@@ -54,20 +51,9 @@ struct ResultArgs {
     events: Option<PathBuf>,
     #[command(flatten)]
     format: FormatArgs,
-}
-
-fn detail_parser() -> impl TypedValueParser<Value = Detail> {
-    PossibleValuesParser::new(Detail::ALL.map(Detail::name)).map(|name| {
-        let is_named = |detail: &Detail| detail.name() == name;
-        Detail::ALL.into_iter().find(is_named).expect("clap accepts these names alone")
-    })
-}
-
-fn tolerance(text: &str) -> Result<f64, String> {
-    positive(text).and_then(|tolerance| match tolerance {
-        ..1.0 => Ok(tolerance),
-        _ => Err("a number less than 1 is needed, such as 1e-9".into()),
-    })
+    /// Draw ground acceleration, uplift, acceleration and base shear over time, with marks at transitions
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
 }
 
 impl SimulateArgs {
@@ -116,7 +102,7 @@ impl SimulateArgs {
 pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let ground = args.ground.load(structure.parameters().g)?;
-    let ResultArgs { tolerance, detail, .. } = args.results;
+    let LevelArgs { tolerance, detail } = args.level;
     let (initial, end) = (args.initial.state(), args.ground.end(&ground));
     let run = Run { initial, detail, tolerance, end, ..Run::new(structure, &ground) };
 
@@ -128,8 +114,10 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let mut response = Table::create(&mut files, &output, &tables::response_headings(&structure, ground.title()))?;
     let events = args.results.events.as_deref();
     let mut events = events.map(|path| Table::create(&mut files, path, &tables::EVENTS)).transpose()?;
+    let picture = args.results.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let progress = talk::progress(ground.times().len());
-    let (mut summary, mut written) = (Summary::new(&structure, ground.start()), Ok(()));
+    let (mut peaks, mut summary, mut written) =
+        (Peaks::since(ground.start(), &structure), Summary::new(&structure), Ok(()));
     let mut transition = |transition: &Transition| {
         if let (Some(events), Ok(())) = (&mut events, &written) {
             written = events.write(tables::event_line(transition));
@@ -144,7 +132,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
                 rows = response.write(tables::response_line(sample));
             }
         },
-        &mut (&mut summary, &mut transition),
+        &mut (&mut peaks.watch(), &mut (&mut summary, &mut transition)),
     );
     progress.finish_and_clear();
     let finish = finish?;
@@ -153,13 +141,13 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     events.map_or(Ok(()), Table::finish)?;
     let (start, end) = (instant(ground.start()), instant(finish.motion.time));
     if args.results.format.format == Format::Text {
-        let text = format!("{}, {start} to {end} s\n{}", ground.title(), summary.text(&finish)?);
+        let text = format!("{}, {start} to {end} s\n{}", ground.title(), summary.text(&peaks, &finish)?);
         // What goes to standard output stays one table.
         if output == Path::new("-") { say!("{}", text.trim_end()) } else { print(&text)? }
     } else {
-        summary.print(args.results.format.format, ground.title(), ground.start(), &finish)?;
+        summary.print(args.results.format.format, &peaks, ground.title(), ground.start(), &finish)?;
     }
-    if summary.shows_no_motion() {
+    if summary::shows_no_motion(&peaks) {
         say!("nothing moves: the ground is at rest and the structure stands; see --record, --theta-0, --u-0");
     }
     if output != Path::new("-") {
@@ -168,5 +156,8 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     if let Some(events) = &args.results.events {
         say!("transitions    {}", events.display());
     }
-    Ok(())
+    match picture {
+        Some(picture) => picture::draw(picture, &run),
+        None => Ok(()),
+    }
 }

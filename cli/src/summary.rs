@@ -5,14 +5,13 @@ use rocking::run::{
     Ending, Finish, LONGEST_REST,
     peaks::{PEAKS, Peak, Peaks},
 };
-use rocking::{Parameters, Phase, Piece, Side, Structure, Transition, TransitionKind, Watch};
+use rocking::{Parameters, Phase, Side, Structure, Transition, TransitionKind, Watch};
 use serde::Serialize;
 use std::fmt::{self, Write};
 
-/// Peaks and first transitions of a run.
+/// First transitions of a run.
 pub struct Summary {
     structure: Structure,
-    peaks: Peaks,
     first_uplift: Option<f64>,
     first_impact: Option<f64>,
 }
@@ -45,11 +44,7 @@ struct Whole<'a> {
 }
 
 impl Watch for Summary {
-    const SEES_PIECES: bool = true;
-
-    fn piece(&mut self, piece: &mut Piece) {
-        self.peaks.piece(piece);
-    }
+    const SEES_PIECES: bool = false;
 
     fn transition(&mut self, transition: &Transition) {
         let first = match transition.kind {
@@ -62,31 +57,25 @@ impl Watch for Summary {
 }
 
 impl Summary {
-    /// Of a run of `structure` from `start` (s) on, nothing seen yet.
-    pub fn new(structure: &Structure, start: f64) -> Summary {
-        let peaks = Peaks::since(start, structure);
-        Summary { structure: *structure, peaks, first_uplift: None, first_impact: None }
+    /// Of a run of `structure`, nothing seen yet.
+    pub fn new(structure: &Structure) -> Summary {
+        Summary { structure: *structure, first_uplift: None, first_impact: None }
     }
 
-    /// Whether the structure stood still on ground at rest all the while.
-    pub fn shows_no_motion(&self) -> bool {
-        let peaks = PEAKS.iter().map(|peak| (peak.of)(&self.peaks)).chain([self.peaks.a_g()]);
-        peaks.into_iter().all(|peak| peak.magnitude == 0.0)
-    }
-
-    /// Prints it for programs, with what the run counted and came to; `title` is the ground motion's.
+    /// Prints it for programs, with the `peaks` and what the run counted and came to; `title` is the ground motion's.
     pub fn print(
         &self,
         format: Format,
+        peaks: &Peaks,
         title: &str,
         start: f64,
         &Finish { ending, motion }: &Finish,
     ) -> anyhow::Result<()> {
         let row = |name, unit, Peak { magnitude: peak, time }| Row { name, peak, unit, time };
-        let of_structure = PEAKS.iter().map(|peak| row(peak.name, peak.unit, (peak.of)(&self.peaks)));
-        let peaks: Vec<_> = [row("a_g", "m/s2", self.peaks.a_g())].into_iter().chain(of_structure).collect();
+        let of_structure = PEAKS.iter().map(|peak| row(peak.name, peak.unit, (peak.of)(peaks)));
+        let rows: Vec<_> = [row("a_g", "m/s2", peaks.a_g())].into_iter().chain(of_structure).collect();
         if format == Format::Csv {
-            return print_rows(format, &peaks);
+            return print_rows(format, &rows);
         }
         let overturned = match ending {
             Ending::StillRocking => None,
@@ -100,7 +89,7 @@ impl Summary {
             end: motion.time,
             ending,
             overturned,
-            peaks,
+            peaks: rows,
             first_uplift,
             first_impact,
             transitions,
@@ -110,9 +99,8 @@ impl Summary {
     }
 
     /// The same in lines for people.
-    pub fn text(&self, &Finish { ending, motion }: &Finish) -> Result<String, fmt::Error> {
+    pub fn text(&self, peaks: &Peaks, &Finish { ending, motion }: &Finish) -> Result<String, fmt::Error> {
         let mut out = String::new();
-        let peaks = &self.peaks;
         let &Parameters { g, .. } = self.structure.parameters();
         for (name, peak, unit, per_unit) in [
             ("a_g", peaks.a_g(), "g", g),
@@ -152,6 +140,12 @@ impl Summary {
         )?;
         Ok(out)
     }
+}
+
+/// Whether `peaks` are those of a structure that stood still on ground at rest all the while.
+pub fn shows_no_motion(peaks: &Peaks) -> bool {
+    let magnitudes = PEAKS.iter().map(|peak| (peak.of)(peaks)).chain([peaks.a_g()]);
+    magnitudes.into_iter().all(|peak| peak.magnitude == 0.0)
 }
 
 /// An instant (s) to six digits or to 10 us, whichever is finer.

@@ -2,7 +2,7 @@
 use crate::output_files::{OutputFile, OutputFiles};
 use crate::structure_args::in_one_line;
 use rocking::piece::Sample;
-use rocking::{Impulse, Outputs, Reactions, Side, State, Structure, Transition, TransitionKind};
+use rocking::{Impulse, Outputs, Reactions, State, Structure, Transition};
 use serde::Serialize;
 use std::{
     io,
@@ -107,16 +107,6 @@ pub const EVENTS: [&str; 10] = [
 /// A line of the transitions.
 pub fn event_line(transition: &Transition) -> impl Serialize + use<> {
     let &Transition { time, kind, before, after } = transition;
-    let kind = match kind {
-        TransitionKind::Uplift(Side::Left) => "uplift left",
-        TransitionKind::Uplift(Side::Right) => "uplift right",
-        TransitionKind::Impact(Side::Left) => "impact left",
-        TransitionKind::Impact(Side::Right) => "impact right",
-        TransitionKind::Landing => "landing",
-        TransitionKind::Settling => "settling",
-        TransitionKind::Overturning(Side::Left) => "overturning left",
-        TransitionKind::Overturning(Side::Right) => "overturning right",
-    };
     let values = |State { u, u_dot, theta, theta_dot }| (u, u_dot, theta, theta_dot);
-    (time, kind, values(before), values(after))
+    (time, kind.name(), values(before), values(after))
 }

@@ -252,7 +252,7 @@ fn an_error_names_its_cause_and_exits_with_1() {
         assert!(message.starts_with(expected), "{arguments}: {message}");
     }
     let (_, message) = fail(folder.path(), "describe --parameters key.toml");
-    assert!(message.contains("unknown field `mass`"), "{message}");
+    assert!(message.contains("\"mass\" is unknown; these are known: m, m0, H, B, "), "{message}");
 }
 
 #[test]

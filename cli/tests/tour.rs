@@ -5,6 +5,7 @@
 //! code other than 0. `WRITE_TOUR=1 cargo test -p rocking-cli --test tour` writes it anew from its commands.
 
 #[path = "../../tests/layouts/mod.rs"]
+#[allow(dead_code)] // what else is known of each file
 mod layouts;
 
 use std::fmt::Write;

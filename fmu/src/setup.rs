@@ -39,7 +39,7 @@ impl Setup {
             record: contents.default_record().into(),
             placement: Placement::default(),
             extrapolate: false,
-            peaks: true,
+            peaks: false,
         }
     }
 

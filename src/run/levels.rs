@@ -112,7 +112,7 @@ pub fn compare(run: &Run) -> Result<Comparison, RunError> {
 
 fn respond(run: &Run) -> Result<(Response, History), RunError> {
     let (mut peaks, mut history) = (Peaks::new(&run.structure), History::new(run.structure.omega_u));
-    let finish = run.follow(&mut (&mut peaks, &mut history))?;
+    let finish = run.follow(&mut (&mut peaks.watch(), &mut history))?;
     let response = Response {
         detail: run.detail,
         peaks,
@@ -153,6 +153,12 @@ impl Verdict {
 }
 
 impl Comparison {
+    /// Steps and evaluations of the level `auto`, which others are measured by, if it can do the run.
+    pub fn cost_of_auto(&self) -> Option<f64> {
+        let auto = self.verdicts.iter().find(|verdict| verdict.response.detail == Detail::Auto);
+        auto.map(|auto| auto.response.cost() as f64)
+    }
+
     /// The cheapest level whose errors by every one of `criteria` are at most `within`; of those of about the same cost
     /// the one of the fewest equations.
     pub fn recommended(&self, within: f64, criteria: &[Criterion]) -> Option<&Verdict> {
