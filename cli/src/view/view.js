@@ -39,6 +39,14 @@
     return { ...state, phase, uplift: 2 * B * Math.sin(Math.abs(state.theta)), V_t: m * state.a_t, M_t: m * H * state.a_t };
   }
 
+  /** The peak of `name` with its sign, which the largest of the points about its `instant` has. */
+  function signed(name, instant) {
+    const i = countUpTo(time, instant);
+    const about = [...motion[name].subarray(Math.max(0, i - 3), i + 2)];
+    const largest = about.reduce((most, value) => (Math.abs(value) > Math.abs(most) ? value : most), 0);
+    return Math.sign(largest) * peaks[name].magnitude;
+  }
+
   // ---- Numbers
 
   const minus = (text) => text.replace("-", "−");
@@ -101,7 +109,7 @@
   const block = { width: 0.42 * Math.min(2 * B, H), height: 0.28 * Math.min(2 * B, H) };
   const largestMotion = Math.max(peaks.theta.magnitude, peaks.u.magnitude / H);
   const exaggerations = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].filter(
-    (factor) => factor === 1 || factor * largestMotion < 0.6,
+    (factor) => factor === 1 || (largestMotion > 0 && factor * largestMotion < 0.6),
   );
   let exaggeration = exaggerations.filter((factor) => factor === 1 || factor * largestMotion <= 0.25).at(-1);
 
@@ -314,9 +322,7 @@
       const g = element(svg, "g", { "clip-path": "url(#inside)" });
       element(g, "path", { class: "curve", "data-name": panel.name, style: `stroke:var(${panel.colour})`, d: path(motion[panel.name], y) });
       if (magnitude > 0) {
-        const value = stateAt(instant)[panel.name];
-        const signed = Math.sign(value) * magnitude;
-        element(g, "circle", { class: "peak", cx: across(instant), cy: y(signed), r: 3.5 });
+        element(g, "circle", { class: "peak", cx: across(instant), cy: y(signed(panel.name, instant)), r: 3.5 });
       }
       panel.dot = element(g, "circle", { r: 3.5, style: `fill:var(${panel.colour})` });
     });
