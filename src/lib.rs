@@ -25,7 +25,7 @@
 //! | [`pushover`] | Fig 1: equilibrium under a lateral force |
 //! | [`record`] | ground motion records: samples in memory, PEER AT2, CSV |
 //! | [`ground_motion`] | a record scaled, placed in time and followed whatever the steps |
-//! | [`run`] | a structure under a ground motion: exact peaks, levels compared, plans of many runs and their outcomes |
+//! | [`run`] | a structure under a ground motion: exact peaks, curves to draw, levels compared, plans of many runs and their outcomes |
 //! | [`fragility`] | fragility curve of many runs |
 //!
 //! In short, `examples/first_run.rs`:

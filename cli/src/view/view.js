@@ -234,7 +234,7 @@
       name: "a_t", meaning: "acceleration of the top", title: "a_t (g)", per: g, colour: "--blue",
       right: { meaning: "base shear", title: "V_t (kN)", factor: (m * g) / 1e3 },
     },
-  ].filter(({ name }) => name !== "a_g" || peaks.a_g.magnitude > 0);
+  ].filter(({ name }) => ["theta", "a_t"].includes(name) || peaks[name].magnitude > 0);
   const kinds = [
     { name: "uplift", colour: "--green", is: (kind) => kind.startsWith("uplift") },
     { name: "impact", colour: "--orange", is: (kind) => kind.startsWith("impact") },
@@ -302,7 +302,7 @@
       const y = (value) => (top + bottom) / 2 - ((value / panel.per / most) * (bottom - top)) / 2;
       panel.y = y;
       for (const { value } of times) element(svg, "line", { class: "grid", x1: across(value), x2: across(value), y1: top, y2: bottom });
-      for (const { value, text } of ticks(-most, most, Math.max(2, (bottom - top) / 30))) {
+      for (const { value, text } of ticks(-most, most, Math.max(2, (bottom - top) / 24))) {
         const line = y(value * panel.per);
         element(svg, "line", { class: "grid", x1: left, x2: left + chart.width, y1: line, y2: line });
         element(svg, "text", { x: left - 6, y: line + 4, "text-anchor": "end" }, text);
@@ -313,7 +313,7 @@
         const { factor } = panel.right;
         element(svg, "line", { class: "axis", x1: edge, x2: edge, y1: top, y2: bottom });
         element(svg, "text", { x: edge, y: top - 8, "text-anchor": "end" }, titleOf(panel.right));
-        for (const { value, text } of ticks(-most * factor, most * factor, Math.max(2, (bottom - top) / 30))) {
+        for (const { value, text } of ticks(-most * factor, most * factor, Math.max(2, (bottom - top) / 24))) {
           const line = y((value / factor) * panel.per);
           element(svg, "line", { class: "axis", x1: edge, x2: edge + 4, y1: line, y2: line });
           element(svg, "text", { x: edge + 7, y: line + 4 }, text);
