@@ -231,6 +231,16 @@ def test_an_estimate_shows_its_numbers(run, pacoima_record):
     assert np.abs(np.array(marks) - expected).max() < 5e-3
 
 
+def test_any_title_can_be_drawn(run):
+    title = "</text><script>throw 1</script> & \x01\x1f\uffff " + "long " * 60
+    header = f"PEER\n{title}\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 4, DT= .0100 SEC,\n"
+    (run.folder / "title.AT2").write_text(header + " 0 0.1 -0.1 0\n")
+    for picture in ("title.svg", "title.png"):
+        run("simulate", "--record", "title.AT2", "--picture", picture)
+    shown = read(run.folder / "title.svg").words[0][0]
+    assert shown.startswith("</text><script>throw 1</script> & ") and shown.endswith("…")
+
+
 def test_a_picture_is_svg_or_png(exporter, tmp_path):
     done = subprocess.run([exporter, "pushover", "--picture", "push.pdf"], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 2 and ".svg or .png is needed" in done.stderr

@@ -11,9 +11,6 @@ import pytest
 from test_sweep import RECORDS
 
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-if not CHROMIUM:
-    pytest.skip("Chromium is not there: make browser", allow_module_level=True)
-sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not there: make browser")
 
 END = 4.0  # s
 HOSTILE = "</script><script>throw 1</script><!-- <b> & \" \u2028 </title>"
@@ -21,6 +18,9 @@ HOSTILE = "</script><script>throw 1</script><!-- <b> & \" \u2028 </title>"
 
 @pytest.fixture(scope="module")
 def browser():
+    sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not there: make browser")
+    if not CHROMIUM:
+        pytest.skip("Chromium is not there: make browser")
     with sync_api.sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM)
         yield browser

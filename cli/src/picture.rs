@@ -46,6 +46,10 @@ const LARGE: f64 = 14.0;
 pub const TEXT: f64 = 11.5;
 pub const SMALL: f64 = 11.0;
 
+/// Characters of a title, and of the line below it, that fit.
+const LONGEST_TITLE: usize = 90;
+const LONGEST_ABOUT: usize = 125;
+
 /// Height of a title, pixels.
 pub const TITLE: u32 = 52;
 
@@ -119,6 +123,8 @@ fn svg((width, height): (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<(
         draw(&area)?;
         area.present()?;
     }
+    // characters that XML cannot hold, from the name of a record
+    svg.retain(|c| !(c < ' ' && c != '\n' || matches!(c, '\u{fffe}' | '\u{ffff}')));
     // the size to show it at; the view box stays in drawing units
     let [drawn, shown] = [(wide, high), (width, height)].map(|(x, y)| format!("width=\"{x}\" height=\"{y}\""));
     Ok(svg.replacen(&drawn, &shown, 1))
@@ -175,9 +181,18 @@ pub fn dot<T>(at: T, radius: f64, colour: RGBColor) -> Circle<T, i32> {
 pub fn titled<'a>(area: &Area<'a>, title: &str, about: &str) -> anyhow::Result<Area<'a>> {
     let bold = words(LARGE, colour::INK);
     let bold = TextStyle { font: bold.font.style(FontStyle::Bold), ..bold };
-    area.draw(&Text::new(title.to_owned(), (px(18.0), px(18.0)), bold))?;
-    area.draw(&Text::new(about.to_owned(), (px(18.0), px(38.0)), words(TEXT, colour::GREY)))?;
+    area.draw(&Text::new(shortened(title, LONGEST_TITLE), (px(18.0), px(18.0)), bold))?;
+    let about = shortened(about, LONGEST_ABOUT);
+    area.draw(&Text::new(about, (px(18.0), px(38.0)), words(TEXT, colour::GREY)))?;
     Ok(area.split_vertically(px(f64::from(TITLE))).1)
+}
+
+/// The first characters of `text`.
+fn shortened(text: &str, most: usize) -> String {
+    match text.char_indices().nth(most) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.into(),
+    }
 }
 
 /// Room around the axes, pixels.

@@ -41,8 +41,8 @@ pub struct ViewArgs {
 /// that needs no more than [`MOST_POINTS`].
 const PARTS: [f64; 3] = [1e-4, 1e-3, 1e-2];
 
-/// About 4 MB.
-const MOST_POINTS: usize = 150_000;
+/// About 5 MB.
+const MOST_POINTS: usize = 200_000;
 
 /// Part of a peak that a value on the page is rounded to, and the same of time, s.
 const QUANTUM: f64 = 1e-5;

@@ -1,6 +1,6 @@
 //! A motion as points that straight lines join: what a picture of it is drawn from.
 //!
-//! Nothing is sampled at an interval: each stretch is halved until a bound says that its series leave the line between its
+//! Nothing is sampled at an interval: each stretch is divided until a bound says that its series leave the line between its
 //! ends by no more than is allowed. Where two points have the same instant there is a transition between them,
 //! or the record ends there.
 
@@ -10,8 +10,11 @@ use crate::outputs::Measure;
 use crate::piece::{Piece, Watch};
 use crate::{Outputs, Phase, Transition, extremes, taylor};
 
-/// How often a stretch of one polynomial is halved at most.
-const HALVINGS: u32 = 30;
+/// How often a stretch of one polynomial is divided at most.
+const DIVISIONS: u32 = 30;
+
+/// How far off, over what is allowed, a stretch is halved and not yet divided into as many parts as it takes.
+const NEARLY: f64 = 16.0;
 
 /// Part of its peak by which a_g may differ between the end of a piece and the start of the next without a jump.
 const ROUNDING: f64 = 1e-9;
@@ -98,7 +101,7 @@ impl Watch for Tracer {
             piece.series(Measure::At, &mut |from, arc, a_t| {
                 let [theta, u, a_t] = [&arc.theta, &arc.u, a_t].map(|series| arc.used(series));
                 let part = arc.span / span;
-                halve([theta, u, a_t], self.within, [0.0, arc.reach], HALVINGS, &mut |sigma| {
+                divide([theta, u, a_t], self.within, [0.0, arc.reach], DIVISIONS, &mut |sigma| {
                     between.push(from + sigma * part);
                 });
                 between.push(from + arc.reach * part);
@@ -127,20 +130,34 @@ impl Watch for Tracer {
 }
 
 /// Shows, in their order, the σ between `from` and `to` at which the polynomials have to be known so that they leave the
-/// lines between them by no more than `within`.
-fn halve(coefficients: [&[f64]; 3], within: [f64; 3], [from, to]: [f64; 2], halvings: u32, show: &mut impl FnMut(f64)) {
-    let is_within = |(coefficients, within): (&[f64], f64)| {
+/// lines between them by no more than `within`; `divisions` are left.
+fn divide(
+    coefficients: [&[f64]; 3],
+    within: [f64; 3],
+    [from, to]: [f64; 2],
+    divisions: u32,
+    show: &mut impl FnMut(f64),
+) {
+    let excess = |(coefficients, within): (&[f64], f64)| {
         let mut series = taylor::ZERO;
         let over = &mut series[..coefficients.len()];
         over.copy_from_slice(coefficients);
         taylor::stretch(over, from, to - from);
-        extremes::off_chord(over, 1.0) <= within
+        let off = extremes::off_chord(over, 1.0);
+        if off > 0.0 { off / within } else { 0.0 }
     };
-    if halvings == 0 || coefficients.into_iter().zip(within).all(is_within) {
+    let most = coefficients.into_iter().zip(within).map(excess).fold(0.0, f64::max);
+    if most <= 1.0 || divisions == 0 {
         return;
     }
-    let middle = 0.5 * (from + to);
-    halve(coefficients, within, [from, middle], halvings - 1, show);
-    show(middle);
-    halve(coefficients, within, [middle, to], halvings - 1, show);
+    // a part of 1/n is off by 1/n² where terms of higher order are small
+    let parts = if most < NEARLY { most.sqrt().ceil() } else { 2.0 };
+    let mut start = from;
+    for i in 1..parts as u32 {
+        let end = from + (to - from) * f64::from(i) / parts;
+        divide(coefficients, within, [start, end], divisions - 1, show);
+        show(end);
+        start = end;
+    }
+    divide(coefficients, within, [start, to], divisions - 1, show);
 }

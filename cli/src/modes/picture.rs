@@ -1,10 +1,12 @@
 //! The picture of a split response: rotations and accelerations of both modes over time, where the structure rocks.
-use crate::picture::{
-    Picture, TITLE, colour,
-    histories::{Histories, Line, Panel},
-    range, titled,
+use crate::{
+    picture::{
+        Picture, TITLE, colour,
+        histories::{Histories, Line, Panel},
+        range, titled,
+    },
+    talk::say,
 };
-use anyhow::Context;
 use plotters::style::RGBColor;
 use rocking::modal_split::{ModalAccelerations, Modes};
 
@@ -16,8 +18,10 @@ pub type Split = (f64, Modes, ModalAccelerations);
 /// Draws the modes of a response in its `stretches` of rocking about one pivot; `about` is the response that they are of.
 pub fn draw(picture: Picture, g: f64, stretches: &[Vec<Split>], about: &str) -> anyhow::Result<()> {
     let times = || stretches.iter().flatten().map(|at| at.0);
-    let (first, last) =
-        times().next().zip(times().next_back()).context("it does not rock: there is nothing to draw")?;
+    let Some((first, last)) = times().next().zip(times().next_back()) else {
+        say!("no picture: it does not rock");
+        return Ok(());
+    };
     let line = |name, colour: RGBColor, value: &dyn Fn(&Split) -> f64| {
         let parts = stretches.iter().map(|stretch| stretch.iter().map(|at| (at.0, value(at))).collect());
         Line { name, colour, parts: parts.collect() }

@@ -39,6 +39,14 @@
     return { ...state, phase, uplift: 2 * B * Math.sin(Math.abs(state.theta)), V_t: m * state.a_t, M_t: m * H * state.a_t };
   }
 
+  /** The peak of `name` with its sign, which the largest of the points about its `instant` has. */
+  function signed(name, instant) {
+    const i = countUpTo(time, instant);
+    const about = [...motion[name].subarray(Math.max(0, i - 3), i + 2)];
+    const largest = about.reduce((most, value) => (Math.abs(value) > Math.abs(most) ? value : most), 0);
+    return Math.sign(largest) * peaks[name].magnitude;
+  }
+
   // ---- Numbers
 
   const minus = (text) => text.replace("-", "−");
@@ -101,7 +109,7 @@
   const block = { width: 0.42 * Math.min(2 * B, H), height: 0.28 * Math.min(2 * B, H) };
   const largestMotion = Math.max(peaks.theta.magnitude, peaks.u.magnitude / H);
   const exaggerations = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].filter(
-    (factor) => factor === 1 || factor * largestMotion < 0.6,
+    (factor) => factor === 1 || (largestMotion > 0 && factor * largestMotion < 0.6),
   );
   let exaggeration = exaggerations.filter((factor) => factor === 1 || factor * largestMotion <= 0.25).at(-1);
 
@@ -226,7 +234,7 @@
       name: "a_t", meaning: "acceleration of the top", title: "a_t (g)", per: g, colour: "--blue",
       right: { meaning: "base shear", title: "V_t (kN)", factor: (m * g) / 1e3 },
     },
-  ].filter(({ name }) => name !== "a_g" || peaks.a_g.magnitude > 0);
+  ].filter(({ name }) => ["theta", "a_t"].includes(name) || peaks[name].magnitude > 0);
   const kinds = [
     { name: "uplift", colour: "--green", is: (kind) => kind.startsWith("uplift") },
     { name: "impact", colour: "--orange", is: (kind) => kind.startsWith("impact") },
@@ -294,7 +302,7 @@
       const y = (value) => (top + bottom) / 2 - ((value / panel.per / most) * (bottom - top)) / 2;
       panel.y = y;
       for (const { value } of times) element(svg, "line", { class: "grid", x1: across(value), x2: across(value), y1: top, y2: bottom });
-      for (const { value, text } of ticks(-most, most, Math.max(2, (bottom - top) / 30))) {
+      for (const { value, text } of ticks(-most, most, Math.max(2, (bottom - top) / 24))) {
         const line = y(value * panel.per);
         element(svg, "line", { class: "grid", x1: left, x2: left + chart.width, y1: line, y2: line });
         element(svg, "text", { x: left - 6, y: line + 4, "text-anchor": "end" }, text);
@@ -305,7 +313,7 @@
         const { factor } = panel.right;
         element(svg, "line", { class: "axis", x1: edge, x2: edge, y1: top, y2: bottom });
         element(svg, "text", { x: edge, y: top - 8, "text-anchor": "end" }, titleOf(panel.right));
-        for (const { value, text } of ticks(-most * factor, most * factor, Math.max(2, (bottom - top) / 30))) {
+        for (const { value, text } of ticks(-most * factor, most * factor, Math.max(2, (bottom - top) / 24))) {
           const line = y((value / factor) * panel.per);
           element(svg, "line", { class: "axis", x1: edge, x2: edge + 4, y1: line, y2: line });
           element(svg, "text", { x: edge + 7, y: line + 4 }, text);
@@ -314,9 +322,7 @@
       const g = element(svg, "g", { "clip-path": "url(#inside)" });
       element(g, "path", { class: "curve", "data-name": panel.name, style: `stroke:var(${panel.colour})`, d: path(motion[panel.name], y) });
       if (magnitude > 0) {
-        const value = stateAt(instant)[panel.name];
-        const signed = Math.sign(value) * magnitude;
-        element(g, "circle", { class: "peak", cx: across(instant), cy: y(signed), r: 3.5 });
+        element(g, "circle", { class: "peak", cx: across(instant), cy: y(signed(panel.name, instant)), r: 3.5 });
       }
       panel.dot = element(g, "circle", { r: 3.5, style: `fill:var(${panel.colour})` });
     });
