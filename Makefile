@@ -5,7 +5,7 @@
 # make coupling  regenerate docs/coupling.md and its figures (minutes)
 # make bench   criterion benchmark of a whole record, and one step over it through fmpy
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
-# make fuzz    ten million hostile calls of the C interface, on all cores (CI makes 200,000)
+# make fuzz    ten million hostile calls of the C interface and as many damaged records, on all cores (CI: 200,000 and 40,000)
 # make records the ground motion records alone, for the charts: cargo run --release -p study -- precision
 #
 # Each does all its own set-up; needed are cargo and python3 (3.11 or later).
@@ -29,7 +29,7 @@ install = $(sudo) apt-get -qq update && \
 .PHONY: demo test browser dist report coupling bench licenses fuzz records exporter mingw hosts
 
 demo: .venv/ready out/mcmanus.fmu out/evison.fmu
-	cp $(RECORDS)/$(PACOIMA) out/
+	cp $(RECORDS)/$(PACOIMA) $(RECORDS)/$(EL_CENTRO) out/
 	$(PYTHON) examples/first_run.py out/mcmanus.fmu
 
 test: .venv/ready exporter hosts dist
@@ -78,6 +78,7 @@ licenses:
 
 fuzz:
 	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release --package flexible-rocking-fmu --test hostile_calls -- --nocapture
+	FUZZ_RECORDS=$${FUZZ_RECORDS:-10000000} cargo test --release --package rocking --test records -- --nocapture no_mutation
 
 exporter:
 	cargo build --release

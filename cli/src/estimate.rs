@@ -4,8 +4,9 @@ mod picture;
 use crate::{
     output_files::OutputFiles,
     picture::PictureFile,
-    quantities::{Line, print_columns, print_csv},
+    quantities::{Line, write_columns},
     record_args::RecordArgs,
+    results::{Format, FormatArgs, print, print_rows},
     significant::significant,
     structure_args::StructureArgs,
 };
@@ -16,8 +17,8 @@ use rocking::{
     record::Record,
     response_spectrum::spectral_acceleration,
 };
-use std::f64::consts::TAU;
-use std::io::{Write, stdout};
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::fmt::{self, Write};
 
 /// What to estimate.
 #[derive(clap::Args)]
@@ -33,21 +34,22 @@ pub struct EstimateArgs {
     #[arg(
         long,
         value_name = "LIST",
+        num_args = 1..,
         value_delimiter = ',',
+        allow_negative_numbers = true,
         default_values_t = [0.1, 0.25, 0.5, 0.75, 0.9],
         value_parser = amplitude
     )]
     amplitudes: Vec<f64>,
-    /// Print the values as CSV
-    #[arg(long)]
-    csv: bool,
+    #[command(flatten)]
+    results: FormatArgs,
     /// Draw the record's response spectra, the demand and the effective frequency
     #[arg(long, value_name = "FILE.svg|png")]
     picture: Option<PictureFile>,
 }
 
 fn amplitude(text: &str) -> Result<f64, String> {
-    match text.parse() {
+    match text.trim().parse() {
         Ok(part) if part > 0.0 && part < 1.0 => Ok(part),
         _ => Err("a number between 0 and 1 is needed: beyond, the structure does not come down".into()),
     }
@@ -56,8 +58,7 @@ fn amplitude(text: &str) -> Result<f64, String> {
 /// Prints the demands, term by term, and the effective frequencies.
 pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
-    let g = structure.parameters().g;
-    let record = args.ground.load(g)?;
+    let record = args.ground.load(structure.parameters().g)?;
     let inputs = args.structure.input().into_iter().chain(args.ground.record.as_deref());
     let mut files = OutputFiles::of_inputs(inputs);
     let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
@@ -69,34 +70,54 @@ pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
     if let Some(picture) = picture {
         picture::draw(picture, &structure, record.as_ref(), &demand, &args.amplitudes)?;
     }
-    if args.csv {
-        let frequencies = args.amplitudes.iter().map(|part| Line {
+    if args.results.format == Format::Text {
+        return print(&text(args, &structure, record.as_ref(), &fixed_base, &rocking)?);
+    }
+    let frequencies = args.amplitudes.iter().filter_map(|&part| {
+        let theta = part * structure.tan_alpha_cg;
+        (theta < FRAC_PI_2).then(|| Line {
             name: format!("f_r({part})"),
-            value: effective_frequency(&structure, part * structure.tan_alpha_cg),
+            value: effective_frequency(&structure, theta),
             unit: "Hz",
             equation: "Eq 14",
             description: format!("effective frequency of rocking at theta = {part} tan(alpha_cg)"),
-        });
-        return print_csv(fixed_base.into_iter().chain(rocking).chain(frequencies));
-    }
-    let mut out = stdout().lock();
-    if let Some(record) = &record {
+        })
+    });
+    let lines: Vec<_> = fixed_base.into_iter().chain(rocking).chain(frequencies).collect();
+    print_rows(args.results.format, &lines)
+}
+
+/// The values in columns for people.
+fn text(
+    args: &EstimateArgs,
+    structure: &Structure,
+    record: Option<&Record>,
+    fixed_base: &[Line],
+    rocking: &[Line],
+) -> Result<String, fmt::Error> {
+    let mut out = String::new();
+    let g = structure.parameters().g;
+    if let Some(record) = record {
         writeln!(out, "Ground motion: {}", record.title())?;
-        print_columns(&mut out, &fixed_base, g)?;
+        write_columns(&mut out, fixed_base, g)?;
         writeln!(out, "\nDemand while rocking")?;
     } else {
         writeln!(out, "Demand while rocking, the ground at rest")?;
     }
-    print_columns(&mut out, &rocking, g)?;
+    write_columns(&mut out, rocking, g)?;
     writeln!(out, "\nEffective frequency of rocking, Eq 14")?;
     writeln!(out, "  {:>19} {:>12} {:>12} {:>12}", "theta/tan(alpha_cg)", "theta (rad)", "f_r (Hz)", "1/f_r (s)")?;
     for part in &args.amplitudes {
         let theta = part * structure.tan_alpha_cg;
-        let f_r = effective_frequency(&structure, theta);
+        if theta >= FRAC_PI_2 {
+            writeln!(out, "  {part:>19} {:>12} beyond pi/2: overturned", significant(theta))?;
+            continue;
+        }
+        let f_r = effective_frequency(structure, theta);
         let [theta, frequency, period] = [theta, f_r, 1.0 / f_r].map(significant);
         writeln!(out, "  {part:>19} {theta:>12} {frequency:>12} {period:>12}")?;
     }
-    Ok(())
+    Ok(out)
 }
 
 /// The ground motion, and what it asks of the structure on a fixed base.

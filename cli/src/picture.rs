@@ -83,6 +83,11 @@ impl FromStr for PictureFile {
 }
 
 impl PictureFile {
+    /// An SVG file.
+    pub fn svg(path: PathBuf) -> PictureFile {
+        PictureFile { path, is_png: false }
+    }
+
     /// Begins the file.
     pub fn create(&self, files: &mut OutputFiles) -> anyhow::Result<Picture> {
         Ok(Picture { path: self.path.clone(), is_png: self.is_png, file: files.create(&self.path)? })

@@ -2,8 +2,13 @@
 mod picture;
 
 use crate::{
-    output_files::OutputFiles, picture::PictureFile, significant::significant, structure_args::StructureArgs,
-    tables::Table, talk::say,
+    output_files::OutputFiles,
+    picture::PictureFile,
+    results::{Format, FormatArgs, print, print_rows},
+    significant::significant,
+    structure_args::StructureArgs,
+    tables::Table,
+    talk::say,
 };
 use anyhow::Context;
 use rocking::{
@@ -19,15 +24,20 @@ pub struct PushoverArgs {
     #[command(flatten)]
     structure: StructureArgs,
     /// Points on each of the two branches, full contact and rocking
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(2..))]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(2..=MOST_POINTS))]
     points: u32,
     /// Curve as CSV, `-` for standard output
     #[arg(short, long, value_name = "FILE.csv", default_value = "pushover.csv")]
     output: PathBuf,
+    #[command(flatten)]
+    results: FormatArgs,
     /// Draw force and moment against displacement
     #[arg(long, value_name = "FILE.svg|png")]
     picture: Option<PictureFile>,
 }
+
+/// Points on a branch, more than any curve needs.
+const MOST_POINTS: i64 = 1_000_000;
 
 const HEADINGS: [&str; 6] = ["phase", "theta[rad]", "u[m]", "delta_t[m]", "P[N]", "M[N.m]"];
 
@@ -41,6 +51,7 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
         .collect();
     let curve = curve.context(too_soft)?;
     let mut files = OutputFiles::of_inputs(args.structure.input());
+    args.results.reserve(&mut files);
     let mut table = Table::create(&mut files, &args.output, &HEADINGS)?;
     let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     curve.iter().try_for_each(|at| table.write(line(at)))?;
@@ -50,10 +61,16 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
         ("start of rocking", at_rotation(&structure, 0.0).context(too_soft)?),
         ("overturning", end),
     ];
+    let mut rows = Vec::new();
     for (name, corner) in corners {
-        let Equilibrium { theta, delta_t, force, moment, .. } = corner;
-        let [theta, delta_t, force, moment] = [theta, 1e3 * delta_t, force, moment].map(significant);
-        say!("{name:<16} delta_t {delta_t:>8} mm, theta {theta:>8} rad, P {force:>8} N, M {moment:>8} N.m");
+        let Equilibrium { theta, delta_t, force: P, moment: M, .. } = corner;
+        rows.push(Corner { name, delta_t, theta, P, M });
+    }
+    if args.results.format == Format::Text {
+        let text: String = rows.iter().map(Corner::line).collect();
+        if args.output == Path::new("-") { say!("{}", text.trim_end()) } else { print(&text)? }
+    } else {
+        print_rows(args.results.format, &rows)?;
     }
     if args.output != Path::new("-") {
         say!("curve            {}", args.output.display());
@@ -61,6 +78,24 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     match picture {
         Some(picture) => picture::draw(picture, &structure, &curve, corners.map(|corner| corner.1)),
         None => Ok(()),
+    }
+}
+
+/// A corner of the curve, in SI units.
+#[derive(Serialize)]
+struct Corner {
+    name: &'static str,
+    delta_t: f64,
+    theta: f64,
+    P: f64,
+    M: f64,
+}
+
+impl Corner {
+    fn line(&self) -> String {
+        let &Corner { name, delta_t, theta, P, M } = self;
+        let [theta, delta_t, force, moment] = [theta, 1e3 * delta_t, P, M].map(significant);
+        format!("{name:<16} delta_t {delta_t:>8} mm, theta {theta:>8} rad, P {force:>8} N, M {moment:>8} N.m\n")
     }
 }
 

@@ -1,5 +1,8 @@
 //! The scene that a command simulates: a ground motion record or free vibration, and the initial values.
-use crate::record_args::{RecordArgs, positive};
+use crate::{
+    record_args::{RecordArgs, positive},
+    significant::short,
+};
 use clap::{
     ArgGroup,
     builder::{PossibleValuesParser, TypedValueParser},
@@ -14,14 +17,15 @@ pub struct GroundArgs {
     #[command(flatten)]
     pub record: RecordArgs,
     /// Simulated time; the ground is at rest after the record's end [default: until the structure stands for good, or still rocks 100/p_l after the record]
-    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     duration: Option<f64>,
     /// Free vibration over this time instead of a record
     #[arg(
         long,
         value_name = "SECONDS",
         value_parser = positive,
-        conflicts_with_all = ["unit", "time_scale", "scale", "duration"]
+        allow_negative_numbers = true,
+        conflicts_with_all = ["unit", "dt", "column", "ignore_npts", "time_scale", "scale", "duration"]
     )]
     free: Option<f64>,
 }
@@ -81,6 +85,14 @@ impl GroundArgs {
     pub fn end(&self, ground: &Record) -> End {
         let duration = self.duration.or(self.free);
         duration.map_or(End::AtRest, |duration| End::At(ground.start() + duration))
+    }
+
+    /// What the ground does, in a line.
+    pub fn title(&self, ground: &Record) -> String {
+        match self.free {
+            Some(duration) => format!("none, free vibration over {} s", short(duration)),
+            None => format!("{}, {} samples", ground.title(), ground.times().len()),
+        }
     }
 
     /// What stands for the interval of the samples (s) in free vibration, which has none.

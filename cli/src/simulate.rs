@@ -5,13 +5,15 @@ use crate::{
     output_files::OutputFiles,
     picture::PictureFile,
     record_args::positive,
+    results::{Format, FormatArgs, print},
     scene_args::{GroundArgs, InitialArgs, LevelArgs},
+    significant::short,
     structure_args::StructureArgs,
-    summary::Summary,
+    summary::{self, Summary, instant},
     tables::{self, Table},
     talk::{self, say},
 };
-use fmu_export::significant::significant;
+use anyhow::ensure;
 use rocking::{
     Transition,
     record::Record,
@@ -38,14 +40,17 @@ pub struct SimulateArgs {
 #[command(next_help_heading = "Results")]
 struct ResultArgs {
     /// Output interval [default: the record's samples; 0.001 in free vibration]
-    #[arg(long, value_name = "SECONDS", value_parser = positive)]
-    dt: Option<f64>,
-    /// Response as CSV, `-` for standard output [default: the record's name and _response.csv, in this folder]
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    interval: Option<f64>,
+    /// Response as CSV, `-` for standard output [default: the record's name and _response.csv, or free_vibration.csv, in
+    /// this folder]
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
     /// Transitions as CSV: instant, kind, state before and after
     #[arg(long, value_name = "FILE.csv")]
     events: Option<PathBuf>,
+    #[command(flatten)]
+    format: FormatArgs,
     /// Draw ground acceleration, uplift, acceleration and base shear over time, with marks at transitions
     #[arg(long, value_name = "FILE.svg|png")]
     picture: Option<PictureFile>,
@@ -56,7 +61,7 @@ impl SimulateArgs {
     fn output_times(&self, ground: &Record, end: End) -> impl Iterator<Item = f64> {
         let samples = ground.times();
         let last = samples.len() - 1;
-        let (samples, interval) = match self.results.dt.or(self.ground.free_vibration_interval()) {
+        let (samples, interval) = match self.results.interval.or(self.ground.free_vibration_interval()) {
             Some(dt) => (&samples[..1], dt),
             None => (samples, samples[last] - samples[last - 1]),
         };
@@ -68,6 +73,20 @@ impl SimulateArgs {
             .copied()
             .chain((1_u64..).map(move |i| from + i as f64 * interval))
             .take_while(move |time| *time < before)
+    }
+
+    /// Refuses an interval at which the table would have no end.
+    fn check_interval(&self, ground: &Record) -> anyhow::Result<()> {
+        const MOST_ROWS: f64 = 1e7;
+        let Some(interval) = self.results.interval else { return Ok(()) };
+        let duration = if let End::At(end) = self.ground.end(ground) { end } else { ground.end() } - ground.start();
+        let rows = duration / interval;
+        ensure!(
+            rows <= MOST_ROWS,
+            "--interval {interval:?} over {} s makes {rows:.0e} rows: {MOST_ROWS:.0e} are possible",
+            short(duration)
+        );
+        Ok(())
     }
 
     fn output_path(&self) -> PathBuf {
@@ -87,10 +106,12 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let (initial, end) = (args.initial.state(), args.ground.end(&ground));
     let run = Run { initial, detail, tolerance, end, ..Run::new(structure, &ground) };
 
+    args.check_interval(&ground)?;
     let output = args.output_path();
     let inputs = args.structure.input().into_iter().chain(args.ground.record.record.as_deref());
     let mut files = OutputFiles::of_inputs(inputs);
-    let mut response = Table::create(&mut files, &output, &tables::RESPONSE)?;
+    args.results.format.reserve(&mut files);
+    let mut response = Table::create(&mut files, &output, &tables::response_headings(&structure, ground.title()))?;
     let events = args.results.events.as_deref();
     let mut events = events.map(|path| Table::create(&mut files, path, &tables::EVENTS)).transpose()?;
     let picture = args.results.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
@@ -118,10 +139,22 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     rows.and(written)?;
     response.finish()?;
     events.map_or(Ok(()), Table::finish)?;
-    say!("{}, {} to {} s", ground.title(), significant(ground.start()), significant(finish.motion.time));
-    summary.print(&peaks, &finish);
+    let (start, end) = (instant(ground.start()), instant(finish.motion.time));
+    if args.results.format.format == Format::Text {
+        let text = format!("{}, {start} to {end} s\n{}", ground.title(), summary.text(&peaks, &finish)?);
+        // What goes to standard output stays one table.
+        if output == Path::new("-") { say!("{}", text.trim_end()) } else { print(&text)? }
+    } else {
+        summary.print(args.results.format.format, &peaks, ground.title(), ground.start(), &finish)?;
+    }
+    if summary::shows_no_motion(&peaks) {
+        say!("nothing moves: the ground is at rest and the structure stands; see --record, --theta-0, --u-0");
+    }
     if output != Path::new("-") {
         say!("response       {}", output.display());
+    }
+    if let Some(events) = &args.results.events {
+        say!("transitions    {}", events.display());
     }
     match picture {
         Some(picture) => picture::draw(picture, &run),
