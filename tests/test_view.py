@@ -33,7 +33,7 @@ def view(exporter, pacoima_record, tmp_path_factory):
     folder = tmp_path_factory.mktemp("view")
     scene = ["--record", pacoima_record, "--duration", str(END)]
     subprocess.run([exporter, "view", *scene, "-o", "view.html"], cwd=folder, check=True)
-    subprocess.run([exporter, "simulate", *scene, "--dt", "1e-4", "-o", "response.csv", "--events", "events.csv"],
+    subprocess.run([exporter, "simulate", *scene, "--interval", "1e-4", "-o", "response.csv", "--events", "events.csv"],
                    cwd=folder, check=True)
     return folder / "view.html", pd.read_csv(folder / "response.csv"), pd.read_csv(folder / "events.csv")
 
