@@ -260,7 +260,7 @@ mod tests {
             r#"<Item name="rocking left" value="2"/>"#,
             r#"<String start="pulse &amp; rest.csv"/>"#,
             r#"description="whether largest magnitudes are watched" causality="parameter" variability="fixed" initial="exact">
-      <Boolean start="true"/>"#,
+      <Boolean start="false"/>"#,
             r#"exact: within steps, too" causality="local" variability="continuous" initial="calculated">
       <Real unit="rad"/>"#,
             r#"<DefaultExperiment startTime="0.0" tolerance="1e-9"/>"#,
