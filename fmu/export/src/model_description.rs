@@ -259,7 +259,7 @@ mod tests {
       <Enumeration declaredType="Phase"/>"#,
             r#"<Item name="rocking left" value="2"/>"#,
             r#"<String start="pulse &amp; rest.csv"/>"#,
-            r#"description="whether largest magnitudes are watched" causality="parameter" variability="fixed" initial="exact">
+            r#"description="whether the largest magnitudes theta_max, u_max, ... are watched for" causality="parameter" variability="fixed" initial="exact">
       <Boolean start="false"/>"#,
             r#"exact: within steps, too" causality="local" variability="continuous" initial="calculated">
       <Real unit="rad"/>"#,
