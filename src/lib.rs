@@ -25,7 +25,7 @@
 //! | [`demand`], [`response_spectrum`] | Eqs 21–24: demands without a time history |
 //! | [`intensity`] | PGA, PGV, S_a: how strong a ground motion is |
 //! | [`pushover`] | Fig 1: equilibrium under a lateral force |
-//! | [`record`] | ground motion records: samples in memory, PEER AT2, CSV |
+//! | [`record`] | ground motion records: samples in memory, and files as archives publish them |
 //! | [`ground_motion`] | a record scaled, placed in time and followed whatever the steps |
 //! | [`run`] | a structure under a ground motion: exact peaks, curves to draw, levels compared, plans of many runs, their outcomes and exceedances |
 //! | [`fragility`] | fragility curve of many runs, and how sure it is |

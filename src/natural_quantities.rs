@@ -11,7 +11,7 @@
 //! What is given together with what it stands for is refused: neither of the two is right for certain.
 
 use crate::parameters::{PARAMETERS, Parameters};
-use crate::quantity::OutOfRange;
+use crate::quantity::{OutOfRange, with_unit};
 use crate::structure::{DERIVED, Derived};
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use std::fmt;
@@ -64,7 +64,8 @@ pub enum GivenError {
     OutOfRange(OutOfRange),
     /// More numbers than are free.
     #[error(
-        "{natural} = {value} {unit} is given beside {}: {natural} determines {determined}, leave one of them out",
+        "{natural} = {} is given beside {}: {natural} determines {determined}, leave one of them out",
+        with_unit(*value, unit),
         with.join(" and ")
     )]
     OverDetermined {
@@ -90,7 +91,7 @@ pub enum GivenError {
         ways: Vec<String>,
     },
     /// A natural quantity asks for a parameter that is impossible.
-    #[error("{natural} = {value} {unit} does not fit: {cause}")]
+    #[error("{natural} = {} does not fit: {cause}", with_unit(*value, unit))]
     Impossible {
         /// The natural quantity.
         natural: &'static str,
@@ -103,8 +104,9 @@ pub enum GivenError {
     },
     /// The masses alone turn too slowly for this frequency parameter.
     #[error(
-        "p_l = {p_l} rad/s does not fit: it would take a negative J0; with these masses, H and B it is {largest} rad/s \
-         at most"
+        "p_l = {} does not fit: it would take a negative J0; with these masses, H and B it is {} at most",
+        with_unit(*p_l, "rad/s"),
+        with_unit(*largest, "rad/s")
     )]
     TooFast {
         /// The refused value, rad/s.

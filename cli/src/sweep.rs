@@ -17,6 +17,7 @@ use anyhow::{Context, bail};
 use file::Sweep;
 use indicatif::ProgressStyle;
 use rayon::{ThreadPoolBuilder, prelude::*};
+use rocking::quantity::with_unit;
 use rocking::run::{exceedances, outcome::Outcome, plan::Case, plan::Plan};
 use rows::Rows;
 use std::{num::NonZeroUsize, path::PathBuf, sync::Mutex, time::Instant};
@@ -109,7 +110,7 @@ fn report_failures(plan: &Plan, keys: &[Uuid], outcomes: &[Outcome]) -> anyhow::
     let failed = || (0..plan.len()).filter(|index| matches!(outcomes[*index], Outcome::Failed { .. }));
     let Some(first) = failed().next() else { return Ok(()) };
     let (count, Case { population, motion, scale, .. }) = (failed().count(), plan.case(first));
-    let (name, motion, key) = (population.name(), motion.name(), keys[first]);
+    let (name, motion, scale, key) = (population.name(), motion.name(), with_unit(scale, "1"), keys[first]);
     bail!("{count} of {} runs failed; the first: {name}, {motion}, scale {scale}, see row {key}", plan.len())
 }
 

@@ -380,8 +380,7 @@ fn rows_and_picture_are_two_files() {
     let folder = sweep(SWEEP);
     let (code, message) = fail(folder.path(), "sweep sweep.toml -o z.svg");
     assert_eq!(code, 1);
-    let expected =
-        "error: picture of the sweep: z.svg: something else is written there, too; name another file\n";
+    let expected = "error: picture of the sweep: z.svg: something else is written there, too; name another file\n";
     assert_eq!(message, expected);
     assert!(!folder.path().join("z.svg").exists());
 }

@@ -24,8 +24,7 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
         let last = text.lines().take(LONGEST_HEADER).count().max(1);
         return Err(bad(last, "no line of numbers up to here; two or more samples are needed"));
     };
-    let layout =
-        Layout::of(&mut numbered(text).skip(first - 1).map(|(_, line)| line).filter(|line| !is_comment(line)), how);
+    let layout = Layout::of(numbered(text).skip(first - 1).map(|(_, line)| line).filter(|line| !is_comment(line)), how);
     let fields = layout.fields(sample);
     let count = if fields.len() > 1 && fields.ends_with(&[""]) { fields.len() - 1 } else { fields.len() };
     let before: Vec<&str> = text.lines().take(first - 1).filter(|line| !line.trim().is_empty()).collect();
@@ -114,7 +113,7 @@ fn unquoted(field: &str) -> &str {
 impl Layout {
     /// That of lines of numbers. A semicolon or a tab separates wherever there is one; a comma separates unless what it
     /// would separate is no number, or the user says that there is one column and a line has one comma and no point.
-    fn of<'a>(lines: &mut dyn Iterator<Item = &'a str>, how: &Reading) -> Layout {
+    fn of<'a>(lines: impl Iterator<Item = &'a str>, how: &Reading) -> Layout {
         const LOOKED_AT: usize = 1000;
         let lines: Vec<_> = lines.filter(|line| !line.trim().is_empty()).take(LOOKED_AT).collect();
         let separator = [';', '\t'].into_iter().find(|separator| lines[0].contains(*separator));

@@ -5,6 +5,7 @@ use super::{End, Run};
 use crate::engine::DEFAULT_TOLERANCE;
 use crate::intensity::{IntensityMeasure, peak_velocity};
 use crate::parameters::{MAX_SLENDERNESS, PARAMETERS, ParameterError};
+use crate::quantity::with_unit;
 use crate::record::Record;
 use crate::response_spectrum::spectral_acceleration;
 use crate::state::InitialStateError;
@@ -149,7 +150,7 @@ pub enum PlanError {
     #[error(transparent)]
     Initial(#[from] InitialStateError),
     /// A number that all runs have in common is out of range.
-    #[error("{name} = {value} is out of range: {needed} is needed")]
+    #[error("{name} = {} is out of range: {needed} is needed", with_unit(*value, "1"))]
     Condition {
         /// What it is called.
         name: &'static str,
@@ -446,7 +447,7 @@ fn check_list(name: &str, values: &[f64]) -> Result<(), PlanError> {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     match sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => Err(PlanError::Repeated(format!("{name} = {}", pair[0]))),
+        Some(pair) => Err(PlanError::Repeated(format!("{name} = {}", with_unit(pair[0], "1")))),
         None if values.is_empty() => Err(PlanError::Empty(name.into())),
         None => Ok(()),
     }
