@@ -261,7 +261,7 @@ mod tests {
             r#"<String start="pulse &amp; rest.csv"/>"#,
             r#"description="whether the largest magnitudes theta_max, u_max, ... are watched for" causality="parameter" variability="fixed" initial="exact">
       <Boolean start="false"/>"#,
-            r#"exact: within steps, too" causality="local" variability="continuous" initial="calculated">
+            r#"exact: within steps, too; NaN unless peaks is true" causality="local" variability="continuous" initial="calculated">
       <Real unit="rad"/>"#,
             r#"<DefaultExperiment startTime="0.0" tolerance="1e-9"/>"#,
         ] {
