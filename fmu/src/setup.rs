@@ -25,6 +25,8 @@ pub struct Setup {
     pub(crate) extrapolate: bool,
     /// Whether peaks are watched.
     pub(crate) peaks: bool,
+    /// Whether it is watched what the motion goes beyond.
+    pub(crate) validity: bool,
 }
 
 impl Setup {
@@ -41,6 +43,7 @@ impl Setup {
             placement: Placement::default(),
             extrapolate: false,
             peaks: true,
+            validity: false,
         }
     }
 
