@@ -58,7 +58,7 @@ def main() -> None:
     def simulate(**start_values) -> np.ndarray:
         names = ["a_ground", "a_t", "uplift", "a_t_max", "uplift_max", "transitions", "chi", "alpha_cg"]
         return fmpy.simulate_fmu(arguments.fmu, stop_time=STOP_TIME, output_interval=INTERVAL, output=names,
-                                 start_values=PACOIMA_DAM | start_values)
+                                 start_values=PACOIMA_DAM | {"peaks": True} | start_values)
 
     result, fixed = simulate(), simulate(detail=FIXED_BASE)
     end = result[-1]

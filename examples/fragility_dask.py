@@ -66,6 +66,7 @@ class RockingStructure(WorkerPlugin):
             instance.reset()
             instance.setupExperiment()
             instance.setString([reference["record"]], [record])
+            instance.setBoolean([reference["peaks"]], [True])
             instance.setReal([reference[name] for name in start_values], list(start_values.values()))
             instance.enterInitializationMode()
             instance.exitInitializationMode()

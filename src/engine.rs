@@ -225,7 +225,8 @@ impl Engine {
 
     /// The outputs now under `load`; once overturned, those of the instant before.
     pub fn outputs(&self, load: Load) -> Outputs {
-        self.sample(load).outputs()
+        let Motion { phase, state, .. } = &self.motion;
+        self.level.get().outputs(&self.structure, phase.in_motion(), state, load)
     }
 
     /// The reactions now under `load`; once overturned, those of the instant before.
@@ -436,7 +437,7 @@ fn bad_load(interval: f64, load: &LinearLoad) -> AdvanceError {
     let is_bad = |quantity: &&crate::Quantity<Load>| {
         ![load.value, load.at(interval)].iter().all(|load| (quantity.get)(load).is_finite())
     };
-    let bad = const { &LOADS }.iter().find(is_bad).expect("one of them is not");
+    let bad = LOADS.iter().find(is_bad).expect("one of them is not");
     let [value, slope] = [&load.value, &load.slope].map(bad.get);
     AdvanceError::Load { name: bad.name, unit: bad.unit, value, slope, interval }
 }

@@ -46,7 +46,7 @@ impl Ramp {
 }
 
 /// What may act, with units and ranges.
-pub const LOADS: [Quantity<Load>; 2] = [
+pub static LOADS: [Quantity<Load>; 2] = [
     quantity!(a_g["m/s2"] - 1e4, 1e4, "horizontal ground acceleration, positive to the right"),
     quantity!(F_t["N"] - 1e15, 1e15, "external horizontal force on the top mass, positive to the right"),
 ];
@@ -116,6 +116,13 @@ impl LinearLoad {
     #[inline]
     pub(crate) fn on_top(self, structure: &Structure) -> Ramp {
         Ramp { value: self.value.on_top(structure), slope: self.slope.on_top(structure) }
+    }
+}
+
+/// Held.
+impl From<Load> for LinearLoad {
+    fn from(value: Load) -> LinearLoad {
+        LinearLoad { value, slope: Load::default() }
     }
 }
 

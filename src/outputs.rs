@@ -81,8 +81,8 @@ impl Outputs {
         let &State { u, u_dot, theta, theta_dot } = state;
         let (s, damping) = (phase.side().sign(), damping(structure, phase));
         let (sin, cos) = theta.sin_cos();
-        let a_t = g * sin - (damping * u_dot + structure.k * u) / m + F_t / m * cos;
-        let one_minus_cos = 2.0 * (0.5 * theta).sin().powi(2);
+        let a_t = g * sin + (F_t * cos - damping * u_dot - structure.k * u) / m;
+        let one_minus_cos = sin * sin / (1.0 + cos); // without cancellation: cos θ ≥ 0
         Outputs {
             theta,
             u,

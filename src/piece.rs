@@ -77,22 +77,14 @@ pub struct Sample<'a> {
 impl Sample<'_> {
     /// The outputs; once overturned, those of the instant before.
     pub fn outputs(&self) -> Outputs {
-        self.level.outputs(self.structure, self.moving_phase(), &self.motion.state, self.load)
+        self.level.outputs(self.structure, self.motion.phase.in_motion(), &self.motion.state, self.load)
     }
 
     /// The reactions; once overturned, those of the instant before.
     pub fn reactions(&self) -> Reactions {
-        let (phase, state) = (self.moving_phase(), &self.motion.state);
+        let (phase, state) = (self.motion.phase.in_motion(), &self.motion.state);
         let accelerations = self.level.accelerations(self.structure, phase, state, self.load);
         Reactions::of(self.structure, phase, state, accelerations, self.load)
-    }
-
-    /// The phase, or that in which the structure overturned.
-    fn moving_phase(&self) -> Phase {
-        match self.motion.phase {
-            Phase::Overturned(side) => Phase::Rocking(side),
-            phase => phase,
-        }
     }
 }
 

@@ -77,6 +77,14 @@ impl Phase {
             Phase::Rocking(side) | Phase::Overturned(side) => side,
         }
     }
+
+    /// The same, or that in which the structure overturned.
+    pub(crate) fn in_motion(self) -> Phase {
+        match self {
+            Phase::Overturned(side) => Phase::Rocking(side),
+            phase => phase,
+        }
+    }
 }
 
 /// The initial values with their units and ranges, under their names in files and in the FMU.

@@ -26,6 +26,7 @@ def start(fmu, record="", detail="auto", **start_values) -> Instance:
     instance = fmu.instance()
     instance.slave.setString([fmu.variables["record"].valueReference], [str(record)])
     instance.slave.setInteger([fmu.variables["detail"].valueReference], [LEVELS[detail]])
+    instance.slave.setBoolean([fmu.variables["peaks"].valueReference], [True])
     return instance.initialize(**start_values)
 
 

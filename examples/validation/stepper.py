@@ -41,6 +41,7 @@ class Stepper:
         slave.reset()
         slave.setupExperiment(self.tolerance, 0.0, None)
         slave.setString([self.references["record"]], [str(record)])
+        slave.setBoolean([self.references["peaks"]], [True])
         slave.setReal([self.references[name] for name in start_values], list(start_values.values()))
         slave.enterInitializationMode()
         slave.exitInitializationMode()

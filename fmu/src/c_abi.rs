@@ -128,7 +128,7 @@ fn remedy(failure: &Failure) -> &'static str {
             DataType::Boolean => ": call fmi2GetBoolean or fmi2SetBoolean instead",
             DataType::String => ": call fmi2GetString or fmi2SetString instead",
         },
-        Failure::Fixed(_) | Failure::NotWatched(_) => ": set it before fmi2ExitInitializationMode, or call fmi2Reset",
+        Failure::Fixed(_) => ": set it before fmi2ExitInitializationMode, or call fmi2Reset",
         Failure::WrongPoint { .. } => ": step from there, or go back with fmi2SetFMUstate",
         Failure::PastStop { .. } => " given to fmi2SetupExperiment: shorten it",
         Failure::WrongSize { .. } => " (fmi2SerializedFMUstateSize)",

@@ -44,7 +44,7 @@ pub struct Condition {
 pub struct Course {
     /// The motion.
     pub motion: Motion,
-    /// Time since the start.
+    /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
     /// Peaks so far, if they are watched.
     pub peaks: Peaks,
@@ -68,7 +68,7 @@ pub(crate) struct Present {
 pub(crate) struct Model {
     pub engine: Engine,
     pub ground: Option<Arc<GroundRecord>>,
-    /// Time since the start.
+    /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
     pub peaks: Peaks,
     pub validity: Found,
@@ -162,11 +162,9 @@ impl Model {
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
         let Model { engine, ground, elapsed, .. } = self;
+        let Some(ground) = ground else { return engine.advance(step, inputs, watch) };
         let start = engine.motion().time;
-        let progress = match ground {
-            Some(ground) => setup.ground_motion(ground).advance(engine, *elapsed, step, inputs, watch)?,
-            None => engine.advance(step, inputs, watch)?,
-        };
+        let progress = setup.ground_motion(ground).advance(engine, *elapsed, step, inputs, watch)?;
         *elapsed = elapsed.and(if progress == Progress::Complete { step } else { engine.motion().time - start });
         Ok(progress)
     }

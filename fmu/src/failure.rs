@@ -101,9 +101,6 @@ pub enum Failure {
         "the FMU state was kept under another record = {0:?}: its samples are not those of the file that is there now"
     )]
     OtherRecord(String),
-    /// A peak that nobody watches.
-    #[error("{} is not watched while the parameter peaks is false", .0.name)]
-    NotWatched(&'static Variable),
     /// A fixed parameter, too late.
     #[error("{} is fixed once the simulation has started", .0.name)]
     Fixed(&'static Variable),

@@ -1,7 +1,6 @@
 //! The inputs: values, slopes, and how an input goes on of which nothing but a value is set.
 
 use rocking::load::LOADS;
-use rocking::quantity::Quantity;
 use rocking::{LinearLoad, Load};
 use serde::{Deserialize, Serialize};
 
@@ -12,7 +11,7 @@ pub struct Inputs {
     next: LinearLoad,
     /// What has been set of each since the last step, in the order of [`LOADS`].
     given: [Given; 2],
-    /// The slopes that the last step followed, of inputs of which nothing has been set since.
+    /// The slopes that the last step followed, which count for inputs of which nothing has been set since.
     followed: Load,
     /// Values when the last step began, and its duration, s; 0 before the first.
     before: (Load, f64),
@@ -35,26 +34,18 @@ impl Inputs {
         self.next.value
     }
 
-    /// Sets the value of one, which ends its slope.
-    pub(crate) fn set(&mut self, input: &Quantity<Load>, value: f64) {
-        (input.set)(&mut self.next.value, value);
-        (input.set)(&mut self.followed, 0.0);
-        let given = self.given(input);
-        if *given == Given::Nothing {
-            *given = Given::Value;
+    /// Sets the value of the input `which` of [`LOADS`], which ends its slope.
+    pub(crate) fn set(&mut self, which: usize, value: f64) {
+        (LOADS[which].set)(&mut self.next.value, value);
+        if self.given[which] == Given::Nothing {
+            self.given[which] = Given::Value;
         }
     }
 
-    /// Sets the slope of one over the next step.
-    pub(crate) fn set_slope(&mut self, input: &Quantity<Load>, slope: f64) {
-        (input.set)(&mut self.next.slope, slope);
-        (input.set)(&mut self.followed, 0.0);
-        *self.given(input) = Given::Slope;
-    }
-
-    fn given(&mut self, input: &Quantity<Load>) -> &mut Given {
-        let at = const { &LOADS }.iter().position(|load| load.name == input.name);
-        &mut self.given[at.expect("there are no other inputs")]
+    /// Sets the slope of the same over the next step.
+    pub(crate) fn set_slope(&mut self, which: usize, slope: f64) {
+        (LOADS[which].set)(&mut self.next.slope, slope);
+        self.given[which] = Given::Slope;
     }
 
     /// What they are over a step of `duration` (s). With `extrapolate`, one of which only the value is set goes on with
@@ -75,19 +66,19 @@ impl Inputs {
 
     /// What they are now and how they change: as they are about to, or as they just did.
     pub(crate) fn now(&self, extrapolate: bool) -> LinearLoad {
-        let LinearLoad { value, slope } = self.over(0.0, extrapolate);
-        let Load { a_g, F_t } = self.followed;
-        LinearLoad { value, slope: Load { a_g: slope.a_g + a_g, F_t: slope.F_t + F_t } }
+        let mut load = self.over(0.0, extrapolate);
+        for (input, _) in LOADS.iter().zip(self.given).filter(|(_, given)| *given == Given::Nothing) {
+            (input.set)(&mut load.slope, (input.get)(&self.followed));
+        }
+        load
     }
 
-    /// After a step of `duration` (s) that followed `load`.
-    pub(crate) fn after(load: LinearLoad, duration: f64) -> Inputs {
-        Inputs {
-            next: LinearLoad { value: load.at(duration), slope: Load::default() },
-            given: [Given::Nothing; 2],
-            followed: load.slope,
-            before: (load.value, duration),
-        }
+    /// Goes on after a step of `duration` (s) that followed `load`.
+    pub(crate) fn pass(&mut self, load: LinearLoad, duration: f64) {
+        self.next = LinearLoad { value: load.at(duration), slope: Load::default() };
+        self.given = [Given::Nothing; 2];
+        self.followed = load.slope;
+        self.before = (load.value, duration);
     }
 
     /// Whether calls can lead here.
@@ -95,8 +86,8 @@ impl Inputs {
         let Inputs { next: LinearLoad { value, slope }, followed, before: (before, passed), .. } = self;
         (0.0..f64::INFINITY).contains(passed)
             && LOADS.iter().all(|input| {
-                let slopes = (input.get)(slope) + (input.get)(followed);
-                [value, before].iter().all(|load| input.check((input.get)(load)).is_ok()) && slopes.is_finite()
+                [value, before].iter().all(|load| input.check((input.get)(load)).is_ok())
+                    && [slope, followed].iter().all(|slopes| (input.get)(slopes).is_finite())
             })
     }
 }

@@ -2,11 +2,11 @@
 
 use crate::condition::{Model, Present};
 use crate::failure::Failure;
-use crate::inputs::Inputs;
 use crate::logger::{Category, Logger, Status};
 use crate::resources::Archive;
-use crate::sensitivity::{Shown, sensitivities};
+use crate::sensitivity::sensitivities;
 use crate::setup::Setup;
+use crate::shown::Shown;
 use crate::snapshot::{self, Snapshots};
 use crate::state_machine::Stage;
 use crate::variables::{self, Causality, Source, VARIABLES, Variable};
@@ -118,71 +118,43 @@ impl Instance {
 
     /// All of the values, or none if one is refused.
     pub fn get_real(&mut self, references: &[u32], values: &mut [MaybeUninit<f64>]) -> Result<(), Failure> {
-        let mut is_computed = false;
-        let mut reaction = None;
+        let (mut is_computed, mut reaction) = (false, None);
         for reference in references {
             let variable = find(*reference)?;
             match variable.source {
                 Source::Input(_) | Source::Parameter(_) | Source::InitialValue(_) | Source::Placement(_) => (),
-                Source::Peak(_) if !self.now.setup.peaks => return Err(Failure::NotWatched(variable)),
-                Source::Reaction(_) => (reaction, is_computed) = (Some(variable), true),
-                Source::Output(_) | Source::Impulse(_) | Source::Derived(_) | Source::Ground | Source::Peak(_) => {
-                    is_computed = true;
-                }
-                Source::Overturning | Source::RecordDuration => is_computed = true,
-                Source::Worst(_) | Source::WorstInstant(_) => is_computed |= self.now.setup.validity,
-                Source::Gains
-                | Source::Integer(_)
+                Source::Integer(_)
+                | Source::Gains
                 | Source::Boolean(_)
                 | Source::Detail
                 | Source::Record
                 | Source::Switch(_) => {
                     return Err(Failure::WrongType(variable));
                 }
+                Source::Reaction(_) => (reaction, is_computed) = (Some(variable), true),
+                _ => is_computed = true,
             }
         }
         if is_computed {
             self.now.model(&self.archive)?;
         }
         let Present { setup, inputs, model, .. } = &self.now;
-        let acting = model.as_ref().map(|model| (model, model.load(setup, inputs.now(false)).value));
-        let reactions = acting.filter(|_| reaction.is_some()).map(|(model, load)| model.engine.reactions(load));
-        if let (Some(Reactions { R_h, R_v, R_m }), Some(variable), Some((model, _))) = (reactions, reaction, acting)
-            && !(R_h + R_v + R_m).is_finite()
-        {
-            return Err(Failure::NoReaction { variable, time: model.engine.motion().time });
+        let load = inputs.values();
+        let setting = |source: Source| match source {
+            Source::Input(which) => Some((LOADS[which].get)(&load)),
+            source => source.setting(setup),
+        };
+        let Some(model) = model.as_ref().filter(|_| is_computed) else {
+            return write(references, values, setting);
+        };
+        let shown = Shown::new(model, setup, model.load(setup, load.into()).value);
+        if let Some(variable) = reaction {
+            let Reactions { R_h, R_v, R_m } = shown.reactions();
+            if !(R_h + R_v + R_m).is_finite() {
+                return Err(Failure::NoReaction { variable, time: model.engine.motion().time });
+            }
         }
-        let (mut outputs, mut peaks, mut found) = (None, None, None);
-        for (reference, value) in references.iter().zip(values) {
-            let variable = find(*reference)?;
-            let known = match variable.source {
-                Source::Input(quantity) => Some((quantity.get)(&inputs.values())),
-                Source::Reaction(of) => reactions.as_ref().map(of),
-                Source::Worst(_) | Source::WorstInstant(_) if !setup.validity => Some(f64::NAN),
-                source => source.setting(setup).or_else(|| {
-                    let (model, load) = acting?;
-                    Some(match source {
-                        Source::Output(of) => of(outputs.get_or_insert_with(|| model.engine.outputs(load))),
-                        Source::Peak(of) => of(peaks.get_or_insert_with(|| model.peaks(setup, load))),
-                        Source::Worst(which) => {
-                            found.get_or_insert_with(|| model.validity(setup, load)).worst[which].value
-                        }
-                        Source::WorstInstant(which) => {
-                            found.get_or_insert_with(|| model.validity(setup, load)).worst[which].time
-                        }
-                        Source::Impulse(of) => of(&model.engine.motion().impulse),
-                        Source::Derived(derived) => (derived.value)(model.engine.structure()),
-                        Source::Ground => load.a_g,
-                        Source::Overturning if model.has_overturned() => model.engine.motion().time,
-                        Source::Overturning => setup.start_time,
-                        Source::RecordDuration => model.record_duration(setup),
-                        _ => return None,
-                    })
-                }),
-            };
-            value.write(known.expect("all that is asked for is a Real and has been computed"));
-        }
-        Ok(())
+        write(references, values, |source| shown.value(source).or_else(|| setting(source)))
     }
 
     /// Integers and enumerations.
@@ -242,7 +214,7 @@ impl Instance {
         for (reference, &value) in references.iter().zip(values) {
             let variable = find(*reference)?;
             match variable.source {
-                Source::Input(quantity) => quantity.check(value)?,
+                Source::Input(which) => LOADS[which].check(value)?,
                 Source::Parameter(_) | Source::InitialValue(_) | Source::Placement(_) if has_started => {
                     return Err(Failure::Fixed(variable));
                 }
@@ -255,7 +227,7 @@ impl Instance {
         let now = &mut self.now;
         for (reference, &value) in references.iter().zip(values) {
             match &find(*reference)?.source {
-                Source::Input(quantity) => now.inputs.set(quantity, value),
+                &Source::Input(which) => now.inputs.set(which, value),
                 source => {
                     source.set(&mut now.setup, value);
                     now.model = None;
@@ -322,19 +294,21 @@ impl Instance {
         orders: &[i32],
         values: &[f64],
     ) -> Result<(), Failure> {
-        let mut inputs = self.now.inputs;
         for ((reference, &order), &value) in references.iter().zip(orders).zip(values) {
             let variable = find(*reference)?;
-            let Source::Input(quantity) = variable.source else { return Err(Failure::NoInput(variable)) };
+            let Source::Input(_) = variable.source else { return Err(Failure::NoInput(variable)) };
             if order != 1 {
                 return Err(Failure::WrongOrder { variable, order });
             }
             if !value.is_finite() {
                 return Err(Failure::BadSlope { variable, value });
             }
-            inputs.set_slope(quantity, value);
         }
-        self.now.inputs = inputs;
+        for (reference, &slope) in references.iter().zip(values) {
+            if let Source::Input(which) = find(*reference)?.source {
+                self.now.inputs.set_slope(which, slope);
+            }
+        }
         Ok(())
     }
 
@@ -392,9 +366,9 @@ impl Instance {
                 return Err(Failure::BadSlope { variable, value });
             }
             match variable.source {
-                Source::Input(quantity) => {
-                    let sum = (quantity.get)(&direction) + value;
-                    (quantity.set)(&mut direction, sum);
+                Source::Input(which) => {
+                    let sum = (LOADS[which].get)(&direction) + value;
+                    (LOADS[which].set)(&mut direction, sum);
                 }
                 Source::Parameter(_) | Source::InitialValue(_) | Source::Placement(_) if is_initializing => {
                     *of_setup.entry(*reference).or_default() += value;
@@ -418,10 +392,11 @@ impl Instance {
         let time = engine.motion().time;
         let &Parameters { m, g, .. } = engine.structure().parameters();
         let before = Shown::new(model, setup, Load::default());
-        let size = direction.a_g.abs().max(direction.F_t.abs() / m) / (g + before.outputs.a_t.abs());
+        let size = direction.a_g.abs().max(direction.F_t.abs() / m) / (g + before.outputs().a_t.abs());
         let of_size_one = |part: f64| if size > 0.0 { part / size } else { 0.0 };
         let after = Shown::new(model, setup, Load { a_g: of_size_one(direction.a_g), F_t: of_size_one(direction.F_t) });
-        let mut found: Vec<_> = unknowns.iter().map(|of| size * (after.get(of) - before.get(of))).collect();
+        let change = |of: &&Variable| after.value(of.source).zip(before.value(of.source)).map_or(0.0, |(a, b)| a - b);
+        let mut found: Vec<_> = unknowns.iter().map(|of| size * change(of)).collect();
         for (reference, seed) in of_setup {
             let by = sensitivities(setup, ground, inputs, &unknowns, find(reference)?)?;
             found.iter_mut().zip(by).for_each(|(sum, by)| *sum += seed * by);
@@ -467,13 +442,13 @@ impl Instance {
         let known = model.validity;
         match model.advance(setup, step, load, &mut |transition: &Transition| log(logger, transition)) {
             Ok(Progress::Complete) => {
-                *inputs = Inputs::after(load, step);
+                inputs.pass(load, step);
                 warn(logger, &known, &model.validity);
                 Ok(())
             }
             Ok(Progress::Overturned) => {
                 let end = model.engine.motion().time;
-                *inputs = Inputs::after(load, end - point);
+                inputs.pass(load, end - point);
                 warn(logger, &known, &model.validity);
                 *stage = Stage::StepFailed;
                 Err(Failure::Overturned { time: end })
@@ -527,6 +502,19 @@ impl Instance {
 fn find(reference: u32) -> Result<&'static Variable, Failure> {
     let Some(variable) = VARIABLES.get(reference as usize) else { return Err(Failure::UnknownReference(reference)) };
     Ok(variable)
+}
+
+/// Writes the values of what has been found to have one.
+#[inline]
+fn write(
+    references: &[u32],
+    values: &mut [MaybeUninit<f64>],
+    value: impl Fn(Source) -> Option<f64>,
+) -> Result<(), Failure> {
+    for (reference, place) in references.iter().zip(values) {
+        place.write(value(find(*reference)?.source).expect("all that is asked for is a Real and has been computed"));
+    }
+    Ok(())
 }
 
 /// Refuses what is no String.

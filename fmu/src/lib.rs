@@ -18,6 +18,7 @@ pub mod logger;
 pub mod resources;
 pub mod sensitivity;
 pub mod setup;
+mod shown;
 pub mod snapshot;
 mod start;
 pub mod state_machine;

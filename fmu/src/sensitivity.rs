@@ -9,8 +9,9 @@ use crate::condition::Model;
 use crate::failure::Failure;
 use crate::ground::GroundRecord;
 use crate::setup::Setup;
-use crate::variables::{DataType, Source, Variable};
-use rocking::{LinearLoad, Load, Outputs, Parameters, Reactions};
+use crate::shown::Shown;
+use crate::variables::{DataType, Variable};
+use rocking::{LinearLoad, Parameters};
 use std::sync::Arc;
 
 /// Relative to the derivative, or to the unknown's value over the known's scale where that is more.
@@ -24,34 +25,6 @@ const FIRST: f64 = 0.1;
 
 /// Differences, each half of the one before.
 const DIFFERENCES: i32 = 12;
-
-/// What a model shows under a load.
-pub(crate) struct Shown<'a> {
-    model: &'a Model,
-    setup: &'a Setup,
-    load: Load,
-    pub outputs: Outputs,
-    reactions: Reactions,
-}
-
-impl Shown<'_> {
-    pub fn new<'a>(model: &'a Model, setup: &'a Setup, load: Load) -> Shown<'a> {
-        let (outputs, reactions) = (model.engine.outputs(load), model.engine.reactions(load));
-        Shown { model, setup, load, outputs, reactions }
-    }
-
-    /// The value of a computed Real; 0 for others.
-    pub fn get(&self, variable: &Variable) -> f64 {
-        match variable.source {
-            Source::Output(of) => of(&self.outputs),
-            Source::Reaction(of) => of(&self.reactions),
-            Source::Derived(derived) => (derived.value)(self.model.engine.structure()),
-            Source::Ground => self.load.a_g,
-            Source::RecordDuration => self.model.record_duration(self.setup),
-            _ => 0.0,
-        }
-    }
-}
 
 /// The derivatives of `unknowns` by `known` at the start that `setup` describes, under `ground` and `inputs`.
 pub(crate) fn sensitivities(
@@ -67,7 +40,9 @@ pub(crate) fn sensitivities(
         known.source.set(&mut setup, value);
         let model = Model::new(&setup, ground.clone())?;
         let shown = Shown::new(&model, &setup, model.load(&setup, inputs).value);
-        Ok::<Vec<_>, Failure>(unknowns.iter().map(|variable| shown.get(variable)).collect())
+        Ok::<Vec<_>, Failure>(
+            unknowns.iter().map(|variable| shown.value(variable.source).unwrap_or_default()).collect(),
+        )
     };
     if !unknowns.iter().any(|variable| depends(variable)) {
         return Ok(vec![0.0; unknowns.len()]);

@@ -42,7 +42,7 @@ impl Setup {
             record: contents.default_record().into(),
             placement: Placement::default(),
             extrapolate: false,
-            peaks: true,
+            peaks: false,
             validity: false,
         }
     }

@@ -16,7 +16,7 @@ impl Setup {
     /// Whether `record` can act, as it is scaled.
     pub(crate) fn check_ground(&self, record: &GroundRecord) -> Result<(), Failure> {
         let ground = self.ground_motion(record);
-        let [a_g, _] = const { &LOADS };
+        let [a_g, _] = &LOADS;
         a_g.check(ground.pga()).map_err(Failure::StrongRecord)?;
         if ground.duration().is_finite() {
             return Ok(());

@@ -101,7 +101,8 @@ pub(crate) type OfMotion = fn(&Motion) -> i32;
 /// Where the value of a variable is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Source {
-    Input(&'static Quantity<Load>),
+    /// By its place in [`LOADS`].
+    Input(usize),
     Output(fn(&Outputs) -> f64),
     Reaction(fn(&Reactions) -> f64),
     Impulse(fn(&Impulse) -> f64),
@@ -213,7 +214,7 @@ fn overturned(motion: &Motion) -> i32 {
 
 /// All variables, in the order of the model description.
 pub static VARIABLES: LazyLock<Vec<Variable>> = LazyLock::new(|| {
-    let inputs = const { &LOADS }.iter().map(input);
+    let inputs = (0..LOADS.len()).map(input);
     inputs
         .chain(outputs())
         .chain(locals())
@@ -233,7 +234,8 @@ const RECORD: &str = "ground motion record that the ground follows beside a_g: t
                       resources, or the path or URI of one on disk; PEER .AT2 in g, or .csv/.txt of s and m/s2; none \
                       if empty";
 
-fn input(quantity: &'static Quantity<Load>) -> Variable {
+fn input(which: usize) -> Variable {
+    let quantity = &LOADS[which];
     Variable {
         name: quantity.name,
         description: quantity.description,
@@ -241,7 +243,7 @@ fn input(quantity: &'static Quantity<Load>) -> Variable {
         causality: Causality::Input,
         feedthrough: &[],
         initial_dependencies: &[],
-        source: Source::Input(quantity),
+        source: Source::Input(which),
     }
 }
 
@@ -356,13 +358,13 @@ fn peaks() -> Vec<Variable> {
                 peak(
                     concat!(stringify!($name), "_max"),
                     $unit,
-                    concat!("largest |", stringify!($name), "| since startTime, exact: within steps, too"),
+                    concat!("largest |", stringify!($name), "| since startTime, exact: within steps, too; NaN unless peaks is true"),
                     |peaks| peaks.$name().magnitude,
                 ),
                 peak(
                     concat!("t_", stringify!($name), "_max"),
                     "s",
-                    concat!("first instant of ", stringify!($name), "_max"),
+                    concat!("first instant of ", stringify!($name), "_max; NaN unless peaks is true"),
                     |peaks| peaks.$name().time,
                 ),
             )*]
@@ -404,7 +406,12 @@ fn switches() -> [Variable; 3] {
                        last two communication points, and is not held";
     [
         parameter("extrapolate", extrapolate, DataType::Boolean, Source::Switch(&EXTRAPOLATE)),
-        parameter("peaks", "whether largest magnitudes are watched", DataType::Boolean, Source::Switch(&PEAKS)),
+        parameter(
+            "peaks",
+            "whether the largest magnitudes theta_max, u_max, ... are watched for",
+            DataType::Boolean,
+            Source::Switch(&PEAKS),
+        ),
         parameter("validity", validity, DataType::Boolean, Source::Switch(&VALIDITY)),
     ]
 }
@@ -504,7 +511,7 @@ impl Variable {
     pub fn start(&self, contents: &Contents) -> Option<Value> {
         let setup = Setup::new(contents);
         match self.source {
-            Source::Input(quantity) => Some(Value::Real((quantity.get)(&Load::default()))),
+            Source::Input(which) => Some(Value::Real((LOADS[which].get)(&Load::default()))),
             Source::Detail => Some(Value::Item(detail_number(setup.detail))),
             Source::Record => Some(Value::String(setup.record.to_string())),
             Source::Switch(switch) => Some(Value::Boolean((switch.get)(&setup))),

@@ -185,6 +185,11 @@ impl Host {
         unsafe { fmi2SetBoolean(self.component, &reference(name), 1, &value) }
     }
 
+    /// Has the peaks watched for.
+    pub fn watch_peaks(&self) -> c_int {
+        self.set_boolean("peaks", 1)
+    }
+
     /// Sets the record.
     pub fn set_record(&self, record: &str) -> c_int {
         let record = CString::new(record).unwrap();

@@ -1,0 +1,56 @@
+//! What a model shows at an instant: everything real that is computed, each part of it when it is first asked for.
+
+use crate::condition::Model;
+use crate::setup::Setup;
+use crate::variables::Source;
+use rocking::{Load, Outputs, Reactions};
+use std::cell::OnceCell;
+
+/// What a model shows under a load.
+pub(crate) struct Shown<'a> {
+    model: &'a Model,
+    setup: &'a Setup,
+    load: Load,
+    outputs: OnceCell<Outputs>,
+    reactions: OnceCell<Reactions>,
+}
+
+impl<'a> Shown<'a> {
+    /// That of `model`, which follows `setup`, under `load`.
+    #[inline]
+    pub fn new(model: &'a Model, setup: &'a Setup, load: Load) -> Shown<'a> {
+        Shown { model, setup, load, outputs: OnceCell::new(), reactions: OnceCell::new() }
+    }
+
+    /// The outputs.
+    pub fn outputs(&self) -> &Outputs {
+        self.outputs.get_or_init(|| self.model.engine.outputs(self.load))
+    }
+
+    /// The reactions.
+    pub fn reactions(&self) -> &Reactions {
+        self.reactions.get_or_init(|| self.model.engine.reactions(self.load))
+    }
+
+    /// The value of a Real from `source`, if it is one that is computed.
+    #[inline]
+    pub fn value(&self, source: Source) -> Option<f64> {
+        let Shown { model, setup, load, .. } = *self;
+        Some(match source {
+            Source::Output(of) => of(self.outputs()),
+            Source::Reaction(of) => of(self.reactions()),
+            Source::Peak(_) if !setup.peaks => f64::NAN,
+            Source::Peak(of) => of(&model.peaks(setup, load)),
+            Source::Worst(_) | Source::WorstInstant(_) if !setup.validity => f64::NAN,
+            Source::Worst(which) => model.validity(setup, load).worst[which].value,
+            Source::WorstInstant(which) => model.validity(setup, load).worst[which].time,
+            Source::Impulse(of) => of(&model.engine.motion().impulse),
+            Source::Derived(derived) => (derived.value)(model.engine.structure()),
+            Source::Ground => load.a_g,
+            Source::Overturning if model.has_overturned() => model.engine.motion().time,
+            Source::Overturning => setup.start_time,
+            Source::RecordDuration => model.record_duration(setup),
+            _ => return None,
+        })
+    }
+}
