@@ -13,12 +13,13 @@
 //! ```
 //!
 //! ü and θ̈ are the slopes of u̇ and θ̇: so this holds at every level. The series tell *where* a reaction is largest; what
-//! it is there is evaluated from the state.
+//! it is there is evaluated from the state. Most arcs need none: [`off_chord`] bounds how far the reactions leave the
+//! chords between their ends.
 
 use crate::load::LinearLoad;
 use crate::output_series::Turn;
 use crate::taylor::{Arc, Series, ZERO};
-use crate::{Phase, Structure};
+use crate::{Phase, Structure, extremes};
 
 /// Reactions over an arc. The moment is that of full contact; while rocking it is sB R_v and left out.
 #[derive(Clone, Debug)]
@@ -92,4 +93,75 @@ fn while_rocking(structure: &Structure, phase: Phase, load: LinearLoad, arc: &Ar
         R_v: arc.series(|k| linear((m + m0) * g, 0.0, arc, k) + across_cos[k] - along_sin[k]),
         R_m: ZERO,
     }
+}
+
+/// Accelerations (ü, θ̈) at both ends of `arc`, by its slopes.
+pub(crate) fn accelerations_at_ends(arc: &Arc) -> [[f64; 2]; 2] {
+    [0.0, arc.reach].map(|sigma| {
+        [&arc.u_dot, &arc.theta_dot].map(|rate| {
+            let terms = arc.used(rate).iter().enumerate().skip(1).rev();
+            terms.fold(0.0, |sum, (k, c)| sum * sigma + k as f64 * c) / arc.span
+        })
+    })
+}
+
+/// The first term of a series and by how much the others may change it.
+#[derive(Clone, Copy)]
+struct Change {
+    start: f64,
+    by: f64,
+}
+
+impl Change {
+    fn of(series: &Series, arc: &Arc) -> Change {
+        let by = arc.used(series)[1..].iter().rev().fold(0.0, |sum, c| (sum + c.abs()) * arc.reach);
+        Change { start: series[0].abs(), by }
+    }
+
+    fn times(self, other: Change) -> Change {
+        let by = self.start * other.by + self.by * (other.start + other.by);
+        Change { start: self.start * other.start, by }
+    }
+
+    fn times_number(self, factor: f64) -> Change {
+        Change { start: factor * self.start, by: factor * self.by }
+    }
+
+    fn and(self, other: Change) -> Change {
+        Change { start: self.start + other.start, by: self.by + other.by }
+    }
+
+    fn largest(self) -> f64 {
+        self.start + self.by
+    }
+}
+
+/// How far R_h, R_v and, in full contact, R_m can leave the chords between their ends over `arc`, a motion in `phase`
+/// under a linear load: what is linear in ü and θ̈ by its terms of higher order, the rest by twice its change.
+pub(crate) fn off_chord(structure: &Structure, phase: Phase, arc: &Arc) -> [f64; 3] {
+    let &crate::Parameters { m, m0, H, B, g, .. } = structure.parameters();
+    let [u_ddot, theta_ddot] = [&arc.u_dot, &arc.theta_dot].map(|rate| slope(rate, arc));
+    if phase == Phase::FullContact {
+        let [u, u_ddot] = extremes::off_chord([arc.used(&arc.u), arc.used(&u_ddot)], arc.reach);
+        return [m * u_ddot, 0.0, H * m * u_ddot + m * g * u];
+    }
+    let pivot = phase.side().sign() * B;
+    let (sin, cos) = arc.theta[0].sin_cos();
+    let lever = m0 * pivot - m * (arc.u[0] - pivot);
+    let along = arc.series(|k| m * (u_ddot[k] + H * theta_ddot[k]));
+    let horizontal = arc.series(|k| cos * along[k] + sin * lever * theta_ddot[k]);
+    let vertical = arc.series(|k| cos * lever * theta_ddot[k] - sin * along[k]);
+    let [horizontal, vertical] = extremes::off_chord([arc.used(&horizontal), arc.used(&vertical)], arc.reach);
+
+    let [u, u_dot, theta, theta_dot] =
+        [&arc.u, &arc.u_dot, &arc.theta, &arc.theta_dot].map(|series| Change::of(series, arc));
+    let [along, turning] = [&along, &theta_ddot].map(|series| Change::of(series, arc));
+    let square = theta_dot.times(theta_dot);
+    let x = Change { start: (arc.u[0] - pivot).abs(), ..u };
+    let along_rest = square.times(x).times_number(m).and(square.times_number(m0 * B));
+    let sway = Change { start: 0.0, ..u }.times(turning).times_number(m);
+    let across_rest = sway.and(square.times_number(m * H)).and(theta_dot.times(u_dot).times_number(2.0 * m));
+    let turned = along.largest() + lever.abs() * turning.largest() + along_rest.start + across_rest.start;
+    let rest = 2.0 * (along_rest.by + across_rest.by + theta.by * turned);
+    [horizontal + rest, vertical + rest, 0.0]
 }

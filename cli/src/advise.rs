@@ -3,6 +3,7 @@
 use crate::{
     scene_args::{GroundArgs, InitialArgs},
     structure_args::StructureArgs,
+    validity::{self, LimitArgs},
 };
 use anyhow::Context;
 use clap::{ValueEnum, builder::PossibleValue};
@@ -33,6 +34,8 @@ pub struct AdviseArgs {
     initial: InitialArgs,
     #[command(flatten)]
     allowed: AllowedArgs,
+    #[command(flatten)]
+    limits: LimitArgs,
 }
 
 #[derive(clap::Args)]
@@ -102,6 +105,12 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
         writeln!(out, "  {:<10} not possible here: {error:#}", detail.name())?;
     }
     print_advice(&mut out, &comparison, advised, &args.allowed)?;
+    let limits = args.limits.limits();
+    let (found, _) = run.validity(limits)?;
+    writeln!(out)?;
+    for line in validity::section(&structure, run.detail, &found, &limits) {
+        writeln!(out, "{line}")?;
+    }
     Ok(())
 }
 

@@ -15,6 +15,7 @@ mod structure_args;
 mod summary;
 mod sweep;
 mod tables;
+mod validity;
 
 use clap::Parser;
 use fmu_export::significant;

@@ -5,6 +5,7 @@ use crate::{
     structure_args::StructureArgs,
     summary::Summary,
     tables::{self, Table},
+    validity::{self, LimitArgs},
 };
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fmu_export::significant::significant;
@@ -13,7 +14,10 @@ use rocking::{
     Detail, Transition,
     engine::DEFAULT_TOLERANCE,
     record::Record,
-    run::{End, Run},
+    run::{
+        End, Run,
+        validity::{Found, Validity},
+    },
 };
 use std::path::{Path, PathBuf};
 
@@ -28,6 +32,8 @@ pub struct SimulateArgs {
     initial: InitialArgs,
     #[command(flatten)]
     results: ResultArgs,
+    #[command(flatten)]
+    limits: LimitArgs,
 }
 
 #[derive(clap::Args)]
@@ -110,6 +116,8 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
             written = events.write(tables::event_line(transition));
         }
     };
+    let limits = args.limits.limits();
+    let mut validity = Validity::new(&structure, limits, Found::since(ground.start()));
     let mut rows = Ok(());
     let finish = run.sample(
         args.output_times(&ground, end),
@@ -119,7 +127,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
                 rows = response.write(tables::response_line(sample));
             }
         },
-        &mut (&mut summary, &mut transition),
+        &mut (&mut (&mut summary, &mut transition), &mut validity),
     );
     progress.finish_and_clear();
     let finish = finish?;
@@ -128,6 +136,9 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     events.map_or(Ok(()), Table::finish)?;
     eprintln!("{}, {} to {} s", ground.title(), significant(ground.start()), significant(finish.motion.time));
     summary.print(&finish);
+    for line in validity::section(&structure, detail, validity.found(), &limits) {
+        eprintln!("{line}");
+    }
     if output != Path::new("-") {
         eprintln!("response       {}", output.display());
     }

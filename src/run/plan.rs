@@ -4,7 +4,7 @@ use super::Run;
 use super::outcome::Outcome;
 use crate::parameters::{MAX_SLENDERNESS, PARAMETERS, ParameterError};
 use crate::record::Record;
-use crate::{Parameters, Quantity, Structure};
+use crate::{Parameters, Quantity, Structure, Watch};
 
 /// More runs than this are refused: thousands of runs a second take hours for them.
 pub const MAX_RUNS: usize = 10_000_000;
@@ -279,8 +279,13 @@ impl Plan {
 impl Case<'_> {
     /// Does it.
     pub fn outcome(&self) -> Outcome {
+        self.outcome_watched(&mut ())
+    }
+
+    /// Does it while `watch` sees it go by.
+    pub fn outcome_watched(&self, watch: &mut impl Watch) -> Outcome {
         let ground = self.motion.record.clone().scaled(1.0, self.scale);
-        Outcome::of(&Run::new(self.structure, &ground))
+        Outcome::of(&Run::new(self.structure, &ground), watch)
     }
 
     /// Peak ground acceleration, g.

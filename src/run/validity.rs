@@ -22,7 +22,7 @@ use super::{Finish, Run, RunError};
 use crate::bisection::last_where;
 use crate::level::Rates;
 use crate::piece::{Piece, Watch};
-use crate::reaction_series::ReactionSeries;
+use crate::reaction_series::{ReactionSeries, accelerations_at_ends, off_chord};
 use crate::taylor::{Arc, Series, Start, evaluate};
 use crate::{Detail, Impulse, Parameters, Phase, Reactions, Side, Structure, Transition, TransitionKind};
 use crate::{extremes, impact};
@@ -30,6 +30,9 @@ use serde::{Deserialize, Serialize};
 
 /// Something worse by no more than this part may be rounding.
 const ROUNDING: f64 = 1e-14;
+
+/// A force that is worse by no more than this part of the weight is not looked for.
+const MARGIN: f64 = 1e-12;
 
 /// A series of reactions that is off by less than this part of its terms at its end has converged.
 const CONVERGED: f64 = 1e-10;
@@ -260,11 +263,34 @@ impl Validity {
         }
     }
 
-    /// Whether a leap in full contact may hold something worse than what has been seen, or goes beyond a limit. The ends
-    /// have been seen; what changes no faster than its second derivative leaves its chord by no more than that over 8/h².
-    fn is_open(&self, piece: &Piece, ends: &[Reactions; 2]) -> bool {
-        let &Parameters { H, B, g, m, .. } = self.structure.parameters();
+    /// Whether reactions that are such at the `ends` and leave the chords between them by no more than `off` may hold
+    /// something worse than what has been seen, or go beyond a limit.
+    fn may_matter(&self, phase: Phase, ends: &[Reactions; 2], off: [f64; 3]) -> bool {
+        let W = self.weight();
+        let largest = |of: fn(&Reactions) -> f64| of(&ends[0]).abs().max(of(&ends[1]).abs());
+        let R_v = ends[0].R_v.min(ends[1].R_v) - off[1];
+        let R_h = largest(|reactions| reactions.R_h) + off[0];
+        let R_m = largest(|reactions| reactions.R_m) + off[2];
+        let Limits { tension, edge_load, friction, .. } = self.limits;
+        let [tension, edge_load, friction] = [(TENSION, tension), (EDGE_LOAD, edge_load), (FRICTION, friction)]
+            .map(|(which, limit)| (self.found.worst[which].value, limit));
+        let slack = MARGIN * W;
+        let is_closed = R_v > edge_load.0.max(edge_load.1).max(0.0) * W - slack
+            && R_h < friction.0.min(friction.1) * R_v + slack
+            && (phase != Phase::FullContact
+                || R_m / self.structure.parameters().B - W < tension.0.min(tension.1) * W + slack);
+        !is_closed
+    }
+
+    /// The same of a leap in full contact: what changes no faster than its second derivative leaves its chord by no more
+    /// than that over 8/h².
+    fn leap_may_matter(&self, piece: &Piece) -> bool {
+        let &Parameters { m, m0, H, g, .. } = self.structure.parameters();
         let &Structure { k, c_fc, .. } = &self.structure;
+        let ends = [(0.0, &piece.before.state), (piece.duration, &piece.end)].map(|(tau, state)| {
+            let strut = c_fc * state.u_dot + k * state.u;
+            Reactions { R_h: strut - m0 * piece.load.at(tau).a_g, R_v: self.weight(), R_m: H * strut + m * g * state.u }
+        });
         let start = Start {
             state: piece.before.state,
             a_g: piece.load.on_foundation(),
@@ -273,19 +299,21 @@ impl Validity {
             local_error: piece.local_error,
         };
         let Rates { u_ddot, u_dddot, .. } = piece.level.rates(piece.before.phase, &start, &piece.end);
-        let [strut, weight] = [c_fc * u_dddot + k * u_ddot, m * g * u_ddot];
-        let square = piece.duration * piece.duration / 8.0;
-        let largest = |of: fn(&Reactions) -> f64, bend: f64| {
-            ends.iter().map(|reactions| of(reactions).abs()).fold(0.0, f64::max) + bend * square
-        };
-        let R_m = largest(|reactions| reactions.R_m, H * strut + weight);
-        let R_h = largest(|reactions| reactions.R_h, strut);
-        let may_be = |which: usize, value: f64, limit: f64| {
-            value > limit || value > self.found.worst[which].value + ROUNDING * (1.0 + value.abs())
-        };
-        may_be(TENSION, R_m / (B * self.weight()) - 1.0, self.limits.tension)
-            || may_be(FRICTION, R_h / self.weight(), self.limits.friction)
-            || self.limits.edge_load > 1.0
+        let per_bend = piece.duration * piece.duration / 8.0;
+        let strut = per_bend * (c_fc * u_dddot + k * u_ddot);
+        self.may_matter(piece.before.phase, &ends, [strut, 0.0, H * strut + per_bend * m * g * u_ddot])
+    }
+
+    /// The same of the arc in hand.
+    fn arc_may_matter(&self, piece: &Piece) -> bool {
+        let phase = piece.before.phase;
+        let arc = &*piece.arc;
+        let [first, last] = accelerations_at_ends(arc);
+        let ends = [(0.0, first), (arc.reach, last)].map(|(sigma, accelerations)| {
+            let load = piece.load.at(piece.passed() + sigma * arc.span);
+            Reactions::of(&self.structure, phase, &arc.at(sigma), accelerations, load)
+        });
+        self.may_matter(phase, &ends, off_chord(&self.structure, phase, arc))
     }
 
     /// Looks at the motion over `arc`, which starts `from` seconds into `piece`; `halvings` are left.
@@ -370,23 +398,16 @@ impl Watch for Validity {
     fn piece(&mut self, piece: &mut Piece) {
         self.found.duration += piece.duration;
         self.found.held += piece.before.chatter.held.min(piece.duration);
-        let phase = piece.before.phase;
-        if piece.is_leap() && phase == Phase::FullContact {
-            let ends = [(0.0, piece.before.state), (piece.duration, piece.end)].map(|(tau, state)| {
-                let load = piece.load.at(tau);
-                let accelerations = piece.level.accelerations(&self.structure, phase, &state, load);
-                let reactions = Reactions::of(&self.structure, phase, &state, accelerations, load);
-                self.see_instant(piece.before.time + tau, phase, &reactions);
-                reactions
-            });
-            if !self.is_open(piece, &ends) {
-                return;
-            }
+        let is_leap = piece.is_leap() && piece.before.phase == Phase::FullContact;
+        if is_leap && !self.leap_may_matter(piece) {
+            return;
         }
         let (asked_before, begin) = (piece.evaluations(), piece.passed());
         for arcs in 1.. {
             piece.arc();
-            self.look(piece, piece.arc, piece.passed(), FINEST_PART);
+            if self.arc_may_matter(piece) {
+                self.look(piece, piece.arc, piece.passed(), FINEST_PART);
+            }
             if !piece.skip() {
                 break;
             }

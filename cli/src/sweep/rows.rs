@@ -12,6 +12,7 @@ use csv::{ReaderBuilder, StringRecord, WriterBuilder};
 use rocking::run::{
     outcome::{MEASURES, Outcome},
     plan::{AXES, Case, NamedRecord, Plan},
+    validity::{ASSUMPTIONS, Found as Beyond},
 };
 use serde::Serialize;
 use std::{
@@ -25,6 +26,9 @@ use uuid::Uuid;
 
 /// The word for the ending of a run that has none.
 const FAILED: &str = "failed";
+
+/// Columns of what a run goes beyond, empty where that is not asked for.
+const BEYOND: usize = 2 * ASSUMPTIONS.len() + 2;
 
 /// Columns of an ended run's outcome beside its peaks: ending, end; transitions, steps, evaluations.
 const OTHERS: usize = 5;
@@ -49,8 +53,8 @@ pub struct Found {
     pub repeated: usize,
 }
 
-/// The key of each run of `plan`.
-pub fn keys(plan: &Plan) -> Vec<Uuid> {
+/// The key of each run of `plan`, which is another one where it is asked what a run goes beyond.
+pub fn keys(plan: &Plan, validity: bool) -> Vec<Uuid> {
     let build = Uuid::try_parse(BUILD).expect("the build script wrote it");
     let digest = |of: &NamedRecord| {
         let samples = (of.record().times(), of.record().acceleration());
@@ -59,7 +63,7 @@ pub fn keys(plan: &Plan) -> Vec<Uuid> {
     let digests: HashMap<_, _> = plan.motions().iter().map(digest).collect();
     let of_case = |case: Case| {
         let names = (case.population.name(), case.motion.name());
-        key(&build, &(names, case.structure.parameters(), digests[&ptr::from_ref(case.motion)], case.scale))
+        key(&build, &(names, case.structure.parameters(), digests[&ptr::from_ref(case.motion)], case.scale, validity))
     };
     plan.cases().map(of_case).collect()
 }
@@ -106,9 +110,15 @@ impl Rows {
     }
 
     /// Adds the row of a run; its numbers read back to the same bits. After a failure there is none to add.
-    pub fn append(&mut self, key: &Uuid, case: &Case, outcome: &Outcome) -> anyhow::Result<()> {
+    pub fn append(
+        &mut self,
+        key: &Uuid,
+        case: &Case,
+        outcome: &Outcome,
+        beyond: Option<&Beyond>,
+    ) -> anyhow::Result<()> {
         let named = || format!("{} cannot be written", self.path.display());
-        let row = row(key, case, outcome)?;
+        let row = row(key, case, outcome, beyond)?;
         ensure!(!self.has_failed, named());
         let written = self.file.seek(SeekFrom::Start(self.length)).and_then(|_| self.file.write_all(&row));
         if let Err(error) = written {
@@ -128,24 +138,29 @@ fn header() -> anyhow::Result<Vec<u8>> {
     let headings = ["run", "structures"].map(String::from).into_iter();
     let headings = headings.chain(AXES.map(|axis| heading(axis.name, axis.unit))).chain(motion);
     let headings = headings.chain(MEASURES.map(|(name, unit)| heading(&format!("peak_{name}"), unit)));
-    line(
-        &headings
-            .chain(["transitions", "steps", "evaluations", "reason", "checksum"].map(String::from))
-            .collect::<Vec<_>>(),
-    )
+    let headings = headings.chain(["transitions", "steps", "evaluations"].map(String::from));
+    let headings = headings.chain(ASSUMPTIONS.iter().flat_map(|of| [of.name.into(), heading(of.time_name, "s")]));
+    line(&headings.chain(["energy_gains", "settlings", "reason", "checksum"].map(String::from)).collect::<Vec<_>>())
 }
 
-fn row(key: &Uuid, case: &Case, outcome: &Outcome) -> anyhow::Result<Vec<u8>> {
+fn row(key: &Uuid, case: &Case, outcome: &Outcome, beyond: Option<&Beyond>) -> anyhow::Result<Vec<u8>> {
     let structure = (key.to_string(), case.population.name(), AXES.map(|axis| case.value(axis)));
     let identity = (structure, case.motion.name(), case.scale, case.intensity());
     let mut row = match outcome {
-        Outcome::Ended(summary) => line(&(identity, summary, "")),
-        Outcome::Failed(reason) => line(&(identity, FAILED, [""; MEASURES.len() + OTHERS - 1], reason)),
+        Outcome::Ended(summary) => line(&(identity, summary, columns(beyond), "")),
+        Outcome::Failed(reason) => line(&(identity, FAILED, [""; MEASURES.len() + OTHERS - 1], columns(None), reason)),
     }?;
     row.pop();
     let checksum = checksum(&row);
     row.extend(format!(",{checksum}\n").into_bytes());
     Ok(row)
+}
+
+/// What a run goes beyond, in the order of the headings.
+fn columns(beyond: Option<&Beyond>) -> Vec<Option<f64>> {
+    let Some(beyond) = beyond else { return vec![None; BEYOND] };
+    let worst = beyond.worst.iter().flat_map(|worst| [worst.value, worst.time]);
+    worst.chain([beyond.gains as f64, beyond.settlings as f64]).map(Some).collect()
 }
 
 fn line(of: &impl Serialize) -> anyhow::Result<Vec<u8>> {
@@ -181,11 +196,12 @@ fn read(rows: &[u8], keys: &[Uuid]) -> anyhow::Result<Found> {
 fn parse(row: &StringRecord) -> anyhow::Result<(Uuid, Outcome)> {
     let field = |index: usize| row.get(index).context("it is too short");
     let ending = 2 + AXES.len() + 3;
-    let reason = ending + MEASURES.len() + OTHERS;
+    let ended = ending + MEASURES.len() + OTHERS;
+    let reason = ended + BEYOND;
     let outcome = if field(ending)? == FAILED {
         Outcome::Failed(field(reason)?.into())
     } else {
-        let summary: StringRecord = row.iter().take(reason).skip(ending).collect();
+        let summary: StringRecord = row.iter().take(ended).skip(ending).collect();
         Outcome::Ended(summary.deserialize(None)?)
     };
     Ok((Uuid::try_parse(field(0)?)?, outcome))
