@@ -28,14 +28,14 @@ fn scenes() -> Vec<(Parameters, State, Detail, Record)> {
     let turned = State { theta: 0.03, ..State::default() };
     let bent = State { u: 2e-3, u_dot: 0.05, ..State::default() };
     let elastic = Parameters { r: 1.0, zeta_fc: 0.05, ..evison };
-    let dull = Parameters { r: 0.6, f_fc: 2.0, ..mcmanus };
+    let dull = Parameters { r: 0.5, f_fc: 2.0, ..mcmanus };
     let soft = Parameters { zeta_fc: 0.1, c_ratio: 0.3, f_fc: 1.5, ..mcmanus };
     vec![
         (mcmanus, at_rest, Detail::Auto, shaking(1, 0.01, 200, 1.3)),
         (mcmanus, at_rest, Detail::Nonlinear, shaking(2, 0.01, 200, 2.0)),
         (evison, released, Detail::Auto, Record::at_rest(1.0)),
         (elastic, at_rest, Detail::Auto, shaking(3, 0.02, 100, 3.0)),
-        (dull, turned, Detail::Auto, shaking(4, 0.01, 150, 1.0)),
+        (dull, State { theta: 0.02, ..at_rest }, Detail::Auto, Record::at_rest(1.0)),
         (soft, bent, Detail::Auto, shaking(9, 0.05, 40, 1.5)),
         (evison, at_rest, Detail::Linear, shaking(3, 0.02, 100, 2.5)),
         (mcmanus, at_rest, Detail::Modal, shaking(4, 0.01, 200, 2.0)),
@@ -236,14 +236,20 @@ fn seen<'a>(run: &'a Run, step: f64) -> Seen<'a> {
         seen.see(motion.time, motion.phase, &motion.state, a_g(motion.time), true);
     }
     let mut phase = run.initial.initial_phase().unwrap();
-    for transition in &transitions {
-        seen.see(transition.time, phase, &transition.before, a_g(transition.time), false);
+    for (i, transition) in transitions.iter().enumerate() {
+        let lasts = |other: Option<&Transition>| other.is_none_or(|other| other.time != transition.time);
+        let (lasted, will_last) = (lasts(i.checked_sub(1).map(|i| &transitions[i])), lasts(transitions.get(i + 1)));
+        if lasted {
+            seen.see(transition.time, phase, &transition.before, a_g(transition.time), false);
+        }
         let next = match transition.kind {
             TransitionKind::Uplift(side) | TransitionKind::Impact(side) => Phase::Rocking(side),
             TransitionKind::Landing => Phase::FullContact,
             kind => panic!("{kind:?}"),
         };
-        seen.see(transition.time, next, &transition.after, a_g(transition.time), false);
+        if will_last {
+            seen.see(transition.time, next, &transition.after, a_g(transition.time), false);
+        }
         let comes_to_rest = run.detail == Detail::Rigid && next == Phase::FullContact;
         if let (Phase::Rocking(side), false) = (phase, comes_to_rest) {
             seen.see_impact(side, transition);
@@ -270,7 +276,7 @@ fn seen<'a>(run: &'a Run, step: f64) -> Seen<'a> {
 
 #[test]
 fn ten_scenes_go_beyond_what_free_bodies_say() {
-    let step = 2e-5;
+    let step = 5e-5;
     let mut infinite = 0;
     let mut tried = [0; 6];
     for (i, (parameters, initial, detail, ground)) in scenes().into_iter().enumerate() {
@@ -293,7 +299,7 @@ fn ten_scenes_go_beyond_what_free_bodies_say() {
                 if worst.value == expected { 0.0 } else { (worst.value - expected).abs() / (1.0 + expected.abs()) };
             assert!(off < 1e-9, "{name}: {} {expected}, off by {off:e}", worst.value);
             let (amount, first) = seen.beyond[which];
-            let (unit, slack) = if assumption.is_of_impacts { (1.0, 0.0) } else { (step, 40.0 * step) };
+            let (unit, slack) = if assumption.is_of_impacts { (1.0, 0.0) } else { (step, 20.0 * step) };
             assert!((worst.beyond - unit * amount).abs() <= slack, "{name}: {} {}", worst.beyond, unit * amount);
             match (worst.first_beyond, first) {
                 (Some(found), Some(seen)) => assert!((found - seen).abs() <= slack.min(step), "{name}: {found} {seen}"),

@@ -396,6 +396,9 @@ impl Watch for Validity {
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &mut Piece) {
+        if piece.duration == 0.0 {
+            return; // after a landing that leaves uplift due nothing is held down
+        }
         self.found.duration += piece.duration;
         self.found.held += piece.before.chatter.held.min(piece.duration);
         let is_leap = piece.is_leap() && piece.before.phase == Phase::FullContact;
