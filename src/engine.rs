@@ -15,7 +15,7 @@ use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::level::Level;
 use crate::load::{LOADS, LinearLoad, Load};
 use crate::motion::{Chatter, Motion, Work};
-use crate::piece::{Part, Piece, Sample, Watch};
+use crate::piece::{Equations, Part, Piece, Sample, Watch};
 use crate::reactions::{Impulse, Reactions};
 use crate::state::InitialStateError;
 use crate::taylor::{Arc, Start};
@@ -165,11 +165,29 @@ impl Engine {
         load: impl Into<LinearLoad>,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
-        let last_step = self.motion.work.steps + MAX_STEPS_PER_ADVANCE;
-        self.advance_within(last_step, interval, load.into(), watch)
+        let progress = self.go_on(interval, load, watch)?;
+        self.done(watch);
+        Ok(progress)
     }
 
-    /// The same, until `last_step` steps have been taken since the start.
+    /// The same as a part of what is asked for, of which [`Engine::done`] tells the end.
+    pub(crate) fn go_on<W: Watch>(
+        &mut self,
+        interval: f64,
+        load: impl Into<LinearLoad>,
+        watch: &mut W,
+    ) -> Result<Progress, AdvanceError> {
+        self.advance_within(self.motion.work.steps + MAX_STEPS_PER_ADVANCE, interval, load.into(), watch)
+    }
+
+    /// Tells `watch` that it has been shown all that was asked for.
+    pub(crate) fn done<W: Watch>(&mut self, watch: &mut W) {
+        if W::SEES_PIECES {
+            watch.done(&mut Equations { structure: &self.structure, level: self.level.get_mut() });
+        }
+    }
+
+    /// [`Engine::go_on`] until `last_step` steps have been taken since the start.
     #[inline]
     pub(crate) fn advance_within<W: Watch>(
         &mut self,

@@ -75,26 +75,24 @@ pub fn bounds<const N: usize>(row: impl Fn(usize) -> [f64; N], order: usize, rea
     })
 }
 
-/// How far several Σ c_k σᵏ can leave the chord between their ends up to σ = `reach`.
+/// How far Σ c_k σᵏ can leave the chord between its ends up to σ = `reach`.
 #[inline]
-pub fn off_chord<const N: usize>(coefficients: [&[f64]; N], reach: f64) -> [f64; N] {
-    let mut off = [0.0; N];
-    let mut add = |k: usize, weight: f64| {
-        for i in 0..N {
-            off[i] += weight * coefficients[i][k].abs();
-        }
-    };
-    let weights = || OFF_CHORD.iter().enumerate().take(coefficients[0].len()).skip(2);
-    if reach == 1.0 {
-        weights().for_each(|(k, weight)| add(k, *weight));
-    } else {
-        let mut power = reach;
-        for (k, weight) in weights() {
-            power *= reach;
-            add(k, weight * power);
+pub fn off_chord(coefficients: &[f64], reach: f64) -> f64 {
+    let (weights, higher) = (&OFF_CHORD[2..], coefficients.get(2..).unwrap_or_default());
+    if reach < 1.0 {
+        let powers = std::iter::successors(Some(reach * reach), |power| Some(power * reach));
+        return weights.iter().zip(higher).zip(powers).map(|((weight, c), power)| weight * power * c.abs()).sum();
+    }
+    // four sums side by side: a sum waits for the one before it
+    let (fours, rest) = higher.as_chunks::<4>();
+    let mut sums = [0.0; 4];
+    for (weights, four) in weights.as_chunks::<4>().0.iter().zip(fours) {
+        for i in 0..4 {
+            sums[i] += weights[i] * four[i].abs();
         }
     }
-    off
+    let of_rest = weights[4 * fours.len()..].iter().zip(rest).map(|(weight, c)| weight * c.abs()).sum::<f64>();
+    sums.iter().sum::<f64>() + of_rest
 }
 
 /// [`bounds`] of one.

@@ -113,7 +113,10 @@ impl GroundMotion<'_> {
             engine.set_time(before.time + start);
             match engine.advance_within(last_step, duration, load.from(start).on_ground(a_g), watch) {
                 Ok(Progress::Complete) => (),
-                Ok(Progress::Overturned) => return Ok(Progress::Overturned),
+                Ok(Progress::Overturned) => {
+                    engine.done(watch);
+                    return Ok(Progress::Overturned);
+                }
                 Err(mut error) => {
                     engine.set_motion(before);
                     if let AdvanceError::TooLong { until, .. } = &mut error {
@@ -124,6 +127,7 @@ impl GroundMotion<'_> {
             }
         }
         engine.set_time(before.time + interval);
+        engine.done(watch);
         Ok(Progress::Complete)
     }
 

@@ -66,9 +66,9 @@ pub(crate) trait Level: Rules + Debug + Send {
         output_series::a_t(structure, phase, load, arc, turn)
     }
 
-    /// Bounds of |θ|, |u|, |δ_t| and |a_t| that follow from those of |θ|, |u| and |u̇|; `push` is that of |F_t|/m.
-    fn crude_output_bounds(&self, structure: &Structure, phase: Phase, push: f64, of_state: [f64; 3]) -> [f64; 4] {
-        output_series::crude_bounds(structure, phase, push, of_state)
+    /// Bounds of |θ|, |u|, |δ_t| and |a_t| that follow from those of |θ|, |u| and |u̇|; `F_t` is that of |F_t|.
+    fn crude_output_bounds(&self, structure: &Structure, phase: Phase, F_t: f64, of_state: [f64; 3]) -> [f64; 4] {
+        output_series::crude_bounds(structure, phase, F_t, of_state)
     }
 
     /// Bounds of |θ|, |u|, |δ_t| and |a_t| over `arc` under `load`, which is given from its start on.

@@ -82,7 +82,7 @@ pub use load::{LinearLoad, Load, Ramp};
 pub use motion::Motion;
 pub use outputs::Outputs;
 pub use parameters::Parameters;
-pub use piece::{Piece, Watch};
+pub use piece::{Equations, Piece, Watch};
 pub use quantity::{OutOfRange, Quantity};
 pub use reactions::{Impulse, Reactions};
 pub use run::Run;

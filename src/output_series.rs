@@ -58,20 +58,18 @@ pub(crate) fn a_t(structure: &Structure, phase: Phase, load: LinearLoad, arc: &A
     })
 }
 
-/// Bounds of |θ|, |u|, |δ_t| and |a_t| that follow from those of |θ|, |u| and |u̇|; `push` is that of |F_t|/m.
-pub(crate) fn crude_bounds(structure: &Structure, phase: Phase, push: f64, [theta, u, u_dot]: [f64; 3]) -> [f64; 4] {
+/// Bounds of |θ|, |u|, |δ_t| and |a_t| that follow from those of |θ|, |u| and |u̇|; `F_t` is that of |F_t|.
+pub(crate) fn crude_bounds(structure: &Structure, phase: Phase, F_t: f64, [theta, u, u_dot]: [f64; 3]) -> [f64; 4] {
     let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
-    let a_t = g * theta + damping(structure, phase) / m * u_dot + structure.stiffness * u + push;
+    let a_t = g * theta + structure.stiffness * u + (damping(structure, phase) * u_dot + F_t) / m;
     [theta, u, u + H * theta + B * theta * theta / 2.0, a_t]
 }
 
 /// Bounds of |θ|, |u| and |u̇| over `arc`, which ends in `end`.
 #[inline]
 pub(crate) fn crude_bounds_of_state(arc: &Arc, end: &State) -> [f64; 3] {
-    let series = [&arc.theta, &arc.u, &arc.u_dot].map(|series| arc.used(series));
-    let off = extremes::off_chord(series, arc.reach);
-    let ends = [end.theta, end.u, end.u_dot];
-    std::array::from_fn(|i| series[i][0].abs().max(ends[i].abs()) + off[i])
+    [(&arc.theta, end.theta), (&arc.u, end.u), (&arc.u_dot, end.u_dot)]
+        .map(|(series, end)| series[0].abs().max(end.abs()) + extremes::off_chord(arc.used(series), arc.reach))
 }
 
 /// Bounds of |θ|, |u|, |δ_t| and |a_t| over `arc` under `load`: of what is linear in θ and u, and of the rest.

@@ -26,6 +26,17 @@ pub trait Watch {
     /// The transition at the end of the piece shown last.
     #[inline]
     fn transition(&mut self, _transition: &Transition) {}
+
+    /// All that was asked for has been shown: what has been put off is done now.
+    #[inline]
+    fn done(&mut self, _equations: &mut Equations) {}
+}
+
+/// What moves the structure of pieces that have been kept.
+#[derive(Debug)]
+pub struct Equations<'a> {
+    pub(crate) structure: &'a Structure,
+    pub(crate) level: &'a mut dyn Level,
 }
 
 /// Nobody.
@@ -60,6 +71,11 @@ impl<A: Watch, B: Watch> Watch for (&mut A, &mut B) {
     fn transition(&mut self, transition: &Transition) {
         self.0.transition(transition);
         self.1.transition(transition);
+    }
+
+    fn done(&mut self, equations: &mut Equations) {
+        self.0.done(equations);
+        self.1.done(equations);
     }
 }
 
@@ -119,6 +135,40 @@ pub struct Piece<'a> {
     pub(crate) evaluations: u64,
 }
 
+/// A piece that is looked at after others have been shown.
+#[derive(Clone, Debug)]
+pub(crate) struct KeptPiece {
+    before: Motion,
+    duration: f64,
+    load: LinearLoad,
+    end: State,
+    /// Its polynomial, if it was expanded.
+    arc: Option<Arc>,
+    local_error: f64,
+}
+
+impl KeptPiece {
+    /// The piece, whole.
+    pub(crate) fn piece<'a>(&'a mut self, equations: &'a mut Equations) -> Piece<'a> {
+        let KeptPiece { before, duration, load, end, ref mut arc, local_error } = *self;
+        let part = Part { start: (0.0, before.state), end: (duration, end) };
+        let Equations { structure, level } = equations;
+        Piece {
+            before: &self.before,
+            duration,
+            load,
+            end,
+            structure,
+            level: &mut **level,
+            is_expanded: arc.is_some(),
+            arc: arc.get_or_insert_default(),
+            local_error,
+            part,
+            evaluations: 0,
+        }
+    }
+}
+
 /// A part of a piece: seconds from the piece's start and states at its own start and end.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Part {
@@ -135,6 +185,17 @@ impl Piece<'_> {
     /// Right-hand-side evaluations that its watchers have asked for.
     pub fn evaluations(&self) -> u64 {
         self.evaluations
+    }
+
+    /// A copy, to be looked at later.
+    pub(crate) fn keep(&self) -> KeptPiece {
+        let Piece { before, duration, load, end, local_error, .. } = *self;
+        KeptPiece { before: *before, duration, load, end, arc: self.is_expanded.then(|| self.arc.clone()), local_error }
+    }
+
+    /// What moves the structure.
+    pub(crate) fn equations(&mut self) -> Equations<'_> {
+        Equations { structure: self.structure, level: self.level }
     }
 
     /// Back to its start.
@@ -225,16 +286,25 @@ impl Piece<'_> {
         let of_state = if self.is_expanded {
             output_series::crude_bounds_of_state(self.arc, &self.end)
         } else {
-            let rates = self.level.rates(self.before.phase, &self.start_of_part(), &self.part.end.1);
-            [rates.theta, rates.u, rates.u_dot]
+            let (start, end) = (self.start_of_part(), &self.part.end.1);
+            let rates = self.level.rates(self.before.phase, &start, end);
+            let off_chord = start.interval * start.interval / 8.0;
+            let bound =
+                |most: f64, from: f64, to: f64, bend: f64| most.min(from.abs().max(to.abs()) + bend * off_chord);
+            [
+                bound(rates.theta, start.state.theta, end.theta, rates.theta_ddot),
+                bound(rates.u, start.state.u, end.u, rates.u_ddot),
+                bound(rates.u_dot, start.state.u_dot, end.u_dot, rates.u_dddot),
+            ]
         };
-        self.level.crude_output_bounds(self.structure, self.before.phase, self.most_push(), of_state)
+        let crude = self.level.crude_output_bounds(self.structure, self.before.phase, self.most_force(), of_state);
+        if crude[Measure::At as usize] < f64::INFINITY { crude } else { self.bounds().map(|bound| bound.largest()) }
     }
 
-    /// The largest |F_t|/m in the part in hand, m/s².
-    fn most_push(&self) -> f64 {
+    /// The largest |F_t| in the part in hand, N.
+    fn most_force(&self) -> f64 {
         let [first, last] = [self.part.start.0, self.part.end.0].map(|tau| self.load.at(tau).F_t.abs());
-        first.max(last) / self.structure.parameters().m
+        first.max(last)
     }
 
     /// What changes no faster than its second derivative leaves its chord by no more than that over 8/h², and does not turn
@@ -246,14 +316,14 @@ impl Piece<'_> {
         let &crate::Parameters { m, H, B, g, .. } = self.structure.parameters();
         let (stiffness, damping) = (self.structure.stiffness, outputs::damping(self.structure, phase) / m);
         let loads = [self.part.start.0, self.part.end.0].map(|tau| self.load.at(tau));
-        let push = self.most_push();
+        let force = self.most_force();
         let turn = theta_dot * theta_dot + theta * theta_ddot; // bounds |θ̈ sin θ + θ̇² cos θ|
         let sway = theta_ddot + theta * theta_dot * theta_dot; // and |θ̈ cos θ − θ̇² sin θ|
         let delta_t_bend = u_ddot + 2.0 * u_dot * theta_dot * theta + (B + u) * turn + H * sway;
-        let push_bend = push * turn + 2.0 * self.load.slope.F_t.abs() / m * theta_dot * theta;
+        let push_bend = (force * turn + 2.0 * self.load.slope.F_t.abs() * theta_dot * theta) / m;
         let a_t_bend = g * sway + damping * u_dddot + stiffness * u_ddot + push_bend;
         let bends = [theta_ddot, u_ddot, delta_t_bend, a_t_bend];
-        let within = self.level.crude_output_bounds(self.structure, phase, push, [theta, u, u_dot]);
+        let within = self.level.crude_output_bounds(self.structure, phase, force, [theta, u, u_dot]);
 
         let [first, last] = [(&step.state, loads[0]), (end, loads[1])]
             .map(|(state, load)| self.level.outputs(self.structure, phase, state, load));
@@ -308,6 +378,11 @@ impl Piece<'_> {
             }
         }
         show(from, arc, &series);
+    }
+
+    /// The outputs at its end.
+    pub(crate) fn last_outputs(&self) -> Outputs {
+        self.level.outputs(self.structure, self.before.phase, &self.end, self.load.at(self.duration))
     }
 
     /// The outputs at both ends of the part in hand, with seconds from the start of the piece.

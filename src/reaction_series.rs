@@ -142,7 +142,7 @@ pub(crate) fn off_chord(structure: &Structure, phase: Phase, arc: &Arc) -> [f64;
     let &crate::Parameters { m, m0, H, B, g, .. } = structure.parameters();
     let [u_ddot, theta_ddot] = [&arc.u_dot, &arc.theta_dot].map(|rate| slope(rate, arc));
     if phase == Phase::FullContact {
-        let [u, u_ddot] = extremes::off_chord([arc.used(&arc.u), arc.used(&u_ddot)], arc.reach);
+        let [u, u_ddot] = [&arc.u, &u_ddot].map(|series| extremes::off_chord(arc.used(series), arc.reach));
         return [m * u_ddot, 0.0, H * m * u_ddot + m * g * u];
     }
     let pivot = phase.side().sign() * B;
@@ -151,7 +151,7 @@ pub(crate) fn off_chord(structure: &Structure, phase: Phase, arc: &Arc) -> [f64;
     let along = arc.series(|k| m * (u_ddot[k] + H * theta_ddot[k]));
     let horizontal = arc.series(|k| cos * along[k] + sin * lever * theta_ddot[k]);
     let vertical = arc.series(|k| cos * lever * theta_ddot[k] - sin * along[k]);
-    let [horizontal, vertical] = extremes::off_chord([arc.used(&horizontal), arc.used(&vertical)], arc.reach);
+    let [horizontal, vertical] = [horizontal, vertical].map(|series| extremes::off_chord(arc.used(&series), arc.reach));
 
     let [u, u_dot, theta, theta_dot] =
         [&arc.u, &arc.u_dot, &arc.theta, &arc.theta_dot].map(|series| Change::of(series, arc));

@@ -199,9 +199,9 @@ impl Level for Rigid {
         })
     }
 
-    /// The state does not bound a_t here.
-    fn crude_output_bounds(&self, structure: &Structure, phase: Phase, push: f64, of_state: [f64; 3]) -> [f64; 4] {
-        let [theta, u, delta_t, _] = output_series::crude_bounds(structure, phase, push, of_state);
+    /// The state does not bound a_t here, nor is there anything crude that does.
+    fn crude_output_bounds(&self, structure: &Structure, phase: Phase, F_t: f64, of_state: [f64; 3]) -> [f64; 4] {
+        let [theta, u, delta_t, _] = output_series::crude_bounds(structure, phase, F_t, of_state);
         [theta, u, delta_t, f64::INFINITY]
     }
 

@@ -114,6 +114,7 @@ impl<'a> Run<'a> {
     pub fn follow<W: Watch>(&self, watch: &mut W) -> Result<Finish, RunError> {
         let mut engine = self.start()?;
         let ending = self.follow_ground(&mut engine, watch)?;
+        engine.done(watch);
         Ok(Finish { ending, motion: *engine.motion() })
     }
 
@@ -132,7 +133,7 @@ impl<'a> Run<'a> {
             End::At(end) => end,
         };
         for segment in self.ground.segments_until(end) {
-            let progress = engine.advance(segment.end - segment.start, segment.a_g, watch)?;
+            let progress = engine.go_on(segment.end - segment.start, segment.a_g, watch)?;
             if progress == Progress::Overturned {
                 return Ok(Ending::Overturned);
             }
@@ -154,7 +155,8 @@ impl<'a> Run<'a> {
     ) -> Result<Finish, RunError> {
         let mut engine = self.start()?;
         let mut samples = Samples::new(times, show);
-        let ending = self.follow_ground(&mut engine, &mut (watch, &mut samples))?;
+        let ending = self.follow_ground(&mut engine, &mut (&mut *watch, &mut samples))?;
+        engine.done(watch);
         samples.end(&engine);
         Ok(Finish { ending, motion: *engine.motion() })
     }
@@ -162,7 +164,7 @@ impl<'a> Run<'a> {
     /// The exact peaks of the run, and how it ended.
     pub fn peaks(&self) -> Result<(Peaks, Finish), RunError> {
         let mut peaks = Peaks::since(self.ground.start(), &self.structure);
-        let finish = self.follow(&mut peaks)?;
+        let finish = self.follow(&mut peaks.watch())?;
         Ok((peaks, finish))
     }
 }
@@ -175,11 +177,11 @@ fn come_to_rest<W: Watch>(engine: &mut Engine, watch: &mut W) -> Result<Ending, 
         if left == 0.0 {
             return Ok(Ending::StillRocking);
         }
-        if engine.advance(1.0 / p_l, Ramp::default(), watch)? == Progress::Overturned {
+        if engine.go_on(1.0 / p_l, Ramp::default(), watch)? == Progress::Overturned {
             return Ok(Ending::Overturned);
         }
         left -= 1.0;
     }
-    engine.advance(TAU / omega_fc, Ramp::default(), watch)?;
+    engine.go_on(TAU / omega_fc, Ramp::default(), watch)?;
     Ok(Ending::AtRest)
 }

@@ -124,16 +124,14 @@ fn no_peak_is_missed() {
         let amplitude = weight * [0.0, 0.3, 1.0, 3.0][r.pick(4)];
         let force = parameters.m * weight * [0.0, 0.3, 1.0][r.pick(3)];
         let longest = r.log(1e-4, 3.0) * if r.next() < 0.1 { 30.0 } else { 1.0 };
-        let mut load = Load::default();
+        let (mut load, mut fastest) = (Load::default(), 0.0_f64);
         for _ in 0..=r.log(3.0, 60.0) as usize {
             let target = Load { a_g: amplitude * r.sym(), F_t: force * r.sym() };
             let h = longest * if r.next() < 0.2 { r.next() + 1e-3 } else { 1.0 };
             let slope = Load { a_g: (target.a_g - load.a_g) / h, F_t: (target.F_t - load.F_t) / h };
-            let progress = engine.advance(
-                h,
-                LinearLoad { value: load, slope },
-                &mut (&mut dense, &mut (&mut peaks, &mut validity)),
-            );
+            let watch = &mut (&mut dense, &mut (&mut peaks.watch(), &mut validity));
+            let progress = engine.advance(h, LinearLoad { value: load, slope }, watch);
+            fastest = fastest.max(h * structure.omega_u);
             if progress != Ok(Progress::Complete) || dense.pieces > 4000 {
                 break;
             }
@@ -150,7 +148,12 @@ fn no_peak_is_missed() {
             );
             let off = (found[i].beyond - dense.beyond[i]).abs();
             let all = validity.found().duration;
-            assert!(off <= 0.01 * all, "scene {seed}, {}: {i}: beyond for {off} of {all} s", detail.name());
+            // samples tell how long where they are dense enough to see each vibration
+            assert!(
+                fastest > 100.0 || off <= 0.01 * all,
+                "scene {seed}, {}: {i}: beyond for {off} of {all} s",
+                detail.name()
+            );
         }
         for (peaking, sampled) in PEAKS.iter().zip(dense.largest) {
             let peak = (peaking.of)(&peaks).magnitude;

@@ -16,6 +16,7 @@ use rocking::{
     record::Record,
     run::{
         End, Run,
+        peaks::Peaks,
         validity::{Found, Validity},
     },
 };
@@ -110,7 +111,8 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let mut response = Table::create(&output, &tables::RESPONSE)?;
     let mut events = args.results.events.as_deref().map(|path| Table::create(path, &tables::EVENTS)).transpose()?;
     let progress = ProgressBar::new(ground.times().len() as u64);
-    let (mut summary, mut written) = (Summary::new(&structure), Ok(()));
+    let (mut peaks, mut summary, mut written) =
+        (Peaks::since(ground.start(), &structure), Summary::new(&structure), Ok(()));
     let mut transition = |transition: &Transition| {
         if let (Some(events), Ok(())) = (&mut events, &written) {
             written = events.write(tables::event_line(transition));
@@ -127,7 +129,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
                 rows = response.write(tables::response_line(sample));
             }
         },
-        &mut (&mut (&mut summary, &mut transition), &mut validity),
+        &mut (&mut peaks.watch(), &mut (&mut validity, &mut (&mut summary, &mut transition))),
     );
     progress.finish_and_clear();
     let finish = finish?;
@@ -135,7 +137,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     response.finish()?;
     events.map_or(Ok(()), Table::finish)?;
     eprintln!("{}, {} to {} s", ground.title(), significant(ground.start()), significant(finish.motion.time));
-    summary.print(&finish);
+    summary.print(&peaks, &finish);
     for line in validity::section(&structure, detail, validity.found(), &limits) {
         eprintln!("{line}");
     }

@@ -1,22 +1,17 @@
 //! What `simulate` prints at the end of a run.
 use fmu_export::significant::significant;
 use rocking::run::{Ending, Finish, LONGEST_REST, peaks::Peaks};
-use rocking::{Parameters, Phase, Piece, Side, Structure, Transition, TransitionKind, Watch};
+use rocking::{Parameters, Phase, Side, Structure, Transition, TransitionKind, Watch};
 
-/// Peaks and first transitions of a run.
+/// First transitions of a run.
 pub struct Summary {
     structure: Structure,
-    peaks: Peaks,
     first_uplift: Option<f64>,
     first_impact: Option<f64>,
 }
 
 impl Watch for Summary {
-    const SEES_PIECES: bool = true;
-
-    fn piece(&mut self, piece: &mut Piece) {
-        self.peaks.piece(piece);
-    }
+    const SEES_PIECES: bool = false;
 
     fn transition(&mut self, transition: &Transition) {
         let first = match transition.kind {
@@ -31,12 +26,11 @@ impl Watch for Summary {
 impl Summary {
     /// Of a run of `structure`, nothing seen yet.
     pub fn new(structure: &Structure) -> Summary {
-        Summary { structure: *structure, peaks: Peaks::new(structure), first_uplift: None, first_impact: None }
+        Summary { structure: *structure, first_uplift: None, first_impact: None }
     }
 
-    /// Prints it all, with what the run counted and came to, on standard error.
-    pub fn print(&self, &Finish { ending, motion }: &Finish) {
-        let peaks = &self.peaks;
+    /// Prints it all, with the `peaks` and what the run counted and came to, on standard error.
+    pub fn print(&self, peaks: &Peaks, &Finish { ending, motion }: &Finish) {
         let &Parameters { g, .. } = self.structure.parameters();
         for (name, peak, unit, per_unit) in [
             ("a_g", peaks.a_g(), "g", g),

@@ -139,14 +139,14 @@ impl Model {
             if !setup.peaks {
                 return self.follow(setup, step, inputs, watch);
             }
-            let progress = self.follow(setup, step, inputs, &mut (&mut peaks, watch))?;
+            let progress = self.follow(setup, step, inputs, &mut (&mut peaks.watch(), watch))?;
             self.peaks = peaks;
             return Ok(progress);
         }
         let mut validity = self.watch_validity();
         let watch = &mut (&mut validity, watch);
         let progress = if setup.peaks {
-            self.follow(setup, step, inputs, &mut (&mut peaks, watch))
+            self.follow(setup, step, inputs, &mut (&mut peaks.watch(), watch))
         } else {
             self.follow(setup, step, inputs, watch)
         }?;

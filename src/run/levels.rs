@@ -112,7 +112,7 @@ pub fn compare(run: &Run) -> Result<Comparison, RunError> {
 
 fn respond(run: &Run) -> Result<(Response, History), RunError> {
     let (mut peaks, mut history) = (Peaks::new(&run.structure), History::new(run.structure.omega_u));
-    let finish = run.follow(&mut (&mut peaks, &mut history))?;
+    let finish = run.follow(&mut (&mut peaks.watch(), &mut history))?;
     let response = Response {
         detail: run.detail,
         peaks,

@@ -80,7 +80,7 @@ impl Outcome {
     /// Does `run`, which `watch` sees go by.
     pub fn of(run: &Run, watch: &mut impl Watch) -> Outcome {
         let mut peaks = Peaks::since(run.ground.start(), &run.structure);
-        let finish = match run.follow(&mut (&mut peaks, watch)) {
+        let finish = match run.follow(&mut (&mut peaks.watch(), watch)) {
             Ok(finish) => finish,
             Err(error) => return Outcome::Failed(error.to_string()),
         };

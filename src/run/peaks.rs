@@ -2,11 +2,12 @@
 //!
 //! A bound on a piece tells most of the time that it holds nothing larger than what has been seen. Where it does not,
 //! each output is a series in time (`output_series`), which rises or falls throughout between the points where
-//! it is stationary (`extremes`): the largest magnitude is at one of these or at an end.
+//! it is stationary (`extremes`): the largest magnitude is at one of these or at an end. A piece that may hold more than
+//! what has been seen is first kept, since most are soon beaten by the end of another.
 
 use crate::extremes::Bound;
 use crate::outputs::Measure;
-use crate::piece::{Piece, Watch};
+use crate::piece::{Equations, KeptPiece, Piece, Watch};
 use crate::{Outputs, Structure, extremes};
 use serde::{Deserialize, Serialize};
 
@@ -15,6 +16,9 @@ const ROUNDING: f64 = 1e-14;
 
 /// How often an exact leap is halved before a polynomial is asked for: a bound on a half has a quarter of the slack.
 const HALVINGS: u32 = 2;
+
+/// How many pieces are kept at most.
+const KEPT: usize = 32;
 
 /// The largest magnitude of a quantity, and its instant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -27,7 +31,7 @@ pub struct Peak {
 
 impl Peak {
     fn see(&mut self, value: f64, time: f64) {
-        if value.abs() > self.magnitude {
+        if value.abs() > self.magnitude || value.abs() == self.magnitude && time < self.time {
             *self = Peak { magnitude: value.abs(), time };
         }
     }
@@ -144,10 +148,14 @@ impl Peaks {
         self.evaluations
     }
 
+    /// Looks for more of them in the pieces of a motion.
+    pub fn watch(&mut self) -> PeakWatch<'_> {
+        PeakWatch { peaks: self, kept: Vec::new() }
+    }
+
     /// Looks at the part of `piece` in hand, where it may hold larger magnitudes; `halvings` are left.
     fn look(&mut self, piece: &mut Piece, halvings: u32) {
-        let crude = piece.crude_bounds();
-        if !Measure::ALL.iter().any(|measure| self.may_be_beaten(*measure, crude[*measure as usize])) {
+        if !self.may_be_beaten_within(&piece.crude_bounds()) {
             return;
         }
         let bounds = piece.bounds();
@@ -184,6 +192,11 @@ impl Peaks {
             }
             piece.skip_middle(begin);
         }
+    }
+
+    /// Whether magnitudes within `bounds` may be more than what has been seen.
+    fn may_be_beaten_within(&self, bounds: &[f64; 4]) -> bool {
+        Measure::ALL.iter().any(|measure| self.may_be_beaten(*measure, bounds[*measure as usize]))
     }
 
     /// Whether a magnitude of at most `bound` may be more than what has been seen.
@@ -223,15 +236,48 @@ impl Peaks {
     }
 }
 
-impl Watch for Peaks {
+/// Looks for peaks in the pieces of a motion.
+#[derive(Debug)]
+pub struct PeakWatch<'a> {
+    peaks: &'a mut Peaks,
+    /// Pieces that may hold more than what has been seen, and bounds of what they hold.
+    kept: Vec<([f64; 4], KeptPiece)>,
+}
+
+impl PeakWatch<'_> {
+    /// Looks at what has been kept, the latest first, which is often the largest.
+    fn look_back(&mut self, equations: &mut Equations) {
+        while let Some((bounds, mut piece)) = self.kept.pop() {
+            if self.peaks.may_be_beaten_within(&bounds) {
+                let mut piece = piece.piece(equations);
+                self.peaks.look(&mut piece, HALVINGS);
+                self.peaks.evaluations += piece.evaluations();
+            }
+        }
+    }
+}
+
+impl Watch for PeakWatch<'_> {
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &mut Piece) {
         for tau in [0.0, piece.duration] {
-            self.ground.see(piece.load.at(tau).a_g, piece.before.time + tau);
+            self.peaks.ground.see(piece.load.at(tau).a_g, piece.before.time + tau);
         }
-        let asked_before = piece.evaluations();
-        self.look(piece, HALVINGS);
-        self.evaluations += piece.evaluations() - asked_before;
+        let bounds = piece.crude_bounds();
+        if !self.peaks.may_be_beaten_within(&bounds) {
+            return;
+        }
+        self.peaks.see_instant(piece.before.time + piece.duration, &piece.last_outputs());
+        let peaks = &*self.peaks;
+        self.kept.retain(|(bounds, _)| peaks.may_be_beaten_within(bounds));
+        if self.kept.len() == KEPT {
+            self.look_back(&mut piece.equations());
+        }
+        self.kept.push((bounds, piece.keep()));
+    }
+
+    fn done(&mut self, equations: &mut Equations) {
+        self.look_back(equations);
     }
 }

@@ -519,8 +519,7 @@ impl<'a, 'p> Stretch<'a, 'p> {
 
 /// Bound of Σ c_k σᵏ up to σ = `reach`.
 fn highest(coefficients: &[f64], reach: f64) -> f64 {
-    let [off_chord] = extremes::off_chord([coefficients], reach);
-    coefficients[0].max(evaluate(coefficients, reach)) + off_chord
+    coefficients[0].max(evaluate(coefficients, reach)) + extremes::off_chord(coefficients, reach)
 }
 
 /// Adds to `found` where Σ c_k σᵏ is positive up to σ = `reach`, stretch by stretch on which it rises or falls throughout.

@@ -19,6 +19,9 @@ pub struct Fmu<'a> {
     _resources: TempDir,
 }
 
+/// The scene's ground motion, in the FMU's resources.
+const RECORD: &str = "ground.csv";
+
 fn reference(name: &str) -> c_uint {
     let position = VARIABLES.iter().position(|variable| variable.name == name);
     position.unwrap_or_else(|| panic!("the FMU has no variable {name}")) as c_uint
@@ -34,6 +37,9 @@ impl<'a> Fmu<'a> {
     pub fn new(scene: &'a Scene, tolerance: f64) -> Result<Fmu<'a>> {
         let resources = tempfile::tempdir()?;
         std::fs::write(resources.path().join(PARAMETERS_FILE), toml::to_string(scene.structure.parameters())?)?;
+        let samples = scene.ground.times().iter().zip(scene.ground.acceleration());
+        let lines: String = samples.map(|(time, a_g)| format!("{time:e},{a_g:e}\n")).collect();
+        std::fs::write(resources.path().join(RECORD), lines)?;
         let location = CString::new(format!("file://{}", resources.path().display()))?;
         let (name, guid) =
             (CString::new(scene.key)?, CString::new(FlexibleRocking::guid(&(*scene.structure.parameters()).into()))?);
@@ -60,12 +66,14 @@ impl<'a> Fmu<'a> {
     }
 
     fn simulate(&self, input: Input, cuts: usize, samples: &mut Vec<Sample>) -> Result<(), Failure> {
-        self.initialize().map_err(|message| Failure::GaveUp { time: 0.0, message })?;
+        self.initialize(input).map_err(|message| Failure::GaveUp { time: 0.0, message })?;
         let a_g = reference("a_g");
         let outputs = [reference("theta"), reference("u"), reference("a_t")];
         for step in self.scene.steps(input, cuts) {
             let failure = |message| Failure::GaveUp { time: step.start, message };
-            self.set_real(a_g, step.a_g.value).map_err(failure)?;
+            if input != Input::Inside {
+                self.set_real(a_g, step.a_g.value).map_err(failure)?;
+            }
             if input == Input::Linear {
                 self.set_slope(a_g, step.a_g.slope).map_err(failure)?;
             }
@@ -79,7 +87,7 @@ impl<'a> Fmu<'a> {
     }
 
     /// As instantiated, then set up and initialized: ready for the first step.
-    fn initialize(&self) -> Result<(), String> {
+    fn initialize(&self, input: Input) -> Result<(), String> {
         let component = self.component;
         unsafe {
             check("fmi2Reset", c_abi::fmi2Reset(component))?;
@@ -89,6 +97,11 @@ impl<'a> Fmu<'a> {
         let rocking::State { u, u_dot, theta, theta_dot } = self.scene.initial;
         for (name, value) in [("u_0", u), ("u_dot_0", u_dot), ("theta_0", theta), ("theta_dot_0", theta_dot)] {
             self.set_real(reference(name), value)?;
+        }
+        if input == Input::Inside {
+            let text = CString::new(RECORD).expect("a name without NUL");
+            let status = unsafe { c_abi::fmi2SetString(component, &reference("record"), 1, &text.as_ptr()) };
+            check("fmi2SetString", status)?;
         }
         check("fmi2ExitInitializationMode", unsafe { c_abi::fmi2ExitInitializationMode(component) })
     }

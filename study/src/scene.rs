@@ -28,6 +28,8 @@ pub enum Input {
     Constant,
     /// Its value at the start and its slope.
     Linear,
+    /// Not at all: the FMU has the record.
+    Inside,
 }
 
 /// One communication step.
@@ -138,7 +140,7 @@ impl Scene {
         (0..self.intervals() * cuts).map(move |j| {
             let exact = self.ramp(j / cuts);
             let value = exact.at((j % cuts) as f64 * h);
-            let slope = if input == Input::Linear { exact.slope } else { 0.0 };
+            let slope = if input == Input::Constant { 0.0 } else { exact.slope };
             let ends_interval = (j + 1) % cuts == 0;
             Step { start: j as f64 * h, end: (j + 1) as f64 * h, a_g: Ramp { value, slope }, ends_interval }
         })

@@ -110,7 +110,11 @@ fn libraries(scene: &Scene) -> [Method<'_>; 6] {
 
 fn fmu(scene: &Scene) -> Result<Vec<Method<'_>>> {
     let fmu = Rc::new(Fmu::new(scene, DEFAULT_TOLERANCE)?);
-    let inputs = [("FMU, input held", Input::Constant), ("FMU, input with slope", Input::Linear)];
+    let inputs = [
+        ("FMU, input held", Input::Constant),
+        ("FMU, input with slope", Input::Linear),
+        ("FMU, record inside", Input::Inside),
+    ];
     let method = |(name, input): (&str, Input)| Method {
         name: name.into(),
         family: Family::Fmu,

@@ -18,6 +18,9 @@ const TOP: f64 = 40.0;
 
 const HELD: Style = Style { dashed: true, ..Style::marked(PURPLE, 2, Marker::Diamond) };
 
+/// The FMU with the record inside.
+const INSIDE: Style = Style::marked(GREEN, 2, Marker::Triangle);
+
 /// Colours and marks of the textbook methods, in the order of [`crate::fixed_step::TEXTBOOK`].
 const TEXTBOOK_STYLES: [Style; 6] = [
     Style::marked(ORANGE, 2, Marker::Circle),
@@ -59,7 +62,7 @@ impl Diagram {
             Family::Located => TEXTBOOK_STYLES.to_vec(),
             Family::AtStepEnds => TEXTBOOK_STYLES.iter().map(|style| Style { dashed: true, ..*style }).collect(),
             Family::Library => LIBRARY_STYLES.to_vec(),
-            Family::Fmu => vec![HELD, Style { dashed: false, ..HELD }],
+            Family::Fmu => vec![HELD, Style { dashed: false, ..HELD }, INSIDE],
         };
         self.curves.iter().filter(move |curve| curve.family == family).zip(styles.into_iter().cycle())
     }

@@ -33,6 +33,7 @@ struct Scene {
     step_ends: Vec<StepEnds>,
     held: [String; 2],
     slope: String,
+    inside: String,
     undercut: Vec<Undercut>,
     failures: Vec<String>,
 }
@@ -188,6 +189,7 @@ impl Diagram {
     fn scene(&self) -> Result<Scene> {
         let held = self.curve(Family::Fmu, "FMU, input held").context("the FMU is measured")?;
         let slope = self.curve(Family::Fmu, "FMU, input with slope").context("the FMU is measured")?;
+        let inside = self.curve(Family::Fmu, "FMU, record inside").context("the FMU is measured")?;
         let first = |curve: &Curve| curve.points.first().and_then(Point::theta).map_or("fails".into(), scientific);
         let last = |curve: &Curve| curve.points.last().and_then(Point::theta).map_or("fails".into(), scientific);
         Ok(Scene {
@@ -201,6 +203,7 @@ impl Diagram {
             step_ends: self.step_ends(),
             held: [first(held), last(held)],
             slope: first(slope),
+            inside: first(inside),
             undercut: self.undercut()?,
             failures: self.failures(),
         })

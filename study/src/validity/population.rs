@@ -121,7 +121,7 @@ fn respond(run: &Run) -> Result<Response, RunError> {
     let start = run.ground.start();
     let mut peaks = Peaks::since(start, &run.structure);
     let mut validity = Validity::new(&run.structure, Limits::default(), Found::since(start));
-    let finish = run.follow(&mut (&mut peaks, &mut validity))?;
+    let finish = run.follow(&mut (&mut peaks.watch(), &mut validity))?;
     let overturns = finish.ending == Ending::Overturned;
     Ok(Response { peaks, found: *validity.found(), transitions: finish.motion.transitions, overturns })
 }
