@@ -5,7 +5,7 @@
 # make coupling  regenerate docs/coupling.md and its figures (minutes)
 # make bench   criterion benchmark of a whole record, and one step over it through fmpy
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
-# make fuzz    ten million hostile calls of the C interface, on all cores (CI makes 200,000)
+# make fuzz    ten million hostile calls of the C interface and as many damaged records, on all cores (CI: 200,000 and 40,000)
 # make records the ground motion records alone, for the charts: cargo run --release -p study -- precision
 #
 # Each does all its own set-up; needed are cargo and python3 (3.11 or later).
@@ -20,15 +20,16 @@ WINDOWS := x86_64-pc-windows-gnu
 MINGW := x86_64-w64-mingw32-gcc
 HAS_MINGW := command -v $(MINGW) >/dev/null
 HAS_WINE := command -v wine >/dev/null
+HAS_CHROMIUM := command -v chromium >/dev/null
 HAS_TBB := PATH=$$PATH:/sbin ldconfig -p | grep -q 'libtbb\.so\.12'
 sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test dist report coupling bench licenses fuzz records exporter mingw hosts
+.PHONY: demo test browser dist report coupling bench licenses fuzz records exporter mingw hosts
 
 demo: .venv/ready out/mcmanus.fmu out/evison.fmu
-	cp $(RECORDS)/$(PACOIMA) out/
+	cp $(RECORDS)/$(PACOIMA) $(RECORDS)/$(EL_CENTRO) out/
 	$(PYTHON) examples/first_run.py out/mcmanus.fmu
 
 test: .venv/ready exporter hosts dist
@@ -40,6 +41,12 @@ test: .venv/ready exporter hosts dist
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo test --workspace
 	$(PYTHON) -m pytest -rs
+
+# The page of `view` in Chromium; where that cannot be had, the tests are skipped and say so.
+browser: .venv/ready exporter
+	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
+	-$(PYTHON) -m pip install --quiet --disable-pip-version-check --requirement requirements.browser.txt
+	$(PYTHON) -m pytest -rs tests/test_view.py
 
 dist: exporter mingw
 	mkdir -p out
@@ -71,6 +78,7 @@ licenses:
 
 fuzz:
 	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release --package flexible-rocking-fmu --test hostile_calls -- --nocapture
+	FUZZ_RECORDS=$${FUZZ_RECORDS:-10000000} cargo test --release --package rocking --test records -- --nocapture no_mutation
 
 exporter:
 	cargo build --release

@@ -1,14 +1,16 @@
 //! `export`: packs the shared libraries, with all that describes them, into an FMU.
 
-use crate::structure_args::StructureArgs;
+use crate::output_files::{OutputFile, OutputFiles};
+use crate::record_args::described;
+use crate::structure_args::{StructureArgs, in_one_line};
+use crate::talk::say;
 use FlexibleRocking::guid;
 use anyhow::bail;
 use fmu_export::Platform;
-use rocking::Structure;
-use rocking::parameters::PARAMETERS;
+use rocking::record::{Reading, Record};
 use std::collections::BTreeMap;
 use std::env;
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// File name of the shared library as cargo builds it.
@@ -19,11 +21,12 @@ const LIBRARY_FILE: &str = "libFlexibleRocking.so";
 pub struct ExportArgs {
     #[command(flatten)]
     structure: StructureArgs,
-    /// Ground motion records to pack: PEER .AT2, or .csv/.txt with lines of time (s) and acceleration (m/s2); the FMU
-    /// follows the first, and the others by their names
+    /// Ground motion records to pack: PEER .AT2, ESM, K-NET, COSMOS or CSMIP as published, or .csv, .txt, .dat with lines
+    /// of time (s) and acceleration (m/s2 unless a heading states the unit); the FMU follows the first, and the others by
+    /// their names
     #[arg(long, value_name = "FILE", num_args = 1..)]
     record: Vec<PathBuf>,
-    /// Archive to write; one that is there is replaced
+    /// Archive to write, `-` for standard output; one that is there is replaced
     #[arg(short, long, value_name = "FILE.fmu", default_value = "FlexibleRocking.fmu")]
     output: PathBuf,
     /// Shared library to pack [default: libFlexibleRocking.so, built with this program]
@@ -34,7 +37,7 @@ pub struct ExportArgs {
     windows_library: Option<PathBuf>,
 }
 
-/// Writes the FMU and prints what was written.
+/// Writes the FMU and says what was written.
 pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let library = match &args.library {
@@ -43,13 +46,27 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     };
     let mut libraries = BTreeMap::from([(Platform::Linux64, library)]);
     libraries.extend(args.windows_library.clone().map(|path| (Platform::Windows64, path)));
-    let (contents, size) = fmu_export::export(&structure, &args.record, &libraries, &args.output)?;
-    let mut out = stdout().lock();
-    writeln!(out, "{}: {} kB", args.output.display(), size.div_ceil(1000))?;
-    writeln!(out, "  GUID       {}", guid(&contents))?;
-    writeln!(out, "  structure  {}", start_values(&structure))?;
+    let inputs =
+        args.structure.input().into_iter().chain(args.record.iter().chain(libraries.values()).map(PathBuf::as_path));
+    if args.output.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("fmu"))
+        && args.output != Path::new("-")
+    {
+        say!("{}: hosts know an FMU by the ending .fmu", args.output.display());
+    }
+    let g = structure.parameters().g;
+    for path in &args.record {
+        let (record, source) = Record::read(path, &Reading::default(), g)?;
+        say!("{}", described(path, &record, &source, g));
+    }
+    let mut file = OutputFiles::of_inputs(inputs).create(&args.output)?;
+    let (contents, archive) = fmu_export::export(&structure, &args.record, &libraries)?;
+    OutputFile::named(&args.output, file.write_all(&archive))?;
+    file.finish()?;
+    say!("{}: {} kB", args.output.display(), archive.len().div_ceil(1000));
+    say!("  GUID       {}", guid(&contents));
+    say!("  structure  {}", in_one_line(&structure));
     for packed in &contents.records {
-        writeln!(out, "  record     {}", packed.file)?;
+        say!("  record     {}", packed.file);
     }
     Ok(())
 }
@@ -68,19 +85,6 @@ fn library_of(executable: &Path) -> anyhow::Result<PathBuf> {
             in_deps.display()
         ),
     }
-}
-
-/// The structure's parameters in one line.
-fn start_values(structure: &Structure) -> String {
-    let values = PARAMETERS.iter().map(|parameter| {
-        let value = (parameter.get)(structure.parameters());
-        if parameter.unit == "1" {
-            format!("{} = {value}", parameter.name)
-        } else {
-            format!("{} = {value} {}", parameter.name, parameter.unit)
-        }
-    });
-    values.collect::<Vec<_>>().join(", ")
 }
 
 #[cfg(test)]

@@ -1,29 +1,24 @@
 //! The tables that `simulate` writes: the response and its transitions as CSV.
-use anyhow::Context;
+use crate::output_files::{OutputFile, OutputFiles};
+use crate::structure_args::in_one_line;
 use rocking::piece::Sample;
-use rocking::{Impulse, Outputs, Reactions, Side, State, Transition, TransitionKind};
+use rocking::{Impulse, Outputs, Reactions, State, Structure, Transition};
 use serde::Serialize;
 use std::{
-    fs::File,
-    io::{Write, stdout},
+    io,
     path::{Path, PathBuf},
 };
 
 /// A CSV file that is being written.
 pub struct Table {
     path: PathBuf,
-    writer: csv::Writer<Box<dyn Write>>,
+    writer: csv::Writer<OutputFile>,
 }
 
 impl Table {
-    /// A new file with these `headings`, or standard output for `-`.
-    pub fn create(path: &Path, headings: &[&str]) -> anyhow::Result<Table> {
-        let to: Box<dyn Write> = if path == Path::new("-") {
-            Box::new(stdout().lock())
-        } else {
-            Box::new(File::create(path).with_context(|| cannot_be_written(path))?)
-        };
-        let writer = csv::WriterBuilder::new().has_headers(false).from_writer(to);
+    /// A table at `path`, or on standard output for `-`, with these `headings`.
+    pub fn create(files: &mut OutputFiles, path: &Path, headings: &[impl Serialize]) -> anyhow::Result<Table> {
+        let writer = csv::WriterBuilder::new().has_headers(false).from_writer(files.create(path)?);
         let mut table = Table { path: path.into(), writer };
         table.write(headings)?;
         Ok(table)
@@ -31,21 +26,27 @@ impl Table {
 
     /// Adds a line; a number reads back to the same bits.
     pub fn write(&mut self, line: impl Serialize) -> anyhow::Result<()> {
-        self.writer.serialize(line).with_context(|| cannot_be_written(&self.path))
+        OutputFile::named(&self.path, self.writer.serialize(line).map_err(of_the_file))
     }
 
     /// Writes out what is still held back.
     pub fn finish(mut self) -> anyhow::Result<()> {
-        self.writer.flush().with_context(|| cannot_be_written(&self.path))
+        OutputFile::named(&self.path, self.writer.flush())?;
+        let file = self.writer.into_inner().map_err(|failed| io::Error::from(failed.error().kind()));
+        OutputFile::named(&self.path, file)?.finish()
     }
 }
 
-fn cannot_be_written(path: &Path) -> String {
-    format!("{} cannot be written", path.display())
+/// The file's own error, which is all that can go wrong with lines of numbers and words.
+fn of_the_file(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        other => io::Error::other(format!("{other:?}")),
+    }
 }
 
 /// Headings of the response: the ground acceleration, and the outputs of the FMU under their names and units.
-pub const RESPONSE: [&str; 20] = [
+const RESPONSE: [&str; 20] = [
     "time[s]",
     "a_g[m/s2]",
     "theta[rad]",
@@ -68,6 +69,17 @@ pub const RESPONSE: [&str; 20] = [
     "transitions",
 ];
 
+/// How the last heading of a response begins, which says what responded to what.
+pub const STRUCTURE: &str = "structure: ";
+
+/// Headings of the response of `structure` to the ground motion called `title`: under the last there is nothing. It has no
+/// letter that a reader of CSV takes for anything else.
+pub fn response_headings(structure: &Structure, title: &str) -> Vec<String> {
+    let plain = |text: String| text.replace(", ", "; ").replace([',', '"', '#'], " ");
+    let of = format!("{STRUCTURE}{}; record: {}", plain(in_one_line(structure)), plain(title.into()));
+    RESPONSE.into_iter().map(String::from).chain([of]).collect()
+}
+
 /// A line of the response.
 pub fn response_line(sample: &Sample) -> impl Serialize + use<> {
     let &Sample { motion, load, .. } = sample;
@@ -75,7 +87,7 @@ pub fn response_line(sample: &Sample) -> impl Serialize + use<> {
     let Reactions { R_h, R_v, R_m } = sample.reactions();
     let Impulse { I_h, I_v, I_m } = motion.impulse;
     let of_motion = (theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t);
-    (motion.time, load.a_g, of_motion, (R_h, R_v, R_m, I_h, I_v, I_m), motion.phase.name(), motion.transitions)
+    (motion.time, load.a_g, of_motion, (R_h, R_v, R_m, I_h, I_v, I_m), motion.phase.name(), motion.transitions, "")
 }
 
 /// Headings of the transitions.
@@ -95,16 +107,6 @@ pub const EVENTS: [&str; 10] = [
 /// A line of the transitions.
 pub fn event_line(transition: &Transition) -> impl Serialize + use<> {
     let &Transition { time, kind, before, after } = transition;
-    let kind = match kind {
-        TransitionKind::Uplift(Side::Left) => "uplift left",
-        TransitionKind::Uplift(Side::Right) => "uplift right",
-        TransitionKind::Impact(Side::Left) => "impact left",
-        TransitionKind::Impact(Side::Right) => "impact right",
-        TransitionKind::Landing => "landing",
-        TransitionKind::Settling => "settling",
-        TransitionKind::Overturning(Side::Left) => "overturning left",
-        TransitionKind::Overturning(Side::Right) => "overturning right",
-    };
     let values = |State { u, u_dot, theta, theta_dot }| (u, u_dot, theta, theta_dot);
-    (time, kind, values(before), values(after))
+    (time, kind.name(), values(before), values(after))
 }

@@ -1,6 +1,6 @@
 //! What the model leaves out on a scene: the section that `simulate` and `advise` print, and the limits it goes by.
 
-use fmu_export::significant::significant;
+use crate::significant::significant;
 use rocking::run::validity::{self, ASSUMPTIONS, Found, Limits, Worst};
 use rocking::{Detail, Structure};
 

@@ -7,11 +7,11 @@ fn the_library_of_the_same_build_is_found_and_packed() {
     let folder = tempfile::tempdir().unwrap();
     let mut export = Command::new(env!("CARGO_BIN_EXE_rocking-fmu"));
     let output = export.current_dir(folder.path()).args(["export", "--preset", "evison"]).output().unwrap();
-    let stdout = String::from_utf8(output.stdout).unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(output.status.success(), "{said}");
     let size = folder.path().join("FlexibleRocking.fmu").metadata().unwrap().len();
     let start = format!("FlexibleRocking.fmu: {} kB\n  GUID       {{", size.div_ceil(1000));
-    assert!(stdout.starts_with(&start) && stdout.contains("  structure  m = 125.8 kg, "), "{stdout}");
+    assert!(said.starts_with(&start) && said.contains("  structure  m = 125.8 kg, "), "{said}");
 }
 
 /// `--record` packs files that are records, and says which.
@@ -26,8 +26,10 @@ fn records_are_packed_and_named() {
         std::fs::write(folder.path().join(name), text).unwrap();
     }
     let output = export(&["--record", "pulse.csv", "sine.txt", "-o", "quakes.fmu"]);
-    let stdout = String::from_utf8(output.stdout).unwrap();
-    assert!(stdout.ends_with("\n  record     pulse.csv\n  record     sine.txt\n"), "{stdout}");
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(said.ends_with("\n  record     pulse.csv\n  record     sine.txt\n"), "{said}");
+    let assumed = "sine.txt: table, separated by commas, column 2; m/s2 assumed, for the file does not state it";
+    assert!(said.contains(assumed), "{said}");
     let output = export(&["--record", "broken.csv", "-o", "broken.fmu"]);
     let stderr = String::from_utf8(output.stderr).unwrap();
     assert_eq!(stderr, "error: broken.csv, line 2: the acceleration \"?\" is not a number\n");

@@ -3,7 +3,7 @@
 mod command_line;
 
 use command_line::{fail, folder, succeed};
-use rocking::record::{Record, Unit};
+use rocking::record::{Reading, Record};
 use rocking::run::validity::{ASSUMPTIONS, Found, Limits};
 use rocking::run::{End, Run};
 use rocking::{Parameters, Structure};
@@ -11,7 +11,7 @@ use std::{fs, path::Path};
 
 /// The pulse under McManus's specimen with this restitution.
 fn found(folder: &Path, r: f64, scale: f64, limits: Limits, end: End) -> Found {
-    let ground = Record::read(&folder.join("pulse.AT2"), Unit::G, 9.81).unwrap().scaled(1.0, scale);
+    let ground = Record::read(&folder.join("pulse.AT2"), &Reading::default(), 9.81).unwrap().0.scaled(1.0, scale);
     let structure = Structure::new(Parameters { r, ..Parameters::MCMANUS }).unwrap();
     Run { end, ..Run::new(structure, &ground) }.validity(limits).unwrap().0
 }
@@ -43,7 +43,7 @@ fn the_section_is_that_of_the_run() {
             Limits { friction: 0.3, tension: 0.01, edge_load: 0.2, gain: 0.001 },
         ),
     ] {
-        let (_, simulated) = succeed(path, &format!("simulate --record pulse.AT2 --duration 3{options}"));
+        let (simulated, _) = succeed(path, &format!("simulate --record pulse.AT2 --duration 3{options}"));
         let (advised, _) = succeed(path, &format!("advise --record pulse.AT2 --duration 3{options}"));
         assert_eq!(section(&simulated), section(&advised));
         let found = found(path, 0.99, 1.0, limits, End::At(3.0));
@@ -76,7 +76,7 @@ fn what_the_parameters_say_is_said() {
     let folder = folder();
     let parameters = "m = 100\nm0 = 50\nH = 2\nB = 0.3\nf_fc = 0.2\nzeta_fc = 0.02\nr = 0.5\n";
     fs::write(folder.path().join("pier.toml"), parameters).unwrap();
-    let (_, said) = succeed(folder.path(), "simulate --parameters pier.toml --record pulse.AT2 --duration 1");
+    let (said, _) = succeed(folder.path(), "simulate --parameters pier.toml --record pulse.AT2 --duration 1");
     let lines = section(&said);
     for (line, start) in lines.iter().zip(["  u_cr = 1.39", "  r = 0.5 is below", "  r = 0.5 can raise"]) {
         assert!(line.starts_with(start), "{line}");

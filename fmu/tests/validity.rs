@@ -6,7 +6,7 @@ mod host;
 use FlexibleRocking::snapshot;
 use approx::assert_relative_eq;
 use host::*;
-use rocking::record::{Record, Unit};
+use rocking::record::{Reading, Record};
 use rocking::run::validity::{ASSUMPTIONS, Found, Limits};
 use rocking::run::{End, Run};
 use rocking::{Parameters, Structure};
@@ -47,7 +47,7 @@ fn expected() -> Found {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("quake.csv");
     fs::write(&path, quake()).unwrap();
-    let ground = Record::read(&path, Unit::MetrePerSecondSquared, 9.81).unwrap();
+    let (ground, _) = Record::read(&path, &Reading::default(), 9.81).unwrap();
     let structure = Structure::new(Parameters { r: 1.0, f_fc: 4.0, ..Parameters::EVISON }).unwrap();
     let run = Run { end: End::At(5.0), ..Run::new(structure, &ground) };
     run.validity(Limits::default()).unwrap().0
