@@ -555,11 +555,11 @@ mod tests {
         let Conditions { detail, tolerance, .. } = conditions;
         let usual = Run::new(Structure::new(Parameters::MCMANUS).unwrap(), &ground);
         let run = Run { initial, detail, tolerance, end: End::At(0.7), ..usual.clone() };
-        assert_eq!(plan.case(0).outcome(), Outcome::of(&run));
+        assert_eq!(plan.case(0).outcome(), Outcome::of(&run, &mut ()));
         let Outcome::Ended(Summary { ending, end, .. }) = plan.case(0).outcome() else { panic!() };
         assert_eq!((ending, end), (Ending::AtTime, 0.7));
-        assert_ne!(plan.case(0).outcome(), Outcome::of(&Run { detail: Detail::Auto, ..run }));
-        assert_ne!(plan.case(0).outcome(), Outcome::of(&usual));
+        assert_ne!(plan.case(0).outcome(), Outcome::of(&Run { detail: Detail::Auto, ..run }, &mut ()));
+        assert_ne!(plan.case(0).outcome(), Outcome::of(&usual, &mut ()));
     }
 
     /// A record with a factor of its own is the record with its samples multiplied; measures grow with it.
