@@ -259,8 +259,8 @@ mod tests {
       <Enumeration declaredType="Phase"/>"#,
             r#"<Item name="rocking left" value="2"/>"#,
             r#"<String start="pulse &amp; rest.csv"/>"#,
-            r#"description="whether largest magnitudes are watched" causality="parameter" variability="fixed" initial="exact">
-      <Boolean start="true"/>"#,
+            r#"description="whether the largest magnitudes theta_max, u_max, ... are watched for" causality="parameter" variability="fixed" initial="exact">
+      <Boolean start="false"/>"#,
             r#"exact: within steps, too" causality="local" variability="continuous" initial="calculated">
       <Real unit="rad"/>"#,
             r#"<DefaultExperiment startTime="0.0" tolerance="1e-9"/>"#,
