@@ -27,6 +27,9 @@ pub const MAX_FILE: u64 = 1 << 28;
 /// Most samples that are read from a file.
 pub const MAX_SAMPLES: usize = 10_000_000;
 
+/// A peak above this, in g, is rather one in another unit.
+const LARGEST_USUAL_PEAK: f64 = 5.0;
+
 /// A ground motion: at least two samples, finite, at strictly increasing times.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Record {
@@ -112,6 +115,8 @@ pub enum Remedy {
     Step,
     /// The column.
     Column,
+    /// The channel, which has no name but its number.
+    Channel,
     /// The unit.
     Unit,
 }
@@ -148,8 +153,13 @@ impl Record {
     /// Reads the record in the file at `path` as `how` says, with accelerations in m/s²; `g` (m/s²) is what a record's g
     /// stands for.
     pub fn read(path: &Path, how: &Reading, g: f64) -> Result<(Record, Source), RecordError> {
-        let (record, source) = Record::read_raw(path, how)?;
-        Ok((record.scaled(1.0, source.unit.in_m_s2(g)), source))
+        let (record, mut source) = Record::read_raw(path, how)?;
+        let record = record.scaled(1.0, source.unit.in_m_s2(g));
+        let peak = record.pga() / g;
+        if peak > LARGEST_USUAL_PEAK {
+            source.warnings.push(format!("a peak of {peak:.0} g: is the unit right?"));
+        }
+        Ok((record, source))
     }
 
     /// The same with its accelerations as the file gives them; their unit is the source's.

@@ -102,7 +102,7 @@ fn a_channel_of_several_is_chosen() {
         let how = Reading { column, ..Reading::default() };
         Record::from_bytes(Path::new("two.V2c"), text.as_bytes(), &how)
     };
-    assert_eq!(line_of(&read(None).unwrap_err()).1, Some(Remedy::Column));
+    assert_eq!(line_of(&read(None).unwrap_err()).1, Some(Remedy::Channel));
     for (number, expected) in [(1, &first), (2, &second)] {
         let (record, source) = read(Some(Column::Number(number))).unwrap();
         let errors = record.acceleration().iter().zip(expected).map(|(found, expected)| (found - expected).abs());
@@ -110,6 +110,45 @@ fn a_channel_of_several_is_chosen() {
         assert_eq!(source.remarks, [format!("channel {number} of 2")]);
     }
     assert!(read(Some(Column::Number(3))).is_err());
+}
+
+#[test]
+fn a_channel_of_csmip_is_chosen_and_its_line_may_end_early() {
+    let layout = all(50).remove(6);
+    let text = String::from_utf8(layout.bytes).unwrap();
+    let read = |text: &str, how: &Reading| Record::from_bytes(&layout.path, text.as_bytes(), how);
+    let one = read(&text, &Reading::default()).unwrap().0;
+    let three = text.repeat(3);
+    assert_eq!(line_of(&read(&three, &Reading::default()).unwrap_err()).1, Some(Remedy::Channel));
+    let second = Reading { column: Some(Column::Number(2)), ..Reading::default() };
+    assert_eq!(read(&three, &second).unwrap().0.acceleration(), one.acceleration());
+
+    let announced = text.lines().find(|line| line.contains("points of accel")).unwrap();
+    let start = "50 POINTS OF ACCEL DATA EQUALLY SPACED AT .005 SEC.";
+    let gal = Reading { unit: Some(Unit::CentimetrePerSecondSquared), ..Reading::default() };
+    for (line, how) in [
+        (format!("{start} (UNITS: CM/SEC/SEC)"), Reading::default()),
+        (announced.split(" (").next().unwrap().to_owned(), Reading::default()),
+        (start.to_owned(), gal),
+    ] {
+        let (record, source) = read(&text.replace(announced, &line), &how).unwrap();
+        assert_eq!((&record, source.unit), (&one, Unit::CentimetrePerSecondSquared), "{line}");
+    }
+    let unknown = read(&text.replace(announced, start), &Reading::default()).unwrap_err();
+    assert_eq!(line_of(&unknown).1, Some(Remedy::Unit));
+}
+
+/// 46 g in m/s2 are 451 m/s2.
+#[test]
+fn a_peak_that_no_earthquake_has_is_told() {
+    let path = std::env::temp_dir().join(format!("rocking-peak-{}.csv", std::process::id()));
+    let warnings = |peak: f64| {
+        std::fs::write(&path, format!("t,a\n0,0\n1,{peak}\n")).unwrap();
+        Record::read(&path, &Reading::default(), 9.81).unwrap().1.warnings
+    };
+    assert_eq!(warnings(46.0 * 9.81), ["a peak of 46 g: is the unit right?"]);
+    assert!(warnings(4.9 * 9.81).is_empty());
+    std::fs::remove_file(path).unwrap();
 }
 
 /// Where the largest count is the stated maximum there is no offset; a maximum that is neither is told.

@@ -15,10 +15,10 @@ pub struct RecordArgs {
     /// Unit of accelerations whose file does not state it [default: m/s2]
     #[arg(long, value_parser = unit_parser(), requires = "record")]
     unit: Option<Unit>,
-    /// Time between the samples of a record without times: one column
+    /// Time between the samples of a record without times: one column; times that are there must not contradict it
     #[arg(long, value_name = "SECONDS", value_parser = positive, requires = "record", allow_negative_numbers = true)]
     dt: Option<f64>,
-    /// Column that has the accelerations, by number or heading; or channel of a COSMOS file, by number
+    /// Column that has the accelerations, by number or heading; or channel of a COSMOS or CSMIP file, by number
     #[arg(long, value_name = "COLUMN", value_parser = column, requires = "record")]
     column: Option<Column>,
     /// Take the samples that are there where the file states another number of them
@@ -54,6 +54,7 @@ impl RecordArgs {
         let how = Reading { unit, dt, column: column.clone(), ignores_count };
         let (record, source) = Record::read(path, &how, g).map_err(with_remedy)?;
         say!("record         {}", described(path, &record, &source, g));
+        source.warnings.iter().for_each(|warning| say!("warning: {}: {warning}", path.display()));
         if (time_scale, scale) == (1.0, 1.0) {
             return Ok(Some(record));
         }
@@ -98,6 +99,7 @@ fn with_remedy(error: RecordError) -> anyhow::Error {
         Remedy::IgnoreCount => "--ignore-npts takes those",
         Remedy::Step => "give it with --dt SECONDS",
         Remedy::Column => "choose with --column, by number or heading",
+        Remedy::Channel => "choose with --column, by number",
         Remedy::Unit => "say with --unit what they are",
     };
     anyhow!("{error}; {remedy}")

@@ -24,9 +24,10 @@ pub(super) fn format(text: &str) -> Option<Format> {
 struct Announced<'a> {
     line: usize,
     count: usize,
-    unit: &'a str,
-    /// Letters in a column.
-    width: usize,
+    /// None where the line ends before it.
+    unit: Option<&'a str>,
+    /// Letters in a column; none where the line does not state them, and blanks separate.
+    width: Option<usize>,
     dt: f64,
 }
 
@@ -43,12 +44,16 @@ pub(super) fn parse(text: &str, format: Format, how: &Reading) -> Result<Parsed,
                 Some(Column::Number(number)) => format!("channel {number} is asked for"),
                 Some(Column::Heading(heading)) => format!("{} is asked for; they have numbers", quote(heading)),
             };
-            let remedy = Remedy::Column;
+            let remedy = Remedy::Channel;
             return Err(bad(channels[0].line, format!("{count} channel(s), and {asked}")).remedied_by(remedy));
         }
     };
     let &Announced { line: announced, count, unit, width, dt } = &channels[channel];
-    let stated = Unit::named(unit).map_or(Stated::Other(unit.into()), Stated::Unit);
+    let stated = match unit {
+        Some(unit) => Unit::named(unit).map_or(Stated::Other(unit.into()), Stated::Unit),
+        None if how.unit.is_some() => Stated::Nothing,
+        None => return Err(bad(announced, "the unit of the accelerations is not stated").remedied_by(Remedy::Unit)),
+    };
     let (unit, unit_from) = decide(&stated, how.unit).map_err(|problem| bad(announced, problem))?;
     let mut parsed = Parsed::new(format, title(text, format), unit, unit_from, Times::Every(dt));
     if channels.len() > 1 {
@@ -56,7 +61,7 @@ pub(super) fn parse(text: &str, format: Format, how: &Reading) -> Result<Parsed,
     }
     for line in without_blanks(numbered(text).skip(announced).take_while(|(_, line)| !ends_data(line))) {
         let (line, values) = line?;
-        for value in columns(values, Some(width)) {
+        for value in columns(values, width) {
             parsed.add(acceleration(value), line)?;
         }
     }
@@ -96,16 +101,17 @@ fn channels(text: &str, format: Format) -> Result<Vec<Announced<'_>>, BadLine> {
     Ok(channels)
 }
 
-/// `7500 points of accel data equally spaced at  .010 sec, in cm/sec2. (8f10.6)`
+/// `7500 points of accel data equally spaced at  .010 sec, in cm/sec2. (8f10.6)`, which may end after the interval or
+/// the unit, or have `(units: cm/sec/sec)`.
 fn csmip(line: usize, content: &str) -> Result<Announced<'_>, BadLine> {
     let unclear = || bad(line, format!("found {} where number, interval and unit are stated", quote(content)));
     let lower = content.to_ascii_lowercase();
     let count = content.split_whitespace().next().and_then(|count| count.parse().ok()).ok_or_else(unclear)?;
     let dt = lower.split_once("spaced at").and_then(|(_, rest)| step(rest.split_whitespace().next()?));
-    let unit =
-        lower.find(" in ").and_then(|start| content.get(start + 4..)).and_then(|rest| rest.split_whitespace().next());
-    let unit = unit.ok_or_else(unclear)?.trim_end_matches(['.', ',']);
-    Ok(Announced { line, count, unit, width: width(content).ok_or_else(unclear)?, dt: dt.ok_or_else(unclear)? })
+    let start = [" in ", "units:"].into_iter().find_map(|before| Some(lower.find(before)? + before.len()));
+    let unit = start.and_then(|start| content.get(start..)).and_then(|rest| rest.split_whitespace().next());
+    let unit = unit.map(|unit| unit.trim_end_matches(['.', ',', ')']));
+    Ok(Announced { line, count, unit, width: width(content), dt: dt.ok_or_else(unclear)? })
 }
 
 /// `12725 acceleration pts, approx 63 secs, units=cm/s^2,Format=(8F10.5)`
@@ -116,7 +122,13 @@ fn cosmos<'a>(line: usize, content: &'a str, reals: &Reals) -> Result<Announced<
     let unit = content.get(start..).and_then(|rest| rest.split([',', '(', ' ']).find(|word| !word.is_empty()));
     let dt =
         reals.step().ok_or_else(|| bad(line, "the real header states no interval of the samples: value 62, in ms"))?;
-    Ok(Announced { line, count, unit: unit.ok_or_else(unclear)?, width: width(content).ok_or_else(unclear)?, dt })
+    Ok(Announced {
+        line,
+        count,
+        unit: Some(unit.ok_or_else(unclear)?),
+        width: Some(width(content).ok_or_else(unclear)?),
+        dt,
+    })
 }
 
 /// The letters of a column of `(8F10.3)`, the last format that `line` has.

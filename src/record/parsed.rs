@@ -2,6 +2,9 @@
 
 use super::{BadLine, Column, Format, MAX_SAMPLES, Reading, Record, Remedy, Source, Unit, UnitFrom, bad};
 
+/// Steps that differ by no more than this part are the same.
+const SAME_STEP: f64 = 1e-6;
+
 /// The samples of a file, and what was found out about them.
 #[derive(Debug)]
 pub(super) struct Parsed {
@@ -26,7 +29,7 @@ pub(super) enum Times {
 impl Parsed {
     /// Nothing yet.
     pub fn new(format: Format, title: impl Into<String>, unit: Unit, unit_from: UnitFrom, times: Times) -> Parsed {
-        let source = Source { format, unit, unit_from, remarks: Vec::new() };
+        let source = Source { format, unit, unit_from, remarks: Vec::new(), warnings: Vec::new() };
         Parsed { title: title.into(), times, values: Vec::new(), source, last_line: 1 }
     }
 
@@ -43,6 +46,11 @@ impl Parsed {
     /// One more thing that was found or assumed.
     pub fn remark(&mut self, remark: impl Into<String>) {
         self.source.remarks.push(remark.into());
+    }
+
+    /// One more thing that is likely wrong.
+    pub fn warn(&mut self, warning: impl Into<String>) {
+        self.source.warnings.push(warning.into());
     }
 
     /// Whether there are as many samples as `name` states.
@@ -62,13 +70,18 @@ impl Parsed {
     /// The record, once all of the file is read.
     pub fn record(self, how: &Reading) -> Result<(Record, Source), BadLine> {
         let Parsed { title, times, values: acceleration, source, last_line } = self;
-        if let (Times::Every(stated), Some(asked)) = (&times, how.dt)
-            && *stated != asked
+        let stated = match &times {
+            Times::Every(dt) => Some(*dt),
+            Times::At(times) if times.len() > 1 => Some((times[times.len() - 1] - times[0]) / (times.len() - 1) as f64),
+            Times::At(_) | Times::Asked(_) => None,
+        };
+        if let (Some(stated), Some(asked)) = (stated, how.dt)
+            && (stated - asked).abs() > SAME_STEP * asked
         {
             let problem = format!("the file states a sample every {stated:?} s, and {asked:?} s is asked for");
             return Err(bad(last_line, problem));
         }
-        let has_columns = matches!(source.format, Format::Table | Format::Cosmos);
+        let has_columns = matches!(source.format, Format::Table | Format::Cosmos | Format::Csmip);
         if let (false, Some(asked)) = (has_columns, &how.column) {
             let asked = match asked {
                 Column::Number(number) => number.to_string(),

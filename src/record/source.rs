@@ -1,6 +1,7 @@
 //! How a record's file is read, and what was found in it or assumed of it.
 
 use super::Unit;
+use super::text::quote;
 use super::unit::{Stated, is_like_a_unit};
 use std::fmt;
 
@@ -54,6 +55,8 @@ pub struct Source {
     pub unit_from: UnitFrom,
     /// All else that was found or assumed: which column, how many lines of headings, and the like.
     pub remarks: Vec<String>,
+    /// What is likely wrong with the file or with how it is read, though it may be right.
+    pub warnings: Vec<String>,
 }
 
 /// Who decides the unit of a record.
@@ -88,12 +91,16 @@ pub(super) fn decide(stated: &Stated, asked: Option<Unit>) -> Result<(Unit, Unit
         }
         (Stated::Unit(unit), _) => Ok((*unit, UnitFrom::File)),
         (Stated::Other(other), Some(asked)) if is_like_a_unit(other) => {
-            Err(format!("the file states accelerations in {other:?}, and {asked} is asked for"))
+            Err(format!("the file states accelerations in {}, and {asked} is asked for", quote(other)))
         }
         (_, Some(asked)) => Ok((asked, UnitFrom::User)),
         (Stated::Nothing, None) => Ok((Unit::MetrePerSecondSquared, UnitFrom::Assumed)),
         (Stated::Other(other), None) => {
-            Err(format!("the accelerations are in {other:?}, which is none of g, m/s2, cm/s2, gal, mm/s2"))
+            Err(format!("the accelerations are in {}, which is none of g, m/s2, cm/s2, gal, mm/s2", quote(other)))
+        }
+        (Stated::Value(value), None) => {
+            let value = quote(value);
+            Err(format!("{value} is before the data, and the unit of the accelerations is not stated"))
         }
     }
 }

@@ -9,6 +9,9 @@ use std::borrow::Cow;
 
 const LONGEST_HEADER: usize = 1000;
 
+/// Lines of numbers from which the layout is told.
+const LOOKED_AT: usize = 1000;
+
 /// How the fields of a line are told apart, and what stands before the digits after the point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Layout {
@@ -24,21 +27,29 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
         let last = text.lines().take(LONGEST_HEADER).count().max(1);
         return Err(bad(last, "no line of numbers up to here; two or more samples are needed"));
     };
-    let layout = Layout::of(numbered(text).skip(first - 1).map(|(_, line)| line).filter(|line| !is_comment(line)), how);
+    let data = || numbered(text).skip(first - 1).filter(|(_, line)| !is_comment(line));
+    let before: Vec<&str> = text.lines().take(first - 1).filter(|line| !line.trim().is_empty()).collect();
+    let looked_at: Vec<_> =
+        data().map(|(_, line)| line).filter(|line| !line.trim().is_empty()).take(LOOKED_AT).collect();
+    let layout = Layout::of(&looked_at, before.last().copied(), how).map_err(|problem| bad(first, problem))?;
     let fields = layout.fields(sample);
     let count = if fields.len() > 1 && fields.ends_with(&[""]) { fields.len() - 1 } else { fields.len() };
-    let before: Vec<&str> = text.lines().take(first - 1).filter(|line| !line.trim().is_empty()).collect();
     let rows: Vec<_> = before.iter().map(|line| layout.headings(line)).filter(|cells| cells.len() == count).collect();
     let headings = rows.iter().rev().find(|cells| !cells.iter().all(|cell| is_unit(cell))).cloned().unwrap_or_default();
-    let (time, value) = columns(count, &headings, how).map_err(|problem| problem.at(first))?;
+    let is_even = rise_evenly(looked_at.iter().filter_map(|line| number(&layout.plain(layout.fields(line)[0]))));
+    let (time, value) = columns(count, &headings, is_even, how).map_err(|problem| problem.at(first))?;
+    if let Some(heading) = headings.get(value).filter(|heading| is_no_acceleration(heading)) {
+        return Err(bad(first, format!("column {} is {}, and accelerations are needed", value + 1, quote(heading))));
+    }
     let stated = stated(&before, &layout, count, value).map_err(|problem| bad(first, problem))?;
-    let is_unclear = matches!(&stated, Stated::Other(other) if !is_like_a_unit(other));
+    let is_unclear =
+        matches!(&stated, Stated::Other(other) if !is_like_a_unit(other)) || matches!(stated, Stated::Value(_));
     let contradiction = |problem| BadLine { remedy: is_unclear.then_some(Remedy::Unit), ..bad(first, problem) };
     let (unit, unit_from) = decide(&stated, how.unit).map_err(contradiction)?;
     let second =
         time.map_or(Ok(1.0), |time| time_unit(&rows, &headings, time)).map_err(|problem| bad(first, problem))?;
 
-    let times = how.dt.map_or(Times::At(Vec::new()), Times::Asked);
+    let times = how.dt.filter(|_| time.is_none()).map_or(Times::At(Vec::new()), Times::Asked);
     let mut parsed = Parsed::new(Format::Table, "", unit, unit_from, times);
     parsed.remark(layout.to_string());
     if count > 1 {
@@ -48,8 +59,7 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     if !before.is_empty() {
         parsed.remark(format!("{} line(s) of text before the data", before.len()));
     }
-    let data = numbered(text).skip(first - 1).filter(|(_, line)| !is_comment(line));
-    for line in without_blanks(data) {
+    for line in without_blanks(data()) {
         let (line, sample) = line?;
         let fields = layout.fields(sample);
         let is_ended = fields.len() == count + 1 && fields[count].is_empty();
@@ -63,15 +73,73 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
             let at = number(&layout.plain(field)).map(|time| time * second);
             let at = at.ok_or_else(|| bad(line, format!("the time {} is not a number", quote(field))))?;
             if let Some(before) = times.last().filter(|before| at <= **before) {
-                return Err(bad(
-                    line,
-                    format!("the time {at:?} s does not come after the one before it, {before:?} s"),
-                ));
+                let problem = format!("the time {at:?} s does not come after the one before it, {before:?} s");
+                let may_be_one_column =
+                    layout.separator == Some(',') && looked_at.iter().all(|line| has_one_comma(line));
+                return Err(if may_be_one_column {
+                    let hint = "if it is one column with decimal commas, the time between its samples is missing";
+                    bad(line, format!("{problem}; {hint}")).remedied_by(Remedy::Step)
+                } else {
+                    bad(line, problem)
+                });
             }
             times.push(at);
         }
     }
+    if let Times::At(times) = &parsed.times
+        && let Some((index, step, usual)) = gap(times)
+        && let Some((line, _)) = data().nth(index)
+    {
+        let [step, usual] = [step, usual].map(|step| (step * 1e9).round() / 1e9);
+        parsed.warn(format!("line {line}: {step} s after the sample before it, where most steps are {usual} s"));
+    }
     Ok(parsed)
+}
+
+/// The first sample that comes more than five usual steps after the one before it: its index, that step, and the usual
+/// one (s), which is the median.
+fn gap(times: &[f64]) -> Option<(usize, f64, f64)> {
+    const MOST: f64 = 5.0;
+    let mut steps: Vec<_> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    if steps.is_empty() {
+        return None;
+    }
+    let middle = (steps.len() - 1) / 2;
+    let usual = *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let index = times.windows(2).position(|pair| pair[1] - pair[0] > MOST * usual)?;
+    Some((index + 1, times[index + 1] - times[index], usual))
+}
+
+/// Whether `values` rise, by steps that differ by no more than their rounding.
+fn rise_evenly(values: impl Iterator<Item = f64>) -> bool {
+    const ROUNDING: f64 = 0.1;
+    let values: Vec<f64> = values.collect();
+    let (&[first, ..], &[.., last]) = (values.as_slice(), values.as_slice()) else { return false };
+    let mean = (last - first) / (values.len() - 1).max(1) as f64;
+    mean > 0.0 && values.windows(2).all(|pair| (pair[1] - pair[0] - mean).abs() <= ROUNDING * mean)
+}
+
+/// Whether a column with this heading has velocities or displacements.
+fn is_no_acceleration(heading: &str) -> bool {
+    let heading = heading.to_lowercase();
+    heading
+        .split(|letter: char| !letter.is_alphabetic())
+        .any(|word| matches!(word, "vel" | "velocity" | "disp" | "displ" | "displacement"))
+}
+
+/// Whether `line` is one number with a decimal comma, or two whole ones with a comma between them.
+fn has_one_comma(line: &str) -> bool {
+    !line.contains(['.', '"']) && line.matches(',').count() == 1
+}
+
+/// The first of `headings`, as many as a message can show.
+fn listed(headings: &[String]) -> String {
+    const SHOWN: usize = 8;
+    let mut names = headings.iter().take(SHOWN).map(|heading| quote(heading)).collect::<Vec<_>>().join(", ");
+    if headings.len() > SHOWN {
+        names += ", ...";
+    }
+    names
 }
 
 fn is_comment(line: &str) -> bool {
@@ -112,20 +180,18 @@ fn unquoted(field: &str) -> &str {
 
 impl Layout {
     /// That of lines of numbers. A semicolon or a tab separates wherever there is one; a comma separates unless what it
-    /// would separate is no number, or the user says that there is one column and a line has one comma and no point.
-    fn of<'a>(lines: impl Iterator<Item = &'a str>, how: &Reading) -> Layout {
-        const LOOKED_AT: usize = 1000;
-        let lines: Vec<_> = lines.filter(|line| !line.trim().is_empty()).take(LOOKED_AT).collect();
+    /// would separate is no number, or the user gives the step of one column, and the lines are such a column.
+    fn of(lines: &[&str], before: Option<&str>, how: &Reading) -> Result<Layout, String> {
         let separator = [';', '\t'].into_iter().find(|separator| lines[0].contains(*separator));
         let separated = |separator| Layout { separator, decimal_comma: false };
         if let Some(separator) = separator {
             let is_decimal = |line: &&str| line.contains(',') && !line.contains('.');
-            return Layout { decimal_comma: lines.iter().any(is_decimal), ..separated(Some(separator)) };
+            return Ok(Layout { decimal_comma: lines.iter().any(is_decimal), ..separated(Some(separator)) });
         }
         let outside_quotes = |line: &str| split(line, |letter| letter == ',').len() - 1;
         if lines.iter().all(|line| outside_quotes(line) == 0) {
             // a comma that stands in quotes alone is one before decimals
-            return Layout { decimal_comma: lines.iter().any(|line| line.contains(',')), ..separated(None) };
+            return Ok(Layout { decimal_comma: lines.iter().any(|line| line.contains(',')), ..separated(None) });
         }
         let between_commas = |line: &&str| {
             split(line, |letter| letter == ',')
@@ -134,12 +200,13 @@ impl Layout {
                 .all(|field| field.is_empty() || !field.contains(char::is_whitespace))
         };
         let is_one_number = |line: &&str| outside_quotes(line) <= 1 && !line.contains(['.', '"']);
-        let is_one_column = how.dt.is_some() && how.column.is_none() && lines.iter().all(is_one_number);
+        let is_one_column =
+            how.dt.is_some() && lines.iter().all(is_one_number) && is_decimal_column(lines, before, how)?;
         if is_one_column || !lines.iter().all(between_commas) {
-            return Layout { separator: None, decimal_comma: true };
+            return Ok(Layout { separator: None, decimal_comma: true });
         }
         let is_decimal = |line: &&str| split(line, |letter| letter == ',').iter().any(|field| field.contains(','));
-        Layout { decimal_comma: lines.iter().any(is_decimal), ..separated(Some(',')) }
+        Ok(Layout { decimal_comma: lines.iter().any(is_decimal), ..separated(Some(',')) })
     }
 
     fn fields<'a>(&self, line: &'a str) -> Vec<&'a str> {
@@ -160,6 +227,38 @@ impl Layout {
     fn plain<'a>(&self, field: &'a str) -> Cow<'a, str> {
         if self.decimal_comma { Cow::Owned(field.replacen(',', ".", 1)) } else { Cow::Borrowed(field) }
     }
+}
+
+/// Whether `lines`, each with a comma at most and no point, are one column with decimal commas, and not two of whole
+/// numbers; an error if both may be.
+fn is_decimal_column(lines: &[&str], before: Option<&str>, how: &Reading) -> Result<bool, String> {
+    let parts: Vec<_> = lines.iter().filter_map(|line| line.trim().split_once(',')).collect();
+    let is_whole = |part: &str| part.trim().bytes().all(|byte| byte.is_ascii_digit());
+    let cells: Vec<_> = before.map_or(Vec::new(), |line| line.split(',').collect());
+    if cells.len() == 2 && cells.iter().any(|cell| is_time(unquoted(cell.trim_start_matches(['#', '%', ' '])))) {
+        return Ok(false);
+    }
+    if parts.iter().any(|(_, after)| !is_whole(after) && number(&format!("0.{}", after.trim())).is_none()) {
+        return Ok(false);
+    }
+    let is_one_heading = cells.len() == 1 && cells[0].split_whitespace().count() == 1;
+    let is_of_no_whole_number = |(before, after): &(&str, &str)| {
+        before.trim() == "-0" || !is_whole(after) || (after.len() > 1 && after.starts_with('0'))
+    };
+    let is_rising = rise_evenly(parts.iter().filter_map(|(before, _)| number(before.trim())));
+    let is_long = parts.iter().any(|(_, after)| after.trim().len() > 1);
+    if parts.len() < lines.len() || is_one_heading || parts.iter().any(is_of_no_whole_number) || (is_long && !is_rising)
+    {
+        return Ok(true);
+    }
+    if matches!(how.column, None | Some(Column::Number(1))) {
+        return Err(format!(
+            "{} may be two whole numbers or one with a decimal comma: write a point before decimals, or a semicolon \
+             between columns",
+            quote(lines[0])
+        ));
+    }
+    Ok(false)
 }
 
 impl std::fmt::Display for Layout {
@@ -187,18 +286,17 @@ impl Unclear {
     }
 }
 
-/// The columns of times, if it is needed, and of accelerations, of `count`.
-fn columns(count: usize, headings: &[String], how: &Reading) -> Result<(Option<usize>, usize), Unclear> {
+fn is_time(heading: &str) -> bool {
+    let name = heading.to_lowercase();
+    name == "t" || ["time", "t ", "t[", "t(", "t_"].iter().any(|beginning| name.starts_with(beginning))
+}
+
+/// The columns of times, if there is one, and of accelerations, of `count`; `is_even` says whether the first rises evenly.
+fn columns(count: usize, headings: &[String], is_even: bool, how: &Reading) -> Result<(Option<usize>, usize), Unclear> {
     let unclear = |problem: String, remedy| Unclear { problem, remedy };
-    let is_time = |heading: &String| {
-        let name = heading.to_lowercase();
-        name == "t"
-            || name.starts_with("time")
-            || name.starts_with("t ")
-            || name.starts_with("t[")
-            || name.starts_with("t(")
-    };
-    let time = headings.iter().position(is_time).unwrap_or(0);
+    let headed = headings.iter().position(|heading| is_time(heading));
+    let stated = headed.or((count == 2 && is_even).then_some(0));
+    let time = stated.unwrap_or(0);
     let value = match &how.column {
         Some(Column::Number(number)) if (1..=count).contains(number) => number - 1,
         Some(Column::Number(number)) => {
@@ -206,9 +304,9 @@ fn columns(count: usize, headings: &[String], how: &Reading) -> Result<(Option<u
         }
         Some(Column::Heading(asked)) => with_heading(asked, headings).map_err(|problem| unclear(problem, None))?,
         None if count == 1 => 0,
-        None if count == 2 && how.dt.is_none() => 1 - time.min(1),
+        None if count == 2 && (how.dt.is_none() || stated.is_some()) => 1 - time.min(1),
         None => {
-            let names = headings.iter().map(|heading| quote(heading)).collect::<Vec<_>>().join(", ");
+            let names = listed(headings);
             let names = if names.is_empty() { names } else { format!(" ({names})") };
             return Err(unclear(
                 format!("{count} columns{names}: which has the accelerations is not known"),
@@ -217,18 +315,15 @@ fn columns(count: usize, headings: &[String], how: &Reading) -> Result<(Option<u
         }
     };
     match how.dt {
-        Some(_) => Ok((None, value)),
+        Some(_) if headed != Some(value) => Ok((stated.filter(|time| *time != value), value)),
         None if count == 1 => {
             Err(unclear("one column: the time between its samples is not known".into(), Some(Remedy::Step)))
         }
-        None if value == time => {
-            let number = value + 1;
-            Err(unclear(
-                format!("column {number} has the times, and cannot have the accelerations"),
-                Some(Remedy::Step),
-            ))
+        _ if value == time => {
+            let problem = format!("column {} has the times, and cannot have the accelerations", value + 1);
+            Err(unclear(problem, headed.is_none().then_some(Remedy::Step)))
         }
-        None => Ok((Some(time), value)),
+        _ => Ok((Some(time), value)),
     }
 }
 
@@ -241,10 +336,7 @@ fn with_heading(asked: &str, headings: &[String]) -> Result<usize, String> {
     match found.as_slice() {
         [one] => Ok(*one),
         [] if headings.is_empty() => Err(format!("column {} is asked for, and there are no headings", quote(asked))),
-        [] => {
-            let names = headings.iter().map(|heading| quote(heading)).collect::<Vec<_>>().join(", ");
-            Err(format!("column {} is asked for, and the headings are {names}", quote(asked)))
-        }
+        [] => Err(format!("column {} is asked for, and the headings are {}", quote(asked), listed(headings))),
         _ => Err(format!("column {} is asked for, and {} columns have that heading", quote(asked), found.len())),
     }
 }
@@ -256,14 +348,17 @@ fn stated(before: &[&str], layout: &Layout, count: usize, value: usize) -> Resul
     for line in before {
         let headings = layout.headings(line);
         let says = match headings.get(value).filter(|_| headings.len() == count) {
-            Some(heading) => Stated::of(heading),
+            Some(heading) => match (Stated::of(heading), in_prose(heading)?) {
+                (Stated::Nothing, in_words) => in_words,
+                (says, _) => says,
+            },
             None => in_prose(line)?,
         };
         found = match (found, says) {
             (Stated::Unit(first), Stated::Unit(second)) if first != second => {
                 return Err(format!("the file states accelerations in {first} and in {second}"));
             }
-            (Stated::Nothing | Stated::Other(_), says @ Stated::Unit(_)) => says,
+            (_, says @ Stated::Unit(_)) => says,
             (Stated::Nothing, says) => says,
             (found, _) => found,
         };
@@ -271,7 +366,8 @@ fn stated(before: &[&str], layout: &Layout, count: usize, value: usize) -> Resul
     Ok(found)
 }
 
-/// The one unit of acceleration that a line of text names in brackets, or after `unit` or `units of`.
+/// The one unit of acceleration that a line of text names: in brackets, after `unit` or `units of`, after `in` or a
+/// slash, or as a word, unless that is `g`. After a number it is that of a value, such as the peak.
 fn in_prose(line: &str) -> Result<Stated, String> {
     let mut units: Vec<_> = bracketed(line).into_iter().filter_map(Unit::named).collect();
     let lower = line.to_lowercase();
@@ -280,9 +376,22 @@ fn in_prose(line: &str) -> Result<Stated, String> {
         let word = words.split([' ', ',', ';']).next().unwrap_or_default().trim_end_matches('.');
         units.extend(Unit::named(word));
     }
+    let words: Vec<_> = line.split([' ', '\t', ',', ';', ':', '=']).filter(|word| !word.is_empty()).collect();
+    let mut values = Vec::new();
+    for (index, word) in words.iter().enumerate() {
+        let previous = index.checked_sub(1).map_or("", |index| words[index]);
+        let word = word.trim_end_matches('.');
+        let named = if word.to_lowercase().ends_with("/g") { Some(Unit::G) } else { Unit::named(word) };
+        let Some(unit) = named else { continue };
+        if number(&previous.replace(',', ".")).is_some() {
+            values.push(format!("{previous} {word}"));
+        } else if unit != Unit::G || ["in", "/"].contains(&previous.to_lowercase().as_str()) || word.contains('/') {
+            units.push(unit);
+        }
+    }
     units.dedup();
     match units.as_slice() {
-        [] => Ok(Stated::Nothing),
+        [] => Ok(values.pop().map_or(Stated::Nothing, Stated::Value)),
         [unit] => Ok(Stated::Unit(*unit)),
         [first, second, ..] => Err(format!("{} names {first} and {second}", quote(line))),
     }
@@ -293,10 +402,12 @@ fn time_unit(rows: &[Vec<String>], headings: &[String], time: usize) -> Result<f
     if let Some(unit) = rows.iter().find_map(|cells| seconds(bare(&cells[time]))) {
         return Ok(unit);
     }
-    let brackets = headings.get(time).map_or(Vec::new(), |heading| bracketed(heading));
-    match brackets.into_iter().find(|text| !text.is_empty()) {
-        Some(unit) => seconds(unit).ok_or_else(|| format!("the times are in {unit:?}, which is neither s nor ms")),
-        None => Ok(1.0),
+    let heading = headings.get(time).map_or("", String::as_str);
+    match bracketed(heading).into_iter().find(|text| !text.is_empty()) {
+        Some(unit) => {
+            seconds(unit).ok_or_else(|| format!("the times are in {}, which is neither s nor ms", quote(unit)))
+        }
+        None => Ok(heading.rsplit(['_', ' ', ',']).next().and_then(seconds).unwrap_or(1.0)),
     }
 }
 
@@ -416,8 +527,8 @@ mod tests {
             let (record, source) = chosen(column, None).unwrap();
             assert_eq!((record.acceleration(), source.unit), (&[5.0, 6.0][..], Unit::G));
         }
-        let (record, source) = chosen(Column::Number(2), Some(0.1)).unwrap();
-        assert_eq!((record.times(), source.unit), (&[0.0, 0.1][..], Unit::CentimetrePerSecondSquared));
+        let (record, source) = chosen(Column::Number(2), Some(1.0)).unwrap();
+        assert_eq!((record.times(), source.unit), (&[0.0, 1.0][..], Unit::CentimetrePerSecondSquared));
         for (column, expected) in [
             (Column::Number(4), "column 4 is asked for, and there are 3"),
             (Column::Number(1), "column 1 has the times, and cannot have the accelerations"),
@@ -427,6 +538,90 @@ mod tests {
             ),
         ] {
             assert_eq!(chosen(column, None).unwrap_err().problem, expected);
+        }
+    }
+
+    #[test]
+    fn a_step_must_be_that_of_the_times() {
+        let with = |dt, column: Option<usize>| Reading { dt: Some(dt), column: column.map(Column::Number), ..AS_IT_IS };
+        for text in ["time,acc\n0.00,1\n0.01,2\n0.02,-3\n", "0.00 1\n0.01 2\n0.02 -3\n"] {
+            for column in [None, Some(2)] {
+                let (record, _) = read(text, &with(0.01, column)).unwrap();
+                assert_eq!((record.times(), record.acceleration()), (&[0.0, 0.01, 0.02][..], &[1.0, 2.0, -3.0][..]));
+                let refused = problem(text, &with(0.02, column));
+                assert!(refused.ends_with("every 0.01 s, and 0.02 s is asked for"), "{refused}");
+            }
+        }
+        assert!(problem("time,acc\n0,1\n1,2\n", &with(1.0, Some(1))).contains("column 1 has the times"));
+        for (text, times) in [("time_ms,acc\n0,1\n10,2\n", [0.0, 0.01]), ("t_s,acc\n0,1\n10,2\n", [0.0, 10.0])] {
+            assert_eq!(read(text, &AS_IT_IS).unwrap().0.times(), times);
+        }
+    }
+
+    #[test]
+    fn velocities_are_no_accelerations() {
+        for name in ["velocity", "Displacement", "vel", "disp (cm)", "vel_x"] {
+            let expected = format!("2: column 2 is {name:?}, and accelerations are needed");
+            assert_eq!(problem(&format!("time,{name}\n0,1\n1,2\n"), &AS_IT_IS), expected);
+        }
+    }
+
+    #[test]
+    fn a_comma_is_decimal_or_a_separator_or_the_table_is_refused() {
+        let with = |column: Option<usize>| Reading { dt: Some(0.1), column: column.map(Column::Number), ..AS_IT_IS };
+        for one in ["0,12\n-0,35\n0,5\n1,25\n", "1,25\n-2,5\n3,75\n", "a\n1,0\n-2,0\n3,0\n"] {
+            let expected: Vec<f64> = one.lines().filter_map(|line| line.replace(',', ".").parse().ok()).collect();
+            for column in [None, Some(1)] {
+                assert_eq!(read(one, &with(column)).unwrap().0.acceleration, expected, "{one}");
+            }
+            assert!(problem(one, &with(Some(2))).ends_with("column 2 is asked for, and there are 1"));
+        }
+        let hint = read("0,12\n-0,35\n0,5\n", &AS_IT_IS).unwrap_err();
+        assert!(hint.problem.contains("decimal commas") && hint.remedy == Some(Remedy::Step), "{hint:?}");
+        let two = "0,1\n1,2\n2,3\n3,5\n";
+        assert!(problem(two, &with(None)).contains("may be two whole numbers or one with a decimal comma"));
+        assert_eq!(read(two, &AS_IT_IS).unwrap().0.times, [0.0, 1.0, 2.0, 3.0]);
+    }
+
+    #[test]
+    fn a_unit_anywhere_before_the_data_is_not_passed_over() {
+        let cm = Unit::CentimetrePerSecondSquared;
+        for (before, unit) in [
+            ("time acc cm/s2", cm),
+            ("Acceleration in cm/s2", cm),
+            ("time acc in g", Unit::G),
+            ("t;acc /g", Unit::G),
+            ("peak 0.3 g\ntime acc cm/s2", cm),
+        ] {
+            let separator = if before.contains(';') { ';' } else { ' ' };
+            let source = read(&format!("{before}\n0{separator}1\n1{separator}2\n"), &AS_IT_IS).unwrap().1;
+            assert_eq!((source.unit, source.unit_from), (unit, UnitFrom::File), "{before}");
+        }
+        for (before, expected) in [
+            ("t;acc (m/s2) in g", "names m/s2 and g"),
+            ("in cm/s2\nin mm/s2", "in cm/s2 and in mm/s2"),
+            ("peak 0.3 g", "\"0.3 g\" is before the data, and the unit of the accelerations is not stated"),
+        ] {
+            let refused = problem(&format!("{before}\n0;1\n1;2\n"), &AS_IT_IS);
+            assert!(refused.ends_with(expected), "{refused}");
+        }
+    }
+
+    #[test]
+    fn a_gap_is_said_with_its_line() {
+        let warnings = |text: &str| read(text, &AS_IT_IS).unwrap().1.warnings;
+        let gap = "t a\n0 1\n0.01 2\n0.02 3\n# pause\n0.23 4\n0.24 5\n";
+        assert_eq!(warnings(gap), ["line 6: 0.21 s after the sample before it, where most steps are 0.01 s"]);
+        assert!(warnings("t a\n0 1\n0.01 2\n0.02 3\n0.07 4\n").is_empty());
+    }
+
+    #[test]
+    fn a_message_does_not_grow_with_the_table() {
+        let row = |cell: &str| vec![cell; 20_001].join(";");
+        let text = format!("{}\n{}\n{}\n", row("heading"), row("1"), row("2"));
+        let asked = Reading { column: Some(Column::Heading("other".into())), ..AS_IT_IS };
+        for how in [AS_IT_IS, asked] {
+            assert!(problem(&text, &how).len() < 250);
         }
     }
 

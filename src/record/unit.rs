@@ -117,6 +117,8 @@ pub(super) enum Stated {
     Unit(Unit),
     /// A unit of something else, or one that is not known here.
     Other(String),
+    /// No unit of the samples, but a value with one, such as a peak of 0.3 g.
+    Value(String),
 }
 
 impl Stated {
