@@ -1,7 +1,7 @@
 //! `export`: packs the shared libraries, with all that describes them, into an FMU.
 
 use crate::output_files::{OutputFile, OutputFiles};
-use crate::record_args::described;
+use crate::record_args::{described, say_warnings};
 use crate::structure_args::{StructureArgs, in_one_line};
 use crate::talk::say;
 use FlexibleRocking::guid;
@@ -57,6 +57,7 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     for path in &args.record {
         let (record, source) = Record::read(path, &Reading::default(), g)?;
         say!("{}", described(path, &record, &source, g));
+        say_warnings(path, &source);
     }
     let mut file = OutputFiles::of_inputs(inputs).create(&args.output)?;
     let (contents, archive) = fmu_export::export(&structure, &args.record, &libraries)?;

@@ -54,7 +54,7 @@ impl RecordArgs {
         let how = Reading { unit, dt, column: column.clone(), ignores_count };
         let (record, source) = Record::read(path, &how, g).map_err(with_remedy)?;
         say!("record         {}", described(path, &record, &source, g));
-        source.warnings.iter().for_each(|warning| say!("warning: {}: {warning}", path.display()));
+        say_warnings(path, &source);
         if (time_scale, scale) == (1.0, 1.0) {
             return Ok(Some(record));
         }
@@ -82,6 +82,13 @@ pub fn described(path: &Path, record: &Record, source: &Source, g: f64) -> Strin
     let (format, unit, peak) = (source.format, source.unit, short(record.pga() / g));
     let (path, samples) = (path.display(), record.times().len());
     format!("{path}: {format}{remarks}; {unit} {unit_from}; {samples} samples, {}, peak {peak} g", steps(record))
+}
+
+/// Says what is likely wrong with the record in the file at `path`, a line each.
+pub fn say_warnings(path: &Path, source: &Source) {
+    for warning in &source.warnings {
+        say!("warning: {}: {warning}", path.display());
+    }
 }
 
 /// The time between samples.

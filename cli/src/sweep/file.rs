@@ -1,5 +1,10 @@
 //! What a sweep runs, from a TOML file: every record at every scale factor on every structure.
-use crate::{output_files::OutputFiles, record_args::described, structure_args::Preset, talk::say};
+use crate::{
+    output_files::OutputFiles,
+    record_args::{described, say_warnings},
+    structure_args::Preset,
+    talk::say,
+};
 use anyhow::{Context, bail, ensure};
 use rocking::{
     Detail, Parameters, State,
@@ -113,6 +118,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Sweep> {
             files.add_input(path);
             let (record, source) = Record::read(path, &Reading { unit, ..Reading::default() }, g)?;
             said.push(described(path, &record, &source, g));
+            say_warnings(path, &source);
             Ok(record.scaled(time_scale, 1.0))
         };
         let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read)?;
