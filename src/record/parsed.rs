@@ -1,5 +1,6 @@
 //! What the parsers of all layouts make: samples as the file gives them.
 
+use super::text::nine_digits;
 use super::{BadLine, Column, Format, MAX_SAMPLES, Reading, Record, Remedy, Source, Unit, UnitFrom, bad};
 
 /// Steps that differ by no more than this part are the same.
@@ -72,7 +73,9 @@ impl Parsed {
         let Parsed { title, times, values: acceleration, source, last_line } = self;
         let stated = match &times {
             Times::Every(dt) => Some(*dt),
-            Times::At(times) if times.len() > 1 => Some((times[times.len() - 1] - times[0]) / (times.len() - 1) as f64),
+            Times::At(times) if times.len() > 1 => {
+                Some(nine_digits((times[times.len() - 1] - times[0]) / (times.len() - 1) as f64))
+            }
             Times::At(_) | Times::Asked(_) => None,
         };
         if let (Some(stated), Some(asked)) = (stated, how.dt)

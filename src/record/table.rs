@@ -2,7 +2,7 @@
 //! them, after any lines of text.
 
 use super::parsed::{Parsed, Times};
-use super::text::{acceleration, number, numbered, quote, without_blanks};
+use super::text::{acceleration, nine_digits, number, numbered, quote, without_blanks};
 use super::unit::{Stated, bracketed, is_like_a_unit, seconds};
 use super::{BadLine, Column, Format, Reading, Remedy, Unit, bad, source::decide};
 use std::borrow::Cow;
@@ -90,7 +90,7 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
         && let Some((index, step, usual)) = gap(times)
         && let Some((line, _)) = data().nth(index)
     {
-        let [step, usual] = [step, usual].map(|step| (step * 1e9).round() / 1e9);
+        let [step, usual] = [step, usual].map(nine_digits);
         parsed.warn(format!("line {line}: {step} s after the sample before it, where most steps are {usual} s"));
     }
     Ok(parsed)

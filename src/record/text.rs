@@ -61,6 +61,11 @@ pub(super) fn number(word: &str) -> Option<f64> {
     parsed.filter(|number: &f64| (number * LARGEST_UNIT).is_finite())
 }
 
+/// `value` to nine digits, without the noise of a difference of rounded numbers.
+pub(super) fn nine_digits(value: f64) -> f64 {
+    format!("{value:.8e}").parse().unwrap_or(value)
+}
+
 /// The acceleration that `word` gives.
 pub(super) fn acceleration(word: &str) -> Result<f64, String> {
     number(word).ok_or_else(|| format!("the acceleration {} is not a number", quote(word)))
