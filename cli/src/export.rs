@@ -1,5 +1,6 @@
 //! `export`: packs the shared libraries, with all that describes them, into an FMU.
 
+use crate::output_files::{OutputFile, OutputFiles};
 use crate::structure_args::StructureArgs;
 use FlexibleRocking::guid;
 use anyhow::bail;
@@ -43,9 +44,14 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     };
     let mut libraries = BTreeMap::from([(Platform::Linux64, library)]);
     libraries.extend(args.windows_library.clone().map(|path| (Platform::Windows64, path)));
-    let (contents, size) = fmu_export::export(&structure, &args.record, &libraries, &args.output)?;
+    let inputs =
+        args.structure.input().into_iter().chain(args.record.iter().chain(libraries.values()).map(PathBuf::as_path));
+    let mut file = OutputFiles::of_inputs(inputs).create(&args.output)?;
+    let (contents, archive) = fmu_export::export(&structure, &args.record, &libraries)?;
+    OutputFile::named(&args.output, file.write_all(&archive))?;
+    file.finish()?;
     let mut out = stdout().lock();
-    writeln!(out, "{}: {} kB", args.output.display(), size.div_ceil(1000))?;
+    writeln!(out, "{}: {} kB", args.output.display(), archive.len().div_ceil(1000))?;
     writeln!(out, "  GUID       {}", guid(&contents))?;
     writeln!(out, "  structure  {}", start_values(&structure))?;
     for packed in &contents.records {

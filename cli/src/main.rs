@@ -6,6 +6,7 @@ mod describe;
 mod estimate;
 mod export;
 mod modes;
+mod output_files;
 mod pushover;
 mod quantities;
 mod record_args;
@@ -15,8 +16,9 @@ mod structure_args;
 mod summary;
 mod sweep;
 mod tables;
+mod talk;
 
-use clap::Parser;
+use clap::{Parser, Subcommand};
 use fmu_export::significant;
 use std::{io, process::ExitCode};
 
@@ -26,6 +28,15 @@ use std::{io, process::ExitCode};
 /// throughout, angles in rad.
 #[derive(Parser)]
 #[command(name = "rocking-fmu", version)]
+struct CommandLine {
+    #[command(subcommand)]
+    command: Command,
+    /// Say nothing on standard error but errors
+    #[arg(long, global = true, display_order = 1000)]
+    quiet: bool,
+}
+
+#[derive(Subcommand)]
 enum Command {
     /// Write the FMU (FMI 2.0 co-simulation)
     #[command(after_help = "Examples:
@@ -89,7 +100,11 @@ enum Command {
 }
 
 fn main() -> ExitCode {
-    let result = match Command::parse() {
+    let CommandLine { command, quiet } = CommandLine::parse();
+    if quiet {
+        talk::be_quiet();
+    }
+    let result = match command {
         Command::Export(args) => export::run(&args),
         Command::Simulate(args) => simulate::run(&args),
         Command::Advise(args) => advise::run(&args),
@@ -101,7 +116,7 @@ fn main() -> ExitCode {
     };
     match result {
         Err(error) if !is_closed_pipe(&error) => {
-            eprintln!("error: {error:#}");
+            talk::say_error(&error);
             ExitCode::FAILURE
         }
         _ => ExitCode::SUCCESS,

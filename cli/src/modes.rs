@@ -1,5 +1,5 @@
 //! `modes`: a response split into rocking and vibration mode (Eqs 12, 16, 19).
-use crate::{structure_args::StructureArgs, tables::Table};
+use crate::{output_files::OutputFiles, structure_args::StructureArgs, tables::Table};
 use anyhow::Context;
 use rocking::{
     Side, State,
@@ -46,7 +46,8 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let named = || args.response.display().to_string();
     let mut response = csv::Reader::from_path(&args.response).with_context(named)?;
-    let mut table = Table::create(&args.output, &HEADINGS)?;
+    let inputs = args.structure.input().into_iter().chain([args.response.as_path()]);
+    let mut table = Table::create(&mut OutputFiles::of_inputs(inputs), &args.output, &HEADINGS)?;
     for instant in response.deserialize() {
         let Instant { time, a_g, theta, u, theta_dot, u_dot, phase } = instant.with_context(named)?;
         let side = match phase.as_str() {

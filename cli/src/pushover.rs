@@ -1,5 +1,7 @@
 //! `pushover`: lateral force and moment against displacement (Fig 1).
-use crate::{significant::significant, structure_args::StructureArgs, tables::Table};
+use crate::{
+    output_files::OutputFiles, significant::significant, structure_args::StructureArgs, tables::Table, talk::say,
+};
 use anyhow::Context;
 use rocking::{
     Phase, Structure,
@@ -28,7 +30,8 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let too_soft = "the strut is too soft to hold the structure all the way to overturning: raise f_fc or lower m0";
     let end = at_overturning(&structure).context(too_soft)?;
-    let mut table = Table::create(&args.output, &HEADINGS)?;
+    let mut files = OutputFiles::of_inputs(args.structure.input());
+    let mut table = Table::create(&mut files, &args.output, &HEADINGS)?;
     for delta_t in displacements(&structure, end.delta_t, args.points) {
         table.write(line(&at_displacement(&structure, delta_t).context(too_soft)?))?;
     }
@@ -41,10 +44,10 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     for (name, corner) in corners {
         let Equilibrium { theta, delta_t, force, moment, .. } = corner.context(too_soft)?;
         let [theta, delta_t, force, moment] = [theta, 1e3 * delta_t, force, moment].map(significant);
-        eprintln!("{name:<16} delta_t {delta_t:>8} mm, theta {theta:>8} rad, P {force:>8} N, M {moment:>8} N.m");
+        say!("{name:<16} delta_t {delta_t:>8} mm, theta {theta:>8} rad, P {force:>8} N, M {moment:>8} N.m");
     }
     if args.output != Path::new("-") {
-        eprintln!("curve            {}", args.output.display());
+        say!("curve            {}", args.output.display());
     }
     Ok(())
 }

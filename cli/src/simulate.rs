@@ -1,14 +1,15 @@
 //! `simulate`: the response to a ground motion record, or free vibration, with the same engine as the FMU's.
 use crate::{
+    output_files::OutputFiles,
     record_args::positive,
     scene_args::{GroundArgs, InitialArgs},
     structure_args::StructureArgs,
     summary::Summary,
     tables::{self, Table},
+    talk::{self, say},
 };
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fmu_export::significant::significant;
-use indicatif::ProgressBar;
 use rocking::{
     Detail, Transition,
     engine::DEFAULT_TOLERANCE,
@@ -101,9 +102,12 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let run = Run { initial, detail, tolerance, end, ..Run::new(structure, &ground) };
 
     let output = args.output_path();
-    let mut response = Table::create(&output, &tables::RESPONSE)?;
-    let mut events = args.results.events.as_deref().map(|path| Table::create(path, &tables::EVENTS)).transpose()?;
-    let progress = ProgressBar::new(ground.times().len() as u64);
+    let inputs = args.structure.input().into_iter().chain(args.ground.record.record.as_deref());
+    let mut files = OutputFiles::of_inputs(inputs);
+    let mut response = Table::create(&mut files, &output, &tables::RESPONSE)?;
+    let events = args.results.events.as_deref();
+    let mut events = events.map(|path| Table::create(&mut files, path, &tables::EVENTS)).transpose()?;
+    let progress = talk::progress(ground.times().len());
     let (mut peaks, mut summary, mut written) =
         (Peaks::since(ground.start(), &structure), Summary::new(&structure), Ok(()));
     let mut transition = |transition: &Transition| {
@@ -127,10 +131,10 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     rows.and(written)?;
     response.finish()?;
     events.map_or(Ok(()), Table::finish)?;
-    eprintln!("{}, {} to {} s", ground.title(), significant(ground.start()), significant(finish.motion.time));
+    say!("{}, {} to {} s", ground.title(), significant(ground.start()), significant(finish.motion.time));
     summary.print(&peaks, &finish);
     if output != Path::new("-") {
-        eprintln!("response       {}", output.display());
+        say!("response       {}", output.display());
     }
     Ok(())
 }

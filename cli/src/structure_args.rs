@@ -1,7 +1,7 @@
 //! Which structure a command works on: one of the paper's specimens, or parameters from a file.
 use anyhow::Context;
 use rocking::{Parameters, Structure};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// The structure asked for.
 #[derive(clap::Args, Debug)]
@@ -36,6 +36,11 @@ impl Preset {
 }
 
 impl StructureArgs {
+    /// The file that is read, if any.
+    pub fn input(&self) -> Option<&Path> {
+        self.parameters.as_deref()
+    }
+
     /// Reads the parameters and derives the structure; a refusal names the file, the line and the key.
     pub fn load(&self) -> anyhow::Result<Structure> {
         let Some(path) = &self.parameters else {

@@ -1,4 +1,5 @@
 //! What `simulate` prints at the end of a run.
+use crate::talk::say;
 use fmu_export::significant::significant;
 use rocking::run::{Ending, Finish, LONGEST_REST, peaks::Peaks};
 use rocking::{Parameters, Phase, Side, Structure, Transition, TransitionKind, Watch};
@@ -43,12 +44,12 @@ impl Summary {
             ("M_t", peaks.M_t(), "N.m", 1.0),
         ] {
             let [magnitude, time] = [peak.magnitude / per_unit, peak.time].map(significant);
-            eprintln!("{:<14} {magnitude:>12} {unit:<4} at {time} s", format!("peak |{name}|"));
+            say!("{:<14} {magnitude:>12} {unit:<4} at {time} s", format!("peak |{name}|"));
         }
         let instant = |time: Option<f64>| time.map_or("none".into(), |time| format!("at {} s", significant(time)));
-        eprintln!("first uplift   {}", instant(self.first_uplift));
-        eprintln!("first impact   {}", instant(self.first_impact));
-        eprintln!("transitions    {}", motion.transitions);
+        say!("first uplift   {}", instant(self.first_uplift));
+        say!("first impact   {}", instant(self.first_impact));
+        say!("transitions    {}", motion.transitions);
         let overturned = match motion.phase {
             Phase::Overturned(Side::Left) => format!("to the left at {} s", significant(motion.time)),
             Phase::Overturned(Side::Right) => format!("to the right at {} s", significant(motion.time)),
@@ -61,8 +62,8 @@ impl Summary {
                 Ending::AtRest | Ending::Overturned => "no".into(),
             },
         };
-        eprintln!("overturned     {overturned}");
+        say!("overturned     {overturned}");
         let (work, of_peaks) = (motion.work, peaks.evaluations());
-        eprintln!("work           {} steps, {} evaluations; {of_peaks} more for peaks", work.steps, work.evaluations);
+        say!("work           {} steps, {} evaluations; {of_peaks} more for peaks", work.steps, work.evaluations);
     }
 }

@@ -6,13 +6,23 @@ mod fragilities;
 mod picture;
 mod rows;
 
-use crate::significant::significant;
-use anyhow::{Context, bail};
-use indicatif::{ProgressBar, ProgressStyle};
+use crate::{
+    output_files::{OutputFile, OutputFiles},
+    significant::significant,
+    talk::{self, say},
+};
+use anyhow::bail;
+use indicatif::ProgressStyle;
 use rayon::{ThreadPoolBuilder, prelude::*};
 use rocking::run::{outcome::Outcome, plan::Case, plan::Plan};
 use rows::Rows;
-use std::{io::stdout, num::NonZeroUsize, path::PathBuf, sync::Mutex, time::Instant};
+use std::{
+    io::{Write, stdout},
+    num::NonZeroUsize,
+    path::PathBuf,
+    sync::Mutex,
+    time::Instant,
+};
 use uuid::Uuid;
 
 /// What to run.
@@ -32,18 +42,22 @@ pub struct SweepArgs {
 
 /// Does the runs that are not in the file yet, then prints and draws the probabilities.
 pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
-    let (plan, limits) = file::read(&args.file)?;
+    let mut files = OutputFiles::of_inputs([args.file.as_path()]);
+    let (plan, limits) = file::read(&args.file, &mut files)?;
     let output = match &args.output {
         Some(path) => path.clone(),
         None => PathBuf::from(args.file.file_stem().unwrap_or_default()).with_extension("csv"),
     };
+    let picture = output.with_extension("svg");
+    files.reserve_rows(&output)?;
+    let mut picture_file = files.create(&picture)?;
     let keys = rows::keys(&plan);
     let (rows, found) = Rows::open(&output, &keys)?;
     let mut outcomes = found.outcomes;
     let missing: Vec<_> = (0..plan.len()).filter(|index| outcomes[*index].is_none()).collect();
     let done = plan.len() - missing.len();
     let (name, [structures, records, scales]) = (output.display(), plan.size());
-    eprintln!(
+    say!(
         "{name}: {done} of {} runs done, structures: {structures}, records: {records}, scale factors: {scales}",
         plan.len()
     );
@@ -52,7 +66,7 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
         (found.repeated, "there again: counted once"),
     ] {
         if count > 0 {
-            eprintln!("{name}: {count} row(s) are {what}");
+            say!("{name}: {count} row(s) are {what}");
         }
     }
 
@@ -65,16 +79,17 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
         let (seconds, threads) = (clock.elapsed().as_secs_f64(), pool.current_num_threads());
         let rate = missing.len() as f64 / seconds;
         let [seconds, rate, per_thread] = [seconds, rate, rate / threads as f64].map(significant);
-        eprintln!("{} runs in {seconds} s: {rate} /s, {per_thread} /s on each of {threads} threads", missing.len());
+        say!("{} runs in {seconds} s: {rate} /s, {per_thread} /s on each of {threads} threads", missing.len());
     }
 
     let outcomes: Vec<_> = outcomes.into_iter().map(|outcome| outcome.expect("every run is done")).collect();
     let populations = fragilities::count(&plan, &limits, &outcomes);
     let mut out = stdout().lock();
     populations.iter().try_for_each(|population| population.print(&mut out))?;
-    let picture = output.with_extension("svg");
-    picture::draw(&picture, &populations).with_context(|| format!("{} cannot be written", picture.display()))?;
-    eprintln!("rows {}, picture {}", output.display(), picture.display());
+    let drawn = picture_file.write_all(picture::draw(&populations)?.as_bytes());
+    OutputFile::named(&picture, drawn)?;
+    picture_file.finish()?;
+    say!("rows {}, picture {}", output.display(), picture.display());
     report_failures(&plan, &keys, &outcomes)
 }
 
@@ -90,7 +105,7 @@ fn report_failures(plan: &Plan, keys: &[Uuid], outcomes: &[Outcome]) -> anyhow::
 /// Does the runs numbered `missing` and appends them to `rows` as they end.
 fn do_runs(plan: &Plan, keys: &[Uuid], missing: &[usize], rows: Rows) -> anyhow::Result<Vec<(usize, Outcome)>> {
     let style = ProgressStyle::with_template("{elapsed_precise} {bar:40} {pos}/{len} runs, {per_sec}, {eta} left")?;
-    let progress = ProgressBar::new(missing.len() as u64).with_style(style);
+    let progress = talk::progress(missing.len()).with_style(style);
     let rows = Mutex::new(rows);
     let outcomes = missing.par_iter().map(|&index| {
         let case = plan.case(index);

@@ -1,29 +1,23 @@
 //! The tables that `simulate` writes: the response and its transitions as CSV.
-use anyhow::Context;
+use crate::output_files::{OutputFile, OutputFiles};
 use rocking::piece::Sample;
 use rocking::{Impulse, Outputs, Reactions, Side, State, Transition, TransitionKind};
 use serde::Serialize;
 use std::{
-    fs::File,
-    io::{Write, stdout},
+    io,
     path::{Path, PathBuf},
 };
 
 /// A CSV file that is being written.
 pub struct Table {
     path: PathBuf,
-    writer: csv::Writer<Box<dyn Write>>,
+    writer: csv::Writer<OutputFile>,
 }
 
 impl Table {
-    /// A new file with these `headings`, or standard output for `-`.
-    pub fn create(path: &Path, headings: &[&str]) -> anyhow::Result<Table> {
-        let to: Box<dyn Write> = if path == Path::new("-") {
-            Box::new(stdout().lock())
-        } else {
-            Box::new(File::create(path).with_context(|| cannot_be_written(path))?)
-        };
-        let writer = csv::WriterBuilder::new().has_headers(false).from_writer(to);
+    /// A table at `path`, or on standard output for `-`, with these `headings`.
+    pub fn create(files: &mut OutputFiles, path: &Path, headings: &[&str]) -> anyhow::Result<Table> {
+        let writer = csv::WriterBuilder::new().has_headers(false).from_writer(files.create(path)?);
         let mut table = Table { path: path.into(), writer };
         table.write(headings)?;
         Ok(table)
@@ -31,17 +25,23 @@ impl Table {
 
     /// Adds a line; a number reads back to the same bits.
     pub fn write(&mut self, line: impl Serialize) -> anyhow::Result<()> {
-        self.writer.serialize(line).with_context(|| cannot_be_written(&self.path))
+        OutputFile::named(&self.path, self.writer.serialize(line).map_err(of_the_file))
     }
 
     /// Writes out what is still held back.
     pub fn finish(mut self) -> anyhow::Result<()> {
-        self.writer.flush().with_context(|| cannot_be_written(&self.path))
+        OutputFile::named(&self.path, self.writer.flush())?;
+        let file = self.writer.into_inner().map_err(|failed| io::Error::from(failed.error().kind()));
+        OutputFile::named(&self.path, file)?.finish()
     }
 }
 
-fn cannot_be_written(path: &Path) -> String {
-    format!("{} cannot be written", path.display())
+/// The file's own error, which is all that can go wrong with lines of numbers and words.
+fn of_the_file(error: csv::Error) -> io::Error {
+    match error.into_kind() {
+        csv::ErrorKind::Io(error) => error,
+        other => io::Error::other(format!("{other:?}")),
+    }
 }
 
 /// Headings of the response: the ground acceleration, and the outputs of the FMU under their names and units.

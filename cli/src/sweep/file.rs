@@ -1,5 +1,5 @@
 //! What a sweep runs, from a TOML file: every record at every scale factor on every structure.
-use crate::structure_args::Preset;
+use crate::{output_files::OutputFiles, structure_args::Preset, talk::say};
 use anyhow::{Context, bail, ensure};
 use rocking::{
     Parameters,
@@ -67,9 +67,9 @@ enum Values {
 }
 
 /// Reads the sweep in the TOML file at `path`, and its records: what to run, and the limits whose exceedance is counted
-/// beside overturning.
-pub fn read(path: &Path) -> anyhow::Result<(Plan, Vec<Limit>)> {
-    let read = || {
+/// beside overturning. Every record is an input of `files`.
+pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<(Plan, Vec<Limit>)> {
+    let mut read = || {
         let SweepFile { records, unit, time_scale, scale, structures, limits } =
             toml::from_str(&std::fs::read_to_string(path)?)?;
         ensure!(
@@ -81,7 +81,10 @@ pub fn read(path: &Path) -> anyhow::Result<(Plan, Vec<Limit>)> {
         let limits = limits.collect::<Result<_, _>>().context("limits")?;
         let g = gravity(&structures)?;
         let populations = structures.iter().map(StructureGrid::population).collect::<Result<_, _>>()?;
-        let read = |path: &Path| Ok(Record::read(path, unit, g)?.scaled(time_scale, 1.0));
+        let read = |path: &Path| {
+            files.add_input(path);
+            Ok(Record::read(path, unit, g)?.scaled(time_scale, 1.0))
+        };
         let motions = motions(&records, path.parent().unwrap_or(Path::new("")), read)?;
         Ok((Plan::new(populations, motions, scales)?, limits))
     };
@@ -138,7 +141,7 @@ impl StructureGrid {
 fn motions(
     patterns: &[String],
     folder: &Path,
-    read: impl Fn(&Path) -> anyhow::Result<Record>,
+    mut read: impl FnMut(&Path) -> anyhow::Result<Record>,
 ) -> anyhow::Result<Vec<NamedRecord>> {
     let (mut motions, mut files) = (Vec::new(), HashSet::new());
     for pattern in patterns {
@@ -149,7 +152,7 @@ fn motions(
         for path in paths {
             let path = path?;
             if !files.insert(path.canonicalize()?) {
-                eprintln!("{} is named twice in records: it counts once", path.display());
+                say!("{} is named twice in records: it counts once", path.display());
                 continue;
             }
             let name = path.file_name().unwrap_or_default().to_string_lossy();

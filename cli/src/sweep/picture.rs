@@ -1,7 +1,6 @@
 //! The picture of a sweep: probabilities as points, fragility curves as lines.
 use super::fragilities::{Fragility, Population};
 use plotters::prelude::*;
-use std::path::Path;
 
 const SIZE: (u32, u32) = (1200, 720);
 const FONT: (&str, u32) = ("sans-serif", 20);
@@ -18,11 +17,12 @@ const COLORS: [RGBColor; 7] = [
     RGBColor(0, 0, 0),
 ];
 
-/// Draws `populations` into the SVG file at `path`.
-pub fn draw(path: &Path, populations: &[Population]) -> anyhow::Result<()> {
+/// Draws `populations` as SVG.
+pub fn draw(populations: &[Population]) -> anyhow::Result<String> {
+    let mut svg = String::new();
     let highest =
         populations.iter().flat_map(|population| &population.stripes).fold(0.0, |most: f64, at| most.max(at.pga));
-    let area = SVGBackend::new(path, SIZE).into_drawing_area();
+    let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
     area.fill(&WHITE)?;
     let mut chart = ChartBuilder::on(&area)
         .margin(16)
@@ -62,5 +62,6 @@ pub fn draw(path: &Path, populations: &[Population]) -> anyhow::Result<()> {
         .border_style(BLACK.mix(0.2))
         .draw()?;
     area.present()?;
-    Ok(())
+    drop((chart, area));
+    Ok(svg)
 }

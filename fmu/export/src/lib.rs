@@ -1,4 +1,4 @@
-//! Writes the FMU: an archive of the shared libraries with all that describes them.
+//! Makes the FMU: an archive of the shared libraries with all that describes them.
 #![allow(non_snake_case)] // the shared library's name
 
 mod archive;
@@ -9,7 +9,6 @@ pub mod significant;
 use FlexibleRocking::BUILD;
 use FlexibleRocking::ground::GroundRecord;
 use FlexibleRocking::resources::{Contents, PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records};
-pub use archive::ArchiveError;
 use archive::Entry;
 use rocking::Structure;
 use rocking::record::RecordError;
@@ -65,7 +64,7 @@ impl Platform {
     }
 }
 
-/// Why an FMU could not be written.
+/// Why an FMU could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
     /// No such library.
@@ -107,20 +106,19 @@ pub enum ExportError {
     /// The parameters, or the names of the records, cannot be written.
     #[error("resources: {0}")]
     Resources(#[from] toml::ser::Error),
-    /// The archive cannot be written.
-    #[error(transparent)]
-    Archive(#[from] ArchiveError),
+    /// The archive cannot be made.
+    #[error("the archive: {0}")]
+    Archive(#[from] zip::result::ZipError),
 }
 
-/// Writes the FMU of `structure` as the archive `target`, with the shared libraries that `libraries` names and the
-/// `records`, of which the first is what its ground follows. Returns what it carries and its size in bytes. The same
-/// structure, libraries and records give the same bytes.
+/// The FMU of `structure`, with the shared libraries that `libraries` names and the `records`, of which the first is what
+/// its ground follows: what it carries, and the bytes of the archive. The same structure, libraries and records give the
+/// same bytes.
 pub fn export(
     structure: &Structure,
     records: &[PathBuf],
     libraries: &BTreeMap<Platform, PathBuf>,
-    target: &Path,
-) -> Result<(Contents, u64), ExportError> {
+) -> Result<(Contents, Vec<u8>), ExportError> {
     let libraries = libraries.iter().map(|(&platform, path)| Ok((platform, read(path, platform)?)));
     let libraries = libraries.collect::<Result<Vec<_>, ExportError>>()?;
     let (mut contents, mut files) = (Contents::from(*structure.parameters()), Vec::new());
@@ -134,8 +132,8 @@ pub fn export(
         files.push(fs::read(path).map_err(|source| RecordError::Unreadable { path: path.clone(), source })?);
         contents.records.push(PackedRecord { file, digest: record.name() });
     }
-    let size = archive::write(target, &entries(structure, &contents, files, libraries)?)?;
-    Ok((contents, size))
+    let archive = archive::archive(&entries(structure, &contents, files, libraries)?)?;
+    Ok((contents, archive))
 }
 
 /// The shared library at `path`, if it is there, for `platform` and of this build.
@@ -196,27 +194,18 @@ mod tests {
 
     /// Why the library at `path` is refused.
     fn refusal(platform: Platform, path: &Path) -> String {
-        let target = path.with_file_name("refused.fmu");
         let libraries = BTreeMap::from([(platform, path.to_owned())]);
-        let message = export(&structure(Parameters::EVISON), &[], &libraries, &target).unwrap_err().to_string();
-        assert!(!target.exists());
-        message
+        export(&structure(Parameters::EVISON), &[], &libraries).unwrap_err().to_string()
     }
 
     #[test]
     fn two_exports_of_the_same_are_the_same_bytes() {
         let folder = tempfile::tempdir().unwrap();
         let libraries = BTreeMap::from([(Platform::Linux64, library(folder.path()))]);
-        let exported = |parameters, name: &str| {
-            let target = folder.path().join(name);
-            let (_, size) = export(&structure(parameters), &[], &libraries, &target).unwrap();
-            let archive = fs::read(target).unwrap();
-            assert_eq!(size, archive.len() as u64);
-            archive
-        };
-        let first = exported(Parameters::EVISON, "first.fmu");
-        assert_eq!(first, exported(Parameters::EVISON, "second.fmu"));
-        assert_ne!(first, exported(Parameters::MCMANUS, "third.fmu"));
+        let exported = |parameters| export(&structure(parameters), &[], &libraries).unwrap().1;
+        let first = exported(Parameters::EVISON);
+        assert_eq!(first, exported(Parameters::EVISON));
+        assert_ne!(first, exported(Parameters::MCMANUS));
     }
 
     #[test]
@@ -254,14 +243,13 @@ mod tests {
         };
         let [pulse, sine] = [write("pulse 1.csv", "0,1\r\n1,2\r\n"), write("sine.txt", "0,1\n1,-1\n")];
         let [same, broken] = [write("other/Sine.TXT", "0,2\n1,0\n"), write("broken.csv", "0,1\n1,?\n")];
-        let target = folder.path().join("records.fmu");
         let export = |records: &[&PathBuf]| {
             let records: Vec<_> = records.iter().map(|path| path.to_path_buf()).collect();
-            super::export(&structure(Parameters::EVISON), &records, &libraries, &target)
+            super::export(&structure(Parameters::EVISON), &records, &libraries)
         };
-        let (contents, _) = export(&[&pulse, &sine]).unwrap();
+        let (contents, bytes) = export(&[&pulse, &sine]).unwrap();
         assert_eq!(contents.default_record(), "pulse 1.csv");
-        let mut archive = zip::ZipArchive::new(fs::File::open(&target).unwrap()).unwrap();
+        let mut archive = zip::ZipArchive::new(io::Cursor::new(bytes)).unwrap();
         let mut read = |name: &str| io::read_to_string(archive.by_name(name).unwrap()).unwrap();
         assert_eq!(read("resources/pulse 1.csv"), "0,1\r\n1,2\r\n");
         assert_eq!(read("resources/sine.txt"), "0,1\n1,-1\n");

@@ -1,0 +1,317 @@
+//! The files that a command writes: nothing of the user's is overwritten by mistake, and nothing is left half written.
+//!
+//! A file is written beside its place and gets its name when it is complete, so that a command that fails leaves what
+//! was there before. A link is followed. A file that the command reads, or writes already, is refused; a device or a pipe
+//! is written through, never replaced.
+
+use anyhow::{Context, anyhow, bail, ensure};
+use std::{
+    fs::{self, File, Metadata, Permissions},
+    io::{self, BufWriter, StdoutLock, Write, stdout},
+    os::unix::{
+        ffi::OsStrExt,
+        fs::{FileTypeExt, MetadataExt, PermissionsExt, chown},
+    },
+    path::{Path, PathBuf},
+};
+use tempfile::NamedTempFile;
+
+/// Links that are followed one after the other, as in Linux itself.
+const LONGEST_CHAIN_OF_LINKS: usize = 40;
+
+/// All files of one command: those that it reads, and those that it writes.
+#[derive(Default)]
+pub struct OutputFiles {
+    inputs: Vec<(PathBuf, Identity)>,
+    outputs: Vec<(PathBuf, Place)>,
+}
+
+/// A file that is being written; one that is not finished leaves no trace.
+pub struct OutputFile {
+    path: PathBuf,
+    to: To,
+}
+
+/// What tells two files apart, whatever they are called: device and inode.
+type Identity = (u64, u64);
+
+/// Where a path leads.
+#[derive(Clone, PartialEq)]
+enum Place {
+    StandardOutput,
+    /// A regular file, or one that is not there yet: the path without links.
+    Regular(PathBuf),
+    /// A device, a pipe, or what another program has opened.
+    Through,
+}
+
+enum To {
+    StandardOutput(BufWriter<StdoutLock<'static>>),
+    Beside { file: BufWriter<NamedTempFile>, target: PathBuf },
+    Through(BufWriter<File>),
+}
+
+impl OutputFiles {
+    /// Of a command that reads `inputs`; what is not there is left to whoever reads it.
+    pub fn of_inputs<'a>(inputs: impl IntoIterator<Item = &'a Path>) -> OutputFiles {
+        let mut files = OutputFiles::default();
+        inputs.into_iter().for_each(|path| files.add_input(path));
+        files
+    }
+
+    /// One more file that the command reads.
+    pub fn add_input(&mut self, path: &Path) {
+        if let Ok(told) = fs::metadata(path) {
+            self.inputs.push((path.into(), identity(&told)));
+        }
+    }
+
+    /// Begins the file at `path`, or standard output for `-`.
+    pub fn create(&mut self, path: &Path) -> anyhow::Result<OutputFile> {
+        let to = match self.reserve(path)? {
+            Place::StandardOutput => Ok(To::StandardOutput(BufWriter::new(stdout().lock()))),
+            Place::Regular(target) => beside(&target).map(|file| To::Beside { file: BufWriter::new(file), target }),
+            // What follows what another program has written there, or will write.
+            Place::Through => File::options().append(true).open(path).map(BufWriter::new).map(To::Through),
+        };
+        Ok(OutputFile { path: path.into(), to: to.with_context(|| cannot_be_written(path))? })
+    }
+
+    /// Refuses `path` where it is a file that the command reads or writes already, or none that can be written. A file
+    /// that grows row by row is not created here, and reserved alone.
+    pub fn reserve_rows(&mut self, path: &Path) -> anyhow::Result<()> {
+        let place = self.reserve(path)?;
+        ensure!(matches!(place, Place::Regular(_)), "{}: rows need a file, which is read again", path.display());
+        Ok(())
+    }
+
+    fn reserve(&mut self, path: &Path) -> anyhow::Result<Place> {
+        let place = place(path).with_context(|| cannot_be_written(path))?;
+        if let Place::Regular(target) = &place {
+            let is_same =
+                |(_, input): &&(PathBuf, Identity)| fs::metadata(target).is_ok_and(|told| identity(&told) == *input);
+            if let Some((input, _)) = self.inputs.iter().find(is_same) {
+                let (path, input) = (path.display(), input.display());
+                bail!("{path} is {input}, which is read: it would be overwritten; name another file");
+            }
+        }
+        if let Some((other, _)) = self.outputs.iter().find(|(_, other)| *other == place && place != Place::Through) {
+            let (path, other) = (path.display(), other.display());
+            bail!("{path} and {other} are the same file, and both would be written: name two");
+        }
+        self.outputs.push((path.into(), place.clone()));
+        Ok(place)
+    }
+}
+
+impl Write for OutputFile {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.writer().write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.writer().flush()
+    }
+}
+
+impl OutputFile {
+    fn writer(&mut self) -> &mut dyn Write {
+        match &mut self.to {
+            To::StandardOutput(out) => out,
+            To::Beside { file, .. } => file,
+            To::Through(file) => file,
+        }
+    }
+
+    /// Says of an error in writing which file it was.
+    pub fn named<T>(path: &Path, written: io::Result<T>) -> anyhow::Result<T> {
+        written.with_context(|| cannot_be_written(path))
+    }
+
+    /// Writes out what is held back, and gives the file its name.
+    pub fn finish(mut self) -> anyhow::Result<()> {
+        let flushed = self.flush();
+        let path = self.path;
+        OutputFile::named(&path, flushed)?;
+        if let To::Beside { file, target } = self.to {
+            let file = file.into_inner().map_err(io::IntoInnerError::into_error);
+            let finished = file.and_then(|file| file.persist(target).map_err(|failed| failed.error));
+            OutputFile::named(&path, finished)?;
+        }
+        Ok(())
+    }
+}
+
+fn cannot_be_written(path: &Path) -> String {
+    format!("{} cannot be written", path.display())
+}
+
+fn identity(told: &Metadata) -> Identity {
+    (told.dev(), told.ino())
+}
+
+/// Where `path` leads, with what is there asked before anything is opened.
+fn place(path: &Path) -> anyhow::Result<Place> {
+    if path == Path::new("-") {
+        return Ok(Place::StandardOutput);
+    }
+    ensure!(!path.as_os_str().is_empty(), "its name is empty");
+    ensure!(!path.as_os_str().as_bytes().ends_with(b"/"), "it is a folder; name a file in it");
+    match fs::metadata(path) {
+        Ok(told) if told.is_dir() => bail!("it is a folder; name a file in it"),
+        Ok(told) if told.file_type().is_block_device() => bail!("it is a block device"),
+        Ok(told) if !told.is_file() => return Ok(Place::Through),
+        Ok(_) => {}
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+        Err(error) => return Err(error.into()),
+    }
+    let mut path = path.to_owned();
+    for _ in 0..=LONGEST_CHAIN_OF_LINKS {
+        let name = path.file_name().context("it is a folder; name a file in it")?;
+        let folder = match path.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        let real = fs::canonicalize(folder).map_err(|error| match error.kind() {
+            io::ErrorKind::NotFound => anyhow!("there is no folder {}", folder.display()),
+            _ => error.into(),
+        })?;
+        if real.starts_with("/proc") {
+            return Ok(Place::Through);
+        }
+        let target = real.join(name);
+        match fs::read_link(&target) {
+            Ok(link) => path = real.join(link),
+            Err(_) => return Ok(Place::Regular(target)),
+        }
+    }
+    bail!("its links have no end")
+}
+
+/// A file in the folder of `target` with the owner and the permissions of the one that is there, or of any new one.
+fn beside(target: &Path) -> io::Result<NamedTempFile> {
+    let there = match File::options().write(true).open(target) {
+        Ok(file) => Some(file.metadata()?),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => None,
+        Err(error) => return Err(error),
+    };
+    let folder = target.parent().unwrap_or(Path::new("/"));
+    let readable = Permissions::from_mode(0o666); // less the umask, as for any new file
+    let file = tempfile::Builder::new().prefix(".rocking-fmu-").permissions(readable).tempfile_in(folder);
+    let file = file.map_err(|error| io::Error::new(error.kind(), in_folder(folder, &error)))?;
+    if let Some(there) = there {
+        let own = file.as_file().metadata()?;
+        if (own.uid(), own.gid()) != (there.uid(), there.gid()) {
+            // Who may write to a file may not always give it away; the file is then the writer's.
+            let _ = chown(file.path(), Some(there.uid()), Some(there.gid()));
+        }
+        file.as_file().set_permissions(there.permissions())?;
+    }
+    Ok(file)
+}
+
+fn in_folder(folder: &Path, error: &io::Error) -> String {
+    let reason = error.raw_os_error().map(io::Error::from_raw_os_error);
+    let reason = reason.map_or(error.to_string(), |reason| reason.to_string());
+    format!("no file can be made in {}: {reason}", folder.display())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::symlink;
+
+    fn write(files: &mut OutputFiles, path: &Path, text: &str) -> anyhow::Result<()> {
+        let mut file = files.create(path)?;
+        file.write_all(text.as_bytes())?;
+        file.finish()
+    }
+
+    fn names(folder: &Path) -> Vec<String> {
+        let names = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        let mut names: Vec<_> = names.collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn what_was_there_stays_until_the_file_is_complete() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.csv");
+        fs::write(&path, "before").unwrap();
+        fs::set_permissions(&path, Permissions::from_mode(0o640)).unwrap();
+        let mut unfinished = OutputFiles::default().create(&path).unwrap();
+        unfinished.write_all(b"half").unwrap();
+        unfinished.flush().unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"before");
+        drop(unfinished);
+        assert_eq!(names(folder.path()), ["out.csv"]);
+        write(&mut OutputFiles::default(), &path, "after").unwrap();
+        assert_eq!(fs::read(&path).unwrap(), b"after");
+        assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o640);
+        assert_eq!(names(folder.path()), ["out.csv"]);
+    }
+
+    #[test]
+    fn links_are_followed_and_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::create_dir(at("far")).unwrap();
+        symlink("far/target.csv", at("second.csv")).unwrap();
+        symlink(at("second.csv"), at("first.csv")).unwrap();
+        for text in ["to a file that is not there", "to one that is"] {
+            write(&mut OutputFiles::default(), &at("first.csv"), text).unwrap();
+            assert_eq!(fs::read_to_string(at("far/target.csv")).unwrap(), text);
+        }
+        assert!(fs::symlink_metadata(at("first.csv")).unwrap().is_symlink());
+        assert!(fs::symlink_metadata(at("second.csv")).unwrap().is_symlink());
+        symlink("round.csv", at("round.csv")).unwrap();
+        assert!(OutputFiles::default().create(&at("round.csv")).is_err());
+    }
+
+    #[test]
+    fn a_file_that_is_read_or_written_already_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        fs::write(at("record.csv"), "0,1\n1,2\n").unwrap();
+        fs::hard_link(at("record.csv"), at("same.csv")).unwrap();
+        symlink("record.csv", at("link.csv")).unwrap();
+        let record = at("record.csv");
+        let mut files = OutputFiles::of_inputs([record.as_path(), &at("absent")]);
+        for name in ["record.csv", "same.csv", "link.csv", "./record.csv"] {
+            let expected = "which is read: it would be overwritten; name another file";
+            let message = files.create(&at(name)).err().unwrap().to_string();
+            assert!(message.ends_with(expected), "{message}");
+        }
+        symlink("out.csv", at("out link.csv")).unwrap();
+        let _out = files.create(&at("out.csv")).unwrap();
+        for name in ["out.csv", "out link.csv"] {
+            let message = files.create(&at(name)).err().unwrap().to_string();
+            assert!(message.ends_with("are the same file, and both would be written: name two"), "{message}");
+            assert!(files.reserve_rows(&at(name)).is_err());
+        }
+        files.reserve_rows(&at("rows.csv")).unwrap();
+        assert!(files.create(&at("rows.csv")).is_err());
+    }
+
+    #[test]
+    fn what_is_no_regular_file_is_written_through_or_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let link = folder.path().join("null");
+        symlink("/dev/null", &link).unwrap();
+        let mut files = OutputFiles::default();
+        for path in [&link, Path::new("/dev/null"), &link] {
+            write(&mut files, path, "gone").unwrap();
+        }
+        assert!(fs::metadata(&link).unwrap().file_type().is_char_device());
+        let refusal = |path: &Path| format!("{:#}", OutputFiles::default().create(path).err().unwrap());
+        let at = folder.path().display();
+        assert_eq!(refusal(folder.path()), format!("{at} cannot be written: it is a folder; name a file in it"));
+        assert_eq!(
+            refusal(&folder.path().join("no/out.csv")),
+            format!("{at}/no/out.csv cannot be written: there is no folder {at}/no")
+        );
+        let full = write(&mut OutputFiles::default(), Path::new("/dev/full"), "text").unwrap_err();
+        assert_eq!(format!("{full:#}"), "/dev/full cannot be written: No space left on device (os error 28)");
+    }
+}
