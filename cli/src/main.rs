@@ -43,7 +43,7 @@ enum Command {
   rocking-fmu export
   rocking-fmu export --preset evison -o Evison.fmu
   rocking-fmu export --record RSN77_SFERN_PUL164.AT2 RSN6_IMPVALL.I_I-ELC180.AT2
-  rocking-fmu export --parameters pier.toml -o pier.fmu")]
+  rocking-fmu export --parameters pier.toml --name Pier1")]
     Export(export::ExportArgs),
     /// Simulate the response to a ground motion record, or free vibration
     ///
