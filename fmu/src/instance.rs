@@ -388,7 +388,7 @@ impl Instance {
         let time = engine.motion().time;
         let &Parameters { m, g, .. } = engine.structure().parameters();
         let before = Shown::new(model, setup, Load::default());
-        let size = direction.a_g.abs().max(direction.F_t.abs() / m) / (g + before.outputs().a_t.abs());
+        let size = direction.a_g.abs().max(direction.F_t.abs() / m) / (g + before.outputs.a_t.abs());
         let of_size_one = |part: f64| if size > 0.0 { part / size } else { 0.0 };
         let after = Shown::new(model, setup, Load { a_g: of_size_one(direction.a_g), F_t: of_size_one(direction.F_t) });
         let change = |of: &&Variable| after.value(of.source).zip(before.value(of.source)).map_or(0.0, |(a, b)| a - b);

@@ -1,4 +1,4 @@
-//! What a model shows at an instant: everything real that is computed, each part of it when it is first asked for.
+//! What a model shows at an instant: everything real that is computed.
 
 use crate::condition::Model;
 use crate::setup::Setup;
@@ -11,7 +11,9 @@ pub(crate) struct Shown<'a> {
     model: &'a Model,
     setup: &'a Setup,
     load: Load,
-    outputs: OnceCell<Outputs>,
+    /// The outputs.
+    pub outputs: Outputs,
+    /// Computed when they are first asked for.
     reactions: OnceCell<Reactions>,
 }
 
@@ -19,12 +21,7 @@ impl<'a> Shown<'a> {
     /// That of `model`, which follows `setup`, under `load`.
     #[inline]
     pub fn new(model: &'a Model, setup: &'a Setup, load: Load) -> Shown<'a> {
-        Shown { model, setup, load, outputs: OnceCell::new(), reactions: OnceCell::new() }
-    }
-
-    /// The outputs.
-    pub fn outputs(&self) -> &Outputs {
-        self.outputs.get_or_init(|| self.model.engine.outputs(self.load))
+        Shown { model, setup, load, outputs: model.engine.outputs(load), reactions: OnceCell::new() }
     }
 
     /// The reactions.
@@ -37,7 +34,7 @@ impl<'a> Shown<'a> {
     pub fn value(&self, source: Source) -> Option<f64> {
         let Shown { model, setup, load, .. } = *self;
         Some(match source {
-            Source::Output(of) => of(self.outputs()),
+            Source::Output(of) => of(&self.outputs),
             Source::Reaction(of) => of(self.reactions()),
             Source::Peak(_) if !setup.peaks => f64::NAN,
             Source::Peak(of) => of(&model.peaks(setup, load)),
