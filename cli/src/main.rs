@@ -19,7 +19,8 @@ mod tables;
 mod talk;
 
 use clap::{Parser, Subcommand};
-use fmu_export::significant;
+use fmu_export::{Platform, significant};
+use std::env::consts::{ARCH, OS};
 use std::{io, process::ExitCode};
 
 /// A flexible structure that rocks on its foundation: FMU exporter and simulator.
@@ -27,7 +28,7 @@ use std::{io, process::ExitCode};
 /// A command works on the McManus specimen of the paper unless --preset or --parameters says otherwise. SI units
 /// throughout, angles in rad.
 #[derive(Parser)]
-#[command(name = "rocking-fmu", version)]
+#[command(name = "rocking-fmu", version, long_version = long_version())]
 struct CommandLine {
     #[command(subcommand)]
     command: Command,
@@ -97,6 +98,13 @@ enum Command {
   rocking-fmu sweep fragility.toml
   rocking-fmu sweep fragility.toml -o runs.csv --threads 2")]
     Sweep(sweep::SweepArgs),
+}
+
+/// Version, build, and the platforms that an FMU can be for.
+fn long_version() -> String {
+    let [version, build] = [env!("CARGO_PKG_VERSION"), FlexibleRocking::BUILD];
+    let platforms = Platform::ALL.map(Platform::folder).join(", ");
+    format!("{version}\nbuild {build}\nfor {OS} on {ARCH}; packs libraries for {platforms}, as far as they are there")
 }
 
 fn main() -> ExitCode {

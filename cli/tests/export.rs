@@ -73,8 +73,8 @@ fn libraries_are_found_where_they_are_built_and_where_they_are_installed() {
     fs::create_dir_all(stale.parent().unwrap()).unwrap();
     let mut bytes = fs::read(library).unwrap();
     let build = FlexibleRocking::BUILD.as_bytes();
-    let at = bytes.windows(build.len()).position(|part| part == build).unwrap();
-    bytes[at + 1] ^= 1;
+    let places: Vec<_> = memchr::memmem::find_iter(&bytes, build).collect();
+    places.iter().for_each(|at| bytes[at + 1] ^= 1);
     fs::write(&stale, bytes).unwrap();
     let output = export(&[]);
     let stderr = String::from_utf8(output.stderr).unwrap();

@@ -1,4 +1,4 @@
-//! Gives the library the name of its build.
+//! Gives the library the name of its build, and on macOS no trace of the folder that it was built in.
 
 mod build_id;
 
@@ -11,5 +11,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("cargo::rerun-if-changed=../{read}");
     }
     println!("cargo::rustc-env=FLEXIBLE_ROCKING_BUILD={}", build_id::build_id(&workspace)?);
+    if std::env::var("CARGO_CFG_TARGET_OS")? == "macos" {
+        println!("cargo::rustc-cdylib-link-arg=-Wl,-install_name,@rpath/libFlexibleRocking.dylib");
+    }
     Ok(())
 }

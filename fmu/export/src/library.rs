@@ -1,6 +1,7 @@
 //! Shared libraries, and the platforms that an archive can have one for.
 
 use FlexibleRocking::BUILD;
+use memchr::memmem;
 use object::read::macho::{FatArch, MachOFatFile32};
 use object::{Architecture, BinaryFormat, FileKind, Object};
 use std::fs;
@@ -146,7 +147,7 @@ impl Library {
     /// The library with this `content`, of this build; `path` is where it comes from.
     fn new(path: &Path, content: Vec<u8>) -> Result<Library, LibraryError> {
         let platform = Platform::of(&content).ok_or_else(|| LibraryError::NoLibrary(path.to_owned()))?;
-        if !content.windows(BUILD.len()).any(|bytes| bytes == BUILD.as_bytes()) {
+        if memmem::find(&content, BUILD.as_bytes()).is_none() {
             return Err(LibraryError::OtherBuild(path.to_owned()));
         }
         Ok(Library { platform, content })

@@ -243,9 +243,9 @@ mod tests {
       <Enumeration declaredType="Phase"/>"#,
             r#"<Item name="rocking left" value="2"/>"#,
             r#"<String start="pulse &amp; rest.csv"/>"#,
-            r#"description="whether largest magnitudes are watched" causality="parameter" variability="fixed" initial="exact">
-      <Boolean start="true"/>"#,
-            r#"exact: within steps, too" causality="local" variability="continuous" initial="calculated">
+            r#"theta_max, u_max, ... are watched for" causality="parameter" variability="fixed" initial="exact">
+      <Boolean start="false"/>"#,
+            r#"exact: within steps, too; NaN unless peaks is true" causality="local" variability="continuous" initial="calculated">
       <Real unit="rad" displayUnit="deg" nominal="0.351"/>"#,
             r#"modelName="Pier" guid"#,
             r#"<CoSimulation modelIdentifier="Pier" "#,
