@@ -1,13 +1,13 @@
 # make demo    run the FMU on a real earthquake and draw docs/pacoima_mcmanus.png
 # make test    every check and every test
-# make heavy   what takes longer: the libraries for other machines, built, read and, where that can be, run
+# make heavy   what takes longer: the page of `view` in a browser; the libraries for other machines, built, read and, where that can be, run
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels  out/wheels: Python packages for Linux and macOS with the command line and the archive, and the source
 # make report  regenerate docs/validation.md and its figures
 # make coupling  regenerate docs/coupling.md and its figures (minutes)
 # make bench   criterion benchmark of a whole record, and one step over it through fmpy
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
-# make fuzz    ten million hostile calls of the C interface, on all cores (CI makes 200,000)
+# make fuzz    ten million hostile calls of the C interface and as many damaged records, on all cores (CI: 200,000 and 40,000)
 # make records the ground motion records alone, for the charts: cargo run --release -p study -- precision
 #
 # Each does all its own set-up; needed are cargo and python3 (3.11 or later).
@@ -27,15 +27,16 @@ ARM_LOADER := /usr/aarch64-linux-gnu/lib/ld-linux-aarch64.so.1
 MINGW := x86_64-w64-mingw32-gcc
 HAS_MINGW := command -v $(MINGW) >/dev/null
 HAS_WINE := command -v wine >/dev/null
+HAS_CHROMIUM := command -v chromium >/dev/null
 HAS_TBB := PATH=$$PATH:/sbin ldconfig -p | grep -q 'libtbb\.so\.12'
 sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test heavy foreign packaged dist wheels windows zig report coupling bench licenses fuzz records exporter mingw hosts
+.PHONY: demo test heavy browser foreign packaged dist wheels windows zig report coupling bench licenses fuzz records exporter mingw hosts
 
 demo: .venv/ready out/mcmanus.fmu out/evison.fmu
-	cp $(RECORDS)/$(PACOIMA) out/
+	cp $(RECORDS)/$(PACOIMA) $(RECORDS)/$(EL_CENTRO) out/
 	$(PYTHON) examples/first_run.py out/mcmanus.fmu
 
 test: .venv/ready exporter hosts windows
@@ -48,7 +49,13 @@ test: .venv/ready exporter hosts windows
 	cargo test --workspace
 	$(PYTHON) -m pytest -rs
 
-heavy: foreign packaged
+heavy: browser foreign packaged
+
+# The page of `view` in Chromium; where that cannot be had, the tests are skipped and say so.
+browser: .venv/ready exporter
+	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
+	-$(PYTHON) -m pip install --quiet --disable-pip-version-check --requirement requirements.browser.txt
+	$(PYTHON) -m pytest -rs tests/test_view.py
 
 # Linux's library for 64-bit ARM runs under qemu; where that cannot be had, its test is skipped and says so.
 foreign: dist
@@ -105,6 +112,7 @@ licenses:
 
 fuzz:
 	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release --package flexible-rocking-fmu --test hostile_calls -- --nocapture
+	FUZZ_RECORDS=$${FUZZ_RECORDS:-10000000} cargo test --release --package rocking --test records -- --nocapture no_mutation
 
 exporter:
 	cargo build --release

@@ -5,7 +5,7 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use nalgebra::{SMatrix, Vector4, Vector6};
 use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::record::{Record, Segment, Unit};
+use rocking::record::{Reading, Record, Segment};
 use rocking::run::End;
 use rocking::{Detail, Motion, Parameters, Run, Structure};
 use std::{env, hint::black_box, path::Path, time::Instant};
@@ -18,7 +18,7 @@ const TURNS: usize = 200;
 
 fn record() -> Record {
     let file = env::var("RECORD").expect("RECORD must name an AT2 file; `make bench` takes El Centro 1940");
-    Record::read(Path::new(&file), Unit::G, 9.81).expect("the record is readable")
+    Record::read(Path::new(&file), &Reading::default(), 9.81).expect("the record is readable").0
 }
 
 fn run(ground: &Record, detail: Detail, tolerance: f64) -> Run<'_> {

@@ -1,10 +1,14 @@
 //! A record is read and run, the levels of detail are compared on it, and piers of four stiffnesses are swept.
 
+use rocking::intensity::IntensityMeasure::Pga;
 use rocking::run::{levels, outcome::Limit, peaks::PEAKS, plan::Case, plan::NamedRecord, plan::Plan, plan::Population};
-use rocking::{Parameters, Run, Structure, fragility::FragilityCurve, fragility::Trials, record::Record, record::Unit};
+use rocking::{
+    Parameters, Run, Structure, fragility::FragilityCurve, fragility::Trials, record::Reading, record::Record,
+};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let ground = Record::read("examples/pulse.csv".as_ref(), Unit::MetrePerSecondSquared, 9.81)?;
+    let (ground, source) = Record::read("examples/pulse.csv".as_ref(), &Reading::default(), 9.81)?;
+    println!("{}: {}", ground.title(), source.unit);
     let run = Run::new(Structure::new(Parameters::MCMANUS)?, &ground);
     let (peaks, finish) = run.peaks()?;
     PEAKS.iter().for_each(|peak| println!("{} in {}: {:?}", peak.name, peak.unit, (peak.of)(&peaks)));
@@ -12,8 +16,8 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let verdicts = levels::compare(&run)?.verdicts;
     verdicts.iter().for_each(|level| println!("{:?}: {:?}", level.response.detail, level.errors));
     let piers = Population::new("piers", Parameters::MCMANUS).vary("f_fc", vec![3.0, 4.0, 5.0, 6.0])?;
-    let plan = Plan::new(vec![piers], vec![NamedRecord::new("pulse", ground)?], vec![1.1, 1.15, 1.2, 1.25, 1.3])?;
-    let overturns = |case: Case| (case.intensity(), case.outcome().exceeds(&Limit::Overturning));
+    let plan = Plan::new(vec![piers], vec![NamedRecord::new("pulse", ground, 1.0)?], vec![1.1, 1.15, 1.2, 1.25, 1.3])?;
+    let overturns = |case: Case| (case.group, case.intensity(Pga), case.outcome().exceeds(&Limit::Overturning));
     println!("{:?}", FragilityCurve::fit(&Trials::count(plan.cases().map(overturns)))?);
     Ok(())
 }

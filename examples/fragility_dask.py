@@ -27,6 +27,7 @@ from fmpy.simulation import instantiate_fmu
 
 PEAKS = ("theta_max", "u_max", "a_t_max")
 DEFAULTS = {"J0": 0.0, "c_ratio": 1.0, "g": 9.81}  # of a table of parameters
+KEYS = {"records", "unit", "time_scale", "scale", "structures", "limits", "intensity"}  # what is known of a sweep
 FULL_CONTACT = 1  # phase
 REST, MOST_RESTS = 10.0, 10  # a step with the ground at rest after the record, in units of 1/p_l; how many at most
 BATCH = 100  # runs in one task, for which Dask needs a millisecond
@@ -99,8 +100,19 @@ def values(given) -> list[float]:
     return [(start * (last - i) + stop * i) / last for i in range(last + 1)]
 
 
+def records(sources: list, folder: Path):
+    """Name, content, suffix and scale of every record: named by its path from the folder of the TOML file."""
+    for source in sources:
+        source = source if isinstance(source, dict) else {"file": source, "scale": 1.0}
+        for path in sorted(glob.glob(str(folder / source["file"]))):
+            name = str(Path(path).relative_to(folder)) if Path(path).is_relative_to(folder) else path
+            yield name, Path(path).read_bytes(), Path(path).suffix, source["scale"]
+
+
 def structures(entry: dict, preset: dict[str, float]):
     """The parameters of every structure in an entry of structures."""
+    if unknown := entry.get("parameters", {}).keys() - preset.keys():
+        raise SystemExit(f"{entry['name']}: {', '.join(sorted(unknown))}: parameters of the FMU alone are known here")
     base = DEFAULTS | entry["parameters"] if "parameters" in entry else preset
     vary = entry.get("vary", {})
     for combination in itertools.product(*map(values, vary.values())):
@@ -126,18 +138,25 @@ def main():
     arguments = parser.parse_args()
 
     sweep = tomllib.loads(arguments.sweep.read_text())
-    patterns = [str(arguments.sweep.parent / pattern) for pattern in sweep["records"]]
-    records = {Path(path).name: Path(path).read_bytes() for pattern in patterns for path in sorted(glob.glob(pattern))}
+    if unknown := sweep.keys() - KEYS:
+        raise SystemExit(f"{arguments.sweep}: {', '.join(sorted(unknown))}: not known here, to `rocking-fmu sweep` alone")
+    motions, packed = {}, {}
+    for number, (name, content, suffix, scale) in enumerate(records(sweep["records"], arguments.sweep.parent)):
+        motions[name] = (f"{number}{suffix}", scale)
+        packed[f"{number}{suffix}"] = content
     variables = fmpy.read_model_description(str(arguments.fmu)).modelVariables
     preset = {v.name: float(v.start) for v in variables if v.causality == "parameter" and v.type == "Real"}
     runs = [
         (entry["name"], parameters, record, scale)
         for entry in sweep["structures"]
         for parameters in structures(entry, preset)
-        for record in records
+        for record in motions
         for scale in values(sweep["scale"])
     ]
-    placed = [(start_values(sweep, *inputs), inputs[1]) for _, *inputs in runs]
+    placed = []
+    for _, parameters, record, scale in runs:
+        file, own_scale = motions[record]
+        placed.append((start_values(sweep, parameters, file, own_scale * scale), file))
     batches = [placed[at:at + BATCH] for at in range(0, len(placed), BATCH)]
 
     if arguments.scheduler:
@@ -145,7 +164,7 @@ def main():
     else:
         client = Client(LocalCluster(n_workers=arguments.workers, threads_per_worker=1, dashboard_address=None))
     with client:
-        client.register_plugin(RockingStructure(arguments.fmu.read_bytes(), records))
+        client.register_plugin(RockingStructure(arguments.fmu.read_bytes(), packed))
         workers = len(client.scheduler_info(n_workers=-1)["workers"])
         start = time.perf_counter()
         futures = client.map(run, batches, pure=False)

@@ -107,7 +107,7 @@ mod tests {
     fn an_amplification_out_of_range_is_refused() {
         let structure = Structure::new(Parameters::EVISON).unwrap();
         let refused = |C| Demand::new(&structure, 1.0, C).unwrap_err().to_string();
-        assert!(refused(2.5).starts_with("C = 2.5 1 is out of range: it must lie between 0 and 2 1 (dynamic"));
+        assert!(refused(2.5).starts_with("C = 2.5 is out of range: it must lie between 0 and 2 (dynamic"));
         assert!(refused(-0.1).starts_with("C = -0.1"));
         assert!(refused(f64::NAN).starts_with("C = NaN"));
     }

@@ -16,6 +16,7 @@ use crate::level::Level;
 use crate::load::{LOADS, LinearLoad, Load};
 use crate::motion::{Chatter, Motion, Work};
 use crate::piece::{Equations, Part, Piece, Sample, Watch};
+use crate::quantity::with_unit;
 use crate::reactions::{Impulse, Reactions};
 use crate::state::InitialStateError;
 use crate::taylor::{Arc, Start};
@@ -50,7 +51,7 @@ pub enum Progress {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AdvanceError {
     /// The interval is none.
-    #[error("cannot advance from t = {from} s over {interval} s: a finite time greater than 0 is needed")]
+    #[error("cannot advance from t = {from:?} s over {interval:?} s: a finite time greater than 0 is needed")]
     NotAhead {
         /// The motion's time, s.
         from: f64,
@@ -58,7 +59,12 @@ pub enum AdvanceError {
         interval: f64,
     },
     /// The load is not finite over the interval.
-    #[error("{name} = {value} {unit} with slope {slope} {unit}/s is not finite over {interval} s: give finite loads")]
+    #[error(
+        "{name} = {} with slope {}/s is not finite over {}: give finite loads",
+        with_unit(*value, unit),
+        with_unit(*slope, unit),
+        with_unit(*interval, "s")
+    )]
     Load {
         /// `a_g` or `F_t`.
         name: &'static str,
@@ -73,7 +79,7 @@ pub enum AdvanceError {
     },
     /// Too many steps for one call.
     #[error(
-        "one advance may take {MAX_STEPS_PER_ADVANCE} steps; they ended at t = {time} s of {until} s: advance in \
+        "one advance may take {MAX_STEPS_PER_ADVANCE} steps; they ended at t = {time:?} s of {until:?} s: advance in \
          shorter intervals"
     )]
     TooLong {
@@ -84,7 +90,7 @@ pub enum AdvanceError {
     },
     /// The equations have no finite solution from here on.
     #[error(
-        "the motion cannot be continued beyond t = {time} s (u = {u} m, theta = {theta} rad): the top mass passes \
+        "the motion cannot be continued beyond t = {time:?} s (u = {u:?} m, theta = {theta:?} rad): the top mass passes \
          above the pivot of a foundation without inertia (m0, J0 too small), or the numbers overflow"
     )]
     Singular {
@@ -95,6 +101,16 @@ pub enum AdvanceError {
         /// rad.
         theta: f64,
     },
+}
+
+impl AdvanceError {
+    /// The instant from which on it cannot go on, s, where that lies within the interval.
+    pub fn time(&self) -> Option<f64> {
+        match *self {
+            AdvanceError::TooLong { time, .. } | AdvanceError::Singular { time, .. } => Some(time),
+            AdvanceError::NotAhead { .. } | AdvanceError::Load { .. } => None,
+        }
+    }
 }
 
 /// A structure in motion.

@@ -1,5 +1,5 @@
 //! Fragility curve: the probability that a limit is exceeded under a ground motion of intensity x, as a lognormal
-//! distribution function fitted to counted exceedances by maximum likelihood.
+//! distribution function fitted to counted exceedances by maximum likelihood, and how sure it is.
 //!
 //! ```text
 //! P(x) = Φ(ln(x/x_m)/β)                               x_m median, β dispersion, Φ standard normal distribution
@@ -9,16 +9,31 @@
 //! (J. W. Baker, Efficient analytical fragility function fitting using dynamic structural analysis, Earthquake Spectra
 //! 31, 2015.) With P(x) = Φ(a + b ln x), ln L is concave in a and b: it has one maximum, provided that intensities with
 //! and without exceedances overlap. Where they do not, L grows without end as β → 0 and there is no curve.
+//!
+//! Runs under one record at many scale factors depend on each other, those under different records do not. With the
+//! contributions s_j = ∂ln L_j/∂(a, b) of the G independent groups of runs and the information I = −E[∂²ln L/∂(a, b)²],
+//!
+//! ```text
+//! V = G/(G − 1) · I⁻¹ (Σ_j s_j s_jᵀ) I⁻¹              covariance of a, b
+//! P(x) between Φ(a + b ln x ± t √V_z),   V_z = (1, ln x) V (1, ln x)ᵀ,   t Student's with G − 1 degrees of freedom
+//! ```
+//!
+//! (K.-Y. Liang, S. L. Zeger, Longitudinal data analysis using generalized linear models, Biometrika 73, 1986.)
 
 use libm::erfc;
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{Matrix2, RowVector2, Vector2};
 use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 use std::iter;
 
-/// Runs at one intensity, counted.
+/// Fewer independent groups than this tell nothing of how sure a curve is.
+pub const FEWEST_GROUPS: usize = 5;
+
+/// Runs of one group at one intensity, counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Trials {
+    /// The group: runs of different groups do not depend on each other.
+    pub group: usize,
     /// Intensity x_i > 0 of the ground motion, in any one unit.
     pub intensity: f64,
     /// Runs n_i.
@@ -34,6 +49,17 @@ pub struct FragilityCurve {
     pub median: f64,
     /// Standard deviation of ln x, β.
     pub dispersion: f64,
+    /// How sure it is, if there are [`FEWEST_GROUPS`] independent groups of runs or more.
+    pub certainty: Option<Certainty>,
+}
+
+/// How sure a curve is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Certainty {
+    /// Of a and b in P = Φ(a + b ln(x/x_m)).
+    covariance: Matrix2<f64>,
+    /// Half a 95 % interval over the standard deviation.
+    half_width: f64,
 }
 
 /// Why there is no curve.
@@ -68,13 +94,14 @@ pub enum FitError {
 }
 
 impl Trials {
-    /// Counts runs, each given by its intensity and whether the limit was exceeded, if that is known, by intensity.
-    pub fn count(runs: impl IntoIterator<Item = (f64, Option<bool>)>) -> Vec<Trials> {
+    /// Counts runs by group and intensity. Each is given by its group, its intensity and whether the limit was exceeded,
+    /// if that is known.
+    pub fn count(runs: impl IntoIterator<Item = (usize, f64, Option<bool>)>) -> Vec<Trials> {
         let mut trials = BTreeMap::new();
-        for (intensity, has_exceeded) in runs {
+        for (group, intensity, has_exceeded) in runs {
             if let Some(has_exceeded) = has_exceeded {
-                let of_none = Trials { intensity, runs: 0, exceedances: 0 };
-                let at: &mut Trials = trials.entry(intensity.to_bits()).or_insert(of_none);
+                let of_none = Trials { group, intensity, runs: 0, exceedances: 0 };
+                let at: &mut Trials = trials.entry((group, intensity.to_bits())).or_insert(of_none);
                 at.runs += 1;
                 at.exceedances += usize::from(has_exceeded);
             }
@@ -102,11 +129,64 @@ impl FragilityCurve {
         let origin = trials.iter().map(|at| at.intensity.ln()).sum::<f64>() / trials.len() as f64;
         let [a, b] = most_likely(trials, origin).into();
         if b > 0.0 {
-            Ok(FragilityCurve { median: (origin - a / b).exp(), dispersion: b.recip() })
+            let center = origin - a / b;
+            Ok(FragilityCurve {
+                median: center.exp(),
+                dispersion: b.recip(),
+                certainty: Certainty::of(trials, center, Vector2::new(0.0, b)),
+            })
         } else {
             Err(FitError::NotGrowing)
         }
     }
+
+    /// Between which probabilities P(x) at `intensity` > 0 lies with a probability of 95 %.
+    pub fn band(&self, intensity: f64) -> Option<(f64, f64)> {
+        let Certainty { covariance, half_width } = self.certainty?;
+        let from_median = (intensity / self.median).ln();
+        let row = RowVector2::new(1.0, from_median);
+        let deviation = half_width * (row * covariance * row.transpose()).x.sqrt();
+        let z = from_median / self.dispersion;
+        Some((normal_distribution(z - deviation), normal_distribution(z + deviation)))
+    }
+
+    /// Between which intensities the median lies with a probability of 95 %: x_m exp(± t β √V_aa).
+    pub fn median_range(&self) -> Option<(f64, f64)> {
+        let Certainty { covariance, half_width } = self.certainty?;
+        let factor = (half_width * self.dispersion * covariance.m11.sqrt()).exp();
+        Some((self.median / factor, self.median * factor))
+    }
+}
+
+impl Certainty {
+    /// Of the most likely (a, b), `at`, if there are groups enough.
+    fn of(trials: &[Trials], origin: f64, at: Vector2<f64>) -> Option<Certainty> {
+        let mut by_group: BTreeMap<usize, Vec<Trials>> = BTreeMap::new();
+        trials.iter().for_each(|of| by_group.entry(of.group).or_default().push(*of));
+        let groups = by_group.len();
+        if groups < FEWEST_GROUPS {
+            return None;
+        }
+        let scores = by_group.values().map(|of| derivatives(of, origin, at).0);
+        let scatter: Matrix2<f64> = scores.map(|score| score * score.transpose()).sum();
+        let inverse = derivatives(trials, origin, at).1.try_inverse()?;
+        let few = groups as f64 / (groups - 1) as f64;
+        Some(Certainty { covariance: inverse * scatter * inverse * few, half_width: student(groups - 1) })
+    }
+}
+
+/// The 97.5 % point of Student's distribution, to 1e-3 from 4 `degrees` of freedom on (Abramowitz and Stegun 26.7.5).
+fn student(degrees: usize) -> f64 {
+    const Z: f64 = 1.959_963_984_540_054; // of the normal distribution
+    let polynomial = |coefficients: &[f64]| coefficients.iter().rev().fold(0.0, |sum, c| sum * Z * Z + c) * Z;
+    let terms = [
+        1.0,
+        polynomial(&[1.0, 1.0]) / 4.0 / Z,
+        polynomial(&[3.0, 16.0, 5.0]) / 96.0 / Z,
+        polynomial(&[-15.0, 17.0, 19.0, 3.0]) / 384.0 / Z,
+        polynomial(&[-945.0, -1920.0, 1482.0, 776.0, 79.0]) / 92160.0 / Z,
+    ];
+    Z * terms.iter().rev().fold(0.0, |sum, term| sum / degrees as f64 + term)
 }
 
 /// Whether a finite maximum of L exists.
@@ -158,6 +238,12 @@ fn log_likelihood(trials: &[Trials], origin: f64, at: Vector2<f64>) -> f64 {
 
 /// The gradient of ln L over its expected second derivatives.
 fn newton_step(trials: &[Trials], origin: f64, at: Vector2<f64>) -> Option<Vector2<f64>> {
+    let (gradient, information) = derivatives(trials, origin, at);
+    information.lu().solve(&gradient)
+}
+
+/// The gradient of ln L and the information I, its expected second derivatives with the sign changed.
+fn derivatives(trials: &[Trials], origin: f64, at: Vector2<f64>) -> (Vector2<f64>, Matrix2<f64>) {
     let (mut gradient, mut information) = (Vector2::zeros(), Matrix2::zeros());
     for of in trials {
         let row = regressor(of, origin);
@@ -170,7 +256,7 @@ fn newton_step(trials: &[Trials], origin: f64, at: Vector2<f64>) -> Option<Vecto
             information += row * row.transpose() * (runs * density * density / (p * q));
         }
     }
-    information.lu().solve(&gradient)
+    (gradient, information)
 }
 
 /// 1 and ln x, which a and b multiply.
@@ -190,14 +276,23 @@ mod tests {
     use proptest::prelude::*;
 
     fn trials(counts: &[(f64, usize, usize)]) -> Vec<Trials> {
-        counts.iter().map(|&(intensity, runs, exceedances)| Trials { intensity, runs, exceedances }).collect()
+        counts.iter().map(|&(intensity, runs, exceedances)| Trials { group: 0, intensity, runs, exceedances }).collect()
     }
 
     #[test]
-    fn runs_are_counted_by_intensity() {
-        let runs =
-            [(2.0, Some(true)), (0.5, Some(false)), (2.0, Some(false)), (0.5, None), (4.0, None), (2.0, Some(true))];
-        assert_eq!(Trials::count(runs), trials(&[(0.5, 1, 0), (2.0, 3, 2)]));
+    fn runs_are_counted_by_group_and_intensity() {
+        let runs = [
+            (0, 2.0, Some(true)),
+            (0, 0.5, Some(false)),
+            (1, 2.0, Some(true)),
+            (0, 2.0, Some(false)),
+            (0, 0.5, None),
+            (0, 4.0, None),
+            (0, 2.0, Some(true)),
+        ];
+        let mut expected = trials(&[(0.5, 1, 0), (2.0, 3, 2), (2.0, 1, 1)]);
+        expected[2].group = 1;
+        assert_eq!(Trials::count(runs), expected);
     }
 
     /// Two intensities, two unknowns: the most likely curve goes through both fractions.
@@ -216,7 +311,8 @@ mod tests {
     #[test]
     fn symmetric_counts_have_their_median_in_the_middle() {
         let runs = [(0.25, 0), (0.5, 0), (0.5, 1), (1.0, 0), (1.0, 1), (2.0, 0), (2.0, 1), (4.0, 1)];
-        let curve = FragilityCurve::fit(&runs.map(|(x, z)| Trials { intensity: x, runs: 1, exceedances: z })).unwrap();
+        let curve = FragilityCurve::fit(&runs.map(|(x, z)| Trials { group: 0, intensity: x, runs: 1, exceedances: z }))
+            .unwrap();
         assert_relative_eq!(curve.median, 1.0, max_relative = 1e-10);
     }
 
@@ -237,6 +333,79 @@ mod tests {
         assert_eq!(refused(&[(1.0, 5, 4), (0.0, 5, 3)]), FitError::Intensity(0.0));
     }
 
+    #[test]
+    fn students_points_are_those_of_the_tables() {
+        for (degrees, expected) in [(4, 2.7764), (7, 2.3646), (10, 2.2281), (30, 2.0423), (1000, 1.9623)] {
+            assert!((student(degrees) - expected).abs() < 1e-3, "{degrees}: {}", student(degrees));
+        }
+    }
+
+    /// Numbers in (0, 1) that look random.
+    fn uniform(seed: u64) -> impl FnMut() -> f64 {
+        let mut state = seed;
+        move || {
+            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15); // splitmix64
+            let z = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+            let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+            ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64 + f64::EPSILON / 4.0
+        }
+    }
+
+    /// Records that each exceed the limit from an intensity of their own on, lognormal about 2 with a dispersion of 0.5,
+    /// each at 12 scale factors: 95 % intervals hold the truth about 95 times in 100. Taken as independent, the same
+    /// runs would promise far more.
+    #[test]
+    fn the_band_holds_the_truth_as_often_as_it_says() {
+        const SWEEPS: usize = 300;
+        for records in [8, 30] {
+            let mut random = uniform(records as u64);
+            let mut normal = || (-2.0 * random().ln()).sqrt() * (TAU * random()).cos();
+            let (mut counted, mut held, mut held_if_independent) = (0, [0; 2], 0);
+            for _ in 0..SWEEPS {
+                let mut runs = Vec::new();
+                for record in 0..records {
+                    let capacity = 2.0 * f64::exp(0.5 * normal());
+                    let strength = f64::exp(0.3 * normal());
+                    let intensities = (1..=12).map(|scale| 0.5 * strength * f64::from(scale));
+                    runs.extend(intensities.map(|x| (record, x, Some(x >= capacity))));
+                }
+                let alone = runs.iter().enumerate().map(|(run, (_, x, exceeds))| (run, *x, *exceeds));
+                let Ok(if_independent) = FragilityCurve::fit(&Trials::count(alone)) else { continue };
+                let curve = FragilityCurve::fit(&Trials::count(runs.iter().copied())).unwrap();
+                assert_relative_eq!(curve.median, if_independent.median, max_relative = 1e-9);
+                let holds =
+                    |range: Option<(f64, f64)>, truth| range.is_some_and(|(low, high)| low <= truth && truth <= high);
+                counted += 1;
+                // Φ(ln(2.5/2)/0.5) = 0.6723...
+                let truth = normal_distribution(1.25_f64.ln() / 0.5);
+                let all = [holds(curve.median_range(), 2.0), holds(curve.band(2.5), truth)];
+                held.iter_mut().zip(all).for_each(|(held, holds)| *held += usize::from(holds));
+                held_if_independent += usize::from(holds(if_independent.median_range(), 2.0));
+            }
+            let part = |held: usize| held as f64 / f64::from(counted);
+            assert!(held.iter().all(|held| (0.9..0.98).contains(&part(*held))), "{records}: {held:?} of {counted}");
+            assert!(part(held_if_independent) < 0.75, "{records}: {held_if_independent} of {counted}");
+        }
+    }
+
+    #[test]
+    fn few_records_have_no_band() {
+        let groups = |count: usize| {
+            let trials = |group| {
+                [(0.5, 1), (1.0, 2), (2.0, 4)].map(|(intensity, exceedances)| Trials {
+                    group,
+                    intensity,
+                    runs: 5,
+                    exceedances,
+                })
+            };
+            FragilityCurve::fit(&(0..count).flat_map(trials).collect::<Vec<_>>()).unwrap()
+        };
+        let few = groups(FEWEST_GROUPS - 1);
+        assert_eq!((few.band(1.0), few.median_range()), (None, None));
+        assert!(groups(FEWEST_GROUPS).band(1.0).is_some());
+    }
+
     proptest! {
         /// L of the formula, written out, is lower beside the fit in every direction.
         #[test]
@@ -253,7 +422,7 @@ mod tests {
                 };
                 counts.iter().map(term).sum()
             };
-            if let Ok(FragilityCurve { median, dispersion }) = FragilityCurve::fit(&trials(&counts)) {
+            if let Ok(FragilityCurve { median, dispersion, .. }) = FragilityCurve::fit(&trials(&counts)) {
                 prop_assume!(dispersion < 5.0); // beyond, counts without a trend: rounding decides
                 let most = log_likelihood(median, dispersion);
                 let most = most + 1e-12 * most.abs(); // a flat maximum is one to rounding

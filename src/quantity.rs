@@ -21,7 +21,12 @@ pub struct Quantity<T> {
 
 /// A number outside the range of its quantity (or not a number at all).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-#[error("{name} = {value} {unit} is out of range: it must lie between {min} and {max} {unit} ({description})")]
+#[error(
+    "{name} = {} is out of range: it must lie between {} and {} ({description})",
+    with_unit(*value, unit),
+    with_unit(*min, "1"),
+    with_unit(*max, unit)
+)]
 pub struct OutOfRange {
     /// The quantity's name.
     pub name: &'static str,
@@ -52,6 +57,13 @@ impl<T> Quantity<T> {
             description: self.description,
         })
     }
+}
+
+/// `value` with its unit, which a ratio has none of, in digits that stay few.
+pub fn with_unit(value: f64, unit: &str) -> String {
+    let digits = format!("{value:?}");
+    let digits = digits.strip_suffix(".0").unwrap_or(&digits);
+    if unit == "1" { digits.into() } else { format!("{digits} {unit}") }
 }
 
 /// A [`Quantity`] whose name is the name of the field that holds it.

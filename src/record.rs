@@ -1,14 +1,25 @@
-//! Ground motion records: samples in memory, files of PEER AT2 and CSV.
+//! Ground motion records: samples in memory, and files as the world's archives publish them.
 //!
-//! A record is a list of samples; between two samples the ground acceleration is linear.
+//! A record is a list of samples; between two samples the ground acceleration is linear. What a file is, its content tells:
+//! PEER AT2, ESM and ITACA, K-NET, COSMOS, CSMIP, or columns of text.
 
 mod at2;
-mod csv;
+mod cosmos;
+mod esm;
+mod knet;
+mod parsed;
+mod source;
+mod table;
+mod text;
+mod unit;
 
 use crate::{GroundMotion, Ramp};
+use parsed::Parsed;
+pub use source::{Column, Format, Reading, Source, UnitFrom};
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+pub use unit::Unit;
 
 /// Largest file that is read, bytes: 256 MiB.
 pub const MAX_FILE: u64 = 1 << 28;
@@ -33,15 +44,6 @@ pub struct Segment {
     pub end: f64,
     /// Ground acceleration from `start` on.
     pub a_g: Ramp,
-}
-
-/// Unit of the accelerations in a CSV file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Unit {
-    /// Multiples of the acceleration of gravity, as an AT2 file always has them.
-    G,
-    /// m/s².
-    MetrePerSecondSquared,
 }
 
 /// Why a file, or samples in memory, are refused.
@@ -69,10 +71,10 @@ pub enum RecordError {
         /// Its size.
         size: u64,
     },
-    /// The extension names no known format.
+    /// Neither the content nor the extension is that of a known format.
     #[error(
-        "{}: the extension tells a record's format: .AT2 for an acceleration record of PEER, \
-         .csv or .txt for lines of time and acceleration; rename the file or convert it",
+        "{}: neither its content nor its extension is that of a record: PEER .AT2, ESM .ASC, K-NET, COSMOS, or columns of \
+         text in .csv, .txt, .dat; rename the file or convert it",
         path.display()
     )]
     UnknownFormat {
@@ -88,6 +90,8 @@ pub enum RecordError {
         line: usize,
         /// What was found there and what belongs there.
         problem: String,
+        /// What would make it readable.
+        remedy: Option<Remedy>,
     },
     /// Samples in memory are no ground motion.
     #[error("{title:?}: {problem}")]
@@ -99,11 +103,31 @@ pub enum RecordError {
     },
 }
 
+/// What [`Reading`] must say to make a file readable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Remedy {
+    /// That the number of samples does not matter.
+    IgnoreCount,
+    /// The time between samples.
+    Step,
+    /// The column.
+    Column,
+    /// The unit.
+    Unit,
+}
+
 /// A line that is not what the format asks for, before the file's name is known.
 #[derive(Debug, PartialEq)]
 struct BadLine {
     line: usize,
     problem: String,
+    remedy: Option<Remedy>,
+}
+
+impl BadLine {
+    fn remedied_by(self, remedy: Remedy) -> BadLine {
+        BadLine { remedy: Some(remedy), ..self }
+    }
 }
 
 impl Record {
@@ -121,31 +145,30 @@ impl Record {
         }
     }
 
-    /// Reads a record in the format that its extension tells. An acceleration in g is multiplied by `g` (m/s²);
-    /// `csv_unit` is the unit of a CSV file, where an AT2 file states its own.
-    pub fn read(path: &Path, csv_unit: Unit, g: f64) -> Result<Record, RecordError> {
-        let format = Format::of(path)?;
-        let bytes = read_file(path)?;
-        let text = String::from_utf8_lossy(&bytes);
-        let parsed = match format {
-            Format::At2 => at2::parse(&text, g),
-            Format::Csv => csv::parse(&text, csv_unit, g),
-        };
-        let mut record =
-            parsed.map_err(|BadLine { line, problem }| RecordError::Malformed { path: path.into(), line, problem })?;
+    /// Reads the record in the file at `path` as `how` says, with accelerations in m/s²; `g` (m/s²) is what a record's g
+    /// stands for.
+    pub fn read(path: &Path, how: &Reading, g: f64) -> Result<(Record, Source), RecordError> {
+        let (record, source) = Record::read_raw(path, how)?;
+        Ok((record.scaled(1.0, source.unit.in_m_s2(g)), source))
+    }
+
+    /// The same with its accelerations as the file gives them; their unit is the source's.
+    pub fn read_raw(path: &Path, how: &Reading) -> Result<(Record, Source), RecordError> {
+        Record::from_bytes(path, &read_file(path)?, how)
+    }
+
+    /// The same of `bytes`, which are the content of the file at `path`.
+    pub fn from_bytes(path: &Path, bytes: &[u8], how: &Reading) -> Result<(Record, Source), RecordError> {
+        let malformed =
+            |BadLine { line, problem, remedy }| RecordError::Malformed { path: path.into(), line, problem, remedy };
+        let text = text::decode(bytes).map_err(malformed)?;
+        let format = format(path, &text).ok_or_else(|| RecordError::UnknownFormat { path: path.into() })?;
+        let (mut record, source) =
+            parse(&text, format, how).and_then(|parsed| parsed.record(how)).map_err(malformed)?;
         if record.title.is_empty() {
             record.title = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         }
-        Ok(record)
-    }
-
-    /// The same with its accelerations as the file gives them, and their unit.
-    pub fn read_raw(path: &Path, csv_unit: Unit) -> Result<(Record, Unit), RecordError> {
-        let unit = match Format::of(path)? {
-            Format::At2 => Unit::G,
-            Format::Csv => csv_unit,
-        };
-        Ok((Record::read(path, csv_unit, 1.0)?, unit))
+        Ok((record, source))
     }
 
     /// Ground at rest for `duration` (s), greater than 0: free vibration.
@@ -214,21 +237,30 @@ impl Segment {
     }
 }
 
-/// A format of files.
-enum Format {
-    At2,
-    Csv,
+/// The layout of `text`, the content of the file at `path`: what it shows itself, or what the extension tells.
+fn format(path: &Path, text: &str) -> Option<Format> {
+    if esm::is_its(text) {
+        return Some(Format::Esm);
+    }
+    if knet::is_its(text) {
+        return Some(Format::KNet);
+    }
+    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
+    cosmos::format(text).or(match extension.as_deref() {
+        Some("at2") => Some(Format::At2),
+        Some("csv" | "txt" | "dat" | "tsv" | "asc" | "acc") if at2::is_its(text) => Some(Format::At2),
+        Some("csv" | "txt" | "dat" | "tsv" | "asc" | "acc") => Some(Format::Table),
+        _ => None,
+    })
 }
 
-impl Format {
-    /// What the extension of `path` tells.
-    fn of(path: &Path) -> Result<Format, RecordError> {
-        let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-        match extension.as_deref() {
-            Some("at2") => Ok(Format::At2),
-            Some("csv" | "txt") => Ok(Format::Csv),
-            _ => Err(RecordError::UnknownFormat { path: path.into() }),
-        }
+fn parse(text: &str, format: Format, how: &Reading) -> Result<Parsed, BadLine> {
+    match format {
+        Format::At2 => at2::parse(text, how),
+        Format::Esm => esm::parse(text, how),
+        Format::KNet => knet::parse(text, how),
+        Format::Cosmos | Format::Csmip => cosmos::parse(text, format, how),
+        Format::Table => table::parse(text, how),
     }
 }
 
@@ -269,32 +301,7 @@ fn check_samples(times: &[f64], acceleration: &[f64]) -> Result<(), String> {
 }
 
 fn bad(line: usize, problem: impl Into<String>) -> BadLine {
-    BadLine { line, problem: problem.into() }
-}
-
-fn numbered(text: &str) -> impl Iterator<Item = (usize, &str)> {
-    (1..).zip(text.lines())
-}
-
-/// A finite number; the exponent may be Fortran's, `1.2D-03`.
-fn number(word: &str) -> Option<f64> {
-    word.replace(['d', 'D'], "E").parse().ok().filter(|number: &f64| number.is_finite())
-}
-
-/// The acceleration that `word` gives in a unit of `unit` m/s².
-fn in_m_s2(word: &str, unit: f64) -> Result<f64, String> {
-    let acceleration = number(word).map(|value| value * unit).filter(|acceleration| acceleration.is_finite());
-    acceleration.ok_or_else(|| format!("the acceleration {} is not a number", quote(word)))
-}
-
-/// What was found, short enough for a message, which shows a field of a file and no more of it.
-fn quote(found: &str) -> String {
-    const SHOWN: usize = 40;
-    let found = found.trim();
-    match found.char_indices().nth(SHOWN) {
-        Some((end, _)) => format!("{:?}...", &found[..end]),
-        None => format!("{found:?}"),
-    }
+    BadLine { line, problem: problem.into(), remedy: None }
 }
 
 #[cfg(test)]
@@ -310,21 +317,20 @@ mod tests {
             fs::write(&path, text).unwrap();
             path
         };
-        let read = |path: &Path| Record::read(path, Unit::G, 9.81);
+        let read = |path: &Path| Record::read(path, &Reading::default(), 9.81).map(|(record, _)| record);
 
         let latin =
             write("latin.At2", b"x\r\nN\xfa\xf1oz, 90\r\nacceleration in units of g\r\n2 .5 npts, dt\r\n1 2\r\n");
         let record = read(&latin).unwrap();
-        assert_eq!(record.title(), "N\u{fffd}\u{fffd}oz, 90");
+        assert_eq!(record.title(), "N\u{fa}\u{f1}oz, 90");
         assert_eq!((record.times(), record.acceleration()), (&[0.0, 0.5][..], &[9.81, 19.62][..]));
         assert_eq!(read(&write("pulse.TXT", b"0,1\n1,0\n")).unwrap().title(), "pulse");
 
         let broken = write("broken.csv", b"0,1\n1,?\n");
         let expected = format!("{}, line 2: the acceleration \"?\" is not a number", broken.display());
         assert_eq!(read(&broken).unwrap_err().to_string(), expected);
-        assert!(matches!(read(&folder.join("a.VT2")), Err(RecordError::UnknownFormat { .. })));
+        assert!(matches!(read(&write("a.VT2", b"0,1\n1,0\n")), Err(RecordError::UnknownFormat { .. })));
         assert!(matches!(read(&folder.join("absent.at2")), Err(RecordError::Unreadable { .. })));
-        assert_eq!(Record::read_raw(&latin, Unit::MetrePerSecondSquared).unwrap().1, Unit::G);
         fs::remove_dir_all(folder).unwrap();
     }
 
@@ -337,7 +343,7 @@ mod tests {
         let [zero, pipe, large] = ["zero.csv", "pipe.csv", "large.csv"].map(|name| folder.join(name));
         std::os::unix::fs::symlink("/dev/zero", &zero).unwrap();
         assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
-        let refusal = |path: &Path| Record::read(path, Unit::G, 9.81).unwrap_err().to_string();
+        let refusal = |path: &Path| Record::read(path, &Reading::default(), 9.81).unwrap_err().to_string();
         for path in [&folder.join("folder.csv"), &zero, &pipe] {
             assert_eq!(refusal(path), format!("{} is not a file", path.display()));
         }

@@ -3,6 +3,8 @@
 //! The engine goes from sample to sample, between which the ground acceleration is linear; whoever watches sees every
 //! piece and every transition of it. What is known of a run without a watcher is how it ended.
 
+pub mod curve;
+pub mod exceedances;
 mod history;
 pub mod levels;
 pub mod outcome;
@@ -83,16 +85,41 @@ pub enum RunError {
     #[error(transparent)]
     Initial(#[from] InitialStateError),
     /// The run ends before it starts, or never.
-    #[error("the run cannot end at {end} s: a finite time after the record's first sample, at {start} s, is needed")]
+    #[error(
+        "the run cannot end at {end:?} s: a finite time after the record's first sample, at {start:?} s, is needed"
+    )]
     End {
         /// The refused end, s.
         end: f64,
         /// First sample of the record, s.
         start: f64,
     },
+    /// It takes more steps than one stretch of it may.
+    #[error("the run needs too many steps: they ended at t = {time:?} s of {until:?} s; give it a shorter duration")]
+    TooLong {
+        /// Where the steps ended, s.
+        time: f64,
+        /// End of the stretch, s.
+        until: f64,
+    },
     /// The run cannot go on.
-    #[error(transparent)]
-    Advance(#[from] AdvanceError),
+    #[error("{cause}")]
+    Advance {
+        /// From here, s.
+        time: f64,
+        /// Why.
+        cause: AdvanceError,
+    },
+}
+
+impl RunError {
+    /// Where a run that had begun could not go on, s.
+    pub fn time(&self) -> Option<f64> {
+        match self {
+            RunError::Advance { time, .. } | RunError::TooLong { time, .. } => Some(*time),
+            RunError::Initial(_) | RunError::End { .. } => None,
+        }
+    }
 }
 
 impl<'a> Run<'a> {
@@ -117,6 +144,14 @@ impl<'a> Run<'a> {
         Ok(Finish { ending, motion: *engine.motion() })
     }
 
+    fn follow_ground<W: Watch>(&self, engine: &mut Engine, watch: &mut W) -> Result<Ending, RunError> {
+        let ending = self.advance(engine, watch);
+        ending.map_err(|cause| match cause {
+            AdvanceError::TooLong { time, until } => RunError::TooLong { time, until },
+            cause => RunError::Advance { time: cause.time().unwrap_or(engine.motion().time), cause },
+        })
+    }
+
     /// The structure at the first sample.
     fn start(&self) -> Result<Engine, RunError> {
         let start = self.ground.start();
@@ -126,7 +161,7 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn follow_ground<W: Watch>(&self, engine: &mut Engine, watch: &mut W) -> Result<Ending, AdvanceError> {
+    fn advance<W: Watch>(&self, engine: &mut Engine, watch: &mut W) -> Result<Ending, AdvanceError> {
         let end = match self.end {
             End::AtRest => self.ground.end(),
             End::At(end) => end,

@@ -103,15 +103,15 @@ pub enum InitialStateError {
     OutOfRange(#[from] OutOfRange),
     /// The base turns although both pivots are down.
     #[error(
-        "theta_dot_0 = {0} rad/s contradicts theta_0 = 0 (full contact, where theta and theta_dot are both 0): \
+        "theta_dot_0 = {0:?} rad/s contradicts theta_0 = 0 (full contact, where theta and theta_dot are both 0): \
          set theta_dot_0 to 0, or theta_0 to an angle with the sign of the pivot that the structure rocks about"
     )]
     TurningInFullContact(f64),
     /// The base is turned although it is fixed.
-    #[error("theta_0 = {0} rad contradicts detail = fixed_base, where the base cannot turn: set theta_0 to 0")]
+    #[error("theta_0 = {0:?} rad contradicts detail = fixed_base, where the base cannot turn: set theta_0 to 0")]
     TurnedFixedBase(f64),
     /// The structure is deformed although it is rigid.
-    #[error("u_0 = {u} m, u_dot_0 = {u_dot} m/s contradict detail = rigid, where u is always 0: set both to 0")]
+    #[error("u_0 = {u:?} m, u_dot_0 = {u_dot:?} m/s contradict detail = rigid, where u is always 0: set both to 0")]
     DeformedRigid {
         /// u_0, m.
         u: f64,

@@ -65,7 +65,7 @@ macro_rules! derived {
 }
 
 /// The derived quantities that people ask for, in the order in which the paper defines them.
-pub const DERIVED: [Derived; 13] = [
+pub const DERIVED: [Derived; 16] = [
     derived!("gamma" ["1"] "mass ratio (m + m0)/m", "before Eq 1", |s| s.gamma),
     derived!("omega_fc" ["rad/s"] "circular frequency in full contact", "Eq 1", |s| s.omega_fc),
     derived!("k" ["N/m"] "stiffness of the strut", "Eq 1", |s| s.k),
@@ -78,7 +78,10 @@ pub const DERIVED: [Derived; 13] = [
     derived!("chi" ["1"] "modal participation of rocking", "after Eq 13", |s| s.chi),
     derived!("f_u" ["Hz"] "frequency of the vibration mode while rocking", "before Eq 18", |s| s.omega_u / TAU),
     derived!("zeta_u" ["1"] "damping ratio of the vibration mode while rocking", "before Eq 18", |s| s.zeta_u),
-    derived!("period_fc" ["s"] "natural period in full contact", "before Eq 4", |s| TAU / s.omega_fc),
+    derived!("period_fc" ["s"] "natural period in full contact", "before Eq 4", |s| s.parameters.f_fc.recip()),
+    derived!("weight" ["kN"] "weight of the top mass, m g", "Eq 5", |s| 1e-3 * s.parameters.m * s.parameters.g),
+    derived!("weight0" ["kN"] "weight of the foundation, m0 g", "Eq 6", |s| 1e-3 * s.parameters.m0 * s.parameters.g),
+    derived!("width" ["m"] "width of the base, 2 B", "Eq 25", |s| 2.0 * s.parameters.B),
 ];
 
 impl Structure {

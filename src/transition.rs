@@ -35,6 +35,22 @@ pub enum TransitionKind {
     Overturning(Side),
 }
 
+impl TransitionKind {
+    /// What it is called.
+    pub const fn name(self) -> &'static str {
+        match self {
+            TransitionKind::Uplift(Side::Left) => "uplift left",
+            TransitionKind::Uplift(Side::Right) => "uplift right",
+            TransitionKind::Impact(Side::Left) => "impact left",
+            TransitionKind::Impact(Side::Right) => "impact right",
+            TransitionKind::Landing => "landing",
+            TransitionKind::Settling => "settling",
+            TransitionKind::Overturning(Side::Left) => "overturning left",
+            TransitionKind::Overturning(Side::Right) => "overturning right",
+        }
+    }
+}
+
 /// One transition, as it is reported.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Transition {

@@ -267,7 +267,7 @@ fn initial_states_that_a_level_cannot_have_are_refused() {
     let turned = State { theta: 0.1, ..State::default() };
     assert!(refused(Detail::FixedBase, turned).starts_with("theta_0 = 0.1 rad contradicts detail = fixed_base"));
     let deformed = State { u: 0.01, ..State::default() };
-    assert!(refused(Detail::Rigid, deformed).starts_with("u_0 = 0.01 m, u_dot_0 = 0 m/s contradict detail = rigid"));
+    assert!(refused(Detail::Rigid, deformed).starts_with("u_0 = 0.01 m, u_dot_0 = 0.0 m/s contradict detail = rigid"));
 }
 
 /// Stepping allocates nothing, at any level, through any transition.

@@ -30,7 +30,7 @@ def instants(step: float) -> np.ndarray:
 def engine(exporter, preset: str, record) -> np.ndarray:
     """OUTPUTS at the shortest of STEPS from the command line, at a tolerance of 1e-12."""
     command = [exporter, "simulate", "--preset", preset, "--record", record, "--tolerance", "1e-12",
-               "--dt", str(min(STEPS)), "--duration", str(END), "-o", "-"]
+               "--interval", str(min(STEPS)), "--duration", str(END), "-o", "-"]
     printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
     table = np.genfromtxt(printed.splitlines(), delimiter=",", names=True)
     return np.column_stack([table[name] for name in ("thetarad", "um", "a_tms2")])

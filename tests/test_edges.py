@@ -188,7 +188,7 @@ def test_a_record_that_ends_within_a_step(evison, exporter, tmp_path):
 
     record, response = tmp_path / "record.csv", tmp_path / "response.csv"
     write_record(record, time, a_g)
-    subprocess.run([exporter, "simulate", "--preset", "evison", "--record", record, "--unit", "m/s2", "--dt", "0.01",
+    subprocess.run([exporter, "simulate", "--preset", "evison", "--record", record, "--unit", "m/s2", "--interval", "0.01",
                     "--tolerance", "1e-11", "--duration", "0.6", "-o", response], check=True)
     rows = np.genfromtxt(response, delimiter=",", names=True)
     exact = reference.integrate(EVISON, np.append(time, [time[-1] + 1e-12, 0.6]), np.append(a_g, [0.0, 0.0]))

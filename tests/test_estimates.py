@@ -33,7 +33,7 @@ def values(lines) -> dict[str, float]:
 
 @pytest.fixture(scope="module")
 def estimate(rocking_fmu, pacoima_record):
-    return values(rocking_fmu("estimate", "--record", pacoima_record, "--csv"))
+    return values(rocking_fmu("estimate", "--record", pacoima_record, "--format", "csv"))
 
 
 def test_spectral_acceleration_is_that_of_the_fmu_on_a_fixed_base(estimate, shaken):
@@ -61,20 +61,20 @@ def test_demand_is_the_sum_of_its_terms(estimate):
 
 def test_effective_frequency_is_equation_14(rocking_fmu):
     amplitudes = [0.01, 0.3, 0.95]
-    lines = values(rocking_fmu("estimate", "--preset", "evison", "--amplitudes", "0.01,0.3,0.95", "--csv"))
+    lines = values(rocking_fmu("estimate", "--preset", "evison", "--amplitudes", "0.01,0.3,0.95", "--format", "csv"))
     expected = [EVISON.p_l / (4 * np.arccosh(1 / (1 - amplitude))) for amplitude in amplitudes]
     assert [lines[f"f_r({amplitude})"] for amplitude in amplitudes] == pytest.approx(expected, rel=1e-12)
 
 
 def test_without_a_record_the_ground_is_at_rest(rocking_fmu):
-    lines = values(rocking_fmu("estimate", "--preset", "evison", "--amplification", "1.4", "--csv"))
+    lines = values(rocking_fmu("estimate", "--preset", "evison", "--amplification", "1.4", "--format", "csv"))
     assert lines["a_t"] == pytest.approx(2.4 * EVISON.chi * G * EVISON.tan_alpha_cg, rel=1e-12)
     assert "PGA" not in lines
 
 
 def test_refusals_name_the_value_and_the_limit(exporter):
     message = refusal(exporter, "estimate", "--amplification", 2.5)
-    assert "C = 2.5 1 is out of range: it must lie between 0 and 2" in message
+    assert "C = 2.5 is out of range: it must lie between 0 and 2" in message
     assert "between 0 and 1" in refusal(exporter, "estimate", "--amplitudes", "0.5,1.5")
     assert "--record" in refusal(exporter, "estimate", "--scale", 2)
 

@@ -31,7 +31,7 @@ def test_peaks_are_the_same_whatever_the_interval_of_the_output(exporter, tmp_pa
     expected = peaks(run(exporter, tmp_path, *scene))
     assert len(expected) == 8
     for dt in ("0.001", "0.05", "0.0137"):
-        assert peaks(run(exporter, tmp_path, *scene, "--dt", dt)) == expected
+        assert peaks(run(exporter, tmp_path, *scene, "--interval", dt)) == expected
 
 
 def test_simulate_advise_and_sweep_have_the_same_peaks(exporter, tmp_path):

@@ -16,3 +16,15 @@ def test_first_script(mcmanus, tmp_path):
     assert len([line for line in script.splitlines() if line]) <= 5
     done = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, check=True, capture_output=True, text=True)
     assert done.stdout.endswith(" 6.82 mm\n"), done.stdout
+
+
+def test_commands_run_as_they_are_printed(exporter, tmp_path):
+    """Where `make demo` leaves the records."""
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / RECORD.name).symlink_to(RECORD)
+    (tmp_path / "target").mkdir()
+    (tmp_path / "target" / "release").symlink_to(exporter.parent)
+    commands = re.findall(r"^\$? ?(target/release/rocking-fmu .*)$", (ROOT / "README.md").read_text(), re.MULTILINE)
+    assert len(commands) >= 2
+    for command in commands:
+        subprocess.run(command, shell=True, cwd=tmp_path, check=True, capture_output=True)

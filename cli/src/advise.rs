@@ -1,8 +1,14 @@
 //! `advise`: every level of detail on the user's own scene, its errors and its cost, and the cheapest that will do.
 
+mod picture;
+
 use crate::{
+    output_files::OutputFiles,
+    picture::PictureFile,
+    results::{Format, FormatArgs, print, print_rows},
     scene_args::{GroundArgs, InitialArgs},
     structure_args::StructureArgs,
+    talk::say,
 };
 use anyhow::Context;
 use clap::{ValueEnum, builder::PossibleValue};
@@ -19,8 +25,9 @@ use rocking::{
         levels::{self, Comparison, Criterion, REFERENCE_TOLERANCE, Verdict},
     },
 };
+use serde::Serialize;
 use std::f64::consts::TAU;
-use std::io::{self, Write, stdout};
+use std::fmt::{self, Write};
 
 /// What to compare, and what is allowed.
 #[derive(clap::Args)]
@@ -33,6 +40,11 @@ pub struct AdviseArgs {
     initial: InitialArgs,
     #[command(flatten)]
     allowed: AllowedArgs,
+    #[command(flatten)]
+    results: FormatArgs,
+    /// Draw the errors of every level
+    #[arg(long, value_name = "FILE.svg|png", help_heading = "Results")]
+    picture: Option<PictureFile>,
 }
 
 #[derive(clap::Args)]
@@ -42,7 +54,7 @@ struct AllowedArgs {
     #[arg(long, value_name = "ERROR", default_value = "5%", value_parser = relative_error)]
     within: f64,
     /// What must stay within it; overturning must always be predicted right
-    #[arg(long, value_name = "LIST", value_enum, value_delimiter = ',', default_values_t = Measure::value_variants().to_vec())]
+    #[arg(long, value_name = "LIST", value_enum, num_args = 1.., value_delimiter = ',', default_values_t = Measure::value_variants().to_vec())]
     of: Vec<Measure>,
 }
 
@@ -87,25 +99,50 @@ fn relative_error(text: &str) -> Result<f64, String> {
 pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let ground = args.ground.load(structure.parameters().g)?;
+    let inputs = args.structure.input().into_iter().chain(args.ground.record.record.as_deref());
+    let mut files = OutputFiles::of_inputs(inputs);
+    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let (initial, end) = (args.initial.state(), args.ground.end(&ground));
     let run = Run { initial, end, ..Run::new(structure, &ground) };
     let comparison = levels::compare(&run).context("detail = nonlinear")?;
 
-    let mut out = stdout().lock();
-    writeln!(out, "Ground motion: {}, {} samples", ground.title(), ground.times().len())?;
-    print_reference(&mut out, &structure, &comparison)?;
+    if comparison.reference.peaks.theta().magnitude == 0.0 && comparison.reference.peaks.a_t().magnitude == 0.0 {
+        say!("nothing moves: the ground is at rest and the structure stands; see --record, --theta-0");
+    }
     let criteria: Vec<_> = args.allowed.of.iter().map(Measure::criterion).collect();
     let advised = comparison.recommended(args.allowed.within, &criteria);
-    print_levels(&mut out, &comparison, advised)?;
-    print_estimate(&mut out, &structure, &ground, &comparison)?;
+    if args.results.format == Format::Text {
+        print(&text(args, &structure, &ground, &comparison, advised)?)?;
+    } else {
+        print_rows(args.results.format, &rows(&comparison, advised))?;
+    }
+    match picture {
+        Some(picture) => picture::draw(picture, &comparison, (args.allowed.within, &criteria), advised, ground.title()),
+        None => Ok(()),
+    }
+}
+
+/// The table and the advice, for people.
+fn text(
+    args: &AdviseArgs,
+    structure: &Structure,
+    ground: &Record,
+    comparison: &Comparison,
+    advised: Option<&Verdict>,
+) -> anyhow::Result<String> {
+    let mut out = String::new();
+    writeln!(out, "Ground motion: {}", args.ground.title(ground))?;
+    print_reference(&mut out, structure, comparison)?;
+    print_levels(&mut out, comparison, advised)?;
+    print_estimate(&mut out, structure, ground, comparison)?;
     for (detail, error) in &comparison.refused {
         writeln!(out, "  {:<10} not possible here: {error:#}", detail.name())?;
     }
-    print_advice(&mut out, &comparison, advised, &args.allowed)?;
-    Ok(())
+    print_advice(&mut out, comparison, advised, &args.allowed)?;
+    Ok(out)
 }
 
-fn print_reference(out: &mut impl Write, structure: &Structure, comparison: &Comparison) -> io::Result<()> {
+fn print_reference(out: &mut impl Write, structure: &Structure, comparison: &Comparison) -> fmt::Result {
     let reference = &comparison.reference;
     let (peaks, g) = (&reference.peaks, structure.parameters().g);
     let theta = peaks.theta().magnitude;
@@ -131,7 +168,7 @@ fn print_reference(out: &mut impl Write, structure: &Structure, comparison: &Com
     writeln!(out, "  effective frequency of rocking at that theta: {f_r} Hz (Eq 14)\n")
 }
 
-fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&Verdict>) -> io::Result<()> {
+fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&Verdict>) -> fmt::Result {
     let row = |out: &mut dyn Write, mark: char, cells: [&str; 11]| {
         let [level, theta, u, a_t, theta_history, u_history, a_t_history, overturns, steps, evaluations, ratio] = cells;
         writeln!(
@@ -146,7 +183,7 @@ fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&
         ' ',
         ["level", "theta", "u", "a_t, V_t, M_t", "theta", "u", "a_t", "overturns", "steps", "evaluations", "of auto"],
     )?;
-    let auto = cost_of_auto(comparison);
+    let auto = comparison.cost_of_auto();
     for verdict in &comparison.verdicts {
         let response = &verdict.response;
         let mark = if advised.is_some_and(|advised| advised.response.detail == response.detail) { '>' } else { ' ' };
@@ -176,6 +213,49 @@ fn cost_of_auto(comparison: &Comparison) -> Option<f64> {
     auto.map(|auto| auto.response.cost() as f64)
 }
 
+/// A level, for programs: errors are ratios.
+#[derive(Serialize)]
+struct Row {
+    level: &'static str,
+    error_theta: f64,
+    error_u: f64,
+    error_a_t: f64,
+    error_theta_history: f64,
+    error_u_history: f64,
+    error_a_t_history: f64,
+    /// None if it still rocks.
+    overturned: Option<bool>,
+    is_right_about_overturning: bool,
+    steps: u64,
+    evaluations: u64,
+    cost_of_auto: Option<f64>,
+    advised: bool,
+}
+
+fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Row> {
+    let auto = cost_of_auto(comparison);
+    let row = |verdict: &Verdict| {
+        let response = &verdict.response;
+        let [error_theta, error_u, error_a_t, error_theta_history, error_u_history, error_a_t_history] = verdict.errors;
+        Row {
+            level: response.detail.name(),
+            error_theta,
+            error_u,
+            error_a_t,
+            error_theta_history,
+            error_u_history,
+            error_a_t_history,
+            overturned: response.overturns(),
+            is_right_about_overturning: verdict.is_right_about_overturning,
+            steps: response.work.steps,
+            evaluations: response.work.evaluations,
+            cost_of_auto: auto.map(|auto| response.cost() as f64 / auto),
+            advised: advised.is_some_and(|advised| advised.response.detail == response.detail),
+        }
+    };
+    comparison.verdicts.iter().map(row).collect()
+}
+
 /// The demand of the whole record without a time history (Eqs 21 to 24) as one more row.
 fn print_estimate(
     out: &mut impl Write,
@@ -196,7 +276,7 @@ fn print_advice(
     comparison: &Comparison,
     advised: Option<&Verdict>,
     allowed: &AllowedArgs,
-) -> io::Result<()> {
+) -> fmt::Result {
     let named: Vec<_> = allowed.of.iter().filter_map(ValueEnum::to_possible_value).collect();
     let names: Vec<_> = named.iter().map(PossibleValue::get_name).collect();
     let limit = format!("within {} % in {}", shortest_percent(allowed.within), names.join(", "));
@@ -207,7 +287,7 @@ fn print_advice(
         );
     };
     write!(out, "\nuse detail = {}: of the cheapest levels {limit} the simplest", response.detail.name())?;
-    match cost_of_auto(comparison) {
+    match comparison.cost_of_auto() {
         Some(auto) if response.detail != Detail::Auto => {
             writeln!(out, ", at {:.2} times the cost of auto", response.cost() as f64 / auto)
         }

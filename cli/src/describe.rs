@@ -1,36 +1,65 @@
 //! `describe`: a structure's parameters and what follows from them.
+
+mod picture;
+mod template;
+
 use crate::{
-    quantities::{Line, print_csv},
+    output_files::OutputFiles,
+    picture::PictureFile,
+    quantities::Line,
+    results::{Format, FormatArgs, print, print_rows},
     significant::significant,
     structure_args::StructureArgs,
 };
 use rocking::{
+    Structure,
     parameters::PARAMETERS,
     quantity::Quantity,
     structure::{DERIVED, Derived},
 };
-use std::io::{Write, stdout};
+use std::fmt::{self, Write};
 
 /// What to describe.
 #[derive(clap::Args)]
 pub struct DescribeArgs {
     #[command(flatten)]
     structure: StructureArgs,
-    /// Print the derived quantities as CSV
-    #[arg(long)]
-    csv: bool,
+    #[command(flatten)]
+    results: FormatArgs,
+    /// Print a commented file for --parameters instead: every parameter of this structure, with unit and range
+    #[arg(long, conflicts_with = "format")]
+    template: bool,
+    /// Draw the structure to scale
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
 }
 
 /// Prints the parameters as they were given and the derived quantities with the equations that define them.
 pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
-    if args.csv {
-        return print_csv(DERIVED.iter().map(|derived| {
-            let Derived { name, unit, description, equation, value } = derived;
-            Line::new(name, value(&structure), unit, equation, description)
-        }));
+    if let Some(file) = &args.picture {
+        picture::draw(file.create(&mut OutputFiles::of_inputs(args.structure.input()))?, &structure)?;
     }
-    let mut out = stdout().lock();
+    if args.template {
+        let mut out = String::new();
+        template::write(&mut out, &structure)?;
+        return print(&out);
+    }
+    if args.results.format == Format::Text {
+        return print(&text(&structure)?);
+    }
+    let given = PARAMETERS.iter().map(|Quantity { name, unit, description, get, .. }| {
+        Line::new(name, get(structure.parameters()), unit, "", description)
+    });
+    let derived = DERIVED.iter().map(|Derived { name, unit, description, equation, value }| {
+        Line::new(name, value(&structure), unit, equation, description)
+    });
+    let lines: Vec<_> = given.chain(derived).collect();
+    print_rows(args.results.format, &lines)
+}
+
+fn text(structure: &Structure) -> Result<String, fmt::Error> {
+    let mut out = String::new();
     let unit = |unit| if unit == "1" { "-" } else { unit };
     writeln!(out, "Parameters")?;
     for Quantity { name, unit: of, description, get, .. } in &PARAMETERS {
@@ -39,8 +68,8 @@ pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
     }
     writeln!(out, "\nDerived quantities")?;
     for Derived { name, unit: of, description, equation, value } in &DERIVED {
-        let value = significant(value(&structure));
+        let value = significant(value(structure));
         writeln!(out, "  {name:<10} {value:>12} {:<6} {equation:<13} {description}", unit(of))?;
     }
-    Ok(())
+    Ok(out)
 }

@@ -1,7 +1,12 @@
 //! `estimate`: demands without a time history (Eqs 21–24) and the effective frequency of rocking (Eq 14).
+mod picture;
+
 use crate::{
-    quantities::{Line, print_columns, print_csv},
+    output_files::OutputFiles,
+    picture::PictureFile,
+    quantities::{Line, write_columns},
     record_args::RecordArgs,
+    results::{Format, FormatArgs, print, print_rows},
     significant::significant,
     structure_args::StructureArgs,
 };
@@ -12,8 +17,8 @@ use rocking::{
     record::Record,
     response_spectrum::spectral_acceleration,
 };
-use std::f64::consts::TAU;
-use std::io::{Write, stdout};
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::fmt::{self, Write};
 
 /// What to estimate.
 #[derive(clap::Args)]
@@ -29,18 +34,22 @@ pub struct EstimateArgs {
     #[arg(
         long,
         value_name = "LIST",
+        num_args = 1..,
         value_delimiter = ',',
+        allow_negative_numbers = true,
         default_values_t = [0.1, 0.25, 0.5, 0.75, 0.9],
         value_parser = amplitude
     )]
     amplitudes: Vec<f64>,
-    /// Print the values as CSV
-    #[arg(long)]
-    csv: bool,
+    #[command(flatten)]
+    results: FormatArgs,
+    /// Draw the record's response spectra, the demand and the effective frequency
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
 }
 
 fn amplitude(text: &str) -> Result<f64, String> {
-    match text.parse() {
+    match text.trim().parse() {
         Ok(part) if part > 0.0 && part < 1.0 => Ok(part),
         _ => Err("a number between 0 and 1 is needed: beyond, the structure does not come down".into()),
     }
@@ -49,38 +58,66 @@ fn amplitude(text: &str) -> Result<f64, String> {
 /// Prints the demands, term by term, and the effective frequencies.
 pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
-    let g = structure.parameters().g;
-    let record = args.ground.load(g)?;
+    let record = args.ground.load(structure.parameters().g)?;
+    let inputs = args.structure.input().into_iter().chain(args.ground.record.as_deref());
+    let mut files = OutputFiles::of_inputs(inputs);
+    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let fixed_base = record.as_ref().map_or(Vec::new(), |record| on_fixed_base(&structure, record));
-    let rocking = while_rocking(&structure, record.as_ref(), args.amplification)?;
-    if args.csv {
-        let frequencies = args.amplitudes.iter().map(|part| Line {
+    let S_a =
+        record.as_ref().map_or(0.0, |record| spectral_acceleration(record, TAU / structure.omega_u, structure.zeta_u));
+    let demand = Demand::new(&structure, S_a, args.amplification)?;
+    let rocking = while_rocking(&structure, S_a, args.amplification, &demand);
+    if let Some(picture) = picture {
+        picture::draw(picture, &structure, record.as_ref(), &demand, &args.amplitudes)?;
+    }
+    if args.results.format == Format::Text {
+        return print(&text(args, &structure, record.as_ref(), &fixed_base, &rocking)?);
+    }
+    let frequencies = args.amplitudes.iter().filter_map(|&part| {
+        let theta = part * structure.tan_alpha_cg;
+        (theta < FRAC_PI_2).then(|| Line {
             name: format!("f_r({part})"),
-            value: effective_frequency(&structure, part * structure.tan_alpha_cg),
+            value: effective_frequency(&structure, theta),
             unit: "Hz",
             equation: "Eq 14",
             description: format!("effective frequency of rocking at theta = {part} tan(alpha_cg)"),
-        });
-        return print_csv(fixed_base.into_iter().chain(rocking).chain(frequencies));
-    }
-    let mut out = stdout().lock();
-    if let Some(record) = &record {
+        })
+    });
+    let lines: Vec<_> = fixed_base.into_iter().chain(rocking).chain(frequencies).collect();
+    print_rows(args.results.format, &lines)
+}
+
+/// The values in columns for people.
+fn text(
+    args: &EstimateArgs,
+    structure: &Structure,
+    record: Option<&Record>,
+    fixed_base: &[Line],
+    rocking: &[Line],
+) -> Result<String, fmt::Error> {
+    let mut out = String::new();
+    let g = structure.parameters().g;
+    if let Some(record) = record {
         writeln!(out, "Ground motion: {}", record.title())?;
-        print_columns(&mut out, &fixed_base, g)?;
+        write_columns(&mut out, fixed_base, g)?;
         writeln!(out, "\nDemand while rocking")?;
     } else {
         writeln!(out, "Demand while rocking, the ground at rest")?;
     }
-    print_columns(&mut out, &rocking, g)?;
+    write_columns(&mut out, rocking, g)?;
     writeln!(out, "\nEffective frequency of rocking, Eq 14")?;
     writeln!(out, "  {:>19} {:>12} {:>12} {:>12}", "theta/tan(alpha_cg)", "theta (rad)", "f_r (Hz)", "1/f_r (s)")?;
     for part in &args.amplitudes {
         let theta = part * structure.tan_alpha_cg;
-        let f_r = effective_frequency(&structure, theta);
+        if theta >= FRAC_PI_2 {
+            writeln!(out, "  {part:>19} {:>12} beyond pi/2: overturned", significant(theta))?;
+            continue;
+        }
+        let f_r = effective_frequency(structure, theta);
         let [theta, frequency, period] = [theta, f_r, 1.0 / f_r].map(significant);
         writeln!(out, "  {part:>19} {theta:>12} {frequency:>12} {period:>12}")?;
     }
-    Ok(())
+    Ok(out)
 }
 
 /// The ground motion, and what it asks of the structure on a fixed base.
@@ -93,13 +130,11 @@ fn on_fixed_base(structure: &Structure, record: &Record) -> Vec<Line> {
     ]
 }
 
-/// The demand while rocking, term by term; without a record the ground is at rest.
-fn while_rocking(structure: &Structure, record: Option<&Record>, C: f64) -> anyhow::Result<Vec<Line>> {
-    let T_u = TAU / structure.omega_u;
-    let S_a = record.map_or(0.0, |record| spectral_acceleration(record, T_u, structure.zeta_u));
-    let Demand { u_ddot_gr, ground, rocking, impact, a_t, V_t, M_t } = Demand::new(structure, S_a, C)?;
-    Ok(vec![
-        Line::new("T_u", T_u, "s", "before Eq 18", "period of the vibration mode while rocking"),
+/// The demand while rocking, term by term, and what it comes from.
+fn while_rocking(structure: &Structure, S_a: f64, C: f64, demand: &Demand) -> Vec<Line> {
+    let &Demand { u_ddot_gr, ground, rocking, impact, a_t, V_t, M_t } = demand;
+    vec![
+        Line::new("T_u", TAU / structure.omega_u, "s", "before Eq 18", "period of the vibration mode while rocking"),
         Line::new("zeta_u", structure.zeta_u, "1", "before Eq 18", "its damping ratio"),
         Line::new("S_a(T_u, zeta_u)", S_a, "m/s2", "after Eq 20", "its absolute spectral acceleration"),
         Line::new("C", C, "1", "Eq 21", "dynamic amplification at a transition between rocking phases"),
@@ -110,5 +145,5 @@ fn while_rocking(structure: &Structure, record: Option<&Record>, C: f64) -> anyh
         Line::new("a_t", a_t, "m/s2", "Eq 22", "lateral acceleration, the sum of these three"),
         Line::new("V_t", V_t, "N", "Eq 23", "base shear m a_t"),
         Line::new("M_t", M_t, "N.m", "Eq 24", "overturning moment m H a_t"),
-    ])
+    ]
 }

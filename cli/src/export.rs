@@ -1,16 +1,16 @@
 //! `export`: packs the shared libraries, with all that describes them, into an FMU.
 
 use crate::output_files::{OutputFile, OutputFiles};
-use crate::structure_args::StructureArgs;
+use crate::record_args::described;
+use crate::structure_args::{StructureArgs, in_one_line};
 use crate::talk::say;
 use FlexibleRocking::guid;
 use anyhow::{Context, bail};
 use fmu_export::{Library, LibraryError, ModelName, Platform};
-use rocking::Structure;
-use rocking::parameters::PARAMETERS;
+use rocking::record::{Reading, Record};
 use std::env;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
-use std::io::{Write, stdout};
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Where the folder `share` of an installation has the archive with the libraries for every platform.
@@ -21,14 +21,15 @@ const INSTALLED: &str = "flexible-rocking/FlexibleRocking.fmu";
 pub struct ExportArgs {
     #[command(flatten)]
     structure: StructureArgs,
-    /// Ground motion records to pack: PEER .AT2, or .csv/.txt with lines of time (s) and acceleration (m/s2); the FMU
-    /// follows the first, and the others by their names
+    /// Ground motion records to pack: PEER .AT2, ESM, K-NET, COSMOS or CSMIP as published, or .csv, .txt, .dat with lines
+    /// of time (s) and acceleration (m/s2 unless a heading states the unit); the FMU follows the first, and the others by
+    /// their names
     #[arg(long, value_name = "FILE", num_args = 1..)]
     record: Vec<PathBuf>,
     /// Name of the model and of its libraries' files, for hosts that hold several exports
     #[arg(long, value_name = "NAME", default_value = "FlexibleRocking")]
     name: ModelName,
-    /// Archive to write; one that is there is replaced [default: NAME.fmu]
+    /// Archive to write, `-` for standard output; one that is there is replaced [default: NAME.fmu]
     #[arg(short, long, value_name = "FILE.fmu")]
     output: Option<PathBuf>,
     /// Shared libraries to pack, or an FMU of this build to take them from [default: those that were built with this program]
@@ -36,7 +37,7 @@ pub struct ExportArgs {
     library: Vec<PathBuf>,
 }
 
-/// Writes the FMU and prints what was written.
+/// Writes the FMU and says what was written.
 pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let libraries = if args.library.is_empty() {
@@ -53,18 +54,25 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     let output = args.output.clone().unwrap_or_else(|| format!("{}.fmu", args.name.as_str()).into());
     let inputs =
         args.structure.input().into_iter().chain(args.record.iter().chain(&args.library).map(PathBuf::as_path));
+    if output.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("fmu")) && output != Path::new("-") {
+        say!("{}: hosts know an FMU by the ending .fmu", output.display());
+    }
+    let g = structure.parameters().g;
+    for path in &args.record {
+        let (record, source) = Record::read(path, &Reading::default(), g)?;
+        say!("{}", described(path, &record, &source, g));
+    }
     let mut file = OutputFiles::of_inputs(inputs).create(&output)?;
     let (contents, archive) = fmu_export::export(&args.name, &structure, &args.record, &libraries)?;
     OutputFile::named(&output, file.write_all(&archive))?;
     file.finish()?;
-    let mut out = stdout().lock();
-    writeln!(out, "{}: {} kB", output.display(), archive.len().div_ceil(1000))?;
-    writeln!(out, "  GUID       {}", guid(&contents))?;
-    writeln!(out, "  structure  {}", start_values(&structure))?;
+    say!("{}: {} kB", output.display(), archive.len().div_ceil(1000));
+    say!("  GUID       {}", guid(&contents));
+    say!("  structure  {}", in_one_line(&structure));
     let platforms: Vec<_> = libraries.iter().map(|library| library.platform.folder()).collect();
-    writeln!(out, "  platforms  {}", platforms.join(", "))?;
+    say!("  platforms  {}", platforms.join(", "));
     for packed in &contents.records {
-        writeln!(out, "  record     {}", packed.file)?;
+        say!("  record     {}", packed.file);
     }
     Ok(())
 }
@@ -109,17 +117,4 @@ fn libraries_of(executable: &Path) -> anyhow::Result<Vec<Library>> {
     }
     libraries.sort_by_key(|library| library.platform);
     Ok(libraries)
-}
-
-/// The structure's parameters in one line.
-fn start_values(structure: &Structure) -> String {
-    let values = PARAMETERS.iter().map(|parameter| {
-        let value = (parameter.get)(structure.parameters());
-        if parameter.unit == "1" {
-            format!("{} = {value}", parameter.name)
-        } else {
-            format!("{} = {value} {}", parameter.name, parameter.unit)
-        }
-    });
-    values.collect::<Vec<_>>().join(", ")
 }

@@ -7,16 +7,20 @@ mod estimate;
 mod export;
 mod modes;
 mod output_files;
+mod picture;
 mod pushover;
 mod quantities;
 mod record_args;
+mod results;
 mod scene_args;
+mod shell;
 mod simulate;
 mod structure_args;
 mod summary;
 mod sweep;
 mod tables;
 mod talk;
+mod view;
 
 use clap::{Parser, Subcommand};
 use fmu_export::{Platform, significant};
@@ -25,8 +29,11 @@ use std::{io, process::ExitCode};
 
 /// A flexible structure that rocks on its foundation: FMU exporter and simulator.
 ///
-/// A command works on the McManus specimen of the paper unless --preset or --parameters says otherwise. SI units
-/// throughout, angles in rad.
+/// A command works on the McManus specimen of the paper unless --preset or --parameters says otherwise; single numbers
+/// such as --f-fc 8 take the place of theirs. SI units throughout, angles in rad.
+///
+/// Results go to standard output, all else that is said to standard error. Exit codes: 0 the command did what was asked,
+/// or whoever reads its output has seen enough; 1 it failed, for the reason on standard error; 2 it was called wrongly.
 #[derive(Parser)]
 #[command(name = "rocking-fmu", version, long_version = long_version())]
 struct CommandLine {
@@ -52,10 +59,20 @@ enum Command {
     /// structure starts at rest unless initial values are given. Overturning ends the run.
     #[command(after_help = "Examples:
   rocking-fmu simulate --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45
-  rocking-fmu simulate --parameters pier.toml --record table.csv --unit g --dt 0.001 -o pier.csv
-  rocking-fmu simulate --preset evison --free 2 --theta-0 0.04 --events impacts.csv
+  rocking-fmu simulate --parameters pier.toml --record table.csv --unit g --interval 0.001 -o pier.csv
+  rocking-fmu simulate --record column.txt --dt 0.005 --unit gal --format json
+  rocking-fmu simulate --record array.csv --column E-W
+  rocking-fmu simulate --preset evison --free 2 --theta-0 0.04 --events impacts.csv --picture wall.svg
   rocking-fmu simulate --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45 --detail modal")]
     Simulate(simulate::SimulateArgs),
+    /// Write a page that shows the structure in motion, with its histories below
+    ///
+    /// One HTML file for any browser, which needs no network. Lengths are true to scale; how far the motion is
+    /// exaggerated is chosen on the page, and stated.
+    #[command(after_help = "Examples:
+  rocking-fmu view --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45
+  rocking-fmu view --preset evison --free 2 --theta-0 0.04 -o wall.html")]
+    View(view::ViewArgs),
     /// Compare the levels of detail on a ground motion record, or free vibration, and recommend one
     ///
     /// Runs every level and shows its error against `nonlinear` at the tolerance 1e-12, its cost, and which level is
@@ -69,7 +86,10 @@ enum Command {
     /// Show the parameters and all that follows from them
     #[command(after_help = "Examples:
   rocking-fmu describe
-  rocking-fmu describe --preset evison
+  rocking-fmu describe --preset evison --f-fc 8 --r 0.9
+  rocking-fmu describe --weight 500 --weight0 0 --width 3 --alpha-cg 0.25 --J0 0
+  rocking-fmu describe --template > pier.toml
+  rocking-fmu describe --preset evison --picture wall.svg
   rocking-fmu describe --parameters pier.toml")]
     Describe(describe::DescribeArgs),
     /// Estimate demands and frequency without a time history (Eqs 14, 21 to 24)
@@ -78,7 +98,7 @@ enum Command {
     #[command(after_help = "Examples:
   rocking-fmu estimate --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45
   rocking-fmu estimate --preset evison --amplification 1.4 --amplitudes 0.1,0.2,0.3
-  rocking-fmu estimate --parameters pier.toml --record table.csv --unit g --csv")]
+  rocking-fmu estimate --parameters pier.toml --record table.csv --unit g --format csv")]
     Estimate(estimate::EstimateArgs),
     /// Push the structure over slowly: force and moment against displacement, to overturning
     #[command(after_help = "Examples:
@@ -98,6 +118,16 @@ enum Command {
   rocking-fmu sweep fragility.toml
   rocking-fmu sweep fragility.toml -o runs.csv --threads 2")]
     Sweep(sweep::SweepArgs),
+    /// Print completions for a shell
+    #[command(after_help = "Examples:
+  rocking-fmu completions bash > ~/.local/share/bash-completion/completions/rocking-fmu
+  rocking-fmu completions zsh > ~/.zfunc/_rocking-fmu")]
+    Completions(shell::CompletionsArgs),
+    /// Print the manual page of the program, or of one of its commands
+    #[command(after_help = "Examples:
+  rocking-fmu man | man -l -
+  rocking-fmu man simulate > rocking-fmu-simulate.1")]
+    Man(shell::ManArgs),
 }
 
 /// Version, build, and the platforms that an FMU can be for.
@@ -115,12 +145,15 @@ fn main() -> ExitCode {
     let result = match command {
         Command::Export(args) => export::run(&args),
         Command::Simulate(args) => simulate::run(&args),
+        Command::View(args) => view::run(&args),
         Command::Advise(args) => advise::run(&args),
         Command::Describe(args) => describe::run(&args),
         Command::Estimate(args) => estimate::run(&args),
         Command::Pushover(args) => pushover::run(&args),
         Command::Modes(args) => modes::run(&args),
         Command::Sweep(args) => sweep::run(&args),
+        Command::Completions(args) => shell::completions(&args),
+        Command::Man(args) => shell::man(&args),
     };
     match result {
         Err(error) if !is_closed_pipe(&error) => {

@@ -1,8 +1,17 @@
 //! `modes`: a response split into rocking and vibration mode (Eqs 12, 16, 19).
-use crate::{output_files::OutputFiles, structure_args::StructureArgs, tables::Table};
-use anyhow::Context;
+mod picture;
+
+use crate::{
+    output_files::OutputFiles,
+    picture::PictureFile,
+    structure_args::{StructureArgs, in_one_line},
+    tables::{self, Table},
+    talk::say,
+};
+use anyhow::{Context, bail};
+use csv::StringRecord;
 use rocking::{
-    Side, State,
+    Side, State, Structure,
     modal_split::{ModalAccelerations, Modes},
 };
 use serde::Deserialize;
@@ -19,6 +28,9 @@ pub struct ModesArgs {
     /// Modes as CSV, `-` for standard output
     #[arg(short, long, value_name = "FILE.csv", default_value = "modes.csv")]
     output: PathBuf,
+    /// Draw both modes over time
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
 }
 
 /// The columns of a response that the split needs.
@@ -47,18 +59,59 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let named = || args.response.display().to_string();
     let mut response = csv::Reader::from_path(&args.response).with_context(named)?;
     let inputs = args.structure.input().into_iter().chain([args.response.as_path()]);
-    let mut table = Table::create(&mut OutputFiles::of_inputs(inputs), &args.output, &HEADINGS)?;
+    let mut files = OutputFiles::of_inputs(inputs);
+    check(response.headers().with_context(named)?, &structure).with_context(named)?;
+    let mut table = Table::create(&mut files, &args.output, &HEADINGS)?;
+    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
+    let (mut instants, mut rocking) = (0, 0);
+    let (mut stretches, mut rocks_about) = (Vec::new(), None);
     for instant in response.deserialize() {
         let Instant { time, a_g, theta, u, theta_dot, u_dot, phase } = instant.with_context(named)?;
+        instants += 1;
         let side = match phase.as_str() {
             "rocking left" => Side::Left,
             "rocking right" => Side::Right,
-            _ => continue,
+            _ => {
+                rocks_about = None;
+                continue;
+            }
         };
+        rocking += 1;
+        if rocks_about.replace(side) != Some(side) {
+            stretches.push(Vec::new());
+        }
         let state = State { u, u_dot, theta, theta_dot };
-        let Modes { q_r, q_u, .. } = Modes::of(&structure, &state);
+        let modes @ Modes { q_r, q_u, .. } = Modes::of(&structure, &state);
         let accelerations = ModalAccelerations::of(&structure, side, &state, a_g);
         table.write((time, q_r, q_u, accelerations.a_r, accelerations.a_u, accelerations.a_t()))?;
+        stretches.last_mut().context("it has just begun")?.push((time, modes, accelerations));
     }
-    table.finish()
+    table.finish()?;
+    say!(
+        "modes          {}: {rocking} of {instants} instants, those at which the structure rocks",
+        args.output.display()
+    );
+    if rocking == 0 {
+        say!("it rocks at none of them: there is nothing to split");
+    }
+    match picture {
+        Some(picture) => picture::draw(picture, structure.parameters().g, &stretches, &named()),
+        None => Ok(()),
+    }
+}
+
+/// Refuses what is no response, and the response of another structure, which its last heading names; a table that names
+/// none is taken.
+fn check(headings: &StringRecord, structure: &Structure) -> anyhow::Result<()> {
+    let needed = ["time[s]", "a_g[m/s2]", "theta[rad]", "u[m]", "theta_dot[rad/s]", "u_dot[m/s]", "phase"];
+    if let Some(missing) = needed.into_iter().find(|needed| headings.iter().all(|heading| heading != *needed)) {
+        bail!("it has no column {missing}, as a response of `simulate` has");
+    }
+    let Some(of) = headings.iter().find_map(|heading| heading.strip_prefix(tables::STRUCTURE)) else { return Ok(()) };
+    let here = in_one_line(structure);
+    let other = of.split("; ").zip(here.split(", ")).find(|(there, here)| there != here);
+    if let Some((there, here)) = other {
+        bail!("it is the response of another structure: {there} there, and {here} here; see --preset, --parameters");
+    }
+    Ok(())
 }

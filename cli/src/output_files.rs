@@ -85,6 +85,11 @@ impl OutputFiles {
         Ok(())
     }
 
+    /// Keeps standard output for what `by` prints there.
+    pub fn reserve_standard_output(&mut self, by: &str) {
+        self.outputs.push((by.into(), Place::StandardOutput));
+    }
+
     fn reserve(&mut self, path: &Path) -> anyhow::Result<Place> {
         let place = place(path).with_context(|| cannot_be_written(path))?;
         if let Place::Regular(target) = &place {
@@ -92,12 +97,13 @@ impl OutputFiles {
                 |(_, input): &&(PathBuf, Identity)| fs::metadata(target).is_ok_and(|told| identity(&told) == *input);
             if let Some((input, _)) = self.inputs.iter().find(is_same) {
                 let (path, input) = (path.display(), input.display());
-                bail!("{path} is {input}, which is read: it would be overwritten; name another file");
+                bail!("{path}: it would overwrite {input}, which is read; name another file");
             }
         }
         if let Some((other, _)) = self.outputs.iter().find(|(_, other)| *other == place && place != Place::Through) {
-            let (path, other) = (path.display(), other.display());
-            bail!("{path} and {other} are the same file, and both would be written: name two");
+            let (path, other) = (name(path), name(other));
+            let other = if other == path { "something else".into() } else { other };
+            bail!("{path}: {other} is written there, too; name another file");
         }
         self.outputs.push((path.into(), place.clone()));
         Ok(place)
@@ -142,8 +148,12 @@ impl OutputFile {
     }
 }
 
+fn name(path: &Path) -> String {
+    if path == Path::new("-") { "standard output".into() } else { path.display().to_string() }
+}
+
 fn cannot_be_written(path: &Path) -> String {
-    format!("{} cannot be written", path.display())
+    format!("{} cannot be written", name(path))
 }
 
 fn identity(told: &Metadata) -> Identity {
@@ -279,15 +289,15 @@ mod tests {
         let record = at("record.csv");
         let mut files = OutputFiles::of_inputs([record.as_path(), &at("absent")]);
         for name in ["record.csv", "same.csv", "link.csv", "./record.csv"] {
-            let expected = "which is read: it would be overwritten; name another file";
+            let expected = format!("it would overwrite {}, which is read; name another file", record.display());
             let message = files.create(&at(name)).err().unwrap().to_string();
-            assert!(message.ends_with(expected), "{message}");
+            assert!(message.ends_with(&expected), "{message}");
         }
         symlink("out.csv", at("out link.csv")).unwrap();
         let _out = files.create(&at("out.csv")).unwrap();
         for name in ["out.csv", "out link.csv"] {
             let message = files.create(&at(name)).err().unwrap().to_string();
-            assert!(message.ends_with("are the same file, and both would be written: name two"), "{message}");
+            assert!(message.ends_with("is written there, too; name another file"), "{message}");
             assert!(files.reserve_rows(&at(name)).is_err());
         }
         files.reserve_rows(&at("rows.csv")).unwrap();

@@ -1,11 +1,19 @@
 //! `pushover`: lateral force and moment against displacement (Fig 1).
+mod picture;
+
 use crate::{
-    output_files::OutputFiles, significant::significant, structure_args::StructureArgs, tables::Table, talk::say,
+    output_files::OutputFiles,
+    picture::PictureFile,
+    results::{Format, FormatArgs, print, print_rows},
+    significant::significant,
+    structure_args::StructureArgs,
+    tables::Table,
+    talk::say,
 };
 use anyhow::Context;
 use rocking::{
     Phase, Structure,
-    pushover::{Equilibrium, at_displacement, at_overturning, at_rotation},
+    pushover::{Equilibrium, at_displacement, at_overturning, at_rotation, in_full_contact},
 };
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -16,12 +24,20 @@ pub struct PushoverArgs {
     #[command(flatten)]
     structure: StructureArgs,
     /// Points on each of the two branches, full contact and rocking
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(2..))]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(2..=MOST_POINTS))]
     points: u32,
     /// Curve as CSV, `-` for standard output
     #[arg(short, long, value_name = "FILE.csv", default_value = "pushover.csv")]
     output: PathBuf,
+    #[command(flatten)]
+    results: FormatArgs,
+    /// Draw force and moment against displacement
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
 }
+
+/// Points on a branch, more than any curve needs.
+const MOST_POINTS: i64 = 1_000_000;
 
 const HEADINGS: [&str; 6] = ["phase", "theta[rad]", "u[m]", "delta_t[m]", "P[N]", "M[N.m]"];
 
@@ -30,26 +46,57 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let too_soft = "the strut is too soft to hold the structure all the way to overturning: raise f_fc or lower m0";
     let end = at_overturning(&structure).context(too_soft)?;
+    let curve: Option<Vec<_>> = displacements(&structure, end.delta_t, args.points)
+        .map(|delta_t| at_displacement(&structure, delta_t))
+        .collect();
+    let curve = curve.context(too_soft)?;
     let mut files = OutputFiles::of_inputs(args.structure.input());
+    args.results.reserve(&mut files);
     let mut table = Table::create(&mut files, &args.output, &HEADINGS)?;
-    for delta_t in displacements(&structure, end.delta_t, args.points) {
-        table.write(line(&at_displacement(&structure, delta_t).context(too_soft)?))?;
-    }
+    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
+    curve.iter().try_for_each(|at| table.write(line(at)))?;
     table.finish()?;
     let corners = [
-        ("uplift", at_displacement(&structure, structure.u_cr)),
-        ("start of rocking", at_rotation(&structure, 0.0)),
-        ("overturning", Some(end)),
+        ("uplift", in_full_contact(&structure, structure.u_cr)),
+        ("start of rocking", at_rotation(&structure, 0.0).context(too_soft)?),
+        ("overturning", end),
     ];
+    let mut rows = Vec::new();
     for (name, corner) in corners {
-        let Equilibrium { theta, delta_t, force, moment, .. } = corner.context(too_soft)?;
-        let [theta, delta_t, force, moment] = [theta, 1e3 * delta_t, force, moment].map(significant);
-        say!("{name:<16} delta_t {delta_t:>8} mm, theta {theta:>8} rad, P {force:>8} N, M {moment:>8} N.m");
+        let Equilibrium { theta, delta_t, force: P, moment: M, .. } = corner;
+        rows.push(Corner { name, delta_t, theta, P, M });
+    }
+    if args.results.format == Format::Text {
+        let text: String = rows.iter().map(Corner::line).collect();
+        if args.output == Path::new("-") { say!("{}", text.trim_end()) } else { print(&text)? }
+    } else {
+        print_rows(args.results.format, &rows)?;
     }
     if args.output != Path::new("-") {
         say!("curve            {}", args.output.display());
     }
-    Ok(())
+    match picture {
+        Some(picture) => picture::draw(picture, &structure, &curve, corners.map(|corner| corner.1)),
+        None => Ok(()),
+    }
+}
+
+/// A corner of the curve, in SI units.
+#[derive(Serialize)]
+struct Corner {
+    name: &'static str,
+    delta_t: f64,
+    theta: f64,
+    P: f64,
+    M: f64,
+}
+
+impl Corner {
+    fn line(&self) -> String {
+        let &Corner { name, delta_t, theta, P, M } = self;
+        let [theta, delta_t, force, moment] = [theta, 1e3 * delta_t, P, M].map(significant);
+        format!("{name:<16} delta_t {delta_t:>8} mm, theta {theta:>8} rad, P {force:>8} N, M {moment:>8} N.m\n")
+    }
 }
 
 /// Displacements (m) evenly on each branch: 0 to u_cr, and from just beyond to `end`.

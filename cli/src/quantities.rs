@@ -1,7 +1,7 @@
-//! Named values for people and for programs: columns of text, or CSV.
+//! Named values for people and for programs.
 use crate::significant::significant;
 use serde::Serialize;
-use std::io::{self, Write, stdout};
+use std::fmt::{self, Write};
 
 /// One value.
 #[derive(Serialize)]
@@ -25,8 +25,8 @@ impl Line {
     }
 }
 
-/// Prints `lines` in columns; accelerations also in multiples of `g` (m/s²).
-pub fn print_columns(out: &mut impl Write, lines: &[Line], g: f64) -> io::Result<()> {
+/// Writes `lines` in columns; accelerations also in multiples of `g` (m/s²).
+pub fn write_columns(out: &mut impl Write, lines: &[Line], g: f64) -> fmt::Result {
     for Line { name, value, unit, equation, description } in lines {
         let in_g = if *unit == "m/s2" { format!("{:.4} g", value / g) } else { String::new() };
         let unit = if *unit == "1" { "-" } else { unit };
@@ -34,13 +34,4 @@ pub fn print_columns(out: &mut impl Write, lines: &[Line], g: f64) -> io::Result
         writeln!(out, "  {name:<20} {value:>12} {unit:<6} {in_g:>10}  {equation:<13} {description}")?;
     }
     Ok(())
-}
-
-/// Prints `lines` as CSV; a number reads back to the same bits.
-pub fn print_csv(lines: impl IntoIterator<Item = Line>) -> anyhow::Result<()> {
-    let mut writer = csv::Writer::from_writer(stdout().lock());
-    for line in lines {
-        writer.serialize(line)?;
-    }
-    Ok(writer.flush()?)
 }

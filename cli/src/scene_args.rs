@@ -1,7 +1,13 @@
 //! The scene that a command simulates: a ground motion record or free vibration, and the initial values.
-use crate::record_args::{RecordArgs, positive};
-use clap::ArgGroup;
-use rocking::{State, record::Record, run::End};
+use crate::{
+    record_args::{RecordArgs, positive},
+    significant::short,
+};
+use clap::{
+    ArgGroup,
+    builder::{PossibleValuesParser, TypedValueParser},
+};
+use rocking::{Detail, State, engine::DEFAULT_TOLERANCE, record::Record, run::End};
 
 /// The ground motion, and how long it is followed.
 #[derive(clap::Args)]
@@ -11,14 +17,15 @@ pub struct GroundArgs {
     #[command(flatten)]
     pub record: RecordArgs,
     /// Simulated time; the ground is at rest after the record's end [default: until the structure stands for good, or still rocks 100/p_l after the record]
-    #[arg(long, value_name = "SECONDS", value_parser = positive)]
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
     duration: Option<f64>,
     /// Free vibration over this time instead of a record
     #[arg(
         long,
         value_name = "SECONDS",
         value_parser = positive,
-        conflicts_with_all = ["unit", "time_scale", "scale", "duration"]
+        allow_negative_numbers = true,
+        conflicts_with_all = ["unit", "dt", "column", "ignore_npts", "time_scale", "scale", "duration"]
     )]
     free: Option<f64>,
 }
@@ -41,6 +48,32 @@ pub struct InitialArgs {
     u_dot_0: f64,
 }
 
+/// How the motion is computed.
+#[derive(clap::Args)]
+#[command(next_help_heading = "Equations")]
+pub struct LevelArgs {
+    /// Level of detail: the equations that move the structure
+    #[arg(long, value_name = "LEVEL", default_value = Detail::default().name(), value_parser = detail_parser())]
+    pub detail: Detail,
+    /// Relative tolerance
+    #[arg(long, default_value = format!("{DEFAULT_TOLERANCE:e}"), value_parser = tolerance)]
+    pub tolerance: f64,
+}
+
+fn detail_parser() -> impl TypedValueParser<Value = Detail> {
+    PossibleValuesParser::new(Detail::ALL.map(Detail::name)).map(|name| {
+        let is_named = |detail: &Detail| detail.name() == name;
+        Detail::ALL.into_iter().find(is_named).expect("clap accepts these names alone")
+    })
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    positive(text).and_then(|tolerance| match tolerance {
+        ..1.0 => Ok(tolerance),
+        _ => Err("a number less than 1 is needed, such as 1e-9".into()),
+    })
+}
+
 impl GroundArgs {
     /// The ground motion; `g` (m/s²) is what a record's g stands for.
     pub fn load(&self, g: f64) -> anyhow::Result<Record> {
@@ -52,6 +85,14 @@ impl GroundArgs {
     pub fn end(&self, ground: &Record) -> End {
         let duration = self.duration.or(self.free);
         duration.map_or(End::AtRest, |duration| End::At(ground.start() + duration))
+    }
+
+    /// What the ground does, in a line.
+    pub fn title(&self, ground: &Record) -> String {
+        match self.free {
+            Some(duration) => format!("none, free vibration over {} s", short(duration)),
+            None => format!("{}, {} samples", ground.title(), ground.times().len()),
+        }
     }
 
     /// What stands for the interval of the samples (s) in free vibration, which has none.

@@ -1,18 +1,21 @@
 //! `simulate`: the response to a ground motion record, or free vibration, with the same engine as the FMU's.
+mod picture;
+
 use crate::{
     output_files::OutputFiles,
+    picture::PictureFile,
     record_args::positive,
-    scene_args::{GroundArgs, InitialArgs},
+    results::{Format, FormatArgs, print},
+    scene_args::{GroundArgs, InitialArgs, LevelArgs},
+    significant::short,
     structure_args::StructureArgs,
-    summary::Summary,
+    summary::{self, Summary, instant},
     tables::{self, Table},
     talk::{self, say},
 };
-use clap::builder::{PossibleValuesParser, TypedValueParser};
-use fmu_export::significant::significant;
+use anyhow::ensure;
 use rocking::{
-    Detail, Transition,
-    engine::DEFAULT_TOLERANCE,
+    Transition,
     record::Record,
     run::{End, Run, peaks::Peaks},
 };
@@ -28,41 +31,29 @@ pub struct SimulateArgs {
     #[command(flatten)]
     initial: InitialArgs,
     #[command(flatten)]
+    level: LevelArgs,
+    #[command(flatten)]
     results: ResultArgs,
 }
 
 #[derive(clap::Args)]
 #[command(next_help_heading = "Results")]
 struct ResultArgs {
-    /// Level of detail: the equations that move the structure
-    #[arg(long, value_name = "LEVEL", default_value = Detail::default().name(), value_parser = detail_parser())]
-    detail: Detail,
-    /// Relative tolerance
-    #[arg(long, default_value = format!("{DEFAULT_TOLERANCE:e}"), value_parser = tolerance)]
-    tolerance: f64,
     /// Output interval [default: the record's samples; 0.001 in free vibration]
-    #[arg(long, value_name = "SECONDS", value_parser = positive)]
-    dt: Option<f64>,
-    /// Response as CSV, `-` for standard output [default: the record's name and _response.csv, in this folder]
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    interval: Option<f64>,
+    /// Response as CSV, `-` for standard output [default: the record's name and _response.csv, or free_vibration.csv, in
+    /// this folder]
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
     /// Transitions as CSV: instant, kind, state before and after
     #[arg(long, value_name = "FILE.csv")]
     events: Option<PathBuf>,
-}
-
-fn detail_parser() -> impl TypedValueParser<Value = Detail> {
-    PossibleValuesParser::new(Detail::ALL.map(Detail::name)).map(|name| {
-        let is_named = |detail: &Detail| detail.name() == name;
-        Detail::ALL.into_iter().find(is_named).expect("clap accepts these names alone")
-    })
-}
-
-fn tolerance(text: &str) -> Result<f64, String> {
-    positive(text).and_then(|tolerance| match tolerance {
-        ..1.0 => Ok(tolerance),
-        _ => Err("a number less than 1 is needed, such as 1e-9".into()),
-    })
+    #[command(flatten)]
+    format: FormatArgs,
+    /// Draw ground acceleration, uplift, acceleration and base shear over time, with marks at transitions
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
 }
 
 impl SimulateArgs {
@@ -70,7 +61,7 @@ impl SimulateArgs {
     fn output_times(&self, ground: &Record, end: End) -> impl Iterator<Item = f64> {
         let samples = ground.times();
         let last = samples.len() - 1;
-        let (samples, interval) = match self.results.dt.or(self.ground.free_vibration_interval()) {
+        let (samples, interval) = match self.results.interval.or(self.ground.free_vibration_interval()) {
             Some(dt) => (&samples[..1], dt),
             None => (samples, samples[last] - samples[last - 1]),
         };
@@ -82,6 +73,20 @@ impl SimulateArgs {
             .copied()
             .chain((1_u64..).map(move |i| from + i as f64 * interval))
             .take_while(move |time| *time < before)
+    }
+
+    /// Refuses an interval at which the table would have no end.
+    fn check_interval(&self, ground: &Record) -> anyhow::Result<()> {
+        const MOST_ROWS: f64 = 1e7;
+        let Some(interval) = self.results.interval else { return Ok(()) };
+        let duration = if let End::At(end) = self.ground.end(ground) { end } else { ground.end() } - ground.start();
+        let rows = duration / interval;
+        ensure!(
+            rows <= MOST_ROWS,
+            "--interval {interval:?} over {} s makes {rows:.0e} rows: {MOST_ROWS:.0e} are possible",
+            short(duration)
+        );
+        Ok(())
     }
 
     fn output_path(&self) -> PathBuf {
@@ -97,16 +102,19 @@ impl SimulateArgs {
 pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let ground = args.ground.load(structure.parameters().g)?;
-    let ResultArgs { tolerance, detail, .. } = args.results;
+    let LevelArgs { tolerance, detail } = args.level;
     let (initial, end) = (args.initial.state(), args.ground.end(&ground));
     let run = Run { initial, detail, tolerance, end, ..Run::new(structure, &ground) };
 
+    args.check_interval(&ground)?;
     let output = args.output_path();
     let inputs = args.structure.input().into_iter().chain(args.ground.record.record.as_deref());
     let mut files = OutputFiles::of_inputs(inputs);
-    let mut response = Table::create(&mut files, &output, &tables::RESPONSE)?;
+    args.results.format.reserve(&mut files);
+    let mut response = Table::create(&mut files, &output, &tables::response_headings(&structure, ground.title()))?;
     let events = args.results.events.as_deref();
     let mut events = events.map(|path| Table::create(&mut files, path, &tables::EVENTS)).transpose()?;
+    let picture = args.results.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let progress = talk::progress(ground.times().len());
     let (mut peaks, mut summary, mut written) =
         (Peaks::since(ground.start(), &structure), Summary::new(&structure), Ok(()));
@@ -131,10 +139,25 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     rows.and(written)?;
     response.finish()?;
     events.map_or(Ok(()), Table::finish)?;
-    say!("{}, {} to {} s", ground.title(), significant(ground.start()), significant(finish.motion.time));
-    summary.print(&peaks, &finish);
+    let (start, end) = (instant(ground.start()), instant(finish.motion.time));
+    if args.results.format.format == Format::Text {
+        let text = format!("{}, {start} to {end} s\n{}", ground.title(), summary.text(&peaks, &finish)?);
+        // What goes to standard output stays one table.
+        if output == Path::new("-") { say!("{}", text.trim_end()) } else { print(&text)? }
+    } else {
+        summary.print(args.results.format.format, &peaks, ground.title(), ground.start(), &finish)?;
+    }
+    if summary::shows_no_motion(&peaks) {
+        say!("nothing moves: the ground is at rest and the structure stands; see --record, --theta-0, --u-0");
+    }
     if output != Path::new("-") {
         say!("response       {}", output.display());
     }
-    Ok(())
+    if let Some(events) = &args.results.events {
+        say!("transitions    {}", events.display());
+    }
+    match picture {
+        Some(picture) => picture::draw(picture, &run),
+        None => Ok(()),
+    }
 }

@@ -1,14 +1,46 @@
 //! What `simulate` prints at the end of a run.
-use crate::talk::say;
+use crate::results::{Format, print_json, print_rows};
 use fmu_export::significant::significant;
-use rocking::run::{Ending, Finish, LONGEST_REST, peaks::Peaks};
+use rocking::run::{
+    Ending, Finish, LONGEST_REST,
+    peaks::{PEAKS, Peak, Peaks},
+};
 use rocking::{Parameters, Phase, Side, Structure, Transition, TransitionKind, Watch};
+use serde::Serialize;
+use std::fmt::{self, Write};
 
 /// First transitions of a run.
 pub struct Summary {
     structure: Structure,
     first_uplift: Option<f64>,
     first_impact: Option<f64>,
+}
+
+/// A peak, for programs.
+#[derive(Serialize)]
+struct Row {
+    name: &'static str,
+    peak: f64,
+    unit: &'static str,
+    /// Its instant, s.
+    time: f64,
+}
+
+/// All of it, for programs; instants in s.
+#[derive(Serialize)]
+struct Whole<'a> {
+    record: &'a str,
+    start: f64,
+    end: f64,
+    ending: Ending,
+    /// None if it still rocks.
+    overturned: Option<bool>,
+    peaks: Vec<Row>,
+    first_uplift: Option<f64>,
+    first_impact: Option<f64>,
+    transitions: u64,
+    steps: u64,
+    evaluations: u64,
 }
 
 impl Watch for Summary {
@@ -30,8 +62,45 @@ impl Summary {
         Summary { structure: *structure, first_uplift: None, first_impact: None }
     }
 
-    /// Prints it all, with the `peaks` and what the run counted and came to, on standard error.
-    pub fn print(&self, peaks: &Peaks, &Finish { ending, motion }: &Finish) {
+    /// Prints it for programs, with the `peaks` and what the run counted and came to; `title` is the ground motion's.
+    pub fn print(
+        &self,
+        format: Format,
+        peaks: &Peaks,
+        title: &str,
+        start: f64,
+        &Finish { ending, motion }: &Finish,
+    ) -> anyhow::Result<()> {
+        let row = |name, unit, Peak { magnitude: peak, time }| Row { name, peak, unit, time };
+        let of_structure = PEAKS.iter().map(|peak| row(peak.name, peak.unit, (peak.of)(peaks)));
+        let rows: Vec<_> = [row("a_g", "m/s2", peaks.a_g())].into_iter().chain(of_structure).collect();
+        if format == Format::Csv {
+            return print_rows(format, &rows);
+        }
+        let overturned = match ending {
+            Ending::StillRocking => None,
+            ending => Some(ending == Ending::Overturned),
+        };
+        let &Summary { first_uplift, first_impact, .. } = self;
+        let (work, transitions) = (motion.work, motion.transitions);
+        print_json(&Whole {
+            record: title,
+            start,
+            end: motion.time,
+            ending,
+            overturned,
+            peaks: rows,
+            first_uplift,
+            first_impact,
+            transitions,
+            steps: work.steps,
+            evaluations: work.evaluations,
+        })
+    }
+
+    /// The same in lines for people.
+    pub fn text(&self, peaks: &Peaks, &Finish { ending, motion }: &Finish) -> Result<String, fmt::Error> {
+        let mut out = String::new();
         let &Parameters { g, .. } = self.structure.parameters();
         for (name, peak, unit, per_unit) in [
             ("a_g", peaks.a_g(), "g", g),
@@ -43,16 +112,16 @@ impl Summary {
             ("V_t", peaks.V_t(), "N", 1.0),
             ("M_t", peaks.M_t(), "N.m", 1.0),
         ] {
-            let [magnitude, time] = [peak.magnitude / per_unit, peak.time].map(significant);
-            say!("{:<14} {magnitude:>12} {unit:<4} at {time} s", format!("peak |{name}|"));
+            let (magnitude, time) = (significant(peak.magnitude / per_unit), instant(peak.time));
+            writeln!(out, "{:<14} {magnitude:>12} {unit:<4} at {time} s", format!("peak |{name}|"))?;
         }
-        let instant = |time: Option<f64>| time.map_or("none".into(), |time| format!("at {} s", significant(time)));
-        say!("first uplift   {}", instant(self.first_uplift));
-        say!("first impact   {}", instant(self.first_impact));
-        say!("transitions    {}", motion.transitions);
+        let first = |time: Option<f64>| time.map_or("none".into(), |time| format!("at {} s", instant(time)));
+        writeln!(out, "first uplift   {}", first(self.first_uplift))?;
+        writeln!(out, "first impact   {}", first(self.first_impact))?;
+        writeln!(out, "transitions    {}", motion.transitions)?;
         let overturned = match motion.phase {
-            Phase::Overturned(Side::Left) => format!("to the left at {} s", significant(motion.time)),
-            Phase::Overturned(Side::Right) => format!("to the right at {} s", significant(motion.time)),
+            Phase::Overturned(Side::Left) => format!("to the left at {} s", instant(motion.time)),
+            Phase::Overturned(Side::Right) => format!("to the right at {} s", instant(motion.time)),
             Phase::FullContact | Phase::Rocking(_) => match ending {
                 Ending::StillRocking => {
                     let limit = significant(LONGEST_REST / self.structure.p_l);
@@ -62,8 +131,35 @@ impl Summary {
                 Ending::AtRest | Ending::Overturned => "no".into(),
             },
         };
-        say!("overturned     {overturned}");
+        writeln!(out, "overturned     {overturned}")?;
         let (work, of_peaks) = (motion.work, peaks.evaluations());
-        say!("work           {} steps, {} evaluations; {of_peaks} more for peaks", work.steps, work.evaluations);
+        writeln!(
+            out,
+            "work           {} steps, {} evaluations; {of_peaks} more for peaks",
+            work.steps, work.evaluations
+        )?;
+        Ok(out)
+    }
+}
+
+/// Whether `peaks` are those of a structure that stood still on ground at rest all the while.
+pub fn shows_no_motion(peaks: &Peaks) -> bool {
+    let magnitudes = PEAKS.iter().map(|peak| (peak.of)(peaks)).chain([peaks.a_g()]);
+    magnitudes.into_iter().all(|peak| peak.magnitude == 0.0)
+}
+
+/// An instant (s) to six digits or to 10 us, whichever is finer.
+pub fn instant(time: f64) -> String {
+    if time.abs() < 10.0 { significant(time) } else { format!("{time:.5}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::instant;
+
+    #[test]
+    fn late_instants_have_their_decimals() {
+        let shown = [0.168487319, 1.334952, 41.7182818, 3600.123456, -12.5].map(instant);
+        assert_eq!(shown, ["0.168487", "1.33495", "41.71828", "3600.12346", "-12.50000"]);
     }
 }

@@ -2,27 +2,25 @@
 //! exceeding limits, and fragility curves.
 
 mod file;
-mod fragilities;
 mod picture;
 mod rows;
+mod table;
 
 use crate::{
-    output_files::{OutputFile, OutputFiles},
+    output_files::OutputFiles,
+    picture::PictureFile,
+    results::{Format, FormatArgs, print, print_json, print_rows},
     significant::significant,
     talk::{self, say},
 };
-use anyhow::bail;
+use anyhow::{Context, bail};
+use file::Sweep;
 use indicatif::ProgressStyle;
 use rayon::{ThreadPoolBuilder, prelude::*};
-use rocking::run::{outcome::Outcome, plan::Case, plan::Plan};
+use rocking::quantity::with_unit;
+use rocking::run::{exceedances, outcome::Outcome, plan::Case, plan::Plan};
 use rows::Rows;
-use std::{
-    io::{Write, stdout},
-    num::NonZeroUsize,
-    path::PathBuf,
-    sync::Mutex,
-    time::Instant,
-};
+use std::{num::NonZeroUsize, path::PathBuf, sync::Mutex, time::Instant};
 use uuid::Uuid;
 
 /// What to run.
@@ -31,36 +29,42 @@ pub struct SweepArgs {
     /// Records, scale factors, structures and limits
     #[arg(value_name = "FILE.toml")]
     file: PathBuf,
-    /// Rows as CSV; a file that holds some of this sweep's is completed. The picture goes beside it, as SVG
-    /// [default: the TOML file's name and .csv, in this folder]
+    /// Rows as CSV; a file that holds some of this sweep's is completed [default: the TOML file's name and .csv, in this
+    /// folder]
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
+    /// Picture of the probabilities and fragility curves [default: beside the rows, as SVG]
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
     /// Runs at a time [default: one per core]
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
+    #[command(flatten)]
+    results: FormatArgs,
 }
 
 /// Does the runs that are not in the file yet, then prints and draws the probabilities.
 pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let mut files = OutputFiles::of_inputs([args.file.as_path()]);
-    let (plan, limits) = file::read(&args.file, &mut files)?;
+    let Sweep { plan, limits, measure, records } = file::read(&args.file, &mut files)?;
     let output = match &args.output {
         Some(path) => path.clone(),
         None => PathBuf::from(args.file.file_stem().unwrap_or_default()).with_extension("csv"),
     };
-    let picture = output.with_extension("svg");
+    let picture = args.picture.clone().unwrap_or(PictureFile::svg(output.with_extension("svg")));
     files.reserve_rows(&output)?;
-    let mut picture_file = files.create(&picture)?;
+    let picture = picture.create(&mut files).context("picture of the sweep")?;
     let keys = rows::keys(&plan);
     let (rows, found) = Rows::open(&output, &keys)?;
     let mut outcomes = found.outcomes;
     let missing: Vec<_> = (0..plan.len()).filter(|index| outcomes[*index].is_none()).collect();
     let done = plan.len() - missing.len();
-    let (name, [structures, records, scales]) = (output.display(), plan.size());
+    let (name, [structures, motions, scales]) = (output.display(), plan.size());
     say!(
-        "{name}: {done} of {} runs done, structures: {structures}, records: {records}, scale factors: {scales}",
+        "{name}: {done} of {} runs done, structures: {structures}, records: {motions}, scale factors: {scales}",
         plan.len()
     );
+    records.iter().for_each(|record| say!("{record}"));
     for (count, what) in [
         (found.others, "of runs that are not in this sweep (other inputs, or another build of the program): kept"),
         (found.repeated, "there again: counted once"),
@@ -83,22 +87,30 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     }
 
     let outcomes: Vec<_> = outcomes.into_iter().map(|outcome| outcome.expect("every run is done")).collect();
-    let populations = fragilities::count(&plan, &limits, &outcomes);
-    let mut out = stdout().lock();
-    populations.iter().try_for_each(|population| population.print(&mut out))?;
-    let drawn = picture_file.write_all(picture::draw(&populations)?.as_bytes());
-    OutputFile::named(&picture, drawn)?;
-    picture_file.finish()?;
-    say!("rows {}, picture {}", output.display(), picture.display());
+    let populations = exceedances::count(&plan, measure, &limits, &outcomes);
+    match args.results.format {
+        Format::Text => {
+            let mut out = String::new();
+            populations.iter().try_for_each(|population| table::write(&mut out, population, measure))?;
+            print(&out)?;
+        }
+        Format::Json => print_json(&table::curves(&populations, measure))?,
+        Format::Csv => print_rows(
+            Format::Csv,
+            &table::curves(&populations, measure).iter().map(|curve| &curve.row).collect::<Vec<_>>(),
+        )?,
+    }
+    say!("rows           {}", output.display());
+    picture::draw(picture, &populations, measure)?;
     report_failures(&plan, &keys, &outcomes)
 }
 
 /// Says how many runs failed, and which the first is.
 fn report_failures(plan: &Plan, keys: &[Uuid], outcomes: &[Outcome]) -> anyhow::Result<()> {
-    let failed = || (0..plan.len()).filter(|index| matches!(outcomes[*index], Outcome::Failed(_)));
+    let failed = || (0..plan.len()).filter(|index| matches!(outcomes[*index], Outcome::Failed { .. }));
     let Some(first) = failed().next() else { return Ok(()) };
     let (count, Case { population, motion, scale, .. }) = (failed().count(), plan.case(first));
-    let (name, motion, key) = (population.name(), motion.name(), keys[first]);
+    let (name, motion, scale, key) = (population.name(), motion.name(), with_unit(scale, "1"), keys[first]);
     bail!("{count} of {} runs failed; the first: {name}, {motion}, scale {scale}, see row {key}", plan.len())
 }
 

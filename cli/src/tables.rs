@@ -1,7 +1,8 @@
 //! The tables that `simulate` writes: the response and its transitions as CSV.
 use crate::output_files::{OutputFile, OutputFiles};
+use crate::structure_args::in_one_line;
 use rocking::piece::Sample;
-use rocking::{Impulse, Outputs, Reactions, Side, State, Transition, TransitionKind};
+use rocking::{Impulse, Outputs, Reactions, State, Structure, Transition};
 use serde::Serialize;
 use std::{
     io,
@@ -16,7 +17,7 @@ pub struct Table {
 
 impl Table {
     /// A table at `path`, or on standard output for `-`, with these `headings`.
-    pub fn create(files: &mut OutputFiles, path: &Path, headings: &[&str]) -> anyhow::Result<Table> {
+    pub fn create(files: &mut OutputFiles, path: &Path, headings: &[impl Serialize]) -> anyhow::Result<Table> {
         let writer = csv::WriterBuilder::new().has_headers(false).from_writer(files.create(path)?);
         let mut table = Table { path: path.into(), writer };
         table.write(headings)?;
@@ -45,7 +46,7 @@ fn of_the_file(error: csv::Error) -> io::Error {
 }
 
 /// Headings of the response: the ground acceleration, and the outputs of the FMU under their names and units.
-pub const RESPONSE: [&str; 20] = [
+const RESPONSE: [&str; 20] = [
     "time[s]",
     "a_g[m/s2]",
     "theta[rad]",
@@ -68,6 +69,17 @@ pub const RESPONSE: [&str; 20] = [
     "transitions",
 ];
 
+/// How the last heading of a response begins, which says what responded to what.
+pub const STRUCTURE: &str = "structure: ";
+
+/// Headings of the response of `structure` to the ground motion called `title`: under the last there is nothing. It has no
+/// letter that a reader of CSV takes for anything else.
+pub fn response_headings(structure: &Structure, title: &str) -> Vec<String> {
+    let plain = |text: String| text.replace(", ", "; ").replace([',', '"', '#'], " ");
+    let of = format!("{STRUCTURE}{}; record: {}", plain(in_one_line(structure)), plain(title.into()));
+    RESPONSE.into_iter().map(String::from).chain([of]).collect()
+}
+
 /// A line of the response.
 pub fn response_line(sample: &Sample) -> impl Serialize + use<> {
     let &Sample { motion, load, .. } = sample;
@@ -75,7 +87,7 @@ pub fn response_line(sample: &Sample) -> impl Serialize + use<> {
     let Reactions { R_h, R_v, R_m } = sample.reactions();
     let Impulse { I_h, I_v, I_m } = motion.impulse;
     let of_motion = (theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t);
-    (motion.time, load.a_g, of_motion, (R_h, R_v, R_m, I_h, I_v, I_m), motion.phase.name(), motion.transitions)
+    (motion.time, load.a_g, of_motion, (R_h, R_v, R_m, I_h, I_v, I_m), motion.phase.name(), motion.transitions, "")
 }
 
 /// Headings of the transitions.
@@ -95,16 +107,6 @@ pub const EVENTS: [&str; 10] = [
 /// A line of the transitions.
 pub fn event_line(transition: &Transition) -> impl Serialize + use<> {
     let &Transition { time, kind, before, after } = transition;
-    let kind = match kind {
-        TransitionKind::Uplift(Side::Left) => "uplift left",
-        TransitionKind::Uplift(Side::Right) => "uplift right",
-        TransitionKind::Impact(Side::Left) => "impact left",
-        TransitionKind::Impact(Side::Right) => "impact right",
-        TransitionKind::Landing => "landing",
-        TransitionKind::Settling => "settling",
-        TransitionKind::Overturning(Side::Left) => "overturning left",
-        TransitionKind::Overturning(Side::Right) => "overturning right",
-    };
     let values = |State { u, u_dot, theta, theta_dot }| (u, u_dot, theta, theta_dot);
-    (time, kind, values(before), values(after))
+    (time, kind.name(), values(before), values(after))
 }

@@ -9,7 +9,7 @@ use rocking::{
     demand::Demand,
     effective_frequency::effective_frequency,
     engine::DEFAULT_TOLERANCE,
-    record::{Record, Unit},
+    record::{Reading, Record},
     response_spectrum::spectral_acceleration,
 };
 use std::{f64::consts::TAU, fs};
@@ -78,7 +78,7 @@ fn the_errors_are_those_of_the_engines() {
     }
 
     let structure = Structure::new(Parameters::MCMANUS).unwrap();
-    let record = Record::read(&folder.path().join("pulse.AT2"), Unit::G, 9.81).unwrap();
+    let (record, _) = Record::read(&folder.path().join("pulse.AT2"), &Reading::default(), 9.81).unwrap();
     let S_a = spectral_acceleration(&record, TAU / structure.omega_u, structure.zeta_u);
     let estimate = Demand::new(&structure, S_a, 2.0).unwrap().a_t;
     let shown: f64 = row(&table, "estimate")[3].parse().unwrap();
@@ -109,7 +109,7 @@ fn a_level_that_contradicts_the_initial_values_is_named_with_its_reason() {
     for line in [
         "  fixed_base not possible here: theta_0 = 0.04 rad contradicts detail = fixed_base, where the base cannot turn: \
          set theta_0 to 0",
-        "  rigid      not possible here: u_0 = 0.001 m, u_dot_0 = 0 m/s contradict detail = rigid, where u is always 0: \
+        "  rigid      not possible here: u_0 = 0.001 m, u_dot_0 = 0.0 m/s contradict detail = rigid, where u is always 0: \
          set both to 0",
         "use detail = auto: of the cheapest levels within 0.001 % in theta, u, a_t, theta_history, u_history, a_t_history \
          the simplest",

@@ -71,7 +71,9 @@ fn every_run_has_a_row_whatever_the_threads() {
     succeed(folder.path(), "sweep sweep.toml");
     let one = read(&folder, "one.csv");
     let headings = "run,structures,m[kg],m0[kg],H[m],B[m],J0[kg.m2],f_fc[Hz],zeta_fc,c_ratio,r,g[m/s2],slenderness,\
-                    record,scale,PGA[g],ending,end[s],peak_theta[rad],peak_u[m],peak_delta_t[m],peak_uplift[m],\
+                    record,record_scale,scale,PGA[g],PGV[m/s],S_a[g],detail,tolerance,duration[s],theta_0[rad],\
+                    theta_dot_0[rad/s],u_0[m],u_dot_0[m/s],\
+                    ending,end[s],peak_theta[rad],peak_u[m],peak_delta_t[m],peak_uplift[m],\
                     peak_a_t[m/s2],peak_V_t[N],peak_M_t[N.m],peak_theta/alpha_cg,transitions,steps,evaluations,reason,\
                     checksum";
     assert_eq!(one.lines().next(), Some(headings));
@@ -156,12 +158,14 @@ preset = 'mcmanus'
         assert!(error.starts_with("1 of 4 runs failed; the first: light, pulse.AT2, scale 6, see row "), "{error}");
         assert!(summary.contains("1 failed and are not counted"), "{summary}");
         let line = |start: &str| summary.lines().find(|line| line.trim().starts_with(start)).unwrap().to_owned();
-        assert!(line("6.0").ends_with("none") && line("1.0").ends_with("0.0000"), "{summary}");
+        assert!(line("0.59").ends_with("0/1"), "{summary}");
 
         let text = read(&folder, "sweep.csv");
         assert_eq!(column(&text, "ending"), ["at rest", "failed", "at rest", "overturned"]);
-        let reasons = text.matches(",\"the motion cannot be continued beyond t = 0.51").count();
-        assert_eq!((reasons, text.matches(",failed,,,,,").count()), (1, 1));
+        let (_, reason) = text.split_once(",\"the motion cannot be continued beyond t = ").unwrap();
+        let (instant, _) = reason.split_once(" s ").unwrap();
+        assert_eq!(column(&text, "end[s]")[1], instant);
+        assert!(instant.starts_with("0.51"), "{instant}");
         assert_eq!(*before.get_or_insert(text.clone()), text);
     }
 }
@@ -299,7 +303,7 @@ fn a_row_that_was_changed_is_refused_by_its_line() {
     let (ending, other) = if row.contains("at rest") { ("at rest", "overturned") } else { ("overturned", "at rest") };
     refused(row.replacen(ending, other, 1).as_bytes(), sums);
     refused(row.replacen("pier", "wall", 1).as_bytes(), sums);
-    let theta = row.split(',').nth(18).unwrap();
+    let theta = row.split(',').nth(28).unwrap();
     refused(row.replacen(theta, "NaN", 1).as_bytes(), sums);
     refused(content.as_bytes(), sums);
     refused(b"1,2", sums);
@@ -312,6 +316,109 @@ fn a_row_that_was_changed_is_refused_by_its_line() {
         refused(&flipped, sums);
         flipped[position] ^= 0x81;
         refused(&flipped, sums);
+    }
+}
+
+/// What an editor of another system makes of the file is gone on with.
+#[test]
+fn lines_may_end_as_they_do_elsewhere() {
+    let folder = sweep(SWEEP);
+    let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
+    let whole = read(&folder, "sweep.csv");
+    let edited: String = whole.lines().take(20).map(|line| format!("{line}\r\n")).collect();
+    fs::write(folder.path().join("sweep.csv"), &edited).unwrap();
+    let (again, progress) = succeed(folder.path(), "sweep sweep.toml");
+    assert!(progress.starts_with("sweep.csv: 19 of 54 runs done"), "{progress}");
+    assert_eq!(again, summary);
+    let text = read(&folder, "sweep.csv");
+    assert!(text.starts_with(&edited) && rows(&text) == rows(&whole));
+}
+
+/// Every line has as many fields as there are headings, whatever the names, and numbers wherever there are some.
+#[test]
+fn the_rows_are_a_table_as_they_are() {
+    let toml = "
+records = ['pulse.AT2', { file = 'a, \"b\"/pulse.AT2', scale = 0.5 }, { file = 'c/*.AT2', scale = -0.5 }]
+scale = [1, 6]
+[[structures]]
+name = 'light, \"slow\"'
+parameters = { m = 130.1, m0 = 0, H = 1.84, B = 0.285, f_fc = 0.2, zeta_fc = 0.02, r = 0.99 }
+";
+    let folder = sweep(toml);
+    for name in ["a, \"b\"", "c"] {
+        fs::create_dir(folder.path().join(name)).unwrap();
+        fs::copy(folder.path().join("pulse.AT2"), folder.path().join(name).join("pulse.AT2")).unwrap();
+    }
+    let (code, message) = {
+        let output = command(folder.path(), "sweep sweep.toml").output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    assert!(code == Some(1) && message.contains("of 6 runs failed"), "{message}");
+    let mut table = csv::Reader::from_path(folder.path().join("sweep.csv")).unwrap();
+    let headings = table.headers().unwrap().clone();
+    let at = |name: &str| headings.iter().position(|heading| heading == name).unwrap();
+    let (record, record_scale, pga) = (at("record"), at("record_scale"), at("PGA[g]"));
+    let rows: Vec<_> = table.records().map(|row| row.unwrap()).collect(); // the reader refuses other numbers of fields
+    assert_eq!(rows.len(), 6);
+    let mut found: Vec<_> = rows.iter().map(|row| (row[record].to_owned(), row[record_scale].to_owned())).collect();
+    found.sort();
+    found.dedup();
+    let expected = [("a, \"b\"/pulse.AT2", "0.5"), ("c/pulse.AT2", "-0.5"), ("pulse.AT2", "1.0")];
+    assert_eq!(found, expected.map(|(name, scale)| (name.to_owned(), scale.to_owned())));
+    for row in &rows {
+        let (own, scale): (f64, f64) = (row[record_scale].parse().unwrap(), row[at("scale")].parse().unwrap());
+        let expected = 0.6 * (std::f64::consts::TAU * 0.12 / 0.5).sin() * (own * scale).abs();
+        assert!((row[pga].parse::<f64>().unwrap() - expected).abs() < 1e-12);
+        assert_eq!(&row[at("structures")], "light, \"slow\"");
+        assert!(row[at("end[s]")].parse::<f64>().unwrap() > 0.5);
+    }
+}
+
+/// The picture has a place of its own.
+#[test]
+fn rows_and_picture_are_two_files() {
+    let folder = sweep(SWEEP);
+    let (code, message) = fail(folder.path(), "sweep sweep.toml -o z.svg");
+    assert_eq!(code, 1);
+    let expected = "error: picture of the sweep: z.svg: something else is written there, too; name another file\n";
+    assert_eq!(message, expected);
+    assert!(!folder.path().join("z.svg").exists());
+}
+
+/// Conditions are in the rows and in their keys; the intensity measure is neither.
+#[test]
+fn conditions_of_a_sweep_are_those_of_its_runs() {
+    let folder = sweep(SWEEP);
+    let (usual, _) = succeed(folder.path(), "sweep sweep.toml");
+    let write = |text: &str| fs::write(folder.path().join("sweep.toml"), text).unwrap();
+    for (line, heading, value) in [
+        ("detail = 'linear'", "detail", "linear"),
+        ("tolerance = 1e-6", "tolerance", "1e-6"),
+        ("duration = 3", "duration[s]", "3.0"),
+        ("initial = { theta_0 = 0.01, u_0 = 1e-3 }", "theta_0[rad]", "0.01"),
+    ] {
+        write(&format!("{line}\n{SWEEP}"));
+        let (_, progress) = succeed(folder.path(), "sweep sweep.toml -o other.csv");
+        assert!(progress.contains(": 0 of 54 runs done"), "{line}: {progress}");
+        let text = read(&folder, "other.csv");
+        assert!(column(&text, heading).iter().all(|found| *found == value), "{line}");
+        if line.starts_with("duration") {
+            let end = |(ending, end): (&&str, &str)| *ending == "overturned" || (*ending == "at time" && end == "3.0");
+            assert!(column(&text, "ending").iter().zip(column(&text, "end[s]")).all(end));
+        }
+        fs::remove_file(folder.path().join("other.csv")).unwrap();
+    }
+    for (measure, unit) in [("PGV", "m/s"), ("S_a", "g")] {
+        write(&format!("intensity = '{measure}'\n{SWEEP}"));
+        let (table, progress) = succeed(folder.path(), "sweep sweep.toml");
+        assert!(progress.starts_with("sweep.csv: 54 of 54 runs done"), "{progress}");
+        assert!(table.contains(&format!("{measure}: from ")) && table.contains(&format!(" to ({unit}) ")), "{table}");
+        assert_ne!(table, usual);
+        let text = read(&folder, "sweep.csv");
+        let intensities = column(&text, &format!("{measure}[{unit}]"));
+        let largest = intensities.iter().map(|x| x.parse::<f64>().unwrap()).fold(0.0, f64::max);
+        assert!(table.contains(&format!("{largest:.5}")[..5]), "{largest}: {table}");
+        assert!(read(&folder, "sweep.svg").contains(&format!("({unit})")));
     }
 }
 
@@ -337,8 +444,13 @@ fn the_headings_are_checked() {
     let (headings, rows) = whole.split_once('\n').unwrap();
     for (content, expected) in [
         (rows, format!("error: sweep.csv: line 1 is a row: put the headings back before it:\n{headings}\n")),
-        ("a,b\n1,2\n", "error: sweep.csv, line 1: \"a,b\" are not the headings of a sweep's rows: name ano".into()),
-        ("# rocking-fmu sweep, build\n", "error: sweep.csv, line 1: \"# rocking-fmu sweep, build\" are not".into()),
+        ("a,b\n1,2\n", "error: sweep.csv: line 1, \"a,b\", is not the headings of a sweep's rows: name ano".into()),
+        ("# rocking-fmu sweep\n", "error: sweep.csv: line 1, \"# rocking-fmu sweep\", is not the headings".into()),
+        (
+            "run,structures,m[kg],scale,PGA[g]\n1,2,3,4,5\n",
+            "error: sweep.csv: the headings in line 1 are those of another version of this program: name another"
+                .into(),
+        ),
     ] {
         fs::write(folder.path().join("sweep.csv"), content).unwrap();
         let (code, message) = fail(folder.path(), "sweep sweep.toml");
@@ -355,7 +467,7 @@ fn a_record_that_two_patterns_name_counts_once() {
     fs::write(folder.path().join("sweep.toml"), twice).unwrap();
     let (again, progress) = succeed(folder.path(), "sweep sweep.toml");
     assert_eq!(again, summary);
-    assert!(progress.starts_with("pulse.AT2 is named twice in records: it counts once\n"), "{progress}");
+    assert!(progress.starts_with("named twice in records and counted once: pulse.AT2\n"), "{progress}");
 }
 
 #[test]
@@ -378,26 +490,37 @@ fn probabilities_and_curve_are_those_of_the_rows() {
     let pga: Vec<f64> = column(&text, "PGA[g]").iter().map(|value| value.parse().unwrap()).collect();
     let table: Vec<Vec<_>> = summary.lines().map(|line| line.split_whitespace().collect()).collect();
     assert_eq!(summary.lines().next(), Some("pier"));
-    assert_eq!(table[1].join(" "), "scale PGA (g) counted overturned theta/alpha_cg >= 0.6");
+    assert_eq!(table[1].join(" "), "PGA: from mean to (g) runs overturned theta/alpha_cg >= 0.6");
     let pier = |scale: usize| (0..36).filter(move |run| run % 6 == scale);
     let mut trials = Vec::new();
     for scale in 0..6 {
         let exceedances = pier(scale).filter(|run| ending[*run] == "overturned").count();
         let large = pier(scale).filter(|run| relative[*run] >= 0.6).count();
-        let parts = [exceedances, large].map(|count| format!("{:.4}", count as f64 / 6.0));
-        assert_eq!(table[2 + scale][2..], ["6", &parts[0], &parts[1]]);
-        trials.push(Trials { intensity: pga[scale], runs: 6, exceedances });
+        let parts = [exceedances, large].map(|count| [format!("{:.4}", count as f64 / 6.0), format!("{count}/6")]);
+        assert_eq!(table[2 + scale][3..], ["6", &parts[0][0], &parts[0][1], &parts[1][0], &parts[1][1]]);
+        let mean: f64 = table[2 + scale][1].parse().unwrap();
+        assert!((mean / pga[scale] - 1.0).abs() < 1e-5);
+        let structures = pier(scale).enumerate().map(|(structure, run)| Trials {
+            group: structure,
+            intensity: pga[scale],
+            runs: 1,
+            exceedances: usize::from(ending[run] == "overturned"),
+        });
+        trials.extend(structures);
     }
     let curve = FragilityCurve::fit(&trials).unwrap();
-    let printed: Vec<f64> = [table[8][3], table[9][1]].map(|value| value.parse().unwrap()).into();
-    assert!((printed[0] / curve.median - 1.0).abs() < 1e-5 && (printed[1] / curve.dispersion - 1.0).abs() < 1e-5);
+    let (low, high) = curve.median_range().unwrap();
+    let printed = [8, 9, 10, 11].map(|line| table[line][table[line].len() - 2].parse::<f64>().unwrap());
+    for (printed, expected) in printed.into_iter().zip([curve.median, low, high, curve.dispersion]) {
+        assert!((printed / expected - 1.0).abs() < 1e-5, "{printed} {expected}");
+    }
     assert!(summary.contains("\noverturned: no curve: always exceeded above 0.598816"), "{summary}");
 
     let picture = read(&folder, "sweep.svg");
-    for text in ["peak ground acceleration (g)", "pier: overturned", "wall: theta/alpha_cg &gt;= 0.6"] {
+    for text in ["peak ground acceleration PGA (g)", "pier: overturned", "wall: theta/alpha_cg &gt;= 0.6"] {
         assert!(picture.contains(text), "{text}");
     }
-    // A point per scale factor and limit, and one in the legend; a line for each of the two curves of the pier.
+    // A dot per scale factor and limit, and one in the legend.
     assert_eq!(picture.matches("<circle").count(), 4 * (6 + 1));
 }
 
@@ -419,11 +542,35 @@ fn a_refused_sweep_says_what_to_change() {
         ("preset = 'mcmanus'\n", "", "structures \"pier\": give either preset or parameters"),
         ("[4, 6, 8], r", "[4], H = [1], r", "structures \"pier\": H and slenderness cannot both vary"),
         ("r = [0.9, 1]", "q = [1]", "structures \"pier\": \"q\" cannot vary: these can: m, m0, H, B, J0, f_fc"),
-        ("r = [0.9, 1]", "r = [0, 1]", "structures \"pier\": r = 0 1 is out of range: it must lie between 0.001"),
-        ("r = [0.9, 1]", "r = []", "structures \"pier\": r is empty: give one or more"),
+        ("r = [0.9, 1]", "r = [0, 1]", "structures \"pier\": r = 0"),
+        ("r = [0.9, 1]", "r = []", "structures \"pier\": r is empty: give one or more\n"),
         ("r = 0.96", "r = 0.96, g = 1.62", "g = 1.62 m/s2 and g = 9.81 m/s2: a sweep has one g"),
         ("\"theta/alpha_cg\"", "drift", "limits: \"drift\" is unknown; these are known: theta, u, delta_t, uplift"),
         ("[0.6]", "[0]", "limits: theta/alpha_cg = 0 is out of range"),
+        ("[0.6]", "[0.6, 0.1, 0.6]", "limits: theta/alpha_cg = 0.6 is there twice: leave one out\n"),
+        ("[0.6]", "[]", "limits: theta/alpha_cg is empty: give one or more\n"),
+        ("'pulse.AT2'", "'zero.csv'", "the ground motion \"zero.csv\" is at rest throughout: leave it out\n"),
+        (
+            "'pulse.AT2'",
+            "'pulse.AT2', { file = 'p*.AT2', scale = 2 }",
+            "pulse.AT2 is named twice in records, with the scales 1 and 2: leave one out\n",
+        ),
+        ("'pulse.AT2'", "{ file = 'pulse.AT2', scale = 0 }", "the ground motion \"pulse.AT2\" is at rest throughout"),
+        (
+            "'pulse.AT2'",
+            "'pulse.AT2', 'copy/pulse.AT2'",
+            "the ground motions \"pulse.AT2\" and \"copy/pulse.AT2\" are the same and would count twice: leave one out\n",
+        ),
+        ("records", "intensity = 'PGD'\nrecords", "intensity = \"PGD\" is unknown; these are known: PGA, PGV, S_a\n"),
+        ("records", "tolerance = 1\nrecords", "tolerance = 1 is out of range: a number between 0 and 1 is needed\n"),
+        ("records", "duration = -1\nrecords", "duration = -1 is out of range: a finite number greater than 0"),
+        ("records", "initial = { theta = 1 }\nrecords", "initial: \"theta\" is unknown; these are known: theta_0, "),
+        ("records", "initial = { theta_0 = 2 }\nrecords", "theta_0 = 2 rad is out of range"),
+        (
+            "m = 125.8",
+            "m = 125.8, weight = 1",
+            "structures \"wall\": weight = 1 kN is given beside m: weight determines",
+        ),
         ("[0.5, 1, 2, 3, 4, 6]", "[1, 2, 1]", "scale = 1 is there twice and would count twice: leave one out"),
         (
             "[0.5, 1, 2, 3, 4, 6]",
@@ -441,7 +588,10 @@ fn a_refused_sweep_says_what_to_change() {
         ("[0.5, 1, 2, 3, 4, 6]", "'all'", "TOML parse error at line 3, column 9"),
     ] {
         assert!(SWEEP.contains(from));
-        let folder = sweep(&SWEEP.replace(from, to));
+        let folder = sweep(&SWEEP.replacen(from, to, 1));
+        fs::write(folder.path().join("zero.csv"), "0,0\n1,0\n").unwrap();
+        fs::create_dir(folder.path().join("copy")).unwrap();
+        fs::copy(folder.path().join("pulse.AT2"), folder.path().join("copy/pulse.AT2")).unwrap();
         let (code, message) = fail(folder.path(), "sweep sweep.toml");
         assert_eq!(code, 1);
         assert!(message.starts_with(&format!("error: sweep in sweep.toml: {expected}")), "{message}");

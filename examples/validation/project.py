@@ -31,7 +31,7 @@ class Project:
 
     def values(self, *arguments) -> dict[str, float]:
         """The named values of a command that prints one on each line."""
-        return {line["name"]: float(line["value"]) for line in self.run(*arguments, "--csv")}
+        return {line["name"]: float(line["value"]) for line in self.run(*arguments, "--format", "csv")}
 
     def columns(self, *arguments) -> dict[str, np.ndarray]:
         """The columns of a command that prints a table, without the units in their headings."""

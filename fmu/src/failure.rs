@@ -7,7 +7,7 @@ use crate::state_machine::Stage;
 use crate::variables::{Causality, DataType, Enumeration, VARIABLES, Variable};
 use rocking::engine::AdvanceError;
 use rocking::parameters::ParameterError;
-use rocking::quantity::OutOfRange;
+use rocking::quantity::{OutOfRange, with_unit};
 use rocking::state::InitialStateError;
 
 /// Why a call is not done. But for [`Failure::Overturned`] and [`AdvanceError::Singular`], nothing has
@@ -117,7 +117,7 @@ pub enum Failure {
     #[error(transparent)]
     InitialState(#[from] InitialStateError),
     /// A setting of the experiment.
-    #[error("{name} = {value} is out of range: it must be {limit}")]
+    #[error("{name} = {} is out of range: it must be {limit}", with_unit(*value, "1"))]
     Experiment {
         /// The argument.
         name: &'static str,
@@ -188,7 +188,7 @@ pub enum Failure {
         time: f64,
     },
     /// A step from the wrong time.
-    #[error("currentCommunicationPoint = {given} s is not where the FMU is, t = {time} s")]
+    #[error("currentCommunicationPoint = {given:?} s is not where the FMU is, t = {time} s")]
     WrongPoint {
         /// What the host passed, s.
         given: f64,
@@ -197,7 +197,7 @@ pub enum Failure {
     },
     /// A step that is none.
     #[error(
-        "communicationStepSize = {step} s is out of range: it must be positive, finite, and large enough to move t = {time} s"
+        "communicationStepSize = {step:?} s is out of range: it must be positive, finite, and large enough to move t = {time} s"
     )]
     BadStep {
         /// What the host passed, s.

@@ -1,7 +1,7 @@
 //! The records that the ground follows: found by name or path, read once, and shared by all instances of the process.
 
 use crate::resources::{self, Archive};
-use rocking::record::{MAX_SAMPLES, Record, RecordError, Unit};
+use rocking::record::{MAX_SAMPLES, Reading, Record, RecordError, Source, Unit};
 use std::error::Error;
 use std::path::{MAIN_SEPARATOR, Path, PathBuf, is_separator};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -55,9 +55,9 @@ pub enum GroundError {
 }
 
 impl GroundRecord {
-    /// Reads it; a CSV file has its accelerations in m/s².
+    /// Reads it; accelerations whose unit its file does not state are in m/s².
     pub fn read(path: &Path) -> Result<GroundRecord, RecordError> {
-        let (record, unit) = Record::read_raw(path, Unit::MetrePerSecondSquared)?;
+        let (record, Source { unit, .. }) = Record::read_raw(path, &Reading::default())?;
         let numbers = record.times().iter().chain(record.acceleration());
         let bytes: Vec<_> = numbers.flat_map(|number| number.to_le_bytes()).chain([unit as u8]).collect();
         let digest = Uuid::new_v5(&Uuid::NAMESPACE_OID, &bytes).into_bytes();

@@ -168,7 +168,7 @@ mod tests {
         assert_eq!(archive.contents, Contents::from(Parameters::EVISON));
 
         fs::write(&file, evison.replace("r = 0.96", "r = 1.5")).unwrap();
-        assert!(refusal().contains("r = 1.5 1 is out of range"), "{}", refusal());
+        assert!(refusal().contains("r = 1.5 is out of range"), "{}", refusal());
         fs::write(&file, evison.replace("r = 0.96", "e = 0.96")).unwrap();
         assert!(refusal().contains("line 7") && refusal().contains("unknown field `e`"), "{}", refusal());
     }

@@ -4,7 +4,6 @@ use crate::ground::GroundRecord;
 use crate::resources::Contents;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::ground_motion::Placement;
-use rocking::record::Unit;
 use rocking::{Detail, GroundMotion, Parameters, State};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -46,10 +45,7 @@ impl Setup {
 
     /// `record` as it acts.
     pub(crate) fn ground_motion<'a>(&self, record: &'a GroundRecord) -> GroundMotion<'a> {
-        let unit = match record.unit {
-            Unit::G => self.parameters.g,
-            Unit::MetrePerSecondSquared => 1.0,
-        };
+        let unit = record.unit.in_m_s2(self.parameters.g);
         GroundMotion { record: &record.record, unit, placement: self.placement }
     }
 }

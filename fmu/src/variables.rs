@@ -223,8 +223,8 @@ pub static VARIABLES: LazyLock<Vec<Variable>> = LazyLock::new(|| {
 });
 
 const RECORD: &str = "ground motion record that the ground follows beside a_g: the name of a file in the archive's \
-                      resources, or the path or URI of one on disk; PEER .AT2 in g, or .csv/.txt of s and m/s2; none \
-                      if empty";
+                      resources, or the path or URI of one on disk; PEER .AT2, ESM, K-NET, COSMOS, CSMIP, or .csv, \
+                      .txt, .dat of s and m/s2 or the unit of the heading; none if empty";
 
 fn input(which: usize) -> Variable {
     let quantity = &LOADS[which];

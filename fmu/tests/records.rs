@@ -8,7 +8,7 @@ mod host;
 use FlexibleRocking::snapshot;
 use approx::assert_relative_eq;
 use host::*;
-use rocking::record::{Record, Unit};
+use rocking::record::{Reading, Record};
 use rocking::run::peaks::{PEAKS, Peaks};
 use rocking::run::{End, Run};
 use rocking::{Detail, LinearLoad, Load, Parameters, Ramp, Structure};
@@ -65,7 +65,7 @@ fn records() -> (TempDir, Vec<PathBuf>) {
 const SCALES: (f64, f64) = (0.4, 1.25);
 
 fn read(path: &Path) -> Record {
-    let record = Record::read(path, Unit::MetrePerSecondSquared, Parameters::EVISON.g).unwrap();
+    let (record, _) = Record::read(path, &Reading::default(), Parameters::EVISON.g).unwrap();
     record.scaled(SCALES.0, SCALES.1)
 }
 
@@ -286,6 +286,25 @@ fn a_state_goes_on_in_the_midst_of_its_record() {
 }
 
 /// What cannot be followed is told when initialization ends, or before if its values are asked for; nothing changes.
+/// A heading decides the unit of a record in the archive, too, in whatever layout.
+#[test]
+fn a_record_is_in_the_unit_that_it_states() {
+    let esm = "EVENT_NAME: PULSE\nSAMPLING_INTERVAL_S: 0.5\nNDATA: 3\nUNITS: cm/s^2\n0\n50\n0\n";
+    for (name, text) in [
+        ("si.csv", "t,a\n0,0\n0.5,0.5\n1,0\n"),
+        ("gal.csv", "time (s),acc (cm/s2)\n0,0\n0.5,50\n1,0\n"),
+        ("mm.dat", "Zeit [s];a [mm/s2]\n0,0;0\n0,5;500\n1,0;0\n"),
+        ("esm.ASC", esm),
+    ] {
+        let host = Host::new();
+        host.write(name, text);
+        assert_eq!(host.set_record(name), OK);
+        assert_eq!((host.setup(None, 0.0, None), host.enter(), host.exit()), (OK, OK, OK), "{:?}", host.log);
+        assert_eq!(host.step(0.0, 0.25), OK);
+        assert!((host.get("a_ground") - 0.25).abs() < 1e-15, "{name}");
+    }
+}
+
 #[test]
 fn a_record_that_cannot_be_followed_is_refused() {
     let host = Host::initializing(&[]);
@@ -302,8 +321,8 @@ fn a_record_that_cannot_be_followed_is_refused() {
         ("folder.csv", is_no_file(&format!("{folder}/folder.csv"))),
         (
             "/etc/passwd",
-            "record: /etc/passwd: the extension tells a record's format: .AT2 for an acceleration record of PEER, .csv \
-             or .txt for lines of time and acceleration; rename the file or convert it"
+            "record: /etc/passwd: neither its content nor its extension is that of a record: PEER .AT2, ESM .ASC, K-NET, \
+             COSMOS, or columns of text in .csv, .txt, .dat; rename the file or convert it"
                 .to_owned(),
         ),
         (

@@ -1,34 +1,39 @@
 //! AT2, the acceleration records of PEER.
 
-use super::{BadLine, MAX_SAMPLES, Record, bad, in_m_s2, number, numbered, quote};
+use super::parsed::{Parsed, Times};
+use super::text::{acceleration, number, numbered, quote, without_blanks};
+use super::unit::Stated;
+use super::{BadLine, Format, MAX_SAMPLES, Reading, Unit, bad, source::decide};
+
+/// Whether `text` is one of these files.
+pub(super) fn is_its(text: &str) -> bool {
+    text.lines().nth(2).is_some_and(|line| check_unit(line).is_ok()) && text.lines().nth(3).is_some_and(is_counts)
+}
+
+fn is_counts(line: &str) -> bool {
+    line.to_uppercase().contains("NPTS")
+}
 
 /// A title on line 2, the unit on line 3, NPTS and DT on line 4, then NPTS accelerations.
-pub(super) fn parse(text: &str, g: f64) -> Result<Record, BadLine> {
+pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     const HEADER_LINES: usize = 4;
     let header: Vec<_> = text.lines().take(HEADER_LINES).collect();
     let &[_, title, unit, counts] = header.as_slice() else {
         return Err(bad(header.len().max(1), "the file ends within the four header lines of an AT2 file"));
     };
     check_unit(unit).map_err(|problem| bad(3, problem))?;
+    let (unit, unit_from) = decide(&Stated::Unit(Unit::G), how.unit).map_err(|problem| bad(3, problem))?;
     let (npts, dt) = npts_and_dt(counts).map_err(|problem| bad(4, problem))?;
 
-    let mut acceleration = Vec::new();
-    let mut last_line = HEADER_LINES;
-    for (line, values) in numbered(text).skip(HEADER_LINES) {
+    let mut parsed = Parsed::new(Format::At2, title.trim(), unit, unit_from, Times::Every(dt));
+    for line in without_blanks(numbered(text).skip(HEADER_LINES)) {
+        let (line, values) = line?;
         for value in values.split_whitespace().flat_map(split_run_together) {
-            if acceleration.len() == npts {
-                return Err(bad(line, format!("{} follows the last of the {npts} values of NPTS", quote(value))));
-            }
-            acceleration.push(in_m_s2(value, g).map_err(|problem| bad(line, problem))?);
-            last_line = line;
+            parsed.add(acceleration(value), line)?;
         }
     }
-    if acceleration.len() < npts {
-        let found = acceleration.len();
-        return Err(bad(last_line, format!("the file ends after {found} of the {npts} values of NPTS")));
-    }
-    let times = (0..npts).map(|i| i as f64 * dt).collect();
-    Ok(Record { title: title.trim().into(), times, acceleration })
+    parsed.check_count("NPTS", npts, how)?;
+    Ok(parsed)
 }
 
 /// `ACCELERATION TIME SERIES IN UNITS OF G` or `ACCELERATION TIME HISTORY IN UNITS OF G. FILTER ...`.
@@ -80,6 +85,7 @@ fn split_run_together(mut word: &str) -> impl Iterator<Item = &str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::record::{Column, Record, Remedy};
     use proptest::prelude::*;
 
     const PACOIMA: &str = "PEER NGA STRONG MOTION DATABASE RECORD\n\
@@ -99,22 +105,26 @@ mod tests {
         ("\tNPTS =\t3 ,\tDT =\t1D-2\tSEC", 3, 0.01),
     ];
 
+    fn read(text: &str, how: &Reading) -> Result<Record, BadLine> {
+        Ok(parse(text, how)?.record(how)?.0)
+    }
+
     fn at2(counts: &str, values: &str) -> Result<Record, BadLine> {
-        parse(&format!("{PACOIMA}{counts}\n{values}"), 10.0)
+        read(&format!("{PACOIMA}{counts}\n{values}"), &Reading::default())
     }
 
     fn at2_problem(counts: &str, values: &str) -> String {
-        let BadLine { line, problem } = at2(counts, values).unwrap_err();
+        let BadLine { line, problem, .. } = at2(counts, values).unwrap_err();
         format!("{line}: {problem}")
     }
 
     #[test]
     fn every_header_variant_gives_the_same_samples() {
         for (counts, npts, dt) in COUNTS {
-            let record = at2(counts, " .1297983E-02\t-.4E-03\r\n1.2d-03  \r\n\r\n \r\n").unwrap();
+            let record = at2(counts, " .1297983E-02\t-.4E-03\n1.2d-03  \n\n \n").unwrap();
             assert_eq!(record.title(), "San Fernando, 2/9/1971, Pacoima Dam (upper left abut), 164");
             assert_eq!(record.times(), (0..npts).map(|i| i as f64 * dt).collect::<Vec<_>>(), "{counts}");
-            assert_eq!(record.acceleration(), [0.1297983e-2 * 10.0, -0.4e-3 * 10.0, 1.2e-3 * 10.0], "{counts}");
+            assert_eq!(record.acceleration(), [0.1297983e-2, -0.4e-3, 1.2e-3], "{counts}");
         }
     }
 
@@ -140,7 +150,7 @@ mod tests {
         }
         let velocity = "a\nb\nVELOCITY TIME SERIES IN UNITS OF CM/S\nNPTS= 2, DT= .01 SEC\n1 2\n";
         assert_eq!(
-            parse(velocity, 10.0),
+            read(velocity, &Reading::default()),
             Err(bad(
                 3,
                 "found \"VELOCITY TIME SERIES IN UNITS OF CM/S\" where an AT2 file states \
@@ -152,11 +162,12 @@ mod tests {
     #[test]
     fn a_refused_at2_file_says_what_was_found_on_which_line() {
         const THREE: &str = "NPTS= 3, DT= .01 SEC";
-        assert_eq!(parse("", 10.0).unwrap_err().line, 1);
-        assert_eq!(parse(PACOIMA, 10.0), Err(bad(3, "the file ends within the four header lines of an AT2 file")));
-        assert_eq!(at2_problem(THREE, ".1 .2\n\n"), "5: the file ends after 2 of the 3 values of NPTS");
-        assert_eq!(at2_problem(THREE, ""), "4: the file ends after 0 of the 3 values of NPTS");
-        assert_eq!(at2_problem(THREE, ".1\n.2\n.3 .4\n"), "7: \".4\" follows the last of the 3 values of NPTS");
+        assert_eq!(read("", &Reading::default()).unwrap_err().line, 1);
+        let ends = "the file ends within the four header lines of an AT2 file";
+        assert_eq!(read(PACOIMA, &Reading::default()), Err(bad(3, ends)));
+        assert_eq!(at2_problem(THREE, ".1 .2\n\n"), "5: NPTS states 3 samples, and the file has 2");
+        assert_eq!(at2_problem(THREE, ""), "1: NPTS states 3 samples, and the file has 0");
+        assert_eq!(at2_problem(THREE, ".1\n.2\n.3 .4\n"), "7: NPTS states 3 samples, and the file has 4");
         for not_a_number in ["x", "1.2.3", "********", "nan", "-inf", "1e999", ".1-.2", "1E-", "1e308", "ÿ"] {
             assert_eq!(
                 at2_problem(THREE, &format!(".1\n {not_a_number}\n.3\n")),
@@ -180,6 +191,35 @@ mod tests {
             at2_problem(THREE, &"9".repeat(400)),
             format!("5: the acceleration \"{}\"... is not a number", "9".repeat(40))
         );
+    }
+
+    /// With both numbers, and with a way out.
+    #[test]
+    fn the_samples_that_are_there_can_be_taken() {
+        let how = Reading { ignores_count: true, ..Reading::default() };
+        for (values, found) in [(".1 .2", 2), (".1 .2 .3 .4", 4)] {
+            let text = format!("{PACOIMA}NPTS= 3, DT= .01 SEC\n{values}\n");
+            assert_eq!(parse(&text, &Reading::default()).unwrap_err().remedy, Some(Remedy::IgnoreCount));
+            let parsed = parse(&text, &how).unwrap();
+            assert_eq!(parsed.source.remarks, [format!("NPTS states 3 samples, and the file has {found}")]);
+            assert_eq!(parsed.record(&how).unwrap().0.times().len(), found);
+        }
+    }
+
+    #[test]
+    fn what_contradicts_the_file_is_refused() {
+        let text = format!("{PACOIMA}NPTS= 3, DT= .01 SEC\n.1 .2 .3\n");
+        let problem = |how: &Reading| read(&text, how).unwrap_err().problem;
+        let si = Reading { unit: Some(Unit::MetrePerSecondSquared), ..Reading::default() };
+        assert_eq!(problem(&si), "the file states accelerations in g, and m/s2 is asked for");
+        let other_step = Reading { dt: Some(0.02), ..Reading::default() };
+        assert_eq!(problem(&other_step), "the file states a sample every 0.01 s, and 0.02 s is asked for");
+        let column = Reading { column: Some(Column::Number(2)), ..Reading::default() };
+        assert_eq!(problem(&column), "column 2 is asked for, and a file of PEER AT2 has none");
+        let same = Reading { unit: Some(Unit::G), dt: Some(0.01), ..Reading::default() };
+        assert!(read(&text, &same).is_ok());
+        let gap = format!("{PACOIMA}NPTS= 3, DT= .01 SEC\n.1 .2\n\n.3\n");
+        assert_eq!(read(&gap, &same).unwrap_err().line, 6);
     }
 
     #[test]
@@ -206,7 +246,6 @@ mod tests {
             columns in 1..9_usize,
             dt in 1e-4..1.0_f64,
             variant in 0..3_usize,
-            line_end in prop::sample::select(&["\n", "\r\n"][..]),
         ) {
             let npts = values.len();
             let counts = match variant {
@@ -216,8 +255,8 @@ mod tests {
             };
             let words: Vec<_> = values.iter().map(|&(value, style)| written(value, style)).collect();
             let lines: Vec<_> = words.chunks(columns).map(|line| line.join("  ")).collect();
-            let text = format!("{PACOIMA}{counts}\n{}\n", lines.join("\n")).replace('\n', line_end);
-            let record = parse(&text, 1.0).unwrap();
+            let text = format!("{PACOIMA}{counts}\n{}\n", lines.join("\n"));
+            let record = read(&text, &Reading::default()).unwrap();
             prop_assert_eq!(record.times(), (0..npts).map(|i| i as f64 * dt).collect::<Vec<_>>());
             prop_assert_eq!(record.acceleration(), values.iter().map(|&(value, _)| value).collect::<Vec<_>>());
         }
@@ -228,16 +267,8 @@ mod tests {
             let words: Vec<_> = values.iter().map(|value| format!("{value:14.7e}")).collect();
             let text = format!("{PACOIMA}NPTS= {}, DT= .01 SEC\n{}\n", words.len(), words.join("\n"));
             let cut = (cut * text.len() as f64) as usize;
-            let record = parse(&text[..cut], 9.81);
+            let record = read(&text[..cut], &Reading::default());
             prop_assert!(record.is_err() || cut > text.trim_end().rfind('\n').unwrap());
-        }
-
-        #[test]
-        fn no_bytes_panic(bytes in prop::collection::vec(any::<u8>(), 0..200), values in "[0-9eEdD+. ,;\n-]{0,80}") {
-            let text = String::from_utf8_lossy(&bytes);
-            let _ = parse(&text, 9.81);
-            let _ = at2("NPTS= 5, DT= .01 SEC", &text);
-            let _ = at2("NPTS= 5, DT= .01 SEC", &values);
         }
     }
 }

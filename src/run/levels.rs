@@ -153,6 +153,12 @@ impl Verdict {
 }
 
 impl Comparison {
+    /// Steps and evaluations of the level `auto`, which others are measured by, if it can do the run.
+    pub fn cost_of_auto(&self) -> Option<f64> {
+        let auto = self.verdicts.iter().find(|verdict| verdict.response.detail == Detail::Auto);
+        auto.map(|auto| auto.response.cost() as f64)
+    }
+
     /// The cheapest level whose errors by every one of `criteria` are at most `within`; of those of about the same cost
     /// the one of the fewest equations.
     pub fn recommended(&self, within: f64, criteria: &[Criterion]) -> Option<&Verdict> {

@@ -10,8 +10,13 @@ use std::fmt;
 pub enum Outcome {
     /// It was followed to its end.
     Ended(Summary),
-    /// It could not be continued, for this reason: nothing is known of the structure.
-    Failed(String),
+    /// It could not be continued: nothing is known of the structure.
+    Failed {
+        /// From this instant on, s.
+        time: f64,
+        /// Why.
+        reason: String,
+    },
 }
 
 /// A run that was followed to its end.
@@ -80,7 +85,10 @@ impl Outcome {
     pub fn of(run: &Run) -> Outcome {
         let (peaks, finish) = match run.peaks() {
             Ok(found) => found,
-            Err(error) => return Outcome::Failed(error.to_string()),
+            Err(error) => {
+                let time = error.time().unwrap_or(run.ground.start());
+                return Outcome::Failed { time, reason: error.to_string() };
+            }
         };
         let mut magnitudes = [peaks.theta().magnitude / run.structure.tan_alpha_cg.atan(); MEASURES.len()];
         for (magnitude, peaking) in magnitudes.iter_mut().zip(&PEAKS) {
@@ -151,7 +159,7 @@ mod tests {
             (ended(Ending::Overturned, 0.0), Some(true), Some(true)),
             (ended(Ending::StillRocking, 0.2), None, Some(true)),
             (ended(Ending::StillRocking, 0.05), None, None),
-            (Outcome::Failed("chatter".into()), None, None),
+            (Outcome::Failed { time: 1.0, reason: "chatter".into() }, None, None),
         ] {
             assert_eq!(outcome.exceeds(&Limit::Overturning), overturned, "{outcome:?}");
             assert_eq!(outcome.exceeds(&limit), exceeded, "{outcome:?}");

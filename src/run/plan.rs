@@ -1,10 +1,18 @@
 //! Many runs: every structure of some populations under every ground motion at every scale factor.
 
-use super::Run;
 use super::outcome::Outcome;
+use super::{End, Run};
+use crate::engine::DEFAULT_TOLERANCE;
+use crate::intensity::{IntensityMeasure, peak_velocity};
 use crate::parameters::{MAX_SLENDERNESS, PARAMETERS, ParameterError};
+use crate::quantity::with_unit;
 use crate::record::Record;
-use crate::{Parameters, Quantity, Structure};
+use crate::response_spectrum::spectral_acceleration;
+use crate::state::InitialStateError;
+use crate::{Detail, Engine, Parameters, Quantity, State, Structure};
+use serde::Serialize;
+use std::collections::{HashMap, HashSet};
+use std::sync::OnceLock;
 
 /// More runs than this are refused: thousands of runs a second take hours for them.
 pub const MAX_RUNS: usize = 10_000_000;
@@ -46,8 +54,36 @@ pub struct Population {
 pub struct NamedRecord {
     name: String,
     record: Record,
-    /// Peak ground acceleration, m/s².
+    /// Its own factor on the acceleration.
+    scale: f64,
+    /// Peak ground acceleration of the record, m/s².
     pga: f64,
+    /// Peak ground velocity of the record, m/s.
+    pgv: f64,
+}
+
+/// What all runs of a plan have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Conditions {
+    /// State at the first sample.
+    pub initial: State,
+    /// Level of detail.
+    pub detail: Detail,
+    /// Relative tolerance of the results.
+    pub tolerance: f64,
+    /// Time from the first sample to the end of a run, s; without it a run goes on until nothing more can happen.
+    pub duration: Option<f64>,
+}
+
+impl Default for Conditions {
+    fn default() -> Conditions {
+        Conditions {
+            initial: State::default(),
+            detail: Detail::default(),
+            tolerance: DEFAULT_TOLERANCE,
+            duration: None,
+        }
+    }
 }
 
 /// Populations × ground motions × scale factors.
@@ -56,6 +92,9 @@ pub struct Plan {
     populations: Vec<Population>,
     motions: Vec<NamedRecord>,
     scales: Vec<f64>,
+    conditions: Conditions,
+    /// Of every structure under every ground motion before it is scaled, m/s²: worked out when asked for.
+    spectral: Vec<OnceLock<f64>>,
 }
 
 /// One run of a plan.
@@ -69,8 +108,14 @@ pub struct Case<'a> {
     pub structure: Structure,
     /// The ground motion before it is scaled.
     pub motion: &'a NamedRecord,
-    /// Factor on its acceleration.
+    /// Factor on its acceleration, beside its own.
     pub scale: f64,
+    /// What it has in common with the others.
+    pub conditions: &'a Conditions,
+    /// Runs of different groups do not depend on each other: the ground motion's number, or where there is one alone the
+    /// structure's.
+    pub group: usize,
+    spectral: &'a OnceLock<f64>,
 }
 
 /// Why there is no plan.
@@ -90,9 +135,30 @@ pub enum PlanError {
     /// Something would be counted twice.
     #[error("{0} is there twice and would count twice: leave one out")]
     Repeated(String),
-    /// Two populations cannot be told apart.
-    #[error("two populations have the name {0:?}: rename one")]
-    SameName(String),
+    /// Two populations, or two ground motions, cannot be told apart.
+    #[error("two {kind} have the name {name:?}: rename one")]
+    SameName {
+        /// What they are.
+        kind: &'static str,
+        /// What both are called.
+        name: String,
+    },
+    /// Two ground motions are the same.
+    #[error("the ground motions {0:?} and {1:?} are the same and would count twice: leave one out")]
+    SameMotion(String, String),
+    /// The runs cannot start.
+    #[error(transparent)]
+    Initial(#[from] InitialStateError),
+    /// A number that all runs have in common is out of range.
+    #[error("{name} = {} is out of range: {needed} is needed", with_unit(*value, "1"))]
+    Condition {
+        /// What it is called.
+        name: &'static str,
+        /// The refused value.
+        value: f64,
+        /// What would be accepted.
+        needed: &'static str,
+    },
     /// No parameter is called that.
     #[error("{name:?} cannot vary: these can: {}", AXES.map(|axis| axis.name).join(", "))]
     Unknown {
@@ -106,15 +172,15 @@ pub enum PlanError {
     #[error("scale = 0 leaves no ground motion: leave it out")]
     NoScale,
     /// A ground motion without motion has no intensity.
-    #[error("{0}: the ground acceleration is 0 throughout")]
+    #[error("the ground motion {0:?} is at rest throughout: leave it out")]
     NoMotion(String),
     /// A structure is impossible.
-    #[error("structures {population:?}: {source}")]
+    #[error("structures {population:?}: {problem}")]
     Structure {
         /// Its population.
         population: String,
         /// What is wrong with it.
-        source: ParameterError,
+        problem: ParameterError,
     },
     /// More than [`MAX_RUNS`].
     #[error("{structures} structures x {motions} ground motions x {scales} scale factors: more than {MAX_RUNS} runs")]
@@ -173,15 +239,23 @@ impl Population {
     fn structure(&self, member: usize) -> Result<Structure, PlanError> {
         let mut parameters = self.base;
         self.values(member).for_each(|(axis, value)| (axis.set)(&mut parameters, value));
-        Structure::new(parameters).map_err(|source| PlanError::Structure { population: self.name.clone(), source })
+        let named = |problem| PlanError::Structure { population: self.name.clone(), problem };
+        Structure::new(parameters).map_err(named)
     }
 }
 
 impl NamedRecord {
-    /// The ground motion `record`, which must not be at rest throughout.
-    pub fn new(name: impl Into<String>, record: Record) -> Result<NamedRecord, PlanError> {
+    /// The ground motion `record`, which must not be at rest throughout, with its accelerations times `scale`.
+    pub fn new(name: impl Into<String>, record: Record, scale: f64) -> Result<NamedRecord, PlanError> {
         let (name, pga) = (name.into(), record.pga());
-        if pga > 0.0 { Ok(NamedRecord { name, record, pga }) } else { Err(PlanError::NoMotion(name)) }
+        if pga == 0.0 || scale == 0.0 {
+            return Err(PlanError::NoMotion(name));
+        }
+        if !scale.is_finite() {
+            return Err(PlanError::NotFinite { name: format!("scale of {name:?}"), value: scale });
+        }
+        let pgv = peak_velocity(&record);
+        Ok(NamedRecord { name, record, scale, pga, pgv })
     }
 
     /// What it is called.
@@ -189,9 +263,38 @@ impl NamedRecord {
         &self.name
     }
 
-    /// Its samples.
+    /// Its samples before they are scaled.
     pub fn record(&self) -> &Record {
         &self.record
+    }
+
+    /// Its own factor on the acceleration.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// Whether `other` is the same motion under whatever name.
+    fn is_same(&self, other: &NamedRecord) -> bool {
+        let (one, two) = (&self.record, &other.record);
+        self.scale == other.scale && one.acceleration() == two.acceleration() && one.times() == two.times()
+    }
+}
+
+impl Conditions {
+    fn check(&self, structure: &Structure) -> Result<(), PlanError> {
+        let Conditions { initial, detail, tolerance, duration } = *self;
+        let refused = |name, value, needed| Err(PlanError::Condition { name, value, needed });
+        if !(tolerance > 0.0 && tolerance < 1.0) {
+            return refused("tolerance", tolerance, "a number between 0 and 1");
+        }
+        match duration {
+            Some(duration) if !(duration > 0.0 && duration.is_finite()) => {
+                return refused("duration", duration, "a finite number greater than 0");
+            }
+            _ => {}
+        }
+        Engine::with_detail(*structure, initial, 0.0, tolerance, detail)?;
+        Ok(())
     }
 }
 
@@ -207,17 +310,11 @@ impl Plan {
                 return Err(PlanError::Empty(name.into()));
             }
         }
-        for (i, one) in populations.iter().enumerate() {
-            if populations[..i].iter().any(|other| other.name == one.name) {
-                return Err(PlanError::SameName(one.name.clone()));
-            }
-        }
-        for (i, one) in motions.iter().enumerate() {
-            if motions[..i].iter().any(|other| other.name == one.name && other.record == one.record) {
-                return Err(PlanError::Repeated(format!("the ground motion {:?}", one.name)));
-            }
-        }
-        let plan = Plan { populations, motions, scales };
+        check_names("populations", populations.iter().map(Population::name))?;
+        check_names("ground motions", motions.iter().map(NamedRecord::name))?;
+        check_motions(&motions)?;
+        let (conditions, spectral) = (Conditions::default(), Vec::new());
+        let mut plan = Plan { populations, motions, scales, conditions, spectral };
         let [structures, motions, scales] = plan.size();
         if structures.saturating_mul(motions).saturating_mul(scales) > MAX_RUNS {
             return Err(PlanError::TooMany { structures, motions, scales });
@@ -225,7 +322,14 @@ impl Plan {
         for population in &plan.populations {
             (0..population.len()).try_for_each(|member| population.structure(member).map(|_| ()))?;
         }
+        plan.spectral = vec![OnceLock::new(); structures * motions];
         Ok(plan)
+    }
+
+    /// The same runs under other `conditions`.
+    pub fn under(self, conditions: Conditions) -> Result<Plan, PlanError> {
+        conditions.check(&self.case(0).structure)?;
+        Ok(Plan { conditions, ..self })
     }
 
     /// Numbers of structures, ground motions and scale factors.
@@ -267,7 +371,9 @@ impl Plan {
         });
         let population = population.expect("the plan has such a run");
         let structure = population.structure(member).expect("the plan has been checked");
-        Case { population, member, structure, motion, scale }
+        let group = if self.motions.len() > 1 { rest % self.motions.len() } else { rest };
+        let (conditions, spectral) = (&self.conditions, &self.spectral[rest]);
+        Case { population, member, structure, motion, scale, conditions, group, spectral }
     }
 
     /// Every run, in this order.
@@ -279,13 +385,29 @@ impl Plan {
 impl Case<'_> {
     /// Does it.
     pub fn outcome(&self) -> Outcome {
-        let ground = self.motion.record.clone().scaled(1.0, self.scale);
-        Outcome::of(&Run::new(self.structure, &ground))
+        let ground = self.motion.record.clone().scaled(1.0, self.factor());
+        let &Conditions { initial, detail, tolerance, duration } = self.conditions;
+        let end = duration.map_or(End::AtRest, |duration| End::At(ground.start() + duration));
+        Outcome::of(&Run { initial, detail, tolerance, end, ..Run::new(self.structure, &ground) })
     }
 
-    /// Peak ground acceleration, g.
-    pub fn intensity(&self) -> f64 {
-        self.motion.pga * self.scale.abs() / self.structure.parameters().g
+    /// How strong the ground motion is, in the unit of `measure`.
+    pub fn intensity(&self, measure: IntensityMeasure) -> f64 {
+        let &Parameters { g, f_fc, zeta_fc, .. } = self.structure.parameters();
+        let unscaled = match measure {
+            IntensityMeasure::Pga => self.motion.pga / g,
+            IntensityMeasure::Pgv => self.motion.pgv,
+            IntensityMeasure::Sa => {
+                let of_record = || spectral_acceleration(&self.motion.record, f_fc.recip(), zeta_fc);
+                self.spectral.get_or_init(of_record) / g
+            }
+        };
+        unscaled * self.factor().abs()
+    }
+
+    /// What the record's accelerations are multiplied by.
+    fn factor(&self) -> f64 {
+        self.motion.scale * self.scale
     }
 
     /// The structure's number on `axis`, one of [`AXES`], to the bit as it was given.
@@ -293,6 +415,28 @@ impl Case<'_> {
         let varying = self.population.values(self.member).find(|(varying, _)| varying.name == axis.name);
         varying.map_or_else(|| (axis.get)(self.structure.parameters()), |(_, value)| value)
     }
+}
+
+/// Each name once.
+fn check_names<'a>(kind: &'static str, names: impl Iterator<Item = &'a str>) -> Result<(), PlanError> {
+    let mut seen = HashSet::new();
+    match { names }.find(|name| !seen.insert(*name)) {
+        Some(name) => Err(PlanError::SameName { kind, name: name.into() }),
+        None => Ok(()),
+    }
+}
+
+/// Each ground motion once; equal ones have equal peaks.
+fn check_motions(motions: &[NamedRecord]) -> Result<(), PlanError> {
+    let mut by_peaks: HashMap<_, Vec<&NamedRecord>> = HashMap::new();
+    for one in motions {
+        let alike = by_peaks.entry([one.pga, one.pgv].map(f64::to_bits)).or_default();
+        if let Some(other) = alike.iter().find(|other| other.is_same(one)) {
+            return Err(PlanError::SameMotion(other.name.clone(), one.name.clone()));
+        }
+        alike.push(one);
+    }
+    Ok(())
 }
 
 /// Finite numbers, one or more, each of them once.
@@ -303,7 +447,7 @@ fn check_list(name: &str, values: &[f64]) -> Result<(), PlanError> {
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     match sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => Err(PlanError::Repeated(format!("{name} = {}", pair[0]))),
+        Some(pair) => Err(PlanError::Repeated(format!("{name} = {}", with_unit(pair[0], "1")))),
         None if values.is_empty() => Err(PlanError::Empty(name.into())),
         None => Ok(()),
     }
@@ -321,7 +465,7 @@ mod tests {
     fn pulse() -> NamedRecord {
         let times: Vec<_> = (0..=50).map(|i| f64::from(i) * 0.01).collect();
         let acceleration = times.iter().map(|time| 0.6 * 9.81 * (TAU * time / 0.5).sin()).collect();
-        NamedRecord::new("pulse", Record::from_samples("", times, acceleration).unwrap()).unwrap()
+        NamedRecord::new("pulse", Record::from_samples("", times, acceleration).unwrap(), 1.0).unwrap()
     }
 
     fn only(base: Parameters, scale: f64) -> Outcome {
@@ -359,11 +503,13 @@ mod tests {
 
     #[test]
     fn a_run_that_cannot_be_continued_has_an_outcome() {
-        let Outcome::Failed(reason) = only(Parameters { m0: 0.0, J0: 0.0, f_fc: 0.2, ..Parameters::MCMANUS }, 6.0)
+        let Outcome::Failed { time, reason } =
+            only(Parameters { m0: 0.0, J0: 0.0, f_fc: 0.2, ..Parameters::MCMANUS }, 6.0)
         else {
             panic!()
         };
-        assert!(reason.contains("cannot be continued beyond t = 0.51"), "{reason}");
+        assert!(reason.contains(&format!("cannot be continued beyond t = {time} s")), "{reason}");
+        assert!((time - 0.51).abs() < 0.01, "{time}");
     }
 
     #[test]
@@ -371,8 +517,8 @@ mod tests {
         let piers = Population::new("piers", Parameters::MCMANUS).vary("slenderness", vec![4.0, 6.3]).unwrap();
         let piers = piers.vary("B", vec![0.3, 0.2, 0.1]).unwrap();
         let wall = Population::new("wall", Parameters::EVISON);
-        let scaled = NamedRecord::new("half", pulse().record.scaled(1.0, 0.5)).unwrap();
-        let plan = Plan::new(vec![piers, wall], vec![pulse(), scaled], vec![1.0, -2.0]).unwrap();
+        let halved = NamedRecord::new("half", pulse().record, 0.5).unwrap();
+        let plan = Plan::new(vec![piers, wall], vec![pulse(), halved], vec![1.0, -2.0]).unwrap();
         assert_eq!((plan.size(), plan.len()), ([7, 2, 2], 28));
         let [axis_B, slenderness] = [AXES[3], AXES[10]];
         let cases: Vec<_> = plan.cases().collect();
@@ -384,7 +530,8 @@ mod tests {
         assert_eq!(column(|case, [_, slenderness]| case.value(slenderness), 4)[..3], [4.0, 6.3, 4.0]);
         assert_eq!(column(|case, _| case.structure.parameters().H, 4)[1], 6.3 * 0.3);
         let pga = 0.6 * (TAU * 0.12 / 0.5).sin();
-        for (intensity, expected) in column(|case, _| case.intensity(), 1).into_iter().zip([pga, 2.0 * pga, 0.5 * pga])
+        for (intensity, expected) in
+            column(|case, _| case.intensity(IntensityMeasure::Pga), 1).into_iter().zip([pga, 2.0 * pga, 0.5 * pga])
         {
             assert!((intensity - expected).abs() < 1e-15);
         }
@@ -392,12 +539,56 @@ mod tests {
         assert_eq!(cases[27].population.name(), "wall");
     }
 
+    /// Against the run itself: the same conditions, the same bits.
+    #[test]
+    fn conditions_are_those_of_every_run() {
+        let initial = State { theta: 0.05, ..State::default() };
+        let conditions = Conditions { initial, detail: Detail::Linear, tolerance: 1e-6, duration: Some(0.7) };
+        let pier = Population::new("pier", Parameters::MCMANUS);
+        let plan = Plan::new(vec![pier], vec![pulse()], vec![0.5]).unwrap().under(conditions).unwrap();
+        let ground = pulse().record.scaled(1.0, 0.5);
+        let Conditions { detail, tolerance, .. } = conditions;
+        let usual = Run::new(Structure::new(Parameters::MCMANUS).unwrap(), &ground);
+        let run = Run { initial, detail, tolerance, end: End::At(0.7), ..usual.clone() };
+        assert_eq!(plan.case(0).outcome(), Outcome::of(&run));
+        let Outcome::Ended(Summary { ending, end, .. }) = plan.case(0).outcome() else { panic!() };
+        assert_eq!((ending, end), (Ending::AtTime, 0.7));
+        assert_ne!(plan.case(0).outcome(), Outcome::of(&Run { detail: Detail::Auto, ..run }));
+        assert_ne!(plan.case(0).outcome(), Outcome::of(&usual));
+    }
+
+    /// A record with a factor of its own is the record with its samples multiplied; measures grow with it.
+    #[test]
+    fn a_record_may_have_a_scale_of_its_own() {
+        let piers = || Population::new("piers", Parameters::MCMANUS).vary("f_fc", vec![2.0, 5.0]).unwrap();
+        let own = NamedRecord::new("own", pulse().record, -0.5).unwrap();
+        let multiplied = NamedRecord::new("multiplied", pulse().record.scaled(1.0, -0.5), 1.0).unwrap();
+        let plan = Plan::new(vec![piers()], vec![pulse(), own, multiplied], vec![2.0]).unwrap();
+        for structure in [0, 3] {
+            let [whole, own, multiplied] = [0, 1, 2].map(|motion| plan.case(structure + motion));
+            assert_eq!(own.outcome(), multiplied.outcome());
+            for measure in IntensityMeasure::ALL {
+                let [whole, own, multiplied] = [&whole, &own, &multiplied].map(|case| case.intensity(measure));
+                for expected in [multiplied, 0.5 * whole] {
+                    assert!((own - expected).abs() <= 1e-14 * own, "{measure:?}: {own} {expected}");
+                }
+            }
+        }
+        let [f_2, f_5] = [0, 3].map(|index| plan.case(index).intensity(IntensityMeasure::Sa));
+        let expected = |T| 2.0 * spectral_acceleration(&pulse().record, T, 0.02) / 9.81;
+        assert_eq!([f_2, f_5], [0.5, 0.2].map(expected));
+        assert_eq!([0, 1, 2, 3, 4, 5].map(|index| plan.case(index).group), [0, 1, 2, 0, 1, 2]);
+        let alone = Plan::new(vec![piers()], vec![pulse()], vec![1.0, 2.0]).unwrap();
+        assert_eq!([0, 1, 2, 3].map(|index| alone.case(index).group), [0, 0, 1, 1]);
+    }
+
     #[test]
     fn trials_are_counted_from_outcomes() {
         let scales = [0.1, 1.25, 3.0];
         let piers = Population::new("piers", Parameters::MCMANUS).vary("f_fc", vec![3.0, 4.0, 5.0]).unwrap();
         let plan = Plan::new(vec![piers], vec![pulse()], scales.into()).unwrap();
-        let overturned = |case: Case| (case.intensity(), case.outcome().exceeds(&Limit::Overturning));
+        let overturned =
+            |case: Case| (0, case.intensity(IntensityMeasure::Pga), case.outcome().exceeds(&Limit::Overturning));
         let trials = Trials::count(plan.cases().map(overturned));
         let expected = scales.map(|scale| {
             let ground = pulse().record.scaled(1.0, scale);
@@ -428,7 +619,12 @@ mod tests {
         );
         assert_eq!(
             plan(vec![pier()], vec![pulse(), pulse()], vec![1.0]),
-            "the ground motion \"pulse\" is there twice and would count twice: leave one out"
+            "two ground motions have the name \"pulse\": rename one"
+        );
+        let copy = NamedRecord { name: "copy".into(), ..pulse() };
+        assert_eq!(
+            plan(vec![pier()], vec![pulse(), copy], vec![1.0]),
+            "the ground motions \"pulse\" and \"copy\" are the same and would count twice: leave one out"
         );
         let slender = pier().vary("slenderness", vec![1.0, 2000.0]).unwrap();
         assert!(plan(vec![slender], vec![pulse()], vec![1.0]).starts_with("structures \"pier\": H/B = 2000"));
@@ -448,7 +644,29 @@ mod tests {
         assert_eq!(vary("H", vec![4.0]), "H is there twice and would count twice: leave one out");
         assert_eq!(vary("r", vec![]), "r is empty: give one or more");
         assert_eq!(vary("m0", vec![0.0, -0.0]), "m0 = -0 is there twice and would count twice: leave one out");
-        let at_rest = NamedRecord::new("rest", Record::at_rest(1.0)).unwrap_err();
-        assert_eq!(at_rest.to_string(), "rest: the ground acceleration is 0 throughout");
+        let refused = |record, scale| NamedRecord::new("rest", record, scale).unwrap_err().to_string();
+        for (record, scale) in [(Record::at_rest(1.0), 1.0), (pulse().record, 0.0)] {
+            assert_eq!(refused(record, scale), "the ground motion \"rest\" is at rest throughout: leave it out");
+        }
+        assert_eq!(refused(pulse().record, f64::NAN), "scale of \"rest\" = NaN is not a finite number");
+
+        let under = |conditions| {
+            let plan = Plan::new(vec![pier()], vec![pulse()], vec![1.0]).unwrap();
+            plan.under(conditions).unwrap_err().to_string()
+        };
+        let usual = Conditions::default();
+        assert_eq!(
+            under(Conditions { tolerance: 1.0, ..usual }),
+            "tolerance = 1 is out of range: a number between 0 and 1 is needed"
+        );
+        assert_eq!(
+            under(Conditions { duration: Some(0.0), ..usual }),
+            "duration = 0 is out of range: a finite number greater than 0 is needed"
+        );
+        let turned = State { theta: 0.1, ..State::default() };
+        assert!(
+            under(Conditions { initial: turned, detail: Detail::FixedBase, ..usual })
+                .starts_with("theta_0 = 0.1 rad contradicts detail = fixed_base")
+        );
     }
 }

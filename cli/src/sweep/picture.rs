@@ -1,67 +1,165 @@
-//! The picture of a sweep: probabilities as points, fragility curves as lines.
-use super::fragilities::{Fragility, Population};
+//! The picture of a sweep: the parts of the runs that exceed a limit as dots, fragility curves as lines in their bands,
+//! both against the intensity of the single run.
+use crate::picture::{
+    Area, Picture, SMALL, TITLE, axes, chart, colour, line, px, rounded, titled, words, words_before,
+};
+use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
+use rocking::{
+    fragility::FragilityCurve,
+    intensity::IntensityMeasure,
+    run::exceedances::{Exceedances, Fragility},
+};
 
-const SIZE: (u32, u32) = (1200, 720);
-const FONT: (&str, u32) = ("sans-serif", 20);
+const WIDTH: u32 = 860;
+const PLOT: u32 = 440;
+
+/// Height of a line of the legend, and room around all of it, pixels.
+const LEGEND_LINE: f64 = 20.0;
+const LEGEND_MARGIN: f64 = 14.0;
+
+/// Where the columns of the legend are, pixels: line and dot, name, and the ends of median, its range, dispersion.
+const COLUMNS: [f64; 5] = [40.0, 84.0, 560.0, 700.0, 800.0];
+
+/// A median that is not much further away than the strongest ground motion is shown.
+const BEYOND: f64 = 3.0;
+
 const POINTS_OF_A_CURVE: u32 = 300;
 
-/// Told apart by all eyes (Okabe and Ito).
-const COLORS: [RGBColor; 7] = [
-    RGBColor(0, 114, 178),
-    RGBColor(213, 94, 0),
-    RGBColor(0, 158, 115),
-    RGBColor(204, 121, 167),
-    RGBColor(230, 159, 0),
-    RGBColor(86, 180, 233),
-    RGBColor(0, 0, 0),
-];
+/// Radius of the dot of the bin with the most runs, pixels; areas are in proportion to their numbers.
+const LARGEST_DOT: f64 = 5.0;
 
-/// Draws `populations` as SVG.
-pub fn draw(populations: &[Population]) -> anyhow::Result<String> {
-    let mut svg = String::new();
-    let highest =
-        populations.iter().flat_map(|population| &population.stripes).fold(0.0, |most: f64, at| most.max(at.pga));
-    let area = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
-    area.fill(&WHITE)?;
-    let mut chart = ChartBuilder::on(&area)
-        .margin(16)
-        .x_label_area_size(60)
-        .y_label_area_size(72)
-        .build_cartesian_2d(0.0..highest, 0.0..1.0)?;
-    chart
-        .configure_mesh()
-        .light_line_style(TRANSPARENT)
-        .bold_line_style(BLACK.mix(0.1))
-        .x_desc("peak ground acceleration (g)")
-        .y_desc("probability")
-        .label_style(FONT)
-        .draw()?;
-    let fragilities =
-        populations.iter().flat_map(|population| population.fragilities.iter().map(move |f| (population, f)));
-    for (i, (population, Fragility { limit, probabilities, curve })) in fragilities.enumerate() {
-        let color = COLORS[i % COLORS.len()];
-        let points = population.stripes.iter().zip(probabilities).map(|(stripe, part)| (stripe.pga, *part));
-        let points = points.filter_map(|(pga, part)| Some((pga, part?)));
-        let circles = points.map(|point| Circle::new(point, 3, color.filled()));
-        chart
-            .draw_series(circles)?
-            .label(format!("{}: {limit}", population.name))
-            .legend(move |(x, y)| Circle::new((x + 10, y), 5, color.filled()));
-        if let Ok(curve) = curve {
-            let pga = (1..=POINTS_OF_A_CURVE).map(|j| highest * f64::from(j) / f64::from(POINTS_OF_A_CURVE));
-            let line = pga.map(|pga| (pga, curve.probability(pga)));
-            chart.draw_series(LineSeries::new(line, color.stroke_width(2)))?;
+const COLORS: [RGBColor; 7] =
+    [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::PURPLE, colour::ORANGE, colour::SKY, colour::INK];
+
+type Plot<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// Draws `populations`, their intensities in `measure`.
+pub fn draw(picture: Picture, populations: &[Exceedances], measure: IntensityMeasure) -> anyhow::Result<()> {
+    let all = || populations.iter().flat_map(|of| of.fragilities.iter().map(move |fragility| (of, fragility)));
+    let legend = 2.0 * LEGEND_MARGIN + LEGEND_LINE * (all().count() + 3) as f64;
+    let runs = || populations.iter().flat_map(|of| &of.bins).map(|bin| bin.runs);
+    let (least, most) = (runs().min().unwrap_or(0), runs().max().unwrap_or(0));
+    let about =
+        "dots: part of the runs of about the same intensity; lines: lognormal curves through all runs, one by one";
+    picture.draw((WIDTH, TITLE + PLOT + legend as u32), |area| {
+        let area = titled(area, "Fragility", about)?;
+        let (upper, lower) = area.split_vertically(px(f64::from(PLOT)));
+        let strongest = populations.iter().flat_map(|of| &of.bins).fold(0.0, |most: f64, bin| most.max(bin.highest));
+        let medians = all().filter_map(|(_, fragility)| Some(fragility.curve.as_ref().ok()?.median));
+        let end = medians.filter(|median| *median < BEYOND * strongest).fold(strongest, f64::max);
+        let mut plot = chart(&upper, 46.0).build_cartesian_2d(0.0..1.02 * end, 0.0..1.0)?;
+        let x = format!("{} ({})", measure.description(), measure.unit());
+        axes(&mut plot, [&x, "part of the runs, probability"], [8, 6])?;
+        for (i, (_, fragility)) in all().enumerate() {
+            if let Ok(curve) = &fragility.curve {
+                draw_curve(&mut plot, curve, strongest, 1.02 * end, colour_of(i))?;
+            }
         }
+        for (i, (of, fragility)) in all().enumerate() {
+            draw_dots(&mut plot, of, fragility, most, colour_of(i))?;
+        }
+        draw_legend(&lower, all().map(|(of, fragility)| (of.population.as_str(), fragility)), measure, (least, most))
+    })
+}
+
+fn colour_of(i: usize) -> RGBColor {
+    COLORS[i % COLORS.len()]
+}
+
+/// The curve as far as `end`, dashed beyond the `strongest` ground motion, on its band.
+fn draw_curve(
+    plot: &mut Plot,
+    curve: &FragilityCurve,
+    strongest: f64,
+    end: f64,
+    colour: RGBColor,
+) -> anyhow::Result<()> {
+    let at = |j: u32| end * f64::from(j) / f64::from(POINTS_OF_A_CURVE);
+    let intensities = || (1..=POINTS_OF_A_CURVE).map(at);
+    let band: Vec<_> = intensities().filter_map(|x| Some((x, curve.band(x)?))).collect();
+    if !band.is_empty() {
+        let lower: Vec<_> = band.iter().map(|(x, (low, _))| (*x, *low)).collect();
+        let upper: Vec<_> = band.iter().map(|(x, (_, high))| (*x, *high)).collect();
+        let around = lower.iter().chain(upper.iter().rev()).copied().collect::<Vec<_>>();
+        plot.draw_series([Polygon::new(around, colour.mix(0.1))])?;
+        plot.draw_series(
+            [lower, upper].map(|edge| PathElement::new(edge, colour.mix(0.5).stroke_width(px(0.6) as u32))),
+        )?;
     }
-    chart
-        .configure_series_labels()
-        .position(SeriesLabelPosition::LowerRight)
-        .label_font(FONT)
-        .background_style(WHITE.mix(0.8))
-        .border_style(BLACK.mix(0.2))
-        .draw()?;
-    area.present()?;
-    drop((chart, area));
-    Ok(svg)
+    let points =
+        || [0.0].into_iter().chain(intensities()).map(|x| (x, if x > 0.0 { curve.probability(x) } else { 0.0 }));
+    let (seen, beyond): (Vec<_>, Vec<_>) = points().partition(|(x, _)| *x <= strongest);
+    let joint = seen.last().copied();
+    plot.draw_series([PathElement::new(seen, line(colour))])?;
+    plot.draw_series(DashedLineSeries::new(
+        joint.into_iter().chain(beyond),
+        px(5.0) as u32,
+        px(4.0) as u32,
+        line(colour),
+    ))?;
+    Ok(())
+}
+
+fn draw_dots(
+    plot: &mut Plot,
+    of: &Exceedances,
+    fragility: &Fragility,
+    most: usize,
+    colour: RGBColor,
+) -> anyhow::Result<()> {
+    let dots = of.bins.iter().zip(&fragility.tallies).filter_map(|(bin, tally)| {
+        let radius = LARGEST_DOT * (tally.known as f64 / most as f64).sqrt();
+        Some(Circle::new((bin.mean, tally.part()?), px(radius.max(1.5)), colour.mix(0.85).filled()))
+    });
+    plot.draw_series(dots)?;
+    Ok(())
+}
+
+/// A line for each curve below the plot: what it is of, median and dispersion.
+fn draw_legend<'a>(
+    area: &Area,
+    all: impl Iterator<Item = (&'a str, &'a Fragility)>,
+    measure: IntensityMeasure,
+    (least, most): (usize, usize),
+) -> anyhow::Result<()> {
+    let height = |i: usize| px(LEGEND_MARGIN + LEGEND_LINE * (i as f64 + 0.5));
+    let [swatch, name, median, range, dispersion] = COLUMNS.map(px);
+    let cell = |x, y, text: String, colour| area.draw(&Text::new(text, (x, y), words_before(SMALL, colour)));
+    let unit = measure.unit();
+    for (x, heading) in
+        [(median, format!("median ({unit})")), (range, "95 % range".into()), (dispersion, "dispersion".into())]
+    {
+        cell(x, height(0), heading, colour::GREY)?;
+    }
+    let mut lines = 1;
+    for (i, (population, Fragility { limit, curve, .. })) in all.enumerate() {
+        let (y, colour) = (height(lines), colour_of(i));
+        area.draw(&PathElement::new([(swatch - px(14.0), y), (swatch + px(14.0), y)], line(colour)))?;
+        area.draw(&Circle::new((swatch, y), px(4.0), colour.filled()))?;
+        area.draw(&Text::new(format!("{population}: {limit}"), (name, y), words(SMALL, colour::INK)))?;
+        match curve {
+            Ok(curve) => {
+                let ends = curve.median_range().map(|(low, high)| format!("{} to {}", rounded(low), rounded(high)));
+                cell(median, y, rounded(curve.median), colour::INK)?;
+                cell(range, y, ends.unwrap_or("–".into()), colour::INK)?;
+                cell(dispersion, y, rounded(curve.dispersion), colour::INK)?;
+            }
+            Err(_) => cell(dispersion, y, "no curve: see the table".into(), colour::GREY)?,
+        }
+        lines += 1;
+    }
+    let notes = [
+        if least == most {
+            format!("A dot stands for {most} runs.")
+        } else {
+            format!("A dot's area is the number of its runs, {least} to {most}.")
+        },
+        "Bands and ranges: 95 %, records taken as independent of each other (structures where there is one record)."
+            .into(),
+    ];
+    for (i, note) in notes.into_iter().enumerate() {
+        area.draw(&Text::new(note, (swatch - px(14.0), height(lines + i)), words(SMALL, colour::GREY)))?;
+    }
+    Ok(())
 }

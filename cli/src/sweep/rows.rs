@@ -1,17 +1,19 @@
 //! The file of a sweep: headings, and a row for every run that is done.
 //!
 //! A row begins with the run's key, which stands for all that the run depends on: names, parameters, samples, scale
-//! factor, the build of the program. It ends with a checksum. So rows may stand in any order, and those of other runs
-//! among them.
+//! factors, conditions, the build of the program. It ends with a checksum. So rows may stand in any order, and those of
+//! other runs among them. Lines may end as the editor has them that has been at the file.
 //!
 //! A row is written at once and whole when its run ends. Whatever ends the program, the file then holds complete rows,
 //! and at most part of one more at its end, which is cut off when the sweep goes on.
 use FlexibleRocking::BUILD;
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, anyhow, bail, ensure};
 use csv::{ReaderBuilder, StringRecord, WriterBuilder};
-use rocking::run::{
-    outcome::{MEASURES, Outcome},
-    plan::{AXES, Case, NamedRecord, Plan},
+use rocking::{
+    intensity::IntensityMeasure,
+    run::outcome::{MEASURES, Outcome},
+    run::plan::{AXES, Case, Conditions, NamedRecord, Plan},
+    state::INITIAL_VALUES,
 };
 use serde::Serialize;
 use std::{
@@ -25,6 +27,10 @@ use uuid::Uuid;
 
 /// The word for the ending of a run that has none.
 const FAILED: &str = "failed";
+
+/// Columns before the ending: the key and the name of the population; the structure; the record, its scale and the
+/// sweep's; intensities; detail, tolerance, duration and initial values.
+const BEFORE: usize = 2 + AXES.len() + 3 + IntensityMeasure::ALL.len() + 3 + INITIAL_VALUES.len();
 
 /// Columns of an ended run's outcome beside its peaks: ending, end; transitions, steps, evaluations.
 const OTHERS: usize = 5;
@@ -59,7 +65,8 @@ pub fn keys(plan: &Plan) -> Vec<Uuid> {
     let digests: HashMap<_, _> = plan.motions().iter().map(digest).collect();
     let of_case = |case: Case| {
         let names = (case.population.name(), case.motion.name());
-        key(&build, &(names, case.structure.parameters(), digests[&ptr::from_ref(case.motion)], case.scale))
+        let motion = (digests[&ptr::from_ref(case.motion)], case.motion.scale(), case.scale);
+        key(&build, &(names, case.structure.parameters(), motion, case.conditions))
     };
     plan.cases().map(of_case).collect()
 }
@@ -85,21 +92,14 @@ impl Rows {
         let (found, length) = if header.starts_with(&content) {
             file.rewind().and_then(|()| file.write_all(&header)).with_context(named)?;
             (read(&[], keys)?, header.len())
-        } else if let Some(rows) = content.strip_prefix(header.as_slice()) {
-            let complete = rows.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
-            (read(&rows[..complete], keys).with_context(named)?, header.len() + complete)
         } else {
             let first = content.split(|byte| *byte == b'\n').next().unwrap_or_default();
-            let expected = String::from_utf8_lossy(&header);
-            if check(first).is_ok() {
-                bail!("{}: line 1 is a row: put the headings back before it:\n{expected}", named());
+            if without_end(first) != without_end(&header) {
+                return Err(no_headings(without_end(first), &header)).with_context(named);
             }
-            let first: String = String::from_utf8_lossy(first).chars().take(120).collect();
-            bail!(
-                "{}, line 1: {first:?} are not the headings of a sweep's rows: name another file with -o, or remove \
-                 this one. These are the headings:\n{expected}",
-                named()
-            );
+            let rows = content.get(first.len() + 1..).unwrap_or_default();
+            let complete = rows.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
+            (read(&rows[..complete], keys).with_context(named)?, content.len() - rows.len() + complete)
         };
         file.set_len(length as u64).with_context(named)?;
         Ok((Rows { path: path.into(), file, length: length as u64, has_failed: false }, found))
@@ -121,26 +121,62 @@ impl Rows {
     }
 }
 
+/// Why `line` cannot stand where `header` belongs.
+fn no_headings(line: &[u8], header: &[u8]) -> anyhow::Error {
+    let expected = String::from_utf8_lossy(header);
+    if check(line).is_ok() {
+        return anyhow!("line 1 is a row: put the headings back before it:\n{expected}");
+    }
+    let first: String = String::from_utf8_lossy(line).chars().take(120).collect();
+    let advice = "name another file with -o, or remove this one. These are the headings:";
+    if line.starts_with(FIRST_HEADINGS.join(",").as_bytes()) {
+        anyhow!("the headings in line 1 are those of another version of this program: {advice}\n{expected}")
+    } else {
+        anyhow!("line 1, {first:?}, is not the headings of a sweep's rows: {advice}\n{expected}")
+    }
+}
+
+/// The headings that all versions begin with.
+const FIRST_HEADINGS: [&str; 2] = ["run", "structures"];
+
+/// A line without what ends it.
+fn without_end(line: &[u8]) -> &[u8] {
+    let line = line.strip_suffix(b"\n").unwrap_or(line);
+    line.strip_suffix(b"\r").unwrap_or(line)
+}
+
 /// The line before the first row.
 fn header() -> anyhow::Result<Vec<u8>> {
     let heading = |name: &str, unit: &str| if unit == "1" { name.into() } else { format!("{name}[{unit}]") };
-    let motion = ["record", "scale", "PGA[g]", "ending", "end[s]"].map(String::from);
-    let headings = ["run", "structures"].map(String::from).into_iter();
-    let headings = headings.chain(AXES.map(|axis| heading(axis.name, axis.unit))).chain(motion);
-    let headings = headings.chain(MEASURES.map(|(name, unit)| heading(&format!("peak_{name}"), unit)));
-    line(
-        &headings
-            .chain(["transitions", "steps", "evaluations", "reason", "checksum"].map(String::from))
-            .collect::<Vec<_>>(),
-    )
+    let quantities = AXES.map(|axis| heading(axis.name, axis.unit));
+    let intensities = IntensityMeasure::ALL.map(|measure| heading(measure.name(), measure.unit()));
+    let initial = INITIAL_VALUES.each_ref().map(|quantity| heading(quantity.name, quantity.unit));
+    let peaks = MEASURES.map(|(name, unit)| heading(&format!("peak_{name}"), unit));
+    let fixed = |headings: &[&str]| headings.iter().map(|heading| (*heading).to_owned()).collect::<Vec<_>>();
+    let headings = [
+        fixed(&FIRST_HEADINGS),
+        quantities.into(),
+        fixed(&["record", "record_scale", "scale"]),
+        intensities.into(),
+        fixed(&["detail", "tolerance", "duration[s]"]),
+        initial.into(),
+        fixed(&["ending", "end[s]"]),
+        peaks.into(),
+        fixed(&["transitions", "steps", "evaluations", "reason", "checksum"]),
+    ];
+    line(&headings.concat())
 }
 
 fn row(key: &Uuid, case: &Case, outcome: &Outcome) -> anyhow::Result<Vec<u8>> {
     let structure = (key.to_string(), case.population.name(), AXES.map(|axis| case.value(axis)));
-    let identity = (structure, case.motion.name(), case.scale, case.intensity());
+    let intensities = IntensityMeasure::ALL.map(|measure| case.intensity(measure));
+    let motion = (case.motion.name(), case.motion.scale(), case.scale, intensities);
+    let Conditions { initial, detail, tolerance, duration } = case.conditions;
+    let initial = INITIAL_VALUES.each_ref().map(|quantity| (quantity.get)(initial));
+    let before = (structure, motion, (detail.name(), tolerance, duration, initial));
     let mut row = match outcome {
-        Outcome::Ended(summary) => line(&(identity, summary, "")),
-        Outcome::Failed(reason) => line(&(identity, FAILED, [""; MEASURES.len() + OTHERS - 1], reason)),
+        Outcome::Ended(summary) => line(&(before, summary, "")),
+        Outcome::Failed { time, reason } => line(&(before, FAILED, time, [""; MEASURES.len() + OTHERS - 2], reason)),
     }?;
     row.pop();
     let checksum = checksum(&row);
@@ -157,7 +193,7 @@ fn line(of: &impl Serialize) -> anyhow::Result<Vec<u8>> {
 /// What complete `rows` say of the runs that have `keys`.
 fn read(rows: &[u8], keys: &[Uuid]) -> anyhow::Result<Found> {
     for (line, row) in (2..).zip(rows.split_inclusive(|byte| *byte == b'\n')) {
-        check(&row[..row.len() - 1])
+        check(without_end(row))
             .with_context(|| format!("line {line} is not a row as it was written: remove it, to do its run again"))?;
     }
     let numbers: HashMap<_, _> = keys.iter().zip(0..).collect();
@@ -180,18 +216,17 @@ fn read(rows: &[u8], keys: &[Uuid]) -> anyhow::Result<Found> {
 
 fn parse(row: &StringRecord) -> anyhow::Result<(Uuid, Outcome)> {
     let field = |index: usize| row.get(index).context("it is too short");
-    let ending = 2 + AXES.len() + 3;
-    let reason = ending + MEASURES.len() + OTHERS;
-    let outcome = if field(ending)? == FAILED {
-        Outcome::Failed(field(reason)?.into())
+    let reason = BEFORE + MEASURES.len() + OTHERS;
+    let outcome = if field(BEFORE)? == FAILED {
+        Outcome::Failed { time: field(BEFORE + 1)?.parse()?, reason: field(reason)?.into() }
     } else {
-        let summary: StringRecord = row.iter().take(reason).skip(ending).collect();
+        let summary: StringRecord = row.iter().take(reason).skip(BEFORE).collect();
         Outcome::Ended(summary.deserialize(None)?)
     };
     Ok((Uuid::try_parse(field(0)?)?, outcome))
 }
 
-/// Whether `row`, without the end of the line, ends with the checksum of what comes before it.
+/// Whether `row`, a line without its end, ends with the checksum of what comes before it.
 fn check(row: &[u8]) -> anyhow::Result<()> {
     let comma = row.iter().rposition(|byte| *byte == b',').context("it has one column")?;
     let (expected, found) = (checksum(&row[..comma]), String::from_utf8_lossy(&row[comma + 1..]));

@@ -1,0 +1,36 @@
+//! A structure as a commented file of parameters.
+use crate::structure_args::short;
+use rocking::{
+    Quantity, Structure,
+    natural_quantities::{NATURAL, Natural},
+    parameters::PARAMETERS,
+    structure::Derived,
+};
+use std::fmt::{self, Write};
+
+/// Writes `structure` as a TOML file: every parameter with its unit and range, and what may be given in its place.
+pub fn write(out: &mut impl Write, structure: &Structure) -> fmt::Result {
+    writeln!(out, "# A structure, for rocking-fmu ... --parameters FILE.toml. SI units; # begins a comment.")?;
+    writeln!(
+        out,
+        "# A line that begins with # may take the place of the one above it. J0, c_ratio and g may be left out:"
+    )?;
+    writeln!(out, "# they are 0, 1 and 9.81 m/s2 then.")?;
+    for &Quantity { name, unit, description, min, max, get, .. } in &PARAMETERS {
+        let of = if unit == "1" { String::new() } else { format!(" {unit},") };
+        writeln!(out, "\n# {description},{of} {} to {}", short(min), short(max))?;
+        writeln!(out, "{name} = {}", get(structure.parameters()))?;
+        for natural in NATURAL.iter().filter(|natural| natural.stands_for == name) {
+            let &Natural { min, max, in_place_of, .. } = natural;
+            let &Derived { name, unit, description, value, .. } = natural.derived();
+            let value = value(structure);
+            writeln!(
+                out,
+                "# {name} = {value} # {description}, {unit}, {} to {}: instead of {in_place_of}",
+                short(min),
+                short(max)
+            )?;
+        }
+    }
+    Ok(())
+}

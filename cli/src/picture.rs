@@ -1,0 +1,310 @@
+//! The one style of all pictures, and the files that they go into: SVG as it is drawn, or PNG made of the same drawing
+//! with a font that the program carries, so that it looks the same on every machine.
+
+pub mod histories;
+
+use crate::{
+    output_files::{OutputFile, OutputFiles},
+    talk::say,
+};
+use anyhow::Context;
+use plotters::coord::{Shift, ranged1d::ValueFormatter};
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use resvg::{tiny_skia, usvg};
+use std::{io::Write, ops::Range, path::PathBuf, str::FromStr, sync::Arc};
+
+/// Colours that all eyes tell apart (Okabe and Ito, their purple darker), and those of what is no data.
+#[allow(missing_docs)] // they are called what they are
+pub mod colour {
+    use plotters::style::RGBColor;
+
+    pub const BLUE: RGBColor = RGBColor(0, 114, 178);
+    pub const VERMILLION: RGBColor = RGBColor(213, 94, 0);
+    pub const GREEN: RGBColor = RGBColor(0, 158, 115);
+    pub const PURPLE: RGBColor = RGBColor(168, 72, 127);
+    pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
+    pub const SKY: RGBColor = RGBColor(86, 180, 233);
+    pub const INK: RGBColor = RGBColor(34, 34, 34);
+    pub const GREY: RGBColor = RGBColor(110, 110, 110);
+    pub const RULE: RGBColor = RGBColor(226, 226, 226);
+}
+
+/// Drawing units to a pixel: coordinates of plotters are whole numbers.
+const UNITS: i32 = 8;
+
+/// Pixels of a PNG to one of the drawing.
+const SHARPNESS: f32 = 2.0;
+
+const FONT: &str = "sans-serif";
+
+/// Width of a line that shows data, pixels.
+const LINE: f64 = 1.3;
+
+/// Sizes of words, pixels: titles, names of axes, numbers.
+const LARGE: f64 = 14.0;
+pub const TEXT: f64 = 11.5;
+pub const SMALL: f64 = 11.0;
+
+/// Characters of a title, and of the line below it, that fit.
+const LONGEST_TITLE: usize = 90;
+const LONGEST_ABOUT: usize = 125;
+
+/// Height of a title, pixels.
+pub const TITLE: u32 = 52;
+
+/// `pixels` in drawing units.
+pub fn px(pixels: f64) -> i32 {
+    (pixels * f64::from(UNITS)).round() as i32
+}
+
+/// What is drawn on.
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+/// Where a picture is asked for, and as what.
+#[derive(Clone, Debug)]
+pub struct PictureFile {
+    path: PathBuf,
+    is_png: bool,
+}
+
+impl FromStr for PictureFile {
+    type Err = String;
+
+    fn from_str(path: &str) -> Result<PictureFile, String> {
+        let path = PathBuf::from(path);
+        let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
+        match extension.as_deref() {
+            Some("svg") => Ok(PictureFile { path, is_png: false }),
+            Some("png") => Ok(PictureFile { path, is_png: true }),
+            _ => Err("the extension tells what is drawn: .svg or .png is needed".into()),
+        }
+    }
+}
+
+impl PictureFile {
+    /// An SVG file.
+    pub fn svg(path: PathBuf) -> PictureFile {
+        PictureFile { path, is_png: false }
+    }
+
+    /// Begins the file.
+    pub fn create(&self, files: &mut OutputFiles) -> anyhow::Result<Picture> {
+        Ok(Picture { path: self.path.clone(), is_png: self.is_png, file: files.create(&self.path)? })
+    }
+}
+
+/// A picture that is being made.
+pub struct Picture {
+    path: PathBuf,
+    is_png: bool,
+    file: OutputFile,
+}
+
+impl Picture {
+    /// Writes what `draw` draws on an area of `size`, in pixels.
+    pub fn draw(mut self, size: (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<()>) -> anyhow::Result<()> {
+        let svg = svg(size, draw)?;
+        let content = if self.is_png { rasterized(&svg, size)? } else { svg.into_bytes() };
+        OutputFile::named(&self.path, self.file.write_all(&content))?;
+        self.file.finish()?;
+        say!("picture        {}", self.path.display());
+        Ok(())
+    }
+}
+
+/// What `draw` draws on an area of this size, in pixels, as SVG.
+fn svg((width, height): (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<()>) -> anyhow::Result<String> {
+    let (wide, high) = (width * UNITS as u32, height * UNITS as u32);
+    let mut svg = String::new();
+    {
+        let area = SVGBackend::with_string(&mut svg, (wide, high)).into_drawing_area();
+        area.fill(&WHITE)?;
+        draw(&area)?;
+        area.present()?;
+    }
+    // characters that XML cannot hold, from the name of a record
+    svg.retain(|c| !(c < ' ' && c != '\n' || matches!(c, '\u{fffe}' | '\u{ffff}')));
+    // the size to show it at; the view box stays in drawing units
+    let [drawn, shown] = [(wide, high), (width, height)].map(|(x, y)| format!("width=\"{x}\" height=\"{y}\""));
+    Ok(svg.replacen(&drawn, &shown, 1))
+}
+
+/// `svg` as PNG, with the program's own font for its words.
+fn rasterized(svg: &str, (width, height): (u32, u32)) -> anyhow::Result<Vec<u8>> {
+    let mut options = usvg::Options::default();
+    let fonts = Arc::make_mut(&mut options.fontdb);
+    fonts.load_font_data(notosans::REGULAR_TTF.to_vec());
+    fonts.load_font_data(notosans::BOLD_TTF.to_vec());
+    fonts.set_sans_serif_family("Noto Sans");
+    let tree = usvg::Tree::from_str(svg, &options)?;
+    let [width, height] = [width, height].map(|pixels| (pixels as f32 * SHARPNESS) as u32);
+    let mut pixels = tiny_skia::Pixmap::new(width, height).context("a picture has a size")?;
+    resvg::render(&tree, tiny_skia::Transform::from_scale(SHARPNESS, SHARPNESS), &mut pixels.as_mut());
+    Ok(pixels.encode_png()?)
+}
+
+/// A line that shows data.
+pub fn line(colour: RGBColor) -> ShapeStyle {
+    stroke(colour, LINE)
+}
+
+/// A line `pixels` wide.
+pub fn stroke(colour: RGBColor, pixels: f64) -> ShapeStyle {
+    colour.stroke_width(px(pixels) as u32)
+}
+
+/// Height in pixels of what plotters calls a font of one pixel.
+const FONT_HEIGHT: f64 = 1.24;
+
+/// Words of this size in pixels.
+pub fn words(size: f64, colour: RGBColor) -> TextStyle<'static> {
+    (FONT, px(size * FONT_HEIGHT)).into_font().color(&colour).pos(Pos::new(HPos::Left, VPos::Center))
+}
+
+/// Words that end where they are put.
+pub fn words_before(size: f64, colour: RGBColor) -> TextStyle<'static> {
+    words(size, colour).pos(Pos::new(HPos::Right, VPos::Center))
+}
+
+/// Words whose middle is where they are put.
+pub fn words_about(size: f64, colour: RGBColor) -> TextStyle<'static> {
+    words(size, colour).pos(Pos::new(HPos::Center, VPos::Center))
+}
+
+/// A dot of this radius in pixels.
+pub fn dot<T>(at: T, radius: f64, colour: RGBColor) -> Circle<T, i32> {
+    Circle::new(at, px(radius), colour.filled())
+}
+
+/// Writes the title of a picture, and what it is about in a line below; returns what is left below them.
+pub fn titled<'a>(area: &Area<'a>, title: &str, about: &str) -> anyhow::Result<Area<'a>> {
+    let bold = words(LARGE, colour::INK);
+    let bold = TextStyle { font: bold.font.style(FontStyle::Bold), ..bold };
+    area.draw(&Text::new(shortened(title, LONGEST_TITLE), (px(18.0), px(18.0)), bold))?;
+    let about = shortened(about, LONGEST_ABOUT);
+    area.draw(&Text::new(about, (px(18.0), px(38.0)), words(TEXT, colour::GREY)))?;
+    Ok(area.split_vertically(px(f64::from(TITLE))).1)
+}
+
+/// The first characters of `text`.
+fn shortened(text: &str, most: usize) -> String {
+    match text.char_indices().nth(most) {
+        Some((end, _)) => format!("{}…", &text[..end]),
+        None => text.into(),
+    }
+}
+
+/// Room around the axes, pixels.
+const EDGE: f64 = 16.0;
+const NUMBERS: f64 = 62.0;
+const RIGHT: f64 = 28.0;
+const TOP: f64 = 10.0;
+
+/// A chart on `area` between the margins that all charts have; `below` (pixels) is for the numbers and the name of its
+/// horizontal axis.
+pub fn chart<'a, 'b>(area: &'b Area<'a>, below: f64) -> ChartBuilder<'b, 'b, SVGBackend<'a>>
+where
+    'a: 'b,
+{
+    let mut builder = ChartBuilder::on(area);
+    builder
+        .margin_top(px(TOP))
+        .margin_right(px(RIGHT))
+        .margin_left(px(EDGE))
+        .set_label_area_size(LabelAreaPosition::Left, px(NUMBERS))
+        .set_label_area_size(LabelAreaPosition::Bottom, px(below));
+    builder
+}
+
+/// Draws the axes of a chart, about as many numbers on each as `numbers` says; one without a name has no numbers.
+pub fn axes<X, Y>(
+    chart: &mut ChartContext<SVGBackend, Cartesian2d<X, Y>>,
+    names: [&str; 2],
+    numbers: [usize; 2],
+) -> anyhow::Result<()>
+where
+    X: Ranged<ValueType = f64> + ValueFormatter<f64>,
+    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
+{
+    let (across, up) = (chart.as_coord_spec().get_x_range(), chart.as_coord_spec().get_y_range());
+    let x_number = |x: &f64| if names[0].is_empty() { String::new() } else { number(*x, &across) };
+    chart
+        .configure_mesh()
+        .bold_line_style(stroke(colour::RULE, 1.0))
+        .light_line_style(TRANSPARENT)
+        .axis_style(stroke(colour::GREY, 1.0))
+        .set_all_tick_mark_size(px(4.0))
+        .x_labels(numbers[0])
+        .y_labels(numbers[1])
+        .x_label_formatter(&x_number)
+        .y_label_formatter(&|y| number(*y, &up))
+        .label_style(words(SMALL, colour::INK))
+        .axis_desc_style(words(TEXT, colour::INK))
+        .x_desc(names[0])
+        .y_desc(names[1])
+        .draw()?;
+    Ok(())
+}
+
+/// A number beside an axis that has this range: what rounding has left of a round number is no part of it.
+fn number(value: f64, range: &Range<f64>) -> String {
+    if value.abs() < 1e-9 * (range.end - range.start).abs() {
+        return "0".into();
+    }
+    let value: f64 = format!("{value:.8e}").parse().expect("a number in Rust's own notation");
+    let size = value.abs();
+    let text = if (1e-4..1e6).contains(&size) { format!("{value}") } else { format!("{value:e}") };
+    text.replace('-', "−")
+}
+
+/// A mass in kg or t.
+pub fn mass(kilograms: f64) -> String {
+    if kilograms < 1e4 { format!("{} kg", rounded(kilograms)) } else { format!("{} t", rounded(1e-3 * kilograms)) }
+}
+
+/// A number in a picture: three digits.
+pub fn rounded(value: f64) -> String {
+    let decimals = if value == 0.0 { 0.0 } else { (2.0 - value.abs().log10().floor()).clamp(0.0, 6.0) };
+    format!("{value:.*}", decimals as usize).replace('-', "−")
+}
+
+/// The least and the largest of `values` with room beyond them: about 0 where there are both signs, from 0 on where there
+/// is one.
+pub fn range(values: impl IntoIterator<Item = f64>) -> Range<f64> {
+    const ROOM: f64 = 1.3;
+    let (least, most) =
+        values.into_iter().fold((0.0, 0.0), |(least, most): (f64, f64), value| (least.min(value), most.max(value)));
+    let largest = ROOM * most.max(-least);
+    match (least < 0.0, most > 0.0) {
+        (false, false) => -1.0..1.0,
+        (false, true) => 0.0..largest,
+        (true, _) => -largest..largest,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_beside_an_axis_are_round() {
+        let shown = [-0.4, 5.551115123125783e-17, 0.2, 0.30000000000000004, 1.2000000000000002]
+            .map(|value| number(value, &(-0.5..0.5)));
+        assert_eq!(shown, ["−0.4", "0", "0.2", "0.3", "1.2"]);
+        assert_eq!([2e-5, 4e7, 200_000.0].map(|value| number(value, &(0.0..1e-4))), ["2e−5", "4e7", "200000"]);
+    }
+
+    #[test]
+    fn three_digits_at_least() {
+        assert_eq!([0.0, 0.538228, -12.345, 6129.47, 7.5e-5].map(rounded), ["0", "0.538", "−12.3", "6129", "0.000075"]);
+        assert_eq!([130.1, 2.4e6].map(mass), ["130 kg", "2400 t"]);
+    }
+
+    #[test]
+    fn a_range_has_room_and_one_that_is_empty_is_drawn() {
+        assert_eq!(range([0.0, 2.0]), 0.0..2.6);
+        assert_eq!(range([1.0, -2.0]), -2.6..2.6);
+        assert_eq!(range([]), -1.0..1.0);
+    }
+}

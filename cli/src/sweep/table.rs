@@ -1,0 +1,140 @@
+//! What a sweep prints of a population: how often its structures exceed a limit, by intensity, and the curves.
+use crate::significant::significant;
+use rocking::{
+    fragility::{FEWEST_GROUPS, FragilityCurve},
+    intensity::IntensityMeasure,
+    run::LONGEST_REST,
+    run::exceedances::{Bin, Exceedances, Fragility, Tally},
+};
+use serde::Serialize;
+use std::fmt::{self, Write};
+
+/// Columns of a limit are this wide, or as wide as its name.
+const WIDTH: usize = 18;
+
+/// Writes one population, its intensities in `measure`.
+pub fn write(out: &mut impl Write, of: &Exceedances, measure: IntensityMeasure) -> fmt::Result {
+    let Exceedances { population, bins, fragilities, failed, still_rocking } = of;
+    let (name, unit) = (measure.name(), measure.unit());
+    writeln!(out, "{population}")?;
+    let mut line = |cells: [&str; 4], of_limit: &dyn Fn(&Fragility) -> String| {
+        write!(out, "{:>12} {:>12} {:>12} {:>7}", cells[0], cells[1], cells[2], cells[3])?;
+        for fragility in fragilities {
+            let width = fragility.limit.to_string().len().max(WIDTH);
+            write!(out, "  {:>width$}", of_limit(fragility))?;
+        }
+        writeln!(out)
+    };
+    line([&format!("{name}: from"), "mean", &format!("to ({unit})"), "runs"], &|fragility| {
+        fragility.limit.to_string()
+    })?;
+    for (i, Bin { lowest, mean, highest, runs }) in bins.iter().enumerate() {
+        let [lowest, mean, highest] = [lowest, mean, highest].map(|intensity| significant(*intensity));
+        line([&lowest, &mean, &highest, &runs.to_string()], &|fragility| part(&fragility.tallies[i]))?;
+    }
+    let of_curve = |fragility: &Fragility, text: &dyn Fn(&FragilityCurve) -> Option<String>| {
+        fragility.curve.as_ref().ok().and_then(text).unwrap_or("none".into())
+    };
+    line(["median", "", &format!("({unit})"), ""], &|of| of_curve(of, &|curve| Some(significant(curve.median))))?;
+    for (heading, end) in [("from", 0), ("to", 1)] {
+        line(["", "95 %", heading, ""], &|of| {
+            of_curve(of, &|curve| curve.median_range().map(|(low, high)| significant([low, high][end])))
+        })?;
+    }
+    line(["dispersion", "", "", ""], &|of| of_curve(of, &|curve| Some(significant(curve.dispersion))))?;
+    for Fragility { limit, curve, .. } in fragilities {
+        match curve {
+            Err(reason) => writeln!(out, "{limit}: no curve: {reason}")?,
+            Ok(curve) if curve.certainty.is_none() => writeln!(
+                out,
+                "{limit}: no 95 % band: it takes {FEWEST_GROUPS} records that do not depend on each other, or structures \
+                 where there is one record"
+            )?,
+            Ok(_) => {}
+        }
+    }
+    if *failed > 0 {
+        writeln!(out, "{failed} failed and are not counted")?;
+    }
+    if *still_rocking > 0 {
+        writeln!(
+            out,
+            "{still_rocking} still rocked {LONGEST_REST}/p_l after the record: counted where a limit was exceeded, and \
+             else not"
+        )?;
+    }
+    writeln!(out)
+}
+
+/// A fragility curve, for programs.
+#[derive(Serialize)]
+pub struct CurveRow {
+    structures: String,
+    limit: String,
+    measure: &'static str,
+    unit: &'static str,
+    median: Option<f64>,
+    /// Of the 95 % band of the median.
+    median_from: Option<f64>,
+    median_to: Option<f64>,
+    dispersion: Option<f64>,
+    /// Why there is no curve.
+    reason: Option<String>,
+}
+
+/// The same with what it is fitted to.
+#[derive(Serialize)]
+pub struct Curve {
+    /// The curve.
+    #[serde(flatten)]
+    pub row: CurveRow,
+    bins: Vec<BinRow>,
+}
+
+/// Runs of neighbouring intensities.
+#[derive(Serialize)]
+struct BinRow {
+    lowest: f64,
+    mean: f64,
+    highest: f64,
+    runs: usize,
+    /// Of how many it is known whether they exceed the limit, and how many do.
+    known: usize,
+    exceedances: usize,
+}
+
+/// Every curve of `populations`, whose intensities are in `measure`.
+pub fn curves(populations: &[Exceedances], measure: IntensityMeasure) -> Vec<Curve> {
+    let all = populations.iter().flat_map(|of| of.fragilities.iter().map(move |fragility| (of, fragility)));
+    all.map(|(of, Fragility { limit, curve, tallies, .. })| {
+        let fitted = curve.as_ref().ok();
+        let range = fitted.and_then(FragilityCurve::median_range);
+        let row = CurveRow {
+            structures: of.population.clone(),
+            limit: limit.to_string(),
+            measure: measure.name(),
+            unit: measure.unit(),
+            median: fitted.map(|curve| curve.median),
+            median_from: range.map(|(from, _)| from),
+            median_to: range.map(|(_, to)| to),
+            dispersion: fitted.map(|curve| curve.dispersion),
+            reason: curve.as_ref().err().map(ToString::to_string),
+        };
+        let bin = |(&Bin { lowest, mean, highest, runs, .. }, &Tally { known, exceedances }): (&Bin, &Tally)| BinRow {
+            lowest,
+            mean,
+            highest,
+            runs,
+            known,
+            exceedances,
+        };
+        Curve { row, bins: of.bins.iter().zip(tallies).map(bin).collect() }
+    })
+    .collect()
+}
+
+/// The part that exceeds a limit, and of how many.
+fn part(tally: &Tally) -> String {
+    let Tally { known, exceedances } = tally;
+    tally.part().map_or("none".into(), |part| format!("{part:.4} {exceedances:>5}/{known}"))
+}

@@ -1,0 +1,177 @@
+//! `view`: a page that shows the structure in motion, one file that needs nothing else.
+use crate::{
+    output_files::{OutputFile, OutputFiles},
+    scene_args::{GroundArgs, InitialArgs, LevelArgs},
+    structure_args::StructureArgs,
+    talk::say,
+};
+use anyhow::Context;
+use rocking::{
+    Outputs, Run, Structure,
+    record::Record,
+    run::{
+        Ending, RunError,
+        curve::{Curve, Point},
+        peaks::{PEAKS, Peak},
+    },
+};
+use serde::Serialize;
+use std::{
+    io::Write,
+    path::{Path, PathBuf},
+};
+
+/// What to show.
+#[derive(clap::Args)]
+pub struct ViewArgs {
+    #[command(flatten)]
+    structure: StructureArgs,
+    #[command(flatten)]
+    ground: GroundArgs,
+    #[command(flatten)]
+    initial: InitialArgs,
+    #[command(flatten)]
+    level: LevelArgs,
+    /// The page, `-` for standard output [default: the record's name and _view.html, in this folder]
+    #[arg(short, long, value_name = "FILE.html", help_heading = "Results")]
+    output: Option<PathBuf>,
+}
+
+/// Parts of a peak by which what is shown may miss the motion: units of the last digit of its numbers. The first is taken
+/// that needs no more than [`MOST_POINTS`].
+const PARTS: [f64; 3] = [1e-4, 1e-3, 1e-2];
+
+/// About 5 MB.
+const MOST_POINTS: usize = 200_000;
+
+/// Part of a peak that a value on the page is rounded to, and the same of time, s.
+const QUANTUM: f64 = 1e-5;
+const QUANTUM_OF_TIME: f64 = 1e-7;
+
+/// Follows the motion and writes the page.
+pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
+    let structure = args.structure.load()?;
+    let ground = args.ground.load(structure.parameters().g)?;
+    let LevelArgs { tolerance, detail } = args.level;
+    let (initial, end) = (args.initial.state(), args.ground.end(&ground));
+    let run = Run { initial, detail, tolerance, end, ..Run::new(structure, &ground) };
+    let path = args.output_path();
+    let inputs = args.structure.input().into_iter().chain(args.ground.record.record.as_deref());
+    let mut file = OutputFiles::of_inputs(inputs).create(&path)?;
+    let (part, curve) = curve(&run)?;
+    let page = page(&Scene::new(&structure, &ground, part, &curve).context("a run has a start")?)?;
+    OutputFile::named(&path, file.write_all(page.as_bytes()))?;
+    file.finish()?;
+    if path != Path::new("-") {
+        say!("view           {}", path.display());
+    }
+    Ok(())
+}
+
+/// The run as a curve, and how exact it is.
+fn curve(run: &Run) -> Result<(f64, Curve), RunError> {
+    let [finest, coarser @ ..] = PARTS;
+    let mut found = (finest, run.curve(finest)?);
+    for part in coarser {
+        if found.1.points.len() > MOST_POINTS {
+            found = (part, run.curve(part)?);
+        }
+    }
+    Ok(found)
+}
+
+impl ViewArgs {
+    fn output_path(&self) -> PathBuf {
+        match (&self.output, self.ground.record.record.as_deref().and_then(Path::file_stem)) {
+            (Some(path), _) => path.clone(),
+            (None, Some(record)) => format!("{}_view.html", record.to_string_lossy()).into(),
+            (None, None) => "free_vibration_view.html".into(),
+        }
+    }
+}
+
+/// The page with `scene` inside.
+fn page(scene: &Scene) -> anyhow::Result<String> {
+    // in JSON a < stands within strings alone; escaped it cannot end the element that holds the data
+    let data = serde_json::to_string(scene)?.replace('<', "\\u003c");
+    Ok(include_str!("view/view.html")
+        .replacen("/*style*/", include_str!("view/view.css"), 1)
+        .replacen("/*script*/", include_str!("view/view.js"), 1)
+        .replacen("/*data*/", &data, 1))
+}
+
+/// What the page shows.
+#[derive(Serialize)]
+struct Scene<'a> {
+    title: &'a str,
+    parameters: &'a rocking::Parameters,
+    start: f64,
+    end: f64,
+    ending: Ending,
+    part: f64,
+    time: Column,
+    a_g: Column,
+    theta: Column,
+    u: Column,
+    a_t: Column,
+    /// Index of the first point of each phase, and the phase.
+    phases: Vec<(usize, &'static str)>,
+    /// Quanta of time from the start, and the kind.
+    transitions: Vec<(i64, &'static str)>,
+    /// By name: magnitude in SI units, instant (s).
+    peaks: Vec<(&'static str, f64, f64)>,
+}
+
+/// Whole multiples of a quantum.
+#[derive(Serialize)]
+struct Column {
+    quantum: f64,
+    /// Of time the differences.
+    values: Vec<i64>,
+}
+
+impl Column {
+    fn new(curve: &Curve, peak: Peak, value: impl Fn(&Point) -> f64) -> Column {
+        let quantum = if peak.magnitude > 0.0 { QUANTUM * peak.magnitude } else { 1.0 };
+        Column { quantum, values: curve.points.iter().map(|at| (value(at) / quantum).round() as i64).collect() }
+    }
+
+    /// Of the time since `start` (s).
+    fn of_time(curve: &Curve, start: f64) -> Column {
+        let instants = curve.points.iter().map(|at| quanta(at.time - start));
+        let differences = instants.scan(0, |before, instant| Some(instant - std::mem::replace(before, instant)));
+        Column { quantum: QUANTUM_OF_TIME, values: differences.collect() }
+    }
+}
+
+/// A length of time, s.
+fn quanta(duration: f64) -> i64 {
+    (duration / QUANTUM_OF_TIME).round() as i64
+}
+
+impl<'a> Scene<'a> {
+    fn new(structure: &'a Structure, ground: &'a Record, part: f64, curve: &Curve) -> Option<Scene<'a>> {
+        let (start, peaks) = (curve.points.first()?.time, &curve.peaks);
+        let column = |peak, value: fn(&Outputs) -> f64| Column::new(curve, peak, move |at| value(&at.outputs));
+        let mut phases: Vec<_> = curve.points.iter().map(|at| at.phase.name()).enumerate().collect();
+        phases.dedup_by_key(|(_, phase)| *phase);
+        let all_peaks = PEAKS.iter().map(|peaking| (peaking.name, (peaking.of)(peaks)));
+        let all_peaks = [("a_g", peaks.a_g())].into_iter().chain(all_peaks);
+        Some(Scene {
+            title: ground.title(),
+            parameters: structure.parameters(),
+            start,
+            end: curve.finish.motion.time,
+            ending: curve.finish.ending,
+            part,
+            time: Column::of_time(curve, start),
+            a_g: Column::new(curve, peaks.a_g(), |at| at.a_g),
+            theta: column(peaks.theta(), |outputs| outputs.theta),
+            u: column(peaks.u(), |outputs| outputs.u),
+            a_t: column(peaks.a_t(), |outputs| outputs.a_t),
+            phases,
+            transitions: curve.transitions.iter().map(|at| (quanta(at.time - start), at.kind.name())).collect(),
+            peaks: all_peaks.map(|(name, peak)| (name, peak.magnitude, peak.time)).collect(),
+        })
+    }
+}

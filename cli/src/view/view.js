@@ -1,0 +1,527 @@
+"use strict";
+(() => {
+  const data = JSON.parse(document.getElementById("data").textContent);
+  const at = (id) => document.getElementById(id);
+  const { m, m0, H, B, f_fc, g } = data.parameters;
+  const { start, end } = data;
+
+  // ---- The motion: points that straight lines join, as the engine found them
+
+  const column = ({ quantum, values }) => Float64Array.from(values, (value) => value * quantum);
+  const time = (() => {
+    let sum = 0;
+    return Float64Array.from(data.time.values, (difference) => start + (sum += difference) * data.time.quantum);
+  })();
+  const motion = { a_g: column(data.a_g), theta: column(data.theta), u: column(data.u), a_t: column(data.a_t) };
+  const transitions = data.transitions.map(([sum, kind]) => ({ instant: start + sum * data.time.quantum, kind }));
+  const peaks = Object.fromEntries(data.peaks.map(([name, magnitude, instant]) => [name, { magnitude, instant }]));
+
+  /** How many of the rising numbers are at most `value`. */
+  function countUpTo(numbers, value, of = (number) => number) {
+    let [low, high] = [0, numbers.length];
+    while (low < high) {
+      const middle = (low + high) >> 1;
+      if (of(numbers[middle]) <= value) low = middle + 1;
+      else high = middle;
+    }
+    return low;
+  }
+
+  /** Everything at the instant `t`; at a transition, just after it. */
+  function stateAt(t) {
+    const i = Math.max(0, countUpTo(time, t) - 1);
+    const j = Math.min(i + 1, time.length - 1);
+    const part = time[j] > time[i] ? (t - time[i]) / (time[j] - time[i]) : 0;
+    const value = (values) => values[i] + part * (values[j] - values[i]);
+    const state = Object.fromEntries(Object.entries(motion).map(([name, values]) => [name, value(values)]));
+    const overturned = data.ending === "overturned" && t >= end;
+    const phase = overturned ? "overturned" : data.phases[countUpTo(data.phases, i, ([first]) => first) - 1][1];
+    return { ...state, phase, uplift: 2 * B * Math.sin(Math.abs(state.theta)), V_t: m * state.a_t, M_t: m * H * state.a_t };
+  }
+
+  /** The peak of `name` with its sign, which the largest of the points about its `instant` has. */
+  function signed(name, instant) {
+    const i = countUpTo(time, instant);
+    const about = [...motion[name].subarray(Math.max(0, i - 3), i + 2)];
+    const largest = about.reduce((most, value) => (Math.abs(value) > Math.abs(most) ? value : most), 0);
+    return Math.sign(largest) * peaks[name].magnitude;
+  }
+
+  // ---- Numbers
+
+  const minus = (text) => text.replace("-", "−");
+  const fixed = (value, decimals) => {
+    const text = value.toFixed(decimals);
+    return minus(Number(text) === 0 ? text.replace("-", "") : text);
+  };
+  const significant = (value) => minus(String(Number(value.toPrecision(3))));
+
+  const mass = (kilograms) => (kilograms < 1e4 ? `${significant(kilograms)} kg` : `${significant(kilograms / 1e3)} t`);
+
+  /** How many decimals show `magnitude` with as many digits as the motion is exact to. */
+  const digits = -Math.round(Math.log10(data.part));
+  const decimalsFor = (magnitude) =>
+    magnitude > 0 ? Math.max(0, Math.min(8, digits - 1 - Math.floor(Math.log10(magnitude)))) : digits - 1;
+
+  /** [1, 2 or 5 times a power of ten] not below `step`. */
+  function nice(step) {
+    const power = 10 ** Math.floor(Math.log10(step));
+    return [1, 2, 5, 10].find((factor) => factor * power >= step * (1 - 1e-9)) * power;
+  }
+
+  function ticks(from, to, count) {
+    const step = nice((to - from) / count);
+    const found = [];
+    for (let k = Math.ceil(from / step - 1e-9); k * step <= to + 1e-9 * step; k++) found.push(k * step);
+    const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+    return found.map((value) => ({ value, text: fixed(value, decimals) }));
+  }
+
+  /** What is shown in numbers: symbol, meaning, unit and how many SI units that has. */
+  const quantities = {
+    a_g: { symbol: "a_g", meaning: "ground acceleration", unit: "g", per: g },
+    theta: { symbol: "θ", meaning: "rotation", unit: "rad", per: 1 },
+    uplift: { symbol: "δ_u", meaning: "uplift", unit: "mm", per: 1e-3 },
+    u: { symbol: "u", meaning: "elastic displacement", unit: "mm", per: 1e-3 },
+    a_t: { symbol: "a_t", meaning: "acceleration of the top", unit: "g", per: g },
+    V_t: { symbol: "V_t", meaning: "base shear", unit: "kN", per: 1e3 },
+    M_t: { symbol: "M_t", meaning: "overturning moment", unit: "kN m", per: 1e3 },
+  };
+  for (const [name, quantity] of Object.entries(quantities)) {
+    const peak = peaks[name].magnitude / quantity.per;
+    quantity.show = (value) => fixed(value / quantity.per, decimalsFor(peak));
+  }
+
+  // ---- Drawing by elements
+
+  function element(parent, name, attributes = {}, text = "") {
+    const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+    for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+    made.textContent = text;
+    parent.append(made);
+    return made;
+  }
+  const set = (of, attributes) => Object.entries(attributes).forEach(([key, value]) => of.setAttribute(key, value));
+
+  // ---- The structure, in metres, the middle of its base at (0, 0), y down as on a screen
+
+  const foundation = 0.11 * H;
+  const block = { width: 0.42 * Math.min(2 * B, H), height: 0.28 * Math.min(2 * B, H) };
+  const largestMotion = Math.max(peaks.theta.magnitude, peaks.u.magnitude / H);
+  const exaggerations = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].filter(
+    (factor) => factor === 1 || (largestMotion > 0 && factor * largestMotion < 0.6),
+  );
+  let exaggeration = exaggerations.filter((factor) => factor === 1 || factor * largestMotion <= 0.25).at(-1);
+
+  /** The strut bent as a cantilever is by a force at its end, which a cubic holds exactly, and the block at its end. */
+  const strut = (u) => `M0 0C0 ${-H / 3} ${u / 2} ${(-2 * H) / 3} ${u} ${-H}`;
+  function structure(parent) {
+    const line = element(parent, "path", { class: "strut" });
+    element(parent, "rect", { class: "mass", x: -B, y: -foundation, width: 2 * B, height: foundation });
+    const top = element(parent, "rect", {
+      class: "mass", x: -block.width / 2, y: -block.height / 2, width: block.width, height: block.height,
+    });
+    return (u) => {
+      set(line, { d: strut(u) });
+      set(top, { transform: `translate(${u} ${-H}) rotate(${(Math.atan((1.5 * u) / H) * 180) / Math.PI})` });
+    };
+  }
+  structure(at("rest"))(0);
+  const bend = structure(at("body"));
+
+  let stage = {};
+  function layOutScene() {
+    const { width, height } = at("scene").getBoundingClientRect();
+    const theta = Math.min(Math.PI / 2, exaggeration * peaks.theta.magnitude);
+    const u = exaggeration * peaks.u.magnitude;
+    const reach = B * (1 - Math.cos(theta)) + (H + block.height) * Math.sin(theta) + u + block.width / 2;
+    const tall = Math.hypot(H + block.height, theta > 0.5 ? 2 * B : 0);
+    const [left, right, top, below] = [64, 40, 64, 58];
+    const scale = Math.min((width - left - right) / (2 * Math.max(1.25 * B, reach)), (height - top - below) / tall);
+    stage = { x: (width + left - right) / 2, y: height - below, scale, width };
+    const { x, y } = stage;
+    at("world").setAttribute("transform", `translate(${x} ${y}) scale(${scale})`);
+    set(at("surface"), { x1: 0, x2: width, y1: y, y2: y });
+    set(at("ground"), { x: 0, y, width, height: 12 });
+    set(at("pivot"), { r: 5 / scale });
+    const dimensions = at("dimensions");
+    dimensions.replaceChildren();
+    const [side, line] = [Math.max(20, x - scale * Math.max(B, reach) - 14), y + 26];
+    const [roof, half] = [y - scale * H, scale * B];
+    element(dimensions, "path", { d: `M${side - 4} ${y}h8m-4 0V${roof}m-4 0h8` });
+    element(dimensions, "text", {
+      class: "muted", transform: `translate(${side - 6} ${(y + roof) / 2}) rotate(-90)`, "text-anchor": "middle",
+    }, `H = ${significant(H)} m`);
+    element(dimensions, "path", { d: `M${x - half} ${line - 4}v8m0 -4H${x + half}m0 -4v8` });
+    element(dimensions, "text", { class: "muted", x, y: line + 16, "text-anchor": "middle" }, `2B = ${significant(2 * B)} m`);
+    at("stated").textContent = exaggeration === 1 ? "true to scale" : "as large as it is; lengths true to scale";
+  }
+
+  function drawScene(state) {
+    const { x, y, scale, width } = stage;
+    const side = state.theta < 0 ? -1 : 1;
+    const theta = Math.max(-Math.PI / 2, Math.min(Math.PI / 2, exaggeration * state.theta));
+    at("body").setAttribute("transform", `rotate(${(theta * 180) / Math.PI} ${side * B} 0)`);
+    bend(exaggeration * state.u);
+    const lifts = state.theta !== 0;
+    set(at("pivot"), { cx: side * B, visibility: lifts ? "visible" : "hidden" });
+    const edge = { x: side * B - 2 * side * B * Math.cos(theta), y: -2 * B * Math.sin(Math.abs(theta)) };
+    const isSeen = lifts && -edge.y * scale > 2;
+    set(at("gap"), { x1: edge.x, x2: edge.x, y1: 0, y2: edge.y, visibility: isSeen ? "visible" : "hidden" });
+    const lift = at("lift");
+    lift.textContent = isSeen ? `${quantities.uplift.show(state.uplift)} mm` : "";
+    set(lift, { x: x + scale * edge.x - 8 * side, y: y + (scale * edge.y) / 2 + 4, "text-anchor": side > 0 ? "end" : "start" });
+    drawShaking(state.a_g, width);
+    const fallen = at("fallen");
+    fallen.textContent = state.phase === "overturned" ? `overturned at ${fixed(end, 3)} s` : "";
+    set(fallen, { x, y: 62, "text-anchor": "middle" });
+  }
+
+  /** The ground acceleration as an arrow; the record's largest is a quarter of the width. */
+  function drawShaking(a_g, width) {
+    const [line, head, text] = at("shaking").children;
+    const largest = peaks.a_g.magnitude;
+    const length = largest > 0 ? (0.24 * width * a_g) / largest : 0;
+    const [x, y, tip] = [stage.x, stage.y + 6, Math.sign(length) * Math.min(9, Math.abs(length))];
+    set(line, { x1: x, x2: x + length - tip, y1: y, y2: y });
+    set(head, { d: `M${x + length} ${y}l${-tip} -5v10z` });
+    text.textContent = largest > 0 ? `a_g = ${quantities.a_g.show(a_g)} g` : "ground at rest";
+    set(text, { x: width - 12, y: stage.y + 32, "text-anchor": "end", class: "muted" });
+  }
+
+  // ---- Numbers at the cursor
+
+  const now = {};
+  {
+    const row = at("readings").insertRow();
+    row.className = "phase";
+    row.innerHTML = '<th scope="row">phase</th><td colspan="3"></td>';
+    now.phase = row.cells[1];
+    for (const [name, { symbol, meaning, unit, show }] of Object.entries(quantities)) {
+      const row = at("readings").insertRow();
+      row.innerHTML = '<th scope="row"></th><td></td><td></td><td><button type="button"></button></td>';
+      row.cells[0].innerHTML = '<span class="meaning"></span><span></span>';
+      row.cells[0].firstChild.textContent = `${meaning} `;
+      row.cells[0].lastChild.textContent = `${symbol} (${unit})`;
+      row.dataset.name = name;
+      const { magnitude, instant } = peaks[name];
+      row.cells[2].textContent = show(magnitude);
+      const button = row.cells[3].firstChild;
+      button.textContent = `${fixed(instant, 3)} s`;
+      button.setAttribute("aria-label", `To the peak of the ${meaning} at ${fixed(instant, 3)} seconds`);
+      button.addEventListener("click", () => moveTo(instant));
+      now[name] = row.cells[1];
+    }
+  }
+
+  function drawNumbers(state) {
+    now.phase.textContent = state.phase;
+    for (const [name, { show }] of Object.entries(quantities)) now[name].textContent = show(state[name]);
+    at("clock").textContent = `${fixed(t, 3)} of ${fixed(end, 3)} s`;
+    const slider = at("time");
+    slider.value = t;
+    slider.setAttribute("aria-valuetext", `${fixed(t, 3)} seconds, ${state.phase}`);
+  }
+
+  // ---- Histories
+
+  const angle = peaks.theta.magnitude < 0.1 ? { unit: "mrad", per: 1e-3 } : { unit: "rad", per: 1 };
+  const panels = [
+    { name: "a_g", meaning: "ground acceleration", title: "a_g (g)", per: g, colour: "--grey" },
+    { name: "theta", meaning: "rotation", title: `θ (${angle.unit})`, per: angle.per, colour: "--blue" },
+    { name: "u", meaning: "elastic displacement", title: "u (mm)", per: 1e-3, colour: "--blue" },
+    {
+      name: "a_t", meaning: "acceleration of the top", title: "a_t (g)", per: g, colour: "--blue",
+      right: { meaning: "base shear", title: "V_t (kN)", factor: (m * g) / 1e3 },
+    },
+  ].filter(({ name }) => ["theta", "a_t"].includes(name) || peaks[name].magnitude > 0);
+  const kinds = [
+    { name: "uplift", colour: "--green", is: (kind) => kind.startsWith("uplift") },
+    { name: "impact", colour: "--orange", is: (kind) => kind.startsWith("impact") },
+    { name: "landing", colour: "--ink", is: (kind) => kind === "landing" || kind === "settling" },
+    { name: "overturning", colour: "--purple", is: (kind) => kind.startsWith("overturning") },
+  ];
+  const lanes = kinds
+    .map((kind) => ({ ...kind, times: transitions.filter((each) => kind.is(each.kind)).map((each) => each.instant) }))
+    .filter((lane) => lane.times.length > 0);
+
+  let shown = [start, end]; // the time that the histories show
+  let chart = {};
+  const across = (instant) => chart.left + ((instant - shown[0]) / (shown[1] - shown[0])) * chart.width;
+  const instantAt = (x) => shown[0] + ((x - chart.left) / chart.width) * (shown[1] - shown[0]);
+
+  /** Of the points in each column of pixels the first, the least, the largest and the last. */
+  function path(values, height) {
+    const first = Math.max(0, countUpTo(time, shown[0]) - 1);
+    const last = Math.min(time.length - 1, countUpTo(time, shown[1]));
+    let drawn = "";
+    const add = (i) => (drawn += `${drawn ? "L" : "M"}${across(time[i]).toFixed(2)} ${height(values[i]).toFixed(2)}`);
+    for (let i = first; i <= last; ) {
+      const x = Math.floor(2 * across(time[i]));
+      let [least, most, next] = [i, i, i + 1];
+      for (; next <= last && Math.floor(2 * across(time[next])) === x; next++) {
+        if (values[next] < values[least]) least = next;
+        if (values[next] > values[most]) most = next;
+      }
+      [...new Set([i, least, most, next - 1])].sort((a, b) => a - b).forEach(add);
+      i = next;
+    }
+    return drawn;
+  }
+
+  function drawHistories() {
+    const svg = at("histories");
+    const { width, height } = svg.getBoundingClientRect();
+    const isNarrow = width < 560;
+    const [left, right, gap] = [isNarrow ? 46 : 58, isNarrow ? 56 : 76, 26];
+    const laneHeight = 15;
+    const below = 40 + laneHeight * lanes.length;
+    const high = (height - below) / panels.length;
+    chart = { left, width: Math.max(50, width - left - right), top: gap, bottom: height - below };
+    svg.replaceChildren(svg.firstElementChild);
+    const defs = element(svg, "defs");
+    const clip = element(defs, "clipPath", { id: "inside" });
+    element(clip, "rect", { x: left, y: 0, width: chart.width, height });
+    const inside = element(svg, "g", { "clip-path": "url(#inside)" });
+    const titleOf = ({ meaning, title }) => (isNarrow ? title : `${meaning} ${title}`);
+    const times = ticks(shown[0], shown[1], Math.max(3, chart.width / 90));
+
+    data.phases.forEach(([first, phase], k) => {
+      const next = data.phases[k + 1];
+      const [from, to] = [time[first], next ? time[next[0]] : end];
+      if (!phase.startsWith("rocking") || to < shown[0] || from > shown[1]) return;
+      const [x0, x1] = [across(from), across(to)];
+      element(inside, "rect", { class: "rocking", x: x0, width: Math.max(0.5, x1 - x0), y: gap, height: height - below - gap });
+    });
+
+    const edge = left + chart.width;
+    panels.forEach((panel, k) => {
+      const [top, bottom] = [k * high + gap, (k + 1) * high];
+      const { magnitude, instant } = peaks[panel.name];
+      const most = (magnitude > 0 ? magnitude / panel.per : 1) * 1.12;
+      const y = (value) => (top + bottom) / 2 - ((value / panel.per / most) * (bottom - top)) / 2;
+      panel.y = y;
+      for (const { value } of times) element(svg, "line", { class: "grid", x1: across(value), x2: across(value), y1: top, y2: bottom });
+      for (const { value, text } of ticks(-most, most, Math.max(2, (bottom - top) / 24))) {
+        const line = y(value * panel.per);
+        element(svg, "line", { class: "grid", x1: left, x2: left + chart.width, y1: line, y2: line });
+        element(svg, "text", { x: left - 6, y: line + 4, "text-anchor": "end" }, text);
+      }
+      element(svg, "line", { class: "axis", x1: left, x2: left, y1: top, y2: bottom });
+      element(svg, "text", { x: left, y: top - 8 }, titleOf(panel));
+      if (panel.right) {
+        const { factor } = panel.right;
+        element(svg, "line", { class: "axis", x1: edge, x2: edge, y1: top, y2: bottom });
+        element(svg, "text", { x: edge, y: top - 8, "text-anchor": "end" }, titleOf(panel.right));
+        for (const { value, text } of ticks(-most * factor, most * factor, Math.max(2, (bottom - top) / 24))) {
+          const line = y((value / factor) * panel.per);
+          element(svg, "line", { class: "axis", x1: edge, x2: edge + 4, y1: line, y2: line });
+          element(svg, "text", { x: edge + 7, y: line + 4 }, text);
+        }
+      }
+      const g = element(svg, "g", { "clip-path": "url(#inside)" });
+      element(g, "path", { class: "curve", "data-name": panel.name, style: `stroke:var(${panel.colour})`, d: path(motion[panel.name], y) });
+      if (magnitude > 0) {
+        element(g, "circle", { class: "peak", cx: across(instant), cy: y(signed(panel.name, instant)), r: 3.5 });
+      }
+      panel.dot = element(g, "circle", { r: 3.5, style: `fill:var(${panel.colour})` });
+    });
+
+    element(svg, "rect", { class: "rocking key", x: edge - 122, y: gap - 18, width: 14, height: 11 });
+    element(svg, "text", { x: edge - 104, y: gap - 8 }, "rocking");
+    element(svg, "circle", { class: "peak", cx: edge - 42, cy: gap - 12.5, r: 3.5 });
+    element(svg, "text", { x: edge, y: gap - 8, "text-anchor": "end" }, "peak");
+
+    lanes.forEach(({ name, colour, times }, k) => {
+      const y = chart.bottom + 6 + k * laneHeight;
+      element(svg, "text", {
+        x: left + chart.width + 6, y: y + 11, style: `fill:var(${colour})`, "data-kind": name,
+      }, name);
+      for (const instant of times) {
+        if (instant < shown[0] || instant > shown[1]) continue;
+        const x = across(instant);
+        element(svg, "line", { class: "tick", "data-kind": name, x1: x, x2: x, y1: y + 2, y2: y + 13, style: `stroke:var(${colour})` });
+      }
+    });
+    const axis = chart.bottom + 8 + laneHeight * lanes.length;
+    element(svg, "line", { class: "axis", x1: left, x2: left + chart.width, y1: axis, y2: axis });
+    for (const { value, text } of times) {
+      element(svg, "text", { x: across(value), y: axis + 15, "text-anchor": "middle" }, text);
+    }
+    element(svg, "text", { class: "muted", x: width - 4, y: axis + 15, "text-anchor": "end" }, isNarrow ? "s" : "time (s)");
+    chart.cursor = element(svg, "line", { class: "cursor", y1: gap - 6, y2: axis });
+    drawCursor(stateAt(t));
+  }
+
+  function drawCursor(state) {
+    const x = across(t);
+    const isShown = t >= shown[0] && t <= shown[1];
+    set(chart.cursor, { x1: x, x2: x, visibility: isShown ? "visible" : "hidden" });
+    for (const panel of panels) set(panel.dot, { cx: x, cy: panel.y(state[panel.name]) });
+  }
+
+  // ---- Time
+
+  let t = start;
+  let isPlaying = false;
+  let last = 0; // when the last frame was drawn, ms
+  const speeds = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10];
+  let speed = 1;
+
+  function draw() {
+    const state = stateAt(t);
+    drawScene(state);
+    drawNumbers(state);
+    drawCursor(state);
+  }
+
+  function moveTo(instant) {
+    t = Math.min(end, Math.max(start, instant));
+    const length = shown[1] - shown[0];
+    if (t < shown[0] || t > shown[1]) {
+      show(t - 0.1 * length, t + 0.9 * length);
+    }
+    draw();
+  }
+
+  function play(yes) {
+    if (yes && t >= end) moveTo(start);
+    isPlaying = yes;
+    const button = at("play");
+    button.setAttribute("aria-label", yes ? "Pause" : "Play");
+    button.querySelector("path").setAttribute("d", yes ? "M3 2h4v12H3zM9 2h4v12H9z" : "M3 1.5v13L14 8z");
+    last = performance.now();
+    if (yes) requestAnimationFrame(frame);
+  }
+
+  function frame(instant) {
+    if (!isPlaying) return;
+    const passed = Math.max(0, instant - last) / 1000;
+    last = instant;
+    moveTo(t + speed * passed);
+    if (t >= end) play(false);
+    else requestAnimationFrame(frame);
+  }
+
+  function toTransition(step) {
+    const instants = transitions.map(({ instant }) => instant);
+    const found = step > 0 ? instants.find((instant) => instant > t + 1e-9) : instants.findLast((instant) => instant < t - 1e-9);
+    moveTo(found ?? (step > 0 ? end : start));
+  }
+
+  /** Shows the time from `from` to `to`, moved and cut so that it is part of the motion. */
+  function show(from, to) {
+    const length = Math.min(end - start, Math.max(1e-3 * (end - start), to - from));
+    const first = Math.min(end - length, Math.max(start, from));
+    shown = [first, first + length];
+    drawHistories();
+  }
+
+  const zoom = (factor, about) => show(about - factor * (about - shown[0]), about + factor * (shown[1] - about));
+
+  // ---- Controls
+
+  function choose(factor) {
+    exaggeration = factor;
+    at("exaggeration").value = factor;
+    layOutScene();
+    draw();
+  }
+  function chooseSpeed(factor) {
+    speed = factor;
+    at("speed").value = factor;
+  }
+  /** The entry `step` further in a list than `present`, if there is one. */
+  const beside = (list, present, step) => list[list.indexOf(present) + step] ?? present;
+
+  const prefersDark = matchMedia("(prefers-color-scheme: dark)");
+  let theme = null; // chosen by hand
+  const isDark = () => (theme ?? (prefersDark.matches ? "dark" : "light")) === "dark";
+  function showTheme() {
+    document.documentElement.style.colorScheme = theme ?? "";
+    at("theme").textContent = isDark() ? "Light" : "Dark";
+  }
+  function otherTheme() {
+    theme = isDark() ? "light" : "dark";
+    showTheme();
+  }
+  prefersDark.addEventListener("change", showTheme);
+
+  for (const factor of exaggerations) at("exaggeration").append(new Option(`${factor} ×`, factor));
+  for (const factor of speeds) at("speed").append(new Option(`${factor} ×`, factor));
+  set(at("time"), { min: start, max: end });
+  at("exaggeration").addEventListener("change", (event) => choose(Number(event.target.value)));
+  at("speed").addEventListener("change", (event) => chooseSpeed(Number(event.target.value)));
+  at("time").addEventListener("input", (event) => moveTo(Number(event.target.value)));
+  at("play").addEventListener("click", () => play(!isPlaying));
+  at("previous").addEventListener("click", () => toTransition(-1));
+  at("next").addEventListener("click", () => toTransition(1));
+  at("theme").addEventListener("click", otherTheme);
+  at("keys").addEventListener("click", () => at("help").showModal());
+
+  const histories = at("histories");
+  const scrub = (event) => moveTo(Math.min(shown[1], Math.max(shown[0], instantAt(event.offsetX))));
+  histories.addEventListener("pointerdown", (event) => {
+    if (event.button !== 0) return;
+    histories.setPointerCapture(event.pointerId);
+    scrub(event);
+  });
+  histories.addEventListener("pointermove", (event) => {
+    if (histories.hasPointerCapture(event.pointerId)) scrub(event);
+  });
+  histories.addEventListener("wheel", (event) => {
+    event.preventDefault();
+    zoom(Math.exp(0.0015 * event.deltaY), instantAt(event.offsetX));
+  }, { passive: false });
+  histories.addEventListener("dblclick", () => show(start, end));
+
+  const step = (part) => moveTo(t + part * (shown[1] - shown[0]));
+  const keys = {
+    " ": () => play(!isPlaying),
+    ArrowLeft: (event) => step(event.shiftKey ? -0.1 : -0.01),
+    ArrowRight: (event) => step(event.shiftKey ? 0.1 : 0.01),
+    ArrowUp: () => chooseSpeed(beside(speeds, speed, 1)),
+    ArrowDown: () => chooseSpeed(beside(speeds, speed, -1)),
+    Home: () => moveTo(start),
+    End: () => moveTo(end),
+    ",": () => toTransition(-1),
+    ".": () => toTransition(1),
+    "+": () => zoom(0.5, t),
+    "=": () => zoom(0.5, t),
+    "-": () => zoom(2, t),
+    0: () => show(start, end),
+    e: () => choose(beside(exaggerations, exaggeration, 1)),
+    E: () => choose(beside(exaggerations, exaggeration, -1)),
+    d: otherTheme,
+    "?": () => at("help").showModal(),
+  };
+  document.addEventListener("keydown", (event) => {
+    const isTaken = event.target.closest("select, dialog") || (event.target.closest("button") && event.key === " ");
+    if (isTaken || event.ctrlKey || event.metaKey || event.altKey || !Object.hasOwn(keys, event.key)) return;
+    event.preventDefault();
+    keys[event.key](event);
+  });
+  // a button that was clicked with a pointer leaves the keys to the page
+  document.addEventListener("click", (event) => {
+    if (event.detail > 0) event.target.closest("button")?.blur();
+  });
+
+  document.title = `${data.title}: rocking structure`;
+  at("title").textContent = data.title;
+  const count = transitions.length;
+  at("about").textContent =
+    `masses ${mass(m)} and ${mass(m0)}, H = ${significant(H)} m, 2B = ${significant(2 * B)} m, ` +
+    `${significant(f_fc)} Hz in full contact; ${count} transition${count === 1 ? "" : "s"}` +
+    { "at rest": ", at rest in the end", overturned: ", overturned", "still rocking": ", still rocking in the end", "at time": "" }[data.ending];
+  chooseSpeed(1);
+  showTheme();
+  play(false);
+  const layOut = () => {
+    layOutScene();
+    drawHistories();
+    draw();
+  };
+  at("exaggeration").value = exaggeration;
+  layOut();
+  new ResizeObserver(layOut).observe(document.querySelector("main"));
+})();

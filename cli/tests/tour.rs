@@ -1,0 +1,88 @@
+//! A tour of the command line: every command, right and wrong, in a folder with a record of every layout; what each prints
+//! is compared with `tour.txt`.
+//!
+//! There, `$` begins a command, `!` a line on standard error; any other line is on standard output, and `[1]` is an exit
+//! code other than 0. `WRITE_TOUR=1 cargo test -p rocking-cli --test tour` writes it anew from its commands.
+
+#[path = "../../tests/layouts/mod.rs"]
+#[allow(dead_code)] // what else is known of each file
+mod layouts;
+
+use std::fmt::Write;
+use std::path::Path;
+use std::process::{Command, Output};
+use std::{env, fs};
+
+const SAMPLES: usize = 400;
+
+#[test]
+fn every_command_prints_what_it_printed() {
+    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/tour.txt");
+    let expected = fs::read_to_string(&script).unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    for (number, layout) in layouts::all(SAMPLES).into_iter().enumerate() {
+        let (stem, extension) = (layout.path.file_stem().unwrap(), layout.path.extension().unwrap());
+        let name = format!("{}{number}.{}", stem.to_str().unwrap(), extension.to_str().unwrap());
+        fs::write(folder.path().join(name), layout.bytes).unwrap();
+    }
+    let mut printed = String::new();
+    for block in blocks(&expected) {
+        if block.starts_with('#') {
+            printed += block;
+            continue;
+        }
+        let command = block.lines().next().unwrap();
+        let found = transcript(folder.path(), command);
+        if env::var_os("WRITE_TOUR").is_none() {
+            assert_eq!(found, block, "\n{found}");
+        }
+        printed += &found;
+    }
+    if env::var_os("WRITE_TOUR").is_some() {
+        fs::write(script, printed).unwrap();
+    }
+}
+
+/// Comments, and commands with what they print, each up to the next.
+fn blocks(text: &str) -> Vec<&str> {
+    let starts: Vec<_> = (text.match_indices("\n$ ").map(|(index, _)| index + 1))
+        .chain(text.match_indices("\n# ").map(|(index, _)| index + 1))
+        .chain([0, text.len()])
+        .collect();
+    let mut starts = starts;
+    starts.sort_unstable();
+    starts.windows(2).map(|pair| &text[pair[0]..pair[1]]).collect()
+}
+
+/// The command in `line`, and what it prints in `folder`, without what differs between machines.
+fn transcript(folder: &Path, line: &str) -> String {
+    let program = Path::new(env!("CARGO_BIN_EXE_rocking-fmu"));
+    let path = format!("{}:{}", program.parent().unwrap().display(), env::var("PATH").unwrap());
+    let mut shell = Command::new("bash");
+    shell.arg("-c").arg(line.trim_start_matches("$ ")).current_dir(folder).env("PATH", path).env("LC_ALL", "C");
+    let Output { status, stdout, stderr } = shell.output().unwrap();
+    let plain = |bytes: Vec<u8>| {
+        let text = String::from_utf8(bytes).unwrap().replace(&folder.display().to_string(), "[FOLDER]");
+        text.replace(env!("CARGO_PKG_VERSION"), "[VERSION]")
+    };
+    let mut out = format!("{line}\n{}", plain(stdout));
+    if !out.ends_with('\n') {
+        out += "\n";
+    }
+    for said in plain(stderr).lines() {
+        writeln!(out, "! {}", without_numbers_of_this_build(said).trim_end()).unwrap();
+    }
+    if !status.success() {
+        writeln!(out, "[{}]", status.code().unwrap()).unwrap();
+    }
+    out
+}
+
+/// The size and the name of the library that is packed.
+fn without_numbers_of_this_build(line: &str) -> String {
+    match line.split_once(['{']) {
+        Some((before, _)) if line.contains("GUID") => format!("{before}[GUID]"),
+        _ if line.ends_with(" kB") => format!("{}: [SIZE] kB", line.split(':').next().unwrap()),
+        _ => line.to_owned(),
+    }
+}

@@ -1,0 +1,57 @@
+//! ASCII of the Engineering Strong-Motion database and of ITACA (DYNA): lines of `KEY: value`, then one acceleration a
+//! line.
+
+use super::parsed::{Parsed, Times};
+use super::text::{acceleration, number, numbered, quote, without_blanks};
+use super::unit::Stated;
+use super::{BadLine, Format, Reading, Unit, bad, source::decide};
+
+const LONGEST_HEADER: usize = 200;
+
+/// The key by which these files are known.
+const STEP: &str = "SAMPLING_INTERVAL_S";
+
+/// Whether `text` is one of these files.
+pub(super) fn is_its(text: &str) -> bool {
+    text.lines().take(LONGEST_HEADER).any(|line| value_of(line, STEP).is_some())
+}
+
+/// The step from SAMPLING_INTERVAL_S, the unit from UNITS, the number of samples from NDATA.
+pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
+    let is_key =
+        |line: &str| line.split_once(':').is_some_and(|(key, _)| number(key).is_none()) || line.trim().is_empty();
+    let header: Vec<_> = numbered(text).take(LONGEST_HEADER).take_while(|(_, line)| is_key(line)).collect();
+    let find = |key: &str| header.iter().find_map(|(line, text)| Some((*line, value_of(text, key)?)));
+    let needed = |key: &str| find(key).ok_or_else(|| bad(header.len().max(1), format!("{key} is not in the header")));
+
+    let (line, data_type) = find("DATA_TYPE").unwrap_or((1, "ACCELERATION"));
+    if !data_type.eq_ignore_ascii_case("ACCELERATION") {
+        return Err(bad(line, format!("DATA_TYPE is {}, and accelerations are needed", quote(data_type))));
+    }
+    let (line, units) = needed("UNITS")?;
+    let stated = Unit::named(units).map_or(Stated::Other(units.into()), Stated::Unit);
+    let (unit, unit_from) = decide(&stated, how.unit).map_err(|problem| bad(line, problem))?;
+    let (line, step) = needed(STEP)?;
+    let dt = number(step).filter(|dt| *dt > 0.0);
+    let dt = dt.ok_or_else(|| bad(line, format!("{STEP} = {} must be a number greater than 0", quote(step))))?;
+    let (line, count) = needed("NDATA")?;
+    let count = count.parse().map_err(|_| bad(line, format!("NDATA = {} must be a whole number", quote(count))))?;
+
+    let title = ["EVENT_NAME", "EVENT_DATE_YYYYMMDD", "STATION_CODE", "STREAM"].map(find);
+    let title = title.into_iter().flatten().map(|(_, value)| value).filter(|value| !value.is_empty());
+    let title = title.collect::<Vec<_>>().join(", ");
+    let mut parsed = Parsed::new(Format::Esm, title, unit, unit_from, Times::Every(dt));
+    for line in without_blanks(numbered(text).skip(header.len())) {
+        let (line, values) = line?;
+        for value in values.split_whitespace() {
+            parsed.add(acceleration(value), line)?;
+        }
+    }
+    parsed.check_count("NDATA", count, how)?;
+    Ok(parsed)
+}
+
+/// What `line` says of `key`.
+fn value_of<'a>(line: &'a str, key: &str) -> Option<&'a str> {
+    line.trim_start().strip_prefix(key)?.trim_start().strip_prefix(':').map(str::trim)
+}

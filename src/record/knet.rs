@@ -1,0 +1,71 @@
+//! ASCII of K-NET and KiK-net: seventeen lines of header, then counts of the recorder, eight a line.
+
+use super::parsed::{Parsed, Times};
+use super::text::{acceleration, columns, number, numbered, quote, without_blanks};
+use super::unit::Stated;
+use super::{BadLine, Format, Reading, Unit, bad, source::decide};
+
+const HEADER_LINES: usize = 17;
+
+/// The stated maximum has three decimals, gal.
+const ROUNDING: f64 = 1e-3;
+
+/// Whether `text` is one of these files.
+pub(super) fn is_its(text: &str) -> bool {
+    text.starts_with("Origin Time")
+}
+
+/// The step from the sampling frequency; a count times the scale factor is an acceleration in gal. What the recorder shows
+/// at rest, its offset, is the mean of all counts and no acceleration; values whose largest is the stated maximum have none.
+pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
+    const WIDTH: usize = 9;
+    let find = |key: &str| {
+        let found = numbered(text).take(HEADER_LINES).find_map(|(line, text)| Some((line, value_of(text, key)?)));
+        found.ok_or_else(|| bad(HEADER_LINES, format!("{key} is not in the header")))
+    };
+    let positive = |line, name: &str, word: &str| {
+        let value = number(word.trim()).filter(|value| *value > 0.0);
+        value.ok_or_else(|| bad(line, format!("{name} = {} must be a number greater than 0", quote(word))))
+    };
+    let (line, frequency) = find("Sampling Freq(Hz)")?;
+    let frequency = positive(line, "Sampling Freq(Hz)", frequency.trim_end_matches("Hz"))?;
+    let (line, factor) = find("Scale Factor")?;
+    let (gal, counts) = factor.split_once("(gal)/").ok_or_else(|| {
+        bad(line, format!("found {} where the scale factor is stated, such as 3920(gal)/6182761", quote(factor)))
+    })?;
+    let factor = positive(line, "Scale Factor", gal)? / positive(line, "Scale Factor", counts)?;
+    let (unit, unit_from) =
+        decide(&Stated::Unit(Unit::CentimetrePerSecondSquared), how.unit).map_err(|problem| bad(line, problem))?;
+    let (line, duration) = find("Duration Time(s)")?;
+    let duration = positive(line, "Duration Time(s)", duration)?;
+
+    let parts = ["Origin Time", "Station Code", "Dir."].map(|key| find(key).map_or("", |(_, value)| value));
+    let title = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ");
+    let mut parsed = Parsed::new(Format::KNet, title, unit, unit_from, Times::Every(1.0 / frequency));
+    for line in without_blanks(numbered(text).skip(HEADER_LINES)) {
+        let (line, values) = line?;
+        for value in columns(values, Some(WIDTH)) {
+            parsed.add(acceleration(value), line)?;
+        }
+    }
+    parsed.check_count("Duration Time(s) x Sampling Freq(Hz)", (duration * frequency).round() as usize, how)?;
+    parsed.values.iter_mut().for_each(|count| *count *= factor);
+    let maximum = find("Max. Acc. (gal)").or(find("Max Acc. (gal)")).ok().and_then(|(_, maximum)| number(maximum));
+    let is_maximum = |peak: f64| maximum.is_some_and(|maximum| (peak - maximum).abs() <= factor + ROUNDING);
+    let peak = |values: &[f64]| values.iter().fold(0.0, |peak: f64, value| peak.max(value.abs()));
+    if is_maximum(peak(&parsed.values)) {
+        return Ok(parsed);
+    }
+    let offset = parsed.values.iter().sum::<f64>() / parsed.values.len().max(1) as f64;
+    parsed.values.iter_mut().for_each(|value| *value -= offset);
+    parsed.remark(format!("the recorder's offset, the mean of {offset:.3} gal, is taken off"));
+    if let (Some(maximum), false) = (maximum, is_maximum(peak(&parsed.values))) {
+        parsed.remark(format!("the header's maximum of {maximum} gal is not that of the data"));
+    }
+    Ok(parsed)
+}
+
+/// What `line` says of `key`.
+fn value_of<'a>(line: &'a str, key: &str) -> Option<&'a str> {
+    line.strip_prefix(key).map(str::trim)
+}

@@ -1,0 +1,96 @@
+//! What the parsers of all layouts make: samples as the file gives them.
+
+use super::{BadLine, Column, Format, MAX_SAMPLES, Reading, Record, Remedy, Source, Unit, UnitFrom, bad};
+
+/// The samples of a file, and what was found out about them.
+#[derive(Debug)]
+pub(super) struct Parsed {
+    pub title: String,
+    pub times: Times,
+    pub values: Vec<f64>,
+    pub source: Source,
+    last_line: usize,
+}
+
+/// When the samples are.
+#[derive(Debug)]
+pub(super) enum Times {
+    /// Every so many seconds, as the file states.
+    Every(f64),
+    /// Every so many seconds, as the user says.
+    Asked(f64),
+    /// At these times, s.
+    At(Vec<f64>),
+}
+
+impl Parsed {
+    /// Nothing yet.
+    pub fn new(format: Format, title: impl Into<String>, unit: Unit, unit_from: UnitFrom, times: Times) -> Parsed {
+        let source = Source { format, unit, unit_from, remarks: Vec::new() };
+        Parsed { title: title.into(), times, values: Vec::new(), source, last_line: 1 }
+    }
+
+    /// Adds the acceleration that stands on `line`.
+    pub fn add(&mut self, acceleration: Result<f64, String>, line: usize) -> Result<(), BadLine> {
+        if self.values.len() == MAX_SAMPLES {
+            return Err(bad(line, format!("more than {MAX_SAMPLES} samples")));
+        }
+        self.values.push(acceleration.map_err(|problem| bad(line, problem))?);
+        self.last_line = line;
+        Ok(())
+    }
+
+    /// One more thing that was found or assumed.
+    pub fn remark(&mut self, remark: impl Into<String>) {
+        self.source.remarks.push(remark.into());
+    }
+
+    /// Whether there are as many samples as `name` states.
+    pub fn check_count(&mut self, name: &str, stated: usize, how: &Reading) -> Result<(), BadLine> {
+        let found = self.values.len();
+        if found == stated {
+            return Ok(());
+        }
+        let problem = format!("{name} states {stated} samples, and the file has {found}");
+        if !how.ignores_count {
+            return Err(bad(self.last_line, problem).remedied_by(Remedy::IgnoreCount));
+        }
+        self.remark(problem);
+        Ok(())
+    }
+
+    /// The record, once all of the file is read.
+    pub fn record(self, how: &Reading) -> Result<(Record, Source), BadLine> {
+        let Parsed { title, times, values: acceleration, source, last_line } = self;
+        if let (Times::Every(stated), Some(asked)) = (&times, how.dt)
+            && *stated != asked
+        {
+            let problem = format!("the file states a sample every {stated:?} s, and {asked:?} s is asked for");
+            return Err(bad(last_line, problem));
+        }
+        let has_columns = matches!(source.format, Format::Table | Format::Cosmos);
+        if let (false, Some(asked)) = (has_columns, &how.column) {
+            let asked = match asked {
+                Column::Number(number) => number.to_string(),
+                Column::Heading(heading) => format!("{heading:?}"),
+            };
+            return Err(bad(1, format!("column {asked} is asked for, and a file of {} has none", source.format)));
+        }
+        let count = acceleration.len();
+        if count < 2 {
+            return Err(bad(last_line, format!("the file ends after {count} sample(s); two or more are needed")));
+        }
+        let times: Vec<f64> = match times {
+            Times::At(times) => times,
+            Times::Every(dt) | Times::Asked(dt) => (0..count).map(|i| i as f64 * dt).collect(),
+        };
+        if let Some(index) = times.windows(2).position(|pair| pair[1] <= pair[0] || !pair[1].is_finite()) {
+            let (before, after) = (times[index], times[index + 1]);
+            return Err(bad(
+                last_line,
+                format!("the time {after:?} s does not come after the one before it, {before:?} s"),
+            ));
+        }
+        Ok((Record { title, times, acceleration }, source))
+    }
+}

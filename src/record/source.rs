@@ -1,0 +1,99 @@
+//! How a record's file is read, and what was found in it or assumed of it.
+
+use super::Unit;
+use super::unit::{Stated, is_like_a_unit};
+use std::fmt;
+
+/// What the user says of a file; the file says the rest.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Reading {
+    /// Unit of the accelerations; must be the one that the file states, if it states one.
+    pub unit: Option<Unit>,
+    /// Time between two samples of a file without times, s.
+    pub dt: Option<f64>,
+    /// Which of several columns, or of the channels of a COSMOS file, has the accelerations.
+    pub column: Option<Column>,
+    /// Whether the samples that are there are taken where the file states another number of them.
+    pub ignores_count: bool,
+}
+
+/// One column of a table.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Column {
+    /// By its number, counted from 1.
+    Number(usize),
+    /// By its heading, or what stands before the unit in it.
+    Heading(String),
+}
+
+/// A layout of files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    /// Acceleration records of PEER.
+    At2,
+    /// Columns of text.
+    Table,
+    /// ASCII of the Engineering Strong-Motion database and of ITACA.
+    Esm,
+    /// ASCII of K-NET and KiK-net.
+    KNet,
+    /// COSMOS strong-motion data, volumes 1 and 2.
+    Cosmos,
+    /// Corrected accelerograms of CSMIP, volume 2.
+    Csmip,
+}
+
+/// Where a record comes from: what its file states, and what was assumed where it says nothing.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Source {
+    /// Its layout.
+    pub format: Format,
+    /// Unit of the accelerations in the file.
+    pub unit: Unit,
+    /// Who says so.
+    pub unit_from: UnitFrom,
+    /// All else that was found or assumed: which column, how many lines of headings, and the like.
+    pub remarks: Vec<String>,
+}
+
+/// Who decides the unit of a record.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum UnitFrom {
+    /// The file.
+    File,
+    /// The user, where the file says nothing.
+    User,
+    /// Nobody.
+    Assumed,
+}
+
+impl fmt::Display for Format {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.write_str(match self {
+            Format::At2 => "PEER AT2",
+            Format::Table => "table",
+            Format::Esm => "ESM ASCII",
+            Format::KNet => "K-NET ASCII",
+            Format::Cosmos => "COSMOS",
+            Format::Csmip => "CSMIP V2",
+        })
+    }
+}
+
+/// Who is right about the unit: the file, which must not be contradicted, else the user, else it is m/s².
+pub(super) fn decide(stated: &Stated, asked: Option<Unit>) -> Result<(Unit, UnitFrom), String> {
+    match (stated, asked) {
+        (Stated::Unit(unit), Some(asked)) if *unit != asked => {
+            Err(format!("the file states accelerations in {unit}, and {asked} is asked for"))
+        }
+        (Stated::Unit(unit), _) => Ok((*unit, UnitFrom::File)),
+        (Stated::Other(other), Some(asked)) if is_like_a_unit(other) => {
+            Err(format!("the file states accelerations in {other:?}, and {asked} is asked for"))
+        }
+        (_, Some(asked)) => Ok((asked, UnitFrom::User)),
+        (Stated::Nothing, None) => Ok((Unit::MetrePerSecondSquared, UnitFrom::Assumed)),
+        (Stated::Other(other), None) => {
+            Err(format!("the accelerations are in {other:?}, which is none of g, m/s2, cm/s2, gal, mm/s2"))
+        }
+    }
+}

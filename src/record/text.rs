@@ -1,0 +1,129 @@
+//! The text of a record's file: its encoding, its lines, the numbers in them.
+
+use super::{BadLine, bad};
+use std::borrow::Cow;
+
+/// The text of a file in UTF-8, UTF-16 or Latin-1, its lines ended by `\n` alone.
+pub(super) fn decode(bytes: &[u8]) -> Result<Cow<'_, str>, BadLine> {
+    let utf_16 = |order: fn([u8; 2]) -> u16, bytes: &[u8]| {
+        let units = bytes.chunks_exact(2).map(|pair| order([pair[0], pair[1]]));
+        Cow::Owned(char::decode_utf16(units).map(|letter| letter.unwrap_or(char::REPLACEMENT_CHARACTER)).collect())
+    };
+    let text: Cow<str> = match bytes {
+        [0xff, 0xfe, text @ ..] => utf_16(u16::from_le_bytes, text),
+        [0xfe, 0xff, text @ ..] => utf_16(u16::from_be_bytes, text),
+        [first, 0, second, 0, ..] if *first != 0 && *second != 0 => utf_16(u16::from_le_bytes, bytes),
+        [0, first, 0, second, ..] if *first != 0 && *second != 0 => utf_16(u16::from_be_bytes, bytes),
+        [b'P', b'K', 3, 4, ..] => return Err(bad(1, "an archive, or a workbook: save it as text, such as CSV")),
+        [0x1f, 0x8b, ..] => return Err(bad(1, "it is compressed: unpack it")),
+        _ => match std::str::from_utf8(bytes) {
+            Ok(text) => Cow::Borrowed(text.trim_start_matches('\u{feff}')),
+            Err(_) => Cow::Owned(bytes.iter().map(|&byte| char::from(byte)).collect()),
+        },
+    };
+    if let Some(index) = text.find('\0') {
+        let line = 1 + text[..index].matches('\n').count();
+        return Err(bad(line, "a byte of 0, which no text has"));
+    }
+    Ok(if text.contains('\r') { Cow::Owned(text.replace("\r\n", "\n").replace('\r', "\n")) } else { text })
+}
+
+/// The lines of `text` with their numbers.
+pub(super) fn numbered(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    (1..).zip(text.lines())
+}
+
+/// The lines of data from `lines`, of which none is blank but at the end, where something may have been lost.
+pub(super) fn without_blanks<'a>(
+    lines: impl Iterator<Item = (usize, &'a str)>,
+) -> impl Iterator<Item = Result<(usize, &'a str), BadLine>> {
+    let mut blank = None;
+    lines.filter_map(move |(number, line)| {
+        if line.trim().is_empty() {
+            blank.get_or_insert(number);
+            return None;
+        }
+        Some(match blank {
+            Some(blank) => Err(bad(blank, "a blank line amid the data: something may be missing there")),
+            None => Ok((number, line)),
+        })
+    })
+}
+
+/// A number whose multiples by all units are finite; the exponent may be Fortran's, `1.2D-03`.
+pub(super) fn number(word: &str) -> Option<f64> {
+    const LARGEST_UNIT: f64 = 1e3;
+    let parsed = match word.parse() {
+        Ok(number) => Some(number),
+        Err(_) if word.contains(['d', 'D']) => word.replace(['d', 'D'], "E").parse().ok(),
+        Err(_) => None,
+    };
+    parsed.filter(|number: &f64| (number * LARGEST_UNIT).is_finite())
+}
+
+/// The acceleration that `word` gives.
+pub(super) fn acceleration(word: &str) -> Result<f64, String> {
+    number(word).ok_or_else(|| format!("the acceleration {} is not a number", quote(word)))
+}
+
+/// The words of lines of a fixed width: columns of `width` letters, where a number that fills its column leaves no blank
+/// before it.
+pub(super) fn columns(line: &str, width: Option<usize>) -> Vec<&str> {
+    let words: Vec<_> = line.split_whitespace().collect();
+    match width {
+        Some(width) if words.iter().any(|word| word.len() > width || number(word).is_none()) && line.is_ascii() => {
+            let starts = (0..line.len()).step_by(width.max(1));
+            let cut = starts.map(|start| line[start..line.len().min(start + width.max(1))].trim());
+            cut.filter(|word| !word.is_empty()).collect()
+        }
+        _ => words,
+    }
+}
+
+/// What was found, short enough for a message, which shows a field of a file and no more of it.
+pub(super) fn quote(found: &str) -> String {
+    const SHOWN: usize = 40;
+    let found = found.trim();
+    match found.char_indices().nth(SHOWN) {
+        Some((end, _)) => format!("{:?}...", &found[..end]),
+        None => format!("{found:?}"),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_encoding_and_end_of_line_gives_the_same_text() {
+        let text = "t [s],a [m/s\u{b2}]\n0,1\n";
+        let latin: Vec<u8> = text.chars().map(|letter| letter as u8).collect();
+        let little: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        let big: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
+        let marked = |mark: &[u8], text: &[u8]| [mark, text].concat();
+        for bytes in [
+            text.as_bytes().to_vec(),
+            marked(b"\xef\xbb\xbf", text.as_bytes()),
+            latin,
+            marked(b"\xff\xfe", &little),
+            marked(b"\xfe\xff", &big),
+            little,
+            big,
+            text.replace('\n', "\r\n").into_bytes(),
+            text.replace('\n', "\r").into_bytes(),
+        ] {
+            assert_eq!(decode(&bytes).unwrap(), text, "{bytes:?}");
+        }
+        assert_eq!(decode(b"0,1\n\0"), Err(bad(2, "a byte of 0, which no text has")));
+        assert!(decode(b"PK\x03\x04...").is_err() && decode(b"\x1f\x8b...").is_err());
+    }
+
+    #[test]
+    fn columns_of_a_fixed_width_come_apart() {
+        assert_eq!(columns("  -.001239  -.001228", Some(10)), ["-.001239", "-.001228"]);
+        let full = columns("  -999.000000426212.000000  -999.000000", Some(13));
+        assert_eq!(full, ["-999.000000", "426212.000000", "-999.000000"]);
+        assert_eq!(columns("-123.45678-123.45678   1.00000", Some(10)), ["-123.45678", "-123.45678", "1.00000"]);
+        assert_eq!(columns("1 2.5", Some(10)), ["1", "2.5"]);
+    }
+}

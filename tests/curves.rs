@@ -1,0 +1,89 @@
+//! Curves of runs from outside: what straight lines between their points say, beside the motion itself.
+
+use rocking::record::Record;
+use rocking::run::curve::Point;
+use rocking::run::{End, Run};
+use rocking::{Detail, Parameters, Phase, State, Structure, TransitionKind};
+
+/// Lifts, bounces and lands the McManus specimen at every level: two sines that die away.
+fn ground() -> Record {
+    let time = |i: usize| i as f64 * 0.02;
+    let a_g = |t: f64| (4.0 * (9.0 * t).sin() + 2.0 * (23.0 * t).cos()) * (-0.4 * t).exp();
+    let samples = (0..300).map(time);
+    Record::from_samples("two sines", samples.clone().collect(), samples.map(a_g).collect()).unwrap()
+}
+
+/// θ, u, a_t and a_g.
+fn values(point: &Point) -> [f64; 4] {
+    [point.outputs.theta, point.outputs.u, point.outputs.a_t, point.a_g]
+}
+
+/// What the line through `points` says at `time`; just after a transition at its instant.
+fn on_the_line(points: &[Point], time: f64) -> [f64; 4] {
+    let after = points.partition_point(|point| point.time <= time).clamp(1, points.len() - 1);
+    let (from, to) = (&points[after - 1], &points[after]);
+    let part = if to.time > from.time { (time - from.time) / (to.time - from.time) } else { 1.0 };
+    std::array::from_fn(|i| values(from)[i] * (1.0 - part) + values(to)[i] * part)
+}
+
+#[test]
+fn lines_stay_as_close_to_the_motion_as_was_asked_for() {
+    let ground = ground();
+    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    for detail in Detail::ALL {
+        let run = Run { detail, end: End::At(8.0), ..Run::new(structure, &ground) };
+        let (peaks, finish) = run.peaks().unwrap();
+        let largest = [peaks.theta(), peaks.u(), peaks.a_t(), peaks.a_g()].map(|peak| peak.magnitude);
+        for part in [1e-2, 1e-4] {
+            let curve = run.curve(part).unwrap();
+            assert_eq!((curve.peaks, curve.finish), (peaks, finish));
+            let times = (0..80_000).map(|i| 1e-4 * f64::from(i)).take_while(|time| *time < finish.motion.time);
+            let mut missed = [0.0f64; 4];
+            let mut compare = |time: f64, expected: [f64; 4]| {
+                let found = on_the_line(&curve.points, time);
+                (0..4).for_each(|i| missed[i] = missed[i].max((found[i] - expected[i]).abs() / largest[i].max(1e-12)));
+            };
+            let show = |sample: &rocking::piece::Sample| {
+                let outputs = sample.outputs();
+                compare(sample.motion.time, [outputs.theta, outputs.u, outputs.a_t, sample.load.a_g]);
+            };
+            run.sample(times, show, &mut ()).unwrap();
+            assert!(missed[..3].iter().all(|missed| *missed <= part), "{detail:?} {part} {missed:?}");
+            assert!(missed[3] < 1e-12, "{detail:?} {missed:?}");
+        }
+    }
+}
+
+/// What a picture marks is on its line: each peak, and both sides of each transition.
+#[test]
+fn peaks_and_transitions_are_points() {
+    let ground = ground();
+    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let curve = Run::new(structure, &ground).curve(1e-2).unwrap();
+    let peaks = [curve.peaks.theta(), curve.peaks.u(), curve.peaks.a_t(), curve.peaks.a_g()];
+    for (i, peak) in peaks.into_iter().enumerate() {
+        let most = curve.points.iter().map(|point| values(point)[i].abs()).fold(0.0, f64::max);
+        assert!((most / peak.magnitude - 1.0).abs() < 1e-9, "{i}: {most} {peak:?}");
+    }
+    assert!(curve.transitions.len() > 10);
+    assert!(curve.points.is_sorted_by(|a, b| a.time <= b.time));
+    for transition in &curve.transitions {
+        let i = curve.points.partition_point(|point| point.time < transition.time);
+        let (before, after) = (&curve.points[i], &curve.points[i + 1]);
+        assert_eq!((before.time, after.time), (transition.time, transition.time));
+        assert_eq!((before.outputs.u, after.outputs.u), (transition.before.u, transition.after.u));
+        assert_eq!(after.outputs.theta_dot, transition.after.theta_dot);
+        assert_eq!(before.phase == Phase::FullContact, matches!(transition.kind, TransitionKind::Uplift(_)));
+    }
+}
+
+#[test]
+fn a_curve_ends_where_the_structure_lies() {
+    let ground = Record::at_rest(10.0);
+    let structure = Structure::new(Parameters::EVISON).unwrap();
+    let initial = State { theta: -0.4, ..State::default() };
+    let curve = Run { initial, ..Run::new(structure, &ground) }.curve(1e-3).unwrap();
+    let last = curve.points.last().unwrap();
+    assert_eq!(last.time, curve.finish.motion.time);
+    assert!((last.outputs.theta + std::f64::consts::FRAC_PI_2).abs() < 1e-12, "{last:?}");
+}

@@ -1,0 +1,284 @@
+"""The page of `rocking-fmu view` in headless Chromium: what it shows beside the table of `simulate`, and its controls."""
+
+import math
+import re
+import shutil
+import subprocess
+
+import numpy as np
+import pandas as pd
+import pytest
+from test_sweep import RECORDS
+
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+
+END = 4.0  # s
+HOSTILE = "</script><script>throw 1</script><!-- <b> & \" \u2028 </title>"
+
+
+@pytest.fixture(scope="module")
+def browser():
+    sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not there: make browser")
+    if not CHROMIUM:
+        pytest.skip("Chromium is not there: make browser")
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def view(exporter, pacoima_record, tmp_path_factory):
+    """The page of the Pacoima Dam scene, the response every 0.1 ms and the transitions."""
+    folder = tmp_path_factory.mktemp("view")
+    scene = ["--record", pacoima_record, "--duration", str(END)]
+    subprocess.run([exporter, "view", *scene, "-o", "view.html"], cwd=folder, check=True)
+    subprocess.run([exporter, "simulate", *scene, "--interval", "1e-4", "-o", "response.csv", "--events", "events.csv"],
+                   cwd=folder, check=True)
+    return folder / "view.html", pd.read_csv(folder / "response.csv"), pd.read_csv(folder / "events.csv")
+
+
+@pytest.fixture
+def opened(browser, view):
+    """Opens the page off line; at the end there must have been neither an error nor a request for anything else."""
+    context, problems, requests = None, [], []
+
+    def open(path=view[0], **options):
+        nonlocal context
+        context = browser.new_context(**({"viewport": {"width": 1280, "height": 800}, "offline": True} | options))
+        page = context.new_page()
+        page.on("console", lambda message: problems.append(message.text))
+        page.on("pageerror", lambda error: problems.append(str(error)))
+        page.on("request", lambda request: requests.append(request.url))
+        page.goto(path.as_uri())
+        return page
+
+    yield open
+    context.close()
+    assert problems == []
+    assert len(requests) == 1 and requests[0].startswith("file://")
+
+
+def number(text: str) -> float:
+    return float(text.replace("−", "-"))
+
+
+def clock(page) -> float:
+    return number(page.locator("#clock").text_content().split(" of ")[0])
+
+
+def reading(page, name: str) -> float:
+    return number(page.locator(f"tr[data-name={name}] td").first.text_content())
+
+
+def wait(page, until) -> None:
+    for _ in range(500):
+        if until():
+            return
+        page.wait_for_timeout(20)
+    raise TimeoutError
+
+
+def go_to(page, instant: float) -> None:
+    page.locator("#time").evaluate("(slider, t) => { slider.value = t; slider.dispatchEvent(new Event('input')); }", instant)
+
+
+def drawn(page) -> tuple[float, float, float]:
+    """θ (rad) and the pivot (m) by the transform of the body, u (m) by that of its top."""
+    transform = page.locator("#body").get_attribute("transform")
+    angle, pivot = re.fullmatch(r"rotate\((\S+) (\S+) 0\)", transform).groups()
+    top = page.locator("#body rect.mass").nth(1).get_attribute("transform")
+    return math.radians(float(angle)), float(pivot), float(re.match(r"translate\((\S+) ", top)[1])
+
+
+@pytest.mark.parametrize("exaggeration", [1, 20])
+def test_what_is_drawn_is_the_response(opened, view, exaggeration):
+    page = opened()
+    page.select_option("#exaggeration", str(exaggeration))
+    _, table, _ = view
+    largest = table.select_dtypes("number").abs().max()
+    for row in (0, 6667, 8765, 17041, 30000):
+        now = table.iloc[row]
+        go_to(page, now["time[s]"])
+        theta, pivot, u = drawn(page)
+        # the page's lines leave the motion by a ten-thousandth of its peaks, its values are rounded to a tenth of that
+        assert abs(theta / exaggeration - now["theta[rad]"]) <= 1.1e-4 * largest["theta[rad]"]
+        assert abs(u / exaggeration - now["u[m]"]) <= 1.1e-4 * largest["u[m]"]
+        if now["theta[rad]"] != 0:
+            assert pivot == math.copysign(0.285, now["theta[rad]"])
+        assert page.locator("#pivot").is_visible() == (now["theta[rad]"] != 0)
+        assert page.locator("tr.phase td").text_content() == now["phase"]
+        for name, column, unit in [("a_g", "a_g[m/s2]", 9.81), ("theta", "theta[rad]", 1), ("u", "u[m]", 1e-3),
+                                   ("uplift", "uplift[m]", 1e-3), ("a_t", "a_t[m/s2]", 9.81), ("V_t", "V_t[N]", 1e3),
+                                   ("M_t", "M_t[N.m]", 1e3)]:
+            assert abs(reading(page, name) - now[column] / unit) <= 2e-3 * largest[column] / unit, (name, row)
+
+
+def test_what_is_drawn_is_true_to_scale(opened):
+    """A base 0.57 m wide and a mass 1.84 m above it, measured on the screen."""
+    page = opened()
+    page.select_option("#exaggeration", "1")
+    corners = """shape => {
+        const box = shape.getBBox(), on = shape.getScreenCTM();
+        return [[box.x, box.y], [box.x + box.width, box.y + box.height]].map(([x, y]) => {
+            const point = new DOMPoint(x, y).matrixTransform(on);
+            return [point.x, point.y];
+        });
+    }"""
+    base, top = (np.array(page.locator("#body rect.mass").nth(i).evaluate(corners)) for i in (0, 1))
+    ground = page.locator("#surface").evaluate(corners)[0][1]
+    assert base[1, 1] == pytest.approx(ground, abs=0.01)
+    assert (ground - top[:, 1].mean()) / np.ptp(base[:, 0]) == pytest.approx(1.84 / 0.57, rel=1e-3)
+    assert "true to scale" in page.locator(".exaggeration").text_content()
+
+
+def test_the_peaks_are_exact_and_a_click_away(opened, view):
+    page = opened()
+    for name, peak in [("theta", 0.01200009), ("uplift", 6.83989), ("a_t", 0.53823)]:
+        cells = page.locator(f"tr[data-name={name}] td")
+        assert abs(number(cells.nth(1).text_content()) - peak) < 6e-4 * peak
+        cells.nth(2).locator("button").click()
+        assert abs(abs(reading(page, name)) - peak) < 6e-4 * peak
+
+
+def test_transitions_are_marked_and_stepped_through(opened, view):
+    page = opened()
+    _, _, events = view
+    for kind in ("uplift", "impact", "landing"):
+        expected = events["time[s]"][events["kind"].str.startswith(kind)]
+        ticks = page.locator(f"line.tick[data-kind={kind}]").evaluate_all("ticks => ticks.map(tick => Number(tick.getAttribute('x1')))")
+        assert len(ticks) == len(expected) > 0
+        # all ticks of all kinds are at one scale: 0 to 4 s over the width of the axis
+        slope, start = np.polyfit(expected, sorted(ticks), 1)
+        assert np.abs(start + slope * expected - sorted(ticks)).max() < 0.1
+    for instant in sorted(events["time[s]"])[:4]:
+        page.keyboard.press(".")
+        assert abs(clock(page) - instant) <= 5e-4 + 1e-9
+    page.keyboard.press(",")
+    assert abs(clock(page) - sorted(events["time[s]"])[2]) <= 5e-4 + 1e-9
+
+
+def test_play_pause_and_speed(opened):
+    page = opened()
+    go_to(page, 0)
+    page.select_option("#speed", "0.5")
+    page.locator("#play").click()
+    assert page.locator("#play").get_attribute("aria-label") == "Pause"
+    wait(page, lambda: clock(page) > 0.2)
+    page.keyboard.press("Space")
+    assert page.locator("#play").get_attribute("aria-label") == "Play"
+    at = clock(page)
+    assert 0.2 <= at < END
+    page.evaluate("() => new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
+    assert clock(page) == at
+    page.keyboard.press("ArrowUp")
+    assert page.locator("#speed").input_value() == "1"
+    go_to(page, END - 0.05)
+    page.keyboard.press("Space")
+    wait(page, lambda: page.locator("#play").get_attribute("aria-label") == "Play")
+    assert clock(page) == END
+
+
+def test_scrubbing_and_the_keyboard(opened):
+    page = opened()
+    frame = page.locator("#inside rect").evaluate("rect => [rect.x.baseVal.value, rect.width.baseVal.value]")
+    box = page.locator("#histories").bounding_box()
+    x = lambda instant: box["x"] + frame[0] + frame[1] * instant / END
+    page.mouse.move(x(1), box["y"] + 200)
+    page.mouse.down()
+    page.mouse.move(x(3), box["y"] + 300, steps=5)
+    assert abs(clock(page) - 3) < END / frame[1]
+    cursor = page.locator("line.cursor")
+    assert abs(float(cursor.get_attribute("x1")) - (x(3) - box["x"])) < 1.5
+    page.mouse.up()
+    page.mouse.move(x(1), box["y"] + 200)
+    assert abs(clock(page) - 3) < END / frame[1]
+    for key, expected in [("Home", 0), ("ArrowRight", 0.04), ("Shift+ArrowRight", 0.44), ("ArrowLeft", 0.4), ("End", END)]:
+        page.keyboard.press(key)
+        assert abs(clock(page) - expected) < 1e-9, key
+    before = page.locator("#exaggeration").input_value()
+    page.keyboard.press("E")
+    assert int(page.locator("#exaggeration").input_value()) < int(before)
+    page.keyboard.press("e")
+    assert page.locator("#exaggeration").input_value() == before
+    page.keyboard.press("?")
+    assert page.locator("#help").is_visible() and "play, pause" in page.locator("#help").text_content()
+    page.keyboard.press("Escape")
+    assert not page.locator("#help").is_visible()
+
+
+def test_less_time_is_shown_in_more_detail(opened):
+    page = opened()
+    go_to(page, 1)
+    length = lambda: page.locator("path[data-name=a_t]").get_attribute("d").count("L")
+    whole, ticks = length(), page.locator("line.tick").count()
+    for _ in range(3):
+        page.keyboard.press("+")
+    assert page.locator("line.tick").count() < ticks and length() != whole
+    assert page.locator("line.cursor").get_attribute("visibility") == "visible"
+    page.keyboard.press("End")
+    assert page.locator("line.cursor").get_attribute("visibility") == "visible"  # the part that is shown follows
+    page.keyboard.press("0")
+    assert (length(), page.locator("line.tick").count()) == (whole, ticks)
+
+
+def test_light_and_dark(opened):
+    page = opened(color_scheme="dark")
+    lightness = lambda: sum(map(int, re.findall(r"\d+", page.evaluate("getComputedStyle(document.body).backgroundColor"))[:3]))
+    assert lightness() < 150
+    page.emulate_media(color_scheme="light")
+    assert lightness() > 600
+    page.locator("#theme").click()
+    assert lightness() < 150
+    page.keyboard.press("d")
+    assert lightness() > 600
+
+
+def test_a_narrow_screen_shows_everything(opened):
+    page = opened(viewport={"width": 390, "height": 844})
+    assert page.evaluate("document.documentElement.scrollWidth") <= 390
+    for selector in ("#scene", "#readings", "#histories", "#play", "#time", "#speed"):
+        box = page.locator(selector).bounding_box()
+        assert box["x"] >= 0 and box["x"] + box["width"] <= 390 and box["height"] > 0, selector
+
+
+def test_a_structure_that_falls_lies(opened, exporter, tmp_path):
+    (tmp_path / "push.csv").write_text("time (s),a (m/s2)\n0,0\n0.2,6\n0.6,6\n0.8,-2\n1.2,0\n")
+    subprocess.run([exporter, "view", "--record", "push.csv", "-o", "view.html"], cwd=tmp_path, check=True)
+    page = opened(tmp_path / "view.html")
+    page.keyboard.press("End")
+    assert page.locator("tr.phase td").text_content() == "overturned"
+    assert page.locator("#fallen").text_content().startswith("overturned at 1.31")
+    theta, pivot, _ = drawn(page)
+    assert abs(theta + math.pi / 2) < 1e-4 and pivot == -0.285
+
+
+def test_a_hostile_title_is_text(opened, exporter, tmp_path):
+    header = f"PEER\n{HOSTILE}\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 4, DT= .0100 SEC,\n"
+    (tmp_path / "hostile.AT2").write_text(header + " 0 0.1 -0.1 0\n")
+    subprocess.run([exporter, "view", "--record", "hostile.AT2", "-o", "view.html"], cwd=tmp_path, check=True)
+    page = opened(tmp_path / "view.html")
+    assert page.locator("#title").text_content().strip() == HOSTILE
+    assert page.title().startswith("</script>")
+
+
+def test_free_vibration_and_a_fixed_base(opened, exporter, tmp_path):
+    subprocess.run([exporter, "view", "--preset", "evison", "--free", "2", "--theta-0", "0.04"], cwd=tmp_path, check=True)
+    page = opened(tmp_path / "free_vibration_view.html")
+    assert page.locator("path.curve").count() == 3  # the ground is at rest
+    assert abs(reading(page, "theta") - 0.04) < 1e-6
+    page.keyboard.press(".")
+    assert page.locator("tr.phase td").text_content() == "rocking left"
+
+
+@pytest.mark.parametrize("f_fc, digits", [(5, 4), (30, 3)])
+def test_a_page_is_of_moderate_size(opened, exporter, tmp_path, f_fc, digits):
+    """Less exact, and shown with fewer digits, where a stiff structure vibrates on and on."""
+    record = next((RECORDS.parent / "imperialValley_elCentro_1940").glob("*ELC180*.AT2"))
+    (tmp_path / "pier.toml").write_text(
+        f"m = 130.1\nm0 = 65.4\nH = 1.84\nB = 0.285\nJ0 = 10.7\nf_fc = {f_fc}\nzeta_fc = 0.005\nr = 0.99\n")
+    scene = ["--record", record, "--parameters", "pier.toml"]
+    subprocess.run([exporter, "view", *scene, "-o", "view.html"], cwd=tmp_path, check=True)
+    assert (tmp_path / "view.html").stat().st_size < 5e6
+    shown = opened(tmp_path / "view.html").locator("tr[data-name=theta] td").nth(1).text_content()
+    assert len(shown.replace(".", "").lstrip("0")) == digits
