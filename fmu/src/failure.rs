@@ -188,7 +188,7 @@ pub enum Failure {
         time: f64,
     },
     /// A step from the wrong time.
-    #[error("currentCommunicationPoint = {given:?} s is not where the FMU is, t = {time} s")]
+    #[error("currentCommunicationPoint = {} is not where the FMU is, t = {time} s", with_unit(*given, "s"))]
     WrongPoint {
         /// What the host passed, s.
         given: f64,
@@ -197,7 +197,7 @@ pub enum Failure {
     },
     /// A step that is none.
     #[error(
-        "communicationStepSize = {step:?} s is out of range: it must be positive, finite, and large enough to move t = {time} s"
+        "communicationStepSize = {step} s is out of range: it must be positive, finite, and large enough to move t = {time} s"
     )]
     BadStep {
         /// What the host passed, s.

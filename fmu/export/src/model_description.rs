@@ -243,7 +243,7 @@ mod tests {
       <Enumeration declaredType="Phase"/>"#,
             r#"<Item name="rocking left" value="2"/>"#,
             r#"<String start="pulse &amp; rest.csv"/>"#,
-            r#"theta_max, u_max, ... are watched for" causality="parameter" variability="fixed" initial="exact">
+            r#"description="whether the largest magnitudes theta_max, u_max, ... are watched for" causality="parameter" variability="fixed" initial="exact">
       <Boolean start="false"/>"#,
             r#"exact: within steps, too; NaN unless peaks is true" causality="local" variability="continuous" initial="calculated">
       <Real unit="rad" displayUnit="deg" nominal="0.351"/>"#,
