@@ -114,7 +114,7 @@ def test_nominal_values_are_of_the_magnitude_that_is_met(shaken):
     """What peaks in an earthquake is within a factor of 100 of its nominal value."""
     fmu = shaken["mcmanus"]
     result = simulate_fmu(fmu.path, start_values={"peaks": True}, output=[*OUTPUTS, *(f"{name}_max" for name in PEAKS)])
-    for name in result.dtype.names[1:]:
+    for name in set(result.dtype.names) - {"time", "I_h", "I_v", "I_m"}:
         peak, nominal = np.abs(result[name]).max(), float(fmu.variables[name].nominal)
         assert nominal / 100 < peak < 100 * nominal, (name, peak, nominal)
 
@@ -123,10 +123,10 @@ def test_simulating_without_a_word_follows_the_record(shaken, mcmanus):
     """The default experiment ends with the record, and its step is no longer than a sample; without a record, nothing has
     been said that would move the structure, and its stop time and step are those of a free vibration."""
     experiment = shaken["mcmanus"].description.defaultExperiment
-    assert experiment.stopTime == pytest.approx(TIME[-1] - TIME[0], rel=1e-8)
-    assert experiment.stepSize <= np.diff(TIME).min() * (1 + 1e-8)
+    assert float(experiment.stopTime) == pytest.approx(TIME[-1] - TIME[0], rel=1e-8)
+    assert float(experiment.stepSize) <= np.diff(TIME).min() * (1 + 1e-8)
     result = simulate_fmu(shaken["mcmanus"].path)
-    assert result["time"][-1] == pytest.approx(experiment.stopTime) and np.abs(result["theta"]).max() > 0.01
+    assert result["time"][-1] == pytest.approx(float(experiment.stopTime)) and np.abs(result["theta"]).max() > 0.01
     at_rest = simulate_fmu(mcmanus.path)
     assert not at_rest["theta"].any() and not at_rest["u"].any()
     released = simulate_fmu(mcmanus.path, start_values={"theta_0": 0.04})
@@ -162,7 +162,8 @@ def test_two_exports_in_one_process(export, pacoima_record, tmp_path):
 
 def test_two_exports_in_one_container(export, pacoima_record, tmp_path):
     """fmpy's container of both gives what each gives by itself."""
-    components, variables, mapping = [], [], {}
+    time = ModelVariable(name="time", valueReference=0, type="Real", causality="independent", variability="continuous")
+    components, variables, mapping = [], [time], {}  # what is number 0 is the time
     for preset, name in (("mcmanus", "Pier1"), ("evison", "Pier2")):
         path = export(preset, pacoima_record, name)
         component = Component(name=name, filename=path, modelDescription=read_model_description(path))
@@ -173,9 +174,9 @@ def test_two_exports_in_one_container(export, pacoima_record, tmp_path):
         variables.append(outer)
         mapping[outer] = [(component, inner)]
     description = ModelDescription(
-        fmiVersion="2.0", modelName="Two", guid="two", modelVariables=variables,
+        fmiVersion="2.0", modelName="Two", instantiationToken="two", modelVariables=variables,
         coSimulation=CoSimulation(modelIdentifier="container_fmu", fixedInternalStepSize=0.01))
-    description.outputs = [Unknown(variable=variable) for variable in variables]
+    description.outputs = [Unknown(variable=variable) for variable in variables[1:]]
     (tmp_path / "unpacked").mkdir()
     create_container_fmu(Configuration(parallelDoStep=False, modelDescription=description, components=components, connections=[],
                                        variableMappings=mapping), tmp_path / "unpacked", tmp_path / "two.fmu")
@@ -183,7 +184,7 @@ def test_two_exports_in_one_container(export, pacoima_record, tmp_path):
     for component in components:
         alone = simulate_fmu(component.filename, stop_time=3.0, output_interval=0.01)
         assert np.abs(alone["theta"]).max() > 1e-3
-        np.testing.assert_array_equal(both[f"{component.name}_theta"], alone["theta"])
+        np.testing.assert_allclose(both[f"{component.name}_theta"], alone["theta"], rtol=0, atol=1e-14)
 
 
 def test_phases(fmu):

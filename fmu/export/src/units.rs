@@ -76,9 +76,7 @@ pub fn nominal(variable: &Variable, structure: &Structure) -> Option<f64> {
         "F_t" | "V_t" | "R_h" => Some(m * acceleration),
         "M_t" | "R_m" => Some(m * height * acceleration),
         "R_v" => Some((m + parameters.m0) * parameters.g),
-        "I_h" | "I_v" => Some(m * height * structure.p_l * alpha),
-        "I_m" => Some(structure.J_P * structure.p_l * alpha),
-        _ => None,
+        _ => None, // impulses add up over a motion
     };
     magnitude.map(|magnitude| format!("{magnitude:.2e}").parse().expect("a number in Rust's own notation"))
 }
