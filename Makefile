@@ -76,10 +76,10 @@ wheels: dist
 	rm -rf out/wheel out/wheels
 	mkdir -p out/wheel/data/share/flexible-rocking
 	cp out/FlexibleRocking.fmu out/wheel/data/share/flexible-rocking/
-	$(WHEEL) sdist --quiet --out out/wheels
-	for target in x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu; do $(WHEEL) build --quiet --release --locked --zig \
+	$(WHEEL) sdist --out out/wheels
+	for target in x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu; do $(WHEEL) build --release --locked --zig \
 		--compatibility manylinux2014 --target $$target --out out/wheels || exit; done
-	$(WHEEL) build --quiet --release --locked --zig --target universal2-apple-darwin --out out/wheels
+	$(WHEEL) build --release --locked --zig --target universal2-apple-darwin --out out/wheels
 
 windows: mingw
 	@if $(HAS_MINGW) && rustup target list --installed | grep -q $(WINDOWS); then \
