@@ -67,6 +67,7 @@ pub mod parameters;
 pub mod piece;
 pub mod pushover;
 pub mod quantity;
+mod reaction_series;
 pub mod reactions;
 pub mod record;
 pub mod response_spectrum;

@@ -11,6 +11,7 @@ pub mod outcome;
 pub mod peaks;
 pub mod plan;
 mod samples;
+pub mod validity;
 
 use crate::engine::{AdvanceError, DEFAULT_TOLERANCE};
 use crate::piece::Sample;

@@ -1,8 +1,10 @@
-//! Peaks against dense sampling of the same pieces: random structures, states and loads at all levels.
+//! Peaks, and what motions go beyond, against dense sampling of the same pieces: random structures, states and loads at all
+//! levels.
 #![allow(non_snake_case)]
 
 use rocking::run::peaks::{PEAKS, Peaks};
-use rocking::{Detail, Engine, LinearLoad, Load, Parameters, Piece, Progress, State, Structure, Watch};
+use rocking::run::validity::{Found, Limits, Validity};
+use rocking::{Detail, Engine, LinearLoad, Load, Parameters, Phase, Piece, Progress, State, Structure, Watch};
 
 /// A xorshift generator.
 struct Rng(u64);
@@ -28,9 +30,13 @@ impl Rng {
 }
 
 /// Samples of each piece.
-#[derive(Default)]
 struct Dense {
+    parameters: Parameters,
     largest: [f64; PEAKS.len()],
+    /// (|R_m|/B − R_v)/W in full contact, −R_v/W, and |R_h|/R_v while R_v > 0, otherwise ∞.
+    worst: [f64; 3],
+    /// How long each of them is beyond its limit, s.
+    beyond: [f64; 3],
     pieces: usize,
 }
 
@@ -40,9 +46,19 @@ impl Watch for Dense {
     fn piece(&mut self, piece: &mut Piece) {
         const SAMPLES: u32 = 400;
         self.pieces += 1;
-        let (start, duration) = (piece.before.time, piece.duration);
+        let (start, duration, phase) = (piece.before.time, piece.duration, piece.before.phase);
+        let Parameters { m, m0, B, g, .. } = self.parameters;
+        let (weight, limits) = ((m + m0) * g, Limits::default());
         for i in 0..=SAMPLES {
-            let o = piece.sample(start + duration * f64::from(i) / f64::from(SAMPLES)).outputs();
+            let sample = piece.sample(start + duration * f64::from(i) / f64::from(SAMPLES));
+            let (o, r) = (sample.outputs(), sample.reactions());
+            let friction = if r.R_v > 0.0 { r.R_h.abs() / r.R_v } else { f64::INFINITY };
+            let tension = if phase == Phase::FullContact { (r.R_m.abs() / B - r.R_v) / weight } else { -1.0 };
+            let values = [(tension, limits.tension), (-r.R_v / weight, -limits.edge_load), (friction, limits.friction)];
+            for (i, (value, limit)) in values.into_iter().enumerate().filter(|_| duration > 0.0) {
+                self.worst[i] = value.max(self.worst[i]);
+                self.beyond[i] += if value > limit { duration / f64::from(SAMPLES + 1) } else { 0.0 };
+            }
             let values = [o.theta, o.u, o.delta_t, o.uplift, o.a_t, o.V_t, o.M_t];
             self.largest.iter_mut().zip(values).for_each(|(largest, value)| *largest = value.abs().max(*largest));
         }
@@ -95,21 +111,49 @@ fn no_peak_is_missed() {
         let structure = Structure::new(parameters).unwrap();
         let tolerance = [1e-12, 1e-9, 1e-6][r.pick(3)];
         let mut engine = Engine::with_detail(structure, state, 0.0, tolerance, detail).unwrap();
-        let (mut peaks, mut dense) = (Peaks::new(&structure), Dense::default());
+        let mut peaks = Peaks::new(&structure);
+        let mut validity = Validity::new(&structure, Limits::default(), Found::since(0.0));
+        let mut dense = Dense {
+            parameters,
+            largest: [0.0; PEAKS.len()],
+            worst: [-1.0, f64::NEG_INFINITY, 0.0],
+            beyond: [0.0; 3],
+            pieces: 0,
+        };
         let weight = 9.81 * structure.tan_alpha_cg;
         let amplitude = weight * [0.0, 0.3, 1.0, 3.0][r.pick(4)];
         let force = parameters.m * weight * [0.0, 0.3, 1.0][r.pick(3)];
         let longest = r.log(1e-4, 3.0) * if r.next() < 0.1 { 30.0 } else { 1.0 };
-        let mut load = Load::default();
+        let (mut load, mut fastest) = (Load::default(), 0.0_f64);
         for _ in 0..=r.log(3.0, 60.0) as usize {
             let target = Load { a_g: amplitude * r.sym(), F_t: force * r.sym() };
             let h = longest * if r.next() < 0.2 { r.next() + 1e-3 } else { 1.0 };
             let slope = Load { a_g: (target.a_g - load.a_g) / h, F_t: (target.F_t - load.F_t) / h };
-            let progress = engine.advance(h, LinearLoad { value: load, slope }, &mut (&mut dense, &mut peaks.watch()));
+            let watch = &mut (&mut dense, &mut (&mut peaks.watch(), &mut validity));
+            let progress = engine.advance(h, LinearLoad { value: load, slope }, watch);
+            fastest = fastest.max(h * structure.omega_u);
             if progress != Ok(Progress::Complete) || dense.pieces > 4000 {
                 break;
             }
             load = target;
+        }
+        let found = validity.found().worst;
+        for (i, sign) in [1.0, -1.0, 1.0].into_iter().enumerate() {
+            let (worst, sampled) = (sign * found[i].value, dense.worst[i]);
+            let slack = 1e-9 * (1.0 + sampled.abs());
+            assert!(
+                worst == sampled || worst >= sampled - slack,
+                "scene {seed}, {}: {i}: {worst} < {sampled}",
+                detail.name()
+            );
+            let off = (found[i].beyond - dense.beyond[i]).abs();
+            let all = validity.found().duration;
+            // samples tell how long where they are dense enough to see each vibration
+            assert!(
+                fastest > 100.0 || off <= 0.01 * all,
+                "scene {seed}, {}: {i}: beyond for {off} of {all} s",
+                detail.name()
+            );
         }
         for (peaking, sampled) in PEAKS.iter().zip(dense.largest) {
             let peak = (peaking.of)(&peaks).magnitude;

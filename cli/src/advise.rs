@@ -9,6 +9,7 @@ use crate::{
     scene_args::{GroundArgs, InitialArgs},
     structure_args::StructureArgs,
     talk::say,
+    validity::{self, LimitArgs},
 };
 use anyhow::Context;
 use clap::{ValueEnum, builder::PossibleValue};
@@ -40,6 +41,8 @@ pub struct AdviseArgs {
     initial: InitialArgs,
     #[command(flatten)]
     allowed: AllowedArgs,
+    #[command(flatten)]
+    limits: LimitArgs,
     #[command(flatten)]
     results: FormatArgs,
     /// Draw the errors of every level
@@ -112,7 +115,7 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let criteria: Vec<_> = args.allowed.of.iter().map(Measure::criterion).collect();
     let advised = comparison.recommended(args.allowed.within, &criteria);
     if args.results.format == Format::Text {
-        print(&text(args, &structure, &ground, &comparison, advised)?)?;
+        print(&text(args, &run, &comparison, advised)?)?;
     } else {
         print_rows(args.results.format, &rows(&comparison, advised))?;
     }
@@ -123,13 +126,8 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
 }
 
 /// The table and the advice, for people.
-fn text(
-    args: &AdviseArgs,
-    structure: &Structure,
-    ground: &Record,
-    comparison: &Comparison,
-    advised: Option<&Verdict>,
-) -> anyhow::Result<String> {
+fn text(args: &AdviseArgs, run: &Run, comparison: &Comparison, advised: Option<&Verdict>) -> anyhow::Result<String> {
+    let (structure, ground) = (&run.structure, run.ground);
     let mut out = String::new();
     writeln!(out, "Ground motion: {}", args.ground.title(ground))?;
     print_reference(&mut out, structure, comparison)?;
@@ -139,6 +137,12 @@ fn text(
         writeln!(out, "  {:<10} not possible here: {error:#}", detail.name())?;
     }
     print_advice(&mut out, comparison, advised, &args.allowed)?;
+    let limits = args.limits.limits();
+    let (found, _) = run.validity(limits)?;
+    writeln!(out)?;
+    for line in validity::section(structure, run.detail, &found, &limits) {
+        writeln!(out, "{line}")?;
+    }
     Ok(out)
 }
 

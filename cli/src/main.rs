@@ -20,6 +20,7 @@ mod summary;
 mod sweep;
 mod tables;
 mod talk;
+mod validity;
 mod view;
 
 use clap::{Parser, Subcommand};

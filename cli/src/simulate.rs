@@ -12,12 +12,17 @@ use crate::{
     summary::{self, Summary, instant},
     tables::{self, Table},
     talk::{self, say},
+    validity::{self, LimitArgs},
 };
 use anyhow::ensure;
 use rocking::{
     Transition,
     record::Record,
-    run::{End, Run, peaks::Peaks},
+    run::{
+        End, Run,
+        peaks::Peaks,
+        validity::{Found, Validity},
+    },
 };
 use std::path::{Path, PathBuf};
 
@@ -34,6 +39,8 @@ pub struct SimulateArgs {
     level: LevelArgs,
     #[command(flatten)]
     results: ResultArgs,
+    #[command(flatten)]
+    limits: LimitArgs,
 }
 
 #[derive(clap::Args)]
@@ -123,6 +130,8 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
             written = events.write(tables::event_line(transition));
         }
     };
+    let limits = args.limits.limits();
+    let mut validity = Validity::new(&structure, limits, Found::since(ground.start()));
     let mut rows = Ok(());
     let finish = run.sample(
         args.output_times(&ground, end),
@@ -132,7 +141,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
                 rows = response.write(tables::response_line(sample));
             }
         },
-        &mut (&mut peaks.watch(), &mut (&mut summary, &mut transition)),
+        &mut (&mut peaks.watch(), &mut (&mut validity, &mut (&mut summary, &mut transition))),
     );
     progress.finish_and_clear();
     let finish = finish?;
@@ -141,7 +150,10 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     events.map_or(Ok(()), Table::finish)?;
     let (start, end) = (instant(ground.start()), instant(finish.motion.time));
     if args.results.format.format == Format::Text {
-        let text = format!("{}, {start} to {end} s\n{}", ground.title(), summary.text(&peaks, &finish)?);
+        let mut text = format!("{}, {start} to {end} s\n{}", ground.title(), summary.text(&peaks, &finish)?);
+        for line in validity::section(&structure, detail, validity.found(), &limits) {
+            text = text + &line + "\n";
+        }
         // What goes to standard output stays one table.
         if output == Path::new("-") { say!("{}", text.trim_end()) } else { print(&text)? }
     } else {

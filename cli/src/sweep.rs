@@ -18,7 +18,12 @@ use file::Sweep;
 use indicatif::ProgressStyle;
 use rayon::{ThreadPoolBuilder, prelude::*};
 use rocking::quantity::with_unit;
-use rocking::run::{exceedances, outcome::Outcome, plan::Case, plan::Plan};
+use rocking::run::{
+    exceedances,
+    outcome::Outcome,
+    plan::{Case, Plan},
+    validity::{Found, Limits, Validity},
+};
 use rows::Rows;
 use std::{num::NonZeroUsize, path::PathBuf, sync::Mutex, time::Instant};
 use uuid::Uuid;
@@ -39,6 +44,9 @@ pub struct SweepArgs {
     /// Runs at a time [default: one per core]
     #[arg(long, value_name = "N")]
     threads: Option<NonZeroUsize>,
+    /// Find what each run goes beyond, too: tension, load of the edge, friction, energy gained at impacts
+    #[arg(long)]
+    validity: bool,
     #[command(flatten)]
     results: FormatArgs,
 }
@@ -54,7 +62,7 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let picture = args.picture.clone().unwrap_or(PictureFile::svg(output.with_extension("svg")));
     files.reserve_rows(&output)?;
     let picture = picture.create(&mut files).context("picture of the sweep")?;
-    let keys = rows::keys(&plan);
+    let keys = rows::keys(&plan, args.validity);
     let (rows, found) = Rows::open(&output, &keys)?;
     let mut outcomes = found.outcomes;
     let missing: Vec<_> = (0..plan.len()).filter(|index| outcomes[*index].is_none()).collect();
@@ -76,7 +84,7 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
 
     let pool = ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, NonZeroUsize::get)).build()?;
     let clock = Instant::now();
-    for (index, outcome) in pool.install(|| do_runs(&plan, &keys, &missing, rows))? {
+    for (index, outcome) in pool.install(|| do_runs(&plan, &keys, &missing, args.validity, rows))? {
         outcomes[index] = Some(outcome);
     }
     if !missing.is_empty() {
@@ -115,14 +123,27 @@ fn report_failures(plan: &Plan, keys: &[Uuid], outcomes: &[Outcome]) -> anyhow::
 }
 
 /// Does the runs numbered `missing` and appends them to `rows` as they end.
-fn do_runs(plan: &Plan, keys: &[Uuid], missing: &[usize], rows: Rows) -> anyhow::Result<Vec<(usize, Outcome)>> {
+fn do_runs(
+    plan: &Plan,
+    keys: &[Uuid],
+    missing: &[usize],
+    validity: bool,
+    rows: Rows,
+) -> anyhow::Result<Vec<(usize, Outcome)>> {
     let style = ProgressStyle::with_template("{elapsed_precise} {bar:40} {pos}/{len} runs, {per_sec}, {eta} left")?;
     let progress = talk::progress(missing.len()).with_style(style);
     let rows = Mutex::new(rows);
     let outcomes = missing.par_iter().map(|&index| {
         let case = plan.case(index);
-        let outcome = case.outcome();
-        rows.lock().expect("no thread panics with the file in hand").append(&keys[index], &case, &outcome)?;
+        let (outcome, found) = if validity {
+            let found = Found::since(case.motion.record().start());
+            let mut validity = Validity::new(&case.structure, Limits::default(), found);
+            (case.outcome_watched(&mut validity), Some(*validity.found()))
+        } else {
+            (case.outcome(), None)
+        };
+        let mut rows = rows.lock().expect("no thread panics with the file in hand");
+        rows.append(&keys[index], &case, &outcome, found.as_ref())?;
         progress.inc(1);
         Ok((index, outcome))
     });

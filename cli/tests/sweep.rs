@@ -74,8 +74,10 @@ fn every_run_has_a_row_whatever_the_threads() {
                     record,record_scale,scale,PGA[g],PGV[m/s],S_a[g],detail,tolerance,duration[s],theta_0[rad],\
                     theta_dot_0[rad/s],u_0[m],u_dot_0[m/s],\
                     ending,end[s],peak_theta[rad],peak_u[m],peak_delta_t[m],peak_uplift[m],\
-                    peak_a_t[m/s2],peak_V_t[N],peak_M_t[N.m],peak_theta/alpha_cg,transitions,steps,evaluations,reason,\
-                    checksum";
+                    peak_a_t[m/s2],peak_V_t[N],peak_M_t[N.m],peak_theta/alpha_cg,transitions,steps,evaluations,\
+                    tension_max,t_tension_max[s],R_v_min,t_R_v_min[s],mu_required,t_mu_required[s],mu_impact,\
+                    t_mu_impact[s],tension_impact,t_tension_impact[s],energy_gain_max,t_energy_gain_max[s],\
+                    energy_gains,settlings,reason,checksum";
     assert_eq!(one.lines().next(), Some(headings));
     assert_eq!(rows(&one).len(), RUNS);
     for other in ["two.csv", "seven.csv", "sweep.csv"] {

@@ -11,6 +11,7 @@ use rocking::Motion;
 use rocking::engine::{AdvanceError, Progress};
 use rocking::ground_motion::Elapsed;
 use rocking::run::peaks::{PEAKS, Peaks};
+use rocking::run::validity::{Found, Limits, Validity, Worst};
 use rocking::{Engine, Impulse, LinearLoad, Load, Phase, State, Watch};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
@@ -47,6 +48,8 @@ pub struct Course {
     pub elapsed: Elapsed,
     /// Peaks so far, if they are watched.
     pub peaks: Peaks,
+    /// What the motion has gone beyond so far, if it is watched.
+    pub validity: Found,
     /// Of the record that the ground follows.
     pub record: Option<Digest>,
 }
@@ -68,6 +71,7 @@ pub(crate) struct Model {
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
     pub peaks: Peaks,
+    pub validity: Found,
 }
 
 impl Model {
@@ -76,7 +80,8 @@ impl Model {
         let engine = setup.engine()?;
         ground.as_deref().map_or(Ok(()), |ground| setup.check_ground(ground))?;
         let peaks = Peaks::since(setup.start_time, engine.structure());
-        Ok(Model { engine, ground, elapsed: Elapsed::default(), peaks })
+        let validity = Found::since(setup.start_time);
+        Ok(Model { engine, ground, elapsed: Elapsed::default(), peaks, validity })
     }
 
     /// What acts now: `inputs` and the record.
@@ -94,6 +99,21 @@ impl Model {
             peaks.see_instant(setup.start_time, &self.engine.outputs(load));
         }
         peaks
+    }
+
+    /// What the motion has gone beyond since the start; before the first step, what the reactions under `load` are.
+    pub fn validity(&self, setup: &Setup, load: Load) -> Found {
+        let mut validity = self.watch_validity();
+        let motion = self.engine.motion();
+        if motion.work.steps == 0 {
+            validity.see_instant(setup.start_time, motion.phase, &self.engine.reactions(load));
+        }
+        *validity.found()
+    }
+
+    /// Goes on from what has been found so far.
+    fn watch_validity(&self) -> Validity {
+        Validity::new(self.engine.structure(), Limits::default(), self.validity)
     }
 
     /// From the first to the last sample of the record, s; 0 without one.
@@ -114,12 +134,23 @@ impl Model {
         inputs: LinearLoad,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
-        if !setup.peaks {
-            return self.follow(setup, step, inputs, watch);
-        }
         let mut peaks = self.peaks;
-        let progress = self.follow(setup, step, inputs, &mut (&mut peaks.watch(), watch))?;
-        self.peaks = peaks;
+        if !setup.validity {
+            if !setup.peaks {
+                return self.follow(setup, step, inputs, watch);
+            }
+            let progress = self.follow(setup, step, inputs, &mut (&mut peaks.watch(), watch))?;
+            self.peaks = peaks;
+            return Ok(progress);
+        }
+        let mut validity = self.watch_validity();
+        let watch = &mut (&mut validity, watch);
+        let progress = if setup.peaks {
+            self.follow(setup, step, inputs, &mut (&mut peaks.watch(), watch))
+        } else {
+            self.follow(setup, step, inputs, watch)
+        }?;
+        (self.peaks, self.validity) = (peaks, *validity.found());
         Ok(progress)
     }
 
@@ -156,7 +187,7 @@ impl Condition {
 
 impl Course {
     fn is_possible(&self, setup: &Setup) -> bool {
-        let Course { motion, elapsed, peaks, record } = self;
+        let Course { motion, elapsed, peaks, validity, record } = self;
         let &Motion { time, state: State { u, u_dot, theta, theta_dot }, impulse, transitions, work, .. } = motion;
         let Impulse { I_h, I_v, I_m } = impulse;
         [u, u_dot, theta_dot, I_h, I_v, I_m].iter().all(|x| x.abs() <= BOUND)
@@ -165,6 +196,14 @@ impl Course {
                 .iter()
                 .map(|peaking| (peaking.of)(peaks))
                 .all(|peak| peak.magnitude <= BOUND && peak.time.is_finite())
+            && validity.worst.iter().all(|&Worst { value, time, first_beyond, beyond }| {
+                // friction may be infinite
+                value >= -BOUND && [time, first_beyond.unwrap_or(0.0), beyond].iter().all(|x| x.is_finite())
+            })
+            && [validity.held, validity.duration].iter().all(|x| x.is_finite())
+            && [validity.gains, validity.impacts, validity.settlings, validity.evaluations]
+                .iter()
+                .all(|count| *count < MAX_COUNT)
             && [transitions, work.steps, work.evaluations, peaks.evaluations()].iter().all(|count| *count < MAX_COUNT)
             && time.is_finite()
             && theta.abs() <= MAX_ANGLE
@@ -202,6 +241,7 @@ impl Present {
             motion: *model.engine.motion(),
             elapsed: model.elapsed,
             peaks: model.peaks,
+            validity: model.validity,
             record: model.digest(),
         });
         Condition { stage: *stage, setup: setup.clone(), inputs: *inputs, course }
@@ -219,7 +259,7 @@ impl Present {
                 return Err(Failure::OtherRecord(setup.record.to_string()));
             }
             found.engine.set_motion(course.motion);
-            (found.elapsed, found.peaks) = (course.elapsed, course.peaks);
+            (found.elapsed, found.peaks, found.validity) = (course.elapsed, course.peaks, course.validity);
             model = Some(found);
         }
         *self = Present { stage: *stage, setup: setup.clone(), inputs: *inputs, model };

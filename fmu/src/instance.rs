@@ -11,8 +11,8 @@ use crate::snapshot::{self, Snapshots};
 use crate::state_machine::Stage;
 use crate::variables::{self, Causality, Source, VARIABLES, Variable};
 use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE, Progress};
-use rocking::impact::gaining_restitution;
 use rocking::load::LOADS;
+use rocking::run::validity::{self, ASSUMPTIONS, Found, Limits};
 use rocking::{Load, Parameters, Reactions, Side, Transition, TransitionKind};
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
@@ -95,13 +95,9 @@ impl Instance {
 
     /// From here on parameters and initial values are fixed, and fit together.
     pub fn exit_initialization_mode(&mut self) -> Result<(), Failure> {
-        let structure = self.now.model(&self.archive)?.engine.structure();
-        let (r, gaining) = (structure.parameters().r, gaining_restitution(structure));
-        if r < gaining {
-            self.logger.warning(&format!(
-                "r = {r} is below 1 - 4 (m + m0) B^2/J_P = {gaining}: impacts of this structure can raise its energy; \
-                 raise r, or lower H/B"
-            ));
+        let (model, setup, ..) = self.now.parts(&self.archive)?;
+        for warning in validity::of_parameters(model.engine.structure(), setup.detail) {
+            self.logger.warning(&warning);
         }
         self.now.stage = Stage::StepComplete;
         Ok(())
@@ -127,7 +123,12 @@ impl Instance {
             let variable = find(*reference)?;
             match variable.source {
                 Source::Input(_) | Source::Parameter(_) | Source::InitialValue(_) | Source::Placement(_) => (),
-                Source::Integer(_) | Source::Boolean(_) | Source::Detail | Source::Record | Source::Switch(_) => {
+                Source::Integer(_)
+                | Source::Gains
+                | Source::Boolean(_)
+                | Source::Detail
+                | Source::Record
+                | Source::Switch(_) => {
                     return Err(Failure::WrongType(variable));
                 }
                 Source::Reaction(_) => (reaction, is_computed) = (Some(variable), true),
@@ -158,7 +159,9 @@ impl Instance {
 
     /// Integers and enumerations.
     pub fn get_integer(&mut self, references: &[u32], values: &mut [MaybeUninit<i32>]) -> Result<(), Failure> {
-        self.get_discrete(references, values, |source| matches!(source, Source::Integer(_) | Source::Detail))
+        self.get_discrete(references, values, |source| {
+            matches!(source, Source::Integer(_) | Source::Gains | Source::Detail)
+        })
     }
 
     /// Booleans, as 0 or 1.
@@ -188,6 +191,7 @@ impl Instance {
             value.write(match find(*reference)?.source {
                 Source::Integer(of) | Source::Boolean(of) => of(self.now.model(&self.archive)?.engine.motion()),
                 Source::Switch(switch) => (switch.get)(&self.now.setup).into(),
+                Source::Gains => i32::try_from(self.now.model(&self.archive)?.validity.gains).unwrap_or(i32::MAX),
                 _ => variables::detail_number(self.now.setup.detail),
             });
         }
@@ -435,14 +439,17 @@ impl Instance {
         }
 
         model.engine.set_time(point);
+        let known = model.validity;
         match model.advance(setup, step, load, &mut |transition: &Transition| log(logger, transition)) {
             Ok(Progress::Complete) => {
                 inputs.pass(load, step);
+                warn(logger, &known, &model.validity);
                 Ok(())
             }
             Ok(Progress::Overturned) => {
                 let end = model.engine.motion().time;
                 inputs.pass(load, end - point);
+                warn(logger, &known, &model.validity);
                 *stage = Stage::StepFailed;
                 Err(Failure::Overturned { time: end })
             }
@@ -538,6 +545,15 @@ fn is_same_time(a: f64, b: f64, step: f64) -> bool {
     let rounding = places * (b.abs().next_up() - b.abs());
     // never so far that a step could be missed
     (a - b).abs() <= rounding.max(part * step).min(0.5 * step)
+}
+
+/// Says which limits have been passed that were not when no more than `known` was found.
+fn warn(logger: &Logger, known: &Found, found: &Found) {
+    let is_new = |which: &usize| known.worst[*which].first_beyond.is_none();
+    (0..ASSUMPTIONS.len())
+        .filter(is_new)
+        .filter_map(|which| found.warning(which, &Limits::default()))
+        .for_each(|warning| logger.warning(&warning));
 }
 
 fn log(logger: &Logger, transition: &Transition) {

@@ -24,6 +24,8 @@ pub struct Setup {
     pub(crate) extrapolate: bool,
     /// Whether peaks are watched.
     pub(crate) peaks: bool,
+    /// Whether it is watched what the motion goes beyond.
+    pub(crate) validity: bool,
 }
 
 impl Setup {
@@ -40,6 +42,7 @@ impl Setup {
             placement: Placement::default(),
             extrapolate: false,
             peaks: false,
+            validity: false,
         }
     }
 

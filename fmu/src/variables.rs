@@ -10,6 +10,7 @@ use rocking::load::LOADS;
 use rocking::parameters::PARAMETERS;
 use rocking::quantity::Quantity;
 use rocking::run::peaks::Peaks;
+use rocking::run::validity::{ASSUMPTIONS, Assumption};
 use rocking::state::INITIAL_VALUES;
 use rocking::structure::{DERIVED, Derived};
 use rocking::{Detail, Impulse, Load, Outputs, Parameters, Phase, Reactions, Side, State};
@@ -114,6 +115,12 @@ pub(crate) enum Source {
     /// The ground's acceleration: the input and the record.
     Ground,
     Peak(fn(&Peaks) -> f64),
+    /// The worst value of one of [`ASSUMPTIONS`].
+    Worst(usize),
+    /// Its instant.
+    WorstInstant(usize),
+    /// Impacts that raise the energy.
+    Gains,
     /// The instant of overturning.
     Overturning,
     /// Which record.
@@ -212,6 +219,7 @@ pub static VARIABLES: LazyLock<Vec<Variable>> = LazyLock::new(|| {
         .chain(outputs())
         .chain(locals())
         .chain(peaks())
+        .chain(validity())
         .chain(const { &PARAMETERS }.iter().map(|quantity| fixed(quantity, Source::Parameter(quantity))))
         .chain([parameter("detail", DETAILS.description, DataType::Enumeration(&DETAILS), Source::Detail)])
         .chain(const { &INITIAL_VALUES }.iter().map(|quantity| fixed(quantity, Source::InitialValue(quantity))))
@@ -365,9 +373,35 @@ fn peaks() -> Vec<Variable> {
     peaks!(theta "rad" u "m" delta_t "m" uplift "m" a_t "m/s2" V_t "N" M_t "N.m")
 }
 
-fn switches() -> [Variable; 2] {
+/// What the motion goes beyond.
+fn validity() -> Vec<Variable> {
+    let local = |name, description, data_type, source| Variable {
+        causality: Causality::Local,
+        ..discrete(name, description, data_type, source, &[])
+    };
+    let real = |unit| DataType::Real { unit, range: None };
+    let of_assumption = |(which, assumption): (usize, &'static Assumption)| {
+        let Assumption { name, time_name, description, time_description, .. } = assumption;
+        [
+            local(name, description, real("1"), Source::Worst(which)),
+            local(time_name, time_description, real("s"), Source::WorstInstant(which)),
+        ]
+    };
+    let gains = "impacts since startTime that raise the energy";
+    const { &ASSUMPTIONS }
+        .iter()
+        .enumerate()
+        .flat_map(of_assumption)
+        .chain([local("energy_gains", gains, DataType::Integer, Source::Gains)])
+        .collect()
+}
+
+fn switches() -> [Variable; 3] {
     static EXTRAPOLATE: Switch = Switch { get: |setup| setup.extrapolate, set: |setup, on| setup.extrapolate = on };
     static PEAKS: Switch = Switch { get: |setup| setup.peaks, set: |setup, on| setup.peaks = on };
+    static VALIDITY: Switch = Switch { get: |setup| setup.validity, set: |setup, on| setup.validity = on };
+    let validity =
+        "whether it is watched what the motion goes beyond: tension, edges that pull, friction, energy gained";
     let extrapolate = "whether an input that is set without its derivative goes on with the slope of its values at the \
                        last two communication points, and is not held";
     [
@@ -378,6 +412,7 @@ fn switches() -> [Variable; 2] {
             DataType::Boolean,
             Source::Switch(&PEAKS),
         ),
+        parameter("validity", validity, DataType::Boolean, Source::Switch(&VALIDITY)),
     ]
 }
 
@@ -465,10 +500,11 @@ fn calculated(name: &'static str, initial_dependencies: &'static [&'static str])
 impl Variable {
     /// Whether it may change at any time, and not at transitions alone.
     pub fn is_continuous(&self) -> bool {
-        matches!(
-            self.source,
-            Source::Input(_) | Source::Output(_) | Source::Reaction(_) | Source::Ground | Source::Peak(_)
-        )
+        match self.source {
+            Source::Input(_) | Source::Output(_) | Source::Reaction(_) | Source::Ground | Source::Peak(_) => true,
+            Source::Worst(which) | Source::WorstInstant(which) => !ASSUMPTIONS[which].is_of_impacts,
+            _ => false,
+        }
     }
 
     /// The start value in an FMU with these `contents`: of the inputs, the parameters and the initial values.

@@ -16,6 +16,7 @@ use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
 use rocking::engine::MAX_STEPS_PER_ADVANCE;
 use rocking::motion::Work;
+use rocking::run::validity::ASSUMPTIONS;
 use rocking::taylor::MAX_ORDER;
 use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString};
@@ -595,7 +596,7 @@ impl<'a> Sequence<'a> {
         self.call(at, Function::SetupExperiment, call);
     }
 
-    /// Values are finite, or left alone; peaks that nobody watches for are not numbers.
+    /// Values are finite, or left alone; what nobody watches for is not a number, and friction may be infinite.
     fn get_reals(&mut self, at: usize, function: Function) {
         let mut references = self.references();
         let n = references.len();
@@ -608,11 +609,14 @@ impl<'a> Sequence<'a> {
                 _ => fmi2GetRealOutputDerivatives(c, vr, nvr, order, value),
             }
         });
-        let is_peak = |reference: &u32| {
-            VARIABLES.get(*reference as usize).is_some_and(|variable| variable.name.ends_with("_max"))
+        let is_watched = |reference: &u32, value: f64| {
+            VARIABLES.get(*reference as usize).is_some_and(|variable| {
+                let is_worst = ASSUMPTIONS.iter().any(|of| [of.name, of.time_name].contains(&variable.name));
+                is_worst && value > 0.0 || value.is_nan() && (is_worst || variable.name.ends_with("_max"))
+            })
         };
         let is_right = |(reference, value): (&u32, &f64)| match status {
-            OK => value.is_finite() || value.is_nan() && is_peak(reference),
+            OK => value.is_finite() || is_watched(reference, *value),
             _ => *value == f64::NEG_INFINITY,
         };
         assert!(references.iter().zip(&values).all(is_right), "{function:?} {references:?} {status} {values:?}");
@@ -665,7 +669,7 @@ impl<'a> Sequence<'a> {
         let mut references = self.references();
         if self.rng.bool() {
             let names: &[&str] =
-                if function == Function::SetInteger { &["detail"] } else { &["extrapolate", "extrapolate", "peaks"] };
+                if function == Function::SetInteger { &["detail"] } else { &["extrapolate", "peaks", "validity"] };
             references = vec![host::reference(names[self.rng.usize(..names.len())])];
         }
         let most = if function == Function::SetInteger { 8 } else { 3 };

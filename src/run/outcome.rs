@@ -1,7 +1,8 @@
 //! What a run came to, in a few numbers, and whether a limit was exceeded.
 
-use super::peaks::PEAKS;
+use super::peaks::{PEAKS, Peaks};
 use super::{Ending, Run};
+use crate::Watch;
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -81,10 +82,11 @@ pub enum LimitError {
 }
 
 impl Outcome {
-    /// Does `run`.
-    pub fn of(run: &Run) -> Outcome {
-        let (peaks, finish) = match run.peaks() {
-            Ok(found) => found,
+    /// Does `run`, which `watch` sees go by.
+    pub fn of(run: &Run, watch: &mut impl Watch) -> Outcome {
+        let mut peaks = Peaks::since(run.ground.start(), &run.structure);
+        let finish = match run.follow(&mut (&mut peaks.watch(), watch)) {
+            Ok(finish) => finish,
             Err(error) => {
                 let time = error.time().unwrap_or(run.ground.start());
                 return Outcome::Failed { time, reason: error.to_string() };

@@ -9,7 +9,7 @@ use crate::quantity::with_unit;
 use crate::record::Record;
 use crate::response_spectrum::spectral_acceleration;
 use crate::state::InitialStateError;
-use crate::{Detail, Engine, Parameters, Quantity, State, Structure};
+use crate::{Detail, Engine, Parameters, Quantity, State, Structure, Watch};
 use serde::Serialize;
 use std::collections::{HashMap, HashSet};
 use std::sync::OnceLock;
@@ -385,10 +385,15 @@ impl Plan {
 impl Case<'_> {
     /// Does it.
     pub fn outcome(&self) -> Outcome {
+        self.outcome_watched(&mut ())
+    }
+
+    /// Does it while `watch` sees it go by.
+    pub fn outcome_watched(&self, watch: &mut impl Watch) -> Outcome {
         let ground = self.motion.record.clone().scaled(1.0, self.factor());
         let &Conditions { initial, detail, tolerance, duration } = self.conditions;
         let end = duration.map_or(End::AtRest, |duration| End::At(ground.start() + duration));
-        Outcome::of(&Run { initial, detail, tolerance, end, ..Run::new(self.structure, &ground) })
+        Outcome::of(&Run { initial, detail, tolerance, end, ..Run::new(self.structure, &ground) }, watch)
     }
 
     /// How strong the ground motion is, in the unit of `measure`.
@@ -550,11 +555,11 @@ mod tests {
         let Conditions { detail, tolerance, .. } = conditions;
         let usual = Run::new(Structure::new(Parameters::MCMANUS).unwrap(), &ground);
         let run = Run { initial, detail, tolerance, end: End::At(0.7), ..usual.clone() };
-        assert_eq!(plan.case(0).outcome(), Outcome::of(&run));
+        assert_eq!(plan.case(0).outcome(), Outcome::of(&run, &mut ()));
         let Outcome::Ended(Summary { ending, end, .. }) = plan.case(0).outcome() else { panic!() };
         assert_eq!((ending, end), (Ending::AtTime, 0.7));
-        assert_ne!(plan.case(0).outcome(), Outcome::of(&Run { detail: Detail::Auto, ..run }));
-        assert_ne!(plan.case(0).outcome(), Outcome::of(&usual));
+        assert_ne!(plan.case(0).outcome(), Outcome::of(&Run { detail: Detail::Auto, ..run }, &mut ()));
+        assert_ne!(plan.case(0).outcome(), Outcome::of(&usual, &mut ()));
     }
 
     /// A record with a factor of its own is the record with its samples multiplied; measures grow with it.

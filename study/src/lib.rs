@@ -8,7 +8,7 @@
 //! | [`libraries`] | other crates' solvers |
 //! | [`engine`], [`fmu`] | this project's engine, alone and through the FMU's C interface |
 //! | [`response`], [`timing`] | errors, failures, cost |
-//! | [`precision`], [`stability`], [`failures`], [`speed`] | the commands |
+//! | [`precision`], [`stability`], [`failures`], [`validity`], [`speed`] | the commands |
 //! | [`chart`] | pictures |
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
@@ -29,3 +29,4 @@ pub mod scene;
 pub mod speed;
 pub mod stability;
 pub mod timing;
+pub mod validity;

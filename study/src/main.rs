@@ -5,7 +5,7 @@ use clap::{Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::{Path, PathBuf};
 use study::scene::{Scene, default_records};
-use study::{failures, precision, speed, stability};
+use study::{failures, precision, speed, stability, validity};
 
 /// Speed against accuracy, stability maps and a gallery of failures: writes the pages, pictures and numbers in docs/.
 #[derive(Parser)]
@@ -25,6 +25,8 @@ enum Command {
     Stability,
     /// Failures with their causes and remedies: docs/failures.md
     Failures,
+    /// What the model leaves out, structure by structure: docs/validity.md
+    Validity,
     /// The speed table: docs/speed.md
     Speed,
 }
@@ -42,6 +44,7 @@ fn main() -> Result<()> {
         }
         Command::Precision => precision::write(&Scene::all(&records()?)?, precision::FULL, docs, &progress)?,
         Command::Stability => stability::write(stability::FULL, docs, &progress)?,
+        Command::Validity => validity::write(&records()?, docs, &progress)?,
         Command::Failures => {
             let records = records()?;
             let (pacoima, el_centro) = (Scene::mcmanus_pacoima(&records)?, Scene::mcmanus_el_centro(&records)?);

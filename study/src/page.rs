@@ -8,10 +8,11 @@ use serde::Serialize;
 use std::path::Path;
 
 /// Templates by name.
-const TEMPLATES: [(&str, &str); 3] = [
+const TEMPLATES: [(&str, &str); 4] = [
     ("accuracy", include_str!("../pages/accuracy.md")),
     ("stability", include_str!("../pages/stability.md")),
     ("failures", include_str!("../pages/failures.md")),
+    ("validity", include_str!("../pages/validity.md")),
 ];
 
 /// Writes the page `name`, its template filled in with `context`, into the folder `docs`.

