@@ -19,6 +19,11 @@ from pacoima import TIME
 
 PEAKS = {"theta": "rad", "u": "m", "delta_t": "m", "uplift": "m", "a_t": "m/s2", "V_t": "N", "M_t": "N.m"}
 
+
+def with_instants(units: dict[str, str]) -> dict[str, str]:
+    return units | {f"t_{name}": "s" for name in units}
+
+
 KINDS = {
     ("input", "continuous", "Real"): {"a_g": "m/s2", "F_t": "N"},
     ("output", "continuous", "Real"): {
@@ -26,12 +31,13 @@ KINDS = {
         "uplift": "m", "delta_t": "m", "v_t": "m/s", "R_h": "N", "R_v": "N", "R_m": "N.m",
     },
     ("output", "discrete", "Real"): {"I_h": "N.s", "I_v": "N.s", "I_m": "N.m.s"},
-    ("local", "continuous", "Real"): {"theta_dot": "rad/s", "u_dot": "m/s", "a_ground": "m/s2"} | {
-        name: unit for of, unit in PEAKS.items() for name, unit in ((f"{of}_max", unit), (f"t_{of}_max", "s"))
-    },
-    ("local", "discrete", "Real"): {"t_overturned": "s"},
+    ("local", "continuous", "Real"): {"theta_dot": "rad/s", "u_dot": "m/s", "a_ground": "m/s2"}
+    | with_instants({f"{of}_max": unit for of, unit in PEAKS.items()})
+    | with_instants({"tension_max": "1", "R_v_min": "1", "mu_required": "1"}),
+    ("local", "discrete", "Real"): {"t_overturned": "s"}
+    | with_instants({"mu_impact": "1", "tension_impact": "1", "energy_gain_max": "1"}),
     ("local", "discrete", "Enumeration"): {"phase": None},
-    ("local", "discrete", "Integer"): {"transitions": None},
+    ("local", "discrete", "Integer"): {"transitions": None, "energy_gains": None},
     ("local", "discrete", "Boolean"): {"overturned": None},
     ("parameter", "fixed", "Real"): {
         "m": "kg", "m0": "kg", "H": "m", "B": "m", "J0": "kg.m2", "f_fc": "Hz", "zeta_fc": "1", "c_ratio": "1", "r": "1",
@@ -39,7 +45,7 @@ KINDS = {
         "record_scale": "1", "record_time_scale": "1", "record_start": "s",
     },
     ("parameter", "fixed", "String"): {"record": None},
-    ("parameter", "fixed", "Boolean"): {"extrapolate": None, "peaks": None},
+    ("parameter", "fixed", "Boolean"): {"extrapolate": None, "peaks": None, "validity": None},
     ("parameter", "fixed", "Enumeration"): {"detail": None},
     ("calculatedParameter", "fixed", "Real"): {"alpha_cg": "rad", "p_l": "rad/s", "chi": "1", "u_cr": "m", "f_u": "Hz",
                                                 "record_duration": "s"},

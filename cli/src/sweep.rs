@@ -25,7 +25,7 @@ use rocking::run::{
     validity::{Found, Limits, Validity},
 };
 use rows::Rows;
-use std::{num::NonZeroUsize, path::PathBuf, sync::Mutex, time::Instant};
+use std::{path::PathBuf, sync::Mutex, time::Instant};
 use uuid::Uuid;
 
 /// What to run.
@@ -43,7 +43,7 @@ pub struct SweepArgs {
     picture: Option<PictureFile>,
     /// Runs at a time [default: one per core]
     #[arg(long, value_name = "N")]
-    threads: Option<NonZeroUsize>,
+    threads: Option<u16>,
     /// Find what each run goes beyond, too: tension, load of the edge, friction, energy gained at impacts
     #[arg(long)]
     validity: bool,
@@ -82,7 +82,7 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
         }
     }
 
-    let pool = ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, NonZeroUsize::get)).build()?;
+    let pool = ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, usize::from)).build()?;
     let clock = Instant::now();
     for (index, outcome) in pool.install(|| do_runs(&plan, &keys, &missing, args.validity, rows))? {
         outcomes[index] = Some(outcome);
