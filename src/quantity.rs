@@ -61,7 +61,7 @@ impl<T> Quantity<T> {
 
 /// `value` with its unit, which a ratio has none of, in digits that stay few.
 pub fn with_unit(value: f64, unit: &str) -> String {
-    let digits = format!("{value:?}");
+    let digits = if value.abs() < 1e7 { format!("{value:?}") } else { format!("{value:e}") };
     let digits = digits.strip_suffix(".0").unwrap_or(&digits);
     if unit == "1" { digits.into() } else { format!("{digits} {unit}") }
 }
