@@ -2,7 +2,7 @@
 # make test    every check and every test
 # make heavy   what takes longer: the page of `view` in a browser; the libraries for other machines, built, read and, where that can be, run
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
-# make wheels  out/wheels: Python packages for Linux and macOS with the command line and the archive, and the source
+# make wheels  out/wheels: Python packages for Linux with the command line and the archive, and one of the source
 # make report  regenerate docs/validation.md and its figures
 # make coupling  regenerate docs/coupling.md and its figures (minutes)
 # make bench   criterion benchmark of a whole record, and one step over it through fmpy
@@ -79,7 +79,6 @@ wheels: dist
 	$(WHEEL) sdist --out out/wheels
 	for target in x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu; do $(WHEEL) build --release --locked --zig \
 		--compatibility manylinux2014 --target $$target --out out/wheels || exit; done
-	$(WHEEL) build --release --locked --zig --target universal2-apple-darwin --out out/wheels
 
 windows: mingw
 	@if $(HAS_MINGW) && rustup target list --installed | grep -q $(WINDOWS); then \
