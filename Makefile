@@ -1,6 +1,8 @@
 # make demo    run the FMU on a real earthquake and draw docs/pacoima_mcmanus.png
 # make test    every check and every test
-# make dist    out/FlexibleRocking.fmu for Linux and Windows
+# make heavy   what takes longer: the page of `view` in a browser; the libraries for other machines, built, read and, where that can be, run
+# make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
+# make wheels  out/wheels: Python packages for Linux with the command line and the archive, and one of the source
 # make report  regenerate docs/validation.md and its figures
 # make coupling  regenerate docs/coupling.md and its figures (minutes)
 # make bench   criterion benchmark of a whole record, and one step over it through fmpy
@@ -17,6 +19,11 @@ RECORDS = $$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("purelib")
 EL_CENTRO := imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2
 PACOIMA := sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2
 WINDOWS := x86_64-pc-windows-gnu
+# As cargo-zigbuild calls them: with the oldest glibc, and both architectures of macOS in one file.
+ZIG := x86_64-unknown-linux-gnu.2.17 aarch64-unknown-linux-gnu.2.17 universal2-apple-darwin
+ZIG_PARTS := x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu x86_64-apple-darwin aarch64-apple-darwin
+export MACOSX_DEPLOYMENT_TARGET := 11.0
+ARM_LOADER := /usr/aarch64-linux-gnu/lib/ld-linux-aarch64.so.1
 MINGW := x86_64-w64-mingw32-gcc
 HAS_MINGW := command -v $(MINGW) >/dev/null
 HAS_WINE := command -v wine >/dev/null
@@ -26,13 +33,13 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test browser dist report coupling bench licenses fuzz records exporter mingw hosts
+.PHONY: demo test heavy browser foreign packaged dist wheels windows zig report coupling bench licenses fuzz records exporter mingw hosts
 
 demo: .venv/ready out/mcmanus.fmu out/evison.fmu
 	cp $(RECORDS)/$(PACOIMA) $(RECORDS)/$(EL_CENTRO) out/
 	$(PYTHON) examples/first_run.py out/mcmanus.fmu
 
-test: .venv/ready exporter hosts dist
+test: .venv/ready exporter hosts windows
 	cargo fmt --version >/dev/null 2>&1 || rustup component add rustfmt
 	cargo clippy --version >/dev/null 2>&1 || rustup component add clippy
 	cargo fmt --all --check
@@ -42,22 +49,48 @@ test: .venv/ready exporter hosts dist
 	cargo test --workspace
 	$(PYTHON) -m pytest -rs
 
+heavy: browser foreign packaged
+
 # The page of `view` in Chromium; where that cannot be had, the tests are skipped and say so.
 browser: .venv/ready exporter
 	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
 	-$(PYTHON) -m pip install --quiet --disable-pip-version-check --requirement requirements.browser.txt
 	$(PYTHON) -m pytest -rs tests/test_view.py
 
-dist: exporter mingw
+# Linux's library for 64-bit ARM runs under qemu; where that cannot be had, its test is skipped and says so.
+foreign: dist
+	-@command -v qemu-aarch64 >/dev/null && test -e $(ARM_LOADER) || { $(call install,qemu-user libc6-arm64-cross); }
+	PATH="$(CURDIR)/.venv/bin:$$PATH" $(PYTHON) -m pytest -rs tests/test_platforms.py
+
+# Whoever simulates it and gives it nothing sees the structure rock under a pulse.
+dist: exporter windows zig
 	mkdir -p out
+	$(TARGET)/release/rocking-fmu export --record examples/pulse.csv -o out/FlexibleRocking.fmu
+
+packaged: wheels
+	$(PYTHON) -m pytest -rs tests/test_wheel.py
+
+# The program of each wheel is for one machine, the archive in it for all.
+WHEEL := PATH="$(CURDIR)/.venv/bin:$$PATH" SOURCE_DATE_EPOCH=315532800 maturin
+wheels: dist
+	rm -rf out/wheel out/wheels
+	mkdir -p out/wheel/data/share/flexible-rocking
+	cp out/FlexibleRocking.fmu out/wheel/data/share/flexible-rocking/
+	$(WHEEL) sdist --out out/wheels
+	for target in x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu; do $(WHEEL) build --release --locked --zig \
+		--compatibility manylinux2014 --target $$target --out out/wheels || exit; done
+
+windows: mingw
 	@if $(HAS_MINGW) && rustup target list --installed | grep -q $(WINDOWS); then \
-		cargo build --release --package flexible-rocking-fmu --target $(WINDOWS) && \
-		$(TARGET)/release/rocking-fmu export -o out/FlexibleRocking.fmu \
-			--windows-library $(TARGET)/$(WINDOWS)/release/FlexibleRocking.dll; \
+		cargo build --release --locked --package flexible-rocking-fmu --target $(WINDOWS); \
 	else \
-		echo "out/FlexibleRocking.fmu is for Linux alone: $(MINGW) or Rust's target $(WINDOWS) is missing"; \
-		$(TARGET)/release/rocking-fmu export -o out/FlexibleRocking.fmu; \
+		echo "No library for Windows: $(MINGW) or Rust's target $(WINDOWS) is missing"; \
 	fi
+
+zig: .venv/dist
+	rustup target add $(ZIG_PARTS)
+	for target in $(ZIG); do PATH="$(CURDIR)/.venv/bin:$$PATH" cargo zigbuild --release --locked \
+		--package flexible-rocking-fmu --target $$target || exit; done
 
 report: .venv/ready exporter
 	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
@@ -99,4 +132,8 @@ out/%.fmu: exporter
 .venv/ready: requirements.txt
 	python3 -m venv .venv || { $(call install,python3-venv) && python3 -m venv --clear .venv; }
 	$(PYTHON) -m pip install --quiet --disable-pip-version-check --requirement requirements.txt
+	touch $@
+
+.venv/dist: requirements.dist.txt .venv/ready
+	$(PYTHON) -m pip install --quiet --disable-pip-version-check --requirement requirements.dist.txt
 	touch $@

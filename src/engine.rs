@@ -51,7 +51,11 @@ pub enum Progress {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AdvanceError {
     /// The interval is none.
-    #[error("cannot advance from t = {from:?} s over {interval:?} s: a finite time greater than 0 is needed")]
+    #[error(
+        "cannot advance from t = {} over {}: a finite time greater than 0 is needed",
+        with_unit(*from, "s"),
+        with_unit(*interval, "s")
+    )]
     NotAhead {
         /// The motion's time, s.
         from: f64,
@@ -79,8 +83,9 @@ pub enum AdvanceError {
     },
     /// Too many steps for one call.
     #[error(
-        "one advance may take {MAX_STEPS_PER_ADVANCE} steps; they ended at t = {time:?} s of {until:?} s: advance in \
-         shorter intervals"
+        "one advance may take {MAX_STEPS_PER_ADVANCE} steps; they ended at t = {} of {}: advance in shorter intervals",
+        with_unit(*time, "s"),
+        with_unit(*until, "s")
     )]
     TooLong {
         /// Where the steps ended, s.
@@ -90,8 +95,11 @@ pub enum AdvanceError {
     },
     /// The equations have no finite solution from here on.
     #[error(
-        "the motion cannot be continued beyond t = {time:?} s (u = {u:?} m, theta = {theta:?} rad): the top mass passes \
-         above the pivot of a foundation without inertia (m0, J0 too small), or the numbers overflow"
+        "the motion cannot be continued beyond t = {} (u = {}, theta = {}): the top mass passes above the pivot of a \
+         foundation without inertia (m0, J0 too small), or the numbers overflow",
+        with_unit(*time, "s"),
+        with_unit(*u, "m"),
+        with_unit(*theta, "rad")
     )]
     Singular {
         /// s.

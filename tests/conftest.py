@@ -23,10 +23,11 @@ def exporter() -> Path:
 def export(exporter, tmp_path_factory):
     """Exports the FMU of a preset, with a record inside if there is one, to a new file and returns its path."""
 
-    def run(preset: str, record: Path | None = None) -> Path:
-        path = tmp_path_factory.mktemp("export") / f"{preset}.fmu"
+    def run(preset: str, record: Path | None = None, name: str | None = None) -> Path:
+        path = tmp_path_factory.mktemp("export") / f"{name or preset}.fmu"
         inside = ["--record", record] if record else []
-        subprocess.run([exporter, "export", "--preset", preset, *inside, "-o", path], check=True)
+        named = ["--name", name] if name else []
+        subprocess.run([exporter, "export", "--preset", preset, *inside, *named, "-o", path], check=True)
         return path
 
     return run

@@ -140,7 +140,8 @@ class Instance:
         self.messages: list[Message] = messages
         name = f"instance {next(_NUMBERS)}"
         _LOGS[name.encode()] = messages
-        self.slave = FMU2Slave(guid=guid, unzipDirectory=fmu.folder, modelIdentifier="FlexibleRocking", instanceName=name)
+        identifier = fmu.description.coSimulation.modelIdentifier
+        self.slave = FMU2Slave(guid=guid, unzipDirectory=fmu.folder, modelIdentifier=identifier, instanceName=name)
         callbacks = fmi2CallbackFunctions()
         callbacks.logger = _LOGGER
         callbacks.allocateMemory = fmi2CallbackAllocateMemoryTYPE(calloc)

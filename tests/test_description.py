@@ -1,13 +1,21 @@
 """What the FMU says of itself."""
 
+import contextlib
 import re
 import zipfile
+from pathlib import PurePosixPath
 
+import numpy as np
 import pytest
 from first_run import RECORD
+from fmpy import read_model_description, simulate_fmu
+from fmpy.container_fmu.cli import create_container_fmu
+from fmpy.container_fmu.config import Component, Configuration
+from fmpy.model_description import CoSimulation, ModelDescription, ModelVariable, Unknown
 from fmpy.util import fmu_info
 from fmpy.validation import validate_fmu
-from host import OUTPUTS, PHASES
+from host import OUTPUTS, PHASES, Fmu
+from pacoima import TIME
 
 PEAKS = {"theta": "rad", "u": "m", "delta_t": "m", "uplift": "m", "a_t": "m/s2", "V_t": "N", "M_t": "N.m"}
 
@@ -93,6 +101,96 @@ def test_ranges_are_what_the_library_accepts(fmu):
             for limit in (variable.min, variable.max):
                 assert limit is not None, f"{variable.name} has no limit"
                 instance.set(**{variable.name: float(limit)})
+
+
+def test_display_units(fmu):
+    """A value in its display unit is the value times the factor; g is the structure's own."""
+    factors = {"deg": 180 / np.pi, "mm": 1e3, "ms": 1e3, "g": 1 / 9.81, "kN": 1e-3, "kN.m": 1e-3}
+    defined = {display.name: display.factor for unit in fmu.description.unitDefinitions for display in unit.displayUnits}
+    assert defined == pytest.approx(factors, rel=1e-15)
+    shown = {name: variable.displayUnit for name, variable in fmu.variables.items() if variable.displayUnit}
+    assert {shown[name] for name in ("theta", "theta_max", "theta_0", "alpha_cg")} == {"deg"}
+    assert {shown[name] for name in ("u", "uplift", "delta_t", "u_cr")} == {"mm"}
+    assert {shown[name] for name in ("a_g", "a_t", "a_ground", "a_t_max")} == {"g"}
+    assert {shown[name] for name in ("F_t", "V_t", "R_h", "R_v")} == {"kN"} and shown["M_t"] == shown["R_m"] == "kN.m"
+    assert not shown.keys() & {"H", "B", "g", "m", "t_theta_max"}
+
+
+def test_nominal_values_are_of_the_magnitude_that_is_met(shaken):
+    """What peaks in an earthquake is within a factor of 100 of its nominal value."""
+    fmu = shaken["mcmanus"]
+    result = simulate_fmu(fmu.path, start_values={"peaks": True}, output=[*OUTPUTS, *(f"{name}_max" for name in PEAKS)])
+    for name in set(result.dtype.names) - {"time", "I_h", "I_v", "I_m"}:
+        peak, nominal = np.abs(result[name]).max(), float(fmu.variables[name].nominal)
+        assert nominal / 100 < peak < 100 * nominal, (name, peak, nominal)
+
+
+def test_simulating_without_a_word_follows_the_record(shaken, mcmanus):
+    """The default experiment ends with the record, and its step is no longer than a sample; without a record, nothing has
+    been said that would move the structure, and its stop time and step are those of a free vibration."""
+    experiment = shaken["mcmanus"].description.defaultExperiment
+    assert float(experiment.stopTime) == pytest.approx(TIME[-1] - TIME[0], rel=1e-8)
+    assert float(experiment.stepSize) <= np.diff(TIME).min() * (1 + 1e-8)
+    result = simulate_fmu(shaken["mcmanus"].path)
+    assert result["time"][-1] == pytest.approx(float(experiment.stopTime)) and np.abs(result["theta"]).max() > 0.01
+    at_rest = simulate_fmu(mcmanus.path)
+    assert not at_rest["theta"].any() and not at_rest["u"].any()
+    released = simulate_fmu(mcmanus.path, start_values={"theta_0": 0.04})
+    assert (np.diff(np.sign(released["theta"])) != 0).sum() > 5, "fewer than five impacts are seen"
+    u = released["u"][:200]
+    assert (np.diff(np.sign(np.diff(u))) != 0).sum() > 2, "the vibration mode is not resolved"
+
+
+def test_two_exports_in_one_process(export, pacoima_record, tmp_path):
+    """Under names of their own two structures are held at the same time, and each moves as it does alone."""
+    fmus = [Fmu(export(preset, pacoima_record, name), tmp_path / name)
+            for preset, name in (("mcmanus", "Pier1"), ("evison", "Pier2"))]
+    for fmu, name in zip(fmus, ("Pier1", "Pier2")):
+        assert fmu.description.modelName == fmu.description.coSimulation.modelIdentifier == name
+        with zipfile.ZipFile(fmu.path) as archive:
+            libraries = [PurePosixPath(path) for path in archive.namelist() if path.startswith("binaries/")]
+        assert libraries and {library.stem for library in libraries} == {name}
+        assert validate_fmu(fmu.path) == []
+
+    def histories(*fmus):
+        with contextlib.ExitStack() as stack:
+            instances = [stack.enter_context(fmu.start()) for fmu in fmus]
+            rows = []
+            for until in np.arange(1, 200) * 0.02:
+                for instance in instances:
+                    instance.step(until)
+                rows.append([instance.reals(("theta", "u", "a_t")) for instance in instances])
+            return np.array(rows).swapaxes(0, 1)
+
+    together, alone = histories(*fmus), [histories(fmu)[0] for fmu in fmus]
+    assert (together == alone).all() and np.abs(together[:, :, 0]).max(axis=1).min() > 1e-3
+
+
+def test_two_exports_in_one_container(export, pacoima_record, tmp_path):
+    """fmpy's container of both gives what each gives by itself."""
+    time = ModelVariable(name="time", valueReference=0, type="Real", causality="independent", variability="continuous")
+    components, variables, mapping = [], [time], {}  # what is number 0 is the time
+    for preset, name in (("mcmanus", "Pier1"), ("evison", "Pier2")):
+        path = export(preset, pacoima_record, name)
+        component = Component(name=name, filename=path, modelDescription=read_model_description(path))
+        inner = next(v for v in component.modelDescription.modelVariables if v.name == "theta")
+        outer = ModelVariable(name=f"{name}_theta", valueReference=0, type="Real", causality="output", variability="continuous",
+                              initial="calculated")
+        components.append(component)
+        variables.append(outer)
+        mapping[outer] = [(component, inner)]
+    description = ModelDescription(
+        fmiVersion="2.0", modelName="Two", instantiationToken="two", modelVariables=variables,
+        coSimulation=CoSimulation(modelIdentifier="container_fmu", fixedInternalStepSize=0.01))
+    description.outputs = [Unknown(variable=variable) for variable in variables[1:]]
+    (tmp_path / "unpacked").mkdir()
+    create_container_fmu(Configuration(parallelDoStep=False, modelDescription=description, components=components, connections=[],
+                                       variableMappings=mapping), tmp_path / "unpacked", tmp_path / "two.fmu")
+    both = simulate_fmu(tmp_path / "two.fmu", stop_time=3.0, output_interval=0.01)
+    for component in components:
+        alone = simulate_fmu(component.filename, stop_time=3.0, output_interval=0.01)
+        assert np.abs(alone["theta"]).max() > 1e-3
+        np.testing.assert_allclose(both[f"{component.name}_theta"], alone["theta"], rtol=0, atol=1e-14)
 
 
 def test_phases(fmu):

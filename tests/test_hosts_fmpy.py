@@ -1,8 +1,11 @@
 """fmpy in all its ways, over Pacoima Dam: with the record inside, and with a_g passed on as far as fmpy can."""
 
+import re
 import subprocess
 import sys
 from ctypes import byref
+from html import unescape
+from pathlib import Path
 
 import fmpy
 import numpy as np
@@ -90,6 +93,24 @@ def test_simulate_fmu_cannot_pass_slopes_on(mcmanus):
 
 def test_held_and_linear_inputs_differ(mcmanus):
     assert 1e-2 < distance(held(mcmanus), linear(mcmanus)) < 1
+
+
+def test_the_page_inside_says_what_holding_costs(mcmanus, exact):
+    """Its script runs as it stands there, and its errors are those that are met."""
+    page = (Path(mcmanus.folder) / "documentation" / "index.html").read_text()
+    stated = [float(number) for number in re.findall(r'</td><td class="n">([0-9.e-]+)</td><td>', page.partition("Using it")[2])]
+    expected = exact(STEP)
+    assert STEP == pytest.approx(2e-3)
+    extrapolated, _ = simulate(mcmanus, stop_time=END, output_interval=STEP, input=table(TIME, A_G), output=OUTPUTS,
+                               start_values={"extrapolate": True})
+    met = [distance(rows(extrapolated)[: len(expected)], expected), distance(held(mcmanus)[: len(expected)], expected)]
+    assert met == pytest.approx(stated[2:4], rel=0.06)
+    assert distance(linear(mcmanus)[: len(expected)], expected) < 10 * stated[1] and stated[0] < 1e-12
+    script = unescape(re.search(r"<pre>(from fmpy.*?)</pre>", page, re.DOTALL)[1])
+    script = script.replace("FlexibleRocking.fmu", mcmanus.path).replace("/data/RSN77_SFERN_PUL164.AT2", PACOIMA_DAM["record"])
+    done = subprocess.run([sys.executable, "-c", script], check=True, capture_output=True, text=True)
+    peak, instant = map(float, re.fullmatch(r"(\S+) rad at (\S+) s\n", done.stdout).groups())
+    assert peak == pytest.approx(0.01200009, abs=5e-9) and 0 < instant < 4
 
 
 def test_command_line_holds_inputs(mcmanus, tmp_path):

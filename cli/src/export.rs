@@ -5,16 +5,16 @@ use crate::record_args::{described, say_warnings};
 use crate::structure_args::{StructureArgs, in_one_line};
 use crate::talk::say;
 use FlexibleRocking::guid;
-use anyhow::bail;
-use fmu_export::Platform;
+use anyhow::{Context, bail};
+use fmu_export::{Library, LibraryError, ModelName, Platform};
 use rocking::record::{Reading, Record};
-use std::collections::BTreeMap;
 use std::env;
+use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// File name of the shared library as cargo builds it.
-const LIBRARY_FILE: &str = "libFlexibleRocking.so";
+/// Where the folder `share` of an installation has the archive with the libraries for every platform.
+const INSTALLED: &str = "flexible-rocking/FlexibleRocking.fmu";
 
 /// What to export.
 #[derive(clap::Args)]
@@ -26,32 +26,36 @@ pub struct ExportArgs {
     /// their names
     #[arg(long, value_name = "FILE", num_args = 1..)]
     record: Vec<PathBuf>,
-    /// Archive to write, `-` for standard output; one that is there is replaced
-    #[arg(short, long, value_name = "FILE.fmu", default_value = "FlexibleRocking.fmu")]
-    output: PathBuf,
-    /// Shared library to pack [default: libFlexibleRocking.so, built with this program]
-    #[arg(long, value_name = "PATH")]
-    library: Option<PathBuf>,
-    /// Library for 64-bit Windows to pack as well: FlexibleRocking.dll, cross-compiled from the same sources
-    #[arg(long, value_name = "PATH")]
-    windows_library: Option<PathBuf>,
+    /// Name of the model and of its libraries' files, for hosts that hold several exports
+    #[arg(long, value_name = "NAME", default_value = "FlexibleRocking")]
+    name: ModelName,
+    /// Archive to write, `-` for standard output; one that is there is replaced [default: NAME.fmu]
+    #[arg(short, long, value_name = "FILE.fmu")]
+    output: Option<PathBuf>,
+    /// Shared libraries to pack, or an FMU of this build to take them from [default: those that were built with this program]
+    #[arg(long, value_name = "PATH", num_args = 1..)]
+    library: Vec<PathBuf>,
 }
 
 /// Writes the FMU and says what was written.
 pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
-    let library = match &args.library {
-        Some(path) => path.clone(),
-        None => library_of(&env::current_exe()?)?,
+    let libraries = if args.library.is_empty() {
+        libraries_of(&env::current_exe()?)?
+    } else {
+        args.library
+            .iter()
+            .map(|path| Library::read(path))
+            .collect::<Result<Vec<_>, _>>()?
+            .into_iter()
+            .flatten()
+            .collect()
     };
-    let mut libraries = BTreeMap::from([(Platform::Linux64, library)]);
-    libraries.extend(args.windows_library.clone().map(|path| (Platform::Windows64, path)));
+    let output = args.output.clone().unwrap_or_else(|| format!("{}.fmu", args.name.as_str()).into());
     let inputs =
-        args.structure.input().into_iter().chain(args.record.iter().chain(libraries.values()).map(PathBuf::as_path));
-    if args.output.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("fmu"))
-        && args.output != Path::new("-")
-    {
-        say!("{}: hosts know an FMU by the ending .fmu", args.output.display());
+        args.structure.input().into_iter().chain(args.record.iter().chain(&args.library).map(PathBuf::as_path));
+    if output.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("fmu")) && output != Path::new("-") {
+        say!("{}: hosts know an FMU by the ending .fmu", output.display());
     }
     let g = structure.parameters().g;
     for path in &args.record {
@@ -59,58 +63,59 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
         say!("{}", described(path, &record, &source, g));
         say_warnings(path, &source);
     }
-    let mut file = OutputFiles::of_inputs(inputs).create(&args.output)?;
-    let (contents, archive) = fmu_export::export(&structure, &args.record, &libraries)?;
-    OutputFile::named(&args.output, file.write_all(&archive))?;
+    let mut file = OutputFiles::of_inputs(inputs).create(&output)?;
+    let (contents, archive) = fmu_export::export(&args.name, &structure, &args.record, &libraries)?;
+    OutputFile::named(&output, file.write_all(&archive))?;
     file.finish()?;
-    say!("{}: {} kB", args.output.display(), archive.len().div_ceil(1000));
+    say!("{}: {} kB", output.display(), archive.len().div_ceil(1000));
     say!("  GUID       {}", guid(&contents));
     say!("  structure  {}", in_one_line(&structure));
+    let platforms: Vec<_> = libraries.iter().map(|library| library.platform.folder()).collect();
+    say!("  platforms  {}", platforms.join(", "));
     for packed in &contents.records {
         say!("  record     {}", packed.file);
     }
     Ok(())
 }
 
-/// The shared library that was built with `executable`. Cargo makes it in the folder `deps` beside the program, and
-/// links it to where the program is only if the package of the FMU was asked for as well: by `cargo build` and
-/// `cargo run` in the root, but not with `-p rocking-cli`. Once installed elsewhere, the two are side by side.
-fn library_of(executable: &Path) -> anyhow::Result<PathBuf> {
-    let paths = [executable.with_file_name("deps").join(LIBRARY_FILE), executable.with_file_name(LIBRARY_FILE)];
-    let [in_deps, beside] = &paths;
-    match paths.iter().find(|path| path.exists()) {
-        Some(path) => Ok(path.clone()),
-        None => bail!(
-            "there is neither {} nor {}: build it with `cargo build --release`, or say where it is with --library PATH",
+/// The shared libraries that were built with `executable`, one for each platform that there is one for. Where it is in
+/// cargo's target folder, those built for a named target are beside its profile, and come first: they need no newer system
+/// than they say. Its own platform's is in the folder `deps` beside the program; cargo links it to where the program is
+/// only if the package of the FMU was asked for as well: by `cargo build` and `cargo run` in the root, but not with `-p
+/// rocking-cli`. Once installed, the program is in `bin`, and in `share` beside that is an archive to take them from.
+fn libraries_of(executable: &Path) -> anyhow::Result<Vec<Library>> {
+    let own = format!("{DLL_PREFIX}FlexibleRocking{DLL_SUFFIX}");
+    let beside = executable.with_file_name(&own);
+    let in_deps = executable.with_file_name("deps").join(&own);
+    let folder = executable.parent().unwrap_or(Path::new(""));
+    let installed = folder.with_file_name("share").join(INSTALLED);
+    let mut libraries: Vec<Library> = Vec::new();
+    let profile = folder.file_name().unwrap_or_default();
+    for platform in Platform::ALL {
+        let path = folder.with_file_name(platform.target()).join(profile).join(platform.file());
+        match Library::read(&path) {
+            Ok(found) => libraries.extend(found),
+            Err(LibraryError::OtherBuild(_)) => say!("{} is left out: it is of another build", path.display()),
+            Err(_) if !path.exists() => (),
+            Err(error) => return Err(error.into()),
+        }
+    }
+    if let Some(path) = [&in_deps, &beside, &installed].into_iter().find(|path| path.exists()) {
+        let found =
+            Library::read(path).with_context(|| format!("`cargo build --release` builds {}", beside.display()))?;
+        let is_new = |library: &Library| libraries.iter().all(|other| other.platform != library.platform);
+        let new: Vec<_> = found.into_iter().filter(is_new).collect();
+        libraries.extend(new);
+    }
+    if libraries.is_empty() {
+        bail!(
+            "there is no shared library to pack, neither {} nor {} nor {}: build it with `cargo build --release`, or say \
+             with --library PATH where it is, or where an FMU of this build is",
             beside.display(),
-            in_deps.display()
-        ),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::fs;
-
-    #[test]
-    fn the_library_is_where_cargo_makes_it_or_beside_the_program() {
-        let folder = tempfile::tempdir().unwrap();
-        let [executable, beside, deps] = ["rocking-fmu", LIBRARY_FILE, "deps"].map(|name| folder.path().join(name));
-        let in_deps = deps.join(LIBRARY_FILE);
-        assert_eq!(
-            library_of(&executable).unwrap_err().to_string(),
-            format!(
-                "there is neither {} nor {}: build it with `cargo build --release`, or say where it is with \
-                 --library PATH",
-                beside.display(),
-                in_deps.display()
-            )
+            in_deps.display(),
+            installed.display()
         );
-        fs::create_dir(&deps).unwrap();
-        fs::write(&beside, "").unwrap();
-        assert_eq!(library_of(&executable).unwrap(), beside);
-        fs::write(&in_deps, "").unwrap();
-        assert_eq!(library_of(&executable).unwrap(), in_deps);
     }
+    libraries.sort_by_key(|library| library.platform);
+    Ok(libraries)
 }

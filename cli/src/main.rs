@@ -24,7 +24,8 @@ mod validity;
 mod view;
 
 use clap::{Parser, Subcommand};
-use fmu_export::significant;
+use fmu_export::{Platform, significant};
+use std::env::consts::{ARCH, OS};
 use std::{io, process::ExitCode};
 
 /// A flexible structure that rocks on its foundation: FMU exporter and simulator.
@@ -35,7 +36,7 @@ use std::{io, process::ExitCode};
 /// Results go to standard output, all else that is said to standard error. Exit codes: 0 the command did what was asked,
 /// or whoever reads its output has seen enough; 1 it failed, for the reason on standard error; 2 it was called wrongly.
 #[derive(Parser)]
-#[command(name = "rocking-fmu", version)]
+#[command(name = "rocking-fmu", version, long_version = long_version())]
 struct CommandLine {
     #[command(subcommand)]
     command: Command,
@@ -51,7 +52,7 @@ enum Command {
   rocking-fmu export
   rocking-fmu export --preset evison -o Evison.fmu
   rocking-fmu export --record RSN77_SFERN_PUL164.AT2 RSN6_IMPVALL.I_I-ELC180.AT2
-  rocking-fmu export --parameters pier.toml -o pier.fmu")]
+  rocking-fmu export --parameters pier.toml --name Pier1")]
     Export(export::ExportArgs),
     /// Simulate the response to a ground motion record, or free vibration
     ///
@@ -128,6 +129,13 @@ enum Command {
   rocking-fmu man | man -l -
   rocking-fmu man simulate > rocking-fmu-simulate.1")]
     Man(shell::ManArgs),
+}
+
+/// Version, build, and the platforms that an FMU can be for.
+fn long_version() -> String {
+    let [version, build] = [env!("CARGO_PKG_VERSION"), FlexibleRocking::BUILD];
+    let platforms = Platform::ALL.map(Platform::folder).join(", ");
+    format!("{version}\nbuild {build}\nfor {OS} on {ARCH}; packs libraries for {platforms}, as far as they are there")
 }
 
 fn main() -> ExitCode {

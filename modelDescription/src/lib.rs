@@ -16,7 +16,7 @@ pub use model_variables::{
 };
 pub use quick_xml::SeError;
 pub use type_definitions::{EnumerationType, Item, SimpleType, TypeAttributes, TypeDefinitions};
-pub use unit_definitions::{BaseUnit, Unit, UnitDefinitions};
+pub use unit_definitions::{BaseUnit, DisplayUnit, Unit, UnitDefinitions};
 
 use quick_xml::se::Serializer as XmlSerializer;
 use serde::{Serialize, Serializer};
@@ -157,9 +157,15 @@ pub struct DefaultExperiment {
     /// Start time, s.
     #[serde(rename = "@startTime", serialize_with = "shortest")]
     pub start_time: f64,
+    /// Stop time, s.
+    #[serde(rename = "@stopTime", serialize_with = "shortest")]
+    pub stop_time: f64,
     /// Relative tolerance.
     #[serde(rename = "@tolerance", serialize_with = "shortest")]
     pub tolerance: f64,
+    /// Communication step, s.
+    #[serde(rename = "@stepSize", serialize_with = "shortest")]
+    pub step_size: f64,
 }
 
 /// Writes a number with the fewest digits that read back the same: `1e-9`, not `0.000000001`.

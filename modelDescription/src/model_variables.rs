@@ -94,12 +94,18 @@ pub struct Real {
     /// Name of its unit; none for a ratio.
     #[serde(rename = "@unit", skip_serializing_if = "Option::is_none")]
     pub unit: Option<String>,
+    /// Name of the unit that it is best shown in, where that is another.
+    #[serde(rename = "@displayUnit", skip_serializing_if = "Option::is_none")]
+    pub display_unit: Option<String>,
     /// Smallest value.
     #[serde(rename = "@min", skip_serializing_if = "Option::is_none", serialize_with = "shortest")]
     pub min: Option<f64>,
     /// Largest value.
     #[serde(rename = "@max", skip_serializing_if = "Option::is_none", serialize_with = "shortest")]
     pub max: Option<f64>,
+    /// Magnitude that is usual for it.
+    #[serde(rename = "@nominal", skip_serializing_if = "Option::is_none", serialize_with = "shortest")]
+    pub nominal: Option<f64>,
     /// Value unless the environment sets another.
     #[serde(rename = "@start", skip_serializing_if = "Option::is_none", serialize_with = "shortest")]
     pub start: Option<f64>,

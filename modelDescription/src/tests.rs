@@ -25,8 +25,15 @@ fn spring() -> FmiModelDescription {
         },
         unit_definitions: UnitDefinitions {
             units: vec![
-                Unit { name: "N".into(), base_unit: BaseUnit { kg: 1, m: 1, s: -2, rad: 0 } },
-                Unit { name: "rad".into(), base_unit: BaseUnit { rad: 1, ..BaseUnit::default() } },
+                Unit { name: "N".into(), base_unit: BaseUnit { kg: 1, m: 1, s: -2, rad: 0 }, display_units: vec![] },
+                Unit {
+                    name: "rad".into(),
+                    base_unit: BaseUnit { rad: 1, ..BaseUnit::default() },
+                    display_units: vec![
+                        DisplayUnit { name: "deg".into(), factor: 57.5 },
+                        DisplayUnit { name: "mrad".into(), factor: 1000.0 },
+                    ],
+                },
             ],
         },
         type_definitions: TypeDefinitions {
@@ -41,7 +48,7 @@ fn spring() -> FmiModelDescription {
         log_categories: LogCategories {
             categories: vec![Category { name: "logEvents".into(), description: "changes of branch".into() }],
         },
-        default_experiment: DefaultExperiment { start_time: 0.0, tolerance: 1e-9 },
+        default_experiment: DefaultExperiment { start_time: 0.0, stop_time: 2.5, tolerance: 1e-9, step_size: 1e-5 },
         model_variables: ModelVariables {
             scalar_variables: vec![
                 ScalarVariable {
@@ -53,6 +60,8 @@ fn spring() -> FmiModelDescription {
                     initial: None,
                     variable_type: VariableType::Real(Real {
                         unit: Some("rad".into()),
+                        display_unit: Some("deg".into()),
+                        nominal: Some(0.25),
                         start: Some(0.0),
                         ..Real::default()
                     }),
@@ -69,6 +78,7 @@ fn spring() -> FmiModelDescription {
                         min: Some(0.0),
                         max: Some(1e20),
                         start: Some(0.1),
+                        ..Real::default()
                     }),
                 },
                 ScalarVariable {
@@ -172,6 +182,8 @@ const SPRING: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
     </Unit>
     <Unit name="rad">
       <BaseUnit rad="1"/>
+      <DisplayUnit name="deg" factor="57.5"/>
+      <DisplayUnit name="mrad" factor="1000.0"/>
     </Unit>
   </UnitDefinitions>
   <TypeDefinitions>
@@ -185,10 +197,10 @@ const SPRING: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
   <LogCategories>
     <Category name="logEvents" description="changes of branch"/>
   </LogCategories>
-  <DefaultExperiment startTime="0.0" tolerance="1e-9"/>
+  <DefaultExperiment startTime="0.0" stopTime="2.5" tolerance="1e-9" stepSize="1e-5"/>
   <ModelVariables>
     <ScalarVariable name="angle" valueReference="0" description="rotation" causality="input" variability="continuous">
-      <Real unit="rad" start="0.0"/>
+      <Real unit="rad" displayUnit="deg" nominal="0.25" start="0.0"/>
     </ScalarVariable>
     <ScalarVariable name="ratio" valueReference="1" description="hardening" causality="parameter" variability="fixed" initial="exact">
       <Real min="0.0" max="1e20" start="0.1"/>

@@ -1,3 +1,4 @@
+use crate::shortest;
 use serde::Serialize;
 
 /// Units of the variables.
@@ -17,6 +18,20 @@ pub struct Unit {
     /// Its SI base units.
     #[serde(rename = "BaseUnit")]
     pub base_unit: BaseUnit,
+    /// Units that hosts may show instead.
+    #[serde(rename = "DisplayUnit")]
+    pub display_units: Vec<DisplayUnit>,
+}
+
+/// A unit to show values in.
+#[derive(Clone, Debug, Serialize)]
+pub struct DisplayUnit {
+    /// Name by which variables refer to it.
+    #[serde(rename = "@name")]
+    pub name: String,
+    /// What a value is multiplied by to be shown.
+    #[serde(rename = "@factor", serialize_with = "shortest")]
+    pub factor: f64,
 }
 
 /// Exponents of the SI base units, and of rad; a zero is left out.

@@ -1,6 +1,7 @@
 //! `documentation/index.html`: the model, its variables and how to use it.
 
-use crate::model_description::{DESCRIPTION, MODEL_NAME};
+use crate::library::{Library, Platform};
+use crate::model_description::DESCRIPTION;
 use crate::significant::significant;
 use FlexibleRocking::logger::Category;
 use FlexibleRocking::resources::Contents;
@@ -22,6 +23,8 @@ const ICON: &str = include_str!("../resources/model.svg");
 #[derive(Serialize)]
 struct Page<'a> {
     model_name: &'a str,
+    platforms: Vec<PlatformRow>,
+    record: &'a str,
     description: &'a str,
     version: &'a str,
     guid: String,
@@ -34,6 +37,13 @@ struct Page<'a> {
     max_steps: u64,
     max_samples: usize,
     max_file: u64,
+}
+
+/// A platform as the page shows it.
+#[derive(Serialize)]
+struct PlatformRow {
+    folder: &'static str,
+    name: &'static str,
 }
 
 /// The variables of one kind.
@@ -59,10 +69,17 @@ struct LogCategory {
     description: &'static str,
 }
 
-/// The page of an FMU of `structure` with these `contents`.
-pub fn documentation(structure: &Structure, contents: &Contents) -> Result<String, minijinja::Error> {
+/// The page of the FMU `name` of `structure` with these `contents` and `libraries`.
+pub fn documentation(
+    name: &str,
+    structure: &Structure,
+    contents: &Contents,
+    libraries: &[&Library],
+) -> Result<String, minijinja::Error> {
     let page = Page {
-        model_name: MODEL_NAME,
+        model_name: name,
+        platforms: libraries.iter().map(|library| platform(library.platform)).collect(),
+        record: contents.default_record(),
         description: DESCRIPTION,
         version: env!("CARGO_PKG_VERSION"),
         guid: FlexibleRocking::guid(contents),
@@ -88,6 +105,17 @@ pub fn documentation(structure: &Structure, contents: &Contents) -> Result<Strin
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     let name = "index.html"; // the extension switches HTML escaping on
     environment.render_named_str(name, TEMPLATE, Serde(page))
+}
+
+fn platform(platform: Platform) -> PlatformRow {
+    let name = match platform {
+        Platform::Linux64 => "Linux on x86-64",
+        Platform::LinuxArm64 => "Linux on 64-bit ARM",
+        Platform::Windows64 => "Windows on x86-64, 10 or later",
+        Platform::Darwin64 => "macOS on x86-64 and Apple silicon",
+        Platform::DarwinArm64 => "macOS on Apple silicon, for hosts that look for its FMI 3.0 name",
+    };
+    PlatformRow { folder: platform.folder(), name }
 }
 
 fn group(title: &'static str, causality: Causality, structure: &Structure, contents: &Contents) -> Group {
@@ -149,7 +177,8 @@ mod tests {
 
     #[test]
     fn the_page_has_a_row_for_every_variable() {
-        let page = documentation(&Structure::new(Parameters::EVISON).unwrap(), &Parameters::EVISON.into()).unwrap();
+        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let page = documentation("Pier", &structure, &Parameters::EVISON.into(), &[]).unwrap();
         for variable in VARIABLES.iter() {
             let cell = format!("<tr><td class=\"n\"><code>{}</code></td><td class=\"n\">", variable.name);
             assert_eq!(page.matches(&cell).count(), 1, "{}", variable.name);

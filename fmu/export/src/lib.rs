@@ -3,63 +3,55 @@
 
 mod archive;
 mod documentation;
+mod experiment;
+mod library;
 mod model_description;
 pub mod significant;
+mod units;
 
-use FlexibleRocking::BUILD;
 use FlexibleRocking::ground::GroundRecord;
 use FlexibleRocking::resources::{Contents, PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records};
 use archive::Entry;
+use experiment::Experiment;
+pub use library::{Library, LibraryError, Platform};
 use rocking::Structure;
 use rocking::record::RecordError;
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-use std::{fs, io};
+use std::fs;
+use std::path::PathBuf;
+use std::str::FromStr;
 
 /// Licences of all that the shared library is made of, on every [`Platform`]; `make licenses` writes it.
 const LICENSES: &str = include_str!("../resources/licenses.txt");
 
 const ICON: &[u8] = include_bytes!("../resources/model.png");
 
-/// A platform for which an archive can have a shared library.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Platform {
-    /// Linux on x86-64.
-    Linux64,
-    /// Windows on x86-64.
-    Windows64,
+/// What a model is called: in its description, and as the file of its libraries.
+#[derive(Clone, Debug)]
+pub struct ModelName(String);
+
+impl ModelName {
+    /// The name as text.
+    pub fn as_str(&self) -> &str {
+        &self.0
+    }
 }
 
-impl Platform {
-    /// Name, for people.
-    fn name(self) -> &'static str {
-        match self {
-            Platform::Linux64 => "Linux",
-            Platform::Windows64 => "Windows",
-        }
+impl Default for ModelName {
+    fn default() -> ModelName {
+        ModelName("FlexibleRocking".into())
     }
+}
 
-    /// Where the archive has the library.
-    fn path(self) -> &'static str {
-        match self {
-            Platform::Linux64 => "binaries/linux64/FlexibleRocking.so",
-            Platform::Windows64 => "binaries/win64/FlexibleRocking.dll",
-        }
-    }
+impl FromStr for ModelName {
+    type Err = ExportError;
 
-    /// What shared libraries begin with.
-    fn magic(self) -> &'static [u8] {
-        match self {
-            Platform::Linux64 => b"\x7fELF",
-            Platform::Windows64 => b"MZ",
-        }
-    }
-
-    /// How to get ours.
-    fn remedy(self) -> &'static str {
-        match self {
-            Platform::Linux64 => "`cargo build --release` builds it",
-            Platform::Windows64 => "`make dist` builds it",
+    /// Any identifier of C, which is what the standard asks for.
+    fn from_str(name: &str) -> Result<ModelName, ExportError> {
+        let is_word = |c: char| c == '_' || c.is_ascii_alphanumeric();
+        if name.chars().all(is_word) && name.starts_with(|c: char| !c.is_ascii_digit()) {
+            Ok(ModelName(name.into()))
+        } else {
+            Err(ExportError::Name(name.into()))
         }
     }
 }
@@ -67,27 +59,12 @@ impl Platform {
 /// Why an FMU could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum ExportError {
-    /// No such library.
-    #[error("the shared library {path} does not exist: {remedy}", path = .0.display(), remedy = .1.remedy())]
-    Missing(PathBuf, Platform),
-    /// A library that cannot be read.
-    #[error("cannot read the shared library {path}: {error}", path = .path.display())]
-    Unreadable {
-        /// The library.
-        path: PathBuf,
-        /// Why.
-        error: io::Error,
-    },
-    /// A file of another kind, or for another platform.
-    #[error("{path} is not a shared library for {name}: {remedy}", path = .0.display(), name = .1.name(), remedy = .1.remedy())]
-    OtherPlatform(PathBuf, Platform),
-    /// A library from other sources than this exporter, so that its variables may be others.
-    #[error(
-        "the shared library {path} is of another build: the name of this one, {BUILD}, does not occur in it; {remedy}",
-        path = .0.display(),
-        remedy = .1.remedy()
-    )]
-    OtherBuild(PathBuf, Platform),
+    /// A name that hosts and file systems do not take.
+    #[error("the name {0:?} must be of letters a to z, digits and _, and not begin with a digit")]
+    Name(String),
+    /// Two libraries for one platform.
+    #[error("two shared libraries are for {}: leave one out", .0.folder())]
+    SamePlatform(Platform),
     /// A file that is no record.
     #[error(transparent)]
     NoRecord(#[from] RecordError),
@@ -111,17 +88,22 @@ pub enum ExportError {
     Archive(#[from] zip::result::ZipError),
 }
 
-/// The FMU of `structure`, with the shared libraries that `libraries` names and the `records`, of which the first is what
-/// its ground follows: what it carries, and the bytes of the archive. The same structure, libraries and records give the
-/// same bytes.
+/// The FMU of `structure` under `name`, with the shared `libraries` and the `records`, of which the first is what its ground
+/// follows: what it carries, and the bytes of the archive. The same name, structure, libraries and records give the same
+/// bytes.
 pub fn export(
+    name: &ModelName,
     structure: &Structure,
     records: &[PathBuf],
-    libraries: &BTreeMap<Platform, PathBuf>,
+    libraries: &[Library],
 ) -> Result<(Contents, Vec<u8>), ExportError> {
-    let libraries = libraries.iter().map(|(&platform, path)| Ok((platform, read(path, platform)?)));
-    let libraries = libraries.collect::<Result<Vec<_>, ExportError>>()?;
+    let mut libraries: Vec<_> = libraries.iter().collect();
+    libraries.sort_by_key(|library| library.platform);
+    if let Some(two) = libraries.windows(2).find(|two| two[0].platform == two[1].platform) {
+        return Err(ExportError::SamePlatform(two[0].platform));
+    }
     let (mut contents, mut files) = (Contents::from(*structure.parameters()), Vec::new());
+    let mut followed = None;
     for path in records {
         let record = GroundRecord::read(path)?;
         let name = path.file_name().and_then(|name| name.to_str());
@@ -131,38 +113,28 @@ pub fn export(
         }
         files.push(fs::read(path).map_err(|source| RecordError::Unreadable { path: path.clone(), source })?);
         contents.records.push(PackedRecord { file, digest: record.name() });
+        followed.get_or_insert(record.record);
     }
-    let archive = archive::archive(&entries(structure, &contents, files, libraries)?)?;
+    let experiment = Experiment::new(structure, followed.as_ref());
+    let archive = archive::archive(&entries(name.as_str(), structure, &contents, experiment, files, &libraries)?)?;
     Ok((contents, archive))
-}
-
-/// The shared library at `path`, if it is there, for `platform` and of this build.
-fn read(path: &Path, platform: Platform) -> Result<Vec<u8>, ExportError> {
-    let library = fs::read(path).map_err(|error| match error.kind() {
-        io::ErrorKind::NotFound => ExportError::Missing(path.to_owned(), platform),
-        _ => ExportError::Unreadable { path: path.to_owned(), error },
-    })?;
-    if !library.starts_with(platform.magic()) {
-        return Err(ExportError::OtherPlatform(path.to_owned(), platform));
-    }
-    if !library.windows(BUILD.len()).any(|bytes| bytes == BUILD.as_bytes()) {
-        return Err(ExportError::OtherBuild(path.to_owned(), platform));
-    }
-    Ok(library)
 }
 
 /// The content of the archive, with the `records` as they are.
 fn entries(
+    name: &str,
     structure: &Structure,
     contents: &Contents,
+    experiment: Experiment,
     records: Vec<Vec<u8>>,
-    libraries: Vec<(Platform, Vec<u8>)>,
+    libraries: &[&Library],
 ) -> Result<Vec<Entry>, ExportError> {
     let entry = |path: &str, content| Entry { path: path.to_owned(), content };
+    let description = model_description::model_description(name, structure, contents, experiment);
     let mut entries = vec![
-        entry("modelDescription.xml", model_description::model_description(contents).to_xml()?.into()),
+        entry("modelDescription.xml", description.to_xml()?.into()),
         entry("model.png", ICON.to_vec()),
-        entry("documentation/index.html", documentation::documentation(structure, contents)?.into()),
+        entry("documentation/index.html", documentation::documentation(name, structure, contents, libraries)?.into()),
         entry("documentation/licenses/license.txt", LICENSES.into()),
         entry(&format!("resources/{PARAMETERS_FILE}"), toml::to_string(&contents.parameters)?.into()),
     ];
@@ -172,7 +144,7 @@ fn entries(
     }
     let packed = contents.records.iter().zip(records);
     entries.extend(packed.map(|(packed, file)| entry(&format!("resources/{}", packed.file), file)));
-    entries.extend(libraries.into_iter().map(|(platform, library)| entry(platform.path(), library)));
+    entries.extend(libraries.iter().map(|library| entry(&library.platform.path(name), library.content.clone())));
     Ok(entries)
 }
 
@@ -185,34 +157,48 @@ mod tests {
         Structure::new(parameters).unwrap()
     }
 
-    /// A file that passes for the library of this build.
-    fn library(folder: &Path) -> PathBuf {
-        let path = folder.join("library.so");
-        fs::write(&path, format!("\x7fELF, some code{BUILD}more code")).unwrap();
-        path
-    }
-
-    /// Why the library at `path` is refused.
-    fn refusal(platform: Platform, path: &Path) -> String {
-        let libraries = BTreeMap::from([(platform, path.to_owned())]);
-        export(&structure(Parameters::EVISON), &[], &libraries).unwrap_err().to_string()
+    /// What passes for the library of this build for `platform`.
+    fn library(platform: Platform) -> Library {
+        Library { platform, content: platform.folder().into() }
     }
 
     #[test]
     fn two_exports_of_the_same_are_the_same_bytes() {
-        let folder = tempfile::tempdir().unwrap();
-        let libraries = BTreeMap::from([(Platform::Linux64, library(folder.path()))]);
-        let exported = |parameters| export(&structure(parameters), &[], &libraries).unwrap().1;
-        let first = exported(Parameters::EVISON);
-        assert_eq!(first, exported(Parameters::EVISON));
-        assert_ne!(first, exported(Parameters::MCMANUS));
+        let exported = |parameters, platforms: [Platform; 2]| {
+            export(&ModelName::default(), &structure(parameters), &[], &platforms.map(library)).unwrap().1
+        };
+        let [linux, windows] = [Platform::Linux64, Platform::Windows64];
+        let first = exported(Parameters::EVISON, [linux, windows]);
+        assert_eq!(first, exported(Parameters::EVISON, [windows, linux]));
+        assert_ne!(first, exported(Parameters::MCMANUS, [linux, windows]));
+    }
+
+    #[test]
+    fn one_library_for_each_platform() {
+        let two = [Platform::LinuxArm64; 2].map(library);
+        let refusal = export(&ModelName::default(), &structure(Parameters::EVISON), &[], &two).unwrap_err().to_string();
+        assert_eq!(refusal, "two shared libraries are for aarch64-linux: leave one out");
+    }
+
+    #[test]
+    fn a_name_is_an_identifier_of_c() {
+        for name in ["Pier1", "_", "a_b_2"] {
+            assert_eq!(name.parse::<ModelName>().unwrap().as_str(), name);
+        }
+        for name in ["", "1Pier", "Pier 1", "../Pier", "Pfahl_ä", "Pier.1"] {
+            let refusal = name.parse::<ModelName>().unwrap_err().to_string();
+            let rule = "must be of letters a to z, digits and _, and not begin with a digit";
+            assert_eq!(refusal, format!("the name {name:?} {rule}"));
+        }
     }
 
     #[test]
     fn the_archive_holds_what_the_standard_and_the_library_look_for() {
-        let libraries = vec![(Platform::Linux64, b"code".to_vec()), (Platform::Windows64, b"Windows code".to_vec())];
-        let contents = Contents::from(Parameters::EVISON);
-        let entries = entries(&structure(Parameters::EVISON), &contents, Vec::new(), libraries).unwrap();
+        let libraries = Platform::ALL.map(library);
+        let libraries: Vec<_> = libraries.iter().collect();
+        let (structure, contents) = (structure(Parameters::EVISON), Contents::from(Parameters::EVISON));
+        let experiment = Experiment::new(&structure, None);
+        let entries = entries("Pier", &structure, &contents, experiment, Vec::new(), &libraries).unwrap();
         let paths: Vec<_> = entries.iter().map(|entry| entry.path.as_str()).collect();
         let expected = [
             "modelDescription.xml",
@@ -220,21 +206,23 @@ mod tests {
             "documentation/index.html",
             "documentation/licenses/license.txt",
             "resources/parameters.toml",
-            "binaries/linux64/FlexibleRocking.so",
-            "binaries/win64/FlexibleRocking.dll",
+            "binaries/linux64/Pier.so",
+            "binaries/aarch64-linux/Pier.so",
+            "binaries/win64/Pier.dll",
+            "binaries/darwin64/Pier.dylib",
+            "binaries/aarch64-darwin/Pier.dylib",
         ];
         assert_eq!(paths, expected);
         assert_eq!(entries[1].content[..8], *b"\x89PNG\r\n\x1a\n");
         let parameters: Parameters = toml::from_slice(&entries[4].content).unwrap();
         assert_eq!(parameters, Parameters::EVISON);
-        assert_eq!(entries[5].content, b"code");
-        assert_eq!(entries[6].content, b"Windows code");
+        let libraries: Vec<_> = entries[5..].iter().map(|entry| str::from_utf8(&entry.content).unwrap()).collect();
+        assert_eq!(libraries, Platform::ALL.map(Platform::folder));
     }
 
     #[test]
     fn records_are_packed_as_they_are_and_the_first_is_the_default() {
         let folder = tempfile::tempdir().unwrap();
-        let libraries = BTreeMap::from([(Platform::Linux64, library(folder.path()))]);
         let write = |name: &str, text: &str| {
             let path = folder.path().join(name);
             fs::create_dir_all(path.parent().unwrap()).unwrap();
@@ -245,12 +233,17 @@ mod tests {
         let [same, broken] = [write("other/Sine.TXT", "0,2\n1,0\n"), write("broken.csv", "0,1\n1,?\n")];
         let export = |records: &[&PathBuf]| {
             let records: Vec<_> = records.iter().map(|path| path.to_path_buf()).collect();
-            super::export(&structure(Parameters::EVISON), &records, &libraries)
+            super::export(
+                &ModelName::default(),
+                &structure(Parameters::EVISON),
+                &records,
+                &[library(Platform::Linux64)],
+            )
         };
         let (contents, bytes) = export(&[&pulse, &sine]).unwrap();
         assert_eq!(contents.default_record(), "pulse 1.csv");
-        let mut archive = zip::ZipArchive::new(io::Cursor::new(bytes)).unwrap();
-        let mut read = |name: &str| io::read_to_string(archive.by_name(name).unwrap()).unwrap();
+        let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
+        let mut read = |name: &str| std::io::read_to_string(archive.by_name(name).unwrap()).unwrap();
         assert_eq!(read("resources/pulse 1.csv"), "0,1\r\n1,2\r\n");
         assert_eq!(read("resources/sine.txt"), "0,1\n1,-1\n");
         assert!(read("modelDescription.xml").contains("<String start=\"pulse 1.csv\"/>"));
@@ -266,43 +259,5 @@ mod tests {
         );
         let expected = format!("{}, line 2: the acceleration \"?\" is not a number", broken.display());
         assert_eq!(refusal(&[&sine, &broken]), expected);
-    }
-
-    #[test]
-    fn a_missing_library_is_refused_with_what_to_do() {
-        for (platform, remedy) in
-            [(Platform::Linux64, "`cargo build --release` builds it"), (Platform::Windows64, "`make dist` builds it")]
-        {
-            assert_eq!(
-                refusal(platform, Path::new("/nowhere/library")),
-                format!("the shared library /nowhere/library does not exist: {remedy}")
-            );
-        }
-    }
-
-    #[test]
-    fn a_library_for_another_platform_is_refused() {
-        let folder = tempfile::tempdir().unwrap();
-        let library = library(folder.path());
-        assert_eq!(
-            refusal(Platform::Windows64, &library),
-            format!("{} is not a shared library for Windows: `make dist` builds it", library.display())
-        );
-    }
-
-    #[test]
-    fn a_library_of_another_build_is_refused() {
-        let folder = tempfile::tempdir().unwrap();
-        let library = library(folder.path());
-        let other = fs::read_to_string(&library).unwrap().replace(BUILD, "{00000000-0000-5000-8000-000000000000}");
-        fs::write(&library, other).unwrap();
-        assert_eq!(
-            refusal(Platform::Linux64, &library),
-            format!(
-                "the shared library {} is of another build: the name of this one, {BUILD}, does not occur in it; \
-                 `cargo build --release` builds it",
-                library.display()
-            )
-        );
     }
 }

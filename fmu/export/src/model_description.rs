@@ -1,39 +1,27 @@
 //! `modelDescription.xml`, from the table of variables.
 
+use crate::experiment::Experiment;
+use crate::units;
 use FlexibleRocking::logger;
 use FlexibleRocking::resources::Contents;
 use FlexibleRocking::variables::{Causality, DETAILS, DataType, Enumeration, PHASES, VARIABLES, Value, Variable};
 use model_description as fmi;
+use rocking::Structure;
 use rocking::engine::DEFAULT_TOLERANCE;
-
-/// Name of the model, and of its library without extension.
-pub const MODEL_NAME: &str = "FlexibleRocking";
 
 /// What the model is, in one line.
 pub const DESCRIPTION: &str = "A flexible structure that rocks freely on rigid ground under earthquake ground motion";
 
-/// The units of the variables, as exponents of kg, m, s, rad.
-const UNITS: [(&str, [i32; 4]); 13] = [
-    ("kg", [1, 0, 0, 0]),
-    ("m", [0, 1, 0, 0]),
-    ("s", [0, 0, 1, 0]),
-    ("Hz", [0, 0, -1, 0]),
-    ("rad", [0, 0, 0, 1]),
-    ("rad/s", [0, 0, -1, 1]),
-    ("m/s", [0, 1, -1, 0]),
-    ("m/s2", [0, 1, -2, 0]),
-    ("N", [1, 1, -2, 0]),
-    ("N.m", [1, 2, -2, 0]),
-    ("N.s", [1, 1, -1, 0]),
-    ("N.m.s", [1, 2, -1, 0]),
-    ("kg.m2", [1, 2, 0, 0]),
-];
-
-/// The description of an FMU with these `contents`.
-pub fn model_description(contents: &Contents) -> fmi::FmiModelDescription {
+/// The description of the FMU `name` of `structure` with these `contents`.
+pub fn model_description(
+    name: &str,
+    structure: &Structure,
+    contents: &Contents,
+    experiment: Experiment,
+) -> fmi::FmiModelDescription {
     fmi::FmiModelDescription {
         fmi_version: fmi::FmiVersion::V2_0,
-        model_name: MODEL_NAME.into(),
+        model_name: name.into(),
         guid: FlexibleRocking::guid(contents),
         description: DESCRIPTION.into(),
         version: env!("CARGO_PKG_VERSION").into(),
@@ -41,7 +29,7 @@ pub fn model_description(contents: &Contents) -> fmi::FmiModelDescription {
         generation_tool: concat!("rocking-fmu ", env!("CARGO_PKG_VERSION")).into(),
         variable_naming_convention: fmi::VariableNamingConvention::Flat,
         co_simulation: fmi::CoSimulation {
-            model_identifier: MODEL_NAME.into(),
+            model_identifier: name.into(),
             can_handle_variable_communication_step_size: true,
             can_interpolate_inputs: true,
             max_output_derivative_order: 1,
@@ -51,22 +39,23 @@ pub fn model_description(contents: &Contents) -> fmi::FmiModelDescription {
             can_serialize_fmu_state: true,
             provides_directional_derivative: true,
         },
-        unit_definitions: fmi::UnitDefinitions { units: UNITS.map(unit).into() },
+        unit_definitions: fmi::UnitDefinitions { units: units::definitions(structure) },
         type_definitions: fmi::TypeDefinitions { simple_types: [&PHASES, &DETAILS].map(enumeration_type).into() },
         log_categories: fmi::LogCategories { categories: logger::Category::ALL.map(log_category).into() },
-        default_experiment: fmi::DefaultExperiment { start_time: 0.0, tolerance: DEFAULT_TOLERANCE },
+        default_experiment: fmi::DefaultExperiment {
+            start_time: 0.0,
+            stop_time: experiment.stop_time,
+            tolerance: DEFAULT_TOLERANCE,
+            step_size: experiment.step_size,
+        },
         model_variables: fmi::ModelVariables {
             scalar_variables: (0..)
                 .zip(&*VARIABLES)
-                .map(|(at, variable)| scalar_variable(at, variable, contents))
+                .map(|(at, variable)| scalar_variable(at, variable, structure, contents))
                 .collect(),
         },
         model_structure: model_structure(),
     }
-}
-
-fn unit((name, [kg, m, s, rad]): (&str, [i32; 4])) -> fmi::Unit {
-    fmi::Unit { name: name.into(), base_unit: fmi::BaseUnit { kg, m, s, rad } }
 }
 
 fn enumeration_type(enumeration: &Enumeration) -> fmi::SimpleType {
@@ -84,7 +73,7 @@ fn log_category(category: logger::Category) -> fmi::Category {
 }
 
 /// The variable at position `at` of the table, which is its value reference.
-fn scalar_variable(at: u32, variable: &Variable, contents: &Contents) -> fmi::ScalarVariable {
+fn scalar_variable(at: u32, variable: &Variable, structure: &Structure, contents: &Contents) -> fmi::ScalarVariable {
     let start = variable.start(contents);
     fmi::ScalarVariable {
         name: variable.name.into(),
@@ -96,8 +85,10 @@ fn scalar_variable(at: u32, variable: &Variable, contents: &Contents) -> fmi::Sc
         variable_type: match (variable.data_type, start) {
             (DataType::Real { unit, range }, start) => fmi::VariableType::Real(fmi::Real {
                 unit: (unit != "1").then(|| unit.into()),
+                display_unit: units::display_unit(variable, structure).map(Into::into),
                 min: range.map(|(min, _)| min),
                 max: range.map(|(_, max)| max),
+                nominal: units::nominal(variable, structure),
                 start: start.and_then(|value| if let Value::Real(value) = value { Some(value) } else { None }),
             }),
             (DataType::Integer, _) => fmi::VariableType::Integer(fmi::Integer { min: Some(0) }),
@@ -182,9 +173,14 @@ mod tests {
     use rocking::Parameters;
     use std::collections::BTreeSet;
 
+    fn described(contents: &Contents) -> fmi::FmiModelDescription {
+        let structure = Structure::new(contents.parameters).unwrap();
+        model_description("Pier", &structure, contents, Experiment { stop_time: 4.0, step_size: 0.005 })
+    }
+
     #[test]
     fn every_variable_is_there_once_in_the_order_of_the_table() {
-        let written = model_description(&Parameters::MCMANUS.into()).model_variables.scalar_variables;
+        let written = described(&Parameters::MCMANUS.into()).model_variables.scalar_variables;
         let names: Vec<_> = written.iter().map(|variable| variable.name.as_str()).collect();
         assert_eq!(names, VARIABLES.iter().map(|variable| variable.name).collect::<Vec<_>>());
         assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len());
@@ -194,7 +190,7 @@ mod tests {
 
     #[test]
     fn the_structure_points_at_the_outputs_and_at_what_initialization_calculates() {
-        let description = model_description(&Parameters::MCMANUS.into());
+        let description = described(&Parameters::MCMANUS.into());
         let variables = &description.model_variables.scalar_variables;
         let name = |index: &usize| variables[index - 1].name.as_str();
         let names = |unknowns: &[fmi::Unknown]| unknowns.iter().map(|u| name(&u.index).to_owned()).collect::<Vec<_>>();
@@ -230,25 +226,13 @@ mod tests {
     }
 
     #[test]
-    fn the_units_defined_are_the_units_used() {
-        let used: BTreeSet<_> = VARIABLES
-            .iter()
-            .filter_map(|variable| match variable.data_type {
-                DataType::Real { unit, .. } if unit != "1" => Some(unit),
-                _ => None,
-            })
-            .collect();
-        assert_eq!(used, UNITS.iter().map(|(name, _)| *name).collect());
-    }
-
-    #[test]
     fn start_values_are_those_of_the_structure() {
         let record = PackedRecord { file: "pulse & rest.csv".into(), digest: "any".into() };
         let contents = Contents { parameters: Parameters::EVISON, records: vec![record] };
-        let xml = model_description(&contents).to_xml().unwrap();
+        let xml = described(&contents).to_xml().unwrap();
         for element in [
             r#"name="a_g" valueReference="0" description="horizontal ground acceleration, positive to the right" causality="input" variability="continuous">
-      <Real unit="m/s2" min="-10000.0" max="10000.0" start="0.0"/>"#,
+      <Real unit="m/s2" displayUnit="g" min="-10000.0" max="10000.0" nominal="3.59" start="0.0"/>"#,
             r#"description="natural frequency in full contact (fixed base)" causality="parameter" variability="fixed" initial="exact">
       <Real unit="Hz" min="0.001" max="10000.0" start="11.0"/>"#,
             r#"description="damping ratio in full contact" causality="parameter" variability="fixed" initial="exact">
@@ -262,8 +246,10 @@ mod tests {
             r#"description="whether the largest magnitudes theta_max, u_max, ... are watched for" causality="parameter" variability="fixed" initial="exact">
       <Boolean start="false"/>"#,
             r#"exact: within steps, too; NaN unless peaks is true" causality="local" variability="continuous" initial="calculated">
-      <Real unit="rad"/>"#,
-            r#"<DefaultExperiment startTime="0.0" tolerance="1e-9"/>"#,
+      <Real unit="rad" displayUnit="deg" nominal="0.351"/>"#,
+            r#"modelName="Pier" guid"#,
+            r#"<CoSimulation modelIdentifier="Pier" "#,
+            r#"<DefaultExperiment startTime="0.0" stopTime="4.0" tolerance="1e-9" stepSize="0.005"/>"#,
         ] {
             assert!(xml.contains(element), "{element}\n{xml}");
         }

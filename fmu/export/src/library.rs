@@ -1,0 +1,201 @@
+//! Shared libraries, and the platforms that an archive can have one for.
+
+use FlexibleRocking::BUILD;
+use memchr::memmem;
+use object::read::macho::{FatArch, MachOFatFile32};
+use object::{Architecture, BinaryFormat, FileKind, Object};
+use std::fs;
+use std::io::{self, Cursor, Read};
+use std::path::{Path, PathBuf};
+use zip::ZipArchive;
+use zip::result::ZipError;
+
+/// A platform for which an archive can have a shared library.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Platform {
+    /// Linux on x86-64.
+    Linux64,
+    /// Linux on 64-bit ARM.
+    LinuxArm64,
+    /// Windows on x86-64.
+    Windows64,
+    /// macOS on x86-64, or on both in one file.
+    Darwin64,
+    /// macOS on 64-bit ARM.
+    DarwinArm64,
+}
+
+impl Platform {
+    /// All of them.
+    pub const ALL: [Platform; 5] =
+        [Platform::Linux64, Platform::LinuxArm64, Platform::Windows64, Platform::Darwin64, Platform::DarwinArm64];
+
+    /// The archive's folder of its libraries. FMI 2.0 has names for x86 alone; since 2.0.4 it asks for the tuples of FMI
+    /// 3.0 for all others. Hosts that know no tuples look for `darwin64` on every Mac: what stands there runs on both.
+    pub fn folder(self) -> &'static str {
+        match self {
+            Platform::Linux64 => "linux64",
+            Platform::LinuxArm64 => "aarch64-linux",
+            Platform::Windows64 => "win64",
+            Platform::Darwin64 => "darwin64",
+            Platform::DarwinArm64 => "aarch64-darwin",
+        }
+    }
+
+    /// What cargo, or cargo-zigbuild, calls it.
+    pub fn target(self) -> &'static str {
+        match self {
+            Platform::Linux64 => "x86_64-unknown-linux-gnu",
+            Platform::LinuxArm64 => "aarch64-unknown-linux-gnu",
+            Platform::Windows64 => "x86_64-pc-windows-gnu",
+            Platform::Darwin64 => "universal2-apple-darwin",
+            Platform::DarwinArm64 => "aarch64-apple-darwin",
+        }
+    }
+
+    /// The file that cargo builds for it.
+    pub fn file(self) -> &'static str {
+        match self {
+            Platform::Linux64 | Platform::LinuxArm64 => "libFlexibleRocking.so",
+            Platform::Windows64 => "FlexibleRocking.dll",
+            Platform::Darwin64 | Platform::DarwinArm64 => "libFlexibleRocking.dylib",
+        }
+    }
+
+    /// Where an archive of the model `name` has the library.
+    pub(crate) fn path(self, name: &str) -> String {
+        let (_, extension) = self.file().rsplit_once('.').expect("they have one");
+        format!("binaries/{}/{name}.{extension}", self.folder())
+    }
+
+    /// What `library` is for, by its header.
+    fn of(library: &[u8]) -> Option<Platform> {
+        if FileKind::parse(library) == Ok(FileKind::MachOFat32) {
+            let both = MachOFatFile32::parse(library).ok()?;
+            let has = |wanted| both.arches().iter().any(|arch| arch.architecture() == wanted);
+            return (has(Architecture::X86_64) && has(Architecture::Aarch64)).then_some(Platform::Darwin64);
+        }
+        let file = object::File::parse(library).ok()?;
+        match (file.format(), file.architecture()) {
+            (BinaryFormat::Elf, Architecture::X86_64) => Some(Platform::Linux64),
+            (BinaryFormat::Elf, Architecture::Aarch64) => Some(Platform::LinuxArm64),
+            (BinaryFormat::Pe, Architecture::X86_64) => Some(Platform::Windows64),
+            (BinaryFormat::MachO, Architecture::X86_64) => Some(Platform::Darwin64),
+            (BinaryFormat::MachO, Architecture::Aarch64) => Some(Platform::DarwinArm64),
+            _ => None,
+        }
+    }
+}
+
+/// A shared library of this build.
+#[derive(Debug)]
+pub struct Library {
+    /// What it is for.
+    pub platform: Platform,
+    pub(crate) content: Vec<u8>,
+}
+
+/// Why a shared library cannot be had.
+#[derive(Debug, thiserror::Error)]
+pub enum LibraryError {
+    /// No such file, or one that cannot be read.
+    #[error("cannot read the shared library {path}: {error}", path = .path.display())]
+    Unreadable {
+        /// The library.
+        path: PathBuf,
+        /// Why.
+        error: io::Error,
+    },
+    /// An archive that cannot be read.
+    #[error("cannot read the libraries in {path}: {error}", path = .path.display())]
+    Archive {
+        /// The archive.
+        path: PathBuf,
+        /// Why.
+        error: ZipError,
+    },
+    /// Something else, or for another platform.
+    #[error("{} is neither an FMU nor a shared library for one of {}", .0.display(), Platform::ALL.map(Platform::folder).join(", "))]
+    NoLibrary(PathBuf),
+    /// A library from other sources than this exporter, so that its variables may be others.
+    #[error("the shared library {} is of another build: the name of this one, {BUILD}, does not occur in it", .0.display())]
+    OtherBuild(PathBuf),
+}
+
+impl Library {
+    /// The shared library at `path`, or those of the FMU there.
+    pub fn read(path: &Path) -> Result<Vec<Library>, LibraryError> {
+        let unreadable = |error| LibraryError::Unreadable { path: path.to_owned(), error };
+        let content = fs::read(path).map_err(unreadable)?;
+        if !content.starts_with(b"PK") {
+            return Ok(vec![Library::new(path, content)?]);
+        }
+        let broken = |error| LibraryError::Archive { path: path.to_owned(), error };
+        let mut archive = ZipArchive::new(Cursor::new(content)).map_err(broken)?;
+        let mut libraries = Vec::new();
+        for at in 0..archive.len() {
+            let mut file = archive.by_index(at).map_err(broken)?;
+            if file.is_file() && file.name().is_ok_and(|name| name.starts_with("binaries/")) {
+                let mut library = Vec::new();
+                file.read_to_end(&mut library).map_err(unreadable)?;
+                libraries.push(Library::new(path, library)?);
+            }
+        }
+        Ok(libraries)
+    }
+
+    /// The library with this `content`, of this build; `path` is where it comes from.
+    fn new(path: &Path, content: Vec<u8>) -> Result<Library, LibraryError> {
+        let platform = Platform::of(&content).ok_or_else(|| LibraryError::NoLibrary(path.to_owned()))?;
+        if memmem::find(&content, BUILD.as_bytes()).is_none() {
+            return Err(LibraryError::OtherBuild(path.to_owned()));
+        }
+        Ok(Library { platform, content })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// No more than a header.
+    fn elf(machine: u8) -> Vec<u8> {
+        let mut header = [0; 64];
+        header[..7].copy_from_slice(b"\x7fELF\x02\x01\x01"); // 64 bits, little-endian
+        header[16] = 3; // shared
+        header[18] = machine;
+        header[20] = 1;
+        header[52] = 64;
+        header.into()
+    }
+
+    fn macho(cpu: u8) -> Vec<u8> {
+        let mut header = [0; 32];
+        header[..8].copy_from_slice(&[0xcf, 0xfa, 0xed, 0xfe, cpu, 0, 0, 1]);
+        header[12] = 6; // dylib
+        header.into()
+    }
+
+    /// Both architectures behind one header, which is big-endian.
+    fn universal(cpus: &[u8]) -> Vec<u8> {
+        let mut header = vec![0xca, 0xfe, 0xba, 0xbe, 0, 0, 0, cpus.len() as u8];
+        for cpu in cpus {
+            header.extend([1, 0, 0, *cpu, 0, 0, 0, 3, 0, 0, 1, 0, 0, 0, 0, 32, 0, 0, 0, 3]);
+        }
+        header
+    }
+
+    #[test]
+    fn a_header_tells_the_platform() {
+        let [x86, arm] = [(62, 7), (183, 12)];
+        assert_eq!(Platform::of(&elf(x86.0)), Some(Platform::Linux64));
+        assert_eq!(Platform::of(&elf(arm.0)), Some(Platform::LinuxArm64));
+        assert_eq!(Platform::of(&macho(x86.1)), Some(Platform::Darwin64));
+        assert_eq!(Platform::of(&macho(arm.1)), Some(Platform::DarwinArm64));
+        assert_eq!(Platform::of(&universal(&[x86.1, arm.1])), Some(Platform::Darwin64));
+        assert_eq!(Platform::of(&universal(&[arm.1])), None);
+        assert_eq!(Platform::of(&elf(243)), None, "RISC-V");
+        assert_eq!(Platform::of(b"PK, MZ"), None);
+        assert_eq!(Platform::of(b""), None);
+    }
+}

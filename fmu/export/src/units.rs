@@ -1,0 +1,101 @@
+//! Units: what each is in SI, what hosts show it in, and magnitudes that are usual.
+
+use FlexibleRocking::variables::{DataType, Variable};
+use model_description as fmi;
+use rocking::Structure;
+use rocking::parameters::PARAMETERS;
+
+/// The units of the variables, as exponents of kg, m, s, rad.
+pub const UNITS: [(&str, [i32; 4]); 13] = [
+    ("kg", [1, 0, 0, 0]),
+    ("m", [0, 1, 0, 0]),
+    ("s", [0, 0, 1, 0]),
+    ("Hz", [0, 0, -1, 0]),
+    ("rad", [0, 0, 0, 1]),
+    ("rad/s", [0, 0, -1, 1]),
+    ("m/s", [0, 1, -1, 0]),
+    ("m/s2", [0, 1, -2, 0]),
+    ("N", [1, 1, -2, 0]),
+    ("N.m", [1, 2, -2, 0]),
+    ("N.s", [1, 1, -1, 0]),
+    ("N.m.s", [1, 2, -1, 0]),
+    ("kg.m2", [1, 2, 0, 0]),
+];
+
+/// Definitions of the units, for a structure that knows what its g is.
+pub fn definitions(structure: &Structure) -> Vec<fmi::Unit> {
+    let definition = |(name, [kg, m, s, rad]): (&str, [i32; 4])| {
+        let shown = shown_in(name, structure);
+        let shown = shown.map(|(name, factor)| fmi::DisplayUnit { name: name.into(), factor });
+        let base_unit = fmi::BaseUnit { kg, m, s, rad };
+        fmi::Unit { name: name.into(), base_unit, display_units: shown.into_iter().collect() }
+    };
+    UNITS.map(definition).into()
+}
+
+/// What hosts can show a unit in, and what a value is multiplied by for it. The g of an acceleration is the structure's own,
+/// as in a record.
+fn shown_in(unit: &str, structure: &Structure) -> Option<(&'static str, f64)> {
+    match unit {
+        "rad" => Some(("deg", 1f64.to_degrees())),
+        "m" => Some(("mm", 1e3)),
+        "s" => Some(("ms", 1e3)),
+        "m/s2" => Some(("g", 1.0 / structure.parameters().g)),
+        "N" => Some(("kN", 1e-3)),
+        "N.m" => Some(("kN.m", 1e-3)),
+        _ => None,
+    }
+}
+
+/// What `variable` is shown in, where that is not its unit. The structure's own parameters are in SI, as in its file, and
+/// instants in seconds: they are looked up in a record.
+pub fn display_unit(variable: &Variable, structure: &Structure) -> Option<&'static str> {
+    let DataType::Real { unit, .. } = variable.data_type else { return None };
+    let is_parameter = PARAMETERS.iter().any(|parameter| parameter.name == variable.name);
+    let shown = shown_in(unit, structure).map(|(name, _)| name);
+    shown.filter(|_| unit != "s" && !is_parameter)
+}
+
+/// The magnitude that is usual for `variable`, of what moves: at the rotation α_cg, at which the structure is about to fall,
+/// at u_cr, at which its base lifts off, and under the acceleration g tan α_cg, which lifts it statically (Eqs 2 to 4). To
+/// three digits.
+pub fn nominal(variable: &Variable, structure: &Structure) -> Option<f64> {
+    let parameters = structure.parameters();
+    let (m, height, alpha) = (parameters.m, parameters.H, structure.tan_alpha_cg.atan());
+    let acceleration = parameters.g * structure.tan_alpha_cg;
+    let name = ["_max", "_0"].iter().find_map(|ending| variable.name.strip_suffix(ending)).unwrap_or(variable.name);
+    let magnitude = match name {
+        "theta" => Some(alpha),
+        "theta_dot" => Some(structure.p_l * alpha),
+        "u" => Some(structure.u_cr),
+        "u_dot" => Some(structure.omega_fc * structure.u_cr),
+        "uplift" => Some(2.0 * parameters.B * alpha.sin()),
+        "delta_t" => Some(height * alpha.sin()),
+        "v_t" => Some(height * structure.p_l * alpha),
+        "a_g" | "a_ground" | "a_t" => Some(acceleration),
+        "F_t" | "V_t" | "R_h" => Some(m * acceleration),
+        "M_t" | "R_m" => Some(m * height * acceleration),
+        "R_v" => Some((m + parameters.m0) * parameters.g),
+        _ => None, // impulses add up over a motion
+    };
+    magnitude.map(|magnitude| format!("{magnitude:.2e}").parse().expect("a number in Rust's own notation"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use FlexibleRocking::variables::VARIABLES;
+    use std::collections::BTreeSet;
+
+    #[test]
+    fn the_units_defined_are_the_units_used() {
+        let used: BTreeSet<_> = VARIABLES
+            .iter()
+            .filter_map(|variable| match variable.data_type {
+                DataType::Real { unit, .. } if unit != "1" => Some(unit),
+                _ => None,
+            })
+            .collect();
+        assert_eq!(used, UNITS.iter().map(|(name, _)| *name).collect());
+    }
+}

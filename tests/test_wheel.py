@@ -1,0 +1,75 @@
+"""The wheel for this machine, which `make wheels` builds, as somebody has it who has no Rust."""
+
+import os
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from fmpy import read_model_description, simulate_fmu
+from pacoima import write_record
+
+
+@pytest.fixture(scope="module")
+def installed(tmp_path_factory):
+    """Runs a command of a fresh environment with the wheel, and the newest fmpy of requirements.txt."""
+    wheels = list((ROOT / "out" / "wheels").glob("*-manylinux*_x86_64.whl"))
+    if not wheels:
+        pytest.skip("there is no wheel: `make wheels` builds it")
+    (wheel,) = wheels
+    folder = tmp_path_factory.mktemp("installed")
+    subprocess.run([sys.executable, "-m", "venv", folder / "venv"], check=True)
+    fmpy = re.search(r"^fmpy==\S+", (ROOT / "requirements.txt").read_text(), re.MULTILINE)[0]
+    command = [folder / "venv/bin/python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", wheel, fmpy]
+    subprocess.run(command, check=True)
+
+    def run(program, *arguments):
+        environment = {"PATH": f"{folder}/venv/bin:/usr/bin:/bin", "HOME": str(folder)}
+        assert not any(os.access(f"{place}/cargo", os.X_OK) for place in environment["PATH"].split(":"))
+        done = subprocess.run([folder / "venv/bin" / program, *arguments], cwd=folder, env=environment, check=True,
+                              capture_output=True, text=True)
+        return done.stdout
+
+    run.folder = folder
+    return run
+
+
+def test_readme(installed):
+    script = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)[1]
+    assert "flexible_rocking.fmu()" in script
+    printed, expected = installed("python", "-c", script), re.search(r"prints `(.*?)`", (ROOT / "README.md").read_text())
+    assert printed.strip() == expected[1]
+
+
+def test_the_fmu_is_the_one_of_dist(installed):
+    path = installed("python", "-c", "import flexible_rocking; print(flexible_rocking.fmu())").strip()
+    with open(path, "rb") as inside, open(ROOT / "out" / "FlexibleRocking.fmu", "rb") as dist:
+        assert inside.read() == dist.read()
+
+
+def test_an_own_structure_with_its_record(installed, exporter, tmp_path):
+    """The same bytes as the exporter writes that was built here, with the same libraries."""
+    write_record(installed.folder / "pacoima.csv")
+    pier = dict(m=1000, m0=300, H=4, B=0.6, f_fc=3, zeta_fc=0.02, r=0.95)
+    script = f"import flexible_rocking; flexible_rocking.export('pier.fmu', parameters={pier}, record='pacoima.csv', name='Pier1')"
+    installed("python", "-c", script)
+    parameters = tmp_path / "pier.toml"
+    parameters.write_text("".join(f"{key} = {value}\n" for key, value in pier.items()))
+    here = tmp_path / "here.fmu"
+    subprocess.run([exporter, "export", "--parameters", parameters, "--record", installed.folder / "pacoima.csv", "--name",
+                    "Pier1", "--library", ROOT / "out" / "FlexibleRocking.fmu", "-o", here], check=True)
+    assert (installed.folder / "pier.fmu").read_bytes() == here.read_bytes()
+    assert read_model_description(here).coSimulation.modelIdentifier == "Pier1"
+    assert np.abs(simulate_fmu(here)["theta"]).max() > 0
+    refused = subprocess.run([installed.folder / "venv/bin/python", "-c", script.replace("'r': 0.95", "'r': 2")],
+                             capture_output=True, text=True, cwd=installed.folder)
+    assert "ValueError" in refused.stderr and "r = 2" in refused.stderr and "out of range" in refused.stderr
+
+
+def test_version(installed, exporter):
+    """Version, build and platforms, the same as here."""
+    printed = installed("rocking-fmu", "--version")
+    here = subprocess.run([exporter, "--version"], check=True, capture_output=True, text=True).stdout
+    assert printed == here and re.search(r"\nbuild \{[0-9a-f-]{36}\}\nfor linux on x86_64; .* aarch64-darwin", printed)
