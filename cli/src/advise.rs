@@ -198,7 +198,7 @@ fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&
         };
         let overturns = match (verdict.is_right_about_overturning, response.overturns()) {
             (Some(false), _) => format!("{overturned}, wrong"),
-            (None, Some(_)) => format!("{overturned}, unsure"),
+            (None, Some(_)) => format!("{overturned} (?)"),
             _ => overturned.into(),
         };
         let errors = verdict.errors.map(percent);
@@ -215,15 +215,10 @@ fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&
     Ok(())
 }
 
-/// A level, or the reference, for programs: peaks in SI units, errors as ratios.
+/// A level, or the reference, for programs: errors as ratios, peaks in SI units.
 #[derive(Serialize)]
 struct Row {
     level: &'static str,
-    theta: f64,
-    u: f64,
-    a_t: f64,
-    V_t: f64,
-    M_t: f64,
     error_theta: f64,
     error_u: f64,
     error_a_t: f64,
@@ -238,6 +233,11 @@ struct Row {
     evaluations: u64,
     cost_of_auto: Option<f64>,
     advised: bool,
+    theta: f64,
+    u: f64,
+    a_t: f64,
+    V_t: f64,
+    M_t: f64,
 }
 
 /// The reference, then the levels.
@@ -250,11 +250,6 @@ fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Row> {
             [peaks.theta(), peaks.u(), peaks.a_t(), peaks.V_t(), peaks.M_t()].map(|peak| peak.magnitude);
         Row {
             level,
-            theta,
-            u,
-            a_t,
-            V_t,
-            M_t,
             error_theta,
             error_u,
             error_a_t,
@@ -267,6 +262,11 @@ fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Row> {
             evaluations: response.work.evaluations,
             cost_of_auto: auto.map(|auto| response.cost() as f64 / auto),
             advised,
+            theta,
+            u,
+            a_t,
+            V_t,
+            M_t,
         }
     };
     let reference = &comparison.reference;
