@@ -521,12 +521,43 @@ fn probabilities_and_curve_are_those_of_the_rows() {
         "{summary}"
     );
 
+    assert!(summary.contains("\na run that overturns exceeds every limit\n"), "{summary}");
+
     let picture = read(&folder, "sweep.svg");
     for text in ["peak ground acceleration PGA (g)", "pier: overturned", "wall: theta/alpha_cg &gt;= 0.6"] {
         assert!(picture.contains(text), "{text}");
     }
     // A dot per scale factor and limit, and one in the legend.
     assert_eq!(picture.matches("<circle").count(), 4 * (6 + 1));
+}
+
+/// Few exceed the limit up to the strongest ground motion: what the curve makes of that is marked.
+#[test]
+fn a_median_beyond_the_runs_is_marked() {
+    let toml = "
+records = ['pulse.AT2']
+scale = [1, 1.2]
+[[structures]]
+name = 'pier'
+preset = 'mcmanus'
+vary = { slenderness = [4, 5, 6, 8], r = [0.8, 0.9, 1] }
+[limits]
+\"theta/alpha_cg\" = [0.6]
+";
+    for (scales, is_beyond) in [("[1, 1.2]", true), ("[1, 1.2, 2]", false)] {
+        let folder = sweep(&toml.replace("[1, 1.2]", scales));
+        let (table, _) = succeed(folder.path(), "sweep sweep.toml");
+        let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+        let rows: Vec<_> = table.lines().map(words).collect();
+        let median = rows.iter().position(|row| row.first().is_some_and(|first| first == "median")).unwrap();
+        let number = |text: &String| text.parse::<f64>().unwrap();
+        let (strongest, found) = (number(&rows[median - 1][2]), number(&rows[median][3]));
+        assert_eq!(
+            (found > strongest, rows[median + 1].join(" ") == "beyond the runs"),
+            (is_beyond, is_beyond),
+            "{table}"
+        );
+    }
 }
 
 #[test]
