@@ -79,8 +79,10 @@ pub enum FitError {
     AlwaysExceeded,
     /// Exceedances begin no lower than non-exceedances end: the most likely dispersion is 0.
     #[error(
-        "always exceeded above {highest_without} and never below {lowest_with}: for a dispersion, add intensities in \
-         between, records or structures"
+        "runs overlap nowhere: those within it go up to {}, those that exceed it begin at {}: for a dispersion, add \
+         intensities in between, records or structures",
+        six_digits(*highest_without),
+        six_digits(*lowest_with)
     )]
     NoOverlap {
         /// Largest intensity with a run that stays within the limit.
@@ -91,6 +93,10 @@ pub enum FitError {
     /// Exceedances become fewer as the intensity grows.
     #[error("exceedances do not grow with the intensity")]
     NotGrowing,
+}
+
+fn six_digits(intensity: f64) -> f64 {
+    format!("{intensity:.5e}").parse().expect("a number in Rust's own notation")
 }
 
 impl Trials {
@@ -326,7 +332,8 @@ mod tests {
         assert_eq!(refused(&[(1.0, 5, 0), (2.0, 5, 3), (3.0, 5, 5)]), steep);
         assert_eq!(
             refused(&[(1.0, 5, 0), (2.0, 5, 5)]).to_string(),
-            "always exceeded above 1 and never below 2: for a dispersion, add intensities in between, records or structures"
+            "runs overlap nowhere: those within it go up to 1, those that exceed it begin at 2: for a dispersion, add \
+             intensities in between, records or structures"
         );
         assert_eq!(refused(&[(1.0, 5, 5), (2.0, 5, 3), (3.0, 5, 0)]), FitError::NotGrowing);
         assert_eq!(refused(&[(1.0, 5, 4), (2.0, 5, 3), (3.0, 5, 2)]), FitError::NotGrowing);

@@ -249,6 +249,11 @@ def test_a_structure_that_falls_lies(opened, exporter, tmp_path):
     page.keyboard.press("End")
     assert page.locator("tr.phase td").text_content() == "overturned"
     assert page.locator("#fallen").text_content().startswith("overturned at 1.31")
+    assert page.locator("line.tick[data-kind=overturning]").count() == 1
+    page.keyboard.press("Home")
+    for _ in range(2):  # uplift, overturning
+        page.keyboard.press(".")
+    assert page.locator("tr.phase td").text_content() == "overturned"
     theta, pivot, _ = drawn(page)
     assert abs(theta + math.pi / 2) < 1e-4 and pivot == -0.285
 

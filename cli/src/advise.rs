@@ -23,7 +23,7 @@ use rocking::{
     response_spectrum::spectral_acceleration,
     run::{
         LONGEST_REST, Run,
-        levels::{self, Comparison, Criterion, REFERENCE_TOLERANCE, Verdict},
+        levels::{self, Comparison, Criterion, REFERENCE_TOLERANCE, Response, Verdict},
     },
 };
 use serde::Serialize;
@@ -196,8 +196,11 @@ fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&
             Some(false) => "no",
             None => "unknown",
         };
-        let overturns =
-            if verdict.is_right_about_overturning { overturned.into() } else { format!("{overturned}, wrong") };
+        let overturns = match (verdict.is_right_about_overturning, response.overturns()) {
+            (Some(false), _) => format!("{overturned}, wrong"),
+            (None, Some(_)) => format!("{overturned} (?)"),
+            _ => overturned.into(),
+        };
         let errors = verdict.errors.map(percent);
         let [theta, u, a_t, theta_history, u_history, a_t_history] = errors.each_ref().map(String::as_str);
         let counts = [response.work.steps, response.work.evaluations].map(|count| count.to_string());
@@ -212,12 +215,7 @@ fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&
     Ok(())
 }
 
-fn cost_of_auto(comparison: &Comparison) -> Option<f64> {
-    let auto = comparison.verdicts.iter().find(|verdict| verdict.response.detail == Detail::Auto);
-    auto.map(|auto| auto.response.cost() as f64)
-}
-
-/// A level, for programs: errors are ratios.
+/// A level, or the reference, for programs: errors as ratios, peaks in SI units.
 #[derive(Serialize)]
 struct Row {
     level: &'static str,
@@ -229,20 +227,29 @@ struct Row {
     error_a_t_history: f64,
     /// None if it still rocks.
     overturned: Option<bool>,
-    is_right_about_overturning: bool,
+    /// None if the reference still rocks.
+    is_right_about_overturning: Option<bool>,
     steps: u64,
     evaluations: u64,
     cost_of_auto: Option<f64>,
     advised: bool,
+    theta: f64,
+    u: f64,
+    a_t: f64,
+    V_t: f64,
+    M_t: f64,
 }
 
+/// The reference, then the levels.
 fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Row> {
-    let auto = cost_of_auto(comparison);
-    let row = |verdict: &Verdict| {
-        let response = &verdict.response;
-        let [error_theta, error_u, error_a_t, error_theta_history, error_u_history, error_a_t_history] = verdict.errors;
+    let auto = comparison.cost_of_auto();
+    let row = |level, response: &Response, errors: [f64; 6], is_right_about_overturning, advised| {
+        let [error_theta, error_u, error_a_t, error_theta_history, error_u_history, error_a_t_history] = errors;
+        let peaks = &response.peaks;
+        let [theta, u, a_t, V_t, M_t] =
+            [peaks.theta(), peaks.u(), peaks.a_t(), peaks.V_t(), peaks.M_t()].map(|peak| peak.magnitude);
         Row {
-            level: response.detail.name(),
+            level,
             error_theta,
             error_u,
             error_a_t,
@@ -250,14 +257,25 @@ fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Row> {
             error_u_history,
             error_a_t_history,
             overturned: response.overturns(),
-            is_right_about_overturning: verdict.is_right_about_overturning,
+            is_right_about_overturning,
             steps: response.work.steps,
             evaluations: response.work.evaluations,
             cost_of_auto: auto.map(|auto| response.cost() as f64 / auto),
-            advised: advised.is_some_and(|advised| advised.response.detail == response.detail),
+            advised,
+            theta,
+            u,
+            a_t,
+            V_t,
+            M_t,
         }
     };
-    comparison.verdicts.iter().map(row).collect()
+    let reference = &comparison.reference;
+    let is_known = reference.overturns().map(|_| true);
+    let levels = comparison.verdicts.iter().map(|Verdict { response, errors, is_right_about_overturning }| {
+        let is_advised = advised.is_some_and(|advised| advised.response.detail == response.detail);
+        row(response.detail.name(), response, *errors, *is_right_about_overturning, is_advised)
+    });
+    [row("reference", reference, [0.0; 6], is_known, false)].into_iter().chain(levels).collect()
 }
 
 /// The demand of the whole record without a time history (Eqs 21 to 24) as one more row.

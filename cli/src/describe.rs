@@ -8,7 +8,7 @@ use crate::{
     picture::PictureFile,
     quantities::Line,
     results::{Format, FormatArgs, print, print_rows},
-    significant::significant,
+    significant::{short, significant},
     structure_args::StructureArgs,
 };
 use rocking::{
@@ -63,7 +63,7 @@ fn text(structure: &Structure) -> Result<String, fmt::Error> {
     let unit = |unit| if unit == "1" { "-" } else { unit };
     writeln!(out, "Parameters")?;
     for Quantity { name, unit: of, description, get, .. } in &PARAMETERS {
-        let value = get(structure.parameters());
+        let value = short(get(structure.parameters()));
         writeln!(out, "  {name:<10} {value:>12} {:<6} {description}", unit(of))?;
     }
     writeln!(out, "\nDerived quantities")?;

@@ -23,7 +23,10 @@ mod talk;
 mod validity;
 mod view;
 
-use clap::{Parser, Subcommand};
+use clap::{
+    Parser, Subcommand,
+    error::{ContextKind, ContextValue},
+};
 use fmu_export::{Platform, significant};
 use std::env::consts::{ARCH, OS};
 use std::{io, process::ExitCode};
@@ -139,7 +142,8 @@ fn long_version() -> String {
 }
 
 fn main() -> ExitCode {
-    let CommandLine { command, quiet } = CommandLine::parse();
+    let CommandLine { command, quiet } =
+        CommandLine::try_parse().unwrap_or_else(|error| without_vain_tip(error).exit());
     if quiet {
         talk::be_quiet();
     }
@@ -163,6 +167,19 @@ fn main() -> ExitCode {
         }
         _ => ExitCode::SUCCESS,
     }
+}
+
+/// Without the tip that an option of one letter is meant, which is like anything.
+fn without_vain_tip(mut error: clap::Error) -> clap::Error {
+    let is_vain = match error.get(ContextKind::SuggestedArg) {
+        Some(ContextValue::String(tip)) => tip.trim_start_matches('-').len() == 1,
+        _ => false,
+    };
+    if is_vain {
+        error.remove(ContextKind::SuggestedArg);
+        error.remove(ContextKind::Usage); // as if it were meant
+    }
+    error
 }
 
 /// Whether the reader of the output has seen enough, as `head` has.

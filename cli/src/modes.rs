@@ -8,13 +8,12 @@ use crate::{
     tables::{self, Table},
     talk::say,
 };
-use anyhow::{Context, bail};
-use csv::StringRecord;
+use anyhow::{Context, bail, ensure};
+use csv::{Position, StringRecord};
 use rocking::{
-    Side, State, Structure,
+    Phase, Side, State, Structure,
     modal_split::{ModalAccelerations, Modes},
 };
-use serde::Deserialize;
 use std::path::PathBuf;
 
 /// What to split.
@@ -33,22 +32,22 @@ pub struct ModesArgs {
     picture: Option<PictureFile>,
 }
 
-/// The columns of a response that the split needs.
-#[derive(Deserialize)]
-struct Instant {
-    #[serde(rename = "time[s]")]
-    time: f64,
-    #[serde(rename = "a_g[m/s2]")]
-    a_g: f64,
-    #[serde(rename = "theta[rad]")]
-    theta: f64,
-    #[serde(rename = "u[m]")]
-    u: f64,
-    #[serde(rename = "theta_dot[rad/s]")]
-    theta_dot: f64,
-    #[serde(rename = "u_dot[m/s]")]
-    u_dot: f64,
-    phase: String,
+/// The columns of a response that the split needs: numbers, and the phase.
+const NUMBERS: [&str; 6] = ["time[s]", "a_g[m/s2]", "theta[rad]", "u[m]", "theta_dot[rad/s]", "u_dot[m/s]"];
+const PHASE: &str = "phase";
+
+/// Phases that a response has.
+const PHASES: [Phase; 4] = [
+    Phase::FullContact,
+    Phase::Rocking(Side::Left),
+    Phase::Rocking(Side::Right),
+    Phase::Overturned(Side::Right), // to the left it has the same name
+];
+
+/// Where the columns are.
+struct Columns {
+    numbers: [usize; NUMBERS.len()],
+    phase: usize,
 }
 
 const HEADINGS: [&str; 6] = ["time[s]", "q_r[rad]", "q_u[rad]", "a_r[m/s2]", "a_u[m/s2]", "a_t[m/s2]"];
@@ -60,21 +59,23 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let mut response = csv::Reader::from_path(&args.response).with_context(named)?;
     let inputs = args.structure.input().into_iter().chain([args.response.as_path()]);
     let mut files = OutputFiles::of_inputs(inputs);
-    check(response.headers().with_context(named)?, &structure).with_context(named)?;
-    let mut table = Table::create(&mut files, &args.output, &HEADINGS)?;
+    let headings = response.headers().with_context(named)?.clone();
+    let columns = Columns::find(&headings).with_context(named)?;
+    check_structure(&headings, &structure).with_context(named)?;
+    let mut table = Table::create(&mut files, &args.output)?;
     let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
+    table.write(HEADINGS)?;
     let (mut instants, mut rocking) = (0, 0);
     let (mut stretches, mut rocks_about) = (Vec::new(), None);
-    for instant in response.deserialize() {
-        let Instant { time, a_g, theta, u, theta_dot, u_dot, phase } = instant.with_context(named)?;
+    let mut before = f64::NEG_INFINITY;
+    for line in response.records() {
+        let line = line.with_context(named)?;
+        let ([time, a_g, theta, u, theta_dot, u_dot], phase) = columns.read(&line, before).with_context(named)?;
+        before = time;
         instants += 1;
-        let side = match phase.as_str() {
-            "rocking left" => Side::Left,
-            "rocking right" => Side::Right,
-            _ => {
-                rocks_about = None;
-                continue;
-            }
+        let Phase::Rocking(side) = phase else {
+            rocks_about = None;
+            continue;
         };
         rocking += 1;
         if rocks_about.replace(side) != Some(side) {
@@ -100,13 +101,41 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     }
 }
 
-/// Refuses what is no response, and the response of another structure, which its last heading names; a table that names
-/// none is taken.
-fn check(headings: &StringRecord, structure: &Structure) -> anyhow::Result<()> {
-    let needed = ["time[s]", "a_g[m/s2]", "theta[rad]", "u[m]", "theta_dot[rad/s]", "u_dot[m/s]", "phase"];
-    if let Some(missing) = needed.into_iter().find(|needed| headings.iter().all(|heading| heading != *needed)) {
-        bail!("it has no column {missing}, as a response of `simulate` has");
+impl Columns {
+    /// Refuses what is no response.
+    fn find(headings: &StringRecord) -> anyhow::Result<Columns> {
+        let find = |name: &str| {
+            let found = headings.iter().position(|heading| heading == name);
+            found.with_context(|| format!("it has no column {name}, as a response of `simulate` has"))
+        };
+        let mut numbers = [0; NUMBERS.len()];
+        for (column, name) in numbers.iter_mut().zip(NUMBERS) {
+            *column = find(name)?;
+        }
+        Ok(Columns { numbers, phase: find(PHASE)? })
     }
+
+    /// The numbers and the phase of a line that comes after the time `before` (s).
+    fn read(&self, line: &StringRecord, before: f64) -> anyhow::Result<([f64; NUMBERS.len()], Phase)> {
+        let at = |column: usize, name: &str| {
+            let number = line.position().map_or(0, Position::line);
+            format!("line {number}, column {}, {name}: {:?}", column + 1, &line[column])
+        };
+        let mut numbers = [0.0; NUMBERS.len()];
+        for ((value, &column), name) in numbers.iter_mut().zip(&self.numbers).zip(NUMBERS) {
+            let number = line[column].parse().ok().filter(|value: &f64| value.is_finite());
+            *value = number.with_context(|| format!("{} is not a finite number", at(column, name)))?;
+        }
+        ensure!(numbers[0] > before, "{} does not come after {before:?} s", at(self.numbers[0], NUMBERS[0]));
+        let phase = PHASES.into_iter().find(|phase| phase.name() == &line[self.phase]);
+        let known = || PHASES.map(Phase::name).join(", ");
+        let phase = phase.with_context(|| format!("{} is not one of {}", at(self.phase, PHASE), known()))?;
+        Ok((numbers, phase))
+    }
+}
+
+/// Refuses the response of another structure, which its last heading names; a table that names none is taken.
+fn check_structure(headings: &StringRecord, structure: &Structure) -> anyhow::Result<()> {
     let Some(of) = headings.iter().find_map(|heading| heading.strip_prefix(tables::STRUCTURE)) else { return Ok(()) };
     let here = in_one_line(structure);
     let other = of.split("; ").zip(here.split(", ")).find(|(there, here)| there != here);

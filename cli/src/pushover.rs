@@ -52,8 +52,9 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     let curve = curve.context(too_soft)?;
     let mut files = OutputFiles::of_inputs(args.structure.input());
     args.results.reserve(&mut files);
-    let mut table = Table::create(&mut files, &args.output, &HEADINGS)?;
+    let mut table = Table::create(&mut files, &args.output)?;
     let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
+    table.write(HEADINGS)?;
     curve.iter().try_for_each(|at| table.write(line(at)))?;
     table.finish()?;
     let corners = [

@@ -64,34 +64,27 @@ struct ResultArgs {
 }
 
 impl SimulateArgs {
-    /// The instants of the output (s), the end left out: the samples and as often after them, or every interval.
-    fn output_times(&self, ground: &Record, end: End) -> impl Iterator<Item = f64> {
+    /// Instants of the output (s), and the interval (s) at which they go on: the samples, or the first alone.
+    fn samples_and_interval<'a>(&self, ground: &'a Record) -> (&'a [f64], f64) {
         let samples = ground.times();
         let last = samples.len() - 1;
-        let (samples, interval) = match self.results.interval.or(self.ground.free_vibration_interval()) {
-            Some(dt) => (&samples[..1], dt),
+        match self.results.interval.or(self.ground.free_vibration_interval()) {
+            Some(interval) => (&samples[..1], interval),
             None => (samples, samples[last] - samples[last - 1]),
-        };
-        let from = samples[samples.len() - 1];
-        // an instant that misses the end by rounding is the end
-        let before = if let End::At(end) = end { end - 1e-6 * interval } else { f64::INFINITY };
-        samples
-            .iter()
-            .copied()
-            .chain((1_u64..).map(move |i| from + i as f64 * interval))
-            .take_while(move |time| *time < before)
+        }
     }
 
     /// Refuses an interval at which the table would have no end.
-    fn check_interval(&self, ground: &Record) -> anyhow::Result<()> {
+    fn check_rows(&self, ground: &Record) -> anyhow::Result<()> {
         const MOST_ROWS: f64 = 1e7;
-        let Some(interval) = self.results.interval else { return Ok(()) };
-        let duration = if let End::At(end) = self.ground.end(ground) { end } else { ground.end() } - ground.start();
-        let rows = duration / interval;
+        let (samples, interval) = self.samples_and_interval(ground);
+        let end = if let End::At(end) = self.ground.end(ground) { end } else { ground.end() };
+        let rows = samples.len() as f64 + (end - samples[samples.len() - 1]) / interval;
         ensure!(
             rows <= MOST_ROWS,
-            "--interval {interval:?} over {} s makes {rows:.0e} rows: {MOST_ROWS:.0e} are possible",
-            short(duration)
+            "an interval of {} s over {} s makes {rows:.0e} rows: {MOST_ROWS:.0e} are possible; see --interval",
+            short(interval),
+            short(end - ground.start())
         );
         Ok(())
     }
@@ -113,15 +106,22 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let (initial, end) = (args.initial.state(), args.ground.end(&ground));
     let run = Run { initial, detail, tolerance, end, ..Run::new(structure, &ground) };
 
-    args.check_interval(&ground)?;
+    args.check_rows(&ground)?;
     let output = args.output_path();
     let inputs = args.structure.input().into_iter().chain(args.ground.record.record.as_deref());
     let mut files = OutputFiles::of_inputs(inputs);
+    if args.results.output.is_none() {
+        tables::refuse_other_than_response(&output)?;
+    }
     args.results.format.reserve(&mut files);
-    let mut response = Table::create(&mut files, &output, &tables::response_headings(&structure, ground.title()))?;
+    let mut response = Table::create(&mut files, &output)?;
     let events = args.results.events.as_deref();
-    let mut events = events.map(|path| Table::create(&mut files, path, &tables::EVENTS)).transpose()?;
+    let mut events = events.map(|path| Table::create(&mut files, path)).transpose()?;
     let picture = args.results.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
+    response.write(tables::response_headings(&structure, ground.title()))?;
+    if let Some(events) = &mut events {
+        events.write(tables::EVENTS)?;
+    }
     let progress = talk::progress(ground.times().len());
     let (mut peaks, mut summary, mut written) =
         (Peaks::since(ground.start(), &structure), Summary::new(&structure), Ok(()));
@@ -132,13 +132,21 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     };
     let limits = args.limits.limits();
     let mut validity = Validity::new(&structure, limits, Found::since(ground.start()));
-    let mut rows = Ok(());
+    let (samples, interval) = args.samples_and_interval(&ground);
+    let from = samples[samples.len() - 1];
+    let times = samples.iter().copied().chain((1_u64..).map(|i| from + i as f64 * interval));
+    let (mut rows, mut last) = (Ok(()), None);
     let finish = run.sample(
-        args.output_times(&ground, end),
+        times,
         |sample| {
             progress.inc(1);
-            if rows.is_ok() {
-                rows = response.write(tables::response_line(sample));
+            let next = (sample.motion.time, tables::response_line(sample));
+            // an instant that misses the end by rounding is the end
+            if let Some((time, line)) = last.replace(next)
+                && time < sample.motion.time - 1e-6 * interval
+                && rows.is_ok()
+            {
+                rows = response.write(line);
             }
         },
         &mut (&mut peaks.watch(), &mut (&mut validity, &mut (&mut summary, &mut transition))),
@@ -146,6 +154,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     progress.finish_and_clear();
     let finish = finish?;
     rows.and(written)?;
+    last.map_or(Ok(()), |(_, line)| response.write(line))?;
     response.finish()?;
     events.map_or(Ok(()), Table::finish)?;
     let (start, end) = (instant(ground.start()), instant(finish.motion.time));

@@ -26,6 +26,24 @@ struct Row {
     time: f64,
 }
 
+/// A line of the table for programs: what has no value, no unit or no instant leaves it empty.
+#[derive(Serialize)]
+struct Line {
+    name: &'static str,
+    value: Option<Value>,
+    unit: &'static str,
+    /// s.
+    time: Option<f64>,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Value {
+    Peak(f64),
+    Count(u64),
+    Ending(Ending),
+}
+
 /// All of it, for programs; instants in s.
 #[derive(Serialize)]
 struct Whole<'a> {
@@ -74,15 +92,29 @@ impl Summary {
         let row = |name, unit, Peak { magnitude: peak, time }| Row { name, peak, unit, time };
         let of_structure = PEAKS.iter().map(|peak| row(peak.name, peak.unit, (peak.of)(peaks)));
         let rows: Vec<_> = [row("a_g", "m/s2", peaks.a_g())].into_iter().chain(of_structure).collect();
+        let &Summary { first_uplift, first_impact, .. } = self;
+        let (work, transitions) = (motion.work, motion.transitions);
         if format == Format::Csv {
-            return print_rows(format, &rows);
+            let line = |name, value, unit, time| Line { name, value, unit, time };
+            let count = |name, count| line(name, Some(Value::Count(count)), "1", None);
+            let peaks = rows
+                .into_iter()
+                .map(|Row { name, peak, unit, time }| line(name, Some(Value::Peak(peak)), unit, Some(time)));
+            let rest = [
+                line("start", None, "", Some(start)),
+                line("ending", Some(Value::Ending(ending)), "", Some(motion.time)),
+                line("first_uplift", None, "", first_uplift),
+                line("first_impact", None, "", first_impact),
+                count("transitions", transitions),
+                count("steps", work.steps),
+                count("evaluations", work.evaluations),
+            ];
+            return print_rows(format, &peaks.chain(rest).collect::<Vec<_>>());
         }
         let overturned = match ending {
             Ending::StillRocking => None,
             ending => Some(ending == Ending::Overturned),
         };
-        let &Summary { first_uplift, first_impact, .. } = self;
-        let (work, transitions) = (motion.work, motion.transitions);
         print_json(&Whole {
             record: title,
             start,

@@ -14,6 +14,7 @@ use crate::{
     talk::{self, say},
 };
 use anyhow::{Context, bail};
+use clap::value_parser;
 use file::Sweep;
 use indicatif::ProgressStyle;
 use rayon::{ThreadPoolBuilder, prelude::*};
@@ -41,8 +42,8 @@ pub struct SweepArgs {
     /// Picture of the probabilities and fragility curves [default: beside the rows, as SVG]
     #[arg(long, value_name = "FILE.svg|png")]
     picture: Option<PictureFile>,
-    /// Runs at a time [default: one per core]
-    #[arg(long, value_name = "N")]
+    /// Runs at a time, as far as there are runs to do [default: one per core]
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
     /// Find what each run goes beyond, too: tension, load of the edge, friction, energy gained at impacts
     #[arg(long)]
@@ -82,7 +83,8 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
         }
     }
 
-    let pool = ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, usize::from)).build()?;
+    let threads = args.threads.map_or(0, |threads| usize::from(threads).min(missing.len()).max(1));
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
     let clock = Instant::now();
     for (index, outcome) in pool.install(|| do_runs(&plan, &keys, &missing, args.validity, rows))? {
         outcomes[index] = Some(outcome);

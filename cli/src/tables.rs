@@ -1,11 +1,13 @@
 //! The tables that `simulate` writes: the response and its transitions as CSV.
 use crate::output_files::{OutputFile, OutputFiles};
 use crate::structure_args::in_one_line;
+use anyhow::ensure;
 use rocking::piece::Sample;
 use rocking::{Impulse, Outputs, Reactions, State, Structure, Transition};
 use serde::Serialize;
 use std::{
-    io,
+    fs::File,
+    io::{self, Read},
     path::{Path, PathBuf},
 };
 
@@ -16,15 +18,14 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table at `path`, or on standard output for `-`, with these `headings`.
-    pub fn create(files: &mut OutputFiles, path: &Path, headings: &[impl Serialize]) -> anyhow::Result<Table> {
+    /// A table at `path`, or on standard output for `-`, still without its headings: a command writes nothing before it
+    /// has all of its files.
+    pub fn create(files: &mut OutputFiles, path: &Path) -> anyhow::Result<Table> {
         let writer = csv::WriterBuilder::new().has_headers(false).from_writer(files.create(path)?);
-        let mut table = Table { path: path.into(), writer };
-        table.write(headings)?;
-        Ok(table)
+        Ok(Table { path: path.into(), writer })
     }
 
-    /// Adds a line; a number reads back to the same bits.
+    /// Adds a line, the headings or another; a number reads back to the same bits.
     pub fn write(&mut self, line: impl Serialize) -> anyhow::Result<()> {
         OutputFile::named(&self.path, self.writer.serialize(line).map_err(of_the_file))
     }
@@ -78,6 +79,20 @@ pub fn response_headings(structure: &Structure, title: &str) -> Vec<String> {
     let plain = |text: String| text.replace(", ", "; ").replace([',', '"', '#'], " ");
     let of = format!("{STRUCTURE}{}; record: {}", plain(in_one_line(structure)), plain(title.into()));
     RESPONSE.into_iter().map(String::from).chain([of]).collect()
+}
+
+/// Refuses a file at `path` that is no response: nobody asked for that name.
+pub fn refuse_other_than_response(path: &Path) -> anyhow::Result<()> {
+    let Ok(file) = File::open(path) else { return Ok(()) };
+    let headings = RESPONSE.join(",");
+    let mut first = Vec::new();
+    file.take(headings.len() as u64).read_to_end(&mut first)?;
+    ensure!(
+        first == headings.as_bytes(),
+        "{}: there is a file that is no response; name another by -o",
+        path.display()
+    );
+    Ok(())
 }
 
 /// A line of the response.

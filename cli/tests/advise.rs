@@ -128,6 +128,25 @@ fn a_level_that_misses_overturning_is_not_advised() {
     assert!(!table.contains("use detail = fixed_base"), "{table}");
 }
 
+/// Without a loss at impacts it rocks on: nobody knows better than the reference.
+#[test]
+fn nothing_is_wrong_where_the_reference_does_not_know() {
+    let folder = folder();
+    let run = "advise --record pulse.AT2 --r 1 --zeta-fc 0";
+    let (table, _) = succeed(folder.path(), run);
+    assert!(table.contains("whether it overturns is not known") && !table.contains("wrong"), "{table}");
+    assert_eq!(row(&table, "fixed_base")[7..9], ["no", "(?)"]);
+    assert_eq!(row(&table, "nonlinear")[7], "unknown");
+    let (rows, _) = succeed(folder.path(), &format!("{run} --format csv"));
+    let lines: Vec<Vec<_>> = rows.lines().map(|line| line.split(',').collect()).collect();
+    let column = |name: &str| lines[0].iter().position(|heading| *heading == name).unwrap();
+    assert!(lines[1..].iter().all(|line| line[column("is_right_about_overturning")].is_empty()), "{rows}");
+    let reference = &lines[1];
+    assert_eq!(reference[0], "reference");
+    let theta: f64 = reference[column("theta")].parse().unwrap();
+    assert!(table.contains(&format!("peaks: theta {theta:.6} rad")), "{theta}\n{table}");
+}
+
 #[test]
 fn nonsense_is_refused() {
     let folder = folder();

@@ -45,6 +45,8 @@ fn describe_shows_the_specimen_with_units_and_equations() {
     assert_eq!(mcmanus, succeed(folder.path(), "describe --preset mcmanus").0);
 
     let (evison, _) = succeed(folder.path(), "describe --preset evison");
+    let (computed, _) = succeed(folder.path(), "describe --width 3 --alpha-cg 0.25");
+    assert!(computed.contains("  H               8.82752 m "), "{computed}");
     assert!(evison.contains("  f_u             36.5739 Hz     before Eq 18"), "{evison}");
 
     let parameters = "m = 125.8\nm0 = 44.02\nH = 1.05\nB = 0.285\nf_fc = 11\nzeta_fc = 0.015\nr = 0.96\n";
@@ -174,6 +176,9 @@ fn output_times_are_the_samples_or_multiples_of_the_interval_and_always_the_end(
     // The thirtieth sample is one rounding error short of the end.
     succeed(folder.path(), "simulate --record pulse.AT2 --time-scale 0.2 --duration 0.058 -o out.csv");
     assert_eq!(column(&folder.path().join("out.csv"), "time[s]").len(), 30);
+    // The vibration after the record ends a rounding error after the hundredth interval.
+    succeed(folder.path(), "simulate --record pulse.AT2 --scale 0.05 --time-scale 0.2 -o out.csv");
+    assert_eq!(column(&folder.path().join("out.csv"), "time[s]").len(), SAMPLES + 100);
     succeed(folder.path(), "simulate --record three.csv --unit g --interval 0.25 --duration 1.5 -o out.csv");
     let a_g = column(&folder.path().join("out.csv"), "a_g[m/s2]");
     let expected = [0.0, 0.5, 1.0 / 3.0, 1.0 / 6.0, 0.0, 0.0, 0.0].map(|a_g| a_g * 9.81);
@@ -275,4 +280,80 @@ fn wrong_usage_exits_with_2() {
         assert!(message.contains(expected), "{arguments}: {message}");
     }
     assert_eq!(succeed(folder.path(), "--version").0, format!("rocking-fmu {}\n", env!("CARGO_PKG_VERSION")));
+}
+
+#[test]
+fn a_damaged_response_is_refused_where_it_is_damaged() {
+    let folder = folder();
+    succeed(folder.path(), "simulate --record pulse.AT2 -o whole.csv");
+    let (headings, lines) = table(&folder.path().join("whole.csv"));
+    let line = lines.iter().position(|line| line[18] == "rocking left").unwrap();
+    let number = line + 2;
+    for (column, value, expected) in [
+        (0, "NaN", "column 1, time[s]: \"NaN\" is not a finite number".to_owned()),
+        (0, &lines[line - 1][0], format!("column 1, time[s]: {0:?} does not come after {0} s", lines[line - 1][0])),
+        (1, "", "column 2, a_g[m/s2]: \"\" is not a finite number".to_owned()),
+        (2, "nan", "column 3, theta[rad]: \"nan\" is not a finite number".to_owned()),
+        (8, "inf", "column 9, u_dot[m/s]: \"inf\" is not a finite number".to_owned()),
+        (
+            18,
+            "rocking",
+            "column 19, phase: \"rocking\" is not one of full contact, rocking left, rocking right, overturned"
+                .to_owned(),
+        ),
+    ] {
+        let mut damaged = lines.clone();
+        damaged[line][column] = value.to_owned();
+        let text: Vec<_> = [&headings].into_iter().chain(&damaged).map(|line| line.join(",")).collect();
+        fs::write(folder.path().join("damaged.csv"), text.join("\n") + "\n").unwrap();
+        let (code, message) = fail(folder.path(), "modes --response damaged.csv");
+        assert_eq!((code, message), (1, format!("error: damaged.csv: line {number}, {expected}\n")));
+        assert!(!folder.path().join("modes.csv").exists());
+    }
+}
+
+#[test]
+fn what_cannot_be_written_is_found_before_the_run() {
+    let folder = folder();
+    let (code, message) = fail(folder.path(), "simulate --free 1 --theta-0 0.1 -o - --events -"); // and prints nothing
+    assert!(code == 1 && message.contains("standard output: something else is written there, too"), "{message}");
+    let (code, message) = fail(folder.path(), "simulate --record pulse.AT2 --duration 1e9 --quiet");
+    let expected = "error: an interval of 0.01 s over 1000000000 s makes 1e11 rows: 1e7 are possible; see --interval\n";
+    assert_eq!((code, message.as_str()), (1, expected));
+}
+
+/// A name that nobody asked for overwrites an earlier response, and nothing else.
+#[test]
+fn a_default_name_overwrites_no_other_file() {
+    let folder = folder();
+    let path = folder.path().join("free_vibration.csv");
+    fs::write(&path, "my notes\n").unwrap();
+    let run = "simulate --free 1 --theta-0 0.1";
+    let (code, message) = fail(folder.path(), run);
+    assert!(code == 1 && message.contains("free_vibration.csv: there is a file that is no response"), "{message}");
+    assert_eq!(fs::read_to_string(&path).unwrap(), "my notes\n");
+    succeed(folder.path(), &format!("{run} -o free_vibration.csv"));
+    succeed(folder.path(), &format!("{run} --theta-0 0.2").replace(" --theta-0 0.1", ""));
+    assert_eq!(column(&path, "theta[rad]")[0], 0.2);
+}
+
+#[test]
+fn a_tip_is_one_that_helps() {
+    let folder = folder();
+    let (_, message) = fail(folder.path(), "modes --format json");
+    assert_eq!(message, "error: unexpected argument '--format' found\n\nFor more information, try '--help'.\n");
+    assert!(fail(folder.path(), "modes --respons a.csv").1.contains("a similar argument exists: '--response'"));
+}
+
+#[test]
+fn a_table_for_programs_has_the_ending_and_the_counts() {
+    let folder = folder();
+    let (stdout, _) = succeed(folder.path(), "simulate --record pulse.AT2 --scale 0 --theta-0 -0.3 --format csv");
+    let lines: Vec<Vec<_>> = stdout.lines().map(|line| line.split(',').collect()).collect();
+    let line = |name: &str| lines.iter().find(|line| line[0] == name).unwrap()[1..].to_vec();
+    assert_eq!(line("name"), ["value", "unit", "time"]);
+    let end = column(&folder.path().join("pulse_response.csv"), "time[s]").pop().unwrap().to_string();
+    assert_eq!(line("ending"), ["overturned", "", &end]);
+    assert_eq!(line("transitions"), ["1", "1", ""]);
+    assert_eq!(line("first_uplift"), ["", "", ""]);
 }

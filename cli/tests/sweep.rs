@@ -516,7 +516,12 @@ fn probabilities_and_curve_are_those_of_the_rows() {
     for (printed, expected) in printed.into_iter().zip([curve.median, low, high, curve.dispersion]) {
         assert!((printed / expected - 1.0).abs() < 1e-5, "{printed} {expected}");
     }
-    assert!(summary.contains("\noverturned: no curve: always exceeded above 0.598816"), "{summary}");
+    assert!(
+        summary.contains("\noverturned: no curve: runs overlap nowhere: those within it go up to 0.598816, "),
+        "{summary}"
+    );
+
+    assert!(summary.contains("\na run that overturns exceeds every limit\n"), "{summary}");
 
     let picture = read(&folder, "sweep.svg");
     for text in ["peak ground acceleration PGA (g)", "pier: overturned", "wall: theta/alpha_cg &gt;= 0.6"] {
@@ -524,6 +529,35 @@ fn probabilities_and_curve_are_those_of_the_rows() {
     }
     // A dot per scale factor and limit, and one in the legend.
     assert_eq!(picture.matches("<circle").count(), 4 * (6 + 1));
+}
+
+/// Few exceed the limit up to the strongest ground motion: what the curve makes of that is marked.
+#[test]
+fn a_median_beyond_the_runs_is_marked() {
+    let toml = "
+records = ['pulse.AT2']
+scale = [1, 1.2]
+[[structures]]
+name = 'pier'
+preset = 'mcmanus'
+vary = { slenderness = [4, 5, 6, 8], r = [0.8, 0.9, 1] }
+[limits]
+\"theta/alpha_cg\" = [0.6]
+";
+    for (scales, is_beyond) in [("[1, 1.2]", true), ("[1, 1.2, 2]", false)] {
+        let folder = sweep(&toml.replace("[1, 1.2]", scales));
+        let (table, _) = succeed(folder.path(), "sweep sweep.toml");
+        let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+        let rows: Vec<_> = table.lines().map(words).collect();
+        let median = rows.iter().position(|row| row.first().is_some_and(|first| first == "median")).unwrap();
+        let number = |text: &String| text.parse::<f64>().unwrap();
+        let (strongest, found) = (number(&rows[median - 1][2]), number(&rows[median][3]));
+        assert_eq!(
+            (found > strongest, rows[median + 1].join(" ") == "beyond the runs"),
+            (is_beyond, is_beyond),
+            "{table}"
+        );
+    }
 }
 
 #[test]
@@ -601,6 +635,8 @@ fn a_refused_sweep_says_what_to_change() {
     }
     let folder = sweep(SWEEP);
     let (code, message) = fail(folder.path(), "sweep sweep.toml --threads 0");
-    assert!(code == 2 && message.contains("number would be zero for non-zero type"), "{message}");
+    assert!(code == 2 && message.contains("0 is not in 1..=1024"), "{message}");
+    let (code, message) = fail(folder.path(), "sweep sweep.toml --threads 20000");
+    assert!(code == 2 && message.contains("20000 is not in 1..=1024"), "{message}");
     assert_eq!(fail(folder.path(), "sweep").0, 2);
 }

@@ -67,8 +67,8 @@ pub struct Verdict {
     pub response: Response,
     /// Relative errors, in the order of [`Criterion::ALL`].
     pub errors: [f64; 6],
-    /// Whether it predicts overturning, or none, or leaves it open, as the reference does.
-    pub is_right_about_overturning: bool,
+    /// Whether it predicts overturning, or none, as the reference does; None if the reference leaves it open.
+    pub is_right_about_overturning: Option<bool>,
 }
 
 /// All levels on one run.
@@ -99,7 +99,9 @@ pub fn compare(run: &Run) -> Result<Comparison, RunError> {
                 let [theta, u, a_t] = peaks.map(relative);
                 let [theta_history, u_history, a_t_history] = <[_; 3]>::map(histories, relative);
                 verdicts.push(Verdict {
-                    is_right_about_overturning: response.overturns() == reference.overturns(),
+                    is_right_about_overturning: reference
+                        .overturns()
+                        .map(|overturns| response.overturns() == Some(overturns)),
                     errors: [theta, u, a_t, theta_history, u_history, a_t_history],
                     response,
                 });
@@ -145,10 +147,11 @@ impl Response {
 }
 
 impl Verdict {
-    /// Whether it is right about overturning and its errors by every one of `criteria` are at most `within`.
+    /// Whether it is right about overturning, or leaves it open as the reference does, and its errors by every one of `criteria` are at most `within`.
     pub fn is_within(&self, within: f64, criteria: &[Criterion]) -> bool {
         let error = |criterion: &Criterion| self.errors[*criterion as usize];
-        self.is_right_about_overturning && criteria.iter().map(error).all(|error| error <= within)
+        let is_right = self.is_right_about_overturning.unwrap_or(self.response.overturns().is_none());
+        is_right && criteria.iter().map(error).all(|error| error <= within)
     }
 }
 
@@ -177,7 +180,7 @@ mod tests {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
         let work = Work { steps: 0, evaluations: cost };
         let response = Response { detail, peaks: Peaks::new(&structure), ending: Ending::AtRest, transitions: 0, work };
-        Verdict { response, errors, is_right_about_overturning: true }
+        Verdict { response, errors, is_right_about_overturning: Some(true) }
     }
 
     #[test]
@@ -202,8 +205,10 @@ mod tests {
         assert_eq!(advice(&comparison, 0.05, &[Criterion::Theta, Criterion::At]), Some(Detail::Modal));
         assert_eq!(advice(&comparison, 0.015, &[Criterion::Theta]), Some(Detail::Rigid));
         assert_eq!(advice(&comparison, 0.001, &all), Some(Detail::Auto));
-        comparison.verdicts[3].is_right_about_overturning = false;
-        assert_eq!(advice(&comparison, 0.05, &all), Some(Detail::Auto));
+        for wrong_or_unsure in [Some(false), None] {
+            comparison.verdicts[3].is_right_about_overturning = wrong_or_unsure;
+            assert_eq!(advice(&comparison, 0.05, &all), Some(Detail::Auto));
+        }
         comparison.verdicts.pop();
         assert_eq!(advice(&comparison, 0.001, &all), None);
     }

@@ -119,12 +119,13 @@ fn draw_lanes(
             let cost = format!("{:.2} × auto", verdict.response.cost() as f64 / auto);
             area.draw(&Text::new(cost, (px(f64::from(WIDTH) - 28.0), y), words_before(SMALL, colour::INK)))?;
         }
-        if !verdict.is_right_about_overturning {
-            area.draw(&Text::new(
-                "wrong about overturning",
-                (left + px(12.0), y - px(11.0)),
-                words(SMALL, colour::VERMILLION),
-            ))?;
+        let about_overturning = match (verdict.is_right_about_overturning, verdict.response.overturns()) {
+            (Some(false), _) => Some(("wrong about overturning", colour::VERMILLION)),
+            (None, Some(_)) => Some(("unsure about overturning", colour::GREY)),
+            _ => None,
+        };
+        if let Some((text, colour)) = about_overturning {
+            area.draw(&Text::new(text, (left + px(12.0), y - px(11.0)), words(SMALL, colour)))?;
         }
         for criterion in criteria {
             let (_, colour, is_history) = look(*criterion);

@@ -19,11 +19,11 @@ pub fn write(out: &mut impl Write, structure: &Structure) -> fmt::Result {
     for &Quantity { name, unit, description, min, max, get, .. } in &PARAMETERS {
         let of = if unit == "1" { String::new() } else { format!(" {unit},") };
         writeln!(out, "\n# {description},{of} {} to {}", short(min), short(max))?;
-        writeln!(out, "{name} = {}", get(structure.parameters()))?;
+        writeln!(out, "{name} = {}", shortest(get(structure.parameters())))?;
         for natural in NATURAL.iter().filter(|natural| natural.stands_for == name) {
             let &Natural { min, max, in_place_of, .. } = natural;
             let &Derived { name, unit, description, value, .. } = natural.derived();
-            let value = value(structure);
+            let value = shortest(value(structure));
             writeln!(
                 out,
                 "# {name} = {value} # {description}, {unit}, {} to {}: instead of {in_place_of}",
@@ -33,4 +33,9 @@ pub fn write(out: &mut impl Write, structure: &Structure) -> fmt::Result {
         }
     }
     Ok(())
+}
+
+/// `value` without the last rounding of what it was computed from, in as many digits as every decimal number keeps.
+fn shortest(value: f64) -> f64 {
+    format!("{value:.*e}", f64::DIGITS as usize - 1).parse().expect("a number in Rust's own notation")
 }

@@ -151,9 +151,11 @@ fn draw_legend<'a>(
     }
     let notes = [
         if least == most {
-            format!("A dot stands for {most} runs.")
+            format!("A dot stands for {most} runs; one that overturns exceeds every limit.")
         } else {
-            format!("A dot's area is the number of its runs, {least} to {most}.")
+            format!(
+                "A dot's area is the number of its runs, {least} to {most}; one that overturns exceeds every limit."
+            )
         },
         "Bands and ranges: 95 %, records taken as independent of each other (structures where there is one record)."
             .into(),

@@ -36,6 +36,12 @@ pub fn write(out: &mut impl Write, of: &Exceedances, measure: IntensityMeasure) 
         fragility.curve.as_ref().ok().and_then(text).unwrap_or("none".into())
     };
     line(["median", "", &format!("({unit})"), ""], &|of| of_curve(of, &|curve| Some(significant(curve.median))))?;
+    let lowest = bins.iter().map(|bin| bin.lowest).fold(f64::INFINITY, f64::min);
+    let highest = bins.iter().map(|bin| bin.highest).fold(0.0, f64::max);
+    let is_beyond = |of: &Fragility| of.curve.as_ref().is_ok_and(|curve| !(lowest..=highest).contains(&curve.median));
+    if fragilities.iter().any(is_beyond) {
+        line(["", "", "", ""], &|of| if is_beyond(of) { "beyond the runs".into() } else { String::new() })?;
+    }
     for (heading, end) in [("from", 0), ("to", 1)] {
         line(["", "95 %", heading, ""], &|of| {
             of_curve(of, &|curve| curve.median_range().map(|(low, high)| significant([low, high][end])))
@@ -52,6 +58,9 @@ pub fn write(out: &mut impl Write, of: &Exceedances, measure: IntensityMeasure) 
             )?,
             Ok(_) => {}
         }
+    }
+    if fragilities.len() > 1 {
+        writeln!(out, "a run that overturns exceeds every limit")?;
     }
     if *failed > 0 {
         writeln!(out, "{failed} failed and are not counted")?;

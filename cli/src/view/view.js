@@ -3,7 +3,7 @@
   const data = JSON.parse(document.getElementById("data").textContent);
   const at = (id) => document.getElementById(id);
   const { m, m0, H, B, f_fc, g } = data.parameters;
-  const { start, end } = data;
+  const { start } = data;
 
   // ---- The motion: points that straight lines join, as the engine found them
 
@@ -12,6 +12,7 @@
     let sum = 0;
     return Float64Array.from(data.time.values, (difference) => start + (sum += difference) * data.time.quantum);
   })();
+  const end = time.at(-1); // as exact as the instants of the transitions, the last of which may be there
   const motion = { a_g: column(data.a_g), theta: column(data.theta), u: column(data.u), a_t: column(data.a_t) };
   const transitions = data.transitions.map(([sum, kind]) => ({ instant: start + sum * data.time.quantum, kind }));
   const peaks = Object.fromEntries(data.peaks.map(([name, magnitude, instant]) => [name, { magnitude, instant }]));
@@ -413,7 +414,7 @@
   function show(from, to) {
     const length = Math.min(end - start, Math.max(1e-3 * (end - start), to - from));
     const first = Math.min(end - length, Math.max(start, from));
-    shown = [first, first + length];
+    shown = [first, first === end - length ? end : first + length];
     drawHistories();
   }
 
