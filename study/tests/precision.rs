@@ -25,8 +25,8 @@ fn errors(curve: &Curve) -> Vec<f64> {
 #[test]
 fn the_curves_are_what_the_methods_are_known_for() {
     let diagram = small();
-    // 6 levels, 6 textbook methods twice, 6 solvers of libraries, 2 ways to feed the FMU
-    assert_eq!(diagram.curves.len(), 26);
+    // 6 levels, 6 textbook methods twice, 6 solvers of libraries, 3 ways to feed the FMU
+    assert_eq!(diagram.curves.len(), 27);
     assert!(diagram.curves.iter().all(|curve| curve.points.len() == 5));
     assert!((1e-13..1e-10).contains(&diagram.conditioning.theta), "{:?}", diagram.conditioning);
 
@@ -80,7 +80,7 @@ fn the_command_writes_what_it_has_measured() {
     write(std::slice::from_ref(&scene), SMALL, docs.path(), &ProgressBar::hidden()).unwrap();
     let mut csv = csv::Reader::from_path(docs.path().join("accuracy-synthetic.csv")).unwrap();
     let rows: Vec<_> = csv.records().map(Result::unwrap).collect();
-    assert_eq!(rows.len(), 26 * 5);
+    assert_eq!(rows.len(), 27 * 5);
     let row = rows.iter().find(|row| &row[0] == "this project, auto" && row[3].starts_with("1.000000e-3")).unwrap();
     let response = engine::run(&scene, rocking::Detail::Auto, 1e-3, &mut ());
     let errors = Errors::of(&response, &engine::reference(&scene)).unwrap();
