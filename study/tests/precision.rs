@@ -43,6 +43,8 @@ fn the_curves_are_what_the_methods_are_known_for() {
 
     let slope = errors(curve(&diagram, Family::Fmu, "FMU, input with slope"));
     let held = errors(curve(&diagram, Family::Fmu, "FMU, input held"));
+    let inside = errors(curve(&diagram, Family::Fmu, "FMU, record inside"));
+    assert!(inside.iter().all(|error| *error < 1e-9), "{inside:?}");
     assert!(slope.iter().all(|error| *error < 1e-9) && held.iter().all(|error| *error > 1e-4), "{slope:?} {held:?}");
 }
 
