@@ -134,11 +134,11 @@ impl Model {
         inputs: LinearLoad,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
+        if !setup.validity && !setup.peaks {
+            return self.follow(setup, step, inputs, watch);
+        }
         let mut peaks = self.peaks;
         if !setup.validity {
-            if !setup.peaks {
-                return self.follow(setup, step, inputs, watch);
-            }
             let progress = self.follow(setup, step, inputs, &mut (&mut peaks.watch(), watch))?;
             self.peaks = peaks;
             return Ok(progress);

@@ -439,17 +439,17 @@ impl Instance {
         }
 
         model.engine.set_time(point);
-        let known = model.validity;
+        let known = setup.validity.then_some(model.validity);
         match model.advance(setup, step, load, &mut |transition: &Transition| log(logger, transition)) {
             Ok(Progress::Complete) => {
                 inputs.pass(load, step);
-                warn(logger, &known, &model.validity);
+                known.iter().for_each(|known| warn(logger, known, &model.validity));
                 Ok(())
             }
             Ok(Progress::Overturned) => {
                 let end = model.engine.motion().time;
                 inputs.pass(load, end - point);
-                warn(logger, &known, &model.validity);
+                known.iter().for_each(|known| warn(logger, known, &model.validity));
                 *stage = Stage::StepFailed;
                 Err(Failure::Overturned { time: end })
             }
