@@ -26,9 +26,27 @@ const BOUND: f64 = 1e100;
 /// More than anything that is counted can come to.
 const MAX_COUNT: u64 = 1 << 60;
 
+/// How the host of an instance meets transitions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Stepping {
+    /// It handles events, between steps.
+    pub event_mode: bool,
+    /// It takes a step that ends early.
+    pub early_return: bool,
+}
+
+impl Stepping {
+    /// Whether a step ends at a transition, which is handed over: the host must be able to do both.
+    pub fn hands_over(self) -> bool {
+        self.event_mode && self.early_return
+    }
+}
+
 /// A few dozen numbers from which an instance goes on to the same bits: what an FMU state holds.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Condition {
+    /// Of its host.
+    pub stepping: Stepping,
     /// State of FMI's state machine.
     pub stage: Stage,
     /// What was set before the start.
@@ -56,6 +74,7 @@ pub struct Course {
 
 /// A condition with what it is the condition of.
 pub(crate) struct Present {
+    pub stepping: Stepping,
     pub stage: Stage,
     pub setup: Setup,
     pub inputs: Inputs,
@@ -126,6 +145,16 @@ impl Model {
         matches!(self.engine.motion().phase, Phase::Overturned(_))
     }
 
+    /// Applies the transition that is due, if there is one.
+    pub fn transit<W: Watch>(&mut self, setup: &Setup, watch: &mut W) {
+        if !setup.validity {
+            return self.engine.transit(watch);
+        }
+        let mut validity = self.watch_validity();
+        self.engine.transit(&mut (&mut validity, watch));
+        self.validity = *validity.found();
+    }
+
     /// Advances by `step` (s) under `inputs` and the record. If it fails, nothing has changed.
     pub fn advance<W: Watch>(
         &mut self,
@@ -180,6 +209,8 @@ impl Condition {
         VARIABLES.iter().all(fits)
             && self.inputs.are_possible()
             && self.setup.check_experiment().is_ok()
+            && self.stage != Stage::IntermediateUpdateMode // no state is kept within a step
+            && (self.stage != Stage::EventMode || self.stepping.event_mode)
             && self.course.is_some() == self.stage.has_started()
             && self.course.as_ref().is_none_or(|course| course.is_possible(&self.setup))
     }
@@ -206,6 +237,7 @@ impl Course {
                 .all(|count| *count < MAX_COUNT)
             && [transitions, work.steps, work.evaluations, peaks.evaluations()].iter().all(|count| *count < MAX_COUNT)
             && time.is_finite()
+            && motion.is_possible()
             && theta.abs() <= MAX_ANGLE
             && record.is_none() == setup.record.is_empty()
             && setup.engine().is_ok_and(|engine| peaks.are_of(engine.structure()))
@@ -214,9 +246,9 @@ impl Course {
 
 impl Present {
     /// As instantiated from `archive`.
-    pub fn new(archive: &Archive) -> Present {
+    pub fn new(archive: &Archive, stepping: Stepping) -> Present {
         let setup = Setup::new(&archive.contents);
-        Present { stage: Stage::Instantiated, setup, inputs: Inputs::default(), model: None }
+        Present { stepping, stage: Stage::Instantiated, setup, inputs: Inputs::default(), model: None }
     }
 
     /// The structure in motion, or at its start with what has been set so far; its record is in `archive`, or on disk.
@@ -226,7 +258,7 @@ impl Present {
 
     /// The same with what else there is.
     pub fn parts(&mut self, archive: &Archive) -> Result<(&mut Model, &Setup, &mut Inputs, &mut Stage), Failure> {
-        let Present { stage, setup, inputs, model } = self;
+        let Present { stage, setup, inputs, model, .. } = self;
         let model = match model {
             Some(model) => model,
             none => none.insert(Model::new(setup, archive.record(&setup.record)?)?),
@@ -236,7 +268,7 @@ impl Present {
 
     /// Its condition.
     pub fn condition(&self) -> Condition {
-        let Present { stage, setup, inputs, model } = self;
+        let Present { stepping, stage, setup, inputs, model } = self;
         let course = model.as_ref().filter(|_| stage.has_started()).map(|model| Course {
             motion: *model.engine.motion(),
             elapsed: model.elapsed,
@@ -244,12 +276,15 @@ impl Present {
             validity: model.validity,
             record: model.digest(),
         });
-        Condition { stage: *stage, setup: setup.clone(), inputs: *inputs, course }
+        Condition { stepping: *stepping, stage: *stage, setup: setup.clone(), inputs: *inputs, course }
     }
 
     /// Goes to `condition`. The model is built anew only for another setup.
     pub fn go_to(&mut self, condition: &Condition, archive: &Archive) -> Result<(), Failure> {
-        let Condition { stage, setup, inputs, course } = condition;
+        let Condition { stepping, stage, setup, inputs, course } = condition;
+        if *stepping != self.stepping {
+            return Err(Failure::OtherStepping { given: *stepping, here: self.stepping });
+        }
         let mut model = None;
         if let Some(course) = course {
             let is_the_same = |model: &mut Model| self.setup == *setup && model.digest() == course.record;
@@ -262,7 +297,7 @@ impl Present {
             (found.elapsed, found.peaks, found.validity) = (course.elapsed, course.peaks, course.validity);
             model = Some(found);
         }
-        *self = Present { stage: *stage, setup: setup.clone(), inputs: *inputs, model };
+        *self = Present { stepping: *stepping, stage: *stage, setup: setup.clone(), inputs: *inputs, model };
         Ok(())
     }
 }

@@ -1,5 +1,6 @@
 //! Why a call is not done: every message of that kind, in one place. What to call instead, the C interface adds.
 
+use crate::condition::Stepping;
 use crate::ground::GroundError;
 use crate::logger::Status;
 use crate::resources::ResourceError;
@@ -51,6 +52,9 @@ pub enum Failure {
         /// What would be.
         accepted: &'static str,
     },
+    /// An interface of the standard that this unit has not.
+    #[error("this FMU is for co-simulation: see modelDescription.xml")]
+    NotThisInterface,
     /// An empty name.
     #[error("instanceName must not be empty")]
     NoName,
@@ -88,7 +92,7 @@ pub enum Failure {
         /// The enumeration.
         variable: &'static Variable,
         /// The number.
-        value: i32,
+        value: i64,
     },
     /// No such record.
     #[error(transparent)]
@@ -139,7 +143,7 @@ pub enum Failure {
     NoInput(&'static Variable),
     /// A known that is none.
     #[error(
-        "{} cannot be a known of a directional derivative: only the inputs can, and in initialization mode Real \
+        "{} cannot be a known of a directional derivative: only the inputs can, and in initialization mode real \
          parameters and initial values",
         .0.name
     )]
@@ -153,7 +157,7 @@ pub enum Failure {
         value: f64,
     },
     /// A derivative of something else than a continuous output.
-    #[error("{} has no derivative: only continuous Real outputs have", .0.name)]
+    #[error("{} has no derivative: only continuous real outputs have", .0.name)]
     NoOutput(&'static Variable),
     /// The equations of motion are singular here, and with them the reactions.
     #[error(
@@ -230,6 +234,28 @@ pub enum Failure {
         "FMUstate {0:#x} is not one that this instance has handed out and not freed; pass a pointer to NULL for a new one"
     )]
     UnknownSnapshot(usize),
+    /// A state of an instance whose host handles events otherwise.
+    #[error(
+        "the FMU state is of an instance with eventModeUsed = {} and earlyReturnAllowed = {}; this one has {} and {}",
+        given.event_mode, given.early_return, here.event_mode, here.early_return
+    )]
+    OtherStepping {
+        /// The state's.
+        given: Stepping,
+        /// This instance's.
+        here: Stepping,
+    },
+    /// As many values as variables are needed: all are scalars.
+    #[error("{values} values do not fit {variables} variables: all variables are scalars")]
+    WrongCount {
+        /// How many there are of the one.
+        variables: usize,
+        /// And of the other.
+        values: usize,
+    },
+    /// A variable that takes no part in intermediate updates.
+    #[error("{} is no intermediate variable: only the inputs are", .0.name)]
+    NotIntermediate(&'static Variable),
     /// A buffer of the wrong size.
     #[error("size = {given} does not fit: the serialized FMU state takes {needed} bytes")]
     WrongSize {
@@ -265,11 +291,11 @@ fn items(variable: &Variable) -> String {
 
 fn type_name(variable: &Variable) -> &'static str {
     match variable.data_type {
-        DataType::Real { .. } => "a Real",
-        DataType::Integer => "an Integer",
+        DataType::Real { .. } => "a real number",
+        DataType::Integer => "an integer",
         DataType::Boolean => "a Boolean",
-        DataType::String => "a String",
-        DataType::Enumeration(_) => "an Enumeration",
+        DataType::String => "a string",
+        DataType::Enumeration(_) => "an enumeration",
     }
 }
 

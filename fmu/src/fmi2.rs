@@ -2,14 +2,17 @@
 //! holds of all of them.
 #![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
 
-mod co_simulation;
+pub mod co_simulation;
 
-use crate::c_abi::{self, check_pointer, functions, read, room, text, values, write};
+use crate::c_abi::{self, check_pointer, escaped, functions, read, room, text, values, write};
+use crate::condition::Stepping;
 use crate::failure::Failure;
 use crate::instance::{self, Instance};
-use crate::logger::{Logger, Sink};
+use crate::logger::{Category, Logger, Sink};
+use crate::resources;
 use crate::variables::{DataType, Variable};
 use libc::{c_char, c_double, c_int, c_uint, c_void, size_t};
+use rocking::Progress;
 use std::ffi::CString;
 use std::ptr;
 
@@ -72,10 +75,12 @@ pub unsafe extern "C" fn fmi2Instantiate(
             if name?.is_empty() {
                 return Err(Failure::NoName);
             }
-            Ok((instance::open("fmuGUID", guid?, location?)?, events?))
+            Ok((instance::open("fmuGUID", guid?, resources::folder(location?)?)?, events?))
         };
         match arguments() {
-            Ok((archive, events)) => Some((Instance::new(archive, events, logger), co_simulation::is_allowed as _)),
+            Ok((archive, events)) => {
+                Some((Instance::new(archive, Stepping::default(), events, logger), co_simulation::is_allowed as _))
+            }
             Err(failure) => {
                 logger.failure(failure.status(), &format!("fmi2Instantiate: {failure}"));
                 None
@@ -89,8 +94,9 @@ fn sink(functions: &CallbackFunctions, instance_name: &str) -> Sink {
     let Some(logger) = functions.logger else { return Box::new(|_, _, _| ()) };
     let environment = functions.component_environment;
     let name = CString::new(instance_name).expect("it was read up to its NUL");
+    // the host reads a message as a printf format, in which # marks variables
     Box::new(move |status, category, message| unsafe {
-        logger(environment, name.as_ptr(), status as c_int, category.as_ptr(), message.as_ptr());
+        logger(environment, name.as_ptr(), status as c_int, category.as_ptr(), escaped(message, &['%', '#']).as_ptr());
     })
 }
 
@@ -148,8 +154,11 @@ functions! {
         loggingOn: c_int, nCategories: size_t, categories: *const *const c_char,
     ) |instance| {
         let names = values("categories", categories, nCategories)?;
-        let names = names.iter().map(|name| text("category", *name)).collect::<Result<Vec<_>, _>>()?;
-        instance.set_debug_logging(boolean("loggingOn", loggingOn)?, &names)
+        let named = |name: &*const c_char| Category::named(text("category", *name)?);
+        let categories = names.iter().map(named).collect::<Result<Vec<_>, _>>()?;
+        let on = boolean("loggingOn", loggingOn)?;
+        instance.log_events(on && (categories.is_empty() || categories.contains(&Category::Events)));
+        Ok(())
     }
 
     fmi2SetupExperiment = SetupExperiment(
@@ -173,7 +182,9 @@ functions! {
     }
 
     fmi2GetInteger = GetInteger(vr: *const c_uint, nvr: size_t, value: *mut c_int) |instance| {
-        instance.get_integer(values("vr", vr, nvr)?, room("value", value, nvr)?)
+        instance.get_numbers(values("vr", vr, nvr)?, room("value", value, nvr)?, |data_type| {
+            matches!(data_type, DataType::Integer | DataType::Enumeration(_))
+        })
     }
 
     fmi2GetBoolean = GetBoolean(vr: *const c_uint, nvr: size_t, value: *mut c_int) |instance| {
@@ -270,7 +281,10 @@ functions! {
     fmi2DoStep = DoStep(
         currentCommunicationPoint: c_double, communicationStepSize: c_double, _noSetFMUStatePriorToCurrentPoint: c_int,
     ) |instance| {
-        instance.do_step(currentCommunicationPoint, communicationStepSize)
+        match instance.do_step(currentCommunicationPoint, communicationStepSize)? {
+            Progress::Overturned => Err(Failure::Overturned { time: instance.time()? }),
+            Progress::Complete | Progress::Transition => Ok(()),
+        }
     }
 
     /// Never allowed: no step is ever pending.

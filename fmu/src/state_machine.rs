@@ -13,6 +13,10 @@ pub enum Stage {
     InitializationMode,
     /// Ready for a step.
     StepComplete,
+    /// Between steps, at an instant that the host has asked to handle events at.
+    EventMode,
+    /// Within a step, while the host is asked for the inputs at its end.
+    IntermediateUpdateMode,
     /// The structure has overturned; there is nothing left to step to.
     StepFailed,
     /// The simulation is over.
@@ -23,10 +27,12 @@ pub enum Stage {
 
 impl Stage {
     /// All of them.
-    pub const ALL: [Stage; 6] = [
+    pub const ALL: [Stage; 8] = [
         Stage::Instantiated,
         Stage::InitializationMode,
         Stage::StepComplete,
+        Stage::EventMode,
+        Stage::IntermediateUpdateMode,
         Stage::StepFailed,
         Stage::Terminated,
         Stage::Error,
@@ -44,6 +50,8 @@ impl fmt::Display for Stage {
             Stage::Instantiated => "instantiated",
             Stage::InitializationMode => "initialization mode",
             Stage::StepComplete => "step complete",
+            Stage::EventMode => "event mode",
+            Stage::IntermediateUpdateMode => "intermediate update mode",
             Stage::StepFailed => "step failed (overturned)",
             Stage::Terminated => "terminated",
             Stage::Error => "error",
@@ -65,7 +73,8 @@ pub(crate) fn stages<F: Copy>(function: F, is_allowed: IsAllowed<F>) -> String {
 /// where it may be called and - where not.
 macro_rules! table {
     ([$($stage:ident),* $(,)?] $($function:ident [$($mark:tt)+])*) => {
-        const STAGES: &[Stage] = &[$(Stage::$stage),*];
+        /// The stages of this interface.
+        pub const STAGES: &[Stage] = &[$(Stage::$stage),*];
 
         /// Whether `function` may be called in `stage`.
         pub(crate) fn is_allowed(function: Function, stage: Stage) -> bool {

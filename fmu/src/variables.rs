@@ -186,7 +186,7 @@ pub static DETAILS: Enumeration = Enumeration {
 };
 
 /// The level that `number` stands for.
-pub(crate) fn detail(number: i32) -> Option<Detail> {
+pub(crate) fn detail(number: i64) -> Option<Detail> {
     usize::try_from(number).ok()?.checked_sub(1).and_then(|at| Detail::ALL.get(at)).copied()
 }
 
