@@ -61,17 +61,18 @@ pub fn display_unit(variable: &Variable, structure: &Structure) -> Option<&'stat
 /// three digits.
 pub fn nominal(variable: &Variable, structure: &Structure) -> Option<f64> {
     let parameters = structure.parameters();
-    let (m, height, alpha) = (parameters.m, parameters.H, structure.tan_alpha_cg.atan());
+    let usual = structure.usual_state();
+    let (m, height, alpha) = (parameters.m, parameters.H, usual.theta);
     let acceleration = parameters.g * structure.tan_alpha_cg;
     let name = ["_max", "_0"].iter().find_map(|ending| variable.name.strip_suffix(ending)).unwrap_or(variable.name);
     let magnitude = match name {
         "theta" => Some(alpha),
-        "theta_dot" => Some(structure.p_l * alpha),
-        "u" => Some(structure.u_cr),
-        "u_dot" => Some(structure.omega_fc * structure.u_cr),
+        "theta_dot" => Some(usual.theta_dot),
+        "u" => Some(usual.u),
+        "u_dot" => Some(usual.u_dot),
         "uplift" => Some(2.0 * parameters.B * alpha.sin()),
         "delta_t" => Some(height * alpha.sin()),
-        "v_t" => Some(height * structure.p_l * alpha),
+        "v_t" => Some(height * usual.theta_dot),
         "a_g" | "a_ground" | "a_t" => Some(acceleration),
         "F_t" | "V_t" | "R_h" => Some(m * acceleration),
         "M_t" | "R_m" => Some(m * height * acceleration),
