@@ -255,14 +255,19 @@ impl Instance {
         Ok(())
     }
 
-    /// All of the values, or none if one is refused.
-    pub fn set_boolean(&mut self, references: &[u32], values: &[i32]) -> Result<(), Failure> {
+    /// All of the values, or none if one is refused; `truth` says what the value of a name stands for.
+    pub fn set_boolean<T: Copy>(
+        &mut self,
+        references: &[u32],
+        values: &[T],
+        truth: fn(&'static str, T) -> Result<bool, Failure>,
+    ) -> Result<(), Failure> {
         let mut setup = self.now.setup.clone();
         for (reference, &value) in references.iter().zip(values) {
             let variable = find(*reference)?;
             let Source::Switch(switch) = variable.source else { return Err(refused(variable)) };
             self.check_not_fixed(variable)?;
-            (switch.set)(&mut setup, boolean(variable.name, value)?);
+            (switch.set)(&mut setup, truth(variable.name, value)?);
         }
         self.set_up(setup);
         Ok(())
@@ -527,15 +532,6 @@ fn refused(variable: &'static Variable) -> Failure {
     match variable.causality {
         Causality::Input | Causality::Parameter => Failure::WrongType(variable),
         Causality::Output | Causality::CalculatedParameter | Causality::Local => Failure::NotSettable(variable),
-    }
-}
-
-/// What `value`, given as `name`, stands for.
-pub(crate) fn boolean(name: &'static str, value: i32) -> Result<bool, Failure> {
-    match value {
-        0 => Ok(false),
-        1 => Ok(true),
-        _ => Err(Failure::BadChoice { name, value, accepted: "0 (fmi2False), 1 (fmi2True)" }),
     }
 }
 

@@ -3,7 +3,7 @@
 
 mod host;
 
-use FlexibleRocking::c_abi::fmi2GetDirectionalDerivative;
+use FlexibleRocking::fmi2::fmi2GetDirectionalDerivative;
 use FlexibleRocking::sensitivity::ACCURACY;
 use FlexibleRocking::variables::{Causality, DataType, VARIABLES, Variable};
 use approx::assert_relative_eq;

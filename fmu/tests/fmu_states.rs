@@ -4,8 +4,8 @@
 mod host;
 
 use FlexibleRocking::BUILD;
-use FlexibleRocking::c_abi::*;
 use FlexibleRocking::condition::Condition;
+use FlexibleRocking::fmi2::*;
 use host::*;
 use std::ffi::c_void;
 use std::ptr::{null_mut, without_provenance_mut};

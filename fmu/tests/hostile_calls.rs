@@ -6,9 +6,10 @@
 
 mod host;
 
-use FlexibleRocking::c_abi::*;
+use FlexibleRocking::c_abi::Function as _;
+use FlexibleRocking::fmi2::*;
 use FlexibleRocking::snapshot;
-use FlexibleRocking::state_machine::{Function, Stage};
+use FlexibleRocking::state_machine::Stage;
 use FlexibleRocking::variables::{Causality, DataType, VARIABLES};
 use fastrand::Rng;
 use host::{DISCARD, ERROR, OK};

@@ -3,7 +3,7 @@
 
 mod host;
 
-use FlexibleRocking::c_abi::*;
+use FlexibleRocking::fmi2::*;
 use FlexibleRocking::{BUILD, guid};
 use host::*;
 use rocking::Parameters;

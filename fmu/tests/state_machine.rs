@@ -3,8 +3,9 @@
 
 mod host;
 
-use FlexibleRocking::c_abi::*;
-use FlexibleRocking::state_machine::{Function, Stage};
+use FlexibleRocking::c_abi::Function as _;
+use FlexibleRocking::fmi2::*;
+use FlexibleRocking::state_machine::Stage;
 use host::*;
 use std::ptr::{null, null_mut};
 

@@ -3,7 +3,7 @@
 
 mod host;
 
-use FlexibleRocking::c_abi::*;
+use FlexibleRocking::fmi2::*;
 use FlexibleRocking::resources::Contents;
 use FlexibleRocking::variables::{Causality, DataType, PHASES, VARIABLES, Value, Variable};
 use approx::assert_relative_eq;

@@ -1,7 +1,7 @@
 //! A host: loads nothing, calls the C functions directly, keeps what is logged.
 #![allow(unsafe_code, dead_code)] // the C interface; every test file uses a part of this
 
-use FlexibleRocking::c_abi::*;
+use FlexibleRocking::fmi2::*;
 use FlexibleRocking::guid;
 use FlexibleRocking::resources::PARAMETERS_FILE;
 use FlexibleRocking::variables::VARIABLES;
