@@ -15,6 +15,10 @@ pub enum Stage {
     StepComplete,
     /// The structure has overturned; there is nothing left to step to.
     StepFailed,
+    /// At an event.
+    EventMode,
+    /// Between events.
+    ContinuousTimeMode,
     /// The simulation is over.
     Terminated,
     /// The solver could not go on; values are good for debugging only.
@@ -23,11 +27,13 @@ pub enum Stage {
 
 impl Stage {
     /// All of them.
-    pub const ALL: [Stage; 6] = [
+    pub const ALL: [Stage; 8] = [
         Stage::Instantiated,
         Stage::InitializationMode,
         Stage::StepComplete,
         Stage::StepFailed,
+        Stage::EventMode,
+        Stage::ContinuousTimeMode,
         Stage::Terminated,
         Stage::Error,
     ];
@@ -45,6 +51,8 @@ impl fmt::Display for Stage {
             Stage::InitializationMode => "initialization mode",
             Stage::StepComplete => "step complete",
             Stage::StepFailed => "step failed (overturned)",
+            Stage::EventMode => "event mode",
+            Stage::ContinuousTimeMode => "continuous-time mode",
             Stage::Terminated => "terminated",
             Stage::Error => "error",
         })
