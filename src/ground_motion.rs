@@ -96,6 +96,13 @@ impl GroundMotion<'_> {
         self.ramp_from(self.reached(elapsed), elapsed)
     }
 
+    /// Seconds from `elapsed` to the next instant at which the ground acceleration jumps, by a first or last sample that is
+    /// not 0.
+    pub fn next_jump(&self, elapsed: Elapsed) -> Option<f64> {
+        let ends = [0, self.record.times().len() - 1].into_iter().filter(|i| self.acceleration(*i) != 0.0);
+        ends.filter_map(|i| Some(self.ahead(i, elapsed)).filter(|ahead| *ahead > self.rounding(i))).next()
+    }
+
     /// Advances `engine`, which is at `elapsed`, by `interval` (s) under the record and `load`, as one advance: the
     /// bound on its work is for all samples together, and if it fails the motion is as it was before.
     pub fn advance<W: Watch>(

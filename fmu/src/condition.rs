@@ -10,6 +10,8 @@ use crate::variables::{DataType, VARIABLES, Variable};
 use rocking::Motion;
 use rocking::engine::{AdvanceError, Progress};
 use rocking::ground_motion::Elapsed;
+use rocking::load::LOADS;
+use rocking::outside_step::Known;
 use rocking::run::peaks::{PEAKS, Peaks};
 use rocking::run::validity::{Found, Limits, Validity, Worst};
 use rocking::{Engine, Impulse, LinearLoad, Load, Phase, State, Watch};
@@ -26,7 +28,7 @@ const BOUND: f64 = 1e100;
 /// More than anything that is counted can come to.
 const MAX_COUNT: u64 = 1 << 60;
 
-/// How the host of an instance meets transitions.
+/// How the host of a co-simulation meets transitions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stepping {
     /// It handles events, between steps.
@@ -42,11 +44,14 @@ impl Stepping {
     }
 }
 
+/// The largest state (SI units) that is taken from a host.
+pub(crate) const FARTHEST: f64 = 1e12;
+
 /// A few dozen numbers from which an instance goes on to the same bits: what an FMU state holds.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Condition {
-    /// Of its host.
-    pub stepping: Stepping,
+    /// Who integrates.
+    pub interface: Interface,
     /// State of FMI's state machine.
     pub stage: Stage,
     /// What was set before the start.
@@ -57,11 +62,59 @@ pub struct Condition {
     pub course: Option<Course>,
 }
 
+/// Who integrates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Interface {
+    /// The FMU.
+    CoSimulation(Stepping),
+    /// The host.
+    ModelExchange,
+}
+
+impl Interface {
+    /// The stage in which a simulation starts.
+    pub const fn first_stage(self) -> Stage {
+        match self {
+            Interface::CoSimulation(Stepping { event_mode: false, .. }) => Stage::StepComplete,
+            Interface::CoSimulation(Stepping { event_mode: true, .. }) | Interface::ModelExchange => Stage::EventMode,
+        }
+    }
+
+    /// How the host meets transitions that the FMU comes across.
+    pub fn stepping(self) -> Stepping {
+        match self {
+            Interface::CoSimulation(stepping) => stepping,
+            Interface::ModelExchange => Stepping::default(),
+        }
+    }
+
+    const fn has(self, stage: Stage) -> bool {
+        match stage {
+            Stage::StepComplete | Stage::StepFailed => matches!(self, Interface::CoSimulation(_)),
+            Stage::EventMode => matches!(self.first_stage(), Stage::EventMode),
+            Stage::ContinuousTimeMode => matches!(self, Interface::ModelExchange),
+            Stage::IntermediateUpdateMode => false, // no state is kept within a step
+            Stage::Instantiated | Stage::InitializationMode | Stage::Terminated | Stage::Error => true,
+        }
+    }
+}
+
+/// What an instance knows beside the present of a motion that the host integrates.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct Outside {
+    /// Where the motion was last known.
+    pub known: Known,
+    /// The inputs when event mode was entered: what is set there has not acted before.
+    pub arrived: Load,
+}
+
 /// How far a simulation has come.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Course {
-    /// The motion.
+    /// The motion; the host's, if the host integrates.
     pub motion: Motion,
+    /// If the host integrates.
+    pub outside: Option<Outside>,
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
     /// Peaks so far, if they are watched.
@@ -74,7 +127,7 @@ pub struct Course {
 
 /// A condition with what it is the condition of.
 pub(crate) struct Present {
-    pub stepping: Stepping,
+    pub interface: Interface,
     pub stage: Stage,
     pub setup: Setup,
     pub inputs: Inputs,
@@ -89,6 +142,8 @@ pub(crate) struct Model {
     pub ground: Option<Arc<GroundRecord>>,
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
+    /// If the host integrates: the engine is then where the host is.
+    pub outside: Option<Outside>,
     pub peaks: Peaks,
     pub validity: Found,
 }
@@ -100,7 +155,7 @@ impl Model {
         ground.as_deref().map_or(Ok(()), |ground| setup.check_ground(ground))?;
         let peaks = Peaks::since(setup.start_time, engine.structure());
         let validity = Found::since(setup.start_time);
-        Ok(Model { engine, ground, elapsed: Elapsed::default(), peaks, validity })
+        Ok(Model { engine, ground, elapsed: Elapsed::default(), outside: None, peaks, validity })
     }
 
     /// What acts now: `inputs` and the record.
@@ -153,6 +208,17 @@ impl Model {
         let mut validity = self.watch_validity();
         self.engine.transit(&mut (&mut validity, watch));
         self.validity = *validity.found();
+    }
+
+    /// The instant of overturning, s.
+    pub fn overturned_at(&self) -> Option<f64> {
+        let motion = self.outside.as_ref().map_or(self.engine.motion(), |outside| &outside.known.motion);
+        self.has_overturned().then_some(motion.time)
+    }
+
+    /// Whether the host integrates: the motion between its steps is then not the engine's to watch.
+    pub fn is_integrated_outside(&self) -> bool {
+        self.outside.is_some()
     }
 
     /// Advances by `step` (s) under `inputs` and the record. If it fails, nothing has changed.
@@ -209,20 +275,29 @@ impl Condition {
         VARIABLES.iter().all(fits)
             && self.inputs.are_possible()
             && self.setup.check_experiment().is_ok()
-            && self.stage != Stage::IntermediateUpdateMode // no state is kept within a step
-            && (self.stage != Stage::EventMode || self.stepping.event_mode)
+            && self.interface.has(self.stage)
             && self.course.is_some() == self.stage.has_started()
+            && self
+                .course
+                .as_ref()
+                .is_none_or(|course| course.outside.is_some() == (self.interface == Interface::ModelExchange))
             && self.course.as_ref().is_none_or(|course| course.is_possible(&self.setup))
     }
 }
 
 impl Course {
     fn is_possible(&self, setup: &Setup) -> bool {
-        let Course { motion, elapsed, peaks, validity, record } = self;
-        let &Motion { time, state: State { u, u_dot, theta, theta_dot }, impulse, transitions, work, .. } = motion;
-        let Impulse { I_h, I_v, I_m } = impulse;
-        [u, u_dot, theta_dot, I_h, I_v, I_m].iter().all(|x| x.abs() <= BOUND)
+        let Course { motion, outside, elapsed, peaks, validity, record } = self;
+        let farthest = if outside.is_some() { FARTHEST } else { MAX_ANGLE };
+        is_possible(motion, farthest)
             && elapsed.seconds().is_finite()
+            && outside.as_ref().is_none_or(|Outside { known, arrived }| {
+                is_possible(&known.motion, MAX_ANGLE)
+                    && known.elapsed.seconds().is_finite()
+                    && [known.load, *arrived]
+                        .iter()
+                        .all(|load| LOADS.iter().all(|input| input.check((input.get)(load)).is_ok()))
+            })
             && PEAKS
                 .iter()
                 .map(|peaking| (peaking.of)(peaks))
@@ -235,20 +310,28 @@ impl Course {
             && [validity.gains, validity.impacts, validity.settlings, validity.evaluations]
                 .iter()
                 .all(|count| *count < MAX_COUNT)
-            && [transitions, work.steps, work.evaluations, peaks.evaluations()].iter().all(|count| *count < MAX_COUNT)
-            && time.is_finite()
-            && motion.is_possible()
-            && theta.abs() <= MAX_ANGLE
+            && peaks.evaluations() < MAX_COUNT
             && record.is_none() == setup.record.is_empty()
             && setup.engine().is_ok_and(|engine| peaks.are_of(engine.structure()))
     }
 }
 
+/// Whether calls can lead to `motion`, with |θ| no more than `farthest` (rad).
+fn is_possible(motion: &Motion, farthest: f64) -> bool {
+    let &Motion { time, state: State { u, u_dot, theta, theta_dot }, impulse, transitions, work, .. } = motion;
+    let Impulse { I_h, I_v, I_m } = impulse;
+    [u, u_dot, theta_dot, I_h, I_v, I_m].iter().all(|x| x.abs() <= BOUND)
+        && theta.abs() <= farthest
+        && [transitions, work.steps, work.evaluations].iter().all(|count| *count < MAX_COUNT)
+        && time.is_finite()
+        && motion.is_possible()
+}
+
 impl Present {
     /// As instantiated from `archive`.
-    pub fn new(archive: &Archive, stepping: Stepping) -> Present {
+    pub fn new(archive: &Archive, interface: Interface) -> Present {
         let setup = Setup::new(&archive.contents);
-        Present { stepping, stage: Stage::Instantiated, setup, inputs: Inputs::default(), model: None }
+        Present { interface, stage: Stage::Instantiated, setup, inputs: Inputs::default(), model: None }
     }
 
     /// The structure in motion, or at its start with what has been set so far; its record is in `archive`, or on disk.
@@ -268,22 +351,23 @@ impl Present {
 
     /// Its condition.
     pub fn condition(&self) -> Condition {
-        let Present { stepping, stage, setup, inputs, model } = self;
+        let Present { interface, stage, setup, inputs, model } = self;
         let course = model.as_ref().filter(|_| stage.has_started()).map(|model| Course {
             motion: *model.engine.motion(),
+            outside: model.outside,
             elapsed: model.elapsed,
             peaks: model.peaks,
             validity: model.validity,
             record: model.digest(),
         });
-        Condition { stepping: *stepping, stage: *stage, setup: setup.clone(), inputs: *inputs, course }
+        Condition { interface: *interface, stage: *stage, setup: setup.clone(), inputs: *inputs, course }
     }
 
     /// Goes to `condition`. The model is built anew only for another setup.
     pub fn go_to(&mut self, condition: &Condition, archive: &Archive) -> Result<(), Failure> {
-        let Condition { stepping, stage, setup, inputs, course } = condition;
-        if *stepping != self.stepping {
-            return Err(Failure::OtherStepping { given: *stepping, here: self.stepping });
+        let Condition { interface, stage, setup, inputs, course } = condition;
+        if *interface != self.interface {
+            return Err(Failure::OtherInterface);
         }
         let mut model = None;
         if let Some(course) = course {
@@ -294,10 +378,11 @@ impl Present {
                 return Err(Failure::OtherRecord(setup.record.to_string()));
             }
             found.engine.set_motion(course.motion);
-            (found.elapsed, found.peaks, found.validity) = (course.elapsed, course.peaks, course.validity);
+            (found.elapsed, found.outside) = (course.elapsed, course.outside);
+            (found.peaks, found.validity) = (course.peaks, course.validity);
             model = Some(found);
         }
-        *self = Present { stepping: *stepping, stage: *stage, setup: setup.clone(), inputs: *inputs, model };
+        *self = Present { interface: *interface, stage: *stage, setup: setup.clone(), inputs: *inputs, model };
         Ok(())
     }
 }

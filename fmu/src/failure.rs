@@ -1,6 +1,5 @@
 //! Why a call is not done: every message of that kind, in one place. What to call instead, the C interface adds.
 
-use crate::condition::Stepping;
 use crate::ground::GroundError;
 use crate::logger::Status;
 use crate::resources::ResourceError;
@@ -143,8 +142,8 @@ pub enum Failure {
     NoInput(&'static Variable),
     /// A known that is none.
     #[error(
-        "{} cannot be a known of a directional derivative: only the inputs can, and in initialization mode real \
-         parameters and initial values",
+        "{} cannot be a known of a directional derivative: only the inputs can, in initialization mode real parameters and \
+         initial values, later u, u_dot, theta and theta_dot",
         .0.name
     )]
     NoKnown(&'static Variable),
@@ -226,6 +225,55 @@ pub enum Failure {
         /// s.
         time: f64,
     },
+    /// A time that is none.
+    #[error("time = {} is out of range: it must be finite, and so its distance from startTime", with_unit(*.0, "s"))]
+    BadTime(f64),
+    /// A step of the host's integrator that ends before it starts.
+    #[error(
+        "the integrator's step from t = {from} s ends at t = {to} s: time goes on from an event or a complete step"
+    )]
+    StepBack {
+        /// Where the last step or event was, s.
+        from: f64,
+        /// Where the host is, s.
+        to: f64,
+    },
+    /// A trial state that is far from any motion.
+    #[error("{name} = {value} is out of range: at most 1e12 in SI units; take a shorter step")]
+    FarState {
+        /// The component.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The equations of motion have no solution at a trial state.
+    #[error(
+        "the derivatives of the states do not exist at t = {time} s (u = {u} m, theta = {theta} rad): take a shorter step"
+    )]
+    NoStateRates {
+        /// s.
+        time: f64,
+        /// m.
+        u: f64,
+        /// rad.
+        theta: f64,
+    },
+    /// Another number of values, states or indicators.
+    #[error("{name} = {given} is not {needed}")]
+    WrongCount {
+        /// The argument.
+        name: &'static str,
+        /// What the host passed.
+        given: usize,
+        /// What there are.
+        needed: usize,
+    },
+    /// A state kept by an instance of another interface.
+    #[error(
+        "the FMU state was kept by an instance of another kind: model exchange, co-simulation, and co-simulation with \
+         eventModeUsed or earlyReturnAllowed have states of their own"
+    )]
+    OtherInterface,
     /// A question that has no answer.
     #[error("{0} has no answer here")]
     NoAnswer(&'static str),
@@ -234,25 +282,6 @@ pub enum Failure {
         "FMUstate {0:#x} is not one that this instance has handed out and not freed; pass a pointer to NULL for a new one"
     )]
     UnknownSnapshot(usize),
-    /// A state of an instance whose host handles events otherwise.
-    #[error(
-        "the FMU state is of an instance with eventModeUsed = {} and earlyReturnAllowed = {}; this one has {} and {}",
-        given.event_mode, given.early_return, here.event_mode, here.early_return
-    )]
-    OtherStepping {
-        /// The state's.
-        given: Stepping,
-        /// This instance's.
-        here: Stepping,
-    },
-    /// As many values as variables are needed: all are scalars.
-    #[error("{values} values do not fit {variables} variables: all variables are scalars")]
-    WrongCount {
-        /// How many there are of the one.
-        variables: usize,
-        /// And of the other.
-        values: usize,
-    },
     /// A variable that takes no part in intermediate updates.
     #[error("{} is no intermediate variable: only the inputs are", .0.name)]
     NotIntermediate(&'static Variable),
@@ -277,6 +306,7 @@ impl Failure {
     pub fn status(&self) -> Status {
         match self {
             Failure::Overturned { .. } | Failure::NoAnswer(_) => Status::Discard,
+            Failure::FarState { .. } | Failure::NoStateRates { .. } => Status::Discard,
             Failure::Panicked(_) => Status::Fatal,
             _ => Status::Error,
         }

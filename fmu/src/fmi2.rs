@@ -3,13 +3,16 @@
 #![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
 
 pub mod co_simulation;
+mod model_exchange;
 
 use crate::c_abi::{self, check_pointer, escaped, functions, read, room, text, values, write};
-use crate::condition::Stepping;
+use crate::condition::{Interface, Stepping};
 use crate::failure::Failure;
+use crate::instance::model_exchange::{Completed, Updated};
 use crate::instance::{self, Instance};
 use crate::logger::{Category, Logger, Sink};
 use crate::resources;
+use crate::state_machine::IsAllowed;
 use crate::variables::{DataType, Variable};
 use libc::{c_char, c_double, c_int, c_uint, c_void, size_t};
 use rocking::Progress;
@@ -36,7 +39,26 @@ pub struct CallbackFunctions {
 
 const MAGIC: u64 = 0x526f_636b_696e_6732;
 
+const MODEL_EXCHANGE: c_int = 0;
 const CO_SIMULATION: c_int = 1;
+
+/// `fmi2EventInfo`
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct EventInfo {
+    /// Whether `fmi2NewDiscreteStates` has to be called again: never.
+    pub new_discrete_states_needed: c_int,
+    /// Whether the simulation is over.
+    pub terminate_simulation: c_int,
+    /// Whether magnitudes of states have changed: never.
+    pub nominals_of_continuous_states_changed: c_int,
+    /// Whether the states are not those that the host set.
+    pub values_of_continuous_states_changed: c_int,
+    /// Whether there is a
+    pub next_event_time_defined: c_int,
+    /// time of the next event, s.
+    pub next_event_time: c_double,
+}
 
 /// `fmi2GetTypesPlatform`
 #[unsafe(no_mangle)]
@@ -66,20 +88,27 @@ pub unsafe extern "C" fn fmi2Instantiate(
         let name = unsafe { text("instanceName", instanceName) };
         let logger = Logger::new(sink(unsafe { &*functions }, name.as_ref().unwrap_or(&"")));
         let arguments = || {
-            if fmuType != CO_SIMULATION {
-                return Err(Failure::BadChoice { name: "fmuType", value: fmuType, accepted: "1 (fmi2CoSimulation)" });
-            }
+            let accepted = "0 (fmi2ModelExchange), 1 (fmi2CoSimulation)";
+            let interface = match fmuType {
+                MODEL_EXCHANGE => Interface::ModelExchange,
+                CO_SIMULATION => Interface::CoSimulation(Stepping::default()),
+                value => return Err(Failure::BadChoice { name: "fmuType", value, accepted }),
+            };
             let guid = unsafe { text("fmuGUID", fmuGUID) };
             let location = unsafe { text("fmuResourceLocation", fmuResourceLocation) };
             let events = boolean("loggingOn", loggingOn);
             if name?.is_empty() {
                 return Err(Failure::NoName);
             }
-            Ok((instance::open("fmuGUID", guid?, resources::folder(location?)?)?, events?))
+            Ok((instance::open("fmuGUID", guid?, resources::folder(location?)?)?, interface, events?))
         };
         match arguments() {
-            Ok((archive, events)) => {
-                Some((Instance::new(archive, Stepping::default(), events, logger), co_simulation::is_allowed as _))
+            Ok((archive, interface, events)) => {
+                let is_allowed: IsAllowed<Function> = match interface {
+                    Interface::ModelExchange => model_exchange::is_allowed,
+                    Interface::CoSimulation(_) => co_simulation::is_allowed,
+                };
+                Some((Instance::new(archive, interface, events, logger), is_allowed))
             }
             Err(failure) => {
                 logger.failure(failure.status(), &format!("fmi2Instantiate: {failure}"));
@@ -139,6 +168,7 @@ fn remedy(failure: &Failure) -> &'static str {
         },
         Failure::Fixed(_) => ": set it before fmi2ExitInitializationMode, or call fmi2Reset",
         Failure::WrongPoint { .. } => ": step from there, or go back with fmi2SetFMUstate",
+        Failure::StepBack { .. } => ", or goes back with fmi2SetFMUstate",
         Failure::PastStop { .. } => " given to fmi2SetupExperiment: shorten it",
         Failure::WrongSize { .. } => " (fmi2SerializedFMUstateSize)",
         Failure::NoAnswer(_) => {
@@ -312,6 +342,58 @@ functions! {
 
     fmi2GetStringStatus = GetStringStatus(s: c_int, _value: *mut *const c_char) |_instance| {
         Err(Failure::NoAnswer(status_kind(s)?))
+    }
+
+    fmi2EnterEventMode = EnterEventMode() |instance| { instance.enter_event_mode() }
+
+    fmi2NewDiscreteStates = NewDiscreteStates(fmi2eventInfo: *mut EventInfo) |instance| {
+        check_pointer("fmi2eventInfo", fmi2eventInfo)?;
+        let Updated { has_ended, has_new_states, next_event } = instance.new_discrete_states()?;
+        write("fmi2eventInfo", fmi2eventInfo, EventInfo {
+            new_discrete_states_needed: 0,
+            terminate_simulation: has_ended.into(),
+            nominals_of_continuous_states_changed: 0,
+            values_of_continuous_states_changed: has_new_states.into(),
+            next_event_time_defined: next_event.is_some().into(),
+            next_event_time: next_event.unwrap_or_default(),
+        })
+    }
+
+    fmi2EnterContinuousTimeMode = EnterContinuousTimeMode() |instance| { instance.enter_continuous_time_mode() }
+
+    /// Whether the host will go back makes no difference: FMU states are kept until it frees them.
+    fmi2CompletedIntegratorStep = CompletedIntegratorStep(
+        _noSetFMUStatePriorToCurrentPoint: c_int, enterEventMode: *mut c_int, terminateSimulation: *mut c_int,
+    ) |instance| {
+        check_pointer("enterEventMode", enterEventMode)?;
+        check_pointer("terminateSimulation", terminateSimulation)?;
+        let Completed { needs_event_mode, has_ended } = instance.completed_integrator_step()?;
+        write("enterEventMode", enterEventMode, needs_event_mode.into())?;
+        write("terminateSimulation", terminateSimulation, has_ended.into())
+    }
+
+    fmi2SetTime = SetTime(time: c_double) |instance| { instance.set_time(time) }
+
+    fmi2SetContinuousStates = SetContinuousStates(x: *const c_double, nx: size_t) |instance| {
+        instance.set_continuous_states(values("x", x, nx)?)
+    }
+
+    fmi2GetDerivatives = GetDerivatives(derivatives: *mut c_double, nx: size_t) |instance| {
+        instance.get_derivatives(room("derivatives", derivatives, nx)?)
+    }
+
+    fmi2GetEventIndicators = GetEventIndicators(eventIndicators: *mut c_double, ni: size_t) |instance| {
+        instance.get_event_indicators(room("eventIndicators", eventIndicators, ni)?)
+    }
+
+    fmi2GetContinuousStates = GetContinuousStates(x: *mut c_double, nx: size_t) |instance| {
+        instance.get_continuous_states(room("x", x, nx)?)
+    }
+
+    fmi2GetNominalsOfContinuousStates = GetNominalsOfContinuousStates(
+        x_nominal: *mut c_double, nx: size_t,
+    ) |instance| {
+        instance.get_nominals(room("x_nominal", x_nominal, nx)?)
     }
 }
 

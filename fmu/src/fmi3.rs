@@ -11,7 +11,7 @@ pub mod co_simulation;
 use crate::c_abi::{
     self, call, call_on, check_pointer, escaped, functions, instantiate, read, room, text, values, write,
 };
-use crate::condition::Stepping;
+use crate::condition::{Interface, Stepping};
 use crate::failure::Failure;
 use crate::instance::{self, AskInputs, Instance};
 use crate::logger::{Category, Logger, Sink};
@@ -72,14 +72,14 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
             }
         }
         let archive = instance::open("instantiationToken", token, PathBuf::from(folder))?;
-        Ok((archive, Stepping { event_mode, early_return }, events, !required.is_empty()))
+        Ok((archive, Interface::CoSimulation(Stepping { event_mode, early_return }), events, !required.is_empty()))
     };
     instantiate::<Function>(|| {
         let logger = Logger::new(sink(logMessage, instanceEnvironment));
         match arguments() {
-            Ok((archive, stepping, events, asks)) => {
+            Ok((archive, interface, events, asks)) => {
                 let ask = intermediateUpdate.filter(|_| asks).map(|update| ask(update, instanceEnvironment));
-                Some((Instance::new(archive, stepping, events, logger).asking(ask), co_simulation::is_allowed as _))
+                Some((Instance::new(archive, interface, events, logger).asking(ask), co_simulation::is_allowed as _))
             }
             Err(failure) => {
                 logger.failure(failure.status(), &format!("fmi3InstantiateCoSimulation: {failure}"));
@@ -164,9 +164,9 @@ fn boolean(name: &'static str, value: u8) -> Result<bool, Failure> {
     }
 }
 
-/// Refuses a number of values that is not that of the variables.
-fn check_count(variables: size_t, values: size_t) -> Result<(), Failure> {
-    if variables == values { Ok(()) } else { Err(Failure::WrongCount { variables, values }) }
+/// Refuses a number of values, given as `name`, that is not that of the variables, all of which are scalars.
+fn check_count(name: &'static str, given: size_t, needed: size_t) -> Result<(), Failure> {
+    if given == needed { Ok(()) } else { Err(Failure::WrongCount { name, given, needed }) }
 }
 
 /// What to call instead.
@@ -211,7 +211,7 @@ pub unsafe extern "C" fn fmi3DoStep(
     };
     let finish = |instance: &mut Instance| unsafe {
         let progress = instance.do_step(point, step)?;
-        let (time, may_return_early) = (instance.time()?, instance.stepping().early_return);
+        let (time, may_return_early) = (instance.time()?, instance.may_return_early());
         if progress == Progress::Overturned {
             instance.warn(&format!("fmi3DoStep: {}", Failure::Overturned { time }));
         }
@@ -259,7 +259,7 @@ functions! {
 
     fmi3ExitInitializationMode = ExitInitializationMode() |instance| { instance.exit_initialization_mode() }
 
-    fmi3EnterEventMode = EnterEventMode() |instance| { instance.enter_event_mode() }
+    fmi3EnterEventMode = EnterEventMode() |instance| { instance.pause_for_events() }
 
     fmi3Terminate = Terminate() |instance| { instance.terminate() }
 
@@ -268,7 +268,7 @@ functions! {
     fmi3GetFloat64 = GetFloat64(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut f64, nValues: size_t,
     ) |instance| {
-        check_count(nValueReferences, nValues)?;
+        check_count("nValues", nValues, nValueReferences)?;
         let references = values("valueReferences", valueReferences, nValueReferences)?;
         instance.get_real(references, room("values", value, nValues)?)
     }
@@ -276,7 +276,7 @@ functions! {
     fmi3GetInt32 = GetInt32(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut i32, nValues: size_t,
     ) |instance| {
-        check_count(nValueReferences, nValues)?;
+        check_count("nValues", nValues, nValueReferences)?;
         let references = values("valueReferences", valueReferences, nValueReferences)?;
         let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Integer);
         instance.get_numbers(references, room("values", value, nValues)?, is_of_type)
@@ -285,7 +285,7 @@ functions! {
     fmi3GetInt64 = GetInt64(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut i64, nValues: size_t,
     ) |instance| {
-        check_count(nValueReferences, nValues)?;
+        check_count("nValues", nValues, nValueReferences)?;
         let references = values("valueReferences", valueReferences, nValueReferences)?;
         let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Enumeration(_));
         instance.get_numbers(references, room("values", value, nValues)?, is_of_type)
@@ -294,7 +294,7 @@ functions! {
     fmi3GetBoolean = GetBoolean(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut u8, nValues: size_t,
     ) |instance| {
-        check_count(nValueReferences, nValues)?;
+        check_count("nValues", nValues, nValueReferences)?;
         let references = values("valueReferences", valueReferences, nValueReferences)?;
         instance.get_boolean(references, room("values", value, nValues)?)
     }
@@ -302,7 +302,7 @@ functions! {
     fmi3GetString = GetString(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut *const c_char, nValues: size_t,
     ) |instance| {
-        check_count(nValueReferences, nValues)?;
+        check_count("nValues", nValues, nValueReferences)?;
         let references = values("valueReferences", valueReferences, nValueReferences)?;
         instance.get_string(references, room("values", value, nValues)?)
     }
@@ -310,7 +310,7 @@ functions! {
     fmi3SetFloat64 = SetFloat64(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *const f64, nValues: size_t,
     ) |instance| {
-        check_count(nValueReferences, nValues)?;
+        check_count("nValues", nValues, nValueReferences)?;
         let references = values("valueReferences", valueReferences, nValueReferences)?;
         instance.set_real(references, values("values", value, nValues)?)
     }
@@ -319,7 +319,7 @@ functions! {
     fmi3SetInt32 = SetInt32(
         valueReferences: *const c_uint, nValueReferences: size_t, _values: *const i32, nValues: size_t,
     ) |_instance| {
-        check_count(nValueReferences, nValues)?;
+        check_count("nValues", nValues, nValueReferences)?;
         match values("valueReferences", valueReferences, nValueReferences)? {
             [] => Ok(()),
             [first, ..] => Err(instance::refused(instance::find(*first)?)),
@@ -329,7 +329,7 @@ functions! {
     fmi3SetInt64 = SetInt64(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *const i64, nValues: size_t,
     ) |instance| {
-        check_count(nValueReferences, nValues)?;
+        check_count("nValues", nValues, nValueReferences)?;
         let references = values("valueReferences", valueReferences, nValueReferences)?;
         instance.set_integer(references, values("values", value, nValues)?)
     }
@@ -337,7 +337,7 @@ functions! {
     fmi3SetBoolean = SetBoolean(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *const u8, nValues: size_t,
     ) |instance| {
-        check_count(nValueReferences, nValues)?;
+        check_count("nValues", nValues, nValueReferences)?;
         let references = values("valueReferences", valueReferences, nValueReferences)?;
         instance.set_boolean(references, values("values", value, nValues)?, boolean)
     }
@@ -345,7 +345,7 @@ functions! {
     fmi3SetString = SetString(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *const *const c_char, nValues: size_t,
     ) |instance| {
-        check_count(nValueReferences, nValues)?;
+        check_count("nValues", nValues, nValueReferences)?;
         let references = values("valueReferences", valueReferences, nValueReferences)?;
         let given = values("values", value, nValues)?;
         let texts = given.iter().map(|value| text("values", *value)).collect::<Result<Vec<_>, _>>()?;
@@ -398,8 +398,8 @@ functions! {
         unknowns: *const c_uint, nUnknowns: size_t, knowns: *const c_uint, nKnowns: size_t, seed: *const f64,
         nSeed: size_t, sensitivity: *mut f64, nSensitivity: size_t,
     ) |instance| {
-        check_count(nKnowns, nSeed)?;
-        check_count(nUnknowns, nSensitivity)?;
+        check_count("nSeed", nSeed, nKnowns)?;
+        check_count("nSensitivity", nSensitivity, nUnknowns)?;
         let (unknowns, knowns) = (values("unknowns", unknowns, nUnknowns)?, values("knowns", knowns, nKnowns)?);
         let (seed, sensitivity) = (values("seed", seed, nSeed)?, room("sensitivity", sensitivity, nSensitivity)?);
         instance.get_directional_derivative(unknowns, knowns, seed, sensitivity)
@@ -409,8 +409,8 @@ functions! {
         unknowns: *const c_uint, nUnknowns: size_t, knowns: *const c_uint, nKnowns: size_t, seed: *const f64,
         nSeed: size_t, sensitivity: *mut f64, nSensitivity: size_t,
     ) |instance| {
-        check_count(nUnknowns, nSeed)?;
-        check_count(nKnowns, nSensitivity)?;
+        check_count("nSeed", nSeed, nUnknowns)?;
+        check_count("nSensitivity", nSensitivity, nKnowns)?;
         let (unknowns, knowns) = (values("unknowns", unknowns, nUnknowns)?, values("knowns", knowns, nKnowns)?);
         let (seed, sensitivity) = (values("seed", seed, nSeed)?, room("sensitivity", sensitivity, nSensitivity)?);
         instance.get_adjoint_derivative(unknowns, knowns, seed, sensitivity)
@@ -447,7 +447,7 @@ functions! {
         valueReferences: *const c_uint, nValueReferences: size_t, orders: *const i32, value: *mut f64,
         nValues: size_t,
     ) |instance| {
-        check_count(nValueReferences, nValues)?;
+        check_count("nValues", nValues, nValueReferences)?;
         let references = values("valueReferences", valueReferences, nValueReferences)?;
         let (orders, rates) = (values("orders", orders, nValueReferences)?, room("values", value, nValues)?);
         instance.get_real_output_derivatives(references, orders, rates)

@@ -1,11 +1,11 @@
 //! One instance of the FMU: what each function does, in safe code, whatever a version of the standard calls it.
 
-use crate::condition::{Model, Present, Stepping};
+use crate::condition::{Interface, Model, Present};
 use crate::failure::Failure;
 use crate::inputs::Inputs;
 use crate::logger::{Logger, Status};
 use crate::resources::Archive;
-use crate::sensitivity::sensitivities;
+use crate::sensitivity::{by_state, sensitivities};
 use crate::setup::Setup;
 use crate::shown::Shown;
 use crate::snapshot::{self, Snapshots};
@@ -14,12 +14,15 @@ use crate::variables::{self, Causality, DataType, Source, VARIABLES, Variable};
 use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE, Progress};
 use rocking::load::LOADS;
 use rocking::run::validity::{self, ASSUMPTIONS, Found, Limits};
+use rocking::state::COMPONENTS;
 use rocking::{Load, Parameters, Reactions, Side, Transition, TransitionKind};
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
 use std::mem::MaybeUninit;
 use std::path::PathBuf;
 use std::rc::Rc;
+
+pub mod model_exchange;
 
 /// How close two times that mean the same are, in units in the last place, or in parts of the step if that is more.
 const SAME_TIME: (f64, f64) = (8.0, 1e-4);
@@ -53,11 +56,10 @@ pub fn open(name: &'static str, guid: &str, resources: PathBuf) -> Result<Archiv
 }
 
 impl Instance {
-    /// Just instantiated from `archive` for a host that meets transitions as `stepping` says; `events` says whether they
-    /// are logged.
-    pub fn new(archive: Archive, stepping: Stepping, events: bool, mut logger: Logger) -> Instance {
+    /// Just instantiated from `archive`; `events` says whether events are logged.
+    pub fn new(archive: Archive, interface: Interface, events: bool, mut logger: Logger) -> Instance {
         logger.set_events(events);
-        let now = Present::new(&archive, stepping);
+        let now = Present::new(&archive, interface);
         let (snapshots, shown) = Default::default();
         Instance { logger, events_at_start: events, archive, now, snapshots, shown, ask: None, asked: None }
     }
@@ -70,11 +72,6 @@ impl Instance {
     /// State of FMI's state machine.
     pub fn stage(&self) -> Stage {
         self.now.stage
-    }
-
-    /// How its host meets transitions.
-    pub fn stepping(&self) -> Stepping {
-        self.now.stepping
     }
 
     /// Logs why a call returns `status`.
@@ -118,12 +115,15 @@ impl Instance {
         for warning in validity::of_parameters(model.engine.structure(), setup.detail) {
             self.logger.warning(&warning);
         }
-        self.now.stage = if self.now.stepping.event_mode { Stage::EventMode } else { Stage::StepComplete };
+        if self.now.interface == Interface::ModelExchange {
+            self.start_outside()?;
+        }
+        self.now.stage = self.now.interface.first_stage();
         Ok(())
     }
 
-    /// From here on events are handled, at this instant.
-    pub fn enter_event_mode(&mut self) -> Result<(), Failure> {
+    /// From here on events are handled, at the end of a step.
+    pub fn pause_for_events(&mut self) -> Result<(), Failure> {
         self.now.stage = Stage::EventMode;
         Ok(())
     }
@@ -154,14 +154,14 @@ impl Instance {
 
     /// As instantiated. FMU states stay the host's until it frees them.
     pub fn reset(&mut self) -> Result<(), Failure> {
-        self.now = Present::new(&self.archive, self.now.stepping);
+        self.now = Present::new(&self.archive, self.now.interface);
         self.logger.set_events(self.events_at_start);
         Ok(())
     }
 
     /// All of the values, or none if one is refused.
     pub fn get_real(&mut self, references: &[u32], values: &mut [MaybeUninit<f64>]) -> Result<(), Failure> {
-        let (mut is_computed, mut reaction) = (false, None);
+        let (mut is_computed, mut reaction, mut rate) = (false, None, None);
         for reference in references {
             let variable = find(*reference)?;
             match variable.source {
@@ -175,6 +175,7 @@ impl Instance {
                     return Err(Failure::WrongType(variable));
                 }
                 Source::Reaction(_) => (reaction, is_computed) = (Some(variable), true),
+                Source::StateRate(_) => (rate, is_computed) = (Some(variable), true),
                 _ => is_computed = true,
             }
         }
@@ -196,6 +197,11 @@ impl Instance {
             if !(R_h + R_v + R_m).is_finite() {
                 return Err(Failure::NoReaction { variable, time: model.engine.motion().time });
             }
+        }
+        if let Some(variable) = rate
+            && !shown.state_rates().is_finite()
+        {
+            return Err(Failure::NoReaction { variable, time: model.engine.motion().time });
         }
         write(references, values, |source| shown.value(source).or_else(|| setting(source)))
     }
@@ -407,7 +413,8 @@ impl Instance {
         Ok(())
     }
 
-    /// Of outputs by inputs, and in initialization mode by parameters and initial values as well, of calculated
+    /// Of outputs and derivatives of states by inputs and, once the simulation has started, by states; in initialization
+    /// mode by parameters and initial values as well, of calculated
     /// parameters, too ([`sensitivity`](crate::sensitivity)). The outputs are affine in the inputs, so that a difference
     /// is the derivative; it is taken over a change of the size of gravity and the strut's force, which keeps its
     /// digits.
@@ -426,7 +433,8 @@ impl Instance {
     fn directional_derivative(&mut self, unknowns: &[u32], knowns: &[u32], seed: &[f64]) -> Result<Vec<f64>, Failure> {
         let is_initializing = self.now.stage == Stage::InitializationMode;
         let mut direction = Load::default();
-        let mut of_setup = BTreeMap::<u32, f64>::new();
+        let has_started = self.now.stage.has_started();
+        let (mut of_setup, mut of_state) = (BTreeMap::<u32, f64>::new(), [0.0; COMPONENTS.len()]);
         for (reference, &value) in knowns.iter().zip(seed) {
             let variable = find(*reference)?;
             if !value.is_finite() {
@@ -440,13 +448,16 @@ impl Instance {
                 Source::Parameter(_) | Source::InitialValue(_) | Source::Placement(_) if is_initializing => {
                     *of_setup.entry(*reference).or_default() += value;
                 }
-                _ => return Err(Failure::NoKnown(variable)),
+                _ => match variable.as_state().filter(|_| has_started) {
+                    Some(which) => of_state[which] += value,
+                    None => return Err(Failure::NoKnown(variable)),
+                },
             }
         }
         let unknown = |reference: &u32| {
             let variable = find(*reference)?;
             match variable.source {
-                Source::Output(_) | Source::Reaction(_) | Source::Ground => Ok(variable),
+                Source::Output(_) | Source::Reaction(_) | Source::StateRate(_) | Source::Ground => Ok(variable),
                 Source::Derived(_) | Source::RecordDuration | Source::Impulse(_) if is_initializing => Ok(variable),
                 _ => Err(Failure::NoOutput(variable)),
             }
@@ -454,7 +465,13 @@ impl Instance {
         let unknowns = unknowns.iter().map(unknown).collect::<Result<Vec<_>, _>>()?;
 
         let (model, setup, inputs, _) = self.now.parts(&self.archive)?;
-        let (model, inputs) = (&*model, inputs.now(false));
+        let inputs = inputs.now(false);
+        let mut by_states = vec![0.0; unknowns.len()];
+        for (which, seed) in of_state.into_iter().enumerate().filter(|(_, seed)| *seed != 0.0) {
+            let by = by_state(model, setup, inputs, &unknowns, which)?;
+            by_states.iter_mut().zip(by).for_each(|(sum, by)| *sum += seed * by);
+        }
+        let model = &*model;
         let Model { engine, ground, .. } = model;
         let time = engine.motion().time;
         let &Parameters { m, g, .. } = engine.structure().parameters();
@@ -463,7 +480,7 @@ impl Instance {
         let of_size_one = |part: f64| if size > 0.0 { part / size } else { 0.0 };
         let after = Shown::new(model, setup, Load { a_g: of_size_one(direction.a_g), F_t: of_size_one(direction.F_t) });
         let change = |of: &&Variable| after.value(of.source).zip(before.value(of.source)).map_or(0.0, |(a, b)| a - b);
-        let mut found: Vec<_> = unknowns.iter().map(|of| size * change(of)).collect();
+        let mut found: Vec<_> = unknowns.iter().zip(by_states).map(|(of, by)| size * change(of) + by).collect();
         for (reference, seed) in of_setup {
             let by = sensitivities(setup, ground, inputs, &unknowns, find(reference)?)?;
             found.iter_mut().zip(by).for_each(|(sum, by)| *sum += seed * by);
@@ -518,7 +535,7 @@ impl Instance {
     }
 
     fn advance(&mut self, point: f64, step: f64) -> Result<Progress, Failure> {
-        let (logger, stops) = (&self.logger, self.now.stepping.hands_over());
+        let (logger, stops) = (&self.logger, self.now.interface.stepping().hands_over());
         let (model, setup, inputs, stage) = self.now.parts(&self.archive)?;
         check_step(model, setup, point, step)?;
         let load = inputs.over(step, setup.extrapolate);
@@ -551,6 +568,11 @@ impl Instance {
                 Err(error.into())
             }
         }
+    }
+
+    /// Whether its host takes a step that ends early.
+    pub fn may_return_early(&self) -> bool {
+        self.now.interface.stepping().early_return
     }
 
     /// Where it is, s.

@@ -13,12 +13,14 @@ pub enum Stage {
     InitializationMode,
     /// Ready for a step.
     StepComplete,
-    /// Between steps, at an instant that the host has asked to handle events at.
-    EventMode,
     /// Within a step, while the host is asked for the inputs at its end.
     IntermediateUpdateMode,
     /// The structure has overturned; there is nothing left to step to.
     StepFailed,
+    /// At an event.
+    EventMode,
+    /// Between events.
+    ContinuousTimeMode,
     /// The simulation is over.
     Terminated,
     /// The solver could not go on; values are good for debugging only.
@@ -27,13 +29,14 @@ pub enum Stage {
 
 impl Stage {
     /// All of them.
-    pub const ALL: [Stage; 8] = [
+    pub const ALL: [Stage; 9] = [
         Stage::Instantiated,
         Stage::InitializationMode,
         Stage::StepComplete,
-        Stage::EventMode,
         Stage::IntermediateUpdateMode,
         Stage::StepFailed,
+        Stage::EventMode,
+        Stage::ContinuousTimeMode,
         Stage::Terminated,
         Stage::Error,
     ];
@@ -50,9 +53,10 @@ impl fmt::Display for Stage {
             Stage::Instantiated => "instantiated",
             Stage::InitializationMode => "initialization mode",
             Stage::StepComplete => "step complete",
-            Stage::EventMode => "event mode",
             Stage::IntermediateUpdateMode => "intermediate update mode",
             Stage::StepFailed => "step failed (overturned)",
+            Stage::EventMode => "event mode",
+            Stage::ContinuousTimeMode => "continuous-time mode",
             Stage::Terminated => "terminated",
             Stage::Error => "error",
         })
