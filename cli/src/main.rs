@@ -50,10 +50,11 @@ struct CommandLine {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Write the FMU (FMI 2.0 co-simulation)
+    /// Write the FMU (FMI 2.0 or 3.0)
     #[command(after_help = "Examples:
   rocking-fmu export
   rocking-fmu export --preset evison -o Evison.fmu
+  rocking-fmu export --fmi 3
   rocking-fmu export --record RSN77_SFERN_PUL164.AT2 RSN6_IMPVALL.I_I-ELC180.AT2
   rocking-fmu export --parameters pier.toml --name Pier1")]
     Export(export::ExportArgs),

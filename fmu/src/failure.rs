@@ -333,6 +333,7 @@ fn causality_name(variable: &Variable) -> &'static str {
     match variable.causality {
         Causality::CalculatedParameter => "a calculated parameter",
         Causality::Local => "a local variable",
+        Causality::Independent => "the independent variable",
         _ => "an output",
     }
 }

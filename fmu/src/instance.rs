@@ -638,7 +638,9 @@ fn is_text(variable: &'static Variable) -> Result<(), Failure> {
 pub(crate) fn refused(variable: &'static Variable) -> Failure {
     match variable.causality {
         Causality::Input | Causality::Parameter => Failure::WrongType(variable),
-        Causality::Output | Causality::CalculatedParameter | Causality::Local => Failure::NotSettable(variable),
+        Causality::Output | Causality::CalculatedParameter | Causality::Local | Causality::Independent => {
+            Failure::NotSettable(variable)
+        }
     }
 }
 
