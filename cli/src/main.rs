@@ -138,7 +138,7 @@ enum Command {
 /// Version, build, and the platforms that an FMU can be for.
 fn long_version() -> String {
     let [version, build] = [env!("CARGO_PKG_VERSION"), FlexibleRocking::BUILD];
-    let platforms = Platform::ALL.map(Platform::folder).join(", ");
+    let platforms = Platform::ALL.map(Platform::tuple).join(", ");
     format!("{version}\nbuild {build}\nfor {OS} on {ARCH}; packs libraries for {platforms}, as far as they are there")
 }
 
