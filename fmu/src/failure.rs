@@ -54,6 +54,9 @@ pub enum Failure {
     /// An interface of the standard that this unit has not.
     #[error("this FMU is for co-simulation: see modelDescription.xml")]
     NotThisInterface,
+    /// Event mode of a host that said it has none.
+    #[error("there is no event mode: the instance was made with eventModeUsed = false")]
+    NoEventMode,
     /// An empty name.
     #[error("instanceName must not be empty")]
     NoName,

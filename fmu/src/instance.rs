@@ -124,6 +124,9 @@ impl Instance {
 
     /// From here on events are handled, at the end of a step.
     pub fn pause_for_events(&mut self) -> Result<(), Failure> {
+        if !self.now.interface.stepping().event_mode {
+            return Err(Failure::NoEventMode);
+        }
         self.now.stage = Stage::EventMode;
         Ok(())
     }
