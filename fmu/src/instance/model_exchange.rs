@@ -175,7 +175,7 @@ impl Instance {
         let mut watch = |transition: &Transition| passed.push(*transition);
         let checked = model.check(setup, &outside.known, outside.arrived, &mut watch);
         let checked = checked.inspect_err(|failure| stop_if_singular(stage, failure))?;
-        let Checked { motion, is_corrected, was_hidden } = checked;
+        let Checked { motion, was_hidden, .. } = checked;
         let (host, load) = (*model.engine.motion(), inputs.values());
         passed.iter().for_each(|transition| log(logger, transition));
         if was_hidden {
@@ -196,7 +196,7 @@ impl Instance {
         model.engine.set_time(host.time);
         Ok(Updated {
             has_ended: model.has_overturned(),
-            has_new_states: is_corrected,
+            has_new_states: motion.state != host.state,
             next_event: model.next_event(setup),
         })
     }
