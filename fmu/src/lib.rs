@@ -1,4 +1,4 @@
-//! FMI 2.0 co-simulation unit of a flexible rocking structure.
+//! FMI 2.0 unit of a flexible rocking structure, for co-simulation and model exchange.
 //!
 //! A call of the host enters by [`fmi2`], whose shell [`c_abi`] asks a table of [`state_machine`] whether it is legal and
 //! turns pointers into slices. [`instance`] finds its variables in [`variables`] and lets [`rocking`] do the physics; what goes wrong is a
