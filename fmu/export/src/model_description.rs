@@ -221,14 +221,25 @@ mod tests {
         assert_eq!(names(&structure.outputs.unknowns).join(" "), outputs);
         for unknown in &structure.outputs.unknowns {
             let dependencies = unknown.dependencies.iter().map(name).collect::<Vec<_>>();
-            let expected: &[&str] = match name(&unknown.index) {
-                "a_t" | "V_t" | "M_t" | "R_h" | "R_v" | "R_m" => &["a_g", "F_t"],
-                _ => &[],
+            let expected = match name(&unknown.index) {
+                "a_t" | "V_t" | "M_t" | "R_h" | "R_v" | "R_m" => "a_g F_t u u_dot theta theta_dot",
+                "v_t" => "u u_dot theta theta_dot",
+                "delta_t" => "u theta",
+                "theta" | "uplift" => "theta",
+                "u" => "u",
+                _ => "",
             };
-            assert_eq!(dependencies, expected, "{}", name(&unknown.index));
+            assert_eq!(dependencies.join(" "), expected, "{}", name(&unknown.index));
         }
+        let rates = "der(u) der(u_dot) der(theta) der(theta_dot)";
+        assert_eq!(names(&structure.derivatives.unknowns).join(" "), rates);
+        let of = |unknown: &fmi::Unknown| match &variables[unknown.index - 1].variable_type {
+            fmi::VariableType::Real(real) => name(&real.derivative.unwrap()).to_owned(),
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(structure.derivatives.unknowns.iter().map(of).collect::<Vec<_>>(), COMPONENTS);
         let initial = &structure.initial_unknowns.unknowns;
-        assert_eq!(names(initial).join(" "), format!("{outputs} {calculated_parameters}"));
+        assert_eq!(names(initial).join(" "), format!("{outputs} theta_dot u_dot {rates} {calculated_parameters}"));
 
         let p_l = initial.iter().find(|unknown| name(&unknown.index) == "p_l").unwrap();
         assert_eq!(p_l.dependencies.iter().map(name).collect::<Vec<_>>(), ["m", "m0", "H", "B", "J0", "g"]);
