@@ -220,7 +220,7 @@ def test_derivatives_are_those_of_fmi_2_and_their_adjoint(mcmanus, mcmanus3, sla
     found = [one.instance.getDirectionalDerivative(of[0], [known], [1.0]) for known in of[1]]
     assert found == expected
     weights = [0.5, -2.0, 3.0, 0.25]
-    adjoint = one.instance.getAdjointDerivative(*of, weights)
+    adjoint = one.instance.getAdjointDerivative(*of, weights, len(knowns))
     assert adjoint == pytest.approx(np.array(expected) @ weights, rel=1e-14)
 
 

@@ -91,10 +91,10 @@ def test_macos(library, folder, cpus):
         assert own == "@rpath/libFlexibleRocking.dylib" and set(needed) <= MACOS_RUN_TIME
         assert binary.build_version.minos <= OLDEST_MACOS
         exported = {symbol.name for symbol in binary.exported_symbols}
-        functions = {name.removeprefix("_") for name in exported if name.startswith("_fmi2")}
+        functions = {name.removeprefix("_") for name in exported if name.startswith(("_fmi2", "_fmi3"))}
         assert functions == FUNCTIONS
         # Zig's linker knows no list of exports: Rust's own names are left beside them.
-        others = {name for name in exported if not name.startswith(("_fmi2", "__R", "__ZN"))}
+        others = {name for name in exported if not name.startswith(("_fmi2", "_fmi3", "__R", "__ZN"))}
         assert others <= MACOS_LEFT
     # Apple silicon runs nothing unsigned; a signature without a signer is enough.
     arm = next(binary for binary in binaries if binary.header.cpu_type.name == "ARM64")

@@ -50,7 +50,7 @@ fn libraries_are_found_where_they_are_built_and_where_they_are_installed() {
     let text = folder.path().join("text.so");
     fs::write(&text, "no library").unwrap();
     let other = refusal(&["--library", "text.so"]);
-    assert!(other.contains("text.so is neither an FMU nor a shared library for one of linux64, "), "{other}");
+    assert!(other.contains("text.so is neither an FMU nor a shared library for one of x86_64-linux, "), "{other}");
     let absent = refusal(&["--library", "absent.so"]);
     assert!(absent.contains("cannot read the shared library absent.so: No such file"), "{absent}");
 

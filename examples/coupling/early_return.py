@@ -14,9 +14,9 @@ import numpy as np
 from fmpy.simulation import instantiate_fmu
 from validation.records import pacoima_dam
 
-from . import bridge, convergence
+from . import bridge, convergence, masters
 from .bridge import Bridge, deck, linear, simulate
-from .masters import MASTERS, MOST_SWEEPS, TOLERANCE, Diverged, between_transitions, extrapolate
+from .masters import MOST_SWEEPS, TOLERANCE, Diverged, between_transitions, extrapolate
 from .structure import free
 from .tables import markdown
 
@@ -123,7 +123,7 @@ class EndedAtTransitions:
     """Iterated steps that end at transitions, where the iteration is for the forces and for the step's length at once."""
 
     def __init__(self):
-        self.iterated, self.steps, self.sweeps_to_transitions = MASTERS["iqn-ils"](), 0, 0
+        self.iterated, self.steps, self.sweeps_to_transitions = masters.MASTERS["iqn-ils"](), 0, 0
 
     @property
     def sweeps(self):
@@ -167,10 +167,10 @@ class EndedAtTransitions:
 
 
 class Halved:
-    """Today's master, counted."""
+    """The master that halves steps with a transition, counted."""
 
     def __init__(self):
-        self.iterated, self.steps = MASTERS["iqn-ils"](), 0
+        self.iterated, self.steps = masters.MASTERS["iqn-ils"](), 0
 
     @property
     def sweeps(self):
@@ -184,18 +184,22 @@ class Halved:
         between_transitions(step, system, t, h, guess)
 
 
-MASTERS_COMPARED = {"halved (FMI 2.0)": (Halved, bridge.pier, Bridge), "early return (FMI 3.0)": (EndedAtTransitions, Pier, EventBridge)}
+# name: master, pier, its FMUs, the bridge that they stand under
+MASTERS = {
+    "halved (FMI 2.0)": (Halved, bridge.pier, bridge.PIERS, Bridge),
+    "early return (FMI 3.0)": (EndedAtTransitions, Pier, PIERS, EventBridge),
+}
 
 
-def study(fmus: dict[str, tuple], update=lambda: None):
+def study(update=lambda: None):
     """Of every master at each of STEPS per sample: the error, and for how many steps and sweeps."""
     time, a_g = pacoima_dam()
     response = monolithic.integrate(convergence.monolithic_bridge(deck()), time, a_g)
     expected, found = convergence.columns(response), {}
-    for name, (new, new_pier, Of) in MASTERS_COMPARED.items():
+    for name, (new, new_pier, fmus, Of) in MASTERS.items():
         for per_sample in STEPS:
             of_deck, master = deck(), new()
-            system = Of([new_pier(fmu) for fmu in fmus[name]], of_deck, linear(time, a_g))
+            system = Of([new_pier(fmu) for fmu in fmus.values()], of_deck, linear(time, a_g))
 
             def row():
                 return [of_deck.x, *(value for pier in system.piers for value in pier.read("theta", "u"))]
