@@ -4,8 +4,12 @@ import re
 import subprocess
 
 import fmpy
+import monolithic
 import numpy as np
 import pytest
+from coupling import bridge, convergence
+from coupling.early_return import EndedAtTransitions, EventBridge, Pier
+from coupling.masters import extrapolate
 from fmpy import read_model_description, simulate_fmu
 from fmpy.fmi1 import FMICallException
 from fmpy.simulation import instantiate_fmu
@@ -210,6 +214,23 @@ def test_overturning_ends_the_simulation(mcmanus3, slave, handles_events):
                         one.messages[-1].text)
     result, _ = simulate3(mcmanus3, start_values={"theta_0": 0.3}, stop_time=10, output_interval=0.1)
     assert len(result) < 101
+
+
+def test_a_master_needs_one_further_step_for_a_transition(export3):
+    """Two piers under a deck, against the three integrated as one system."""
+    time, a_g = TIME[:700], A_G[:700]
+    deck, master = bridge.deck(), EndedAtTransitions()
+    system = EventBridge([Pier(export3(preset)) for preset in ("mcmanus", "evison")], deck, bridge.linear(time, a_g))
+
+    def row():
+        return [deck.x, *(value for pier in system.piers for value in pier.read("theta", "u"))]
+
+    found = bridge.simulate(system, master, extrapolate, time, 2, row)
+    response = monolithic.integrate(convergence.monolithic_bridge(bridge.deck()), time, a_g)
+    transitions = sum(map(len, response.transitions))
+    assert system.transitions() == transitions > 20
+    assert master.steps - 2 * (len(time) - 1) <= transitions
+    assert convergence.error(found, convergence.columns(response)) < 2e-6
 
 
 def test_derivatives_are_those_of_fmi_2_and_their_adjoint(mcmanus, mcmanus3, slave):
