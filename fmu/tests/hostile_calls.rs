@@ -292,7 +292,9 @@ impl<'a> Sequence<'a> {
                 SetReal,
                 EnterEventMode,
             ],
-            Stage::StepFailed | Stage::Terminated | Stage::Error => &[Reset, SetFMUstate, GetReal],
+            Stage::IntermediateUpdateMode | Stage::StepFailed | Stage::Terminated | Stage::Error => {
+                &[Reset, SetFMUstate, GetReal]
+            }
         };
         let functions = if self.rng.bool() { leading_on } else { Function::ALL };
         functions[self.rng.usize(..functions.len())]
