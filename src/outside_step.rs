@@ -88,6 +88,9 @@ impl Known {
         load: Load,
         watch: &mut W,
     ) -> Result<Checked, AdvanceError> {
+        if let Phase::Overturned(_) = self.motion.phase {
+            return Ok(Checked { motion: self.motion, is_corrected: false, was_hidden: false });
+        }
         let end = *engine.motion();
         let now: LinearLoad = load.into();
         let now = ground.map_or(now, |ground| now.on_ground(ground.at(elapsed)));

@@ -11,9 +11,9 @@ from first_run import PACOIMA_DAM, RECORD
 from tqdm import tqdm
 from validation.figures import FIXED, QUIET, ROCKING, save, subplots
 
-from .hosts import Scene, co_simulation, fmpy_cvode, fmpy_euler, sundae
+from .hosts import Scene, co_simulation, fmpy_cvode, fmpy_euler, sundae, sundae_told
 
-TOLERANCES = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
+TOLERANCES = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10)
 KINKS_TOLERANCES = (1e-6, 1e-8, 1e-10)
 STEPS = (10e-3, 1e-3, 0.2e-3)  # s
 SOLVERS = {"CVode of fmpy (BDF)": (fmpy_cvode, ROCKING, "o-"), "CVODE of scikit-sundae (Adams)": (sundae, FIXED, "s--")}
@@ -49,7 +49,7 @@ def kinks_table(found) -> str:
     rows = []
     for scene, (_, exact, _) in found.items():
         for tolerance in KINKS_TOLERANCES:
-            results = [sundae(scene, tolerance, told) for told in (1e-3, 1e-9)]
+            results = [sundae_told(scene, tolerance, told) for told in (max(tolerance, 1e-6), min(tolerance, 1e-8))]
             rows.append([scene.name, f"{tolerance:g}",
                          *(f"{result.error(exact):.1e}, {result.evaluations}" for result in results)])
     return markdown(["", "tolerance", "through the samples", "anew at every sample"], rows)

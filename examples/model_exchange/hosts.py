@@ -13,6 +13,7 @@ from sksundae.cvode import CVODE
 
 OUTPUTS = ["theta", "u", "phase", "transitions"]
 LEFT, RIGHT = 2, 3  # items of `phase`
+SAME_TIME = 1e-12  # s, closer than solvers tell apart
 
 
 @dataclass(frozen=True)
@@ -136,29 +137,36 @@ class Model:
         return time, *reals, *self.fmu.getInteger([self.references[name] for name in ("phase", "transitions")])
 
 
-def sundae(scene: Scene, tolerance: float, told: float | None = None) -> Result:
-    """SUNDIALS' CVODE of scikit-sundae: Adams, roots of the indicators, and every step of the solver is completed.
+def sundae(scene: Scene, tolerance: float) -> Result:
+    """SUNDIALS' CVODE of scikit-sundae: Adams, roots of the indicators, and every step of the solver is completed."""
+    return sundae_told(scene, tolerance, tolerance)
 
-    The FMU is told of the tolerance, or of another one."""
-    model = Model(scene, told or tolerance)
+
+@cache
+def sundae_told(scene: Scene, tolerance: float, told: float) -> Result:
+    """The same where the FMU is told of another tolerance."""
+    model = Model(scene, told)
     try:
         has_ended, next_event = model.update()
         solver = CVODE(lambda t, x, rates: model.rates(t, x, rates), method="Adams", rtol=tolerance,
                        atol=tolerance * model.nominals(), eventsfn=lambda t, x, z: model.indicators(t, x, z), num_events=2)
         rows, time, hidden = [model.row(0.0)], 0.0, 0
         solver.init_step(time, model.states())
-        while time < scene.end - 1e-9 and not has_ended:
+        while time < scene.end - SAME_TIME and not has_ended:
             point = len(rows) * scene.interval
-            found = solver.step(point, method="onestep", tstop=min(point, next_event))
+            stop = next_event if next_event < point - SAME_TIME else point
+            found = solver.step(stop, method="onestep", tstop=stop)
+            if not found.success:
+                raise RuntimeError(f"CVODE at t = {time} s: {found.message}")
             time, has_root = float(found.t), found.status == 2
             model.at(time, found.y)
             has_event, _ = model.fmu.completedIntegratorStep()
-            if has_event or has_root or time == next_event:
-                hidden += not has_root and time != next_event
+            if has_event or has_root or time > next_event - SAME_TIME:
+                hidden += has_event and not has_root
                 model.fmu.enterEventMode()
                 has_ended, next_event = model.update()
                 solver.init_step(time, model.states())
-            if time == point:
+            if time > point - SAME_TIME:
                 rows.append(model.row(time))
         return Result(np.array(rows, dtype=[(name, float) for name in ("time", *OUTPUTS)]), hidden, model.evaluations)
     finally:

@@ -238,6 +238,9 @@ mod tests {
             other => panic!("{other:?}"),
         };
         assert_eq!(structure.derivatives.unknowns.iter().map(of).collect::<Vec<_>>(), COMPONENTS);
+        let is_set_by_events = |variable: &&fmi::ScalarVariable| matches!(&variable.variable_type, fmi::VariableType::Real(real) if real.reinit == Some(true));
+        let set_by_events: BTreeSet<_> = variables.iter().filter(is_set_by_events).map(|v| v.name.as_str()).collect();
+        assert_eq!(set_by_events, COMPONENTS.into());
         let initial = &structure.initial_unknowns.unknowns;
         assert_eq!(names(initial).join(" "), format!("{outputs} theta_dot u_dot {rates} {calculated_parameters}"));
 

@@ -104,7 +104,7 @@ impl Instance {
         let Ok(components) = <[f64; 4]>::try_from(states) else {
             return Err(Failure::WrongCount { name: "nx", given: states.len(), needed: COMPONENTS.len() });
         };
-        let far = COMPONENTS.into_iter().zip(components).find(|(_, value)| !(value.abs() <= FARTHEST));
+        let far = COMPONENTS.into_iter().zip(components).find(|(_, value)| value.is_nan() || value.abs() > FARTHEST);
         if let Some((name, value)) = far {
             return Err(Failure::FarState { name, value });
         }
