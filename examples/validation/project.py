@@ -39,6 +39,12 @@ class Project:
         numbers = [heading for heading in lines[0] if heading != "phase"]
         return {heading.partition("[")[0]: np.array([float(line[heading]) for line in lines]) for heading in numbers}
 
+    def events(self, *arguments) -> list[dict[str, str]]:
+        """The transitions of a run of `simulate`, line by line."""
+        events = self.folder / "events.csv"
+        self.run("simulate", *arguments, "--output", self.folder / "response.csv", "--events", events)
+        return list(csv.DictReader(events.read_text().splitlines()))
+
     @cache
     def fmu(self, preset: str) -> Path:
         """The FMU of one of the paper's specimens, exported and unpacked."""
