@@ -1,4 +1,4 @@
-"""The rigid limit of the model as Housner's block, driven through the FMU: what becomes of it under a pulse.
+"""The model's structure as Housner's block, driven through the FMU: what becomes of it under a pulse.
 
 With u = 0, Eq 6 divided by J_P reads, alpha the slenderness of the centre of gravity and s the side,
 
@@ -31,7 +31,7 @@ class NoBoundary(Exception):
 
 @dataclass(frozen=True)
 class Block:
-    """A structure of the model, of which the rigid limit is taken."""
+    """A structure of the model and what follows from its parameters."""
 
     parameters: dict[str, float]
 
@@ -42,11 +42,41 @@ class Block:
         return (of["m"] + of["m0"]) / of["m"] * of["B"] / of["H"]
 
     @property
+    def J_P(self) -> float:
+        """Inertia about a pivot, kg m2."""
+        of = self.parameters
+        return of["J0"] + of["m"] * (of["H"] ** 2 + of["B"] ** 2) + of["m0"] * of["B"] ** 2
+
+    @property
+    def p_l(self) -> float:
+        """The paper's frequency parameter, rad/s."""
+        return np.sqrt(self.parameters["m"] * G * self.parameters["H"] / self.J_P)
+
+    @property
     def p(self) -> float:
         """Housner's frequency parameter, rad/s."""
-        of = self.parameters
-        J_P = of["J0"] + of["m"] * (of["H"] ** 2 + of["B"] ** 2) + of["m0"] * of["B"] ** 2
-        return np.sqrt(of["m"] * G * of["H"] / J_P / np.cos(np.arctan(self.tangent)))
+        return self.p_l / np.sqrt(np.cos(np.arctan(self.tangent)))
+
+    @property
+    def one_minus_chi(self) -> float:
+        """1 - chi."""
+        return 1 - self.parameters["m"] * self.parameters["H"] ** 2 / self.J_P
+
+    @property
+    def omega_fc(self) -> float:
+        """Frequency in full contact, rad/s."""
+        return 2 * np.pi * self.parameters["f_fc"]
+
+    @property
+    def u_cr(self) -> float:
+        """Critical displacement, m."""
+        return G * self.tangent / self.omega_fc**2
+
+    @property
+    def options(self) -> list[str]:
+        """As the command line takes it."""
+        return [word for name, value in self.parameters.items()
+                for word in (f"--{name.replace('_', '-')}", repr(float(value)))]
 
 
 def homogeneous(tangent: float, r: float) -> Block:
@@ -59,6 +89,7 @@ class PulseRuns:
     """Blocks under pulses: each run is one step of the FMU in `folder`, with the pulse inside."""
 
     def __init__(self, folder: Path, records: Path, detail: int = RIGID):
+        self.folder = folder
         self.stepper = Stepper(folder, TOLERANCE, detail)
         self.records = records
 
@@ -88,11 +119,21 @@ class PulseRuns:
                 raise NoBoundary(f"no boundary near {near} under a {pulse.name} at omega/p = {omega}")
             fates = [self.run(block, pulse, omega, near * (1 + side * width)).overturned for side in (-1, 1)]
             width *= 2
-        width /= 2
-        low, high = near * (1 - width), near * (1 + width)
-        while high - low > CLOSE * near:
+        return self.bisected(block, pulse, omega, near * (1 - width / 2), near * (1 + width / 2))
+
+    def lowest(self, block: Block, pulse: Pulse, omega: float, amplitudes: np.ndarray) -> float:
+        """The lowest amplitude that overturns, bisected from the first of the increasing `amplitudes` that does."""
+        for low, high in zip(amplitudes, amplitudes[1:]):
+            if self.run(block, pulse, omega, high).overturned:
+                return self.bisected(block, pulse, omega, low, high)
+        raise NoBoundary(f"no amplitude up to {amplitudes[-1]} overturns under a {pulse.name} at omega/p = {omega}")
+
+    def bisected(self, block: Block, pulse: Pulse, omega: float, low: float, high: float) -> float:
+        """The amplitude between `low` and `high`, of different fates, at which the fate changes."""
+        fate = self.run(block, pulse, omega, low).overturned
+        while high - low > CLOSE * high:
             middle = 0.5 * (low + high)
-            if self.run(block, pulse, omega, middle).overturned == fates[0]:
+            if self.run(block, pulse, omega, middle).overturned == fate:
                 low = middle
             else:
                 high = middle

@@ -10,7 +10,7 @@ from validation.report import table
 
 from .block import Block, NoBoundary, PulseRuns, homogeneous
 from .limit import TANGENTS, Limit
-from .slender_block import HALF_SINE, ONE_COSINE, ONE_SINE, PULSES, Boundary, Pulse, boundaries
+from .slender_block import HALF_SINE, ONE_COSINE, ONE_SINE, PULSES, Boundary, Pulse, boundaries, half_sine_boundary
 
 R = 0.9  # coefficient of restitution
 MOST = 10.0  # amplitude, g tan alpha
@@ -34,8 +34,7 @@ class Case:
     @property
     def words(self) -> str:
         """What happens at the boundary."""
-        how = {0: "without impact", 1: "after one impact"}.get(self.boundary.impacts,
-                                                              f"after {self.boundary.impacts} impacts")
+        how = ["without impact", "after one impact", "after two impacts"][self.boundary.impacts]
         return f"{how}, {'below' if self.boundary.upper else 'above'}"
 
 
@@ -88,6 +87,23 @@ def rows(cases: list[Case]) -> str:
     return table(["pulse", "ω/p", "overturns", "closed form", f"tan α = {TANGENTS[0]:g}: difference",
                   f"tan α = {TANGENTS[-1]:g}: difference", "rate", "extrapolated", "difference",
                   f"tan α = {STOCKY:g}"], [[cell.replace("-", "−") for cell in line] for line in lines], texts=(0, 2))
+
+
+def changes(cases: list[Case], upper: bool) -> str:
+    """By how much the stocky block's boundaries after an impact differ from the slender block's."""
+    of = [100 * (case.stocky / case.boundary.amplitude - 1) for case in cases
+          if case.boundary.impacts and case.boundary.upper == upper and np.isfinite(case.stocky)]
+    return f"{min(of):+.0f} to {max(of):+.0f} %".replace("-", "−")
+
+
+def half_sines() -> str:
+    """The table of the half sine's closed form beside the formula that lets the sine go on."""
+    lines = []
+    for pulse, omega in CASES:
+        if pulse is HALF_SINE:
+            amplitude, endless = half_sine_boundary(omega), np.hypot(1, omega)
+            lines.append([f"{omega:g}", f"{amplitude:.6f}", f"{endless:.6f}", f"{endless / amplitude:.2f}"])
+    return table(["ω/p", "closed form", "√(1 + (ω/p)²)", "ratio"], lines)
 
 
 def draw(cases: list[Case], path: Path) -> None:

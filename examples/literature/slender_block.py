@@ -11,6 +11,7 @@ and when the pulse is over the same without f. The block then overturns where th
 from the ground. An amplitude at which that part vanishes is a boundary: the block comes to a stand on its edge.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,9 +38,8 @@ class Pulse:
         return np.cos(argument), -omega * np.sin(argument)
 
     def lift_off(self, omega: float, amplitude: float) -> float:
-        """The first instant at which A f reaches 1."""
-        first = np.arccos(1 / amplitude)
-        return (-self.phase - first) / omega if self.phase < 0 else 0.0
+        """The first instant at which A f reaches 1: at once where the pulse starts at its height."""
+        return (-self.phase - np.arccos(1 / amplitude)) / omega if self.phase < 0 else 0.0
 
 
 HALF_SINE = Pulse("half sine", -np.pi / 2, 1)
@@ -99,7 +99,8 @@ class Outcome:
 
     @property
     def overturns(self) -> bool:
-        return self.margin > 0
+        """Whether the margin is positive."""
+        return bool(self.margin > 0)
 
 
 def follow(pulse: Pulse, omega: float, r: float, amplitude: float, impacts: int | None = None) -> Outcome:
@@ -127,12 +128,12 @@ class Boundary:
     upper: bool  # whether it overturns below and not above
 
 
-def boundaries(pulse: Pulse, omega: float, r: float, most: float, step: float = 0.002) -> list[Boundary]:
+def boundaries(pulse: Pulse, omega: float, r: float, most: float, step: float = 0.002) -> Iterator[Boundary]:
     """The boundaries between 1 and the amplitude `most`, increasing; two closer together than `step` may be missed.
 
     Amplitudes just above 1, at which the block bounces to rest while the pulse lasts, are passed over.
     """
-    found, last = [], None
+    last = None
     for amplitude in np.linspace(1, most, int(np.ceil((most - 1) / step)) + 1)[1:]:
         try:
             outcome = follow(pulse, omega, r, amplitude)
@@ -145,9 +146,8 @@ def boundaries(pulse: Pulse, omega: float, r: float, most: float, step: float = 
                 return follow(pulse, omega, r, x, impacts).margin
 
             root = brentq(margin, last[0], amplitude, xtol=1e-15, rtol=1e-15)
-            found.append(Boundary(root, toppling.impacts, last[1].overturns))
+            yield Boundary(root, toppling.impacts, last[1].overturns)
         last = (amplitude, outcome)
-    return found
 
 
 def half_sine_boundary(omega: float) -> float:

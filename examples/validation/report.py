@@ -100,6 +100,7 @@ Every number of the paper that its text gives the data for, beside the one that 
 writes this page and its figures: the FMU is exported and driven by fmpy, at a tolerance of 1e-10 (1e-8 in section 7),
 and what the library itself computes (pushover, demands, effective frequency, modes) is asked of `rocking-fmu`.
 Equation, figure and table numbers are the paper's. Its measured histories are printed as pictures only and are not
-redrawn; of them the values that the text states are compared.
+redrawn; of them the values that the text states are compared. Closed forms, and what others publish, are
+[the second part](validation_literature.md).
 
 "computed" is ours; "to its digits" says that it rounds to what is printed."""
