@@ -9,6 +9,7 @@ from first_run import G
 from tqdm import tqdm
 from validation.project import Project
 from validation.records import horizontal_records
+from validation.report import filled
 from validation.stepper import AUTO
 
 from . import block, ensemble, flexible, free_rocking, limit, overturning, point_reyes, slender_block
@@ -27,7 +28,8 @@ def main() -> None:
              + len(flexible.FREQUENCIES) + len(ensemble.VARIANTS) * len(ensemble.TIME_SCALES))
     with tempfile.TemporaryDirectory() as folder, tqdm(total=total, unit="") as progress:
         project = Project(arguments.exporter.resolve(), Path(folder))
-        rigid = block.PulseRuns(project.fmu("mcmanus"), project.folder)
+        fmu = project.fmu("mcmanus")
+        rigid = block.PulseRuns(fmu, project.folder)
         progress.set_description("overturning")
         cases = overturning.compute(rigid, progress.update)
         overturning.draw(cases, figures / "overturning.svg")
@@ -35,7 +37,7 @@ def main() -> None:
         progress.set_description("free rocking")
         releases = free_rocking.compute(project, progress.update)
         progress.set_description("flexible")
-        flexibility = flexible.flexibility(block.PulseRuns(project.fmu("mcmanus"), project.folder, AUTO), progress.update)
+        flexibility = flexible.flexibility(block.PulseRuns(fmu, project.folder, AUTO), progress.update)
         progress.set_description("ensemble")
         runs = ensemble.compute(project, progress.update)
         ensemble.draw(runs, figures / "ensemble.svg")
@@ -43,12 +45,13 @@ def main() -> None:
         rates = [case.limit.rate for case in cases]
         free = [of for case in releases for of in (case.instant, case.speed)]
         free_rates = [of.rate for of in free]
-        arguments.output.write_text(PAGE.read_text(encoding="utf-8").format(
+        page = PAGE.read_text(encoding="utf-8").format(
             restitution=overturning.R,
+            most=f"{overturning.MOST:g}",
             boundaries=overturning.rows(cases),
             boundary_count=len(cases),
             boundary_error=f"{max(case.limit.error for case in cases):.0e}",
-            boundary_rates=f"{min(rates):.2f} to {max(rates):.2f}",
+            boundary_rates=f"{min(rates):.3f} to {max(rates):.3f}",
             shape_difference=f"{overturning.any_shape(rigid, cases):.0e}",
             samples=block.SAMPLES,
             stocky=overturning.STOCKY,
@@ -59,7 +62,7 @@ def main() -> None:
             train_between=train_between,
             releases=free_rocking.rows(releases),
             release_error=f"{max(of.error for of in free):.0e}",
-            release_rates=f"{min(free_rates):.2f} to {max(free_rates):.2f}",
+            release_rates=f"{min(free_rates):.3f} to {max(free_rates):.3f}",
             quadrature_error=f"{max(max(case.stocky) for case in releases):.0e}",
             tangents=", ".join(f"{tangent:g}" for tangent in limit.TANGENTS),
             ramp=flexible.RAMP,
@@ -77,7 +80,8 @@ def main() -> None:
             draws=ensemble.DRAWS,
             ensemble=ensemble.rows(runs, found),
             **ensemble.summary(runs, found),
-        ), encoding="utf-8")
+        )
+    arguments.output.write_text("\n\n".join(map(filled, page.strip().split("\n\n"))) + "\n", encoding="utf-8")
     print(f"{arguments.output}, figures in {figures}")
 
 

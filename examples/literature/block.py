@@ -4,8 +4,8 @@ With u = 0, Eq 6 divided by J_P reads, alpha the slenderness of the centre of gr
 
     theta'' = -p^2 [sin(s alpha - theta) + (a_g/g) cos(s alpha - theta)],      p^2 = p_l^2/cos alpha = (m + m0) g R/J_P
 
-R the distance of the centre of gravity, at the height H m/(m + m0), from the pivot. That is Housner's block of any shape,
-with m0 = 0 and J0 = m R^2/3 the homogeneous one, p^2 = 3 g/(4 R).
+R the distance of the centre of gravity, at the height H m/(m + m0), from the pivot. That is Housner's block of any
+shape, with m0 = 0 and J0 = m R^2/3 the homogeneous one, p^2 = 3 g/(4 R).
 """
 
 from dataclasses import dataclass

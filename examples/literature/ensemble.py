@@ -1,6 +1,5 @@
 """Section 4: eight records, scaled in time and amplitude, on four structures at every level of detail, by `sweep`."""
 
-import subprocess
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import combinations
@@ -18,8 +17,8 @@ from validation.report import table
 STRUCTURES = {
     "McManus": 'preset = "mcmanus"',
     "Evison": 'preset = "evison"',
-    "stiff": "parameters = { m = 130.1, m0 = 65.4, H = 1.84, B = 0.285, J0 = 10.7, f_fc = 30, zeta_fc = 0.02, r = 0.99 }",
-    "soft": "parameters = { m = 130.1, m0 = 65.4, H = 1.84, B = 0.285, J0 = 10.7, f_fc = 1.5, zeta_fc = 0.02, r = 0.99 }",
+    "stiff": 'preset = "mcmanus"\nvary.f_fc = [30]',
+    "soft": 'preset = "mcmanus"\nvary.f_fc = [1.5]',
 }
 TIME_SCALES = [0.2, 0.28, 0.4, 0.55, 0.75, 1.0]
 PGAS = np.round(np.geomspace(0.3, 2.5, 12), 4)  # g
@@ -31,17 +30,18 @@ DRAWS = 400  # of the bootstrap
 SEED = 1963
 
 
+def records() -> str:
+    """The records as a sweep takes them, each with a peak of 1 g."""
+    return ", ".join(f'{{ file = "{record.path}", scale = {float(G / np.max(np.abs(record.a_g)))!r} }}'
+                     for record in horizontal_records())
+
+
 def sweep(project: Project, detail: str, time_scale: float, factor: float) -> pd.DataFrame:
     """Every record at every peak ground acceleration on every structure."""
-    records = ", ".join(f'{{ file = "{record.path}", scale = {float(G / np.max(np.abs(record.a_g)))!r} }}'
-                        for record in horizontal_records())
     structures = "".join(f'[[structures]]\nname = "{name}"\n{which}\n' for name, which in STRUCTURES.items())
-    file, rows = project.folder / "ensemble.toml", project.folder / "ensemble.csv"
-    file.write_text(f'records = [{records}]\ntime_scale = {time_scale}\nscale = {[float(factor * a) for a in PGAS]}\n'
-                    f'detail = "{detail}"\n{structures}')
-    rows.unlink(missing_ok=True)
-    subprocess.run([project.exporter, "sweep", file, "--output", rows, "--quiet"], check=True, capture_output=True)
-    found = pd.read_csv(rows)
+    scales = [float(factor * pga) for pga in PGAS]
+    found = project.sweep(f'records = [{records()}]\ntime_scale = {time_scale}\nscale = {scales}\ndetail = "{detail}"\n'
+                          + structures)
     return pd.DataFrame({
         "structure": found["structures"], "record": found["record"], "time_scale": time_scale,
         "pga": (found["scale"] / factor).round(4),
@@ -110,20 +110,28 @@ def compare(runs: pd.DataFrame, structure: str, variant: str) -> Comparison:
                       np.quantile([row[2] for row in found], 0.95))
 
 
-def between_halves(runs: pd.DataFrame, structure: str) -> tuple[float, float]:
-    """What four records and the other four give at auto, over all ways to halve them: median distance, and of the median
-    theta_max the typical ratio."""
+@dataclass(frozen=True)
+class Halves:
+    """Half of the records against the others at auto: medians over all ways to halve them."""
+
+    overturned: float  # difference of the part that overturns
+    ratio: float  # of the median theta_max, the larger over the smaller
+    distance: float
+
+
+def between_halves(runs: pd.DataFrame, structure: str) -> Halves:
+    """What another choice of records does."""
     own = runs[runs["structure"] == structure]
     of_record = {record: group["auto"].to_numpy() for record, group in own.groupby("record")}
-    names = sorted(of_record)
-    distances, ratios = [], []
+    names, found = sorted(of_record), []
     for others in combinations(names[1:], len(names) // 2 - 1):
         half = [names[0], *others]
         first = np.concatenate([of_record[name] for name in half])
         second = np.concatenate([of_record[name] for name in names if name not in half])
-        distances.append(distance(first, second))
-        ratios.append(abs(np.log(_median(first) / _median(second))))
-    return np.median(distances), np.exp(np.median(ratios))
+        found.append((abs(_overturned(first) - _overturned(second)), abs(np.log(_median(first) / _median(second))),
+                      distance(first, second)))
+    overturned, ratio, far = np.median(found, axis=0)
+    return Halves(overturned, np.exp(ratio), far)
 
 
 def comparisons(runs: pd.DataFrame) -> list[Comparison]:
@@ -137,38 +145,45 @@ def rows(runs: pd.DataFrame, found: list[Comparison]) -> str:
     for structure in STRUCTURES:
         for of in (comparison for comparison in found if comparison.structure == structure):
             low, high = 100 * of.difference
+            overturned = " / ".join(f"{100 * part:.1f}" for part in of.overturned)
             lines.append([structure, of.variant, f"{100 * of.fates:.1f} %", f"{100 * of.parted:.0f} %",
-                          f"{100 * of.overturned[0]:.1f} / {100 * of.overturned[1]:.1f} %", f"{low:+.1f} to {high:+.1f}",
+                          f"{overturned} %", f"{low:+.1f} to {high:+.1f}",
                           f"{of.median:.2f} ({of.median_range[0]:.2f} to {of.median_range[1]:.2f})",
                           f"{of.distance:.3f} ({of.distance_most:.3f})"])
-        far, ratio = between_halves(runs, structure)
-        lines.append([structure, "*auto, half of the records against the others*", "", "", "", "", f"{ratio:.2f}", f"{far:.3f}"])
-    return table(["structure", "level", "other fate", f"θ_max parts by {100 * PARTED:.0f} %", "overturned: level / auto",
-                  "95 % of the difference", "median θ_max over auto's", "KS distance (95 % of draws below)"],
+        halves = between_halves(runs, structure)
+        lines.append([structure, "*auto, half of the records against the others*", "", "", "",
+                      f"*±{100 * halves.overturned:.1f}*", f"*{halves.ratio:.2f}*", f"*{halves.distance:.3f}*"])
+    return table(["structure", "level", "other fate", f"θ_max parts by {100 * PARTED:.0f} %",
+                  "overturned: level / auto", "difference, 95 %", "median θ_max over auto's, 95 %",
+                  "KS distance (95 % below)"],
                  [[cell.replace("-", "−") for cell in line] for line in lines], texts=(0, 1))
 
 
 def summary(runs: pd.DataFrame, found: list[Comparison]) -> dict[str, str]:
-    """The numbers of the page's words."""
-    of = {variant: [one for one in found if one.variant == variant] for variant in VARIANTS}
-    stronger = next(variant for variant, (_, factor) in VARIANTS.items() if factor != 1)
-    elastic = of["modal"] + of["linear"]
+    """The numbers of the page's words: ranges over the structures."""
+    words = {"stronger_by": f"{100 * (STRONGER - 1):.1g} %"}
+    groups = {"modal": ["modal"], "linear": ["linear"], "rigid": ["rigid"],
+              "stronger": [variant for variant, (_, factor) in VARIANTS.items() if factor != 1]}
+    for name, variants in groups.items():
+        of = [one for one in found if one.variant in variants]
+        points = [100 * abs(one.overturned[0] - one.overturned[1]) for one in of]
+        words |= {
+            f"{name}_fates": _range([100 * one.fates for one in of], ".1f"),
+            f"{name}_parted": _range([100 * one.parted for one in of], ".0f"),
+            f"{name}_points": f"{max(points):.1f}",
+            f"{name}_medians": _range([one.median for one in of], ".2f"),
+            f"{name}_distance": f"{max(one.distance for one in of):.3f}",
+            f"{name}_told": ", ".join(one.structure for one in of if np.prod(one.difference) > 0) or "none",
+        }
+    halves = [between_halves(runs, structure) for structure in STRUCTURES]
+    rigid = [f"{one.distance:.2f} ({one.structure})" for one in found if one.variant == "rigid"]
+    return words | {"halves_distance": _range([one.distance for one in halves], ".2f"),
+                    "halves_points": _range([100 * one.overturned for one in halves], ".0f"),
+                    "rigid_distances": ", ".join(rigid)}
 
-    def percent(ones, name):
-        values = [100 * getattr(one, name) for one in ones]
-        return f"{min(values):.1f} to {max(values):.1f} %"
 
-    halves = [between_halves(runs, structure)[0] for structure in STRUCTURES]
-    return {
-        "elastic_fates": percent(elastic, "fates"), "elastic_parted": percent(elastic, "parted"),
-        "elastic_distance": f"{max(one.distance for one in elastic):.3f}",
-        "stronger_fates": percent(of[stronger], "fates"), "stronger_parted": percent(of[stronger], "parted"),
-        "stronger_distance": f"{max(one.distance for one in of[stronger]):.3f}",
-        "stronger": f"{100 * (STRONGER - 1):.1g} %",
-        "halves_distance": f"{min(halves):.2f} to {max(halves):.2f}",
-        "rigid_fates": percent(of["rigid"], "fates"), "rigid_parted": percent(of["rigid"], "parted"),
-        "rigid_distances": ", ".join(f"{one.distance:.2f} ({one.structure})" for one in of["rigid"]),
-    }
+def _range(values: list[float], form: str) -> str:
+    return f"{min(values):{form}} to {max(values):{form}}"
 
 
 def draw(runs: pd.DataFrame, path: Path) -> None:

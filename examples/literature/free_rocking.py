@@ -28,8 +28,8 @@ class Decay:
 def housner(release: float) -> Decay:
     """Of the slender block released from y = theta_0/alpha.
 
-    From y to the ground takes acosh(1/(1 - y))/p, Housner's T/4. The block arrives with v = sqrt(y (2 - y)), over p alpha, and
-    rises again with r v: in v the quarter is atanh(v).
+    From y to the ground takes acosh(1/(1 - y))/p, Housner's T/4. The block arrives with v = sqrt(y (2 - y)), over
+    p alpha, and rises again with r v: in v the quarter is atanh(v).
     """
     speeds = np.sqrt(release * (2 - release)) * R ** np.arange(IMPACTS)
     return Decay(_instants(np.arctanh(speeds)), speeds)
@@ -102,7 +102,7 @@ def rows(cases: list[Case]) -> str:
     lines = []
     for case in cases:
         if case.impact in (1, 2, IMPACTS):
-            for name, limit, error in (("instant", case.instant, case.stocky[0]), ("speed", case.speed, case.stocky[1])):
+            for name, limit, error in zip(("instant", "speed"), (case.instant, case.speed), case.stocky):
                 lines.append([f"{case.release:g}", str(case.impact), name, f"{limit.closed_form:.9f}",
                               f"{limit.differences[0]:.1e}", f"{limit.differences[-1]:.1e}", f"{limit.rate:.3f}",
                               f"{limit.error:.0e}", f"{error:.0e}"])

@@ -83,7 +83,8 @@ def rows(cases: list[Case]) -> str:
         differences = case.limit.differences
         lines.append([case.pulse.name, f"{case.omega:g}", case.words, f"{case.boundary.amplitude:.10f}",
                       f"{differences[0]:.1e}", f"{differences[-1]:.1e}", f"{case.limit.rate:.3f}",
-                      f"{case.limit.extrapolated:.10f}", f"{case.limit.error:.0e}", f"{case.stocky:.4f}".replace("nan", "–")])
+                      f"{case.limit.extrapolated:.10f}", f"{case.limit.error:.0e}",
+                      f"{case.stocky:.4f}".replace("nan", "–")])
     return table(["pulse", "ω/p", "overturns", "closed form", f"tan α = {TANGENTS[0]:g}: difference",
                   f"tan α = {TANGENTS[-1]:g}: difference", "rate", "extrapolated", "difference",
                   f"tan α = {STOCKY:g}"], [[cell.replace("-", "−") for cell in line] for line in lines], texts=(0, 2))

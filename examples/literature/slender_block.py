@@ -2,13 +2,13 @@
 
     y'' = y - s + A f(t),      y = -theta/alpha,  s = the sign of y,  time in 1/p,  acceleration in g alpha
 
-At rest until A f exceeds 1; at an impact, y = 0, the velocity is multiplied by r. f is sin or cos of omega t (omega in p)
-over a number of half periods, so that between impacts, with f'' = -omega^2 f,
+At rest until A f exceeds 1; at an impact, y = 0, the velocity is multiplied by r. f is sin or cos of omega t (omega in
+p) over a number of half periods, so that between impacts, with f'' = -omega^2 f,
 
     y = s - A f/(1 + omega^2) + z cosh(t - t0) + w sinh(t - t0)
 
-and when the pulse is over the same without f. The block then overturns where the part that grows like exp(t) points away
-from the ground. An amplitude at which that part vanishes is a boundary: the block comes to a stand on its edge.
+and when the pulse is over the same without f. The block then overturns where the part that grows like exp(t) points
+away from the ground. An amplitude at which that part vanishes is a boundary: the block comes to a stand on its edge.
 """
 
 from collections.abc import Iterator
