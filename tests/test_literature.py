@@ -88,6 +88,7 @@ def test_the_extrapolated_boundaries_are_the_closed_forms(runs):
         assert limit.rate == pytest.approx(2, abs=0.02)
         assert limit.error < 1e-6
         assert abs(limit.differences[-1]) > 1e-6, "the extrapolation has something to do"
+        assert overturning.counted(runs, ONE_SINE, 4, limit.values[-1] * (1 + 1e-9)) == of.impacts
 
 
 def test_the_rigid_limit_depends_on_p_and_alpha_alone(runs):

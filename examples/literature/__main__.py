@@ -1,4 +1,4 @@
-"""Writes the page: python -m literature [--exporter PATH] [--output FILE]. It takes about three minutes."""
+"""Writes the page: python -m literature [--exporter PATH] [--output FILE]. It takes a few minutes."""
 
 import argparse
 import tempfile
@@ -47,6 +47,7 @@ def main() -> None:
         free_rates = [of.rate for of in free]
         page = PAGE.read_text(encoding="utf-8").format(
             restitution=overturning.R,
+            impacts_agree=sum(case.impacts == case.boundary.impacts for case in cases),
             most=f"{overturning.MOST:g}",
             boundaries=overturning.rows(cases),
             boundary_count=len(cases),

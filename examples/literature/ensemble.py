@@ -59,7 +59,7 @@ def compute(project: Project, advance: Callable[[], None]) -> pd.DataFrame:
             parts.append(sweep(project, detail, time_scale, factor))
             advance()
         columns.append(pd.concat(parts).set_index(keys)["theta"].rename(name))
-    return pd.concat(columns, axis=1, join="inner").reset_index()
+    return pd.concat(columns, axis=1, join="inner").sort_index().reset_index()  # a sweep's rows are in any order
 
 
 def distance(first, second) -> float:

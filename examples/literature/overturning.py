@@ -16,6 +16,7 @@ R = 0.9  # coefficient of restitution
 MOST = 10.0  # amplitude, g tan alpha
 CASES = [*((HALF_SINE, omega) for omega in (2, 4, 6, 8)), *((ONE_SINE, omega) for omega in (2, 3, 4, 5, 6)),
          *((ONE_COSINE, omega) for omega in (2, 3, 4))]  # omega in p
+BESIDE = 1e-9  # relative distance from a boundary at which impacts are counted
 STOCKY = 0.366  # tan alpha of Evison's specimen
 WAY = [0.15, 0.22, 0.29, STOCKY]  # tan alpha on the way to it
 CURVES = np.linspace(1.5, 8, 66)  # omega/p of the curves in the figure
@@ -29,6 +30,7 @@ class Case:
     omega: float
     boundary: Boundary
     limit: Limit
+    impacts: int  # that the FMU counts where the most slender block overturns
     stocky: float  # nan where the boundary does not last
 
     @property
@@ -42,6 +44,13 @@ def limit(runs: PulseRuns, pulse: Pulse, omega: float, of: Boundary) -> Limit:
     """The boundary of the FMU's blocks that become slender."""
     return Limit(of.amplitude, [runs.boundary(homogeneous(tangent, R), pulse, omega, of.amplitude)
                                 for tangent in TANGENTS])
+
+
+def counted(runs: PulseRuns, pulse: Pulse, omega: float, amplitude: float) -> int:
+    """Impacts of the most slender block, which overturns: its transitions but for uplift and overturning."""
+    history = runs.run(homogeneous(TANGENTS[-1], R), pulse, omega, amplitude)
+    assert history.overturned
+    return history.transitions - 2
 
 
 def followed(runs: PulseRuns, pulse: Pulse, omega: float, slender: Limit) -> float:
@@ -63,7 +72,8 @@ def compute(runs: PulseRuns, advance: Callable[[], None]) -> list[Case]:
     for pulse, omega in CASES:
         for of in boundaries(pulse, omega, R, MOST):
             slender = limit(runs, pulse, omega, of)
-            cases.append(Case(pulse, omega, of, slender, followed(runs, pulse, omega, slender)))
+            impacts = counted(runs, pulse, omega, slender.values[-1] * (1 - BESIDE if of.upper else 1 + BESIDE))
+            cases.append(Case(pulse, omega, of, slender, impacts, followed(runs, pulse, omega, slender)))
         advance()
     return cases
 

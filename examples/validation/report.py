@@ -91,10 +91,10 @@ def markdown(sections: list[Section], figures: str) -> str:
 
 
 def filled(block: str) -> str:
-    """A paragraph, or the items of a list, with lines of even length; a table, a heading, a figure or a formula as it is."""
+    """A paragraph or a list with lines of even length; a table, a heading, a figure or a formula as it is."""
     if block.startswith(("|", "#", "!", "    ")):
         return block
-    items = re.split(r"\n(?=- )", block)
+    items = [" ".join(item.split()) for item in re.split(r"\n(?=- )", block)]
     return "\n".join(textwrap.fill(item, 120, subsequent_indent="  " * item.startswith("- "), break_long_words=False)
                      for item in items)
 
