@@ -128,9 +128,9 @@ def some_runs(factor: float) -> pd.DataFrame:
 
 def test_an_ensemble_compared_with_itself_and_with_a_scaled_one():
     same, doubled = (ensemble.compare(some_runs(factor), "pier", "level") for factor in (1.0, 2.0))
-    assert (same.fates, same.parted, same.median, same.distance) == (0, 0, 1, 0)
+    assert (same.fates, same.parted, *same.quantiles, same.distance) == (0, 0, 1, 1, 0)
     assert same.overturned == doubled.overturned == (0.1, 0.1)
-    assert (doubled.fates, doubled.parted, doubled.median) == (0, 1, pytest.approx(2))
+    assert (doubled.fates, doubled.parted) == (0, 1) and doubled.quantiles == pytest.approx([2, 2])
     # of uniform numbers from 0.1 to 0.9 half are below 0.5, the smallest of twice them below 0.2
     theta = np.sort(some_runs(1.0)["auto"])
     expected = max(np.mean(theta <= x) - np.mean(2 * theta <= x) for x in theta)
@@ -148,4 +148,4 @@ def test_halves_of_the_records():
         assert halves.overturned == 0 and halves.distance < 0.12
     runs["record"] = runs["record"].replace({"b": "a", "d": "c"})
     parted = ensemble.between_halves(runs, "pier")
-    assert parted.distance == pytest.approx(0.9) and parted.ratio == pytest.approx(10.5 / 0.5, rel=0.05)
+    assert parted.distance == pytest.approx(0.9) and parted.ratios[0] == pytest.approx(10.5 / 0.5, rel=0.05)

@@ -26,6 +26,7 @@ STRONGER = 1.001  # factor on the records of the variant that tells what can be 
 VARIANTS = {"rigid": ("rigid", 1.0), "modal": ("modal", 1.0), "linear": ("linear", 1.0),
             f"auto, records {100 * (STRONGER - 1):.1g} % stronger": ("auto", STRONGER), "auto": ("auto", 1.0)}
 PARTED = 0.1  # relative difference of theta_max from which two runs have parted
+QUANTILES = [0.5, 0.84]
 DRAWS = 400  # of the bootstrap
 SEED = 1963
 
@@ -77,8 +78,8 @@ class Comparison:
     parted: float  # part of those in which both rock and stand and theta_max parts
     overturned: tuple[float, float]  # by the variant, by auto
     difference: np.ndarray  # of the overturned, range
-    median: float  # of theta_max of the runs that rock and stand, over auto's
-    median_range: np.ndarray
+    quantiles: np.ndarray  # QUANTILES of theta_max of the runs that rock and stand, over auto's
+    quantile_ranges: np.ndarray  # a row for each
     distance: float
     distance_most: float  # 95 % of what other draws give is below
 
@@ -87,8 +88,8 @@ def _overturned(theta) -> float:
     return np.mean(np.isinf(theta))
 
 
-def _median(theta) -> float:
-    return np.median(theta[np.isfinite(theta) & (theta > 0)])
+def _quantiles(theta) -> np.ndarray:
+    return np.quantile(theta[np.isfinite(theta) & (theta > 0)], QUANTILES)
 
 
 def compare(runs: pd.DataFrame, structure: str, variant: str) -> Comparison:
@@ -102,12 +103,12 @@ def compare(runs: pd.DataFrame, structure: str, variant: str) -> Comparison:
     for draw in draws:
         rows = np.concatenate([of_record[i] for i in draw])
         a, b = theta[rows], auto[rows]
-        found.append((_overturned(a) - _overturned(b), _median(a) / _median(b), distance(a, b)))
+        found.append((_overturned(a) - _overturned(b), *(_quantiles(a) / _quantiles(b)), distance(a, b)))
     ranges = np.quantile(found, [0.025, 0.975], axis=0).T
     return Comparison(structure, variant, np.mean(np.isinf(theta) != np.isinf(auto)),
                       np.mean(np.abs(theta[both] / auto[both] - 1) > PARTED), (_overturned(theta), _overturned(auto)),
-                      ranges[0], _median(theta) / _median(auto), ranges[1], distance(theta, auto),
-                      np.quantile([row[2] for row in found], 0.95))
+                      ranges[0], _quantiles(theta) / _quantiles(auto), ranges[1:-1], distance(theta, auto),
+                      np.quantile([row[-1] for row in found], 0.95))
 
 
 @dataclass(frozen=True)
@@ -115,7 +116,7 @@ class Halves:
     """Half of the records against the others at auto: medians over all ways to halve them."""
 
     overturned: float  # difference of the part that overturns
-    ratio: float  # of the median theta_max, the larger over the smaller
+    ratios: np.ndarray  # of QUANTILES of theta_max, the larger over the smaller
     distance: float
 
 
@@ -128,10 +129,10 @@ def between_halves(runs: pd.DataFrame, structure: str) -> Halves:
         half = [names[0], *others]
         first = np.concatenate([of_record[name] for name in half])
         second = np.concatenate([of_record[name] for name in names if name not in half])
-        found.append((abs(_overturned(first) - _overturned(second)), abs(np.log(_median(first) / _median(second))),
-                      distance(first, second)))
-    overturned, ratio, far = np.median(found, axis=0)
-    return Halves(overturned, np.exp(ratio), far)
+        found.append((abs(_overturned(first) - _overturned(second)),
+                      *np.abs(np.log(_quantiles(first) / _quantiles(second))), distance(first, second)))
+    overturned, *ratios, far = np.median(found, axis=0)
+    return Halves(overturned, np.exp(ratios), far)
 
 
 def comparisons(runs: pd.DataFrame) -> list[Comparison]:
@@ -148,13 +149,14 @@ def rows(runs: pd.DataFrame, found: list[Comparison]) -> str:
             overturned = " / ".join(f"{100 * part:.1f}" for part in of.overturned)
             lines.append([structure, of.variant, f"{100 * of.fates:.1f} %", f"{100 * of.parted:.0f} %",
                           f"{overturned} %", f"{low:+.1f} to {high:+.1f}",
-                          f"{of.median:.2f} ({of.median_range[0]:.2f} to {of.median_range[1]:.2f})",
+                          *(f"{ratio:.2f} ({least:.2f} to {most:.2f})"
+                            for ratio, (least, most) in zip(of.quantiles, of.quantile_ranges)),
                           f"{of.distance:.3f} ({of.distance_most:.3f})"])
         halves = between_halves(runs, structure)
         lines.append([structure, "*auto, half of the records against the others*", "", "", "",
-                      f"*±{100 * halves.overturned:.1f}*", f"*{halves.ratio:.2f}*", f"*{halves.distance:.3f}*"])
+                      f"*±{100 * halves.overturned:.1f}*", *(f"*{ratio:.2f}*" for ratio in halves.ratios), f"*{halves.distance:.3f}*"])
     return table(["structure", "level", "other fate", f"θ_max parts by {100 * PARTED:.0f} %",
-                  "overturned: level / auto", "difference, 95 %", "median θ_max over auto's, 95 %",
+                  "overturned: level / auto", "difference, 95 %", *(f"{100 * q:g} % quantile of θ_max over auto's" for q in QUANTILES),
                   "KS distance (95 % below)"],
                  [[cell.replace("-", "−") for cell in line] for line in lines], texts=(0, 1))
 
@@ -171,7 +173,7 @@ def summary(runs: pd.DataFrame, found: list[Comparison]) -> dict[str, str]:
             f"{name}_fates": _range([100 * one.fates for one in of], ".1f"),
             f"{name}_parted": _range([100 * one.parted for one in of], ".0f"),
             f"{name}_points": f"{max(points):.1f}",
-            f"{name}_medians": _range([one.median for one in of], ".2f"),
+            f"{name}_quantiles": _range([ratio for one in of for ratio in one.quantiles], ".2f"),
             f"{name}_distance": f"{max(one.distance for one in of):.3f}",
             f"{name}_told": ", ".join(one.structure for one in of if np.prod(one.difference) > 0) or "none",
         }
