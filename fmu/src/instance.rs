@@ -502,6 +502,11 @@ impl Instance {
         seed: &[f64],
         values: &mut [MaybeUninit<f64>],
     ) -> Result<(), Failure> {
+        for (unknown, &value) in unknowns.iter().zip(seed) {
+            if !value.is_finite() {
+                return Err(Failure::BadSlope { variable: find(*unknown)?, value });
+            }
+        }
         let mut sums = Vec::with_capacity(knowns.len());
         for known in knowns {
             let column = self.directional_derivative(unknowns, &[*known], &[1.0])?;

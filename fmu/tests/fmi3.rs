@@ -610,7 +610,7 @@ fn random_call(
                 }
                 status
             }
-            other if other == Function::SerializedFMUStateSize => fmi3SerializedFMUStateSize(c, state, &mut 0),
+            Function::SerializedFMUStateSize => fmi3SerializedFMUStateSize(c, state, &mut 0),
             other => call(host, other),
         }
     }
