@@ -115,13 +115,17 @@ enum Command {
   rocking-fmu simulate --preset evison --free 2 --theta-0 0.04 -o response.csv
   rocking-fmu modes --preset evison --response response.csv")]
     Modes(modes::ModesArgs),
-    /// Run records x scale factors x structures; probabilities of overturning, fragility curves
+    /// Run records x scale factors x structures for fragility curves, or pulses for overturning spectra
+    ///
+    /// A file with records gives probabilities of overturning and fragility curves; one with pulses a map of every
+    /// structure over frequency and amplitude: whether it lifts off, stands, or overturns, and after how many impacts.
     ///
     /// Appends a row per run to the CSV file as the runs end. A sweep that was stopped goes on where it was when the
-    /// same command is given again; once all runs are there, the command shows the probabilities alone.
+    /// same command is given again; once all runs are there, the command shows the results alone.
     #[command(after_help = "Examples:
   rocking-fmu sweep fragility.toml
-  rocking-fmu sweep fragility.toml -o runs.csv --threads 2")]
+  rocking-fmu sweep fragility.toml -o runs.csv --threads 2
+  rocking-fmu sweep spectrum.toml --picture spectrum.png")]
     Sweep(sweep::SweepArgs),
     /// Write a pulse as a record: half sine, sine, cosine, Ricker, Mavroeidis and Papageorgiou
     ///

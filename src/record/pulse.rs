@@ -257,7 +257,9 @@ impl Pulse {
             samples.push((end.0 + rest, 0.0));
         }
         let (times, acceleration) = samples.into_iter().unzip();
-        let title = format!("{} of {amplitude} m/s2 at {frequency} Hz", self.shape.name());
+        let six_digits = |value: f64| format!("{value:.5e}").parse().expect("a number in Rust's own notation");
+        let [of, at]: [f64; 2] = [amplitude, frequency].map(six_digits);
+        let title = format!("{}, {of} m/s2, {at} Hz", self.shape.name());
         Ok(Record::from_samples(title, times, acceleration)?)
     }
 
