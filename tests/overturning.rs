@@ -6,7 +6,7 @@ use rocking::run::map::{Axis, Class, Fate, Map, Place, Point, nearest};
 use rocking::{Detail, Parameters, Structure};
 use std::collections::HashMap;
 
-/// A rigid block of slenderness `B/H` about, all of its mass at the top.
+/// A rigid block of this `slenderness` H/B, all of its mass at the top.
 fn block(slenderness: f64) -> Structure {
     let parameters = Parameters { m0: 1e-3, J0: 0.0, H: 1.0, B: 1.0 / slenderness, ..Parameters::MCMANUS };
     Structure::new(parameters).unwrap()
@@ -128,18 +128,18 @@ fn a_refined_map_has_the_boundary_of_a_fine_grid() {
     assert!(differing <= all.len() / 100, "{differing} of {}", all.len());
 }
 
-/// The condition is what a run at the changed amplitude says; where the structure stays down it is 0, and elsewhere it is
-/// the amplification of a change, which is at least of the order of the change itself.
+/// Where the structure stays down nothing changes; elsewhere a change of the amplitude is amplified, or damped, by few
+/// orders of magnitude away from the boundaries.
 #[test]
-fn the_condition_is_that_of_two_runs() {
+fn conditions_are_of_the_order_of_the_change() {
     let map = map(5, true);
     let points = complete(&map, 0);
     for (place, point) in &points {
         let condition = point.condition.unwrap();
         match point.fate {
-            Fate::NoUplift | Fate::Overturns => assert_eq!(condition, 0.0, "{place:?}"),
-            // a change of 1e-12 is seen among the roundings of a thousand steps, so that only its order is known
-            _ => assert!((1e-3..1e8).contains(&condition), "{place:?}: {condition}"),
+            Fate::NoUplift => assert_eq!(condition, 0.0, "{place:?}"),
+            // of a pulse and few impacts; a change of 1e-12 is seen among roundings, so that only its order is known
+            _ => assert!((1e-3..1e5).contains(&condition), "{place:?}: {condition}"),
         }
     }
 }
@@ -165,7 +165,8 @@ fn refusals_name_the_axis_and_the_limit() {
         let axes = [frequency, amplitude].map(|values| Axis::new(values, false));
         Map::new(structure, Pulse::new(Shape::Sine, 1.0, 1.0), axes, false).unwrap_err().to_string()
     };
-    let rising = |name| format!("{name} needs two or more finite values greater than 0, each larger than the one before");
+    let rising =
+        |name| format!("{name} needs two or more finite values greater than 0, each larger than the one before");
     assert_eq!(refused(vec![1.0], vec![1.0, 2.0]), rising("frequency"));
     assert_eq!(refused(vec![1.0, 2.0], vec![2.0, 1.0]), rising("amplitude"));
     assert_eq!(refused(vec![1.0, f64::NAN], vec![1.0, 2.0]), rising("frequency"));

@@ -73,7 +73,7 @@ pub const PULSE: [Quantity<Pulse>; 7] = [
     quantity!(amplitude ["m/s2"] 1e-9, 1e9, "amplitude of the ground acceleration"),
     quantity!(frequency ["Hz"] 1e-6, 1e6, "frequency of the pulse"),
     quantity!(cycles ["1"] 1e-2, 1e4, "periods of the pulse"),
-    quantity!(phase ["rad"] - TAU, TAU, "phase of the pulse"),
+    quantity!(phase["rad"] - TAU, TAU, "phase of the pulse"),
     quantity!(lead_in ["s"] 0.0, 1e9, "time before the pulse"),
     quantity!(rest ["s"] 0.0, 1e9, "time after the pulse"),
     quantity!(error ["1"] 1e-12, 1e-2, "distance of the straight lines from the curve over the amplitude"),

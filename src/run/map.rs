@@ -114,7 +114,8 @@ pub struct Point {
     pub transitions: u64,
     /// When the run ended, s after the start of the pulse.
     pub end: f64,
-    /// Relative change of `theta` over that of the amplitude, 1e-12; infinite where the [`Class`] changes.
+    /// Relative change of `theta`, and of what overturns of `end`, over that of the amplitude, 1e-12; infinite where the
+    /// [`Class`] changes.
     pub condition: Option<f64>,
     /// Why it failed; empty if it did not.
     pub reason: String,
@@ -237,13 +238,12 @@ impl Point {
 
     /// How much it differs from `other`, whose amplitude is larger by [`PERTURBATION`].
     fn condition(&self, other: &Point) -> f64 {
-        let change = (other.theta - self.theta).abs();
-        if self.class() != other.class() {
-            f64::INFINITY
-        } else if change == 0.0 {
-            0.0
-        } else {
-            change / self.theta / PERTURBATION
+        let change = |of: fn(&Point) -> f64| (of(other) - of(self)).abs() / of(self) / PERTURBATION;
+        match self.fate {
+            _ if self.class() != other.class() => f64::INFINITY,
+            Fate::NoUplift | Fate::Failed => 0.0,
+            Fate::Overturns => change(|point| point.end),
+            Fate::Stands | Fate::StillRocking => change(|point| point.theta),
         }
     }
 }
@@ -265,8 +265,7 @@ impl Map {
         }
         let (detail, tolerance) = (Detail::default(), DEFAULT_TOLERANCE);
         let finds_condition = false;
-        let map =
-            Map { structure, pulse, frequency, amplitude, is_dimensionless, detail, tolerance, finds_condition };
+        let map = Map { structure, pulse, frequency, amplitude, is_dimensionless, detail, tolerance, finds_condition };
         for place in [Place::of_grid(0, 0), Place::of_grid(frequencies - 1, amplitudes - 1)] {
             map.pulse(place).check()?;
         }

@@ -169,9 +169,7 @@ fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
 
 /// Says how many points failed, and why the first did.
 fn report_failures(spectra: &[Spectrum]) -> anyhow::Result<()> {
-    let failed = || {
-        spectra.iter().flat_map(|of| of.points.iter()).filter(|(_, point)| point.class() == Class::Failed)
-    };
+    let failed = || spectra.iter().flat_map(|of| of.points.iter()).filter(|(_, point)| point.class() == Class::Failed);
     match failed().min_by_key(|(place, _)| **place) {
         Some((_, first)) => bail!("{} point(s) failed; one of them: {}", failed().count(), first.reason),
         None => Ok(()),

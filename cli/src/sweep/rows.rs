@@ -142,4 +142,3 @@ fn parse(row: &StringRecord) -> anyhow::Result<(Uuid, Outcome)> {
     };
     Ok((key_of(row)?, outcome))
 }
-

@@ -1,8 +1,6 @@
 //! The picture of maps: classes as cells, lines of equal rotation, and beside them, where it is known, the condition.
 use super::Spectrum;
-use crate::picture::{
-    Area, Picture, SMALL, TEXT, TITLE, axes, chart, colour, px, stroke, titled, words, words_about,
-};
+use crate::picture::{Area, Picture, SMALL, TEXT, TITLE, axes, chart, colour, px, stroke, titled, words, words_about};
 use contour::ContourBuilder;
 use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
@@ -13,8 +11,11 @@ const PANEL: (u32, u32) = (560, 440);
 const NAME: f64 = 20.0;
 const LEGEND_LINE: f64 = 19.0;
 
+/// Where the axes of a panel begin, pixels.
+const LEFT: f64 = 78.0;
+
 /// θ_max/α_cg on the lines.
-const LINES: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
+const LINES: [f64; 4] = [0.1, 0.25, 0.5, 0.75];
 
 /// A cell reaches this much below those that are drawn after it, pixels, so that nothing shines through between them.
 const OVERLAP: f64 = 0.5;
@@ -34,13 +35,27 @@ const CLASSES: [Swatch; 9] = [
     (colour::INK, "failed: not decided"),
 ];
 
-const CONDITIONS: [Swatch; 5] = [
-    (RGBColor(240, 240, 240), "amplified less than 1e3 times"),
-    (RGBColor(169, 211, 240), "1e3 to 1e6 times"),
+const CONDITIONS: [Swatch; 6] = [
+    (RGBColor(240, 240, 240), "amplifies 1e-12 less than 10 times"),
+    (RGBColor(214, 234, 248), "10 to 1e3 times"),
+    (RGBColor(120, 178, 222), "1e3 to 1e6 times"),
     (colour::ORANGE, "1e6 to 1e10 times"),
-    (colour::VERMILLION, "more: 1e-12 moves theta_max by more than 1 %"),
+    (colour::VERMILLION, "more: 1e-12 moves the answer by more than 1 %"),
     (colour::INK, "1e-12 changes the class"),
 ];
+
+/// What the colours of a picture stand for.
+#[derive(Clone, Copy)]
+struct Key {
+    /// The number of a point's swatch.
+    of: fn(&Point) -> usize,
+    swatches: &'static [Swatch],
+    /// Whether lines of equal rotation are drawn.
+    has_lines: bool,
+}
+
+const OF_CLASS: Key = Key { of: class_of, swatches: &CLASSES, has_lines: true };
+const OF_CONDITION: Key = Key { of: condition_of, swatches: &CONDITIONS, has_lines: false };
 
 /// What the axes of a picture of `map` are called.
 pub fn axis_names(map: &Map) -> [&'static str; 2] {
@@ -63,10 +78,11 @@ fn class_of(point: &Point) -> usize {
 
 fn condition_of(point: &Point) -> usize {
     match point.condition {
-        Some(f64::INFINITY) => 4,
-        Some(1e10..) => 3,
-        Some(1e6..) => 2,
-        Some(1e3..) => 1,
+        Some(f64::INFINITY) => 5,
+        Some(1e10..) => 4,
+        Some(1e6..) => 3,
+        Some(1e3..) => 2,
+        Some(10.0..) => 1,
         _ => 0,
     }
 }
@@ -76,34 +92,43 @@ pub fn draw(picture: Picture, spectra: &[Spectrum], refinements: u32) -> anyhow:
     let Some(Spectrum { map, .. }) = spectra.first() else { return Ok(()) };
     let has_condition = map.finds_condition;
     let columns = if has_condition { 2 } else { 1 };
-    let legend = (LEGEND_LINE * (CLASSES.len() as f64 + 2.0)) as u32;
+    let seen = |key: Key| {
+        let is_there = |i: usize| spectra.iter().flat_map(|one| one.points.values()).any(|point| (key.of)(point) == i);
+        (0..key.swatches.len()).filter(|i| is_there(*i)).map(|i| &key.swatches[i]).collect::<Vec<_>>()
+    };
+    let (classes, conditions) = (seen(OF_CLASS), seen(OF_CONDITION));
+    let legend = (LEGEND_LINE * (classes.len().max(conditions.len()) as f64 + 1.0)) as u32;
     let size = (columns * PANEL.0, TITLE + spectra.len() as u32 * (PANEL.1 + NAME as u32) + legend);
     let title = format!("Overturning spectrum: {}", map.pulse.shape.name().replace('_', " "));
-    let about = format!("level of detail {}, tolerance {:e}; lines: theta_max/alpha_cg", map.detail.name(), map.tolerance);
+    let about =
+        format!("level of detail {}, tolerance {:e}; lines: theta_max/alpha_cg", map.detail.name(), map.tolerance);
     picture.draw(size, |area| {
         let mut rest = titled(area, &title, &about)?;
         for spectrum in spectra {
             let (heading, below) = rest.split_vertically(px(NAME));
             let (row, below) = below.split_vertically(px(f64::from(PANEL.1)));
-            heading.draw(&Text::new(spectrum.name.clone(), (px(94.0), px(10.0)), words(TEXT, colour::INK)))?;
-            let (left, right) = row.split_horizontally(px(f64::from(PANEL.0)));
-            panel((area, &left), spectrum, refinements, (&class_of, &CLASSES), true)?;
+            let name = |x, name: String| heading.draw(&Text::new(name, (px(x), px(10.0)), words(TEXT, colour::INK)));
+            name(LEFT, spectrum.name.clone())?;
             if has_condition {
-                panel((area, &right), spectrum, refinements, (&condition_of, &CONDITIONS), false)?;
+                name(LEFT + f64::from(PANEL.0), format!("{}: condition", spectrum.name))?;
+            }
+            let (left, right) = row.split_horizontally(px(f64::from(PANEL.0)));
+            panel((area, &left), spectrum, refinements, OF_CLASS)?;
+            if has_condition {
+                panel((area, &right), spectrum, refinements, OF_CONDITION)?;
             }
             rest = below;
         }
-        let seen = |of: &dyn Fn(&Point) -> usize, i| spectra.iter().flat_map(|one| one.points.values()).any(|at| of(at) == i);
-        draw_legend(&rest, 94.0, CLASSES.iter().enumerate().filter(|(i, _)| seen(&class_of, *i)).map(|(_, of)| of))?;
+        draw_legend(&rest, LEFT, &classes)?;
         if has_condition {
-            draw_legend(&rest, 94.0 + f64::from(PANEL.0), CONDITIONS.iter())?;
+            draw_legend(&rest, LEFT + f64::from(PANEL.0), &conditions)?;
         }
         Ok(())
     })
 }
 
-fn draw_legend<'a>(area: &Area, x: f64, swatches: impl Iterator<Item = &'a Swatch>) -> anyhow::Result<()> {
-    for (i, (colour, name)) in swatches.enumerate() {
+fn draw_legend(area: &Area, x: f64, swatches: &[&Swatch]) -> anyhow::Result<()> {
+    for (i, (colour, name)) in swatches.iter().enumerate() {
         let y = LEGEND_LINE * (i as f64 + 0.8);
         let swatch = [(px(x), px(y - 6.0)), (px(x + 18.0), px(y + 6.0))];
         area.draw(&Rectangle::new(swatch, colour.filled()))?;
@@ -133,14 +158,8 @@ impl Shown<'_> {
     }
 }
 
-/// A map by `swatch_of` its points on an area of the whole picture.
-fn panel(
-    (whole, area): (&Area, &Area),
-    spectrum: &Spectrum,
-    refinements: u32,
-    colours: (&dyn Fn(&Point) -> usize, &[Swatch]),
-    has_lines: bool,
-) -> anyhow::Result<()> {
+/// A map in the colours of `key` on an area of the whole picture.
+fn panel((whole, area): (&Area, &Area), spectrum: &Spectrum, refinements: u32, key: Key) -> anyhow::Result<()> {
     let map = &spectrum.map;
     let unit = if map.is_dimensionless { 1.0 } else { map.structure.parameters().g };
     let [x, y] = [Shown { axis: &map.frequency, unit: 1.0 }, Shown { axis: &map.amplitude, unit }];
@@ -149,8 +168,8 @@ fn panel(
         ($x:expr, $y:expr) => {{
             let mut chart = builder.build_cartesian_2d($x, $y)?;
             axes(&mut chart, axis_names(map), [8, 8])?;
-            cells(whole, &chart, [&x, &y], spectrum, refinements, colours)?;
-            if has_lines {
+            cells(whole, &chart, [&x, &y], spectrum, refinements, key)?;
+            if key.has_lines {
                 lines(&mut chart, [&x, &y], spectrum)?;
             }
         }};
@@ -171,7 +190,7 @@ fn cells<X, Y>(
     [x, y]: [&Shown; 2],
     spectrum: &Spectrum,
     refinements: u32,
-    (swatch_of, swatches): (&dyn Fn(&Point) -> usize, &[Swatch]),
+    key: Key,
 ) -> anyhow::Result<()>
 where
     X: Ranged<ValueType = f64> + ValueFormatter<f64>,
@@ -183,7 +202,7 @@ where
     let edge = |i: usize| (i as f64 - 0.5) / parts as f64;
     let swatch = |column: usize, row: usize| {
         let place = Place { frequency: column as u32 * step, amplitude: row as u32 * step };
-        nearest(&spectrum.points, place, refinements).map(swatch_of)
+        nearest(&spectrum.points, place, refinements).map(key.of)
     };
     let runs = |row: usize| {
         let colours: Vec<_> = (0..columns).map(|column| swatch(column, row)).collect();
@@ -202,7 +221,7 @@ where
         let (right, top) = chart.backend_coord(&(x.at(edge(to)), y.at(edge(rows.end))));
         let right = if to == columns { right } else { right + overlap };
         let top = if rows.end == y.steps() * parts + 1 { top } else { top - overlap };
-        whole.draw(&Rectangle::new([(left, bottom), (right, top)], swatches[swatch].0.filled()))
+        whole.draw(&Rectangle::new([(left, bottom), (right, top)], key.swatches[swatch].0.filled()))
     };
     // a row that is the same as the one below is drawn with it
     let (mut start, mut last) = (0, runs(0));
@@ -229,7 +248,7 @@ where
     let thetas: Vec<_> = spectrum.map.grid().map(|place| spectrum.points[&place].theta).collect();
     let [last_x, last_y] = [x, y].map(|axis| axis.steps() as f64);
     let contours = ContourBuilder::new(x.steps() + 1, y.steps() + 1, true).x_origin(-0.5).y_origin(-0.5);
-    for line in contours.lines(&thetas, &LINES)? {
+    for (number, line) in (1..).zip(contours.lines(&thetas, &LINES)?) {
         let mut longest: &[(f64, f64)] = &[];
         // rings close along the edges of the map, where there is nothing to be drawn
         let on_edge = |(x, y): (f64, f64)| x <= 0.0 || x >= last_x || y <= 0.0 || y >= last_y;
@@ -243,7 +262,8 @@ where
                 longest = if part.len() > longest.len() { part } else { longest };
             }
         }
-        if let Some((i, j)) = longest.get(longest.len() / 2) {
+        // names stand apart: each further along its line
+        if let Some((i, j)) = longest.get(longest.len() * number / (LINES.len() + 1)) {
             let name = Text::new(line.threshold().to_string(), (0, px(-6.0)), words_about(SMALL, colour::INK));
             chart.draw_series([EmptyElement::at((x.at(*i), y.at(*j))) + name])?;
         }

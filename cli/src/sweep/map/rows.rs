@@ -39,7 +39,10 @@ impl Rows {
     /// Says how many rows nobody has asked for, and how many are there again.
     pub fn say_others(&self, path: &Path) {
         for (count, what) in [
-            (self.points.len(), "of points that are not in these maps (other inputs, or another build of the program): kept"),
+            (
+                self.points.len(),
+                "of points that are not in these maps (other inputs, or another build of the program): kept",
+            ),
             (self.repeated, "there again: counted once"),
         ] {
             if count > 0 {
