@@ -104,7 +104,7 @@ fn a_point_is_a_simulation_of_its_pulse() {
     let printed: serde_json::Value = serde_json::from_str(&printed).unwrap();
     let alpha = rocking::Structure::new(rocking::Parameters::MCMANUS).unwrap().tan_alpha_cg.atan();
     let peaks = printed["peaks"].as_array().unwrap();
-    let theta = peaks.iter().find(|peak| peak["name"] == "theta").unwrap()["magnitude"].as_f64().unwrap();
+    let theta = peaks.iter().find(|peak| peak["name"] == "theta").unwrap()["peak"].as_f64().unwrap();
     let ratio: f64 = cell(14).parse().unwrap();
     assert!((theta / alpha / ratio - 1.0).abs() < 1e-9, "{theta} {ratio}");
     assert_eq!(printed["transitions"].to_string(), cell(15));

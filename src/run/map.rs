@@ -171,11 +171,6 @@ impl Axis {
         if self.is_log { from * (part * (to / from).ln()).exp() } else { from + part * (to - from) }
     }
 
-    /// The last place on it.
-    fn end(&self) -> u32 {
-        (self.values.len() - 1) as u32 * PARTS
-    }
-
     fn check(&self, name: &'static str) -> Result<(), MapError> {
         let rises = self.values.windows(2).all(|pair| pair[0] < pair[1]);
         let is_finite = self.values.iter().all(|value| *value > 0.0 && value.is_finite());
@@ -322,9 +317,8 @@ impl Map {
         let mut lacking = BTreeSet::new();
         for &corner in known.keys() {
             let is_corner = corner.frequency.is_multiple_of(2 * half) && corner.amplitude.is_multiple_of(2 * half);
-            let is_last = corner.frequency == self.frequency.end() || corner.amplitude == self.amplitude.end();
             let corners = [[0, 0], [2, 0], [0, 2], [2, 2]].map(|part| at(corner, part));
-            if !is_corner || is_last || !corners.iter().all(|corner| known.contains_key(corner)) {
+            if !is_corner || !corners.iter().all(|corner| known.contains_key(corner)) {
                 continue;
             }
             let between = [[1, 0], [0, 1], [1, 1], [2, 1], [1, 2]].map(|part| at(corner, part));
