@@ -14,7 +14,7 @@ SCENES = ["rigid", "specimens", "stiffness", "islands"]
 CLASSES = ["no uplift", "rocks and stands", "overturns without impact", "overturns after one impact",
            "overturns after more", "still rocking"]
 RATIOS = [2, 4, 6, 8]  # ω/p_l at which the least amplitude that overturns is shown
-AMPLIFIED = [10, 1e3, 1e6]
+AMPLIFIED = ["10", "1e3", "1e6", "1e10"]
 
 
 class Scene:
@@ -77,7 +77,7 @@ def main() -> None:
                        [[str(ratio), *(scene.least(structure, ratio) for scene, structure in one_sine)]
                         for ratio in RATIOS]),
         amplified=markdown(["amplified more than", "points"],
-                           [[f"{limit:g} times", f"{100 * sum(c > limit for c in conditions) / len(conditions):.2f} %"]
+                           [[f"{limit} times", f"{100 * sum(c > float(limit) for c in conditions) / len(conditions):.2f} %"]
                             for limit in AMPLIFIED]),
         largest=f"{max(c for c in conditions if c < float('inf')):.1e}",
         changes=sum(c == float("inf") for c in conditions),

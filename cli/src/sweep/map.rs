@@ -10,6 +10,7 @@ use crate::{
     talk::{self, say},
 };
 use anyhow::{bail, ensure};
+use picture::Shown;
 use rayon::prelude::*;
 use rocking::run::{
     LONGEST_REST,
@@ -141,9 +142,9 @@ fn count(spectrum: &Spectrum) -> Vec<Count<'_>> {
 fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
     let mut out = String::new();
     for Spectrum { name, map, points } in spectra {
-        let [frequency, amplitude] = [&map.frequency, &map.amplitude].map(|axis| {
-            let values = axis.values();
-            format!("{} from {} to {}", values.len(), short(values[0]), short(values[values.len() - 1]))
+        let [frequency, amplitude] = Shown::axes(map).map(|axis| {
+            let range = axis.range();
+            format!("{} from {} to {}", axis.steps() + 1, short(range.start), short(range.end))
         });
         let [x, y] = picture::axis_names(map);
         let refined = points.len() - map.grid().count();

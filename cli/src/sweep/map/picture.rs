@@ -138,22 +138,30 @@ fn draw_legend(area: &Area, x: f64, swatches: &[&Swatch]) -> anyhow::Result<()> 
     Ok(())
 }
 
-/// The values of an axis as they are shown: amplitudes in g.
-struct Shown<'a> {
+/// An axis as it is shown: amplitudes in g.
+pub struct Shown<'a> {
     axis: &'a Axis,
     unit: f64,
 }
 
 impl Shown<'_> {
+    /// Frequency and amplitude of `map`.
+    pub fn axes(map: &Map) -> [Shown<'_>; 2] {
+        let g = if map.is_dimensionless { 1.0 } else { map.structure.parameters().g };
+        [Shown { axis: &map.frequency, unit: 1.0 }, Shown { axis: &map.amplitude, unit: g }]
+    }
+
     fn at(&self, steps: f64) -> f64 {
         self.axis.at(steps) / self.unit
     }
 
-    fn steps(&self) -> usize {
+    /// How many steps its grid has.
+    pub fn steps(&self) -> usize {
         self.axis.values().len() - 1
     }
 
-    fn range(&self) -> std::ops::Range<f64> {
+    /// From its first to its last value.
+    pub fn range(&self) -> std::ops::Range<f64> {
         self.at(0.0)..self.at(self.steps() as f64)
     }
 }
@@ -161,8 +169,7 @@ impl Shown<'_> {
 /// A map in the colours of `key` on an area of the whole picture.
 fn panel((whole, area): (&Area, &Area), spectrum: &Spectrum, refinements: u32, key: Key) -> anyhow::Result<()> {
     let map = &spectrum.map;
-    let unit = if map.is_dimensionless { 1.0 } else { map.structure.parameters().g };
-    let [x, y] = [Shown { axis: &map.frequency, unit: 1.0 }, Shown { axis: &map.amplitude, unit }];
+    let [x, y] = Shown::axes(map);
     let mut builder = chart(area, 46.0);
     macro_rules! paint {
         ($x:expr, $y:expr) => {{
