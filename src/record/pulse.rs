@@ -7,7 +7,7 @@
 //! | `half_sine` | a_p sin ωt, 0 ≤ t ≤ T/2 | Housner (1963) |
 //! | `sine` | a_p sin(ωt + φ), 0 ≤ t ≤ nT; n = 1, φ = 0: one sine, type A | Zhang and Makris (2001) |
 //! | `cosine` | a_p cos(ωt + φ), 0 ≤ t ≤ nT; n = 1, φ = 0: one cosine, type B | Zhang and Makris (2001) |
-//! | `ricker` | a_p (1 − x²) e^(−x²/2), x = ωt/√2 about the middle | Ricker (1943), Vassiliou and Makris (2012) |
+//! | `ricker` | a_p (1 − x²) e^(−x²/2), x = ωt/√2 about the middle | Ricker (1943), Vassiliou and Makris (2011) |
 //! | `antisymmetric_ricker` | a_p (x³ − 3x) e^(−x²/2)/β, x = ωt/√3 about the middle | the same, β = 1.3801 makes the peak a_p |
 //! | `mavroeidis_papageorgiou` | d/dt of ½ A (1 + cos(ωt/γ)) cos(ωt + ν), abs(t) ≤ γT/2 about the middle | Mavroeidis and Papageorgiou (2003) |
 //!
