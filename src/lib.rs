@@ -19,6 +19,7 @@
 //! | [`reactions`] | what the structure exerts on the ground |
 //! | [`energy`] | the energy that is conserved between impacts |
 //! | [`taylor`], [`first_crossing`], [`engine`], [`motion`] | the solver: series, guards, hybrid engine, what changes with time |
+//! | [`outside_step`] | the equations for another integrator, and a check of its steps |
 //! | [`piece`] | what the engine shows to whoever watches |
 //! | [`modal_split`] | Eqs 10–20: rocking and vibration mode |
 //! | [`effective_frequency`] | Eq 14 |
@@ -63,6 +64,7 @@ pub mod nonlinear_rocking;
 mod oscillator;
 mod output_series;
 pub mod outputs;
+pub mod outside_step;
 pub mod parameters;
 pub mod piece;
 pub mod pushover;
