@@ -3,7 +3,7 @@
 # make heavy   what takes longer: the page of `view` in a browser; the libraries for other machines, built, read and, where that can be, run
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels  out/wheels: Python packages for Linux with the command line and the archive, and one of the source
-# make report  regenerate docs/validation.md and its figures
+# make report  regenerate docs/validation.md, docs/validation_literature.md and their figures (minutes)
 # make coupling  regenerate docs/coupling.md and its figures (minutes)
 # make bench   criterion benchmark of a whole record, and one step over it through fmpy
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
@@ -47,7 +47,7 @@ test: .venv/ready exporter hosts windows
 	cargo fmt --check --manifest-path tests/hosts/load_library/Cargo.toml
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo test --workspace
-	$(PYTHON) -m pytest -rs
+	$(PYTHON) -m pytest -rs -n auto --dist loadfile
 
 heavy: browser foreign packaged
 
@@ -94,6 +94,7 @@ zig: .venv/dist
 
 report: .venv/ready exporter
 	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
+	PYTHONPATH=examples $(PYTHON) -m literature --exporter $(TARGET)/release/rocking-fmu
 
 coupling: .venv/ready out/mcmanus.fmu out/evison.fmu
 	for example in bridge building_on_soil 'bridge_ssp --exporter $(TARGET)/release/rocking-fmu'; do \
