@@ -117,7 +117,7 @@ const TAIL: &str = "
 What stands in the way where a target is missed:
 
 - `linear`: three quarters of the time goes into the steps that hold a transition. Each of them needs two series
-  (one to find the instant, one for the rest of the step) and five to seven evaluations of a polynomial of order 10 to 14
+  (one to find the instant, one for the rest of the step) and five to seven evaluations of a polynomial of some 17 orders
   for its root, some 500 ns together; with 134 transitions in 1,500 samples that alone is about 10 floors. A sample
   without a transition costs about 4 floors, of which the matrix is one and the proof that nothing happens on it two.
   Taking a root as found once what is left is below rounding saves one or two of the evaluations and no time that could be
