@@ -31,7 +31,7 @@ pub const DEFAULT_TOLERANCE: f64 = 1e-9;
 /// series pays for each with only one more coefficient or so.
 const LOCAL_SHARE: f64 = 1e-5;
 
-/// What it may use up at most, however loose the tolerance is: few times the relative change of 1e-12 in the input by
+/// What it may use up at most, however loose the tolerance is: ten times the relative change of 1e-12 in the input by
 /// which conditioning is judged. An answer that such a change moves by less than a tenth of the tolerance is then within
 /// it, although impacts amplify the change by 1e8, as a tolerance of 1e-3 admits.
 const LARGEST_LOCAL_ERROR: f64 = 1e-11;
