@@ -4,6 +4,7 @@
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels  out/wheels: Python packages for Linux with the command line and the archive, and one of the source
 # make report  regenerate docs/validation.md, docs/validation_literature.md and their figures (minutes)
+# make overturning  regenerate docs/overturning.md and its pictures (minutes)
 # make coupling  regenerate docs/coupling.md and its figures (minutes)
 # make bench   criterion benchmark of a whole record, and one step over it through fmpy
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
@@ -33,7 +34,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test heavy browser foreign packaged dist wheels windows zig report coupling bench licenses fuzz records exporter mingw hosts
+.PHONY: demo test heavy browser foreign packaged dist wheels windows zig report overturning coupling bench licenses fuzz records exporter mingw hosts
 
 demo: .venv/ready out/mcmanus.fmu out/evison.fmu
 	cp $(RECORDS)/$(PACOIMA) $(RECORDS)/$(EL_CENTRO) out/
@@ -95,6 +96,9 @@ zig: .venv/dist
 report: .venv/ready exporter
 	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
 	PYTHONPATH=examples $(PYTHON) -m literature --exporter $(TARGET)/release/rocking-fmu
+
+overturning: .venv/ready exporter
+	PYTHONPATH=examples $(PYTHON) -m overturning --exporter $(TARGET)/release/rocking-fmu
 
 coupling: .venv/ready out/mcmanus.fmu out/evison.fmu
 	for example in bridge building_on_soil 'bridge_ssp --exporter $(TARGET)/release/rocking-fmu'; do \

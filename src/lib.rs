@@ -27,7 +27,7 @@
 //! | [`pushover`] | Fig 1: equilibrium under a lateral force |
 //! | [`record`] | ground motion records: samples in memory, and files as archives publish them |
 //! | [`ground_motion`] | a record scaled, placed in time and followed whatever the steps |
-//! | [`run`] | a structure under a ground motion: exact peaks, curves to draw, levels compared, plans of many runs, their outcomes and exceedances |
+//! | [`run`] | a structure under a ground motion: exact peaks, curves to draw, levels compared, plans of many runs, their outcomes and exceedances, maps of pulses |
 //! | [`fragility`] | fragility curve of many runs, and how sure it is |
 //!
 //! In short, `examples/first_run.rs`:
