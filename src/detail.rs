@@ -65,15 +65,15 @@ impl Detail {
 }
 
 impl Detail {
-    /// What moves `structure` at this level, to the relative `tolerance`.
-    pub(crate) fn level(self, structure: &Structure, tolerance: f64) -> AnyLevel {
+    /// What moves `structure` at this level, in steps of this `local_error`.
+    pub(crate) fn level(self, structure: &Structure, local_error: f64) -> AnyLevel {
         let contact = Some(ExactContact::new(structure));
         match self {
             Detail::Auto => AnyLevel::Nonlinear(Elastic { contact, rocking: NonlinearRocking::default() }),
             Detail::Nonlinear => AnyLevel::Nonlinear(Elastic { contact: None, rocking: NonlinearRocking::default() }),
             Detail::Linear => AnyLevel::Linear(Elastic { contact, rocking: LinearRocking::new(structure) }),
             Detail::Modal => AnyLevel::Modal(Elastic { contact, rocking: ModalRocking::new(structure) }),
-            Detail::Rigid => AnyLevel::Rigid(Rigid { tolerance }),
+            Detail::Rigid => AnyLevel::Rigid(Rigid { local_error }),
             Detail::FixedBase => AnyLevel::FixedBase(FixedBase { contact: ExactContact::new(structure) }),
         }
     }

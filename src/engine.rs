@@ -31,6 +31,11 @@ pub const DEFAULT_TOLERANCE: f64 = 1e-9;
 /// series pays for each with only one more coefficient or so.
 const LOCAL_SHARE: f64 = 1e-5;
 
+/// What it may use up at most, however loose the tolerance is: ten times the relative change of 1e-12 in the input by
+/// which conditioning is judged. An answer that such a change moves by less than a tenth of the tolerance is then within
+/// it, although impacts amplify the change by 1e8, as a tolerance of 1e-3 admits.
+const LARGEST_LOCAL_ERROR: f64 = 1e-11;
+
 /// Steps that one advance may take, a second or two of computing, and some ten of what is thrown about so wildly that every
 /// step has to be searched for transitions throughout; a longer interval has to be cut.
 pub const MAX_STEPS_PER_ADVANCE: u64 = 2_000_000;
@@ -129,7 +134,8 @@ impl AdvanceError {
 pub struct Engine {
     structure: Structure,
     level: Box<AnyLevel>,
-    tolerance: f64,
+    /// Truncation error that a step may have.
+    local_error: f64,
     motion: Motion,
     /// Whether an advance ends where a transition is due.
     stops: bool,
@@ -152,7 +158,8 @@ impl Engine {
         detail: Detail,
     ) -> Result<Engine, InitialStateError> {
         let phase = initial.initial_phase()?;
-        let level = Box::new(detail.level(&structure, tolerance));
+        let local_error = (LOCAL_SHARE * tolerance).clamp(f64::EPSILON / 2.0, LARGEST_LOCAL_ERROR);
+        let level = Box::new(detail.level(&structure, local_error));
         level.get().check_start(&initial)?;
         let motion = Motion {
             time,
@@ -164,7 +171,7 @@ impl Engine {
             chatter: Chatter::NONE,
             due: None,
         };
-        Ok(Engine { structure, level, tolerance, motion, stops: false, arc: Arc::default() })
+        Ok(Engine { structure, level, local_error, motion, stops: false, arc: Arc::default() })
     }
 
     /// The structure.
@@ -245,9 +252,7 @@ impl Engine {
         if self.motion.due.is_some() {
             return self.advance_past_transition(last_step, interval, load, watch);
         }
-        let stops = self.stops;
-        let local_error = (LOCAL_SHARE * self.tolerance).max(f64::EPSILON / 2.0);
-        let Engine { structure, level, motion, arc, .. } = self;
+        let &mut Engine { ref structure, ref mut level, local_error, ref mut motion, stops, ref mut arc } = self;
         // each level gets a loop of its own, so that nothing stands between the loop and the level's equations
         match &mut **level {
             AnyLevel::Nonlinear(level) => {

@@ -14,8 +14,9 @@
 //! # Zeno
 //!
 //! With r < 1 the structure comes to rest by infinitely many impacts in finite time. It is brought to rest at the first
-//! impact after which |θ̇| ≤ ε p_l tan α_cg, ε the relative tolerance. The kinetic energy left behind, ½ J_P θ̇², is
-//! then at most ε² of ½ m g H tan² α_cg, which overturning takes at small angles: far below the tolerance.
+//! impact after which |θ̇| ≤ ε p_l tan α_cg, ε the error that a step may have: what is left out, while the ground may still
+//! move, is an error that later impacts amplify like a step's. The kinetic energy left behind, ½ J_P θ̇², is at most ε² of
+//! ½ m g H tan² α_cg, which overturning takes at small angles.
 
 use crate::extremes::Bound;
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
@@ -99,14 +100,14 @@ fn least_push(structure: &Structure) -> f64 {
 /// The rigid limit as a level of detail.
 #[derive(Debug)]
 pub(crate) struct Rigid {
-    /// Relative tolerance ε of the results.
-    pub tolerance: f64,
+    /// Error ε that a step may have.
+    pub local_error: f64,
 }
 
 impl Rules for Rigid {
     fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
         let theta_dot = structure.parameters().r * before.theta_dot;
-        if theta_dot.abs() <= self.tolerance * structure.p_l * structure.tan_alpha_cg {
+        if theta_dot.abs() <= self.local_error * structure.p_l * structure.tan_alpha_cg {
             return (Phase::FullContact, State::default());
         }
         (Phase::Rocking(side.opposite()), State { theta_dot, ..State::default() })

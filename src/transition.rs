@@ -17,7 +17,7 @@ use std::f64::consts::TAU;
 /// Transitions within one period of the vibration mode (2π/ω_u) after which contact is held.
 pub const MAX_TRANSITIONS_PER_PERIOD: u32 = 1000;
 
-/// Transitions within 1/p_l after which contact is held at the rigid level: coming to rest with r = 0.9998 takes as
+/// Transitions within 1/p_l after which contact is held at the rigid level: coming to rest with r = 0.9997 takes as
 /// many.
 pub const MAX_RIGID_TRANSITIONS_PER_PERIOD: u32 = 100_000;
 

