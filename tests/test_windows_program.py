@@ -79,10 +79,16 @@ def test_simulate(both):
     for peak, expected in zip(there["peaks"], here["peaks"], strict=True):
         assert peak["name"] == expected["name"]
         assert [peak["peak"], peak["time"]] == pytest.approx([expected["peak"], expected["time"]], rel=1e-12, abs=0)
-    there, here = (np.genfromtxt(folder / "response.csv", delimiter=",", skip_header=1) for folder, _ in runs)
-    assert there.shape == here.shape and len(there) > 1000
-    error = np.nanmax(np.abs(there - here), axis=0) / np.maximum(np.nanmax(np.abs(here), axis=0), 1e-300)
-    assert error.max() < 1e-12
+    for name in ("response.csv", "events.csv"):
+        there, here = ([line.split(",") for line in (folder / name).read_text().splitlines()] for folder, _ in runs)
+        assert len(here) > 20 and there[0] == here[0]
+        for column, expected in zip(zip(*there[1:], strict=True), zip(*here[1:], strict=True), strict=True):
+            try:
+                column, expected = np.array(column, float), np.array(expected, float)
+            except ValueError:
+                assert column == expected  # words
+            else:
+                assert np.abs(column - expected).max() <= 1e-12 * np.abs(expected).max()
 
 
 def test_describe(both):
@@ -123,25 +129,22 @@ def test_sweep(both, linux):
 
 
 def test_files_are_written_with_care(windows, tmp_path):
-    """What is read is not overwritten, under whatever name; what is there stays where a command fails."""
+    """What is read is not overwritten, under whatever name; what is written leaves no trace beside it."""
     write_record(tmp_path / "pacoima.csv")
     record = (tmp_path / "pacoima.csv").read_bytes()
     (tmp_path / "same.csv").hardlink_to(tmp_path / "pacoima.csv")
-    (tmp_path / "kept.csv").write_text("before")
-    (tmp_path / "kept.csv").chmod(0o444)
     for output, reason in {
         ".\\PACOIMA.CSV": ".\\PACOIMA.CSV: it would overwrite pacoima.csv, which is read; name another file",
         "same.csv": "same.csv: it would overwrite pacoima.csv, which is read; name another file",
-        "kept.csv": "kept.csv cannot be written: ",
         "no\\such\\out.csv": "no\\such\\out.csv cannot be written: there is no folder no\\such",
         "folder\\": "folder\\ cannot be written: it is a folder; name a file in it",
     }.items():
         failed = windows("simulate", "--record", "pacoima.csv", "-o", output, cwd=tmp_path)
         assert failed.returncode == 1 and reason in failed.stderr, failed.stderr
-    assert (tmp_path / "pacoima.csv").read_bytes() == record and (tmp_path / "kept.csv").read_text() == "before"
+    assert (tmp_path / "pacoima.csv").read_bytes() == record
     (tmp_path / "out.csv").write_text("before")
     for output in ("out.csv", "NUL"):
         done = windows("simulate", "--record", "pacoima.csv", "-o", output, cwd=tmp_path)
         assert done.returncode == 0, done.stderr
     assert (tmp_path / "out.csv").read_text().startswith("time")
-    assert {path.name for path in tmp_path.iterdir()} == {"pacoima.csv", "same.csv", "kept.csv", "out.csv"}
+    assert {path.name for path in tmp_path.iterdir()} == {"pacoima.csv", "same.csv", "out.csv"}

@@ -11,7 +11,7 @@ use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt, chown};
 use std::{
     fs::{self, File, Metadata},
     io::{self, BufWriter, StdoutLock, Write, stdout},
-    path::{Path, PathBuf, is_separator},
+    path::{Component, Path, PathBuf, Prefix, absolute, is_separator},
 };
 use tempfile::NamedTempFile;
 
@@ -20,10 +20,6 @@ const LONGEST_CHAIN_OF_LINKS: usize = 40;
 
 /// Folders of what programs have opened, under names that a shell gives to commands: Linux's, macOS's.
 const FOLDERS_OF_OPEN_FILES: [&str; 2] = ["/proc", "/dev/fd"];
-
-/// What Windows answers to a question that makes sense of files alone, asked of NUL or another device.
-#[cfg(windows)]
-const ERROR_INVALID_FUNCTION: i32 = 1;
 
 /// All files of one command: those that it reads, and those that it writes.
 #[derive(Default)]
@@ -163,6 +159,9 @@ fn place(path: &Path) -> anyhow::Result<Place> {
     ensure!(!path.as_os_str().is_empty(), "its name is empty");
     let last = path.as_os_str().as_encoded_bytes().last().copied().map(char::from);
     ensure!(!last.is_some_and(is_separator), "it is a folder; name a file in it");
+    if is_named_device(path) {
+        return Ok(Place::Through);
+    }
     match fs::metadata(path) {
         Ok(told) if told.is_dir() => bail!("it is a folder; name a file in it"),
         #[cfg(unix)]
@@ -170,8 +169,6 @@ fn place(path: &Path) -> anyhow::Result<Place> {
         Ok(told) if !told.is_file() => return Ok(Place::Through),
         Ok(_) => {}
         Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-        #[cfg(windows)]
-        Err(error) if error.raw_os_error() == Some(ERROR_INVALID_FUNCTION) => return Ok(Place::Through),
         Err(error) => return Err(error.into()),
     }
     let mut path = path.to_owned();
@@ -195,6 +192,13 @@ fn place(path: &Path) -> anyhow::Result<Place> {
         }
     }
     bail!("its links have no end")
+}
+
+/// Whether Windows takes `path` for a device or a pipe, as NUL in whatever folder. Elsewhere none has such a name.
+fn is_named_device(path: &Path) -> bool {
+    let Ok(path) = absolute(path) else { return false };
+    let is_device = |first| matches!(first, Component::Prefix(prefix) if matches!(prefix.kind(), Prefix::DeviceNS(_)));
+    path.components().next().is_some_and(is_device)
 }
 
 /// A file in the folder of `target` with the owner and the permissions of the one that is there, or of any new one.
