@@ -89,7 +89,7 @@ dist: exporter windows zig
 	mkdir -p out
 	$(TARGET)/release/rocking-fmu export --record examples/pulse.csv -o out/FlexibleRocking.fmu
 
-# Of the wheels the one for this machine, which is run.
+# Of the packages that of the source, which is read, and the wheel for this machine, which is run.
 packaged: wheel
 	$(PYTHON) -m pytest -rs tests/test_wheel.py tests/test_wheels.py
 
@@ -100,10 +100,10 @@ wheel: dist
 	rm -rf out/wheel out/wheels
 	mkdir -p out/wheel/data/share/flexible-rocking
 	cp out/FlexibleRocking.fmu out/wheel/data/share/flexible-rocking/
+	$(MATURIN) sdist --out out/wheels
 	$(NATIVE_UNTRACED) $(WHEEL) x86_64-unknown-linux-gnu --zig --compatibility manylinux2014
 
 wheels: wheel
-	$(MATURIN) sdist --out out/wheels
 	$(WHEEL) aarch64-unknown-linux-gnu --zig --compatibility manylinux2014
 	$(WHEEL) universal2-apple-darwin --zig
 	$(WHEEL) $(WINDOWS)

@@ -1,6 +1,7 @@
-"""The wheels in out/wheels: which machines each is for, what is in it, and what its program needs."""
+"""The packages in out/wheels: which machines each is for, what is in it, and what its program needs."""
 
 import stat
+import tarfile
 import tomllib
 import zipfile
 from pathlib import Path
@@ -72,3 +73,17 @@ def test_program(wheel, tmp_path):
             binaries.for_macos(program, {"X86_64", "ARM64"})
     for place in {ROOT, Path.home(), Path.home().resolve()}:
         assert str(place).encode() not in content.read(name), f"{name} tells where it was built"
+
+
+def test_source():
+    """The package of the source has every file that is compiled."""
+    path = FOLDER / f"{NAME}.tar.gz"
+    if not path.exists():
+        pytest.skip(f"{path.name} is missing: `make wheels` builds it")
+    compiled = [file for folder in ("src", "modelDescription/src", "fmu/src", "fmu/build", "fmu/export", "cli/src")
+                for file in (ROOT / folder).rglob("*") if file.is_file()]
+    with tarfile.open(path) as content:
+        for file in compiled:
+            inside = content.extractfile(f"{NAME}/{file.relative_to(ROOT)}")
+            assert inside.read() == file.read_bytes(), file
+        assert {entry.mtime for entry in content.getmembers()} == {315532800}, "it tells when it was built"
