@@ -1,5 +1,6 @@
 """The packages in out/wheels: which machines each is for, what is in it, and what its program needs."""
 
+import re
 import stat
 import tarfile
 import tomllib
@@ -76,12 +77,14 @@ def test_program(wheel, tmp_path):
 
 
 def test_source():
-    """The package of the source has every file that is compiled."""
+    """The package of the source has every file that is compiled, and what these include."""
     path = FOLDER / f"{NAME}.tar.gz"
     if not path.exists():
         pytest.skip(f"{path.name} is missing: `make wheels` builds it")
     compiled = [file for folder in ("src", "modelDescription/src", "fmu/src", "fmu/build", "fmu/export", "cli/src")
                 for file in (ROOT / folder).rglob("*") if file.is_file()]
+    compiled += [(file.parent / included).resolve() for file in compiled if file.suffix == ".rs"
+                 for included in re.findall(r'include_(?:str|bytes)!\("(.*?)"\)', file.read_text())]
     with tarfile.open(path) as content:
         for file in compiled:
             inside = content.extractfile(f"{NAME}/{file.relative_to(ROOT)}")
