@@ -56,7 +56,7 @@ test: .venv/ready exporter hosts windows
 	cargo fmt --check --manifest-path tests/hosts/load_library/Cargo.toml
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo test --workspace
-	$(PYTHON) -m pytest -rs
+	$(PYTHON) -m pytest -rs -n auto --dist loadfile
 
 heavy: browser foreign packaged
 

@@ -2,12 +2,48 @@
 use crate::{
     record_args::{RecordArgs, positive},
     significant::short,
+    structure_args::StructureArgs,
 };
 use clap::{
     ArgGroup,
     builder::{PossibleValuesParser, TypedValueParser},
 };
-use rocking::{Detail, State, engine::DEFAULT_TOLERANCE, record::Record, run::End};
+use rocking::{Detail, Run, State, Structure, engine::DEFAULT_TOLERANCE, record::Record, run::End};
+use std::path::Path;
+
+/// A motion to follow: of which structure, under which ground motion, from where, and how it is computed.
+#[derive(clap::Args)]
+pub struct MotionArgs {
+    #[command(flatten)]
+    pub structure: StructureArgs,
+    #[command(flatten)]
+    pub ground: GroundArgs,
+    #[command(flatten)]
+    initial: InitialArgs,
+    #[command(flatten)]
+    level: LevelArgs,
+}
+
+impl MotionArgs {
+    /// The structure and the ground motion.
+    pub fn load(&self) -> anyhow::Result<(Structure, Record)> {
+        let structure = self.structure.load()?;
+        let ground = self.ground.load(structure.parameters().g)?;
+        Ok((structure, ground))
+    }
+
+    /// The run of `structure` under `ground`.
+    pub fn run<'a>(&self, structure: Structure, ground: &'a Record) -> Run<'a> {
+        let LevelArgs { tolerance, detail } = self.level;
+        let (initial, end) = (self.initial.state(), self.ground.end(ground));
+        Run { initial, detail, tolerance, end, ..Run::new(structure, ground) }
+    }
+
+    /// The files that are read.
+    pub fn inputs(&self) -> impl Iterator<Item = &Path> {
+        self.structure.input().into_iter().chain(self.ground.record.record.as_deref())
+    }
+}
 
 /// The ground motion, and how long it is followed.
 #[derive(clap::Args)]
@@ -51,13 +87,13 @@ pub struct InitialArgs {
 /// How the motion is computed.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Equations")]
-pub struct LevelArgs {
+struct LevelArgs {
     /// Level of detail: the equations that move the structure
     #[arg(long, value_name = "LEVEL", default_value = Detail::default().name(), value_parser = detail_parser())]
-    pub detail: Detail,
+    detail: Detail,
     /// Relative tolerance
     #[arg(long, default_value = format!("{DEFAULT_TOLERANCE:e}"), value_parser = tolerance)]
-    pub tolerance: f64,
+    tolerance: f64,
 }
 
 fn detail_parser() -> impl TypedValueParser<Value = Detail> {

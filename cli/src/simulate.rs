@@ -6,9 +6,8 @@ use crate::{
     picture::PictureFile,
     record_args::positive,
     results::{Format, FormatArgs, print},
-    scene_args::{GroundArgs, InitialArgs, LevelArgs},
+    scene_args::MotionArgs,
     significant::short,
-    structure_args::StructureArgs,
     summary::{self, Summary, instant},
     tables::{self, Table},
     talk::{self, say},
@@ -19,7 +18,7 @@ use rocking::{
     Transition,
     record::Record,
     run::{
-        End, Run,
+        End,
         peaks::Peaks,
         validity::{Found, Validity},
     },
@@ -30,13 +29,7 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 pub struct SimulateArgs {
     #[command(flatten)]
-    structure: StructureArgs,
-    #[command(flatten)]
-    ground: GroundArgs,
-    #[command(flatten)]
-    initial: InitialArgs,
-    #[command(flatten)]
-    level: LevelArgs,
+    motion: MotionArgs,
     #[command(flatten)]
     results: ResultArgs,
     #[command(flatten)]
@@ -68,7 +61,7 @@ impl SimulateArgs {
     fn samples_and_interval<'a>(&self, ground: &'a Record) -> (&'a [f64], f64) {
         let samples = ground.times();
         let last = samples.len() - 1;
-        match self.results.interval.or(self.ground.free_vibration_interval()) {
+        match self.results.interval.or(self.motion.ground.free_vibration_interval()) {
             Some(interval) => (&samples[..1], interval),
             None => (samples, samples[last] - samples[last - 1]),
         }
@@ -78,7 +71,7 @@ impl SimulateArgs {
     fn check_rows(&self, ground: &Record) -> anyhow::Result<()> {
         const MOST_ROWS: f64 = 1e7;
         let (samples, interval) = self.samples_and_interval(ground);
-        let end = if let End::At(end) = self.ground.end(ground) { end } else { ground.end() };
+        let end = if let End::At(end) = self.motion.ground.end(ground) { end } else { ground.end() };
         let rows = samples.len() as f64 + (end - samples[samples.len() - 1]) / interval;
         ensure!(
             rows <= MOST_ROWS,
@@ -90,7 +83,7 @@ impl SimulateArgs {
     }
 
     fn output_path(&self) -> PathBuf {
-        match (&self.results.output, self.ground.record.record.as_deref().and_then(Path::file_stem)) {
+        match (&self.results.output, self.motion.ground.record.record.as_deref().and_then(Path::file_stem)) {
             (Some(path), _) => path.clone(),
             (None, Some(record)) => format!("{}_response.csv", record.to_string_lossy()).into(),
             (None, None) => "free_vibration.csv".into(),
@@ -100,16 +93,12 @@ impl SimulateArgs {
 
 /// Writes the response and prints its summary.
 pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
-    let structure = args.structure.load()?;
-    let ground = args.ground.load(structure.parameters().g)?;
-    let LevelArgs { tolerance, detail } = args.level;
-    let (initial, end) = (args.initial.state(), args.ground.end(&ground));
-    let run = Run { initial, detail, tolerance, end, ..Run::new(structure, &ground) };
+    let (structure, ground) = args.motion.load()?;
+    let run = args.motion.run(structure, &ground);
 
     args.check_rows(&ground)?;
     let output = args.output_path();
-    let inputs = args.structure.input().into_iter().chain(args.ground.record.record.as_deref());
-    let mut files = OutputFiles::of_inputs(inputs);
+    let mut files = OutputFiles::of_inputs(args.motion.inputs());
     if args.results.output.is_none() {
         tables::refuse_other_than_response(&output)?;
     }
@@ -160,7 +149,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let (start, end) = (instant(ground.start()), instant(finish.motion.time));
     if args.results.format.format == Format::Text {
         let mut text = format!("{}, {start} to {end} s\n{}", ground.title(), summary.text(&peaks, &finish)?);
-        for line in validity::section(&structure, detail, validity.found(), &limits) {
+        for line in validity::section(&structure, run.detail, validity.found(), &limits) {
             text = text + &line + "\n";
         }
         // What goes to standard output stays one table.

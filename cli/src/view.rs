@@ -1,8 +1,7 @@
 //! `view`: a page that shows the structure in motion, one file that needs nothing else.
 use crate::{
     output_files::{OutputFile, OutputFiles},
-    scene_args::{GroundArgs, InitialArgs, LevelArgs},
-    structure_args::StructureArgs,
+    scene_args::MotionArgs,
     talk::say,
 };
 use anyhow::Context;
@@ -25,13 +24,7 @@ use std::{
 #[derive(clap::Args)]
 pub struct ViewArgs {
     #[command(flatten)]
-    structure: StructureArgs,
-    #[command(flatten)]
-    ground: GroundArgs,
-    #[command(flatten)]
-    initial: InitialArgs,
-    #[command(flatten)]
-    level: LevelArgs,
+    motion: MotionArgs,
     /// The page, `-` for standard output [default: the record's name and _view.html, in this folder]
     #[arg(short, long, value_name = "FILE.html", help_heading = "Results")]
     output: Option<PathBuf>,
@@ -50,14 +43,10 @@ const QUANTUM_OF_TIME: f64 = 1e-7;
 
 /// Follows the motion and writes the page.
 pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
-    let structure = args.structure.load()?;
-    let ground = args.ground.load(structure.parameters().g)?;
-    let LevelArgs { tolerance, detail } = args.level;
-    let (initial, end) = (args.initial.state(), args.ground.end(&ground));
-    let run = Run { initial, detail, tolerance, end, ..Run::new(structure, &ground) };
+    let (structure, ground) = args.motion.load()?;
+    let run = args.motion.run(structure, &ground);
     let path = args.output_path();
-    let inputs = args.structure.input().into_iter().chain(args.ground.record.record.as_deref());
-    let mut file = OutputFiles::of_inputs(inputs).create(&path)?;
+    let mut file = OutputFiles::of_inputs(args.motion.inputs()).create(&path)?;
     let (part, curve) = curve(&run)?;
     let page = page(&Scene::new(&structure, &ground, part, &curve).context("a run has a start")?)?;
     OutputFile::named(&path, file.write_all(page.as_bytes()))?;
@@ -82,7 +71,7 @@ fn curve(run: &Run) -> Result<(f64, Curve), RunError> {
 
 impl ViewArgs {
     fn output_path(&self) -> PathBuf {
-        match (&self.output, self.ground.record.record.as_deref().and_then(Path::file_stem)) {
+        match (&self.output, self.motion.ground.record.record.as_deref().and_then(Path::file_stem)) {
             (Some(path), _) => path.clone(),
             (None, Some(record)) => format!("{}_view.html", record.to_string_lossy()).into(),
             (None, None) => "free_vibration_view.html".into(),

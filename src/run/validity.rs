@@ -97,12 +97,18 @@ pub struct Assumption {
     pub limit: fn(&Limits) -> f64,
 }
 
-const TENSION: usize = 0;
-const EDGE_LOAD: usize = 1;
-const FRICTION: usize = 2;
-const IMPACT_FRICTION: usize = 3;
-const IMPACT_TENSION: usize = 4;
-const ENERGY: usize = 5;
+/// Place of `tension_max` in [`ASSUMPTIONS`].
+pub const TENSION: usize = 0;
+/// Of `R_v_min`.
+pub const EDGE_LOAD: usize = 1;
+/// Of `mu_required`.
+pub const FRICTION: usize = 2;
+/// Of `mu_impact`.
+pub const IMPACT_FRICTION: usize = 3;
+/// Of `tension_impact`.
+pub const IMPACT_TENSION: usize = 4;
+/// Of `energy_gain_max`.
+pub const ENERGY: usize = 5;
 
 macro_rules! assumption {
     ($name:literal $description:literal, $meaning:literal, $is_of_impacts:literal, $limit:expr) => {

@@ -9,18 +9,12 @@ use anyhow::Result;
 use indicatif::ProgressBar;
 use population::{Pair, both};
 use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::run::validity::{ASSUMPTIONS, Found};
+use rocking::run::validity::{
+    ASSUMPTIONS, EDGE_LOAD, ENERGY, FRICTION, Found, IMPACT_FRICTION, IMPACT_TENSION, TENSION,
+};
 use rocking::{Detail, Parameters, impact};
 use serde::Serialize;
 use std::path::Path;
-
-/// Which of [`ASSUMPTIONS`] is which.
-const TENSION: usize = 0;
-const LOAD: usize = 1;
-const FRICTION: usize = 2;
-const IMPACT_FRICTION: usize = 3;
-const IMPACT_TENSION: usize = 4;
-const GAIN: usize = 5;
 
 /// How much the repaired rule of uplift changes the peaks, over those of the model.
 #[derive(Clone, Copy, Debug)]
@@ -166,7 +160,7 @@ fn scene_row(name: String, pair: &Pair) -> SceneRow {
     SceneRow {
         name,
         tension: with_share(found, TENSION),
-        load: with_share(found, LOAD),
+        load: with_share(found, EDGE_LOAD),
         friction: with_share(found, FRICTION),
         impact_friction: of_impacts(IMPACT_FRICTION),
         pull: of_impacts(IMPACT_TENSION),
@@ -190,7 +184,7 @@ fn rows(population: &[Pair]) -> Vec<Row> {
             .filter(|pair| !assumption.is_of_impacts || pair.model.found.impacts > 0)
             .map(of)
             .collect();
-        let worst = if which == LOAD {
+        let worst = if which == EDGE_LOAD {
             values.iter().copied().fold(f64::INFINITY, f64::min)
         } else {
             values.iter().copied().filter(|value| value.is_finite()).fold(f64::NEG_INFINITY, f64::max)
@@ -210,7 +204,7 @@ fn gains(population: &[Pair]) -> Gains {
     let limit = |pair: &Pair| impact::lossless_restitution(&pair.structure, 0.0).map_or(0.0, |[least, _]| least);
     let r = |pair: &Pair| pair.structure.parameters().r;
     let above: Vec<_> = population.iter().filter(|pair| pair.model.found.gains > 0 && r(pair) >= limit(pair)).collect();
-    let gain = |pair: &Pair| pair.model.found.worst[GAIN].value;
+    let gain = |pair: &Pair| pair.model.found.worst[ENERGY].value;
     let largest = above.iter().filter(|pair| r(pair) < 1.0).max_by(|a, b| gain(a).total_cmp(&gain(b)));
     let of_largest = |of: &dyn Fn(&Pair) -> f64, digits: usize| {
         largest.map_or("–".into(), |pair| format!("{:.digits$}", of(pair)))

@@ -1,8 +1,9 @@
 //! The maps: a dot for every structure over slenderness and frequency.
 
+use super::Change;
 use super::population::{FREQUENCY, Pair, SLENDERNESS};
-use super::{Change, FRICTION, GAIN, IMPACT_FRICTION, IMPACT_TENSION, LOAD, TENSION};
 use crate::chart::{Axis, Entry, Figure, Marker, Panel, Style, colour};
+use rocking::run::validity::{EDGE_LOAD, ENERGY, FRICTION, IMPACT_FRICTION, IMPACT_TENSION, TENSION};
 
 /// A map: its title, its number for a structure, and the two numbers beyond which a dot changes its colour.
 struct Map {
@@ -32,7 +33,7 @@ const ASSUMED: [Map; 6] = [
     },
     Map {
         title: "pull at the edge while rocking, over W: 0, 1",
-        of: |pair| -pair.model.found.worst[LOAD].value,
+        of: |pair| -pair.model.found.worst[EDGE_LOAD].value,
         limits: [0.0, 1.0],
     },
     Map {
@@ -52,7 +53,7 @@ const ASSUMED: [Map; 6] = [
     },
     Map {
         title: "energy gained at an impact, over T: 0, 0.01",
-        of: |pair| pair.model.found.worst[GAIN].value,
+        of: |pair| pair.model.found.worst[ENERGY].value,
         limits: [0.0, 0.01],
     },
 ];
