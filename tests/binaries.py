@@ -1,12 +1,19 @@
 """What programs and libraries for other machines are for, and need: read from their headers."""
 
+import os
+from pathlib import Path
+
 import pytest
+from conftest import ROOT
 from test_hosts_library import WINDOWS_RUN_TIME
 
 lief = pytest.importorskip("lief", reason="lief is missing: `make foreign` installs it")
 
 OLDEST_GLIBC = (2, 17)
 OLDEST_MACOS = [11, 0, 0]
+
+# Where it was built: this folder, and that of cargo's packages.
+PLACES = [ROOT, Path(os.environ.get("CARGO_HOME", Path.home() / ".cargo"))]
 
 # The parts of glibc, as they were before 2.34 joined them.
 LINUX_RUN_TIME = {f"lib{name}.so" for name in ("c", "m", "pthread", "dl")}
@@ -50,3 +57,8 @@ def for_macos(file, cpus: set[str]):
         # Apple silicon runs nothing unsigned; a signature without a signer is enough.
         assert binary.header.cpu_type.name != "ARM64" or binary.has_code_signature
     return parts
+
+
+def tells_no_place(content: bytes):
+    """Whether nothing in it tells where it was built."""
+    return not any(str(place).encode() in content for place in PLACES)

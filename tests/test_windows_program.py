@@ -9,6 +9,7 @@ import zipfile
 import numpy as np
 import pytest
 from conftest import ROOT
+from packages import package
 from pacoima import write_record
 from wine import environment
 
@@ -21,12 +22,8 @@ structures = [{ name = "specimen", preset = "mcmanus" }, { name = "wall", preset
 @pytest.fixture(scope="module")
 def windows(tmp_path_factory):
     """Runs the program for Windows in a folder."""
-    wheels = list((ROOT / "out" / "wheels").glob("*-win_amd64.whl"))
-    if not wheels:
-        pytest.skip("there is no wheel for Windows: `make wheels` builds it")
-    (wheel,) = wheels
     folder = tmp_path_factory.mktemp("windows")
-    with zipfile.ZipFile(wheel) as content:
+    with zipfile.ZipFile(package("*-win_amd64.whl")) as content:
         content.extractall(folder / "wheel")
     (data,) = (folder / "wheel").glob("*.data")
     shutil.move(data / "scripts", folder / "Scripts")
