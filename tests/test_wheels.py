@@ -28,6 +28,11 @@ def wheel(request):
         yield request.param, content
 
 
+def test_there_are_no_others():
+    found = {path.name for path in (ROOT / "out" / "wheels").glob("*")}
+    assert found <= {f"{NAME}-{tag}.whl" for tag in TAGS.values()} | {f"{NAME}.tar.gz"}
+
+
 def test_files(wheel):
     machine, content = wheel
     program = "rocking-fmu.exe" if machine == "windows" else "rocking-fmu"
