@@ -12,10 +12,10 @@ from conftest import ROOT
 from packages import package
 
 TAGS = {
-    "linux-x86": "py3-none-manylinux_2_17_x86_64.manylinux2014_x86_64",
-    "linux-arm": "py3-none-manylinux_2_17_aarch64.manylinux2014_aarch64",
+    "linux-x86": "py3-none-manylinux2014_x86_64.manylinux_2_17_x86_64",
+    "linux-arm": "py3-none-manylinux2014_aarch64.manylinux_2_17_aarch64",
     "windows": "py3-none-win_amd64",
-    "macos": "py3-none-macosx_11_0_x86_64.macosx_11_0_arm64.macosx_11_0_universal2",
+    "macos": "py3-none-macosx_11_0_arm64.macosx_11_0_universal2.macosx_11_0_x86_64",
 }
 VERSION = tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]["version"]
 NAME = f"flexible_rocking-{VERSION}"
