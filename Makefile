@@ -4,7 +4,7 @@
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels  out/wheels: Python packages for Linux, Windows and macOS with the command line and the archive, and one of the source
 # make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
-# make report  regenerate docs/validation.md and its figures
+# make report  regenerate docs/validation.md, docs/validation_literature.md and their figures (minutes)
 # make coupling  regenerate docs/coupling.md and its figures (minutes)
 # make bench   criterion benchmark of a whole record, and one step over it through fmpy
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
@@ -145,6 +145,7 @@ zig: .venv/dist
 
 report: .venv/ready exporter
 	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
+	PYTHONPATH=examples $(PYTHON) -m literature --exporter $(TARGET)/release/rocking-fmu
 
 coupling: .venv/ready out/mcmanus.fmu out/evison.fmu
 	for example in bridge building_on_soil 'bridge_ssp --exporter $(TARGET)/release/rocking-fmu'; do \

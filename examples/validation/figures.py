@@ -24,6 +24,7 @@ STYLE = {
     "lines.linewidth": 1.0,
     "legend.frameon": False,
     "legend.fontsize": 8,
+    "svg.hashsalt": "figure",
 }
 
 
@@ -36,5 +37,5 @@ def subplots(rows: int, columns: int, height: float, **options):
 def save(figure, path: Path) -> None:
     """Writes the figure; the same data give the same bytes."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path, dpi=180, metadata={"Software": None})
+    figure.savefig(path, dpi=180, metadata={{".png": "Software", ".svg": "Date"}[path.suffix]: None})
     plt.close(figure)

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import fmpy
 import numpy as np
+import pandas as pd
 
 from .records import write_csv
 
@@ -38,6 +39,20 @@ class Project:
         lines = self.run(*arguments)
         numbers = [heading for heading in lines[0] if heading != "phase"]
         return {heading.partition("[")[0]: np.array([float(line[heading]) for line in lines]) for heading in numbers}
+
+    def events(self, *arguments) -> list[dict[str, str]]:
+        """The transitions of a run of `simulate`, line by line."""
+        events = self.folder / "events.csv"
+        self.run("simulate", *arguments, "--output", self.folder / "response.csv", "--events", events)
+        return list(csv.DictReader(events.read_text().splitlines()))
+
+    def sweep(self, plan: str) -> pd.DataFrame:
+        """The rows of a sweep that is given as the text of its TOML file."""
+        file, rows = self.folder / "sweep.toml", self.folder / "sweep.csv"
+        file.write_text(plan, encoding="utf-8")
+        rows.unlink(missing_ok=True)
+        subprocess.run([self.exporter, "sweep", file, "--output", rows, "--quiet"], check=True, capture_output=True)
+        return pd.read_csv(rows)
 
     @cache
     def fmu(self, preset: str) -> Path:

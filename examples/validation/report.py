@@ -1,5 +1,6 @@
 """What the report is made of: rows "paper / computed / difference / remark", sections, and their Markdown."""
 
+import re
 import textwrap
 from dataclasses import dataclass, field
 
@@ -86,12 +87,16 @@ def markdown(sections: list[Section], figures: str) -> str:
         parts += [f"## {number}. {section.title}", section.introduction, comparison(section),
                   f"![{section.title}]({figures}/{section.figure})", f"*{section.caption}*", *section.findings]
     blocks = "\n\n".join(parts).split("\n\n")
-    return "\n\n".join(map(_filled, blocks)) + "\n"
+    return "\n\n".join(map(filled, blocks)) + "\n"
 
 
-def _filled(block: str) -> str:
-    """A paragraph with lines of even length; a table, a heading or a figure as it is."""
-    return block if block.startswith(("|", "#", "!")) else textwrap.fill(block, 120, break_long_words=False)
+def filled(block: str) -> str:
+    """A paragraph or a list with lines of even length; a table, a heading, a figure or a formula as it is."""
+    if block.startswith(("|", "#", "!", "    ")):
+        return block
+    items = [" ".join(item.split()) for item in re.split(r"\n(?=- )", block)]
+    return "\n".join(textwrap.fill(item, 120, subsequent_indent="  " * item.startswith("- "), break_long_words=False)
+                     for item in items)
 
 
 INTRODUCTION = """# Validation against the paper
@@ -100,6 +105,7 @@ Every number of the paper that its text gives the data for, beside the one that 
 writes this page and its figures: the FMU is exported and driven by fmpy, at a tolerance of 1e-10 (1e-8 in section 7),
 and what the library itself computes (pushover, demands, effective frequency, modes) is asked of `rocking-fmu`.
 Equation, figure and table numbers are the paper's. Its measured histories are printed as pictures only and are not
-redrawn; of them the values that the text states are compared.
+redrawn; of them the values that the text states are compared. Closed forms, and what others publish, are
+[the second part](validation_literature.md).
 
 "computed" is ours; "to its digits" says that it rounds to what is printed."""

@@ -9,6 +9,7 @@ import numpy as np
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 
 DISCARD = 2  # status of the step in which the structure overturns
+AUTO, LINEAR, RIGID = 1, 3, 5  # levels of detail
 
 
 @dataclass(frozen=True)
@@ -26,9 +27,10 @@ class History:
 class Stepper:
     """One instance of the FMU in `folder`, run again and again."""
 
-    def __init__(self, folder: Path, tolerance: float):
+    def __init__(self, folder: Path, tolerance: float, detail: int = AUTO):
         description = fmpy.read_model_description(str(folder))
         self.tolerance = tolerance
+        self.detail = detail
         self.references = {variable.name: variable.valueReference for variable in description.modelVariables}
         self.slave = FMU2Slave(guid=description.guid, unzipDirectory=str(folder),
                                modelIdentifier=description.coSimulation.modelIdentifier, instanceName="stepper")
@@ -41,6 +43,7 @@ class Stepper:
         slave.reset()
         slave.setupExperiment(self.tolerance, 0.0, None)
         slave.setString([self.references["record"]], [str(record)])
+        slave.setInteger([self.references["detail"]], [self.detail])
         slave.setBoolean([self.references["peaks"]], [True])
         slave.setReal([self.references[name] for name in start_values], list(start_values.values()))
         slave.enterInitializationMode()

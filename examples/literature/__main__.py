@@ -1,0 +1,90 @@
+"""Writes the page: python -m literature [--exporter PATH] [--output FILE]. It takes a few minutes."""
+
+import argparse
+import tempfile
+from pathlib import Path
+
+import numpy as np
+from first_run import G
+from tqdm import tqdm
+from validation.project import Project
+from validation.records import horizontal_records
+from validation.report import filled
+from validation.stepper import AUTO
+
+from . import block, ensemble, flexible, free_rocking, limit, overturning, point_reyes, slender_block
+
+PAGE = Path(__file__).parent / "page.md"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
+    parser.add_argument("--exporter", type=Path, default=Path("target/release/rocking-fmu"), help="executable")
+    parser.add_argument("--output", type=Path, default=Path("docs/validation_literature.md"), help="page to write")
+    arguments = parser.parse_args()
+    figures = arguments.output.with_suffix("")
+
+    total = (len(overturning.CASES) + len(point_reyes.RESTITUTIONS) + len(free_rocking.RELEASES)
+             + len(flexible.FREQUENCIES) + len(ensemble.VARIANTS) * len(ensemble.TIME_SCALES))
+    with tempfile.TemporaryDirectory() as folder, tqdm(total=total, unit="") as progress:
+        project = Project(arguments.exporter.resolve(), Path(folder))
+        fmu = project.fmu("mcmanus")
+        rigid = block.PulseRuns(fmu, project.folder)
+        progress.set_description("overturning")
+        cases = overturning.compute(rigid, progress.update)
+        overturning.draw(cases, figures / "overturning.svg")
+        trains, train_between = point_reyes.rows(rigid, progress.update)
+        progress.set_description("free rocking")
+        releases = free_rocking.compute(project, progress.update)
+        progress.set_description("flexible")
+        flexibility = flexible.flexibility(block.PulseRuns(fmu, project.folder, AUTO), progress.update)
+        progress.set_description("ensemble")
+        runs = ensemble.compute(project, progress.update)
+        ensemble.draw(runs, figures / "ensemble.svg")
+        found = ensemble.comparisons(runs)
+        rates = [case.limit.rate for case in cases]
+        free = [of for case in releases for of in (case.instant, case.speed)]
+        free_rates = [of.rate for of in free]
+        page = PAGE.read_text(encoding="utf-8").format(
+            restitution=overturning.R,
+            impacts_agree=sum(case.impacts == case.boundary.impacts for case in cases),
+            most=f"{overturning.MOST:g}",
+            boundaries=overturning.rows(cases),
+            boundary_count=len(cases),
+            boundary_error=f"{max(case.limit.error for case in cases):.0e}",
+            boundary_rates=f"{min(rates):.3f} to {max(rates):.3f}",
+            shape_difference=f"{overturning.any_shape(rigid, cases):.0e}",
+            samples=block.SAMPLES,
+            stocky=overturning.STOCKY,
+            upper_changes=overturning.changes(cases, upper=True),
+            lower_changes=overturning.changes(cases, upper=False),
+            half_sines=overturning.half_sines(),
+            trains=trains,
+            train_between=train_between,
+            releases=free_rocking.rows(releases),
+            release_error=f"{max(of.error for of in free):.0e}",
+            release_rates=f"{min(free_rates):.3f} to {max(free_rates):.3f}",
+            quadrature_error=f"{max(max(case.stocky) for case in releases):.0e}",
+            tangents=", ".join(f"{tangent:g}" for tangent in limit.TANGENTS),
+            ramp=flexible.RAMP,
+            shear_pgas=" and ".join(f"{pga:g}" for pga in flexible.PGAS),
+            uplift=flexible.uplift(project),
+            frequencies=flexible.frequencies(project),
+            impacts=flexible.impacts(project),
+            flexibility=flexibility,
+            base_shear=flexible.base_shear(project),
+            records="\n".join(f"- {record.name}: {len(record.a_g)} samples, {record.dt:g} s, "
+                              f"{np.max(np.abs(record.a_g)) / G:.3f} g" for record in horizontal_records()),
+            time_scales=", ".join(f"{scale:g}" for scale in ensemble.TIME_SCALES),
+            pgas=f"{len(ensemble.PGAS)} peak accelerations from {ensemble.PGAS[0]:g} to {ensemble.PGAS[-1]:g} g",
+            run_count=len(runs) // len(ensemble.STRUCTURES),
+            draws=ensemble.DRAWS,
+            ensemble=ensemble.rows(runs, found),
+            **ensemble.summary(runs, found),
+        )
+    arguments.output.write_text("\n\n".join(map(filled, page.strip().split("\n\n"))) + "\n", encoding="utf-8")
+    print(f"{arguments.output}, figures in {figures}")
+
+
+if __name__ == "__main__":
+    main()
