@@ -5,7 +5,9 @@
 # make wheels  out/wheels: Python packages for Linux, Windows and macOS with the command line and the archive, and one of the source
 # make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
 # make report  regenerate docs/validation.md, docs/validation_literature.md and their figures (minutes)
+# make overturning  regenerate docs/overturning.md and its pictures (minutes)
 # make coupling  regenerate docs/coupling.md and its figures (minutes)
+# make exchange  regenerate docs/model_exchange.md and its figure (minutes)
 # make bench   criterion benchmark of a whole record, and one step over it through fmpy
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
 # make fuzz    ten million hostile calls of the C interface and as many damaged records, on all cores (CI: 200,000 and 40,000)
@@ -42,7 +44,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test heavy browser foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc report coupling bench licenses fuzz records exporter mingw hosts
+.PHONY: demo test heavy browser foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc report overturning coupling exchange bench licenses fuzz records exporter mingw hosts
 
 demo: .venv/ready out/mcmanus.fmu out/evison.fmu
 	cp $(RECORDS)/$(PACOIMA) $(RECORDS)/$(EL_CENTRO) out/
@@ -147,10 +149,16 @@ report: .venv/ready exporter
 	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
 	PYTHONPATH=examples $(PYTHON) -m literature --exporter $(TARGET)/release/rocking-fmu
 
+overturning: .venv/ready exporter
+	PYTHONPATH=examples $(PYTHON) -m overturning --exporter $(TARGET)/release/rocking-fmu
+
 coupling: .venv/ready out/mcmanus.fmu out/evison.fmu
 	for example in bridge building_on_soil 'bridge_ssp --exporter $(TARGET)/release/rocking-fmu'; do \
 		PYTHONPATH=examples $(PYTHON) -m coupling.$$example || exit; done
 	PYTHONPATH=examples:tests OMP_NUM_THREADS=1 $(PYTHON) -m coupling
+
+exchange: .venv/ready out/mcmanus.fmu
+	PYTHONPATH=examples OMP_NUM_THREADS=1 $(PYTHON) -m model_exchange --fmu out/mcmanus.fmu
 
 records: .venv/ready
 

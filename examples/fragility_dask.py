@@ -96,6 +96,8 @@ def values(given) -> list[float]:
     """A list of numbers, or evenly spaced ones."""
     if isinstance(given, list):
         return given
+    if given.get("log"):
+        raise SystemExit("log = true: not known here, to `rocking-fmu sweep` alone")
     start, stop, last = given["from"], given["to"], given["count"] - 1
     return [(start * (last - i) + stop * i) / last for i in range(last + 1)]
 

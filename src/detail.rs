@@ -155,6 +155,10 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
         uplift::first_on(structure, &self.rocking.turning_moment(structure), arc)
     }
 
+    fn uplift_margin(&self, structure: &Structure, state: &State, _load: Load) -> (f64, Side) {
+        uplift::margin(structure, &self.rocking.turning_moment(structure), state)
+    }
+
     fn accelerations(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2] {
         match phase {
             Phase::FullContact => [full_contact::acceleration(structure, state, load), 0.0],
@@ -196,6 +200,10 @@ impl Level for FixedBase {
 
     fn stays_down(&self, _structure: &Structure, _state: &State) -> bool {
         true
+    }
+
+    fn uplift_margin(&self, _structure: &Structure, _state: &State, _load: Load) -> (f64, Side) {
+        (1.0, Side::Right)
     }
 
     fn accelerations(&self, structure: &Structure, _phase: Phase, state: &State, load: Load) -> [f64; 2] {

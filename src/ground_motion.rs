@@ -96,6 +96,23 @@ impl GroundMotion<'_> {
         self.ramp_from(self.reached(elapsed), elapsed)
     }
 
+    /// Seconds from `elapsed` to the next instant at which the ground acceleration jumps, by a first or last sample that is
+    /// not 0.
+    pub fn next_jump(&self, elapsed: Elapsed) -> Option<f64> {
+        let ends = [0, self.record.times().len() - 1].into_iter().filter(|i| self.acceleration(*i) != 0.0);
+        self.first_ahead(ends, elapsed)
+    }
+
+    /// Seconds from `elapsed` to the next sample, where the ground acceleration has a kink.
+    pub fn next_sample(&self, elapsed: Elapsed) -> Option<f64> {
+        self.first_ahead(self.reached(elapsed)..self.record.times().len(), elapsed)
+    }
+
+    /// Seconds from `elapsed` to the first of `samples`, which follow each other, that is still to come.
+    fn first_ahead(&self, mut samples: impl Iterator<Item = usize>, elapsed: Elapsed) -> Option<f64> {
+        samples.find_map(|i| Some(self.ahead(i, elapsed)).filter(|ahead| *ahead > self.rounding(i)))
+    }
+
     /// Advances `engine`, which is at `elapsed`, by `interval` (s) under the record and `load`, as one advance: the
     /// bound on its work is for all samples together, and if it fails the motion is as it was before.
     pub fn advance<W: Watch>(

@@ -41,6 +41,18 @@ pub(crate) trait Level: Rules + Debug + Send {
         state.u.hypot(state.u_dot / structure.omega_fc) < structure.u_cr
     }
 
+    /// How far a structure in full contact in `state` under `load` is from uplift, in parts of what uplift takes, and about
+    /// which side that would be: continuous, positive while the base stays down, due where it is not.
+    fn uplift_margin(&self, structure: &Structure, state: &State, load: Load) -> (f64, Side);
+
+    /// `state` with what does not move in `phase` at rest in its place.
+    fn admissible(&self, phase: Phase, state: State) -> State {
+        match phase {
+            Phase::FullContact => State { theta: 0.0, theta_dot: 0.0, ..state },
+            Phase::Rocking(_) | Phase::Overturned(_) => state,
+        }
+    }
+
     /// (ü, θ̈) in `phase` under `load`, m/s² and rad/s²; not a number where the equations have no solution.
     fn accelerations(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2];
 

@@ -19,6 +19,7 @@
 //! | [`reactions`] | what the structure exerts on the ground |
 //! | [`energy`] | the energy that is conserved between impacts |
 //! | [`taylor`], [`first_crossing`], [`engine`], [`motion`] | the solver: series, guards, hybrid engine, what changes with time |
+//! | [`outside_step`] | the equations for another integrator, and a check of its steps |
 //! | [`piece`] | what the engine shows to whoever watches |
 //! | [`modal_split`] | Eqs 10–20: rocking and vibration mode |
 //! | [`effective_frequency`] | Eq 14 |
@@ -27,7 +28,7 @@
 //! | [`pushover`] | Fig 1: equilibrium under a lateral force |
 //! | [`record`] | ground motion records: samples in memory, and files as archives publish them |
 //! | [`ground_motion`] | a record scaled, placed in time and followed whatever the steps |
-//! | [`run`] | a structure under a ground motion: exact peaks, curves to draw, levels compared, plans of many runs, their outcomes and exceedances |
+//! | [`run`] | a structure under a ground motion: exact peaks, curves to draw, levels compared, plans of many runs, their outcomes and exceedances, maps of pulses |
 //! | [`fragility`] | fragility curve of many runs, and how sure it is |
 //!
 //! In short, `examples/first_run.rs`:
@@ -63,6 +64,7 @@ pub mod nonlinear_rocking;
 mod oscillator;
 mod output_series;
 pub mod outputs;
+pub mod outside_step;
 pub mod parameters;
 pub mod piece;
 pub mod pushover;

@@ -31,6 +31,13 @@ pub struct Motion {
     pub(crate) chatter: Chatter,
 }
 
+impl Motion {
+    /// For how long contact is held from now on because too many transitions came before, s.
+    pub fn held(&self) -> f64 {
+        self.chatter.held
+    }
+}
+
 /// How many transitions a period (s) may see.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ChatterLimit {

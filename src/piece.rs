@@ -98,9 +98,13 @@ impl Sample<'_> {
 
     /// The reactions; once overturned, those of the instant before.
     pub fn reactions(&self) -> Reactions {
-        let (phase, state) = (self.motion.phase.in_motion(), &self.motion.state);
-        let accelerations = self.level.accelerations(self.structure, phase, state, self.load);
-        Reactions::of(self.structure, phase, state, accelerations, self.load)
+        let phase = self.motion.phase.in_motion();
+        Reactions::of(self.structure, phase, &self.motion.state, self.accelerations(), self.load)
+    }
+
+    /// (ü, θ̈), m/s² and rad/s²; once overturned, those of the instant before.
+    pub(crate) fn accelerations(&self) -> [f64; 2] {
+        self.level.accelerations(self.structure, self.motion.phase.in_motion(), &self.motion.state, self.load)
     }
 }
 

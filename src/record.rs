@@ -1,13 +1,14 @@
 //! Ground motion records: samples in memory, and files as the world's archives publish them.
 //!
 //! A record is a list of samples; between two samples the ground acceleration is linear. What a file is, its content tells:
-//! PEER AT2, ESM and ITACA, K-NET, COSMOS, CSMIP, or columns of text.
+//! PEER AT2, ESM and ITACA, K-NET, COSMOS, CSMIP, or columns of text. The field's standard [`pulse`]s are made here, too.
 
 mod at2;
 mod cosmos;
 mod esm;
 mod knet;
 mod parsed;
+pub mod pulse;
 mod source;
 mod table;
 mod text;
@@ -224,6 +225,19 @@ impl Record {
         self.acceleration.iter().fold(0.0, |peak, a_g| peak.max(a_g.abs()))
     }
 
+    /// Velocity (m/s) and displacement (m) of the ground at each sample, at rest before the first one: exact, as the
+    /// acceleration is linear between samples.
+    pub fn velocities_and_displacements(&self) -> impl Iterator<Item = [f64; 2]> {
+        let steps = self.times.windows(2).zip(self.acceleration.windows(2));
+        let after = |[velocity, displacement]: &mut [f64; 2], (times, a): (&[f64], &[f64])| {
+            let step = times[1] - times[0];
+            *displacement += step * (*velocity + step * (2.0 * a[0] + a[1]) / 6.0);
+            *velocity += 0.5 * step * (a[0] + a[1]);
+            Some([*velocity, *displacement])
+        };
+        [[0.0; 2]].into_iter().chain(steps.scan([0.0; 2], after))
+    }
+
     /// The ground motion from its first sample until `end` (s); after its last sample the ground is at rest.
     pub fn segments_until(&self, end: f64) -> impl Iterator<Item = Segment> {
         let ground = GroundMotion::from(self);
@@ -370,6 +384,14 @@ mod tests {
         assert_eq!((record.times(), record.acceleration()), (&[-1.0, 0.0, 0.5][..], &[2.0, -3.0, 0.0][..]));
         assert_eq!((record.start(), record.end(), record.pga()), (-1.0, 0.5, 3.0));
         assert_eq!(Record::at_rest(2.0).pga(), 0.0);
+    }
+
+    /// Of a_g = 6 t over 1 s: t² · 3 and t³; then of 6 - 12 (t - 1), by hand.
+    #[test]
+    fn integrals_are_exact() {
+        let record = Record::from_samples("", vec![2.0, 3.0, 4.0], vec![0.0, 6.0, -6.0]).unwrap();
+        let integrals: Vec<_> = record.velocities_and_displacements().collect();
+        assert_eq!(integrals, [[0.0, 0.0], [3.0, 1.0], [3.0, 5.0]]);
     }
 
     #[test]

@@ -91,6 +91,11 @@ fn product(a: &Series, b: &Series, k: usize) -> f64 {
     a[..=k].iter().zip(b[..=k].iter().rev()).map(|(a, b)| a * b).sum()
 }
 
+/// The |a_top| (m/s²) from which on the base lifts off.
+fn least_push(structure: &Structure) -> f64 {
+    (1.0 + LEAST_EXCESS) * structure.parameters().g * structure.tan_alpha_cg
+}
+
 /// The rigid limit as a level of detail.
 #[derive(Debug)]
 pub(crate) struct Rigid {
@@ -142,7 +147,7 @@ impl Level for Rigid {
 
     /// |a_top|, a_top = a_g − F_t/m, exceeds g tan α_cg.
     fn first_uplift(&self, structure: &Structure, start: &Start, arc: &Arc) -> (Crossing, Side) {
-        let limit = (1.0 + LEAST_EXCESS) * structure.parameters().g * structure.tan_alpha_cg;
+        let limit = least_push(structure);
         let push = [start.a_top.value, start.a_top.slope * arc.span];
         let first = |side: Side| first_time_all_closed([Guard::new(&push, side.sign(), limit)], 1.0);
         let (right, left) = (first(Side::Right), first(Side::Left));
@@ -151,6 +156,18 @@ impl Level for Rigid {
 
     fn stays_down(&self, _structure: &Structure, _state: &State) -> bool {
         true
+    }
+
+    fn uplift_margin(&self, structure: &Structure, _state: &State, load: Load) -> (f64, Side) {
+        let push = load.on_top(structure) / least_push(structure);
+        (1.0 - push.abs(), Side::of(-push))
+    }
+
+    fn admissible(&self, phase: Phase, state: State) -> State {
+        match phase {
+            Phase::FullContact => State::default(),
+            Phase::Rocking(_) | Phase::Overturned(_) => State { u: 0.0, u_dot: 0.0, ..state },
+        }
     }
 
     fn accelerations(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2] {

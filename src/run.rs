@@ -7,6 +7,7 @@ pub mod curve;
 pub mod exceedances;
 mod history;
 pub mod levels;
+pub mod map;
 pub mod outcome;
 pub mod peaks;
 pub mod plan;

@@ -16,6 +16,9 @@ pub struct State {
     pub theta_dot: f64,
 }
 
+/// Names of the components of a state, in the order of [`State::components`].
+pub const COMPONENTS: [&str; 4] = ["u", "u_dot", "theta", "theta_dot"];
+
 /// The pivot about which the structure rocks: the sign s of θ.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Side {
@@ -121,6 +124,16 @@ pub enum InitialStateError {
 }
 
 impl State {
+    /// u, u̇, θ, θ̇ in m, m/s, rad, rad/s.
+    pub fn components(&self) -> [f64; 4] {
+        [self.u, self.u_dot, self.theta, self.theta_dot]
+    }
+
+    /// The state with these components.
+    pub fn of([u, u_dot, theta, theta_dot]: [f64; 4]) -> State {
+        State { u, u_dot, theta, theta_dot }
+    }
+
     /// Whether it consists of numbers.
     pub fn is_finite(&self) -> bool {
         (self.u + self.u_dot + self.theta + self.theta_dot).is_finite()

@@ -96,7 +96,7 @@ pub(crate) trait Rules {
 /// The `motion` after what `event` leads to, and the transition to be reported.
 #[inline]
 pub(crate) fn resolve(
-    rules: &impl Rules,
+    rules: &(impl Rules + ?Sized),
     structure: &Structure,
     mut motion: Motion,
     event: Event,

@@ -13,7 +13,7 @@
 
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::taylor::{Arc, Series};
-use crate::{Side, Structure};
+use crate::{Side, State, Structure};
 
 /// Smallest excess of the turning moment over the weight's, as a part of the latter: far above rounding, so that what
 /// has lifted off moves away from the ground.
@@ -37,6 +37,16 @@ impl TurningMoment {
         let &Structure { stiffness, damping_u, gamma, .. } = structure;
         TurningMoment { u: H * stiffness + g, u_dot: H * damping_u, weight: gamma * g * B }
     }
+}
+
+/// How far a structure in full contact in `state` is from uplift, in parts of u_cr or of the moment of the weight, whichever
+/// lacks more, and the side that lacks less. Uplift is due where it is not positive.
+pub fn margin(structure: &Structure, turning: &TurningMoment, state: &State) -> (f64, Side) {
+    let displacement = state.u / structure.u_cr;
+    let moment = (turning.u * state.u + turning.u_dot * state.u_dot) / turning.weight;
+    let about = |side: Side| (1.0 - side.sign() * displacement).max(1.0 + LEAST_EXCESS - side.sign() * moment);
+    let (right, left) = (about(Side::Right), about(Side::Left));
+    if right <= left { (right, Side::Right) } else { (left, Side::Left) }
 }
 
 /// The first instant of `arc`, a motion in full contact, at which uplift is due, and the side about which it rocks
@@ -68,7 +78,7 @@ mod tests {
     use crate::load::{Load, Ramp};
     use crate::nonlinear_rocking::accelerations;
     use crate::taylor::Start;
-    use crate::{Parameters, State, full_contact};
+    use crate::{Parameters, full_contact};
     use proptest::prelude::*;
 
     fn first_from(structure: &Structure, state: State) -> (Crossing, Side) {

@@ -24,6 +24,8 @@ def with_instants(units: dict[str, str]) -> dict[str, str]:
     return units | {f"t_{name}": "s" for name in units}
 
 
+STATES = ("u", "u_dot", "theta", "theta_dot")
+RATES = dict(zip((f"der({name})" for name in STATES), ("m/s", "m/s2", "rad/s", "rad/s2")))
 KINDS = {
     ("input", "continuous", "Real"): {"a_g": "m/s2", "F_t": "N"},
     ("output", "continuous", "Real"): {
@@ -31,7 +33,7 @@ KINDS = {
         "uplift": "m", "delta_t": "m", "v_t": "m/s", "R_h": "N", "R_v": "N", "R_m": "N.m",
     },
     ("output", "discrete", "Real"): {"I_h": "N.s", "I_v": "N.s", "I_m": "N.m.s"},
-    ("local", "continuous", "Real"): {"theta_dot": "rad/s", "u_dot": "m/s", "a_ground": "m/s2"}
+    ("local", "continuous", "Real"): {"theta_dot": "rad/s", "u_dot": "m/s", "a_ground": "m/s2"} | RATES
     | with_instants({f"{of}_max": unit for of, unit in PEAKS.items()})
     | with_instants({"tension_max": "1", "R_v_min": "1", "mu_required": "1"}),
     ("local", "discrete", "Real"): {"t_overturned": "s"}
@@ -201,10 +203,18 @@ def test_phases(fmu):
 def test_feedthrough(fmu):
     unknowns = fmu.description.outputs
     assert sorted(unknown.variable.name for unknown in unknowns) == sorted(OUTPUTS)
-    feedthrough = {name: ["a_g", "F_t"] for name in ("a_t", "V_t", "M_t", "R_h", "R_v", "R_m")}
-    for unknown in unknowns:
-        # no attribute would mean "on all of the inputs"
-        assert [known.name for known in unknown.dependencies] == feedthrough.get(unknown.variable.name, [])
+    feedthrough = {name: ["a_g", "F_t", *STATES] for name in ("a_t", "V_t", "M_t", "R_h", "R_v", "R_m", "der(u_dot)", "der(theta_dot)")}
+    of_states = {"theta": ["theta"], "u": ["u"], "uplift": ["theta"], "delta_t": ["u", "theta"], "v_t": [*STATES],
+                 "der(u)": ["u_dot"], "der(theta)": ["theta_dot"]}
+    for unknown in unknowns + fmu.description.derivatives:
+        # no attribute would mean "on all of the inputs and states"
+        assert [known.name for known in unknown.dependencies] == (feedthrough | of_states).get(unknown.variable.name, [])
+
+
+def test_the_states_are_those_of_the_model(fmu):
+    rates = [unknown.variable for unknown in fmu.description.derivatives]
+    assert [(rate.name, rate.derivative.name) for rate in rates] == list(zip(RATES, STATES))
+    assert fmu.description.numberOfContinuousStates == 4 and fmu.description.numberOfEventIndicators == 2
 
 
 def test_initial_dependencies_are_the_true_ones(fmu):
@@ -246,7 +256,10 @@ def test_initial_dependencies_are_the_true_ones(fmu):
 
 
 def test_capabilities(fmu):
-    capabilities = fmu.description.coSimulation
+    capabilities, exchange = fmu.description.coSimulation, fmu.description.modelExchange
+    assert exchange.needsCompletedIntegratorStep and not exchange.canBeInstantiatedOnlyOncePerProcess
+    for name in ("modelIdentifier", "canGetAndSetFMUstate", "canSerializeFMUstate", "providesDirectionalDerivative"):
+        assert getattr(exchange, name) == getattr(capabilities, name), name
     assert capabilities.modelIdentifier == "FlexibleRocking"
     assert capabilities.canHandleVariableCommunicationStepSize
     assert capabilities.canInterpolateInputs
@@ -287,7 +300,7 @@ def test_the_library_refuses_another_builds_description(fmu):
 def test_info(fmu):
     info = fmu_info(fmu.path)
     assert re.search(r"FMI Version +2\.0\n", info)
-    assert re.search(r"FMI Type +Co-Simulation\n", info)
+    assert re.search(r"FMI Type +Model Exchange, Co-Simulation\n", info)
     assert re.search(r"Model Name +\S", info)
     assert re.search(r"Description +\S", info)
     # no date: it would tell two exports of the same thing apart

@@ -8,6 +8,7 @@ mod export;
 mod modes;
 mod output_files;
 mod picture;
+mod pulse;
 mod pushover;
 mod quantities;
 mod record_args;
@@ -114,14 +115,28 @@ enum Command {
   rocking-fmu simulate --preset evison --free 2 --theta-0 0.04 -o response.csv
   rocking-fmu modes --preset evison --response response.csv")]
     Modes(modes::ModesArgs),
-    /// Run records x scale factors x structures; probabilities of overturning, fragility curves
+    /// Run records x scale factors x structures for fragility curves, or pulses for overturning spectra
+    ///
+    /// A file with records gives probabilities of overturning and fragility curves; one with pulses a map of every
+    /// structure over frequency and amplitude: whether it lifts off, stands, or overturns, and after how many impacts.
     ///
     /// Appends a row per run to the CSV file as the runs end. A sweep that was stopped goes on where it was when the
-    /// same command is given again; once all runs are there, the command shows the probabilities alone.
+    /// same command is given again; once all runs are there, the command shows the results alone.
     #[command(after_help = "Examples:
   rocking-fmu sweep fragility.toml
-  rocking-fmu sweep fragility.toml -o runs.csv --threads 2")]
+  rocking-fmu sweep fragility.toml -o runs.csv --threads 2
+  rocking-fmu sweep spectrum.toml --picture spectrum.png")]
     Sweep(sweep::SweepArgs),
+    /// Write a pulse as a record: half sine, sine, cosine, Ricker, Mavroeidis and Papageorgiou
+    ///
+    /// The field's standard motions as their papers define them, in straight lines that keep to --error and have the
+    /// curve's impulse on each. Amplitude and frequency can be given in units of the structure's g tan(alpha_cg) and p_l.
+    #[command(after_help = "Examples:
+  rocking-fmu pulse sine --amplitude 0.6 --period 0.5
+  rocking-fmu pulse cosine --amplitude-ratio 2.5 --frequency-ratio 4 --preset evison -o cosine.csv --picture cosine.svg
+  rocking-fmu pulse mavroeidis_papageorgiou --amplitude 0.4 --period 1.2 --cycles 2.5 --phase 1.5708 --rest 5
+  rocking-fmu pulse ricker --amplitude 0.5 --frequency 1 -o ricker.csv && rocking-fmu simulate --record ricker.csv")]
+    Pulse(pulse::PulseArgs),
     /// Print completions for a shell
     #[command(after_help = "Examples:
   rocking-fmu completions bash > ~/.local/share/bash-completion/completions/rocking-fmu
@@ -157,6 +172,7 @@ fn main() -> ExitCode {
         Command::Pushover(args) => pushover::run(&args),
         Command::Modes(args) => modes::run(&args),
         Command::Sweep(args) => sweep::run(&args),
+        Command::Pulse(args) => pulse::run(&args),
         Command::Completions(args) => shell::completions(&args),
         Command::Man(args) => shell::man(&args),
     };

@@ -1,23 +1,25 @@
 //! `sweep`: records × scale factors × structures, a row of CSV for every run; probabilities of overturning and of
-//! exceeding limits, and fragility curves.
+//! exceeding limits, and fragility curves. Of pulses, overturning spectra.
 
 mod file;
+mod map;
 mod picture;
+mod row_file;
 mod rows;
 mod table;
 
 use crate::{
     output_files::OutputFiles,
-    picture::PictureFile,
+    picture::{Picture, PictureFile},
     results::{Format, FormatArgs, print, print_json, print_rows},
     significant::significant,
     talk::{self, say},
 };
 use anyhow::{Context, bail};
 use clap::value_parser;
-use file::Sweep;
+use file::{Asked, Sweep};
 use indicatif::ProgressStyle;
-use rayon::{ThreadPoolBuilder, prelude::*};
+use rayon::{ThreadPool, ThreadPoolBuilder, prelude::*};
 use rocking::quantity::with_unit;
 use rocking::run::{
     exceedances,
@@ -25,21 +27,25 @@ use rocking::run::{
     plan::{Case, Plan},
     validity::{Found, Limits, Validity},
 };
-use rows::Rows;
-use std::{path::PathBuf, sync::Mutex, time::Instant};
+use row_file::RowFile;
+use std::{
+    path::{Path, PathBuf},
+    sync::Mutex,
+    time::Instant,
+};
 use uuid::Uuid;
 
 /// What to run.
 #[derive(clap::Args)]
 pub struct SweepArgs {
-    /// Records, scale factors, structures and limits
+    /// Records, scale factors, structures and limits; or pulses and structures
     #[arg(value_name = "FILE.toml")]
     file: PathBuf,
     /// Rows as CSV; a file that holds some of this sweep's is completed [default: the TOML file's name and .csv, in this
     /// folder]
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
-    /// Picture of the probabilities and fragility curves [default: beside the rows, as SVG]
+    /// Picture of the probabilities and fragility curves, or of the maps [default: beside the rows, as SVG]
     #[arg(long, value_name = "FILE.svg|png")]
     picture: Option<PictureFile>,
     /// Runs at a time, as far as there are runs to do [default: one per core]
@@ -55,7 +61,7 @@ pub struct SweepArgs {
 /// Does the runs that are not in the file yet, then prints and draws the probabilities.
 pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let mut files = OutputFiles::of_inputs([args.file.as_path()]);
-    let Sweep { plan, limits, measure, records } = file::read(&args.file, &mut files)?;
+    let asked = file::read(&args.file, &mut files)?;
     let output = match &args.output {
         Some(path) => path.clone(),
         None => PathBuf::from(args.file.file_stem().unwrap_or_default()).with_extension("csv"),
@@ -63,8 +69,17 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let picture = args.picture.clone().unwrap_or(PictureFile::svg(output.with_extension("svg")));
     files.reserve_rows(&output)?;
     let picture = picture.create(&mut files).context("picture of the sweep")?;
+    match asked {
+        Asked::Records(sweep) => run_records(args, sweep, &output, picture),
+        Asked::Pulses(sweep) => map::run(args, sweep, &output, picture),
+    }
+}
+
+/// Every record at every scale factor on every structure.
+fn run_records(args: &SweepArgs, sweep: Sweep, output: &Path, picture: Picture) -> anyhow::Result<()> {
+    let Sweep { plan, limits, measure, records } = sweep;
     let keys = rows::keys(&plan, args.validity);
-    let (rows, found) = Rows::open(&output, &keys)?;
+    let (rows, found) = rows::open(output, &keys)?;
     let mut outcomes = found.outcomes;
     let missing: Vec<_> = (0..plan.len()).filter(|index| outcomes[*index].is_none()).collect();
     let done = plan.len() - missing.len();
@@ -83,8 +98,7 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
         }
     }
 
-    let threads = args.threads.map_or(0, |threads| usize::from(threads).min(missing.len()).max(1));
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build()?;
+    let pool = thread_pool(args, missing.len())?;
     let clock = Instant::now();
     for (index, outcome) in pool.install(|| do_runs(&plan, &keys, &missing, args.validity, rows))? {
         outcomes[index] = Some(outcome);
@@ -115,6 +129,18 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     report_failures(&plan, &keys, &outcomes)
 }
 
+/// As many threads as are asked for, or one per core, but no more than there are `runs`.
+fn thread_pool(args: &SweepArgs, runs: usize) -> anyhow::Result<ThreadPool> {
+    let threads = args.threads.map_or(0, |threads| usize::from(threads).min(runs).max(1));
+    Ok(ThreadPoolBuilder::new().num_threads(threads).build()?)
+}
+
+/// How the progress of many runs, which are called `what`, is shown.
+fn progress_style(what: &str) -> anyhow::Result<ProgressStyle> {
+    let template = format!("{{elapsed_precise}} {{bar:40}} {{pos}}/{{len}} {what}, {{per_sec}}, {{eta}} left");
+    Ok(ProgressStyle::with_template(&template)?)
+}
+
 /// Says how many runs failed, and which the first is.
 fn report_failures(plan: &Plan, keys: &[Uuid], outcomes: &[Outcome]) -> anyhow::Result<()> {
     let failed = || (0..plan.len()).filter(|index| matches!(outcomes[*index], Outcome::Failed { .. }));
@@ -130,10 +156,9 @@ fn do_runs(
     keys: &[Uuid],
     missing: &[usize],
     validity: bool,
-    rows: Rows,
+    rows: RowFile,
 ) -> anyhow::Result<Vec<(usize, Outcome)>> {
-    let style = ProgressStyle::with_template("{elapsed_precise} {bar:40} {pos}/{len} runs, {per_sec}, {eta} left")?;
-    let progress = talk::progress(missing.len()).with_style(style);
+    let progress = talk::progress(missing.len()).with_style(progress_style("runs")?);
     let rows = Mutex::new(rows);
     let outcomes = missing.par_iter().map(|&index| {
         let case = plan.case(index);
@@ -145,7 +170,7 @@ fn do_runs(
             (case.outcome(), None)
         };
         let mut rows = rows.lock().expect("no thread panics with the file in hand");
-        rows.append(&keys[index], &case, &outcome, found.as_ref())?;
+        rows::append(&mut rows, &keys[index], &case, &outcome, found.as_ref())?;
         progress.inc(1);
         Ok((index, outcome))
     });

@@ -10,6 +10,8 @@ use crate::variables::{DataType, VARIABLES, Variable};
 use rocking::Motion;
 use rocking::engine::{AdvanceError, Progress};
 use rocking::ground_motion::Elapsed;
+use rocking::load::LOADS;
+use rocking::outside_step::Known;
 use rocking::run::peaks::{PEAKS, Peaks};
 use rocking::run::validity::{Found, Limits, Validity, Worst};
 use rocking::{Engine, Impulse, LinearLoad, Load, Phase, State, Watch};
@@ -26,9 +28,14 @@ const BOUND: f64 = 1e100;
 /// More than anything that is counted can come to.
 const MAX_COUNT: u64 = 1 << 60;
 
+/// The largest state (SI units) that is taken from a host.
+pub(crate) const FARTHEST: f64 = 1e12;
+
 /// A few dozen numbers from which an instance goes on to the same bits: what an FMU state holds.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Condition {
+    /// Who integrates.
+    pub interface: Interface,
     /// State of FMI's state machine.
     pub stage: Stage,
     /// What was set before the start.
@@ -39,11 +46,49 @@ pub struct Condition {
     pub course: Option<Course>,
 }
 
+/// Who integrates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Interface {
+    /// The FMU.
+    CoSimulation,
+    /// The host.
+    ModelExchange,
+}
+
+impl Interface {
+    /// The stage in which a simulation starts.
+    pub const fn first_stage(self) -> Stage {
+        match self {
+            Interface::CoSimulation => Stage::StepComplete,
+            Interface::ModelExchange => Stage::EventMode,
+        }
+    }
+
+    const fn has(self, stage: Stage) -> bool {
+        match stage {
+            Stage::StepComplete | Stage::StepFailed => matches!(self, Interface::CoSimulation),
+            Stage::EventMode | Stage::ContinuousTimeMode => matches!(self, Interface::ModelExchange),
+            Stage::Instantiated | Stage::InitializationMode | Stage::Terminated | Stage::Error => true,
+        }
+    }
+}
+
+/// What an instance knows beside the present of a motion that the host integrates.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub struct Outside {
+    /// Where the motion was last known.
+    pub known: Known,
+    /// The inputs when event mode was entered: what is set there has not acted before.
+    pub arrived: Load,
+}
+
 /// How far a simulation has come.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Course {
-    /// The motion.
+    /// The motion; the host's, if the host integrates.
     pub motion: Motion,
+    /// If the host integrates.
+    pub outside: Option<Outside>,
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
     /// Peaks so far, if they are watched.
@@ -56,6 +101,7 @@ pub struct Course {
 
 /// A condition with what it is the condition of.
 pub(crate) struct Present {
+    pub interface: Interface,
     pub stage: Stage,
     pub setup: Setup,
     pub inputs: Inputs,
@@ -70,6 +116,8 @@ pub(crate) struct Model {
     pub ground: Option<Arc<GroundRecord>>,
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
+    /// If the host integrates: the engine is then where the host is.
+    pub outside: Option<Outside>,
     pub peaks: Peaks,
     pub validity: Found,
 }
@@ -81,7 +129,7 @@ impl Model {
         ground.as_deref().map_or(Ok(()), |ground| setup.check_ground(ground))?;
         let peaks = Peaks::since(setup.start_time, engine.structure());
         let validity = Found::since(setup.start_time);
-        Ok(Model { engine, ground, elapsed: Elapsed::default(), peaks, validity })
+        Ok(Model { engine, ground, elapsed: Elapsed::default(), outside: None, peaks, validity })
     }
 
     /// What acts now: `inputs` and the record.
@@ -124,6 +172,17 @@ impl Model {
     /// Whether the structure has overturned, which ends the simulation.
     pub fn has_overturned(&self) -> bool {
         matches!(self.engine.motion().phase, Phase::Overturned(_))
+    }
+
+    /// The instant of overturning, s.
+    pub fn overturned_at(&self) -> Option<f64> {
+        let motion = self.outside.as_ref().map_or(self.engine.motion(), |outside| &outside.known.motion);
+        self.has_overturned().then_some(motion.time)
+    }
+
+    /// Whether the host integrates: the motion between its steps is then not the engine's to watch.
+    pub fn is_integrated_outside(&self) -> bool {
+        self.outside.is_some()
     }
 
     /// Advances by `step` (s) under `inputs` and the record. If it fails, nothing has changed.
@@ -180,18 +239,29 @@ impl Condition {
         VARIABLES.iter().all(fits)
             && self.inputs.are_possible()
             && self.setup.check_experiment().is_ok()
+            && self.interface.has(self.stage)
             && self.course.is_some() == self.stage.has_started()
+            && self
+                .course
+                .as_ref()
+                .is_none_or(|course| course.outside.is_some() == (self.interface == Interface::ModelExchange))
             && self.course.as_ref().is_none_or(|course| course.is_possible(&self.setup))
     }
 }
 
 impl Course {
     fn is_possible(&self, setup: &Setup) -> bool {
-        let Course { motion, elapsed, peaks, validity, record } = self;
-        let &Motion { time, state: State { u, u_dot, theta, theta_dot }, impulse, transitions, work, .. } = motion;
-        let Impulse { I_h, I_v, I_m } = impulse;
-        [u, u_dot, theta_dot, I_h, I_v, I_m].iter().all(|x| x.abs() <= BOUND)
+        let Course { motion, outside, elapsed, peaks, validity, record } = self;
+        let farthest = if outside.is_some() { FARTHEST } else { MAX_ANGLE };
+        is_possible(motion, farthest)
             && elapsed.seconds().is_finite()
+            && outside.as_ref().is_none_or(|Outside { known, arrived }| {
+                is_possible(&known.motion, MAX_ANGLE)
+                    && known.elapsed.seconds().is_finite()
+                    && [known.load, *arrived]
+                        .iter()
+                        .all(|load| LOADS.iter().all(|input| input.check((input.get)(load)).is_ok()))
+            })
             && PEAKS
                 .iter()
                 .map(|peaking| (peaking.of)(peaks))
@@ -204,19 +274,27 @@ impl Course {
             && [validity.gains, validity.impacts, validity.settlings, validity.evaluations]
                 .iter()
                 .all(|count| *count < MAX_COUNT)
-            && [transitions, work.steps, work.evaluations, peaks.evaluations()].iter().all(|count| *count < MAX_COUNT)
-            && time.is_finite()
-            && theta.abs() <= MAX_ANGLE
+            && peaks.evaluations() < MAX_COUNT
             && record.is_none() == setup.record.is_empty()
             && setup.engine().is_ok_and(|engine| peaks.are_of(engine.structure()))
     }
 }
 
+/// Whether calls can lead to `motion`, with |θ| no more than `farthest` (rad).
+fn is_possible(motion: &Motion, farthest: f64) -> bool {
+    let &Motion { time, state: State { u, u_dot, theta, theta_dot }, impulse, transitions, work, .. } = motion;
+    let Impulse { I_h, I_v, I_m } = impulse;
+    [u, u_dot, theta_dot, I_h, I_v, I_m].iter().all(|x| x.abs() <= BOUND)
+        && theta.abs() <= farthest
+        && [transitions, work.steps, work.evaluations].iter().all(|count| *count < MAX_COUNT)
+        && time.is_finite()
+}
+
 impl Present {
     /// As instantiated from `archive`.
-    pub fn new(archive: &Archive) -> Present {
+    pub fn new(archive: &Archive, interface: Interface) -> Present {
         let setup = Setup::new(&archive.contents);
-        Present { stage: Stage::Instantiated, setup, inputs: Inputs::default(), model: None }
+        Present { interface, stage: Stage::Instantiated, setup, inputs: Inputs::default(), model: None }
     }
 
     /// The structure in motion, or at its start with what has been set so far; its record is in `archive`, or on disk.
@@ -226,7 +304,7 @@ impl Present {
 
     /// The same with what else there is.
     pub fn parts(&mut self, archive: &Archive) -> Result<(&mut Model, &Setup, &mut Inputs, &mut Stage), Failure> {
-        let Present { stage, setup, inputs, model } = self;
+        let Present { stage, setup, inputs, model, .. } = self;
         let model = match model {
             Some(model) => model,
             none => none.insert(Model::new(setup, archive.record(&setup.record)?)?),
@@ -236,20 +314,24 @@ impl Present {
 
     /// Its condition.
     pub fn condition(&self) -> Condition {
-        let Present { stage, setup, inputs, model } = self;
+        let Present { interface, stage, setup, inputs, model } = self;
         let course = model.as_ref().filter(|_| stage.has_started()).map(|model| Course {
             motion: *model.engine.motion(),
+            outside: model.outside,
             elapsed: model.elapsed,
             peaks: model.peaks,
             validity: model.validity,
             record: model.digest(),
         });
-        Condition { stage: *stage, setup: setup.clone(), inputs: *inputs, course }
+        Condition { interface: *interface, stage: *stage, setup: setup.clone(), inputs: *inputs, course }
     }
 
     /// Goes to `condition`. The model is built anew only for another setup.
     pub fn go_to(&mut self, condition: &Condition, archive: &Archive) -> Result<(), Failure> {
-        let Condition { stage, setup, inputs, course } = condition;
+        let Condition { interface, stage, setup, inputs, course } = condition;
+        if *interface != self.interface {
+            return Err(Failure::OtherInterface);
+        }
         let mut model = None;
         if let Some(course) = course {
             let is_the_same = |model: &mut Model| self.setup == *setup && model.digest() == course.record;
@@ -259,10 +341,11 @@ impl Present {
                 return Err(Failure::OtherRecord(setup.record.to_string()));
             }
             found.engine.set_motion(course.motion);
-            (found.elapsed, found.peaks, found.validity) = (course.elapsed, course.peaks, course.validity);
+            (found.elapsed, found.outside) = (course.elapsed, course.outside);
+            (found.peaks, found.validity) = (course.peaks, course.validity);
             model = Some(found);
         }
-        *self = Present { stage: *stage, setup: setup.clone(), inputs: *inputs, model };
+        *self = Present { interface: *interface, stage: *stage, setup: setup.clone(), inputs: *inputs, model };
         Ok(())
     }
 }

@@ -139,8 +139,8 @@ pub enum Failure {
     NoInput(&'static Variable),
     /// A known that is none.
     #[error(
-        "{} cannot be a known of a directional derivative: only the inputs can, and in initialization mode Real \
-         parameters and initial values",
+        "{} cannot be a known of a directional derivative: only the inputs can, in initialization mode Real parameters and \
+         initial values, later u, u_dot, theta and theta_dot",
         .0.name
     )]
     NoKnown(&'static Variable),
@@ -222,6 +222,54 @@ pub enum Failure {
         /// s.
         time: f64,
     },
+    /// A time that is none.
+    #[error("time = {} is out of range: it must be finite, and so its distance from startTime", with_unit(*.0, "s"))]
+    BadTime(f64),
+    /// A step of the host's integrator that ends before it starts.
+    #[error(
+        "the integrator's step from t = {from} s ends at t = {to} s: time goes on from an event or a complete step"
+    )]
+    StepBack {
+        /// Where the last step or event was, s.
+        from: f64,
+        /// Where the host is, s.
+        to: f64,
+    },
+    /// A trial state that is far from any motion.
+    #[error("{name} = {value} is out of range: at most 1e12 in SI units; take a shorter step")]
+    FarState {
+        /// The component.
+        name: &'static str,
+        /// Its value.
+        value: f64,
+    },
+    /// The equations of motion have no solution at a trial state.
+    #[error(
+        "the derivatives of the states do not exist at t = {time} s (u = {u} m, theta = {theta} rad): take a shorter step"
+    )]
+    NoStateRates {
+        /// s.
+        time: f64,
+        /// m.
+        u: f64,
+        /// rad.
+        theta: f64,
+    },
+    /// Another number of states or indicators.
+    #[error("{name} = {given} is not {needed}")]
+    WrongCount {
+        /// The argument.
+        name: &'static str,
+        /// What the host passed.
+        given: usize,
+        /// What there are.
+        needed: usize,
+    },
+    /// A state kept by an instance of the other interface.
+    #[error(
+        "the FMU state was kept by an instance of the other kind: model exchange and co-simulation have states of their own"
+    )]
+    OtherInterface,
     /// A question that has no answer.
     #[error("{0} has no answer here")]
     NoAnswer(&'static str),
@@ -251,6 +299,7 @@ impl Failure {
     pub fn status(&self) -> Status {
         match self {
             Failure::Overturned { .. } | Failure::NoAnswer(_) => Status::Discard,
+            Failure::FarState { .. } | Failure::NoStateRates { .. } => Status::Discard,
             Failure::Panicked(_) => Status::Fatal,
             _ => Status::Error,
         }

@@ -1,10 +1,10 @@
 //! One instance of the FMU: what each function does, in safe code, whatever a version of the standard calls it.
 
-use crate::condition::{Model, Present};
+use crate::condition::{Interface, Model, Present};
 use crate::failure::Failure;
 use crate::logger::{Category, Logger, Status};
 use crate::resources::Archive;
-use crate::sensitivity::sensitivities;
+use crate::sensitivity::{by_state, sensitivities};
 use crate::setup::Setup;
 use crate::shown::Shown;
 use crate::snapshot::{self, Snapshots};
@@ -13,10 +13,13 @@ use crate::variables::{self, Causality, Source, VARIABLES, Variable};
 use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE, Progress};
 use rocking::load::LOADS;
 use rocking::run::validity::{self, ASSUMPTIONS, Found, Limits};
+use rocking::state::COMPONENTS;
 use rocking::{Load, Parameters, Reactions, Side, Transition, TransitionKind};
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
 use std::mem::MaybeUninit;
+
+pub mod model_exchange;
 
 /// How close two times that mean the same are, in units in the last place, or in parts of the step if that is more.
 const SAME_TIME: (f64, f64) = (8.0, 1e-4);
@@ -44,9 +47,9 @@ pub fn open(name: &'static str, guid: &str, resources: &str) -> Result<Archive, 
 
 impl Instance {
     /// Just instantiated from `archive`; `events` says whether events are logged.
-    pub fn new(archive: Archive, events: bool, mut logger: Logger) -> Instance {
+    pub fn new(archive: Archive, interface: Interface, events: bool, mut logger: Logger) -> Instance {
         logger.set_events(events);
-        let now = Present::new(&archive);
+        let now = Present::new(&archive, interface);
         let (snapshots, shown) = Default::default();
         Instance { logger, events_at_start: events, archive, now, snapshots, shown }
     }
@@ -99,7 +102,10 @@ impl Instance {
         for warning in validity::of_parameters(model.engine.structure(), setup.detail) {
             self.logger.warning(&warning);
         }
-        self.now.stage = Stage::StepComplete;
+        if self.now.interface == Interface::ModelExchange {
+            self.start_outside()?;
+        }
+        self.now.stage = self.now.interface.first_stage();
         Ok(())
     }
 
@@ -111,14 +117,14 @@ impl Instance {
 
     /// As instantiated. FMU states stay the host's until it frees them.
     pub fn reset(&mut self) -> Result<(), Failure> {
-        self.now = Present::new(&self.archive);
+        self.now = Present::new(&self.archive, self.now.interface);
         self.logger.set_events(self.events_at_start);
         Ok(())
     }
 
     /// All of the values, or none if one is refused.
     pub fn get_real(&mut self, references: &[u32], values: &mut [MaybeUninit<f64>]) -> Result<(), Failure> {
-        let (mut is_computed, mut reaction) = (false, None);
+        let (mut is_computed, mut reaction, mut rate) = (false, None, None);
         for reference in references {
             let variable = find(*reference)?;
             match variable.source {
@@ -132,6 +138,7 @@ impl Instance {
                     return Err(Failure::WrongType(variable));
                 }
                 Source::Reaction(_) => (reaction, is_computed) = (Some(variable), true),
+                Source::StateRate(_) => (rate, is_computed) = (Some(variable), true),
                 _ => is_computed = true,
             }
         }
@@ -153,6 +160,11 @@ impl Instance {
             if !(R_h + R_v + R_m).is_finite() {
                 return Err(Failure::NoReaction { variable, time: model.engine.motion().time });
             }
+        }
+        if let Some(variable) = rate
+            && !shown.state_rates().is_finite()
+        {
+            return Err(Failure::NoReaction { variable, time: model.engine.motion().time });
         }
         write(references, values, |source| shown.value(source).or_else(|| setting(source)))
     }
@@ -255,14 +267,19 @@ impl Instance {
         Ok(())
     }
 
-    /// All of the values, or none if one is refused.
-    pub fn set_boolean(&mut self, references: &[u32], values: &[i32]) -> Result<(), Failure> {
+    /// All of the values, or none if one is refused; `truth` says what the value of a name stands for.
+    pub fn set_boolean<T: Copy>(
+        &mut self,
+        references: &[u32],
+        values: &[T],
+        truth: fn(&'static str, T) -> Result<bool, Failure>,
+    ) -> Result<(), Failure> {
         let mut setup = self.now.setup.clone();
         for (reference, &value) in references.iter().zip(values) {
             let variable = find(*reference)?;
             let Source::Switch(switch) = variable.source else { return Err(refused(variable)) };
             self.check_not_fixed(variable)?;
-            (switch.set)(&mut setup, boolean(variable.name, value)?);
+            (switch.set)(&mut setup, truth(variable.name, value)?);
         }
         self.set_up(setup);
         Ok(())
@@ -346,7 +363,8 @@ impl Instance {
         Ok(())
     }
 
-    /// Of outputs by inputs, and in initialization mode by parameters and initial values as well, of calculated
+    /// Of outputs and derivatives of states by inputs and, once the simulation has started, by states; in initialization
+    /// mode by parameters and initial values as well, of calculated
     /// parameters, too ([`sensitivity`](crate::sensitivity)). The outputs are affine in the inputs, so that a difference
     /// is the derivative; it is taken over a change of the size of gravity and the strut's force, which keeps its
     /// digits.
@@ -359,7 +377,8 @@ impl Instance {
     ) -> Result<(), Failure> {
         let is_initializing = self.now.stage == Stage::InitializationMode;
         let mut direction = Load::default();
-        let mut of_setup = BTreeMap::<u32, f64>::new();
+        let has_started = self.now.stage.has_started();
+        let (mut of_setup, mut of_state) = (BTreeMap::<u32, f64>::new(), [0.0; COMPONENTS.len()]);
         for (reference, &value) in knowns.iter().zip(seed) {
             let variable = find(*reference)?;
             if !value.is_finite() {
@@ -373,13 +392,16 @@ impl Instance {
                 Source::Parameter(_) | Source::InitialValue(_) | Source::Placement(_) if is_initializing => {
                     *of_setup.entry(*reference).or_default() += value;
                 }
-                _ => return Err(Failure::NoKnown(variable)),
+                _ => match variable.as_state().filter(|_| has_started) {
+                    Some(which) => of_state[which] += value,
+                    None => return Err(Failure::NoKnown(variable)),
+                },
             }
         }
         let unknown = |reference: &u32| {
             let variable = find(*reference)?;
             match variable.source {
-                Source::Output(_) | Source::Reaction(_) | Source::Ground => Ok(variable),
+                Source::Output(_) | Source::Reaction(_) | Source::StateRate(_) | Source::Ground => Ok(variable),
                 Source::Derived(_) | Source::RecordDuration | Source::Impulse(_) if is_initializing => Ok(variable),
                 _ => Err(Failure::NoOutput(variable)),
             }
@@ -387,7 +409,13 @@ impl Instance {
         let unknowns = unknowns.iter().map(unknown).collect::<Result<Vec<_>, _>>()?;
 
         let (model, setup, inputs, _) = self.now.parts(&self.archive)?;
-        let (model, inputs) = (&*model, inputs.now(false));
+        let inputs = inputs.now(false);
+        let mut by_states = vec![0.0; unknowns.len()];
+        for (which, seed) in of_state.into_iter().enumerate().filter(|(_, seed)| *seed != 0.0) {
+            let by = by_state(model, setup, inputs, &unknowns, which)?;
+            by_states.iter_mut().zip(by).for_each(|(sum, by)| *sum += seed * by);
+        }
+        let model = &*model;
         let Model { engine, ground, .. } = model;
         let time = engine.motion().time;
         let &Parameters { m, g, .. } = engine.structure().parameters();
@@ -396,7 +424,7 @@ impl Instance {
         let of_size_one = |part: f64| if size > 0.0 { part / size } else { 0.0 };
         let after = Shown::new(model, setup, Load { a_g: of_size_one(direction.a_g), F_t: of_size_one(direction.F_t) });
         let change = |of: &&Variable| after.value(of.source).zip(before.value(of.source)).map_or(0.0, |(a, b)| a - b);
-        let mut found: Vec<_> = unknowns.iter().map(|of| size * change(of)).collect();
+        let mut found: Vec<_> = unknowns.iter().zip(by_states).map(|(of, by)| size * change(of) + by).collect();
         for (reference, seed) in of_setup {
             let by = sensitivities(setup, ground, inputs, &unknowns, find(reference)?)?;
             found.iter_mut().zip(by).for_each(|(sum, by)| *sum += seed * by);
@@ -527,15 +555,6 @@ fn refused(variable: &'static Variable) -> Failure {
     match variable.causality {
         Causality::Input | Causality::Parameter => Failure::WrongType(variable),
         Causality::Output | Causality::CalculatedParameter | Causality::Local => Failure::NotSettable(variable),
-    }
-}
-
-/// What `value`, given as `name`, stands for.
-pub(crate) fn boolean(name: &'static str, value: i32) -> Result<bool, Failure> {
-    match value {
-        0 => Ok(false),
-        1 => Ok(true),
-        _ => Err(Failure::BadChoice { name, value, accepted: "0 (fmi2False), 1 (fmi2True)" }),
     }
 }
 

@@ -1,7 +1,7 @@
-//! FMI 2.0 co-simulation unit of a flexible rocking structure.
+//! FMI 2.0 unit of a flexible rocking structure, for co-simulation and model exchange.
 //!
-//! A call of the host enters by [`c_abi`], which asks [`state_machine`] whether it is legal and turns pointers into
-//! slices. [`instance`] finds its variables in [`variables`] and lets [`rocking`] do the physics; what goes wrong is a
+//! A call of the host enters by [`fmi2`], whose shell [`c_abi`] asks a table of [`state_machine`] whether it is legal and
+//! turns pointers into slices. [`instance`] finds its variables in [`variables`] and lets [`rocking`] do the physics; what goes wrong is a
 //! [`failure::Failure`], which [`logger`] hands to the host. All that the future depends on is a
 //! [`condition::Condition`], which [`snapshot`] keeps: what was set before the start, in [`setup`], the [`inputs`], and
 //! how far the motion has come; whether it can start is in `start`. [`sensitivity`] differentiates by parameters. [`resources`] reads what the archive
@@ -11,6 +11,7 @@
 pub mod c_abi;
 pub mod condition;
 pub mod failure;
+pub mod fmi2;
 pub mod ground;
 pub mod inputs;
 pub mod instance;

@@ -1,4 +1,5 @@
-//! Derivatives of initial values and calculated parameters by what is set before the start.
+//! Derivatives by what has no formula for it: of initial values and calculated parameters by what is set before the start,
+//! and by the states later on.
 //!
 //! Differences to either side of the value are extrapolated to the limit of no difference (Neville's scheme, its entry
 //! of least change), each within the value's range and without passing 0, at which phases change and ranges end. Where
@@ -11,7 +12,8 @@ use crate::ground::GroundRecord;
 use crate::setup::Setup;
 use crate::shown::Shown;
 use crate::variables::{DataType, Variable};
-use rocking::{LinearLoad, Parameters};
+use rocking::state::COMPONENTS;
+use rocking::{LinearLoad, Parameters, Phase, State};
 use std::sync::Arc;
 
 /// Relative to the derivative, or to the unknown's value over the known's scale where that is more.
@@ -50,31 +52,78 @@ pub(crate) fn sensitivities(
     let x = known.source.setting(setup).ok_or(Failure::NoKnown(known))?;
     let scale = scale(known, x, &setup.parameters);
     let here = shown(x)?;
-    let sides = [1.0, -1.0].map(|sign| {
-        let first = first_step(known, x, sign, scale);
-        let places = (0..DIFFERENCES).map(|k| x + sign * first * 0.5_f64.powi(k));
-        places.filter(|place| *place != x).filter_map(|place| Some((place - x, shown(place).ok()?))).collect::<Vec<_>>()
+    let first = [1.0, -1.0].map(|sign| first_step(known, x, sign, scale));
+    let found = derivatives(x, scale, first, &here, |place| shown(place).ok());
+    let checked = unknowns.iter().zip(found).map(|(&variable, found)| match found {
+        _ if !depends(variable) => Ok(0.0),
+        found => found.ok_or(Failure::NoSensitivity { variable, known }),
     });
+    checked.collect()
+}
+
+/// The derivatives of `unknowns` by the state `which` in the present phase under `inputs`. θ is moved away from the floor
+/// alone, at which the height of the free edge has a kink.
+pub(crate) fn by_state(
+    model: &mut Model,
+    setup: &Setup,
+    inputs: LinearLoad,
+    unknowns: &[&'static Variable],
+    which: usize,
+) -> Result<Vec<f64>, Failure> {
+    let motion = *model.engine.motion();
+    let components = motion.state.components();
+    let scale = components[which].abs().max(model.engine.structure().usual_state().components()[which]);
+    let load = model.load(setup, inputs).value;
+    let mut shown = |value: f64| {
+        let mut components = components;
+        components[which] = value;
+        model.engine.set_state(State::of(components));
+        let shown = Shown::new(model, setup, load);
+        let values = unknowns.iter().map(|variable| shown.value(variable.source).unwrap_or_default()).collect();
+        Some(values).filter(|values: &Vec<f64>| values.iter().all(|value| value.is_finite()))
+    };
+    let x = components[which];
+    let first = [1.0, -1.0].map(|sign| match motion.phase {
+        Phase::Rocking(side) if COMPONENTS[which] == "theta" && side.sign() != sign => 0.0,
+        _ => FIRST * scale,
+    });
+    let found = shown(x).map(|here| derivatives(x, scale, first, &here, &mut shown));
+    model.engine.set_motion(motion);
+    let found = found.unwrap_or_else(|| vec![None; unknowns.len()]);
+    let failed = |variable| Failure::NoRate { variable, time: motion.time };
+    unknowns.iter().zip(found).map(|(&variable, found)| found.ok_or(failed(variable))).collect()
+}
+
+/// The derivatives at `x` of what `at` tells, `here` there, by differences from `first` upwards and downwards on; `None`
+/// where there is none.
+fn derivatives(
+    x: f64,
+    scale: f64,
+    first: [f64; 2],
+    here: &[f64],
+    mut at: impl FnMut(f64) -> Option<Vec<f64>>,
+) -> Vec<Option<f64>> {
+    let sides = [1.0, -1.0].into_iter().zip(first).map(|(sign, first)| {
+        let places = (0..DIFFERENCES).map(|k| x + sign * first * 0.5_f64.powi(k));
+        places.filter(|place| *place != x).filter_map(|place| Some((place - x, at(place)?))).collect::<Vec<_>>()
+    });
+    let sides: Vec<_> = sides.collect();
     let reach = |side: &[(f64, Vec<f64>)]| side.first().map_or(0.0, |(step, _)| step.abs());
-    let farthest = reach(&sides[0]).max(reach(&sides[1]));
-    let derivative = |at: usize, variable: &&'static Variable| {
-        if !depends(variable) {
-            return Ok(0.0);
-        }
-        let does_not_exist = Failure::NoSensitivity { variable, known };
-        let floor = here[at].abs() / scale;
+    let farthest = sides.iter().map(|side| reach(side)).fold(0.0, f64::max);
+    let derivative = |(which, here): (usize, &f64)| {
+        let floor = here.abs() / scale;
         let agree = |distance: f64, value: f64| distance <= AGREEMENT * value.abs().max(floor);
         let limits = sides.iter().filter(|side| !side.is_empty() && reach(side) >= FIRST * farthest).map(|side| {
-            limit(side.iter().map(|(step, values)| (*step, (values[at] - here[at]) / step)))
+            limit(side.iter().map(|(step, values)| (*step, (values[which] - here) / step)))
                 .filter(|(limit, change)| agree(*change, *limit))
         });
         match limits.collect::<Option<Vec<_>>>().as_deref() {
-            Some([(limit, _)]) => Ok(*limit),
-            Some([(a, of_a), (b, of_b)]) if agree((a - b).abs(), *a) => Ok(if of_a < of_b { *a } else { *b }),
-            _ => Err(does_not_exist),
+            Some([(limit, _)]) => Some(*limit),
+            Some([(a, of_a), (b, of_b)]) if agree((a - b).abs(), *a) => Some(if of_a < of_b { *a } else { *b }),
+            _ => None,
         }
     };
-    unknowns.iter().enumerate().map(|(at, variable)| derivative(at, variable)).collect()
+    here.iter().enumerate().map(derivative).collect()
 }
 
 /// What counts as a change of size one: the value itself, or more where it is small beside the structure.

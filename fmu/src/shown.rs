@@ -3,7 +3,7 @@
 use crate::condition::Model;
 use crate::setup::Setup;
 use crate::variables::Source;
-use rocking::{Load, Outputs, Reactions};
+use rocking::{Load, Outputs, Reactions, State};
 use std::cell::OnceCell;
 
 /// What a model shows under a load.
@@ -29,6 +29,11 @@ impl<'a> Shown<'a> {
         self.reactions.get_or_init(|| self.model.engine.reactions(self.load))
     }
 
+    /// Derivatives of the states.
+    pub fn state_rates(&self) -> State {
+        self.model.engine.sample(self.load).state_rates()
+    }
+
     /// The value of a Real from `source`, if it is one that is computed.
     #[inline]
     pub fn value(&self, source: Source) -> Option<f64> {
@@ -36,16 +41,16 @@ impl<'a> Shown<'a> {
         Some(match source {
             Source::Output(of) => of(&self.outputs),
             Source::Reaction(of) => of(self.reactions()),
-            Source::Peak(_) if !setup.peaks => f64::NAN,
+            Source::StateRate(which) => self.state_rates().components()[which],
+            Source::Peak(_) if !setup.peaks || model.is_integrated_outside() => f64::NAN,
             Source::Peak(of) => of(&model.peaks(setup, load)),
-            Source::Worst(_) | Source::WorstInstant(_) if !setup.validity => f64::NAN,
+            Source::Worst(_) | Source::WorstInstant(_) if !setup.validity || model.is_integrated_outside() => f64::NAN,
             Source::Worst(which) => model.validity(setup, load).worst[which].value,
             Source::WorstInstant(which) => model.validity(setup, load).worst[which].time,
             Source::Impulse(of) => of(&model.engine.motion().impulse),
             Source::Derived(derived) => (derived.value)(model.engine.structure()),
             Source::Ground => load.a_g,
-            Source::Overturning if model.has_overturned() => model.engine.motion().time,
-            Source::Overturning => setup.start_time,
+            Source::Overturning => model.overturned_at().unwrap_or(setup.start_time),
             Source::RecordDuration => model.record_duration(setup),
             _ => return None,
         })

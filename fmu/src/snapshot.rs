@@ -57,7 +57,7 @@ impl Snapshots {
 }
 
 const MAGIC: [u8; 8] = *b"FlexRock";
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 
 /// A condition as bytes.
 pub fn serialize(condition: &Condition) -> Vec<u8> {

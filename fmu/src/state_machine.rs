@@ -1,5 +1,5 @@
-//! Which function may be called when: FMI 2.0, section 4.2.4, for a slave whose steps are synchronous (it is never in
-//! the standard's states "step in progress" and "step canceled").
+//! The states of an instance, as the standard has them, and what tables of the functions that may be called in them are
+//! made of: one table for each interface of each version.
 
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -15,6 +15,10 @@ pub enum Stage {
     StepComplete,
     /// The structure has overturned; there is nothing left to step to.
     StepFailed,
+    /// At an event.
+    EventMode,
+    /// Between events.
+    ContinuousTimeMode,
     /// The simulation is over.
     Terminated,
     /// The solver could not go on; values are good for debugging only.
@@ -23,11 +27,13 @@ pub enum Stage {
 
 impl Stage {
     /// All of them.
-    pub const ALL: [Stage; 6] = [
+    pub const ALL: [Stage; 8] = [
         Stage::Instantiated,
         Stage::InitializationMode,
         Stage::StepComplete,
         Stage::StepFailed,
+        Stage::EventMode,
+        Stage::ContinuousTimeMode,
         Stage::Terminated,
         Stage::Error,
     ];
@@ -45,95 +51,39 @@ impl fmt::Display for Stage {
             Stage::InitializationMode => "initialization mode",
             Stage::StepComplete => "step complete",
             Stage::StepFailed => "step failed (overturned)",
+            Stage::EventMode => "event mode",
+            Stage::ContinuousTimeMode => "continuous-time mode",
             Stage::Terminated => "terminated",
             Stage::Error => "error",
         })
     }
 }
 
-macro_rules! functions {
-    ($($function:ident $instantiated:tt $initialization:tt $complete:tt $failed:tt $terminated:tt $error:tt,)*) => {
-        /// The functions of an instance, but for `fmi2FreeInstance`, which may always be called.
-        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-        pub enum Function {
-            $(#[doc = concat!("`fmi2", stringify!($function), "`")] $function,)*
-        }
+/// Whether a function may be called in a stage.
+pub type IsAllowed<F> = fn(F, Stage) -> bool;
 
-        impl Function {
-            /// All of them.
-            pub const ALL: &[Function] = &[$(Function::$function),*];
+/// The stages that `function` may be called in, for a message.
+pub(crate) fn stages<F: Copy>(function: F, is_allowed: IsAllowed<F>) -> String {
+    let names: Vec<_> =
+        Stage::ALL.into_iter().filter(|stage| is_allowed(function, *stage)).map(|stage| stage.to_string()).collect();
+    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+}
 
-            /// Its name in the C interface.
-            pub const fn name(self) -> &'static str {
-                match self {
-                    $(Function::$function => concat!("fmi2", stringify!($function)),)*
-                }
-            }
+/// A table of an interface: the stages that it knows, and a row for every function of the version's `Function`, with x
+/// where it may be called and - where not.
+macro_rules! table {
+    ([$($stage:ident),* $(,)?] $($function:ident [$($mark:tt)+])*) => {
+        const STAGES: &[Stage] = &[$(Stage::$stage),*];
 
-            /// Whether it may be called in `stage`.
-            pub const fn is_allowed_in(self, stage: Stage) -> bool {
-                match self {
-                    $(Function::$function => match stage {
-                        Stage::Instantiated => functions!(@ $instantiated),
-                        Stage::InitializationMode => functions!(@ $initialization),
-                        Stage::StepComplete => functions!(@ $complete),
-                        Stage::StepFailed => functions!(@ $failed),
-                        Stage::Terminated => functions!(@ $terminated),
-                        Stage::Error => functions!(@ $error),
-                    },)*
-                }
-            }
+        /// Whether `function` may be called in `stage`.
+        pub(crate) fn is_allowed(function: Function, stage: Stage) -> bool {
+            let marks: [bool; STAGES.len()] = match function {
+                $(Function::$function => [$($crate::state_machine::table!(@ $mark)),+],)*
+            };
+            STAGES.iter().zip(marks).any(|(column, mark)| mark && *column == stage)
         }
     };
     (@ x) => { true };
     (@ -) => { false };
 }
-
-#[rustfmt::skip]
-functions! {
-    //                       instantiated
-    //                          initialization mode
-    //                             step complete
-    //                                step failed
-    //                                   terminated
-    //                                      error
-    SetDebugLogging          x  x  x  x  x  x,
-    SetupExperiment          x  -  -  -  -  -,
-    EnterInitializationMode  x  -  -  -  -  -,
-    ExitInitializationMode   -  x  -  -  -  -,
-    Terminate                -  -  x  x  -  -,
-    Reset                    x  x  x  x  x  x,
-    GetReal                  -  x  x  x  x  x,
-    GetInteger               -  x  x  x  x  x,
-    GetBoolean               -  x  x  x  x  x,
-    GetString                -  x  x  x  x  x,
-    SetReal                  x  x  x  -  -  -,
-    SetInteger               x  x  x  -  -  -,
-    SetBoolean               x  x  x  -  -  -,
-    SetString                x  x  x  -  -  -,
-    GetFMUstate              x  x  x  x  x  x,
-    SetFMUstate              x  x  x  x  x  x,
-    FreeFMUstate             x  x  x  x  x  x,
-    SerializedFMUstateSize   x  x  x  x  x  x,
-    SerializeFMUstate        x  x  x  x  x  x,
-    DeSerializeFMUstate      x  x  x  x  x  x,
-    GetDirectionalDerivative -  x  x  x  x  x,
-    SetRealInputDerivatives  x  x  x  -  -  -,
-    GetRealOutputDerivatives -  -  x  x  x  x,
-    DoStep                   -  -  x  -  -  -,
-    CancelStep               -  -  -  -  -  -,
-    GetStatus                -  -  x  x  x  -,
-    GetRealStatus            -  -  x  x  x  -,
-    GetIntegerStatus         -  -  x  x  x  -,
-    GetBooleanStatus         -  -  x  x  x  -,
-    GetStringStatus          -  -  x  x  x  -,
-}
-
-impl Function {
-    /// The stages that it may be called in, for a message.
-    pub fn stages(self) -> String {
-        let names: Vec<_> =
-            Stage::ALL.into_iter().filter(|stage| self.is_allowed_in(*stage)).map(|stage| stage.to_string()).collect();
-        if names.is_empty() { "none".to_owned() } else { names.join(", ") }
-    }
-}
+pub(crate) use table;

@@ -11,7 +11,7 @@ use rocking::parameters::PARAMETERS;
 use rocking::quantity::Quantity;
 use rocking::run::peaks::Peaks;
 use rocking::run::validity::{ASSUMPTIONS, Assumption};
-use rocking::state::INITIAL_VALUES;
+use rocking::state::{COMPONENTS, INITIAL_VALUES};
 use rocking::structure::{DERIVED, Derived};
 use rocking::{Detail, Impulse, Load, Outputs, Parameters, Phase, Reactions, Side, State};
 use std::sync::LazyLock;
@@ -29,6 +29,8 @@ pub struct Variable {
     pub causality: Causality,
     /// The inputs that its value depends on at any time, the state given, by name: direct feedthrough.
     pub feedthrough: &'static [&'static str],
+    /// The states that its value depends on at any time, by name.
+    pub states: &'static [&'static str],
     /// The parameters and initial values that its value at the start of a simulation depends on as well, by name.
     pub initial_dependencies: &'static [&'static str],
     /// Where its value is.
@@ -105,6 +107,8 @@ pub(crate) enum Source {
     Input(usize),
     Output(fn(&Outputs) -> f64),
     Reaction(fn(&Reactions) -> f64),
+    /// The derivative of one of [`COMPONENTS`], by its place.
+    StateRate(usize),
     Impulse(fn(&Impulse) -> f64),
     Integer(OfMotion),
     Boolean(OfMotion),
@@ -218,6 +222,7 @@ pub static VARIABLES: LazyLock<Vec<Variable>> = LazyLock::new(|| {
     inputs
         .chain(outputs())
         .chain(locals())
+        .chain(state_rates())
         .chain(peaks())
         .chain(validity())
         .chain(const { &PARAMETERS }.iter().map(|quantity| fixed(quantity, Source::Parameter(quantity))))
@@ -242,59 +247,85 @@ fn input(which: usize) -> Variable {
         data_type: DataType::Real { unit: quantity.unit, range: Some((quantity.min, quantity.max)) },
         causality: Causality::Input,
         feedthrough: &[],
+        states: &[],
         initial_dependencies: &[],
         source: Source::Input(which),
     }
 }
 
+/// What accelerations depend on: the masses, the geometry and theta_dot_0 by the rigid level, the others by the elastic ones.
+const ACCELERATIONS: &[&str] = &[
+    "m",
+    "m0",
+    "H",
+    "B",
+    "J0",
+    "f_fc",
+    "zeta_fc",
+    "c_ratio",
+    "g",
+    "detail",
+    "theta_0",
+    "theta_dot_0",
+    "u_0",
+    "u_dot_0",
+    "record",
+    "record_scale",
+    "record_time_scale",
+    "record_start",
+];
+
 fn outputs() -> Vec<Variable> {
-    // The masses, the geometry and theta_dot_0 by the rigid level, the others by the elastic ones.
-    const ACCELERATIONS: &[&str] = &[
-        "m",
-        "m0",
-        "H",
-        "B",
-        "J0",
-        "f_fc",
-        "zeta_fc",
-        "c_ratio",
-        "g",
-        "detail",
-        "theta_0",
-        "theta_dot_0",
-        "u_0",
-        "u_dot_0",
-        "record",
-        "record_scale",
-        "record_time_scale",
-        "record_start",
-    ];
     const DELTA_T: &[&str] = &["H", "B", "theta_0", "u_0"];
     const V_T: &[&str] = &["H", "B", "theta_0", "theta_dot_0", "u_0", "u_dot_0"];
-    let of_state = |name, unit, description, of, initial_dependencies| {
-        output(name, unit, description, Source::Output(of), &[], initial_dependencies)
+    let of_state = |name, unit, description, of, states, initial_dependencies| Variable {
+        states,
+        ..output(name, unit, description, Source::Output(of), &[], initial_dependencies)
     };
-    let force = |name, unit, description, of| {
-        output(name, unit, description, Source::Output(of), &["a_g", "F_t"], ACCELERATIONS)
+    let force = |name, unit, description, of| Variable {
+        states: &COMPONENTS,
+        ..output(name, unit, description, Source::Output(of), &["a_g", "F_t"], ACCELERATIONS)
     };
-    let reaction = |name, unit, description, of| {
-        output(name, unit, description, Source::Reaction(of), &["a_g", "F_t"], ACCELERATIONS)
+    let reaction = |name, unit, description, of| Variable {
+        states: &COMPONENTS,
+        ..output(name, unit, description, Source::Reaction(of), &["a_g", "F_t"], ACCELERATIONS)
     };
     let impulse = |name, unit, description, of| {
         discrete(name, description, DataType::Real { unit, range: None }, Source::Impulse(of), &[])
     };
     let elastic = "elastic displacement of the top mass in the frame that turns with the base";
     vec![
-        of_state("theta", "rad", "rotation of the base, positive about the right edge", |o| o.theta, &["theta_0"]),
-        of_state("u", "m", elastic, |o| o.u, &["u_0"]),
+        of_state(
+            "theta",
+            "rad",
+            "rotation of the base, positive about the right edge",
+            |o| o.theta,
+            &["theta"],
+            &["theta_0"],
+        ),
+        of_state("u", "m", elastic, |o| o.u, &["u"], &["u_0"]),
         force("a_t", "m/s2", "acceleration of the top mass, ground included (Eq 27)", |o| o.a_t),
         force("V_t", "N", "m a_t, the base shear where no force acts on the top mass (Eqs 2, 23)", |o| o.V_t),
         force("M_t", "N.m", "m H a_t, the overturning moment where no force acts on the top mass (Eqs 3, 24)", |o| {
             o.M_t
         }),
-        of_state("uplift", "m", "height of the free edge of the base (Eq 25)", |o| o.uplift, &["B", "theta_0"]),
-        of_state("delta_t", "m", "lateral displacement of the top mass (Eq 26)", |o| o.delta_t, DELTA_T),
-        of_state("v_t", "m/s", "lateral velocity of the top mass relative to the ground", |o| o.v_t, V_T),
+        of_state(
+            "uplift",
+            "m",
+            "height of the free edge of the base (Eq 25)",
+            |o| o.uplift,
+            &["theta"],
+            &["B", "theta_0"],
+        ),
+        of_state(
+            "delta_t",
+            "m",
+            "lateral displacement of the top mass (Eq 26)",
+            |o| o.delta_t,
+            &["u", "theta"],
+            DELTA_T,
+        ),
+        of_state("v_t", "m/s", "lateral velocity of the top mass relative to the ground", |o| o.v_t, &COMPONENTS, V_T),
         reaction("R_h", "N", "horizontal force on the ground, positive to the right", |r| r.R_h),
         reaction("R_v", "N", "vertical force on the ground, positive downwards", |r| r.R_v),
         reaction("R_m", "N.m", "moment on the ground about the middle of the base, positive as theta", |r| r.R_m),
@@ -343,6 +374,32 @@ fn locals() -> [Variable; 7] {
             Source::Overturning,
             &[],
         ),
+    ]
+}
+
+/// Derivatives of the states.
+fn state_rates() -> [Variable; 4] {
+    let rate = |which, name, unit, description| Variable {
+        causality: Causality::Local,
+        ..output(name, unit, description, Source::StateRate(which), &[], &[])
+    };
+    let velocity = |which, name, unit, description, states, initial_dependencies| Variable {
+        states,
+        initial_dependencies,
+        ..rate(which, name, unit, description)
+    };
+    let acceleration = |which, name, unit, description| Variable {
+        states: &COMPONENTS,
+        feedthrough: &["a_g", "F_t"],
+        initial_dependencies: ACCELERATIONS,
+        ..rate(which, name, unit, description)
+    };
+    let [of_u, of_theta] = ["rate of u", "rate of theta"];
+    [
+        velocity(0, "der(u)", "m/s", of_u, &["u_dot"], &["u_dot_0"]),
+        acceleration(1, "der(u_dot)", "m/s2", "rate of u_dot, by the equations of the level of detail"),
+        velocity(2, "der(theta)", "rad/s", of_theta, &["theta_dot"], &["theta_dot_0"]),
+        acceleration(3, "der(theta_dot)", "rad/s2", "rate of theta_dot, by the equations of the level of detail"),
     ]
 }
 
@@ -451,6 +508,7 @@ fn output(
         data_type: DataType::Real { unit, range: None },
         causality: Causality::Output,
         feedthrough,
+        states: &[],
         initial_dependencies,
         source,
     }
@@ -469,6 +527,7 @@ fn discrete(
         data_type,
         causality: Causality::Output,
         feedthrough: &[],
+        states: &[],
         initial_dependencies,
         source,
     }
@@ -492,6 +551,7 @@ fn calculated(name: &'static str, initial_dependencies: &'static [&'static str])
         data_type: DataType::Real { unit: derived.unit, range: None },
         causality: Causality::CalculatedParameter,
         feedthrough: &[],
+        states: &[],
         initial_dependencies,
         source: Source::Derived(derived),
     }
@@ -501,10 +561,21 @@ impl Variable {
     /// Whether it may change at any time, and not at transitions alone.
     pub fn is_continuous(&self) -> bool {
         match self.source {
-            Source::Input(_) | Source::Output(_) | Source::Reaction(_) | Source::Ground | Source::Peak(_) => true,
+            Source::Input(_) | Source::Output(_) | Source::Reaction(_) | Source::StateRate(_) => true,
+            Source::Ground | Source::Peak(_) => true,
             Source::Worst(which) | Source::WorstInstant(which) => !ASSUMPTIONS[which].is_of_impacts,
             _ => false,
         }
+    }
+
+    /// Which of the continuous states it is, by the place in [`COMPONENTS`].
+    pub fn as_state(&self) -> Option<usize> {
+        COMPONENTS.iter().position(|name| *name == self.name)
+    }
+
+    /// Which of them it is the derivative of.
+    pub fn as_state_rate(&self) -> Option<usize> {
+        if let Source::StateRate(which) = self.source { Some(which) } else { None }
     }
 
     /// The start value in an FMU with these `contents`: of the inputs, the parameters and the initial values.

@@ -3,7 +3,7 @@
 
 mod host;
 
-use FlexibleRocking::c_abi::fmi2GetDirectionalDerivative;
+use FlexibleRocking::fmi2::fmi2GetDirectionalDerivative;
 use FlexibleRocking::sensitivity::ACCURACY;
 use FlexibleRocking::variables::{Causality, DataType, VARIABLES, Variable};
 use approx::assert_relative_eq;
@@ -88,10 +88,11 @@ fn they_exist_from_initialization_to_overturning() {
 #[test]
 fn what_is_no_known_or_unknown_is_refused() {
     let host = rocking();
-    let can = "only the inputs can, and in initialization mode Real parameters and initial values";
+    let can = "only the inputs can, in initialization mode Real parameters and initial values, later u, u_dot, theta and \
+               theta_dot";
     let no_known = |name: &str| format!("{name} cannot be a known of a directional derivative: {can}");
     for (unknowns, knowns, message) in [
-        (["a_t"], [("theta", 1.0)], &no_known("theta")[..]),
+        (["a_t"], [("delta_t", 1.0)], &no_known("delta_t")[..]),
         (["a_t"], [("m", 1.0)], &no_known("m")),
         (["p_l"], [("a_g", 1.0)], "p_l has no derivative: only continuous Real outputs have"),
         (["a_t"], [("F_t", f64::NAN)], "the derivative of F_t, NaN, is out of range: it must be finite"),
@@ -103,8 +104,10 @@ fn what_is_no_known_or_unknown_is_refused() {
         host.assert_refused(|| derivatives(&host, &unknowns, &knowns), Err(ERROR), &message);
     }
     let host = Host::initializing(&[]);
-    let message = format!("fmi2GetDirectionalDerivative: {}", no_known("detail"));
-    host.assert_refused(|| derivatives(&host, &["a_t"], &[("detail", 1.0)]), Err(ERROR), &message);
+    for name in ["detail", "theta"] {
+        let message = format!("fmi2GetDirectionalDerivative: {}", no_known(name));
+        host.assert_refused(|| derivatives(&host, &["a_t"], &[(name, 1.0)]), Err(ERROR), &message);
+    }
     // free edges rise to either side, and a base in full contact cannot turn
     for (unknown, known) in [("uplift", "theta_0"), ("theta_dot", "theta_dot_0")] {
         let message = format!(

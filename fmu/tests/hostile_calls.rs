@@ -6,9 +6,10 @@
 
 mod host;
 
-use FlexibleRocking::c_abi::*;
+use FlexibleRocking::c_abi::Function as _;
+use FlexibleRocking::fmi2::*;
 use FlexibleRocking::snapshot;
-use FlexibleRocking::state_machine::{Function, Stage};
+use FlexibleRocking::state_machine::Stage;
 use FlexibleRocking::variables::{Causality, DataType, VARIABLES};
 use fastrand::Rng;
 use host::{DISCARD, ERROR, OK};
@@ -122,7 +123,6 @@ fn records(folder: &Path) -> Vec<CString> {
 }
 
 /// What came of the calls: OK, Discard and Error of every function.
-#[derive(Default)]
 struct Tally {
     statuses: [[u64; 3]; Function::ALL.len()],
     instances: u64,
@@ -133,6 +133,20 @@ struct Tally {
     most_steps: u64,
     longest: Duration,
     longest_function: &'static str,
+}
+
+impl Default for Tally {
+    fn default() -> Tally {
+        Tally {
+            statuses: [[0; 3]; Function::ALL.len()],
+            instances: 0,
+            refused_instances: 0,
+            freed_in: [0; Stage::ALL.len()],
+            most_steps: 0,
+            longest: Duration::ZERO,
+            longest_function: "",
+        }
+    }
 }
 
 impl Tally {
@@ -264,6 +278,17 @@ impl<'a> Sequence<'a> {
             Stage::StepComplete => {
                 &[SetReal, SetRealInputDerivatives, DoStep, DoStep, GetReal, GetRealOutputDerivatives]
             }
+            Stage::EventMode => &[SetReal, NewDiscreteStates, NewDiscreteStates, EnterContinuousTimeMode, GetReal],
+            Stage::ContinuousTimeMode => &[
+                SetTime,
+                SetTime,
+                SetContinuousStates,
+                GetDerivatives,
+                CompletedIntegratorStep,
+                CompletedIntegratorStep,
+                SetReal,
+                EnterEventMode,
+            ],
             Stage::StepFailed | Stage::Terminated | Stage::Error => &[Reset, SetFMUstate, GetReal],
         };
         let functions = if self.rng.bool() { leading_on } else { Function::ALL };
@@ -439,7 +464,7 @@ impl<'a> Sequence<'a> {
         let logger: unsafe extern "C" fn(_, _, _, _, _) = tell;
         functions.logger = (!wrong(rng)).then(|| unsafe { std::mem::transmute(logger as *const ()) });
         let functions = if wrong(rng) { null() } else { &raw const functions };
-        let (kind, logging_on) = (if wrong(rng) { self.choice() } else { 1 }, self.choice());
+        let (kind, logging_on) = (if wrong(rng) { self.choice() } else { c_int::from(rng.bool()) }, self.choice());
         let c = unsafe { fmi2Instantiate(texts[0], kind, texts[1], texts[2], functions, 0, logging_on) };
         let slot = &mut self.slots[at];
         let messages = slot.told.messages.take();
@@ -574,6 +599,90 @@ impl<'a> Sequence<'a> {
             GetStatus | GetRealStatus | GetIntegerStatus | GetBooleanStatus | GetStringStatus => {
                 self.status(at, function)
             }
+            EnterEventMode => _ = self.call(at, function, |c| unsafe { fmi2EnterEventMode(c) }),
+            EnterContinuousTimeMode => _ = self.call(at, function, |c| unsafe { fmi2EnterContinuousTimeMode(c) }),
+            NewDiscreteStates => self.new_discrete_states(at),
+            CompletedIntegratorStep => self.complete_integrator_step(at),
+            SetTime => self.set_time(at),
+            SetContinuousStates => self.set_continuous_states(at),
+            GetDerivatives | GetEventIndicators | GetContinuousStates | GetNominalsOfContinuousStates => {
+                self.get_of_states(at, function)
+            }
+        }
+    }
+
+    /// On by some milliseconds, or anywhere.
+    fn set_time(&mut self, at: usize) {
+        let now = self.known_time(at);
+        // a check over a long time takes as much work as a thousand others
+        let time = match self.rng.u16(..4000) {
+            0..8 => self.number(),
+            8..200 => now + self.between(0.1, 10.0),
+            200..400 => now - self.between(1e-6, 0.1),
+            _ => now + self.between(1e-6, 0.1),
+        };
+        self.call(at, Function::SetTime, |c| unsafe { fmi2SetTime(c, time) });
+    }
+
+    /// Where the instance knows the motion to be, in time.
+    fn known_time(&self, at: usize) -> f64 {
+        if self.slots[at].c.is_null() {
+            return 0.0;
+        }
+        let condition = snapshot::deserialize(&self.serialized(at)).unwrap();
+        condition.course.and_then(|course| course.outside).map_or(0.0, |outside| outside.known.motion.time)
+    }
+
+    /// Small, large, or no numbers.
+    fn set_continuous_states(&mut self, at: usize) {
+        let n = if self.one_in(20) { self.rng.usize(..9) } else { 4 };
+        let mut states: Vec<_> = (0..n)
+            .map(|_| if self.one_in(20) { self.number() } else { self.sign() * self.between(1e-9, 2.0) })
+            .collect();
+        let (nx, x) = (self.length(n), self.pointer(&mut states));
+        self.call(at, Function::SetContinuousStates, |c| unsafe { fmi2SetContinuousStates(c, x, nx) });
+    }
+
+    /// Values are finite, or left alone.
+    fn get_of_states(&mut self, at: usize, function: Function) {
+        let right = if function == Function::GetEventIndicators { 2 } else { 4 };
+        let n = if self.one_in(20) { self.rng.usize(..9) } else { right };
+        let mut values = vec![f64::NEG_INFINITY; n];
+        let (length, place) = (self.length(n), self.pointer(&mut values));
+        let status = self.call(at, function, |c| unsafe {
+            match function {
+                Function::GetDerivatives => fmi2GetDerivatives(c, place, length),
+                Function::GetEventIndicators => fmi2GetEventIndicators(c, place, length),
+                Function::GetContinuousStates => fmi2GetContinuousStates(c, place, length),
+                _ => fmi2GetNominalsOfContinuousStates(c, place, length),
+            }
+        });
+        let is_right = |value: &f64| if status == OK { value.is_finite() } else { *value == f64::NEG_INFINITY };
+        assert!(values.iter().all(is_right), "{function:?} {status} {values:?}");
+    }
+
+    /// The work of a check is bounded as that of a step.
+    fn complete_integrator_step(&mut self, at: usize) {
+        let (mut event, mut end) = (c_int::MIN, c_int::MIN);
+        let (to_event, to_end) = (self.pointer(slice::from_mut(&mut event)), self.pointer(slice::from_mut(&mut end)));
+        let flag = self.choice();
+        let status = self.call(at, Function::CompletedIntegratorStep, |c| unsafe {
+            fmi2CompletedIntegratorStep(c, flag, to_event, to_end)
+        });
+        let is_right = |value: c_int| if status == OK { (0..2).contains(&value) } else { value == c_int::MIN };
+        assert!(is_right(event) && is_right(end), "{status} {event} {end}");
+    }
+
+    /// What follows an event is above the floor: no indicator is 0, and all are positive until the host moves on.
+    fn new_discrete_states(&mut self, at: usize) {
+        let mut info: EventInfo = unsafe { std::mem::zeroed() };
+        let place = self.pointer(slice::from_mut(&mut info));
+        let status = self.call(at, Function::NewDiscreteStates, |c| unsafe { fmi2NewDiscreteStates(c, place) });
+        if status == OK {
+            let mut indicators = [0.0; 2];
+            let c = self.slots[at].c;
+            assert_eq!(unsafe { fmi2GetEventIndicators(c, indicators.as_mut_ptr(), 2) }, OK);
+            assert!(indicators.iter().all(|indicator| *indicator > 0.0), "{indicators:?}");
         }
     }
 

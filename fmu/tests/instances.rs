@@ -3,7 +3,7 @@
 
 mod host;
 
-use FlexibleRocking::c_abi::*;
+use FlexibleRocking::fmi2::*;
 use FlexibleRocking::{BUILD, guid};
 use host::*;
 use rocking::Parameters;
@@ -51,8 +51,8 @@ fn an_instance_that_cannot_be_made_is_null_and_the_log_says_why() {
         "fmi2Instantiate: instanceName must not be empty"
     );
     assert_eq!(
-        refusal(Instantiate { fmu_type: 0, ..Instantiate::default() }),
-        "fmi2Instantiate: fmuType = 0 is not one of 1 (fmi2CoSimulation)"
+        refusal(Instantiate { fmu_type: 2, ..Instantiate::default() }),
+        "fmi2Instantiate: fmuType = 2 is not one of 0 (fmi2ModelExchange), 1 (fmi2CoSimulation)"
     );
     assert_eq!(
         refusal(Instantiate { logging_on: 2, ..Instantiate::default() }),

@@ -3,8 +3,9 @@
 
 mod host;
 
-use FlexibleRocking::c_abi::*;
-use FlexibleRocking::state_machine::{Function, Stage};
+use FlexibleRocking::c_abi::Function as _;
+use FlexibleRocking::fmi2::*;
+use FlexibleRocking::state_machine::Stage;
 use host::*;
 use std::ptr::{null, null_mut};
 
@@ -45,20 +46,79 @@ const STANDARD: &str = "
     GetStringStatus           - - x x x -
 ";
 
-/// Every function with the stages that the standard allows it in.
-fn standard() -> Vec<(Function, Vec<Stage>)> {
-    let rows: Vec<_> = STANDARD.trim().lines().map(|row| row.split_whitespace().collect::<Vec<_>>()).collect();
-    assert!(rows.iter().map(|row| format!("fmi2{}", row[0])).eq(Function::ALL.iter().map(|f| f.name())));
-    let allowed = |row: &[&str]| {
-        Stage::ALL.into_iter().zip(&row[1..]).filter(|(_, mark)| **mark != "-").map(|(s, _)| s).collect()
+/// The stages of a slave.
+const OF_SLAVE: [Stage; 6] = [
+    Stage::Instantiated,
+    Stage::InitializationMode,
+    Stage::StepComplete,
+    Stage::StepFailed,
+    Stage::Terminated,
+    Stage::Error,
+];
+
+/// The table of FMI 2.0.4, section 3.2.3, for a model: instantiated, initialization mode, event mode, continuous-time mode,
+/// terminated, error. Marks are as above (4: inputs and parameters that are tunable, 5: inputs).
+const STANDARD_OF_MODEL: &str = "
+    SetDebugLogging               x x x x x x
+    SetupExperiment               x - - - - -
+    EnterInitializationMode       x - - - - -
+    ExitInitializationMode        - x - - - -
+    Terminate                     - - x x - -
+    Reset                         x x x x x x
+    GetReal                       - 2 x x x 7
+    GetInteger                    - 2 x x x 7
+    GetBoolean                    - 2 x x x 7
+    GetString                     - 2 x x x 7
+    SetReal                       1 3 4 5 - -
+    SetInteger                    1 3 4 - - -
+    SetBoolean                    1 3 4 - - -
+    SetString                     1 3 4 - - -
+    GetFMUstate                   x x x x x 7
+    SetFMUstate                   x x x x x x
+    FreeFMUstate                  x x x x x x
+    SerializedFMUstateSize        x x x x x x
+    SerializeFMUstate             x x x x x x
+    DeSerializeFMUstate           x x x x x x
+    GetDirectionalDerivative      - x x x x 7
+    EnterEventMode                - - x x - -
+    NewDiscreteStates             - - x - - -
+    EnterContinuousTimeMode       - - x - - -
+    CompletedIntegratorStep       - - - x - -
+    SetTime                       - - x x - -
+    SetContinuousStates           - - - x - -
+    GetDerivatives                - - x x x 7
+    GetEventIndicators            - x x x x 7
+    GetContinuousStates           - x x x x 7
+    GetNominalsOfContinuousStates x x x x x 7
+";
+
+/// The stages of a model.
+const OF_MODEL: [Stage; 6] = [
+    Stage::Instantiated,
+    Stage::InitializationMode,
+    Stage::EventMode,
+    Stage::ContinuousTimeMode,
+    Stage::Terminated,
+    Stage::Error,
+];
+
+/// Every function with those of `stages` that `table`, which has them as columns, allows it in; what is not in it is of the
+/// other interface.
+fn standard(table: &str, stages: [Stage; 6]) -> Vec<(Function, Vec<Stage>)> {
+    let rows: Vec<_> = table.trim().lines().map(|row| row.split_whitespace().collect::<Vec<_>>()).collect();
+    let names: Vec<_> = Function::ALL.iter().map(|function| function.name()).collect();
+    assert!(rows.iter().all(|row| names.contains(&&*format!("fmi2{}", row[0]))));
+    let allowed = |function: &Function| {
+        let row = rows.iter().find(|row| format!("fmi2{}", row[0]) == function.name());
+        let marks = row.map_or(&[] as &[&str], |row| &row[1..]);
+        stages.into_iter().zip(marks).filter(|(_, mark)| **mark != "-").map(|(stage, _)| stage).collect()
     };
-    rows.iter().zip(Function::ALL).map(|(row, function)| (*function, allowed(row))).collect()
+    Function::ALL.iter().map(|function| (*function, allowed(function))).collect()
 }
 
-/// An instance in `stage`.
-fn host_in(stage: Stage) -> Host {
+/// A slave in `stage`.
+fn slave_in(stage: Stage) -> Host {
     match stage {
-        Stage::Instantiated => Host::new(),
         Stage::InitializationMode => Host::initializing(&[]),
         Stage::StepComplete => Host::started(&[]),
         Stage::StepFailed => overturned(),
@@ -68,6 +128,27 @@ fn host_in(stage: Stage) -> Host {
             host
         }
         Stage::Error => stuck(),
+        _ => Host::new(),
+    }
+}
+
+/// A model in `stage`.
+fn model_in(stage: Stage) -> Host {
+    match stage {
+        Stage::InitializationMode => Host::new_model().initialized(&[]),
+        Stage::EventMode => Host::started_model(&[]),
+        Stage::ContinuousTimeMode => Host::going_model(&[]),
+        Stage::Terminated => {
+            let host = Host::started_model(&[]);
+            assert_eq!(host.terminate(), OK);
+            host
+        }
+        Stage::Error => {
+            let host = Host::going_model(&ABOVE_THE_PIVOT);
+            assert_eq!((host.set_time(0.1), host.complete()), (OK, Err(ERROR)));
+            host
+        }
+        _ => Host::new_model(),
     }
 }
 
@@ -80,8 +161,10 @@ fn stage(host: &Host) -> Stage {
 }
 
 /// The top mass above the pivot of a foundation without inertia: the equations of motion are singular.
+const ABOVE_THE_PIVOT: [(&str, f64); 4] = [("m0", 0.0), ("J0", 0.0), ("theta_0", 0.1), ("u_0", 0.285)];
+
 fn stuck() -> Host {
-    let host = Host::started(&[("m0", 0.0), ("J0", 0.0), ("theta_0", 0.1), ("u_0", 0.285)]);
+    let host = Host::started(&ABOVE_THE_PIVOT);
     assert_eq!(host.step(0.0, 0.1), ERROR);
     host
 }
@@ -132,15 +215,29 @@ fn call(host: &Host, function: Function) -> i32 {
             Function::GetIntegerStatus => fmi2GetIntegerStatus(c, 0, null_mut()),
             Function::GetBooleanStatus => fmi2GetBooleanStatus(c, 3, &mut 0),
             Function::GetStringStatus => fmi2GetStringStatus(c, 1, null_mut()),
+            Function::EnterEventMode => host.enter_event_mode(),
+            Function::NewDiscreteStates => host.update().map_or_else(|status| status, |_| OK),
+            Function::EnterContinuousTimeMode => host.go_on(),
+            Function::CompletedIntegratorStep => host.complete().map_or_else(|status| status, |_| OK),
+            Function::SetTime => host.set_time(0.0),
+            Function::SetContinuousStates => host.set_states([0.0; 4]),
+            Function::GetDerivatives => host.derivatives().map_or_else(|status| status, |_| OK),
+            Function::GetEventIndicators => host.indicators().map_or_else(|status| status, |_| OK),
+            Function::GetContinuousStates => host.states().map_or_else(|status| status, |_| OK),
+            Function::GetNominalsOfContinuousStates => host.nominals().map_or_else(|status| status, |_| OK),
         }
     }
 }
 
 /// What an allowed call of [`call`] returns and where it leads.
-fn outcome(function: Function, stage: Stage) -> (i32, Stage) {
+fn outcome(function: Function, stage: Stage, first: Stage) -> (i32, Stage) {
     match function {
+        // where the equations are singular
+        Function::GetDerivatives if stage == Stage::Error => (DISCARD, stage),
+        Function::EnterEventMode => (OK, Stage::EventMode),
+        Function::EnterContinuousTimeMode => (OK, Stage::ContinuousTimeMode),
         Function::EnterInitializationMode => (OK, Stage::InitializationMode),
-        Function::ExitInitializationMode => (OK, Stage::StepComplete),
+        Function::ExitInitializationMode => (OK, first),
         Function::Terminate => (OK, Stage::Terminated),
         Function::Reset => (OK, Stage::Instantiated),
         Function::GetStatus | Function::GetIntegerStatus | Function::GetStringStatus => (DISCARD, stage),
@@ -149,15 +246,14 @@ fn outcome(function: Function, stage: Stage) -> (i32, Stage) {
 }
 
 /// Every function in every stage, reached directly and by a reset: as the standard allows it.
-#[test]
-fn a_call_is_allowed_where_the_standard_says_so() {
-    for (function, allowed) in standard() {
+fn check(table: &str, stages: [Stage; 6], host_in: fn(Stage) -> Host, first: Stage) {
+    for (function, allowed) in standard(table, stages) {
         let refusal = |stage: Stage| {
             let names: Vec<_> = allowed.iter().map(Stage::to_string).collect();
             let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
             format!("{}: not allowed in the state \"{stage}\"; allowed in: {names}", function.name())
         };
-        for from in Stage::ALL {
+        for from in stages {
             let reset = host_in(from);
             assert_eq!(reset.reset(), OK);
             for (host, now) in [(host_in(from), from), (reset, Stage::Instantiated)] {
@@ -166,7 +262,12 @@ fn a_call_is_allowed_where_the_standard_says_so() {
                     host.log.borrow_mut().clear();
                     let status = call(&host, function);
                     let log = host.log.take();
-                    assert_eq!((status, stage(&host)), outcome(function, now), "{} in {now}: {log:?}", function.name());
+                    assert_eq!(
+                        (status, stage(&host)),
+                        outcome(function, now, first),
+                        "{} in {now}: {log:?}",
+                        function.name()
+                    );
                     assert_eq!(log.len(), usize::from(status != OK), "{log:?}");
                 } else {
                     host.assert_refused(|| call(&host, function), ERROR, &refusal(now));
@@ -174,6 +275,16 @@ fn a_call_is_allowed_where_the_standard_says_so() {
             }
         }
     }
+}
+
+#[test]
+fn a_call_of_a_slave_is_allowed_where_the_standard_says_so() {
+    check(STANDARD, OF_SLAVE, slave_in, Stage::StepComplete);
+}
+
+#[test]
+fn a_call_of_a_model_is_allowed_where_the_standard_says_so() {
+    check(STANDARD_OF_MODEL, OF_MODEL, model_in, Stage::EventMode);
 }
 
 /// An instance that cannot go on gives its values, goes back to a state kept before, and can be reset.

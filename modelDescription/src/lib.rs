@@ -1,15 +1,14 @@
-//! FMI 2.0 model description of a co-simulation unit: its types, named as in the standard, and their XML.
+//! FMI 2.0 model description of a unit for model exchange and co-simulation: its types, named as in the standard, and their XML.
 //!
 //! Build a [`FmiModelDescription`], call [`FmiModelDescription::to_xml`]. The fields stand in the order that the
-//! standard's schema asks of the elements; an attribute that is `None` is left out. What only model exchange needs
-//! is not here.
+//! standard's schema asks of the elements; an attribute that is `None` is left out.
 
 mod model_structure;
 mod model_variables;
 mod type_definitions;
 mod unit_definitions;
 
-pub use model_structure::{DependenciesKind, InitialUnknowns, ModelStructure, Outputs, Unknown};
+pub use model_structure::{DependenciesKind, Derivatives, InitialUnknowns, ModelStructure, Outputs, Unknown};
 pub use model_variables::{
     Boolean, Causality, Enumeration, Initial, Integer, ModelVariables, Real, ScalarVariable, Text, Variability,
     VariableType,
@@ -49,6 +48,12 @@ pub struct FmiModelDescription {
     /// How variable names are to be read.
     #[serde(rename = "@variableNamingConvention")]
     pub variable_naming_convention: VariableNamingConvention,
+    /// How many event indicators model exchange has.
+    #[serde(rename = "@numberOfEventIndicators")]
+    pub number_of_event_indicators: usize,
+    /// Capabilities of the model exchange interface.
+    #[serde(rename = "ModelExchange")]
+    pub model_exchange: ModelExchange,
     /// Capabilities of the co-simulation interface.
     #[serde(rename = "CoSimulation")]
     pub co_simulation: CoSimulation,
@@ -98,6 +103,32 @@ pub enum FmiVersion {
 pub enum VariableNamingConvention {
     /// A list of plain strings.
     Flat,
+}
+
+/// Capabilities of the model exchange interface.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModelExchange {
+    /// File name of the library, without extension.
+    #[serde(rename = "@modelIdentifier")]
+    pub model_identifier: String,
+    /// `fmi2CompletedIntegratorStep` need not be called.
+    #[serde(rename = "@completedIntegratorStepNotNeeded")]
+    pub completed_integrator_step_not_needed: bool,
+    /// Only one instance may live in a process.
+    #[serde(rename = "@canBeInstantiatedOnlyOncePerProcess")]
+    pub can_be_instantiated_only_once_per_process: bool,
+    /// The host's memory callbacks are not used.
+    #[serde(rename = "@canNotUseMemoryManagementFunctions")]
+    pub can_not_use_memory_management_functions: bool,
+    /// The state can be taken out and put back.
+    #[serde(rename = "@canGetAndSetFMUstate")]
+    pub can_get_and_set_fmu_state: bool,
+    /// The state can be turned into bytes and back.
+    #[serde(rename = "@canSerializeFMUstate")]
+    pub can_serialize_fmu_state: bool,
+    /// Derivatives by inputs and states can be asked for.
+    #[serde(rename = "@providesDirectionalDerivative")]
+    pub provides_directional_derivative: bool,
 }
 
 /// Capabilities of the co-simulation interface.

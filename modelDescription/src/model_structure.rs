@@ -6,6 +6,9 @@ pub struct ModelStructure {
     /// Every output, with what it depends on at a communication point.
     #[serde(rename = "Outputs")]
     pub outputs: Outputs,
+    /// The derivative of every continuous state, with what it depends on at any time.
+    #[serde(rename = "Derivatives")]
+    pub derivatives: Derivatives,
     /// Every variable that initialization calculates, with what it depends on there.
     #[serde(rename = "InitialUnknowns")]
     pub initial_unknowns: InitialUnknowns,
@@ -15,6 +18,14 @@ pub struct ModelStructure {
 #[derive(Clone, Debug, Serialize)]
 pub struct Outputs {
     /// The outputs.
+    #[serde(rename = "Unknown")]
+    pub unknowns: Vec<Unknown>,
+}
+
+/// The derivative of every continuous state, with what it depends on at any time. Their order is that of the states.
+#[derive(Clone, Debug, Serialize)]
+pub struct Derivatives {
+    /// The derivatives.
     #[serde(rename = "Unknown")]
     pub unknowns: Vec<Unknown>,
 }

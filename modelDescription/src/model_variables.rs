@@ -109,6 +109,12 @@ pub struct Real {
     /// Value unless the environment sets another.
     #[serde(rename = "@start", skip_serializing_if = "Option::is_none", serialize_with = "shortest")]
     pub start: Option<f64>,
+    /// Index of the state whose derivative it is.
+    #[serde(rename = "@derivative", skip_serializing_if = "Option::is_none")]
+    pub derivative: Option<usize>,
+    /// Whether an event may change it, of a continuous state.
+    #[serde(rename = "@reinit", skip_serializing_if = "Option::is_none")]
+    pub reinit: Option<bool>,
 }
 
 /// Attributes of an integer variable.

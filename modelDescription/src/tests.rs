@@ -12,6 +12,16 @@ fn spring() -> FmiModelDescription {
         license: "MIT".into(),
         generation_tool: "a test".into(),
         variable_naming_convention: VariableNamingConvention::Flat,
+        number_of_event_indicators: 3,
+        model_exchange: ModelExchange {
+            model_identifier: "Spring".into(),
+            completed_integrator_step_not_needed: false,
+            can_be_instantiated_only_once_per_process: false,
+            can_not_use_memory_management_functions: true,
+            can_get_and_set_fmu_state: true,
+            can_serialize_fmu_state: false,
+            provides_directional_derivative: true,
+        },
         co_simulation: CoSimulation {
             model_identifier: "Spring".into(),
             can_handle_variable_communication_step_size: true,
@@ -145,7 +155,11 @@ fn spring() -> FmiModelDescription {
                     causality: Causality::Local,
                     variability: Variability::Continuous,
                     initial: Some(Initial::Calculated),
-                    variable_type: VariableType::Real(Real::default()),
+                    variable_type: VariableType::Real(Real {
+                        derivative: Some(1),
+                        reinit: Some(true),
+                        ..Real::default()
+                    }),
                 },
             ],
         },
@@ -156,6 +170,13 @@ fn spring() -> FmiModelDescription {
                     Unknown { index: 5, dependencies: vec![], dependencies_kind: vec![] },
                     Unknown { index: 6, dependencies: vec![], dependencies_kind: vec![] },
                 ],
+            },
+            derivatives: Derivatives {
+                unknowns: vec![Unknown {
+                    index: 9,
+                    dependencies: vec![1],
+                    dependencies_kind: vec![DependenciesKind::Dependent],
+                }],
             },
             initial_unknowns: InitialUnknowns {
                 unknowns: vec![
@@ -174,7 +195,8 @@ fn spring() -> FmiModelDescription {
 }
 
 const SPRING: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
-<fmiModelDescription fmiVersion="2.0" modelName="Spring" guid="{1-2}" description="force &lt; &quot;yield&quot; &amp; so on" version="0.1.0" license="MIT" generationTool="a test" variableNamingConvention="flat">
+<fmiModelDescription fmiVersion="2.0" modelName="Spring" guid="{1-2}" description="force &lt; &quot;yield&quot; &amp; so on" version="0.1.0" license="MIT" generationTool="a test" variableNamingConvention="flat" numberOfEventIndicators="3">
+  <ModelExchange modelIdentifier="Spring" completedIntegratorStepNotNeeded="false" canBeInstantiatedOnlyOncePerProcess="false" canNotUseMemoryManagementFunctions="true" canGetAndSetFMUstate="true" canSerializeFMUstate="false" providesDirectionalDerivative="true"/>
   <CoSimulation modelIdentifier="Spring" canHandleVariableCommunicationStepSize="true" canInterpolateInputs="true" maxOutputDerivativeOrder="1" canBeInstantiatedOnlyOncePerProcess="false" canNotUseMemoryManagementFunctions="true" canGetAndSetFMUstate="true" canSerializeFMUstate="true" providesDirectionalDerivative="true"/>
   <UnitDefinitions>
     <Unit name="N">
@@ -224,7 +246,7 @@ const SPRING: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
       <String start="a &amp; b.csv"/>
     </ScalarVariable>
     <ScalarVariable name="largest" valueReference="3" description="largest force" causality="local" variability="continuous" initial="calculated">
-      <Real/>
+      <Real derivative="1" reinit="true"/>
     </ScalarVariable>
   </ModelVariables>
   <ModelStructure>
@@ -233,6 +255,9 @@ const SPRING: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
       <Unknown index="5" dependencies="" dependenciesKind=""/>
       <Unknown index="6" dependencies="" dependenciesKind=""/>
     </Outputs>
+    <Derivatives>
+      <Unknown index="9" dependencies="1" dependenciesKind="dependent"/>
+    </Derivatives>
     <InitialUnknowns>
       <Unknown index="3" dependencies="2" dependenciesKind="dependent"/>
       <Unknown index="4" dependencies="1 2" dependenciesKind="dependent dependent"/>

@@ -3,7 +3,7 @@
 
 use crate::response::{Failure, Response, Sample};
 use crate::scene::{Input, Scene};
-use FlexibleRocking::c_abi::{self, CallbackFunctions};
+use FlexibleRocking::fmi2::{self, CallbackFunctions};
 use FlexibleRocking::resources::PARAMETERS_FILE;
 use FlexibleRocking::variables::VARIABLES;
 use anyhow::{Result, ensure};
@@ -52,7 +52,7 @@ impl<'a> Fmu<'a> {
         };
         const CO_SIMULATION: c_int = 1;
         let (name, guid, location) = (name.as_ptr(), guid.as_ptr(), location.as_ptr());
-        let component = unsafe { c_abi::fmi2Instantiate(name, CO_SIMULATION, guid, location, &callbacks, 0, 0) };
+        let component = unsafe { fmi2::fmi2Instantiate(name, CO_SIMULATION, guid, location, &callbacks, 0, 0) };
         ensure!(!component.is_null(), "fmi2Instantiate returns no instance");
         Ok(Fmu { scene, tolerance, component, _resources: resources })
     }
@@ -90,9 +90,9 @@ impl<'a> Fmu<'a> {
     fn initialize(&self, input: Input) -> Result<(), String> {
         let component = self.component;
         unsafe {
-            check("fmi2Reset", c_abi::fmi2Reset(component))?;
-            check("fmi2SetupExperiment", c_abi::fmi2SetupExperiment(component, 1, self.tolerance, 0.0, 0, 0.0))?;
-            check("fmi2EnterInitializationMode", c_abi::fmi2EnterInitializationMode(component))?;
+            check("fmi2Reset", fmi2::fmi2Reset(component))?;
+            check("fmi2SetupExperiment", fmi2::fmi2SetupExperiment(component, 1, self.tolerance, 0.0, 0, 0.0))?;
+            check("fmi2EnterInitializationMode", fmi2::fmi2EnterInitializationMode(component))?;
         }
         let rocking::State { u, u_dot, theta, theta_dot } = self.scene.initial;
         for (name, value) in [("u_0", u), ("u_dot_0", u_dot), ("theta_0", theta), ("theta_dot_0", theta_dot)] {
@@ -100,35 +100,35 @@ impl<'a> Fmu<'a> {
         }
         if input == Input::Inside {
             let text = CString::new(RECORD).expect("a name without NUL");
-            let status = unsafe { c_abi::fmi2SetString(component, &reference("record"), 1, &text.as_ptr()) };
+            let status = unsafe { fmi2::fmi2SetString(component, &reference("record"), 1, &text.as_ptr()) };
             check("fmi2SetString", status)?;
         }
-        check("fmi2ExitInitializationMode", unsafe { c_abi::fmi2ExitInitializationMode(component) })
+        check("fmi2ExitInitializationMode", unsafe { fmi2::fmi2ExitInitializationMode(component) })
     }
 
     fn set_real(&self, reference: c_uint, value: f64) -> Result<(), String> {
-        check("fmi2SetReal", unsafe { c_abi::fmi2SetReal(self.component, &reference, 1, &value) })
+        check("fmi2SetReal", unsafe { fmi2::fmi2SetReal(self.component, &reference, 1, &value) })
     }
 
     fn set_slope(&self, reference: c_uint, slope: f64) -> Result<(), String> {
         let order: c_int = 1;
-        let status = unsafe { c_abi::fmi2SetRealInputDerivatives(self.component, &reference, 1, &order, &slope) };
+        let status = unsafe { fmi2::fmi2SetRealInputDerivatives(self.component, &reference, 1, &order, &slope) };
         check("fmi2SetRealInputDerivatives", status)
     }
 
     fn do_step(&self, time: f64, step: f64) -> Result<(), String> {
-        check("fmi2DoStep", unsafe { c_abi::fmi2DoStep(self.component, time, step, 1) })
+        check("fmi2DoStep", unsafe { fmi2::fmi2DoStep(self.component, time, step, 1) })
     }
 
     fn get_real<const N: usize>(&self, references: &[c_uint; N]) -> Result<[f64; N], String> {
         let mut values = [0.0; N];
-        let status = unsafe { c_abi::fmi2GetReal(self.component, references.as_ptr(), N, values.as_mut_ptr()) };
+        let status = unsafe { fmi2::fmi2GetReal(self.component, references.as_ptr(), N, values.as_mut_ptr()) };
         check("fmi2GetReal", status).map(|()| values)
     }
 }
 
 impl Drop for Fmu<'_> {
     fn drop(&mut self) {
-        unsafe { c_abi::fmi2FreeInstance(self.component) };
+        unsafe { fmi2::fmi2FreeInstance(self.component) };
     }
 }

@@ -1,4 +1,5 @@
-//! What a sweep runs, from a TOML file: every record at every scale factor on every structure.
+//! What a sweep runs, from a TOML file: every record at every scale factor on every structure, or pulses of every frequency
+//! and amplitude.
 use crate::{
     output_files::OutputFiles,
     record_args::{described, say_warnings},
@@ -7,11 +8,13 @@ use crate::{
 };
 use anyhow::{Context, bail, ensure};
 use rocking::{
-    Detail, Parameters, State,
+    Detail, Parameters, State, Structure,
     engine::DEFAULT_TOLERANCE,
     intensity::IntensityMeasure,
     natural_quantities::Given,
+    record::pulse::{Pulse, Shape},
     record::{Reading, Record, Unit},
+    run::map::{Axis, MAX_REFINEMENTS, Map},
     run::outcome::Limit,
     run::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population},
     state::INITIAL_VALUES,
@@ -32,7 +35,23 @@ pub struct Sweep {
     pub records: Vec<String>,
 }
 
-/// The file.
+/// Maps of pulses.
+pub struct MapSweep {
+    /// By the names of their structures.
+    pub maps: Vec<(String, Map)>,
+    /// How often their grids are refined along boundaries.
+    pub refinements: u32,
+}
+
+/// What a file asks for.
+pub enum Asked {
+    /// Records on structures.
+    Records(Sweep),
+    /// Pulses on structures.
+    Pulses(MapSweep),
+}
+
+/// The file with `records`.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SweepFile {
@@ -58,6 +77,41 @@ struct SweepFile {
     /// By the name of a measure.
     #[serde(default)]
     limits: BTreeMap<String, Vec<f64>>,
+}
+
+/// The file with `pulses`.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct MapFile {
+    pulses: PulseGrid,
+    structures: Vec<StructureGrid>,
+    #[serde(default)]
+    detail: Detail,
+    tolerance: Option<f64>,
+    /// Times that the grid's steps are halved along the boundaries.
+    #[serde(default)]
+    refine: u32,
+    /// Whether each point's condition is found.
+    #[serde(default)]
+    condition: bool,
+}
+
+/// Pulses of one shape.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct PulseGrid {
+    shape: Shape,
+    cycles: Option<f64>,
+    #[serde(default)]
+    phase: f64,
+    error: Option<f64>,
+    /// In Hz, or over p_l.
+    frequency: Values,
+    /// In g, or over g tan(alpha_cg).
+    amplitude: Values,
+    /// Whether they are over p_l and g tan(alpha_cg).
+    #[serde(default)]
+    dimensionless: bool,
 }
 
 /// Records: a path or a pattern such as `records/*.AT2`, from the folder of the file.
@@ -96,13 +150,24 @@ struct StructureGrid {
 #[serde(untagged, expecting = "expected a list of numbers, or { from = ..., to = ..., count = ... }")]
 enum Values {
     List(Vec<f64>),
-    Even { from: f64, to: f64, count: usize },
+    Even {
+        from: f64,
+        to: f64,
+        count: usize,
+        /// Evenly in their logarithms.
+        #[serde(default)]
+        log: bool,
+    },
 }
 
 /// Reads the sweep in the TOML file at `path`, and its records, each of which is an input of `files`.
-pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Sweep> {
+pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
     let mut read = || {
-        let file: SweepFile = toml::from_str(&std::fs::read_to_string(path)?)?;
+        let text = std::fs::read_to_string(path)?;
+        if toml::from_str::<toml::Table>(&text)?.contains_key("pulses") {
+            return Ok(Asked::Pulses(toml::from_str::<MapFile>(&text)?.sweep()?));
+        }
+        let file: SweepFile = toml::from_str(&text)?;
         let (unit, time_scale) = (file.unit, file.time_scale);
         ensure!(
             time_scale > 0.0 && time_scale.is_finite(),
@@ -124,9 +189,39 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Sweep> {
         };
         let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read)?;
         let plan = Plan::new(populations, motions, scales)?.under(conditions)?;
-        Ok(Sweep { plan, limits, measure, records: said })
+        Ok(Asked::Records(Sweep { plan, limits, measure, records: said }))
     };
     read().with_context(|| format!("sweep in {}", path.display()))
+}
+
+impl MapFile {
+    fn sweep(&self) -> anyhow::Result<MapSweep> {
+        let &MapFile { refine, condition, .. } = self;
+        ensure!(refine <= MAX_REFINEMENTS, "refine = {refine} is out of range: 0 to {MAX_REFINEMENTS} are possible");
+        ensure!(!self.structures.is_empty(), "structures is empty: name one or more");
+        let mut maps: Vec<(String, Map)> = Vec::new();
+        for grid in &self.structures {
+            let name = is_one_line(&grid.name)?;
+            ensure!(maps.iter().all(|(other, _)| other != name), "two structures have the name {name:?}: rename one");
+            let map = self.map(grid).with_context(|| format!("structures {name:?}"))?;
+            maps.push((name.into(), Map { finds_condition: condition, ..map }));
+        }
+        Ok(MapSweep { maps, refinements: refine })
+    }
+
+    fn map(&self, grid: &StructureGrid) -> anyhow::Result<Map> {
+        ensure!(grid.vary.is_empty(), "nothing can vary: a map is of one structure; name each");
+        let structure = Structure::new(grid.base()?)?;
+        let &PulseGrid { shape, cycles, phase, error, ref frequency, ref amplitude, dimensionless } = &self.pulses;
+        let unit = if dimensionless { 1.0 } else { structure.parameters().g };
+        let frequency = frequency.axis(1.0).context("frequency")?;
+        let amplitude = amplitude.axis(unit).context("amplitude")?;
+        let pulse = Pulse::new(shape, amplitude.values()[0], frequency.values()[0]);
+        let (cycles, error) = (cycles.unwrap_or(pulse.cycles), error.unwrap_or(pulse.error));
+        let pulse = Pulse { cycles, phase, error, ..pulse };
+        let map = Map::new(structure, pulse, [frequency, amplitude], dimensionless)?;
+        Ok(map.computed_by(self.detail, self.tolerance.unwrap_or(DEFAULT_TOLERANCE))?)
+    }
 }
 
 impl SweepFile {
@@ -180,15 +275,30 @@ impl Values {
     fn list(&self) -> anyhow::Result<Vec<f64>> {
         match *self {
             Values::List(ref values) => Ok(values.clone()),
-            Values::Even { from, to, count } => {
+            Values::Even { from, to, count, log } => {
                 ensure!(
                     (2..=MAX_RUNS).contains(&count),
                     "count = {count} is out of range: 2 to {MAX_RUNS} values are possible from {from} to {to}"
                 );
+                ensure!(!log || from > 0.0 && to > 0.0, "from = {from} to = {to} have no logarithms");
                 let last = (count - 1) as f64;
-                Ok((0..count).map(|i| (from * (last - i as f64) + to * i as f64) / last).collect())
+                let at = |i: usize| match i {
+                    i if !log => (from * (last - i as f64) + to * i as f64) / last,
+                    0 => from,
+                    i if i == count - 1 => to,
+                    i => from * (i as f64 / last * (to / from).ln()).exp(),
+                };
+                Ok((0..count).map(at).collect())
             }
         }
+    }
+
+    /// The same as an axis of a map, in `unit`.
+    fn axis(&self, unit: f64) -> anyhow::Result<Axis> {
+        let is_log = matches!(self, Values::Even { log: true, .. });
+        let values: Vec<_> = self.list()?.into_iter().map(|value| value * unit).collect();
+        ensure!(!values.is_empty(), "it is empty: give two or more");
+        Ok(Axis::new(values, is_log))
     }
 }
 

@@ -8,6 +8,8 @@ use FlexibleRocking::variables::{Causality, DETAILS, DataType, Enumeration, PHAS
 use model_description as fmi;
 use rocking::Structure;
 use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::outside_step::INDICATORS;
+use rocking::state::COMPONENTS;
 
 /// What the model is, in one line.
 pub const DESCRIPTION: &str = "A flexible structure that rocks freely on rigid ground under earthquake ground motion";
@@ -28,6 +30,16 @@ pub fn model_description(
         license: env!("CARGO_PKG_LICENSE").into(),
         generation_tool: concat!("rocking-fmu ", env!("CARGO_PKG_VERSION")).into(),
         variable_naming_convention: fmi::VariableNamingConvention::Flat,
+        number_of_event_indicators: INDICATORS,
+        model_exchange: fmi::ModelExchange {
+            model_identifier: name.into(),
+            completed_integrator_step_not_needed: false,
+            can_be_instantiated_only_once_per_process: false,
+            can_not_use_memory_management_functions: true,
+            can_get_and_set_fmu_state: true,
+            can_serialize_fmu_state: true,
+            provides_directional_derivative: true,
+        },
         co_simulation: fmi::CoSimulation {
             model_identifier: name.into(),
             can_handle_variable_communication_step_size: true,
@@ -90,6 +102,8 @@ fn scalar_variable(at: u32, variable: &Variable, structure: &Structure, contents
                 max: range.map(|(_, max)| max),
                 nominal: units::nominal(variable, structure),
                 start: start.and_then(|value| if let Value::Real(value) = value { Some(value) } else { None }),
+                derivative: variable.as_state_rate().map(|which| index(COMPONENTS[which])),
+                reinit: variable.as_state().map(|_| true),
             }),
             (DataType::Integer, _) => fmi::VariableType::Integer(fmi::Integer { min: Some(0) }),
             (DataType::Boolean, start) => fmi::VariableType::Boolean(fmi::Boolean {
@@ -132,23 +146,24 @@ fn initial(variable: &Variable) -> Option<fmi::Initial> {
     }
 }
 
-/// At a communication point the outputs depend on the state, which is no variable, and on their feedthrough; at
-/// initialization on what the table says as well, as calculated parameters do. Local variables are in neither list.
+/// At any time the outputs and the derivatives of the states depend on states and on their feedthrough; at initialization they
+/// and the states on their feedthrough and on what else the table says, as calculated parameters do. Other local variables are in
+/// no list.
 fn model_structure() -> fmi::ModelStructure {
     let unknowns = |is_one: fn(&Variable) -> bool, dependencies: fn(&Variable) -> Vec<usize>| {
         let calculated = (1..).zip(&*VARIABLES).filter(|(_, variable)| is_one(variable));
         calculated.map(|(index, variable)| unknown(index, dependencies(variable))).collect()
     };
+    let at_any_time: fn(&Variable) -> Vec<usize> = |v| v.feedthrough.iter().chain(v.states).map(|v| index(v)).collect();
     fmi::ModelStructure {
-        outputs: fmi::Outputs {
-            unknowns: unknowns(
-                |v| v.causality == Causality::Output,
-                |v| v.feedthrough.iter().map(|name| index(name)).collect(),
-            ),
-        },
+        outputs: fmi::Outputs { unknowns: unknowns(|v| v.causality == Causality::Output, at_any_time) },
+        derivatives: fmi::Derivatives { unknowns: unknowns(|v| v.as_state_rate().is_some(), at_any_time) },
         initial_unknowns: fmi::InitialUnknowns {
             unknowns: unknowns(
-                |v| matches!(v.causality, Causality::Output | Causality::CalculatedParameter),
+                |v| {
+                    matches!(v.causality, Causality::Output | Causality::CalculatedParameter)
+                        || v.as_state().or(v.as_state_rate()).is_some()
+                },
                 |v| v.feedthrough.iter().chain(v.initial_dependencies).map(|name| index(name)).collect(),
             ),
         },
@@ -201,14 +216,28 @@ mod tests {
         assert_eq!(names(&structure.outputs.unknowns).join(" "), outputs);
         for unknown in &structure.outputs.unknowns {
             let dependencies = unknown.dependencies.iter().map(name).collect::<Vec<_>>();
-            let expected: &[&str] = match name(&unknown.index) {
-                "a_t" | "V_t" | "M_t" | "R_h" | "R_v" | "R_m" => &["a_g", "F_t"],
-                _ => &[],
+            let expected = match name(&unknown.index) {
+                "a_t" | "V_t" | "M_t" | "R_h" | "R_v" | "R_m" => "a_g F_t u u_dot theta theta_dot",
+                "v_t" => "u u_dot theta theta_dot",
+                "delta_t" => "u theta",
+                "theta" | "uplift" => "theta",
+                "u" => "u",
+                _ => "",
             };
-            assert_eq!(dependencies, expected, "{}", name(&unknown.index));
+            assert_eq!(dependencies.join(" "), expected, "{}", name(&unknown.index));
         }
+        let rates = "der(u) der(u_dot) der(theta) der(theta_dot)";
+        assert_eq!(names(&structure.derivatives.unknowns).join(" "), rates);
+        let of = |unknown: &fmi::Unknown| match &variables[unknown.index - 1].variable_type {
+            fmi::VariableType::Real(real) => name(&real.derivative.unwrap()).to_owned(),
+            other => panic!("{other:?}"),
+        };
+        assert_eq!(structure.derivatives.unknowns.iter().map(of).collect::<Vec<_>>(), COMPONENTS);
+        let is_set_by_events = |variable: &&fmi::ScalarVariable| matches!(&variable.variable_type, fmi::VariableType::Real(real) if real.reinit == Some(true));
+        let set_by_events: BTreeSet<_> = variables.iter().filter(is_set_by_events).map(|v| v.name.as_str()).collect();
+        assert_eq!(set_by_events, COMPONENTS.into());
         let initial = &structure.initial_unknowns.unknowns;
-        assert_eq!(names(initial).join(" "), format!("{outputs} {calculated_parameters}"));
+        assert_eq!(names(initial).join(" "), format!("{outputs} theta_dot u_dot {rates} {calculated_parameters}"));
 
         let p_l = initial.iter().find(|unknown| name(&unknown.index) == "p_l").unwrap();
         assert_eq!(p_l.dependencies.iter().map(name).collect::<Vec<_>>(), ["m", "m0", "H", "B", "J0", "g"]);

@@ -6,13 +6,14 @@ use rocking::Structure;
 use rocking::parameters::PARAMETERS;
 
 /// The units of the variables, as exponents of kg, m, s, rad.
-pub const UNITS: [(&str, [i32; 4]); 13] = [
+pub const UNITS: [(&str, [i32; 4]); 14] = [
     ("kg", [1, 0, 0, 0]),
     ("m", [0, 1, 0, 0]),
     ("s", [0, 0, 1, 0]),
     ("Hz", [0, 0, -1, 0]),
     ("rad", [0, 0, 0, 1]),
     ("rad/s", [0, 0, -1, 1]),
+    ("rad/s2", [0, 0, -2, 1]),
     ("m/s", [0, 1, -1, 0]),
     ("m/s2", [0, 1, -2, 0]),
     ("N", [1, 1, -2, 0]),
@@ -61,18 +62,20 @@ pub fn display_unit(variable: &Variable, structure: &Structure) -> Option<&'stat
 /// three digits.
 pub fn nominal(variable: &Variable, structure: &Structure) -> Option<f64> {
     let parameters = structure.parameters();
-    let (m, height, alpha) = (parameters.m, parameters.H, structure.tan_alpha_cg.atan());
+    let usual = structure.usual_state();
+    let (m, height, alpha) = (parameters.m, parameters.H, usual.theta);
     let acceleration = parameters.g * structure.tan_alpha_cg;
     let name = ["_max", "_0"].iter().find_map(|ending| variable.name.strip_suffix(ending)).unwrap_or(variable.name);
     let magnitude = match name {
         "theta" => Some(alpha),
-        "theta_dot" => Some(structure.p_l * alpha),
-        "u" => Some(structure.u_cr),
-        "u_dot" => Some(structure.omega_fc * structure.u_cr),
+        "theta_dot" | "der(theta)" => Some(usual.theta_dot),
+        "u" => Some(usual.u),
+        "u_dot" | "der(u)" => Some(usual.u_dot),
         "uplift" => Some(2.0 * parameters.B * alpha.sin()),
         "delta_t" => Some(height * alpha.sin()),
-        "v_t" => Some(height * structure.p_l * alpha),
-        "a_g" | "a_ground" | "a_t" => Some(acceleration),
+        "v_t" => Some(height * usual.theta_dot),
+        "a_g" | "a_ground" | "a_t" | "der(u_dot)" => Some(acceleration),
+        "der(theta_dot)" => Some(structure.p_l * usual.theta_dot),
         "F_t" | "V_t" | "R_h" => Some(m * acceleration),
         "M_t" | "R_m" => Some(m * height * acceleration),
         "R_v" => Some((m + parameters.m0) * parameters.g),

@@ -1,7 +1,7 @@
 //! A host: loads nothing, calls the C functions directly, keeps what is logged.
 #![allow(unsafe_code, dead_code)] // the C interface; every test file uses a part of this
 
-use FlexibleRocking::c_abi::*;
+use FlexibleRocking::fmi2::*;
 use FlexibleRocking::guid;
 use FlexibleRocking::resources::PARAMETERS_FILE;
 use FlexibleRocking::variables::VARIABLES;
@@ -11,6 +11,11 @@ use std::cell::RefCell;
 use std::ffi::{CStr, CString};
 use std::ptr;
 use tempfile::TempDir;
+
+/// `fmi2ModelExchange`
+pub const MODEL_EXCHANGE: c_int = 0;
+/// `fmi2CoSimulation`
+pub const CO_SIMULATION: c_int = 1;
 
 pub const OK: c_int = 0;
 pub const WARNING: c_int = 1;
@@ -47,7 +52,13 @@ pub struct Instantiate {
 
 impl Default for Instantiate {
     fn default() -> Instantiate {
-        Instantiate { name: "wall", fmu_type: 1, guid: guid(&Parameters::EVISON.into()), location: None, logging_on: 0 }
+        Instantiate {
+            name: "wall",
+            fmu_type: CO_SIMULATION,
+            guid: guid(&Parameters::EVISON.into()),
+            location: None,
+            logging_on: 0,
+        }
     }
 }
 
@@ -120,7 +131,32 @@ impl Host {
 
     /// In initialization mode.
     pub fn initializing(start_values: &[(&str, f64)]) -> Host {
-        let host = Host::new();
+        Host::new().initialized(start_values)
+    }
+
+    /// For model exchange, just instantiated.
+    pub fn new_model() -> Host {
+        Host::instantiate(Instantiate { fmu_type: MODEL_EXCHANGE, ..Instantiate::default() }).unwrap()
+    }
+
+    /// For model exchange, in event mode, at t = 0.
+    pub fn started_model(start_values: &[(&str, f64)]) -> Host {
+        let host = Host::new_model().initialized(start_values);
+        assert_eq!(host.exit(), OK, "{:?}", host.log);
+        host
+    }
+
+    /// For model exchange, in continuous-time mode, at t = 0.
+    pub fn going_model(start_values: &[(&str, f64)]) -> Host {
+        let host = Host::started_model(start_values);
+        host.update().unwrap();
+        assert_eq!(host.go_on(), OK);
+        host
+    }
+
+    /// The same in initialization mode.
+    pub fn initialized(self, start_values: &[(&str, f64)]) -> Host {
+        let host = self;
         let (details, reals): (Vec<_>, Vec<_>) = start_values.iter().partition(|(name, _)| *name == "detail");
         assert_eq!(host.set(&reals), OK, "{:?}", host.log);
         for (name, number) in details {
@@ -259,6 +295,104 @@ impl Host {
 
     pub fn step(&self, time: f64, step: f64) -> c_int {
         unsafe { fmi2DoStep(self.component, time, step, 0) }
+    }
+
+    pub fn set_time(&self, time: f64) -> c_int {
+        unsafe { fmi2SetTime(self.component, time) }
+    }
+
+    pub fn set_states(&self, states: [f64; 4]) -> c_int {
+        unsafe { fmi2SetContinuousStates(self.component, states.as_ptr(), 4) }
+    }
+
+    /// Four values or two, by a function that writes them.
+    fn written<const N: usize>(
+        &self,
+        get: unsafe extern "C" fn(*mut c_void, *mut f64, usize) -> c_int,
+    ) -> Result<[f64; N], c_int> {
+        let mut values = [f64::MAX; N];
+        match unsafe { get(self.component, values.as_mut_ptr(), N) } {
+            OK => Ok(values),
+            status => {
+                assert_eq!(values, [f64::MAX; N], "a refused call wrote");
+                Err(status)
+            }
+        }
+    }
+
+    pub fn states(&self) -> Result<[f64; 4], c_int> {
+        self.written(fmi2GetContinuousStates)
+    }
+
+    pub fn derivatives(&self) -> Result<[f64; 4], c_int> {
+        self.written(fmi2GetDerivatives)
+    }
+
+    pub fn indicators(&self) -> Result<[f64; 2], c_int> {
+        self.written(fmi2GetEventIndicators)
+    }
+
+    pub fn nominals(&self) -> Result<[f64; 4], c_int> {
+        self.written(fmi2GetNominalsOfContinuousStates)
+    }
+
+    /// Whether the complete step asks for event mode, and for the end.
+    pub fn complete(&self) -> Result<(bool, bool), c_int> {
+        let (mut event, mut end) = (c_int::MAX, c_int::MAX);
+        match unsafe { fmi2CompletedIntegratorStep(self.component, 1, &mut event, &mut end) } {
+            OK => Ok((event == 1, end == 1)),
+            status => Err(status),
+        }
+    }
+
+    pub fn enter_event_mode(&self) -> c_int {
+        unsafe { fmi2EnterEventMode(self.component) }
+    }
+
+    pub fn update(&self) -> Result<EventInfo, c_int> {
+        let mut info = EventInfo {
+            new_discrete_states_needed: c_int::MAX,
+            terminate_simulation: c_int::MAX,
+            nominals_of_continuous_states_changed: c_int::MAX,
+            values_of_continuous_states_changed: c_int::MAX,
+            next_event_time_defined: c_int::MAX,
+            next_event_time: f64::MAX,
+        };
+        match unsafe { fmi2NewDiscreteStates(self.component, &mut info) } {
+            OK => {
+                assert_eq!((info.new_discrete_states_needed, info.nominals_of_continuous_states_changed), (0, 0));
+                Ok(info)
+            }
+            status => Err(status),
+        }
+    }
+
+    /// On to continuous-time mode.
+    pub fn go_on(&self) -> c_int {
+        unsafe { fmi2EnterContinuousTimeMode(self.component) }
+    }
+
+    /// One step of the classic Runge-Kutta method from `time` (s), with the event that it asks for.
+    pub fn integrate(&self, time: f64, step: f64) -> Option<EventInfo> {
+        let at = |time: f64, states: [f64; 4]| {
+            assert_eq!((self.set_time(time), self.set_states(states)), (OK, OK));
+            self.derivatives().unwrap()
+        };
+        let ahead = |x: [f64; 4], k: [f64; 4], h: f64| -> [f64; 4] { std::array::from_fn(|i| x[i] + h * k[i]) };
+        let x = self.states().unwrap();
+        let k1 = at(time, x);
+        let k2 = at(time + step / 2.0, ahead(x, k1, step / 2.0));
+        let k3 = at(time + step / 2.0, ahead(x, k2, step / 2.0));
+        let k4 = at(time + step, ahead(x, k3, step));
+        let end = ahead(x, std::array::from_fn(|i| (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0), step);
+        assert_eq!((self.set_time(time + step), self.set_states(end)), (OK, OK));
+        let (has_event, _) = self.complete().unwrap();
+        has_event.then(|| {
+            assert_eq!(self.enter_event_mode(), OK);
+            let info = self.update().unwrap();
+            assert_eq!(self.go_on(), OK);
+            info
+        })
     }
 
     pub fn last_successful_time(&self) -> f64 {

@@ -1,0 +1,175 @@
+//! `pulse`: one of the field's standard ground motions as a CSV file that every other command reads.
+use crate::{
+    output_files::OutputFiles,
+    picture::{
+        Picture, PictureFile, TITLE, colour,
+        histories::{Histories, Panel},
+        titled,
+    },
+    quantities::{Line, write_columns},
+    record_args::positive,
+    results::{Format, FormatArgs, print, print_rows},
+    significant::short,
+    structure_args::StructureArgs,
+    tables::Table,
+    talk::say,
+};
+use clap::{
+    ArgGroup,
+    builder::{PossibleValuesParser, TypedValueParser},
+};
+use rocking::{
+    Structure,
+    intensity::peak_velocity,
+    record::{
+        Record,
+        pulse::{DEFAULT_ERROR, Pulse, Shape, units_of},
+    },
+    run::peaks::Peak,
+};
+use std::path::{Path, PathBuf};
+
+/// Which pulse.
+#[derive(clap::Args)]
+#[command(group(ArgGroup::new("how strong").args(["amplitude", "amplitude_ratio"]).required(true)))]
+#[command(group(ArgGroup::new("how fast").args(["frequency", "period", "frequency_ratio"]).required(true)))]
+pub struct PulseArgs {
+    #[command(flatten)]
+    of: OfPulse,
+    #[command(flatten)]
+    structure: StructureArgs,
+    /// Pulse as CSV, `-` for standard output
+    #[arg(short, long, value_name = "FILE.csv", default_value = "pulse.csv")]
+    output: PathBuf,
+    #[command(flatten)]
+    results: FormatArgs,
+    /// Draw acceleration, velocity and displacement of the ground over time
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
+}
+
+#[derive(clap::Args)]
+#[command(next_help_heading = "Pulse")]
+struct OfPulse {
+    /// Its shape
+    #[arg(value_name = "SHAPE", value_parser = shape_parser())]
+    shape: Shape,
+    /// Amplitude of the ground acceleration
+    #[arg(long, value_name = "G", value_parser = positive, allow_negative_numbers = true)]
+    amplitude: Option<f64>,
+    /// The same in units of g tan(alpha_cg) of the structure
+    #[arg(long, value_name = "RATIO", value_parser = positive, allow_negative_numbers = true)]
+    amplitude_ratio: Option<f64>,
+    /// Frequency
+    #[arg(long, value_name = "HZ", value_parser = positive, allow_negative_numbers = true)]
+    frequency: Option<f64>,
+    /// Period, 1/frequency: of a half sine too, which lasts half of it
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    period: Option<f64>,
+    /// Circular frequency in units of p_l of the structure
+    #[arg(long, value_name = "RATIO", value_parser = positive, allow_negative_numbers = true)]
+    frequency_ratio: Option<f64>,
+    /// Periods of a sine or cosine [default: 1]; gamma of mavroeidis_papageorgiou [default: 2]
+    #[arg(long, value_name = "NUMBER", value_parser = positive, allow_negative_numbers = true)]
+    cycles: Option<f64>,
+    /// Phase of a sine or cosine; nu of mavroeidis_papageorgiou
+    #[arg(long, value_name = "RAD", default_value_t = 0.0, allow_negative_numbers = true)]
+    phase: f64,
+    /// Time at rest before the pulse
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true)]
+    lead_in: f64,
+    /// Time at rest after it
+    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true)]
+    rest: f64,
+    /// How far the straight lines between samples may be off the curve, in parts of the amplitude
+    #[arg(long, value_name = "PART", default_value_t = DEFAULT_ERROR, value_parser = positive, allow_negative_numbers = true)]
+    error: f64,
+}
+
+fn shape_parser() -> impl TypedValueParser<Value = Shape> {
+    PossibleValuesParser::new(Shape::ALL.map(Shape::name)).map(|name| {
+        let is_named = |shape: &Shape| shape.name() == name;
+        Shape::ALL.into_iter().find(is_named).expect("clap accepts these names alone")
+    })
+}
+
+impl OfPulse {
+    /// The pulse, in the units of `structure` where it is asked for in these.
+    fn pulse(&self, structure: &Structure) -> Pulse {
+        let &OfPulse { shape, phase, lead_in, rest, error, .. } = self;
+        let (of_amplitude, of_frequency) = units_of(structure);
+        let ratio = |ratio: Option<f64>, unit| ratio.map(|ratio| ratio * unit);
+        let amplitude = ratio(self.amplitude, structure.parameters().g).or(ratio(self.amplitude_ratio, of_amplitude));
+        let frequency = self.frequency.or(self.period.map(f64::recip)).or(ratio(self.frequency_ratio, of_frequency));
+        let asked = "clap asks for one of them";
+        let pulse = Pulse::new(shape, amplitude.expect(asked), frequency.expect(asked));
+        Pulse { cycles: self.cycles.unwrap_or(pulse.cycles), phase, lead_in, rest, error, ..pulse }
+    }
+}
+
+/// Writes the pulse and prints what it amounts to.
+pub fn run(args: &PulseArgs) -> anyhow::Result<()> {
+    let structure = args.structure.load()?;
+    let g = structure.parameters().g;
+    let pulse = args.of.pulse(&structure);
+    let record = pulse.record()?;
+    let mut files = OutputFiles::of_inputs(args.structure.input());
+    args.results.reserve(&mut files);
+    let mut table = Table::create(&mut files, &args.output)?;
+    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
+    table.write(["time[s]", "a_g[g]"])?;
+    let samples = record.times().iter().zip(record.acceleration());
+    samples.map(|(time, a_g)| (time, a_g / g)).try_for_each(|sample| table.write(sample))?;
+    table.finish()?;
+    let lines = amounts(&pulse, &record, &structure);
+    if args.results.format == Format::Text {
+        let mut text = format!("{}\n", record.title());
+        write_columns(&mut text, &lines, g)?;
+        if args.output == Path::new("-") { say!("{}", text.trim_end()) } else { print(&text)? }
+    } else {
+        print_rows(args.results.format, &lines)?;
+    }
+    if args.output != Path::new("-") {
+        let (path, samples) = (args.output.display(), record.times().len());
+        say!("pulse          {path}, {samples} samples, lines within {} of the amplitude", short(pulse.error));
+    }
+    match picture {
+        Some(picture) => draw(picture, &record, g),
+        None => Ok(()),
+    }
+}
+
+/// What the pulse amounts to, alone and for `structure`.
+fn amounts(pulse: &Pulse, record: &Record, structure: &Structure) -> Vec<Line> {
+    let (of_amplitude, of_frequency) = units_of(structure);
+    let [velocity, displacement] = record.velocities_and_displacements().last().expect("a record has samples");
+    let line = |name, value, unit, description| Line::new(name, value, unit, "", description);
+    vec![
+        line("a_p", pulse.amplitude, "m/s2", "amplitude"),
+        line("PGA", record.pga(), "m/s2", "peak ground acceleration of the straight lines"),
+        line("PGV", peak_velocity(record), "m/s", "peak ground velocity"),
+        line("v_end", velocity, "m/s", "velocity at the end"),
+        line("d_end", displacement, "m", "displacement at the end"),
+        line("f", pulse.frequency, "Hz", "frequency"),
+        line("T", 1.0 / pulse.frequency, "s", "period"),
+        line("duration", pulse.duration(), "s", "of the pulse itself"),
+        line("a_p/(g tan)", pulse.amplitude / of_amplitude, "1", "amplitude over g tan(alpha_cg) of the structure"),
+        line("omega/p_l", pulse.frequency / of_frequency, "1", "circular frequency over p_l of the structure"),
+    ]
+}
+
+/// Draws `record` and its integrals.
+fn draw(picture: Picture, record: &Record, g: f64) -> anyhow::Result<()> {
+    let none = Peak::default();
+    let samples = || record.times().iter().copied().zip(record.velocities_and_displacements());
+    let accelerations = record.times().iter().copied().zip(record.acceleration().iter().copied()).collect();
+    let of = |i: usize| samples().map(|(time, integrals)| (time, integrals[i])).collect();
+    let panels = vec![
+        Panel::of("acceleration", (g, "g"), colour::BLUE, accelerations, none),
+        Panel::of("velocity", (1.0, "m/s"), colour::VERMILLION, of(0), none),
+        Panel::of("displacement", (1.0, "m"), colour::INK, of(1), none),
+    ];
+    let histories = Histories { panels, marks: Vec::new(), time: record.start()..record.end() };
+    let about = "the ground's acceleration and its integrals, at rest before the start";
+    picture.draw((860, TITLE + histories.height()), |area| histories.draw(&titled(area, record.title(), about)?))
+}

@@ -1,0 +1,178 @@
+//! A sweep of pulses: an overturning spectrum of every structure.
+mod picture;
+mod rows;
+
+use super::{SweepArgs, file::MapSweep, progress_style, row_file::RowFile, thread_pool};
+use crate::{
+    picture::Picture,
+    results::{Format, print, print_rows},
+    significant::{short, significant},
+    talk::{self, say},
+};
+use anyhow::{bail, ensure};
+use picture::Shown;
+use rayon::prelude::*;
+use rocking::run::{
+    LONGEST_REST,
+    map::{Class, Map, Place, Point},
+};
+use rows::Rows;
+use serde::Serialize;
+use std::{collections::HashMap, fmt::Write, path::Path, sync::Mutex, time::Instant};
+
+/// A map, and what is known of it.
+pub struct Spectrum {
+    /// What its structure is called.
+    pub name: String,
+    /// The map.
+    pub map: Map,
+    /// Every point that has been run.
+    pub points: HashMap<Place, Point>,
+}
+
+/// What the classes are called, in their order.
+const CLASSES: [(Class, &str); 7] = [
+    (Class::NoUplift, "no uplift"),
+    (Class::Stands, "rocks and stands"),
+    (Class::OverturnsAtOnce, "overturns without impact"),
+    (Class::OverturnsAfterOne, "overturns after one impact"),
+    (Class::OverturnsAfterMore, "overturns after more"),
+    (Class::StillRocking, "still rocking"),
+    (Class::Failed, "failed"),
+];
+
+/// How many points of a map's grid are of a class.
+#[derive(Serialize)]
+struct Count<'a> {
+    structure: &'a str,
+    class: &'static str,
+    points: usize,
+    part: f64,
+}
+
+/// Does the runs that are not in the file at `output` yet, then prints and draws the maps.
+pub fn run(args: &SweepArgs, sweep: MapSweep, output: &Path, picture: Picture) -> anyhow::Result<()> {
+    ensure!(!args.validity, "--validity is for records: `simulate` a pulse that `pulse` writes");
+    let (file, mut rows) = Rows::open(output)?;
+    let file = Mutex::new(file);
+    let pool = thread_pool(args, usize::MAX)?;
+    let clock = Instant::now();
+    let (mut done, mut spectra) = (0, Vec::new());
+    for (name, map) in sweep.maps {
+        let mut points = HashMap::new();
+        for level in 0..=sweep.refinements {
+            loop {
+                let lacking = if level > 0 {
+                    map.refinement(level, &points)
+                } else if points.is_empty() {
+                    map.grid().collect()
+                } else {
+                    Vec::new()
+                };
+                if lacking.is_empty() {
+                    break;
+                }
+                done += pool.install(|| do_points(&name, &map, level, lacking, &mut points, &mut rows, &file))?;
+            }
+        }
+        spectra.push(Spectrum { name, map, points });
+    }
+    if done > 0 {
+        let (seconds, threads) = (clock.elapsed().as_secs_f64(), pool.current_num_threads());
+        let rate = done as f64 / seconds;
+        let [seconds, rate, per_thread] = [seconds, rate, rate / threads as f64].map(significant);
+        say!("{done} points in {seconds} s: {rate} /s, {per_thread} /s on each of {threads} threads");
+    }
+    rows.say_others(output);
+    let counts: Vec<_> = spectra.iter().flat_map(count).collect();
+    match args.results.format {
+        Format::Text => print(&text(&spectra, &counts)?)?,
+        format => print_rows(format, &counts)?,
+    }
+    say!("rows           {}", output.display());
+    picture::draw(picture, &spectra, sweep.refinements)?;
+    report_failures(&spectra)
+}
+
+/// Finds `places` of a map in the file, or runs the structure there and adds the row; returns how many were run.
+fn do_points(
+    name: &str,
+    map: &Map,
+    level: u32,
+    places: Vec<Place>,
+    points: &mut HashMap<Place, Point>,
+    rows: &mut Rows,
+    file: &Mutex<RowFile>,
+) -> anyhow::Result<usize> {
+    let keys: Vec<_> = places.par_iter().map(|place| rows::key_at(name, map, *place)).collect();
+    let mut lacking = Vec::new();
+    for (place, key) in places.into_iter().zip(keys) {
+        match rows.take(&key) {
+            Some(point) => drop(points.insert(place, point)),
+            None => lacking.push((place, key)),
+        }
+    }
+    let progress = talk::progress(lacking.len()).with_style(progress_style("points")?);
+    let run: anyhow::Result<Vec<_>> = (lacking.par_iter())
+        .map(|(place, key)| {
+            let point = map.run(*place);
+            let mut file = file.lock().expect("no thread panics with the file in hand");
+            rows::append(&mut file, key, name, map, (level, *place), &point)?;
+            progress.inc(1);
+            Ok((*place, point))
+        })
+        .collect();
+    progress.finish_and_clear();
+    points.extend(run?);
+    Ok(lacking.len())
+}
+
+/// How many points of the grid there are of each class that there are any of.
+fn count(spectrum: &Spectrum) -> Vec<Count<'_>> {
+    let Spectrum { name, map, points } = spectrum;
+    let total = map.grid().count();
+    let of = |(class, what): (Class, &'static str)| {
+        let count = map.grid().filter(|place| points[place].class() == class).count();
+        (count > 0).then_some(Count { structure: name, class: what, points: count, part: count as f64 / total as f64 })
+    };
+    CLASSES.into_iter().filter_map(of).collect()
+}
+
+/// The same for people, with what the maps are of.
+fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
+    let mut out = String::new();
+    for Spectrum { name, map, points } in spectra {
+        let [frequency, amplitude] = Shown::axes(map).map(|axis| {
+            let range = axis.range();
+            format!("{} from {} to {}", axis.steps() + 1, short(range.start), short(range.end))
+        });
+        let [x, y] = picture::axis_names(map);
+        let refined = points.len() - map.grid().count();
+        writeln!(out, "{name}: {} pulses, {}", map.pulse.shape.name(), map.detail.name())?;
+        writeln!(out, "  {x}: {frequency}\n  {y}: {amplitude}")?;
+        for Count { class, points, part, .. } in counts.iter().filter(|count| count.structure == name) {
+            writeln!(out, "  {class:<28} {points:>9} {:>7.3} %", 100.0 * part)?;
+        }
+        if refined > 0 {
+            writeln!(out, "  {:<28} {refined:>9}", "more along the boundaries")?;
+        }
+        if map.finds_condition {
+            let changes = points.values().filter(|point| point.condition == Some(f64::INFINITY)).count();
+            writeln!(out, "  {:<28} {changes:>9}", "change class under 1e-12")?;
+        }
+        if points.values().any(|point| point.class() == Class::StillRocking) {
+            writeln!(out, "  still rocking: {LONGEST_REST}/p_l after the pulse it is not decided")?;
+        }
+        writeln!(out)?;
+    }
+    Ok(out)
+}
+
+/// Says how many points failed, and why the first did.
+fn report_failures(spectra: &[Spectrum]) -> anyhow::Result<()> {
+    let failed = || spectra.iter().flat_map(|of| of.points.iter()).filter(|(_, point)| point.class() == Class::Failed);
+    match failed().min_by_key(|(place, _)| **place) {
+        Some((_, first)) => bail!("{} point(s) failed; one of them: {}", failed().count(), first.reason),
+        None => Ok(()),
+    }
+}

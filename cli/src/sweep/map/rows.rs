@@ -1,0 +1,101 @@
+//! The rows of maps: what a point is, and what became of the structure there.
+//!
+//! A point's key stands for the structure and its name, the pulse, the level of detail, the tolerance, whether its condition is found, and
+//! the build of the program: not for its place, so that another grid through the same point has it.
+use crate::{
+    sweep::row_file::{FIRST_HEADINGS, RowFile, key, key_of, records},
+    talk::say,
+};
+use anyhow::{Context, bail};
+use rocking::{
+    record::pulse::units_of,
+    run::map::{Map, Place, Point},
+};
+use std::{collections::HashMap, path::Path};
+use uuid::Uuid;
+
+/// Columns before what became of the structure.
+const BEFORE: usize = 12;
+/// Columns of that, with the reason.
+const OF_POINT: usize = 7;
+
+/// The rows of a file that have not been asked for.
+pub struct Rows {
+    points: HashMap<Uuid, Point>,
+    repeated: usize,
+}
+
+impl Rows {
+    /// Opens the file at `path`, or begins it, and reads its rows.
+    pub fn open(path: &Path) -> anyhow::Result<(RowFile, Rows)> {
+        RowFile::open(path, &headings(), read)
+    }
+
+    /// The point that has `key`, if there is a row of it.
+    pub fn take(&mut self, key: &Uuid) -> Option<Point> {
+        self.points.remove(key)
+    }
+
+    /// Says how many rows nobody has asked for, and how many are there again.
+    pub fn say_others(&self, path: &Path) {
+        for (count, what) in [
+            (
+                self.points.len(),
+                "of points that are not in these maps (other inputs, or another build of the program): kept",
+            ),
+            (self.repeated, "there again: counted once"),
+        ] {
+            if count > 0 {
+                say!("{}: {count} row(s) are {what}", path.display());
+            }
+        }
+    }
+}
+
+/// The key of a point of the map of the structure called `name`.
+pub fn key_at(name: &str, map: &Map, place: Place) -> Uuid {
+    let Map { structure, detail, tolerance, finds_condition, .. } = map;
+    key(&(name, structure.parameters(), map.pulse(place), detail, tolerance, finds_condition))
+}
+
+fn headings() -> Vec<String> {
+    let of_map = ["shape", "cycles", "phase[rad]", "detail", "tolerance"];
+    let of_pulse = ["refinement", "frequency[Hz]", "amplitude[m/s2]", "omega/p_l", "a_p/(g tan alpha_cg)"];
+    let of_point = ["fate", "impacts", "theta_max/alpha_cg", "transitions", "end[s]", "condition", "reason"];
+    let headings = FIRST_HEADINGS.iter().chain(&of_map).chain(&of_pulse).chain(&of_point).chain(&["checksum"]);
+    headings.map(|heading| (*heading).to_owned()).collect()
+}
+
+/// Adds the row of a point, which the refinement of this level has asked for; 0 is the grid.
+pub fn append(
+    file: &mut RowFile,
+    key: &Uuid,
+    name: &str,
+    map: &Map,
+    (level, place): (u32, Place),
+    point: &Point,
+) -> anyhow::Result<()> {
+    let pulse = map.pulse(place);
+    let (of_amplitude, of_frequency) = units_of(&map.structure);
+    let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, map.detail.name(), map.tolerance);
+    let ratios = (pulse.frequency / of_frequency, pulse.amplitude / of_amplitude);
+    file.append(&(key.to_string(), name, of_map, level, pulse.frequency, pulse.amplitude, ratios, point))
+}
+
+fn read(rows: &[u8]) -> anyhow::Result<Rows> {
+    let mut found = Rows { points: HashMap::new(), repeated: 0 };
+    for (line, row) in records(rows) {
+        let row = row?;
+        let parse = || -> anyhow::Result<(Uuid, Point)> {
+            let point: csv::StringRecord = row.iter().skip(BEFORE).take(OF_POINT).collect();
+            Ok((key_of(&row)?, point.deserialize(None)?))
+        };
+        let (key, point) = parse().with_context(|| format!("line {line} cannot be read"))?;
+        match found.points.get(&key) {
+            None => drop(found.points.insert(key, point)),
+            Some(known) if *known == point => found.repeated += 1,
+            Some(_) => bail!("line {line} contradicts another row of run {key}: remove one of them"),
+        }
+    }
+    Ok(found)
+}

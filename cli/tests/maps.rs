@@ -1,0 +1,154 @@
+//! Pulses and their overturning spectra, driven from outside.
+
+#[allow(dead_code)] // a record that is no pulse of these
+mod command_line;
+
+use command_line::{fail, succeed};
+use rocking::record::{Reading, Record, pulse::Pulse, pulse::Shape};
+use std::{collections::BTreeMap, fs, path::Path, process::Command};
+use tempfile::TempDir;
+
+/// 12 × 12 points with a boundary in the middle, at a level that costs little.
+const MAP: &str = "
+detail = 'modal'
+refine = 1
+condition = true
+[pulses]
+shape = 'sine'
+error = 1e-3
+frequency = { from = 1, to = 9, count = 12 }
+amplitude = { from = 0.5, to = 9, count = 12, log = true }
+dimensionless = true
+[[structures]]
+name = 'McManus'
+preset = 'mcmanus'
+";
+
+fn map(toml: &str) -> TempDir {
+    let folder = TempDir::new().unwrap();
+    fs::write(folder.path().join("map.toml"), toml).unwrap();
+    folder
+}
+
+/// The rows of a file, sorted.
+fn rows(folder: &Path, name: &str) -> Vec<String> {
+    let text = fs::read_to_string(folder.join(name)).unwrap();
+    let mut rows: Vec<_> = text.lines().skip(1).map(str::to_owned).collect();
+    rows.sort_unstable();
+    rows
+}
+
+/// The same points to the bit for any number of threads, and after the sweep was killed in the middle of writes; and
+/// the same picture.
+#[cfg(unix)]
+#[test]
+fn a_map_is_the_same_however_it_came_about() {
+    let folder = map(MAP);
+    let folder = folder.path();
+    let (printed, _) = succeed(folder, "sweep map.toml --threads 1 -o one.csv --picture one.svg");
+    succeed(folder, "sweep map.toml --threads 2 -o two.csv --picture two.svg");
+    let expected = rows(folder, "one.csv");
+    assert!(expected.len() > 144, "no refinement");
+    assert_eq!(rows(folder, "two.csv"), expected);
+
+    let program = env!("CARGO_BIN_EXE_rocking-fmu");
+    for blocks in [3, 20] {
+        let limited = format!("ulimit -c 0; ulimit -f {blocks}; exec \"$0\" sweep map.toml -o killed.csv --threads 2");
+        let end = Command::new("sh").args(["-c", &limited, program]).current_dir(folder).output().unwrap();
+        assert_eq!(end.status.code(), None, "a signal ends it");
+        let there = rows(folder, "killed.csv").len();
+        assert!((1..expected.len()).contains(&there), "{there}");
+    }
+    let (again, _) = succeed(folder, "sweep map.toml -o killed.csv --picture killed.svg");
+    assert_eq!(rows(folder, "killed.csv"), expected);
+    assert_eq!(again, printed);
+    let picture = |name: &str| fs::read(folder.join(name)).unwrap();
+    assert!(picture("one.svg") == picture("two.svg") && picture("one.svg") == picture("killed.svg"));
+
+    let (_, said) = succeed(folder, "sweep map.toml -o killed.csv --picture killed.svg");
+    assert!(!said.contains("points in"), "something was run again: {said}");
+    assert_eq!(rows(folder, "killed.csv"), expected);
+}
+
+/// With a finer grid along the boundary only its points are run, and the file keeps both.
+#[test]
+fn refining_runs_the_boundary_alone() {
+    let folder = map(&MAP.replace("refine = 1", "refine = 0"));
+    succeed(folder.path(), "sweep map.toml -o map.csv");
+    let coarse = rows(folder.path(), "map.csv");
+    assert_eq!(coarse.len(), 144);
+    fs::write(folder.path().join("map.toml"), MAP.replace("refine = 1", "refine = 2")).unwrap();
+    succeed(folder.path(), "sweep map.toml -o map.csv");
+    let fine = rows(folder.path(), "map.csv");
+    assert!(coarse.iter().all(|row| fine.contains(row)));
+    let mut levels = BTreeMap::new();
+    for row in &fine {
+        *levels.entry(row.split(',').nth(7).unwrap().to_owned()).or_insert(0) += 1;
+    }
+    assert_eq!((levels.len(), levels["0"]), (3, 144));
+    // 45 × 45 points of the finest grid
+    assert!(fine.len() < 2025 / 2, "{levels:?}");
+}
+
+/// What a row says of a point is what `simulate` says of the pulse that `pulse` writes.
+#[test]
+fn a_point_is_a_simulation_of_its_pulse() {
+    let folder = map(&MAP.replace("error = 1e-3", ""));
+    let folder = folder.path();
+    succeed(folder, "sweep map.toml -o map.csv");
+    let row = rows(folder, "map.csv").into_iter().find(|row| row.contains(",stands,")).unwrap();
+    let cell = |column: usize| row.split(',').nth(column).unwrap();
+    let pulse = format!("pulse sine --frequency-ratio {} --amplitude-ratio {}", cell(10), cell(11));
+    succeed(folder, &pulse);
+    let (printed, _) = succeed(folder, "simulate --record pulse.csv --detail modal --format json");
+    let printed: serde_json::Value = serde_json::from_str(&printed).unwrap();
+    let alpha = rocking::Structure::new(rocking::Parameters::MCMANUS).unwrap().tan_alpha_cg.atan();
+    let peaks = printed["peaks"].as_array().unwrap();
+    let theta = peaks.iter().find(|peak| peak["name"] == "theta").unwrap()["peak"].as_f64().unwrap();
+    let ratio: f64 = cell(14).parse().unwrap();
+    assert!((theta / alpha / ratio - 1.0).abs() < 1e-9, "{theta} {ratio}");
+    assert_eq!(printed["transitions"].to_string(), cell(15));
+}
+
+/// The file of a pulse reads back as the library's own record.
+#[test]
+fn a_pulse_is_written_as_the_library_makes_it() {
+    let folder = TempDir::new().unwrap();
+    for (shape, name) in Shape::ALL.map(|shape| (shape, shape.name())) {
+        succeed(folder.path(), &format!("pulse {name} --amplitude 0.5 --period 0.8 --lead-in 0.1 --rest 0.2"));
+        let pulse = Pulse { lead_in: 0.1, rest: 0.2, ..Pulse::new(shape, 0.5 * 9.81, 1.0 / 0.8) };
+        let expected = pulse.record().unwrap();
+        let (record, _) = Record::read(&folder.path().join("pulse.csv"), &Reading::default(), 9.81).unwrap();
+        assert_eq!(record.times(), expected.times(), "{name}");
+        for (found, expected) in record.acceleration().iter().zip(expected.acceleration()) {
+            assert!((found - expected).abs() <= 4.0 * f64::EPSILON * expected.abs(), "{name}: {found} {expected}");
+        }
+    }
+}
+
+#[test]
+fn a_refused_map_says_what_to_change() {
+    let refusal = |from: &str, to: &str| {
+        assert!(MAP.contains(from), "{from}");
+        let folder = map(&MAP.replace(from, to));
+        let (code, said) = fail(folder.path(), "sweep map.toml");
+        assert_eq!(code, 1);
+        said
+    };
+    for (from, to, said) in [
+        ("refine = 1", "refine = 9", "refine = 9 is out of range: 0 to 8 are possible"),
+        ("'sine'", "'sinus'", "unknown variant `sinus`"),
+        ("preset = 'mcmanus'", "preset = 'mcmanus'\nvary.r = [0.9, 1]", "nothing can vary: a map is of one structure"),
+        ("from = 1,", "from = 10,", "frequency needs two or more finite values greater than 0"),
+        ("error = 1e-3", "error = 0.5", "error = 0.5 is out of range: it must lie between"),
+        ("from = 0.5,", "from = 0,", "from = 0 to = 9 have no logarithms"),
+        ("[pulses]", "scale = [1]\n[pulses]", "unknown field `scale`"),
+        ("shape = 'sine'", "shape = 'half_sine'\ncycles = 3", "cycles = 3 is not possible: half_sine has 0.5"),
+    ] {
+        let found = refusal(from, to);
+        assert!(found.contains(said), "{to}: {found}");
+    }
+    let folder = map(MAP);
+    let (_, said) = fail(folder.path(), "sweep map.toml --validity");
+    assert!(said.contains("--validity is for records"), "{said}");
+}

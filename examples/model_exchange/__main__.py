@@ -1,0 +1,101 @@
+"""Writes docs/model_exchange.md and its picture: see `make exchange`.
+
+    PYTHONPATH=examples python -m model_exchange --fmu out/mcmanus.fmu
+"""
+
+import argparse
+from pathlib import Path
+
+from coupling.tables import markdown
+from first_run import PACOIMA_DAM, RECORD
+from tqdm import tqdm
+from validation.figures import FIXED, QUIET, ROCKING, save, subplots
+
+from .hosts import Scene, co_simulation, fmpy_cvode, fmpy_euler, sundae, sundae_told
+
+TOLERANCES = (1e-2, 1e-4, 1e-6, 1e-8, 1e-10)
+KINKS_TOLERANCES = (1e-6, 1e-8, 1e-10)
+STEPS = (10e-3, 1e-3, 0.2e-3)  # s
+SOLVERS = {"CVode of fmpy (BDF)": (fmpy_cvode, ROCKING, "o-"), "CVODE of scikit-sundae (Adams)": (sundae, FIXED, "s--")}
+
+
+def scenes(fmu: str) -> list[Scene]:
+    """The pier under three earthquakes: Pacoima Dam as on the shake table, the others as they were recorded."""
+
+    def record(pattern: str) -> str:
+        return str(next(RECORD.parents[1].glob(f"*/{pattern}.AT2")))
+
+    return [
+        Scene("Pacoima Dam 1971", fmu, tuple(PACOIMA_DAM.items()), 3.99, 0.01),
+        Scene("El Centro 1940", fmu, (("record", record("RSN6_*ELC180*")),), 15.0, 0.02),
+        Scene("Corralitos 1989, half", fmu, (("record", record("RSN753_*CLS000*")), ("record_scale", 0.5)), 15.0, 0.02),
+    ]
+
+
+def cells(result, exact) -> list:
+    hidden = f"{result.transitions} ({result.hidden})"
+    ended = "" if len(result.rows) == len(exact.rows) else f", overturned at {result.rows['time'][-1]:.1f} s"
+    return [f"{result.error(exact):.1e}", hidden + ended, f"{result.depth:.1g}"]
+
+
+def table(found, exact) -> str:
+    """Every run of a scene."""
+    rows = [[name, f"{setting:g}", *cells(result, exact)] for (name, setting), result in found.items()]
+    return markdown(["", "tolerance or step (s)", "error", "transitions (hidden)", "below the floor (rad)"], rows)
+
+
+def kinks_table(found) -> str:
+    """What it costs and brings to start anew at every sample, by the solver that counts its evaluations."""
+    rows = []
+    for scene, (_, exact, _) in found.items():
+        for tolerance in KINKS_TOLERANCES:
+            results = [sundae_told(scene, tolerance, told) for told in (max(tolerance, 1e-6), min(tolerance, 1e-8))]
+            rows.append([scene.name, f"{tolerance:g}",
+                         *(f"{result.error(exact):.1e}, {result.evaluations}" for result in results)])
+    return markdown(["", "tolerance", "through the samples", "anew at every sample"], rows)
+
+
+def plot(path: Path, found) -> None:
+    figure, axes = subplots(1, len(found), 3.4, sharey=True)
+    for axis, (scene, (results, exact, floor)) in zip(axes, found.items()):
+        for name, (_, color, style) in SOLVERS.items():
+            axis.loglog(TOLERANCES, [results[name, tolerance].error(exact) for tolerance in TOLERANCES], style, color=color,
+                        markersize=3.5, label=name)
+        axis.loglog(TOLERANCES, [tolerance * floor / 1e-12 for tolerance in TOLERANCES], ":", color=QUIET,
+                    label="the tolerance times what the scene makes of a change of its input")
+        axis.set(title=f"{scene.name}\n{exact.transitions} transitions", xlabel="relative tolerance")
+        axis.invert_xaxis()
+    axes[0].set(ylabel="largest error over the peak", ylim=(1e-12, 10))
+    figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
+    save(figure, path)
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
+    parser.add_argument("--fmu", default="out/mcmanus.fmu", help="archive of McManus's specimen")
+    parser.add_argument("--output", type=Path, default=Path("docs/model_exchange.md"), help="page to write")
+    arguments = parser.parse_args()
+
+    runs = [(name, host, setting) for name, (host, *_) in SOLVERS.items() for setting in TOLERANCES]
+    runs += [("Euler of fmpy", fmpy_euler, step) for step in STEPS]
+    found = {}
+    for scene in scenes(arguments.fmu):
+        exact = co_simulation(scene)
+        results = {(name, setting): host(scene, setting) for name, host, setting in tqdm(runs, desc=scene.name)}
+        found[scene] = results, exact, co_simulation(scene, 1e-12).error(exact)
+    plot(arguments.output.with_suffix("") / "tolerance.png", found)
+
+    tables = [f"### {scene.name}\n\nCo-simulation: {exact.transitions} transitions; its input times 1 + 1e-12 moves the answer by "
+              f"{floor:.1e}.\n\n{table(results, exact)}" for scene, (results, exact, floor) in found.items()]
+    page = (Path(__file__).parent / "page.md").read_text(encoding="utf-8").format(
+        deepest=max(result.depth for results, *_ in found.values() for result in results.values()),
+        runs=sum(len(results) for results, *_ in found.values()),
+        kinks=kinks_table(found),
+        tables="\n\n".join(tables),
+    )
+    arguments.output.write_text(page, encoding="utf-8")
+    print(arguments.output)
+
+
+if __name__ == "__main__":
+    main()

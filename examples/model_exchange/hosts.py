@@ -1,0 +1,174 @@
+"""Hosts that integrate the FMU by solvers of their own, good and bad, and what they make of a scene."""
+
+from __future__ import annotations
+
+from ctypes import POINTER, c_double
+from dataclasses import dataclass
+from functools import cache
+
+import fmpy
+import numpy as np
+from fmpy.fmi2 import FMU2Model
+from sksundae.cvode import CVODE
+
+OUTPUTS = ["theta", "u", "phase", "transitions"]
+LEFT, RIGHT = 2, 3  # items of `phase`
+SAME_TIME = 1e-12  # s, closer than solvers tell apart
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A structure's FMU under a record."""
+
+    name: str
+    fmu: str
+    record: tuple[tuple[str, str | float], ...]  # start values: which record, and how it is scaled
+    end: float  # s
+    interval: float  # s, between the instants that are compared
+
+    @property
+    def start_values(self) -> dict:
+        return dict(self.record)
+
+
+@dataclass(frozen=True)
+class Result:
+    """What a host made of it."""
+
+    rows: np.ndarray  # OUTPUTS over time
+    hidden: int  # events of which the host's own step showed nothing
+    evaluations: int = 0  # of the derivatives, where the host counts them
+
+    @property
+    def transitions(self) -> int:
+        return int(self.rows["transitions"][-1])
+
+    @property
+    def depth(self) -> float:
+        """How far below the floor it was, rad: theta of the wrong sign while rocking."""
+        theta, phase = self.rows["theta"], self.rows["phase"]
+        return max(np.max(np.where(phase == RIGHT, -theta, 0)), np.max(np.where(phase == LEFT, theta, 0)))
+
+    def error(self, exact: Result) -> float:
+        """The largest error of theta and u up to where it ends, each relative to its peak."""
+        n = len(self.rows)
+        return max(np.max(np.abs(self.rows[name] - exact.rows[name][:n])) / np.max(np.abs(exact.rows[name]))
+                   for name in ("theta", "u"))
+
+
+def _simulate(scene: Scene, interval: float | None = None, **arguments) -> Result:
+    """By fmpy's own loop."""
+    said = []
+    interval = interval or scene.interval
+    rows = fmpy.simulate_fmu(scene.fmu, stop_time=scene.end, output_interval=interval, output=OUTPUTS, record_events=False,
+                             logger=lambda _environment, _name, _status, _category, text: said.append(text.decode()),
+                             debug_logging=True, **arguments)
+    return Result(rows[:: round(scene.interval / interval)], sum("shows nothing of" in text for text in said))
+
+
+@cache
+def co_simulation(scene: Scene, change: float = 0.0) -> Result:
+    """The FMU by itself, the record multiplied by 1 + `change`."""
+    scaled = scene.start_values | {"record_scale": scene.start_values.get("record_scale", 1.0) * (1 + change)}
+    return _simulate(scene, fmi_type="CoSimulation", relative_tolerance=1e-12, start_values=scaled)
+
+
+def fmpy_cvode(scene: Scene, tolerance: float) -> Result:
+    """CVode as fmpy uses it: BDF, roots of the indicators, the step that is complete is the one between outputs."""
+    return _simulate(scene, fmi_type="ModelExchange", solver="CVode", relative_tolerance=tolerance, start_values=scene.start_values)
+
+
+def fmpy_euler(scene: Scene, step: float) -> Result:
+    """Euler's method by fixed steps, which looks at the indicators after the step."""
+    return _simulate(scene, step, fmi_type="ModelExchange", solver="Euler", step_size=step, start_values=scene.start_values)
+
+
+class Model:
+    """An instance as the equations that a solver asks for."""
+
+    def __init__(self, scene: Scene, tolerance: float):
+        self.description = fmpy.read_model_description(scene.fmu)
+        self.references = {variable.name: variable.valueReference for variable in self.description.modelVariables}
+        self.fmu = FMU2Model(guid=self.description.guid, unzipDirectory=fmpy.extract(scene.fmu),
+                             modelIdentifier=self.description.modelExchange.modelIdentifier, instanceName="model")
+        self.fmu.instantiate()
+        self.fmu.setupExperiment(tolerance=tolerance, startTime=0.0)
+        for name, value in scene.start_values.items():
+            set_value = self.fmu.setString if isinstance(value, str) else self.fmu.setReal
+            set_value([self.references[name]], [value])
+        self.fmu.enterInitializationMode()
+        self.fmu.exitInitializationMode()
+        self.evaluations = 0
+        self._numbers = np.empty(4)
+        self._pointer = self._numbers.ctypes.data_as(POINTER(c_double))
+
+    def at(self, time: float, states: np.ndarray) -> None:
+        self.fmu.setTime(time)
+        self._numbers[:] = states
+        self.fmu.setContinuousStates(self._pointer, 4)
+
+    def states(self) -> np.ndarray:
+        self.fmu.getContinuousStates(self._pointer, 4)
+        return self._numbers.copy()
+
+    def rates(self, time: float, states: np.ndarray, rates: np.ndarray) -> None:
+        self.evaluations += 1
+        self.at(time, states)
+        self.fmu.getDerivatives(self._pointer, 4)
+        rates[:] = self._numbers
+
+    def indicators(self, time: float, states: np.ndarray, indicators: np.ndarray) -> None:
+        self.at(time, states)
+        self.fmu.getEventIndicators(self._pointer, 2)
+        indicators[:] = self._numbers[:2]
+
+    def nominals(self) -> np.ndarray:
+        self.fmu.getNominalsOfContinuousStates(self._pointer, 4)
+        return self._numbers.copy()
+
+    def update(self) -> tuple[bool, float]:
+        """Deals with an event: whether the structure has overturned, and when the next event is."""
+        _, has_ended, _, _, is_foreseen, next_event = self.fmu.newDiscreteStates()
+        self.fmu.enterContinuousTimeMode()
+        return has_ended, next_event if is_foreseen else np.inf
+
+    def row(self, time: float) -> tuple:
+        reals = self.fmu.getReal([self.references[name] for name in ("theta", "u")])
+        return time, *reals, *self.fmu.getInteger([self.references[name] for name in ("phase", "transitions")])
+
+
+def sundae(scene: Scene, tolerance: float) -> Result:
+    """SUNDIALS' CVODE of scikit-sundae: Adams, roots of the indicators, and every step of the solver is completed."""
+    return sundae_told(scene, tolerance, tolerance)
+
+
+@cache
+def sundae_told(scene: Scene, tolerance: float, told: float) -> Result:
+    """The same where the FMU is told of another tolerance."""
+    model = Model(scene, told)
+    try:
+        has_ended, next_event = model.update()
+        solver = CVODE(lambda t, x, rates: model.rates(t, x, rates), method="Adams", rtol=tolerance,
+                       atol=tolerance * model.nominals(), eventsfn=lambda t, x, z: model.indicators(t, x, z), num_events=2)
+        rows, time, hidden = [model.row(0.0)], 0.0, 0
+        solver.init_step(time, model.states())
+        while time < scene.end - SAME_TIME and not has_ended:
+            point = len(rows) * scene.interval
+            stop = next_event if next_event < point - SAME_TIME else point
+            found = solver.step(stop, method="onestep", tstop=stop)
+            if not found.success:
+                raise RuntimeError(f"CVODE at t = {time} s: {found.message}")
+            time, has_root = float(found.t), found.status == 2
+            model.at(time, found.y)
+            has_event, _ = model.fmu.completedIntegratorStep()
+            if has_event or has_root or time > next_event - SAME_TIME:
+                hidden += has_event and not has_root
+                model.fmu.enterEventMode()
+                has_ended, next_event = model.update()
+                solver.init_step(time, model.states())
+            if time > point - SAME_TIME:
+                rows.append(model.row(time))
+        return Result(np.array(rows, dtype=[(name, float) for name in ("time", *OUTPUTS)]), hidden, model.evaluations)
+    finally:
+        model.fmu.terminate()
+        model.fmu.freeInstance()

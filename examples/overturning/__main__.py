@@ -1,0 +1,95 @@
+"""Writes docs/overturning.md and its pictures: PYTHONPATH=examples python -m overturning [--exporter PATH]."""
+
+import argparse
+import csv
+import resource
+import subprocess
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+from tqdm import tqdm
+
+FOLDER = Path(__file__).parent
+SCENES = ["rigid", "specimens", "stiffness", "islands"]
+CLASSES = ["no uplift", "rocks and stands", "overturns without impact", "overturns after one impact",
+           "overturns after more", "still rocking"]
+RATIOS = [2, 4, 6, 8]  # ω/p_l at which the least amplitude that overturns is shown
+AMPLIFIED = ["10", "1e3", "1e6", "1e10"]
+
+
+class Scene:
+    """The maps of one TOML file: what is counted, every point, and what they cost."""
+
+    def __init__(self, exporter: Path, name: str, picture: Path, folder: Path) -> None:
+        rows = folder / f"{name}.csv"
+        before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
+        done = subprocess.run([exporter, "sweep", FOLDER / f"{name}.toml", "-o", rows, "--picture", picture, "--quiet",
+                               "--format", "csv"], check=True, capture_output=True, text=True)
+        self.seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
+        self.counts = list(csv.DictReader(done.stdout.splitlines()))
+        with open(rows, newline="", encoding="utf-8") as file:
+            self.points = list(csv.DictReader(file))
+
+    def structures(self) -> list[str]:
+        """Their names."""
+        return list(dict.fromkeys(row["structure"] for row in self.counts))
+
+    def part(self, structure: str, of_class: str) -> str:
+        """The part of a structure's grid that is of a class, in %."""
+        found = [row for row in self.counts if (row["structure"], row["class"]) == (structure, of_class)]
+        return f"{100 * float(found[0]['part']):.1f}" if found else "–"
+
+    def least(self, structure: str, ratio: float) -> str:
+        """The least a_p/(g tan α_cg) that overturns a structure at the ω/p_l of the grid next to `ratio`."""
+        points = [point for point in self.points if point["structures"] == structure]
+        ratios = {float(point["omega/p_l"]) for point in points if point["refinement"] == "0"}
+        column = min(ratios, key=lambda known: abs(known - ratio))
+        overturned = [float(point["a_p/(g tan alpha_cg)"]) for point in points
+                      if float(point["omega/p_l"]) == column and point["fate"] == "overturns"]
+        return f"{min(overturned):.2f}" if overturned else "–"
+
+
+def markdown(headings: list[str], rows: list[list[str]]) -> str:
+    """A table whose first column is words."""
+    rule = ["---", *["---:"] * (len(headings) - 1)]
+    return "\n".join("| " + " | ".join(cells) + " |" for cells in [headings, rule, *rows])
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
+    parser.add_argument("--exporter", type=Path, default=Path("target/release/rocking-fmu"), help="executable")
+    parser.add_argument("--output", type=Path, default=Path("docs/overturning.md"), help="page to write")
+    arguments = parser.parse_args()
+    figures = arguments.output.with_suffix("")
+    figures.mkdir(exist_ok=True)
+
+    with TemporaryDirectory() as folder:
+        scenes = {name: Scene(arguments.exporter.resolve(), name, figures.resolve() / f"{name}.png", Path(folder))
+                  for name in tqdm(SCENES)}
+    one_sine = [(scene, structure) for name in SCENES[:3] for scene in [scenes[name]] for structure in scene.structures()]
+    islands = scenes["islands"]
+    conditions = [float(point["condition"]) for point in islands.points]
+    page = (FOLDER / "page.md").read_text(encoding="utf-8").format(
+        classes=markdown(["% of the points", *(structure for _, structure in one_sine)],
+                         [[of_class, *(scene.part(structure, of_class) for scene, structure in one_sine)]
+                          for of_class in CLASSES]),
+        least=markdown(["ω/p_l", *(structure for _, structure in one_sine)],
+                       [[str(ratio), *(scene.least(structure, ratio) for scene, structure in one_sine)]
+                        for ratio in RATIOS]),
+        amplified=markdown(["amplified more than", "points"],
+                           [[f"{limit} times", f"{100 * sum(c > float(limit) for c in conditions) / len(conditions):.2f} %"]
+                            for limit in AMPLIFIED]),
+        largest=f"{max(c for c in conditions if c < float('inf')):.1e}",
+        changes=sum(c == float("inf") for c in conditions),
+        islands=len(conditions),
+        costs=markdown(["maps", "points", "processor time", "points per processor second"],
+                       [[f"[{name}.toml](../examples/overturning/{name}.toml)", f"{len(scene.points):,}",
+                         f"{scene.seconds:.1f} s", f"{len(scene.points) / scene.seconds:.0f}"]
+                        for name, scene in scenes.items()]),
+    )
+    arguments.output.write_text(page, encoding="utf-8")
+    print(f"{arguments.output}, pictures in {figures}")
+
+
+if __name__ == "__main__":
+    main()

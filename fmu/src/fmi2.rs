@@ -1,0 +1,419 @@
+//! The C interface of FMI 2.0: what its functions are called, and what they pass. See [`c_abi`] for what
+//! holds of all of them.
+#![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
+
+mod co_simulation;
+mod model_exchange;
+
+use crate::c_abi::{self, check_pointer, functions, read, room, text, values, write};
+use crate::condition::Interface;
+use crate::failure::Failure;
+use crate::instance::model_exchange::{Completed, Updated};
+use crate::instance::{self, Instance};
+use crate::logger::{Logger, Sink};
+use crate::state_machine::IsAllowed;
+use crate::variables::{DataType, Variable};
+use libc::{c_char, c_double, c_int, c_uint, c_void, size_t};
+use std::ffi::CString;
+use std::ptr;
+
+/// `fmi2CallbackLogger`
+pub type CallbackLogger = unsafe extern "C" fn(*mut c_void, *const c_char, c_int, *const c_char, *const c_char, ...);
+
+/// `fmi2CallbackFunctions`
+#[repr(C)]
+pub struct CallbackFunctions {
+    /// Takes messages.
+    pub logger: Option<CallbackLogger>,
+    /// Not used: memory is Rust's own.
+    pub allocate_memory: *const c_void,
+    /// Not used.
+    pub free_memory: *const c_void,
+    /// Not used: steps are synchronous.
+    pub step_finished: *const c_void,
+    /// Handed back to the logger.
+    pub component_environment: *mut c_void,
+}
+
+const MAGIC: u64 = 0x526f_636b_696e_6732;
+
+const MODEL_EXCHANGE: c_int = 0;
+const CO_SIMULATION: c_int = 1;
+
+/// `fmi2EventInfo`
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct EventInfo {
+    /// Whether `fmi2NewDiscreteStates` has to be called again: never.
+    pub new_discrete_states_needed: c_int,
+    /// Whether the simulation is over.
+    pub terminate_simulation: c_int,
+    /// Whether magnitudes of states have changed: never.
+    pub nominals_of_continuous_states_changed: c_int,
+    /// Whether the states are not those that the host set.
+    pub values_of_continuous_states_changed: c_int,
+    /// Whether there is a
+    pub next_event_time_defined: c_int,
+    /// time of the next event, s.
+    pub next_event_time: c_double,
+}
+
+/// `fmi2GetTypesPlatform`
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2GetTypesPlatform() -> *const c_char {
+    c"default".as_ptr()
+}
+
+/// `fmi2GetVersion`
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi2GetVersion() -> *const c_char {
+    c"2.0".as_ptr()
+}
+
+/// `fmi2Instantiate`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2Instantiate(
+    instanceName: *const c_char,
+    fmuType: c_int,
+    fmuGUID: *const c_char,
+    fmuResourceLocation: *const c_char,
+    functions: *const CallbackFunctions,
+    _visible: c_int,
+    loggingOn: c_int,
+) -> *mut c_void {
+    let create = || {
+        check_pointer("functions", functions).ok()?;
+        let name = unsafe { text("instanceName", instanceName) };
+        let logger = Logger::new(sink(unsafe { &*functions }, name.as_ref().unwrap_or(&"")));
+        let arguments = || {
+            let accepted = "0 (fmi2ModelExchange), 1 (fmi2CoSimulation)";
+            let interface = match fmuType {
+                MODEL_EXCHANGE => Interface::ModelExchange,
+                CO_SIMULATION => Interface::CoSimulation,
+                value => return Err(Failure::BadChoice { name: "fmuType", value, accepted }),
+            };
+            let guid = unsafe { text("fmuGUID", fmuGUID) };
+            let location = unsafe { text("fmuResourceLocation", fmuResourceLocation) };
+            let events = boolean("loggingOn", loggingOn);
+            if name?.is_empty() {
+                return Err(Failure::NoName);
+            }
+            Ok((instance::open("fmuGUID", guid?, location?)?, interface, events?))
+        };
+        match arguments() {
+            Ok((archive, interface, events)) => {
+                let is_allowed: IsAllowed<Function> = match interface {
+                    Interface::ModelExchange => model_exchange::is_allowed,
+                    Interface::CoSimulation => co_simulation::is_allowed,
+                };
+                Some((Instance::new(archive, interface, events, logger), is_allowed))
+            }
+            Err(failure) => {
+                logger.failure(failure.status(), &format!("fmi2Instantiate: {failure}"));
+                None
+            }
+        }
+    };
+    c_abi::instantiate::<Function>(create)
+}
+
+fn sink(functions: &CallbackFunctions, instance_name: &str) -> Sink {
+    let Some(logger) = functions.logger else { return Box::new(|_, _, _| ()) };
+    let environment = functions.component_environment;
+    let name = CString::new(instance_name).expect("it was read up to its NUL");
+    Box::new(move |status, category, message| unsafe {
+        logger(environment, name.as_ptr(), status as c_int, category.as_ptr(), message.as_ptr());
+    })
+}
+
+/// `fmi2FreeInstance`. Ignored for null, and while a call is under way, as from within the logger.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi2FreeInstance(c: *mut c_void) {
+    unsafe { c_abi::free::<Function>(c) }
+}
+
+/// What the `fmi2Boolean` `value`, given as `name`, stands for.
+fn boolean(name: &'static str, value: c_int) -> Result<bool, Failure> {
+    match value {
+        0 => Ok(false),
+        1 => Ok(true),
+        _ => Err(Failure::BadChoice { name, value, accepted: "0 (fmi2False), 1 (fmi2True)" }),
+    }
+}
+
+/// The items of `fmi2StatusKind`, by number.
+const STATUS_KINDS: [&str; 4] = ["fmi2DoStepStatus", "fmi2PendingStatus", LAST_SUCCESSFUL_TIME, TERMINATED];
+const LAST_SUCCESSFUL_TIME: &str = "fmi2LastSuccessfulTime";
+const TERMINATED: &str = "fmi2Terminated";
+
+/// The item of `fmi2StatusKind` that a host asks for.
+fn status_kind(value: c_int) -> Result<&'static str, Failure> {
+    let accepted = "0 (fmi2DoStepStatus), 1 (fmi2PendingStatus), 2 (fmi2LastSuccessfulTime), 3 (fmi2Terminated)";
+    let kind = usize::try_from(value).ok().and_then(|at| STATUS_KINDS.get(at));
+    kind.copied().ok_or(Failure::BadChoice { name: "fmi2StatusKind", value, accepted })
+}
+
+/// What to call instead.
+fn remedy(failure: &Failure) -> &'static str {
+    match failure {
+        Failure::WrongType(Variable { data_type, .. }) => match data_type {
+            DataType::Real { .. } => ": call fmi2GetReal or fmi2SetReal instead",
+            DataType::Integer => ": call fmi2GetInteger instead",
+            DataType::Enumeration(_) => ": call fmi2GetInteger or fmi2SetInteger instead",
+            DataType::Boolean => ": call fmi2GetBoolean or fmi2SetBoolean instead",
+            DataType::String => ": call fmi2GetString or fmi2SetString instead",
+        },
+        Failure::Fixed(_) => ": set it before fmi2ExitInitializationMode, or call fmi2Reset",
+        Failure::WrongPoint { .. } => ": step from there, or go back with fmi2SetFMUstate",
+        Failure::StepBack { .. } => ", or goes back with fmi2SetFMUstate",
+        Failure::PastStop { .. } => " given to fmi2SetupExperiment: shorten it",
+        Failure::WrongSize { .. } => " (fmi2SerializedFMUstateSize)",
+        Failure::NoAnswer(_) => {
+            ": fmi2DoStep never returns fmi2Pending, fmi2GetRealStatus knows fmi2LastSuccessfulTime, \
+             fmi2GetBooleanStatus knows fmi2Terminated"
+        }
+        _ => "",
+    }
+}
+
+functions! {
+    fmi2SetDebugLogging = SetDebugLogging(
+        loggingOn: c_int, nCategories: size_t, categories: *const *const c_char,
+    ) |instance| {
+        let names = values("categories", categories, nCategories)?;
+        let names = names.iter().map(|name| text("category", *name)).collect::<Result<Vec<_>, _>>()?;
+        instance.set_debug_logging(boolean("loggingOn", loggingOn)?, &names)
+    }
+
+    fmi2SetupExperiment = SetupExperiment(
+        toleranceDefined: c_int, tolerance: c_double, startTime: c_double, stopTimeDefined: c_int, stopTime: c_double,
+    ) |instance| {
+        let tolerance = boolean("toleranceDefined", toleranceDefined)?.then_some(tolerance);
+        let stop_time = boolean("stopTimeDefined", stopTimeDefined)?.then_some(stopTime);
+        instance.setup_experiment(tolerance, startTime, stop_time)
+    }
+
+    fmi2EnterInitializationMode = EnterInitializationMode() |instance| { instance.enter_initialization_mode() }
+
+    fmi2ExitInitializationMode = ExitInitializationMode() |instance| { instance.exit_initialization_mode() }
+
+    fmi2Terminate = Terminate() |instance| { instance.terminate() }
+
+    fmi2Reset = Reset() |instance| { instance.reset() }
+
+    fmi2GetReal = GetReal(vr: *const c_uint, nvr: size_t, value: *mut c_double) |instance| {
+        instance.get_real(values("vr", vr, nvr)?, room("value", value, nvr)?)
+    }
+
+    fmi2GetInteger = GetInteger(vr: *const c_uint, nvr: size_t, value: *mut c_int) |instance| {
+        instance.get_integer(values("vr", vr, nvr)?, room("value", value, nvr)?)
+    }
+
+    fmi2GetBoolean = GetBoolean(vr: *const c_uint, nvr: size_t, value: *mut c_int) |instance| {
+        instance.get_boolean(values("vr", vr, nvr)?, room("value", value, nvr)?)
+    }
+
+    fmi2GetString = GetString(vr: *const c_uint, nvr: size_t, value: *mut *const c_char) |instance| {
+        instance.get_string(values("vr", vr, nvr)?, room("value", value, nvr)?)
+    }
+
+    fmi2SetReal = SetReal(vr: *const c_uint, nvr: size_t, value: *const c_double) |instance| {
+        instance.set_real(values("vr", vr, nvr)?, values("value", value, nvr)?)
+    }
+
+    fmi2SetInteger = SetInteger(vr: *const c_uint, nvr: size_t, value: *const c_int) |instance| {
+        instance.set_integer(values("vr", vr, nvr)?, values("value", value, nvr)?)
+    }
+
+    fmi2SetBoolean = SetBoolean(vr: *const c_uint, nvr: size_t, value: *const c_int) |instance| {
+        instance.set_boolean(values("vr", vr, nvr)?, values("value", value, nvr)?, boolean)
+    }
+
+    fmi2SetString = SetString(vr: *const c_uint, nvr: size_t, value: *const *const c_char) |instance| {
+        let texts = values("value", value, nvr)?.iter().map(|value| text("value", *value)).collect::<Result<Vec<_>, _>>()?;
+        instance.set_string(values("vr", vr, nvr)?, &texts)
+    }
+
+    fmi2GetFMUstate = GetFMUstate(FMUstate: *mut *mut c_void) |instance| {
+        let handle = instance.get_fmu_state(read("FMUstate", FMUstate)?.addr())?;
+        write("FMUstate", FMUstate, ptr::without_provenance_mut(handle))
+    }
+
+    fmi2SetFMUstate = SetFMUstate(FMUstate: *mut c_void) |instance| { instance.set_fmu_state(FMUstate.addr()) }
+
+    /// Ignored for null.
+    fmi2FreeFMUstate = FreeFMUstate(FMUstate: *mut *mut c_void) |instance| {
+        if FMUstate.is_null() || read("FMUstate", FMUstate)?.is_null() {
+            return Ok(());
+        }
+        instance.free_fmu_state(read("FMUstate", FMUstate)?.addr())?;
+        write("FMUstate", FMUstate, ptr::null_mut())
+    }
+
+    fmi2SerializedFMUstateSize = SerializedFMUstateSize(FMUstate: *mut c_void, size: *mut size_t) |instance| {
+        let bytes = instance.serialize_fmu_state(FMUstate.addr())?;
+        write("size", size, bytes.len())
+    }
+
+    fmi2SerializeFMUstate = SerializeFMUstate(
+        FMUstate: *mut c_void, serializedState: *mut u8, size: size_t,
+    ) |instance| {
+        let bytes = instance.serialize_fmu_state(FMUstate.addr())?;
+        if size != bytes.len() {
+            return Err(Failure::WrongSize { given: size, needed: bytes.len() });
+        }
+        check_pointer("serializedState", serializedState)?;
+        ptr::copy_nonoverlapping(bytes.as_ptr(), serializedState, size);
+        Ok(())
+    }
+
+    fmi2DeSerializeFMUstate = DeSerializeFMUstate(
+        serializedState: *const u8, size: size_t, FMUstate: *mut *mut c_void,
+    ) |instance| {
+        let bytes = values("serializedState", serializedState, size)?;
+        let handle = read("FMUstate", FMUstate)?.addr();
+        let handle = instance.deserialize_fmu_state(bytes, handle)?;
+        write("FMUstate", FMUstate, ptr::without_provenance_mut(handle))
+    }
+
+    fmi2GetDirectionalDerivative = GetDirectionalDerivative(
+        vUnknown_ref: *const c_uint, nUnknown: size_t, vKnown_ref: *const c_uint, nKnown: size_t,
+        dvKnown: *const c_double, dvUnknown: *mut c_double,
+    ) |instance| {
+        let unknowns = values("vUnknown_ref", vUnknown_ref, nUnknown)?;
+        let (knowns, seed) = (values("vKnown_ref", vKnown_ref, nKnown)?, values("dvKnown", dvKnown, nKnown)?);
+        instance.get_directional_derivative(unknowns, knowns, seed, room("dvUnknown", dvUnknown, nUnknown)?)
+    }
+
+    fmi2SetRealInputDerivatives = SetRealInputDerivatives(
+        vr: *const c_uint, nvr: size_t, order: *const c_int, value: *const c_double,
+    ) |instance| {
+        let (orders, slopes) = (values("order", order, nvr)?, values("value", value, nvr)?);
+        instance.set_real_input_derivatives(values("vr", vr, nvr)?, orders, slopes)
+    }
+
+    fmi2GetRealOutputDerivatives = GetRealOutputDerivatives(
+        vr: *const c_uint, nvr: size_t, order: *const c_int, value: *mut c_double,
+    ) |instance| {
+        let (orders, rates) = (values("order", order, nvr)?, room("value", value, nvr)?);
+        instance.get_real_output_derivatives(values("vr", vr, nvr)?, orders, rates)
+    }
+
+    /// Whether the host will go back makes no difference: FMU states are kept until it frees them.
+    fmi2DoStep = DoStep(
+        currentCommunicationPoint: c_double, communicationStepSize: c_double, _noSetFMUStatePriorToCurrentPoint: c_int,
+    ) |instance| {
+        instance.do_step(currentCommunicationPoint, communicationStepSize)
+    }
+
+    /// Never allowed: no step is ever pending.
+    fmi2CancelStep = CancelStep() |_instance| { Ok(()) }
+
+    fmi2GetStatus = GetStatus(s: c_int, _value: *mut c_int) |_instance| { Err(Failure::NoAnswer(status_kind(s)?)) }
+
+    fmi2GetRealStatus = GetRealStatus(s: c_int, value: *mut c_double) |instance| {
+        match status_kind(s)? {
+            LAST_SUCCESSFUL_TIME => write("value", value, instance.time()?),
+            other => Err(Failure::NoAnswer(other)),
+        }
+    }
+
+    fmi2GetIntegerStatus = GetIntegerStatus(s: c_int, _value: *mut c_int) |_instance| {
+        Err(Failure::NoAnswer(status_kind(s)?))
+    }
+
+    fmi2GetBooleanStatus = GetBooleanStatus(s: c_int, value: *mut c_int) |instance| {
+        match status_kind(s)? {
+            TERMINATED => write("value", value, c_int::from(instance.has_overturned()?)),
+            other => Err(Failure::NoAnswer(other)),
+        }
+    }
+
+    fmi2GetStringStatus = GetStringStatus(s: c_int, _value: *mut *const c_char) |_instance| {
+        Err(Failure::NoAnswer(status_kind(s)?))
+    }
+
+    fmi2EnterEventMode = EnterEventMode() |instance| { instance.enter_event_mode() }
+
+    fmi2NewDiscreteStates = NewDiscreteStates(fmi2eventInfo: *mut EventInfo) |instance| {
+        check_pointer("fmi2eventInfo", fmi2eventInfo)?;
+        let Updated { has_ended, has_new_states, next_event } = instance.new_discrete_states()?;
+        write("fmi2eventInfo", fmi2eventInfo, EventInfo {
+            new_discrete_states_needed: 0,
+            terminate_simulation: has_ended.into(),
+            nominals_of_continuous_states_changed: 0,
+            values_of_continuous_states_changed: has_new_states.into(),
+            next_event_time_defined: next_event.is_some().into(),
+            next_event_time: next_event.unwrap_or_default(),
+        })
+    }
+
+    fmi2EnterContinuousTimeMode = EnterContinuousTimeMode() |instance| { instance.enter_continuous_time_mode() }
+
+    /// Whether the host will go back makes no difference: FMU states are kept until it frees them.
+    fmi2CompletedIntegratorStep = CompletedIntegratorStep(
+        _noSetFMUStatePriorToCurrentPoint: c_int, enterEventMode: *mut c_int, terminateSimulation: *mut c_int,
+    ) |instance| {
+        check_pointer("enterEventMode", enterEventMode)?;
+        check_pointer("terminateSimulation", terminateSimulation)?;
+        let Completed { needs_event_mode, has_ended } = instance.completed_integrator_step()?;
+        write("enterEventMode", enterEventMode, needs_event_mode.into())?;
+        write("terminateSimulation", terminateSimulation, has_ended.into())
+    }
+
+    fmi2SetTime = SetTime(time: c_double) |instance| { instance.set_time(time) }
+
+    fmi2SetContinuousStates = SetContinuousStates(x: *const c_double, nx: size_t) |instance| {
+        instance.set_continuous_states(values("x", x, nx)?)
+    }
+
+    fmi2GetDerivatives = GetDerivatives(derivatives: *mut c_double, nx: size_t) |instance| {
+        instance.get_derivatives(room("derivatives", derivatives, nx)?)
+    }
+
+    fmi2GetEventIndicators = GetEventIndicators(eventIndicators: *mut c_double, ni: size_t) |instance| {
+        instance.get_event_indicators(room("eventIndicators", eventIndicators, ni)?)
+    }
+
+    fmi2GetContinuousStates = GetContinuousStates(x: *mut c_double, nx: size_t) |instance| {
+        instance.get_continuous_states(room("x", x, nx)?)
+    }
+
+    fmi2GetNominalsOfContinuousStates = GetNominalsOfContinuousStates(
+        x_nominal: *mut c_double, nx: size_t,
+    ) |instance| {
+        instance.get_nominals(room("x_nominal", x_nominal, nx)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::guid;
+    use crate::logger::Status;
+    use crate::resources::PARAMETERS_FILE;
+    use rocking::Parameters;
+
+    #[test]
+    fn a_panic_is_fatal_and_the_instance_can_only_be_freed() {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join(PARAMETERS_FILE), toml::to_string(&Parameters::EVISON).unwrap()).unwrap();
+        let [guid, location] = [guid(&Parameters::EVISON.into()), format!("file://{}", folder.path().display())]
+            .map(|text| CString::new(text).unwrap());
+        let functions = CallbackFunctions {
+            logger: None,
+            allocate_memory: ptr::null(),
+            free_memory: ptr::null(),
+            step_finished: ptr::null(),
+            component_environment: ptr::null_mut(),
+        };
+        unsafe {
+            let c = fmi2Instantiate(c"a".as_ptr(), 1, guid.as_ptr(), location.as_ptr(), &functions, 0, 0);
+            assert_eq!(fmi2EnterInitializationMode(c), Status::Ok as c_int);
+            assert_eq!(c_abi::call(c, Function::GetReal, |_| panic!("on purpose")), Status::Fatal as c_int);
+            assert_eq!(fmi2ExitInitializationMode(c), Status::Fatal as c_int);
+            assert_eq!(fmi2Reset(c), Status::Fatal as c_int);
+            fmi2FreeInstance(c);
+        }
+    }
+}

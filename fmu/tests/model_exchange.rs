@@ -1,0 +1,290 @@
+//! The FMU under an integrator of the host's.
+#![allow(unsafe_code, non_snake_case)] // the C interface; the standard's names
+
+mod host;
+
+use FlexibleRocking::fmi2::*;
+use approx::assert_relative_eq;
+use host::*;
+use rocking::Parameters;
+
+const PHASE_IN_CONTACT: i32 = 1;
+
+/// The states of Evison's wall after half a second of free rocking, by steps of `h`, with its transitions.
+fn released(h: f64) -> ([f64; 4], i32) {
+    let host = Host::going_model(&[("theta_0", 0.04), ("u_0", 7.5e-4)]);
+    let steps = (0.5 / h).round() as usize;
+    for i in 0..steps {
+        host.integrate(i as f64 * h, h);
+    }
+    (host.states().unwrap(), host.integer("transitions"))
+}
+
+/// Of the fourth order that the host's method has, through impacts at any instant within its steps.
+#[test]
+fn the_hosts_error_is_that_of_its_own_method() {
+    let slave = Host::started(&[("theta_0", 0.04), ("u_0", 7.5e-4)]);
+    assert_eq!(slave.step(0.0, 0.5), OK);
+    let expected = ["u", "u_dot", "theta", "theta_dot"].map(|name| slave.get(name));
+    let error = |h: f64| {
+        let (states, transitions) = released(h);
+        assert_eq!(transitions, slave.integer("transitions"));
+        states.iter().zip(expected).zip(slave_scale()).map(|((a, b), scale)| (a - b).abs() / scale).fold(0.0, f64::max)
+    };
+    let (coarse, fine) = (error(1e-3), error(2.5e-4));
+    assert!(fine < 5e-6 && fine < coarse / 100.0, "{coarse:e}, then {fine:e}");
+}
+
+fn slave_scale() -> [f64; 4] {
+    Host::new_model().nominals().unwrap()
+}
+
+/// An input that the host changes while it integrates acts at each trial as it is set; one that jumps, from the event on.
+#[test]
+fn inputs_act_as_they_are_set() {
+    let host = Host::going_model(&[]);
+    assert_eq!(host.derivatives(), Ok([0.0; 4]));
+    assert_eq!(host.set(&[("a_g", 2.0)]), OK);
+    assert_eq!(host.derivatives(), Ok([0.0, -2.0, 0.0, 0.0]));
+    assert_eq!(host.get("der(u_dot)"), -2.0);
+    // a push that would lift the structure in 10 ms, had it acted before the event
+    let host = Host::going_model(&[("zeta_fc", 0.0)]);
+    assert_eq!((host.set_time(0.02), host.complete()), (OK, Ok((false, false))));
+    assert_eq!((host.set_time(0.04), host.enter_event_mode()), (OK, OK));
+    assert_eq!(host.set(&[("a_g", 50.0)]), OK);
+    assert_eq!(host.update().unwrap().values_of_continuous_states_changed, 0);
+    assert_eq!((host.states(), host.integer("phase")), (Ok([0.0; 4]), PHASE_IN_CONTACT));
+}
+
+/// A host that never looks at an indicator, nor at the states, has the floor under it all the same.
+#[test]
+fn a_step_over_an_impact_is_put_right() {
+    let host = Host::going_model(&[("theta_0", 0.02)]);
+    assert_eq!(host.set_debug_logging(true, &[]), OK);
+    let before = host.states().unwrap();
+    assert_eq!(host.set_time(0.5), OK);
+    assert_eq!(host.complete(), Ok((true, false)));
+    assert_eq!(host.states(), Ok(before), "the host's states are its own until the event is dealt with");
+    assert_eq!(host.enter_event_mode(), OK);
+    let info = host.update().unwrap();
+    assert_eq!((info.values_of_continuous_states_changed, info.terminate_simulation), (1, 0));
+    let slave = Host::started(&[("theta_0", 0.02)]);
+    assert_eq!(slave.step(0.0, 0.5), OK);
+    assert_eq!(host.states().unwrap(), ["u", "u_dot", "theta", "theta_dot"].map(|name| slave.get(name)));
+    assert_eq!(host.integer("transitions"), slave.integer("transitions"));
+    let log = host.log.take();
+    assert_eq!(log.len(), 1 + slave.integer("transitions") as usize);
+    let told = &log.last().unwrap().text;
+    assert!(told.starts_with("t = 0.5 s: the integrator's step from t = 0 s shows nothing of impact left, "), "{told}");
+    assert!(log.iter().all(|message| message.category == "logEvents"));
+}
+
+/// After an uplift θ is exactly 0 and grows as t³: neither is that a root, nor is a return within the step missed.
+#[test]
+fn no_indicator_is_zero_where_integration_starts() {
+    let host = Host::started_model(&[("u_0", 8e-4)]);
+    let info = host.update().unwrap();
+    assert_eq!((host.integer("transitions"), info.values_of_continuous_states_changed), (1, 0));
+    assert_eq!(host.states().unwrap()[2], 0.0);
+    assert!(host.indicators().unwrap().iter().all(|indicator| *indicator > 0.0));
+    assert_eq!(host.go_on(), OK);
+    for i in 0..2000 {
+        host.integrate(f64::from(i) * 1e-3, 1e-3);
+        assert!(host.indicators().unwrap().iter().all(|indicator| *indicator > 0.0), "at step {i}");
+    }
+    assert!(host.integer("transitions") > 3);
+}
+
+#[test]
+fn overturning_ends_the_simulation() {
+    let host = Host::going_model(&[("theta_0", 1.5), ("theta_dot_0", 1.0)]);
+    assert_eq!(host.set_time(1.0), OK);
+    assert_eq!(host.complete(), Ok((true, false)));
+    assert_eq!(host.enter_event_mode(), OK);
+    assert_eq!(host.update().unwrap().terminate_simulation, 1);
+    let slave = Host::started(&[("theta_0", 1.5), ("theta_dot_0", 1.0)]);
+    assert_eq!(slave.step(0.0, 1.0), DISCARD);
+    assert_eq!(host.try_boolean("overturned"), Ok(1));
+    assert_eq!(host.get("t_overturned"), slave.get("t_overturned"));
+    assert_eq!(host.get("theta"), slave.get("theta"));
+    assert_eq!((host.go_on(), host.set_time(2.0), host.complete()), (OK, OK, Ok((false, true))));
+    assert_eq!(host.get("t_overturned"), slave.get("t_overturned"));
+    assert_eq!(host.derivatives(), Ok([0.0; 4]));
+}
+
+/// The record acts at every trial time as it is there; where it jumps is foreseen, and a kink by hosts to which it matters.
+#[test]
+fn the_record_acts_at_every_instant_and_its_jumps_are_foreseen() {
+    let pushed = |tolerance: f64| {
+        let host = Host::new_model();
+        host.write("push.csv", "0,0.5\n1,0.25\n2,1\n");
+        assert_eq!((host.set_record("push.csv"), host.set(&[("record_start", 0.5)])), (OK, OK));
+        assert_eq!((host.setup(Some(tolerance), 10.0, None), host.enter(), host.exit()), (OK, OK, OK));
+        host
+    };
+    let updates = |host: &Host| {
+        let update = |time: f64| {
+            assert_eq!(host.set_time(time), OK);
+            let EventInfo { next_event_time_defined, next_event_time, .. } = host.update().unwrap();
+            (next_event_time_defined == 1).then_some(next_event_time)
+        };
+        [10.0, 10.5, 11.0, 12.5].map(update)
+    };
+    assert_eq!(updates(&pushed(1e-9)), [Some(10.5), Some(11.5), Some(11.5), None]);
+    let host = pushed(1e-6);
+    assert_eq!(updates(&host), [Some(10.5), Some(12.5), Some(12.5), None]);
+    for (time, a_g) in [(10.0, 0.0), (10.5, 0.5), (11.0, 0.375), (11.5, 0.25), (12.0, 0.625), (10.75, 0.4375)] {
+        assert_eq!(host.set_time(time), OK);
+        assert_eq!(host.get("a_ground"), a_g, "at {time}");
+        assert_eq!(host.derivatives().unwrap()[1], -a_g);
+    }
+}
+
+#[test]
+fn what_no_integrator_should_try_is_sent_back() {
+    let host = Host::going_model(&[("theta_0", 0.02)]);
+    let before = host.bytes();
+    let said = |text: &str| {
+        let log = host.log.take();
+        assert_eq!(log.len(), 1);
+        assert!(log[0].text.starts_with(text), "{}", log[0].text);
+    };
+    assert_eq!(host.set_states([0.0, f64::NAN, 0.0, 0.0]), DISCARD);
+    said("fmi2SetContinuousStates: u_dot = NaN is out of range");
+    assert_eq!(host.set_states([0.0, 0.0, -2e12, 0.0]), DISCARD);
+    said("fmi2SetContinuousStates: theta = -2000000000000 is out of range");
+    assert_eq!(unsafe { fmi2SetContinuousStates(host.component, [0.0; 3].as_ptr(), 3) }, ERROR);
+    said("fmi2SetContinuousStates: nx = 3 is not 4");
+    assert_eq!(host.set_time(f64::INFINITY), ERROR);
+    said("fmi2SetTime: time = inf s is out of range");
+    assert_eq!(host.bytes(), before);
+    assert_eq!((host.set_time(-0.5), host.complete()), (OK, Err(ERROR)));
+    said("fmi2CompletedIntegratorStep: the integrator's step from t = 0 s ends at t = -0.5 s");
+
+    let host = Host::going_model(&[("m0", 0.0), ("J0", 0.0), ("theta_0", 0.1)]);
+    assert_eq!(host.set_states([0.285, 0.0, 0.1, 0.0]), OK);
+    assert_eq!(host.derivatives(), Err(DISCARD));
+    assert_eq!((host.set_states([0.0, 0.0, 0.1, 0.0]), host.derivatives().is_ok()), (OK, true));
+}
+
+/// From its bytes an instance goes on to the same bits, also from between a step that needs an event and the event.
+#[test]
+fn an_instance_goes_on_from_bytes() {
+    let host = Host::going_model(&[("theta_0", 0.02)]);
+    let mut time = 0.0;
+    while time < 0.2 {
+        host.integrate(time, 1e-3);
+        time += 1e-3;
+    }
+    assert_eq!((host.set_time(0.35), host.complete()), (OK, Ok((true, false))));
+    let bytes = host.bytes();
+    let other = Host::going_model(&[]);
+    assert_eq!(other.go_back(other.deserialize(&bytes).unwrap()), OK);
+    for host in [&host, &other] {
+        assert_eq!(host.enter_event_mode(), OK);
+        assert_eq!(host.update().unwrap().values_of_continuous_states_changed, 1);
+        assert_eq!(host.go_on(), OK);
+        (0..50).for_each(|i| _ = host.integrate(0.35 + 1e-3 * f64::from(i), 1e-3));
+    }
+    assert_eq!(host.bytes(), other.bytes());
+
+    let slave = Host::started(&[]);
+    let state = slave.deserialize(&bytes).unwrap();
+    slave.assert_refused(
+        || slave.go_back(state),
+        ERROR,
+        "fmi2SetFMUstate: the FMU state was kept by an instance of the other kind: model exchange and co-simulation have \
+         states of their own",
+    );
+}
+
+/// Peaks between the host's steps are not the FMU's to see.
+#[test]
+fn nobody_watches_peaks() {
+    let host = Host::new_model();
+    assert_eq!((host.watch_peaks(), host.set_boolean("validity", 1)), (OK, OK));
+    let host = host.initialized(&[("theta_0", 0.02)]);
+    assert_eq!((host.exit(), host.update().is_ok(), host.go_on()), (OK, true, OK));
+    host.integrate(0.0, 1e-3);
+    assert!(host.get("theta_max").is_nan() && host.get("mu_required").is_nan());
+}
+
+/// The Jacobian of Eqs 5 and 6 with respect to (u, u̇, θ, θ̇, a_g, F_t), written out; M ∂a = ∂f − ∂M a.
+fn jacobian(
+    p: &Parameters,
+    s: f64,
+    [u, u_dot, theta, theta_dot]: [f64; 4],
+    [a_g, F_t]: [f64; 2],
+    a: [f64; 2],
+) -> [[f64; 6]; 2] {
+    let &Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, g, .. } = p;
+    let omega = std::f64::consts::TAU * f_fc;
+    let (k, c) = (m * omega * omega, c_ratio * 2.0 * zeta_fc * m * omega);
+    let (w, (sin, cos)) = (s * B - u, theta.sin_cos());
+    let of_ground = m * H * cos + (s * (m + m0) * B - m * u) * sin;
+    let right = [
+        [
+            -k + m * theta_dot * theta_dot,
+            -2.0 * m * u_dot * theta_dot + m * g * cos + a_g * m * sin - F_t * sin + 2.0 * m * w * a[1],
+        ],
+        [-c, 2.0 * m * w * theta_dot],
+        [
+            m * a_g * sin + m * g * cos - F_t * sin,
+            m * g * H * cos - m * g * u * sin + s * (m + m0) * g * B * sin
+                - a_g * (-m * H * sin + (s * (m + m0) * B - m * u) * cos)
+                + F_t * (-H * sin + w * cos),
+        ],
+        [-2.0 * m * w * theta_dot, 2.0 * m * w * u_dot],
+        [-m * cos, -of_ground],
+        [cos, H * cos + w * sin],
+    ];
+    let inertia = J0 + m * H * H + m * w * w + m0 * B * B;
+    let determinant = m * inertia - m * H * m * H;
+    let column = |[f1, f2]: [f64; 2]| [(inertia * f1 - m * H * f2) / determinant, (m * f2 - m * H * f1) / determinant];
+    let columns = right.map(column);
+    [columns.map(|column| column[0]), columns.map(|column| column[1])]
+}
+
+#[test]
+fn directional_derivatives_are_those_of_the_equations() {
+    let loads = [3.0, 200.0];
+    let knowns = ["u", "u_dot", "theta", "theta_dot", "a_g", "F_t"];
+    let by = |host: &Host, unknown: &str, known: &str| {
+        let mut value = f64::MAX;
+        let (unknown, known) = (reference(unknown), reference(known));
+        let status = unsafe { fmi2GetDirectionalDerivative(host.component, &unknown, 1, &known, 1, &1.0, &mut value) };
+        assert_eq!(status, OK, "{:?}", host.log);
+        value
+    };
+    for (theta_0, states) in [(0.02, [1e-3, -0.1, 0.03, 0.4]), (-0.02, [-2e-3, 0.2, -0.01, 0.5])] {
+        let host = Host::going_model(&[("theta_0", theta_0), ("a_g", loads[0]), ("F_t", loads[1])]);
+        assert_eq!(host.set_states(states), OK);
+        let rates = host.derivatives().unwrap();
+        let expected = jacobian(&Parameters::EVISON, f64::signum(theta_0), states, loads, [rates[1], rates[3]]);
+        for (at, known) in knowns.into_iter().enumerate() {
+            assert_relative_eq!(by(&host, "der(u_dot)", known), expected[0][at], max_relative = 1e-8, epsilon = 1e-9);
+            assert_relative_eq!(
+                by(&host, "der(theta_dot)", known),
+                expected[1][at],
+                max_relative = 1e-8,
+                epsilon = 1e-9
+            );
+            assert_relative_eq!(by(&host, "der(theta)", known), f64::from(known == "theta_dot"), epsilon = 1e-9);
+            assert_relative_eq!(by(&host, "u", known), f64::from(known == "u"), epsilon = 1e-9);
+        }
+        let &Parameters { B, H, .. } = &Parameters::EVISON;
+        let [u, _, theta, _] = states;
+        let across = f64::signum(theta_0) * B * theta.sin() - u * theta.sin() + H * theta.cos();
+        assert_relative_eq!(by(&host, "delta_t", "theta"), across, max_relative = 1e-8);
+        assert_eq!(host.states(), Ok(states));
+    }
+    // in full contact, Eq 1; θ does not move there
+    let host = Host::going_model(&[]);
+    let omega = std::f64::consts::TAU * Parameters::EVISON.f_fc;
+    let expected =
+        [-omega * omega, -2.0 * Parameters::EVISON.zeta_fc * omega, 0.0, 0.0, -1.0, 1.0 / Parameters::EVISON.m];
+    for (known, expected) in knowns.into_iter().zip(expected) {
+        assert_relative_eq!(by(&host, "der(u_dot)", known), expected, max_relative = 1e-8);
+        assert_eq!(by(&host, "der(theta_dot)", known), 0.0);
+    }
+}

@@ -1,0 +1,232 @@
+//! An integrator of its own, however bad, on the equations of the library: never below the floor, and nearer to the engine
+//! the smaller its steps.
+
+use approx::assert_relative_eq;
+use rocking::ground_motion::Elapsed;
+use rocking::outside_step::{BAND, Checked, Known};
+use rocking::record::Record;
+use rocking::{Detail, Engine, GroundMotion, LinearLoad, Load, Parameters, Phase, State, Structure, Transition};
+
+/// A burst that lifts McManus's pier some twenty times.
+fn burst() -> Record {
+    let times: Vec<_> = (0..=400).map(|i| f64::from(i) * 0.01).collect();
+    let a_g = times.iter().map(|t| 5.0 * (-t / 2.0_f64).exp() * (std::f64::consts::TAU * 2.3 * t).sin()).collect();
+    Record::from_samples("burst", times, a_g).unwrap()
+}
+
+/// An integrator on an engine's equations.
+struct Outside<'a> {
+    engine: Engine,
+    ground: GroundMotion<'a>,
+    known: Known,
+    transitions: Vec<Transition>,
+    hidden: usize,
+}
+
+#[derive(Clone, Copy, Debug)]
+enum Method {
+    Euler,
+    RungeKutta,
+}
+
+impl<'a> Outside<'a> {
+    fn new(structure: Structure, initial: State, detail: Detail, record: &'a Record) -> Outside<'a> {
+        let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-12, detail).unwrap();
+        let (mut transitions, ground) = (Vec::new(), GroundMotion::from(record));
+        let a_g = LinearLoad::default().on_ground(ground.at(Elapsed::default())).value;
+        engine.lift_off_if_due(a_g, &mut |transition: &Transition| transitions.push(*transition));
+        let known = Known { motion: *engine.motion(), elapsed: Elapsed::default(), load: Load::default() };
+        Outside { engine, ground, known, transitions, hidden: 0 }
+    }
+
+    fn load(&self) -> Load {
+        LinearLoad::default().on_ground(self.ground.at(self.elapsed())).value
+    }
+
+    fn elapsed(&self) -> Elapsed {
+        Elapsed::default().and(self.engine.motion().time)
+    }
+
+    /// ẋ at `time` and `state`.
+    fn rates(&mut self, time: f64, state: [f64; 4]) -> [f64; 4] {
+        self.engine.set_time(time);
+        self.engine.set_state(State::of(state));
+        self.engine.sample(self.load()).state_rates().components()
+    }
+
+    fn step(&mut self, h: f64, method: Method) {
+        let (t, x) = (self.engine.motion().time, self.engine.motion().state.components());
+        let ahead = |x: [f64; 4], k: [f64; 4], h: f64| std::array::from_fn(|i| x[i] + h * k[i]);
+        let k1 = self.rates(t, x);
+        let end = match method {
+            Method::Euler => ahead(x, k1, h),
+            Method::RungeKutta => {
+                let k2 = self.rates(t + h / 2.0, ahead(x, k1, h / 2.0));
+                let k3 = self.rates(t + h / 2.0, ahead(x, k2, h / 2.0));
+                let k4 = self.rates(t + h, ahead(x, k3, h));
+                ahead(x, std::array::from_fn(|i| (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0), h)
+            }
+        };
+        self.rates(t + h, end);
+        let (elapsed, load, transitions) = (self.elapsed(), self.load(), &mut self.transitions);
+        let mut watch = |transition: &Transition| transitions.push(*transition);
+        let Checked { motion, was_hidden, .. } =
+            self.known.check(&mut self.engine, Some(&self.ground), elapsed, Load::default(), &mut watch).unwrap();
+        self.hidden += usize::from(was_hidden);
+        self.engine.set_motion(motion);
+        self.engine.lift_off_if_due(load, &mut watch);
+        self.known = Known { motion: *self.engine.motion(), elapsed, load: Load::default() };
+        assert!(self.height() >= -BAND || self.has_overturned(), "below the floor at t = {}", t + h);
+    }
+
+    /// s θ/α_cg while rocking.
+    fn height(&self) -> f64 {
+        let alpha = self.engine.structure().tan_alpha_cg.atan();
+        match self.engine.motion().phase {
+            Phase::Rocking(side) => side.sign() * self.engine.motion().state.theta / alpha,
+            _ => self.engine.motion().state.theta.abs(),
+        }
+    }
+
+    fn has_overturned(&self) -> bool {
+        matches!(self.engine.motion().phase, Phase::Overturned(_))
+    }
+}
+
+/// The sway u + H θ at every hundredth of a second, by steps of `h`.
+fn outside(detail: Detail, record: &Record, h: f64, method: Method) -> (Vec<f64>, Outside<'_>) {
+    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let mut outside = Outside::new(structure, State::default(), detail, record);
+    let steps = (0.01 / h).round() as usize;
+    let row = |_| {
+        (0..steps).for_each(|_| outside.step(h, method));
+        sway(&outside.engine)
+    };
+    ((0..400).map(row).collect(), outside)
+}
+
+/// The same by the engine, and its transitions.
+fn own(detail: Detail, record: &Record) -> (Vec<f64>, Vec<Transition>) {
+    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let mut engine = Engine::with_detail(structure, State::default(), 0.0, 1e-12, detail).unwrap();
+    let (mut transitions, mut elapsed, ground) = (Vec::new(), Elapsed::default(), GroundMotion::from(record));
+    let row = |_| {
+        let mut watch = |transition: &Transition| transitions.push(*transition);
+        ground.advance(&mut engine, elapsed, 0.01, LinearLoad::default(), &mut watch).unwrap();
+        elapsed = elapsed.and(0.01);
+        sway(&engine)
+    };
+    ((0..400).map(row).collect(), transitions)
+}
+
+fn sway(engine: &Engine) -> f64 {
+    let State { u, theta, .. } = engine.motion().state;
+    u + engine.structure().parameters().H * theta
+}
+
+fn distance(a: &[f64], b: &[f64]) -> f64 {
+    let peak = b.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+    a.iter().zip(b).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs())) / peak
+}
+
+/// Of fourth order through all transitions, which are the engine's own in kind and, nearly, in time.
+#[test]
+fn the_smaller_the_steps_the_nearer_to_the_engine() {
+    let record = burst();
+    for detail in [Detail::Auto, Detail::Linear, Detail::Modal, Detail::Rigid, Detail::FixedBase] {
+        let (expected, transitions) = own(detail, &record);
+        let error = |h| {
+            let (found, outside) = outside(detail, &record, h, Method::RungeKutta);
+            let kinds = |of: &[Transition]| of.iter().map(|transition| transition.kind).collect::<Vec<_>>();
+            assert_eq!(kinds(&outside.transitions), kinds(&transitions), "{detail:?} at {h}");
+            distance(&found, &expected)
+        };
+        let (coarse, fine) = (error(1e-3), error(2.5e-4));
+        assert!(fine < 1e-7 && (fine < coarse / 50.0 || coarse < 1e-10), "{detail:?}: {coarse:e}, then {fine:e}");
+    }
+}
+
+/// Euler's method feeds the vibration more energy than damping takes at 5 ms: it ends wherever it likes, but above the floor
+/// ([`Outside::step`] looks), and with transitions that are none of its own.
+#[test]
+fn an_integrator_that_blows_up_stays_above_the_floor() {
+    let record = burst();
+    for (detail, h) in [(Detail::Auto, 5e-3), (Detail::Auto, 1e-2), (Detail::Linear, 1e-2), (Detail::Rigid, 1e-2)] {
+        let (_, outside) = outside(detail, &record, h, Method::Euler);
+        assert!(outside.transitions.len() > 4, "{detail:?} at {h}: {:?}", outside.transitions);
+    }
+}
+
+/// A hop that starts and ends within one step leaves no trace at the step's end but the engine's.
+#[test]
+fn a_hop_within_one_step_is_found() {
+    let structure = Structure::new(Parameters::EVISON).unwrap();
+    let initial = State { theta: 1e-5, theta_dot: 1e-4, ..State::default() };
+    let mut engine = Engine::new(structure, initial, 0.0, 1e-12).unwrap();
+    let known = Known { motion: *engine.motion(), elapsed: Elapsed::default(), load: Load::default() };
+    let mut alone = Engine::new(structure, initial, 0.0, 1e-12).unwrap();
+    alone.advance(0.05, Load::default(), &mut ()).unwrap();
+    assert!(alone.motion().transitions > 0);
+
+    engine.set_time(0.05);
+    engine.set_state(initial); // an integrator to which nothing has happened
+    let mut seen = 0;
+    let mut watch = |_: &Transition| seen += 1;
+    let checked = known.check(&mut engine, None, Elapsed::default(), Load::default(), &mut watch).unwrap();
+    assert_eq!(checked, Checked { motion: *alone.motion(), is_corrected: true, was_hidden: true });
+    assert_eq!((seen, engine.motion().state), (alone.motion().transitions, initial));
+}
+
+/// A step's end that is beyond a guard which the engine does not reach is put back to where the engine is.
+#[test]
+fn a_step_that_ends_below_the_floor_without_reason_is_put_right() {
+    let structure = Structure::new(Parameters::EVISON).unwrap();
+    let initial = State { theta: 0.03, ..State::default() };
+    let mut engine = Engine::new(structure, initial, 0.0, 1e-12).unwrap();
+    let known = Known { motion: *engine.motion(), elapsed: Elapsed::default(), load: Load::default() };
+    let mut alone = Engine::new(structure, initial, 0.0, 1e-12).unwrap();
+    alone.advance(1e-3, Load::default(), &mut ()).unwrap();
+    for wrong in [-1e-3, 3.0, f64::NAN] {
+        engine.set_time(1e-3);
+        engine.set_state(State { theta: wrong, ..initial });
+        let checked = known.check(&mut engine, None, Elapsed::default(), Load::default(), &mut ()).unwrap();
+        assert_eq!(checked, Checked { motion: *alone.motion(), is_corrected: true, was_hidden: false }, "{wrong}");
+    }
+}
+
+/// The rates are those that the engine's series begin with, and the indicators vanish where the engine sees transitions.
+#[test]
+fn rates_and_indicators_are_the_engines() {
+    let record = burst();
+    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    for detail in [Detail::Auto, Detail::Linear, Detail::Modal, Detail::Rigid] {
+        let (_, transitions) = own(detail, &record);
+        let ground = GroundMotion::from(&record);
+        let mut engine = Engine::with_detail(structure, State::default(), 0.0, 1e-12, detail).unwrap();
+        let mut elapsed = Elapsed::default();
+        for transition in transitions.iter().take(12) {
+            let step = transition.time - engine.motion().time;
+            // to just before it
+            let before = 0.999_999 * step;
+            if before > 0.0 {
+                ground.advance(&mut engine, elapsed, before, LinearLoad::default(), &mut ()).unwrap();
+                elapsed = elapsed.and(before);
+            }
+            let load = LinearLoad::default().on_ground(ground.at(elapsed));
+            let rates = engine.sample(load.value).state_rates();
+            let (outputs, _) = engine.rates(load);
+            let expected = [outputs.u, outputs.u_dot, outputs.theta, outputs.theta_dot];
+            for (rate, expected) in rates.components().into_iter().zip(expected) {
+                assert_relative_eq!(rate, expected, max_relative = 1e-9, epsilon = 1e-9);
+            }
+            let indicators = engine.sample(load.value).event_indicators();
+            assert!(
+                (0.0..2e-3).contains(&indicators[0]) && indicators[1] > 0.0,
+                "{detail:?} {transition:?} {indicators:?}"
+            );
+            ground.advance(&mut engine, elapsed, step - before + 1e-9, LinearLoad::default(), &mut ()).unwrap();
+            elapsed = elapsed.and(step - before + 1e-9);
+            assert!(engine.sample(load.value).event_indicators().iter().all(|indicator| *indicator > 0.0));
+        }
+    }
+}

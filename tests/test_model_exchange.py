@@ -1,0 +1,50 @@
+"""The FMU under solvers of hosts: never below the floor, and the nearer to co-simulation the tighter they are.
+
+docs/model_exchange.md has three records and all tolerances; these are a few quick ones."""
+
+import numpy as np
+import pytest
+from first_run import PACOIMA_DAM
+from fmpy import simulate_fmu
+from model_exchange.hosts import Scene, co_simulation, fmpy_cvode, fmpy_euler, sundae
+
+BAND = 1e-6 * 0.23  # rad, of alpha_cg
+
+
+@pytest.fixture(scope="module")
+def scene(mcmanus):
+    return Scene("Pacoima Dam", mcmanus.path, tuple(PACOIMA_DAM.items()), 1.99, 0.01)
+
+
+@pytest.mark.parametrize("host", [fmpy_cvode, sundae])
+def test_a_solver_follows_co_simulation_as_close_as_its_tolerance(scene, host):
+    exact = co_simulation(scene)
+    loose, tight = host(scene, 1e-4), host(scene, 1e-8)
+    assert loose.depth <= BAND and tight.depth <= BAND
+    assert exact.transitions > 15
+    assert tight.transitions == exact.transitions
+    assert tight.error(exact) < 1e-4 < loose.error(exact) < 0.3
+    assert np.array_equal(tight.rows["phase"], exact.rows["phase"])
+
+
+@pytest.mark.parametrize("step", [10e-3, 1e-3])
+def test_eulers_method_never_falls_through_the_floor(scene, step):
+    """At 10 ms it blows up in the vibration mode."""
+    result = fmpy_euler(scene, step)
+    assert result.depth <= BAND and result.transitions > 10
+    assert np.abs(result.rows["theta"]).max() <= np.pi / 2 + 1e-9
+
+
+def test_outputs_are_those_of_the_hosts_state(mcmanus):
+    """Between events a_t follows from the states and F_t alone, and der(u_dot) obeys Eq 1 with the base down."""
+    from fmpy import simulate_fmu
+
+    names = ["u", "u_dot", "theta", "a_t", "der(u)", "der(u_dot)", "a_ground", "phase"]
+    rows = simulate_fmu(mcmanus.path, fmi_type="ModelExchange", stop_time=0.5, output_interval=0.01, relative_tolerance=1e-6,
+                        start_values=PACOIMA_DAM, output=names, record_events=False)
+    omega, zeta = 2 * np.pi * 5, 0.02
+    elastic = 2 * zeta * omega * rows["u_dot"] + omega**2 * rows["u"]
+    assert np.all(rows["phase"] == 1) and np.abs(rows["u"]).max() > 1e-4
+    np.testing.assert_allclose(rows["a_t"], -elastic, rtol=1e-12)
+    np.testing.assert_allclose(rows["der(u_dot)"], -elastic - rows["a_ground"], rtol=1e-9, atol=1e-12)
+    assert np.array_equal(rows["der(u)"], rows["u_dot"]) and not rows["theta"].any()
