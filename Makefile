@@ -2,7 +2,8 @@
 # make test    every check and every test
 # make heavy   what takes longer: the page of `view` in a browser; the libraries for other machines, built, read and, where that can be, run
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
-# make wheels  out/wheels: Python packages for Linux with the command line and the archive, and one of the source
+# make wheels  out/wheels: Python packages for Linux, Windows and macOS with the command line and the archive, and one of the source
+# make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
 # make report  regenerate docs/validation.md, docs/validation_literature.md and their figures (minutes)
 # make overturning  regenerate docs/overturning.md and its pictures (minutes)
 # make coupling  regenerate docs/coupling.md and its figures (minutes)
@@ -25,6 +26,14 @@ WINDOWS := x86_64-pc-windows-gnu
 ZIG := x86_64-unknown-linux-gnu.2.17 aarch64-unknown-linux-gnu.2.17 universal2-apple-darwin
 ZIG_PARTS := x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu x86_64-apple-darwin aarch64-apple-darwin
 export MACOSX_DEPLOYMENT_TARGET := 11.0
+# What is built for a named target tells neither where nor when: cargo's packages are elsewhere on every machine. For this
+# machine's own it is said at each place, or whatever is built here without a name would be built again.
+UNTRACED := --remap-path-prefix=$(or $(CARGO_HOME),$(HOME)/.cargo)=/cargo
+NATIVE_UNTRACED := CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUSTFLAGS=$(UNTRACED)
+export CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUSTFLAGS := $(UNTRACED)
+export CARGO_TARGET_X86_64_APPLE_DARWIN_RUSTFLAGS := $(UNTRACED)
+export CARGO_TARGET_AARCH64_APPLE_DARWIN_RUSTFLAGS := $(UNTRACED)
+export CARGO_TARGET_X86_64_PC_WINDOWS_GNU_RUSTFLAGS := $(UNTRACED) -Clink-arg=-Wl,--no-insert-timestamp
 ARM_LOADER := /usr/aarch64-linux-gnu/lib/ld-linux-aarch64.so.1
 MINGW := x86_64-w64-mingw32-gcc
 HAS_MINGW := command -v $(MINGW) >/dev/null
@@ -35,7 +44,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test heavy browser foreign packaged dist wheels windows zig report overturning coupling exchange bench licenses fuzz records exporter mingw hosts
+.PHONY: demo test heavy browser foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc report overturning coupling exchange bench licenses fuzz records exporter mingw hosts
 
 demo: .venv/ready out/mcmanus.fmu out/evison.fmu
 	cp $(RECORDS)/$(PACOIMA) $(RECORDS)/$(EL_CENTRO) out/
@@ -60,27 +69,69 @@ browser: .venv/ready exporter
 	$(PYTHON) -m pytest -rs tests/test_view.py
 
 # Linux's library for 64-bit ARM runs under qemu; where that cannot be had, its test is skipped and says so.
-foreign: dist
-	-@command -v qemu-aarch64 >/dev/null && test -e $(ARM_LOADER) || { $(call install,qemu-user libc6-arm64-cross); }
+foreign: dist qemu old_glibc
 	PATH="$(CURDIR)/.venv/bin:$$PATH" $(PYTHON) -m pytest -rs tests/test_platforms.py
+
+qemu:
+	-@command -v qemu-aarch64 >/dev/null && test -e $(ARM_LOADER) || { $(call install,qemu-user libc6-arm64-cross); }
+
+# The C library of Debian 11, from wherever this machine has its own packages: with lists, keys and archives of its own.
+DEBIAN11 := out/debian11
+IN_DEBIAN11 := -o Dir::Etc::SourceList=$(CURDIR)/$(DEBIAN11)/apt/sources -o Dir::Etc::SourceParts=- \
+	-o Dir::State=$(CURDIR)/$(DEBIAN11)/apt -o Dir::State::Status=/dev/null -o Dir::Cache=$(CURDIR)/$(DEBIAN11)/apt
+old_glibc:
+	-@test -e $(DEBIAN11)/lib || { mkdir -p $(DEBIAN11)/apt && cd $(DEBIAN11)/apt && \
+		apt-get indextargets --format 'deb [signed-by=/usr/share/keyrings/debian-archive-keyring.gpg] $$(REPO_URI) bullseye main' \
+			'Created-By: Packages' 'Origin: Debian' "Codename: $$(. /etc/os-release && echo $$VERSION_CODENAME)" | head -1 >sources && \
+		apt-get $(IN_DEBIAN11) -qq update && apt-get $(IN_DEBIAN11) -qq download libc6:amd64 && \
+		dpkg-deb --extract libc6_*.deb ..; }
 
 # Whoever simulates it and gives it nothing sees the structure rock under a pulse.
 dist: exporter windows zig
 	mkdir -p out
 	$(TARGET)/release/rocking-fmu export --record examples/pulse.csv -o out/FlexibleRocking.fmu
 
-packaged: wheels
-	$(PYTHON) -m pytest -rs tests/test_wheel.py
+# Of the packages that of the source, which is read, and the wheel for this machine, which is run.
+packaged: wheel
+	$(PYTHON) -m pytest -rs tests/test_wheel.py tests/test_wheels.py
 
 # The program of each wheel is for one machine, the archive in it for all.
-WHEEL := PATH="$(CURDIR)/.venv/bin:$$PATH" SOURCE_DATE_EPOCH=315532800 maturin
-wheels: dist
+MATURIN := PATH="$(CURDIR)/.venv/bin:$$PATH" SOURCE_DATE_EPOCH=315532800 maturin
+WHEEL := $(MATURIN) build --release --locked --out out/wheels --target
+wheel: dist
 	rm -rf out/wheel out/wheels
 	mkdir -p out/wheel/data/share/flexible-rocking
 	cp out/FlexibleRocking.fmu out/wheel/data/share/flexible-rocking/
-	$(WHEEL) sdist --out out/wheels
-	for target in x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu; do $(WHEEL) build --release --locked --zig \
-		--compatibility manylinux2014 --target $$target --out out/wheels || exit; done
+	$(MATURIN) sdist --out out/wheels
+	$(NATIVE_UNTRACED) $(WHEEL) x86_64-unknown-linux-gnu --zig --compatibility manylinux2014
+
+wheels: wheel
+	$(WHEEL) aarch64-unknown-linux-gnu --zig --compatibility manylinux2014
+	$(WHEEL) universal2-apple-darwin --zig
+	$(WHEEL) $(WINDOWS)
+
+# All tests see what is released: of the archive Linux's library, those that are read and run as for other machines, the
+# packages; the one of the source is built and installed here alone, for it takes minutes.
+VERSION = $(shell sed -n 's/^version = "\(.*\)"$$/\1/p' Cargo.toml)
+release: releasable
+	$(MAKE) wheels qemu old_glibc
+	PATH="$(CURDIR)/.venv/bin:$$PATH" $(MAKE) test
+	PACKAGE='*.tar.gz' $(PYTHON) -m pytest -rs tests/test_wheel.py
+	$(MAKE) out/release
+
+# What is built already, and what is said of it.
+out/release:
+	rm -rf $@
+	mkdir -p $@
+	cp out/FlexibleRocking.fmu out/wheels/* $@/
+	awk '/^## /{is_meant = $$2 == "$(VERSION)"} is_meant' CHANGELOG.md >$@/CHANGES.md
+	cd $@ && sha256sum * >SHA256SUMS && cat SHA256SUMS
+
+releasable:
+	@test -z "$$(git status --porcelain)" || { echo "The tree is not clean: commit or remove" && git status --short && false; }
+	@! git rev-parse --quiet --verify refs/tags/v$(VERSION) >/dev/null || \
+		{ echo "Version $(VERSION) of Cargo.toml has a tag, v$(VERSION): it is released already" && false; }
+	@grep -q '^## $(VERSION)\b' CHANGELOG.md || { echo "CHANGELOG.md has no section \"## $(VERSION)\"" && false; }
 
 windows: mingw
 	@if $(HAS_MINGW) && rustup target list --installed | grep -q $(WINDOWS); then \
@@ -91,7 +142,7 @@ windows: mingw
 
 zig: .venv/dist
 	rustup target add $(ZIG_PARTS)
-	for target in $(ZIG); do PATH="$(CURDIR)/.venv/bin:$$PATH" cargo zigbuild --release --locked \
+	for target in $(ZIG); do $(NATIVE_UNTRACED) PATH="$(CURDIR)/.venv/bin:$$PATH" cargo zigbuild --release --locked \
 		--package flexible-rocking-fmu --target $$target || exit; done
 
 report: .venv/ready exporter

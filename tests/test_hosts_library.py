@@ -13,9 +13,10 @@ import pytest
 from conftest import ROOT
 from fmpy.fmi3 import FMU3Model, FMU3ScheduledExecution, FMU3Slave
 from pacoima import A_G, OUTPUTS, STEPS, TIME, distance, instants, linear, write_record
+from wine import MINGW
+from wine import environment as wine_environment
 
 WINDOWS = "x86_64-pc-windows-gnu"
-MINGW = "x86_64-w64-mingw32"
 HOST = "tests/hosts/load_library/Cargo.toml"
 
 # FMI 2.0: the functions of both interfaces and those of each; FMI 3.0: all that fmpy knows how to call.
@@ -131,17 +132,11 @@ def test_one_archive_for_both(windows, linux_library, exporter, mcmanus, tmp_pat
 
 @pytest.fixture(scope="module")
 def wine(windows, run, tmp_path_factory):
-    """Runs the host under wine. Wine 8 has no bcryptprimitives.dll, of which Rust needs one function, for the keys of hash maps."""
-    if shutil.which("wine") is None:
-        pytest.skip("wine is missing")
+    """Runs the host under wine."""
     folder = tmp_path_factory.mktemp("wine")
-    source = folder / "bcryptprimitives.c"
-    source.write_text("__declspec(dllexport) int ProcessPrng(unsigned char *data, unsigned long long size) {"
-                      "for (unsigned long long i = 0; i < size; i++) data[i] = 37 * i; return 1; }")
-    output(f"{MINGW}-gcc", "-shared", "-nostdlib", "-Wl,--entry=0", "-o", folder / "bcryptprimitives.dll", source)
+    environment = wine_environment(folder)
     for file in ("FlexibleRocking.dll", "load-library.exe"):
         shutil.copy(windows / file, folder)
-    environment = os.environ | {"WINEPREFIX": str(folder / "wine"), "WINEDEBUG": "-all"}
     return functools.partial(run, "wine", "load-library.exe", library="FlexibleRocking.dll", cwd=folder, env=environment)
 
 

@@ -1,4 +1,5 @@
-"""The wheel for this machine, which `make wheels` builds, as somebody has it who has no Rust."""
+"""The wheel for this machine, which `make wheels` builds, as somebody has it who has no Rust; or the package that the pattern
+PACKAGE names, that of the source, which takes minutes and needs Rust to be installed."""
 
 import os
 import re
@@ -9,20 +10,18 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from fmpy import read_model_description, simulate_fmu
+from packages import package
 from pacoima import write_record
 
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory):
     """Runs a command of a fresh environment with the wheel, and the newest fmpy of requirements.txt."""
-    wheels = list((ROOT / "out" / "wheels").glob("*-manylinux*_x86_64.whl"))
-    if not wheels:
-        pytest.skip("there is no wheel: `make wheels` builds it")
-    (wheel,) = wheels
+    path = package(os.environ.get("PACKAGE", "*-manylinux*_x86_64.whl"))
     folder = tmp_path_factory.mktemp("installed")
     subprocess.run([sys.executable, "-m", "venv", folder / "venv"], check=True)
     fmpy = re.search(r"^fmpy==\S+", (ROOT / "requirements.txt").read_text(), re.MULTILINE)[0]
-    command = [folder / "venv/bin/python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", wheel, fmpy]
+    command = [folder / "venv/bin/python", "-m", "pip", "install", "--quiet", "--disable-pip-version-check", path, fmpy]
     subprocess.run(command, check=True)
 
     def run(program, *arguments):

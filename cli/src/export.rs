@@ -90,13 +90,17 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
 /// cargo's target folder, those built for a named target are beside its profile, and come first: they need no newer system
 /// than they say. Its own platform's is in the folder `deps` beside the program; cargo links it to where the program is
 /// only if the package of the FMU was asked for as well: by `cargo build` and `cargo run` in the root, but not with `-p
-/// rocking-cli`. Once installed, the program is in `bin`, and in `share` beside that is an archive to take them from.
+/// rocking-cli`. Once installed, the program is in `bin`, and in `share` beside that is an archive to take them from; what pip
+/// installs for one user of Windows has a folder of Python's version between the two.
 fn libraries_of(executable: &Path) -> anyhow::Result<Vec<Library>> {
     let own = format!("{DLL_PREFIX}FlexibleRocking{DLL_SUFFIX}");
     let beside = executable.with_file_name(&own);
     let in_deps = executable.with_file_name("deps").join(&own);
     let folder = executable.parent().unwrap_or(Path::new(""));
-    let installed = folder.with_file_name("share").join(INSTALLED);
+    let [installed, for_one_user] = [1, 2].map(|up| {
+        let above = folder.ancestors().nth(up).unwrap_or(Path::new(""));
+        above.join("share").join(INSTALLED)
+    });
     let mut libraries: Vec<Library> = Vec::new();
     let profile = folder.file_name().unwrap_or_default();
     for platform in Platform::ALL {
@@ -108,7 +112,7 @@ fn libraries_of(executable: &Path) -> anyhow::Result<Vec<Library>> {
             Err(error) => return Err(error.into()),
         }
     }
-    if let Some(path) = [&in_deps, &beside, &installed].into_iter().find(|path| path.exists()) {
+    if let Some(path) = [&in_deps, &beside, &installed, &for_one_user].into_iter().find(|path| path.exists()) {
         let found =
             Library::read(path).with_context(|| format!("`cargo build --release` builds {}", beside.display()))?;
         let is_new = |library: &Library| libraries.iter().all(|other| other.platform != library.platform);

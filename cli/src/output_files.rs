@@ -5,24 +5,26 @@
 //! is written through, never replaced.
 
 use anyhow::{Context, anyhow, bail, ensure};
+use same_file::is_same_file;
+#[cfg(unix)]
+use std::os::unix::fs::{FileTypeExt, MetadataExt, PermissionsExt, chown};
 use std::{
-    fs::{self, File, Metadata, Permissions},
+    fs::{self, File, Metadata},
     io::{self, BufWriter, StdoutLock, Write, stdout},
-    os::unix::{
-        ffi::OsStrExt,
-        fs::{FileTypeExt, MetadataExt, PermissionsExt, chown},
-    },
-    path::{Path, PathBuf},
+    path::{Component, Path, PathBuf, Prefix, absolute, is_separator},
 };
 use tempfile::NamedTempFile;
 
 /// Links that are followed one after the other, as in Linux itself.
 const LONGEST_CHAIN_OF_LINKS: usize = 40;
 
+/// Folders of what programs have opened, under names that a shell gives to commands: Linux's, macOS's.
+const FOLDERS_OF_OPEN_FILES: [&str; 2] = ["/proc", "/dev/fd"];
+
 /// All files of one command: those that it reads, and those that it writes.
 #[derive(Default)]
 pub struct OutputFiles {
-    inputs: Vec<(PathBuf, Identity)>,
+    inputs: Vec<PathBuf>,
     outputs: Vec<(PathBuf, Place)>,
 }
 
@@ -31,9 +33,6 @@ pub struct OutputFile {
     path: PathBuf,
     to: To,
 }
-
-/// What tells two files apart, whatever they are called: device and inode.
-type Identity = (u64, u64);
 
 /// Where a path leads.
 #[derive(Clone, PartialEq)]
@@ -54,16 +53,12 @@ enum To {
 impl OutputFiles {
     /// Of a command that reads `inputs`; what is not there is left to whoever reads it.
     pub fn of_inputs<'a>(inputs: impl IntoIterator<Item = &'a Path>) -> OutputFiles {
-        let mut files = OutputFiles::default();
-        inputs.into_iter().for_each(|path| files.add_input(path));
-        files
+        OutputFiles { inputs: inputs.into_iter().map(Path::to_owned).collect(), outputs: Vec::new() }
     }
 
     /// One more file that the command reads.
     pub fn add_input(&mut self, path: &Path) {
-        if let Ok(told) = fs::metadata(path) {
-            self.inputs.push((path.into(), identity(&told)));
-        }
+        self.inputs.push(path.into());
     }
 
     /// Begins the file at `path`, or standard output for `-`.
@@ -93,9 +88,9 @@ impl OutputFiles {
     fn reserve(&mut self, path: &Path) -> anyhow::Result<Place> {
         let place = place(path).with_context(|| cannot_be_written(path))?;
         if let Place::Regular(target) = &place {
-            let is_same =
-                |(_, input): &&(PathBuf, Identity)| fs::metadata(target).is_ok_and(|told| identity(&told) == *input);
-            if let Some((input, _)) = self.inputs.iter().find(is_same) {
+            // Two files are compared by opening them, which is a message to whoever writes to a pipe.
+            let is_target = |input: &&PathBuf| input.is_file() && is_same_file(input, target).is_ok_and(|same| same);
+            if let Some(input) = self.inputs.iter().find(is_target) {
                 let (path, input) = (path.display(), input.display());
                 bail!("{path}: it would overwrite {input}, which is read; name another file");
             }
@@ -156,19 +151,20 @@ fn cannot_be_written(path: &Path) -> String {
     format!("{} cannot be written", name(path))
 }
 
-fn identity(told: &Metadata) -> Identity {
-    (told.dev(), told.ino())
-}
-
 /// Where `path` leads, with what is there asked before anything is opened.
 fn place(path: &Path) -> anyhow::Result<Place> {
     if path == Path::new("-") {
         return Ok(Place::StandardOutput);
     }
     ensure!(!path.as_os_str().is_empty(), "its name is empty");
-    ensure!(!path.as_os_str().as_bytes().ends_with(b"/"), "it is a folder; name a file in it");
+    let last = path.as_os_str().as_encoded_bytes().last().copied().map(char::from);
+    ensure!(!last.is_some_and(is_separator), "it is a folder; name a file in it");
+    if is_named_device(path) {
+        return Ok(Place::Through);
+    }
     match fs::metadata(path) {
         Ok(told) if told.is_dir() => bail!("it is a folder; name a file in it"),
+        #[cfg(unix)]
         Ok(told) if told.file_type().is_block_device() => bail!("it is a block device"),
         Ok(told) if !told.is_file() => return Ok(Place::Through),
         Ok(_) => {}
@@ -182,11 +178,11 @@ fn place(path: &Path) -> anyhow::Result<Place> {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
             _ => Path::new("."),
         };
-        let real = fs::canonicalize(folder).map_err(|error| match error.kind() {
+        let real = dunce::canonicalize(folder).map_err(|error| match error.kind() {
             io::ErrorKind::NotFound => anyhow!("there is no folder {}", folder.display()),
             _ => error.into(),
         })?;
-        if real.starts_with("/proc") {
+        if FOLDERS_OF_OPEN_FILES.iter().any(|folder| real.starts_with(folder)) {
             return Ok(Place::Through);
         }
         let target = real.join(name);
@@ -198,6 +194,13 @@ fn place(path: &Path) -> anyhow::Result<Place> {
     bail!("its links have no end")
 }
 
+/// Whether Windows takes `path` for a device or a pipe, as NUL in whatever folder. Elsewhere none has such a name.
+fn is_named_device(path: &Path) -> bool {
+    let Ok(path) = absolute(path) else { return false };
+    let is_device = |first| matches!(first, Component::Prefix(prefix) if matches!(prefix.kind(), Prefix::DeviceNS(_)));
+    path.components().next().is_some_and(is_device)
+}
+
 /// A file in the folder of `target` with the owner and the permissions of the one that is there, or of any new one.
 fn beside(target: &Path) -> io::Result<NamedTempFile> {
     let there = match File::options().write(true).open(target) {
@@ -206,18 +209,41 @@ fn beside(target: &Path) -> io::Result<NamedTempFile> {
         Err(error) => return Err(error),
     };
     let folder = target.parent().unwrap_or(Path::new("/"));
-    let readable = Permissions::from_mode(0o666); // less the umask, as for any new file
-    let file = tempfile::Builder::new().prefix(".rocking-fmu-").permissions(readable).tempfile_in(folder);
+    let file = as_any_new_file(tempfile::Builder::new().prefix(".rocking-fmu-")).tempfile_in(folder);
     let file = file.map_err(|error| io::Error::new(error.kind(), in_folder(folder, &error)))?;
     if let Some(there) = there {
-        let own = file.as_file().metadata()?;
-        if (own.uid(), own.gid()) != (there.uid(), there.gid()) {
-            // Who may write to a file may not always give it away; the file is then the writer's.
-            let _ = chown(file.path(), Some(there.uid()), Some(there.gid()));
-        }
-        file.as_file().set_permissions(there.permissions())?;
+        take_over(&file, &there)?;
     }
     Ok(file)
+}
+
+/// Readable for all, less the umask.
+#[cfg(unix)]
+fn as_any_new_file<'a, 'b, 'c>(builder: &'a mut tempfile::Builder<'b, 'c>) -> &'a mut tempfile::Builder<'b, 'c> {
+    builder.permissions(fs::Permissions::from_mode(0o666))
+}
+
+/// On Windows the folder decides, whatever the file is made for.
+#[cfg(windows)]
+fn as_any_new_file<'a, 'b, 'c>(builder: &'a mut tempfile::Builder<'b, 'c>) -> &'a mut tempfile::Builder<'b, 'c> {
+    builder
+}
+
+/// Gives `file` the owner and the permissions of the one that is `there`.
+#[cfg(unix)]
+fn take_over(file: &NamedTempFile, there: &Metadata) -> io::Result<()> {
+    let own = file.as_file().metadata()?;
+    if (own.uid(), own.gid()) != (there.uid(), there.gid()) {
+        // Who may write to a file may not always give it away; the file is then the writer's.
+        let _ = chown(file.path(), Some(there.uid()), Some(there.gid()));
+    }
+    file.as_file().set_permissions(there.permissions())
+}
+
+/// On Windows the folder has given it both; what is read-only cannot be replaced.
+#[cfg(windows)]
+fn take_over(_: &NamedTempFile, _: &Metadata) -> io::Result<()> {
+    Ok(())
 }
 
 fn in_folder(folder: &Path, error: &io::Error) -> String {
@@ -226,9 +252,10 @@ fn in_folder(folder: &Path, error: &io::Error) -> String {
     format!("no file can be made in {}: {reason}", folder.display())
 }
 
-#[cfg(test)]
+#[cfg(all(test, unix))]
 mod tests {
     use super::*;
+    use std::fs::Permissions;
     use std::os::unix::fs::symlink;
 
     fn write(files: &mut OutputFiles, path: &Path, text: &str) -> anyhow::Result<()> {

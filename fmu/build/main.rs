@@ -11,13 +11,9 @@ fn main() -> Result<(), Box<dyn Error>> {
         println!("cargo::rerun-if-changed=../{read}");
     }
     println!("cargo::rustc-env=FLEXIBLE_ROCKING_BUILD={}", build_id::build_id(&workspace)?);
-    // No trace of where, or of when.
-    match std::env::var("CARGO_CFG_TARGET_OS")?.as_str() {
-        "macos" => println!("cargo::rustc-cdylib-link-arg=-Wl,-install_name,@rpath/libFlexibleRocking.dylib"),
-        "windows" if std::env::var("CARGO_CFG_TARGET_ENV")? == "gnu" => {
-            println!("cargo::rustc-cdylib-link-arg=-Wl,--no-insert-timestamp");
-        }
-        _ => (),
+    if std::env::var("CARGO_CFG_TARGET_OS")? == "macos" {
+        // Not where it was built.
+        println!("cargo::rustc-cdylib-link-arg=-Wl,-install_name,@rpath/libFlexibleRocking.dylib");
     }
     Ok(())
 }

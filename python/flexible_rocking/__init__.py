@@ -37,7 +37,7 @@ def export(
     """
     target = Path(target)
     records = [record] if isinstance(record, (str, PathLike)) else list(record)
-    arguments = [_installed("rocking-fmu"), "export", "--output", target]
+    arguments = [_installed("rocking-fmu"), "export", "--library", fmu(), "--output", target]
     if preset is not None:
         arguments += ["--preset", preset]
     if name is not None:

@@ -20,7 +20,8 @@ use rocking::{
     state::INITIAL_VALUES,
 };
 use serde::Deserialize;
-use std::{collections::BTreeMap, collections::HashMap, path::Path, path::PathBuf};
+use std::path::{MAIN_SEPARATOR, Path, PathBuf};
+use std::{collections::BTreeMap, collections::HashMap};
 
 /// A sweep.
 pub struct Sweep {
@@ -347,7 +348,8 @@ fn motions(
                 named_twice.push(path);
                 continue;
             }
-            let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy();
+            // The same on every system, so that a sweep can go on on another.
+            let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace(MAIN_SEPARATOR, "/");
             motions.push(NamedRecord::new(is_one_line(&name)?, read(&path)?, scale)?);
         }
     }

@@ -3,7 +3,7 @@
 use std::io::{Cursor, Write};
 use zip::result::ZipError;
 use zip::write::SimpleFileOptions;
-use zip::{CompressionMethod, DateTime, ZipWriter};
+use zip::{CompressionMethod, DateTime, System, ZipWriter};
 
 /// A file of an archive.
 pub struct Entry {
@@ -18,6 +18,7 @@ pub fn archive(entries: &[Entry]) -> Result<Vec<u8>, ZipError> {
     let options = SimpleFileOptions::default()
         .compression_method(CompressionMethod::Deflated)
         .last_modified_time(DateTime::DEFAULT) // 1980-01-01, the first day that an archive can express
+        .system(System::Unix) // whatever it is written on
         .unix_permissions(0o644);
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     for entry in entries {

@@ -1,0 +1,147 @@
+"""The program in the wheel for Windows, as pip lays it out, under wine: it writes what Linux's writes, and its files as
+carefully."""
+
+import json
+import shutil
+import subprocess
+import zipfile
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from packages import package
+from pacoima import write_record
+from wine import environment
+
+SWEEP = """records = ["records/*.csv"]
+scale = { from = 0.5, to = 1.5, count = 3 }
+structures = [{ name = "specimen", preset = "mcmanus" }, { name = "wall", preset = "evison" }]
+"""
+
+
+@pytest.fixture(scope="module")
+def windows(tmp_path_factory):
+    """Runs the program for Windows in a folder."""
+    folder = tmp_path_factory.mktemp("windows")
+    with zipfile.ZipFile(package("*-win_amd64.whl")) as content:
+        content.extractall(folder / "wheel")
+    (data,) = (folder / "wheel").glob("*.data")
+    shutil.move(data / "scripts", folder / "Scripts")
+    shutil.move(data / "data" / "share", folder / "share")
+    program, variables = folder / "Scripts" / "rocking-fmu.exe", environment(folder / "Scripts")
+    return lambda *arguments, cwd: subprocess.run(["wine", program, *arguments], cwd=cwd, env=variables, capture_output=True,
+                                                  text=True)
+
+
+@pytest.fixture(scope="module")
+def linux(exporter):
+    """Runs the program for this machine in a folder."""
+    return lambda *arguments, cwd: subprocess.run([exporter, *arguments], cwd=cwd, capture_output=True, text=True)
+
+
+@pytest.fixture
+def both(windows, linux, tmp_path):
+    """Runs a command on both, each in a folder of its own with the record pacoima.csv, and returns folder and output."""
+    folders = [tmp_path / "windows", tmp_path / "linux"]
+    for folder in folders:
+        folder.mkdir()
+        write_record(folder / "pacoima.csv")
+
+    def run(*arguments):
+        done = [program(*arguments, cwd=folder) for program, folder in zip((windows, linux), folders)]
+        for one in done:
+            assert one.returncode == 0, one.stderr
+        return list(zip(folders, (one.stdout for one in done)))
+
+    return run
+
+
+def same_bytes(both, *names):
+    (there, _), (here, _) = both
+    for name in names:
+        assert (there / name).read_bytes() == (here / name).read_bytes() != b"", name
+    assert not list(there.glob(".rocking-fmu-*"))
+
+
+def test_version(windows, linux, tmp_path):
+    there, here = (run("--version", cwd=tmp_path).stdout for run in (windows, linux))
+    assert there == here.replace("for linux on", "for windows on") and "\nfor windows on x86_64; " in there
+
+
+def test_simulate(both):
+    """The histories, transitions and peaks of Pacoima Dam."""
+    runs = both("simulate", "--record", "pacoima.csv", "--format", "json", "-o", "response.csv", "--events", "events.csv")
+    there, here = (json.loads(printed) for _, printed in runs)
+    assert there.keys() == here.keys() and there["transitions"] == here["transitions"] > 20
+    for peak, expected in zip(there["peaks"], here["peaks"], strict=True):
+        assert peak["name"] == expected["name"]
+        assert [peak["peak"], peak["time"]] == pytest.approx([expected["peak"], expected["time"]], rel=1e-12, abs=0)
+    for name in ("response.csv", "events.csv"):
+        there, here = ([line.split(",") for line in (folder / name).read_text().splitlines()] for folder, _ in runs)
+        assert len(here) > 20 and there[0] == here[0]
+        for column, expected in zip(zip(*there[1:], strict=True), zip(*here[1:], strict=True), strict=True):
+            try:
+                column, expected = np.array(column, float), np.array(expected, float)
+            except ValueError:
+                assert column == expected  # words
+            else:
+                assert np.abs(column - expected).max() <= 1e-12 * np.abs(expected).max()
+
+
+def test_describe(both):
+    (_, there), (_, here) = both("describe", "--preset", "evison", "--format", "csv")
+    assert there == here != ""
+
+
+def test_pictures_and_page(both):
+    runs = both("simulate", "--record", "pacoima.csv", "--picture", "response.svg", "-o", "response.csv")
+    both("describe", "--picture", "structure.png")
+    both("view", "--record", "pacoima.csv", "-o", "view.html")
+    same_bytes(runs, "response.svg", "structure.png", "view.html")
+
+
+def test_export(windows, linux, tmp_path):
+    """With the libraries of the wheel, as pip has installed them."""
+    write_record(tmp_path / "pacoima.csv")
+    arguments = ("export", "--preset", "evison", "--record", "pacoima.csv", "--name", "Wall", "-o")
+    for run, *end in ((windows, "there.fmu"), (linux, "here.fmu", "--library", ROOT / "out" / "FlexibleRocking.fmu")):
+        done = run(*arguments, *end, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+    assert (tmp_path / "there.fmu").read_bytes() == (tmp_path / "here.fmu").read_bytes()
+
+
+def test_sweep(both, linux):
+    """A sweep of one system goes on on the other: its runs are known."""
+    for folder, _ in both("describe"):
+        (folder / "records").mkdir()
+        shutil.move(folder / "pacoima.csv", folder / "records")
+        (folder / "sweep.toml").write_text(SWEEP)
+    runs = both("sweep", "sweep.toml", "-o", "runs.csv")
+    (there, printed), (here, expected) = runs
+    assert printed == expected
+    assert sorted((there / "runs.csv").read_text().splitlines()) == sorted((here / "runs.csv").read_text().splitlines())
+    before = (there / "runs.csv").read_bytes()
+    assert linux("sweep", "sweep.toml", "-o", "runs.csv", cwd=there).returncode == 0
+    assert (there / "runs.csv").read_bytes() == before
+
+
+def test_files_are_written_with_care(windows, tmp_path):
+    """What is read is not overwritten, under whatever name; what is written leaves no trace beside it."""
+    write_record(tmp_path / "pacoima.csv")
+    record = (tmp_path / "pacoima.csv").read_bytes()
+    (tmp_path / "same.csv").hardlink_to(tmp_path / "pacoima.csv")
+    for output, reason in {
+        ".\\PACOIMA.CSV": ".\\PACOIMA.CSV: it would overwrite pacoima.csv, which is read; name another file",
+        "same.csv": "same.csv: it would overwrite pacoima.csv, which is read; name another file",
+        "no\\such\\out.csv": "no\\such\\out.csv cannot be written: there is no folder no\\such",
+        "folder\\": "folder\\ cannot be written: it is a folder; name a file in it",
+    }.items():
+        failed = windows("simulate", "--record", "pacoima.csv", "-o", output, cwd=tmp_path)
+        assert failed.returncode == 1 and reason in failed.stderr, failed.stderr
+    assert (tmp_path / "pacoima.csv").read_bytes() == record
+    (tmp_path / "out.csv").write_text("before")
+    for output in ("out.csv", "NUL"):
+        done = windows("simulate", "--record", "pacoima.csv", "-o", output, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+    assert (tmp_path / "out.csv").read_text().startswith("time")
+    assert {path.name for path in tmp_path.iterdir()} == {"pacoima.csv", "same.csv", "out.csv"}
