@@ -152,7 +152,7 @@ report: .venv/ready exporter
 overturning: .venv/ready exporter
 	PYTHONPATH=examples $(PYTHON) -m overturning --exporter $(TARGET)/release/rocking-fmu
 
-coupling: .venv/ready out/mcmanus.fmu out/evison.fmu
+coupling: .venv/ready out/mcmanus.fmu out/evison.fmu out/mcmanus3.fmu out/evison3.fmu
 	for example in bridge building_on_soil 'bridge_ssp --exporter $(TARGET)/release/rocking-fmu'; do \
 		PYTHONPATH=examples $(PYTHON) -m coupling.$$example || exit; done
 	PYTHONPATH=examples:tests OMP_NUM_THREADS=1 $(PYTHON) -m coupling
@@ -184,6 +184,10 @@ mingw:
 hosts: mingw
 	-@$(HAS_WINE) || { $(call install,wine); }
 	-@{ $(HAS_TBB); } || { $(call install,libtbb12); }
+
+out/%3.fmu: exporter
+	mkdir -p out
+	$(TARGET)/release/rocking-fmu export --fmi 3 --preset $* -o $@
 
 out/%.fmu: exporter
 	mkdir -p out

@@ -50,6 +50,9 @@ pub enum Progress {
     Complete,
     /// To the instant of overturning, which is the motion's time now; it stays there.
     Overturned,
+    /// To the instant at which another transition is due, where it was asked to stop there
+    /// ([`Engine::stop_at_transitions`]).
+    Transition,
 }
 
 /// Why an advance failed; the motion is then as it was before, whatever has been shown on the way.
@@ -134,6 +137,8 @@ pub struct Engine {
     /// Truncation error that a step may have.
     local_error: f64,
     motion: Motion,
+    /// Whether an advance ends where a transition is due.
+    stops: bool,
     /// The step in hand.
     arc: Arc,
 }
@@ -164,8 +169,9 @@ impl Engine {
             work: Work::default(),
             impulse: Impulse::default(),
             chatter: Chatter::NONE,
+            due: None,
         };
-        Ok(Engine { structure, level, local_error, motion, arc: Arc::default() })
+        Ok(Engine { structure, level, local_error, motion, stops: false, arc: Arc::default() })
     }
 
     /// The structure.
@@ -186,6 +192,21 @@ impl Engine {
     /// Sets its clock to `time` (s). Nothing but the times that it tells depends on it.
     pub fn set_time(&mut self, time: f64) {
         self.motion.time = time;
+    }
+
+    /// Whether an advance ends at the first transition but overturning, before it: [`Engine::transit`] applies it, or the
+    /// next advance. Unless this is called, it does not.
+    pub fn stop_at_transitions(&mut self, stops: bool) {
+        self.stops = stops;
+    }
+
+    /// Applies the transition that is due, if there is one, and shows it to `watch`.
+    pub fn transit<W: Watch>(&mut self, watch: &mut W) {
+        if let Some(event) = self.motion.due.take() {
+            let transition;
+            (self.motion, transition) = transition::resolve(self.level.get(), &self.structure, self.motion, event);
+            watch.transition(&transition);
+        }
     }
 
     /// Advances by `interval` (s) under `load`, which is given from the present time on. Every piece and every
@@ -228,25 +249,46 @@ impl Engine {
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
         self.check(interval, &load)?;
-        let &mut Engine { ref structure, ref mut level, local_error, ref mut motion, ref mut arc } = self;
+        if self.motion.due.is_some() {
+            return self.advance_past_transition(last_step, interval, load, watch);
+        }
+        let &mut Engine { ref structure, ref mut level, local_error, ref mut motion, stops, ref mut arc } = self;
         // each level gets a loop of its own, so that nothing stands between the loop and the level's equations
         match &mut **level {
             AnyLevel::Nonlinear(level) => {
-                Hand { structure, level, arc, local_error, last_step }.advance(motion, interval, load, watch)
+                Hand { structure, level, arc, local_error, last_step, stops }.advance(motion, interval, load, watch)
             }
             AnyLevel::Linear(level) => {
-                Hand { structure, level, arc, local_error, last_step }.advance(motion, interval, load, watch)
+                Hand { structure, level, arc, local_error, last_step, stops }.advance(motion, interval, load, watch)
             }
             AnyLevel::Modal(level) => {
-                Hand { structure, level, arc, local_error, last_step }.advance(motion, interval, load, watch)
+                Hand { structure, level, arc, local_error, last_step, stops }.advance(motion, interval, load, watch)
             }
             AnyLevel::Rigid(level) => {
-                Hand { structure, level, arc, local_error, last_step }.advance(motion, interval, load, watch)
+                Hand { structure, level, arc, local_error, last_step, stops }.advance(motion, interval, load, watch)
             }
             AnyLevel::FixedBase(level) => {
-                Hand { structure, level, arc, local_error, last_step }.advance(motion, interval, load, watch)
+                Hand { structure, level, arc, local_error, last_step, stops }.advance(motion, interval, load, watch)
             }
         }
+    }
+
+    /// The same from where a transition is due.
+    #[cold]
+    fn advance_past_transition<W: Watch>(
+        &mut self,
+        last_step: u64,
+        interval: f64,
+        load: LinearLoad,
+        watch: &mut W,
+    ) -> Result<Progress, AdvanceError> {
+        let before = self.motion;
+        self.transit(watch);
+        let result = self.advance_within(last_step, interval, load, watch);
+        if result.is_err() {
+            self.motion = before;
+        }
+        result
     }
 
     /// Whether `load` can act over `interval` (s).
@@ -318,6 +360,8 @@ struct Hand<'a, L> {
     local_error: f64,
     /// Steps since the start after which it ends.
     last_step: u64,
+    /// Whether it ends where a transition is due.
+    stops: bool,
 }
 
 impl<L: Level> Hand<'_, L> {
@@ -400,6 +444,10 @@ impl<L: Level> Hand<'_, L> {
             elapsed = if duration == left { interval } else { elapsed + duration };
             motion.time = if elapsed < interval { start + elapsed } else { until };
             if let Some(event) = event {
+                if self.stops && !matches!(event, Event::Overturning(_)) {
+                    motion.due = Some(event);
+                    return Ok(Progress::Transition);
+                }
                 let transition;
                 (*motion, transition) = transition::resolve(self.level, self.structure, *motion, event);
                 watch.transition(&transition);

@@ -130,9 +130,9 @@ impl GroundMotion<'_> {
             engine.set_time(before.time + start);
             match engine.advance_within(last_step, duration, load.from(start).on_ground(a_g), watch) {
                 Ok(Progress::Complete) => (),
-                Ok(Progress::Overturned) => {
+                Ok(progress @ (Progress::Overturned | Progress::Transition)) => {
                     engine.done(watch);
-                    return Ok(Progress::Overturned);
+                    return Ok(progress);
                 }
                 Err(mut error) => {
                     engine.set_motion(before);

@@ -1,6 +1,7 @@
 //! Everything about a structure that changes with time, in a few dozen numbers.
 
 use crate::reactions::Impulse;
+use crate::transition::Event;
 use crate::{Phase, State};
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +30,25 @@ pub struct Motion {
     /// Impulse of the impacts on the ground so far.
     pub impulse: Impulse,
     pub(crate) chatter: Chatter,
+    /// What is due now and has not been applied.
+    pub(crate) due: Option<Event>,
+}
+
+impl Motion {
+    /// Whether a transition is due at this instant: state and phase are those before it.
+    pub fn is_transition_due(&self) -> bool {
+        self.due.is_some()
+    }
+
+    /// Whether what is due, if anything, can be in this phase: what is read from bytes need not have come about by motion.
+    pub fn is_possible(&self) -> bool {
+        match self.due {
+            None => true,
+            Some(Event::Uplift(_)) => self.phase == Phase::FullContact,
+            Some(Event::Impact(side)) => self.phase == Phase::Rocking(side),
+            Some(Event::Overturning(_)) => false, // it is never left to be applied
+        }
+    }
 }
 
 impl Motion {

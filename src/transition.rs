@@ -11,6 +11,7 @@
 use crate::motion::{ChatterLimit, Motion};
 use crate::reactions::Impulse;
 use crate::{Phase, Side, State, Structure, impact};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
 /// Transitions within one period of the vibration mode (2π/ω_u) after which contact is held.
@@ -65,7 +66,7 @@ pub struct Transition {
 }
 
 /// What happens at the end of a step.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Event {
     /// The base lifts off about this side.
     Uplift(Side),

@@ -31,6 +31,44 @@ fn evison_released(structure: &Structure) -> Engine {
     Engine::new(*structure, released, 0.0, DEFAULT_TOLERANCE).unwrap()
 }
 
+/// An advance that ends at transitions meets the same ones, each before it is applied: the last state of rocking is on the
+/// ground, that of full contact at the limit of uplift.
+#[test]
+fn an_advance_can_end_at_every_transition() {
+    let structure = Structure::new(Parameters { r: 0.85, ..Parameters::EVISON }).unwrap();
+    let released = State { theta: 0.01, ..State::default() };
+    let new = || Engine::new(structure, released, 0.0, DEFAULT_TOLERANCE).unwrap();
+    let (mut through, mut to_each) = (new(), new());
+    let expected = advance(&mut through, 1.0, STILL);
+    to_each.stop_at_transitions(true);
+    let mut transitions = Vec::new();
+    while to_each.motion().time < 1.0 {
+        let due = to_each.advance(1.0 - to_each.motion().time, STILL, &mut ()).unwrap() == Progress::Transition;
+        let Motion { phase, state, .. } = *to_each.motion();
+        assert_eq!(to_each.motion().is_transition_due(), due);
+        if due {
+            let met = if phase == Phase::FullContact { state.u.abs() - structure.u_cr } else { state.theta };
+            assert!(met.abs() < 1e-14 || phase == Phase::FullContact && met > 0.0, "{phase:?} {state:?}");
+            to_each.transit(&mut |transition: &Transition| transitions.push(*transition));
+            assert_ne!(to_each.motion().phase, phase);
+        }
+    }
+    assert!(expected.len() > 10);
+    assert_eq!(transitions.len(), expected.len());
+    for (transition, expected) in transitions.iter().zip(&expected) {
+        assert_eq!(transition.kind, expected.kind);
+        assert_abs_diff_eq!(transition.time, expected.time, epsilon = 1e-10);
+        assert_abs_diff_eq!(transition.after.u_dot, expected.after.u_dot, epsilon = 1e-8);
+    }
+    // what is due is applied by the next advance if nobody has
+    let mut left = new();
+    left.stop_at_transitions(true);
+    while left.motion().time < 1.0 {
+        left.advance(1.0 - left.motion().time, STILL, &mut ()).unwrap();
+    }
+    assert_eq!(left.motion().state, to_each.motion().state);
+}
+
 #[test]
 fn evisons_free_vibration_has_its_impacts_and_its_peak() {
     let structure = Structure::new(Parameters::EVISON).unwrap();

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from conftest import ROOT
+from fmpy.fmi3 import FMU3Model, FMU3ScheduledExecution, FMU3Slave
 from pacoima import A_G, OUTPUTS, STEPS, TIME, distance, instants, linear, write_record
 from wine import MINGW
 from wine import environment as wine_environment
@@ -18,14 +19,17 @@ from wine import environment as wine_environment
 WINDOWS = "x86_64-pc-windows-gnu"
 HOST = "tests/hosts/load_library/Cargo.toml"
 
-# FMI 2.0: the functions of both interfaces and those of co-simulation.
+# FMI 2.0: the functions of both interfaces and those of each; FMI 3.0: all that fmpy knows how to call.
 FUNCTIONS = {f"fmi2{name}" for name in """
     GetTypesPlatform GetVersion SetDebugLogging Instantiate FreeInstance SetupExperiment EnterInitializationMode
     ExitInitializationMode Terminate Reset
     GetReal GetInteger GetBoolean GetString SetReal SetInteger SetBoolean SetString
     GetFMUstate SetFMUstate FreeFMUstate SerializedFMUstateSize SerializeFMUstate DeSerializeFMUstate
     GetDirectionalDerivative SetRealInputDerivatives GetRealOutputDerivatives DoStep CancelStep GetStatus GetRealStatus
-    GetIntegerStatus GetBooleanStatus GetStringStatus""".split()}
+    GetIntegerStatus GetBooleanStatus GetStringStatus
+    EnterEventMode NewDiscreteStates EnterContinuousTimeMode CompletedIntegratorStep SetTime SetContinuousStates
+    GetDerivatives GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates""".split()} | {
+    name for of in (FMU3Slave, FMU3Model, FMU3ScheduledExecution) for name in dir(of) if name.startswith("fmi3")}
 
 # The C library, its mathematics and start-up, and the compiler's run time.
 LINUX_RUN_TIME = {"libc.so.6", "libm.so.6", "libgcc_s.so.1", "ld-linux-x86-64.so.2"}

@@ -121,7 +121,7 @@ def test_unknown_value_references_are_refused(mcmanus):
             assert "4000000000" in instance.errors[-1]
         with pytest.raises(FMICallException, match="status 3"):
             instance.slave.getReal([instance.fmu.variables["phase"].valueReference])
-        assert "phase is an Enumeration" in instance.errors[-1]
+        assert "phase is an enumeration" in instance.errors[-1]
 
 
 def test_only_first_derivatives_of_the_input_are_taken(mcmanus):

@@ -6,7 +6,8 @@ use crate::structure_args::{StructureArgs, in_one_line};
 use crate::talk::say;
 use FlexibleRocking::guid;
 use anyhow::{Context, bail};
-use fmu_export::{Library, LibraryError, ModelName, Platform};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
 use rocking::record::{Reading, Record};
 use std::env;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
@@ -26,6 +27,9 @@ pub struct ExportArgs {
     /// their names
     #[arg(long, value_name = "FILE", num_args = 1..)]
     record: Vec<PathBuf>,
+    /// Version of FMI: 2 (2.0), 3 (3.0)
+    #[arg(long, value_name = "VERSION", default_value = "2", value_parser = versions())]
+    fmi: Version,
     /// Name of the model and of its libraries' files, for hosts that hold several exports
     #[arg(long, value_name = "NAME", default_value = "FlexibleRocking")]
     name: ModelName,
@@ -35,6 +39,10 @@ pub struct ExportArgs {
     /// Shared libraries to pack, or an FMU of this build to take them from [default: those that were built with this program]
     #[arg(long, value_name = "PATH", num_args = 1..)]
     library: Vec<PathBuf>,
+}
+
+fn versions() -> impl TypedValueParser<Value = Version> {
+    PossibleValuesParser::new(["2", "3"]).map(|version| if version == "2" { Version::Fmi2 } else { Version::Fmi3 })
 }
 
 /// Writes the FMU and says what was written.
@@ -64,13 +72,13 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
         say_warnings(path, &source);
     }
     let mut file = OutputFiles::of_inputs(inputs).create(&output)?;
-    let (contents, archive) = fmu_export::export(&args.name, &structure, &args.record, &libraries)?;
+    let (contents, archive) = fmu_export::export(args.fmi, &args.name, &structure, &args.record, &libraries)?;
     OutputFile::named(&output, file.write_all(&archive))?;
     file.finish()?;
     say!("{}: {} kB", output.display(), archive.len().div_ceil(1000));
     say!("  GUID       {}", guid(&contents));
     say!("  structure  {}", in_one_line(&structure));
-    let platforms: Vec<_> = libraries.iter().map(|library| library.platform.folder()).collect();
+    let platforms: Vec<_> = libraries.iter().map(|library| library.platform.folder(args.fmi)).collect();
     say!("  platforms  {}", platforms.join(", "));
     for packed in &contents.records {
         say!("  record     {}", packed.file);

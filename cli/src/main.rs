@@ -51,10 +51,11 @@ struct CommandLine {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Write the FMU (FMI 2.0 co-simulation)
+    /// Write the FMU (FMI 2.0 or 3.0)
     #[command(after_help = "Examples:
   rocking-fmu export
   rocking-fmu export --preset evison -o Evison.fmu
+  rocking-fmu export --fmi 3
   rocking-fmu export --record RSN77_SFERN_PUL164.AT2 RSN6_IMPVALL.I_I-ELC180.AT2
   rocking-fmu export --parameters pier.toml --name Pier1")]
     Export(export::ExportArgs),
@@ -152,7 +153,7 @@ enum Command {
 /// Version, build, and the platforms that an FMU can be for.
 fn long_version() -> String {
     let [version, build] = [env!("CARGO_PKG_VERSION"), FlexibleRocking::BUILD];
-    let platforms = Platform::ALL.map(Platform::folder).join(", ");
+    let platforms = Platform::ALL.map(Platform::tuple).join(", ");
     format!("{version}\nbuild {build}\nfor {OS} on {ARCH}; packs libraries for {platforms}, as far as they are there")
 }
 

@@ -1,6 +1,6 @@
 //! `export` as a user runs it: it finds the shared library that cargo has built with it, in whatever profile.
 
-use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
+use std::env::consts::{ARCH, DLL_PREFIX, DLL_SUFFIX, OS};
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
@@ -50,7 +50,7 @@ fn libraries_are_found_where_they_are_built_and_where_they_are_installed() {
     let text = folder.path().join("text.so");
     fs::write(&text, "no library").unwrap();
     let other = refusal(&["--library", "text.so"]);
-    assert!(other.contains("text.so is neither an FMU nor a shared library for one of linux64, "), "{other}");
+    assert!(other.contains("text.so is neither an FMU nor a shared library for one of x86_64-linux, "), "{other}");
     let absent = refusal(&["--library", "absent.so"]);
     assert!(absent.contains("cannot read the shared library absent.so: No such file"), "{absent}");
 
@@ -66,7 +66,8 @@ fn libraries_are_found_where_they_are_built_and_where_they_are_installed() {
     let library = library.to_str().unwrap();
     assert_eq!(platforms(&["--library", library, "-o", "a.fmu"]), (platform.clone(), "a.fmu".to_owned()));
     let twice = refusal(&["--library", library, "a.fmu", "-o", "b.fmu"]);
-    assert_eq!(twice, format!("error: two shared libraries are for {platform}: leave one out\n"));
+    let tuple = format!("{ARCH}-{OS}"); // as FMI 3.0 calls it
+    assert_eq!(twice, format!("error: two shared libraries are for {tuple}: leave one out\n"));
 
     // Built for a named target, from other sources.
     let stale = folder.path().join("x86_64-unknown-linux-gnu/bin/libFlexibleRocking.so");

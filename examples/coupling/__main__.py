@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from . import added_mass, convergence, stability
+from . import added_mass, convergence, early_return, stability
 from .bridge import PIERS, deck
 from .tables import markdown
 
@@ -49,9 +49,12 @@ def main() -> None:
 
     runs = len(convergence.SCENES) * len(convergence.VARIANTS)
     cells = (len(stability.WEAK) + len(stability.ITERATED)) * stability.RATIOS.size * stability.STEPS.size
-    with tqdm(total=runs + cells, unit="") as progress:
+    ended_early = len(early_return.MASTERS) * len(early_return.STEPS)
+    with tqdm(total=runs + ended_early + cells, unit="") as progress:
         progress.set_description("convergence")
         errors = convergence.study(fmus, progress.update)
+        progress.set_description("early return")
+        to_transitions = early_return.study(progress.update)
         progress.set_description("stability")
         measured = stability.study(fmus, progress.update)
     convergence.plot(figures / "convergence.png", errors)
@@ -61,6 +64,7 @@ def main() -> None:
     page = (Path(__file__).parent / "page.md").read_text(encoding="utf-8").format(
         added_mass=added_mass.table(PIERS["McManus"]),
         convergence=convergence_table(steps, of_variants),
+        early_return=early_return.table(*to_transitions),
         frequency=stability.FREQUENCY,
         limits=limits_table(),
         transitions=transitions,

@@ -19,7 +19,7 @@ class Structure:
         description = fmpy.read_model_description(folder.name)
         self.references = {variable.name: variable.valueReference for variable in description.modelVariables}
         self.instance = instantiate_fmu(folder.name, description, "CoSimulation")
-        weakref.finalize(self, _free, self.instance, folder)
+        weakref.finalize(self, free, self.instance, folder)
         self.instance.setupExperiment()
         self.instance.setReal([self.references[name] for name in start_values], list(start_values.values()))
         self.instance.enterInitializationMode()
@@ -58,6 +58,6 @@ class Structure:
         self.instance.setFMUstate(state)
 
 
-def _free(instance, folder):
+def free(instance, folder):
     instance.freeInstance()
     folder.cleanup()

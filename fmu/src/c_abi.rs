@@ -18,10 +18,11 @@
 use crate::failure::Failure;
 use crate::instance::Instance;
 use crate::logger::Status;
-use crate::state_machine::{IsAllowed, stages};
+use crate::state_machine::{IsAllowed, Stage, stages};
 use libc::{c_char, c_int, c_void, size_t};
 use std::any::Any;
 use std::cell::{Cell, UnsafeCell};
+use std::ffi::CString;
 use std::mem::MaybeUninit;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -78,7 +79,13 @@ pub(crate) fn instantiate<F: Function>(create: impl FnOnce() -> Option<(Instance
 /// Frees it. Ignored for null, and while a call is under way, as from within the logger.
 pub(crate) unsafe fn free<F: Function>(c: *mut c_void) {
     let Some(component) = (unsafe { component::<F>(c) }) else { return };
-    if component.availability.swap(BUSY, Ordering::Acquire) == BUSY {
+    let availability = component.availability.swap(BUSY, Ordering::Acquire);
+    if availability == BUSY {
+        return;
+    }
+    // within a step the host has the instance on loan: the step goes on with it
+    if unsafe { &*component.instance.get() }.stage() == Stage::IntermediateUpdateMode {
+        component.availability.store(availability, Ordering::Release);
         return;
     }
     // Volatile, so that a call with the freed component finds no magic number as long as the memory is not used anew.
@@ -105,6 +112,24 @@ pub(crate) unsafe fn call<F: Function>(
     function: F,
     body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
 ) -> c_int {
+    unsafe { call_if(c, function, |is_allowed, stage| is_allowed(function, stage), body) }
+}
+
+/// The rest of a call of `function` within which the host had the instance on loan.
+pub(crate) unsafe fn call_on<F: Function>(
+    c: *mut c_void,
+    function: F,
+    body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
+) -> c_int {
+    unsafe { call_if(c, function, |_, stage| stage == Stage::IntermediateUpdateMode, body) }
+}
+
+unsafe fn call_if<F: Function>(
+    c: *mut c_void,
+    function: F,
+    may_go_on: impl FnOnce(IsAllowed<F>, Stage) -> bool,
+    body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
+) -> c_int {
     let Some(component) = (unsafe { component::<F>(c) }) else { return Status::Error as c_int };
     match component.availability.compare_exchange(READY, BUSY, Ordering::Acquire, Ordering::Relaxed) {
         Ok(_) => (),
@@ -117,7 +142,7 @@ pub(crate) unsafe fn call<F: Function>(
         let stage = instance.stage();
         let is_allowed = component.is_allowed;
         let refused = || Err(Failure::WrongStage { stage, allowed_in: stages(function, is_allowed) });
-        let result = if is_allowed(function, stage) { body(instance) } else { refused() };
+        let result = if may_go_on(is_allowed, stage) { body(instance) } else { refused() };
         result.map_or_else(|failure| report(instance, function, &failure), |()| Status::Ok)
     };
     let (status, availability) = match catch_unwind(AssertUnwindSafe(guarded)) {
@@ -203,10 +228,21 @@ pub(crate) unsafe fn text<'a>(name: &'static str, pointer: *const c_char) -> Res
     }
 }
 
+/// `message` for the host, with every one of `marks`, which mean something to it, doubled. A NUL would end it.
+pub(crate) fn escaped(message: &str, marks: &[char]) -> CString {
+    let mut escaped = String::with_capacity(message.len());
+    for c in message.chars() {
+        escaped.extend(marks.contains(&c).then_some(c));
+        escaped.push(if c == '\0' { char::REPLACEMENT_CHARACTER } else { c });
+    }
+    CString::new(escaped).expect("every NUL is replaced")
+}
+
 /// The functions that take an instance, in the words of a version of the standard: of each the name, the item of the
-/// version's [`Function`] that it is, the arguments after the component, and what is asked of the instance.
+/// version's [`Function`] that it is, the arguments after the component, and what is asked of the instance. Those in
+/// brackets are written out elsewhere.
 macro_rules! functions {
-    ($(
+    ($([$apart:ident = $apart_function:ident])* $(
         $(#[$doc:meta])*
         $name:ident = $function:ident($($argument:ident: $type:ty),* $(,)?) |$instance:ident| $body:block
     )*) => {
@@ -214,15 +250,17 @@ macro_rules! functions {
         /// called.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         pub enum Function {
+            $(#[doc = concat!("`", stringify!($apart), "`")] $apart_function,)*
             $(#[doc = concat!("`", stringify!($name), "`")] $function,)*
         }
 
         impl $crate::c_abi::Function for Function {
-            const ALL: &'static [Function] = &[$(Function::$function),*];
+            const ALL: &'static [Function] = &[$(Function::$apart_function,)* $(Function::$function),*];
             const MAGIC: u64 = MAGIC;
 
             fn name(self) -> &'static str {
                 match self {
+                    $(Function::$apart_function => stringify!($apart),)*
                     $(Function::$function => stringify!($name),)*
                 }
             }
@@ -248,6 +286,12 @@ pub(crate) use functions;
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_message_is_a_format_that_prints_itself() {
+        assert_eq!(escaped("100 % of #5\0 ü", &['%', '#']).to_str().unwrap(), "100 %% of ##5\u{fffd} ü");
+        assert_eq!(escaped("100 % of #5", &['#']).to_str().unwrap(), "100 % of ##5");
+    }
 
     #[test]
     fn the_message_of_a_panic_is_found() {

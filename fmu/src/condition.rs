@@ -28,6 +28,22 @@ const BOUND: f64 = 1e100;
 /// More than anything that is counted can come to.
 const MAX_COUNT: u64 = 1 << 60;
 
+/// How the host of a co-simulation meets transitions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Stepping {
+    /// It handles events, between steps.
+    pub event_mode: bool,
+    /// It takes a step that ends early.
+    pub early_return: bool,
+}
+
+impl Stepping {
+    /// Whether a step ends at a transition, which is handed over: the host must be able to do both.
+    pub fn hands_over(self) -> bool {
+        self.event_mode && self.early_return
+    }
+}
+
 /// The largest state (SI units) that is taken from a host.
 pub(crate) const FARTHEST: f64 = 1e12;
 
@@ -50,7 +66,7 @@ pub struct Condition {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Interface {
     /// The FMU.
-    CoSimulation,
+    CoSimulation(Stepping),
     /// The host.
     ModelExchange,
 }
@@ -59,15 +75,25 @@ impl Interface {
     /// The stage in which a simulation starts.
     pub const fn first_stage(self) -> Stage {
         match self {
-            Interface::CoSimulation => Stage::StepComplete,
-            Interface::ModelExchange => Stage::EventMode,
+            Interface::CoSimulation(Stepping { event_mode: false, .. }) => Stage::StepComplete,
+            Interface::CoSimulation(Stepping { event_mode: true, .. }) | Interface::ModelExchange => Stage::EventMode,
+        }
+    }
+
+    /// How the host meets transitions that the FMU comes across.
+    pub fn stepping(self) -> Stepping {
+        match self {
+            Interface::CoSimulation(stepping) => stepping,
+            Interface::ModelExchange => Stepping::default(),
         }
     }
 
     const fn has(self, stage: Stage) -> bool {
         match stage {
-            Stage::StepComplete | Stage::StepFailed => matches!(self, Interface::CoSimulation),
-            Stage::EventMode | Stage::ContinuousTimeMode => matches!(self, Interface::ModelExchange),
+            Stage::StepComplete | Stage::StepFailed => matches!(self, Interface::CoSimulation(_)),
+            Stage::EventMode => matches!(self.first_stage(), Stage::EventMode),
+            Stage::ContinuousTimeMode => matches!(self, Interface::ModelExchange),
+            Stage::IntermediateUpdateMode => false, // no state is kept within a step
             Stage::Instantiated | Stage::InitializationMode | Stage::Terminated | Stage::Error => true,
         }
     }
@@ -172,6 +198,16 @@ impl Model {
     /// Whether the structure has overturned, which ends the simulation.
     pub fn has_overturned(&self) -> bool {
         matches!(self.engine.motion().phase, Phase::Overturned(_))
+    }
+
+    /// Applies the transition that is due, if there is one.
+    pub fn transit<W: Watch>(&mut self, setup: &Setup, watch: &mut W) {
+        if !setup.validity {
+            return self.engine.transit(watch);
+        }
+        let mut validity = self.watch_validity();
+        self.engine.transit(&mut (&mut validity, watch));
+        self.validity = *validity.found();
     }
 
     /// The instant of overturning, s.
@@ -288,6 +324,7 @@ fn is_possible(motion: &Motion, farthest: f64) -> bool {
         && theta.abs() <= farthest
         && [transitions, work.steps, work.evaluations].iter().all(|count| *count < MAX_COUNT)
         && time.is_finite()
+        && motion.is_possible()
 }
 
 impl Present {

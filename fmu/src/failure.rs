@@ -51,6 +51,12 @@ pub enum Failure {
         /// What would be.
         accepted: &'static str,
     },
+    /// An interface of the standard that this unit has not.
+    #[error("this FMU is for co-simulation: see modelDescription.xml")]
+    NotThisInterface,
+    /// Event mode of a host that said it has none.
+    #[error("there is no event mode: the instance was made with eventModeUsed = false")]
+    NoEventMode,
     /// An empty name.
     #[error("instanceName must not be empty")]
     NoName,
@@ -88,7 +94,7 @@ pub enum Failure {
         /// The enumeration.
         variable: &'static Variable,
         /// The number.
-        value: i32,
+        value: i64,
     },
     /// No such record.
     #[error(transparent)]
@@ -139,7 +145,7 @@ pub enum Failure {
     NoInput(&'static Variable),
     /// A known that is none.
     #[error(
-        "{} cannot be a known of a directional derivative: only the inputs can, in initialization mode Real parameters and \
+        "{} cannot be a known of a directional derivative: only the inputs can, in initialization mode real parameters and \
          initial values, later u, u_dot, theta and theta_dot",
         .0.name
     )]
@@ -153,7 +159,7 @@ pub enum Failure {
         value: f64,
     },
     /// A derivative of something else than a continuous output.
-    #[error("{} has no derivative: only continuous Real outputs have", .0.name)]
+    #[error("{} has no derivative: only continuous real outputs have", .0.name)]
     NoOutput(&'static Variable),
     /// The equations of motion are singular here, and with them the reactions.
     #[error(
@@ -255,7 +261,7 @@ pub enum Failure {
         /// rad.
         theta: f64,
     },
-    /// Another number of states or indicators.
+    /// Another number of values, states or indicators.
     #[error("{name} = {given} is not {needed}")]
     WrongCount {
         /// The argument.
@@ -265,9 +271,10 @@ pub enum Failure {
         /// What there are.
         needed: usize,
     },
-    /// A state kept by an instance of the other interface.
+    /// A state kept by an instance of another interface.
     #[error(
-        "the FMU state was kept by an instance of the other kind: model exchange and co-simulation have states of their own"
+        "the FMU state was kept by an instance of another kind: model exchange, co-simulation, and co-simulation with \
+         eventModeUsed or earlyReturnAllowed have states of their own"
     )]
     OtherInterface,
     /// A question that has no answer.
@@ -278,6 +285,9 @@ pub enum Failure {
         "FMUstate {0:#x} is not one that this instance has handed out and not freed; pass a pointer to NULL for a new one"
     )]
     UnknownSnapshot(usize),
+    /// A variable that takes no part in intermediate updates.
+    #[error("{} is no intermediate variable: only the inputs are", .0.name)]
+    NotIntermediate(&'static Variable),
     /// A buffer of the wrong size.
     #[error("size = {given} does not fit: the serialized FMU state takes {needed} bytes")]
     WrongSize {
@@ -314,11 +324,11 @@ fn items(variable: &Variable) -> String {
 
 fn type_name(variable: &Variable) -> &'static str {
     match variable.data_type {
-        DataType::Real { .. } => "a Real",
-        DataType::Integer => "an Integer",
+        DataType::Real { .. } => "a real number",
+        DataType::Integer => "an integer",
         DataType::Boolean => "a Boolean",
-        DataType::String => "a String",
-        DataType::Enumeration(_) => "an Enumeration",
+        DataType::String => "a string",
+        DataType::Enumeration(_) => "an enumeration",
     }
 }
 
@@ -326,6 +336,7 @@ fn causality_name(variable: &Variable) -> &'static str {
     match variable.causality {
         Causality::CalculatedParameter => "a calculated parameter",
         Causality::Local => "a local variable",
+        Causality::Independent => "the independent variable",
         _ => "an output",
     }
 }

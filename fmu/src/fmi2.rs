@@ -2,18 +2,20 @@
 //! holds of all of them.
 #![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
 
-mod co_simulation;
+pub mod co_simulation;
 mod model_exchange;
 
-use crate::c_abi::{self, check_pointer, functions, read, room, text, values, write};
-use crate::condition::Interface;
+use crate::c_abi::{self, check_pointer, escaped, functions, read, room, text, values, write};
+use crate::condition::{Interface, Stepping};
 use crate::failure::Failure;
 use crate::instance::model_exchange::{Completed, Updated};
 use crate::instance::{self, Instance};
-use crate::logger::{Logger, Sink};
+use crate::logger::{Category, Logger, Sink};
+use crate::resources;
 use crate::state_machine::IsAllowed;
 use crate::variables::{DataType, Variable};
 use libc::{c_char, c_double, c_int, c_uint, c_void, size_t};
+use rocking::Progress;
 use std::ffi::CString;
 use std::ptr;
 
@@ -89,7 +91,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
             let accepted = "0 (fmi2ModelExchange), 1 (fmi2CoSimulation)";
             let interface = match fmuType {
                 MODEL_EXCHANGE => Interface::ModelExchange,
-                CO_SIMULATION => Interface::CoSimulation,
+                CO_SIMULATION => Interface::CoSimulation(Stepping::default()),
                 value => return Err(Failure::BadChoice { name: "fmuType", value, accepted }),
             };
             let guid = unsafe { text("fmuGUID", fmuGUID) };
@@ -98,13 +100,13 @@ pub unsafe extern "C" fn fmi2Instantiate(
             if name?.is_empty() {
                 return Err(Failure::NoName);
             }
-            Ok((instance::open("fmuGUID", guid?, location?)?, interface, events?))
+            Ok((instance::open("fmuGUID", guid?, resources::folder(location?)?)?, interface, events?))
         };
         match arguments() {
             Ok((archive, interface, events)) => {
                 let is_allowed: IsAllowed<Function> = match interface {
                     Interface::ModelExchange => model_exchange::is_allowed,
-                    Interface::CoSimulation => co_simulation::is_allowed,
+                    Interface::CoSimulation(_) => co_simulation::is_allowed,
                 };
                 Some((Instance::new(archive, interface, events, logger), is_allowed))
             }
@@ -121,8 +123,9 @@ fn sink(functions: &CallbackFunctions, instance_name: &str) -> Sink {
     let Some(logger) = functions.logger else { return Box::new(|_, _, _| ()) };
     let environment = functions.component_environment;
     let name = CString::new(instance_name).expect("it was read up to its NUL");
+    // the host reads a message as a printf format, in which # marks variables
     Box::new(move |status, category, message| unsafe {
-        logger(environment, name.as_ptr(), status as c_int, category.as_ptr(), message.as_ptr());
+        logger(environment, name.as_ptr(), status as c_int, category.as_ptr(), escaped(message, &['%', '#']).as_ptr());
     })
 }
 
@@ -181,8 +184,11 @@ functions! {
         loggingOn: c_int, nCategories: size_t, categories: *const *const c_char,
     ) |instance| {
         let names = values("categories", categories, nCategories)?;
-        let names = names.iter().map(|name| text("category", *name)).collect::<Result<Vec<_>, _>>()?;
-        instance.set_debug_logging(boolean("loggingOn", loggingOn)?, &names)
+        let named = |name: &*const c_char| Category::named(text("category", *name)?);
+        let categories = names.iter().map(named).collect::<Result<Vec<_>, _>>()?;
+        let on = boolean("loggingOn", loggingOn)?;
+        instance.log_events(on && (categories.is_empty() || categories.contains(&Category::Events)));
+        Ok(())
     }
 
     fmi2SetupExperiment = SetupExperiment(
@@ -206,7 +212,9 @@ functions! {
     }
 
     fmi2GetInteger = GetInteger(vr: *const c_uint, nvr: size_t, value: *mut c_int) |instance| {
-        instance.get_integer(values("vr", vr, nvr)?, room("value", value, nvr)?)
+        instance.get_numbers(values("vr", vr, nvr)?, room("value", value, nvr)?, |data_type| {
+            matches!(data_type, DataType::Integer | DataType::Enumeration(_))
+        })
     }
 
     fmi2GetBoolean = GetBoolean(vr: *const c_uint, nvr: size_t, value: *mut c_int) |instance| {
@@ -303,7 +311,10 @@ functions! {
     fmi2DoStep = DoStep(
         currentCommunicationPoint: c_double, communicationStepSize: c_double, _noSetFMUStatePriorToCurrentPoint: c_int,
     ) |instance| {
-        instance.do_step(currentCommunicationPoint, communicationStepSize)
+        match instance.do_step(currentCommunicationPoint, communicationStepSize)? {
+            Progress::Overturned => Err(Failure::Overturned { time: instance.time()? }),
+            Progress::Complete | Progress::Transition => Ok(()),
+        }
     }
 
     /// Never allowed: no step is ever pending.

@@ -48,6 +48,11 @@ impl Inputs {
         self.given[which] = Given::Slope;
     }
 
+    /// Sets the value that the same leads to over the next step, which lasts `step` (s), in a straight line.
+    pub(crate) fn lead(&mut self, which: usize, value: f64, step: f64) {
+        self.set_slope(which, (value - (LOADS[which].get)(&self.next.value)) / step);
+    }
+
     /// What they are over a step of `duration` (s). With `extrapolate`, one of which only the value is set goes on with
     /// the slope from its value at the last communication point to the present one, unless that leads out of its range.
     pub(crate) fn over(&self, duration: f64, extrapolate: bool) -> LinearLoad {

@@ -2,14 +2,15 @@
 
 use crate::condition::{Interface, Model, Present};
 use crate::failure::Failure;
-use crate::logger::{Category, Logger, Status};
+use crate::inputs::Inputs;
+use crate::logger::{Logger, Status};
 use crate::resources::Archive;
 use crate::sensitivity::{by_state, sensitivities};
 use crate::setup::Setup;
 use crate::shown::Shown;
 use crate::snapshot::{self, Snapshots};
 use crate::state_machine::Stage;
-use crate::variables::{self, Causality, Source, VARIABLES, Variable};
+use crate::variables::{self, Causality, DataType, Source, VARIABLES, Variable};
 use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE, Progress};
 use rocking::load::LOADS;
 use rocking::run::validity::{self, ASSUMPTIONS, Found, Limits};
@@ -18,6 +19,8 @@ use rocking::{Load, Parameters, Reactions, Side, Transition, TransitionKind};
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
 use std::mem::MaybeUninit;
+use std::path::PathBuf;
+use std::rc::Rc;
 
 pub mod model_exchange;
 
@@ -33,10 +36,17 @@ pub struct Instance {
     snapshots: Snapshots,
     /// The text that the host was shown last, which is its until the next call.
     shown: CString,
+    /// Asks the host for the inputs at a later time (s), if it wants to be asked.
+    ask: Option<AskInputs>,
+    /// While it is asked: the inputs before, and how long the step is to be, s.
+    asked: Option<(Inputs, f64)>,
 }
 
-/// The archive with the folder `resources` (a URI), if `guid`, the argument `name`, is its.
-pub fn open(name: &'static str, guid: &str, resources: &str) -> Result<Archive, Failure> {
+/// Asks the host for the inputs at a later time, s.
+pub(crate) type AskInputs = Rc<dyn Fn(f64)>;
+
+/// The archive with the folder `resources`, if `guid`, the argument `name`, is its.
+pub fn open(name: &'static str, guid: &str, resources: PathBuf) -> Result<Archive, Failure> {
     let archive = Archive::open(resources)?;
     let needed = crate::guid(&archive.contents);
     if guid != needed {
@@ -51,7 +61,12 @@ impl Instance {
         logger.set_events(events);
         let now = Present::new(&archive, interface);
         let (snapshots, shown) = Default::default();
-        Instance { logger, events_at_start: events, archive, now, snapshots, shown }
+        Instance { logger, events_at_start: events, archive, now, snapshots, shown, ask: None, asked: None }
+    }
+
+    /// The same, which asks its host for the inputs at the end of every step.
+    pub(crate) fn asking(self, ask: Option<AskInputs>) -> Instance {
+        Instance { ask, ..self }
     }
 
     /// State of FMI's state machine.
@@ -64,16 +79,14 @@ impl Instance {
         self.logger.failure(status, message);
     }
 
-    /// Switches events on or off: no category means all of them.
-    pub fn set_debug_logging(&mut self, on: bool, categories: &[&str]) -> Result<(), Failure> {
-        for name in categories {
-            if !Category::ALL.iter().any(|category| category.name().to_str() == Ok(name)) {
-                return Err(Failure::UnknownCategory((*name).to_owned()));
-            }
-        }
-        let events = Category::Events.name().to_str();
-        self.logger.set_events(on && (categories.is_empty() || categories.iter().any(|name| events == Ok(name))));
-        Ok(())
+    /// Switches the log of events on or off.
+    pub fn log_events(&mut self, on: bool) {
+        self.logger.set_events(on);
+    }
+
+    /// Sends a warning.
+    pub fn warn(&self, message: &str) {
+        self.logger.warning(message);
     }
 
     /// Tolerance and times; no tolerance means the default.
@@ -106,6 +119,33 @@ impl Instance {
             self.start_outside()?;
         }
         self.now.stage = self.now.interface.first_stage();
+        Ok(())
+    }
+
+    /// From here on events are handled, at the end of a step.
+    pub fn pause_for_events(&mut self) -> Result<(), Failure> {
+        if !self.now.interface.stepping().event_mode {
+            return Err(Failure::NoEventMode);
+        }
+        self.now.stage = Stage::EventMode;
+        Ok(())
+    }
+
+    /// Applies the transition that is due, if there is one.
+    pub fn update_discrete_states(&mut self) -> Result<(), Failure> {
+        let logger = &self.logger;
+        let (model, setup, ..) = self.now.parts(&self.archive)?;
+        let known = model.validity;
+        model.transit(setup, &mut |transition: &Transition| log(logger, transition));
+        if setup.validity {
+            warn(logger, &known, &model.validity);
+        }
+        Ok(())
+    }
+
+    /// From here on the next step can be made.
+    pub fn enter_step_mode(&mut self) -> Result<(), Failure> {
+        self.now.stage = Stage::StepComplete;
         Ok(())
     }
 
@@ -169,29 +209,38 @@ impl Instance {
         write(references, values, |source| shown.value(source).or_else(|| setting(source)))
     }
 
-    /// Integers and enumerations.
-    pub fn get_integer(&mut self, references: &[u32], values: &mut [MaybeUninit<i32>]) -> Result<(), Failure> {
-        self.get_discrete(references, values, |source| {
-            matches!(source, Source::Integer(_) | Source::Gains | Source::Detail)
-        })
-    }
-
-    /// Booleans, as 0 or 1.
-    pub fn get_boolean(&mut self, references: &[u32], values: &mut [MaybeUninit<i32>]) -> Result<(), Failure> {
-        self.get_discrete(references, values, |source| matches!(source, Source::Boolean(_) | Source::Switch(_)))
-    }
-
-    /// All of the values, or none if one is refused. `is_of_type` tells the sources of one type.
-    fn get_discrete(
+    /// Integers, the numbers of enumerations, or both: those that `is_of_type`.
+    pub fn get_numbers<T: From<i32>>(
         &mut self,
         references: &[u32],
-        values: &mut [MaybeUninit<i32>],
-        is_of_type: fn(&Source) -> bool,
+        values: &mut [MaybeUninit<T>],
+        is_of_type: fn(&DataType) -> bool,
+    ) -> Result<(), Failure> {
+        self.get_discrete(references, values, is_of_type, T::from)
+    }
+
+    /// Booleans.
+    pub fn get_boolean<T: From<bool>>(
+        &mut self,
+        references: &[u32],
+        values: &mut [MaybeUninit<T>],
+    ) -> Result<(), Failure> {
+        let is_boolean = |data_type: &DataType| matches!(data_type, DataType::Boolean);
+        self.get_discrete(references, values, is_boolean, |number| T::from(number != 0))
+    }
+
+    /// All of the values, or none if one is refused.
+    fn get_discrete<T>(
+        &mut self,
+        references: &[u32],
+        values: &mut [MaybeUninit<T>],
+        is_of_type: fn(&DataType) -> bool,
+        value_of: impl Fn(i32) -> T,
     ) -> Result<(), Failure> {
         let mut is_computed = false;
         for reference in references {
             let variable = find(*reference)?;
-            if !is_of_type(&variable.source) {
+            if !is_of_type(&variable.data_type) {
                 return Err(Failure::WrongType(variable));
             }
             is_computed |= !matches!(variable.source, Source::Detail | Source::Switch(_));
@@ -200,12 +249,12 @@ impl Instance {
             self.now.model(&self.archive)?;
         }
         for (reference, value) in references.iter().zip(values) {
-            value.write(match find(*reference)?.source {
+            value.write(value_of(match find(*reference)?.source {
                 Source::Integer(of) | Source::Boolean(of) => of(self.now.model(&self.archive)?.engine.motion()),
                 Source::Switch(switch) => (switch.get)(&self.now.setup).into(),
                 Source::Gains => i32::try_from(self.now.model(&self.archive)?.validity.gains).unwrap_or(i32::MAX),
                 _ => variables::detail_number(self.now.setup.detail),
-            });
+            }));
         }
         Ok(())
     }
@@ -222,7 +271,7 @@ impl Instance {
 
     /// All of the values, or none if one is refused.
     pub fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
-        let has_started = self.now.stage.has_started();
+        let (has_started, asked) = (self.now.stage.has_started(), &self.asked);
         for (reference, &value) in references.iter().zip(values) {
             let variable = find(*reference)?;
             match variable.source {
@@ -239,7 +288,10 @@ impl Instance {
         let now = &mut self.now;
         for (reference, &value) in references.iter().zip(values) {
             match &find(*reference)?.source {
-                &Source::Input(which) => now.inputs.set(which, value),
+                &Source::Input(which) => match asked {
+                    Some((_, step)) => now.inputs.lead(which, value, *step),
+                    None => now.inputs.set(which, value),
+                },
                 source => {
                     source.set(&mut now.setup, value);
                     now.model = None;
@@ -255,12 +307,13 @@ impl Instance {
     }
 
     /// All of the values, or none if one is refused. Of integers and enumerations, the parameter `detail` can be set.
-    pub fn set_integer(&mut self, references: &[u32], values: &[i32]) -> Result<(), Failure> {
+    pub fn set_integer<T: Copy + Into<i64>>(&mut self, references: &[u32], values: &[T]) -> Result<(), Failure> {
         let mut setup = self.now.setup.clone();
         for (reference, &value) in references.iter().zip(values) {
             let variable = find(*reference)?;
             let Source::Detail = variable.source else { return Err(refused(variable)) };
             self.check_not_fixed(variable)?;
+            let value = value.into();
             setup.detail = variables::detail(value).ok_or(Failure::NoSuchItem { variable, value })?;
         }
         self.set_up(setup);
@@ -375,6 +428,12 @@ impl Instance {
         seed: &[f64],
         values: &mut [MaybeUninit<f64>],
     ) -> Result<(), Failure> {
+        let found = self.directional_derivative(unknowns, knowns, seed)?;
+        values.iter_mut().zip(found).for_each(|(value, derivative)| _ = value.write(derivative));
+        Ok(())
+    }
+
+    fn directional_derivative(&mut self, unknowns: &[u32], knowns: &[u32], seed: &[f64]) -> Result<Vec<f64>, Failure> {
         let is_initializing = self.now.stage == Stage::InitializationMode;
         let mut direction = Load::default();
         let has_started = self.now.stage.has_started();
@@ -432,54 +491,82 @@ impl Instance {
         if let Some(at) = found.iter().position(|derivative| !derivative.is_finite()) {
             return Err(Failure::NoRate { variable: unknowns[at], time });
         }
-        for (derivative, value) in found.into_iter().zip(values) {
-            value.write(derivative);
+        Ok(found)
+    }
+
+    /// Adjoint of the same: of each known the derivatives of the unknowns by it, weighted with `seed` and summed.
+    pub fn get_adjoint_derivative(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        seed: &[f64],
+        values: &mut [MaybeUninit<f64>],
+    ) -> Result<(), Failure> {
+        for (unknown, &value) in unknowns.iter().zip(seed) {
+            if !value.is_finite() {
+                return Err(Failure::BadSlope { variable: find(*unknown)?, value });
+            }
         }
+        let mut sums = Vec::with_capacity(knowns.len());
+        for known in knowns {
+            let column = self.directional_derivative(unknowns, &[*known], &[1.0])?;
+            sums.push(column.iter().zip(seed).map(|(part, weight)| part * weight).sum());
+        }
+        values.iter_mut().zip(sums).for_each(|(value, sum)| _ = value.write(sum));
         Ok(())
     }
 
-    /// From `point` (s), which is where the instance is, over `step` (s). The host's clock is right: its point becomes
-    /// the instance's.
-    pub fn do_step(&mut self, point: f64, step: f64) -> Result<(), Failure> {
-        let logger = &self.logger;
+    /// How a step over `step` (s) from `point` (s) begins: its host is to be asked for the inputs at its end, outside of
+    /// any call, where it wants to be. Then [`Instance::do_step`] is the rest.
+    pub(crate) fn begin_step(&mut self, point: f64, step: f64) -> Result<Option<AskInputs>, Failure> {
         let (model, setup, inputs, stage) = self.now.parts(&self.archive)?;
-        let time = model.engine.motion().time;
-        let until = point + step;
-        if !(step > 0.0 && step.is_finite()) {
-            return Err(Failure::BadStep { step, time });
+        check_step(model, setup, point, step)?;
+        if self.ask.is_some() {
+            self.asked = Some((*inputs, step));
+            *stage = Stage::IntermediateUpdateMode;
         }
-        if !is_same_time(point, time, step) {
-            return Err(Failure::WrongPoint { given: point, time });
+        Ok(self.ask.clone())
+    }
+
+    /// From `point` (s), which is where the instance is, over `step` (s), or to the first transition if that is to be
+    /// handed over. The host's clock is right: its point becomes the instance's.
+    pub fn do_step(&mut self, point: f64, step: f64) -> Result<Progress, Failure> {
+        let asked = self.asked.take();
+        if asked.is_some() {
+            self.now.stage = Stage::StepComplete;
         }
-        if until <= point {
-            return Err(Failure::BadStep { step, time });
+        let result = self.advance(point, step);
+        if let (Err(_), Some((inputs, _))) = (&result, asked) {
+            self.now.inputs = inputs;
         }
-        if let Some(stop) = setup.stop_time
-            && until > stop
-            && !is_same_time(until, stop, step)
-        {
-            return Err(Failure::PastStop { until, stop });
-        }
+        result
+    }
+
+    fn advance(&mut self, point: f64, step: f64) -> Result<Progress, Failure> {
+        let (logger, stops) = (&self.logger, self.now.interface.stepping().hands_over());
+        let (model, setup, inputs, stage) = self.now.parts(&self.archive)?;
+        check_step(model, setup, point, step)?;
         let load = inputs.over(step, setup.extrapolate);
         let last = load.at(step);
         for quantity in &LOADS {
             quantity.check((quantity.get)(&last)).map_err(Failure::InputRunsOut)?;
         }
 
+        let time = model.engine.motion().time;
         model.engine.set_time(point);
+        model.engine.stop_at_transitions(stops);
         let known = setup.validity.then_some(model.validity);
         match model.advance(setup, step, load, &mut |transition: &Transition| log(logger, transition)) {
-            Ok(Progress::Complete) => {
-                inputs.pass(load, step);
+            Ok(progress) => {
+                let passed = if progress == Progress::Complete { step } else { model.engine.motion().time - point };
+                if passed > 0.0 {
+                    inputs.pass(load, passed);
+                }
                 known.iter().for_each(|known| warn(logger, known, &model.validity));
-                Ok(())
-            }
-            Ok(Progress::Overturned) => {
-                let end = model.engine.motion().time;
-                inputs.pass(load, end - point);
-                known.iter().for_each(|known| warn(logger, known, &model.validity));
-                *stage = Stage::StepFailed;
-                Err(Failure::Overturned { time: end })
+                if progress == Progress::Overturned {
+                    *stage = Stage::StepFailed;
+                }
+                Ok(progress)
             }
             Err(error) => {
                 model.engine.set_time(time);
@@ -489,6 +576,11 @@ impl Instance {
                 Err(error.into())
             }
         }
+    }
+
+    /// Whether its host takes a step that ends early.
+    pub fn may_return_early(&self) -> bool {
+        self.now.interface.stepping().early_return
     }
 
     /// Where it is, s.
@@ -527,7 +619,7 @@ impl Instance {
     }
 }
 
-fn find(reference: u32) -> Result<&'static Variable, Failure> {
+pub(crate) fn find(reference: u32) -> Result<&'static Variable, Failure> {
     let Some(variable) = VARIABLES.get(reference as usize) else { return Err(Failure::UnknownReference(reference)) };
     Ok(variable)
 }
@@ -551,10 +643,31 @@ fn is_text(variable: &'static Variable) -> Result<(), Failure> {
 }
 
 /// Why a function of another type cannot set `variable`.
-fn refused(variable: &'static Variable) -> Failure {
+pub(crate) fn refused(variable: &'static Variable) -> Failure {
     match variable.causality {
         Causality::Input | Causality::Parameter => Failure::WrongType(variable),
-        Causality::Output | Causality::CalculatedParameter | Causality::Local => Failure::NotSettable(variable),
+        Causality::Output | Causality::CalculatedParameter | Causality::Local | Causality::Independent => {
+            Failure::NotSettable(variable)
+        }
+    }
+}
+
+/// Whether `model` can step from `point` (s) over `step` (s).
+fn check_step(model: &Model, setup: &Setup, point: f64, step: f64) -> Result<(), Failure> {
+    let time = model.engine.motion().time;
+    let until = point + step;
+    if !(step > 0.0 && step.is_finite()) {
+        return Err(Failure::BadStep { step, time });
+    }
+    if !is_same_time(point, time, step) {
+        return Err(Failure::WrongPoint { given: point, time });
+    }
+    if until <= point {
+        return Err(Failure::BadStep { step, time });
+    }
+    match setup.stop_time {
+        Some(stop) if until > stop && !is_same_time(until, stop, step) => Err(Failure::PastStop { until, stop }),
+        _ => Ok(()),
     }
 }
 
@@ -619,7 +732,7 @@ mod tests {
         let after = State { u_dot: -0.75, theta_dot: 0.0, ..before };
         log(&logger, &Transition { time: 1.5, kind: TransitionKind::Landing, before, after });
         log(&logger, &Transition { time: 2.5, kind: TransitionKind::Settling, before, after });
-        let text = c"t = 2.5 s: landing in full contact; u = 0.001 m, u_dot = -0.75 m/s (before: 0.25), theta_dot = 0 \
+        let text = "t = 2.5 s: landing in full contact; u = 0.001 m, u_dot = -0.75 m/s (before: 0.25), theta_dot = 0 \
                      rad/s (before: -0.5); too many transitions within one vibration period: contact is held for the \
                      rest of it";
         assert_eq!(*sent.borrow(), [(Status::Warning, c"logStatusWarning".to_owned(), text.to_owned())]);

@@ -1,17 +1,19 @@
-//! FMI 2.0 unit of a flexible rocking structure, for co-simulation and model exchange.
+//! Unit of a flexible rocking structure: FMI 2.0 for co-simulation and model exchange, FMI 3.0 for co-simulation.
 //!
-//! A call of the host enters by [`fmi2`], whose shell [`c_abi`] asks a table of [`state_machine`] whether it is legal and
-//! turns pointers into slices. [`instance`] finds its variables in [`variables`] and lets [`rocking`] do the physics; what goes wrong is a
-//! [`failure::Failure`], which [`logger`] hands to the host. All that the future depends on is a
-//! [`condition::Condition`], which [`snapshot`] keeps: what was set before the start, in [`setup`], the [`inputs`], and
-//! how far the motion has come; whether it can start is in `start`. [`sensitivity`] differentiates by parameters. [`resources`] reads what the archive
-//! carries, and [`ground`] the records, of the archive or on disk.
+//! A call of the host enters by [`fmi2`] or [`fmi3`], whose shell [`c_abi`] asks a table of [`state_machine`] whether it
+//! is legal and turns pointers into slices. [`instance`], which knows no version, finds its variables in [`variables`] and
+//! lets [`rocking`] do the physics; what goes wrong is a [`failure::Failure`], which [`logger`] hands to the host. All that
+//! the future depends on is a [`condition::Condition`], which [`snapshot`] keeps: what was set before the start, in
+//! [`setup`], the [`inputs`], and how far the motion has come; whether it can start is in `start`. [`sensitivity`]
+//! differentiates by parameters. [`resources`] reads what the archive carries, and [`ground`] the records, of the archive
+//! or on disk.
 #![allow(non_snake_case)] // the shared library's name, and the standard's names of arguments
 
 pub mod c_abi;
 pub mod condition;
 pub mod failure;
 pub mod fmi2;
+pub mod fmi3;
 pub mod ground;
 pub mod inputs;
 pub mod instance;

@@ -1,8 +1,9 @@
 //! Messages to the host.
 
-use std::ffi::{CStr, CString};
+use crate::failure::Failure;
+use std::ffi::CStr;
 
-/// Result of a call, numbered as `fmi2Status`.
+/// Result of a call, numbered as in the standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(i32)]
 pub enum Status {
@@ -45,6 +46,12 @@ impl Category {
         }
     }
 
+    /// The one called `name`.
+    pub fn named(name: &str) -> Result<Category, Failure> {
+        let found = Category::ALL.into_iter().find(|category| category.name().to_str() == Ok(name));
+        found.ok_or_else(|| Failure::UnknownCategory(name.to_owned()))
+    }
+
     /// What it is about, in one line.
     pub const fn description(self) -> &'static str {
         match self {
@@ -56,8 +63,8 @@ impl Category {
     }
 }
 
-/// Takes the status, the category's name and the message, escaped for the host.
-pub type Sink = Box<dyn Fn(Status, &CStr, &CStr)>;
+/// Takes the status, the category's name and the message.
+pub type Sink = Box<dyn Fn(Status, &CStr, &str)>;
 
 /// Sends messages. Warnings, discards and errors are always sent, events if the host asked for them.
 pub struct Logger {
@@ -83,7 +90,7 @@ impl Logger {
         }
     }
 
-    /// Sends a warning. The call that it comes from returns `fmi2OK`: the standard lets a simulation go on after
+    /// Sends a warning. The call that it comes from returns OK: the standard lets a simulation go on after
     /// `fmi2Warning`, but OMSimulator (2940ef1) ends it there, after `fmi2ExitInitializationMode` as after `fmi2DoStep`.
     pub fn warning(&self, message: &str) {
         self.send(Status::Warning, Category::Warning, message);
@@ -96,22 +103,6 @@ impl Logger {
     }
 
     fn send(&self, status: Status, category: Category, message: &str) {
-        (self.sink)(status, category.name(), &escape(message));
-    }
-}
-
-/// The host reads a message as a printf format, in which `#` marks variables: both are doubled. A NUL would end it.
-fn escape(message: &str) -> CString {
-    let escaped = message.replace('%', "%%").replace('#', "##").replace('\0', "\u{fffd}");
-    CString::new(escaped).expect("every NUL is replaced")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_message_is_a_format_that_prints_itself() {
-        assert_eq!(escape("100 % of #5\0 ü").to_str().unwrap(), "100 %% of ##5\u{fffd} ü");
+        (self.sink)(status, category.name(), message);
     }
 }

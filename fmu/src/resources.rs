@@ -72,7 +72,7 @@ pub enum ResourceError {
     #[error("fmuResourceLocation = {0:?} is not a file URI of this machine, such as file:///tmp/fmu/resources")]
     NotAFileUri(String),
     /// No such file, or not readable.
-    #[error("{file}: {error}; unpack the whole archive and pass the URI of its folder \"resources\"", file = file.display())]
+    #[error("{file}: {error}; unpack the whole archive and pass its folder \"resources\"", file = file.display())]
     Unreadable {
         /// The file.
         file: PathBuf,
@@ -98,9 +98,8 @@ pub enum ResourceError {
 }
 
 impl Archive {
-    /// The one whose folder `resources` the file URI `location` points to.
-    pub fn open(location: &str) -> Result<Archive, ResourceError> {
-        let folder = path(location).ok_or_else(|| ResourceError::NotAFileUri(location.to_owned()))?;
+    /// The one whose folder `resources` is `folder`.
+    pub fn open(folder: PathBuf) -> Result<Archive, ResourceError> {
         let file = folder.join(PARAMETERS_FILE);
         let parameters: Parameters = read(&file)?;
         if let Err(error) = parameters.check() {
@@ -110,6 +109,11 @@ impl Archive {
         let Records { record: records } = if list.exists() { read(&list)? } else { Records::default() };
         Ok(Archive { folder, contents: Contents { parameters, records } })
     }
+}
+
+/// The folder that the file URI `location` points to.
+pub(crate) fn folder(location: &str) -> Result<PathBuf, ResourceError> {
+    path(location).ok_or_else(|| ResourceError::NotAFileUri(location.to_owned()))
 }
 
 /// The content of the TOML file `file`.
@@ -159,12 +163,12 @@ mod tests {
     fn a_refusal_names_the_file_and_the_reason() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join(PARAMETERS_FILE);
-        let refusal = || Archive::open(&format!("file://{}", folder.path().display())).unwrap_err().to_string();
+        let refusal = || Archive::open(folder.path().to_owned()).unwrap_err().to_string();
         assert!(refusal().starts_with(&format!("{}: No such file", file.display())), "{}", refusal());
 
         let evison = "m = 125.8\nm0 = 44.02\nH = 1.05\nB = 0.285\nf_fc = 11\nzeta_fc = 0.015\nr = 0.96\nJ0 = 0\nc_ratio = 1\ng = 9.81\n";
         fs::write(&file, evison).unwrap();
-        let archive = Archive::open(&format!("file:{}/", folder.path().display())).unwrap();
+        let archive = Archive::open(folder.path().to_owned()).unwrap();
         assert_eq!(archive.contents, Contents::from(Parameters::EVISON));
 
         fs::write(&file, evison.replace("r = 0.96", "r = 1.5")).unwrap();

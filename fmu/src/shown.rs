@@ -51,6 +51,7 @@ impl<'a> Shown<'a> {
             Source::Derived(derived) => (derived.value)(model.engine.structure()),
             Source::Ground => load.a_g,
             Source::Overturning => model.overturned_at().unwrap_or(setup.start_time),
+            Source::Time => model.engine.motion().time,
             Source::RecordDuration => model.record_duration(setup),
             _ => return None,
         })

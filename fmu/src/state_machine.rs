@@ -13,6 +13,8 @@ pub enum Stage {
     InitializationMode,
     /// Ready for a step.
     StepComplete,
+    /// Within a step, while the host is asked for the inputs at its end.
+    IntermediateUpdateMode,
     /// The structure has overturned; there is nothing left to step to.
     StepFailed,
     /// At an event.
@@ -27,10 +29,11 @@ pub enum Stage {
 
 impl Stage {
     /// All of them.
-    pub const ALL: [Stage; 8] = [
+    pub const ALL: [Stage; 9] = [
         Stage::Instantiated,
         Stage::InitializationMode,
         Stage::StepComplete,
+        Stage::IntermediateUpdateMode,
         Stage::StepFailed,
         Stage::EventMode,
         Stage::ContinuousTimeMode,
@@ -50,6 +53,7 @@ impl fmt::Display for Stage {
             Stage::Instantiated => "instantiated",
             Stage::InitializationMode => "initialization mode",
             Stage::StepComplete => "step complete",
+            Stage::IntermediateUpdateMode => "intermediate update mode",
             Stage::StepFailed => "step failed (overturned)",
             Stage::EventMode => "event mode",
             Stage::ContinuousTimeMode => "continuous-time mode",
@@ -73,7 +77,8 @@ pub(crate) fn stages<F: Copy>(function: F, is_allowed: IsAllowed<F>) -> String {
 /// where it may be called and - where not.
 macro_rules! table {
     ([$($stage:ident),* $(,)?] $($function:ident [$($mark:tt)+])*) => {
-        const STAGES: &[Stage] = &[$(Stage::$stage),*];
+        /// The stages of this interface.
+        pub const STAGES: &[Stage] = &[$(Stage::$stage),*];
 
         /// Whether `function` may be called in `stage`.
         pub(crate) fn is_allowed(function: Function, stage: Stage) -> bool {

@@ -51,6 +51,8 @@ pub enum Causality {
     Output,
     /// The FMU, for whoever looks at it.
     Local,
+    /// Nobody: what all others depend on.
+    Independent,
 }
 
 /// Data type of a variable.
@@ -130,6 +132,7 @@ pub(crate) enum Source {
     /// Which record.
     Record,
     RecordDuration,
+    Time,
     Placement(&'static Quantity<Placement>),
     Switch(&'static Switch),
 }
@@ -190,7 +193,7 @@ pub static DETAILS: Enumeration = Enumeration {
 };
 
 /// The level that `number` stands for.
-pub(crate) fn detail(number: i32) -> Option<Detail> {
+pub(crate) fn detail(number: i64) -> Option<Detail> {
     usize::try_from(number).ok()?.checked_sub(1).and_then(|at| Detail::ALL.get(at)).copied()
 }
 
@@ -232,6 +235,7 @@ pub static VARIABLES: LazyLock<Vec<Variable>> = LazyLock::new(|| {
         .chain(const { &PLACEMENT }.iter().map(|quantity| fixed(quantity, Source::Placement(quantity))))
         .chain(switches())
         .chain(calculated_parameters())
+        .chain([time()])
         .collect()
 });
 
@@ -473,6 +477,14 @@ fn switches() -> [Variable; 3] {
     ]
 }
 
+/// FMI 2.0 takes it for granted, and its descriptions leave it out; it is last, so that it counts there for nothing.
+fn time() -> Variable {
+    Variable {
+        causality: Causality::Independent,
+        ..output("time", "s", "where the simulation is", Source::Time, &[], &[])
+    }
+}
+
 fn calculated_parameters() -> [Variable; 6] {
     [
         calculated("alpha_cg", &["m", "m0", "H", "B"]),
@@ -562,7 +574,7 @@ impl Variable {
     pub fn is_continuous(&self) -> bool {
         match self.source {
             Source::Input(_) | Source::Output(_) | Source::Reaction(_) | Source::StateRate(_) => true,
-            Source::Ground | Source::Peak(_) => true,
+            Source::Ground | Source::Peak(_) | Source::Time => true,
             Source::Worst(which) | Source::WorstInstant(which) => !ASSUMPTIONS[which].is_of_impacts,
             _ => false,
         }

@@ -76,7 +76,10 @@ fn no_call_does_harm() {
     println!("{tally}");
     assert!(tally.calls() >= calls);
     let freed_in = tally.freed_in;
-    assert!(calls < CALLS || freed_in.iter().all(|count| *count > 0), "freed in {:?}: {freed_in:?}", Stage::ALL);
+    // an update within a step is FMI 3.0's
+    let is_met = |(stage, count): (Stage, u64)| stage == Stage::IntermediateUpdateMode || count > 0;
+    let is_freed_in_all = Stage::ALL.into_iter().zip(freed_in).all(is_met);
+    assert!(calls < CALLS || is_freed_in_all, "freed in {:?}: {freed_in:?}", Stage::ALL);
 }
 
 /// What `record` is set to: files of the archive in `folder` and elsewhere, sound and broken, and what is no file.
@@ -289,7 +292,9 @@ impl<'a> Sequence<'a> {
                 SetReal,
                 EnterEventMode,
             ],
-            Stage::StepFailed | Stage::Terminated | Stage::Error => &[Reset, SetFMUstate, GetReal],
+            Stage::IntermediateUpdateMode | Stage::StepFailed | Stage::Terminated | Stage::Error => {
+                &[Reset, SetFMUstate, GetReal]
+            }
         };
         let functions = if self.rng.bool() { leading_on } else { Function::ALL };
         functions[self.rng.usize(..functions.len())]

@@ -62,7 +62,7 @@ fn an_instance_that_cannot_be_made_is_null_and_the_log_says_why() {
     assert_eq!(
         refusal(Instantiate { location, ..Instantiate::default() }),
         "fmi2Instantiate: /nowhere/100%%/parameters.toml: No such file or directory (os error 2); unpack the whole \
-         archive and pass the URI of its folder \"resources\""
+         archive and pass its folder \"resources\""
     );
     let location = Some("/nowhere".to_owned());
     assert_eq!(

@@ -193,8 +193,8 @@ fn an_instance_goes_on_from_bytes() {
     slave.assert_refused(
         || slave.go_back(state),
         ERROR,
-        "fmi2SetFMUstate: the FMU state was kept by an instance of the other kind: model exchange and co-simulation have \
-         states of their own",
+        "fmi2SetFMUstate: the FMU state was kept by an instance of another kind: model exchange, co-simulation, \
+         and co-simulation with eventModeUsed or earlyReturnAllowed have states of their own",
     );
 }
 

@@ -107,7 +107,7 @@ fn rates_are_those_of_the_equations_of_motion_under_the_present_input() {
     host.assert_refused(|| host.rate("theta", 2), Err(ERROR), message);
     for name in ["phase", "a_g", "chi", "I_v"] {
         let message =
-            format!("fmi2GetRealOutputDerivatives: {name} has no derivative: only continuous Real outputs have");
+            format!("fmi2GetRealOutputDerivatives: {name} has no derivative: only continuous real outputs have");
         host.assert_refused(|| host.rate(name, 1), Err(ERROR), &message);
     }
 }

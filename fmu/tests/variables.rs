@@ -243,13 +243,13 @@ fn parameters_are_fixed_once_the_simulation_has_started() {
 #[test]
 fn a_variable_is_read_as_what_it_is() {
     let host = Host::started(&[]);
-    let message = "fmi2GetReal: phase is an Enumeration: call fmi2GetInteger or fmi2SetInteger instead";
+    let message = "fmi2GetReal: phase is an enumeration: call fmi2GetInteger or fmi2SetInteger instead";
     host.assert_refused(|| host.try_get(&["theta", "phase"]), Err(ERROR), message);
     let message = "fmi2GetReal: overturned is a Boolean: call fmi2GetBoolean or fmi2SetBoolean instead";
     host.assert_refused(|| host.try_get(&["overturned"]), Err(ERROR), message);
-    let message = "fmi2GetInteger: theta is a Real: call fmi2GetReal or fmi2SetReal instead";
+    let message = "fmi2GetInteger: theta is a real number: call fmi2GetReal or fmi2SetReal instead";
     host.assert_refused(|| host.try_integer("theta"), Err(ERROR), message);
-    let message = "fmi2GetBoolean: transitions is an Integer: call fmi2GetInteger instead";
+    let message = "fmi2GetBoolean: transitions is an integer: call fmi2GetInteger instead";
     host.assert_refused(|| host.try_boolean("transitions"), Err(ERROR), message);
 }
 
@@ -260,21 +260,21 @@ fn a_variable_is_set_as_what_it_is() {
     let set = |name: &str| unsafe { fmi2SetInteger(c, &reference(name), 1, &1) };
     let message = "fmi2SetInteger: phase cannot be set: it is a local variable, computed by the FMU";
     host.assert_refused(|| set("phase"), ERROR, message);
-    let message = "fmi2SetInteger: a_g is a Real: call fmi2GetReal or fmi2SetReal instead";
+    let message = "fmi2SetInteger: a_g is a real number: call fmi2GetReal or fmi2SetReal instead";
     host.assert_refused(|| set("a_g"), ERROR, message);
     let message = "fmi2SetBoolean: overturned cannot be set: it is a local variable, computed by the FMU";
     host.assert_refused(|| host.set_boolean("overturned", 1), ERROR, message);
-    let message = "fmi2SetBoolean: detail is an Enumeration: call fmi2GetInteger or fmi2SetInteger instead";
+    let message = "fmi2SetBoolean: detail is an enumeration: call fmi2GetInteger or fmi2SetInteger instead";
     host.assert_refused(|| host.set_boolean("detail", 1), ERROR, message);
     let message = "fmi2SetBoolean: peaks = 2 is not one of 0 (fmi2False), 1 (fmi2True)";
     host.assert_refused(|| host.set_boolean("peaks", 2), ERROR, message);
-    let message = "fmi2SetReal: record is a String: call fmi2GetString or fmi2SetString instead";
+    let message = "fmi2SetReal: record is a string: call fmi2GetString or fmi2SetString instead";
     host.assert_refused(|| host.set(&[("record", 1.0)]), ERROR, message);
     let message = "fmi2SetString: value must be a valid pointer; it is null or misaligned";
     host.assert_refused(|| unsafe { fmi2SetString(c, &reference("record"), 1, &null()) }, ERROR, message);
-    let message = "fmi2SetString: a_g is a Real: call fmi2GetReal or fmi2SetReal instead";
+    let message = "fmi2SetString: a_g is a real number: call fmi2GetReal or fmi2SetReal instead";
     host.assert_refused(|| unsafe { fmi2SetString(c, &0, 1, &c"a".as_ptr()) }, ERROR, message);
-    let message = "fmi2GetString: V_t is a Real: call fmi2GetReal or fmi2SetReal instead";
+    let message = "fmi2GetString: V_t is a real number: call fmi2GetReal or fmi2SetReal instead";
     host.assert_refused(|| unsafe { fmi2GetString(c, &reference("V_t"), 1, &mut null()) }, ERROR, message);
 
     for on in [1, 0] {

@@ -1,8 +1,9 @@
 //! FMI 2.0 model description of a unit for model exchange and co-simulation: its types, named as in the standard, and their XML.
 //!
 //! Build a [`FmiModelDescription`], call [`FmiModelDescription::to_xml`]. The fields stand in the order that the
-//! standard's schema asks of the elements; an attribute that is `None` is left out.
+//! standard's schema asks of the elements; an attribute that is `None` is left out. What FMI 3.0 has otherwise is in [`fmi3`].
 
+pub mod fmi3;
 mod model_structure;
 mod model_variables;
 mod type_definitions;
@@ -78,15 +79,20 @@ pub struct FmiModelDescription {
 }
 
 impl FmiModelDescription {
-    /// The text of `modelDescription.xml`: declaration, elements indented by two spaces, a final line feed.
+    /// The text of `modelDescription.xml`.
     pub fn to_xml(&self) -> Result<String, SeError> {
-        let mut xml = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
-        let mut serializer = XmlSerializer::new(&mut xml);
-        serializer.indent(' ', 2);
-        self.serialize(serializer)?;
-        xml.push('\n');
-        Ok(xml)
+        document(self)
     }
+}
+
+/// The XML of `root`: declaration, elements indented by two spaces, a final line feed.
+fn document(root: &impl Serialize) -> Result<String, SeError> {
+    let mut xml = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
+    let mut serializer = XmlSerializer::new(&mut xml);
+    serializer.indent(' ', 2);
+    root.serialize(serializer)?;
+    xml.push('\n');
+    Ok(xml)
 }
 
 /// Version of the standard that a description follows.

@@ -49,6 +49,8 @@ pub enum Causality {
     Output,
     /// The model, for whoever looks at it.
     Local,
+    /// Nobody: what all others depend on.
+    Independent,
 }
 
 /// When a variable changes.

@@ -1,5 +1,6 @@
 //! `documentation/index.html`: the model, its variables and how to use it.
 
+use crate::Version;
 use crate::library::{Library, Platform};
 use crate::model_description::DESCRIPTION;
 use crate::significant::significant;
@@ -24,6 +25,8 @@ const ICON: &str = include_str!("../resources/model.svg");
 struct Page<'a> {
     model_name: &'a str,
     platforms: Vec<PlatformRow>,
+    /// Version of the standard.
+    fmi: u32,
     record: &'a str,
     description: &'a str,
     version: &'a str,
@@ -71,6 +74,7 @@ struct LogCategory {
 
 /// The page of the FMU `name` of `structure` with these `contents` and `libraries`.
 pub fn documentation(
+    version: Version,
     name: &str,
     structure: &Structure,
     contents: &Contents,
@@ -78,7 +82,8 @@ pub fn documentation(
 ) -> Result<String, minijinja::Error> {
     let page = Page {
         model_name: name,
-        platforms: libraries.iter().map(|library| platform(library.platform)).collect(),
+        platforms: libraries.iter().map(|library| platform(version, library.platform)).collect(),
+        fmi: if version == Version::Fmi2 { 2 } else { 3 },
         record: contents.default_record(),
         description: DESCRIPTION,
         version: env!("CARGO_PKG_VERSION"),
@@ -107,7 +112,7 @@ pub fn documentation(
     environment.render_named_str(name, TEMPLATE, Serde(page))
 }
 
-fn platform(platform: Platform) -> PlatformRow {
+fn platform(version: Version, platform: Platform) -> PlatformRow {
     let name = match platform {
         Platform::Linux64 => "Linux on x86-64",
         Platform::LinuxArm64 => "Linux on 64-bit ARM",
@@ -115,7 +120,7 @@ fn platform(platform: Platform) -> PlatformRow {
         Platform::Darwin64 => "macOS on x86-64 and Apple silicon",
         Platform::DarwinArm64 => "macOS on Apple silicon, for hosts that look for its FMI 3.0 name",
     };
-    PlatformRow { folder: platform.folder(), name }
+    PlatformRow { folder: platform.folder(version), name }
 }
 
 fn group(title: &'static str, causality: Causality, structure: &Structure, contents: &Contents) -> Group {
@@ -178,8 +183,8 @@ mod tests {
     #[test]
     fn the_page_has_a_row_for_every_variable() {
         let structure = Structure::new(Parameters::EVISON).unwrap();
-        let page = documentation("Pier", &structure, &Parameters::EVISON.into(), &[]).unwrap();
-        for variable in VARIABLES.iter() {
+        let page = documentation(Version::Fmi2, "Pier", &structure, &Parameters::EVISON.into(), &[]).unwrap();
+        for variable in VARIABLES.iter().filter(|variable| variable.causality != Causality::Independent) {
             let cell = format!("<tr><td class=\"n\"><code>{}</code></td><td class=\"n\">", variable.name);
             assert_eq!(page.matches(&cell).count(), 1, "{}", variable.name);
         }

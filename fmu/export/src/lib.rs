@@ -7,6 +7,7 @@ mod experiment;
 mod library;
 mod model_description;
 pub mod significant;
+mod terminals;
 mod units;
 
 use FlexibleRocking::ground::GroundRecord;
@@ -24,6 +25,16 @@ use std::str::FromStr;
 const LICENSES: &str = include_str!("../resources/licenses.txt");
 
 const ICON: &[u8] = include_bytes!("../resources/model.png");
+
+/// A version of the standard that an archive can follow.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Version {
+    /// FMI 2.0
+    #[default]
+    Fmi2,
+    /// FMI 3.0
+    Fmi3,
+}
 
 /// What a model is called: in its description, and as the file of its libraries.
 #[derive(Clone, Debug)]
@@ -63,7 +74,7 @@ pub enum ExportError {
     #[error("the name {0:?} must be of letters a to z, digits and _, and not begin with a digit")]
     Name(String),
     /// Two libraries for one platform.
-    #[error("two shared libraries are for {}: leave one out", .0.folder())]
+    #[error("two shared libraries are for {}: leave one out", .0.tuple())]
     SamePlatform(Platform),
     /// A file that is no record.
     #[error(transparent)]
@@ -74,7 +85,7 @@ pub enum ExportError {
     /// Two records of one name, which is what the FMU knows them by.
     #[error("two records are called {0}: rename one of them; capitals and small letters are the same here")]
     SameName(String),
-    /// The model description cannot be written.
+    /// The model description, or what stands beside it in XML, cannot be written.
     #[error("modelDescription.xml: {0}")]
     Description(#[from] ::model_description::SeError),
     /// The documentation cannot be written.
@@ -88,10 +99,11 @@ pub enum ExportError {
     Archive(#[from] zip::result::ZipError),
 }
 
-/// The FMU of `structure` under `name`, with the shared `libraries` and the `records`, of which the first is what its ground
+/// The FMU of `structure` under `name` for hosts of `version`, with the shared `libraries` and the `records`, of which the first is what its ground
 /// follows: what it carries, and the bytes of the archive. The same name, structure, libraries and records give the same
 /// bytes.
 pub fn export(
+    version: Version,
     name: &ModelName,
     structure: &Structure,
     records: &[PathBuf],
@@ -116,12 +128,14 @@ pub fn export(
         followed.get_or_insert(record.record);
     }
     let experiment = Experiment::new(structure, followed.as_ref());
-    let archive = archive::archive(&entries(name.as_str(), structure, &contents, experiment, files, &libraries)?)?;
+    let archive =
+        archive::archive(&entries(version, name.as_str(), structure, &contents, experiment, files, &libraries)?)?;
     Ok((contents, archive))
 }
 
 /// The content of the archive, with the `records` as they are.
 fn entries(
+    version: Version,
     name: &str,
     structure: &Structure,
     contents: &Contents,
@@ -130,21 +144,34 @@ fn entries(
     libraries: &[&Library],
 ) -> Result<Vec<Entry>, ExportError> {
     let entry = |path: &str, content| Entry { path: path.to_owned(), content };
-    let description = model_description::model_description(name, structure, contents, experiment);
-    let mut entries = vec![
-        entry("modelDescription.xml", description.to_xml()?.into()),
-        entry("model.png", ICON.to_vec()),
-        entry("documentation/index.html", documentation::documentation(name, structure, contents, libraries)?.into()),
+    let page = documentation::documentation(version, name, structure, contents, libraries)?;
+    let mut entries = match version {
+        Version::Fmi2 => {
+            let description = model_description::model_description(name, structure, contents, experiment);
+            vec![entry("modelDescription.xml", description.to_xml()?.into()), entry("model.png", ICON.to_vec())]
+        }
+        Version::Fmi3 => {
+            let description = model_description::fmi3::model_description(name, structure, contents, experiment);
+            vec![
+                entry("modelDescription.xml", description.to_xml()?.into()),
+                entry("terminalsAndIcons/terminalsAndIcons.xml", terminals::terminals().to_xml()?.into()),
+                entry("terminalsAndIcons/icon.png", ICON.to_vec()),
+            ]
+        }
+    };
+    entries.extend([
+        entry("documentation/index.html", page.into()),
         entry("documentation/licenses/license.txt", LICENSES.into()),
         entry(&format!("resources/{PARAMETERS_FILE}"), toml::to_string(&contents.parameters)?.into()),
-    ];
+    ]);
     if !contents.records.is_empty() {
         let names = Records { record: contents.records.clone() };
         entries.push(entry(&format!("resources/{RECORDS_FILE}"), toml::to_string(&names)?.into()));
     }
     let packed = contents.records.iter().zip(records);
     entries.extend(packed.map(|(packed, file)| entry(&format!("resources/{}", packed.file), file)));
-    entries.extend(libraries.iter().map(|library| entry(&library.platform.path(name), library.content.clone())));
+    entries
+        .extend(libraries.iter().map(|library| entry(&library.platform.path(version, name), library.content.clone())));
     Ok(entries)
 }
 
@@ -159,13 +186,15 @@ mod tests {
 
     /// What passes for the library of this build for `platform`.
     fn library(platform: Platform) -> Library {
-        Library { platform, content: platform.folder().into() }
+        Library { platform, content: platform.target().into() }
     }
 
     #[test]
     fn two_exports_of_the_same_are_the_same_bytes() {
         let exported = |parameters, platforms: [Platform; 2]| {
-            export(&ModelName::default(), &structure(parameters), &[], &platforms.map(library)).unwrap().1
+            export(Version::Fmi2, &ModelName::default(), &structure(parameters), &[], &platforms.map(library))
+                .unwrap()
+                .1
         };
         let [linux, windows] = [Platform::Linux64, Platform::Windows64];
         let first = exported(Parameters::EVISON, [linux, windows]);
@@ -176,7 +205,9 @@ mod tests {
     #[test]
     fn one_library_for_each_platform() {
         let two = [Platform::LinuxArm64; 2].map(library);
-        let refusal = export(&ModelName::default(), &structure(Parameters::EVISON), &[], &two).unwrap_err().to_string();
+        let refusal = export(Version::Fmi2, &ModelName::default(), &structure(Parameters::EVISON), &[], &two)
+            .unwrap_err()
+            .to_string();
         assert_eq!(refusal, "two shared libraries are for aarch64-linux: leave one out");
     }
 
@@ -198,7 +229,8 @@ mod tests {
         let libraries: Vec<_> = libraries.iter().collect();
         let (structure, contents) = (structure(Parameters::EVISON), Contents::from(Parameters::EVISON));
         let experiment = Experiment::new(&structure, None);
-        let entries = entries("Pier", &structure, &contents, experiment, Vec::new(), &libraries).unwrap();
+        let entries =
+            entries(Version::Fmi2, "Pier", &structure, &contents, experiment, Vec::new(), &libraries).unwrap();
         let paths: Vec<_> = entries.iter().map(|entry| entry.path.as_str()).collect();
         let expected = [
             "modelDescription.xml",
@@ -217,7 +249,40 @@ mod tests {
         let parameters: Parameters = toml::from_slice(&entries[4].content).unwrap();
         assert_eq!(parameters, Parameters::EVISON);
         let libraries: Vec<_> = entries[5..].iter().map(|entry| str::from_utf8(&entry.content).unwrap()).collect();
-        assert_eq!(libraries, Platform::ALL.map(Platform::folder));
+        assert_eq!(libraries, Platform::ALL.map(Platform::target));
+    }
+
+    #[test]
+    fn fmi_3_has_folders_and_terminals_of_its_own() {
+        let libraries = Platform::ALL.map(library);
+        let libraries: Vec<_> = libraries.iter().collect();
+        let (structure, contents) = (structure(Parameters::EVISON), Contents::from(Parameters::EVISON));
+        let experiment = Experiment::new(&structure, None);
+        let entries = |version| entries(version, "Pier", &structure, &contents, experiment, Vec::new(), &libraries);
+        let [two, three] = [Version::Fmi2, Version::Fmi3].map(|version| entries(version).unwrap());
+        let paths: Vec<_> = three.iter().map(|entry| entry.path.as_str()).collect();
+        let expected = [
+            "modelDescription.xml",
+            "terminalsAndIcons/terminalsAndIcons.xml",
+            "terminalsAndIcons/icon.png",
+            "documentation/index.html",
+            "documentation/licenses/license.txt",
+            "resources/parameters.toml",
+            "binaries/x86_64-linux/Pier.so",
+            "binaries/aarch64-linux/Pier.so",
+            "binaries/x86_64-windows/Pier.dll",
+            "binaries/x86_64-darwin/Pier.dylib",
+            "binaries/aarch64-darwin/Pier.dylib",
+        ];
+        assert_eq!(paths, expected);
+        let libraries = |entries: &[Entry]| -> Vec<_> {
+            entries
+                .iter()
+                .filter(|entry| entry.path.starts_with("binaries"))
+                .map(|entry| entry.content.clone())
+                .collect()
+        };
+        assert_eq!(libraries(&three), libraries(&two));
     }
 
     #[test]
@@ -234,6 +299,7 @@ mod tests {
         let export = |records: &[&PathBuf]| {
             let records: Vec<_> = records.iter().map(|path| path.to_path_buf()).collect();
             super::export(
+                Version::Fmi2,
                 &ModelName::default(),
                 &structure(Parameters::EVISON),
                 &records,

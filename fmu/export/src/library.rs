@@ -1,5 +1,6 @@
 //! Shared libraries, and the platforms that an archive can have one for.
 
+use crate::Version;
 use FlexibleRocking::BUILD;
 use memchr::memmem;
 use object::read::macho::{FatArch, MachOFatFile32};
@@ -30,9 +31,24 @@ impl Platform {
     pub const ALL: [Platform; 5] =
         [Platform::Linux64, Platform::LinuxArm64, Platform::Windows64, Platform::Darwin64, Platform::DarwinArm64];
 
-    /// The archive's folder of its libraries. FMI 2.0 has names for x86 alone; since 2.0.4 it asks for the tuples of FMI
+    /// Its folder in an archive of FMI 3.0, the standard's tuple of architecture and system. `x86_64-darwin` has what
+    /// runs on both.
+    pub fn tuple(self) -> &'static str {
+        match self {
+            Platform::Linux64 => "x86_64-linux",
+            Platform::LinuxArm64 => "aarch64-linux",
+            Platform::Windows64 => "x86_64-windows",
+            Platform::Darwin64 => "x86_64-darwin",
+            Platform::DarwinArm64 => "aarch64-darwin",
+        }
+    }
+
+    /// The folder of its libraries in an archive of `version`. FMI 2.0 has names for x86 alone; since 2.0.4 it asks for the tuples of FMI
     /// 3.0 for all others. Hosts that know no tuples look for `darwin64` on every Mac: what stands there runs on both.
-    pub fn folder(self) -> &'static str {
+    pub fn folder(self, version: Version) -> &'static str {
+        if version == Version::Fmi3 {
+            return self.tuple();
+        }
         match self {
             Platform::Linux64 => "linux64",
             Platform::LinuxArm64 => "aarch64-linux",
@@ -63,9 +79,9 @@ impl Platform {
     }
 
     /// Where an archive of the model `name` has the library.
-    pub(crate) fn path(self, name: &str) -> String {
+    pub(crate) fn path(self, version: Version, name: &str) -> String {
         let (_, extension) = self.file().rsplit_once('.').expect("they have one");
-        format!("binaries/{}/{name}.{extension}", self.folder())
+        format!("binaries/{}/{name}.{extension}", self.folder(version))
     }
 
     /// What `library` is for, by its header.
@@ -115,7 +131,7 @@ pub enum LibraryError {
         error: ZipError,
     },
     /// Something else, or for another platform.
-    #[error("{} is neither an FMU nor a shared library for one of {}", .0.display(), Platform::ALL.map(Platform::folder).join(", "))]
+    #[error("{} is neither an FMU nor a shared library for one of {}", .0.display(), Platform::ALL.map(Platform::tuple).join(", "))]
     NoLibrary(PathBuf),
     /// A library from other sources than this exporter, so that its variables may be others.
     #[error("the shared library {} is of another build: the name of this one, {BUILD}, does not occur in it", .0.display())]

@@ -1,4 +1,6 @@
-//! `modelDescription.xml`, from the table of variables.
+//! `modelDescription.xml`, from the table of variables: of FMI 2.0, and in [`fmi3`] of FMI 3.0.
+
+pub mod fmi3;
 
 use crate::experiment::Experiment;
 use crate::units;
@@ -63,6 +65,7 @@ pub fn model_description(
         model_variables: fmi::ModelVariables {
             scalar_variables: (0..)
                 .zip(&*VARIABLES)
+                .filter(|(_, variable)| variable.causality != Causality::Independent) // the standard's own
                 .map(|(at, variable)| scalar_variable(at, variable, structure, contents))
                 .collect(),
         },
@@ -127,6 +130,7 @@ fn causality(variable: &Variable) -> fmi::Causality {
         Causality::Input => fmi::Causality::Input,
         Causality::Output => fmi::Causality::Output,
         Causality::Local => fmi::Causality::Local,
+        Causality::Independent => fmi::Causality::Independent,
     }
 }
 
@@ -134,7 +138,7 @@ fn variability(variable: &Variable) -> fmi::Variability {
     match variable.causality {
         Causality::Parameter | Causality::CalculatedParameter => fmi::Variability::Fixed,
         _ if variable.is_continuous() => fmi::Variability::Continuous,
-        Causality::Input | Causality::Output | Causality::Local => fmi::Variability::Discrete,
+        Causality::Input | Causality::Output | Causality::Local | Causality::Independent => fmi::Variability::Discrete,
     }
 }
 
@@ -142,7 +146,7 @@ fn initial(variable: &Variable) -> Option<fmi::Initial> {
     match variable.causality {
         Causality::Parameter => Some(fmi::Initial::Exact),
         Causality::CalculatedParameter | Causality::Output | Causality::Local => Some(fmi::Initial::Calculated),
-        Causality::Input => None,
+        Causality::Input | Causality::Independent => None,
     }
 }
 
@@ -197,7 +201,8 @@ mod tests {
     fn every_variable_is_there_once_in_the_order_of_the_table() {
         let written = described(&Parameters::MCMANUS.into()).model_variables.scalar_variables;
         let names: Vec<_> = written.iter().map(|variable| variable.name.as_str()).collect();
-        assert_eq!(names, VARIABLES.iter().map(|variable| variable.name).collect::<Vec<_>>());
+        let but_time = VARIABLES.iter().filter(|variable| variable.causality != Causality::Independent);
+        assert_eq!(names, but_time.map(|variable| variable.name).collect::<Vec<_>>());
         assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len());
         let references: Vec<_> = written.iter().map(|variable| variable.value_reference).collect();
         assert_eq!(references, (0..names.len() as u32).collect::<Vec<_>>());

@@ -1,0 +1,194 @@
+//! The description in FMI 3.0.
+
+use super::{DESCRIPTION, causality, initial, log_category, variability};
+use crate::experiment::Experiment;
+use crate::units;
+use FlexibleRocking::logger;
+use FlexibleRocking::resources::Contents;
+use FlexibleRocking::variables::{Causality, DETAILS, DataType, Enumeration, PHASES, VARIABLES, Value, Variable};
+use model_description as fmi;
+use model_description::fmi3;
+use rocking::Structure;
+use rocking::engine::DEFAULT_TOLERANCE;
+
+/// The description of the FMU `name` of `structure` with these `contents`.
+pub fn model_description(
+    name: &str,
+    structure: &Structure,
+    contents: &Contents,
+    experiment: Experiment,
+) -> fmi3::FmiModelDescription {
+    fmi3::FmiModelDescription {
+        fmi_version: fmi3::FmiVersion::V3_0,
+        model_name: name.into(),
+        instantiation_token: FlexibleRocking::guid(contents),
+        description: DESCRIPTION.into(),
+        version: env!("CARGO_PKG_VERSION").into(),
+        license: env!("CARGO_PKG_LICENSE").into(),
+        generation_tool: concat!("rocking-fmu ", env!("CARGO_PKG_VERSION")).into(),
+        variable_naming_convention: fmi::VariableNamingConvention::Flat,
+        co_simulation: fmi3::CoSimulation {
+            model_identifier: name.into(),
+            can_be_instantiated_only_once_per_process: false,
+            can_get_and_set_fmu_state: true,
+            can_serialize_fmu_state: true,
+            provides_directional_derivatives: true,
+            provides_adjoint_derivatives: true,
+            can_handle_variable_communication_step_size: true,
+            max_output_derivative_order: 1,
+            provides_intermediate_update: true,
+            might_return_early_from_do_step: true,
+            can_return_early_after_intermediate_update: false,
+            has_event_mode: true,
+        },
+        unit_definitions: fmi::UnitDefinitions { units: units::definitions(structure) },
+        type_definitions: fmi3::TypeDefinitions { enumeration_types: [&PHASES, &DETAILS].map(enumeration_type).into() },
+        log_categories: fmi::LogCategories { categories: logger::Category::ALL.map(log_category).into() },
+        default_experiment: fmi::DefaultExperiment {
+            start_time: 0.0,
+            stop_time: experiment.stop_time,
+            tolerance: DEFAULT_TOLERANCE,
+            step_size: experiment.step_size,
+        },
+        model_variables: fmi3::ModelVariables {
+            variables: (0..)
+                .zip(&*VARIABLES)
+                .map(|(at, variable)| of_type(at, variable, structure, contents))
+                .collect(),
+        },
+        model_structure: model_structure(),
+    }
+}
+
+fn enumeration_type(enumeration: &Enumeration) -> fmi3::EnumerationType {
+    let items = (1..).zip(enumeration.items).map(|(value, &name)| fmi::Item { name: name.into(), value }).collect();
+    fmi3::EnumerationType { name: enumeration.name.into(), description: enumeration.description.into(), items }
+}
+
+/// The variable at position `at` of the table, which is its value reference.
+fn of_type(at: u32, variable: &Variable, structure: &Structure, contents: &Contents) -> fmi3::Variable {
+    let start = variable.start(contents);
+    let common = fmi3::Common {
+        name: variable.name.into(),
+        value_reference: at,
+        description: variable.description.into(),
+        causality: causality(variable),
+        variability: variability(variable),
+        initial: initial(variable),
+    };
+    match variable.data_type {
+        DataType::Real { unit, range } => fmi3::Variable::Float64(fmi3::Float64 {
+            common,
+            intermediate_update: (variable.causality == Causality::Input).then_some(true),
+            unit: (unit != "1").then(|| unit.into()),
+            display_unit: units::display_unit(variable, structure).map(Into::into),
+            min: range.map(|(min, _)| min),
+            max: range.map(|(_, max)| max),
+            nominal: units::nominal(variable, structure),
+            start: start.and_then(|value| if let Value::Real(value) = value { Some(value) } else { None }),
+        }),
+        DataType::Integer => fmi3::Variable::Int32(fmi3::Int32 { common, min: Some(0) }),
+        DataType::Boolean => fmi3::Variable::Boolean(fmi3::Boolean {
+            common,
+            start: start.and_then(|value| if let Value::Boolean(value) = value { Some(value) } else { None }),
+        }),
+        DataType::String => fmi3::Variable::String(fmi3::Text {
+            common,
+            start: start.and_then(|value| match value {
+                Value::String(value) => Some(fmi3::Start { value }),
+                _ => None,
+            }),
+        }),
+        DataType::Enumeration(enumeration) => fmi3::Variable::Enumeration(fmi3::Enumeration {
+            common,
+            declared_type: enumeration.name.into(),
+            start: start.and_then(|value| if let Value::Item(value) = value { Some(value) } else { None }),
+        }),
+    }
+}
+
+/// At a communication point the outputs depend on the state, which is the unit's own, and on their feedthrough; at
+/// initialization on what the table says as well, as calculated parameters do. Local variables are in neither list.
+fn model_structure() -> fmi3::ModelStructure {
+    let unknowns = |is_one: fn(&Variable) -> bool, dependencies: fn(&Variable) -> Vec<u32>| {
+        let calculated = (0..).zip(&*VARIABLES).filter(|(_, variable)| is_one(variable));
+        calculated.map(|(reference, variable)| unknown(reference, dependencies(variable))).collect()
+    };
+    fmi3::ModelStructure {
+        outputs: unknowns(
+            |v| v.causality == Causality::Output,
+            |v| v.feedthrough.iter().map(|name| reference(name)).collect(),
+        ),
+        initial_unknowns: unknowns(
+            |v| matches!(v.causality, Causality::Output | Causality::CalculatedParameter),
+            |v| v.feedthrough.iter().chain(v.initial_dependencies).map(|name| reference(name)).collect(),
+        ),
+    }
+}
+
+fn unknown(value_reference: u32, dependencies: Vec<u32>) -> fmi3::Unknown {
+    let dependencies_kind = vec![fmi::DependenciesKind::Dependent; dependencies.len()];
+    fmi3::Unknown { value_reference, dependencies, dependencies_kind }
+}
+
+/// The value reference of the variable called `name`.
+fn reference(name: &str) -> u32 {
+    let at = (0..).zip(&*VARIABLES).find(|(_, variable)| variable.name == name);
+    at.unwrap_or_else(|| panic!("no variable is called {name}")).0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rocking::Parameters;
+
+    /// Both versions say the same of every variable, but for time.
+    #[test]
+    fn both_versions_describe_one_table() {
+        let contents = Contents::from(Parameters::MCMANUS);
+        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let experiment = Experiment { stop_time: 4.0, step_size: 0.005 };
+        let three = model_description("Pier", &structure, &contents, experiment);
+        let two = super::super::model_description("Pier", &structure, &contents, experiment);
+        let common = three.model_variables.variables.iter().map(|variable| match variable {
+            fmi3::Variable::Float64(of) => &of.common,
+            fmi3::Variable::Int32(of) => &of.common,
+            fmi3::Variable::Boolean(of) => &of.common,
+            fmi3::Variable::String(of) => &of.common,
+            fmi3::Variable::Enumeration(of) => &of.common,
+        });
+        let (time, common): (Vec<_>, Vec<_>) = common.partition(|of| of.causality == fmi::Causality::Independent);
+        assert_eq!(time.iter().map(|of| of.name.as_str()).collect::<Vec<_>>(), ["time"]);
+        let told = |(name, reference, description, causality, variability, initial)| {
+            format!("{name} {reference} {description} {causality:?} {variability:?} {initial:?}")
+        };
+        let of_three = common.iter().map(|of| {
+            (of.name.clone(), of.value_reference, of.description.clone(), of.causality, of.variability, of.initial)
+        });
+        let of_two = two.model_variables.scalar_variables.iter().map(|of| {
+            (of.name.clone(), of.value_reference, of.description.clone(), of.causality, of.variability, of.initial)
+        });
+        assert_eq!(of_three.map(told).collect::<Vec<_>>(), of_two.map(told).collect::<Vec<_>>());
+        assert_eq!(three.instantiation_token, two.guid);
+        let outputs = three.model_structure.outputs.iter().map(|unknown| unknown.value_reference as usize + 1);
+        assert!(outputs.eq(two.model_structure.outputs.unknowns.iter().map(|unknown| unknown.index)));
+    }
+
+    #[test]
+    fn start_values_are_those_of_the_structure() {
+        let contents = Contents::from(Parameters::EVISON);
+        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let experiment = Experiment { stop_time: 4.0, step_size: 0.005 };
+        let xml = model_description("Pier", &structure, &contents, experiment).to_xml().unwrap();
+        for element in [
+            r#"causality="input" variability="continuous" intermediateUpdate="true" unit="m/s2" displayUnit="g" min="-10000.0" max="10000.0" nominal="3.59" start="0.0"/>"#,
+            r#"causality="parameter" variability="fixed" initial="exact" unit="Hz" min="0.001" max="10000.0" start="11.0"/>"#,
+            r#"description="what holds of the base" causality="local" variability="discrete" initial="calculated" declaredType="Phase"/>"#,
+            r#"causality="parameter" variability="fixed" initial="exact" declaredType="Detail" start="1"/>"#,
+            r#"      <Start value=""/>"#,
+            r#"name="time" "#,
+        ] {
+            assert!(xml.contains(element), "{element}\n{xml}");
+        }
+    }
+}

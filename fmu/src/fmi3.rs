@@ -1,0 +1,538 @@
+//! The C interface of FMI 3.0 for co-simulation: what its functions are called, and what they pass. See [`c_abi`] for
+//! what holds of all of them.
+//!
+//! Where the host handles events and takes an early return, a step ends at the first transition on it: state and phase
+//! are those before it until `fmi3UpdateDiscreteStates` applies it. A host that can be called back gives the inputs at
+//! the end of every step within it, and they are straight lines over the step; else they are held.
+#![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
+
+pub mod co_simulation;
+
+use crate::c_abi::{
+    self, call, call_on, check_pointer, escaped, functions, instantiate, read, room, text, values, write,
+};
+use crate::condition::{Interface, Stepping};
+use crate::failure::Failure;
+use crate::instance::{self, AskInputs, Instance};
+use crate::logger::{Category, Logger, Sink};
+use crate::variables::{Causality, DataType, Variable};
+use libc::{c_char, c_int, c_uint, c_void, size_t};
+use rocking::Progress;
+use std::path::PathBuf;
+use std::ptr;
+use std::rc::Rc;
+
+/// `fmi3LogMessageCallback`
+pub type LogMessageCallback = unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
+
+/// `fmi3IntermediateUpdateCallback`
+pub type IntermediateUpdateCallback = unsafe extern "C" fn(*mut c_void, f64, u8, u8, u8, u8, *mut u8, *mut f64);
+
+const MAGIC: u64 = 0x526f_636b_696e_6733;
+
+/// `fmi3GetVersion`
+#[unsafe(no_mangle)]
+pub extern "C" fn fmi3GetVersion() -> *const c_char {
+    c"3.0".as_ptr()
+}
+
+/// `fmi3InstantiateCoSimulation`
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
+    instanceName: *const c_char,
+    instantiationToken: *const c_char,
+    resourcePath: *const c_char,
+    _visible: u8,
+    loggingOn: u8,
+    eventModeUsed: u8,
+    earlyReturnAllowed: u8,
+    requiredIntermediateVariables: *const c_uint,
+    nRequiredIntermediateVariables: size_t,
+    instanceEnvironment: *mut c_void,
+    logMessage: Option<LogMessageCallback>,
+    intermediateUpdate: Option<IntermediateUpdateCallback>,
+) -> *mut c_void {
+    let arguments = || {
+        let name = unsafe { text("instanceName", instanceName) }?;
+        let token = unsafe { text("instantiationToken", instantiationToken) }?;
+        let folder = unsafe { text("resourcePath", resourcePath) }?;
+        let events = boolean("loggingOn", loggingOn)?;
+        let event_mode = boolean("eventModeUsed", eventModeUsed)?;
+        let early_return = boolean("earlyReturnAllowed", earlyReturnAllowed)?;
+        let required = unsafe {
+            values("requiredIntermediateVariables", requiredIntermediateVariables, nRequiredIntermediateVariables)
+        }?;
+        if name.trim().is_empty() {
+            return Err(Failure::NoName);
+        }
+        for reference in required {
+            let variable = instance::find(*reference)?;
+            if variable.causality != Causality::Input {
+                return Err(Failure::NotIntermediate(variable));
+            }
+        }
+        let archive = instance::open("instantiationToken", token, PathBuf::from(folder))?;
+        Ok((archive, Interface::CoSimulation(Stepping { event_mode, early_return }), events, !required.is_empty()))
+    };
+    instantiate::<Function>(|| {
+        let logger = Logger::new(sink(logMessage, instanceEnvironment));
+        match arguments() {
+            Ok((archive, interface, events, asks)) => {
+                let ask = intermediateUpdate.filter(|_| asks).map(|update| ask(update, instanceEnvironment));
+                Some((Instance::new(archive, interface, events, logger).asking(ask), co_simulation::is_allowed as _))
+            }
+            Err(failure) => {
+                logger.failure(failure.status(), &format!("fmi3InstantiateCoSimulation: {failure}"));
+                None
+            }
+        }
+    })
+}
+
+/// `fmi3InstantiateModelExchange`: there is none in this version.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3InstantiateModelExchange(
+    _instanceName: *const c_char,
+    _instantiationToken: *const c_char,
+    _resourcePath: *const c_char,
+    _visible: u8,
+    _loggingOn: u8,
+    instanceEnvironment: *mut c_void,
+    logMessage: Option<LogMessageCallback>,
+) -> *mut c_void {
+    not_this_interface("fmi3InstantiateModelExchange", logMessage, instanceEnvironment)
+}
+
+/// `fmi3InstantiateScheduledExecution`: there is nothing to schedule.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
+    _instanceName: *const c_char,
+    _instantiationToken: *const c_char,
+    _resourcePath: *const c_char,
+    _visible: u8,
+    _loggingOn: u8,
+    instanceEnvironment: *mut c_void,
+    logMessage: Option<LogMessageCallback>,
+    _clockUpdate: *const c_void,
+    _lockPreemption: *const c_void,
+    _unlockPreemption: *const c_void,
+) -> *mut c_void {
+    not_this_interface("fmi3InstantiateScheduledExecution", logMessage, instanceEnvironment)
+}
+
+fn not_this_interface(name: &str, log: Option<LogMessageCallback>, environment: *mut c_void) -> *mut c_void {
+    instantiate::<Function>(|| {
+        let failure = Failure::NotThisInterface;
+        Logger::new(sink(log, environment)).failure(failure.status(), &format!("{name}: {failure}"));
+        None
+    })
+}
+
+fn sink(log: Option<LogMessageCallback>, environment: *mut c_void) -> Sink {
+    let Some(log) = log else { return Box::new(|_, _, _| ()) };
+    // # marks variables
+    Box::new(move |status, category, message| unsafe {
+        log(environment, status as c_int, category.as_ptr(), escaped(message, &['#']).as_ptr());
+    })
+}
+
+/// Asks for the inputs at the end of a step. The step's values at that time are not known yet, which is what a tentative
+/// update says; that the host wants it to return early makes no difference.
+fn ask(update: IntermediateUpdateCallback, environment: *mut c_void) -> AskInputs {
+    Rc::new(move |time| {
+        let (mut early_return_requested, mut early_return_time) = (0, 0.0);
+        let (set_requested, get_allowed, step_finished, can_return_early) = (1, 0, 0, 0);
+        let (requested, at) = (&raw mut early_return_requested, &raw mut early_return_time);
+        unsafe {
+            update(environment, time, set_requested, get_allowed, step_finished, can_return_early, requested, at)
+        };
+    })
+}
+
+/// `fmi3FreeInstance`. Ignored for null, and while a call is under way, as from within a callback.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3FreeInstance(instance: *mut c_void) {
+    unsafe { c_abi::free::<Function>(instance) }
+}
+
+/// What the `fmi3Boolean` `value`, given as `name`, stands for.
+fn boolean(name: &'static str, value: u8) -> Result<bool, Failure> {
+    match value {
+        0 => Ok(false),
+        1 => Ok(true),
+        _ => Err(Failure::BadChoice { name, value: value.into(), accepted: "0 (fmi3False), 1 (fmi3True)" }),
+    }
+}
+
+/// Refuses a number of values, given as `name`, that is not that of the variables, all of which are scalars.
+fn check_count(name: &'static str, given: size_t, needed: size_t) -> Result<(), Failure> {
+    if given == needed { Ok(()) } else { Err(Failure::WrongCount { name, given, needed }) }
+}
+
+/// What to call instead.
+fn remedy(failure: &Failure) -> &'static str {
+    match failure {
+        Failure::WrongType(Variable { data_type, .. }) => match data_type {
+            DataType::Real { .. } => ": call fmi3GetFloat64 or fmi3SetFloat64 instead",
+            DataType::Integer => ": call fmi3GetInt32 instead",
+            DataType::Enumeration(_) => ": call fmi3GetInt64 or fmi3SetInt64 instead",
+            DataType::Boolean => ": call fmi3GetBoolean or fmi3SetBoolean instead",
+            DataType::String => ": call fmi3GetString or fmi3SetString instead",
+        },
+        Failure::Fixed(_) => ": set it before fmi3ExitInitializationMode, or call fmi3Reset",
+        Failure::WrongPoint { .. } => ": step from there, or go back with fmi3SetFMUState",
+        Failure::PastStop { .. } => " given to fmi3EnterInitializationMode: shorten it",
+        Failure::WrongSize { .. } => " (fmi3SerializedFMUStateSize)",
+        _ => "",
+    }
+}
+
+/// `fmi3DoStep`
+///
+/// Whether the host will go back makes no difference: FMU states are kept until it frees them. A host that can be called
+/// back has the instance on loan between the two parts of the call.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn fmi3DoStep(
+    c: *mut c_void,
+    currentCommunicationPoint: f64,
+    communicationStepSize: f64,
+    _noSetFMUStatePriorToCurrentPoint: u8,
+    eventHandlingNeeded: *mut u8,
+    terminateSimulation: *mut u8,
+    earlyReturn: *mut u8,
+    lastSuccessfulTime: *mut f64,
+) -> c_int {
+    let (point, step) = (currentCommunicationPoint, communicationStepSize);
+    let check = || {
+        check_pointer("eventHandlingNeeded", eventHandlingNeeded)?;
+        check_pointer("terminateSimulation", terminateSimulation)?;
+        check_pointer("earlyReturn", earlyReturn)?;
+        check_pointer("lastSuccessfulTime", lastSuccessfulTime)
+    };
+    let finish = |instance: &mut Instance| unsafe {
+        let progress = instance.do_step(point, step)?;
+        let (time, may_return_early) = (instance.time()?, instance.may_return_early());
+        if progress == Progress::Overturned {
+            instance.warn(&format!("fmi3DoStep: {}", Failure::Overturned { time }));
+        }
+        write("eventHandlingNeeded", eventHandlingNeeded, u8::from(progress == Progress::Transition))?;
+        write("terminateSimulation", terminateSimulation, u8::from(progress == Progress::Overturned))?;
+        write("earlyReturn", earlyReturn, u8::from(may_return_early && time < point + step))?;
+        write("lastSuccessfulTime", lastSuccessfulTime, time)
+    };
+    let mut ask = None;
+    let begin = |instance: &mut Instance| {
+        check()?;
+        ask = instance.begin_step(point, step)?;
+        if ask.is_none() { finish(instance) } else { Ok(()) }
+    };
+    let status = unsafe { call(c, Function::DoStep, begin) };
+    let Some(ask) = ask else { return status };
+    ask(point + step);
+    unsafe { call_on(c, Function::DoStep, finish) }
+}
+
+functions! {
+    [fmi3DoStep = DoStep]
+
+    fmi3SetDebugLogging = SetDebugLogging(
+        loggingOn: u8, nCategories: size_t, categories: *const *const c_char,
+    ) |instance| {
+        let names = values("categories", categories, nCategories)?;
+        let named = |name: &*const c_char| Category::named(text("category", *name)?);
+        let categories = names.iter().map(named).collect::<Result<Vec<_>, _>>()?;
+        let on = boolean("loggingOn", loggingOn)?;
+        if categories.is_empty() || categories.contains(&Category::Events) {
+            instance.log_events(on);
+        }
+        Ok(())
+    }
+
+    fmi3EnterInitializationMode = EnterInitializationMode(
+        toleranceDefined: u8, tolerance: f64, startTime: f64, stopTimeDefined: u8, stopTime: f64,
+    ) |instance| {
+        let tolerance = boolean("toleranceDefined", toleranceDefined)?.then_some(tolerance);
+        let stop_time = boolean("stopTimeDefined", stopTimeDefined)?.then_some(stopTime);
+        instance.setup_experiment(tolerance, startTime, stop_time)?;
+        instance.enter_initialization_mode()
+    }
+
+    fmi3ExitInitializationMode = ExitInitializationMode() |instance| { instance.exit_initialization_mode() }
+
+    fmi3EnterEventMode = EnterEventMode() |instance| { instance.pause_for_events() }
+
+    fmi3Terminate = Terminate() |instance| { instance.terminate() }
+
+    fmi3Reset = Reset() |instance| { instance.reset() }
+
+    fmi3GetFloat64 = GetFloat64(
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut f64, nValues: size_t,
+    ) |instance| {
+        check_count("nValues", nValues, nValueReferences)?;
+        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        instance.get_real(references, room("values", value, nValues)?)
+    }
+
+    fmi3GetInt32 = GetInt32(
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut i32, nValues: size_t,
+    ) |instance| {
+        check_count("nValues", nValues, nValueReferences)?;
+        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Integer);
+        instance.get_numbers(references, room("values", value, nValues)?, is_of_type)
+    }
+
+    fmi3GetInt64 = GetInt64(
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut i64, nValues: size_t,
+    ) |instance| {
+        check_count("nValues", nValues, nValueReferences)?;
+        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Enumeration(_));
+        instance.get_numbers(references, room("values", value, nValues)?, is_of_type)
+    }
+
+    fmi3GetBoolean = GetBoolean(
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut u8, nValues: size_t,
+    ) |instance| {
+        check_count("nValues", nValues, nValueReferences)?;
+        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        instance.get_boolean(references, room("values", value, nValues)?)
+    }
+
+    fmi3GetString = GetString(
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut *const c_char, nValues: size_t,
+    ) |instance| {
+        check_count("nValues", nValues, nValueReferences)?;
+        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        instance.get_string(references, room("values", value, nValues)?)
+    }
+
+    fmi3SetFloat64 = SetFloat64(
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *const f64, nValues: size_t,
+    ) |instance| {
+        check_count("nValues", nValues, nValueReferences)?;
+        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        instance.set_real(references, values("values", value, nValues)?)
+    }
+
+    /// No integer can be set.
+    fmi3SetInt32 = SetInt32(
+        valueReferences: *const c_uint, nValueReferences: size_t, _values: *const i32, nValues: size_t,
+    ) |_instance| {
+        check_count("nValues", nValues, nValueReferences)?;
+        match values("valueReferences", valueReferences, nValueReferences)? {
+            [] => Ok(()),
+            [first, ..] => Err(instance::refused(instance::find(*first)?)),
+        }
+    }
+
+    fmi3SetInt64 = SetInt64(
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *const i64, nValues: size_t,
+    ) |instance| {
+        check_count("nValues", nValues, nValueReferences)?;
+        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        instance.set_integer(references, values("values", value, nValues)?)
+    }
+
+    fmi3SetBoolean = SetBoolean(
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *const u8, nValues: size_t,
+    ) |instance| {
+        check_count("nValues", nValues, nValueReferences)?;
+        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        instance.set_boolean(references, values("values", value, nValues)?, boolean)
+    }
+
+    fmi3SetString = SetString(
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *const *const c_char, nValues: size_t,
+    ) |instance| {
+        check_count("nValues", nValues, nValueReferences)?;
+        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        let given = values("values", value, nValues)?;
+        let texts = given.iter().map(|value| text("values", *value)).collect::<Result<Vec<_>, _>>()?;
+        instance.set_string(references, &texts)
+    }
+
+    fmi3GetFMUState = GetFMUState(FMUState: *mut *mut c_void) |instance| {
+        let handle = instance.get_fmu_state(read("FMUState", FMUState)?.addr())?;
+        write("FMUState", FMUState, ptr::without_provenance_mut(handle))
+    }
+
+    fmi3SetFMUState = SetFMUState(FMUState: *mut c_void) |instance| { instance.set_fmu_state(FMUState.addr()) }
+
+    /// Ignored for null.
+    fmi3FreeFMUState = FreeFMUState(FMUState: *mut *mut c_void) |instance| {
+        if FMUState.is_null() || read("FMUState", FMUState)?.is_null() {
+            return Ok(());
+        }
+        instance.free_fmu_state(read("FMUState", FMUState)?.addr())?;
+        write("FMUState", FMUState, ptr::null_mut())
+    }
+
+    fmi3SerializedFMUStateSize = SerializedFMUStateSize(FMUState: *mut c_void, size: *mut size_t) |instance| {
+        let bytes = instance.serialize_fmu_state(FMUState.addr())?;
+        write("size", size, bytes.len())
+    }
+
+    fmi3SerializeFMUState = SerializeFMUState(
+        FMUState: *mut c_void, serializedState: *mut u8, size: size_t,
+    ) |instance| {
+        let bytes = instance.serialize_fmu_state(FMUState.addr())?;
+        if size != bytes.len() {
+            return Err(Failure::WrongSize { given: size, needed: bytes.len() });
+        }
+        check_pointer("serializedState", serializedState)?;
+        ptr::copy_nonoverlapping(bytes.as_ptr(), serializedState, size);
+        Ok(())
+    }
+
+    fmi3DeserializeFMUState = DeserializeFMUState(
+        serializedState: *const u8, size: size_t, FMUState: *mut *mut c_void,
+    ) |instance| {
+        let bytes = values("serializedState", serializedState, size)?;
+        let handle = read("FMUState", FMUState)?.addr();
+        let handle = instance.deserialize_fmu_state(bytes, handle)?;
+        write("FMUState", FMUState, ptr::without_provenance_mut(handle))
+    }
+
+    fmi3GetDirectionalDerivative = GetDirectionalDerivative(
+        unknowns: *const c_uint, nUnknowns: size_t, knowns: *const c_uint, nKnowns: size_t, seed: *const f64,
+        nSeed: size_t, sensitivity: *mut f64, nSensitivity: size_t,
+    ) |instance| {
+        check_count("nSeed", nSeed, nKnowns)?;
+        check_count("nSensitivity", nSensitivity, nUnknowns)?;
+        let (unknowns, knowns) = (values("unknowns", unknowns, nUnknowns)?, values("knowns", knowns, nKnowns)?);
+        let (seed, sensitivity) = (values("seed", seed, nSeed)?, room("sensitivity", sensitivity, nSensitivity)?);
+        instance.get_directional_derivative(unknowns, knowns, seed, sensitivity)
+    }
+
+    fmi3GetAdjointDerivative = GetAdjointDerivative(
+        unknowns: *const c_uint, nUnknowns: size_t, knowns: *const c_uint, nKnowns: size_t, seed: *const f64,
+        nSeed: size_t, sensitivity: *mut f64, nSensitivity: size_t,
+    ) |instance| {
+        check_count("nSeed", nSeed, nUnknowns)?;
+        check_count("nSensitivity", nSensitivity, nKnowns)?;
+        let (unknowns, knowns) = (values("unknowns", unknowns, nUnknowns)?, values("knowns", knowns, nKnowns)?);
+        let (seed, sensitivity) = (values("seed", seed, nSeed)?, room("sensitivity", sensitivity, nSensitivity)?);
+        instance.get_adjoint_derivative(unknowns, knowns, seed, sensitivity)
+    }
+
+    /// Nothing is left to evaluate: `fmi3UpdateDiscreteStates` does it.
+    fmi3EvaluateDiscreteStates = EvaluateDiscreteStates() |_instance| { Ok(()) }
+
+    fmi3UpdateDiscreteStates = UpdateDiscreteStates(
+        discreteStatesNeedUpdate: *mut u8, terminateSimulation: *mut u8, nominalsOfContinuousStatesChanged: *mut u8,
+        valuesOfContinuousStatesChanged: *mut u8, nextEventTimeDefined: *mut u8, nextEventTime: *mut f64,
+    ) |instance| {
+        let flags = [
+            ("discreteStatesNeedUpdate", discreteStatesNeedUpdate),
+            ("terminateSimulation", terminateSimulation),
+            ("nominalsOfContinuousStatesChanged", nominalsOfContinuousStatesChanged),
+            ("valuesOfContinuousStatesChanged", valuesOfContinuousStatesChanged),
+            ("nextEventTimeDefined", nextEventTimeDefined),
+        ];
+        for (name, flag) in flags {
+            check_pointer(name, flag)?;
+        }
+        check_pointer("nextEventTime", nextEventTime)?;
+        instance.update_discrete_states()?;
+        for (name, flag) in flags {
+            write(name, flag, 0)?;
+        }
+        write("nextEventTime", nextEventTime, 0.0)
+    }
+
+    fmi3EnterStepMode = EnterStepMode() |instance| { instance.enter_step_mode() }
+
+    fmi3GetOutputDerivatives = GetOutputDerivatives(
+        valueReferences: *const c_uint, nValueReferences: size_t, orders: *const i32, value: *mut f64,
+        nValues: size_t,
+    ) |instance| {
+        check_count("nValues", nValues, nValueReferences)?;
+        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        let (orders, rates) = (values("orders", orders, nValueReferences)?, room("values", value, nValues)?);
+        instance.get_real_output_derivatives(references, orders, rates)
+    }
+
+    fmi3GetFloat32 = GetFloat32(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut f32, _nValues: size_t) |_instance| { Ok(()) }
+
+    fmi3GetInt8 = GetInt8(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut i8, _nValues: size_t) |_instance| { Ok(()) }
+
+    fmi3GetUInt8 = GetUInt8(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u8, _nValues: size_t) |_instance| { Ok(()) }
+
+    fmi3GetInt16 = GetInt16(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut i16, _nValues: size_t) |_instance| { Ok(()) }
+
+    fmi3GetUInt16 = GetUInt16(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u16, _nValues: size_t) |_instance| { Ok(()) }
+
+    fmi3GetUInt32 = GetUInt32(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u32, _nValues: size_t) |_instance| { Ok(()) }
+
+    fmi3GetUInt64 = GetUInt64(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u64, _nValues: size_t) |_instance| { Ok(()) }
+
+    fmi3GetBinary = GetBinary(_valueReferences: *const c_uint, _nValueReferences: size_t, _valueSizes: *mut size_t, _values: *mut *const u8, _nValues: size_t) |_instance| { Ok(()) }
+
+    fmi3GetClock = GetClock(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u8) |_instance| { Ok(()) }
+
+    fmi3SetFloat32 = SetFloat32(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const f32, _nValues: size_t) |_instance| { Ok(()) }
+
+    fmi3SetInt8 = SetInt8(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const i8, _nValues: size_t) |_instance| { Ok(()) }
+
+    fmi3SetUInt8 = SetUInt8(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u8, _nValues: size_t) |_instance| { Ok(()) }
+
+    fmi3SetInt16 = SetInt16(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const i16, _nValues: size_t) |_instance| { Ok(()) }
+
+    fmi3SetUInt16 = SetUInt16(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u16, _nValues: size_t) |_instance| { Ok(()) }
+
+    fmi3SetUInt32 = SetUInt32(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u32, _nValues: size_t) |_instance| { Ok(()) }
+
+    fmi3SetUInt64 = SetUInt64(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u64, _nValues: size_t) |_instance| { Ok(()) }
+
+    fmi3SetBinary = SetBinary(_valueReferences: *const c_uint, _nValueReferences: size_t, _valueSizes: *const size_t, _values: *const *const u8, _nValues: size_t) |_instance| { Ok(()) }
+
+    fmi3SetClock = SetClock(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u8) |_instance| { Ok(()) }
+
+    fmi3GetNumberOfVariableDependencies = GetNumberOfVariableDependencies(_valueReference: c_uint, _nDependencies: *mut size_t) |_instance| { Ok(()) }
+
+    fmi3GetVariableDependencies = GetVariableDependencies(_dependent: c_uint, _elementIndicesOfDependent: *mut size_t, _independents: *mut c_uint, _elementIndicesOfIndependents: *mut size_t, _dependencyKinds: *mut c_int, _nDependencies: size_t) |_instance| { Ok(()) }
+
+    fmi3EnterConfigurationMode = EnterConfigurationMode() |_instance| { Ok(()) }
+
+    fmi3ExitConfigurationMode = ExitConfigurationMode() |_instance| { Ok(()) }
+
+    fmi3GetIntervalDecimal = GetIntervalDecimal(_valueReferences: *const c_uint, _nValueReferences: size_t, _intervals: *mut f64, _qualifiers: *mut c_int) |_instance| { Ok(()) }
+
+    fmi3GetIntervalFraction = GetIntervalFraction(_valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *mut u64, _resolutions: *mut u64, _qualifiers: *mut c_int) |_instance| { Ok(()) }
+
+    fmi3GetShiftDecimal = GetShiftDecimal(_valueReferences: *const c_uint, _nValueReferences: size_t, _shifts: *mut f64) |_instance| { Ok(()) }
+
+    fmi3GetShiftFraction = GetShiftFraction(_valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *mut u64, _resolutions: *mut u64) |_instance| { Ok(()) }
+
+    fmi3SetIntervalDecimal = SetIntervalDecimal(_valueReferences: *const c_uint, _nValueReferences: size_t, _intervals: *const f64) |_instance| { Ok(()) }
+
+    fmi3SetIntervalFraction = SetIntervalFraction(_valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *const u64, _resolutions: *const u64) |_instance| { Ok(()) }
+
+    fmi3SetShiftDecimal = SetShiftDecimal(_valueReferences: *const c_uint, _nValueReferences: size_t, _shifts: *const f64) |_instance| { Ok(()) }
+
+    fmi3SetShiftFraction = SetShiftFraction(_valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *const u64, _resolutions: *const u64) |_instance| { Ok(()) }
+
+    fmi3EnterContinuousTimeMode = EnterContinuousTimeMode() |_instance| { Ok(()) }
+
+    fmi3CompletedIntegratorStep = CompletedIntegratorStep(_noSetFMUStatePriorToCurrentPoint: u8, _enterEventMode: *mut u8, _terminateSimulation: *mut u8) |_instance| { Ok(()) }
+
+    fmi3SetTime = SetTime(_time: f64) |_instance| { Ok(()) }
+
+    fmi3SetContinuousStates = SetContinuousStates(_continuousStates: *const f64, _nContinuousStates: size_t) |_instance| { Ok(()) }
+
+    fmi3GetContinuousStateDerivatives = GetContinuousStateDerivatives(_derivatives: *mut f64, _nContinuousStates: size_t) |_instance| { Ok(()) }
+
+    fmi3GetEventIndicators = GetEventIndicators(_eventIndicators: *mut f64, _nEventIndicators: size_t) |_instance| { Ok(()) }
+
+    fmi3GetContinuousStates = GetContinuousStates(_continuousStates: *mut f64, _nContinuousStates: size_t) |_instance| { Ok(()) }
+
+    fmi3GetNominalsOfContinuousStates = GetNominalsOfContinuousStates(_nominals: *mut f64, _nContinuousStates: size_t) |_instance| { Ok(()) }
+
+    fmi3GetNumberOfEventIndicators = GetNumberOfEventIndicators(_nEventIndicators: *mut size_t) |_instance| { Ok(()) }
+
+    fmi3GetNumberOfContinuousStates = GetNumberOfContinuousStates(_nContinuousStates: *mut size_t) |_instance| { Ok(()) }
+
+    fmi3ActivateModelPartition = ActivateModelPartition(_clockReference: c_uint, _activationTime: f64) |_instance| { Ok(()) }
+
+}

@@ -1,0 +1,298 @@
+//! Types of FMI 3.0, where they are not those of FMI 2.0.
+
+use crate::{
+    Causality, DefaultExperiment, DependenciesKind, Initial, LogCategories, SeError, UnitDefinitions, Variability,
+    VariableNamingConvention, document, shortest,
+};
+use serde::Serialize;
+
+mod terminals;
+
+pub use terminals::{FmiTerminalsAndIcons, MatchingRule, Terminal, TerminalMemberVariable, Terminals, VariableKind};
+
+/// Version of the standard that a description follows.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub enum FmiVersion {
+    /// FMI 3.0 and its maintenance releases.
+    #[serde(rename = "3.0")]
+    V3_0,
+}
+
+/// Root of `modelDescription.xml`.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename = "fmiModelDescription")]
+pub struct FmiModelDescription {
+    /// Version of the standard.
+    #[serde(rename = "@fmiVersion")]
+    pub fmi_version: FmiVersion,
+    /// Name of the model.
+    #[serde(rename = "@modelName")]
+    pub model_name: String,
+    /// Fingerprint that binds this description to its library.
+    #[serde(rename = "@instantiationToken")]
+    pub instantiation_token: String,
+    /// What the model is, in one line.
+    #[serde(rename = "@description")]
+    pub description: String,
+    /// Version of the model.
+    #[serde(rename = "@version")]
+    pub version: String,
+    /// License of the model.
+    #[serde(rename = "@license")]
+    pub license: String,
+    /// Name of the tool that wrote this file.
+    #[serde(rename = "@generationTool")]
+    pub generation_tool: String,
+    /// How variable names are to be read.
+    #[serde(rename = "@variableNamingConvention")]
+    pub variable_naming_convention: VariableNamingConvention,
+    /// Capabilities of the co-simulation interface.
+    #[serde(rename = "CoSimulation")]
+    pub co_simulation: CoSimulation,
+    /// Units of the variables.
+    #[serde(rename = "UnitDefinitions")]
+    pub unit_definitions: UnitDefinitions,
+    /// Types that variables declare.
+    #[serde(rename = "TypeDefinitions")]
+    pub type_definitions: TypeDefinitions,
+    /// Log categories that can be switched on.
+    #[serde(rename = "LogCategories")]
+    pub log_categories: LogCategories,
+    /// Settings of a simulation for which nothing else is asked.
+    #[serde(rename = "DefaultExperiment")]
+    pub default_experiment: DefaultExperiment,
+    /// All variables.
+    #[serde(rename = "ModelVariables")]
+    pub model_variables: ModelVariables,
+    /// What depends on what.
+    #[serde(rename = "ModelStructure")]
+    pub model_structure: ModelStructure,
+}
+
+impl FmiModelDescription {
+    /// The text of `modelDescription.xml`.
+    pub fn to_xml(&self) -> Result<String, SeError> {
+        document(self)
+    }
+}
+
+/// Capabilities of the co-simulation interface.
+#[derive(Clone, Debug, Serialize)]
+pub struct CoSimulation {
+    /// File name of the library, without extension.
+    #[serde(rename = "@modelIdentifier")]
+    pub model_identifier: String,
+    /// Only one instance may live in a process.
+    #[serde(rename = "@canBeInstantiatedOnlyOncePerProcess")]
+    pub can_be_instantiated_only_once_per_process: bool,
+    /// The state can be taken out and put back.
+    #[serde(rename = "@canGetAndSetFMUState")]
+    pub can_get_and_set_fmu_state: bool,
+    /// The state can be turned into bytes and back.
+    #[serde(rename = "@canSerializeFMUState")]
+    pub can_serialize_fmu_state: bool,
+    /// Derivatives of outputs by inputs can be asked for, in a direction.
+    #[serde(rename = "@providesDirectionalDerivatives")]
+    pub provides_directional_derivatives: bool,
+    /// The same, weighted over the outputs.
+    #[serde(rename = "@providesAdjointDerivatives")]
+    pub provides_adjoint_derivatives: bool,
+    /// Communication steps may differ in size.
+    #[serde(rename = "@canHandleVariableCommunicationStepSize")]
+    pub can_handle_variable_communication_step_size: bool,
+    /// Highest order that `fmi3GetOutputDerivatives` gives.
+    #[serde(rename = "@maxOutputDerivativeOrder")]
+    pub max_output_derivative_order: u32,
+    /// The host is called back within a step.
+    #[serde(rename = "@providesIntermediateUpdate")]
+    pub provides_intermediate_update: bool,
+    /// A step may end early.
+    #[serde(rename = "@mightReturnEarlyFromDoStep")]
+    pub might_return_early_from_do_step: bool,
+    /// A host that is called back may ask for that.
+    #[serde(rename = "@canReturnEarlyAfterIntermediateUpdate")]
+    pub can_return_early_after_intermediate_update: bool,
+    /// Events can be handed over to the host.
+    #[serde(rename = "@hasEventMode")]
+    pub has_event_mode: bool,
+}
+
+/// Types that variables declare.
+#[derive(Clone, Debug, Serialize)]
+pub struct TypeDefinitions {
+    /// The types.
+    #[serde(rename = "EnumerationType")]
+    pub enumeration_types: Vec<EnumerationType>,
+}
+
+/// The literals of an enumeration.
+#[derive(Clone, Debug, Serialize)]
+pub struct EnumerationType {
+    /// Name by which variables refer to it.
+    #[serde(rename = "@name")]
+    pub name: String,
+    /// What it is.
+    #[serde(rename = "@description")]
+    pub description: String,
+    /// The literals.
+    #[serde(rename = "Item")]
+    pub items: Vec<crate::Item>,
+}
+
+/// All variables.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModelVariables {
+    /// The variables.
+    #[serde(rename = "$value")]
+    pub variables: Vec<Variable>,
+}
+
+/// A variable, by the element of its type.
+#[derive(Clone, Debug, Serialize)]
+pub enum Variable {
+    /// A real number.
+    Float64(Float64),
+    /// An integer.
+    Int32(Int32),
+    /// True or false.
+    Boolean(Boolean),
+    /// Text.
+    String(Text),
+    /// A literal of a declared enumeration.
+    Enumeration(Enumeration),
+}
+
+/// What all variables have.
+#[derive(Clone, Debug, Serialize)]
+pub struct Common {
+    /// Unique name.
+    #[serde(rename = "@name")]
+    pub name: String,
+    /// Handle by which the interface's functions know it.
+    #[serde(rename = "@valueReference")]
+    pub value_reference: u32,
+    /// What it is, in one line.
+    #[serde(rename = "@description")]
+    pub description: String,
+    /// Who sets it.
+    #[serde(rename = "@causality")]
+    pub causality: Causality,
+    /// When it changes.
+    #[serde(rename = "@variability")]
+    pub variability: Variability,
+    /// How it gets its first value; none for an input.
+    #[serde(rename = "@initial", skip_serializing_if = "Option::is_none")]
+    pub initial: Option<Initial>,
+}
+
+/// A real variable.
+#[derive(Clone, Debug, Serialize)]
+pub struct Float64 {
+    /// What all variables have.
+    #[serde(flatten)]
+    pub common: Common,
+    /// Whether the host may give it within a step; left out where it may not.
+    #[serde(rename = "@intermediateUpdate", skip_serializing_if = "Option::is_none")]
+    pub intermediate_update: Option<bool>,
+    /// Name of its unit; none for a ratio.
+    #[serde(rename = "@unit", skip_serializing_if = "Option::is_none")]
+    pub unit: Option<String>,
+    /// Name of the unit that it is best shown in, where that is another.
+    #[serde(rename = "@displayUnit", skip_serializing_if = "Option::is_none")]
+    pub display_unit: Option<String>,
+    /// Smallest value.
+    #[serde(rename = "@min", skip_serializing_if = "Option::is_none", serialize_with = "shortest")]
+    pub min: Option<f64>,
+    /// Largest value.
+    #[serde(rename = "@max", skip_serializing_if = "Option::is_none", serialize_with = "shortest")]
+    pub max: Option<f64>,
+    /// Magnitude that is usual for it.
+    #[serde(rename = "@nominal", skip_serializing_if = "Option::is_none", serialize_with = "shortest")]
+    pub nominal: Option<f64>,
+    /// Value unless the environment sets another.
+    #[serde(rename = "@start", skip_serializing_if = "Option::is_none", serialize_with = "shortest")]
+    pub start: Option<f64>,
+}
+
+/// An integer variable.
+#[derive(Clone, Debug, Serialize)]
+pub struct Int32 {
+    /// What all variables have.
+    #[serde(flatten)]
+    pub common: Common,
+    /// Smallest value.
+    #[serde(rename = "@min", skip_serializing_if = "Option::is_none")]
+    pub min: Option<i32>,
+}
+
+/// A Boolean variable.
+#[derive(Clone, Debug, Serialize)]
+pub struct Boolean {
+    /// What all variables have.
+    #[serde(flatten)]
+    pub common: Common,
+    /// Value unless the environment sets another.
+    #[serde(rename = "@start", skip_serializing_if = "Option::is_none")]
+    pub start: Option<bool>,
+}
+
+/// A string variable.
+#[derive(Clone, Debug, Serialize)]
+pub struct Text {
+    /// What all variables have.
+    #[serde(flatten)]
+    pub common: Common,
+    /// Value unless the environment sets another.
+    #[serde(rename = "Start", skip_serializing_if = "Option::is_none")]
+    pub start: Option<Start>,
+}
+
+/// Start value of a string variable.
+#[derive(Clone, Debug, Serialize)]
+pub struct Start {
+    /// The text.
+    #[serde(rename = "@value")]
+    pub value: String,
+}
+
+/// An enumeration variable.
+#[derive(Clone, Debug, Serialize)]
+pub struct Enumeration {
+    /// What all variables have.
+    #[serde(flatten)]
+    pub common: Common,
+    /// Name of the type that lists its literals.
+    #[serde(rename = "@declaredType")]
+    pub declared_type: String,
+    /// Number of the literal that it has unless the environment sets another.
+    #[serde(rename = "@start", skip_serializing_if = "Option::is_none")]
+    pub start: Option<i32>,
+}
+
+/// What depends on what.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModelStructure {
+    /// Every output, with what it depends on at a communication point.
+    #[serde(rename = "Output")]
+    pub outputs: Vec<Unknown>,
+    /// Every variable that initialization calculates, with what it depends on there.
+    #[serde(rename = "InitialUnknown")]
+    pub initial_unknowns: Vec<Unknown>,
+}
+
+/// A calculated variable and what it depends on, by value references.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Unknown {
+    /// The variable.
+    #[serde(rename = "@valueReference")]
+    pub value_reference: u32,
+    /// The variables that it depends on; an empty list says that there are none.
+    #[serde(rename = "@dependencies")]
+    pub dependencies: Vec<u32>,
+    /// How it depends on each of them.
+    #[serde(rename = "@dependenciesKind")]
+    pub dependencies_kind: Vec<DependenciesKind>,
+}
+
+#[cfg(test)]
+mod tests;

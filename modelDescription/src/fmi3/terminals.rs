@@ -1,0 +1,77 @@
+use crate::fmi3::FmiVersion;
+use crate::{SeError, document};
+use serde::Serialize;
+
+/// Root of `terminalsAndIcons.xml`.
+#[derive(Clone, Debug, Serialize)]
+#[serde(rename = "fmiTerminalsAndIcons")]
+pub struct FmiTerminalsAndIcons {
+    /// Version of the standard.
+    #[serde(rename = "@fmiVersion")]
+    pub fmi_version: FmiVersion,
+    /// The terminals.
+    #[serde(rename = "Terminals")]
+    pub terminals: Terminals,
+}
+
+impl FmiTerminalsAndIcons {
+    /// The text of `terminalsAndIcons.xml`.
+    pub fn to_xml(&self) -> Result<String, SeError> {
+        document(self)
+    }
+}
+
+/// Terminals.
+#[derive(Clone, Debug, Serialize)]
+pub struct Terminals {
+    /// The terminals.
+    #[serde(rename = "Terminal")]
+    pub terminals: Vec<Terminal>,
+}
+
+/// Variables that are connected together.
+#[derive(Clone, Debug, Serialize)]
+pub struct Terminal {
+    /// Its name.
+    #[serde(rename = "@name")]
+    pub name: String,
+    /// Which variables of two terminals are connected.
+    #[serde(rename = "@matchingRule")]
+    pub matching_rule: MatchingRule,
+    /// What it is.
+    #[serde(rename = "@description")]
+    pub description: String,
+    /// Its variables.
+    #[serde(rename = "TerminalMemberVariable")]
+    pub members: Vec<TerminalMemberVariable>,
+}
+
+/// Which variables of two terminals are connected.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub enum MatchingRule {
+    /// Those of one name; each side may have others.
+    Bus,
+}
+
+/// A variable of a terminal.
+#[derive(Clone, Debug, Serialize)]
+pub struct TerminalMemberVariable {
+    /// Name of the variable.
+    #[serde(rename = "@variableName")]
+    pub variable_name: String,
+    /// Its name within the terminal.
+    #[serde(rename = "@memberName")]
+    pub member_name: String,
+    /// What a connection of it means.
+    #[serde(rename = "@variableKind")]
+    pub variable_kind: VariableKind,
+}
+
+/// What a connection of a variable means.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[serde(rename_all = "camelCase")]
+pub enum VariableKind {
+    /// From output to input.
+    Signal,
+}

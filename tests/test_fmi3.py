@@ -1,0 +1,267 @@
+"""FMI 3.0 beside FMI 2.0: the same scene gives the same bits, and a step can end at a transition."""
+
+import re
+import subprocess
+
+import fmpy
+import monolithic
+import numpy as np
+import pytest
+from coupling import bridge, convergence
+from coupling.early_return import EndedAtTransitions, EventBridge, Pier
+from coupling.masters import extrapolate
+from fmpy import read_model_description, simulate_fmu
+from fmpy.fmi1 import FMICallException
+from fmpy.simulation import instantiate_fmu
+from fmpy.validation import validate_fmu
+from host import OUTPUTS, Message, events, simulate
+from pacoima import A_G, END, STEP, TIME, linear, rows
+from pacoima import OUTPUTS as COMPARED
+
+
+@pytest.fixture(scope="module")
+def export3(exporter, tmp_path_factory):
+    """Exports the FMU of a preset in FMI 3.0, with a record inside if there is one."""
+    def run(preset, record=None):
+        path = tmp_path_factory.mktemp("export3") / f"{preset}.fmu"
+        inside = ["--record", record] if record else []
+        subprocess.run([exporter, "export", "--fmi", "3", "--preset", preset, *inside, "-o", path], check=True)
+        return str(path)
+
+    return run
+
+
+@pytest.fixture(scope="module")
+def mcmanus3(export3):
+    return export3("mcmanus")
+
+
+@pytest.fixture(scope="module")
+def shaken3(export3, pacoima_record):
+    return {preset: export3(preset, pacoima_record) for preset in ("mcmanus", "evison")}
+
+
+def simulate3(path, **arguments):
+    """fmpy.simulate_fmu, with what the FMU logged."""
+    messages = []
+
+    def logger(_environment, status, category, text):
+        messages.append(Message(status, category.decode(), text.decode()))
+
+    return simulate_fmu(path, logger=logger, debug_logging=True, **arguments), messages
+
+
+class Slave:
+    """An instance that fmpy drives step by step."""
+
+    def __init__(self, path, folder, handles_events=False, lines=False, **start_values):
+        fmpy.extract(path, unzipdir=str(folder))
+        description = read_model_description(str(folder))
+        self.references = {variable.name: variable.valueReference for variable in description.modelVariables}
+        self.end, self.asked_at, self.messages = 0.0, [], []
+        a_g = [self.references["a_g"]]
+
+        def update(_environment, time, set_requested, get_allowed, step_finished, can_return_early, *_):
+            assert (set_requested, get_allowed, step_finished, can_return_early) == (True, False, False, False)
+            self.asked_at.append(time)
+            self.instance.setFloat64(a_g, [self.end])
+
+        def logger(_environment, status, category, text):
+            self.messages.append(Message(status, category.decode(), text.decode()))
+
+        self.instance = instantiate_fmu(str(folder), description, "CoSimulation", logger=logger, debug_logging=True,
+                                        event_mode_used=handles_events, early_return_allowed=handles_events,
+                                        intermediate_update=update if lines else None,
+                                        required_intermediate_variables=a_g if lines else None)
+        self.set(**start_values)
+        self.instance.enterInitializationMode()
+        self.instance.exitInitializationMode()
+        if handles_events:
+            self.instance.updateDiscreteStates()
+            self.instance.enterStepMode()
+
+    def set(self, **values):
+        self.instance.setFloat64([self.references[name] for name in values], list(values.values()))
+
+    def get(self, *names):
+        return self.instance.getFloat64([self.references[name] for name in names])
+
+    def transit(self):
+        self.instance.enterEventMode()
+        self.instance.updateDiscreteStates()
+        self.instance.enterStepMode()
+
+
+@pytest.fixture
+def slave(tmp_path, tmp_path_factory):
+    made = []
+
+    def start(path, **arguments):
+        made.append(Slave(path, tmp_path_factory.mktemp("slave"), **arguments))
+        return made[-1]
+
+    yield start
+    for one in made:
+        one.instance.freeInstance()
+
+
+def assert_same_bits(found, expected):
+    assert found.dtype.names == expected.dtype.names
+    for name in expected.dtype.names:
+        assert np.array_equal(found[name], expected[name]), name
+
+
+@pytest.mark.parametrize("preset", ["mcmanus", "evison"])
+def test_both_versions_give_the_same_bits_with_the_record_inside(shaken, shaken3, preset):
+    assert validate_fmu(shaken3[preset]) == []
+    asked = dict(stop_time=END, output_interval=2e-3, output=OUTPUTS, fmi_type="CoSimulation")
+    expected, of_two = simulate(shaken[preset], **asked)
+    found, messages = simulate3(shaken3[preset], **asked)
+    assert len(of_two) > 30 and events(messages) == of_two
+    assert_same_bits(found, expected)
+
+
+def test_both_versions_give_the_same_bits_under_a_held_input(mcmanus, mcmanus3):
+    table = np.array(list(zip(TIME, A_G)), dtype=[("time", float), ("a_g", float)])
+    asked = dict(stop_time=TIME[-1], output_interval=STEP, input=table, output=OUTPUTS, fmi_type="CoSimulation")
+    for extrapolate in (False, True):
+        starts = {"extrapolate": extrapolate}
+        expected, _ = simulate(mcmanus, start_values=starts, **asked)
+        found, _ = simulate3(mcmanus3, start_values=starts, **asked)
+        assert_same_bits(found, expected)
+
+
+def test_a_host_that_is_called_back_gives_lines(mcmanus, mcmanus3, slave):
+    """The same bits as with FMI 2.0's derivatives of inputs."""
+    one, found = slave(mcmanus3, lines=True), []
+    found.append(one.get(*COMPARED))
+    for t, until, start, end in zip(TIME[:-1], TIME[1:], A_G[:-1], A_G[1:]):
+        one.set(a_g=start)
+        one.end = end
+        one.instance.doStep(t, until - t)
+        found.append(one.get(*COMPARED))
+    assert np.array_equal(one.asked_at, TIME[:-1] + np.diff(TIME))
+    assert np.array_equal(found, linear(mcmanus))
+
+
+def test_a_step_ends_at_every_transition(shaken3, slave):
+    """The instants, states and jumps are those of transitions within steps, and so is all that is in between."""
+    asked = dict(stop_time=END, output_interval=2e-3, output=COMPARED)
+    expected, messages = simulate3(shaken3["mcmanus"], **asked)
+    transitions = events(messages)
+    one = slave(shaken3["mcmanus"], handles_events=True)
+    met, found, t = [], [one.get(*COMPARED)], 0.0
+    for until in expected["time"][1:]:
+        while t < until:
+            is_due, terminate, is_early, reached = one.instance.doStep(t, until - t)
+            assert (terminate, is_early) == (False, reached < until)
+            assert is_due or reached == until
+            t = reached
+            if is_due:
+                phase, before = one.instance.getInt64([one.references["phase"]]), one.get("u", "u_dot", "theta_dot")
+                one.transit()
+                after = one.get("u", "u_dot", "theta_dot")
+                met.append((t, *before, *after))
+                assert one.instance.getInt64([one.references["phase"]]) != phase
+                assert one.get("time") == [t]
+        found.append(one.get(*COMPARED))
+    expected_at = [(e.time, e.u, e.u_dot_before, e.theta_dot_before, e.u, e.u_dot, e.theta_dot) for e in transitions]
+    assert len(met) == len(transitions) == 31
+    assert np.array(met) == pytest.approx(np.array(expected_at), rel=1e-8, abs=1e-10)
+    assert [e.kind for e in events(one.messages)] == [e.kind for e in transitions]
+    peaks = np.max(np.abs(rows(expected)), axis=0)
+    assert np.max(np.abs(np.array(found) - rows(expected)) / peaks) < 1e-9
+
+
+def test_a_transition_that_the_host_does_not_deal_with_happens(mcmanus3, slave):
+    """A host may go on, or back to where a transition was due, by its own state or by bytes."""
+    one = slave(mcmanus3, handles_events=True, theta_0=0.01)
+    is_due, _, _, impact = one.instance.doStep(0.0, 1.0)
+    assert is_due and abs(one.get("theta")[0]) < 1e-15
+    state = one.instance.getFMUState()
+    copy = one.instance.deserializeFMUState(one.instance.serializeFMUState(state))
+    ends = []
+    for kept in (state, copy):
+        one.instance.setFMUState(kept)
+        assert one.instance.doStep(impact, 1e-3)[3] == impact + 1e-3
+        ends.append(one.get(*OUTPUTS))
+        one.instance.setFMUState(kept)
+        one.transit()
+        assert one.instance.doStep(impact, 1e-3)[3] == impact + 1e-3
+        ends.append(one.get(*OUTPUTS))
+        one.instance.freeFMUState(kept)
+    assert all(end == ends[0] for end in ends)
+    assert one.instance.getInt32([one.references["transitions"]]) == [1]
+
+
+def test_a_state_is_not_taken_by_a_host_that_meets_transitions_otherwise(mcmanus3, slave):
+    with_events, without = slave(mcmanus3, handles_events=True), slave(mcmanus3)
+    data = with_events.instance.serializeFMUState(with_events.instance.getFMUState())
+    state = without.instance.deserializeFMUState(data)
+    with pytest.raises(FMICallException, match="fmi3SetFMUState failed with status 3"):
+        without.instance.setFMUState(state)
+    assert "eventModeUsed or earlyReturnAllowed" in without.messages[-1].text
+
+
+@pytest.mark.parametrize("handles_events", [False, True])
+def test_overturning_ends_the_simulation(mcmanus3, slave, handles_events):
+    one = slave(mcmanus3, handles_events=handles_events, theta_0=0.3)
+    is_due, terminate, is_early, instant = one.instance.doStep(0.0, 10.0)
+    assert (is_due, terminate, is_early) == (False, True, handles_events)
+    assert one.get("t_overturned", "time") == [instant, instant] and 0 < instant < 10
+    assert one.get("theta")[0] == pytest.approx(np.pi / 2, rel=1e-12)
+    assert re.fullmatch(rf"fmi3DoStep: the structure overturned at t = {instant!r} s; the simulation ends there",
+                        one.messages[-1].text)
+    result, _ = simulate3(mcmanus3, start_values={"theta_0": 0.3}, stop_time=10, output_interval=0.1)
+    assert len(result) < 101
+
+
+def test_a_master_needs_one_further_step_for_a_transition(export3):
+    """Two piers under a deck, against the three integrated as one system."""
+    time, a_g = TIME[:700], A_G[:700]
+    deck, master = bridge.deck(), EndedAtTransitions()
+    system = EventBridge([Pier(export3(preset)) for preset in ("mcmanus", "evison")], deck, bridge.linear(time, a_g))
+
+    def row():
+        return [deck.x, *(value for pier in system.piers for value in pier.read("theta", "u"))]
+
+    found = bridge.simulate(system, master, extrapolate, time, 2, row)
+    response = monolithic.integrate(convergence.monolithic_bridge(bridge.deck()), time, a_g)
+    transitions = sum(map(len, response.transitions))
+    assert system.transitions() == transitions > 20
+    assert master.steps - 2 * (len(time) - 1) <= transitions
+    assert convergence.error(found, convergence.columns(response)) < 2e-6
+
+
+def test_derivatives_are_those_of_fmi_2_and_their_adjoint(mcmanus, mcmanus3, slave):
+    one, unknowns, knowns = slave(mcmanus3), ("a_t", "R_h", "R_v", "R_m"), ("a_g", "F_t")
+    of = [one.references[name] for name in unknowns], [one.references[name] for name in knowns]
+    with mcmanus.start() as two:
+        expected = [two.slave.getDirectionalDerivative(of[0], [known], [1.0]) for known in of[1]]
+    found = [one.instance.getDirectionalDerivative(of[0], [known], [1.0]) for known in of[1]]
+    assert found == expected
+    weights = [0.5, -2.0, 3.0, 0.25]
+    adjoint = one.instance.getAdjointDerivative(*of, weights, len(knowns))
+    assert adjoint == pytest.approx(np.array(expected) @ weights, rel=1e-14)
+
+
+def test_a_refusal_names_the_function_and_what_to_call(mcmanus3, slave):
+    one = slave(mcmanus3)
+    for call, text in [
+        (lambda: one.instance.setFloat64([one.references["m"]], [1.0]),
+         "fmi3SetFloat64: m is fixed once the simulation has started: set it before fmi3ExitInitializationMode, or call "
+         "fmi3Reset"),
+        (lambda: one.instance.getFloat64([one.references["phase"]]),
+         "fmi3GetFloat64: phase is an enumeration: call fmi3GetInt64 or fmi3SetInt64 instead"),
+        (lambda: one.instance.enterEventMode(),
+         "fmi3EnterEventMode: there is no event mode: the instance was made with eventModeUsed = false"),
+        (lambda: one.instance.getFloat64([one.references["theta"]], nValues=2), "fmi3GetFloat64: nValues = 2 is not 1"),
+        (lambda: one.instance.getUInt8([one.references["theta"]]),
+         'fmi3GetUInt8: not allowed in the state "step complete"; allowed in: none'),
+        (lambda: one.instance.doStep(1.0, 0.1),
+         "fmi3DoStep: currentCommunicationPoint = 1 s is not where the FMU is, t = 0 s: step from there, or go back with "
+         "fmi3SetFMUState"),
+    ]:
+        with pytest.raises(FMICallException, match="failed with status 3"):
+            call()
+        assert one.messages[-1] == Message(3, "logStatusError", text)
