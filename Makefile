@@ -70,7 +70,7 @@ browser: .venv/ready exporter
 
 # Linux's library for 64-bit ARM runs under qemu; where that cannot be had, its test is skipped and says so.
 foreign: dist qemu old_glibc
-	PATH="$(CURDIR)/.venv/bin:$$PATH" $(PYTHON) -m pytest -rs tests/test_platforms.py
+	$(PYTHON) -m pytest -rs tests/test_platforms.py
 
 qemu:
 	-@command -v qemu-aarch64 >/dev/null && test -e $(ARM_LOADER) || { $(call install,qemu-user libc6-arm64-cross); }
@@ -115,7 +115,7 @@ wheels: wheel
 VERSION = $(shell sed -n 's/^version = "\(.*\)"$$/\1/p' Cargo.toml)
 release: releasable
 	$(MAKE) wheels qemu old_glibc
-	PATH="$(CURDIR)/.venv/bin:$$PATH" $(MAKE) test
+	$(MAKE) test
 	PACKAGE='*.tar.gz' $(PYTHON) -m pytest -rs tests/test_wheel.py
 	$(MAKE) out/release
 

@@ -5,6 +5,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import zipfile
 from pathlib import Path
 
@@ -31,8 +32,8 @@ FUNCTIONS = {f"fmi2{name}" for name in """
     GetDerivatives GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates""".split()} | {
     name for of in (FMU3Slave, FMU3Model, FMU3ScheduledExecution) for name in dir(of) if name.startswith("fmi3")}
 
-# The C library, its mathematics and start-up, and the compiler's run time.
-LINUX_RUN_TIME = {"libc.so.6", "libm.so.6", "libgcc_s.so.1", "ld-linux-x86-64.so.2"}
+# The C library, its parts of before glibc 2.34, its mathematics and start-up, and the compiler's run time.
+LINUX_RUN_TIME = {"libc.so.6", "libdl.so.2", "libpthread.so.0", "libm.so.6", "libgcc_s.so.1", "ld-linux-x86-64.so.2"}
 
 # The C library, and what every Windows has had since version 10.
 WINDOWS_RUN_TIME = {"msvcrt.dll", "kernel32.dll", "ntdll.dll", "ws2_32.dll", "userenv.dll", "bcryptprimitives.dll",
@@ -44,9 +45,10 @@ def output(*command, cwd=ROOT, **arguments) -> str:
 
 
 def cargo_build(*arguments, tool="build"):
-    """Builds for release and returns the target folder."""
+    """Builds for release and returns the target folder; `tool` may be one of this environment's."""
     target = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
-    output("cargo", tool, "--release", "--locked", "--target-dir", target, *arguments)
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    output("cargo", tool, "--release", "--locked", "--target-dir", target, *arguments, env=os.environ | {"PATH": path})
     return target
 
 
