@@ -89,26 +89,15 @@ fn run_records(args: &SweepArgs, sweep: Sweep, output: &Path, picture: Picture) 
         plan.len()
     );
     records.iter().for_each(|record| say!("{record}"));
-    for (count, what) in [
-        (found.others, "of runs that are not in this sweep (other inputs, or another build of the program): kept"),
-        (found.repeated, "there again: counted once"),
-    ] {
-        if count > 0 {
-            say!("{name}: {count} row(s) are {what}");
-        }
-    }
+    let others = "of runs that are not in this sweep (other inputs, or another build of the program): kept";
+    say_other_rows(output, (found.others, others), found.repeated);
 
     let pool = thread_pool(args, missing.len())?;
     let clock = Instant::now();
     for (index, outcome) in pool.install(|| do_runs(&plan, &keys, &missing, args.validity, rows))? {
         outcomes[index] = Some(outcome);
     }
-    if !missing.is_empty() {
-        let (seconds, threads) = (clock.elapsed().as_secs_f64(), pool.current_num_threads());
-        let rate = missing.len() as f64 / seconds;
-        let [seconds, rate, per_thread] = [seconds, rate, rate / threads as f64].map(significant);
-        say!("{} runs in {seconds} s: {rate} /s, {per_thread} /s on each of {threads} threads", missing.len());
-    }
+    say_rate(missing.len(), "runs", clock, &pool);
 
     let outcomes: Vec<_> = outcomes.into_iter().map(|outcome| outcome.expect("every run is done")).collect();
     let populations = exceedances::count(&plan, measure, &limits, &outcomes);
@@ -133,6 +122,25 @@ fn run_records(args: &SweepArgs, sweep: Sweep, output: &Path, picture: Picture) 
 fn thread_pool(args: &SweepArgs, runs: usize) -> anyhow::Result<ThreadPool> {
     let threads = args.threads.map_or(0, |threads| usize::from(threads).min(runs).max(1));
     Ok(ThreadPoolBuilder::new().num_threads(threads).build()?)
+}
+
+/// Says which rows of the file at `output` are not counted: how many others, with what they are, and how many `repeated`.
+fn say_other_rows(output: &Path, others: (usize, &str), repeated: usize) {
+    for (count, what) in [others, (repeated, "there again: counted once")] {
+        if count > 0 {
+            say!("{}: {count} row(s) are {what}", output.display());
+        }
+    }
+}
+
+/// Says how fast the runs that there were to do, which are called `what`, have been done since `clock`.
+fn say_rate(done: usize, what: &str, clock: Instant, pool: &ThreadPool) {
+    if done > 0 {
+        let (seconds, threads) = (clock.elapsed().as_secs_f64(), pool.current_num_threads());
+        let rate = done as f64 / seconds;
+        let [seconds, rate, per_thread] = [seconds, rate, rate / threads as f64].map(significant);
+        say!("{done} {what} in {seconds} s: {rate} /s, {per_thread} /s on each of {threads} threads");
+    }
 }
 
 /// How the progress of many runs, which are called `what`, is shown.

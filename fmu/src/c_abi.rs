@@ -228,6 +228,74 @@ pub(crate) unsafe fn text<'a>(name: &'static str, pointer: *const c_char) -> Res
     }
 }
 
+/// Keeps the FMU state: in the one that `pointer`, the argument `name`, points to, or in a new one for null.
+pub(crate) unsafe fn keep_state(
+    instance: &mut Instance,
+    name: &'static str,
+    pointer: *mut *mut c_void,
+) -> Result<(), Failure> {
+    unsafe {
+        let handle = instance.get_fmu_state(read(name, pointer)?.addr())?;
+        write(name, pointer, ptr::without_provenance_mut(handle))
+    }
+}
+
+/// Frees the FMU state that `pointer`, the argument `name`, points to. Ignored for null.
+pub(crate) unsafe fn free_state(
+    instance: &mut Instance,
+    name: &'static str,
+    pointer: *mut *mut c_void,
+) -> Result<(), Failure> {
+    unsafe {
+        if pointer.is_null() || read(name, pointer)?.is_null() {
+            return Ok(());
+        }
+        instance.free_fmu_state(read(name, pointer)?.addr())?;
+        write(name, pointer, ptr::null_mut())
+    }
+}
+
+/// Writes how many bytes the FMU state `state` is.
+pub(crate) unsafe fn write_state_size(
+    instance: &Instance,
+    state: *mut c_void,
+    size: *mut size_t,
+) -> Result<(), Failure> {
+    let bytes = instance.serialize_fmu_state(state.addr())?;
+    unsafe { write("size", size, bytes.len()) }
+}
+
+/// Writes the FMU state `state` as `size` bytes, which must be as many as it has.
+pub(crate) unsafe fn write_state(
+    instance: &Instance,
+    state: *mut c_void,
+    serialized: *mut u8,
+    size: size_t,
+) -> Result<(), Failure> {
+    let bytes = instance.serialize_fmu_state(state.addr())?;
+    if size != bytes.len() {
+        return Err(Failure::WrongSize { given: size, needed: bytes.len() });
+    }
+    check_pointer("serializedState", serialized)?;
+    unsafe { ptr::copy_nonoverlapping(bytes.as_ptr(), serialized, size) };
+    Ok(())
+}
+
+/// Keeps the FMU state that `size` bytes hold, as [`keep_state`] does that of the instance.
+pub(crate) unsafe fn read_state(
+    instance: &mut Instance,
+    serialized: *const u8,
+    size: size_t,
+    name: &'static str,
+    pointer: *mut *mut c_void,
+) -> Result<(), Failure> {
+    unsafe {
+        let bytes = values("serializedState", serialized, size)?;
+        let handle = instance.deserialize_fmu_state(bytes, read(name, pointer)?.addr())?;
+        write(name, pointer, ptr::without_provenance_mut(handle))
+    }
+}
+
 /// `message` for the host, with every one of `marks`, which mean something to it, doubled. A NUL would end it.
 pub(crate) fn escaped(message: &str, marks: &[char]) -> CString {
     let mut escaped = String::with_capacity(message.len());
@@ -239,12 +307,14 @@ pub(crate) fn escaped(message: &str, marks: &[char]) -> CString {
 }
 
 /// The functions that take an instance, in the words of a version of the standard: of each the name, the item of the
-/// version's [`Function`] that it is, the arguments after the component, and what is asked of the instance. Those in
-/// brackets are written out elsewhere.
+/// version's [`Function`] that it is, the arguments after the component, and what is asked of the instance: nothing of
+/// those that are never allowed. Those in brackets are written out elsewhere.
 macro_rules! functions {
+    (@) => { |_| Ok(()) };
+    (@ |$instance:ident| $body:block) => { |$instance| $body };
     ($([$apart:ident = $apart_function:ident])* $(
         $(#[$doc:meta])*
-        $name:ident = $function:ident($($argument:ident: $type:ty),* $(,)?) |$instance:ident| $body:block
+        $name:ident = $function:ident($($argument:ident: $type:ty),* $(,)?) $(|$instance:ident| $body:block)?
     )*) => {
         /// The functions of this version that take an instance, but for the one that frees it, which may always be
         /// called.
@@ -276,7 +346,7 @@ macro_rules! functions {
             $(#[$doc])*
             #[unsafe(no_mangle)]
             pub unsafe extern "C" fn $name(c: *mut c_void $(, $argument: $type)*) -> c_int {
-                unsafe { $crate::c_abi::call(c, Function::$function, |$instance| $body) }
+                unsafe { $crate::c_abi::call(c, Function::$function, $crate::c_abi::functions!(@ $(|$instance| $body)?)) }
             }
         )*
     };

@@ -5,7 +5,10 @@
 pub mod co_simulation;
 mod model_exchange;
 
-use crate::c_abi::{self, check_pointer, escaped, functions, read, room, text, values, write};
+use crate::c_abi::{
+    self, check_pointer, escaped, free_state, functions, keep_state, read_state, room, text, values, write,
+    write_state, write_state_size,
+};
 use crate::condition::{Interface, Stepping};
 use crate::failure::Failure;
 use crate::instance::model_exchange::{Completed, Updated};
@@ -17,7 +20,6 @@ use crate::variables::{DataType, Variable};
 use libc::{c_char, c_double, c_int, c_uint, c_void, size_t};
 use rocking::Progress;
 use std::ffi::CString;
-use std::ptr;
 
 /// `fmi2CallbackLogger`
 pub type CallbackLogger = unsafe extern "C" fn(*mut c_void, *const c_char, c_int, *const c_char, *const c_char, ...);
@@ -242,46 +244,27 @@ functions! {
         instance.set_string(values("vr", vr, nvr)?, &texts)
     }
 
-    fmi2GetFMUstate = GetFMUstate(FMUstate: *mut *mut c_void) |instance| {
-        let handle = instance.get_fmu_state(read("FMUstate", FMUstate)?.addr())?;
-        write("FMUstate", FMUstate, ptr::without_provenance_mut(handle))
-    }
+    fmi2GetFMUstate = GetFMUstate(FMUstate: *mut *mut c_void) |instance| { keep_state(instance, "FMUstate", FMUstate) }
 
     fmi2SetFMUstate = SetFMUstate(FMUstate: *mut c_void) |instance| { instance.set_fmu_state(FMUstate.addr()) }
 
     /// Ignored for null.
-    fmi2FreeFMUstate = FreeFMUstate(FMUstate: *mut *mut c_void) |instance| {
-        if FMUstate.is_null() || read("FMUstate", FMUstate)?.is_null() {
-            return Ok(());
-        }
-        instance.free_fmu_state(read("FMUstate", FMUstate)?.addr())?;
-        write("FMUstate", FMUstate, ptr::null_mut())
-    }
+    fmi2FreeFMUstate = FreeFMUstate(FMUstate: *mut *mut c_void) |instance| { free_state(instance, "FMUstate", FMUstate) }
 
     fmi2SerializedFMUstateSize = SerializedFMUstateSize(FMUstate: *mut c_void, size: *mut size_t) |instance| {
-        let bytes = instance.serialize_fmu_state(FMUstate.addr())?;
-        write("size", size, bytes.len())
+        write_state_size(instance, FMUstate, size)
     }
 
     fmi2SerializeFMUstate = SerializeFMUstate(
         FMUstate: *mut c_void, serializedState: *mut u8, size: size_t,
     ) |instance| {
-        let bytes = instance.serialize_fmu_state(FMUstate.addr())?;
-        if size != bytes.len() {
-            return Err(Failure::WrongSize { given: size, needed: bytes.len() });
-        }
-        check_pointer("serializedState", serializedState)?;
-        ptr::copy_nonoverlapping(bytes.as_ptr(), serializedState, size);
-        Ok(())
+        write_state(instance, FMUstate, serializedState, size)
     }
 
     fmi2DeSerializeFMUstate = DeSerializeFMUstate(
         serializedState: *const u8, size: size_t, FMUstate: *mut *mut c_void,
     ) |instance| {
-        let bytes = values("serializedState", serializedState, size)?;
-        let handle = read("FMUstate", FMUstate)?.addr();
-        let handle = instance.deserialize_fmu_state(bytes, handle)?;
-        write("FMUstate", FMUstate, ptr::without_provenance_mut(handle))
+        read_state(instance, serializedState, size, "FMUstate", FMUstate)
     }
 
     fmi2GetDirectionalDerivative = GetDirectionalDerivative(
@@ -318,7 +301,7 @@ functions! {
     }
 
     /// Never allowed: no step is ever pending.
-    fmi2CancelStep = CancelStep() |_instance| { Ok(()) }
+    fmi2CancelStep = CancelStep()
 
     fmi2GetStatus = GetStatus(s: c_int, _value: *mut c_int) |_instance| { Err(Failure::NoAnswer(status_kind(s)?)) }
 
@@ -404,6 +387,7 @@ mod tests {
     use crate::logger::Status;
     use crate::resources::PARAMETERS_FILE;
     use rocking::Parameters;
+    use std::ptr;
 
     #[test]
     fn a_panic_is_fatal_and_the_instance_can_only_be_freed() {

@@ -9,7 +9,8 @@
 pub mod co_simulation;
 
 use crate::c_abi::{
-    self, call, call_on, check_pointer, escaped, functions, instantiate, read, room, text, values, write,
+    self, call, call_on, check_pointer, escaped, free_state, functions, instantiate, keep_state, read_state, room,
+    text, values, write, write_state, write_state_size,
 };
 use crate::condition::{Interface, Stepping};
 use crate::failure::Failure;
@@ -19,7 +20,6 @@ use crate::variables::{Causality, DataType, Variable};
 use libc::{c_char, c_int, c_uint, c_void, size_t};
 use rocking::Progress;
 use std::path::PathBuf;
-use std::ptr;
 use std::rc::Rc;
 
 /// `fmi3LogMessageCallback`
@@ -169,6 +169,16 @@ fn check_count(name: &'static str, given: size_t, needed: size_t) -> Result<(), 
     if given == needed { Ok(()) } else { Err(Failure::WrongCount { name, given, needed }) }
 }
 
+/// The variables that as many values are for.
+unsafe fn references<'a>(
+    valueReferences: *const c_uint,
+    nValueReferences: size_t,
+    nValues: size_t,
+) -> Result<&'a [c_uint], Failure> {
+    check_count("nValues", nValues, nValueReferences)?;
+    unsafe { values("valueReferences", valueReferences, nValueReferences) }
+}
+
 /// What to call instead.
 fn remedy(failure: &Failure) -> &'static str {
     match failure {
@@ -268,16 +278,14 @@ functions! {
     fmi3GetFloat64 = GetFloat64(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut f64, nValues: size_t,
     ) |instance| {
-        check_count("nValues", nValues, nValueReferences)?;
-        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        let references = references(valueReferences, nValueReferences, nValues)?;
         instance.get_real(references, room("values", value, nValues)?)
     }
 
     fmi3GetInt32 = GetInt32(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut i32, nValues: size_t,
     ) |instance| {
-        check_count("nValues", nValues, nValueReferences)?;
-        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        let references = references(valueReferences, nValueReferences, nValues)?;
         let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Integer);
         instance.get_numbers(references, room("values", value, nValues)?, is_of_type)
     }
@@ -285,8 +293,7 @@ functions! {
     fmi3GetInt64 = GetInt64(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut i64, nValues: size_t,
     ) |instance| {
-        check_count("nValues", nValues, nValueReferences)?;
-        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        let references = references(valueReferences, nValueReferences, nValues)?;
         let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Enumeration(_));
         instance.get_numbers(references, room("values", value, nValues)?, is_of_type)
     }
@@ -294,24 +301,21 @@ functions! {
     fmi3GetBoolean = GetBoolean(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut u8, nValues: size_t,
     ) |instance| {
-        check_count("nValues", nValues, nValueReferences)?;
-        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        let references = references(valueReferences, nValueReferences, nValues)?;
         instance.get_boolean(references, room("values", value, nValues)?)
     }
 
     fmi3GetString = GetString(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *mut *const c_char, nValues: size_t,
     ) |instance| {
-        check_count("nValues", nValues, nValueReferences)?;
-        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        let references = references(valueReferences, nValueReferences, nValues)?;
         instance.get_string(references, room("values", value, nValues)?)
     }
 
     fmi3SetFloat64 = SetFloat64(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *const f64, nValues: size_t,
     ) |instance| {
-        check_count("nValues", nValues, nValueReferences)?;
-        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        let references = references(valueReferences, nValueReferences, nValues)?;
         instance.set_real(references, values("values", value, nValues)?)
     }
 
@@ -319,8 +323,7 @@ functions! {
     fmi3SetInt32 = SetInt32(
         valueReferences: *const c_uint, nValueReferences: size_t, _values: *const i32, nValues: size_t,
     ) |_instance| {
-        check_count("nValues", nValues, nValueReferences)?;
-        match values("valueReferences", valueReferences, nValueReferences)? {
+        match references(valueReferences, nValueReferences, nValues)? {
             [] => Ok(()),
             [first, ..] => Err(instance::refused(instance::find(*first)?)),
         }
@@ -329,69 +332,47 @@ functions! {
     fmi3SetInt64 = SetInt64(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *const i64, nValues: size_t,
     ) |instance| {
-        check_count("nValues", nValues, nValueReferences)?;
-        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        let references = references(valueReferences, nValueReferences, nValues)?;
         instance.set_integer(references, values("values", value, nValues)?)
     }
 
     fmi3SetBoolean = SetBoolean(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *const u8, nValues: size_t,
     ) |instance| {
-        check_count("nValues", nValues, nValueReferences)?;
-        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        let references = references(valueReferences, nValueReferences, nValues)?;
         instance.set_boolean(references, values("values", value, nValues)?, boolean)
     }
 
     fmi3SetString = SetString(
         valueReferences: *const c_uint, nValueReferences: size_t, value: *const *const c_char, nValues: size_t,
     ) |instance| {
-        check_count("nValues", nValues, nValueReferences)?;
-        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        let references = references(valueReferences, nValueReferences, nValues)?;
         let given = values("values", value, nValues)?;
         let texts = given.iter().map(|value| text("values", *value)).collect::<Result<Vec<_>, _>>()?;
         instance.set_string(references, &texts)
     }
 
-    fmi3GetFMUState = GetFMUState(FMUState: *mut *mut c_void) |instance| {
-        let handle = instance.get_fmu_state(read("FMUState", FMUState)?.addr())?;
-        write("FMUState", FMUState, ptr::without_provenance_mut(handle))
-    }
+    fmi3GetFMUState = GetFMUState(FMUState: *mut *mut c_void) |instance| { keep_state(instance, "FMUState", FMUState) }
 
     fmi3SetFMUState = SetFMUState(FMUState: *mut c_void) |instance| { instance.set_fmu_state(FMUState.addr()) }
 
     /// Ignored for null.
-    fmi3FreeFMUState = FreeFMUState(FMUState: *mut *mut c_void) |instance| {
-        if FMUState.is_null() || read("FMUState", FMUState)?.is_null() {
-            return Ok(());
-        }
-        instance.free_fmu_state(read("FMUState", FMUState)?.addr())?;
-        write("FMUState", FMUState, ptr::null_mut())
-    }
+    fmi3FreeFMUState = FreeFMUState(FMUState: *mut *mut c_void) |instance| { free_state(instance, "FMUState", FMUState) }
 
     fmi3SerializedFMUStateSize = SerializedFMUStateSize(FMUState: *mut c_void, size: *mut size_t) |instance| {
-        let bytes = instance.serialize_fmu_state(FMUState.addr())?;
-        write("size", size, bytes.len())
+        write_state_size(instance, FMUState, size)
     }
 
     fmi3SerializeFMUState = SerializeFMUState(
         FMUState: *mut c_void, serializedState: *mut u8, size: size_t,
     ) |instance| {
-        let bytes = instance.serialize_fmu_state(FMUState.addr())?;
-        if size != bytes.len() {
-            return Err(Failure::WrongSize { given: size, needed: bytes.len() });
-        }
-        check_pointer("serializedState", serializedState)?;
-        ptr::copy_nonoverlapping(bytes.as_ptr(), serializedState, size);
-        Ok(())
+        write_state(instance, FMUState, serializedState, size)
     }
 
     fmi3DeserializeFMUState = DeserializeFMUState(
         serializedState: *const u8, size: size_t, FMUState: *mut *mut c_void,
     ) |instance| {
-        let bytes = values("serializedState", serializedState, size)?;
-        let handle = read("FMUState", FMUState)?.addr();
-        let handle = instance.deserialize_fmu_state(bytes, handle)?;
-        write("FMUState", FMUState, ptr::without_provenance_mut(handle))
+        read_state(instance, serializedState, size, "FMUState", FMUState)
     }
 
     fmi3GetDirectionalDerivative = GetDirectionalDerivative(
@@ -447,92 +428,150 @@ functions! {
         valueReferences: *const c_uint, nValueReferences: size_t, orders: *const i32, value: *mut f64,
         nValues: size_t,
     ) |instance| {
-        check_count("nValues", nValues, nValueReferences)?;
-        let references = values("valueReferences", valueReferences, nValueReferences)?;
+        let references = references(valueReferences, nValueReferences, nValues)?;
         let (orders, rates) = (values("orders", orders, nValueReferences)?, room("values", value, nValues)?);
         instance.get_real_output_derivatives(references, orders, rates)
     }
 
-    fmi3GetFloat32 = GetFloat32(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut f32, _nValues: size_t) |_instance| { Ok(()) }
+    // What this unit has none of: never allowed.
 
-    fmi3GetInt8 = GetInt8(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut i8, _nValues: size_t) |_instance| { Ok(()) }
+    fmi3GetFloat32 = GetFloat32(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut f32, _nValues: size_t,
+    )
 
-    fmi3GetUInt8 = GetUInt8(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u8, _nValues: size_t) |_instance| { Ok(()) }
+    fmi3GetInt8 = GetInt8(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut i8, _nValues: size_t,
+    )
 
-    fmi3GetInt16 = GetInt16(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut i16, _nValues: size_t) |_instance| { Ok(()) }
+    fmi3GetUInt8 = GetUInt8(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u8, _nValues: size_t,
+    )
 
-    fmi3GetUInt16 = GetUInt16(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u16, _nValues: size_t) |_instance| { Ok(()) }
+    fmi3GetInt16 = GetInt16(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut i16, _nValues: size_t,
+    )
 
-    fmi3GetUInt32 = GetUInt32(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u32, _nValues: size_t) |_instance| { Ok(()) }
+    fmi3GetUInt16 = GetUInt16(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u16, _nValues: size_t,
+    )
 
-    fmi3GetUInt64 = GetUInt64(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u64, _nValues: size_t) |_instance| { Ok(()) }
+    fmi3GetUInt32 = GetUInt32(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u32, _nValues: size_t,
+    )
 
-    fmi3GetBinary = GetBinary(_valueReferences: *const c_uint, _nValueReferences: size_t, _valueSizes: *mut size_t, _values: *mut *const u8, _nValues: size_t) |_instance| { Ok(()) }
+    fmi3GetUInt64 = GetUInt64(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u64, _nValues: size_t,
+    )
 
-    fmi3GetClock = GetClock(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u8) |_instance| { Ok(()) }
+    fmi3GetBinary = GetBinary(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _valueSizes: *mut size_t, _values: *mut *const u8,
+        _nValues: size_t,
+    )
 
-    fmi3SetFloat32 = SetFloat32(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const f32, _nValues: size_t) |_instance| { Ok(()) }
+    fmi3GetClock = GetClock(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u8)
 
-    fmi3SetInt8 = SetInt8(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const i8, _nValues: size_t) |_instance| { Ok(()) }
+    fmi3SetFloat32 = SetFloat32(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const f32, _nValues: size_t,
+    )
 
-    fmi3SetUInt8 = SetUInt8(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u8, _nValues: size_t) |_instance| { Ok(()) }
+    fmi3SetInt8 = SetInt8(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const i8, _nValues: size_t,
+    )
 
-    fmi3SetInt16 = SetInt16(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const i16, _nValues: size_t) |_instance| { Ok(()) }
+    fmi3SetUInt8 = SetUInt8(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u8, _nValues: size_t,
+    )
 
-    fmi3SetUInt16 = SetUInt16(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u16, _nValues: size_t) |_instance| { Ok(()) }
+    fmi3SetInt16 = SetInt16(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const i16, _nValues: size_t,
+    )
 
-    fmi3SetUInt32 = SetUInt32(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u32, _nValues: size_t) |_instance| { Ok(()) }
+    fmi3SetUInt16 = SetUInt16(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u16, _nValues: size_t,
+    )
 
-    fmi3SetUInt64 = SetUInt64(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u64, _nValues: size_t) |_instance| { Ok(()) }
+    fmi3SetUInt32 = SetUInt32(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u32, _nValues: size_t,
+    )
 
-    fmi3SetBinary = SetBinary(_valueReferences: *const c_uint, _nValueReferences: size_t, _valueSizes: *const size_t, _values: *const *const u8, _nValues: size_t) |_instance| { Ok(()) }
+    fmi3SetUInt64 = SetUInt64(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u64, _nValues: size_t,
+    )
 
-    fmi3SetClock = SetClock(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u8) |_instance| { Ok(()) }
+    fmi3SetBinary = SetBinary(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _valueSizes: *const size_t,
+        _values: *const *const u8, _nValues: size_t,
+    )
 
-    fmi3GetNumberOfVariableDependencies = GetNumberOfVariableDependencies(_valueReference: c_uint, _nDependencies: *mut size_t) |_instance| { Ok(()) }
+    fmi3SetClock = SetClock(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u8)
 
-    fmi3GetVariableDependencies = GetVariableDependencies(_dependent: c_uint, _elementIndicesOfDependent: *mut size_t, _independents: *mut c_uint, _elementIndicesOfIndependents: *mut size_t, _dependencyKinds: *mut c_int, _nDependencies: size_t) |_instance| { Ok(()) }
+    fmi3GetNumberOfVariableDependencies = GetNumberOfVariableDependencies(
+        _valueReference: c_uint, _nDependencies: *mut size_t,
+    )
 
-    fmi3EnterConfigurationMode = EnterConfigurationMode() |_instance| { Ok(()) }
+    fmi3GetVariableDependencies = GetVariableDependencies(
+        _dependent: c_uint, _elementIndicesOfDependent: *mut size_t, _independents: *mut c_uint,
+        _elementIndicesOfIndependents: *mut size_t, _dependencyKinds: *mut c_int, _nDependencies: size_t,
+    )
 
-    fmi3ExitConfigurationMode = ExitConfigurationMode() |_instance| { Ok(()) }
+    fmi3EnterConfigurationMode = EnterConfigurationMode()
 
-    fmi3GetIntervalDecimal = GetIntervalDecimal(_valueReferences: *const c_uint, _nValueReferences: size_t, _intervals: *mut f64, _qualifiers: *mut c_int) |_instance| { Ok(()) }
+    fmi3ExitConfigurationMode = ExitConfigurationMode()
 
-    fmi3GetIntervalFraction = GetIntervalFraction(_valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *mut u64, _resolutions: *mut u64, _qualifiers: *mut c_int) |_instance| { Ok(()) }
+    fmi3GetIntervalDecimal = GetIntervalDecimal(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _intervals: *mut f64, _qualifiers: *mut c_int,
+    )
 
-    fmi3GetShiftDecimal = GetShiftDecimal(_valueReferences: *const c_uint, _nValueReferences: size_t, _shifts: *mut f64) |_instance| { Ok(()) }
+    fmi3GetIntervalFraction = GetIntervalFraction(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *mut u64, _resolutions: *mut u64,
+        _qualifiers: *mut c_int,
+    )
 
-    fmi3GetShiftFraction = GetShiftFraction(_valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *mut u64, _resolutions: *mut u64) |_instance| { Ok(()) }
+    fmi3GetShiftDecimal = GetShiftDecimal(_valueReferences: *const c_uint, _nValueReferences: size_t, _shifts: *mut f64)
 
-    fmi3SetIntervalDecimal = SetIntervalDecimal(_valueReferences: *const c_uint, _nValueReferences: size_t, _intervals: *const f64) |_instance| { Ok(()) }
+    fmi3GetShiftFraction = GetShiftFraction(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *mut u64, _resolutions: *mut u64,
+    )
 
-    fmi3SetIntervalFraction = SetIntervalFraction(_valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *const u64, _resolutions: *const u64) |_instance| { Ok(()) }
+    fmi3SetIntervalDecimal = SetIntervalDecimal(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _intervals: *const f64,
+    )
 
-    fmi3SetShiftDecimal = SetShiftDecimal(_valueReferences: *const c_uint, _nValueReferences: size_t, _shifts: *const f64) |_instance| { Ok(()) }
+    fmi3SetIntervalFraction = SetIntervalFraction(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *const u64, _resolutions: *const u64,
+    )
 
-    fmi3SetShiftFraction = SetShiftFraction(_valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *const u64, _resolutions: *const u64) |_instance| { Ok(()) }
+    fmi3SetShiftDecimal = SetShiftDecimal(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _shifts: *const f64,
+    )
 
-    fmi3EnterContinuousTimeMode = EnterContinuousTimeMode() |_instance| { Ok(()) }
+    fmi3SetShiftFraction = SetShiftFraction(
+        _valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *const u64, _resolutions: *const u64,
+    )
 
-    fmi3CompletedIntegratorStep = CompletedIntegratorStep(_noSetFMUStatePriorToCurrentPoint: u8, _enterEventMode: *mut u8, _terminateSimulation: *mut u8) |_instance| { Ok(()) }
+    fmi3EnterContinuousTimeMode = EnterContinuousTimeMode()
 
-    fmi3SetTime = SetTime(_time: f64) |_instance| { Ok(()) }
+    fmi3CompletedIntegratorStep = CompletedIntegratorStep(
+        _noSetFMUStatePriorToCurrentPoint: u8, _enterEventMode: *mut u8, _terminateSimulation: *mut u8,
+    )
 
-    fmi3SetContinuousStates = SetContinuousStates(_continuousStates: *const f64, _nContinuousStates: size_t) |_instance| { Ok(()) }
+    fmi3SetTime = SetTime(_time: f64)
 
-    fmi3GetContinuousStateDerivatives = GetContinuousStateDerivatives(_derivatives: *mut f64, _nContinuousStates: size_t) |_instance| { Ok(()) }
+    fmi3SetContinuousStates = SetContinuousStates(_continuousStates: *const f64, _nContinuousStates: size_t)
 
-    fmi3GetEventIndicators = GetEventIndicators(_eventIndicators: *mut f64, _nEventIndicators: size_t) |_instance| { Ok(()) }
+    fmi3GetContinuousStateDerivatives = GetContinuousStateDerivatives(
+        _derivatives: *mut f64, _nContinuousStates: size_t,
+    )
 
-    fmi3GetContinuousStates = GetContinuousStates(_continuousStates: *mut f64, _nContinuousStates: size_t) |_instance| { Ok(()) }
+    fmi3GetEventIndicators = GetEventIndicators(_eventIndicators: *mut f64, _nEventIndicators: size_t)
 
-    fmi3GetNominalsOfContinuousStates = GetNominalsOfContinuousStates(_nominals: *mut f64, _nContinuousStates: size_t) |_instance| { Ok(()) }
+    fmi3GetContinuousStates = GetContinuousStates(_continuousStates: *mut f64, _nContinuousStates: size_t)
 
-    fmi3GetNumberOfEventIndicators = GetNumberOfEventIndicators(_nEventIndicators: *mut size_t) |_instance| { Ok(()) }
+    fmi3GetNominalsOfContinuousStates = GetNominalsOfContinuousStates(_nominals: *mut f64, _nContinuousStates: size_t)
 
-    fmi3GetNumberOfContinuousStates = GetNumberOfContinuousStates(_nContinuousStates: *mut size_t) |_instance| { Ok(()) }
+    fmi3GetNumberOfEventIndicators = GetNumberOfEventIndicators(_nEventIndicators: *mut size_t)
 
-    fmi3ActivateModelPartition = ActivateModelPartition(_clockReference: c_uint, _activationTime: f64) |_instance| { Ok(()) }
+    fmi3GetNumberOfContinuousStates = GetNumberOfContinuousStates(_nContinuousStates: *mut size_t)
 
+    fmi3ActivateModelPartition = ActivateModelPartition(_clockReference: c_uint, _activationTime: f64)
 }

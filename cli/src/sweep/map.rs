@@ -2,11 +2,11 @@
 mod picture;
 mod rows;
 
-use super::{SweepArgs, file::MapSweep, progress_style, row_file::RowFile, thread_pool};
+use super::{SweepArgs, file::MapSweep, progress_style, row_file::RowFile, say_rate, thread_pool};
 use crate::{
     picture::Picture,
     results::{Format, print, print_rows},
-    significant::{short, significant},
+    significant::short,
     talk::{self, say},
 };
 use anyhow::{bail, ensure};
@@ -77,12 +77,7 @@ pub fn run(args: &SweepArgs, sweep: MapSweep, output: &Path, picture: Picture) -
         }
         spectra.push(Spectrum { name, map, points });
     }
-    if done > 0 {
-        let (seconds, threads) = (clock.elapsed().as_secs_f64(), pool.current_num_threads());
-        let rate = done as f64 / seconds;
-        let [seconds, rate, per_thread] = [seconds, rate, rate / threads as f64].map(significant);
-        say!("{done} points in {seconds} s: {rate} /s, {per_thread} /s on each of {threads} threads");
-    }
+    say_rate(done, "points", clock, &pool);
     rows.say_others(output);
     let counts: Vec<_> = spectra.iter().flat_map(count).collect();
     match args.results.format {

@@ -1,6 +1,8 @@
 //! How long a simulation lasts, and how far its communication points are apart, where a host is told nothing else.
 
+use model_description::DefaultExperiment;
 use rocking::Structure;
+use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::record::Record;
 use std::f64::consts::TAU;
 
@@ -28,6 +30,12 @@ impl Experiment {
                 Experiment { stop_time: rounded((10.0 / structure.p_l / step_size).ceil() * step_size), step_size }
             }
         }
+    }
+
+    /// What a description of either version says of it.
+    pub fn description(self) -> DefaultExperiment {
+        let Experiment { stop_time, step_size } = self;
+        DefaultExperiment { start_time: 0.0, stop_time, tolerance: DEFAULT_TOLERANCE, step_size }
     }
 }
 

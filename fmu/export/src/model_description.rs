@@ -9,7 +9,6 @@ use FlexibleRocking::resources::Contents;
 use FlexibleRocking::variables::{Causality, DETAILS, DataType, Enumeration, PHASES, VARIABLES, Value, Variable};
 use model_description as fmi;
 use rocking::Structure;
-use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::outside_step::INDICATORS;
 use rocking::state::COMPONENTS;
 
@@ -56,12 +55,7 @@ pub fn model_description(
         unit_definitions: fmi::UnitDefinitions { units: units::definitions(structure) },
         type_definitions: fmi::TypeDefinitions { simple_types: [&PHASES, &DETAILS].map(enumeration_type).into() },
         log_categories: fmi::LogCategories { categories: logger::Category::ALL.map(log_category).into() },
-        default_experiment: fmi::DefaultExperiment {
-            start_time: 0.0,
-            stop_time: experiment.stop_time,
-            tolerance: DEFAULT_TOLERANCE,
-            step_size: experiment.step_size,
-        },
+        default_experiment: experiment.description(),
         model_variables: fmi::ModelVariables {
             scalar_variables: (0..)
                 .zip(&*VARIABLES)
@@ -74,12 +68,15 @@ pub fn model_description(
 }
 
 fn enumeration_type(enumeration: &Enumeration) -> fmi::SimpleType {
-    let items = (1..).zip(enumeration.items).map(|(value, &name)| fmi::Item { name: name.into(), value }).collect();
     fmi::SimpleType {
         name: enumeration.name.into(),
         description: enumeration.description.into(),
-        attributes: fmi::TypeAttributes::Enumeration(fmi::EnumerationType { items }),
+        attributes: fmi::TypeAttributes::Enumeration(fmi::EnumerationType { items: items(enumeration) }),
     }
+}
+
+fn items(enumeration: &Enumeration) -> Vec<fmi::Item> {
+    (1..).zip(enumeration.items).map(|(value, &name)| fmi::Item { name: name.into(), value }).collect()
 }
 
 fn log_category(category: logger::Category) -> fmi::Category {

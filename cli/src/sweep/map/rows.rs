@@ -2,9 +2,9 @@
 //!
 //! A point's key stands for the structure and its name, the pulse, the level of detail, the tolerance, whether its condition is found, and
 //! the build of the program: not for its place, so that another grid through the same point has it.
-use crate::{
-    sweep::row_file::{FIRST_HEADINGS, RowFile, key, key_of, records},
-    talk::say,
+use crate::sweep::{
+    row_file::{FIRST_HEADINGS, RowFile, key, key_of, records},
+    say_other_rows,
 };
 use anyhow::{Context, bail};
 use rocking::{
@@ -38,17 +38,8 @@ impl Rows {
 
     /// Says how many rows nobody has asked for, and how many are there again.
     pub fn say_others(&self, path: &Path) {
-        for (count, what) in [
-            (
-                self.points.len(),
-                "of points that are not in these maps (other inputs, or another build of the program): kept",
-            ),
-            (self.repeated, "there again: counted once"),
-        ] {
-            if count > 0 {
-                say!("{}: {count} row(s) are {what}", path.display());
-            }
-        }
+        let others = "of points that are not in these maps (other inputs, or another build of the program): kept";
+        say_other_rows(path, (self.points.len(), others), self.repeated);
     }
 }
 

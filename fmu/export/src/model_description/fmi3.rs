@@ -1,6 +1,6 @@
 //! The description in FMI 3.0.
 
-use super::{DESCRIPTION, causality, initial, log_category, variability};
+use super::{DESCRIPTION, causality, index, initial, items, log_category, variability};
 use crate::experiment::Experiment;
 use crate::units;
 use FlexibleRocking::logger;
@@ -9,7 +9,6 @@ use FlexibleRocking::variables::{Causality, DETAILS, DataType, Enumeration, PHAS
 use model_description as fmi;
 use model_description::fmi3;
 use rocking::Structure;
-use rocking::engine::DEFAULT_TOLERANCE;
 
 /// The description of the FMU `name` of `structure` with these `contents`.
 pub fn model_description(
@@ -44,12 +43,7 @@ pub fn model_description(
         unit_definitions: fmi::UnitDefinitions { units: units::definitions(structure) },
         type_definitions: fmi3::TypeDefinitions { enumeration_types: [&PHASES, &DETAILS].map(enumeration_type).into() },
         log_categories: fmi::LogCategories { categories: logger::Category::ALL.map(log_category).into() },
-        default_experiment: fmi::DefaultExperiment {
-            start_time: 0.0,
-            stop_time: experiment.stop_time,
-            tolerance: DEFAULT_TOLERANCE,
-            step_size: experiment.step_size,
-        },
+        default_experiment: experiment.description(),
         model_variables: fmi3::ModelVariables {
             variables: (0..)
                 .zip(&*VARIABLES)
@@ -61,8 +55,11 @@ pub fn model_description(
 }
 
 fn enumeration_type(enumeration: &Enumeration) -> fmi3::EnumerationType {
-    let items = (1..).zip(enumeration.items).map(|(value, &name)| fmi::Item { name: name.into(), value }).collect();
-    fmi3::EnumerationType { name: enumeration.name.into(), description: enumeration.description.into(), items }
+    fmi3::EnumerationType {
+        name: enumeration.name.into(),
+        description: enumeration.description.into(),
+        items: items(enumeration),
+    }
 }
 
 /// The variable at position `at` of the table, which is its value reference.
@@ -131,10 +128,9 @@ fn unknown(value_reference: u32, dependencies: Vec<u32>) -> fmi3::Unknown {
     fmi3::Unknown { value_reference, dependencies, dependencies_kind }
 }
 
-/// The value reference of the variable called `name`.
+/// The value reference of the variable called `name`, its position in the table.
 fn reference(name: &str) -> u32 {
-    let at = (0..).zip(&*VARIABLES).find(|(_, variable)| variable.name == name);
-    at.unwrap_or_else(|| panic!("no variable is called {name}")).0
+    u32::try_from(index(name) - 1).expect("the table is short")
 }
 
 #[cfg(test)]
