@@ -19,7 +19,7 @@ use crate::piece::{Equations, Part, Piece, Sample, Watch};
 use crate::quantity::with_unit;
 use crate::reactions::{Impulse, Reactions};
 use crate::state::InitialStateError;
-use crate::taylor::{Arc, Start};
+use crate::taylor::{Arc, Start, sum_of_magnitudes};
 use crate::transition::{self, Event};
 use crate::{Outputs, Phase, Side, State, Structure};
 use std::f64::consts::FRAC_PI_2;
@@ -294,7 +294,7 @@ impl Engine {
     /// Whether `load` can act over `interval` (s).
     #[inline]
     pub(crate) fn check(&self, interval: f64, load: &LinearLoad) -> Result<(), AdvanceError> {
-        if !(interval > 0.0 && interval.is_finite()) {
+        if !(interval > 0.0 && interval <= f64::MAX) {
             return Err(AdvanceError::NotAhead { from: self.motion.time, interval });
         }
         if load.value.is_finite() && load.at(interval).is_finite() {
@@ -556,7 +556,7 @@ fn cut(arc: &mut Arc, crossing: Crossing, event: Event) -> Option<Event> {
 /// Whether the magnitudes of the terms of θ prove that neither guard of rocking about `side` closes on `arc`.
 fn stays_about(arc: &Arc, side: Side) -> bool {
     let start = side.sign() * arc.theta[0];
-    let excursion: f64 = arc.theta[1..=arc.order].iter().map(|c| c.abs()).sum();
+    let excursion = sum_of_magnitudes(&arc.theta[1..=arc.order]);
     excursion < start && excursion + start < FRAC_PI_2
 }
 

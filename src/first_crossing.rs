@@ -5,6 +5,9 @@
 //! of them are, and converges to a simple one quadratically, from the left. Where a guard has only just opened its
 //! first terms are so small that marching would hardly move; their signs then say how far it is open.
 
+use crate::taylor::{Series, ZERO, sum_of_magnitudes};
+use wide::f64x2;
+
 /// A guard over one step: the polynomial `offset + sign·Σ c_k σ^k`.
 #[derive(Clone, Copy, Debug)]
 pub struct Guard<'a> {
@@ -49,8 +52,7 @@ impl<'a> Guard<'a> {
     /// Whether the magnitudes of its terms prove it positive up to σ = `reach` ≤ 1.
     #[inline]
     pub fn is_open_throughout(&self, reach: f64) -> bool {
-        let excursion: f64 = self.coefficients[1..].iter().map(|c| c.abs()).sum();
-        self.offset + self.sign * self.coefficients[0] > excursion * reach
+        self.offset + self.sign * self.coefficients[0] > sum_of_magnitudes(&self.coefficients[1..]) * reach
     }
 
     /// The σ up to which (but no further than 1) the signs of its first terms prove it positive: while no term up to
@@ -73,8 +75,19 @@ impl<'a> Guard<'a> {
 
     /// Bound M of its second derivative up to σ = `reach`.
     fn curvature(&self, reach: f64) -> f64 {
-        let terms = self.coefficients.iter().enumerate().skip(2).rev();
-        terms.fold(0.0, |sum, (k, c)| sum * reach + (k * (k - 1)) as f64 * c.abs())
+        /// k (k − 1) of each k.
+        const FACTORS: Series = {
+            let mut factors = ZERO;
+            let mut k = 2;
+            while k < factors.len() {
+                factors[k] = (k * (k - 1)) as f64;
+                k += 1;
+            }
+            factors
+        };
+        let terms = self.coefficients.get(2..).unwrap_or_default();
+        let factors = &FACTORS[2..][..terms.len()];
+        terms.iter().zip(factors).rev().fold(0.0, |sum, (c, factor)| sum * reach + factor * c.abs())
     }
 
     /// For how long after `sigma` it certainly stays positive; 0 where it is not.
@@ -91,14 +104,18 @@ impl<'a> Guard<'a> {
 
 /// The polynomial's value and slope at `sigma`, as polynomials in σ² of its even and odd terms: shorter chains.
 fn value_and_slope(coefficients: &[f64], sigma: f64) -> (f64, f64) {
-    let square = sigma * sigma;
-    let [mut even, mut odd, mut even_slope, mut odd_slope] = [0.0; 4];
-    for pair in coefficients.chunks(2).rev() {
-        even_slope = even_slope * square + even;
-        odd_slope = odd_slope * square + odd;
-        even = even * square + pair[0];
-        odd = odd * square + pair.get(1).unwrap_or(&0.0);
+    if sigma == 0.0 {
+        return (coefficients[0], coefficients.get(1).copied().unwrap_or(0.0));
     }
+    let square = f64x2::splat(sigma * sigma);
+    let (pairs, last) = coefficients.as_chunks::<2>();
+    let mut values = f64x2::new([last.first().copied().unwrap_or(0.0), 0.0]);
+    let mut slopes = f64x2::ZERO;
+    for pair in pairs.iter().rev() {
+        slopes = slopes * square + values;
+        values = values * square + f64x2::new(*pair);
+    }
+    let ([even, odd], [even_slope, odd_slope]) = (values.to_array(), slopes.to_array());
     (even + sigma * odd, 2.0 * sigma * (even_slope + sigma * odd_slope) + odd)
 }
 

@@ -35,8 +35,12 @@ type Flow = SMatrix<f64, 4, 7>;
 pub(crate) struct LinearRocking {
     pub(crate) system: LinearSystem,
     flows: Kept<Flow>,
-    /// Circular frequency of u for θ held, rad/s.
+    /// Circular frequency Ω of u for θ held, rad/s.
     omega: f64,
+    /// 1/Ω², s².
+    compliance: f64,
+    /// Bound of what θ̈ has of the speed of the vibration, rad/s² for m/s.
+    turning_per_speed: f64,
     g: f64,
 }
 
@@ -61,7 +65,14 @@ impl LinearRocking {
             side: -H * theta_ddot.side,
         };
         let omega = (-u_ddot.u).sqrt();
-        LinearRocking { system: LinearSystem { u_ddot, theta_ddot }, flows: Kept::new(Flow::zeros()), omega, g }
+        LinearRocking {
+            system: LinearSystem { u_ddot, theta_ddot },
+            flows: Kept::new(Flow::zeros()),
+            omega,
+            compliance: 1.0 / (omega * omega),
+            turning_per_speed: theta_ddot.u / omega + theta_ddot.u_dot,
+            g,
+        }
     }
 
     /// Bounds of the speed of the vibration and of |θ̈| over the interval of `start` about `side`, and where the vibration is
@@ -74,46 +85,33 @@ impl LinearRocking {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
         let LinearSystem { u_ddot, theta_ddot } = &self.system;
         let s = side.sign();
-        let following = (self.g * theta - a_top.value + s * u_ddot.side) / (self.omega * self.omega);
+        let following = (self.g * theta - a_top.value + s * u_ddot.side) * self.compliance;
         let swing = self.omega * (u - following);
         let speed = (u_dot * u_dot + swing * swing).sqrt() + h * h * (a_top.slope.abs() + self.g * theta_dot.abs());
-        let per_speed = theta_ddot.u / self.omega + theta_ddot.u_dot;
-        let feedback = per_speed * self.g * h * h * h / 2.0;
+        let feedback = self.turning_per_speed * self.g * h * h * h / 2.0;
         let steady = (theta_ddot.u * following + s * theta_ddot.side).abs();
-        let turning = (steady + per_speed * speed) / (1.0 - feedback);
+        let turning = (steady + self.turning_per_speed * speed) / (1.0 - feedback);
         (feedback < 0.5).then_some(Swing { following, speed, turning })
     }
-}
 
-/// Bounds of a leap, from [`LinearRocking::swing`].
-struct Swing {
-    following: f64,
-    /// But for what θ̈ adds.
-    speed: f64,
-    turning: f64,
-}
-
-impl ElasticRocking for LinearRocking {
-    /// The state after the interval of `start` if rocking about `side` certainly goes on until then: θ is no farther
-    /// from its chord than |θ̈| h²/8.
-    #[inline(always)]
-    fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
-        let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
-        if self.omega * h > LONGEST_LEAP {
-            return None;
-        }
-        let off_chord = self.swing(side, start)?.turning * h * h / 8.0;
+    /// Whether θ stays off 0 on the way from `start` to `end`, by the cubic: it is no closer than the least of its four
+    /// Bernstein coefficients.
+    fn stays_up(&self, side: Side, start: &Start, swing: &Swing, end: &State) -> bool {
+        let &Start { state, interval: h, .. } = start;
+        let rates = self.rates_of(start, swing);
+        let Row { u, u_dot, .. } = self.system.theta_ddot;
+        let off_cubic = (u * rates.u_ddot + u_dot * rates.u_dddot) * h.powi(4) / 384.0;
+        let third = side.sign() * h / 3.0;
         let s = side.sign();
-        let flow = self.flows.over(h, || flow(&self.system, self.omega, h));
-        let end = flow * SVector::from([u, u_dot, theta, theta_dot, a_top.value, a_top.slope, s]);
-        let (first, last) = (s * theta, s * end[2]);
-        let goes_on = first.min(last) > off_chord && first.max(last) + off_chord < FRAC_PI_2;
-        goes_on.then(|| State { u: end[0], u_dot: end[1], theta: end[2], theta_dot: end[3] })
+        let coefficients =
+            [s * state.theta, s * state.theta + third * state.theta_dot, s * end.theta - third * end.theta_dot, s * end.theta];
+        coefficients.iter().all(|coefficient| *coefficient > off_cubic)
     }
 
-    fn rates(&self, side: Side, start: &Start, _end: &State) -> Rates {
+    /// Bounds of what changes on a leap from `start` that swings so.
+    fn rates_of(&self, start: &Start, swing: &Swing) -> Rates {
         let &Start { state: State { theta, theta_dot, .. }, a_top, interval: h, .. } = start;
-        let Some(Swing { following, speed, turning }) = self.swing(side, start) else { return Rates::NONE };
+        let &Swing { following, speed, turning } = swing;
         let u_ddot = &self.system.u_ddot;
         let speed = speed + self.g * h * h * h / 2.0 * turning;
         let theta_dot = theta_dot.abs() + turning * h;
@@ -128,6 +126,39 @@ impl ElasticRocking for LinearRocking {
             theta_dot,
             theta_ddot: turning,
         }
+    }
+}
+
+/// Bounds of a leap, from [`LinearRocking::swing`].
+struct Swing {
+    following: f64,
+    /// But for what θ̈ adds.
+    speed: f64,
+    turning: f64,
+}
+
+impl ElasticRocking for LinearRocking {
+    /// The state after the interval of `start` if rocking about `side` certainly goes on until then: θ is no farther
+    /// from its chord than |θ̈| h²/8, and from the cubic with its values and slopes at both ends than |θ⁗| h⁴/384.
+    #[inline(always)]
+    fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
+        let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
+        if self.omega * h > LONGEST_LEAP {
+            return None;
+        }
+        let swing = self.swing(side, start)?;
+        let off_chord = swing.turning * h * h / 8.0;
+        let s = side.sign();
+        let flow = self.flows.over(h, || flow(&self.system, self.omega, h));
+        let end = flow * SVector::from([u, u_dot, theta, theta_dot, a_top.value, a_top.slope, s]);
+        let end = State { u: end[0], u_dot: end[1], theta: end[2], theta_dot: end[3] };
+        let (first, last) = (s * theta, s * end.theta);
+        let is_low = first.max(last) + off_chord < FRAC_PI_2;
+        (is_low && (first.min(last) > off_chord || self.stays_up(side, start, &swing, &end))).then_some(end)
+    }
+
+    fn rates(&self, side: Side, start: &Start, _end: &State) -> Rates {
+        self.swing(side, start).map_or(Rates::NONE, |swing| self.rates_of(start, &swing))
     }
 
     fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {

@@ -28,9 +28,15 @@ pub(crate) struct LinearSystem {
 }
 
 impl Row {
+    /// Under the `forcing` of [`Row::forcing`]; u̇ comes last, which is what a series knows last.
     #[inline]
-    fn apply(&self, u: f64, u_dot: f64, theta: f64, a_top: f64, side: f64) -> f64 {
-        self.u * u + self.u_dot * u_dot + self.theta * theta + (self.a_top * a_top + self.side * side)
+    fn apply(&self, u: f64, u_dot: f64, theta: f64, forcing: f64) -> f64 {
+        (self.u * u + self.theta * theta + forcing) + self.u_dot * u_dot
+    }
+
+    #[inline]
+    fn forcing(&self, a_top: f64, side: f64) -> f64 {
+        self.a_top * a_top + self.side * side
     }
 }
 
@@ -39,20 +45,24 @@ impl LinearSystem {
     /// (m/s²) that the top mass feels.
     pub(crate) fn accelerations(&self, side: Side, state: &State, a_top: f64) -> [f64; 2] {
         let &State { u, u_dot, theta, .. } = state;
-        [&self.u_ddot, &self.theta_ddot].map(|row| row.apply(u, u_dot, theta, a_top, side.sign()))
+        [&self.u_ddot, &self.theta_ddot].map(|row| row.apply(u, u_dot, theta, row.forcing(a_top, side.sign())))
     }
 
     /// Writes the motion from `start` about `side` into `arc`.
     pub(crate) fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
         let &Start { state, a_top, interval, .. } = start;
         let span = interval.min(longest_span(structure));
+        let rows = [&self.u_ddot, &self.theta_ddot];
+        let mut forcing = rows.map(|row| row.forcing(a_top.value, side.sign()));
+        let mut next_forcing = rows.map(|row| row.forcing(a_top.slope * span, 0.0));
+        let mut u_dot = state.u_dot;
         arc.expand(&state, span, truncation(structure, start, span), |arc, k, per| {
-            let side = if k == 1 { side.sign() } else { 0.0 };
-            let load = a_top.coefficient(k - 1, span);
-            let (u, u_dot, theta) = (arc.u[k - 1], arc.u_dot[k - 1], arc.theta[k - 1]);
-            let u_ddot = self.u_ddot.apply(u, u_dot, theta, load, side);
-            let theta_ddot = self.theta_ddot.apply(u, u_dot, theta, load, side);
-            (u_ddot * per, theta_ddot * per)
+            let (u, theta) = (arc.u[k - 1], arc.theta[k - 1]);
+            let u_ddot = self.u_ddot.apply(u, u_dot, theta, forcing[0]);
+            let theta_ddot = self.theta_ddot.apply(u, u_dot, theta, forcing[1]);
+            (forcing, next_forcing) = (next_forcing, [0.0; 2]);
+            u_dot = u_ddot * per;
+            (u_dot, theta_ddot * per)
         });
     }
 

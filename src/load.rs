@@ -69,7 +69,7 @@ impl Load {
     /// Whether both are numbers.
     #[inline]
     pub fn is_finite(&self) -> bool {
-        self.a_g.is_finite() && self.F_t.is_finite()
+        self.a_g.abs() <= f64::MAX && self.F_t.abs() <= f64::MAX
     }
 
     /// a_g − F_t/m, the ground acceleration that the top mass feels, m/s².
