@@ -80,10 +80,10 @@ fn add_product(sum: &mut Row, a: &Row, b: &Row) {
 fn products(a: &Factors, b: &Factors, newest_a: &Row, newest_b: &Row, n: usize) -> [f64; 6] {
     let mut sum = NO_ROW;
     if n > 0 {
-        for (a, b) in a[1..n].iter().zip(b[1..n].iter().rev()) {
+        for (a, b) in a[1..n].iter().zip(&b[MAX_ORDER - n + 1..MAX_ORDER]) {
             add_product(&mut sum, a, b);
         }
-        add_product(&mut sum, newest_a, &b[0]);
+        add_product(&mut sum, newest_a, &b[MAX_ORDER]);
     }
     add_product(&mut sum, &a[0], newest_b);
     let [first, second, third] = sum.map(f64x2::to_array);
@@ -158,7 +158,7 @@ impl ElasticRocking for NonlinearRocking {
             let before = k - 1;
             let newest_right = row([cos, sin, -arc.u[k], -arc.u[k], theta_dot, weight]);
             left[before] = newest_left;
-            right[before] = newest_right;
+            right[MAX_ORDER - before] = newest_right;
             let [sin_rate, minus_cos_rate, w_turning, w_w_turning, centrifugal, weight_moment] =
                 products(left, right, &newest_left, &newest_right, before);
             let y = (along - elastic - centrifugal) * per;

@@ -69,7 +69,13 @@ pub(crate) fn crude_bounds(structure: &Structure, phase: Phase, F_t: f64, [theta
 #[inline]
 pub(crate) fn crude_bounds_of_state(arc: &Arc, end: &State) -> [f64; 3] {
     [(&arc.theta, end.theta), (&arc.u, end.u), (&arc.u_dot, end.u_dot)]
-        .map(|(series, end)| series[0].abs().max(end.abs()) + extremes::off_chord(arc.used(series), arc.reach))
+        .map(|(series, end)| crude_bound_of(arc, series, end))
+}
+
+/// Bound of the magnitude of a `series` of `arc`, which ends in `end`.
+#[inline]
+pub(crate) fn crude_bound_of(arc: &Arc, series: &Series, end: f64) -> f64 {
+    series[0].abs().max(end.abs()) + extremes::off_chord(arc.used(series), arc.reach)
 }
 
 /// Bounds of |θ|, |u|, |δ_t| and |a_t| over `arc` under `load`: of what is linear in θ and u, and of the rest.

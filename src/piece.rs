@@ -11,7 +11,7 @@ use crate::output_series::{self, Turn};
 use crate::outputs::{self, Measure};
 use crate::taylor::{Arc, Series, Start, evaluate};
 use crate::transition::Transition;
-use crate::{Outputs, Phase, Reactions, State, Structure};
+use crate::{Outputs, Phase, Reactions, State, Structure, extremes};
 use std::f64::consts::TAU;
 
 /// Watches a motion go by.
@@ -303,6 +303,25 @@ impl Piece<'_> {
         };
         let crude = self.level.crude_output_bounds(self.structure, self.before.phase, self.most_force(), of_state);
         if crude[Measure::At as usize] < f64::INFINITY { crude } else { self.bounds().map(|bound| bound.largest()) }
+    }
+
+    /// That of |θ|.
+    #[inline]
+    pub(crate) fn crude_bound_of_theta(&self) -> f64 {
+        if self.before.phase == Phase::FullContact {
+            0.0
+        } else if self.is_expanded {
+            output_series::crude_bound_of(self.arc, &self.arc.theta, self.end.theta)
+        } else {
+            self.crude_bounds()[Measure::Theta as usize]
+        }
+    }
+
+    /// That of |θ| and of its rate where there is a polynomial.
+    pub(crate) fn bound_of_theta(&self) -> Option<Bound> {
+        let arc = &self.arc;
+        let [bound] = self.is_expanded.then(|| extremes::bounds(|k| [arc.theta[k]], arc.order, arc.reach))?;
+        Some(bound)
     }
 
     /// The largest |F_t| in the part in hand, N.

@@ -224,8 +224,10 @@ impl Arc {
 fn reach(arc: &Arc, truncation: Truncation) -> f64 {
     [MAX_ORDER - 1, MAX_ORDER]
         .into_iter()
-        .flat_map(|k| [(truncation.u_dot / arc.u_dot[k].abs(), k), (truncation.theta_dot / arc.theta_dot[k].abs(), k)])
-        .map(|(ratio, k)| ratio.powf(1.0 / k as f64))
+        .map(|k| {
+            let ratios = [truncation.u_dot / arc.u_dot[k].abs(), truncation.theta_dot / arc.theta_dot[k].abs()];
+            ratios[0].min(ratios[1]).powf(1.0 / k as f64)
+        })
         .fold(f64::INFINITY, f64::min)
 }
 

@@ -214,7 +214,7 @@ impl Point {
             );
             impacts += u64::from(comes_down);
         };
-        let finish = run.follow(&mut (&mut peaks.watch(), &mut count));
+        let finish = run.follow(&mut (&mut peaks.watch_theta(), &mut count));
         let theta = peaks.theta().magnitude / run.structure.tan_alpha_cg.atan();
         let (fate, transitions, end, reason) = match finish {
             Ok(finish) => {

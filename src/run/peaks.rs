@@ -153,14 +153,19 @@ impl Peaks {
         PeakWatch { peaks: self, kept: Vec::new() }
     }
 
-    /// Looks at the part of `piece` in hand, where it may hold larger magnitudes; `halvings` are left.
-    fn look(&mut self, piece: &mut Piece, halvings: u32) {
-        if !self.may_be_beaten_within(&piece.crude_bounds()) {
+    /// The same for that of θ alone, and with it of the uplift: the others stay as they are.
+    pub fn watch_theta(&mut self) -> ThetaWatch<'_> {
+        ThetaWatch { peaks: self }
+    }
+
+    /// Looks for those of `measures` at the part of `piece` in hand, where it may hold larger magnitudes; `halvings` are left.
+    fn look(&mut self, measures: &[Measure], piece: &mut Piece, halvings: u32) {
+        if !self.may_be_beaten_within(measures, &piece.crude_bounds()) {
             return;
         }
         let bounds = piece.bounds();
         let mut is_open = false;
-        for measure in Measure::ALL {
+        for &measure in measures {
             let bound = &bounds[measure as usize];
             if self.may_be_beaten(measure, bound.ends) {
                 self.see_ends(measure, piece);
@@ -175,14 +180,14 @@ impl Peaks {
         {
             for half in halves {
                 piece.part = half;
-                self.look(piece, halvings - 1);
+                self.look(measures, piece, halvings - 1);
             }
             return;
         }
         let begin = piece.passed();
         loop {
             piece.arc();
-            for measure in Measure::ALL {
+            for &measure in measures {
                 if self.is_open(measure, &bounds[measure as usize]) {
                     self.search(measure, piece);
                 }
@@ -194,9 +199,9 @@ impl Peaks {
         }
     }
 
-    /// Whether magnitudes within `bounds` may be more than what has been seen.
-    fn may_be_beaten_within(&self, bounds: &[f64; 4]) -> bool {
-        Measure::ALL.iter().any(|measure| self.may_be_beaten(*measure, bounds[*measure as usize]))
+    /// Whether magnitudes of `measures` within `bounds` may be more than what has been seen.
+    fn may_be_beaten_within(&self, measures: &[Measure], bounds: &[f64; 4]) -> bool {
+        measures.iter().any(|measure| self.may_be_beaten(*measure, bounds[*measure as usize]))
     }
 
     /// Whether a magnitude of at most `bound` may be more than what has been seen.
@@ -248,9 +253,9 @@ impl PeakWatch<'_> {
     /// Looks at what has been kept, the latest first, which is often the largest.
     fn look_back(&mut self, equations: &mut Equations) {
         while let Some((bounds, mut piece)) = self.kept.pop() {
-            if self.peaks.may_be_beaten_within(&bounds) {
+            if self.peaks.may_be_beaten_within(&Measure::ALL, &bounds) {
                 let mut piece = piece.piece(equations);
-                self.peaks.look(&mut piece, HALVINGS);
+                self.peaks.look(&Measure::ALL, &mut piece, HALVINGS);
                 self.peaks.evaluations += piece.evaluations();
             }
         }
@@ -265,12 +270,12 @@ impl Watch for PeakWatch<'_> {
             self.peaks.ground.see(piece.load.at(tau).a_g, piece.before.time + tau);
         }
         let bounds = piece.crude_bounds();
-        if !self.peaks.may_be_beaten_within(&bounds) {
+        if !self.peaks.may_be_beaten_within(&Measure::ALL, &bounds) {
             return;
         }
         self.peaks.see_instant(piece.before.time + piece.duration, &piece.last_outputs());
         let peaks = &*self.peaks;
-        self.kept.retain(|(bounds, _)| peaks.may_be_beaten_within(bounds));
+        self.kept.retain(|(bounds, _)| peaks.may_be_beaten_within(&Measure::ALL, bounds));
         if self.kept.len() == KEPT {
             self.look_back(&mut piece.equations());
         }
@@ -279,5 +284,37 @@ impl Watch for PeakWatch<'_> {
 
     fn done(&mut self, equations: &mut Equations) {
         self.look_back(equations);
+    }
+}
+
+/// Looks for the peak of θ alone in the pieces of a motion.
+#[derive(Debug)]
+pub struct ThetaWatch<'a> {
+    peaks: &'a mut Peaks,
+}
+
+impl Watch for ThetaWatch<'_> {
+    const SEES_PIECES: bool = true;
+
+    #[inline]
+    fn piece(&mut self, piece: &mut Piece) {
+        if !self.peaks.may_be_beaten(Measure::Theta, piece.crude_bound_of_theta()) {
+            return;
+        }
+        match piece.bound_of_theta() {
+            Some(bound) => {
+                let start = piece.before.time;
+                for (tau, state) in [piece.part.start, piece.part.end] {
+                    self.peaks.largest[Measure::Theta as usize].see(state.theta, start + tau);
+                }
+                if self.peaks.is_open(Measure::Theta, &bound) {
+                    self.peaks.search(Measure::Theta, piece);
+                }
+            }
+            None => {
+                self.peaks.look(&[Measure::Theta], piece, HALVINGS);
+                self.peaks.evaluations += piece.evaluations();
+            }
+        }
     }
 }
