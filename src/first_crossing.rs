@@ -87,7 +87,8 @@ impl<'a> Guard<'a> {
         };
         let terms = self.coefficients.get(2..).unwrap_or_default();
         let factors = &FACTORS[2..][..terms.len()];
-        terms.iter().zip(factors).rev().fold(0.0, |sum, (c, factor)| sum * reach + factor * c.abs())
+        let terms = terms.iter().zip(factors).rev().map(|(c, factor)| factor * c.abs());
+        if reach == 1.0 { terms.sum() } else { terms.fold(0.0, |sum, term| sum * reach + term) }
     }
 
     /// For how long after `sigma` it certainly stays positive; 0 where it is not.

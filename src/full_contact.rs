@@ -29,9 +29,11 @@ pub(crate) fn series(structure: &Structure, start: &Start, arc: &mut Arc) {
     // a structure that comes to rest must not ask for less than numbers can tell
     let u_dot = u_dot.max(NEGLIGIBLE * omega_fc * structure.u_cr);
     let truncation = Truncation { u_dot: local_error * u_dot, theta_dot: 0.0 };
+    let mut u_dot = state.u_dot;
     arc.expand(&state, span, truncation, |arc, k, per| {
-        let u_ddot = -a_top.coefficient(k - 1, span) - damping_fc * arc.u_dot[k - 1] - stiffness * arc.u[k - 1];
-        (u_ddot * per, 0.0)
+        let u_ddot = -a_top.coefficient(k - 1, span) - damping_fc * u_dot - stiffness * arc.u[k - 1];
+        u_dot = u_ddot * per;
+        (u_dot, 0.0)
     });
 }
 

@@ -20,7 +20,9 @@ pub(crate) struct Point {
     pub jerk: Complex<f64>,
 }
 
+// inlined, so that who wants positions and velocities alone does not pay for the rest
 /// The top mass and the middle of the base at `state`, whose (ü, θ̈) and (u⃛, θ⃛) are given; relative to the ground.
+#[inline]
 pub(crate) fn points(
     structure: &Structure,
     side: Side,
@@ -38,6 +40,7 @@ pub(crate) fn points(
 }
 
 /// The point `q` from the `pivot`, whose real part has the derivatives (v, a, j); θ and its derivatives are `turning`.
+#[inline]
 fn point(pivot: f64, q: Complex<f64>, [v, a, j]: [f64; 3], turning: [f64; 4]) -> Point {
     let [theta, w, dw, ddw] = turning;
     let (sin, cos) = theta.sin_cos();

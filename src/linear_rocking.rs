@@ -34,13 +34,16 @@ type Flow = SMatrix<f64, 4, 7>;
 #[derive(Clone, Debug)]
 pub(crate) struct LinearRocking {
     pub(crate) system: LinearSystem,
-    flows: Kept<Flow>,
+    /// Flows, and the [`amplification`] over the same time.
+    flows: Kept<(Flow, f64)>,
     /// Circular frequency Ω of u for θ held, rad/s.
     omega: f64,
     /// 1/Ω², s².
     compliance: f64,
     /// Bound of what θ̈ has of the speed of the vibration, rad/s² for m/s.
     turning_per_speed: f64,
+    /// Part of |θ̈| that comes back on it after a time, over the cube of that time, 1/s³.
+    feedback: f64,
     g: f64,
 }
 
@@ -65,47 +68,41 @@ impl LinearRocking {
             side: -H * theta_ddot.side,
         };
         let omega = (-u_ddot.u).sqrt();
+        let turning_per_speed = theta_ddot.u / omega + theta_ddot.u_dot;
         LinearRocking {
             system: LinearSystem { u_ddot, theta_ddot },
-            flows: Kept::new(Flow::zeros()),
+            flows: Kept::new((Flow::zeros(), 1.0)),
             omega,
             compliance: 1.0 / (omega * omega),
-            turning_per_speed: theta_ddot.u / omega + theta_ddot.u_dot,
+            turning_per_speed,
+            feedback: turning_per_speed * g / 2.0,
             g,
         }
     }
 
-    /// Bounds of the speed of the vibration and of |θ̈| over the interval of `start` about `side`, and where the vibration is
-    /// about; none where θ turns too far back on u.
+    /// Bounds of the speed of the vibration and of |θ̈| over the interval of `start` about `side`, whose [`amplification`] is
+    /// given, and where the vibration is about; no bounds where θ turns too far back on u.
     ///
     /// With f = g θ − a_top + s U_s, the vibration about f/Ω² has an energy that grows by the change of f alone, which
     /// bounds its speed v and with it |θ̈|, on which the change of f depends in turn.
     #[inline(always)]
-    fn swing(&self, side: Side, start: &Start) -> Option<Swing> {
+    fn swing(&self, side: Side, start: &Start, amplification: f64) -> Swing {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
         let LinearSystem { u_ddot, theta_ddot } = &self.system;
         let s = side.sign();
         let following = (self.g * theta - a_top.value + s * u_ddot.side) * self.compliance;
         let swing = self.omega * (u - following);
         let speed = (u_dot * u_dot + swing * swing).sqrt() + h * h * (a_top.slope.abs() + self.g * theta_dot.abs());
-        let feedback = self.turning_per_speed * self.g * h * h * h / 2.0;
         let steady = (theta_ddot.u * following + s * theta_ddot.side).abs();
-        let turning = (steady + self.turning_per_speed * speed) / (1.0 - feedback);
-        (feedback < 0.5).then_some(Swing { following, speed, turning })
+        Swing { following, speed, turning: (steady + self.turning_per_speed * speed) * amplification }
     }
 
-    /// Whether θ stays off 0 on the way from `start` to `end`, by the cubic: it is no closer than the least of its four
-    /// Bernstein coefficients.
-    fn stays_up(&self, side: Side, start: &Start, swing: &Swing, end: &State) -> bool {
-        let &Start { state, interval: h, .. } = start;
-        let rates = self.rates_of(start, swing);
-        let Row { u, u_dot, .. } = self.system.theta_ddot;
-        let off_cubic = (u * rates.u_ddot + u_dot * rates.u_dddot) * h.powi(4) / 384.0;
-        let third = side.sign() * h / 3.0;
-        let s = side.sign();
-        let coefficients =
-            [s * state.theta, s * state.theta + third * state.theta_dot, s * end.theta - third * end.theta_dot, s * end.theta];
-        coefficients.iter().all(|coefficient| *coefficient > off_cubic)
+    /// How far θ can leave the cubic with its values and slopes at both ends of a leap from `start` that swings so: |θ⁗| h⁴/384.
+    #[inline(never)]
+    fn off_cubic(&self, start: &Start, swing: &Swing) -> f64 {
+        let Rates { u_ddot, u_dddot, .. } = self.rates_of(start, swing);
+        let per = &self.system.theta_ddot;
+        (per.u.abs() * u_ddot + per.u_dot.abs() * u_dddot) * start.interval.powi(4) / 384.0
     }
 
     /// Bounds of what changes on a leap from `start` that swings so.
@@ -139,26 +136,33 @@ struct Swing {
 
 impl ElasticRocking for LinearRocking {
     /// The state after the interval of `start` if rocking about `side` certainly goes on until then: θ is no farther
-    /// from its chord than |θ̈| h²/8, and from the cubic with its values and slopes at both ends than |θ⁗| h⁴/384.
+    /// from its chord than |θ̈| h²/8, and no closer to 0 than the Bernstein coefficients of its cubic but for what it leaves
+    /// that.
     #[inline(always)]
     fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
         if self.omega * h > LONGEST_LEAP {
             return None;
         }
-        let swing = self.swing(side, start)?;
-        let off_chord = swing.turning * h * h / 8.0;
+        let (system, omega, feedback) = (&self.system, self.omega, self.feedback);
+        let compute = || (flow(system, omega, h), amplification(feedback, h));
+        let &(ref flow, amplification) = self.flows.over(h, compute);
         let s = side.sign();
-        let flow = self.flows.over(h, || flow(&self.system, self.omega, h));
         let end = flow * SVector::from([u, u_dot, theta, theta_dot, a_top.value, a_top.slope, s]);
-        let end = State { u: end[0], u_dot: end[1], theta: end[2], theta_dot: end[3] };
-        let (first, last) = (s * theta, s * end.theta);
-        let is_low = first.max(last) + off_chord < FRAC_PI_2;
-        (is_low && (first.min(last) > off_chord || self.stays_up(side, start, &swing, &end))).then_some(end)
+        let swing = self.swing(side, start, amplification);
+        let off_chord = swing.turning * h * h / 8.0;
+        let (first, last) = (s * theta, s * end[2]);
+        let third = s * h / 3.0;
+        let inner = (first + third * theta_dot).min(last - third * end[3]);
+        let lowest = first.min(last);
+        let stays_up = lowest > off_chord || lowest.min(inner) > self.off_cubic(start, &swing);
+        let goes_on = stays_up && first.max(last) + off_chord < FRAC_PI_2;
+        goes_on.then(|| State { u: end[0], u_dot: end[1], theta: end[2], theta_dot: end[3] })
     }
 
     fn rates(&self, side: Side, start: &Start, _end: &State) -> Rates {
-        self.swing(side, start).map_or(Rates::NONE, |swing| self.rates_of(start, &swing))
+        let swing = self.swing(side, start, amplification(self.feedback, start.interval));
+        if swing.turning < f64::INFINITY { self.rates_of(start, &swing) } else { Rates::NONE }
     }
 
     fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
@@ -172,6 +176,13 @@ impl ElasticRocking for LinearRocking {
     fn accelerations(&self, structure: &Structure, side: Side, state: &State, load: Load) -> [f64; 2] {
         self.system.accelerations(side, state, load.on_top(structure))
     }
+}
+
+/// By how much the speed of the vibration, which θ feeds back on, may exceed what it would without that over `duration` (s);
+/// infinite where no bound is known.
+fn amplification(feedback: f64, duration: f64) -> f64 {
+    let part = feedback * duration * duration * duration;
+    if part < 0.5 { 1.0 / (1.0 - part) } else { f64::INFINITY }
 }
 
 /// The flow of `system` over `duration` (s): the exponential of the system augmented by its inputs. Derivatives are

@@ -28,12 +28,7 @@ pub(crate) struct LinearSystem {
 }
 
 impl Row {
-    /// Under the `forcing` of [`Row::forcing`]; u̇ comes last, which is what a series knows last.
-    #[inline]
-    fn apply(&self, u: f64, u_dot: f64, theta: f64, forcing: f64) -> f64 {
-        (self.u * u + self.theta * theta + forcing) + self.u_dot * u_dot
-    }
-
+    /// What it has of the loads.
     #[inline]
     fn forcing(&self, a_top: f64, side: f64) -> f64 {
         self.a_top * a_top + self.side * side
@@ -45,7 +40,8 @@ impl LinearSystem {
     /// (m/s²) that the top mass feels.
     pub(crate) fn accelerations(&self, side: Side, state: &State, a_top: f64) -> [f64; 2] {
         let &State { u, u_dot, theta, .. } = state;
-        [&self.u_ddot, &self.theta_ddot].map(|row| row.apply(u, u_dot, theta, row.forcing(a_top, side.sign())))
+        let rate = |row: &Row| row.u * u + row.u_dot * u_dot + row.theta * theta + row.forcing(a_top, side.sign());
+        [rate(&self.u_ddot), rate(&self.theta_ddot)]
     }
 
     /// Writes the motion from `start` about `side` into `arc`.
@@ -58,11 +54,14 @@ impl LinearSystem {
         let mut u_dot = state.u_dot;
         arc.expand(&state, span, truncation(structure, start, span), |arc, k, per| {
             let (u, theta) = (arc.u[k - 1], arc.theta[k - 1]);
-            let u_ddot = self.u_ddot.apply(u, u_dot, theta, forcing[0]);
-            let theta_ddot = self.theta_ddot.apply(u, u_dot, theta, forcing[1]);
+            // what the last order of u̇ adds comes last: only that has to be waited for
+            let [u_rate, theta_rate] = [0, 1].map(|i| {
+                let row = rows[i];
+                (row.u * u + row.theta * theta + forcing[i]) * per + row.u_dot * per * u_dot
+            });
             (forcing, next_forcing) = (next_forcing, [0.0; 2]);
-            u_dot = u_ddot * per;
-            (u_dot, theta_ddot * per)
+            u_dot = u_rate;
+            (u_rate, theta_rate)
         });
     }
 

@@ -115,6 +115,9 @@ impl LinearLoad {
     /// The ground acceleration that the top mass feels.
     #[inline]
     pub(crate) fn on_top(self, structure: &Structure) -> Ramp {
+        if self.value.F_t == 0.0 && self.slope.F_t == 0.0 {
+            return self.on_foundation(); // what a division would yield, for less
+        }
         Ramp { value: self.value.on_top(structure), slope: self.slope.on_top(structure) }
     }
 }
