@@ -6,6 +6,7 @@
 //! first terms are so small that marching would hardly move; their signs then say how far it is open.
 
 use crate::taylor::{Series, ZERO, sum_of_magnitudes};
+use std::ops::Add;
 use wide::f64x2;
 
 /// A guard over one step: the polynomial `offset + sign·Σ c_k σ^k`.
@@ -88,7 +89,7 @@ impl<'a> Guard<'a> {
         let terms = self.coefficients.get(2..).unwrap_or_default();
         let factors = &FACTORS[2..][..terms.len()];
         let terms = terms.iter().zip(factors).rev().map(|(c, factor)| factor * c.abs());
-        if reach == 1.0 { terms.sum() } else { terms.fold(0.0, |sum, term| sum * reach + term) }
+        if reach == 1.0 { terms.fold(0.0, Add::add) } else { terms.fold(0.0, |sum, term| sum * reach + term) }
     }
 
     /// For how long after `sigma` it certainly stays positive; 0 where it is not.

@@ -51,17 +51,21 @@ impl ExactContact {
         ExactContact { oscillator, flows: Kept::new(Flow::NONE) }
     }
 
-    /// The state after the interval of `start` if |u| certainly stays below `limit` (m) until then.
+    /// The state after the interval of `start` if |u| certainly stays below `limit` (m) until then: u is no farther than its
+    /// whole swing, nor, on the way, from its chord than |ü| h²/8.
     #[inline]
     pub(crate) fn leap(&mut self, start: &Start, limit: f64) -> Option<State> {
         let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
-        let is_low = || self.oscillator.swing([u, u_dot], a_top.value, a_top.slope, interval).farthest() < limit;
-        if limit < f64::INFINITY && !is_low() {
-            return None;
-        }
         let flow = self.flows.over(interval, || self.oscillator.flow(interval));
-        let [u, u_dot] = flow.driven([u, u_dot], a_top.value, a_top.slope);
-        Some(State { u, u_dot, theta: 0.0, theta_dot: 0.0 })
+        let end = flow.driven([u, u_dot], a_top.value, a_top.slope);
+        let is_low = || {
+            let swing = self.oscillator.swing([u, u_dot], a_top.value, a_top.slope, interval);
+            let [_, u_ddot, _] = self.oscillator.rates(&swing, a_top.slope);
+            let off_chord = u_ddot * interval * interval / 8.0;
+            swing.farthest() < limit || u.abs().max(end[0].abs()) + off_chord < limit
+        };
+        let goes_on = limit == f64::INFINITY || is_low();
+        goes_on.then_some(State { u: end[0], u_dot: end[1], theta: 0.0, theta_dot: 0.0 })
     }
 
     /// Bounds of what changes over the interval of `start`.
