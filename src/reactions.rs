@@ -104,9 +104,6 @@ impl Reactions {
 impl Impulse {
     /// Of a transition that changes the motion from `before` to `after`.
     pub(crate) fn of(structure: &Structure, before: (Phase, &State), after: (Phase, &State)) -> Impulse {
-        if before.1 == after.1 {
-            return Impulse::default();
-        }
         let [before, after] = [before, after].map(|(phase, state)| momentum(structure, phase, state));
         Impulse { I_h: before.I_h - after.I_h, I_v: before.I_v - after.I_v, I_m: before.I_m - after.I_m }
     }
