@@ -4,6 +4,7 @@
 mod shaking;
 
 use rocking::record::Record;
+use rocking::run::peaks::Peaks;
 use rocking::run::{End, Run};
 use rocking::{Detail, Engine, Load, Parameters, Phase, State, Structure};
 use shaking::shaking;
@@ -66,6 +67,9 @@ fn check(step: f64) {
         let end = End::At(ground.end());
         let run = Run { initial, detail, tolerance: 1e-12, end, ..Run::new(structure, &ground) };
         let (peaks, finish) = run.peaks().unwrap();
+        let mut alone = Peaks::since(ground.start(), &structure);
+        run.follow(&mut alone.watch_theta()).unwrap();
+        assert_eq!(alone.theta(), peaks.theta(), "{i}: theta watched alone");
         let expected = sampled(&run, step);
         // what is seen at a sample next to the peak: the peak less a parabola; at an impact or a knot, a line
         let rate = structure.omega_u.max(structure.omega_fc);
