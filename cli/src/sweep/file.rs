@@ -322,11 +322,9 @@ impl StructureGrid {
         let vary = |population: Population, (name, values): (&String, &Values)| -> anyhow::Result<_> {
             Ok(population.vary(name, values.list().context(name.clone())?)?)
         };
-        let population = || {
-            let population = Population::new(is_one_line(&self.name)?, self.base()?);
-            self.vary.iter().try_fold(population, vary)
-        };
-        population().with_context(|| format!("structures {:?}", self.name))
+        let name = is_one_line(&self.name)?;
+        let population = || self.vary.iter().try_fold(Population::new(name, self.base()?), vary);
+        population().with_context(|| format!("structures {name:?}"))
     }
 }
 
