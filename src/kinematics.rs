@@ -20,9 +20,8 @@ pub(crate) struct Point {
     pub jerk: Complex<f64>,
 }
 
-// inlined, so that who wants positions and velocities alone does not pay for the rest
 /// The top mass and the middle of the base at `state`, whose (ü, θ̈) and (u⃛, θ⃛) are given; relative to the ground.
-#[inline]
+#[inline] // who wants positions and velocities alone does not pay for the rest
 pub(crate) fn points(
     structure: &Structure,
     side: Side,
