@@ -98,7 +98,7 @@ impl LinearRocking {
     }
 
     /// How far θ can leave the cubic with its values and slopes at both ends of a leap from `start` that swings so: |θ⁗| h⁴/384.
-    #[inline(never)]
+    #[inline(never)] // few leaps ask
     fn off_cubic(&self, start: &Start, swing: &Swing) -> f64 {
         let Rates { u_ddot, u_dddot, .. } = self.rates_of(start, swing);
         let per = &self.system.theta_ddot;

@@ -69,6 +69,7 @@ impl Load {
     /// Whether both are numbers.
     #[inline]
     pub fn is_finite(&self) -> bool {
+        // a comparison is one instruction where f64::is_finite takes a dozen, and each sample asks
         self.a_g.abs() <= f64::MAX && self.F_t.abs() <= f64::MAX
     }
 

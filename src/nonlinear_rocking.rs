@@ -74,8 +74,9 @@ fn add_product(sum: &mut Row, a: &Row, b: &Row) {
     }
 }
 
-/// Σ a_i b_{n−i} over i = 0 … n in each column: six Cauchy products at once. The newest factors, a_n and b_n, come last
-/// and not from memory, so that the processor can sum the others before it knows them.
+/// Σ a_i b_{n−i} over i = 0 … n in each column: six Cauchy products at once. b is kept backwards, so that both are read in
+/// one direction. The newest factors, a_n and b_n, come last and not from memory, so that the processor can sum the others
+/// before it knows them.
 #[inline(always)]
 fn products(a: &Factors, b: &Factors, newest_a: &Row, newest_b: &Row, n: usize) -> [f64; 6] {
     let mut sum = NO_ROW;
@@ -90,7 +91,7 @@ fn products(a: &Factors, b: &Factors, newest_a: &Row, newest_b: &Row, n: usize) 
     [first[0], first[1], second[0], second[1], third[0], third[1]]
 }
 
-/// Series of the motion by Eqs 5 and 6, with room for the factors of its products. Row i of `left` and `right` holds
+/// Series of the motion by Eqs 5 and 6, with room for the factors of its products. Row i of `left`, and of `right` counted from its end, holds
 ///
 /// ```text
 /// left:   θ̇       θ̇      θ̇         w θ̇       w θ̇     w

@@ -305,7 +305,7 @@ impl Piece<'_> {
         if crude[Measure::At as usize] < f64::INFINITY { crude } else { self.bounds().map(|bound| bound.largest()) }
     }
 
-    /// That of |θ|.
+    /// The bound of |θ| alone that costs least.
     #[inline]
     pub(crate) fn crude_bound_of_theta(&self) -> f64 {
         if self.before.phase == Phase::FullContact {
@@ -317,7 +317,7 @@ impl Piece<'_> {
         }
     }
 
-    /// That of |θ| and of its rate where there is a polynomial.
+    /// The bound of |θ| alone where there is a polynomial.
     pub(crate) fn bound_of_theta(&self) -> Option<Bound> {
         let arc = &self.arc;
         let [bound] = self.is_expanded.then(|| extremes::bounds(|k| [arc.theta[k]], arc.order, arc.reach))?;

@@ -109,7 +109,7 @@ impl Arc {
     /// Whether the expansion consists of numbers: what is not one stays so from order to order.
     pub fn is_finite(&self) -> bool {
         let last = self.order;
-        (self.u_dot[last] + self.theta_dot[last] + self.reach).abs() <= f64::MAX
+        (self.u_dot[last] + self.theta_dot[last] + self.reach).is_finite()
     }
 
     /// The same motion from σ = `from` to σ = `to` alone.
