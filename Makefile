@@ -158,7 +158,7 @@ coupling: .venv/ready out/mcmanus.fmu out/evison.fmu out/mcmanus3.fmu out/evison
 	PYTHONPATH=examples:tests OMP_NUM_THREADS=1 $(PYTHON) -m coupling
 
 exchange: .venv/ready out/mcmanus.fmu
-	PYTHONPATH=examples OMP_NUM_THREADS=1 $(PYTHON) -m model_exchange --fmu out/mcmanus.fmu
+	PYTHONPATH=examples:tests OMP_NUM_THREADS=1 $(PYTHON) -m model_exchange --fmu out/mcmanus.fmu
 
 records: .venv/ready
 

@@ -13,6 +13,7 @@ import pytest
 import reference
 from coupling import bridge_ssp, building_on_soil, convergence, stability
 from coupling.bridge import MASS, Bridge, deck, linear, pier, simulate
+from coupling.bridge_model_exchange import OneSystem, Pier, integrate
 from coupling.building_on_soil import OnSoil
 from coupling.masters import MASTERS, TOLERANCE, Diverged, Iterated, between_transitions
 from coupling.masters import extrapolate, gauss_seidel, hold, jacobi
@@ -137,6 +138,34 @@ def test_weak_coupling_blows_up_at_the_step_that_theory_gives(piers, master, gue
         assert (max(size[-50:]) > max(size[:50])) == grows
 
 
+def in_model_exchange(piers, of_deck, time, tolerance):
+    system = OneSystem([Pier(fmu, tolerance) for fmu in piers], of_deck)
+    return integrate(system, tolerance, time)[:, [0, 4, 2, 8, 6]], system
+
+
+def test_one_solver_over_bridge_and_piers_in_model_exchange(piers):
+    """As near as its tolerance, over every transition of the independent integration."""
+    time, _, expected = as_one(strong_motion)
+    loose, _ = in_model_exchange(piers, deck(), time, 1e-4)
+    tight, system = in_model_exchange(piers, deck(), time, 1e-8)
+    assert system.transitions() == sum(map(len, expected.transitions)) > 20
+    assert convergence.error(tight, convergence.columns(expected)) < 1e-5
+    assert 1e-3 < convergence.error(loose, convergence.columns(expected)) < 0.3
+
+
+def test_a_stiff_and_heavy_deck_is_no_matter_to_one_solver(piers):
+    """At any of the masters' steps beyond 5 ms this bridge blows up."""
+    ratio, frequency = 30.0, 25.0
+    for master, guess in ((jacobi, extrapolate), (gauss_seidel, extrapolate)):
+        assert stability.growth(master, guess, ratio, 5e-3, True, frequency) > stability.GROWTH
+    assert stability.contraction(ratio, 5e-3, True, frequency) > 1
+    of_deck, until = deck(stability.mass(ratio), frequency), slice(300)
+    expected = monolithic.integrate(convergence.monolithic_bridge(of_deck), TIME[until], A_G[until], rtol=1e-9, atol=1e-12)
+    assert sum(map(len, expected.transitions)) > 4
+    found, _ = in_model_exchange(piers, of_deck, TIME[until], 1e-6)
+    assert convergence.error(found, convergence.columns(expected)) < 1e-3
+
+
 @functools.cache
 def on_soil_as_one(M: float, motion):
     """McManus's specimen on soil integrated as one system: time, a_g; the foundation's x, theta, u; transitions."""
@@ -212,6 +241,13 @@ def test_the_bridge_example_prints_the_peaks_of_the_monolithic_bridge(piers, tmp
         uplift = 2 * p.B * np.sin(np.max(np.abs(response.y[:, 4 + 4 * i])))
         expected += [1e3 * uplift, np.max(np.abs(forces), axis=0)[i], len(response.transitions[i])]
     assert found[:7] == pytest.approx(expected, rel=1e-3)
+
+
+def test_the_bridge_in_model_exchange_prints_the_same(piers):
+    found = printed("bridge_model_exchange", "--piers", *piers)
+    response = as_one(pacoima_dam)[-1]
+    peaks = 1e3 * np.max(np.abs(response.y[:, [0, 4, 8]]), axis=0)
+    assert found[:4] == pytest.approx([*peaks, sum(map(len, response.transitions))], rel=5e-3)
 
 
 def test_the_example_on_soil_prints_the_peaks_of_the_monolithic_system(mcmanus, tmp_path):

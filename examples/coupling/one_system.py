@@ -1,0 +1,53 @@
+"""The bridge integrated by CVODE as one system: error against cost, beside the masters, and where masters blow up."""
+
+import monolithic
+import numpy as np
+from validation.records import pacoima_dam
+
+from . import convergence, stability
+from .bridge import PIERS, deck
+from .bridge_model_exchange import OneSystem, Pier, integrate
+from .tables import markdown
+
+TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
+RATIOS = (0.03, 0.3, 3.0, 30.0)  # mass of the deck over the top masses of both piers
+LONGEST = stability.STEPS[-1]  # s
+
+
+def response(of_deck, tolerance: float, time) -> tuple[np.ndarray, OneSystem]:
+    """The deck's x, then theta and u of every pier."""
+    system = OneSystem([Pier(fmu, tolerance) for fmu in PIERS.values()], of_deck)
+    return integrate(system, tolerance, time)[:, [0, 4, 2, 8, 6]], system
+
+
+def study() -> dict[float, tuple[float, OneSystem]]:
+    """By tolerance: the error, and what it took."""
+    time, a_g = pacoima_dam()
+    expected = convergence.columns(monolithic.integrate(convergence.monolithic_bridge(deck()), time, a_g))
+    found = {}
+    for tolerance in TOLERANCES:
+        rows, system = response(deck(), tolerance, time)
+        found[tolerance] = convergence.error(rows, expected), system
+    return found
+
+
+def table(found) -> str:
+    rows = [[f"{tolerance:g}", f"{error:.1e}", system.transitions(), system.evaluations, system.steps]
+            for tolerance, (error, system) in found.items()]
+    return markdown(["tolerance", "error", "transitions", "evaluations", "steps of the solver"], rows)
+
+
+def stability_table() -> str:
+    """The scene of the stability maps: errors by tolerances and masses of the deck, beside a master's at the longest step."""
+    rows = []
+    for tolerance in TOLERANCES[:-1]:
+        errors = []
+        for ratio in RATIOS:
+            time, expected = stability.reference_deck(ratio)
+            found, _ = response(deck(stability.mass(ratio), stability.FREQUENCY), tolerance, time)
+            errors.append(f"{np.max(np.abs(found[:, 0] - expected)) / np.max(np.abs(expected)):.1e}")
+        rows.append([f"one system, tolerance {tolerance:g}", *errors])
+    for name in stability.WEAK:
+        errors = [stability.measure((tuple(PIERS.values()), name, ratio, LONGEST)) for ratio in RATIOS]
+        rows.append([f"{name}, {1e3 * LONGEST:g} ms", *(f"{error:.1e}" if np.isfinite(error) else "blows up" for error in errors)])
+    return markdown(["deck / top masses", *(f"{ratio:g}" for ratio in RATIOS)], rows)
