@@ -11,9 +11,8 @@ import monolithic
 import numpy as np
 import pytest
 import reference
-from coupling import bridge_ssp, building_on_soil, convergence, stability
+from coupling import bridge_ssp, building_on_soil, convergence, one_system, stability
 from coupling.bridge import MASS, Bridge, deck, linear, pier, simulate
-from coupling.bridge_model_exchange import OneSystem, Pier, integrate
 from coupling.building_on_soil import OnSoil
 from coupling.masters import MASTERS, TOLERANCE, Diverged, Iterated, between_transitions
 from coupling.masters import extrapolate, gauss_seidel, hold, jacobi
@@ -138,19 +137,16 @@ def test_weak_coupling_blows_up_at_the_step_that_theory_gives(piers, master, gue
         assert (max(size[-50:]) > max(size[:50])) == grows
 
 
-def in_model_exchange(piers, of_deck, time, tolerance):
-    system = OneSystem([Pier(fmu, tolerance) for fmu in piers], of_deck)
-    return integrate(system, tolerance, time)[:, [0, 4, 2, 8, 6]], system
-
-
 def test_one_solver_over_bridge_and_piers_in_model_exchange(piers):
     """As near as its tolerance, over every transition of the independent integration."""
     time, _, expected = as_one(strong_motion)
-    loose, _ = in_model_exchange(piers, deck(), time, 1e-4)
-    tight, system = in_model_exchange(piers, deck(), time, 1e-8)
+    errors = []
+    for tolerance, longest_step in ((1e-4, 0.0), (1e-8, 0.0), (1e-10, 0.2e-3)):
+        found, system = one_system.response(piers, deck(), tolerance, time, longest_step)
+        errors.append(convergence.error(found, convergence.columns(expected)))
     assert system.transitions() == sum(map(len, expected.transitions)) > 20
-    assert convergence.error(tight, convergence.columns(expected)) < 1e-5
-    assert 1e-3 < convergence.error(loose, convergence.columns(expected)) < 0.3
+    loose, tight, tightest = errors
+    assert tightest < 1e-6 < tight < 1e-4 < loose < 0.3
 
 
 def test_a_stiff_and_heavy_deck_is_no_matter_to_one_solver(piers):
@@ -162,7 +158,7 @@ def test_a_stiff_and_heavy_deck_is_no_matter_to_one_solver(piers):
     of_deck, until = deck(stability.mass(ratio), frequency), slice(300)
     expected = monolithic.integrate(convergence.monolithic_bridge(of_deck), TIME[until], A_G[until], rtol=1e-9, atol=1e-12)
     assert sum(map(len, expected.transitions)) > 4
-    found, _ = in_model_exchange(piers, of_deck, TIME[until], 1e-6)
+    found, _ = one_system.response(piers, of_deck, 1e-6, TIME[until])
     assert convergence.error(found, convergence.columns(expected)) < 1e-3
 
 

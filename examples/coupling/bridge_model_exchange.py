@@ -95,11 +95,14 @@ class OneSystem:
         return sum(pier.fmu.getInteger([pier.references["transitions"]])[0] for pier in self.piers)
 
 
-def integrate(system: OneSystem, tolerance: float, time) -> np.ndarray:
-    """The state at every instant of `time`, from rest at the first of them."""
+def integrate(system: OneSystem, tolerance: float, time, longest_step: float = 0.0) -> np.ndarray:
+    """The state at every instant of `time`, from rest at the first of them; 0 leaves the steps (s) to the solver.
+
+    A pier takes its force to be a line over a step with a transition in it: an error of third order in the step.
+    """
     y, next_event = system.update(np.zeros(DECK + STATES * len(system.piers)))
     solver = CVODE(lambda t, y, rates: system.rates(t, y, rates), method="Adams", rtol=tolerance,
-                   atol=tolerance * system.nominals(),
+                   atol=tolerance * system.nominals(), max_step=longest_step,
                    eventsfn=lambda t, y, z: system.indicators(t, y, z), num_events=INDICATORS * len(system.piers))
     rows, t = [y], float(time[0])
     solver.init_step(t, y)
