@@ -67,7 +67,7 @@ def main() -> None:
         early_return=early_return.table(*to_transitions),
         frequency=stability.FREQUENCY,
         limits=limits_table(),
-        one_system=one_system.table(),
+        one_system=one_system.table(*to_transitions),
         one_system_stability=one_system.stability_table(),
         transitions=transitions,
     )
