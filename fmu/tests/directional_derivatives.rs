@@ -88,8 +88,8 @@ fn they_exist_from_initialization_to_overturning() {
 #[test]
 fn what_is_no_known_or_unknown_is_refused() {
     let host = rocking();
-    let can = "only the inputs can, in initialization mode real parameters and initial values, later u, u_dot, theta and \
-               theta_dot";
+    let can = "only the inputs can, in initialization mode real parameters and initial values, later u, u_dot, theta, \
+               theta_dot and time";
     let no_known = |name: &str| format!("{name} cannot be a known of a directional derivative: {can}");
     for (unknowns, knowns, message) in [
         (["a_t"], [("delta_t", 1.0)], &no_known("delta_t")[..]),
