@@ -489,7 +489,8 @@ impl Instance {
             let variable = find(*reference)?;
             match variable.source {
                 Source::Output(_) | Source::Reaction(_) | Source::StateRate(_) | Source::Ground => Ok(variable),
-                Source::Derived(_) | Source::RecordDuration | Source::Impulse(_) if is_initializing => Ok(variable),
+                Source::Impulse(_) => Ok(variable), // which events alone change
+                Source::Derived(_) | Source::RecordDuration if is_initializing => Ok(variable),
                 _ => Err(Failure::NoOutput(variable)),
             }
         };

@@ -8,6 +8,7 @@ use FlexibleRocking::condition::{Interface, Stepping};
 use FlexibleRocking::fmi3::*;
 use FlexibleRocking::snapshot;
 use FlexibleRocking::state_machine::Stage;
+use host::fmi3::call_what_is_not_provided;
 use host::{DISCARD, ERROR, OK, reference, resources};
 use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
@@ -373,38 +374,6 @@ fn call(host: &Host, function: Function) -> c_int {
             Function::EnterStepMode => fmi3EnterStepMode(c),
             Function::GetOutputDerivatives => fmi3GetOutputDerivatives(c, null(), 0, null(), null_mut(), 0),
             Function::DoStep => host.step(0.0, 1e-3),
-            Function::GetFloat32 => fmi3GetFloat32(c, null(), 0, null_mut(), 0),
-            Function::GetInt8 => fmi3GetInt8(c, null(), 0, null_mut(), 0),
-            Function::GetUInt8 => fmi3GetUInt8(c, null(), 0, null_mut(), 0),
-            Function::GetInt16 => fmi3GetInt16(c, null(), 0, null_mut(), 0),
-            Function::GetUInt16 => fmi3GetUInt16(c, null(), 0, null_mut(), 0),
-            Function::GetUInt32 => fmi3GetUInt32(c, null(), 0, null_mut(), 0),
-            Function::GetUInt64 => fmi3GetUInt64(c, null(), 0, null_mut(), 0),
-            Function::GetBinary => fmi3GetBinary(c, null(), 0, null_mut(), null_mut(), 0),
-            Function::GetClock => fmi3GetClock(c, null(), 0, null_mut()),
-            Function::SetFloat32 => fmi3SetFloat32(c, null(), 0, null(), 0),
-            Function::SetInt8 => fmi3SetInt8(c, null(), 0, null(), 0),
-            Function::SetUInt8 => fmi3SetUInt8(c, null(), 0, null(), 0),
-            Function::SetInt16 => fmi3SetInt16(c, null(), 0, null(), 0),
-            Function::SetUInt16 => fmi3SetUInt16(c, null(), 0, null(), 0),
-            Function::SetUInt32 => fmi3SetUInt32(c, null(), 0, null(), 0),
-            Function::SetUInt64 => fmi3SetUInt64(c, null(), 0, null(), 0),
-            Function::SetBinary => fmi3SetBinary(c, null(), 0, null(), null(), 0),
-            Function::SetClock => fmi3SetClock(c, null(), 0, null()),
-            Function::GetNumberOfVariableDependencies => fmi3GetNumberOfVariableDependencies(c, 0, null_mut()),
-            Function::GetVariableDependencies => {
-                fmi3GetVariableDependencies(c, 0, null_mut(), null_mut(), null_mut(), null_mut(), 0)
-            }
-            Function::EnterConfigurationMode => fmi3EnterConfigurationMode(c),
-            Function::ExitConfigurationMode => fmi3ExitConfigurationMode(c),
-            Function::GetIntervalDecimal => fmi3GetIntervalDecimal(c, null(), 0, null_mut(), null_mut()),
-            Function::GetIntervalFraction => fmi3GetIntervalFraction(c, null(), 0, null_mut(), null_mut(), null_mut()),
-            Function::GetShiftDecimal => fmi3GetShiftDecimal(c, null(), 0, null_mut()),
-            Function::GetShiftFraction => fmi3GetShiftFraction(c, null(), 0, null_mut(), null_mut()),
-            Function::SetIntervalDecimal => fmi3SetIntervalDecimal(c, null(), 0, null()),
-            Function::SetIntervalFraction => fmi3SetIntervalFraction(c, null(), 0, null(), null()),
-            Function::SetShiftDecimal => fmi3SetShiftDecimal(c, null(), 0, null()),
-            Function::SetShiftFraction => fmi3SetShiftFraction(c, null(), 0, null(), null()),
             Function::EnterContinuousTimeMode => fmi3EnterContinuousTimeMode(c),
             Function::CompletedIntegratorStep => fmi3CompletedIntegratorStep(c, 0, &mut 0, &mut 0),
             Function::SetTime => fmi3SetTime(c, 0.0),
@@ -415,7 +384,7 @@ fn call(host: &Host, function: Function) -> c_int {
             Function::GetNominalsOfContinuousStates => fmi3GetNominalsOfContinuousStates(c, [0.0; 4].as_mut_ptr(), 4),
             Function::GetNumberOfEventIndicators => fmi3GetNumberOfEventIndicators(c, &mut 0),
             Function::GetNumberOfContinuousStates => fmi3GetNumberOfContinuousStates(c, &mut 0),
-            Function::ActivateModelPartition => fmi3ActivateModelPartition(c, 0, 0.0),
+            not_provided => call_what_is_not_provided(c, not_provided),
         }
     }
 }
