@@ -413,6 +413,24 @@ fn state_rates() -> [Variable; 4] {
 
 /// What tells a host that integrates of the end of a phase, in the order in which it is told.
 fn event_indicators() -> [Variable; INDICATORS] {
+    const PHASE: &[&str] = &[
+        "m",
+        "m0",
+        "H",
+        "B",
+        "f_fc",
+        "zeta_fc",
+        "c_ratio",
+        "g",
+        "detail",
+        "theta_0",
+        "u_0",
+        "u_dot_0",
+        "record",
+        "record_scale",
+        "record_time_scale",
+        "record_start",
+    ];
     let indicator = |which, name, description| Variable {
         causality: Causality::Local,
         ..output(name, "1", description, Source::Indicator(which), &[], &[])
@@ -421,7 +439,7 @@ fn event_indicators() -> [Variable; INDICATORS] {
         Variable {
             feedthrough: &["a_g", "F_t"],
             states: &["u", "u_dot", "theta"],
-            initial_dependencies: ACCELERATIONS,
+            initial_dependencies: PHASE,
             ..indicator(
                 0,
                 "phase_indicator",
