@@ -481,7 +481,7 @@ fn a_model_is_the_same_in_both_versions() {
     assert_eq!(three.bytes(), two.bytes());
     assert_ne!(three.bytes(), before);
     three.go_to(&before);
-    assert_eq!(three.update().0[3], true);
+    assert!(three.update().0[3]);
     assert_eq!((three.bytes(), two.integer("transitions")), (two.bytes(), 1));
 }
 
