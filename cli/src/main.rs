@@ -30,7 +30,13 @@ use clap::{
 };
 use fmu_export::{Platform, significant};
 use std::env::consts::{ARCH, OS};
-use std::{io, process::ExitCode};
+use std::{
+    io,
+    process::{self, ExitCode},
+};
+
+/// Exit code of a command that the user stops: a shell's for SIGINT.
+const STOPPED: i32 = 130;
 
 /// A flexible structure that rocks on its foundation: FMU exporter and simulator.
 ///
@@ -38,7 +44,8 @@ use std::{io, process::ExitCode};
 /// such as --f-fc 8 take the place of theirs. SI units throughout, angles in rad.
 ///
 /// Results go to standard output, all else that is said to standard error. Exit codes: 0 the command did what was asked,
-/// or whoever reads its output has seen enough; 1 it failed, for the reason on standard error; 2 it was called wrongly.
+/// or whoever reads its output has seen enough; 1 it failed, for the reason on standard error; 2 it was called wrongly; 130 it
+/// was stopped.
 #[derive(Parser)]
 #[command(name = "rocking-fmu", version, long_version = long_version())]
 struct CommandLine {
@@ -126,7 +133,29 @@ enum Command {
     #[command(after_help = "Examples:
   rocking-fmu sweep fragility.toml
   rocking-fmu sweep fragility.toml -o runs.csv --threads 2
-  rocking-fmu sweep spectrum.toml --picture spectrum.png")]
+  rocking-fmu sweep spectrum.toml --picture spectrum.png
+
+A file of records, fragility.toml:
+  records = ['records/*.AT2']
+  scale = { from = 0.2, to = 2, count = 10 }
+  [limits]
+  'theta/alpha_cg' = [0.1, 0.5]
+  [[structures]]
+  name = 'piers'
+  preset = 'mcmanus'
+  vary.f_fc = [2, 4, 8]
+
+A file of pulses, spectrum.toml, a map of each structure:
+  refine = 1                  # halve the steps along the boundaries so many times
+  condition = false           # true: run each point again with 1e-12 more amplitude
+  [pulses]
+  shape = 'sine'              # see `pulse --help`; cycles = 1, phase = 0, error = 1e-4
+  frequency = { from = 0.5, to = 10, count = 40, log = true }
+  amplitude = { from = 0.5, to = 12, count = 40 }
+  dimensionless = true        # in units of p_l and g tan(alpha_cg); false: Hz and g
+  [[structures]]
+  name = 'pier'
+  parameters = { m = 1000, m0 = 300, H = 4, B = 0.6, f_fc = 3, zeta_fc = 0.02, r = 0.95 }")]
     Sweep(sweep::SweepArgs),
     /// Write a pulse as a record: half sine, sine, cosine, Ricker, Mavroeidis and Papageorgiou
     ///
@@ -163,6 +192,12 @@ fn main() -> ExitCode {
     if quiet {
         talk::be_quiet();
     }
+    // without it the command is stopped all the same, and leaves what it has begun
+    let _ = ctrlc::set_handler(|| {
+        output_files::remove_unfinished();
+        talk::say_stopped();
+        process::exit(STOPPED);
+    });
     let result = match command {
         Command::Export(args) => export::run(&args),
         Command::Simulate(args) => simulate::run(&args),

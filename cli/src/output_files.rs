@@ -12,6 +12,7 @@ use std::{
     fs::{self, File, Metadata},
     io::{self, BufWriter, StdoutLock, Write, stdout},
     path::{Component, Path, PathBuf, Prefix, absolute, is_separator},
+    sync::{Mutex, PoisonError},
 };
 use tempfile::NamedTempFile;
 
@@ -20,6 +21,9 @@ const LONGEST_CHAIN_OF_LINKS: usize = 40;
 
 /// Folders of what programs have opened, under names that a shell gives to commands: Linux's, macOS's.
 const FOLDERS_OF_OPEN_FILES: [&str; 2] = ["/proc", "/dev/fd"];
+
+/// Files that have been begun, under the names that they have until they are complete.
+static BEGUN: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 /// All files of one command: those that it reads, and those that it writes.
 #[derive(Default)]
@@ -143,6 +147,14 @@ impl OutputFile {
     }
 }
 
+/// Removes what is not complete, for a command that ends here and now.
+pub fn remove_unfinished() {
+    for path in BEGUN.lock().unwrap_or_else(PoisonError::into_inner).iter() {
+        // one that is complete has another name
+        let _ = fs::remove_file(path);
+    }
+}
+
 fn name(path: &Path) -> String {
     if path == Path::new("-") { "standard output".into() } else { path.display().to_string() }
 }
@@ -211,6 +223,7 @@ fn beside(target: &Path) -> io::Result<NamedTempFile> {
     let folder = target.parent().unwrap_or(Path::new("/"));
     let file = as_any_new_file(tempfile::Builder::new().prefix(".rocking-fmu-")).tempfile_in(folder);
     let file = file.map_err(|error| io::Error::new(error.kind(), in_folder(folder, &error)))?;
+    BEGUN.lock().unwrap_or_else(PoisonError::into_inner).push(file.path().into());
     if let Some(there) = there {
         take_over(&file, &there)?;
     }

@@ -8,6 +8,7 @@ use crate::{
     talk::say,
 };
 use anyhow::Context;
+use plotters::coord::combinators::WithKeyPoints;
 use plotters::coord::{Shift, ranged1d::ValueFormatter};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -188,7 +189,7 @@ pub fn titled<'a>(area: &Area<'a>, title: &str, about: &str) -> anyhow::Result<A
 }
 
 /// The first characters of `text`.
-fn shortened(text: &str, most: usize) -> String {
+pub fn shortened(text: &str, most: usize) -> String {
     match text.char_indices().nth(most) {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text.into(),
@@ -247,6 +248,33 @@ where
     Ok(())
 }
 
+/// A logarithmic axis, at 1, 2, 5, 10, … where these are enough.
+pub fn log_axis(range: Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
+    let ticks = log_ticks(&range);
+    range.log_scale().with_key_points(ticks)
+}
+
+/// Fewest numbers beside a logarithmic axis.
+const FEWEST: usize = 4;
+
+/// The roundest numbers of `range` that are enough, or its ends.
+fn log_ticks(range: &Range<f64>) -> Vec<f64> {
+    let steps: [Vec<f64>; 4] = [
+        vec![1.0],
+        vec![1.0, 2.0, 5.0],
+        (1..10).map(f64::from).collect(),
+        (10..100).map(|i| 0.1 * f64::from(i)).collect(),
+    ];
+    let decades = range.start.log10().floor() as i32..=range.end.log10().ceil() as i32;
+    let ticks = |steps: Vec<f64>| -> Vec<f64> {
+        let all = decades.clone().flat_map(|decade| steps.iter().map(move |step| step * 10.0_f64.powi(decade)));
+        // the ends themselves, whatever rounding has made of them
+        all.filter(|tick| (range.start * (1.0 - 1e-12)..=range.end * (1.0 + 1e-12)).contains(tick)).collect()
+    };
+    let enough = steps.into_iter().map(ticks).find(|ticks| ticks.len() >= FEWEST);
+    enough.unwrap_or_else(|| vec![range.start, range.end])
+}
+
 /// A number beside an axis that has this range: what rounding has left of a round number is no part of it.
 fn number(value: f64, range: &Range<f64>) -> String {
     if value.abs() < 1e-9 * (range.end - range.start).abs() {
@@ -293,6 +321,18 @@ mod tests {
             .map(|value| number(value, &(-0.5..0.5)));
         assert_eq!(shown, ["−0.4", "0", "0.2", "0.3", "1.2"]);
         assert_eq!([2e-5, 4e7, 200_000.0].map(|value| number(value, &(0.0..1e-4))), ["2e−5", "4e7", "200000"]);
+    }
+
+    #[test]
+    fn logarithmic_axes_have_round_numbers() {
+        let shown = |range: Range<f64>| {
+            log_ticks(&range).iter().map(|tick| number(*tick, &range)).collect::<Vec<_>>().join(" ")
+        };
+        assert_eq!(shown(0.5..12.0), "0.5 1 2 5 10");
+        assert_eq!(shown(2.0..7.0), "2 3 4 5 6 7");
+        assert_eq!(shown(0.01..200.0), "0.01 0.1 1 10 100");
+        assert_eq!(shown(1.0..1.5), "1 1.1 1.2 1.3 1.4 1.5");
+        assert_eq!(shown(3.001..3.002), "3.001 3.002");
     }
 
     #[test]

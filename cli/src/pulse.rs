@@ -16,7 +16,7 @@ use crate::{
 };
 use clap::{
     ArgGroup,
-    builder::{PossibleValuesParser, TypedValueParser},
+    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
 use rocking::{
     Structure,
@@ -51,10 +51,10 @@ pub struct PulseArgs {
 #[derive(clap::Args)]
 #[command(next_help_heading = "Pulse")]
 struct OfPulse {
-    /// Its shape
+    /// Its shape, with a_p the amplitude, w = 2 pi f, T = 1/f, n and gamma the cycles, phi and nu the phase
     #[arg(value_name = "SHAPE", value_parser = shape_parser())]
     shape: Shape,
-    /// Amplitude of the ground acceleration
+    /// Amplitude a_p of the ground acceleration
     #[arg(long, value_name = "G", value_parser = positive, allow_negative_numbers = true)]
     amplitude: Option<f64>,
     /// The same in units of g tan(alpha_cg) of the structure
@@ -87,7 +87,8 @@ struct OfPulse {
 }
 
 fn shape_parser() -> impl TypedValueParser<Value = Shape> {
-    PossibleValuesParser::new(Shape::ALL.map(Shape::name)).map(|name| {
+    let shapes = Shape::ALL.map(|shape| PossibleValue::new(shape.name()).help(shape.definition()));
+    PossibleValuesParser::new(shapes).map(|name| {
         let is_named = |shape: &Shape| shape.name() == name;
         Shape::ALL.into_iter().find(is_named).expect("clap accepts these names alone")
     })

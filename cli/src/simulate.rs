@@ -155,7 +155,8 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
         // What goes to standard output stays one table.
         if output == Path::new("-") { say!("{}", text.trim_end()) } else { print(&text)? }
     } else {
-        summary.print(args.results.format.format, &peaks, ground.title(), ground.start(), &finish)?;
+        let validity = validity::rows(validity.found(), &limits);
+        summary.print(args.results.format.format, &peaks, validity, ground.title(), ground.start(), &finish)?;
     }
     if summary::shows_no_motion(&peaks) {
         say!("nothing moves: the ground is at rest and the structure stands; see --record, --theta-0, --u-0");

@@ -1,5 +1,6 @@
 //! What `simulate` prints at the end of a run.
 use crate::results::{Format, print_json, print_rows};
+use crate::validity;
 use fmu_export::significant::significant;
 use rocking::run::{
     Ending, Finish, LONGEST_REST,
@@ -39,7 +40,7 @@ struct Line {
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Value {
-    Peak(f64),
+    Number(f64),
     Count(u64),
     Ending(Ending),
 }
@@ -59,6 +60,7 @@ struct Whole<'a> {
     transitions: u64,
     steps: u64,
     evaluations: u64,
+    validity: Vec<validity::Row>,
 }
 
 impl Watch for Summary {
@@ -80,11 +82,13 @@ impl Summary {
         Summary { structure: *structure, first_uplift: None, first_impact: None }
     }
 
-    /// Prints it for programs, with the `peaks` and what the run counted and came to; `title` is the ground motion's.
+    /// Prints it for programs, with the `peaks`, what the model leaves out and what the run counted and came to; `title`
+    /// is the ground motion's.
     pub fn print(
         &self,
         format: Format,
         peaks: &Peaks,
+        validity: Vec<validity::Row>,
         title: &str,
         start: f64,
         &Finish { ending, motion }: &Finish,
@@ -99,7 +103,9 @@ impl Summary {
             let count = |name, count| line(name, Some(Value::Count(count)), "1", None);
             let peaks = rows
                 .into_iter()
-                .map(|Row { name, peak, unit, time }| line(name, Some(Value::Peak(peak)), unit, Some(time)));
+                .map(|Row { name, peak, unit, time }| line(name, Some(Value::Number(peak)), unit, Some(time)));
+            let validity =
+                validity.iter().map(|row| line(row.name, Some(Value::Number(row.value)), "1", Some(row.time)));
             let rest = [
                 line("start", None, "", Some(start)),
                 line("ending", Some(Value::Ending(ending)), "", Some(motion.time)),
@@ -109,7 +115,7 @@ impl Summary {
                 count("steps", work.steps),
                 count("evaluations", work.evaluations),
             ];
-            return print_rows(format, &peaks.chain(rest).collect::<Vec<_>>());
+            return print_rows(format, &peaks.chain(rest).chain(validity).collect::<Vec<_>>());
         }
         let overturned = match ending {
             Ending::StillRocking => None,
@@ -127,6 +133,7 @@ impl Summary {
             transitions,
             steps: work.steps,
             evaluations: work.evaluations,
+            validity,
         })
     }
 

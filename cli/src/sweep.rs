@@ -69,6 +69,7 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let picture = args.picture.clone().unwrap_or(PictureFile::svg(output.with_extension("svg")));
     files.reserve_rows(&output)?;
     let picture = picture.create(&mut files).context("picture of the sweep")?;
+    talk::if_stopped(format!(": what is done stays in {}; the same command goes on from there", output.display()));
     match asked {
         Asked::Records(sweep) => run_records(args, sweep, &output, picture),
         Asked::Pulses(sweep) => map::run(args, sweep, &output, picture),

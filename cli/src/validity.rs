@@ -1,8 +1,9 @@
 //! What the model leaves out on a scene: the section that `simulate` and `advise` print, and the limits it goes by.
 
 use crate::significant::significant;
-use rocking::run::validity::{self, ASSUMPTIONS, Found, Limits, Worst};
+use rocking::run::validity::{self, ASSUMPTIONS, Assumption, Found, Limits, Worst};
 use rocking::{Detail, Structure};
+use serde::Serialize;
 
 /// What may be asked of the ground and of impacts without a word.
 #[derive(clap::Args)]
@@ -50,6 +51,30 @@ const LABELS: [&str; ASSUMPTIONS.len()] = [
     "pull of impacts, over I_v",
     "energy gained at an impact, over T",
 ];
+
+/// One of [`ASSUMPTIONS`], for programs.
+#[derive(Serialize)]
+pub struct Row {
+    pub name: &'static str,
+    /// Infinite is null in JSON.
+    pub value: f64,
+    /// Its instant, s.
+    pub time: f64,
+    limit: f64,
+    /// When the limit was passed first, s.
+    first_beyond: Option<f64>,
+    /// For how long, s, or at how many impacts.
+    beyond: f64,
+}
+
+/// All of them, in a run in which this was `found`.
+pub fn rows(found: &Found, limits: &Limits) -> Vec<Row> {
+    let row = |(assumption, worst): (&Assumption, &Worst)| {
+        let Worst { value, time, first_beyond, beyond } = *worst;
+        Row { name: assumption.name, value, time, limit: (assumption.limit)(limits), first_beyond, beyond }
+    };
+    ASSUMPTIONS.iter().zip(&found.worst).map(row).collect()
+}
 
 /// The section on a run of `structure` at the level `detail` in which this was `found`, line by line.
 pub fn section(structure: &Structure, detail: Detail, found: &Found, limits: &Limits) -> Vec<String> {

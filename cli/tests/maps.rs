@@ -4,8 +4,18 @@
 mod command_line;
 
 use command_line::{fail, succeed};
-use rocking::record::{Reading, Record, pulse::Pulse, pulse::Shape};
-use std::{collections::BTreeMap, fs, path::Path, process::Command};
+use rocking::record::{
+    Reading, Record,
+    pulse::{DEFAULT_ERROR, Pulse, Shape},
+};
+use std::{
+    collections::BTreeMap,
+    fs,
+    path::Path,
+    process::{Command, Stdio},
+    thread::sleep,
+    time::Duration,
+};
 use tempfile::TempDir;
 
 /// 12 × 12 points with a boundary in the middle, at a level that costs little.
@@ -36,6 +46,13 @@ fn rows(folder: &Path, name: &str) -> Vec<String> {
     let mut rows: Vec<_> = text.lines().skip(1).map(str::to_owned).collect();
     rows.sort_unstable();
     rows
+}
+
+/// The place of a column.
+fn column(folder: &Path, name: &str, heading: &str) -> usize {
+    let text = fs::read_to_string(folder.join(name)).unwrap();
+    let found = text.lines().next().unwrap().split(',').position(|found| found == heading);
+    found.unwrap_or_else(|| panic!("no {heading}"))
 }
 
 /// The same points to the bit for any number of threads, and after the sweep was killed in the middle of writes; and
@@ -70,6 +87,29 @@ fn a_map_is_the_same_however_it_came_about() {
     assert_eq!(rows(folder, "killed.csv"), expected);
 }
 
+/// Whoever stops a sweep is told that it can go on, and finds no file of it but the rows.
+#[cfg(unix)]
+#[test]
+fn a_stopped_map_leaves_its_rows_alone() {
+    let folder = map(&MAP.replace("count = 12 }", "count = 400 }"));
+    let folder = folder.path();
+    let program = env!("CARGO_BIN_EXE_rocking-fmu");
+    let sweep =
+        Command::new(program).args(["sweep", "map.toml"]).current_dir(folder).stderr(Stdio::piped()).spawn().unwrap();
+    let rows = || fs::read_to_string(folder.join("map.csv")).map_or(0, |text| text.lines().count());
+    while rows() < 10 {
+        sleep(Duration::from_millis(5));
+    }
+    assert!(Command::new("kill").args(["-INT", &sweep.id().to_string()]).status().unwrap().success());
+    let end = sweep.wait_with_output().unwrap();
+    let said = String::from_utf8(end.stderr).unwrap();
+    assert_eq!(end.status.code(), Some(130), "{said}");
+    assert!(said.ends_with("stopped: what is done stays in map.csv; the same command goes on from there\n"), "{said}");
+    let mut names: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
+    names.sort_unstable();
+    assert_eq!(names, ["map.csv", "map.toml"]);
+}
+
 /// With a finer grid along the boundary only its points are run, and the file keeps both.
 #[test]
 fn refining_runs_the_boundary_alone() {
@@ -82,8 +122,9 @@ fn refining_runs_the_boundary_alone() {
     let fine = rows(folder.path(), "map.csv");
     assert!(coarse.iter().all(|row| fine.contains(row)));
     let mut levels = BTreeMap::new();
+    let refinement = column(folder.path(), "map.csv", "refinement");
     for row in &fine {
-        *levels.entry(row.split(',').nth(7).unwrap().to_owned()).or_insert(0) += 1;
+        *levels.entry(row.split(',').nth(refinement).unwrap().to_owned()).or_insert(0) += 1;
     }
     assert_eq!((levels.len(), levels["0"]), (3, 144));
     // 45 × 45 points of the finest grid
@@ -97,17 +138,22 @@ fn a_point_is_a_simulation_of_its_pulse() {
     let folder = folder.path();
     succeed(folder, "sweep map.toml -o map.csv");
     let row = rows(folder, "map.csv").into_iter().find(|row| row.contains(",stands,")).unwrap();
-    let cell = |column: usize| row.split(',').nth(column).unwrap();
-    let pulse = format!("pulse sine --frequency-ratio {} --amplitude-ratio {}", cell(10), cell(11));
+    let cell = |heading: &str| row.split(',').nth(column(folder, "map.csv", heading)).unwrap();
+    let ratios = (cell("omega/p_l"), cell("a_p/(g tan alpha_cg)"));
+    let pulse = format!("pulse sine --frequency-ratio {} --amplitude-ratio {}", ratios.0, ratios.1);
     succeed(folder, &pulse);
     let (printed, _) = succeed(folder, "simulate --record pulse.csv --detail modal --format json");
     let printed: serde_json::Value = serde_json::from_str(&printed).unwrap();
-    let alpha = rocking::Structure::new(rocking::Parameters::MCMANUS).unwrap().tan_alpha_cg.atan();
+    let parameters = rocking::Parameters::MCMANUS;
+    for (heading, value) in [("m[kg]", parameters.m), ("r", parameters.r), ("error", DEFAULT_ERROR)] {
+        assert_eq!(cell(heading).parse(), Ok(value), "{heading}");
+    }
+    let alpha = rocking::Structure::new(parameters).unwrap().tan_alpha_cg.atan();
     let peaks = printed["peaks"].as_array().unwrap();
     let theta = peaks.iter().find(|peak| peak["name"] == "theta").unwrap()["peak"].as_f64().unwrap();
-    let ratio: f64 = cell(14).parse().unwrap();
+    let ratio: f64 = cell("theta_max/alpha_cg").parse().unwrap();
     assert!((theta / alpha / ratio - 1.0).abs() < 1e-9, "{theta} {ratio}");
-    assert_eq!(printed["transitions"].to_string(), cell(15));
+    assert_eq!(printed["transitions"].to_string(), cell("transitions"));
 }
 
 /// The file of a pulse reads back as the library's own record.
@@ -142,7 +188,8 @@ fn a_refused_map_says_what_to_change() {
         ("from = 1,", "from = 10,", "frequency needs two or more finite values greater than 0"),
         ("error = 1e-3", "error = 0.5", "error = 0.5 is out of range: it must lie between"),
         ("from = 0.5,", "from = 0,", "from = 0 to = 9 have no logarithms"),
-        ("[pulses]", "scale = [1]\n[pulses]", "unknown field `scale`"),
+        ("[pulses]", "scale = [1]\n[pulses]", "pulses and scale are there: a sweep is of either"),
+        ("preset = 'mcmanus'", "", "structures \"McManus\": give either preset or parameters"),
         ("shape = 'sine'", "shape = 'half_sine'\ncycles = 3", "cycles = 3 is not possible: half_sine has 0.5"),
     ] {
         let found = refusal(from, to);

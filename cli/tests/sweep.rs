@@ -450,7 +450,8 @@ fn the_headings_are_checked() {
         ("# rocking-fmu sweep\n", "error: sweep.csv: line 1, \"# rocking-fmu sweep\", is not the headings".into()),
         (
             "run,structures,m[kg],scale,PGA[g]\n1,2,3,4,5\n",
-            "error: sweep.csv: the headings in line 1 are those of another version of this program: name another"
+            "error: sweep.csv: the headings in line 1 are those of another kind of sweep (of records, of pulses) or of \
+             another version of this program: name another"
                 .into(),
         ),
     ] {

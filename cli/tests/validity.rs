@@ -70,6 +70,32 @@ fn the_section_is_that_of_the_run() {
     }
 }
 
+/// The same for programs, to the bit; in JSON what is infinite is null.
+#[test]
+fn programs_read_what_the_run_found() {
+    let folder = folder();
+    let path = folder.path();
+    let limits = Limits { friction: 0.3, ..Limits::default() };
+    let found = found(path, 0.99, 1.0, limits, End::At(3.0));
+    assert!(found.worst.iter().any(|worst| worst.value.is_infinite() && worst.first_beyond.is_some()));
+    let simulate = "simulate --record pulse.AT2 --duration 3 --friction 0.3";
+    let (json, _) = succeed(path, &format!("{simulate} --format json"));
+    let (csv, _) = succeed(path, &format!("{simulate} --format csv"));
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    for ((i, assumption), worst) in ASSUMPTIONS.iter().enumerate().zip(&found.worst) {
+        let row = &json["validity"][i];
+        assert_eq!(row["name"], assumption.name);
+        assert_eq!(row["value"].as_f64(), worst.value.is_finite().then_some(worst.value));
+        assert_eq!(row["time"].as_f64(), Some(worst.time));
+        assert_eq!(row["limit"].as_f64(), Some((assumption.limit)(&limits)));
+        assert_eq!(row["first_beyond"].as_f64(), worst.first_beyond);
+        assert_eq!(row["beyond"].as_f64(), Some(worst.beyond));
+        let line = csv.lines().find(|line| line.starts_with(&format!("{},", assumption.name))).unwrap();
+        let cells: Vec<_> = line.split(',').collect();
+        assert_eq!([cells[1], cells[3]].map(|cell| cell.parse::<f64>().unwrap()), [worst.value, worst.time]);
+    }
+}
+
 /// What the parameters alone say comes first.
 #[test]
 fn what_the_parameters_say_is_said() {

@@ -2,17 +2,9 @@
 //!
 //! a_p is the amplitude, ω = 2π f the circular frequency, T = 1/f, t = 0 the pulse's start or, where it says so, its middle.
 //!
-//! | shape | ground acceleration | where from |
-//! |---|---|---|
-//! | `half_sine` | a_p sin ωt, 0 ≤ t ≤ T/2 | Housner (1963) |
-//! | `sine` | a_p sin(ωt + φ), 0 ≤ t ≤ nT; n = 1, φ = 0: one sine, type A | Zhang and Makris (2001) |
-//! | `cosine` | a_p cos(ωt + φ), 0 ≤ t ≤ nT; n = 1, φ = 0: one cosine, type B | Zhang and Makris (2001) |
-//! | `ricker` | a_p (1 − x²) e^(−x²/2), x = ωt/√2 about the middle | Ricker (1943), Vassiliou and Makris (2011) |
-//! | `antisymmetric_ricker` | a_p (x³ − 3x) e^(−x²/2)/β, x = ωt/√3 about the middle | the same, β = 1.3801 makes the peak a_p |
-//! | `mavroeidis_papageorgiou` | d/dt of ½ A (1 + cos(ωt/γ)) cos(ωt + ν), abs(t) ≤ γT/2 about the middle | Mavroeidis and Papageorgiou (2003) |
-//!
-//! The last one's authors give the velocity and its amplitude A; a_p is ω A, which the peak of the acceleration exceeds or
-//! misses by a few percent. n and γ are `cycles`, φ and ν `phase`. A Ricker wavelet has no end: what is below 1e-9 of a_p is cut.
+//! [`Shape::definition`] has the ground acceleration of each. The authors of the last, Mavroeidis and Papageorgiou, give the
+//! velocity and its amplitude A; a_p is ω A, and the peak of the acceleration 0.87 to 1 times as much, after γ and ν. n and γ
+//! are `cycles`, φ and ν `phase`. A Ricker wavelet has no end: what is below 1e-9 of a_p is cut.
 //!
 //! # Straight lines
 //!
@@ -121,6 +113,16 @@ pub enum PulseError {
     /// γ ≤ 1 leaves no pulse between the ends of its bell.
     #[error("cycles = {0} is out of range: mavroeidis_papageorgiou needs more than 1 (its gamma)")]
     TooFewCycles(f64),
+    /// A jump takes longer.
+    #[error("{name} = {value} s is out of range: 0 is possible, or {least} s and more")]
+    TooShort {
+        /// `lead_in` or `rest`.
+        name: &'static str,
+        /// The refused value, s.
+        value: f64,
+        /// The least, s.
+        least: f64,
+    },
     /// A jump would be lost beside it.
     #[error("{name} = {value} s is out of range: at most {LONGEST_LEAD_IN} periods are possible, {most} s")]
     TooLong {
@@ -167,6 +169,30 @@ impl Shape {
         }
     }
 
+    /// Its ground acceleration, and where that is from.
+    pub const fn definition(self) -> &'static str {
+        match self {
+            Shape::HalfSine => "a_p sin(w t), 0 <= t <= T/2 (Housner 1963)",
+            Shape::Sine => {
+                "a_p sin(w t + phi), 0 <= t <= n T; n = 1, phi = 0: type A of Zhang and Makris (2001); n = k + 1/2 - phi/pi: \
+                 type C_k of Makris and Roussos (2000), whose phi leaves no velocity at the end"
+            }
+            Shape::Cosine => "a_p cos(w t + phi), 0 <= t <= n T; n = 1, phi = 0: type B of Zhang and Makris (2001)",
+            Shape::Ricker => {
+                "a_p (1 - x^2) exp(-x^2/2), x = w t/sqrt(2), t = 0 in the middle; f is where its spectrum is largest \
+                 (Ricker 1943; Vassiliou and Makris 2011)"
+            }
+            Shape::AntisymmetricRicker => {
+                "a_p (x^3 - 3 x) exp(-x^2/2)/beta, x = w t/sqrt(3), t = 0 in the middle, beta = 1.3801: the peak is a_p; f as above \
+                 (Vassiliou and Makris 2011)"
+            }
+            Shape::MavroeidisPapageorgiou => {
+                "d/dt of A/2 (1 + cos(w t/gamma)) cos(w t + nu), |t| <= gamma T/2, a_p = w A: its peak is 0.87 to 1 times a_p \
+                 (Mavroeidis and Papageorgiou 2003)"
+            }
+        }
+    }
+
     /// How many periods it has unless something else is asked for.
     pub const fn cycles(self) -> f64 {
         match self {
@@ -194,6 +220,18 @@ impl Pulse {
         Pulse { shape, amplitude, frequency, cycles, phase: 0.0, lead_in: 0.0, rest: 0.0, error: DEFAULT_ERROR }
     }
 
+    /// What it is called: its shape and, where there is a choice, cycles and phase.
+    pub fn name(&self) -> String {
+        let &Pulse { shape, .. } = self;
+        let [cycles, phase] = [self.cycles, self.phase].map(six_digits);
+        let name = shape.name().replace('_', " ");
+        match shape {
+            Shape::MavroeidisPapageorgiou => format!("{name}, gamma {cycles}, nu {phase} rad"),
+            _ if cycles == shape.cycles() && phase == 0.0 => name,
+            _ => format!("{name}, {cycles} cycles, phase {phase} rad"),
+        }
+    }
+
     /// Whether there is such a pulse.
     pub fn check(&self) -> Result<(), PulseError> {
         let &Pulse { shape, frequency, cycles, phase, error, .. } = self;
@@ -206,8 +244,11 @@ impl Pulse {
         if shape == Shape::MavroeidisPapageorgiou && cycles <= 1.0 {
             return Err(PulseError::TooFewCycles(cycles));
         }
-        let most = LONGEST_LEAD_IN / frequency;
+        let (least, most) = (2.0 * JUMP / frequency, LONGEST_LEAD_IN / frequency);
         for (name, value) in [("lead_in", self.lead_in), ("rest", self.rest)] {
+            if value > 0.0 && value < least {
+                return Err(PulseError::TooShort { name, value, least });
+            }
             if value > most {
                 return Err(PulseError::TooLong { name, value, most });
             }
@@ -257,9 +298,8 @@ impl Pulse {
             samples.push((end.0 + rest, 0.0));
         }
         let (times, acceleration) = samples.into_iter().unzip();
-        let six_digits = |value: f64| format!("{value:.5e}").parse().expect("a number in Rust's own notation");
-        let [of, at]: [f64; 2] = [amplitude, frequency].map(six_digits);
-        let title = format!("{}, {of} m/s2, {at} Hz", self.shape.name());
+        let [of, at] = [amplitude, frequency].map(six_digits);
+        let title = format!("{}, {of} m/s2, {at} Hz", self.name());
         Ok(Record::from_samples(title, times, acceleration)?)
     }
 
@@ -316,6 +356,10 @@ impl Pulse {
             }
         }
     }
+}
+
+fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().expect("a number in Rust's own notation")
 }
 
 #[cfg(test)]
@@ -422,6 +466,24 @@ mod tests {
         assert!(off[1] < 1e-8, "{off:?}");
     }
 
+    /// What [`Shape::definition`] says of the peak, at the γ and ν of the least one and of the largest.
+    #[test]
+    fn the_peak_of_a_velocity_pulse_is_nearly_its_amplitude() {
+        let peak = |cycles, phase| {
+            Pulse { cycles, phase, ..pulse(Shape::MavroeidisPapageorgiou) }.record().unwrap().pga() / AMPLITUDE
+        };
+        let phases = || (0..=20).map(|i| PI * f64::from(i) / 20.0);
+        let peaks: Vec<_> = [1.01, 1.2, 1.3, 1.4, 1.7, 2.0, 3.0, 5.0]
+            .into_iter()
+            .flat_map(|cycles| phases().map(move |phase| (cycles, phase)))
+            .map(|(cycles, phase)| peak(cycles, phase))
+            .collect();
+        let [least, most] =
+            [f64::min as fn(f64, f64) -> f64, f64::max].map(|of| peaks.iter().copied().reduce(of).unwrap());
+        assert_abs_diff_eq!(least, 0.872, epsilon = 1e-3);
+        assert_abs_diff_eq!(most, 1.0, epsilon = 1e-5);
+    }
+
     #[test]
     fn jumps_are_steep_and_ends_are_at_rest() {
         let pulse = Pulse { lead_in: 1.0, rest: 2.0, ..pulse(Shape::Cosine) };
@@ -453,6 +515,8 @@ mod tests {
         assert_eq!(gamma, "cycles = 1 is out of range: mavroeidis_papageorgiou needs more than 1 (its gamma)");
         let lead_in = refused(Pulse { lead_in: 5e4, ..one });
         assert_eq!(lead_in, "lead_in = 50000 s is out of range: at most 100000 periods are possible, 40000 s");
+        let jump = refused(Pulse { rest: 1e-10, ..one });
+        assert_eq!(jump, "rest = 0.0000000001 s is out of range: 0 is possible, or 0.0000000008 s and more");
         let samples = refused(Pulse { cycles: 1e4, error: 1e-12, ..one });
         assert!(samples.starts_with("error = 0.000000000001 takes 2221"), "{samples}");
     }

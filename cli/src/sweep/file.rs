@@ -164,7 +164,14 @@ enum Values {
 pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
     let mut read = || {
         let text = std::fs::read_to_string(path)?;
-        if toml::from_str::<toml::Table>(&text)?.contains_key("pulses") {
+        let table: toml::Table = toml::from_str(&text)?;
+        if table.contains_key("pulses") {
+            let of_records = ["records", "scale"].into_iter().find(|key| table.contains_key(*key));
+            ensure!(
+                of_records.is_none(),
+                "pulses and {} are there: a sweep is of either",
+                of_records.unwrap_or_default()
+            );
             return Ok(Asked::Pulses(toml::from_str::<MapFile>(&text)?.sweep()?));
         }
         let file: SweepFile = toml::from_str(&text)?;
@@ -219,7 +226,7 @@ impl MapFile {
         let pulse = Pulse::new(shape, amplitude.values()[0], frequency.values()[0]);
         let (cycles, error) = (cycles.unwrap_or(pulse.cycles), error.unwrap_or(pulse.error));
         let pulse = Pulse { cycles, phase, error, ..pulse };
-        let map = Map::new(structure, pulse, [frequency, amplitude], dimensionless)?;
+        let map = Map::new(structure, pulse, [frequency, amplitude], dimensionless).context("pulses")?;
         Ok(map.computed_by(self.detail, self.tolerance.unwrap_or(DEFAULT_TOLERANCE))?)
     }
 }
@@ -264,7 +271,7 @@ fn gravity(structures: &[StructureGrid]) -> anyhow::Result<f64> {
     let mut found = None;
     for grid in structures {
         ensure!(!grid.vary.contains_key("g"), "structures {:?}: g cannot vary: a sweep has one g", grid.name);
-        let g = grid.base()?.g;
+        let g = grid.base().with_context(|| format!("structures {:?}", grid.name))?.g;
         let first = *found.get_or_insert(g);
         ensure!(g == first, "g = {g} m/s2 and g = {first} m/s2: a sweep has one g, in which its records are given");
     }
@@ -306,8 +313,8 @@ impl StructureGrid {
     fn base(&self) -> anyhow::Result<Parameters> {
         match (&self.preset, &self.parameters) {
             (Some(preset), None) => Ok(preset.parameters()),
-            (None, Some(given)) => given.parameters().with_context(|| format!("structures {:?}", self.name)),
-            _ => bail!("structures {:?}: give either preset or parameters", self.name),
+            (None, Some(given)) => Ok(given.parameters()?),
+            _ => bail!("give either preset or parameters"),
         }
     }
 
@@ -315,8 +322,9 @@ impl StructureGrid {
         let vary = |population: Population, (name, values): (&String, &Values)| -> anyhow::Result<_> {
             Ok(population.vary(name, values.list().context(name.clone())?)?)
         };
-        let population = Population::new(is_one_line(&self.name)?, self.base()?);
-        self.vary.iter().try_fold(population, vary).with_context(|| format!("structures {:?}", self.name))
+        let name = is_one_line(&self.name)?;
+        let population = || self.vary.iter().try_fold(Population::new(name, self.base()?), vary);
+        population().with_context(|| format!("structures {name:?}"))
     }
 }
 

@@ -1,4 +1,5 @@
 //! A sweep of pulses: an overturning spectrum of every structure.
+mod lines;
 mod picture;
 mod rows;
 
@@ -15,6 +16,7 @@ use rayon::prelude::*;
 use rocking::run::{
     LONGEST_REST,
     map::{Class, Map, Place, Point},
+    validity,
 };
 use rows::Rows;
 use serde::Serialize;
@@ -55,7 +57,12 @@ pub fn run(args: &SweepArgs, sweep: MapSweep, output: &Path, picture: Picture) -
     ensure!(!args.validity, "--validity is for records: `simulate` a pulse that `pulse` writes");
     let (file, mut rows) = Rows::open(output)?;
     let file = Mutex::new(file);
-    let pool = thread_pool(args, usize::MAX)?;
+    let largest = sweep.maps.iter().map(|(_, map)| map.grid().count()).max().unwrap_or(0);
+    let pool = thread_pool(args, largest)?;
+    for (name, map) in &sweep.maps {
+        let warnings = validity::of_parameters(&map.structure, map.detail);
+        warnings.iter().for_each(|warning| say!("{name}: {warning}"));
+    }
     let clock = Instant::now();
     let (mut done, mut spectra) = (0, Vec::new());
     for (name, map) in sweep.maps {
@@ -143,7 +150,7 @@ fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
         });
         let [x, y] = picture::axis_names(map);
         let refined = points.len() - map.grid().count();
-        writeln!(out, "{name}: {} pulses, {}", map.pulse.shape.name(), map.detail.name())?;
+        writeln!(out, "{name}: {}; {}", map.pulse.name(), map.detail.name())?;
         writeln!(out, "  {x}: {frequency}\n  {y}: {amplitude}")?;
         for Count { class, points, part, .. } in counts.iter().filter(|count| count.structure == name) {
             writeln!(out, "  {class:<28} {points:>9} {:>7.3} %", 100.0 * part)?;

@@ -89,6 +89,11 @@ impl RowFile {
     }
 }
 
+/// The heading of a column of numbers.
+pub fn heading(name: &str, unit: &str) -> String {
+    if unit == "1" { name.into() } else { format!("{name}[{unit}]") }
+}
+
 /// Each of `rows` with its line in the file.
 pub fn records(rows: &[u8]) -> impl Iterator<Item = (u64, csv::Result<StringRecord>)> {
     (2..).zip(ReaderBuilder::new().has_headers(false).from_reader(rows).into_records())
@@ -108,7 +113,10 @@ fn no_headings(line: &[u8], header: &[u8]) -> anyhow::Error {
     let first: String = String::from_utf8_lossy(line).chars().take(120).collect();
     let advice = "name another file with -o, or remove this one. These are the headings:";
     if line.starts_with(FIRST_HEADINGS.join(",").as_bytes()) {
-        anyhow!("the headings in line 1 are those of another version of this program: {advice}\n{expected}")
+        anyhow!(
+            "the headings in line 1 are those of another kind of sweep (of records, of pulses) or of another version of this \
+             program: {advice}\n{expected}"
+        )
     } else {
         anyhow!("line 1, {first:?}, is not the headings of a sweep's rows: {advice}\n{expected}")
     }

@@ -1,7 +1,7 @@
 //! The rows of a sweep: headings, and what they say of each run.
 //!
 //! A run's key stands for names, parameters, samples, scale factors, conditions, the build of the program.
-use super::row_file::{FIRST_HEADINGS, RowFile, digest, key, key_of, records};
+use super::row_file::{FIRST_HEADINGS, RowFile, digest, heading, key, key_of, records};
 use anyhow::{Context, bail, ensure};
 use csv::StringRecord;
 use rocking::{
@@ -59,7 +59,6 @@ pub fn open(path: &Path, keys: &[Uuid]) -> anyhow::Result<(RowFile, Found)> {
 
 /// What stands before the first row.
 fn headings() -> Vec<String> {
-    let heading = |name: &str, unit: &str| if unit == "1" { name.into() } else { format!("{name}[{unit}]") };
     let quantities = AXES.map(|axis| heading(axis.name, axis.unit));
     let intensities = IntensityMeasure::ALL.map(|measure| heading(measure.name(), measure.unit()));
     let initial = INITIAL_VALUES.each_ref().map(|quantity| heading(quantity.name, quantity.unit));

@@ -1,7 +1,8 @@
 //! The picture of maps: classes as cells, lines of equal rotation, and beside them, where it is known, the condition.
-use super::Spectrum;
-use crate::picture::{Area, Picture, SMALL, TEXT, TITLE, axes, chart, colour, px, stroke, titled, words, words_about};
-use contour::ContourBuilder;
+use super::{Spectrum, lines::lines};
+use crate::picture::{
+    Area, Picture, SMALL, TEXT, TITLE, axes, chart, colour, log_axis, px, shortened, stroke, titled, words,
+};
 use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
 use rocking::run::map::{Axis, Class, Map, Place, Point, finest_step, nearest};
@@ -14,11 +15,12 @@ const LEGEND_LINE: f64 = 19.0;
 /// Where the axes of a panel begin, pixels.
 const LEFT: f64 = 78.0;
 
-/// θ_max/α_cg on the lines.
-const LINES: [f64; 4] = [0.1, 0.25, 0.5, 0.75];
+/// Characters of a name that fit above a panel.
+const LONGEST_NAME: usize = 70;
 
-/// A cell reaches this much below those that are drawn after it, pixels, so that nothing shines through between them.
-const OVERLAP: f64 = 0.5;
+/// A cell reaches this much below those that are drawn after it, pixels, so that nothing shines through between them: over
+/// the whole pixel at its edge, which it may cover in part.
+const OVERLAP: f64 = 1.0;
 
 /// A colour, and what it stands for.
 type Swatch = (RGBColor, &'static str);
@@ -50,12 +52,14 @@ struct Key {
     /// The number of a point's swatch.
     of: fn(&Point) -> usize,
     swatches: &'static [Swatch],
+    /// What the picture is of, after the structure's name.
+    suffix: &'static str,
     /// Whether lines of equal rotation are drawn.
     has_lines: bool,
 }
 
-const OF_CLASS: Key = Key { of: class_of, swatches: &CLASSES, has_lines: true };
-const OF_CONDITION: Key = Key { of: condition_of, swatches: &CONDITIONS, has_lines: false };
+const OF_CLASS: Key = Key { of: class_of, swatches: &CLASSES, suffix: "", has_lines: true };
+const OF_CONDITION: Key = Key { of: condition_of, swatches: &CONDITIONS, suffix: ": condition", has_lines: false };
 
 /// What the axes of a picture of `map` are called.
 pub fn axis_names(map: &Map) -> [&'static str; 2] {
@@ -87,41 +91,41 @@ fn condition_of(point: &Point) -> usize {
     }
 }
 
-/// Draws `spectra`, refined so many times, one below the other.
+/// Draws `spectra`, refined so many times: each with its condition beside it, or about as many across as down.
 pub fn draw(picture: Picture, spectra: &[Spectrum], refinements: u32) -> anyhow::Result<()> {
     let Some(Spectrum { map, .. }) = spectra.first() else { return Ok(()) };
-    let has_condition = map.finds_condition;
-    let columns = if has_condition { 2 } else { 1 };
-    let seen = |key: Key| {
+    let (width, height) = (PANEL.0, PANEL.1 + NAME as u32);
+    let across = (spectra.len() as f64 * f64::from(height) / f64::from(width)).sqrt().ceil() as usize;
+    let (keys, across) =
+        if map.finds_condition { (&[OF_CLASS, OF_CONDITION][..], 2) } else { (&[OF_CLASS][..], across) };
+    let panels: Vec<_> = spectra.iter().flat_map(|spectrum| keys.iter().map(move |key| (spectrum, *key))).collect();
+    let seen = |key: &Key| {
         let is_there = |i: usize| spectra.iter().flat_map(|one| one.points.values()).any(|point| (key.of)(point) == i);
         (0..key.swatches.len()).filter(|i| is_there(*i)).map(|i| &key.swatches[i]).collect::<Vec<_>>()
     };
-    let (classes, conditions) = (seen(OF_CLASS), seen(OF_CONDITION));
-    let legend = (LEGEND_LINE * (classes.len().max(conditions.len()) as f64 + 1.0)) as u32;
-    let size = (columns * PANEL.0, TITLE + spectra.len() as u32 * (PANEL.1 + NAME as u32) + legend);
-    let title = format!("Overturning spectrum: {}", map.pulse.shape.name().replace('_', " "));
+    let legends: Vec<_> = keys.iter().map(seen).collect();
+    let legend = LEGEND_LINE * (legends.iter().map(Vec::len).max().unwrap_or(0) as f64 + 1.0);
+    let down = panels.len().div_ceil(across) as u32;
+    let size = (across as u32 * width, TITLE + down * height + legend as u32);
+    let title = format!("Overturning spectrum: {}", map.pulse.name());
     let about =
         format!("level of detail {}, tolerance {:e}; lines: theta_max/alpha_cg", map.detail.name(), map.tolerance);
     picture.draw(size, |area| {
         let mut rest = titled(area, &title, &about)?;
-        for spectrum in spectra {
-            let (heading, below) = rest.split_vertically(px(NAME));
-            let (row, below) = below.split_vertically(px(f64::from(PANEL.1)));
-            let name = |x, name: String| heading.draw(&Text::new(name, (px(x), px(10.0)), words(TEXT, colour::INK)));
-            name(LEFT, spectrum.name.clone())?;
-            if has_condition {
-                name(LEFT + f64::from(PANEL.0), format!("{}: condition", spectrum.name))?;
-            }
-            let (left, right) = row.split_horizontally(px(f64::from(PANEL.0)));
-            panel((area, &left), spectrum, refinements, OF_CLASS)?;
-            if has_condition {
-                panel((area, &right), spectrum, refinements, OF_CONDITION)?;
+        for panels in panels.chunks(across) {
+            let (mut row, below) = rest.split_vertically(px(f64::from(height)));
+            for &(spectrum, key) in panels {
+                let (tile, right) = row.split_horizontally(px(f64::from(width)));
+                let (heading, tile) = tile.split_vertically(px(NAME));
+                let name = shortened(&spectrum.name, LONGEST_NAME) + key.suffix;
+                heading.draw(&Text::new(name, (px(LEFT), px(10.0)), words(TEXT, colour::INK)))?;
+                panel((area, &tile), spectrum, refinements, key)?;
+                row = right;
             }
             rest = below;
         }
-        draw_legend(&rest, LEFT, &classes)?;
-        if has_condition {
-            draw_legend(&rest, LEFT + f64::from(PANEL.0), &conditions)?;
+        for (i, legend) in legends.iter().enumerate() {
+            draw_legend(&rest, LEFT + i as f64 * f64::from(width), legend)?;
         }
         Ok(())
     })
@@ -151,7 +155,8 @@ impl Shown<'_> {
         [Shown { axis: &map.frequency, unit: 1.0 }, Shown { axis: &map.amplitude, unit: g }]
     }
 
-    fn at(&self, steps: f64) -> f64 {
+    /// The value at `steps` of the grid from its first.
+    pub fn at(&self, steps: f64) -> f64 {
         self.axis.at(steps) / self.unit
     }
 
@@ -177,15 +182,15 @@ fn panel((whole, area): (&Area, &Area), spectrum: &Spectrum, refinements: u32, k
             axes(&mut chart, axis_names(map), [8, 8])?;
             cells(whole, &chart, [&x, &y], spectrum, refinements, key)?;
             if key.has_lines {
-                lines(&mut chart, [&x, &y], spectrum)?;
+                lines(&mut chart, [&x, &y], spectrum, refinements)?;
             }
         }};
     }
     match (x.axis.is_log(), y.axis.is_log()) {
         (false, false) => paint!(x.range(), y.range()),
-        (true, false) => paint!(x.range().log_scale(), y.range()),
-        (false, true) => paint!(x.range(), y.range().log_scale()),
-        (true, true) => paint!(x.range().log_scale(), y.range().log_scale()),
+        (true, false) => paint!(log_axis(x.range()), y.range()),
+        (false, true) => paint!(x.range(), log_axis(y.range())),
+        (true, true) => paint!(log_axis(x.range()), log_axis(y.range())),
     }
     Ok(())
 }
@@ -237,42 +242,6 @@ where
         if next != last {
             last.iter().try_for_each(|run| draw(*run, start..row))?;
             (start, last) = (row, next);
-        }
-    }
-    Ok(())
-}
-
-/// Lines of equal θ_max/α_cg through the points of the grid.
-fn lines<X, Y>(
-    chart: &mut ChartContext<SVGBackend, Cartesian2d<X, Y>>,
-    [x, y]: [&Shown; 2],
-    spectrum: &Spectrum,
-) -> anyhow::Result<()>
-where
-    X: Ranged<ValueType = f64> + ValueFormatter<f64>,
-    Y: Ranged<ValueType = f64> + ValueFormatter<f64>,
-{
-    let thetas: Vec<_> = spectrum.map.grid().map(|place| spectrum.points[&place].theta).collect();
-    let [last_x, last_y] = [x, y].map(|axis| axis.steps() as f64);
-    let contours = ContourBuilder::new(x.steps() + 1, y.steps() + 1, true).x_origin(-0.5).y_origin(-0.5);
-    for (number, line) in (1..).zip(contours.lines(&thetas, &LINES)?) {
-        let mut longest: &[(f64, f64)] = &[];
-        // rings close along the edges of the map, where there is nothing to be drawn
-        let on_edge = |(x, y): (f64, f64)| x <= 0.0 || x >= last_x || y <= 0.0 || y >= last_y;
-        let rings: Vec<Vec<_>> = (line.geometry().0.iter())
-            .map(|ring| ring.0.iter().map(|at| (at.x.clamp(0.0, last_x), at.y.clamp(0.0, last_y))).collect())
-            .collect();
-        for ring in &rings {
-            for part in ring.chunk_by(|a, b| !(on_edge(*a) && on_edge(*b))).filter(|part| part.len() > 1) {
-                let points: Vec<_> = part.iter().map(|(i, j)| (x.at(*i), y.at(*j))).collect();
-                chart.draw_series([PathElement::new(points, stroke(colour::INK, 0.7))])?;
-                longest = if part.len() > longest.len() { part } else { longest };
-            }
-        }
-        // names stand apart: each further along its line
-        if let Some((i, j)) = longest.get(longest.len() * number / (LINES.len() + 1)) {
-            let name = Text::new(line.threshold().to_string(), (0, px(-6.0)), words_about(SMALL, colour::INK));
-            chart.draw_series([EmptyElement::at((x.at(*i), y.at(*j))) + name])?;
         }
     }
     Ok(())

@@ -3,19 +3,21 @@
 //! A point's key stands for the structure and its name, the pulse, the level of detail, the tolerance, whether its condition is found, and
 //! the build of the program: not for its place, so that another grid through the same point has it.
 use crate::sweep::{
-    row_file::{FIRST_HEADINGS, RowFile, key, key_of, records},
+    row_file::{FIRST_HEADINGS, RowFile, heading, key, key_of, records},
     say_other_rows,
 };
 use anyhow::{Context, bail};
 use rocking::{
     record::pulse::units_of,
     run::map::{Map, Place, Point},
+    run::plan::AXES,
 };
 use std::{collections::HashMap, path::Path};
 use uuid::Uuid;
 
-/// Columns before what became of the structure.
-const BEFORE: usize = 12;
+/// Columns before what became of the structure: the key and the name; the structure; the pulse; detail and tolerance;
+/// refinement, frequency and amplitude, alone and in units of the structure.
+const BEFORE: usize = FIRST_HEADINGS.len() + AXES.len() + 4 + 2 + 5;
 /// Columns of that, with the reason.
 const OF_POINT: usize = 7;
 
@@ -50,11 +52,15 @@ pub fn key_at(name: &str, map: &Map, place: Place) -> Uuid {
 }
 
 fn headings() -> Vec<String> {
-    let of_map = ["shape", "cycles", "phase[rad]", "detail", "tolerance"];
-    let of_pulse = ["refinement", "frequency[Hz]", "amplitude[m/s2]", "omega/p_l", "a_p/(g tan alpha_cg)"];
-    let of_point = ["fate", "impacts", "theta_max/alpha_cg", "transitions", "end[s]", "condition", "reason"];
-    let headings = FIRST_HEADINGS.iter().chain(&of_map).chain(&of_pulse).chain(&of_point).chain(&["checksum"]);
-    headings.map(|heading| (*heading).to_owned()).collect()
+    let fixed = |headings: &[&str]| headings.iter().map(|heading| (*heading).to_owned()).collect::<Vec<_>>();
+    [
+        fixed(&FIRST_HEADINGS),
+        AXES.map(|axis| heading(axis.name, axis.unit)).into(),
+        fixed(&["shape", "cycles", "phase[rad]", "error", "detail", "tolerance"]),
+        fixed(&["refinement", "frequency[Hz]", "amplitude[m/s2]", "omega/p_l", "a_p/(g tan alpha_cg)"]),
+        fixed(&["fate", "impacts", "theta_max/alpha_cg", "transitions", "end[s]", "condition", "reason", "checksum"]),
+    ]
+    .concat()
 }
 
 /// Adds the row of a point, which the refinement of this level has asked for; 0 is the grid.
@@ -68,9 +74,10 @@ pub fn append(
 ) -> anyhow::Result<()> {
     let pulse = map.pulse(place);
     let (of_amplitude, of_frequency) = units_of(&map.structure);
-    let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, map.detail.name(), map.tolerance);
+    let of_structure = AXES.map(|axis| (axis.get)(map.structure.parameters()));
+    let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, pulse.error, map.detail.name(), map.tolerance);
     let ratios = (pulse.frequency / of_frequency, pulse.amplitude / of_amplitude);
-    file.append(&(key.to_string(), name, of_map, level, pulse.frequency, pulse.amplitude, ratios, point))
+    file.append(&(key.to_string(), name, of_structure, of_map, level, pulse.frequency, pulse.amplitude, ratios, point))
 }
 
 fn read(rows: &[u8]) -> anyhow::Result<Rows> {
