@@ -1,5 +1,6 @@
 //! What the C interfaces of all versions of the standard have in common. Only here, in [`fmi2`](crate::fmi2) and in
-//! [`fmi3`](crate::fmi3) are pointers followed: each function turns its arguments into slices and text, and calls the instance.
+//! [`fmi3`](crate::fmi3) are pointers followed: each function turns its arguments into slices and text, and calls the
+//! instance.
 //!
 //! Messages begin with the function that was called and end with the one to call instead: the instance knows neither.
 //!

@@ -1,9 +1,9 @@
 //! The C interface of FMI 3.0: what its functions are called, and what they pass. See [`c_abi`] for what holds of all of
 //! them.
 //!
-//! In co-simulation, where the host handles events and takes an early return, a step ends at the first transition on it: state and phase
-//! are those before it until `fmi3UpdateDiscreteStates` applies it. A host that can be called back gives the inputs at
-//! the end of every step within it, and they are straight lines over the step; else they are held.
+//! In co-simulation, where the host handles events and takes an early return, a step ends at the first transition on it:
+//! state and phase are those before it until `fmi3UpdateDiscreteStates` applies it. A host that can be called back gives
+//! the inputs at the end of every step within it, and they are straight lines over the step; else they are held.
 #![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
 
 pub mod co_simulation;
@@ -74,7 +74,8 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
         Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), is_allowed, ask))
     };
     let arguments = [instanceName, instantiationToken, resourcePath];
-    create("fmi3InstantiateCoSimulation", arguments, loggingOn, (instanceEnvironment, logMessage), interface)
+    let host = (instanceEnvironment, logMessage);
+    unsafe { create("fmi3InstantiateCoSimulation", arguments, loggingOn, host, interface) }
 }
 
 /// `fmi3InstantiateModelExchange`
@@ -89,10 +90,9 @@ pub unsafe extern "C" fn fmi3InstantiateModelExchange(
     logMessage: Option<LogMessageCallback>,
 ) -> *mut c_void {
     let is_allowed: IsAllowed<Function> = model_exchange::is_allowed;
-    let arguments = [instanceName, instantiationToken, resourcePath];
-    create("fmi3InstantiateModelExchange", arguments, loggingOn, (instanceEnvironment, logMessage), || {
-        Ok((Interface::ModelExchange, is_allowed, None))
-    })
+    let interface = || Ok((Interface::ModelExchange, is_allowed, None));
+    let (arguments, host) = ([instanceName, instantiationToken, resourcePath], (instanceEnvironment, logMessage));
+    unsafe { create("fmi3InstantiateModelExchange", arguments, loggingOn, host, interface) }
 }
 
 /// `fmi3InstantiateScheduledExecution`: there is nothing to schedule.
@@ -109,15 +109,14 @@ pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
     _lockPreemption: *const c_void,
     _unlockPreemption: *const c_void,
 ) -> *mut c_void {
-    let arguments = [instanceName, instantiationToken, resourcePath];
-    create("fmi3InstantiateScheduledExecution", arguments, loggingOn, (instanceEnvironment, logMessage), || {
-        Err(Failure::NotThisInterface)
-    })
+    let (arguments, host) = ([instanceName, instantiationToken, resourcePath], (instanceEnvironment, logMessage));
+    let interface = || Err(Failure::NotThisInterface);
+    unsafe { create("fmi3InstantiateScheduledExecution", arguments, loggingOn, host, interface) }
 }
 
-/// An instance of the `interface` that `function` makes, from the name, the token and the folder; null, with the reason in the
-/// log, if there is none.
-fn create(
+/// An instance of the `interface` that `function` makes, from the name, the token and the folder; null, with the reason in
+/// the log, if there is none.
+unsafe fn create(
     function: &str,
     [name, token, folder]: [*const c_char; 3],
     logging_on: u8,

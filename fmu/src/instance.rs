@@ -505,7 +505,9 @@ impl Instance {
         }
         let model = &*model;
         let Model { engine, ground, .. } = model;
-        direction.a_g += of_time * model.load(setup, LinearLoad::default()).slope.a_g;
+        if of_time != 0.0 {
+            direction.a_g += of_time * model.load(setup, LinearLoad::default()).slope.a_g;
+        }
         let time = engine.motion().time;
         let &Parameters { m, g, .. } = engine.structure().parameters();
         let before = Shown::new(model, setup, Load::default());

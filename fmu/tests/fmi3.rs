@@ -17,11 +17,11 @@ use std::ffi::{CStr, CString};
 use std::ptr::{null, null_mut};
 use tempfile::TempDir;
 
-/// The standard's sections 2.3 and 4.2.1, by the functions that each state names: instantiated, initialization mode, step
-/// mode, event mode, intermediate update mode, step failed, terminated, error. The last three are the standard's
-/// "terminated": after overturning, after `fmi3Terminate`, after an error; after the first of them a simulation has still to
-/// be terminated. Within an intermediate update the inputs can be set: it is said that no outputs can be had then, and a step is no state to
-/// keep or to leave.
+/// The standard's sections 2.3 and 4.2.1, by the functions that each state names: instantiated, initialization mode,
+/// step mode, event mode, intermediate update mode, step failed, terminated, error. The last three are the standard's
+/// "terminated": after overturning, after `fmi3Terminate`, after an error; after the first of them a simulation has
+/// still to be terminated. Within an intermediate update the inputs can be set: it is said that no outputs can be had
+/// then, and a step is no state to keep or to leave.
 const STANDARD: &str = "
     SetDebugLogging                 x x x x x x x x
     EnterInitializationMode         x - - - - - - -
@@ -404,8 +404,8 @@ fn outcome(function: Function, stage: Stage) -> (c_int, Stage) {
     }
 }
 
-/// Every function in every one of `stages` in which an instance stays, as `table` allows it; what is in no row of it is allowed
-/// nowhere.
+/// Every function in every one of `stages` in which an instance stays, as `table` allows it; what is in no row of it is
+/// allowed nowhere.
 fn check(table: &str, stages: &[Stage], host_in: fn(Stage) -> Host) {
     let rows: Vec<Vec<_>> = table.trim().lines().map(|row| row.split_whitespace().collect()).collect();
     let functions: Vec<_> = Function::ALL.iter().map(|function| function.name()).collect();

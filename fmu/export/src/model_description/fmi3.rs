@@ -116,8 +116,8 @@ fn of_type(at: u32, variable: &Variable, structure: &Structure, contents: &Conte
     }
 }
 
-/// At any time the outputs, the derivatives of the states and the event indicators depend on their feedthrough, on the states,
-/// which the initial values have led to, on parameters, and on time where a record acts; at initialization on their
+/// At any time the outputs, the derivatives of the states and the event indicators depend on their feedthrough, on the
+/// states, which the initial values have led to, on parameters, and on time where a record acts; at initialization on their
 /// feedthrough and on what the table says as well, as calculated parameters do. Other local variables are in no list.
 fn model_structure() -> fmi3::ModelStructure {
     let unknowns = |is_one: fn(&Variable) -> bool, dependencies: fn(&Variable) -> Vec<u32>| {
