@@ -2,7 +2,7 @@
 //! holds of all of them.
 #![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
 
-pub mod co_simulation;
+mod co_simulation;
 mod model_exchange;
 
 use crate::c_abi::{

@@ -6,8 +6,8 @@
 //! the inputs at the end of every step within it, and they are straight lines over the step; else they are held.
 #![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
 
-pub mod co_simulation;
-pub mod model_exchange;
+mod co_simulation;
+mod model_exchange;
 
 use crate::c_abi::{
     self, call, call_on, check_count, check_pointer, complete_step, escaped, free_state, functions, instantiate,

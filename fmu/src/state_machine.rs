@@ -78,7 +78,7 @@ pub(crate) fn stages<F: Copy>(function: F, is_allowed: IsAllowed<F>) -> String {
 macro_rules! table {
     ([$($stage:ident),* $(,)?] $($function:ident [$($mark:tt)+])* - $($never:ident)*) => {
         /// The stages of this interface.
-        pub const STAGES: &[Stage] = &[$(Stage::$stage),*];
+        const STAGES: &[Stage] = &[$(Stage::$stage),*];
 
         /// Whether `function` may be called in `stage`.
         pub(crate) fn is_allowed(function: Function, stage: Stage) -> bool {
