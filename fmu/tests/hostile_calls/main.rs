@@ -27,6 +27,7 @@ use rocking::taylor::MAX_ORDER;
 use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString};
 use std::fmt::Debug;
+use std::marker::PhantomData;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::Path;
 use std::ptr::{null, null_mut, without_provenance_mut};
@@ -249,7 +250,7 @@ struct Tally<V: Version> {
     most_steps: u64,
     longest: Duration,
     longest_function: &'static str,
-    version: std::marker::PhantomData<fn() -> V>,
+    version: PhantomData<fn() -> V>,
 }
 
 impl<V: Version> Tally<V> {
@@ -264,7 +265,7 @@ impl<V: Version> Tally<V> {
             most_steps: 0,
             longest: Duration::ZERO,
             longest_function: "",
-            version: std::marker::PhantomData,
+            version: PhantomData,
         }
     }
 
@@ -350,7 +351,7 @@ struct Sequence<'a, V: Version> {
     slots: [Slot; 2],
     /// Serialized states of both.
     bytes: Vec<Vec<u8>>,
-    version: std::marker::PhantomData<fn() -> V>,
+    version: PhantomData<fn() -> V>,
 }
 
 impl<'a, V: Version> Sequence<'a, V> {
@@ -358,7 +359,7 @@ impl<'a, V: Version> Sequence<'a, V> {
         let slot =
             || Slot { c: null_mut(), told: Box::default(), is_heard: false, states: Vec::new(), freed: null_mut() };
         let (rng, slots, bytes) = (Rng::with_seed(number), [slot(), slot()], Vec::new());
-        Sequence { rng, interface, location, records, slots, bytes, version: std::marker::PhantomData }
+        Sequence { rng, interface, location, records, slots, bytes, version: PhantomData }
     }
 
     fn run(mut self, tally: &mut Tally<V>) {
@@ -503,9 +504,9 @@ impl<'a, V: Version> Sequence<'a, V> {
         }
     }
 
-    /// How many values there are said to be: as many as `n` variables have, or more.
-    fn claimed(&mut self, n: usize) -> usize {
-        if self.one_in(40) { n.wrapping_add(1) } else { n }
+    /// How many values there are said to be for `nvr` variables: as many, or another number.
+    fn claimed(&mut self, nvr: usize) -> usize {
+        if self.one_in(40) { nvr.wrapping_add(1) } else { nvr }
     }
 
     /// An FMU state of the instance, of the other one, one that is freed, or none at all.
@@ -678,9 +679,8 @@ impl<'a, V: Version> Sequence<'a, V> {
             // values are finite, or left alone; what nobody watches for is not a number, and friction may be infinite
             Call::GetReals(call) => {
                 let mut values = vec![f64::NEG_INFINITY; references.len()];
-                let (nvr, n) = (self.length(references.len()), self.claimed(references.len()));
-                let (vr, value) = (self.pointer(&mut references), self.pointer(&mut values));
-                let n = if nvr == references.len() { n } else { nvr };
+                let nvr = self.length(references.len());
+                let (n, vr, value) = (self.claimed(nvr), self.pointer(&mut references), self.pointer(&mut values));
                 let status = self.call(at, function, tally, |c| call(c, vr, nvr, value, n));
                 let is_right = |(reference, value): (&u32, &f64)| match status {
                     OK => value.is_finite() || is_watched(*reference, *value),
@@ -699,10 +699,8 @@ impl<'a, V: Version> Sequence<'a, V> {
             }
             Call::SetReals(call) => {
                 let mut values = self.reals_to_set(at, &mut references);
-                let (nvr, n) = (self.length(references.len()), self.claimed(references.len()));
-                let n = if nvr == references.len() { n } else { nvr };
-                values.push(0.0); // what is claimed is there
-                let (vr, value) = (self.pointer(&mut references), self.pointer(&mut values));
+                let nvr = self.length(references.len());
+                let (n, vr, value) = (self.claimed(nvr), self.pointer(&mut references), self.pointer(&mut values));
                 self.call(at, function, tally, |c| call(c, vr, nvr, value, n));
             }
             Call::SetSlopes(call) => {
@@ -730,12 +728,14 @@ impl<'a, V: Version> Sequence<'a, V> {
                 }
                 let most = if names == ["detail"] { 8 } else { 3 };
                 let odd = self.one_in(16).then(|| self.rng.i64(..));
-                let values = references.iter().map(|_| odd.unwrap_or_else(|| self.rng.i64(0..most)));
-                let bytes: Vec<_> = values.collect::<Vec<_>>();
-                let bytes = bytes.iter().flat_map(|value| value.to_le_bytes().into_iter().take(size));
-                let bytes: Vec<_> = bytes.chain([0; 16]).collect();
-                let mut values: Vec<_> =
-                    bytes.chunks_exact(8).map(|chunk| u64::from_le_bytes(chunk.try_into().unwrap())).collect();
+                let mut bytes = Vec::new();
+                for _ in &references {
+                    let value = odd.unwrap_or_else(|| self.rng.i64(0..most));
+                    bytes.extend(&value.to_le_bytes()[..size]); // of a number of so many bytes, small or cut
+                }
+                bytes.resize(bytes.len().next_multiple_of(8), 0);
+                let words = bytes.chunks_exact(8).map(|word| u64::from_le_bytes(word.try_into().unwrap()));
+                let mut values: Vec<_> = words.collect();
                 let (nvr, vr) = (self.length(references.len()), self.pointer(&mut references));
                 let value = self.place(&mut values);
                 self.call(at, function, tally, |c| call(c, vr, nvr, value, nvr));
@@ -1006,7 +1006,7 @@ const UNWRITTEN: u64 = 0x8080_8080_8080_8080;
 
 /// What has been written to `places` as numbers of `size` bytes, where something has.
 fn written(places: &[u64], size: usize) -> Vec<Option<i64>> {
-    let bytes: Vec<_> = places.iter().flat_map(|place| place.to_ne_bytes()).collect();
+    let bytes: Vec<_> = places.iter().flat_map(|place| place.to_le_bytes()).collect();
     let number = |bytes: &[u8]| {
         let is_negative = bytes.last().is_some_and(|last| *last >= 0x80);
         let sum = bytes.iter().rev().fold(0, |sum, byte| sum << 8 | i64::from(*byte));
