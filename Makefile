@@ -105,8 +105,10 @@ wheel: dist
 	$(MATURIN) sdist --out out/wheels
 	$(NATIVE_UNTRACED) $(WHEEL) x86_64-unknown-linux-gnu --zig --compatibility manylinux2014
 
+# That for macOS is put together where this machine's own program has its name, and would be written into that.
 wheels: wheel
 	$(WHEEL) aarch64-unknown-linux-gnu --zig --compatibility manylinux2014
+	rm -f $(TARGET)/release/rocking-fmu
 	$(WHEEL) universal2-apple-darwin --zig
 	$(WHEEL) $(WINDOWS)
 
