@@ -10,7 +10,7 @@
 # make exchange  regenerate docs/model_exchange.md and its figure (minutes)
 # make bench   criterion benchmark of a whole record, and one step over it through fmpy
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
-# make fuzz    ten million hostile calls of the C interface and as many damaged records, on all cores (CI: 200,000 and 40,000)
+# make fuzz    ten million hostile calls of each interface and as many damaged records, on all cores (CI: 100,000 of each and 40,000)
 # make records the ground motion records alone, for the charts: cargo run --release -p study -- precision
 #
 # Each does all its own set-up; needed are cargo and python3 (3.11 or later).
@@ -105,8 +105,10 @@ wheel: dist
 	$(MATURIN) sdist --out out/wheels
 	$(NATIVE_UNTRACED) $(WHEEL) x86_64-unknown-linux-gnu --zig --compatibility manylinux2014
 
+# That for macOS is put together where this machine's own program has its name, and would be written into that.
 wheels: wheel
 	$(WHEEL) aarch64-unknown-linux-gnu --zig --compatibility manylinux2014
+	rm -f $(TARGET)/release/rocking-fmu
 	$(WHEEL) universal2-apple-darwin --zig
 	$(WHEEL) $(WINDOWS)
 
@@ -158,7 +160,7 @@ coupling: .venv/ready out/mcmanus.fmu out/evison.fmu out/mcmanus3.fmu out/evison
 	PYTHONPATH=examples:tests OMP_NUM_THREADS=1 $(PYTHON) -m coupling
 
 exchange: .venv/ready out/mcmanus.fmu
-	PYTHONPATH=examples OMP_NUM_THREADS=1 $(PYTHON) -m model_exchange --fmu out/mcmanus.fmu
+	PYTHONPATH=examples:tests OMP_NUM_THREADS=1 $(PYTHON) -m model_exchange --fmu out/mcmanus.fmu
 
 records: .venv/ready
 

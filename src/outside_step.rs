@@ -21,7 +21,7 @@ pub const INDICATORS: usize = 2;
 
 /// How far beyond its guard a phase lasts for the indicators, in parts of α_cg or of what uplift takes: no integration
 /// starts on a root, and no rounding makes one.
-pub const BAND: f64 = 1e-6;
+pub const BAND: f64 = 1e-9;
 
 impl Sample<'_> {
     /// (u̇, ü, θ̇, θ̈) by the equations of the level and the phase; not numbers where these have no solution.

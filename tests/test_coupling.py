@@ -11,7 +11,7 @@ import monolithic
 import numpy as np
 import pytest
 import reference
-from coupling import bridge_ssp, building_on_soil, convergence, stability
+from coupling import bridge_ssp, building_on_soil, convergence, one_system, stability
 from coupling.bridge import MASS, Bridge, deck, linear, pier, simulate
 from coupling.building_on_soil import OnSoil
 from coupling.masters import MASTERS, TOLERANCE, Diverged, Iterated, between_transitions
@@ -137,6 +137,31 @@ def test_weak_coupling_blows_up_at_the_step_that_theory_gives(piers, master, gue
         assert (max(size[-50:]) > max(size[:50])) == grows
 
 
+def test_one_solver_over_bridge_and_piers_in_model_exchange(piers):
+    """As near as its tolerance, over every transition of the independent integration."""
+    time, _, expected = as_one(strong_motion)
+    errors = []
+    for tolerance, longest_step in ((1e-4, 0.0), (1e-8, 0.0), (1e-10, 0.2e-3)):
+        found, system = one_system.response(piers, deck(), tolerance, time, longest_step)
+        errors.append(convergence.error(found, convergence.columns(expected)))
+    assert system.transitions() == sum(map(len, expected.transitions)) > 20
+    loose, tight, tightest = errors
+    assert tightest < 1e-6 < tight < 1e-4 < loose < 0.3
+
+
+def test_a_stiff_and_heavy_deck_is_no_matter_to_one_solver(piers):
+    """At any of the masters' steps beyond 5 ms this bridge blows up."""
+    ratio, frequency = 30.0, 25.0
+    for master, guess in ((jacobi, extrapolate), (gauss_seidel, extrapolate)):
+        assert stability.growth(master, guess, ratio, 5e-3, True, frequency) > stability.GROWTH
+    assert stability.contraction(ratio, 5e-3, True, frequency) > 1
+    of_deck, until = deck(stability.mass(ratio), frequency), slice(300)
+    expected = monolithic.integrate(convergence.monolithic_bridge(of_deck), TIME[until], A_G[until], rtol=1e-9, atol=1e-12)
+    assert sum(map(len, expected.transitions)) > 4
+    found, _ = one_system.response(piers, of_deck, 1e-6, TIME[until])
+    assert convergence.error(found, convergence.columns(expected)) < 1e-3
+
+
 @functools.cache
 def on_soil_as_one(M: float, motion):
     """McManus's specimen on soil integrated as one system: time, a_g; the foundation's x, theta, u; transitions."""
@@ -212,6 +237,13 @@ def test_the_bridge_example_prints_the_peaks_of_the_monolithic_bridge(piers, tmp
         uplift = 2 * p.B * np.sin(np.max(np.abs(response.y[:, 4 + 4 * i])))
         expected += [1e3 * uplift, np.max(np.abs(forces), axis=0)[i], len(response.transitions[i])]
     assert found[:7] == pytest.approx(expected, rel=1e-3)
+
+
+def test_the_bridge_in_model_exchange_prints_the_same(piers):
+    found = printed("bridge_model_exchange", "--piers", *piers)
+    response = as_one(pacoima_dam)[-1]
+    peaks = 1e3 * np.max(np.abs(response.y[:, [0, 4, 8]]), axis=0)
+    assert found[:4] == pytest.approx([*peaks, sum(map(len, response.transitions))], rel=5e-3)
 
 
 def test_the_example_on_soil_prints_the_peaks_of_the_monolithic_system(mcmanus, tmp_path):

@@ -34,6 +34,7 @@ KINDS = {
     },
     ("output", "discrete", "Real"): {"I_h": "N.s", "I_v": "N.s", "I_m": "N.m.s"},
     ("local", "continuous", "Real"): {"theta_dot": "rad/s", "u_dot": "m/s", "a_ground": "m/s2"} | RATES
+    | {"phase_indicator": "1", "overturning_indicator": "1"}
     | with_instants({f"{of}_max": unit for of, unit in PEAKS.items()})
     | with_instants({"tension_max": "1", "R_v_min": "1", "mu_required": "1"}),
     ("local", "discrete", "Real"): {"t_overturned": "s"}

@@ -2,6 +2,8 @@
 
 import re
 import subprocess
+import zipfile
+from xml.etree import ElementTree
 
 import fmpy
 import monolithic
@@ -12,11 +14,16 @@ from coupling.early_return import EndedAtTransitions, EventBridge, Pier
 from coupling.masters import extrapolate
 from fmpy import read_model_description, simulate_fmu
 from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import FMU2Model
+from fmpy.fmi3 import FMU3Model
 from fmpy.simulation import instantiate_fmu
 from fmpy.validation import validate_fmu
-from host import OUTPUTS, Message, events, simulate
+from host import OUTPUTS, PHASES, Message, events, simulate
 from pacoima import A_G, END, STEP, TIME, linear, rows
 from pacoima import OUTPUTS as COMPARED
+
+STATES = ["u", "u_dot", "theta", "theta_dot"]
+RATES = [f"der({name})" for name in STATES]
 
 
 @pytest.fixture(scope="module")
@@ -106,7 +113,7 @@ def slave(tmp_path, tmp_path_factory):
 
 
 def assert_same_bits(found, expected):
-    assert found.dtype.names == expected.dtype.names
+    assert set(found.dtype.names) == set(expected.dtype.names)
     for name in expected.dtype.names:
         assert np.array_equal(found[name], expected[name]), name
 
@@ -119,6 +126,74 @@ def test_both_versions_give_the_same_bits_with_the_record_inside(shaken, shaken3
     found, messages = simulate3(shaken3[preset], **asked)
     assert len(of_two) > 30 and events(messages) == of_two
     assert_same_bits(found, expected)
+
+
+@pytest.mark.parametrize("solver", [dict(solver="CVode", relative_tolerance=1e-8), dict(solver="CVode", relative_tolerance=1e-3),
+                                    dict(solver="Euler", step_size=5e-4)])
+def test_a_host_that_integrates_gets_the_same_bits_and_stays_above_the_floor(shaken, shaken3, solver):
+    asked = dict(stop_time=1.99, output_interval=0.01, record_events=False, fmi_type="ModelExchange",
+                 output=[*OUTPUTS, "phase", "transitions", "phase_indicator", "overturning_indicator"], **solver)
+    found = simulate_fmu(shaken3["mcmanus"], **asked)
+    assert_same_bits(found, simulate_fmu(shaken["mcmanus"].path, **asked))
+    assert found["transitions"][-1] > 15
+    side = np.select([found["phase"] == PHASES["rocking right"], found["phase"] == PHASES["rocking left"]], [1, -1])
+    assert (side * found["theta"]).min() >= 0 and (found["phase_indicator"] > 0).all()
+
+
+def test_derivatives_of_a_model_are_those_of_fmi_2_and_their_adjoint(mcmanus, mcmanus3, tmp_path):
+    """Of derivatives of states and of outputs by states and inputs, while the host integrates."""
+    fmpy.extract(mcmanus3, unzipdir=str(tmp_path))
+    description = read_model_description(str(tmp_path))
+    assert [rate.variable.name for rate in description.derivatives] == RATES
+    arguments = dict(guid=description.guid, modelIdentifier=description.modelExchange.modelIdentifier, instanceName="model")
+    three, two = FMU3Model(unzipDirectory=str(tmp_path), **arguments), FMU2Model(unzipDirectory=mcmanus.folder, **arguments)
+    three.instantiate()
+    two.instantiate()
+    assert (three.getNumberOfContinuousStates(), three.getNumberOfEventIndicators()) == (4, 2)
+    references = {variable.name: variable.valueReference for variable in description.modelVariables}
+    of, by = ([references[name] for name in names] for names in ([*RATES, "R_v"], [*STATES, "a_g", "F_t"]))
+    try:
+        two.setupExperiment()
+        for model, set_numbers in ((two, two.setReal), (three, three.setFloat64)):
+            set_numbers([references["theta_0"], references["u_0"]], [0.02, 1e-3])
+            model.enterInitializationMode()
+            model.exitInitializationMode()
+        two.newDiscreteStates()
+        three.updateDiscreteStates()
+        for model, set_numbers in ((two, two.setReal), (three, three.setFloat64)):
+            model.enterContinuousTimeMode()
+            model.setTime(0.25)
+            set_numbers(by, [2e-3, -0.1, 0.015, -0.3, 2.5, 40.0])
+        jacobian = np.array([three.getDirectionalDerivative(of, [known], [1.0]) for known in by]).T
+        assert (jacobian == np.array([two.getDirectionalDerivative(of, [known], [1.0]) for known in by]).T).all()
+        assert jacobian.all(axis=1)[1] and jacobian[0].tolist() == pytest.approx([0, 1, 0, 0, 0, 0])
+        weights = [0.5, -2.0, 3.0, 0.25, 1e-3]
+        adjoint = three.getAdjointDerivative(of, by, weights, len(by))
+        assert adjoint == pytest.approx(weights @ jacobian, rel=1e-14)
+        kept = three.getFMUState()
+        rates = three.getFloat64(of)
+        set_numbers([references["theta"]], [0.1])
+        assert three.getFloat64(of) != rates
+        three.setFMUState(three.deserializeFMUState(three.serializeFMUState(kept)))
+        assert three.getFloat64(of) == rates == two.getReal(of)
+    finally:
+        two.freeInstance()
+        three.freeInstance()
+
+
+def test_the_description_tells_of_both_interfaces(mcmanus, mcmanus3):
+    two, three = mcmanus.description, read_model_description(mcmanus3)
+    with zipfile.ZipFile(mcmanus3) as archive:
+        exchange = dict(ElementTree.fromstring(archive.read("modelDescription.xml")).find("ModelExchange").attrib)
+    assert exchange.pop("modelIdentifier") == three.coSimulation.modelIdentifier
+    assert exchange.pop("canBeInstantiatedOnlyOncePerProcess") == "false"
+    can = ["canGetAndSetFMUState", "canSerializeFMUState", "providesDirectionalDerivatives", "providesAdjointDerivatives"]
+    assert exchange == dict.fromkeys([*can, "needsCompletedIntegratorStep"], "true")
+    assert [(rate.variable.name, rate.variable.derivative.name) for rate in three.derivatives] == list(zip(RATES, STATES))
+    assert [indicator.variable.name for indicator in three.eventIndicators] == ["phase_indicator", "overturning_indicator"]
+    assert three.numberOfEventIndicators == two.numberOfEventIndicators
+    names = [unknown.variable.name for unknown in three.initialUnknowns]
+    assert names == [unknown.variable.name for unknown in two.initialUnknowns]
 
 
 def test_both_versions_give_the_same_bits_under_a_held_input(mcmanus, mcmanus3):

@@ -1,4 +1,6 @@
-"""Ecos, over Pacoima Dam: a fixed step, with the record inside and with a_g held over each."""
+"""Ecos, over Pacoima Dam: a fixed step, with the record inside, in both versions of FMI, and with a_g held over each."""
+
+import subprocess
 
 import numpy as np
 import pytest
@@ -12,19 +14,33 @@ from ecospy import EcosLib, EcosSimulation, EcosSimulationStructure
 EcosLib.set_log_level("off")
 
 
-def simulation(fmu, step: float, **start_values) -> EcosSimulation:
+@pytest.fixture(scope="module")
+def path_of(exporter, pacoima_record, tmp_path_factory):
+    """The FMU with that record inside, in a version of FMI."""
+
+    def export(version: int) -> str:
+        path = tmp_path_factory.mktemp("ecos") / "mcmanus.fmu"
+        inside = ["--fmi", str(version), "--preset", "mcmanus", "--record", pacoima_record]
+        subprocess.run([exporter, "export", *inside, "-o", path], check=True)
+        return str(path)
+
+    return export
+
+
+def simulation(path: str, step: float, **start_values) -> EcosSimulation:
     """The FMU alone in a simulation, initialized."""
     structure = EcosSimulationStructure()
-    structure.add_model("pier", fmu.path)
+    structure.add_model("pier", path)
     structure.add_parameter_set("start", {f"pier::{name}": value for name, value in start_values.items()})
     simulation = EcosSimulation(structure=structure, step_size=step)
     assert simulation.init(parameter_set="start")
     return simulation
 
 
+@pytest.mark.parametrize("version", [2, 3])
 @pytest.mark.parametrize("step", STEPS)
-def test_the_record_inside(shaken, exact, step):
-    with simulation(shaken["mcmanus"], step) as pier:
+def test_the_record_inside(path_of, exact, step, version):
+    with simulation(path_of(version), step) as pier:
         get = lambda: [pier.get_real(f"pier::{name}") for name in OUTPUTS]
         samples = [get()]
         for _ in instants(step)[1:]:
@@ -35,7 +51,7 @@ def test_the_record_inside(shaken, exact, step):
 
 
 def test_held(mcmanus):
-    with simulation(mcmanus, STEP) as pier:
+    with simulation(mcmanus.path, STEP) as pier:
         get = lambda: [pier.get_real(f"pier::{name}") for name in OUTPUTS]
         samples = [get()]
         for a_g in A_G[:-1]:
@@ -49,7 +65,7 @@ def test_held(mcmanus):
 
 def test_start_values_and_overturning(mcmanus):
     """It takes no notice of Discard: time goes on, the structure lies where it fell."""
-    with simulation(mcmanus, 0.01, theta_0=0.3) as pier:
+    with simulation(mcmanus.path, 0.01, theta_0=0.3) as pier:
         assert pier.get_real("pier::theta") == 0.3
         pier.step(300)
         assert pier.get_time() == pytest.approx(3.0)
@@ -58,7 +74,7 @@ def test_start_values_and_overturning(mcmanus):
 
 
 def test_enumerations_are_not_seen(mcmanus):
-    with simulation(mcmanus, STEP) as pier:
+    with simulation(mcmanus.path, STEP) as pier:
         for name in ("phase", "detail"):
             with pytest.raises(Exception, match=f"No int property pier::{name} found"):
                 pier.get_integer(f"pier::{name}")

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from first_run import PACOIMA_DAM
 from fmpy import simulate_fmu
-from model_exchange.hosts import Scene, co_simulation, fmpy_cvode, fmpy_euler, sundae
+from model_exchange.hosts import Scene, co_simulation, dop853, fmpy_cvode, fmpy_euler, sundae
 
-BAND = 1e-6 * 0.23  # rad, of alpha_cg
+BAND = 1e-9 * 0.23  # rad, of alpha_cg
 
 
 @pytest.fixture(scope="module")
@@ -25,6 +25,16 @@ def test_a_solver_follows_co_simulation_as_close_as_its_tolerance(scene, host):
     assert tight.transitions == exact.transitions
     assert tight.error(exact) < 1e-4 < loose.error(exact) < 0.3
     assert np.array_equal(tight.rows["phase"], exact.rows["phase"])
+
+
+@pytest.mark.parametrize("tolerance", [1e-4, 1e-6, 1e-8, 1e-10])
+def test_a_solver_of_one_step_stays_within_its_tolerance_times_the_scenes_amplification(scene, tolerance):
+    """The FMU and going over the host's steps add nothing to that."""
+    exact, change = co_simulation(scene), 1e-12
+    amplification = co_simulation(scene, change).error(exact) / change
+    result = dop853(scene, tolerance)
+    assert result.error(exact) <= tolerance * amplification
+    assert result.depth <= BAND and np.array_equal(result.rows["transitions"], exact.rows["transitions"])
 
 
 @pytest.mark.parametrize("step", [10e-3, 1e-3])

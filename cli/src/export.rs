@@ -27,7 +27,7 @@ pub struct ExportArgs {
     /// their names
     #[arg(long, value_name = "FILE", num_args = 1..)]
     record: Vec<PathBuf>,
-    /// Version of FMI: 2 (2.0), 3 (3.0)
+    /// Version of FMI, for co-simulation and model exchange: 2 (2.0), 3 (3.0)
     #[arg(long, value_name = "VERSION", default_value = "2", value_parser = versions())]
     fmi: Version,
     /// Name of the model and of its libraries' files, for hosts that hold several exports

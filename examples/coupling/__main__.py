@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from . import added_mass, convergence, early_return, stability
+from . import added_mass, convergence, early_return, one_system, stability
 from .bridge import PIERS, deck
 from .tables import markdown
 
@@ -67,6 +67,8 @@ def main() -> None:
         early_return=early_return.table(*to_transitions),
         frequency=stability.FREQUENCY,
         limits=limits_table(),
+        one_system=one_system.table(*to_transitions),
+        one_system_stability=one_system.stability_table(),
         transitions=transitions,
     )
     arguments.output.write_text(page, encoding="utf-8")

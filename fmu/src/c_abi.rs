@@ -1,5 +1,6 @@
-//! What the C interfaces of all versions of the standard have in common. Only here, and in [`fmi2`](crate::fmi2), are
-//! pointers followed: each function turns its arguments into slices and text, and calls the instance.
+//! What the C interfaces of all versions of the standard have in common. Only here, in [`fmi2`](crate::fmi2) and in
+//! [`fmi3`](crate::fmi3) are pointers followed: each function turns its arguments into slices and text, and calls the
+//! instance.
 //!
 //! Messages begin with the function that was called and end with the one to call instead: the instance knows neither.
 //!
@@ -17,6 +18,7 @@
 
 use crate::failure::Failure;
 use crate::instance::Instance;
+use crate::instance::model_exchange::Completed;
 use crate::logger::Status;
 use crate::state_machine::{IsAllowed, Stage, stages};
 use libc::{c_char, c_int, c_void, size_t};
@@ -196,6 +198,35 @@ pub(crate) unsafe fn room<'a, T>(
     Ok(unsafe { slice::from_raw_parts_mut(pointer.cast(), length) })
 }
 
+/// The `N` numbers at `pointer`, of which `count`, the argument `of`, has to say that they are as many.
+pub(crate) unsafe fn read_all<const N: usize>(
+    name: &'static str,
+    pointer: *const f64,
+    (of, count): (&'static str, size_t),
+) -> Result<[f64; N], Failure> {
+    check_count(of, count, N)?;
+    check_pointer(name, pointer)?;
+    Ok(unsafe { *pointer.cast() })
+}
+
+/// Writes `numbers` to `pointer`, if `count`, the argument `of`, says that there is room for as many.
+pub(crate) unsafe fn write_all<const N: usize>(
+    name: &'static str,
+    pointer: *mut f64,
+    (of, count): (&'static str, size_t),
+    numbers: [f64; N],
+) -> Result<(), Failure> {
+    check_count(of, count, N)?;
+    check_pointer(name, pointer)?;
+    unsafe { pointer.cast::<[f64; N]>().write(numbers) };
+    Ok(())
+}
+
+/// Refuses a number of values, given as `name`, that is not the right one.
+pub(crate) fn check_count(name: &'static str, given: size_t, needed: size_t) -> Result<(), Failure> {
+    if given == needed { Ok(()) } else { Err(Failure::WrongCount { name, given, needed }) }
+}
+
 /// The value at `pointer`.
 pub(crate) unsafe fn read<T: Copy>(name: &'static str, pointer: *const T) -> Result<T, Failure> {
     check_pointer(name, pointer)?;
@@ -293,6 +324,21 @@ pub(crate) unsafe fn read_state(
         let bytes = values("serializedState", serialized, size)?;
         let handle = instance.deserialize_fmu_state(bytes, read(name, pointer)?.addr())?;
         write(name, pointer, ptr::without_provenance_mut(handle))
+    }
+}
+
+/// Completes a step of the host's integrator, and writes what came of it as the version's Booleans.
+pub(crate) unsafe fn complete_step<B: From<bool>>(
+    instance: &mut Instance,
+    enterEventMode: *mut B,
+    terminateSimulation: *mut B,
+) -> Result<(), Failure> {
+    check_pointer("enterEventMode", enterEventMode)?;
+    check_pointer("terminateSimulation", terminateSimulation)?;
+    let Completed { needs_event_mode, has_ended } = instance.completed_integrator_step()?;
+    unsafe {
+        write("enterEventMode", enterEventMode, needs_event_mode.into())?;
+        write("terminateSimulation", terminateSimulation, has_ended.into())
     }
 }
 

@@ -52,7 +52,7 @@ pub enum Failure {
         accepted: &'static str,
     },
     /// An interface of the standard that this unit has not.
-    #[error("this FMU is for co-simulation: see modelDescription.xml")]
+    #[error("this FMU is for model exchange and co-simulation: see modelDescription.xml")]
     NotThisInterface,
     /// Event mode of a host that said it has none.
     #[error("there is no event mode: the instance was made with eventModeUsed = false")]
@@ -146,7 +146,7 @@ pub enum Failure {
     /// A known that is none.
     #[error(
         "{} cannot be a known of a directional derivative: only the inputs can, in initialization mode real parameters and \
-         initial values, later u, u_dot, theta and theta_dot",
+         initial values, later u, u_dot, theta, theta_dot and time",
         .0.name
     )]
     NoKnown(&'static Variable),

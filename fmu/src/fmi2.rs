@@ -2,17 +2,16 @@
 //! holds of all of them.
 #![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
 
-pub mod co_simulation;
+mod co_simulation;
 mod model_exchange;
 
 use crate::c_abi::{
-    self, check_pointer, escaped, free_state, functions, keep_state, read_state, room, text, values, write,
-    write_state, write_state_size,
+    self, check_pointer, complete_step, escaped, free_state, functions, keep_state, read_all, read_state, room, text,
+    values, write, write_all, write_state, write_state_size,
 };
 use crate::condition::{Interface, Stepping};
 use crate::failure::Failure;
-use crate::instance::model_exchange::{Completed, Updated};
-use crate::instance::{self, Instance};
+use crate::instance::{self, Instance, Updated};
 use crate::logger::{Category, Logger, Sink};
 use crate::resources;
 use crate::state_machine::IsAllowed;
@@ -331,7 +330,7 @@ functions! {
 
     fmi2NewDiscreteStates = NewDiscreteStates(fmi2eventInfo: *mut EventInfo) |instance| {
         check_pointer("fmi2eventInfo", fmi2eventInfo)?;
-        let Updated { has_ended, has_new_states, next_event } = instance.new_discrete_states()?;
+        let Updated { has_ended, has_new_states, next_event } = instance.update_discrete_states()?;
         write("fmi2eventInfo", fmi2eventInfo, EventInfo {
             new_discrete_states_needed: 0,
             terminate_simulation: has_ended.into(),
@@ -348,35 +347,31 @@ functions! {
     fmi2CompletedIntegratorStep = CompletedIntegratorStep(
         _noSetFMUStatePriorToCurrentPoint: c_int, enterEventMode: *mut c_int, terminateSimulation: *mut c_int,
     ) |instance| {
-        check_pointer("enterEventMode", enterEventMode)?;
-        check_pointer("terminateSimulation", terminateSimulation)?;
-        let Completed { needs_event_mode, has_ended } = instance.completed_integrator_step()?;
-        write("enterEventMode", enterEventMode, needs_event_mode.into())?;
-        write("terminateSimulation", terminateSimulation, has_ended.into())
+        complete_step(instance, enterEventMode, terminateSimulation)
     }
 
     fmi2SetTime = SetTime(time: c_double) |instance| { instance.set_time(time) }
 
     fmi2SetContinuousStates = SetContinuousStates(x: *const c_double, nx: size_t) |instance| {
-        instance.set_continuous_states(values("x", x, nx)?)
+        instance.set_continuous_states(read_all("x", x, ("nx", nx))?)
     }
 
     fmi2GetDerivatives = GetDerivatives(derivatives: *mut c_double, nx: size_t) |instance| {
-        instance.get_derivatives(room("derivatives", derivatives, nx)?)
+        write_all("derivatives", derivatives, ("nx", nx), instance.derivatives()?)
     }
 
     fmi2GetEventIndicators = GetEventIndicators(eventIndicators: *mut c_double, ni: size_t) |instance| {
-        instance.get_event_indicators(room("eventIndicators", eventIndicators, ni)?)
+        write_all("eventIndicators", eventIndicators, ("ni", ni), instance.event_indicators()?)
     }
 
     fmi2GetContinuousStates = GetContinuousStates(x: *mut c_double, nx: size_t) |instance| {
-        instance.get_continuous_states(room("x", x, nx)?)
+        write_all("x", x, ("nx", nx), instance.continuous_states()?)
     }
 
     fmi2GetNominalsOfContinuousStates = GetNominalsOfContinuousStates(
         x_nominal: *mut c_double, nx: size_t,
     ) |instance| {
-        instance.get_nominals(room("x_nominal", x_nominal, nx)?)
+        write_all("x_nominal", x_nominal, ("nx", nx), instance.nominals()?)
     }
 }
 

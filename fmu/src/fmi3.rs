@@ -1,24 +1,28 @@
-//! The C interface of FMI 3.0 for co-simulation: what its functions are called, and what they pass. See [`c_abi`] for
-//! what holds of all of them.
+//! The C interface of FMI 3.0: what its functions are called, and what they pass. See [`c_abi`] for what holds of all of
+//! them.
 //!
-//! Where the host handles events and takes an early return, a step ends at the first transition on it: state and phase
-//! are those before it until `fmi3UpdateDiscreteStates` applies it. A host that can be called back gives the inputs at
-//! the end of every step within it, and they are straight lines over the step; else they are held.
+//! In co-simulation, where the host handles events and takes an early return, a step ends at the first transition on it:
+//! state and phase are those before it until `fmi3UpdateDiscreteStates` applies it. A host that can be called back gives
+//! the inputs at the end of every step within it, and they are straight lines over the step; else they are held.
 #![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
 
-pub mod co_simulation;
+mod co_simulation;
+mod model_exchange;
 
 use crate::c_abi::{
-    self, call, call_on, check_pointer, escaped, free_state, functions, instantiate, keep_state, read_state, room,
-    text, values, write, write_state, write_state_size,
+    self, call, call_on, check_count, check_pointer, complete_step, escaped, free_state, functions, instantiate,
+    keep_state, read_all, read_state, room, text, values, write, write_all, write_state, write_state_size,
 };
 use crate::condition::{Interface, Stepping};
 use crate::failure::Failure;
-use crate::instance::{self, AskInputs, Instance};
+use crate::instance::{self, AskInputs, Instance, Updated};
 use crate::logger::{Category, Logger, Sink};
+use crate::state_machine::IsAllowed;
 use crate::variables::{Causality, DataType, Variable};
 use libc::{c_char, c_int, c_uint, c_void, size_t};
 use rocking::Progress;
+use rocking::outside_step::INDICATORS;
+use rocking::state::COMPONENTS;
 use std::path::PathBuf;
 use std::rc::Rc;
 
@@ -52,79 +56,96 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     logMessage: Option<LogMessageCallback>,
     intermediateUpdate: Option<IntermediateUpdateCallback>,
 ) -> *mut c_void {
-    let arguments = || {
-        let name = unsafe { text("instanceName", instanceName) }?;
-        let token = unsafe { text("instantiationToken", instantiationToken) }?;
-        let folder = unsafe { text("resourcePath", resourcePath) }?;
-        let events = boolean("loggingOn", loggingOn)?;
+    let interface = || {
         let event_mode = boolean("eventModeUsed", eventModeUsed)?;
         let early_return = boolean("earlyReturnAllowed", earlyReturnAllowed)?;
         let required = unsafe {
             values("requiredIntermediateVariables", requiredIntermediateVariables, nRequiredIntermediateVariables)
         }?;
-        if name.trim().is_empty() {
-            return Err(Failure::NoName);
-        }
         for reference in required {
             let variable = instance::find(*reference)?;
             if variable.causality != Causality::Input {
                 return Err(Failure::NotIntermediate(variable));
             }
         }
-        let archive = instance::open("instantiationToken", token, PathBuf::from(folder))?;
-        Ok((archive, Interface::CoSimulation(Stepping { event_mode, early_return }), events, !required.is_empty()))
+        let asks = intermediateUpdate.filter(|_| !required.is_empty());
+        let ask = asks.map(|update| ask(update, instanceEnvironment));
+        let is_allowed: IsAllowed<Function> = co_simulation::is_allowed;
+        Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), is_allowed, ask))
     };
-    instantiate::<Function>(|| {
-        let logger = Logger::new(sink(logMessage, instanceEnvironment));
-        match arguments() {
-            Ok((archive, interface, events, asks)) => {
-                let ask = intermediateUpdate.filter(|_| asks).map(|update| ask(update, instanceEnvironment));
-                Some((Instance::new(archive, interface, events, logger).asking(ask), co_simulation::is_allowed as _))
-            }
-            Err(failure) => {
-                logger.failure(failure.status(), &format!("fmi3InstantiateCoSimulation: {failure}"));
-                None
-            }
-        }
-    })
+    let arguments = [instanceName, instantiationToken, resourcePath];
+    let host = (instanceEnvironment, logMessage);
+    unsafe { create("fmi3InstantiateCoSimulation", arguments, loggingOn, host, interface) }
 }
 
-/// `fmi3InstantiateModelExchange`: there is none in this version.
+/// `fmi3InstantiateModelExchange`
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3InstantiateModelExchange(
-    _instanceName: *const c_char,
-    _instantiationToken: *const c_char,
-    _resourcePath: *const c_char,
+    instanceName: *const c_char,
+    instantiationToken: *const c_char,
+    resourcePath: *const c_char,
     _visible: u8,
-    _loggingOn: u8,
+    loggingOn: u8,
     instanceEnvironment: *mut c_void,
     logMessage: Option<LogMessageCallback>,
 ) -> *mut c_void {
-    not_this_interface("fmi3InstantiateModelExchange", logMessage, instanceEnvironment)
+    let is_allowed: IsAllowed<Function> = model_exchange::is_allowed;
+    let interface = || Ok((Interface::ModelExchange, is_allowed, None));
+    let (arguments, host) = ([instanceName, instantiationToken, resourcePath], (instanceEnvironment, logMessage));
+    unsafe { create("fmi3InstantiateModelExchange", arguments, loggingOn, host, interface) }
 }
 
 /// `fmi3InstantiateScheduledExecution`: there is nothing to schedule.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
-    _instanceName: *const c_char,
-    _instantiationToken: *const c_char,
-    _resourcePath: *const c_char,
+    instanceName: *const c_char,
+    instantiationToken: *const c_char,
+    resourcePath: *const c_char,
     _visible: u8,
-    _loggingOn: u8,
+    loggingOn: u8,
     instanceEnvironment: *mut c_void,
     logMessage: Option<LogMessageCallback>,
     _clockUpdate: *const c_void,
     _lockPreemption: *const c_void,
     _unlockPreemption: *const c_void,
 ) -> *mut c_void {
-    not_this_interface("fmi3InstantiateScheduledExecution", logMessage, instanceEnvironment)
+    let (arguments, host) = ([instanceName, instantiationToken, resourcePath], (instanceEnvironment, logMessage));
+    let interface = || Err(Failure::NotThisInterface);
+    unsafe { create("fmi3InstantiateScheduledExecution", arguments, loggingOn, host, interface) }
 }
 
-fn not_this_interface(name: &str, log: Option<LogMessageCallback>, environment: *mut c_void) -> *mut c_void {
+/// An instance of the `interface` that `function` makes, from the name, the token and the folder; null, with the reason in
+/// the log, if there is none.
+unsafe fn create(
+    function: &str,
+    [name, token, folder]: [*const c_char; 3],
+    logging_on: u8,
+    (environment, log): (*mut c_void, Option<LogMessageCallback>),
+    interface: impl FnOnce() -> Result<(Interface, IsAllowed<Function>, Option<AskInputs>), Failure>,
+) -> *mut c_void {
     instantiate::<Function>(|| {
-        let failure = Failure::NotThisInterface;
-        Logger::new(sink(log, environment)).failure(failure.status(), &format!("{name}: {failure}"));
-        None
+        let logger = Logger::new(sink(log, environment));
+        let found = || {
+            let (interface, is_allowed, ask) = interface()?;
+            let name = unsafe { text("instanceName", name) }?;
+            let token = unsafe { text("instantiationToken", token) }?;
+            let folder = unsafe { text("resourcePath", folder) }?;
+            let events = boolean("loggingOn", logging_on)?;
+            if name.trim().is_empty() {
+                return Err(Failure::NoName);
+            }
+            let archive = instance::open("instantiationToken", token, PathBuf::from(folder))?;
+            Ok((archive, interface, is_allowed, ask, events))
+        };
+        match found() {
+            Ok((archive, interface, is_allowed, ask, events)) => {
+                Some((Instance::new(archive, interface, events, logger).asking(ask), is_allowed))
+            }
+            Err(failure) => {
+                logger.failure(failure.status(), &format!("{function}: {failure}"));
+                None
+            }
+        }
     })
 }
 
@@ -164,12 +185,7 @@ fn boolean(name: &'static str, value: u8) -> Result<bool, Failure> {
     }
 }
 
-/// Refuses a number of values, given as `name`, that is not that of the variables, all of which are scalars.
-fn check_count(name: &'static str, given: size_t, needed: size_t) -> Result<(), Failure> {
-    if given == needed { Ok(()) } else { Err(Failure::WrongCount { name, given, needed }) }
-}
-
-/// The variables that as many values are for.
+/// The variables, all of which are scalars, that as many values are for.
 unsafe fn references<'a>(
     valueReferences: *const c_uint,
     nValueReferences: size_t,
@@ -269,7 +285,7 @@ functions! {
 
     fmi3ExitInitializationMode = ExitInitializationMode() |instance| { instance.exit_initialization_mode() }
 
-    fmi3EnterEventMode = EnterEventMode() |instance| { instance.pause_for_events() }
+    fmi3EnterEventMode = EnterEventMode() |instance| { instance.enter_event_mode() }
 
     fmi3Terminate = Terminate() |instance| { instance.terminate() }
 
@@ -415,11 +431,12 @@ functions! {
             check_pointer(name, flag)?;
         }
         check_pointer("nextEventTime", nextEventTime)?;
-        instance.update_discrete_states()?;
-        for (name, flag) in flags {
-            write(name, flag, 0)?;
+        let Updated { has_ended, has_new_states, next_event } = instance.update_discrete_states()?;
+        let told = [false, has_ended, false, has_new_states, next_event.is_some()];
+        for ((name, flag), told) in flags.into_iter().zip(told) {
+            write(name, flag, told.into())?;
         }
-        write("nextEventTime", nextEventTime, 0.0)
+        write("nextEventTime", nextEventTime, next_event.unwrap_or_default())
     }
 
     fmi3EnterStepMode = EnterStepMode() |instance| { instance.enter_step_mode() }
@@ -431,6 +448,51 @@ functions! {
         let references = references(valueReferences, nValueReferences, nValues)?;
         let (orders, rates) = (values("orders", orders, nValueReferences)?, room("values", value, nValues)?);
         instance.get_real_output_derivatives(references, orders, rates)
+    }
+
+    fmi3EnterContinuousTimeMode = EnterContinuousTimeMode() |instance| { instance.enter_continuous_time_mode() }
+
+    /// Whether the host will go back makes no difference: FMU states are kept until it frees them.
+    fmi3CompletedIntegratorStep = CompletedIntegratorStep(
+        _noSetFMUStatePriorToCurrentPoint: u8, enterEventMode: *mut u8, terminateSimulation: *mut u8,
+    ) |instance| {
+        complete_step(instance, enterEventMode, terminateSimulation)
+    }
+
+    fmi3SetTime = SetTime(time: f64) |instance| { instance.set_time(time) }
+
+    fmi3SetContinuousStates = SetContinuousStates(continuousStates: *const f64, nContinuousStates: size_t) |instance| {
+        let count = ("nContinuousStates", nContinuousStates);
+        instance.set_continuous_states(read_all("continuousStates", continuousStates, count)?)
+    }
+
+    fmi3GetContinuousStateDerivatives = GetContinuousStateDerivatives(
+        derivatives: *mut f64, nContinuousStates: size_t,
+    ) |instance| {
+        write_all("derivatives", derivatives, ("nContinuousStates", nContinuousStates), instance.derivatives()?)
+    }
+
+    fmi3GetEventIndicators = GetEventIndicators(eventIndicators: *mut f64, nEventIndicators: size_t) |instance| {
+        write_all("eventIndicators", eventIndicators, ("nEventIndicators", nEventIndicators), instance.event_indicators()?)
+    }
+
+    fmi3GetContinuousStates = GetContinuousStates(continuousStates: *mut f64, nContinuousStates: size_t) |instance| {
+        let count = ("nContinuousStates", nContinuousStates);
+        write_all("continuousStates", continuousStates, count, instance.continuous_states()?)
+    }
+
+    fmi3GetNominalsOfContinuousStates = GetNominalsOfContinuousStates(
+        nominals: *mut f64, nContinuousStates: size_t,
+    ) |instance| {
+        write_all("nominals", nominals, ("nContinuousStates", nContinuousStates), instance.nominals()?)
+    }
+
+    fmi3GetNumberOfEventIndicators = GetNumberOfEventIndicators(nEventIndicators: *mut size_t) |_instance| {
+        write("nEventIndicators", nEventIndicators, INDICATORS)
+    }
+
+    fmi3GetNumberOfContinuousStates = GetNumberOfContinuousStates(nContinuousStates: *mut size_t) |_instance| {
+        write("nContinuousStates", nContinuousStates, COMPONENTS.len())
     }
 
     // What this unit has none of: never allowed.
@@ -548,30 +610,6 @@ functions! {
     fmi3SetShiftFraction = SetShiftFraction(
         _valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *const u64, _resolutions: *const u64,
     )
-
-    fmi3EnterContinuousTimeMode = EnterContinuousTimeMode()
-
-    fmi3CompletedIntegratorStep = CompletedIntegratorStep(
-        _noSetFMUStatePriorToCurrentPoint: u8, _enterEventMode: *mut u8, _terminateSimulation: *mut u8,
-    )
-
-    fmi3SetTime = SetTime(_time: f64)
-
-    fmi3SetContinuousStates = SetContinuousStates(_continuousStates: *const f64, _nContinuousStates: size_t)
-
-    fmi3GetContinuousStateDerivatives = GetContinuousStateDerivatives(
-        _derivatives: *mut f64, _nContinuousStates: size_t,
-    )
-
-    fmi3GetEventIndicators = GetEventIndicators(_eventIndicators: *mut f64, _nEventIndicators: size_t)
-
-    fmi3GetContinuousStates = GetContinuousStates(_continuousStates: *mut f64, _nContinuousStates: size_t)
-
-    fmi3GetNominalsOfContinuousStates = GetNominalsOfContinuousStates(_nominals: *mut f64, _nContinuousStates: size_t)
-
-    fmi3GetNumberOfEventIndicators = GetNumberOfEventIndicators(_nEventIndicators: *mut size_t)
-
-    fmi3GetNumberOfContinuousStates = GetNumberOfContinuousStates(_nContinuousStates: *mut size_t)
 
     fmi3ActivateModelPartition = ActivateModelPartition(_clockReference: c_uint, _activationTime: f64)
 }

@@ -1,6 +1,6 @@
 //! One instance of the FMU: what each function does, in safe code, whatever a version of the standard calls it.
 
-use crate::condition::{Interface, Model, Present};
+use crate::condition::{Interface, Model, Present, Stepping};
 use crate::failure::Failure;
 use crate::inputs::Inputs;
 use crate::logger::{Logger, Status};
@@ -11,11 +11,12 @@ use crate::shown::Shown;
 use crate::snapshot::{self, Snapshots};
 use crate::state_machine::Stage;
 use crate::variables::{self, Causality, DataType, Source, VARIABLES, Variable};
+use model_exchange::check_state;
 use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE, Progress};
 use rocking::load::LOADS;
 use rocking::run::validity::{self, ASSUMPTIONS, Found, Limits};
 use rocking::state::COMPONENTS;
-use rocking::{Load, Parameters, Reactions, Side, Transition, TransitionKind};
+use rocking::{LinearLoad, Load, Parameters, Reactions, Side, Transition, TransitionKind};
 use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
 use std::mem::MaybeUninit;
@@ -40,6 +41,17 @@ pub struct Instance {
     ask: Option<AskInputs>,
     /// While it is asked: the inputs before, and how long the step is to be, s.
     asked: Option<(Inputs, f64)>,
+}
+
+/// What came of an event.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Updated {
+    /// Whether the structure has overturned, which ends the simulation.
+    pub has_ended: bool,
+    /// Whether the states are not those that the host set.
+    pub has_new_states: bool,
+    /// When the next event is that can be foreseen, s.
+    pub next_event: Option<f64>,
 }
 
 /// Asks the host for the inputs at a later time, s.
@@ -122,17 +134,27 @@ impl Instance {
         Ok(())
     }
 
-    /// From here on events are handled, at the end of a step.
-    pub fn pause_for_events(&mut self) -> Result<(), Failure> {
-        if !self.now.interface.stepping().event_mode {
-            return Err(Failure::NoEventMode);
+    /// From here on events are handled, at the end of a step or where the host's integrator is.
+    pub fn enter_event_mode(&mut self) -> Result<(), Failure> {
+        match self.now.interface {
+            Interface::CoSimulation(Stepping { event_mode: false, .. }) => return Err(Failure::NoEventMode),
+            Interface::CoSimulation(_) => (),
+            Interface::ModelExchange => self.arrive_at_event()?,
         }
         self.now.stage = Stage::EventMode;
         Ok(())
     }
 
-    /// Applies the transition that is due, if there is one.
-    pub fn update_discrete_states(&mut self) -> Result<(), Failure> {
+    /// Applies the transitions that are due.
+    pub fn update_discrete_states(&mut self) -> Result<Updated, Failure> {
+        match self.now.interface {
+            Interface::CoSimulation(_) => self.transit().map(|()| Updated::default()),
+            Interface::ModelExchange => self.catch_up(),
+        }
+    }
+
+    /// Applies the transition that a step has ended at, if there is one.
+    fn transit(&mut self) -> Result<(), Failure> {
         let logger = &self.logger;
         let (model, setup, ..) = self.now.parts(&self.archive)?;
         let known = model.validity;
@@ -269,9 +291,9 @@ impl Instance {
         Ok(())
     }
 
-    /// All of the values, or none if one is refused.
+    /// All of the values, or none if one is refused. While the host integrates it can set the states, too.
     pub fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
-        let (has_started, asked) = (self.now.stage.has_started(), &self.asked);
+        let (has_started, integrates) = (self.now.stage.has_started(), self.now.stage == Stage::ContinuousTimeMode);
         for (reference, &value) in references.iter().zip(values) {
             let variable = find(*reference)?;
             match variable.source {
@@ -282,20 +304,24 @@ impl Instance {
                 Source::Parameter(quantity) => quantity.check(value)?,
                 Source::InitialValue(quantity) => quantity.check(value)?,
                 Source::Placement(quantity) => quantity.check(value)?,
-                _ => return Err(refused(variable)),
+                _ => match variable.as_state().filter(|_| integrates) {
+                    Some(which) => check_state(which, value)?,
+                    None => return Err(refused(variable)),
+                },
             }
         }
-        let now = &mut self.now;
         for (reference, &value) in references.iter().zip(values) {
-            match &find(*reference)?.source {
-                &Source::Input(which) => match asked {
-                    Some((_, step)) => now.inputs.lead(which, value, *step),
-                    None => now.inputs.set(which, value),
+            let variable = find(*reference)?;
+            match (variable.source, &self.asked) {
+                (Source::Input(which), Some((_, step))) => self.now.inputs.lead(which, value, *step),
+                (Source::Input(which), None) => self.now.inputs.set(which, value),
+                (source, _) => match variable.as_state() {
+                    Some(which) => self.set_continuous_state(which, value)?,
+                    None => {
+                        source.set(&mut self.now.setup, value);
+                        self.now.model = None;
+                    }
                 },
-                source => {
-                    source.set(&mut now.setup, value);
-                    now.model = None;
-                }
             }
         }
         Ok(())
@@ -416,8 +442,8 @@ impl Instance {
         Ok(())
     }
 
-    /// Of outputs and derivatives of states by inputs and, once the simulation has started, by states; in initialization
-    /// mode by parameters and initial values as well, of calculated
+    /// Of outputs and derivatives of states by inputs and, once the simulation has started, by states and by time, at which
+    /// the record is another; in initialization mode by parameters and initial values as well, of calculated
     /// parameters, too ([`sensitivity`](crate::sensitivity)). The outputs are affine in the inputs, so that a difference
     /// is the derivative; it is taken over a change of the size of gravity and the strut's force, which keeps its
     /// digits.
@@ -438,6 +464,7 @@ impl Instance {
         let mut direction = Load::default();
         let has_started = self.now.stage.has_started();
         let (mut of_setup, mut of_state) = (BTreeMap::<u32, f64>::new(), [0.0; COMPONENTS.len()]);
+        let mut of_time = 0.0;
         for (reference, &value) in knowns.iter().zip(seed) {
             let variable = find(*reference)?;
             if !value.is_finite() {
@@ -451,6 +478,7 @@ impl Instance {
                 Source::Parameter(_) | Source::InitialValue(_) | Source::Placement(_) if is_initializing => {
                     *of_setup.entry(*reference).or_default() += value;
                 }
+                Source::Time if has_started => of_time += value,
                 _ => match variable.as_state().filter(|_| has_started) {
                     Some(which) => of_state[which] += value,
                     None => return Err(Failure::NoKnown(variable)),
@@ -461,7 +489,8 @@ impl Instance {
             let variable = find(*reference)?;
             match variable.source {
                 Source::Output(_) | Source::Reaction(_) | Source::StateRate(_) | Source::Ground => Ok(variable),
-                Source::Derived(_) | Source::RecordDuration | Source::Impulse(_) if is_initializing => Ok(variable),
+                Source::Impulse(_) => Ok(variable), // which events alone change
+                Source::Derived(_) | Source::RecordDuration if is_initializing => Ok(variable),
                 _ => Err(Failure::NoOutput(variable)),
             }
         };
@@ -476,6 +505,9 @@ impl Instance {
         }
         let model = &*model;
         let Model { engine, ground, .. } = model;
+        if of_time != 0.0 {
+            direction.a_g += of_time * model.load(setup, LinearLoad::default()).slope.a_g;
+        }
         let time = engine.motion().time;
         let &Parameters { m, g, .. } = engine.structure().parameters();
         let before = Shown::new(model, setup, Load::default());

@@ -1,4 +1,4 @@
-//! Unit of a flexible rocking structure: FMI 2.0 for co-simulation and model exchange, FMI 3.0 for co-simulation.
+//! Unit of a flexible rocking structure for co-simulation and model exchange, of FMI 2.0 and of FMI 3.0.
 //!
 //! A call of the host enters by [`fmi2`] or [`fmi3`], whose shell [`c_abi`] asks a table of [`state_machine`] whether it
 //! is legal and turns pointers into slices. [`instance`], which knows no version, finds its variables in [`variables`] and

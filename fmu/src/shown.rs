@@ -42,6 +42,7 @@ impl<'a> Shown<'a> {
             Source::Output(of) => of(&self.outputs),
             Source::Reaction(of) => of(self.reactions()),
             Source::StateRate(which) => self.state_rates().components()[which],
+            Source::Indicator(which) => model.engine.sample(load).event_indicators()[which],
             Source::Peak(_) if !setup.peaks || model.is_integrated_outside() => f64::NAN,
             Source::Peak(of) => of(&model.peaks(setup, load)),
             Source::Worst(_) | Source::WorstInstant(_) if !setup.validity || model.is_integrated_outside() => f64::NAN,

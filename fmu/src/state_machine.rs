@@ -74,16 +74,17 @@ pub(crate) fn stages<F: Copy>(function: F, is_allowed: IsAllowed<F>) -> String {
 }
 
 /// A table of an interface: the stages that it knows, and a row for every function of the version's `Function`, with x
-/// where it may be called and - where not.
+/// where it may be called and - where not; behind a last - those that may be called nowhere.
 macro_rules! table {
-    ([$($stage:ident),* $(,)?] $($function:ident [$($mark:tt)+])*) => {
+    ([$($stage:ident),* $(,)?] $($function:ident [$($mark:tt)+])* - $($never:ident)*) => {
         /// The stages of this interface.
-        pub const STAGES: &[Stage] = &[$(Stage::$stage),*];
+        const STAGES: &[Stage] = &[$(Stage::$stage),*];
 
         /// Whether `function` may be called in `stage`.
         pub(crate) fn is_allowed(function: Function, stage: Stage) -> bool {
             let marks: [bool; STAGES.len()] = match function {
                 $(Function::$function => [$($crate::state_machine::table!(@ $mark)),+],)*
+                $(Function::$never)|* => return false,
             };
             STAGES.iter().zip(marks).any(|(column, mark)| mark && *column == stage)
         }

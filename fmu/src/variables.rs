@@ -7,6 +7,7 @@ use crate::setup::Setup;
 use rocking::Motion;
 use rocking::ground_motion::{PLACEMENT, Placement};
 use rocking::load::LOADS;
+use rocking::outside_step::INDICATORS;
 use rocking::parameters::PARAMETERS;
 use rocking::quantity::Quantity;
 use rocking::run::peaks::Peaks;
@@ -111,6 +112,8 @@ pub(crate) enum Source {
     Reaction(fn(&Reactions) -> f64),
     /// The derivative of one of [`COMPONENTS`], by its place.
     StateRate(usize),
+    /// One of the event indicators, by its place.
+    Indicator(usize),
     Impulse(fn(&Impulse) -> f64),
     Integer(OfMotion),
     Boolean(OfMotion),
@@ -226,6 +229,7 @@ pub static VARIABLES: LazyLock<Vec<Variable>> = LazyLock::new(|| {
         .chain(outputs())
         .chain(locals())
         .chain(state_rates())
+        .chain(event_indicators())
         .chain(peaks())
         .chain(validity())
         .chain(const { &PARAMETERS }.iter().map(|quantity| fixed(quantity, Source::Parameter(quantity))))
@@ -407,6 +411,49 @@ fn state_rates() -> [Variable; 4] {
     ]
 }
 
+/// What tells a host that integrates of the end of a phase, in the order in which it is told.
+fn event_indicators() -> [Variable; INDICATORS] {
+    const PHASE: &[&str] = &[
+        "m",
+        "m0",
+        "H",
+        "B",
+        "f_fc",
+        "zeta_fc",
+        "c_ratio",
+        "g",
+        "detail",
+        "theta_0",
+        "u_0",
+        "u_dot_0",
+        "record",
+        "record_scale",
+        "record_time_scale",
+        "record_start",
+    ];
+    let indicator = |which, name, description| Variable {
+        causality: Causality::Local,
+        ..output(name, "1", description, Source::Indicator(which), &[], &[])
+    };
+    [
+        Variable {
+            feedthrough: &["a_g", "F_t"],
+            states: &["u", "u_dot", "theta"],
+            initial_dependencies: PHASE,
+            ..indicator(
+                0,
+                "phase_indicator",
+                "event indicator, positive while the phase lasts: what u and its moment lack to uplift; theta over alpha_cg",
+            )
+        },
+        Variable {
+            states: &["theta"],
+            initial_dependencies: &["theta_0"],
+            ..indicator(1, "overturning_indicator", "event indicator, positive until the structure has overturned")
+        },
+    ]
+}
+
 /// Largest magnitudes and their instants.
 fn peaks() -> Vec<Variable> {
     let peak = |name, unit, description, of| Variable {
@@ -573,7 +620,8 @@ impl Variable {
     /// Whether it may change at any time, and not at transitions alone.
     pub fn is_continuous(&self) -> bool {
         match self.source {
-            Source::Input(_) | Source::Output(_) | Source::Reaction(_) | Source::StateRate(_) => true,
+            Source::Input(_) | Source::Output(_) | Source::Reaction(_) => true,
+            Source::StateRate(_) | Source::Indicator(_) => true,
             Source::Ground | Source::Peak(_) | Source::Time => true,
             Source::Worst(which) | Source::WorstInstant(which) => !ASSUMPTIONS[which].is_of_impacts,
             _ => false,
@@ -588,6 +636,11 @@ impl Variable {
     /// Which of them it is the derivative of.
     pub fn as_state_rate(&self) -> Option<usize> {
         if let Source::StateRate(which) = self.source { Some(which) } else { None }
+    }
+
+    /// Which of the event indicators it is.
+    pub fn as_indicator(&self) -> Option<usize> {
+        if let Source::Indicator(which) = self.source { Some(which) } else { None }
     }
 
     /// The start value in an FMU with these `contents`: of the inputs, the parameters and the initial values.

@@ -54,7 +54,8 @@ fn they_are_linear_in_the_direction() {
     }
     assert_eq!(derivatives(&host, &OUTPUTS, &[("a_g", 0.0)]), Ok(vec![0.0; 6]));
     assert_eq!(derivatives(&host, &OUTPUTS, &[]), Ok(vec![0.0; 6]));
-    assert_eq!(derivatives(&host, &["theta", "u_dot", "v_t"], &[("a_g", 1.0), ("F_t", 1e3)]), Ok(vec![0.0; 3]));
+    let of_state_or_events = ["theta", "u_dot", "v_t", "I_v"];
+    assert_eq!(derivatives(&host, &of_state_or_events, &[("a_g", 1.0), ("F_t", 1e3)]), Ok(vec![0.0; 4]));
 }
 
 /// However large the elastic force: ∂a_t/∂F_t = cos θ/m.
@@ -88,15 +89,14 @@ fn they_exist_from_initialization_to_overturning() {
 #[test]
 fn what_is_no_known_or_unknown_is_refused() {
     let host = rocking();
-    let can = "only the inputs can, in initialization mode real parameters and initial values, later u, u_dot, theta and \
-               theta_dot";
+    let can = "only the inputs can, in initialization mode real parameters and initial values, later u, u_dot, theta, \
+               theta_dot and time";
     let no_known = |name: &str| format!("{name} cannot be a known of a directional derivative: {can}");
     for (unknowns, knowns, message) in [
         (["a_t"], [("delta_t", 1.0)], &no_known("delta_t")[..]),
         (["a_t"], [("m", 1.0)], &no_known("m")),
         (["p_l"], [("a_g", 1.0)], "p_l has no derivative: only continuous real outputs have"),
         (["a_t"], [("F_t", f64::NAN)], "the derivative of F_t, NaN, is out of range: it must be finite"),
-        (["I_v"], [("F_t", 1.0)], "I_v has no derivative: only continuous real outputs have"),
         (["phase"], [("a_g", 1.0)], "phase has no derivative: only continuous real outputs have"),
         (["F_t"], [("a_g", 1.0)], "F_t has no derivative: only continuous real outputs have"),
     ] {

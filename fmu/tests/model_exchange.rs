@@ -56,6 +56,26 @@ fn inputs_act_as_they_are_set() {
     assert_eq!((host.states(), host.integer("phase")), (Ok([0.0; 4]), PHASE_IN_CONTACT));
 }
 
+/// While a host integrates it can set a state by its name, too; at an event, which puts the states right, it cannot.
+#[test]
+fn a_state_can_be_set_as_a_variable() {
+    let starts = [("theta_0", 0.02)];
+    let (by_name, at_once) = (Host::going_model(&starts), Host::going_model(&starts));
+    assert_eq!(by_name.set(&[("theta", 0.015), ("u_dot", -0.1), ("a_g", 1.0), ("u", 2e-4)]), OK);
+    assert_eq!((at_once.set_states([2e-4, -0.1, 0.015, 0.0]), at_once.set(&[("a_g", 1.0)])), (OK, OK));
+    assert_eq!(by_name.bytes(), at_once.bytes());
+    let before = by_name.bytes();
+    assert_eq!(by_name.set(&[("u", 1e-3), ("theta", f64::NAN)]), DISCARD);
+    assert_eq!(
+        by_name.log.take()[0].text,
+        "fmi2SetReal: theta = NaN is out of range: at most 1e12 in SI units; take a shorter step"
+    );
+    assert_eq!(by_name.bytes(), before, "all of the values or none");
+    assert_eq!(by_name.enter_event_mode(), OK);
+    let refusal = "fmi2SetReal: theta cannot be set: it is an output, computed by the FMU";
+    by_name.assert_refused(|| by_name.set(&[("theta", 0.01)]), ERROR, refusal);
+}
+
 /// A host that never looks at an indicator, nor at the states, has the floor under it all the same.
 #[test]
 fn a_step_over_an_impact_is_put_right() {
@@ -278,6 +298,25 @@ fn directional_derivatives_are_those_of_the_equations() {
         assert_relative_eq!(by(&host, "delta_t", "theta"), across, max_relative = 1e-8);
         assert_eq!(host.states(), Ok(states));
     }
+    // on ground that follows a record time is a known: by it everything changes as by the ground's acceleration, over the slope
+    let host = Host::new_model();
+    host.write("ramp.csv", "0,1\n0.5,-3\n");
+    assert_eq!(host.set_record("ramp.csv"), OK);
+    let host = host.initialized(&[("theta_0", 0.03)]);
+    assert_eq!((host.exit(), host.update().is_ok(), host.go_on(), host.set_time(0.2)), (OK, true, OK, OK));
+    let at = |time: f64| {
+        assert_eq!(host.set_time(time), OK);
+        (host.derivatives().unwrap(), host.get("R_v"))
+    };
+    let ((before, R_v_before), (after, R_v_after)) = (at(0.125), at(0.25));
+    for (unknown, difference) in [
+        ("der(u_dot)", after[1] - before[1]),
+        ("der(theta_dot)", after[3] - before[3]),
+        ("R_v", R_v_after - R_v_before),
+    ] {
+        assert_relative_eq!(by(&host, unknown, "time"), difference / 0.125, max_relative = 1e-9);
+    }
+    assert_eq!((by(&host, "a_ground", "time"), by(&host, "theta", "time")), (-8.0, 0.0));
     // in full contact, Eq 1; θ does not move there
     let host = Host::going_model(&[]);
     let omega = std::f64::consts::TAU * Parameters::EVISON.f_fc;

@@ -57,7 +57,8 @@ const OF_SLAVE: [Stage; 6] = [
 ];
 
 /// The table of FMI 2.0.4, section 3.2.3, for a model: instantiated, initialization mode, event mode, continuous-time mode,
-/// terminated, error. Marks are as above (4: inputs and parameters that are tunable, 5: inputs).
+/// terminated, error. Marks are as above (4: inputs and parameters that are tunable, 5: inputs and states, 9: since 2.0.1 for models
+/// without continuous states alone, before for all).
 const STANDARD_OF_MODEL: &str = "
     SetDebugLogging               x x x x x x
     SetupExperiment               x - - - - -
@@ -84,9 +85,9 @@ const STANDARD_OF_MODEL: &str = "
     NewDiscreteStates             - - x - - -
     EnterContinuousTimeMode       - - x - - -
     CompletedIntegratorStep       - - - x - -
-    SetTime                       - - x x - -
+    SetTime                       - - 9 x - -
     SetContinuousStates           - - - x - -
-    GetDerivatives                - - x x x 7
+    GetDerivatives                - x x x x 7
     GetEventIndicators            - x x x x 7
     GetContinuousStates           - x x x x 7
     GetNominalsOfContinuousStates x x x x x 7

@@ -25,7 +25,7 @@ fn the_table_holds_the_variables_in_their_order() {
     assert_eq!(
         names(Causality::Local),
         "theta_dot u_dot a_ground phase transitions overturned t_overturned der(u) der(u_dot) der(theta) \
-         der(theta_dot) theta_max t_theta_max u_max t_u_max \
+         der(theta_dot) phase_indicator overturning_indicator theta_max t_theta_max u_max t_u_max \
          delta_t_max t_delta_t_max uplift_max t_uplift_max a_t_max t_a_t_max V_t_max t_V_t_max M_t_max t_M_t_max \
          tension_max t_tension_max R_v_min t_R_v_min mu_required t_mu_required mu_impact t_mu_impact tension_impact \
          t_tension_impact energy_gain_max t_energy_gain_max energy_gains"
@@ -70,10 +70,11 @@ fn start_values_are_where_the_standard_wants_them() {
 fn the_stated_dependencies_are_the_true_ones() {
     let u_cr = 7.52467e-4;
     let rigid = 5.0;
-    let bases: [&[(&str, f64)]; 7] = [
+    let bases: [&[(&str, f64)]; 8] = [
         &[("theta_0", 0.3), ("u_0", 2e-3), ("record_scale", 2.0), ("record_start", -0.25)],
         &[("detail", rigid), ("theta_0", 0.3), ("record_scale", 2.0), ("record_start", -0.25)],
         &[("detail", rigid), ("theta_0", 0.3), ("theta_dot_0", -0.4), ("J0", 2.0)],
+        &[("detail", rigid), ("record_scale", 2.0), ("record_start", -0.25)],
         &[("u_0", 3e-4), ("u_dot_0", 0.2)],
         &[("theta_0", 0.3), ("theta_dot_0", -0.4), ("u_0", 2e-3), ("u_dot_0", 0.3), ("c_ratio", 0.7), ("J0", 2.0)],
         &[("u_0", u_cr * (1.0 - 1e-4)), ("u_dot_0", 0.01)],

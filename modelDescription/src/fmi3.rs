@@ -46,6 +46,9 @@ pub struct FmiModelDescription {
     /// How variable names are to be read.
     #[serde(rename = "@variableNamingConvention")]
     pub variable_naming_convention: VariableNamingConvention,
+    /// Capabilities of the model exchange interface.
+    #[serde(rename = "ModelExchange")]
+    pub model_exchange: ModelExchange,
     /// Capabilities of the co-simulation interface.
     #[serde(rename = "CoSimulation")]
     pub co_simulation: CoSimulation,
@@ -74,6 +77,32 @@ impl FmiModelDescription {
     pub fn to_xml(&self) -> Result<String, SeError> {
         document(self)
     }
+}
+
+/// Capabilities of the model exchange interface.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModelExchange {
+    /// File name of the library, without extension.
+    #[serde(rename = "@modelIdentifier")]
+    pub model_identifier: String,
+    /// Only one instance may live in a process.
+    #[serde(rename = "@canBeInstantiatedOnlyOncePerProcess")]
+    pub can_be_instantiated_only_once_per_process: bool,
+    /// The state can be taken out and put back.
+    #[serde(rename = "@canGetAndSetFMUState")]
+    pub can_get_and_set_fmu_state: bool,
+    /// The state can be turned into bytes and back.
+    #[serde(rename = "@canSerializeFMUState")]
+    pub can_serialize_fmu_state: bool,
+    /// Derivatives of outputs and derivatives by inputs and states can be asked for, in a direction.
+    #[serde(rename = "@providesDirectionalDerivatives")]
+    pub provides_directional_derivatives: bool,
+    /// The same, weighted over what is derived.
+    #[serde(rename = "@providesAdjointDerivatives")]
+    pub provides_adjoint_derivatives: bool,
+    /// `fmi3CompletedIntegratorStep` has to be called.
+    #[serde(rename = "@needsCompletedIntegratorStep")]
+    pub needs_completed_integrator_step: bool,
 }
 
 /// Capabilities of the co-simulation interface.
@@ -212,6 +241,12 @@ pub struct Float64 {
     /// Value unless the environment sets another.
     #[serde(rename = "@start", skip_serializing_if = "Option::is_none", serialize_with = "shortest")]
     pub start: Option<f64>,
+    /// The variable that it is the derivative of, by value reference.
+    #[serde(rename = "@derivative", skip_serializing_if = "Option::is_none")]
+    pub derivative: Option<u32>,
+    /// Whether the unit may set it anew at an event, of a continuous state.
+    #[serde(rename = "@reinit", skip_serializing_if = "Option::is_none")]
+    pub reinit: Option<bool>,
 }
 
 /// An integer variable.
@@ -272,12 +307,18 @@ pub struct Enumeration {
 /// What depends on what.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModelStructure {
-    /// Every output, with what it depends on at a communication point.
+    /// Every output, with what it depends on at any time.
     #[serde(rename = "Output")]
     pub outputs: Vec<Unknown>,
+    /// The derivative of every continuous state, with the same. Their order is that of the states.
+    #[serde(rename = "ContinuousStateDerivative")]
+    pub continuous_state_derivatives: Vec<Unknown>,
     /// Every variable that initialization calculates, with what it depends on there.
     #[serde(rename = "InitialUnknown")]
     pub initial_unknowns: Vec<Unknown>,
+    /// The event indicators, with what they depend on at any time, in the order in which hosts are told of them.
+    #[serde(rename = "EventIndicator")]
+    pub event_indicators: Vec<Unknown>,
 }
 
 /// A calculated variable and what it depends on, by value references.

@@ -160,15 +160,17 @@ fn model_structure() -> fmi::ModelStructure {
         outputs: fmi::Outputs { unknowns: unknowns(|v| v.causality == Causality::Output, at_any_time) },
         derivatives: fmi::Derivatives { unknowns: unknowns(|v| v.as_state_rate().is_some(), at_any_time) },
         initial_unknowns: fmi::InitialUnknowns {
-            unknowns: unknowns(
-                |v| {
-                    matches!(v.causality, Causality::Output | Causality::CalculatedParameter)
-                        || v.as_state().or(v.as_state_rate()).is_some()
-                },
-                |v| v.feedthrough.iter().chain(v.initial_dependencies).map(|name| index(name)).collect(),
-            ),
+            unknowns: unknowns(is_initial_unknown, |v| {
+                v.feedthrough.iter().chain(v.initial_dependencies).map(|name| index(name)).collect()
+            }),
         },
     }
+}
+
+/// Whether initialization calculates it for others: outputs, calculated parameters, states and their derivatives.
+fn is_initial_unknown(variable: &Variable) -> bool {
+    matches!(variable.causality, Causality::Output | Causality::CalculatedParameter)
+        || variable.as_state().or(variable.as_state_rate()).is_some()
 }
 
 fn unknown(index: usize, dependencies: Vec<usize>) -> fmi::Unknown {

@@ -37,20 +37,12 @@ table! {
     SetRealInputDerivatives       [x x x - - -]
     GetRealOutputDerivatives      [- - x x x x]
     DoStep                        [- - x - - -]
-    CancelStep                    [- - - - - -]
     GetStatus                     [- - x x x -]
     GetRealStatus                 [- - x x x -]
     GetIntegerStatus              [- - x x x -]
     GetBooleanStatus              [- - x x x -]
     GetStringStatus               [- - x x x -]
-    EnterEventMode                [- - - - - -]
-    NewDiscreteStates             [- - - - - -]
-    EnterContinuousTimeMode       [- - - - - -]
-    CompletedIntegratorStep       [- - - - - -]
-    SetTime                       [- - - - - -]
-    SetContinuousStates           [- - - - - -]
-    GetDerivatives                [- - - - - -]
-    GetEventIndicators            [- - - - - -]
-    GetContinuousStates           [- - - - - -]
-    GetNominalsOfContinuousStates [- - - - - -]
+    // nowhere:
+    - CancelStep EnterEventMode NewDiscreteStates EnterContinuousTimeMode CompletedIntegratorStep SetTime
+      SetContinuousStates GetDerivatives GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates
 }

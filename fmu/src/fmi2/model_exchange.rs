@@ -1,4 +1,5 @@
-//! Which function may be called when: FMI 2.0, section 3.2.3, for a model.
+//! Which function may be called when: FMI 2.0, section 3.2.3, for a model. Since FMI 2.0.1 time is set at an event of models
+//! without continuous states alone; hosts that do so here are let.
 
 use super::Function;
 use crate::state_machine::{Stage, table};
@@ -33,23 +34,17 @@ table! {
     SerializeFMUstate             [x x x x x x]
     DeSerializeFMUstate           [x x x x x x]
     GetDirectionalDerivative      [- x x x x x]
-    SetRealInputDerivatives       [- - - - - -]
-    GetRealOutputDerivatives      [- - - - - -]
-    DoStep                        [- - - - - -]
-    CancelStep                    [- - - - - -]
-    GetStatus                     [- - - - - -]
-    GetRealStatus                 [- - - - - -]
-    GetIntegerStatus              [- - - - - -]
-    GetBooleanStatus              [- - - - - -]
-    GetStringStatus               [- - - - - -]
     EnterEventMode                [- - x x - -]
     NewDiscreteStates             [- - x - - -]
     EnterContinuousTimeMode       [- - x - - -]
     CompletedIntegratorStep       [- - - x - -]
     SetTime                       [- - x x - -]
     SetContinuousStates           [- - - x - -]
-    GetDerivatives                [- - x x x x]
+    GetDerivatives                [- x x x x x]
     GetEventIndicators            [- x x x x x]
     GetContinuousStates           [- x x x x x]
     GetNominalsOfContinuousStates [x x x x x x]
+    // nowhere:
+    - SetRealInputDerivatives GetRealOutputDerivatives DoStep CancelStep GetStatus GetRealStatus GetIntegerStatus
+      GetBooleanStatus GetStringStatus
 }

@@ -1,6 +1,5 @@
 //! Which function may be called when: FMI 3.0, sections 2.3 and 4.2.1. Beside the standard's states stand "step failed",
 //! to which overturning leads, after which there is nothing to step to, and "error", in which the solver could not go on.
-//! Functions of what this unit has not are allowed nowhere.
 
 use super::Function;
 use crate::state_machine::{Stage, table};
@@ -16,7 +15,7 @@ table! {
     //                                         step failed: overturned
     //                                           terminated
     //                                             error
-    SetDebugLogging                 [x x x x - x x x]
+    SetDebugLogging                 [x x x x x x x x]
     EnterInitializationMode         [x - - - - - - -]
     ExitInitializationMode          [- x - - - - - -]
     EnterEventMode                  [- - x - - - - -]
@@ -45,46 +44,12 @@ table! {
     EnterStepMode                   [- - - x - - - -]
     GetOutputDerivatives            [- - x - - x x x]
     DoStep                          [- - x - - - - -]
-    // no such variables, clocks, states of model exchange, or partitions
-    GetFloat32                      [- - - - - - - -]
-    GetInt8                         [- - - - - - - -]
-    GetUInt8                        [- - - - - - - -]
-    GetInt16                        [- - - - - - - -]
-    GetUInt16                       [- - - - - - - -]
-    GetUInt32                       [- - - - - - - -]
-    GetUInt64                       [- - - - - - - -]
-    GetBinary                       [- - - - - - - -]
-    GetClock                        [- - - - - - - -]
-    SetFloat32                      [- - - - - - - -]
-    SetInt8                         [- - - - - - - -]
-    SetUInt8                        [- - - - - - - -]
-    SetInt16                        [- - - - - - - -]
-    SetUInt16                       [- - - - - - - -]
-    SetUInt32                       [- - - - - - - -]
-    SetUInt64                       [- - - - - - - -]
-    SetBinary                       [- - - - - - - -]
-    SetClock                        [- - - - - - - -]
-    GetNumberOfVariableDependencies [- - - - - - - -]
-    GetVariableDependencies         [- - - - - - - -]
-    EnterConfigurationMode          [- - - - - - - -]
-    ExitConfigurationMode           [- - - - - - - -]
-    GetIntervalDecimal              [- - - - - - - -]
-    GetIntervalFraction             [- - - - - - - -]
-    GetShiftDecimal                 [- - - - - - - -]
-    GetShiftFraction                [- - - - - - - -]
-    SetIntervalDecimal              [- - - - - - - -]
-    SetIntervalFraction             [- - - - - - - -]
-    SetShiftDecimal                 [- - - - - - - -]
-    SetShiftFraction                [- - - - - - - -]
-    EnterContinuousTimeMode         [- - - - - - - -]
-    CompletedIntegratorStep         [- - - - - - - -]
-    SetTime                         [- - - - - - - -]
-    SetContinuousStates             [- - - - - - - -]
-    GetContinuousStateDerivatives   [- - - - - - - -]
-    GetEventIndicators              [- - - - - - - -]
-    GetContinuousStates             [- - - - - - - -]
-    GetNominalsOfContinuousStates   [- - - - - - - -]
-    GetNumberOfEventIndicators      [- - - - - - - -]
-    GetNumberOfContinuousStates     [- - - - - - - -]
-    ActivateModelPartition          [- - - - - - - -]
+    // nowhere:
+    - GetFloat32 GetInt8 GetUInt8 GetInt16 GetUInt16 GetUInt32 GetUInt64 GetBinary GetClock SetFloat32 SetInt8
+      SetUInt8 SetInt16 SetUInt16 SetUInt32 SetUInt64 SetBinary SetClock GetNumberOfVariableDependencies
+      GetVariableDependencies EnterConfigurationMode ExitConfigurationMode GetIntervalDecimal GetIntervalFraction
+      GetShiftDecimal GetShiftFraction SetIntervalDecimal SetIntervalFraction SetShiftDecimal SetShiftFraction
+      EnterContinuousTimeMode CompletedIntegratorStep SetTime SetContinuousStates GetContinuousStateDerivatives
+      GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates GetNumberOfEventIndicators
+      GetNumberOfContinuousStates ActivateModelPartition
 }

@@ -3,7 +3,7 @@
 //!
 //! The engine stands where the host is; [`Known`] is where the motion was last known to be right.
 
-use super::{Instance, log};
+use super::{Instance, Updated, log};
 use crate::condition::{FARTHEST, Model, Outside};
 use crate::failure::Failure;
 use crate::setup::Setup;
@@ -13,7 +13,6 @@ use rocking::ground_motion::Elapsed;
 use rocking::outside_step::{Checked, INDICATORS, Known};
 use rocking::state::COMPONENTS;
 use rocking::{Load, Motion, State, Transition, Watch};
-use std::mem::MaybeUninit;
 
 /// The relative tolerance up to which samples of the record are events. A solver of high order that integrates over the kinks
 /// there is not as exact as it believes; below an error of some 1e-5 to start anew at each is the cheaper way
@@ -27,17 +26,6 @@ pub struct Completed {
     pub needs_event_mode: bool,
     /// Whether the structure has overturned, which ends the simulation.
     pub has_ended: bool,
-}
-
-/// What came of an event.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Updated {
-    /// Whether the structure has overturned, which ends the simulation.
-    pub has_ended: bool,
-    /// Whether the states are not those that the host set.
-    pub has_new_states: bool,
-    /// When the next event is that can be foreseen, s.
-    pub next_event: Option<f64>,
 }
 
 impl Model {
@@ -100,47 +88,44 @@ impl Instance {
     }
 
     /// The host is at the state u, u̇, θ, θ̇.
-    pub fn set_continuous_states(&mut self, states: &[f64]) -> Result<(), Failure> {
-        let Ok(components) = <[f64; 4]>::try_from(states) else {
-            return Err(Failure::WrongCount { name: "nx", given: states.len(), needed: COMPONENTS.len() });
-        };
-        let far = COMPONENTS.into_iter().zip(components).find(|(_, value)| value.is_nan() || value.abs() > FARTHEST);
-        if let Some((name, value)) = far {
-            return Err(Failure::FarState { name, value });
-        }
-        self.now.model(&self.archive)?.engine.set_state(State::of(components));
+    pub fn set_continuous_states(&mut self, states: [f64; COMPONENTS.len()]) -> Result<(), Failure> {
+        (0..).zip(states).try_for_each(|(which, value)| check_state(which, value))?;
+        self.now.model(&self.archive)?.engine.set_state(State::of(states));
         Ok(())
     }
 
+    /// Of these, the host is at `value` of the one at place `which`.
+    pub(super) fn set_continuous_state(&mut self, which: usize, value: f64) -> Result<(), Failure> {
+        let mut states = self.continuous_states()?;
+        states[which] = value;
+        self.set_continuous_states(states)
+    }
+
     /// Where the host is, or where it is to start from.
-    pub fn get_continuous_states(&mut self, values: &mut [MaybeUninit<f64>]) -> Result<(), Failure> {
-        let states = self.now.model(&self.archive)?.engine.motion().state;
-        fill("nx", values, states.components())
+    pub fn continuous_states(&mut self) -> Result<[f64; COMPONENTS.len()], Failure> {
+        Ok(self.now.model(&self.archive)?.engine.motion().state.components())
     }
 
     /// The magnitudes of the states.
-    pub fn get_nominals(&mut self, values: &mut [MaybeUninit<f64>]) -> Result<(), Failure> {
-        let usual = self.now.model(&self.archive)?.engine.structure().usual_state();
-        fill("nx", values, usual.components())
+    pub fn nominals(&mut self) -> Result<[f64; COMPONENTS.len()], Failure> {
+        Ok(self.now.model(&self.archive)?.engine.structure().usual_state().components())
     }
 
     /// Derivatives of the states.
-    pub fn get_derivatives(&mut self, values: &mut [MaybeUninit<f64>]) -> Result<(), Failure> {
+    pub fn derivatives(&mut self) -> Result<[f64; COMPONENTS.len()], Failure> {
         let (model, setup, inputs, _) = self.now.parts(&self.archive)?;
         let rates = model.engine.sample(model.acting(setup, inputs.values())).state_rates();
         if !rates.is_finite() {
             let &Motion { time, state: State { u, theta, .. }, .. } = model.engine.motion();
             return Err(Failure::NoStateRates { time, u, theta });
         }
-        fill("nx", values, rates.components())
+        Ok(rates.components())
     }
 
     /// The event indicators.
-    pub fn get_event_indicators(&mut self, values: &mut [MaybeUninit<f64>]) -> Result<(), Failure> {
+    pub fn event_indicators(&mut self) -> Result<[f64; INDICATORS], Failure> {
         let (model, setup, inputs, _) = self.now.parts(&self.archive)?;
-        let indicators: [f64; INDICATORS] =
-            model.engine.sample(model.acting(setup, inputs.values())).event_indicators();
-        fill("ni", values, indicators)
+        Ok(model.engine.sample(model.acting(setup, inputs.values())).event_indicators())
     }
 
     /// The host has made a step to where it is. Where that has passed a transition over, the step is left as it is until
@@ -163,23 +148,22 @@ impl Instance {
     }
 
     /// There is an event where the host is.
-    pub fn enter_event_mode(&mut self) -> Result<(), Failure> {
+    pub(super) fn arrive_at_event(&mut self) -> Result<(), Failure> {
         let (model, _, inputs, stage) = self.now.parts(&self.archive)?;
         if let Some(outside) = &mut model.outside
             && *stage == Stage::ContinuousTimeMode
         {
             outside.arrived = inputs.values();
         }
-        *stage = Stage::EventMode;
         Ok(())
     }
 
     /// Applies the transitions up to where the host is, and the uplift that is due there.
-    pub fn new_discrete_states(&mut self) -> Result<Updated, Failure> {
+    pub(super) fn catch_up(&mut self) -> Result<Updated, Failure> {
         let logger = &self.logger;
         let (model, setup, inputs, stage) = self.now.parts(&self.archive)?;
         let Some(outside) = model.outside else {
-            return Ok(Updated { has_ended: false, has_new_states: false, next_event: None });
+            return Ok(Updated::default());
         };
         let from = outside.known.motion.time;
         let mut passed: Vec<Transition> = Vec::new();
@@ -226,11 +210,8 @@ fn stop_if_singular(stage: &mut Stage, failure: &Failure) {
     }
 }
 
-/// Writes `from` into `values`, which `count` says are as many.
-fn fill<const N: usize>(count: &'static str, values: &mut [MaybeUninit<f64>], from: [f64; N]) -> Result<(), Failure> {
-    if values.len() != N {
-        return Err(Failure::WrongCount { name: count, given: values.len(), needed: N });
-    }
-    values.iter_mut().zip(from).for_each(|(place, value)| _ = place.write(value));
-    Ok(())
+/// Refuses a `value` of the state at place `which` that is far from any motion.
+pub(super) fn check_state(which: usize, value: f64) -> Result<(), Failure> {
+    let is_near = value.abs() <= FARTHEST;
+    if is_near { Ok(()) } else { Err(Failure::FarState { name: COMPONENTS[which], value }) }
 }

@@ -22,6 +22,8 @@ fn spring() -> FmiModelDescription {
         max: None,
         nominal: None,
         start: None,
+        derivative: None,
+        reinit: None,
     };
     FmiModelDescription {
         fmi_version: FmiVersion::V3_0,
@@ -32,6 +34,15 @@ fn spring() -> FmiModelDescription {
         license: "MIT".into(),
         generation_tool: "a test".into(),
         variable_naming_convention: VariableNamingConvention::Flat,
+        model_exchange: ModelExchange {
+            model_identifier: "Spring".into(),
+            can_be_instantiated_only_once_per_process: false,
+            can_get_and_set_fmu_state: true,
+            can_serialize_fmu_state: false,
+            provides_directional_derivatives: true,
+            provides_adjoint_derivatives: true,
+            needs_completed_integrator_step: true,
+        },
         co_simulation: CoSimulation {
             model_identifier: "Spring".into(),
             can_be_instantiated_only_once_per_process: false,
@@ -94,21 +105,36 @@ fn spring() -> FmiModelDescription {
                     start: None,
                 }),
                 Variable::Float64(float(common("time", 5, Causality::Independent, Variability::Continuous, None))),
+                Variable::Float64(Float64 {
+                    reinit: Some(true),
+                    ..float(common("x", 6, Causality::Local, Variability::Continuous, calculated))
+                }),
+                Variable::Float64(Float64 {
+                    derivative: Some(6),
+                    ..float(common("der(x)", 7, Causality::Local, Variability::Continuous, calculated))
+                }),
             ],
         },
         model_structure: ModelStructure {
             outputs: vec![Unknown { value_reference: 4, dependencies: vec![], dependencies_kind: vec![] }],
+            continuous_state_derivatives: vec![Unknown {
+                value_reference: 7,
+                dependencies: vec![0],
+                dependencies_kind: vec![DependenciesKind::Dependent],
+            }],
             initial_unknowns: vec![Unknown {
                 value_reference: 4,
                 dependencies: vec![0, 2],
                 dependencies_kind: vec![DependenciesKind::Dependent; 2],
             }],
+            event_indicators: vec![Unknown { value_reference: 6, dependencies: vec![], dependencies_kind: vec![] }],
         },
     }
 }
 
 const SPRING: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
 <fmiModelDescription fmiVersion="3.0" modelName="Spring" instantiationToken="{1-2}" description="force" version="0.1.0" license="MIT" generationTool="a test" variableNamingConvention="flat">
+  <ModelExchange modelIdentifier="Spring" canBeInstantiatedOnlyOncePerProcess="false" canGetAndSetFMUState="true" canSerializeFMUState="false" providesDirectionalDerivatives="true" providesAdjointDerivatives="true" needsCompletedIntegratorStep="true"/>
   <CoSimulation modelIdentifier="Spring" canBeInstantiatedOnlyOncePerProcess="false" canGetAndSetFMUState="true" canSerializeFMUState="true" providesDirectionalDerivatives="true" providesAdjointDerivatives="true" canHandleVariableCommunicationStepSize="true" maxOutputDerivativeOrder="1" providesIntermediateUpdate="true" mightReturnEarlyFromDoStep="true" canReturnEarlyAfterIntermediateUpdate="false" hasEventMode="true"/>
   <UnitDefinitions>
     <Unit name="N">
@@ -133,10 +159,14 @@ const SPRING: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
     </String>
     <Enumeration name="branch" valueReference="4" description="a &lt; b" causality="output" variability="discrete" initial="calculated" declaredType="Branch"/>
     <Float64 name="time" valueReference="5" description="a &lt; b" causality="independent" variability="continuous"/>
+    <Float64 name="x" valueReference="6" description="a &lt; b" causality="local" variability="continuous" initial="calculated" reinit="true"/>
+    <Float64 name="der(x)" valueReference="7" description="a &lt; b" causality="local" variability="continuous" initial="calculated" derivative="6"/>
   </ModelVariables>
   <ModelStructure>
     <Output valueReference="4" dependencies="" dependenciesKind=""/>
+    <ContinuousStateDerivative valueReference="7" dependencies="0" dependenciesKind="dependent"/>
     <InitialUnknown valueReference="4" dependencies="0 2" dependenciesKind="dependent dependent"/>
+    <EventIndicator valueReference="6" dependencies="" dependenciesKind=""/>
   </ModelStructure>
 </fmiModelDescription>
 "#;

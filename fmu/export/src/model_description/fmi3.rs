@@ -1,6 +1,6 @@
 //! The description in FMI 3.0.
 
-use super::{DESCRIPTION, causality, index, initial, items, log_category, variability};
+use super::{DESCRIPTION, causality, index, initial, is_initial_unknown, items, log_category, variability};
 use crate::experiment::Experiment;
 use crate::units;
 use FlexibleRocking::logger;
@@ -9,6 +9,7 @@ use FlexibleRocking::variables::{Causality, DETAILS, DataType, Enumeration, PHAS
 use model_description as fmi;
 use model_description::fmi3;
 use rocking::Structure;
+use rocking::state::{COMPONENTS, INITIAL_VALUES};
 
 /// The description of the FMU `name` of `structure` with these `contents`.
 pub fn model_description(
@@ -26,6 +27,15 @@ pub fn model_description(
         license: env!("CARGO_PKG_LICENSE").into(),
         generation_tool: concat!("rocking-fmu ", env!("CARGO_PKG_VERSION")).into(),
         variable_naming_convention: fmi::VariableNamingConvention::Flat,
+        model_exchange: fmi3::ModelExchange {
+            model_identifier: name.into(),
+            can_be_instantiated_only_once_per_process: false,
+            can_get_and_set_fmu_state: true,
+            can_serialize_fmu_state: true,
+            provides_directional_derivatives: true,
+            provides_adjoint_derivatives: true,
+            needs_completed_integrator_step: true,
+        },
         co_simulation: fmi3::CoSimulation {
             model_identifier: name.into(),
             can_be_instantiated_only_once_per_process: false,
@@ -83,6 +93,8 @@ fn of_type(at: u32, variable: &Variable, structure: &Structure, contents: &Conte
             max: range.map(|(_, max)| max),
             nominal: units::nominal(variable, structure),
             start: start.and_then(|value| if let Value::Real(value) = value { Some(value) } else { None }),
+            derivative: variable.as_state_rate().map(|which| reference(COMPONENTS[which])),
+            reinit: variable.as_state().map(|_| true),
         }),
         DataType::Integer => fmi3::Variable::Int32(fmi3::Int32 { common, min: Some(0) }),
         DataType::Boolean => fmi3::Variable::Boolean(fmi3::Boolean {
@@ -104,22 +116,27 @@ fn of_type(at: u32, variable: &Variable, structure: &Structure, contents: &Conte
     }
 }
 
-/// At a communication point the outputs depend on the state, which is the unit's own, and on their feedthrough; at
-/// initialization on what the table says as well, as calculated parameters do. Local variables are in neither list.
+/// At any time the outputs, the derivatives of the states and the event indicators depend on their feedthrough, on the
+/// states, which the initial values have led to, on parameters, and on time where a record acts; at initialization on their
+/// feedthrough and on what the table says as well, as calculated parameters do. Other local variables are in no list.
 fn model_structure() -> fmi3::ModelStructure {
     let unknowns = |is_one: fn(&Variable) -> bool, dependencies: fn(&Variable) -> Vec<u32>| {
         let calculated = (0..).zip(&*VARIABLES).filter(|(_, variable)| is_one(variable));
         calculated.map(|(reference, variable)| unknown(reference, dependencies(variable))).collect()
     };
+    let at_any_time: fn(&Variable) -> Vec<u32> = |v| {
+        let is_parameter = |name: &&&str| INITIAL_VALUES.iter().all(|initial| initial.name != **name);
+        let parameters = v.initial_dependencies.iter().filter(is_parameter);
+        let time = v.initial_dependencies.contains(&"record").then_some(&"time");
+        v.feedthrough.iter().chain(v.states).chain(parameters).chain(time).map(|name| reference(name)).collect()
+    };
     fmi3::ModelStructure {
-        outputs: unknowns(
-            |v| v.causality == Causality::Output,
-            |v| v.feedthrough.iter().map(|name| reference(name)).collect(),
-        ),
-        initial_unknowns: unknowns(
-            |v| matches!(v.causality, Causality::Output | Causality::CalculatedParameter),
-            |v| v.feedthrough.iter().chain(v.initial_dependencies).map(|name| reference(name)).collect(),
-        ),
+        outputs: unknowns(|v| v.causality == Causality::Output, at_any_time),
+        continuous_state_derivatives: unknowns(|v| v.as_state_rate().is_some(), at_any_time),
+        initial_unknowns: unknowns(is_initial_unknown, |v| {
+            v.feedthrough.iter().chain(v.initial_dependencies).map(|name| reference(name)).collect()
+        }),
+        event_indicators: unknowns(|v| v.as_indicator().is_some(), at_any_time),
     }
 }
 
@@ -168,6 +185,58 @@ mod tests {
         assert_eq!(three.instantiation_token, two.guid);
         let outputs = three.model_structure.outputs.iter().map(|unknown| unknown.value_reference as usize + 1);
         assert!(outputs.eq(two.model_structure.outputs.unknowns.iter().map(|unknown| unknown.index)));
+    }
+
+    /// Knowns at any time are inputs, states, parameters, though not those that the states began from, and time.
+    #[test]
+    fn the_structure_points_at_states_and_indicators_in_their_order() {
+        let contents = Contents::from(Parameters::MCMANUS);
+        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let experiment = Experiment { stop_time: 4.0, step_size: 0.005 };
+        let description = model_description("Pier", &structure, &contents, experiment);
+        let float = |reference: u32| match &description.model_variables.variables[reference as usize] {
+            fmi3::Variable::Float64(float) => float,
+            other => panic!("{other:?}"),
+        };
+        let name = |reference: u32| float(reference).common.name.as_str();
+        let fmi3::ModelStructure { outputs, continuous_state_derivatives, initial_unknowns, event_indicators } =
+            &description.model_structure;
+        let states = continuous_state_derivatives.iter().map(|rate| float(rate.value_reference).derivative.unwrap());
+        let states: Vec<_> = states.collect();
+        assert_eq!(states.iter().map(|state| name(*state)).collect::<Vec<_>>(), COMPONENTS);
+        assert!(states.iter().all(|state| float(*state).reinit == Some(true)));
+        let of = |unknowns: &[fmi3::Unknown]| unknowns.iter().map(|of| of.value_reference).collect::<Vec<_>>();
+        let indicators = of(event_indicators);
+        assert_eq!(
+            indicators.iter().map(|of| name(*of)).collect::<Vec<_>>(),
+            ["phase_indicator", "overturning_indicator"]
+        );
+        let initial = of(initial_unknowns);
+        assert!(states.iter().chain(&of(continuous_state_derivatives)).all(|state| initial.contains(state)));
+        assert!(!indicators.iter().any(|indicator| initial.contains(indicator)));
+
+        let dependencies = |unknowns: &[fmi3::Unknown], of: &str| {
+            let unknown = unknowns.iter().find(|unknown| name(unknown.value_reference) == of).unwrap();
+            let names =
+                unknown.dependencies.iter().map(|at| match &description.model_variables.variables[*at as usize] {
+                    fmi3::Variable::Float64(of) => &of.common.name,
+                    fmi3::Variable::String(of) => &of.common.name,
+                    fmi3::Variable::Enumeration(of) => &of.common.name,
+                    other => panic!("{other:?}"),
+                });
+            names.map(String::as_str).collect::<Vec<_>>().join(" ")
+        };
+        assert_eq!(dependencies(outputs, "theta"), "theta");
+        assert_eq!(dependencies(outputs, "delta_t"), "u theta H B");
+        assert_eq!(dependencies(outputs, "I_v"), "");
+        assert_eq!(
+            dependencies(continuous_state_derivatives, "der(u_dot)"),
+            "a_g F_t u u_dot theta theta_dot m m0 H B J0 f_fc zeta_fc c_ratio g detail record record_scale \
+             record_time_scale record_start time"
+        );
+        assert_eq!(dependencies(continuous_state_derivatives, "der(u)"), "u_dot");
+        assert_eq!(dependencies(event_indicators, "overturning_indicator"), "theta");
+        assert_eq!(dependencies(initial_unknowns, "delta_t"), "H B theta_0 u_0");
     }
 
     #[test]

@@ -1,0 +1,58 @@
+//! Which function may be called when: FMI 3.0, sections 2.3 and 3.2.1. Beside the standard's states stands "error", in which
+//! the solver could not go on.
+
+use super::Function;
+use crate::state_machine::{Stage, table};
+
+#[rustfmt::skip]
+table! {
+    [Instantiated, InitializationMode, EventMode, ContinuousTimeMode, Terminated, Error]
+    //                               instantiated
+    //                                 initialization mode
+    //                                   event mode
+    //                                     continuous-time mode
+    //                                       terminated
+    //                                         error
+    SetDebugLogging                 [x x x x x x]
+    EnterInitializationMode         [x - - - - -]
+    ExitInitializationMode          [- x - - - -]
+    EnterEventMode                  [- - - x - -]
+    Terminate                       [- - x x - -]
+    Reset                           [x x x x x x]
+    GetFloat64                      [x x x x x x]
+    GetInt32                        [x x x x x x]
+    GetInt64                        [x x x x x x]
+    GetBoolean                      [x x x x x x]
+    GetString                       [x x x x x x]
+    SetFloat64                      [x x x x - -]
+    SetInt32                        [x x x - - -]
+    SetInt64                        [x x x - - -]
+    SetBoolean                      [x x x - - -]
+    SetString                       [x x x - - -]
+    GetFMUState                     [x x x x x x]
+    SetFMUState                     [x x x x x x]
+    FreeFMUState                    [x x x x x x]
+    SerializedFMUStateSize          [x x x x x x]
+    SerializeFMUState               [x x x x x x]
+    DeserializeFMUState             [x x x x x x]
+    GetDirectionalDerivative        [- x x x x x]
+    GetAdjointDerivative            [- x x x x x]
+    EvaluateDiscreteStates          [- - x - - -]
+    UpdateDiscreteStates            [- - x - - -]
+    EnterContinuousTimeMode         [- - x - - -]
+    CompletedIntegratorStep         [- - - x - -]
+    SetTime                         [- - - x - -]
+    SetContinuousStates             [- - - x - -]
+    GetContinuousStateDerivatives   [- x x x x x]
+    GetEventIndicators              [- x x x x x]
+    GetContinuousStates             [- x x x x x]
+    GetNominalsOfContinuousStates   [- x x x x x]
+    GetNumberOfEventIndicators      [x - x - - -]
+    GetNumberOfContinuousStates     [x - x - - -]
+    // nowhere:
+    - EnterStepMode GetOutputDerivatives DoStep GetFloat32 GetInt8 GetUInt8 GetInt16 GetUInt16 GetUInt32 GetUInt64
+      GetBinary GetClock SetFloat32 SetInt8 SetUInt8 SetInt16 SetUInt16 SetUInt32 SetUInt64 SetBinary SetClock
+      GetNumberOfVariableDependencies GetVariableDependencies EnterConfigurationMode ExitConfigurationMode
+      GetIntervalDecimal GetIntervalFraction GetShiftDecimal GetShiftFraction SetIntervalDecimal SetIntervalFraction
+      SetShiftDecimal SetShiftFraction ActivateModelPartition
+}
