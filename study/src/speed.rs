@@ -119,8 +119,9 @@ What stands in the way where a target is missed:
 - `linear`: most of the time goes into the samples that hold one of the 134 transitions: a quarter of all into the search for the
   instant, six evaluations of a polynomial of some 13 orders one after the other, a seventh into series, of which there are 245,
   two for a transition where no sample holds more than one. All other samples are leapt over, in some 330 instructions each.
-  Modes in closed form would not make the search cheaper: an exponential for each of the two real rates, one with a sine and a
-  cosine for the vibration take as long as the polynomial, and right after an uplift, where θ grows as t³, they lose its digits.
+  By the count of their operations modes in closed form would not make the search cheaper (not tried): an exponential for each
+  of the two real rates, one with a sine and a cosine for the vibration take as long as the polynomial, and right after an
+  uplift, where θ grows as t³, they lose its digits.
 - `auto`: four fifths of the time go into series while rocking: 1,107 of them, 17 orders each at a tolerance of 1e-6, which
   makes some 160 rows of six products a series. A looser tolerance takes as many: the error of one step is bounded for the
   sake of scenes that amplify it by 1e8, and this scene is not one of them. With 10 orders, which leave it an error of 1e-6,
