@@ -45,7 +45,7 @@ const MAX_EVALUATIONS: usize = 100;
 const LEAST_CLEARED: f64 = 1.0 / 16.0;
 
 impl<'a> Guard<'a> {
-    /// The guard `offset + sign·Σ c_k σ^k`.
+    /// The guard `offset + sign·Σ c_k σ^k`, of no more coefficients than a [`Series`] has.
     pub fn new(coefficients: &'a [f64], sign: f64, offset: f64) -> Guard<'a> {
         Guard { coefficients, sign, offset }
     }

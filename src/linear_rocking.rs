@@ -178,7 +178,7 @@ impl ElasticRocking for LinearRocking {
     }
 }
 
-/// By how much the speed of the vibration, which θ feeds back on, may exceed what it would without that over `duration` (s);
+/// By how much |θ̈|, which comes back on itself through the vibration, may exceed what it would be without that over `duration` (s);
 /// infinite where no bound is known.
 fn amplification(feedback: f64, duration: f64) -> f64 {
     let part = feedback * duration * duration * duration;

@@ -91,7 +91,8 @@ fn products(a: &Factors, b: &Factors, newest_a: &Row, newest_b: &Row, n: usize) 
     [first[0], first[1], second[0], second[1], third[0], third[1]]
 }
 
-/// Series of the motion by Eqs 5 and 6, with room for the factors of its products. Row i of `left`, and of `right` counted from its end, holds
+/// Series of the motion by Eqs 5 and 6, with room for the factors of its products. Row i of `left`, and of `right` counted
+/// from its end, holds
 ///
 /// ```text
 /// left:   θ̇       θ̇      θ̇         w θ̇       w θ̇     w

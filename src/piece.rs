@@ -425,6 +425,9 @@ impl Piece<'_> {
         if tau <= 0.0 {
             return self.before.state;
         }
+        if tau >= self.duration {
+            return self.end;
+        }
         if self.is_leap() {
             let step = Start { interval: tau - self.passed(), ..self.start_of_part() };
             if step.interval > 0.0
@@ -447,7 +450,10 @@ impl Piece<'_> {
 
     /// The motion at `time` (s), within it. Nothing may have been left behind that is later.
     pub fn sample(&mut self, time: f64) -> Sample<'_> {
-        let tau = time - self.before.time;
+        let end = self.before.time + self.duration;
+        // an instant that misses the end by the clock's rounding is the end
+        let is_before = time < end - 2.0 * f64::EPSILON * end.abs();
+        let tau = if is_before { time - self.before.time } else { self.duration };
         let motion = Motion { time, state: self.state_at(tau), ..*self.before };
         Sample { motion, load: self.load.at(tau), structure: self.structure, level: self.level }
     }

@@ -33,6 +33,9 @@ use std::env::consts::{ARCH, OS};
 use std::{
     io,
     process::{self, ExitCode},
+    sync::mpsc,
+    thread,
+    time::Duration,
 };
 
 /// Exit code of a command that the user stops: a shell's for SIGINT.
@@ -192,10 +195,16 @@ fn main() -> ExitCode {
     if quiet {
         talk::be_quiet();
     }
-    // without it the command is stopped all the same, and leaves what it has begun
-    let _ = ctrlc::set_handler(|| {
-        output_files::remove_unfinished();
-        talk::say_stopped();
+    // Without it, as under nohup, whose signals stay ignored, a command that is stopped leaves what it has begun.
+    let _ = ctrlc::try_set_handler(|| {
+        let _none_is_begun = output_files::remove_unfinished();
+        let (told, is_told) = mpsc::channel();
+        thread::spawn(move || {
+            talk::say_stopped();
+            let _ = told.send(());
+        });
+        // who does not read what is said holds nothing up
+        let _ = is_told.recv_timeout(Duration::from_secs(1));
         process::exit(STOPPED);
     });
     let result = match command {

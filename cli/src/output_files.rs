@@ -147,12 +147,14 @@ impl OutputFile {
     }
 }
 
-/// Removes what is not complete, for a command that ends here and now.
-pub fn remove_unfinished() {
-    for path in BEGUN.lock().unwrap_or_else(PoisonError::into_inner).iter() {
+/// Removes what is not complete, for a command that ends here and now: while it holds what is returned, nothing is begun.
+pub fn remove_unfinished() -> impl Drop {
+    let begun = BEGUN.lock().unwrap_or_else(PoisonError::into_inner);
+    for path in begun.iter() {
         // one that is complete has another name
         let _ = fs::remove_file(path);
     }
+    begun
 }
 
 fn name(path: &Path) -> String {
@@ -221,9 +223,10 @@ fn beside(target: &Path) -> io::Result<NamedTempFile> {
         Err(error) => return Err(error),
     };
     let folder = target.parent().unwrap_or(Path::new("/"));
+    let mut begun = BEGUN.lock().unwrap_or_else(PoisonError::into_inner);
     let file = as_any_new_file(tempfile::Builder::new().prefix(".rocking-fmu-")).tempfile_in(folder);
     let file = file.map_err(|error| io::Error::new(error.kind(), in_folder(folder, &error)))?;
-    BEGUN.lock().unwrap_or_else(PoisonError::into_inner).push(file.path().into());
+    begun.push(file.path().into());
     if let Some(there) = there {
         take_over(&file, &there)?;
     }

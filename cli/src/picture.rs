@@ -254,25 +254,29 @@ pub fn log_axis(range: Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
     range.log_scale().with_key_points(ticks)
 }
 
-/// Fewest numbers beside a logarithmic axis.
+/// Fewest and most numbers beside a logarithmic axis.
 const FEWEST: usize = 4;
+const MOST: usize = 10;
 
-/// The roundest numbers of `range` that are enough, or its ends.
+/// The roundest numbers of `range` that are enough, or as many as there is room for, or its ends.
 fn log_ticks(range: &Range<f64>) -> Vec<f64> {
-    let steps: [Vec<f64>; 4] = [
-        vec![1.0],
-        vec![1.0, 2.0, 5.0],
-        (1..10).map(f64::from).collect(),
-        (10..100).map(|i| 0.1 * f64::from(i)).collect(),
-    ];
     let decades = range.start.log10().floor() as i32..=range.end.log10().ceil() as i32;
-    let ticks = |steps: Vec<f64>| -> Vec<f64> {
+    let ticks = |steps: &[f64]| -> Vec<f64> {
         let all = decades.clone().flat_map(|decade| steps.iter().map(move |step| step * 10.0_f64.powi(decade)));
         // the ends themselves, whatever rounding has made of them
         all.filter(|tick| (range.start * (1.0 - 1e-12)..=range.end * (1.0 + 1e-12)).contains(tick)).collect()
     };
-    let enough = steps.into_iter().map(ticks).find(|ticks| ticks.len() >= FEWEST);
-    enough.unwrap_or_else(|| vec![range.start, range.end])
+    let powers = ticks(&[1.0]);
+    let powers = powers.iter().step_by(powers.len().div_ceil(MOST).max(1)).copied().collect();
+    let tenths = [10, 1].map(|parts| (10..100).step_by(parts).map(|tenth| 0.1 * f64::from(tenth)).collect::<Vec<_>>());
+    let mut chosen = vec![range.start, range.end];
+    for ticks in [powers, ticks(&[1.0, 2.0, 5.0]), ticks(&tenths[0]), ticks(&tenths[1])] {
+        if chosen.len() >= FEWEST || ticks.len() > MOST {
+            break;
+        }
+        chosen = if ticks.len() > 1 { ticks } else { chosen };
+    }
+    chosen
 }
 
 /// A number beside an axis that has this range: what rounding has left of a round number is no part of it.
@@ -333,6 +337,8 @@ mod tests {
         assert_eq!(shown(0.01..200.0), "0.01 0.1 1 10 100");
         assert_eq!(shown(1.0..1.5), "1 1.1 1.2 1.3 1.4 1.5");
         assert_eq!(shown(3.001..3.002), "3.001 3.002");
+        assert_eq!([shown(1.0..3.9), shown(2.0..4.9)], ["1 2 3", "2 3 4"]);
+        assert_eq!(log_ticks(&(1e-3..1e9)), [1e-3, 0.1, 10.0, 1e3, 1e5, 1e7, 1e9]);
     }
 
     #[test]

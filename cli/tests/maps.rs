@@ -94,10 +94,11 @@ fn a_stopped_map_leaves_its_rows_alone() {
     let folder = map(&MAP.replace("count = 12 }", "count = 400 }"));
     let folder = folder.path();
     let program = env!("CARGO_BIN_EXE_rocking-fmu");
-    let sweep =
+    let mut sweep =
         Command::new(program).args(["sweep", "map.toml"]).current_dir(folder).stderr(Stdio::piped()).spawn().unwrap();
     let rows = || fs::read_to_string(folder.join("map.csv")).map_or(0, |text| text.lines().count());
     while rows() < 10 {
+        assert_eq!(sweep.try_wait().unwrap(), None, "it has ended by itself");
         sleep(Duration::from_millis(5));
     }
     assert!(Command::new("kill").args(["-INT", &sweep.id().to_string()]).status().unwrap().success());

@@ -207,6 +207,7 @@ fn remedy(failure: &Failure) -> &'static str {
         },
         Failure::Fixed(_) => ": set it before fmi3ExitInitializationMode, or call fmi3Reset",
         Failure::WrongPoint { .. } => ": step from there, or go back with fmi3SetFMUState",
+        Failure::StepBack { .. } => ", or goes back with fmi3SetFMUState",
         Failure::PastStop { .. } => " given to fmi3EnterInitializationMode: shorten it",
         Failure::WrongSize { .. } => " (fmi3SerializedFMUStateSize)",
         _ => "",

@@ -128,7 +128,7 @@ What stands in the way where a target is missed:
   it took 42 floors. Tried and measured on the same scene before this form was chosen: velocities instead of momenta (eight
   products instead of six) 1.3 × the time; product by product 1.25 ×; the six products as plain arrays 1.25 ×. Tried since: a
   recurrence that is linear in the newest terms, with a third of the operations between one order and the next, gains 3 %;
-  rows read forward by twos nothing; padded by zeros to fours it loses 20 %; AVX encodings of the same vectors gain up to 7 %,
+  rows padded by zeros to fours lose 20 %; AVX encodings of the same vectors gain up to 7 %,
   rows of four and two with AVX2 5 to 11 %, on maps 5 %: too little for code that is chosen at run time. To prove by the chord of
   θ that nothing happens, before a march that finds it, saves half of the marches and no time.
 ";

@@ -58,7 +58,7 @@ pub fn run(args: &SweepArgs, sweep: MapSweep, output: &Path, picture: Picture) -
     let (file, mut rows) = Rows::open(output)?;
     let file = Mutex::new(file);
     let largest = sweep.maps.iter().map(|(_, map)| map.grid().count()).max().unwrap_or(0);
-    let pool = thread_pool(args, largest)?;
+    let pool = thread_pool(args, if sweep.refinements > 0 { usize::MAX } else { largest })?;
     for (name, map) in &sweep.maps {
         let warnings = validity::of_parameters(&map.structure, map.detail);
         warnings.iter().for_each(|warning| say!("{name}: {warning}"));

@@ -11,7 +11,7 @@ use std::collections::HashMap;
 const LINES: [f64; 4] = [0.1, 0.25, 0.5, 0.75];
 
 /// Steps along an axis that a picture can show: a finer grid is not gone into.
-const FINEST: usize = 2000;
+const FINEST: usize = 1000;
 
 /// Names of lines stand this far apart, pixels.
 const APART: (f64, f64) = (34.0, 15.0);
@@ -47,9 +47,10 @@ where
         for ring in &line.geometry().0 {
             let ring: Vec<_> = ring.0.iter().map(|at| (at.x.clamp(0.0, last_x), at.y.clamp(0.0, last_y))).collect();
             // rings close along the edges of the map, where there is nothing to be drawn
-            let on_edge = |(x, y): (f64, f64)| x <= 0.0 || x >= last_x || y <= 0.0 || y >= last_y;
+            let edges = |(x, y): (f64, f64)| [x <= 0.0, x >= last_x, y <= 0.0, y >= last_y];
             let is_drawn = |a: &(f64, f64), b: &(f64, f64)| {
-                !(on_edge(*a) && on_edge(*b)) && rocks_about((0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1)))
+                let is_along_edge = edges(*a).iter().zip(edges(*b)).any(|(a, b)| *a && b);
+                !is_along_edge && rocks_about((0.5 * (a.0 + b.0), 0.5 * (a.1 + b.1)))
             };
             for part in ring.chunk_by(is_drawn).filter(|part| part.len() > 1) {
                 let points: Vec<_> = part.iter().map(|at| place(*at)).collect();
