@@ -9,7 +9,7 @@ use FlexibleRocking::fmi3::*;
 use FlexibleRocking::snapshot;
 use FlexibleRocking::state_machine::Stage;
 use host::fmi3::call_what_is_not_provided;
-use host::{DISCARD, ERROR, OK, reference, resources};
+use host::{DISCARD, ERROR, OK, STAGES_OF_MODEL, reference, resources};
 use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
 use std::cell::RefCell;
@@ -106,16 +106,6 @@ const STANDARD_OF_MODEL: &str = "
     GetNumberOfEventIndicators      x - x - - -
     GetNumberOfContinuousStates     x - x - - -
 ";
-
-/// The stages of a model.
-const STAGES_OF_MODEL: [Stage; 6] = [
-    Stage::Instantiated,
-    Stage::InitializationMode,
-    Stage::EventMode,
-    Stage::ContinuousTimeMode,
-    Stage::Terminated,
-    Stage::Error,
-];
 
 type Log = RefCell<Vec<(c_int, String)>>;
 

@@ -93,16 +93,6 @@ const STANDARD_OF_MODEL: &str = "
     GetNominalsOfContinuousStates x x x x x 7
 ";
 
-/// The stages of a model.
-const OF_MODEL: [Stage; 6] = [
-    Stage::Instantiated,
-    Stage::InitializationMode,
-    Stage::EventMode,
-    Stage::ContinuousTimeMode,
-    Stage::Terminated,
-    Stage::Error,
-];
-
 /// Every function with those of `stages` that `table`, which has them as columns, allows it in; what is not in it is of the
 /// other interface.
 fn standard(table: &str, stages: [Stage; 6]) -> Vec<(Function, Vec<Stage>)> {
@@ -285,7 +275,7 @@ fn a_call_of_a_slave_is_allowed_where_the_standard_says_so() {
 
 #[test]
 fn a_call_of_a_model_is_allowed_where_the_standard_says_so() {
-    check(STANDARD_OF_MODEL, OF_MODEL, model_in, Stage::EventMode);
+    check(STANDARD_OF_MODEL, STAGES_OF_MODEL, model_in, Stage::EventMode);
 }
 
 /// An instance that cannot go on gives its values, goes back to a state kept before, and can be reset.

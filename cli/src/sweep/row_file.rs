@@ -94,6 +94,11 @@ pub fn heading(name: &str, unit: &str) -> String {
     if unit == "1" { name.into() } else { format!("{name}[{unit}]") }
 }
 
+/// The headings of columns that are called the same whatever the sweep is of.
+pub fn fixed(headings: &[&str]) -> Vec<String> {
+    headings.iter().map(|heading| (*heading).to_owned()).collect()
+}
+
 /// Each of `rows` with its line in the file.
 pub fn records(rows: &[u8]) -> impl Iterator<Item = (u64, csv::Result<StringRecord>)> {
     (2..).zip(ReaderBuilder::new().has_headers(false).from_reader(rows).into_records())

@@ -1,7 +1,7 @@
 //! The rows of a sweep: headings, and what they say of each run.
 //!
 //! A run's key stands for names, parameters, samples, scale factors, conditions, the build of the program.
-use super::row_file::{FIRST_HEADINGS, RowFile, digest, heading, key, key_of, records};
+use super::row_file::{FIRST_HEADINGS, RowFile, digest, fixed, heading, key, key_of, records};
 use anyhow::{Context, bail, ensure};
 use csv::StringRecord;
 use rocking::{
@@ -63,7 +63,6 @@ fn headings() -> Vec<String> {
     let intensities = IntensityMeasure::ALL.map(|measure| heading(measure.name(), measure.unit()));
     let initial = INITIAL_VALUES.each_ref().map(|quantity| heading(quantity.name, quantity.unit));
     let peaks = MEASURES.map(|(name, unit)| heading(&format!("peak_{name}"), unit));
-    let fixed = |headings: &[&str]| headings.iter().map(|heading| (*heading).to_owned()).collect::<Vec<_>>();
     [
         fixed(&FIRST_HEADINGS),
         quantities.into(),

@@ -6,6 +6,7 @@ pub mod fmi3;
 use FlexibleRocking::fmi2::*;
 use FlexibleRocking::guid;
 use FlexibleRocking::resources::PARAMETERS_FILE;
+use FlexibleRocking::state_machine::Stage;
 use FlexibleRocking::variables::VARIABLES;
 use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
@@ -23,6 +24,16 @@ pub const OK: c_int = 0;
 pub const WARNING: c_int = 1;
 pub const DISCARD: c_int = 2;
 pub const ERROR: c_int = 3;
+
+/// The stages of a model, whatever the version.
+pub const STAGES_OF_MODEL: [Stage; 6] = [
+    Stage::Instantiated,
+    Stage::InitializationMode,
+    Stage::EventMode,
+    Stage::ContinuousTimeMode,
+    Stage::Terminated,
+    Stage::Error,
+];
 
 /// One message, as the host's logger got it.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 //! A point's key stands for the structure and its name, the pulse, the level of detail, the tolerance, whether its condition is found, and
 //! the build of the program: not for its place, so that another grid through the same point has it.
 use crate::sweep::{
-    row_file::{FIRST_HEADINGS, RowFile, heading, key, key_of, records},
+    row_file::{FIRST_HEADINGS, RowFile, fixed, heading, key, key_of, records},
     say_other_rows,
 };
 use anyhow::{Context, bail};
@@ -52,7 +52,6 @@ pub fn key_at(name: &str, map: &Map, place: Place) -> Uuid {
 }
 
 fn headings() -> Vec<String> {
-    let fixed = |headings: &[&str]| headings.iter().map(|heading| (*heading).to_owned()).collect::<Vec<_>>();
     [
         fixed(&FIRST_HEADINGS),
         AXES.map(|axis| heading(axis.name, axis.unit)).into(),
