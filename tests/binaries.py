@@ -1,6 +1,8 @@
 """What programs and libraries for other machines are for, and need: read from their headers."""
 
+import hashlib
 import os
+import struct
 from pathlib import Path
 
 import pytest
@@ -55,8 +57,20 @@ def for_macos(file, cpus: set[str]):
         needed = {library.name for library in binary.libraries if library.command.name != "ID_DYLIB"}
         assert needed <= MACOS_RUN_TIME
         # Apple silicon runs nothing unsigned; a signature without a signer is enough.
-        assert binary.header.cpu_type.name != "ARM64" or binary.has_code_signature
+        if binary.header.cpu_type.name == "ARM64":
+            content = Path(file).read_bytes()[binary.fat_offset:]
+            signature = content[binary.code_signature.data_offset:][:binary.code_signature.data_size]
+            assert fits(signature, content)
     return parts
+
+
+def fits(signature: bytes, content: bytes) -> bool:
+    """Whether the hashes in a signature are those of the pages before it."""
+    directory = signature[struct.unpack_from(">I", signature, 16)[0]:]  # its first part
+    magic, hashes, pages, end, length, kind, page = struct.unpack_from(">I12xI8xIIBBxB", directory)
+    assert (magic, length, kind) == (0xFADE0C02, 32, 2), "not a directory of SHA-256"
+    computed = [hashlib.sha256(content[start:min(start + 2**page, end)]).digest() for start in range(0, end, 2**page)]
+    return directory[hashes:hashes + length * pages] == b"".join(computed)
 
 
 def tells_no_place(content: bytes):

@@ -1,22 +1,21 @@
 """The libraries in out/FlexibleRocking.fmu, which `make dist` writes: what each offers and needs, and Linux's numbers on
-64-bit ARM and on an old system. Wine runs Windows' in test_hosts_library.py; macOS is read here, and run nowhere."""
+64-bit ARM, on an old system and, of macOS' libraries, in an emulated processor. Wine runs Windows' in test_hosts_library.py."""
 
-import os
-import shutil
-import subprocess
 import zipfile
+from pathlib import Path
 
 import binaries
+import numpy as np
 import pytest
+import qemu
 from conftest import ROOT
 from fmpy import read_model_description
 from host import Fmu
-from pacoima import distance
+from pacoima import OUTPUTS, distance, instants
 from test_hosts_library import FUNCTIONS, HOST, cargo_build, output, run  # noqa: F401
 
 X86 = "x86_64-unknown-linux-gnu"
 ARM = "aarch64-unknown-linux-gnu"
-ARM_SYSTEM = "/usr/aarch64-linux-gnu"
 # The loader of glibc 2.31, which `make foreign` takes out of Debian 11's package.
 OLD_LOADER = ROOT / "out/debian11/lib/x86_64-linux-gnu/ld-2.31.so"
 
@@ -94,11 +93,43 @@ def test_an_old_system(run, shaken, library):  # noqa: F811
 
 
 def test_arm_gives_the_numbers_of_x86(run, shaken, mcmanus, library):  # noqa: F811
-    if shutil.which("qemu-aarch64") is None or not os.path.exists(f"{ARM_SYSTEM}/lib/ld-linux-aarch64.so.1"):
-        pytest.skip("qemu-aarch64 or the C library for it is missing: packages qemu-user, libc6-arm64-cross")
+    command = qemu.command()
     arm = cargo_build("--target", ARM, "--manifest-path", HOST, tool="zigbuild") / ARM / "release" / "load-library"
     native = cargo_build("--manifest-path", HOST) / "release" / "load-library"
     for fmu, step in ((mcmanus, None), (shaken["mcmanus"], 2e-3)):
         expected = run(native, library=library("linux64"), fmu=fmu, step=step)
-        found = run("qemu-aarch64", "-L", ARM_SYSTEM, arm, library=library("aarch64-linux"), fmu=fmu, step=step)
+        found = run(*command, arm, library=library("aarch64-linux"), fmu=fmu, step=step)
         assert distance(found, expected) < 1e-12
+
+
+@pytest.mark.parametrize("cpu", ["X86_64", "ARM64"])
+def test_macos_gives_the_numbers_of_linux(cpu, run, shaken, library):  # noqa: F811
+    """Its functions one after the other, the record inside; not macOS' loader, nor its own sine."""
+    fmu = shaken["mcmanus"]
+    found = follow(pytest.importorskip("macos").Library(library("darwin64"), cpu), fmu, instants(10e-3))
+    native = cargo_build("--manifest-path", HOST) / "release" / "load-library"
+    assert distance(found, run(native, library=library("linux64"), fmu=fmu, step=10e-3)) < 1e-12
+
+
+def follow(library, fmu, times):
+    """OUTPUTS at these times, by calls of the emulated library."""
+    arguments = [library.text(text) for text in ("emulated", fmu.description.guid, f"{Path(fmu.folder).as_uri()}/resources")]
+    instance = library.call("fmi2Instantiate", arguments[0], 1, *arguments[1:], library.put("5Q", *5 * [0]), 0, 0)
+    assert instance
+
+    def call(function, *arguments):
+        assert library.call(function, instance, *arguments) & 0xFFFFFFFF == 0, function
+
+    call("fmi2SetupExperiment", 0, 0.0, 0.0, 0, 0.0)
+    call("fmi2EnterInitializationMode")
+    call("fmi2ExitInitializationMode")
+    references = library.put("3I", *(fmu.variables[name].valueReference for name in OUTPUTS))
+    values, found = library.put("3d", *3 * [0.0]), []
+    for time, step in zip(times, np.diff(times, append=np.nan)):
+        call("fmi2GetReal", references, len(OUTPUTS), values)
+        found.append(library.get(values, "3d"))
+        if time < times[-1]:
+            call("fmi2DoStep", float(time), float(step), 1)
+    call("fmi2Terminate")
+    library.call("fmi2FreeInstance", instance)
+    return np.array(found)

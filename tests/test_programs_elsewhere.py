@@ -1,13 +1,15 @@
-"""The program in the wheel for Windows, as pip lays it out, under wine: it writes what Linux's writes, and its files as
-carefully."""
+"""The programs in the wheels for Windows and for Linux on ARM64, as pip lays them out, under wine and qemu: they write what this
+machine's writes, and their files as carefully."""
 
 import json
 import shutil
 import subprocess
 import zipfile
+from pathlib import Path
 
 import numpy as np
 import pytest
+import qemu
 from conftest import ROOT
 from packages import package
 from pacoima import write_record
@@ -19,18 +21,38 @@ structures = [{ name = "specimen", preset = "mcmanus" }, { name = "wall", preset
 """
 
 
+def installed(pattern: str, folder) -> Path:
+    """The program of the wheel that is called so, beside its archive."""
+    with zipfile.ZipFile(package(pattern)) as content:
+        content.extractall(folder / "wheel")
+    (data,) = (folder / "wheel").glob("*.data")
+    shutil.move(data / "scripts", folder / "bin")
+    shutil.move(data / "data" / "share", folder / "share")
+    (program,) = (folder / "bin").iterdir()
+    return program
+
+
 @pytest.fixture(scope="module")
 def windows(tmp_path_factory):
     """Runs the program for Windows in a folder."""
-    folder = tmp_path_factory.mktemp("windows")
-    with zipfile.ZipFile(package("*-win_amd64.whl")) as content:
-        content.extractall(folder / "wheel")
-    (data,) = (folder / "wheel").glob("*.data")
-    shutil.move(data / "scripts", folder / "Scripts")
-    shutil.move(data / "data" / "share", folder / "share")
-    program, variables = folder / "Scripts" / "rocking-fmu.exe", environment(folder / "Scripts")
+    program = installed("*-win_amd64.whl", tmp_path_factory.mktemp("windows"))
+    variables = environment(program.parent)
     return lambda *arguments, cwd: subprocess.run(["wine", program, *arguments], cwd=cwd, env=variables, capture_output=True,
                                                   text=True)
+
+
+@pytest.fixture(scope="module")
+def arm(tmp_path_factory):
+    """Runs the program for ARM64 in a folder."""
+    program = installed("*_aarch64.whl", tmp_path_factory.mktemp("arm"))
+    program.chmod(0o755)
+    return lambda *arguments, cwd: subprocess.run([*qemu.command(), program, *arguments], cwd=cwd, capture_output=True, text=True)
+
+
+@pytest.fixture(params=["windows", "arm"])
+def there(request):
+    """Runs one of them in a folder."""
+    return request.getfixturevalue(request.param)
 
 
 @pytest.fixture(scope="module")
@@ -40,15 +62,15 @@ def linux(exporter):
 
 
 @pytest.fixture
-def both(windows, linux, tmp_path):
+def both(there, linux, tmp_path):
     """Runs a command on both, each in a folder of its own with the record pacoima.csv, and returns folder and output."""
-    folders = [tmp_path / "windows", tmp_path / "linux"]
+    folders = [tmp_path / "there", tmp_path / "here"]
     for folder in folders:
         folder.mkdir()
         write_record(folder / "pacoima.csv")
 
     def run(*arguments):
-        done = [program(*arguments, cwd=folder) for program, folder in zip((windows, linux), folders)]
+        done = [program(*arguments, cwd=folder) for program, folder in zip((there, linux), folders)]
         for one in done:
             assert one.returncode == 0, one.stderr
         return list(zip(folders, (one.stdout for one in done)))
@@ -63,9 +85,11 @@ def same_bytes(both, *names):
     assert not list(there.glob(".rocking-fmu-*"))
 
 
-def test_version(windows, linux, tmp_path):
-    there, here = (run("--version", cwd=tmp_path).stdout for run in (windows, linux))
-    assert there == here.replace("for linux on", "for windows on") and "\nfor windows on x86_64; " in there
+@pytest.mark.parametrize("machine", ["windows on x86_64", "linux on aarch64"])
+def test_version(request, linux, tmp_path, machine):
+    there = request.getfixturevalue("windows" if "windows" in machine else "arm")
+    found, here = (run("--version", cwd=tmp_path).stdout for run in (there, linux))
+    assert found == here.replace("for linux on x86_64", f"for {machine}") and f"\nfor {machine}; " in found
 
 
 def test_simulate(both):
@@ -100,11 +124,11 @@ def test_pictures_and_page(both):
     same_bytes(runs, "response.svg", "structure.png", "view.html")
 
 
-def test_export(windows, linux, tmp_path):
+def test_export(there, linux, tmp_path):
     """With the libraries of the wheel, as pip has installed them."""
     write_record(tmp_path / "pacoima.csv")
     arguments = ("export", "--preset", "evison", "--record", "pacoima.csv", "--name", "Wall", "-o")
-    for run, *end in ((windows, "there.fmu"), (linux, "here.fmu", "--library", ROOT / "out" / "FlexibleRocking.fmu")):
+    for run, *end in ((there, "there.fmu"), (linux, "here.fmu", "--library", ROOT / "out" / "FlexibleRocking.fmu")):
         done = run(*arguments, *end, cwd=tmp_path)
         assert done.returncode == 0, done.stderr
     assert (tmp_path / "there.fmu").read_bytes() == (tmp_path / "here.fmu").read_bytes()
