@@ -142,11 +142,7 @@ class Library:
         self._emulator.emu_stop()
 
     def malloc(self, size):
-        return self._aligned(16, size)
-
-    def _aligned(self, alignment, size):
-        """Memory that is never used again, so that it is zero."""
-        start = -(-self._heap_end // alignment) * alignment
+        start = -(-self._heap_end // 16) * 16  # never used again
         self._heap_end, self._sizes[start] = start + size, size
         return start
 
