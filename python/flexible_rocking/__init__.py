@@ -28,16 +28,18 @@ def export(
     preset: str | None = None,
     record: str | PathLike | Iterable[str | PathLike] = (),
     name: str | None = None,
+    fmi: int = 2,
 ) -> Path:
     """Writes the FMU of a structure to `target` and returns its path.
 
     `parameters` are m, m0, H, B, f_fc, zeta_fc, r and, where they differ from 0, 1 and 9.81, J0, c_ratio, g, in SI units;
     without them it is a specimen, `preset` ("mcmanus", "evison"). It follows the first `record`, and has the others inside.
-    `name` is what hosts call the model. What is refused raises ValueError with the reason.
+    `name` is what hosts call the model, `fmi` the version of the standard, 2 (2.0) or 3 (3.0). What is refused raises ValueError
+    with the reason.
     """
-    target = Path(target)
+    target = Path(target).absolute()
     records = [record] if isinstance(record, (str, PathLike)) else list(record)
-    arguments = [_installed("rocking-fmu"), "export", "--library", fmu(), "--output", target]
+    arguments = [_installed("rocking-fmu"), "--quiet", "export", "--library", fmu(), "--output", target, "--fmi", str(fmi)]
     if preset is not None:
         arguments += ["--preset", preset]
     if name is not None:
@@ -45,11 +47,19 @@ def export(
     if records:
         arguments += ["--record", *records]
     with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "parameters.toml"
         if parameters is not None:
-            file = Path(folder) / "parameters.toml"
-            file.write_text("".join(f"{key} = {float(value)!r}\n" for key, value in parameters.items()), encoding="utf-8")
+            lines = (f"{key} = {_number(key, value)!r}\n" for key, value in parameters.items())
+            file.write_text("".join(lines), encoding="utf-8")
             arguments += ["--parameters", file]
         done = subprocess.run(arguments, capture_output=True, text=True, encoding="utf-8")
     if done.returncode != 0:
-        raise ValueError(done.stderr.strip())
+        raise ValueError(done.stderr.strip().removeprefix("error: ").replace(f"parameters in {file}", "parameters"))
     return target
+
+
+def _number(name: str, value: float) -> float:
+    try:
+        return float(value)
+    except (TypeError, ValueError):
+        raise ValueError(f"{name} = {value!r}: it is no number") from None
