@@ -16,20 +16,19 @@ pub struct Experiment {
 }
 
 impl Experiment {
-    /// The whole of `record`, in steps of its samples; without it as long as a free vibration is worth looking at, 10/p_l,
-    /// in steps that show the vibration mode, 1/(20 f_u). Both are rounded, the latter to a 1, 2 or 5.
+    /// The whole of `record`, in steps of its samples, or of no record, in steps that show the vibration mode, 1/(20 f_u),
+    /// rounded to a 1, 2 or 5; then as long as a free motion is worth looking at, 10/p_l: after a pulse the structure rocks
+    /// farther than under it.
     pub fn new(structure: &Structure, record: Option<&Record>) -> Experiment {
-        match record {
+        let (duration, step_size) = match record {
             Some(record) => {
                 let duration = record.end() - record.start();
-                let intervals = (record.times().len() - 1) as f64;
-                Experiment { stop_time: rounded(duration), step_size: rounded(duration / intervals) }
+                (duration, duration / (record.times().len() - 1) as f64)
             }
-            None => {
-                let step_size = at_most(TAU / structure.omega_u / 20.0);
-                Experiment { stop_time: rounded((10.0 / structure.p_l / step_size).ceil() * step_size), step_size }
-            }
-        }
+            None => (0.0, at_most(TAU / structure.omega_u / 20.0)),
+        };
+        let afterwards = (10.0 / structure.p_l / step_size).ceil() * step_size;
+        Experiment { stop_time: rounded(duration + afterwards), step_size: rounded(step_size) }
     }
 
     /// What a description of either version says of it.
@@ -57,7 +56,7 @@ mod tests {
     use rocking::Parameters;
 
     #[test]
-    fn a_record_is_followed_to_its_end_by_its_samples() {
+    fn a_record_is_followed_beyond_its_end_by_its_samples() {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
         for (interval, samples) in [(0.005, 8_000), (0.01, 3), (0.02, 2_688), (1.0 / 240.0, 24_001)] {
             let times: Vec<_> = (0..samples).map(|at| 3.7 + f64::from(at) * interval).collect();
@@ -65,7 +64,10 @@ mod tests {
             let Experiment { stop_time, step_size } = Experiment::new(&structure, Some(&record));
             let shortest = record.times().windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
             assert!(step_size <= shortest * (1.0 + 1e-8), "{step_size} is longer than {interval}");
-            assert!((stop_time / step_size - f64::from(samples - 1)).abs() < 1e-3, "{stop_time} {step_size}");
+            let steps = stop_time / step_size;
+            assert!((steps - steps.round()).abs() < 1e-3, "{stop_time} {step_size}");
+            let afterwards = stop_time - f64::from(samples - 1) * interval;
+            assert!((0.0..interval + 1e-6).contains(&(afterwards - 10.0 / structure.p_l)), "{afterwards}");
         }
     }
 
