@@ -27,13 +27,15 @@ ZIG := x86_64-unknown-linux-gnu.2.17 aarch64-unknown-linux-gnu.2.17 universal2-a
 ZIG_PARTS := x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu x86_64-apple-darwin aarch64-apple-darwin
 export MACOSX_DEPLOYMENT_TARGET := 11.0
 # What is built for a named target tells neither where nor when: cargo's packages are elsewhere on every machine. For this
-# machine's own it is said at each place, or whatever is built here without a name would be built again.
+# machine's own it is said at each place, or whatever is built here without a name would be built again. Names that no loader
+# needs are left out by the linker: those for macOS, though taken away later, are in what identifies a binary, and those for
+# Windows name the folder.
 UNTRACED := --remap-path-prefix=$(or $(CARGO_HOME),$(HOME)/.cargo)=/cargo
 NATIVE_UNTRACED := CARGO_TARGET_X86_64_UNKNOWN_LINUX_GNU_RUSTFLAGS=$(UNTRACED)
 export CARGO_TARGET_AARCH64_UNKNOWN_LINUX_GNU_RUSTFLAGS := $(UNTRACED)
-export CARGO_TARGET_X86_64_APPLE_DARWIN_RUSTFLAGS := $(UNTRACED)
-export CARGO_TARGET_AARCH64_APPLE_DARWIN_RUSTFLAGS := $(UNTRACED)
-export CARGO_TARGET_X86_64_PC_WINDOWS_GNU_RUSTFLAGS := $(UNTRACED) -Clink-arg=-Wl,--no-insert-timestamp
+export CARGO_TARGET_X86_64_APPLE_DARWIN_RUSTFLAGS := $(UNTRACED) -Clink-arg=-s
+export CARGO_TARGET_AARCH64_APPLE_DARWIN_RUSTFLAGS := $(UNTRACED) -Clink-arg=-s
+export CARGO_TARGET_X86_64_PC_WINDOWS_GNU_RUSTFLAGS := $(UNTRACED) -Cstrip=symbols -Clink-arg=-Wl,--no-insert-timestamp
 ARM_LOADER := /usr/aarch64-linux-gnu/lib/ld-linux-aarch64.so.1
 MINGW := x86_64-w64-mingw32-gcc
 HAS_MINGW := command -v $(MINGW) >/dev/null

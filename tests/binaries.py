@@ -2,6 +2,7 @@
 
 import hashlib
 import os
+import re
 import struct
 from pathlib import Path
 
@@ -74,5 +75,6 @@ def fits(signature: bytes, content: bytes) -> bool:
 
 
 def tells_no_place(content: bytes):
-    """Whether nothing in it tells where it was built."""
-    return not any(str(place).encode() in content for place in PLACES)
+    """Whether nothing in it tells where it was built, be it in a name that the linker has made of a path."""
+    names = [re.sub(r"\W", "_", f"{place}/target/") for place in PLACES]
+    return not any(told.encode() in content for told in (*map(str, PLACES), *names))
