@@ -80,13 +80,13 @@ class Library:
             self._emulator.reg_write(register, value)
         for register, value in zip(self._cpu.reals, (argument for argument in arguments if isinstance(argument, float))):
             self._set_real(register, value)
-        # On x86-64 what has no register is on the stack, above where to return to; on ARM64 both have registers here.
-        end = self._address("end")
-        on_stack = [end, *integers[len(self._cpu.integers):]] if self._cpu is X86 else []
-        stack = STACK + STACK_SIZE // 2 - 8 * (self._cpu is X86)
-        self.set(stack, f"{len(on_stack)}Q", *on_stack)
+        end, stack = self._address("end"), STACK + STACK_SIZE // 2
         if self._cpu is Arm:
             self._emulator.reg_write(arm.UC_ARM64_REG_LR, end)
+        else:  # where to return to is on the stack, and above it what has no register
+            stack -= 8
+            rest = integers[len(self._cpu.integers):]
+            self.set(stack, f"{1 + len(rest)}Q", end, *rest)
         self._emulator.reg_write(self._cpu.stack, stack)
         self._emulator.emu_start(self._exported[f"_{function}"], 0)
         if self._failure:
@@ -117,8 +117,8 @@ class Library:
     def _address(self, name: str) -> int:
         """Where a function of the system is called: at an instruction that returns, before which it is done."""
         if name not in self._system:
+            self._emulator.mem_write(SYSTEM + 16 * len(self._system), self._cpu.return_instruction)
             self._system.append(name)
-            self._emulator.mem_write(SYSTEM + 16 * self._system.index(name), self._cpu.return_instruction)
         return SYSTEM + 16 * self._system.index(name)
 
     def _of_the_system(self, _emulator, address: int, _size, _data):
@@ -202,15 +202,12 @@ class Library:
         return self.put(f"{len(found) + 1}s", found)
 
     def stat(self, path, status):
-        return self._status(self._path(path), status)
+        return self.fstat(self._path(path), status)
 
     def fstat(self, file, status):
-        return self._status(file, status)
-
-    def _path(self, address):
-        return bytes(self._emulator.mem_read(address, self.strnlen(address, PAGE)))
-
-    def _status(self, file, status):
         found = os.stat(file)
         self.set(status, "4xH90xq", found.st_mode, found.st_size)
         return 0
+
+    def _path(self, address):
+        return bytes(self._emulator.mem_read(address, self.strnlen(address, PAGE)))

@@ -12,7 +12,7 @@ from conftest import ROOT
 from fmpy import read_model_description
 from host import Fmu
 from pacoima import OUTPUTS, distance, instants
-from test_hosts_library import FUNCTIONS, HOST, cargo_build, output, run  # noqa: F401
+from test_hosts_library import FUNCTIONS, HOST, cargo_build, linux_host, output, run  # noqa: F401
 
 X86 = "x86_64-unknown-linux-gnu"
 ARM = "aarch64-unknown-linux-gnu"
@@ -92,29 +92,28 @@ def test_an_old_system(run, shaken, library):  # noqa: F811
     assert distance(found, expected) < 1e-12
 
 
-def test_arm_gives_the_numbers_of_x86(run, shaken, mcmanus, library):  # noqa: F811
+def test_arm_gives_the_numbers_of_x86(run, linux_host, shaken, mcmanus, library):  # noqa: F811
     command = qemu.command()
     arm = cargo_build("--target", ARM, "--manifest-path", HOST, tool="zigbuild") / ARM / "release" / "load-library"
-    native = cargo_build("--manifest-path", HOST) / "release" / "load-library"
     for fmu, step in ((mcmanus, None), (shaken["mcmanus"], 2e-3)):
-        expected = run(native, library=library("linux64"), fmu=fmu, step=step)
+        expected = run(linux_host, library=library("linux64"), fmu=fmu, step=step)
         found = run(*command, arm, library=library("aarch64-linux"), fmu=fmu, step=step)
         assert distance(found, expected) < 1e-12
 
 
 @pytest.mark.parametrize("cpu", ["X86_64", "ARM64"])
-def test_macos_gives_the_numbers_of_linux(cpu, run, shaken, library):  # noqa: F811
+def test_macos_gives_the_numbers_of_linux(cpu, run, linux_host, shaken, library):  # noqa: F811
     """Its functions one after the other, the record inside; not macOS' loader, nor its own sine."""
     fmu = shaken["mcmanus"]
     found = follow(pytest.importorskip("macos").Library(library("darwin64"), cpu), fmu, instants(10e-3))
-    native = cargo_build("--manifest-path", HOST) / "release" / "load-library"
-    assert distance(found, run(native, library=library("linux64"), fmu=fmu, step=10e-3)) < 1e-12
+    assert distance(found, run(linux_host, library=library("linux64"), fmu=fmu, step=10e-3)) < 1e-12
 
 
 def follow(library, fmu, times):
     """OUTPUTS at these times, by calls of the emulated library."""
-    arguments = [library.text(text) for text in ("emulated", fmu.description.guid, f"{Path(fmu.folder).as_uri()}/resources")]
-    instance = library.call("fmi2Instantiate", arguments[0], 1, *arguments[1:], library.put("5Q", *5 * [0]), 0, 0)
+    resources = f"{Path(fmu.folder).as_uri()}/resources"
+    name, guid, location = map(library.text, ("emulated", fmu.description.guid, resources))
+    instance = library.call("fmi2Instantiate", name, 1, guid, location, library.put("5Q", *5 * [0]), 0, 0)
     assert instance
 
     def call(function, *arguments):

@@ -44,9 +44,10 @@ def windows(tmp_path_factory):
 @pytest.fixture(scope="module")
 def arm(tmp_path_factory):
     """Runs the program for ARM64 in a folder."""
+    command = qemu.command()
     program = installed("*_aarch64.whl", tmp_path_factory.mktemp("arm"))
     program.chmod(0o755)
-    return lambda *arguments, cwd: subprocess.run([*qemu.command(), program, *arguments], cwd=cwd, capture_output=True, text=True)
+    return lambda *arguments, cwd: subprocess.run([*command, program, *arguments], cwd=cwd, capture_output=True, text=True)
 
 
 @pytest.fixture(params=["windows", "arm"])
