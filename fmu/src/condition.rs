@@ -106,6 +106,8 @@ pub struct Outside {
     pub known: Known,
     /// The inputs when event mode was entered: what is set there has not acted before.
     pub arrived: Load,
+    /// When event mode was entered last: where the record jumps later, it does so once event mode is entered there.
+    pub event: Elapsed,
 }
 
 /// How far a simulation has come.
@@ -160,10 +162,12 @@ impl Model {
 
     /// What acts now: `inputs` and the record.
     pub fn load(&self, setup: &Setup, inputs: LinearLoad) -> LinearLoad {
-        match &self.ground {
-            Some(ground) => inputs.on_ground(setup.ground_motion(ground).at(self.elapsed)),
-            None => inputs,
-        }
+        let Some(ground) = &self.ground else { return inputs };
+        let (ground, elapsed) = (setup.ground_motion(ground), self.elapsed);
+        inputs.on_ground(match &self.outside {
+            Some(outside) => ground.since(outside.event, elapsed),
+            None => ground.at(elapsed),
+        })
     }
 
     /// The peaks since the start; before the first step, the values under `load`.
@@ -291,9 +295,9 @@ impl Course {
         let farthest = if outside.is_some() { FARTHEST } else { MAX_ANGLE };
         is_possible(motion, farthest)
             && elapsed.seconds().is_finite()
-            && outside.as_ref().is_none_or(|Outside { known, arrived }| {
+            && outside.as_ref().is_none_or(|Outside { known, arrived, event }| {
                 is_possible(&known.motion, MAX_ANGLE)
-                    && known.elapsed.seconds().is_finite()
+                    && [known.elapsed, *event].iter().all(|elapsed| elapsed.seconds().is_finite())
                     && [known.load, *arrived]
                         .iter()
                         .all(|load| LOADS.iter().all(|input| input.check((input.get)(load)).is_ok()))
