@@ -128,6 +128,13 @@ impl Instance {
             self.logger.warning(&warning);
         }
         if self.now.interface == Interface::ModelExchange {
+            let watched = [("peaks", self.now.setup.peaks), ("validity", self.now.setup.validity)];
+            for (name, _) in watched.into_iter().filter(|(_, is_watched)| *is_watched) {
+                self.logger.warning(&format!(
+                    "{name} = true watches nothing in model exchange, where the motion between two points is the host's: what it \
+                     stands for is NaN; use co-simulation"
+                ));
+            }
             self.start_outside()?;
         }
         self.now.stage = self.now.interface.first_stage();

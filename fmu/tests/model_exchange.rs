@@ -262,7 +262,15 @@ fn nobody_watches_peaks() {
     let host = Host::new_model();
     assert_eq!((host.watch_peaks(), host.set_boolean("validity", 1)), (OK, OK));
     let host = host.initialized(&[("theta_0", 0.02)]);
+    host.log.borrow_mut().clear();
     assert_eq!((host.exit(), host.update().is_ok(), host.go_on()), (OK, true, OK));
+    let warnings: Vec<_> = host.log.take().into_iter().map(|message| (message.status, message.text)).collect();
+    let expected = ["peaks", "validity"].map(|name| {
+        let text = "= true watches nothing in model exchange, where the motion between two points is the host's: what it \
+                    stands for is NaN; use co-simulation";
+        (WARNING, format!("{name} {text}"))
+    });
+    assert_eq!(warnings, expected);
     host.integrate(0.0, 1e-3);
     assert!(host.get("theta_max").is_nan() && host.get("mu_required").is_nan());
 }
