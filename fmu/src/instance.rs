@@ -160,12 +160,12 @@ impl Instance {
         }
     }
 
-    /// Applies the transition that a step has ended at, if there is one.
+    /// Applies the transition that a step has ended at, if there is one, and the uplift that is due then.
     fn transit(&mut self) -> Result<(), Failure> {
         let logger = &self.logger;
-        let (model, setup, ..) = self.now.parts(&self.archive)?;
+        let (model, setup, inputs, _) = self.now.parts(&self.archive)?;
         let known = model.validity;
-        model.transit(setup, &mut |transition: &Transition| log(logger, transition));
+        model.transit(setup, inputs.values(), &mut |transition: &Transition| log(logger, transition));
         if setup.validity {
             warn(logger, &known, &model.validity);
         }
@@ -595,9 +595,16 @@ impl Instance {
         model.engine.set_time(point);
         model.engine.stop_at_transitions(stops);
         let known = setup.validity.then_some(model.validity);
-        match model.advance(setup, step, load, &mut |transition: &Transition| log(logger, transition)) {
+        let mut watch = |transition: &Transition| log(logger, transition);
+        let result = if stops {
+            model.advance_to_transition(setup, step, load, &mut watch)
+        } else {
+            model.advance(setup, step, load, &mut watch)
+        };
+        match result {
             Ok(progress) => {
-                let passed = if progress == Progress::Complete { step } else { model.engine.motion().time - point };
+                let reached = model.engine.motion().time;
+                let passed = if reached == point + step { step } else { reached - point };
                 if passed > 0.0 {
                     inputs.pass(load, passed);
                 }
