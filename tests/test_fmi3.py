@@ -331,8 +331,11 @@ def test_overturning_ends_the_simulation(mcmanus3, slave, handles_events):
     assert one.get("theta")[0] == pytest.approx(np.pi / 2, rel=1e-12)
     assert re.fullmatch(rf"fmi3DoStep: the structure overturned at t = {instant!r} s; the simulation ends there",
                         one.messages[-1].text)
-    result, _ = simulate3(mcmanus3, start_values={"theta_0": 0.3}, stop_time=10, output_interval=0.1)
-    assert len(result) < 101
+    for may_return_early, end in ((True, instant), (False, np.ceil(instant / 0.1) * 0.1)):
+        result, _ = simulate3(mcmanus3, start_values={"theta_0": 0.3}, stop_time=10, output_interval=0.1, output=["t_overturned"],
+                              early_return_allowed=may_return_early, use_event_mode=handles_events)
+        assert result["time"][-1] == pytest.approx(end, rel=1e-14)
+        assert result["t_overturned"][-1] == pytest.approx(instant, rel=1e-14)
 
 
 def test_a_master_needs_one_further_step_for_a_transition(export3):
