@@ -99,7 +99,7 @@ impl Interface {
             Stage::StepComplete | Stage::StepFailed => matches!(self, Interface::CoSimulation(_)),
             Stage::EventMode => matches!(self.first_stage(), Stage::EventMode),
             Stage::ContinuousTimeMode => matches!(self, Interface::ModelExchange),
-            Stage::IntermediateUpdateMode => false, // no state is kept within a step
+            Stage::IntermediateUpdateMode | Stage::IntermediateOutputs => false, // no state is kept within a step
             Stage::Instantiated | Stage::InitializationMode | Stage::Terminated | Stage::Error => true,
         }
     }
