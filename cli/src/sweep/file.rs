@@ -211,7 +211,7 @@ impl MapFile {
             let name = is_one_line(&grid.name)?;
             ensure!(maps.iter().all(|(other, _)| other != name), "two structures have the name {name:?}: rename one");
             let map = self.map(grid).with_context(|| format!("structures {name:?}"))?;
-            maps.push((name.into(), Map { finds_condition: condition, ..map }));
+            maps.push((name.into(), map.with_condition(condition)));
         }
         Ok(MapSweep { maps, refinements: refine })
     }
