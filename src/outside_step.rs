@@ -93,7 +93,7 @@ impl Known {
         }
         let end = *engine.motion();
         let now: LinearLoad = load.into();
-        let now = ground.map_or(now, |ground| now.on_ground(ground.at(elapsed)));
+        let now = ground.map_or(now, |ground| now.on_ground(ground.since(self.elapsed, elapsed)));
         let is_beyond = !engine.sample(now.value).event_indicators().iter().all(|indicator| *indicator > 0.0);
         engine.set_motion(self.motion);
         let own = self.go_on(engine, ground, end.time - self.motion.time, load, watch);

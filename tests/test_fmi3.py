@@ -1,5 +1,6 @@
 """FMI 3.0 beside FMI 2.0: the same scene gives the same bits, and a step can end at a transition."""
 
+import itertools
 import re
 import subprocess
 import zipfile
@@ -230,7 +231,7 @@ def test_a_step_ends_at_every_transition(shaken3, slave):
         while t < until:
             is_due, terminate, is_early, reached = one.instance.doStep(t, until - t)
             assert (terminate, is_early) == (False, reached < until)
-            assert is_due or reached == until
+            assert (is_due or reached == until) and reached > t
             t = reached
             if is_due:
                 phase, before = one.instance.getInt64([one.references["phase"]]), one.get("u", "u_dot", "theta_dot")
@@ -240,12 +241,55 @@ def test_a_step_ends_at_every_transition(shaken3, slave):
                 assert one.instance.getInt64([one.references["phase"]]) != phase
                 assert one.get("time") == [t]
         found.append(one.get(*COMPARED))
-    expected_at = [(e.time, e.u, e.u_dot_before, e.theta_dot_before, e.u, e.u_dot, e.theta_dot) for e in transitions]
-    assert len(met) == len(transitions) == 31
+    at_once = [list(group) for _, group in itertools.groupby(transitions, lambda e: e.time)]
+    expected_at = [(a.time, a.u, a.u_dot_before, a.theta_dot_before, b.u, b.u_dot, b.theta_dot)
+                   for a, b in ((group[0], group[-1]) for group in at_once)]
+    assert len(met) == len(at_once) == 30 and len(transitions) == 31
     assert np.array(met) == pytest.approx(np.array(expected_at), rel=1e-8, abs=1e-10)
     assert [e.kind for e in events(one.messages)] == [e.kind for e in transitions]
     peaks = np.max(np.abs(rows(expected)), axis=0)
     assert np.max(np.abs(np.array(found) - rows(expected)) / peaks) < 1e-9
+
+
+def test_a_transition_belongs_to_the_step_that_ends_there(shaken3, slave):
+    """A master that goes back and steps to the instant that it was told, or a few units in the last place beside it, meets
+    the transition at the end of that step, and no step has no length: an uplift that follows a landing at once is applied
+    with it."""
+    asked = dict(stop_time=END, output_interval=2e-3, output=COMPARED)
+    expected, messages = simulate3(shaken3["mcmanus"], **asked)
+    one = slave(shaken3["mcmanus"], handles_events=True)
+    found, t, met = [one.get(*COMPARED)], 0.0, 0
+    for until in expected["time"][1:]:
+        while t < until:
+            before = one.instance.getFMUState()
+            is_due, _, is_early, reached = one.instance.doStep(t, until - t)
+            for beside in range(-4, 5) if is_due else []:
+                instant = reached + beside * np.spacing(reached)
+                one.instance.setFMUState(before)
+                assert one.instance.doStep(t, instant - t) == (True, False, False, t + (instant - t)), (met, beside)
+            if is_due:
+                one.instance.setFMUState(before)
+                assert one.instance.doStep(t, reached - t)[:3] == (True, False, False)
+                one.transit()
+                met += 1
+            one.instance.freeFMUState(before)
+            assert reached > t
+            t = reached
+        found.append(one.get(*COMPARED))
+    assert met == len({event.time for event in events(messages)}) == 30
+    peaks = np.max(np.abs(rows(expected)), axis=0)
+    assert np.max(np.abs(np.array(found) - rows(expected)) / peaks) < 1e-9
+
+
+def test_overturning_belongs_to_the_step_that_ends_there(mcmanus3, slave):
+    one = slave(mcmanus3, handles_events=True, theta_0=0.3)
+    start = one.instance.getFMUState()
+    instant = one.instance.doStep(0.0, 10.0)[3]
+    for beside in range(-4, 5):
+        one.instance.setFMUState(start)
+        end = instant + beside * np.spacing(instant)
+        assert one.instance.doStep(0.0, end) == (False, True, False, end), beside
+        assert one.get("t_overturned") == [end]
 
 
 def test_a_transition_that_the_host_does_not_deal_with_happens(mcmanus3, slave):
@@ -287,8 +331,11 @@ def test_overturning_ends_the_simulation(mcmanus3, slave, handles_events):
     assert one.get("theta")[0] == pytest.approx(np.pi / 2, rel=1e-12)
     assert re.fullmatch(rf"fmi3DoStep: the structure overturned at t = {instant!r} s; the simulation ends there",
                         one.messages[-1].text)
-    result, _ = simulate3(mcmanus3, start_values={"theta_0": 0.3}, stop_time=10, output_interval=0.1)
-    assert len(result) < 101
+    for may_return_early, end in ((True, instant), (False, np.ceil(instant / 0.1) * 0.1)):
+        result, _ = simulate3(mcmanus3, start_values={"theta_0": 0.3}, stop_time=10, output_interval=0.1, output=["t_overturned"],
+                              early_return_allowed=may_return_early, use_event_mode=handles_events)
+        assert result["time"][-1] == pytest.approx(end, rel=1e-14)
+        assert result["t_overturned"][-1] == pytest.approx(instant, rel=1e-14)
 
 
 def test_a_master_needs_one_further_step_for_a_transition(export3):

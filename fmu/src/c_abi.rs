@@ -86,7 +86,7 @@ pub(crate) unsafe fn free<F: Function>(c: *mut c_void) {
         return;
     }
     // within a step the host has the instance on loan: the step goes on with it
-    if unsafe { &*component.instance.get() }.stage() == Stage::IntermediateUpdateMode {
+    if unsafe { &*component.instance.get() }.stage().is_within_step() {
         component.availability.store(availability, Ordering::Release);
         return;
     }
@@ -123,7 +123,7 @@ pub(crate) unsafe fn call_on<F: Function>(
     function: F,
     body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
 ) -> c_int {
-    unsafe { call_if(c, function, |_, stage| stage == Stage::IntermediateUpdateMode, body) }
+    unsafe { call_if(c, function, |_, stage| stage.is_within_step(), body) }
 }
 
 unsafe fn call_if<F: Function>(

@@ -28,6 +28,12 @@ const BOUND: f64 = 1e100;
 /// More than anything that is counted can come to.
 const MAX_COUNT: u64 = 1 << 60;
 
+/// Part of the time, or of 1/p_l if that is more, that rounding can shift a transition by.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
+
+/// More than any event indicator changes in as long.
+const NEAR: f64 = 1e-3;
+
 /// How the host of a co-simulation meets transitions.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stepping {
@@ -93,7 +99,7 @@ impl Interface {
             Stage::StepComplete | Stage::StepFailed => matches!(self, Interface::CoSimulation(_)),
             Stage::EventMode => matches!(self.first_stage(), Stage::EventMode),
             Stage::ContinuousTimeMode => matches!(self, Interface::ModelExchange),
-            Stage::IntermediateUpdateMode => false, // no state is kept within a step
+            Stage::IntermediateUpdateMode | Stage::IntermediateOutputs => false, // no state is kept within a step
             Stage::Instantiated | Stage::InitializationMode | Stage::Terminated | Stage::Error => true,
         }
     }
@@ -106,6 +112,8 @@ pub struct Outside {
     pub known: Known,
     /// The inputs when event mode was entered: what is set there has not acted before.
     pub arrived: Load,
+    /// When event mode was entered last: where the record jumps later, it does so once event mode is entered there.
+    pub event: Elapsed,
 }
 
 /// How far a simulation has come.
@@ -160,10 +168,12 @@ impl Model {
 
     /// What acts now: `inputs` and the record.
     pub fn load(&self, setup: &Setup, inputs: LinearLoad) -> LinearLoad {
-        match &self.ground {
-            Some(ground) => inputs.on_ground(setup.ground_motion(ground).at(self.elapsed)),
-            None => inputs,
-        }
+        let Some(ground) = &self.ground else { return inputs };
+        let (ground, elapsed) = (setup.ground_motion(ground), self.elapsed);
+        inputs.on_ground(match &self.outside {
+            Some(outside) => ground.since(outside.event, elapsed),
+            None => ground.at(elapsed),
+        })
     }
 
     /// The peaks since the start; before the first step, the values under `load`.
@@ -200,13 +210,18 @@ impl Model {
         matches!(self.engine.motion().phase, Phase::Overturned(_))
     }
 
-    /// Applies the transition that is due, if there is one.
-    pub fn transit<W: Watch>(&mut self, setup: &Setup, watch: &mut W) {
+    /// Applies the transition that is due, if there is one, and the uplift that is due at once then, or since the inputs `load`
+    /// have jumped.
+    pub fn transit<W: Watch>(&mut self, setup: &Setup, load: Load, watch: &mut W) {
+        let acting = self.load(setup, load.into()).value;
         if !setup.validity {
-            return self.engine.transit(watch);
+            self.engine.transit(watch);
+            return self.engine.lift_off_if_due(acting, watch);
         }
         let mut validity = self.watch_validity();
-        self.engine.transit(&mut (&mut validity, watch));
+        let watch = &mut (&mut validity, watch);
+        self.engine.transit(watch);
+        self.engine.lift_off_if_due(acting, watch);
         self.validity = *validity.found();
     }
 
@@ -247,6 +262,47 @@ impl Model {
         }?;
         (self.peaks, self.validity) = (peaks, *validity.found());
         Ok(progress)
+    }
+
+    /// The same for a host that transitions are handed over to. One that rounding alone keeps from the end of the step is met
+    /// there: a host that goes back and steps to the instant that it was told meets it again. What is due at the very start,
+    /// since an input has just jumped, is applied: no step is over where it began.
+    pub fn advance_to_transition<W: Watch>(
+        &mut self,
+        setup: &Setup,
+        step: f64,
+        inputs: LinearLoad,
+        watch: &mut W,
+    ) -> Result<Progress, AdvanceError> {
+        let (from, elapsed) = (self.engine.motion().time, self.elapsed);
+        let until = from + step;
+        let mut progress = self.advance(setup, step, inputs, watch)?;
+        while progress == Progress::Transition && self.engine.motion().time <= from {
+            progress = self.advance(setup, step, inputs, watch)?;
+        }
+        let rounding = ROUNDING * until.abs().max(self.engine.structure().p_l.recip());
+        if progress == Progress::Complete {
+            progress = self.look_ahead(setup, rounding, inputs.from(step), watch);
+        }
+        if until - self.engine.motion().time <= rounding {
+            self.engine.set_time(until);
+            self.elapsed = elapsed.and(step);
+        }
+        Ok(progress)
+    }
+
+    /// Goes on to what comes within `ahead` (s) under `inputs`, if anything does.
+    fn look_ahead<W: Watch>(&mut self, setup: &Setup, ahead: f64, inputs: LinearLoad, watch: &mut W) -> Progress {
+        let motion = *self.engine.motion();
+        let load = self.load(setup, inputs).value;
+        if self.engine.sample(load).event_indicators().iter().all(|indicator| *indicator > NEAR) {
+            return Progress::Complete;
+        }
+        let progress = self.follow(setup, ahead, inputs, watch).unwrap_or(Progress::Complete);
+        if progress == Progress::Complete {
+            self.engine.set_motion(motion);
+        }
+        progress
     }
 
     fn follow<W: Watch>(
@@ -291,9 +347,9 @@ impl Course {
         let farthest = if outside.is_some() { FARTHEST } else { MAX_ANGLE };
         is_possible(motion, farthest)
             && elapsed.seconds().is_finite()
-            && outside.as_ref().is_none_or(|Outside { known, arrived }| {
+            && outside.as_ref().is_none_or(|Outside { known, arrived, event }| {
                 is_possible(&known.motion, MAX_ANGLE)
-                    && known.elapsed.seconds().is_finite()
+                    && [known.elapsed, *event].iter().all(|elapsed| elapsed.seconds().is_finite())
                     && [known.load, *arrived]
                         .iter()
                         .all(|load| LOADS.iter().all(|input| input.check((input.get)(load)).is_ok()))

@@ -285,9 +285,6 @@ pub enum Failure {
         "FMUstate {0:#x} is not one that this instance has handed out and not freed; pass a pointer to NULL for a new one"
     )]
     UnknownSnapshot(usize),
-    /// A variable that takes no part in intermediate updates.
-    #[error("{} is no intermediate variable: only the inputs are", .0.name)]
-    NotIntermediate(&'static Variable),
     /// A buffer of the wrong size.
     #[error("size = {given} does not fit: the serialized FMU state takes {needed} bytes")]
     WrongSize {

@@ -3,7 +3,8 @@
 //!
 //! In co-simulation, where the host handles events and takes an early return, a step ends at the first transition on it:
 //! state and phase are those before it until `fmi3UpdateDiscreteStates` applies it. A host that can be called back gives
-//! the inputs at the end of every step within it, and they are straight lines over the step; else they are held.
+//! the inputs at the end of every step before it is computed, and they are straight lines over the step; else they are held.
+//! It can read all variables once it has been.
 #![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
 
 mod co_simulation;
@@ -15,7 +16,7 @@ use crate::c_abi::{
 };
 use crate::condition::{Interface, Stepping};
 use crate::failure::Failure;
-use crate::instance::{self, AskInputs, Instance, Updated};
+use crate::instance::{self, Instance, Updated};
 use crate::logger::{Category, Logger, Sink};
 use crate::state_machine::IsAllowed;
 use crate::variables::{Causality, DataType, Variable};
@@ -24,7 +25,6 @@ use rocking::Progress;
 use rocking::outside_step::INDICATORS;
 use rocking::state::COMPONENTS;
 use std::path::PathBuf;
-use std::rc::Rc;
 
 /// `fmi3LogMessageCallback`
 pub type LogMessageCallback = unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
@@ -62,16 +62,16 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
         let required = unsafe {
             values("requiredIntermediateVariables", requiredIntermediateVariables, nRequiredIntermediateVariables)
         }?;
+        let (mut sets_inputs, mut gets_outputs) = (false, false);
         for reference in required {
-            let variable = instance::find(*reference)?;
-            if variable.causality != Causality::Input {
-                return Err(Failure::NotIntermediate(variable));
-            }
+            let is_input = instance::find(*reference)?.causality == Causality::Input;
+            (sets_inputs, gets_outputs) = (sets_inputs || is_input, gets_outputs || !is_input);
         }
-        let asks = intermediateUpdate.filter(|_| !required.is_empty());
-        let ask = asks.map(|update| ask(update, instanceEnvironment));
+        let environment = instanceEnvironment;
+        let host =
+            intermediateUpdate.map(|update| IntermediateUpdate { update, environment, sets_inputs, gets_outputs });
         let is_allowed: IsAllowed<Function> = co_simulation::is_allowed;
-        Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), is_allowed, ask))
+        Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), is_allowed, host))
     };
     let arguments = [instanceName, instantiationToken, resourcePath];
     let host = (instanceEnvironment, logMessage);
@@ -121,12 +121,12 @@ unsafe fn create(
     [name, token, folder]: [*const c_char; 3],
     logging_on: u8,
     (environment, log): (*mut c_void, Option<LogMessageCallback>),
-    interface: impl FnOnce() -> Result<(Interface, IsAllowed<Function>, Option<AskInputs>), Failure>,
+    interface: impl FnOnce() -> Result<(Interface, IsAllowed<Function>, Option<IntermediateUpdate>), Failure>,
 ) -> *mut c_void {
     instantiate::<Function>(|| {
         let logger = Logger::new(sink(log, environment));
         let found = || {
-            let (interface, is_allowed, ask) = interface()?;
+            let (interface, is_allowed, called_back) = interface()?;
             let name = unsafe { text("instanceName", name) }?;
             let token = unsafe { text("instantiationToken", token) }?;
             let folder = unsafe { text("resourcePath", folder) }?;
@@ -135,11 +135,11 @@ unsafe fn create(
                 return Err(Failure::NoName);
             }
             let archive = instance::open("instantiationToken", token, PathBuf::from(folder))?;
-            Ok((archive, interface, is_allowed, ask, events))
+            Ok((archive, interface, is_allowed, called_back, events))
         };
         match found() {
-            Ok((archive, interface, is_allowed, ask, events)) => {
-                Some((Instance::new(archive, interface, events, logger).asking(ask), is_allowed))
+            Ok((archive, interface, is_allowed, called_back, events)) => {
+                Some((Instance::new(archive, interface, events, logger).calling_back(called_back), is_allowed))
             }
             Err(failure) => {
                 logger.failure(failure.status(), &format!("{function}: {failure}"));
@@ -157,17 +157,40 @@ fn sink(log: Option<LogMessageCallback>, environment: *mut c_void) -> Sink {
     })
 }
 
-/// Asks for the inputs at the end of a step. The step's values at that time are not known yet, which is what a tentative
-/// update says; that the host wants it to return early makes no difference.
-fn ask(update: IntermediateUpdateCallback, environment: *mut c_void) -> AskInputs {
-    Rc::new(move |time| {
-        let (mut early_return_requested, mut early_return_time) = (0, 0.0);
-        let (set_requested, get_allowed, step_finished, can_return_early) = (1, 0, 0, 0);
-        let (requested, at) = (&raw mut early_return_requested, &raw mut early_return_time);
+/// How a host is called back within a step. Nothing of it has to be dropped, so that it needs no instance once it is there.
+#[derive(Clone, Copy)]
+pub(crate) struct IntermediateUpdate {
+    update: IntermediateUpdateCallback,
+    environment: *mut c_void,
+    /// Whether the host sets inputs at the end of a step before it is computed.
+    pub sets_inputs: bool,
+    /// Whether it reads other variables once the step is computed.
+    pub gets_outputs: bool,
+}
+
+impl IntermediateUpdate {
+    /// Asks for the inputs at `time` (s), the end of a step: what the step leads to there is not known yet, which is what a
+    /// tentative update says.
+    fn ask_for_inputs(self, time: f64) {
+        let (set_requested, get_allowed, step_finished) = (1, 0, 0);
+        self.call(time, set_requested, get_allowed, step_finished);
+    }
+
+    /// Has the host read what a step has led to at `time` (s).
+    fn show_outputs(self, time: f64) {
+        let (set_requested, get_allowed, step_finished) = (0, 1, 1);
+        self.call(time, set_requested, get_allowed, step_finished);
+    }
+
+    /// That the host wants the step to return early makes no difference.
+    fn call(self, time: f64, set_requested: u8, get_allowed: u8, step_finished: u8) {
+        let IntermediateUpdate { update, environment, .. } = self;
+        let (mut requested, mut at, can_return_early) = (0, 0.0, 0);
+        let (requested, at) = (&raw mut requested, &raw mut at);
         unsafe {
             update(environment, time, set_requested, get_allowed, step_finished, can_return_early, requested, at)
         };
-    })
+    }
 }
 
 /// `fmi3FreeInstance`. Ignored for null, and while a call is under way, as from within a callback.
@@ -217,7 +240,7 @@ fn remedy(failure: &Failure) -> &'static str {
 /// `fmi3DoStep`
 ///
 /// Whether the host will go back makes no difference: FMU states are kept until it frees them. A host that can be called
-/// back has the instance on loan between the two parts of the call.
+/// back has the instance on loan between the parts of the call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3DoStep(
     c: *mut c_void,
@@ -236,7 +259,8 @@ pub unsafe extern "C" fn fmi3DoStep(
         check_pointer("earlyReturn", earlyReturn)?;
         check_pointer("lastSuccessfulTime", lastSuccessfulTime)
     };
-    let finish = |instance: &mut Instance| unsafe {
+    let (mut asked, mut told) = (None, None);
+    let mut compute = |instance: &mut Instance| unsafe {
         let progress = instance.do_step(point, step)?;
         let (time, may_return_early) = (instance.time()?, instance.may_return_early());
         if progress == Progress::Overturned {
@@ -245,18 +269,29 @@ pub unsafe extern "C" fn fmi3DoStep(
         write("eventHandlingNeeded", eventHandlingNeeded, u8::from(progress == Progress::Transition))?;
         write("terminateSimulation", terminateSimulation, u8::from(progress == Progress::Overturned))?;
         write("earlyReturn", earlyReturn, u8::from(may_return_early && time < point + step))?;
-        write("lastSuccessfulTime", lastSuccessfulTime, time)
+        write("lastSuccessfulTime", lastSuccessfulTime, time)?;
+        told = instance.show_step().map(|host| (host, time));
+        Ok(())
     };
-    let mut ask = None;
     let begin = |instance: &mut Instance| {
         check()?;
-        ask = instance.begin_step(point, step)?;
-        if ask.is_none() { finish(instance) } else { Ok(()) }
+        asked = instance.begin_step(point, step)?;
+        if asked.is_none() { compute(instance) } else { Ok(()) }
     };
-    let status = unsafe { call(c, Function::DoStep, begin) };
-    let Some(ask) = ask else { return status };
-    ask(point + step);
-    unsafe { call_on(c, Function::DoStep, finish) }
+    let mut status = unsafe { call(c, Function::DoStep, begin) };
+    if let Some(host) = asked {
+        host.ask_for_inputs(point + step);
+        status = unsafe { call_on(c, Function::DoStep, compute) };
+    }
+    if let Some((host, time)) = told {
+        host.show_outputs(time);
+        let end = |instance: &mut Instance| {
+            instance.end_step();
+            Ok(())
+        };
+        status = unsafe { call_on(c, Function::DoStep, end) };
+    }
+    status
 }
 
 functions! {

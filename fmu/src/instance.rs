@@ -2,6 +2,7 @@
 
 use crate::condition::{Interface, Model, Present, Stepping};
 use crate::failure::Failure;
+use crate::fmi3::IntermediateUpdate;
 use crate::inputs::Inputs;
 use crate::logger::{Logger, Status};
 use crate::resources::Archive;
@@ -21,7 +22,6 @@ use std::collections::BTreeMap;
 use std::ffi::{CString, c_char};
 use std::mem::MaybeUninit;
 use std::path::PathBuf;
-use std::rc::Rc;
 
 pub mod model_exchange;
 
@@ -37,10 +37,12 @@ pub struct Instance {
     snapshots: Snapshots,
     /// The text that the host was shown last, which is its until the next call.
     shown: CString,
-    /// Asks the host for the inputs at a later time (s), if it wants to be asked.
-    ask: Option<AskInputs>,
-    /// While it is asked: the inputs before, and how long the step is to be, s.
+    /// How the host is called back within a step, if it wants to be.
+    host: Option<IntermediateUpdate>,
+    /// While it is asked for inputs: the inputs before, and how long the step is to be, s.
     asked: Option<(Inputs, f64)>,
+    /// While it reads outputs: where the step has led.
+    led_to: Option<Stage>,
 }
 
 /// What came of an event.
@@ -53,9 +55,6 @@ pub struct Updated {
     /// When the next event is that can be foreseen, s.
     pub next_event: Option<f64>,
 }
-
-/// Asks the host for the inputs at a later time, s.
-pub(crate) type AskInputs = Rc<dyn Fn(f64)>;
 
 /// The archive with the folder `resources`, if `guid`, the argument `name`, is its.
 pub fn open(name: &'static str, guid: &str, resources: PathBuf) -> Result<Archive, Failure> {
@@ -72,13 +71,13 @@ impl Instance {
     pub fn new(archive: Archive, interface: Interface, events: bool, mut logger: Logger) -> Instance {
         logger.set_events(events);
         let now = Present::new(&archive, interface);
-        let (snapshots, shown) = Default::default();
-        Instance { logger, events_at_start: events, archive, now, snapshots, shown, ask: None, asked: None }
+        let (snapshots, shown, host, asked, led_to) = Default::default();
+        Instance { logger, events_at_start: events, archive, now, snapshots, shown, host, asked, led_to }
     }
 
-    /// The same, which asks its host for the inputs at the end of every step.
-    pub(crate) fn asking(self, ask: Option<AskInputs>) -> Instance {
-        Instance { ask, ..self }
+    /// The same, which calls its host back within steps.
+    pub(crate) fn calling_back(self, host: Option<IntermediateUpdate>) -> Instance {
+        Instance { host, ..self }
     }
 
     /// State of FMI's state machine.
@@ -128,6 +127,13 @@ impl Instance {
             self.logger.warning(&warning);
         }
         if self.now.interface == Interface::ModelExchange {
+            let watched = [("peaks", self.now.setup.peaks), ("validity", self.now.setup.validity)];
+            for (name, _) in watched.into_iter().filter(|(_, is_watched)| *is_watched) {
+                self.logger.warning(&format!(
+                    "{name} = true watches nothing in model exchange, where the motion between two points is the host's: what it \
+                     stands for is NaN; use co-simulation"
+                ));
+            }
             self.start_outside()?;
         }
         self.now.stage = self.now.interface.first_stage();
@@ -153,12 +159,12 @@ impl Instance {
         }
     }
 
-    /// Applies the transition that a step has ended at, if there is one.
+    /// Applies the transition that a step has ended at, if there is one, and the uplift that is due then.
     fn transit(&mut self) -> Result<(), Failure> {
         let logger = &self.logger;
-        let (model, setup, ..) = self.now.parts(&self.archive)?;
+        let (model, setup, inputs, _) = self.now.parts(&self.archive)?;
         let known = model.validity;
-        model.transit(setup, &mut |transition: &Transition| log(logger, transition));
+        model.transit(setup, inputs.values(), &mut |transition: &Transition| log(logger, transition));
         if setup.validity {
             warn(logger, &known, &model.validity);
         }
@@ -550,14 +556,30 @@ impl Instance {
 
     /// How a step over `step` (s) from `point` (s) begins: its host is to be asked for the inputs at its end, outside of
     /// any call, where it wants to be. Then [`Instance::do_step`] is the rest.
-    pub(crate) fn begin_step(&mut self, point: f64, step: f64) -> Result<Option<AskInputs>, Failure> {
+    pub(crate) fn begin_step(&mut self, point: f64, step: f64) -> Result<Option<IntermediateUpdate>, Failure> {
         let (model, setup, inputs, stage) = self.now.parts(&self.archive)?;
         check_step(model, setup, point, step)?;
-        if self.ask.is_some() {
+        let asked = self.host.filter(|host| host.sets_inputs);
+        if asked.is_some() {
             self.asked = Some((*inputs, step));
             *stage = Stage::IntermediateUpdateMode;
         }
-        Ok(self.ask.clone())
+        Ok(asked)
+    }
+
+    /// How a step ends: its host is to read what it has led to, outside of any call, where it wants to. Then
+    /// [`Instance::end_step`] is the rest.
+    pub(crate) fn show_step(&mut self) -> Option<IntermediateUpdate> {
+        let told = self.host.filter(|host| host.gets_outputs);
+        if told.is_some() {
+            self.led_to = Some(std::mem::replace(&mut self.now.stage, Stage::IntermediateOutputs));
+        }
+        told
+    }
+
+    /// The host has read.
+    pub(crate) fn end_step(&mut self) {
+        self.now.stage = self.led_to.take().unwrap_or(self.now.stage);
     }
 
     /// From `point` (s), which is where the instance is, over `step` (s), or to the first transition if that is to be
@@ -588,9 +610,16 @@ impl Instance {
         model.engine.set_time(point);
         model.engine.stop_at_transitions(stops);
         let known = setup.validity.then_some(model.validity);
-        match model.advance(setup, step, load, &mut |transition: &Transition| log(logger, transition)) {
+        let mut watch = |transition: &Transition| log(logger, transition);
+        let result = if stops {
+            model.advance_to_transition(setup, step, load, &mut watch)
+        } else {
+            model.advance(setup, step, load, &mut watch)
+        };
+        match result {
             Ok(progress) => {
-                let passed = if progress == Progress::Complete { step } else { model.engine.motion().time - point };
+                let reached = model.engine.motion().time;
+                let passed = if reached == point + step { step } else { reached - point };
                 if passed > 0.0 {
                     inputs.pass(load, passed);
                 }

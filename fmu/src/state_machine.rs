@@ -15,6 +15,8 @@ pub enum Stage {
     StepComplete,
     /// Within a step, while the host is asked for the inputs at its end.
     IntermediateUpdateMode,
+    /// The same at its end, while the host reads what it has led to.
+    IntermediateOutputs,
     /// The structure has overturned; there is nothing left to step to.
     StepFailed,
     /// At an event.
@@ -29,17 +31,23 @@ pub enum Stage {
 
 impl Stage {
     /// All of them.
-    pub const ALL: [Stage; 9] = [
+    pub const ALL: [Stage; 10] = [
         Stage::Instantiated,
         Stage::InitializationMode,
         Stage::StepComplete,
         Stage::IntermediateUpdateMode,
+        Stage::IntermediateOutputs,
         Stage::StepFailed,
         Stage::EventMode,
         Stage::ContinuousTimeMode,
         Stage::Terminated,
         Stage::Error,
     ];
+
+    /// Whether a step is under way, within which the host has the instance on loan.
+    pub const fn is_within_step(self) -> bool {
+        matches!(self, Stage::IntermediateUpdateMode | Stage::IntermediateOutputs)
+    }
 
     /// Whether initialization has ended.
     pub const fn has_started(self) -> bool {
@@ -53,7 +61,8 @@ impl fmt::Display for Stage {
             Stage::Instantiated => "instantiated",
             Stage::InitializationMode => "initialization mode",
             Stage::StepComplete => "step complete",
-            Stage::IntermediateUpdateMode => "intermediate update mode",
+            Stage::IntermediateUpdateMode => "intermediate update mode, for inputs",
+            Stage::IntermediateOutputs => "intermediate update mode, for outputs",
             Stage::StepFailed => "step failed (overturned)",
             Stage::EventMode => "event mode",
             Stage::ContinuousTimeMode => "continuous-time mode",

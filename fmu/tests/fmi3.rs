@@ -20,54 +20,59 @@ use tempfile::TempDir;
 /// The standard's sections 2.3 and 4.2.1, by the functions that each state names: instantiated, initialization mode,
 /// step mode, event mode, intermediate update mode, step failed, terminated, error. The last three are the standard's
 /// "terminated": after overturning, after `fmi3Terminate`, after an error; after the first of them a simulation has
-/// still to be terminated. Within an intermediate update the inputs can be set: it is said that no outputs can be had
-/// then, and a step is no state to keep or to leave.
+/// still to be terminated. Within an intermediate update the inputs can be set, or all values be had: it is said which,
+/// and a step is no state to keep or to leave. The numbers of states and of event indicators can be had at any time, as of the
+/// Reference FMUs.
 const STANDARD: &str = "
-    SetDebugLogging                 x x x x x x x x
-    EnterInitializationMode         x - - - - - - -
-    ExitInitializationMode          - x - - - - - -
-    EnterEventMode                  - - x - - - - -
-    Terminate                       - - x x - x - -
-    Reset                           x x x x - x x x
-    GetFloat64                      x x x x - x x x
-    GetInt32                        x x x x - x x x
-    GetInt64                        x x x x - x x x
-    GetBoolean                      x x x x - x x x
-    GetString                       x x x x - x x x
-    SetFloat64                      x x x x x - - -
-    SetInt32                        x x x x - - - -
-    SetInt64                        x x x x - - - -
-    SetBoolean                      x x x x - - - -
-    SetString                       x x x x - - - -
-    GetFMUState                     x x x x - x x x
-    SetFMUState                     x x x x - x x x
-    FreeFMUState                    x x x x - x x x
-    SerializedFMUStateSize          x x x x - x x x
-    SerializeFMUState               x x x x - x x x
-    DeserializeFMUState             x x x x - x x x
-    GetDirectionalDerivative        - x x x - x x x
-    GetAdjointDerivative            - x x x - x x x
-    EvaluateDiscreteStates          - - - x - - - -
-    UpdateDiscreteStates            - - - x - - - -
-    EnterStepMode                   - - - x - - - -
-    GetOutputDerivatives            - - x - - x x x
-    DoStep                          - - x - - - - -
+    SetDebugLogging                 x x x x x x x x x
+    EnterInitializationMode         x - - - - - - - -
+    ExitInitializationMode          - x - - - - - - -
+    EnterEventMode                  - - x - - - - - -
+    Terminate                       - - x x - - x - -
+    Reset                           x x x x - - x x x
+    GetFloat64                      x x x x - x x x x
+    GetInt32                        x x x x - x x x x
+    GetInt64                        x x x x - x x x x
+    GetBoolean                      x x x x - x x x x
+    GetString                       x x x x - x x x x
+    SetFloat64                      x x x x x - - - -
+    SetInt32                        x x x x - - - - -
+    SetInt64                        x x x x - - - - -
+    SetBoolean                      x x x x - - - - -
+    SetString                       x x x x - - - - -
+    GetFMUState                     x x x x - - x x x
+    SetFMUState                     x x x x - - x x x
+    FreeFMUState                    x x x x - - x x x
+    SerializedFMUStateSize          x x x x - - x x x
+    SerializeFMUState               x x x x - - x x x
+    DeserializeFMUState             x x x x - - x x x
+    GetDirectionalDerivative        - x x x - - x x x
+    GetAdjointDerivative            - x x x - - x x x
+    EvaluateDiscreteStates          - - - x - - - - -
+    UpdateDiscreteStates            - - - x - - - - -
+    EnterStepMode                   - - - x - - - - -
+    GetOutputDerivatives            - - x - - x x x x
+    DoStep                          - - x - - - - - -
+    GetNumberOfEventIndicators      x x x x x x x x x
+    GetNumberOfContinuousStates     x x x x x x x x x
 ";
 
 /// The stages of co-simulation.
-const STAGES: [Stage; 8] = [
+const STAGES: [Stage; 9] = [
     Stage::Instantiated,
     Stage::InitializationMode,
     Stage::StepComplete,
     Stage::EventMode,
     Stage::IntermediateUpdateMode,
+    Stage::IntermediateOutputs,
     Stage::StepFailed,
     Stage::Terminated,
     Stage::Error,
 ];
 
 /// The standard's sections 2.3 and 3.2.1 for a model: instantiated, initialization mode, event mode, continuous-time mode,
-/// terminated, error, which is the standard's "terminated" after an error.
+/// terminated, error, which is the standard's "terminated" after an error. Beyond them the Reference FMUs let time be set at an
+/// event, and the numbers be had at any time.
 const STANDARD_OF_MODEL: &str = "
     SetDebugLogging                 x x x x x x
     EnterInitializationMode         x - - - - -
@@ -97,14 +102,14 @@ const STANDARD_OF_MODEL: &str = "
     UpdateDiscreteStates            - - x - - -
     EnterContinuousTimeMode         - - x - - -
     CompletedIntegratorStep         - - - x - -
-    SetTime                         - - - x - -
+    SetTime                         - - x x - -
     SetContinuousStates             - - - x - -
     GetContinuousStateDerivatives   - x x x x x
     GetEventIndicators              - x x x x x
     GetContinuousStates             - x x x x x
     GetNominalsOfContinuousStates   - x x x x x
-    GetNumberOfEventIndicators      x - x - - -
-    GetNumberOfContinuousStates     x - x - - -
+    GetNumberOfEventIndicators      x x x x x x
+    GetNumberOfContinuousStates     x x x x x x
 ";
 
 type Log = RefCell<Vec<(c_int, String)>>;
@@ -411,7 +416,7 @@ fn check(table: &str, stages: &[Stage], host_in: fn(Stage) -> Host) {
             Stage::ALL.into_iter().filter(|stage| stages.contains(stage) && is_allowed(stage)).collect();
         let names: Vec<_> = allowed.iter().map(Stage::to_string).collect();
         let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-        for stage in stages.iter().copied().filter(|stage| *stage != Stage::IntermediateUpdateMode) {
+        for stage in stages.iter().copied().filter(|stage| !stage.is_within_step()) {
             let host = host_in(stage);
             assert_eq!(host.stage(), stage);
             host.log.borrow_mut().clear();
@@ -519,58 +524,91 @@ fn the_other_versions_functions_refuse_an_instance() {
     assert_eq!(host.stage(), Stage::StepComplete);
 }
 
-/// What a host that is called back may do: set inputs, and nothing else; least of all free the instance.
+/// A host that is called back. It may set inputs before a step is computed and read afterwards, and nothing else; least of
+/// all free the instance.
 struct Called {
     c: *mut c_void,
+    /// What the input is to be at the end of the next step.
     end: f64,
+    /// When it read theta and its rate, and what these were.
+    read: Vec<[f64; 3]>,
 }
 
-unsafe extern "C" fn update(environment: *mut c_void, _: f64, _: u8, _: u8, _: u8, _: u8, _: *mut u8, _: *mut f64) {
-    let &Called { c, end } = unsafe { &*environment.cast::<Called>() };
-    let (a_g, m) = (reference("a_g"), reference("m"));
+unsafe extern "C" fn update(
+    environment: *mut c_void,
+    time: f64,
+    set: u8,
+    get: u8,
+    finished: u8,
+    _: u8,
+    _: *mut u8,
+    _: *mut f64,
+) {
+    let Called { c, end, read } = unsafe { &mut *environment.cast::<Called>() };
+    let (c, theta, a_g, m) = (*c, reference("theta"), reference("a_g"), reference("m"));
     unsafe {
         fmi3FreeInstance(c);
-        let (mut flags, mut reached, mut value, mut state) = ([0u8; 3], 0.0, 0.0, null_mut());
+        let (mut flags, mut reached, mut value, mut rate, mut state) = ([0u8; 3], 0.0, 0.0, 0.0, null_mut());
         let [event, terminate, early] = &mut flags;
         assert_eq!(fmi3DoStep(c, 0.0, 1.0, 0, event, terminate, early, &mut reached), ERROR);
         assert_eq!((fmi3Reset(c), fmi3GetFMUState(c, &mut state)), (ERROR, ERROR));
         assert_eq!(fmi3SetDebugLogging(c, 0, 0, null()), OK);
-        assert_eq!(fmi3GetFloat64(c, &a_g, 1, &mut value, 1), ERROR);
-        assert_eq!((fmi3SetFloat64(c, &m, 1, &end, 1), fmi3SetFloat64(c, &a_g, 1, &f64::NAN, 1)), (ERROR, ERROR));
-        assert_eq!(fmi3SetFloat64(c, &a_g, 1, &end, 1), OK);
+        let got = fmi3GetFloat64(c, &theta, 1, &mut value, 1);
+        let got = (got, fmi3GetOutputDerivatives(c, &theta, 1, &1, &mut rate, 1));
+        assert_eq!((fmi3SetFloat64(c, &m, 1, end, 1), fmi3SetFloat64(c, &a_g, 1, &f64::NAN, 1)), (ERROR, ERROR));
+        let was_set = fmi3SetFloat64(c, &a_g, 1, end, 1);
+        match (set, get, finished) {
+            (1, 0, 0) => assert_eq!((was_set, got), (OK, (ERROR, ERROR))),
+            (0, 1, 1) => {
+                assert_eq!((was_set, got), (ERROR, (OK, OK)));
+                read.push([time, value, rate]);
+            }
+            other => panic!("{other:?}"),
+        }
     }
 }
 
 #[test]
-fn a_host_that_is_called_back_sets_inputs_and_does_no_harm() {
+fn a_host_that_is_called_back_sets_inputs_reads_and_does_no_harm() {
     let resources = resources();
     let token = CString::new(FlexibleRocking::guid(&Parameters::EVISON.into())).unwrap();
     let folder = CString::new(resources.path().to_str().unwrap()).unwrap();
-    let mut called = Called { c: null_mut(), end: 2.0 };
+    let mut called = Called { c: null_mut(), end: 2.0, read: Vec::new() };
     let (name, token, folder) = (c"wall".as_ptr(), token.as_ptr(), folder.as_ptr());
-    let (a_g, environment) = (reference("a_g"), &raw mut called);
-    let with = |required: &[c_uint]| unsafe {
-        let (required, n) = (required.as_ptr(), required.len());
-        let environment = environment.cast();
+    let (a_g, theta, environment) = (reference("a_g"), reference("theta"), &raw mut called);
+    let with = |required: &[c_uint], environment: *mut Called| unsafe {
+        let (required, n, environment) = (required.as_ptr(), required.len(), environment.cast());
         fmi3InstantiateCoSimulation(name, token, folder, 0, 0, 0, 0, required, n, environment, None, Some(update))
     };
-    assert!(with(&[a_g, reference("theta")]).is_null(), "theta is no intermediate variable");
-    let c = with(&[a_g]);
-    unsafe {
-        (*environment).c = c;
-        assert_eq!((fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0), fmi3ExitInitializationMode(c)), (OK, OK));
-        let (mut flags, mut reached, mut value) = ([0u8; 3], 0.0, 0.0);
-        let [event, terminate, early] = &mut flags;
-        for (time, end) in [(0.0, 2.0), (0.25, -1.0)] {
-            (*environment).end = end;
-            assert_eq!(fmi3DoStep(c, time, 0.25, 0, event, terminate, early, &mut reached), OK);
-            assert_eq!((fmi3GetFloat64(c, &a_g, 1, &mut value, 1), value, reached), (OK, end, time + 0.25));
+    assert!(with(&[a_g, c_uint::MAX], environment).is_null());
+    for (required, sets, reads) in [(&[a_g][..], true, false), (&[theta], false, true), (&[a_g, theta], true, true)] {
+        let c = with(required, environment);
+        unsafe {
+            (*environment).c = c;
+            assert_eq!(fmi3SetFloat64(c, &reference("theta_0"), 1, &0.3, 1), OK);
+            assert_eq!((fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0), fmi3ExitInitializationMode(c)), (OK, OK));
+            let (mut flags, mut reached, mut value, mut rate) = ([0u8; 3], 0.0, 0.0, 0.0);
+            let [event, terminate, early] = &mut flags;
+            for (time, end) in [(0.0, 2.0), (0.25, -1.0)] {
+                (*environment).end = end;
+                assert_eq!(fmi3DoStep(c, time, 0.25, 0, event, terminate, early, &mut reached), OK);
+                assert_eq!((fmi3GetFloat64(c, &a_g, 1, &mut value, 1), value), (OK, if sets { end } else { 0.0 }));
+                assert_eq!(fmi3GetFloat64(c, &theta, 1, &mut value, 1), OK);
+                assert_eq!(fmi3GetOutputDerivatives(c, &theta, 1, &1, &mut rate, 1), OK);
+                let read = std::mem::take(&mut (*environment).read);
+                assert_eq!(read, if reads { vec![[time + 0.25, value, rate]] } else { vec![] });
+            }
+            // an input that runs out of its range on the way ends the step and is as it was
+            (*environment).end = 1e4;
+            assert_eq!(fmi3SetFloat64(c, &a_g, 1, &3.0, 1), OK);
+            assert_eq!(fmi3DoStep(c, 0.5, 0.25, 0, event, terminate, early, null_mut()), ERROR);
+            assert_eq!((fmi3GetFloat64(c, &a_g, 1, &mut value, 1), value), (OK, 3.0));
+            // the instant of overturning is where it reads last
+            (*environment).end = 0.0;
+            assert_eq!(fmi3DoStep(c, 0.5, 100.0, 0, event, terminate, early, &mut reached), OK);
+            let ends: Vec<_> = std::mem::take(&mut (*environment).read).iter().map(|read| read[0]).collect();
+            assert_eq!((*terminate, ends), (1, if reads { vec![reached] } else { vec![] }));
+            fmi3FreeInstance(c);
         }
-        // an input that runs out of its range on the way ends the step and is as it was
-        (*environment).end = 1e4;
-        assert_eq!(fmi3SetFloat64(c, &a_g, 1, &3.0, 1), OK);
-        assert_eq!(fmi3DoStep(c, 0.5, 0.25, 0, event, terminate, early, null_mut()), ERROR);
-        assert_eq!((fmi3GetFloat64(c, &a_g, 1, &mut value, 1), value), (OK, 3.0));
-        fmi3FreeInstance(c);
     }
 }

@@ -160,6 +160,44 @@ fn the_record_acts_at_every_instant_and_its_jumps_are_foreseen() {
     }
 }
 
+/// A host that arrives at a jump sees what led there until it enters event mode, which a kept state remembers, and one that
+/// never does sees what comes after it as soon as it has passed the jump.
+#[test]
+fn a_jump_is_still_to_come_until_its_event() {
+    let host = Host::new_model();
+    host.write("push.csv", "0,4\n1,2\n");
+    assert_eq!((host.set_record("push.csv"), host.set(&[("record_start", 0.5)])), (OK, OK));
+    assert_eq!((host.setup(None, 10.0, None), host.enter(), host.exit()), (OK, OK, OK));
+    assert_eq!((host.update().unwrap().next_event_time, host.go_on()), (10.5, OK));
+    let acts = |a_g: f64, slope: f64| {
+        assert_eq!((host.get("a_ground"), host.derivatives().unwrap()[1]), (a_g, -a_g));
+        let (unknown, known, mut by_time) = (reference("a_ground"), reference("time"), f64::MAX);
+        let status =
+            unsafe { fmi2GetDirectionalDerivative(host.component, &unknown, 1, &known, 1, &1.0, &mut by_time) };
+        assert_eq!(status, OK);
+        assert_relative_eq!(by_time, slope, max_relative = 1e-12);
+    };
+    assert_eq!(host.set_time(10.5), OK);
+    acts(0.0, 0.0);
+    assert_eq!(host.complete(), Ok((false, false)));
+    acts(0.0, 0.0);
+    let arrived = host.keep();
+    assert_eq!(host.enter_event_mode(), OK);
+    acts(4.0, -2.0);
+    let at_event = host.bytes();
+    assert_eq!(host.go_back(arrived), OK);
+    acts(0.0, 0.0);
+    assert_eq!(host.go_back(host.deserialize(&at_event).unwrap()), OK);
+    acts(4.0, -2.0);
+    assert_eq!((host.update().unwrap().next_event_time, host.go_on()), (11.5, OK));
+    acts(4.0, -2.0);
+    for (time, a_g, slope) in [(11.5, 2.0, -2.0), (10.5, 4.0, -2.0), (11.5f64.next_up(), 2.0, -2.0), (11.501, 0.0, 0.0)]
+    {
+        assert_eq!(host.set_time(time), OK);
+        acts(a_g, slope);
+    }
+}
+
 #[test]
 fn what_no_integrator_should_try_is_sent_back() {
     let host = Host::going_model(&[("theta_0", 0.02)]);
@@ -224,7 +262,15 @@ fn nobody_watches_peaks() {
     let host = Host::new_model();
     assert_eq!((host.watch_peaks(), host.set_boolean("validity", 1)), (OK, OK));
     let host = host.initialized(&[("theta_0", 0.02)]);
+    host.log.borrow_mut().clear();
     assert_eq!((host.exit(), host.update().is_ok(), host.go_on()), (OK, true, OK));
+    let warnings: Vec<_> = host.log.take().into_iter().map(|message| (message.status, message.text)).collect();
+    let expected = ["peaks", "validity"].map(|name| {
+        let text = "= true watches nothing in model exchange, where the motion between two points is the host's: what it \
+                    stands for is NaN; use co-simulation";
+        (WARNING, format!("{name} {text}"))
+    });
+    assert_eq!(warnings, expected);
     host.integrate(0.0, 1e-3);
     assert!(host.get("theta_max").is_nan() && host.get("mu_required").is_nan());
 }

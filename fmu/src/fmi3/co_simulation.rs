@@ -6,50 +6,53 @@ use crate::state_machine::{Stage, table};
 
 #[rustfmt::skip]
 table! {
-    [Instantiated, InitializationMode, StepComplete, EventMode, IntermediateUpdateMode, StepFailed, Terminated, Error]
+    [Instantiated, InitializationMode, StepComplete, EventMode, IntermediateUpdateMode, IntermediateOutputs, StepFailed,
+     Terminated, Error]
     //                               instantiated
     //                                 initialization mode
     //                                   step mode
     //                                     event mode
-    //                                       intermediate update mode
-    //                                         step failed: overturned
-    //                                           terminated
-    //                                             error
-    SetDebugLogging                 [x x x x x x x x]
-    EnterInitializationMode         [x - - - - - - -]
-    ExitInitializationMode          [- x - - - - - -]
-    EnterEventMode                  [- - x - - - - -]
-    Terminate                       [- - x x - x - -]
-    Reset                           [x x x x - x x x]
-    GetFloat64                      [x x x x - x x x]
-    GetInt32                        [x x x x - x x x]
-    GetInt64                        [x x x x - x x x]
-    GetBoolean                      [x x x x - x x x]
-    GetString                       [x x x x - x x x]
-    SetFloat64                      [x x x x x - - -]
-    SetInt32                        [x x x x - - - -]
-    SetInt64                        [x x x x - - - -]
-    SetBoolean                      [x x x x - - - -]
-    SetString                       [x x x x - - - -]
-    GetFMUState                     [x x x x - x x x]
-    SetFMUState                     [x x x x - x x x]
-    FreeFMUState                    [x x x x - x x x]
-    SerializedFMUStateSize          [x x x x - x x x]
-    SerializeFMUState               [x x x x - x x x]
-    DeserializeFMUState             [x x x x - x x x]
-    GetDirectionalDerivative        [- x x x - x x x]
-    GetAdjointDerivative            [- x x x - x x x]
-    EvaluateDiscreteStates          [- - - x - - - -]
-    UpdateDiscreteStates            [- - - x - - - -]
-    EnterStepMode                   [- - - x - - - -]
-    GetOutputDerivatives            [- - x - - x x x]
-    DoStep                          [- - x - - - - -]
+    //                                       intermediate update mode, for inputs
+    //                                         the same for outputs
+    //                                           step failed: overturned
+    //                                             terminated
+    //                                               error
+    SetDebugLogging                 [x x x x x x x x x]
+    EnterInitializationMode         [x - - - - - - - -]
+    ExitInitializationMode          [- x - - - - - - -]
+    EnterEventMode                  [- - x - - - - - -]
+    Terminate                       [- - x x - - x - -]
+    Reset                           [x x x x - - x x x]
+    GetFloat64                      [x x x x - x x x x]
+    GetInt32                        [x x x x - x x x x]
+    GetInt64                        [x x x x - x x x x]
+    GetBoolean                      [x x x x - x x x x]
+    GetString                       [x x x x - x x x x]
+    SetFloat64                      [x x x x x - - - -]
+    SetInt32                        [x x x x - - - - -]
+    SetInt64                        [x x x x - - - - -]
+    SetBoolean                      [x x x x - - - - -]
+    SetString                       [x x x x - - - - -]
+    GetFMUState                     [x x x x - - x x x]
+    SetFMUState                     [x x x x - - x x x]
+    FreeFMUState                    [x x x x - - x x x]
+    SerializedFMUStateSize          [x x x x - - x x x]
+    SerializeFMUState               [x x x x - - x x x]
+    DeserializeFMUState             [x x x x - - x x x]
+    GetDirectionalDerivative        [- x x x - - x x x]
+    GetAdjointDerivative            [- x x x - - x x x]
+    EvaluateDiscreteStates          [- - - x - - - - -]
+    UpdateDiscreteStates            [- - - x - - - - -]
+    EnterStepMode                   [- - - x - - - - -]
+    GetOutputDerivatives            [- - x - - x x x x]
+    DoStep                          [- - x - - - - - -]
+    GetNumberOfEventIndicators      [x x x x x x x x x]
+    GetNumberOfContinuousStates     [x x x x x x x x x]
     // nowhere:
     - GetFloat32 GetInt8 GetUInt8 GetInt16 GetUInt16 GetUInt32 GetUInt64 GetBinary GetClock SetFloat32 SetInt8
       SetUInt8 SetInt16 SetUInt16 SetUInt32 SetUInt64 SetBinary SetClock GetNumberOfVariableDependencies
       GetVariableDependencies EnterConfigurationMode ExitConfigurationMode GetIntervalDecimal GetIntervalFraction
       GetShiftDecimal GetShiftFraction SetIntervalDecimal SetIntervalFraction SetShiftDecimal SetShiftFraction
       EnterContinuousTimeMode CompletedIntegratorStep SetTime SetContinuousStates GetContinuousStateDerivatives
-      GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates GetNumberOfEventIndicators
-      GetNumberOfContinuousStates ActivateModelPartition
+      GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates ActivateModelPartition
 }

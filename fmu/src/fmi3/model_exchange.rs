@@ -41,14 +41,14 @@ table! {
     UpdateDiscreteStates            [- - x - - -]
     EnterContinuousTimeMode         [- - x - - -]
     CompletedIntegratorStep         [- - - x - -]
-    SetTime                         [- - - x - -]
+    SetTime                         [- - x x - -]
     SetContinuousStates             [- - - x - -]
     GetContinuousStateDerivatives   [- x x x x x]
     GetEventIndicators              [- x x x x x]
     GetContinuousStates             [- x x x x x]
     GetNominalsOfContinuousStates   [- x x x x x]
-    GetNumberOfEventIndicators      [x - x - - -]
-    GetNumberOfContinuousStates     [x - x - - -]
+    GetNumberOfEventIndicators      [x x x x x x]
+    GetNumberOfContinuousStates     [x x x x x x]
     // nowhere:
     - EnterStepMode GetOutputDerivatives DoStep GetFloat32 GetInt8 GetUInt8 GetInt16 GetUInt16 GetUInt32 GetUInt64
       GetBinary GetClock SetFloat32 SetInt8 SetUInt8 SetInt16 SetUInt16 SetUInt32 SetUInt64 SetBinary SetClock

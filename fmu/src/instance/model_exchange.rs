@@ -29,9 +29,12 @@ pub struct Completed {
 }
 
 impl Model {
-    /// The ground's time at the host's clock.
-    fn elapsed_at(setup: &Setup, time: f64) -> Elapsed {
-        Elapsed::default().and(time - setup.start_time)
+    /// The ground's time at the host's clock, whose last digits are coarse where the start is late: what has been announced as
+    /// the instant of a sample is that instant.
+    fn elapsed_at(&self, setup: &Setup, time: f64) -> Elapsed {
+        let elapsed = Elapsed::default().and(time - setup.start_time);
+        let resolution = 2.0 * f64::EPSILON * time.abs().max(setup.start_time.abs());
+        self.ground.as_ref().map_or(elapsed, |ground| setup.ground_motion(ground).by_clock(elapsed, resolution))
     }
 
     /// What acts now under the inputs `load`.
@@ -71,19 +74,22 @@ impl Instance {
     pub(super) fn start_outside(&mut self) -> Result<(), Failure> {
         let (model, _, inputs, _) = self.now.parts(&self.archive)?;
         let (motion, elapsed, load) = (*model.engine.motion(), model.elapsed, inputs.values());
-        model.outside = Some(Outside { known: Known { motion, elapsed, load }, arrived: load });
+        model.outside = Some(Outside { known: Known { motion, elapsed, load }, arrived: load, event: elapsed });
         Ok(())
     }
 
     /// The host is at `time` (s).
     pub fn set_time(&mut self, time: f64) -> Result<(), Failure> {
-        let (model, setup, ..) = self.now.parts(&self.archive)?;
-        let elapsed = Model::elapsed_at(setup, time);
+        let (model, setup, _, stage) = self.now.parts(&self.archive)?;
         if !(time.is_finite() && (time - setup.start_time).is_finite()) {
             return Err(Failure::BadTime(time));
         }
+        let elapsed = model.elapsed_at(setup, time);
         model.engine.set_time(time);
         model.elapsed = elapsed;
+        if let (Some(outside), Stage::EventMode) = (&mut model.outside, stage) {
+            outside.event = elapsed;
+        }
         Ok(())
     }
 
@@ -153,7 +159,7 @@ impl Instance {
         if let Some(outside) = &mut model.outside
             && *stage == Stage::ContinuousTimeMode
         {
-            outside.arrived = inputs.values();
+            (outside.arrived, outside.event) = (inputs.values(), model.elapsed);
         }
         Ok(())
     }
@@ -187,7 +193,7 @@ impl Instance {
         model.engine.lift_off_if_due(acting, &mut |transition: &Transition| log(logger, transition));
         let motion = *model.engine.motion();
         let known = Known { motion, elapsed: model.elapsed, load };
-        model.outside = Some(Outside { known, arrived: load });
+        model.outside = Some(Outside { known, arrived: load, event: outside.event });
         model.engine.set_time(host.time);
         Ok(Updated {
             has_ended: model.has_overturned(),

@@ -130,9 +130,11 @@ impl Version for Fmi2 {
                 SetReal,
                 EnterEventMode,
             ],
-            Stage::IntermediateUpdateMode | Stage::StepFailed | Stage::Terminated | Stage::Error => {
-                &[Reset, SetFMUstate, GetReal]
-            }
+            Stage::IntermediateUpdateMode
+            | Stage::IntermediateOutputs
+            | Stage::StepFailed
+            | Stage::Terminated
+            | Stage::Error => &[Reset, SetFMUstate, GetReal],
         }
     }
 

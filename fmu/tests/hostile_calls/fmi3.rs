@@ -160,9 +160,11 @@ impl Version for Fmi3 {
                 SetFloat64,
                 EnterEventMode,
             ],
-            Stage::IntermediateUpdateMode | Stage::StepFailed | Stage::Terminated | Stage::Error => {
-                &[Reset, SetFMUState, GetFloat64]
-            }
+            Stage::IntermediateUpdateMode
+            | Stage::IntermediateOutputs
+            | Stage::StepFailed
+            | Stage::Terminated
+            | Stage::Error => &[Reset, SetFMUState, GetFloat64],
         }
     }
 

@@ -86,7 +86,8 @@ fn of_type(at: u32, variable: &Variable, structure: &Structure, contents: &Conte
     match variable.data_type {
         DataType::Real { unit, range } => fmi3::Variable::Float64(fmi3::Float64 {
             common,
-            intermediate_update: (variable.causality == Causality::Input).then_some(true),
+            intermediate_update: (variable.is_continuous() && variable.causality != Causality::Independent)
+                .then_some(true),
             unit: (unit != "1").then(|| unit.into()),
             display_unit: units::display_unit(variable, structure).map(Into::into),
             min: range.map(|(min, _)| min),
@@ -247,6 +248,8 @@ mod tests {
         let xml = model_description("Pier", &structure, &contents, experiment).to_xml().unwrap();
         for element in [
             r#"causality="input" variability="continuous" intermediateUpdate="true" unit="m/s2" displayUnit="g" min="-10000.0" max="10000.0" nominal="3.59" start="0.0"/>"#,
+            r#"causality="output" variability="continuous" initial="calculated" intermediateUpdate="true" unit="rad""#,
+            r#"causality="output" variability="discrete" initial="calculated" unit="N.s""#,
             r#"causality="parameter" variability="fixed" initial="exact" unit="Hz" min="0.001" max="10000.0" start="11.0"/>"#,
             r#"description="what holds of the base" causality="local" variability="discrete" initial="calculated" declaredType="Phase"/>"#,
             r#"causality="parameter" variability="fixed" initial="exact" declaredType="Detail" start="1"/>"#,
