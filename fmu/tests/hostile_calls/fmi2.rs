@@ -49,7 +49,7 @@ impl Version for Fmi2 {
                 fmi2SetInteger(c, vr, nvr, value.cast())
             }),
             Function::SetBoolean => {
-                Call::SetDiscrete(&["extrapolate", "peaks", "validity"], 4, |c, vr, nvr, value, _| unsafe {
+                Call::SetDiscrete(&["a_g_late", "F_t_extrapolated", "peaks", "validity"], 4, |c, vr, nvr, value, _| unsafe {
                     fmi2SetBoolean(c, vr, nvr, value.cast())
                 })
             }

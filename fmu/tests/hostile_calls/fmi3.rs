@@ -81,7 +81,7 @@ impl Version for Fmi3 {
                 fmi3SetInt64(c, vr, nvr, values.cast(), n)
             }),
             Function::SetBoolean => {
-                Call::SetDiscrete(&["extrapolate", "peaks", "validity"], 1, |c, vr, nvr, values, n| unsafe {
+                Call::SetDiscrete(&["a_g_late", "F_t_extrapolated", "peaks", "validity"], 1, |c, vr, nvr, values, n| unsafe {
                     fmi3SetBoolean(c, vr, nvr, values.cast(), n)
                 })
             }
