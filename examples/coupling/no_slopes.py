@@ -10,6 +10,7 @@ import functools
 
 import numpy as np
 from first_run import SCALE, TIME_SCALE
+from fmpy.fmi1 import FMICallException
 from validation.records import Record, horizontal_records
 
 from .bridge import PIERS, Bridge, deck, linear, pier, simulate
@@ -58,13 +59,17 @@ def of_ground(fmu: str, record: Record) -> list[float]:
 
 
 def of_force(fmus, record: Record) -> list[float]:
-    """Errors of the deck's displacement and the piers' theta over their peaks: F_t held, late, extrapolated at both steps."""
+    """Largest errors of the deck's displacement and the piers' theta over their peaks: F_t held, late, extrapolated at both
+    steps; infinite if a pier overturns."""
     time, a_g = (column[:LONGEST] for column in motion(record))
 
     def course(step, moments, parts):
         bridge = Bridge([pier(fmu) for fmu in fmus], deck(), linear(time, a_g), moments)
         row = lambda: [bridge.deck.x, *(pier.read("theta")[0] for pier in bridge.piers)]
-        return simulate(bridge, step, extrapolate, time, parts, row)
+        try:
+            return simulate(bridge, step, extrapolate, time, parts, row)
+        except FMICallException:  # a pier overturns
+            return np.inf
 
     def jacobi(guess, system, t, h, of_deck):
         system.y, system.w = system.first(t, h, guess(system.w)), system.second(t, h, of_deck(system.y))
@@ -80,7 +85,7 @@ def table(errors) -> str:
     head = ["record", "its step", *GUESSES, *(f"{name}, step / {PARTS[1]}" for name in GUESSES)]
     rows = [[record.name, f"{1e3 * motion(record)[0][1]:g} ms", *(f"{error:.0e}" for error in errors(record))]
             for record in horizontal_records()]
-    return markdown(head, rows)
+    return markdown(head, rows).replace("inf", "overturns")
 
 
 def tables(fmus) -> dict[str, str]:

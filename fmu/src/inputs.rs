@@ -166,7 +166,9 @@ impl Inputs {
         let Inputs { next, set, followed, before: (before, ago), .. } = self;
         (0.0..f64::INFINITY).contains(ago)
             && LOADS.iter().all(|input| {
-                [&next.value, set, &followed.value, before].into_iter().all(|load| input.check((input.get)(load)).is_ok())
+                [&next.value, set, &followed.value, before]
+                    .into_iter()
+                    .all(|load| input.check((input.get)(load)).is_ok())
                     && [next.slope, followed.slope].iter().all(|slopes| (input.get)(slopes).is_finite())
             })
     }
