@@ -288,8 +288,8 @@ fn parse(text: &str, format: Format, how: &Reading) -> Result<Parsed, BadLine> {
     }
 }
 
-/// The bytes of a file. Whether `path` is one is asked before it is opened, for opening a pipe may last for ever.
-fn read_file(path: &Path) -> Result<Vec<u8>, RecordError> {
+/// The bytes of the file of a record. Whether `path` is one is asked before it is opened, for opening a pipe may last for ever.
+pub fn read_file(path: &Path) -> Result<Vec<u8>, RecordError> {
     let unreadable = |source| RecordError::Unreadable { path: path.into(), source };
     let told = fs::metadata(path).map_err(unreadable)?;
     if !told.is_file() {

@@ -341,7 +341,7 @@ fn a_record_that_cannot_be_followed_is_refused() {
     assert_eq!((host.get("a_ground"), host.get("record_duration")), (-1.0, 1.0));
 }
 
-/// A process reads a record once: neither another run nor another instance reads it again.
+/// A record is parsed once: neither another run nor another instance does more than to read the bytes of its file.
 #[test]
 fn a_record_is_shared_by_runs_and_instances() {
     let folder = tempfile::tempdir().unwrap();
@@ -353,10 +353,10 @@ fn a_record_is_shared_by_runs_and_instances() {
         allocation_counter::measure(|| assert_eq!(host.exit(), OK)).bytes_total
     };
     let first = Host::new();
-    assert!(allocated(&first) > size);
+    assert!(allocated(&first) > 2 * size);
     assert_eq!(first.reset(), OK);
     for again in [allocated(&first), allocated(&Host::new())] {
-        assert!(again < size / 10, "{again} bytes for a file of {size}");
+        assert!(again < size + size / 10, "{again} bytes for a file of {size}");
     }
 }
 

@@ -125,7 +125,7 @@ pub fn export(
         }
         files.push(fs::read(path).map_err(|source| RecordError::Unreadable { path: path.clone(), source })?);
         contents.records.push(PackedRecord { file, digest: record.name() });
-        followed.get_or_insert(record.record);
+        followed.get_or_insert_with(|| record.record.clone());
     }
     let experiment = Experiment::new(structure, followed.as_ref());
     let archive =
