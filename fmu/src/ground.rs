@@ -170,7 +170,7 @@ mod tests {
     fn a_record_is_known_by_its_content() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("pulse 1.csv");
-        fs::write(&file, "0,1\n1,2\n").unwrap();
+        fs::write(&file, "t/s,a\n0,1\n1,2\n").unwrap();
         let modified = fs::metadata(&file).unwrap().modified().unwrap();
         let archive = archive(folder.path());
         let read = |text: &str| archive.record(text).unwrap().unwrap();
@@ -182,7 +182,7 @@ mod tests {
         for text in [file.to_str().unwrap(), &uri, copied.join("pulse 1.csv").to_str().unwrap()] {
             assert!(Arc::ptr_eq(&first, &read(text)), "{text} was parsed again");
         }
-        fs::write(&file, "0,1\n1,3\n").unwrap();
+        fs::write(&file, "t/s,a\n0,1\n1,3\n").unwrap();
         fs::File::options().write(true).open(&file).unwrap().set_modified(modified).unwrap();
         let second = read("pulse 1.csv");
         assert_eq!((first.record.acceleration(), second.record.acceleration()), (&[1.0, 2.0][..], &[1.0, 3.0][..]));
@@ -195,7 +195,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let archive = archive(folder.path());
         for name in 0..3 {
-            fs::write(folder.path().join(format!("{name}.csv")), format!("0,{name}\n1,2\n")).unwrap();
+            fs::write(folder.path().join(format!("{name}.csv")), format!("t/s,a\n0,{name}\n1,2\n")).unwrap();
         }
         std::thread::scope(|scope| {
             for thread in 0..4 {
@@ -217,7 +217,7 @@ mod tests {
         let at = folder.path().display();
         let resources = folder.path().join("resources");
         fs::create_dir_all(resources.join("folder.csv")).unwrap();
-        fs::write(folder.path().join("outside.csv"), "0,1\n1,2\n").unwrap();
+        fs::write(folder.path().join("outside.csv"), "t/s,a\n0,1\n1,2\n").unwrap();
         fs::write(resources.join("broken.csv"), "0,1\nroot:x:0:0:secret,2\n").unwrap();
         std::os::unix::fs::symlink(folder.path().join("outside.csv"), resources.join("link.csv")).unwrap();
         let archive = archive(&resources);
