@@ -8,7 +8,8 @@
 //! Steps are bounded as transitions are ([`crate::transition`]): an advance takes at most one for itself, two for each
 //! transition, and one for each 1/Ω of time, Ω the largest of ω_u, 2 ζ_u ω_u, 2 ζ_fc ω_fc and p_l. Only what is thrown
 //! about takes more, up to four for each 1/Ω with |θ̇|, |u̇|/ρ and √(|ü|/ρ) among them, ρ² = (J0 + m0 B²)/m + (sB − u)².
-//! One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps.
+//! One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps. Where full contact has an exact flow, what is left of a long
+//! advance once the base is down for good is one step.
 
 use crate::detail::{AnyLevel, Detail};
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
@@ -39,6 +40,10 @@ const LARGEST_LOCAL_ERROR: f64 = 1e-11;
 /// Steps that one advance may take, a second or two of computing, and some ten of what is thrown about so wildly that every
 /// step has to be searched for transitions throughout; a longer interval has to be cut.
 pub const MAX_STEPS_PER_ADVANCE: u64 = 2_000_000;
+
+/// What is left of an advance in full contact is leapt over, if it may be, where it is longer than this, as ω_fc h in rad:
+/// one leap takes the place of hundreds of steps.
+const LONG_REST: f64 = 1000.0;
 
 /// A step shorter than this part of 1/ω_u is not the doing of the step's end or of a transition: the solution ends.
 const STALLED: f64 = 1e-12;
@@ -377,16 +382,7 @@ impl<L: Level> Hand<'_, L> {
         let (a_g, a_top) = (load.on_foundation(), load.on_top(structure));
         let begin = Start { state: now.state, a_g, a_top, interval, local_error };
         if let Some(end) = self.leap(now, &begin) {
-            if now.work.steps == self.last_step {
-                return Err(AdvanceError::TooLong { time: now.time, until: now.time + interval });
-            }
-            if W::SEES_PIECES {
-                watch.piece(&mut self.piece(now, interval, load, end, false));
-            }
-            now.state = end;
-            now.time += interval;
-            now.work.steps += 1;
-            now.chatter.pass(interval);
+            self.leap_to(end, now, interval, load, now.time + interval, watch)?;
             return Ok(Progress::Complete);
         }
         let before = *now;
@@ -397,7 +393,31 @@ impl<L: Level> Hand<'_, L> {
         result
     }
 
-    /// The same over the interval of `begin`, step by step.
+    /// Takes `now` to the state `end` of a leap over `duration` (s) under `load`, which ends at `until` (s).
+    #[inline(always)]
+    fn leap_to<W: Watch>(
+        &mut self,
+        end: State,
+        now: &mut Motion,
+        duration: f64,
+        load: LinearLoad,
+        until: f64,
+        watch: &mut W,
+    ) -> Result<(), AdvanceError> {
+        if now.work.steps == self.last_step {
+            return Err(AdvanceError::TooLong { time: now.time, until });
+        }
+        if W::SEES_PIECES {
+            watch.piece(&mut self.piece(now, duration, load, end, false));
+        }
+        now.state = end;
+        now.time = until;
+        now.work.steps += 1;
+        now.chatter.pass(duration);
+        Ok(())
+    }
+
+    /// [`Hand::advance`] over the interval of `begin`, step by step.
     #[inline(always)]
     fn step<W: Watch>(
         &mut self,
@@ -407,6 +427,7 @@ impl<L: Level> Hand<'_, L> {
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
         let &Start { a_g, a_top, interval, local_error, .. } = begin;
+        let long_rest = LONG_REST / self.structure.omega_fc;
         let start = motion.time;
         let until = start + interval;
         // Time runs from the start of the interval: transitions are then as sharp at t = 1000 s as at 0.
@@ -420,6 +441,13 @@ impl<L: Level> Hand<'_, L> {
                 interval: left,
                 local_error,
             };
+            if left > long_rest
+                && motion.phase == Phase::FullContact
+                && let Some(end) = self.leap(motion, &begin)
+            {
+                self.leap_to(end, motion, left, load.from(elapsed), until, watch)?;
+                break;
+            }
             let event = match motion.phase {
                 Phase::FullContact => self.step_in_full_contact(begin, motion.chatter.held),
                 Phase::Rocking(side) => self.step_while_rocking(&begin, side),
@@ -436,7 +464,8 @@ impl<L: Level> Hand<'_, L> {
             motion.work.steps += 1;
             motion.work.evaluations += self.arc.order as u64;
             let state = self.arc.end();
-            if W::SEES_PIECES {
+            // what lasts for no time, as contact where uplift is due at once, is no motion
+            if W::SEES_PIECES && duration > 0.0 {
                 watch.piece(&mut self.piece(motion, duration, load.from(elapsed), state, true));
             }
             motion.state = state;

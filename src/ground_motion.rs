@@ -11,8 +11,12 @@ use crate::record::Record;
 use crate::{Engine, LinearLoad, Progress, Ramp, Watch};
 use serde::{Deserialize, Serialize};
 
-/// Part of the time between two samples that is taken for rounding.
+/// Part of the time between two samples over which a kink between them makes no difference: with the slope of the other side
+/// the ground's velocity is off by its square.
 const SAME_INSTANT: f64 = 1e-9;
+
+/// Part of the times involved by which steps that are to meet a sample may miss it.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// How a record is scaled, and when it comes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -93,7 +97,7 @@ impl GroundMotion<'_> {
 
     /// The ground acceleration as it is given from `elapsed` on; 0 before the first sample and from the last one on.
     pub fn at(&self, elapsed: Elapsed) -> Ramp {
-        self.ramp_from(self.reached(elapsed), elapsed)
+        self.ramp_from(self.reached(elapsed, |i| self.same_instant(i)), elapsed)
     }
 
     /// The same for an integrator at `elapsed` that has dealt with all samples up to `dealt_with`: a later one that it has
@@ -121,12 +125,12 @@ impl GroundMotion<'_> {
 
     /// Seconds from `elapsed` to the next sample, where the ground acceleration has a kink.
     pub fn next_sample(&self, elapsed: Elapsed) -> Option<f64> {
-        self.first_ahead(self.reached(elapsed)..self.record.times().len(), elapsed)
+        self.first_ahead(self.reached(elapsed, |i| self.same_instant(i))..self.record.times().len(), elapsed)
     }
 
     /// Seconds from `elapsed` to the first of `samples`, which follow each other, that is still to come.
     fn first_ahead(&self, mut samples: impl Iterator<Item = usize>, elapsed: Elapsed) -> Option<f64> {
-        samples.find_map(|i| Some(self.ahead(i, elapsed)).filter(|ahead| *ahead > self.rounding(i)))
+        samples.find_map(|i| Some(self.ahead(i, elapsed)).filter(|ahead| *ahead > self.same_instant(i)))
     }
 
     /// Advances `engine`, which is at `elapsed`, by `interval` (s) under the record and `load`, as one advance: the
@@ -167,7 +171,7 @@ impl GroundMotion<'_> {
     /// `interval` (s) from `elapsed` on, cut at the samples.
     fn stretches(&self, elapsed: Elapsed, interval: f64) -> impl Iterator<Item = Stretch> {
         let (this, samples) = (*self, self.record.times().len());
-        let mut next = this.reached(elapsed);
+        let mut next = this.reached(elapsed, |i| this.uncut(i, elapsed));
         let mut a_g = this.ramp_from(next, elapsed);
         let (mut start, mut is_first) = (0.0, true);
         std::iter::from_fn(move || {
@@ -180,7 +184,7 @@ impl GroundMotion<'_> {
                 next += 1; // times that are the same once they are scaled
                 (end, a_g) = (ahead(next), this.ramp(next));
             }
-            let is_last = end >= interval - this.rounding(next);
+            let is_last = end >= interval || end >= interval - this.uncut(next, elapsed);
             let duration = if is_last {
                 interval - start
             } else if is_first {
@@ -210,18 +214,35 @@ impl GroundMotion<'_> {
         self.placement.start + (self.time(i) - self.time(0)) - elapsed.sum - elapsed.rounding
     }
 
-    /// How close to sample `next` an instant before it is not told from it, s.
-    fn rounding(&self, next: usize) -> f64 {
-        let i = next.clamp(1, self.record.times().len() - 1);
+    /// How close to sample `i` an instant before it is not told from it, s.
+    fn same_instant(&self, i: usize) -> f64 {
+        let i = i.clamp(1, self.record.times().len() - 1);
         SAME_INSTANT * (self.time(i) - self.time(i - 1))
     }
 
-    /// How many samples have come.
-    fn reached(&self, elapsed: Elapsed) -> usize {
+    /// How close to sample `i` a step is not cut there, s: as long as its kink makes no difference, or it is met but for
+    /// rounding. Where the ground jumps the latter alone counts.
+    fn uncut(&self, i: usize, elapsed: Elapsed) -> f64 {
+        let samples = self.record.times().len();
+        let beyond = |end: usize| if self.acceleration(end) == 0.0 { f64::INFINITY } else { 0.0 };
+        let before = if i == 0 { beyond(0) } else { self.time(i) - self.time(i - 1) };
+        let after = if i + 1 == samples { beyond(i) } else { self.time(i + 1) - self.time(i) };
+        (SAME_INSTANT * before.min(after)).max(self.rounding(i, elapsed))
+    }
+
+    /// By how much steps may miss sample `i` for rounding alone, s.
+    fn rounding(&self, i: usize, elapsed: Elapsed) -> f64 {
+        let times = [elapsed.sum, self.placement.start, self.time(i), self.time(0)];
+        let most = times.into_iter().fold(0.0, |most: f64, time| most.max(time.abs()));
+        (ROUNDING * most).min(self.same_instant(i))
+    }
+
+    /// How many samples have come, with those that are no farther ahead than `near`, s, of each.
+    fn reached(&self, elapsed: Elapsed, near: impl Fn(usize) -> f64) -> usize {
         let times = self.record.times();
         let time = (elapsed.sum - self.placement.start + elapsed.rounding) + self.time(0);
         let reached = times.partition_point(|of_sample| of_sample * self.placement.time_scale <= time);
-        let is_next_here = reached < times.len() && self.ahead(reached, elapsed) <= self.rounding(reached);
+        let is_next_here = reached < times.len() && self.ahead(reached, elapsed) <= near(reached);
         reached + usize::from(is_next_here)
     }
 
@@ -237,8 +258,9 @@ impl GroundMotion<'_> {
     /// The same as it is given from `elapsed` on.
     fn ramp_from(&self, reached: usize, elapsed: Elapsed) -> Ramp {
         let ramp = self.ramp(reached);
-        let passed = if reached == 0 { 0.0 } else { -self.ahead(reached - 1, elapsed) };
-        if passed <= self.rounding(reached) { ramp } else { ramp.from(passed) }
+        let Some(last) = reached.checked_sub(1) else { return ramp };
+        let passed = -self.ahead(last, elapsed);
+        if passed.abs() <= self.rounding(last, elapsed) { ramp } else { ramp.from(passed) }
     }
 }
 
@@ -251,7 +273,7 @@ impl<'a> From<&'a Record> for GroundMotion<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Parameters, State, Structure};
+    use crate::{Detail, Parameters, State, Structure};
 
     fn after(steps: impl IntoIterator<Item = f64>) -> Elapsed {
         steps.into_iter().fold(Elapsed::default(), Elapsed::and)
@@ -319,6 +341,37 @@ mod tests {
                 elapsed = elapsed.and(0.01);
             }
             assert_eq!(ground.at(elapsed), Ramp::default());
+        }
+    }
+
+    /// Steps that end a little before a sample, or after it, move nothing: neither a kink, nor a jump, nor what is as steep as a
+    /// jump beside the time before it. The motion is that of steps that end at the samples, at the same instant.
+    #[test]
+    fn steps_that_miss_the_samples_by_little_shift_nothing() {
+        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let shaken: Vec<_> = (0..=200).map(|i| 3.0 * f64::from(i * i % 17) - 20.0).collect();
+        let even: Vec<_> = (0..=200).map(|i| f64::from(i) * 0.01).collect();
+        let steep = [vec![0.0; 100], vec![5.0; 101]].concat();
+        let uneven: Vec<_> = even.iter().map(|t| if *t < 0.995 { *t } else { t - 0.01 + 1e-13 }).collect();
+        for record in [record(&even, &shaken), record(&uneven, &steep)] {
+            let ground = GroundMotion::from(&record);
+            let after = |miss: f64| {
+                let mut engine =
+                    Engine::with_detail(structure, State::default(), 0.0, 1e-9, Detail::FixedBase).unwrap();
+                let mut elapsed = Elapsed::default();
+                let first = record.times()[1] + miss;
+                for step in std::iter::once(first).chain((1..210).map(|_| 0.01)).chain([0.01 - miss]) {
+                    ground.advance(&mut engine, elapsed, step, LinearLoad::default(), &mut ()).unwrap();
+                    elapsed = elapsed.and(step);
+                }
+                engine.motion().state
+            };
+            let met = after(0.0);
+            for miss in [-9e-12, 9e-12, -1e-13, 1e-13] {
+                let State { u, u_dot, .. } = after(miss);
+                let (off, off_dot) = ((u - met.u).abs(), (u_dot - met.u_dot).abs());
+                assert!(off < 1e-15 && off_dot < 3e-14, "{miss}: {off:e}, {off_dot:e}");
+            }
         }
     }
 

@@ -152,6 +152,11 @@ pub(crate) struct KeptPiece {
 }
 
 impl KeptPiece {
+    /// The motion at its start.
+    pub(crate) fn before(&self) -> &Motion {
+        &self.before
+    }
+
     /// The piece, whole.
     pub(crate) fn piece<'a>(&'a mut self, equations: &'a mut Equations) -> Piece<'a> {
         let KeptPiece { before, duration, load, end, ref mut arc, local_error } = *self;
@@ -401,11 +406,6 @@ impl Piece<'_> {
             }
         }
         show(from, arc, &series);
-    }
-
-    /// The outputs at its end.
-    pub(crate) fn last_outputs(&self) -> Outputs {
-        self.level.outputs(self.structure, self.before.phase, &self.end, self.load.at(self.duration))
     }
 
     /// The outputs at both ends of the part in hand, with seconds from the start of the piece.

@@ -16,7 +16,7 @@ pub mod validity;
 
 use crate::engine::{AdvanceError, DEFAULT_TOLERANCE};
 use crate::piece::Sample;
-use crate::record::Record;
+use crate::record::{Record, Segment};
 use crate::state::InitialStateError;
 use crate::{Detail, Engine, Motion, Progress, Ramp, State, Structure, Watch};
 use peaks::Peaks;
@@ -140,18 +140,20 @@ impl<'a> Run<'a> {
 
     /// Follows the motion to the end.
     pub fn follow<W: Watch>(&self, watch: &mut W) -> Result<Finish, RunError> {
-        let mut engine = self.start()?;
-        let ending = self.follow_ground(&mut engine, watch)?;
-        engine.done(watch);
-        Ok(Finish { ending, motion: *engine.motion() })
+        let mut course = self.course()?;
+        let ending = course.finish(watch)?;
+        course.engine.done(watch);
+        Ok(Finish { ending, motion: *course.engine.motion() })
     }
 
-    fn follow_ground<W: Watch>(&self, engine: &mut Engine, watch: &mut W) -> Result<Ending, RunError> {
-        let ending = self.advance(engine, watch);
-        ending.map_err(|cause| match cause {
-            AdvanceError::TooLong { time, until } => RunError::TooLong { time, until },
-            cause => RunError::Advance { time: cause.time().unwrap_or(engine.motion().time), cause },
-        })
+    /// The run before its start.
+    fn course(&self) -> Result<Course<impl Iterator<Item = Segment> + use<'a>>, RunError> {
+        let until = match self.end {
+            End::AtRest => self.ground.end(),
+            End::At(end) => end,
+        };
+        let segments = self.ground.segments_until(until);
+        Ok(Course { engine: self.start()?, segments, end: self.end, rest: LONGEST_REST })
     }
 
     /// The structure at the first sample.
@@ -163,24 +165,6 @@ impl<'a> Run<'a> {
         }
     }
 
-    fn advance<W: Watch>(&self, engine: &mut Engine, watch: &mut W) -> Result<Ending, AdvanceError> {
-        let end = match self.end {
-            End::AtRest => self.ground.end(),
-            End::At(end) => end,
-        };
-        for segment in self.ground.segments_until(end) {
-            let progress = engine.go_on(segment.end - segment.start, segment.a_g, watch)?;
-            if progress == Progress::Overturned {
-                return Ok(Ending::Overturned);
-            }
-            engine.set_time(segment.end);
-        }
-        match self.end {
-            End::AtRest => come_to_rest(engine, watch),
-            End::At(_) => Ok(Ending::AtTime),
-        }
-    }
-
     /// Follows the motion to the end and shows it at `times` (s), which rise; those before the start and after the end
     /// are left out, and the end itself is shown last. What is shown is read from the pieces: it changes nothing.
     pub fn sample<W: Watch>(
@@ -189,12 +173,12 @@ impl<'a> Run<'a> {
         show: impl FnMut(&Sample),
         watch: &mut W,
     ) -> Result<Finish, RunError> {
-        let mut engine = self.start()?;
+        let mut course = self.course()?;
         let mut samples = Samples::new(times, show);
-        let ending = self.follow_ground(&mut engine, &mut (&mut *watch, &mut samples))?;
-        engine.done(watch);
-        samples.end(&engine);
-        Ok(Finish { ending, motion: *engine.motion() })
+        let ending = course.finish(&mut (&mut *watch, &mut samples))?;
+        course.engine.done(watch);
+        samples.end(&course.engine);
+        Ok(Finish { ending, motion: *course.engine.motion() })
     }
 
     /// The exact peaks of the run, and how it ended.
@@ -205,19 +189,54 @@ impl<'a> Run<'a> {
     }
 }
 
-/// Follows a structure on ground at rest until nothing more can happen.
-fn come_to_rest<W: Watch>(engine: &mut Engine, watch: &mut W) -> Result<Ending, AdvanceError> {
-    let &Structure { p_l, omega_fc, .. } = engine.structure();
-    let mut left = LONGEST_REST;
-    while !engine.stays_down() {
-        if left == 0.0 {
-            return Ok(Ending::StillRocking);
+/// A run that goes on stretch by stretch: between two samples of its record, then, until nothing more can happen, for 1/p_l.
+struct Course<Segments> {
+    engine: Engine,
+    /// The ground motion that is left.
+    segments: Segments,
+    end: End,
+    /// For how long it may rock on after that, in units of 1/p_l.
+    rest: f64,
+}
+
+impl<Segments: Iterator<Item = Segment>> Course<Segments> {
+    /// Follows the motion to the end.
+    fn finish<W: Watch>(&mut self, watch: &mut W) -> Result<Ending, RunError> {
+        loop {
+            if let Some(ending) = self.go_on(watch)? {
+                return Ok(ending);
+            }
         }
-        if engine.go_on(1.0 / p_l, Ramp::default(), watch)? == Progress::Overturned {
-            return Ok(Ending::Overturned);
-        }
-        left -= 1.0;
     }
-    engine.go_on(TAU / omega_fc, Ramp::default(), watch)?;
-    Ok(Ending::AtRest)
+
+    /// Follows the motion over the next stretch: how it has ended, if it has.
+    fn go_on<W: Watch>(&mut self, watch: &mut W) -> Result<Option<Ending>, RunError> {
+        self.advance(watch).map_err(|cause| match cause {
+            AdvanceError::TooLong { time, until } => RunError::TooLong { time, until },
+            cause => RunError::Advance { time: cause.time().unwrap_or(self.engine.motion().time), cause },
+        })
+    }
+
+    fn advance<W: Watch>(&mut self, watch: &mut W) -> Result<Option<Ending>, AdvanceError> {
+        let Course { engine, segments, end, rest } = self;
+        let &Structure { p_l, omega_fc, .. } = engine.structure();
+        let progress = if let Some(Segment { start, end, a_g }) = segments.next() {
+            let progress = engine.go_on(end - start, a_g, watch)?;
+            if progress != Progress::Overturned {
+                engine.set_time(end);
+            }
+            progress
+        } else if let End::At(_) = end {
+            return Ok(Some(Ending::AtTime));
+        } else if engine.stays_down() {
+            engine.go_on(TAU / omega_fc, Ramp::default(), watch)?;
+            return Ok(Some(Ending::AtRest));
+        } else if *rest == 0.0 {
+            return Ok(Some(Ending::StillRocking));
+        } else {
+            *rest -= 1.0;
+            engine.go_on(1.0 / p_l, Ramp::default(), watch)?
+        };
+        Ok((progress == Progress::Overturned).then_some(Ending::Overturned))
+    }
 }

@@ -262,6 +262,33 @@ fn rest_lasts_at_every_level() {
     }
 }
 
+/// Once it is down for good the rest of a step of any length is one leap: down to nothing, or, without damping, with the
+/// energy that its last landing left.
+#[test]
+fn what_is_down_for_good_takes_no_more_steps() {
+    for detail in [Detail::Auto, Detail::Linear, Detail::Modal, Detail::Rigid] {
+        for (zeta_fc, a_g) in [(0.02, 0.0), (0.0, 0.0), (0.0, 0.4), (1e-6, -0.4)] {
+            let structure = Structure::new(Parameters { zeta_fc, r: 0.9, ..Parameters::MCMANUS }).unwrap();
+            let initial = State { theta: 0.05, ..State::default() };
+            let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-9, detail).unwrap();
+            let mut landed = State::default();
+            let load = Ramp { value: a_g, slope: 0.0 };
+            engine.advance(1e9, load, &mut |transition: &Transition| landed = transition.after).unwrap();
+            let name = format!("{}, zeta_fc = {zeta_fc}, a_g = {a_g}", detail.name());
+            assert!(engine.motion().work.steps < 20_000, "{name}: {} steps", engine.motion().work.steps);
+            assert_eq!((engine.motion().time, engine.motion().phase), (1e9, Phase::FullContact), "{name}");
+            if detail == Detail::Rigid {
+                continue;
+            }
+            let rest = -a_g / structure.omega_fc.powi(2);
+            let amplitude = |state: &State| (state.u - rest).hypot(state.u_dot / structure.omega_fc);
+            let expected = if zeta_fc == 0.0 { amplitude(&landed) } else { 0.0 };
+            let off = (amplitude(&engine.motion().state) - expected).abs();
+            assert!(off < 1e-9 * structure.u_cr, "{name}: {off} beside {expected}");
+        }
+    }
+}
+
 #[test]
 fn initial_states_that_a_level_cannot_have_are_refused() {
     let refused = |detail, initial| Engine::with_detail(mcmanus(), initial, 0.0, 1e-9, detail).unwrap_err().to_string();

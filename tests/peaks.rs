@@ -6,7 +6,7 @@ mod shaking;
 use rocking::record::Record;
 use rocking::run::peaks::Peaks;
 use rocking::run::{End, Run};
-use rocking::{Detail, Engine, Load, Parameters, Phase, State, Structure};
+use rocking::{Detail, Engine, Load, Parameters, Phase, Ramp, State, Structure};
 use shaking::shaking;
 
 /// Ten scenes: every level, both specimens, at rest and released, with and without damping.
@@ -146,6 +146,48 @@ fn a_leap_without_end_is_looked_at_at_its_ends() {
             assert!(peaks.evaluations() < 20_000, "{}", peaks.evaluations());
             let first = Run { end: End::At(2.0), ..run.clone() }.peaks().unwrap().0;
             assert!((peaks.u().magnitude / first.u().magnitude - 1.0).abs() < 1e-9);
+        }
+    }
+}
+
+/// Where the ground jumps hard enough to lift the base off, contact lasts no time: no motion shows its a_t.
+#[test]
+fn contact_of_no_duration_is_no_motion() {
+    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let times: Vec<f64> = (0..=200).map(|i| f64::from(i) * 1e-3).collect();
+    let cosine = times.iter().map(|t| 6.85 * (40.0 * t).cos()).collect();
+    let ground = Record::from_samples("cosine", times, cosine).unwrap();
+    for (detail, c_ratio) in [(Detail::Rigid, 1.0), (Detail::Auto, 3.0), (Detail::Linear, 0.2)] {
+        let structure = Structure::new(Parameters { c_ratio, ..*structure.parameters() }).unwrap();
+        // beyond uplift from the start
+        let u = if detail == Detail::Rigid { 0.0 } else { 1.5 * structure.u_cr };
+        let initial = State { u, u_dot: 20.0 * u, ..State::default() };
+        let run = Run { detail, initial, end: End::At(0.2), ..Run::new(structure, &ground) };
+        let mut largest = 0.0_f64;
+        let times = (0..=200_000).map(|i| f64::from(i) * 1e-6);
+        run.sample(times, |sample| largest = largest.max(sample.outputs().a_t.abs()), &mut ()).unwrap();
+        let peak = run.peaks().unwrap().0.a_t().magnitude;
+        assert!((peak / largest - 1.0).abs() < 1e-4, "{}: {peak} {largest}", detail.name());
+    }
+}
+
+/// Undamped, each crest is as high as the first but for rounding: the first counts, and no crest that was seen is higher.
+#[test]
+fn the_first_of_equal_peaks_counts() {
+    let structure = Structure::new(Parameters { zeta_fc: 0.0, ..Parameters::MCMANUS }).unwrap();
+    let omega = structure.omega_fc;
+    for (u, u_dot) in [(1e-3, 0.0), (-1e-3, 0.0), (6e-4, 0.02), (-6e-4, 0.02)] {
+        let crest = f64::atan2(u_dot, omega * u).rem_euclid(std::f64::consts::PI) / omega;
+        for step in [1000.0, 333.3, 0.01, 7e-3] {
+            let mut engine = Engine::new(structure, State { u, u_dot, ..State::default() }, 0.0, 1e-9).unwrap();
+            let (mut peaks, mut highest) = (Peaks::new(&structure), u.abs());
+            for _ in 0..f64::ceil(100.0 / step).max(2.0) as u32 {
+                engine.advance(step, Ramp::default(), &mut peaks.watch()).unwrap();
+                highest = highest.max(engine.motion().state.u.abs());
+            }
+            let peak = peaks.u();
+            assert!((peak.time - crest).abs() < 1e-6, "u = {u}, u_dot = {u_dot}, {step}: {peak:?} {crest}");
+            assert!(peak.magnitude >= highest, "u = {u}, u_dot = {u_dot}, {step}: {peak:?} {highest}");
         }
     }
 }

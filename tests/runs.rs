@@ -27,6 +27,25 @@ fn histories_do_not_depend_on_how_finely_a_record_is_sampled() {
     assert!(errors[1][0][3] > 0.99, "the fixed base has all of theta wrong");
 }
 
+/// Levels are compared as they go on: what is kept of a long record, or of a long time between two samples, is no more than of
+/// a short one.
+#[test]
+fn comparing_levels_takes_no_more_memory_for_more_of_them() {
+    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let most = |dt: f64, samples: usize| {
+        let times = (0..samples).map(|i| i as f64 * dt).collect();
+        let waves = (0..samples).map(|i| 2.0 * (0.09 * i as f64).sin()).collect();
+        let ground = Record::from_samples("waves", times, waves).unwrap();
+        let run = Run { end: End::At(ground.end()), ..Run::new(structure, &ground) };
+        allocation_counter::measure(|| drop(levels::compare(&run).unwrap())).bytes_max
+    };
+    let short = most(0.01, 1000);
+    for (dt, samples) in [(0.01, 10_000), (100.0, 11)] {
+        let long = most(dt, samples);
+        assert!(long < 10_000_000.max(2 * short), "{dt} s, {samples} samples: {long} bytes beside {short}");
+    }
+}
+
 /// One leap over ten seconds of a slow ramp, which the structure follows: a_t = a_g.
 #[test]
 fn samples_are_read_from_within_long_leaps() {

@@ -48,7 +48,7 @@ KINDS = {
         "record_scale": "1", "record_time_scale": "1", "record_start": "s",
     },
     ("parameter", "fixed", "String"): {"record": None},
-    ("parameter", "fixed", "Boolean"): {"extrapolate": None, "peaks": None, "validity": None},
+    ("parameter", "fixed", "Boolean"): {"a_g_late": None, "F_t_extrapolated": None, "peaks": None, "validity": None},
     ("parameter", "fixed", "Enumeration"): {"detail": None},
     ("calculatedParameter", "fixed", "Real"): {"alpha_cg": "rad", "p_l": "rad/s", "chi": "1", "u_cr": "m", "f_u": "Hz",
                                                 "record_duration": "s"},

@@ -62,7 +62,7 @@ def simulate3(path, **arguments):
 class Slave:
     """An instance that fmpy drives step by step."""
 
-    def __init__(self, path, folder, handles_events=False, lines=False, **start_values):
+    def __init__(self, path, folder, handles_events=False, lines=False, switches=(), **start_values):
         fmpy.extract(path, unzipdir=str(folder))
         description = read_model_description(str(folder))
         self.references = {variable.name: variable.valueReference for variable in description.modelVariables}
@@ -82,6 +82,7 @@ class Slave:
                                         intermediate_update=update if lines else None,
                                         required_intermediate_variables=a_g if lines else None)
         self.set(**start_values)
+        self.instance.setBoolean([self.references[name] for name in switches], [True] * len(switches))
         self.instance.enterInitializationMode()
         self.instance.exitInitializationMode()
         if handles_events:
@@ -200,8 +201,7 @@ def test_the_description_tells_of_both_interfaces(mcmanus, mcmanus3):
 def test_both_versions_give_the_same_bits_under_a_held_input(mcmanus, mcmanus3):
     table = np.array(list(zip(TIME, A_G)), dtype=[("time", float), ("a_g", float)])
     asked = dict(stop_time=TIME[-1], output_interval=STEP, input=table, output=OUTPUTS, fmi_type="CoSimulation")
-    for extrapolate in (False, True):
-        starts = {"extrapolate": extrapolate}
+    for starts in ({}, {"a_g_late": True}):
         expected, _ = simulate(mcmanus, start_values=starts, **asked)
         found, _ = simulate3(mcmanus3, start_values=starts, **asked)
         assert_same_bits(found, expected)
@@ -290,6 +290,32 @@ def test_overturning_belongs_to_the_step_that_ends_there(mcmanus3, slave):
         end = instant + beside * np.spacing(instant)
         assert one.instance.doStep(0.0, end) == (False, True, False, end), beside
         assert one.get("t_overturned") == [end]
+
+
+@pytest.mark.parametrize("sets_again", [False, True])
+def test_the_rest_of_a_step_follows_the_same_line(mcmanus3, slave, sets_again):
+    """Steps of 20 ms that end at transitions and are then completed give what whole ones give, with a force beside a_g."""
+    step, late = 20e-3, ["a_g_late", "F_t_extrapolated"]
+    time = np.arange(round(END / step)) * step
+    a_g, F_t = np.interp(time, TIME, A_G), 100 * np.sin(8 * time)
+    plain, master = slave(mcmanus3, switches=late), slave(mcmanus3, handles_events=True, switches=late)
+    theta = []
+    for t, values in zip(time, zip(a_g, F_t)):
+        values = dict(zip(("a_g", "F_t"), values))
+        until, reached = t + step, t
+        for one in (plain, master):
+            one.set(**values)
+        plain.instance.doStep(t, step)
+        while reached < until:
+            is_due, _, _, reached = master.instance.doStep(reached, until - reached)
+            if is_due:
+                master.transit()
+            if sets_again:
+                master.set(**values)
+        theta.append((*plain.get("theta"), *master.get("theta")))
+    expected, found = np.transpose(theta)
+    assert len(events(plain.messages)) == len(events(master.messages)) > 20
+    assert np.max(np.abs(found - expected)) < 1e-12 * np.max(np.abs(expected))
 
 
 def test_a_transition_that_the_host_does_not_deal_with_happens(mcmanus3, slave):

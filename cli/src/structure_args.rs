@@ -1,5 +1,6 @@
 //! Which structure a command works on: one of the paper's specimens, or parameters from a file, with single numbers in
 //! the place of theirs.
+use crate::input;
 use anyhow::Context;
 use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource, value_parser};
 use rocking::natural_quantities::{Given, NATURAL, names};
@@ -15,7 +16,7 @@ pub struct StructureArgs {
     /// Specimen of the paper
     #[arg(long, value_enum, default_value_t = Preset::Mcmanus, conflicts_with = "parameters")]
     preset: Preset,
-    /// TOML file of parameters, as `describe --template` writes it
+    /// TOML file of parameters, as `describe --template` writes it, `-` for standard input
     #[arg(long, value_name = "FILE.toml")]
     parameters: Option<PathBuf>,
     #[command(flatten)]
@@ -68,10 +69,10 @@ impl StructureArgs {
             return Ok(Structure::new(self.numbers.0.over(&self.preset.parameters())?)?);
         };
         let read = || -> anyhow::Result<Structure> {
-            let given: Given = toml::from_str(&std::fs::read_to_string(path)?)?;
+            let given: Given = toml::from_str(&input::text(path)?)?;
             Ok(Structure::new(given.parameters()?)?)
         };
-        let structure = read().with_context(|| format!("parameters in {}", path.display()))?;
+        let structure = read().with_context(|| format!("parameters in {}", input::name(path)))?;
         Ok(Structure::new(self.numbers.0.over(structure.parameters())?)?)
     }
 }

@@ -590,7 +590,7 @@ fn a_refused_sweep_says_what_to_change() {
         (
             "'pulse.AT2'",
             "'pulse.AT2', { file = 'p*.AT2', scale = 2 }",
-            "pulse.AT2 is named twice in records, with the scales 1 and 2: leave one out\n",
+            "pulse.AT2 is named twice in records, with different options: leave one out\n",
         ),
         ("'pulse.AT2'", "{ file = 'pulse.AT2', scale = 0 }", "the ground motion \"pulse.AT2\" is at rest throughout"),
         (
@@ -626,7 +626,7 @@ fn a_refused_sweep_says_what_to_change() {
     ] {
         assert!(SWEEP.contains(from));
         let folder = sweep(&SWEEP.replacen(from, to, 1));
-        fs::write(folder.path().join("zero.csv"), "0,0\n1,0\n").unwrap();
+        fs::write(folder.path().join("zero.csv"), "0,0\n.5,0\n").unwrap();
         fs::create_dir(folder.path().join("copy")).unwrap();
         fs::copy(folder.path().join("pulse.AT2"), folder.path().join("copy/pulse.AT2")).unwrap();
         let (code, message) = fail(folder.path(), "sweep sweep.toml");

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from . import added_mass, convergence, early_return, one_system, stability
+from . import added_mass, convergence, early_return, no_slopes, one_system, stability
 from .bridge import PIERS, deck
 from .tables import markdown
 
@@ -70,6 +70,7 @@ def main() -> None:
         one_system=one_system.table(*to_transitions),
         one_system_stability=one_system.stability_table(),
         transitions=transitions,
+        **no_slopes.tables(fmus),
     )
     arguments.output.write_text(page, encoding="utf-8")
     print(f"{arguments.output}, figures in {figures}")

@@ -1,7 +1,7 @@
 """The bridge as an SSP archive, run by fmpy: two piers and the deck, an FMU each, with the ground motion inside them.
 
-fmpy hands every value on after the step; the piers (`extrapolate`) and the deck continue what they are given with the
-slope of its last two values: the master is Jacobi's, of second order. The deck's FMU is built by pythonfmu. Writes the
+fmpy hands every value on after the step; the piers (`F_t_extrapolated`) and the deck continue what they are given with
+the slope of its last two values: the master is Jacobi's, of second order. The deck's FMU is built by pythonfmu. Writes the
 archive, runs it with two steps, draws the deck's displacement beside the iterated master's.
 
     PYTHONPATH=examples python -m coupling.bridge_ssp
@@ -88,7 +88,8 @@ def connect(connections, start: tuple, end: tuple) -> None:
 def run(archive: Path, stop_time: float, h: float, extrapolated: bool = True) -> np.ndarray:
     """fmpy's result; its rows are the outputs at the ends of the steps."""
     parameters = ParameterSet()
-    parameters.parameters = [Parameter(name=f"{name}.extrapolate", value=extrapolated) for name in (*PIERS, DECK)]
+    switches = [*(f"{name}.F_t_extrapolated" for name in PIERS), f"{DECK}.extrapolated"]
+    parameters.parameters = [Parameter(name=name, value=extrapolated) for name in switches]
     return simulate_ssp(str(archive), stop_time=stop_time - h / 2, step_size=h, parameter_set=parameters)
 
 

@@ -17,11 +17,11 @@ class Deck(Fmi2Slave):
 
     def __init__(self, M=1.0, k=1.0, c=0.0, **kwargs):
         super().__init__(**kwargs)
-        self.M, self.k, self.c, self.extrapolate = M, k, c, True
+        self.M, self.k, self.c, self.extrapolated = M, k, c, True
         tunable = dict(causality=Fmi2Causality.parameter, variability=Fmi2Variability.tunable)
         for name in ("M", "k", "c"):
             self.register_variable(Real(name, **tunable))
-        self.register_variable(Boolean("extrapolate", **tunable))
+        self.register_variable(Boolean("extrapolated", **tunable))
         self.x = 0.0
         self.register_variable(Real("x", causality=Fmi2Causality.output))
         for pier in range(PIERS):
@@ -37,7 +37,7 @@ class Deck(Fmi2Slave):
     def do_step(self, current_time, step_size):
         mass = self.mass
         tops = np.array([(getattr(self, f"delta_t_{pier}"), getattr(self, f"v_t_{pier}")) for pier in range(PIERS)])
-        line = np.array([tops, 2 * tops - self.before if self.extrapolate else tops])
+        line = np.array([tops, 2 * tops - self.before if self.extrapolated else tops])
         self.before = tops
         a_g = np.interp((current_time, current_time + step_size), *self.record)
         mass.step(step_size, (self.k * line[..., 0] + self.c * line[..., 1]).mean(axis=1) - self.M * a_g)

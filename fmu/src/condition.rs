@@ -139,6 +139,8 @@ pub(crate) struct Present {
     /// Until initialization ends it is built when an output is asked for, and dropped when what it was built from is
     /// set anew.
     pub model: Option<Model>,
+    /// The record that was followed last, which is not read anew for another run.
+    pub record: Option<Arc<GroundRecord>>,
 }
 
 /// The structure on its ground.
@@ -161,6 +163,13 @@ impl Model {
         let peaks = Peaks::since(setup.start_time, engine.structure());
         let validity = Found::since(setup.start_time);
         Ok(Model { engine, ground, elapsed: Elapsed::default(), outside: None, peaks, validity })
+    }
+
+    /// The same on ground that follows the setup's record in `archive`, or on disk, which becomes `record`.
+    #[cold]
+    fn with_record(setup: &Setup, archive: &Archive, record: &mut Option<Arc<GroundRecord>>) -> Result<Model, Failure> {
+        *record = archive.record(&setup.record)?;
+        Model::new(setup, record.clone())
     }
 
     /// What acts now: `inputs` and the record.
@@ -393,7 +402,7 @@ impl Present {
     /// As instantiated from `archive`.
     pub fn new(archive: &Archive, interface: Interface) -> Present {
         let setup = Setup::new(&archive.contents);
-        Present { interface, stage: Stage::Instantiated, setup, inputs: Inputs::default(), model: None }
+        Present { interface, stage: Stage::Instantiated, setup, inputs: Inputs::default(), model: None, record: None }
     }
 
     /// The structure in motion, or at its start with what has been set so far; its record is in `archive`, or on disk.
@@ -402,18 +411,19 @@ impl Present {
     }
 
     /// The same with what else there is.
+    #[inline]
     pub fn parts(&mut self, archive: &Archive) -> Result<(&mut Model, &Setup, &mut Inputs, &mut Stage), Failure> {
-        let Present { stage, setup, inputs, model, .. } = self;
+        let Present { stage, setup, inputs, model, record, .. } = self;
         let model = match model {
             Some(model) => model,
-            none => none.insert(Model::new(setup, archive.record(&setup.record)?)?),
+            none => none.insert(Model::with_record(setup, archive, record)?),
         };
         Ok((model, setup, inputs, stage))
     }
 
     /// Its condition.
     pub fn condition(&self) -> Condition {
-        let Present { interface, stage, setup, inputs, model } = self;
+        let Present { interface, stage, setup, inputs, model, .. } = self;
         let course = model.as_ref().filter(|_| stage.has_started()).map(|model| Course {
             motion: *model.engine.motion(),
             outside: model.outside,
@@ -444,7 +454,9 @@ impl Present {
             (found.peaks, found.validity) = (course.peaks, course.validity);
             model = Some(found);
         }
-        *self = Present { interface: *interface, stage: *stage, setup: setup.clone(), inputs: *inputs, model };
+        let ground = model.as_ref().and_then(|model| model.ground.clone());
+        let record = ground.or_else(|| self.record.take());
+        *self = Present { interface: *interface, stage: *stage, setup: setup.clone(), inputs: *inputs, model, record };
         Ok(())
     }
 }

@@ -1,11 +1,10 @@
-//! The records that the ground follows: found by name or path, read once, and shared by all instances of the process.
+//! The records that the ground follows: found by name or path, and shared by all instances of the process that hold them.
 
 use crate::resources::{self, Archive};
-use rocking::record::{MAX_SAMPLES, Reading, Record, RecordError, Source, Unit};
+use rocking::record::{self, Reading, Record, RecordError, Source, Unit};
 use std::error::Error;
 use std::path::{MAIN_SEPARATOR, Path, PathBuf, is_separator};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::SystemTime;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
 use std::{fs, io};
 use uuid::Uuid;
 
@@ -57,7 +56,12 @@ pub enum GroundError {
 impl GroundRecord {
     /// Reads it; accelerations whose unit its file does not state are in m/s².
     pub fn read(path: &Path) -> Result<GroundRecord, RecordError> {
-        let (record, Source { unit, .. }) = Record::read_raw(path, &Reading::default())?;
+        GroundRecord::from_bytes(path, &record::read_file(path)?)
+    }
+
+    /// The same of `bytes`, which are the content of the file at `path`.
+    fn from_bytes(path: &Path, bytes: &[u8]) -> Result<GroundRecord, RecordError> {
+        let (record, Source { unit, .. }) = Record::from_bytes(path, bytes, &Reading::default())?;
         let numbers = record.times().iter().chain(record.acceleration());
         let bytes: Vec<_> = numbers.flat_map(|number| number.to_le_bytes()).chain([unit as u8]).collect();
         let digest = Uuid::new_v5(&Uuid::NAMESPACE_OID, &bytes).into_bytes();
@@ -70,15 +74,33 @@ impl GroundRecord {
     }
 }
 
-/// Records that have been read, the latest last.
-static READ: Mutex<Vec<(Identity, Arc<GroundRecord>)>> = Mutex::new(Vec::new());
+/// The records that instances hold. The list owns none of them: when the last instance goes nothing is left, so that a
+/// library that is loaded and unloaded for every run leaves nothing behind.
+static HELD: Mutex<Records> = Mutex::new(Records::new());
 
-/// What tells that a file is still the one that was read.
-#[derive(PartialEq)]
-struct Identity {
-    path: PathBuf,
-    size: u64,
-    modified: Option<SystemTime>,
+type Records = Vec<(Content, Weak<GroundRecord>)>;
+
+/// Names all that a record is read from: the bytes of its file, and the file's name.
+type Content = Uuid;
+
+impl Drop for GroundRecord {
+    fn drop(&mut self) {
+        let mut held = held();
+        held.retain(|(_, record)| record.strong_count() > 0);
+        if held.is_empty() {
+            *held = Records::new();
+        }
+    }
+}
+
+/// What is locked is whole after a panic.
+fn held() -> MutexGuard<'static, Records> {
+    HELD.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// The one of `held` with this content, if somebody holds it.
+fn find(held: &Records, content: Content) -> Option<Arc<GroundRecord>> {
+    held.iter().filter(|(of, _)| *of == content).find_map(|(_, record)| record.upgrade())
 }
 
 impl Archive {
@@ -90,10 +112,10 @@ impl Archive {
         let is_uri = text.split_once(':').is_some_and(|(scheme, _)| scheme.eq_ignore_ascii_case("file"));
         if is_uri {
             let path = resources::path(text).ok_or_else(|| GroundError::NotAFileUri(text.to_owned()))?;
-            return Ok(Some(read_once(&path)?));
+            return Ok(Some(shared(&path)?));
         }
         if text.contains(is_separator) {
-            return Ok(Some(read_once(Path::new(text))?));
+            return Ok(Some(shared(Path::new(text))?));
         }
         let path = self.folder.join(text);
         let real = match fs::canonicalize(&path) {
@@ -105,7 +127,7 @@ impl Archive {
         if real.parent() != fs::canonicalize(&self.folder).ok().as_deref() {
             return Err(GroundError::Outside(text.to_owned()));
         }
-        let record = read_once(&path)?;
+        let record = shared(&path)?;
         match self.contents.records.iter().find(|packed| packed.file == text) {
             Some(packed) if packed.digest != record.name() => Err(GroundError::Changed(text.to_owned())),
             _ => Ok(Some(record)),
@@ -113,32 +135,23 @@ impl Archive {
     }
 }
 
-/// The record in the file `path`, which is read unless it has been. As many are kept as have [`MAX_SAMPLES`] together,
-/// the latest ones.
-fn read_once(path: &Path) -> Result<Arc<GroundRecord>, RecordError> {
-    let identity = identity(path).map_err(|source| RecordError::Unreadable { path: path.into(), source })?;
-    // The lock is held while a file is read, so that none is read twice at a time. What is locked is whole after a panic.
-    let mut read = READ.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, record)) = read.iter().find(|(of, _)| *of == identity) {
-        return Ok(Arc::clone(record));
+/// The record in the file `path`, which is parsed unless somebody holds a record of the same content. Files are read and
+/// parsed without the lock: of two threads that parse the same, one will throw its record away.
+fn shared(path: &Path) -> Result<Arc<GroundRecord>, RecordError> {
+    let bytes = record::read_file(path)?;
+    let name = path.file_name().unwrap_or_default().as_encoded_bytes();
+    let content = Uuid::new_v5(&Uuid::new_v5(&Uuid::NAMESPACE_OID, name), &bytes);
+    if let Some(record) = find(&held(), content) {
+        return Ok(record);
     }
-    let record = Arc::new(GroundRecord::read(path)?);
-    read.retain(|(of, _)| of.path != identity.path);
-    read.push((identity, Arc::clone(&record)));
-    let mut samples = 0;
-    let kept = read.iter().rev().take_while(|(_, record)| {
-        samples += record.record.times().len();
-        samples <= MAX_SAMPLES
-    });
-    let dropped = read.len() - kept.count();
-    read.drain(..dropped);
-    Ok(record)
-}
-
-fn identity(path: &Path) -> io::Result<Identity> {
-    let path = fs::canonicalize(path)?;
-    let told = fs::metadata(&path)?;
-    Ok(Identity { size: told.len(), modified: told.modified().ok(), path })
+    let parsed = Arc::new(GroundRecord::from_bytes(path, &bytes)?);
+    let mut held = held();
+    let other = find(&held, content);
+    if other.is_none() {
+        held.push((content, Arc::downgrade(&parsed)));
+    }
+    drop(held); // a record that goes takes the lock
+    Ok(other.unwrap_or(parsed))
 }
 
 #[cfg(test)]
@@ -151,24 +164,51 @@ mod tests {
         Archive { folder: folder.to_owned(), contents: Contents::from(Parameters::EVISON) }
     }
 
+    /// Whoever holds a record shares it, wherever its file is; a file that is rewritten is another record, even with the
+    /// same size and time.
     #[test]
-    fn a_record_is_read_once_until_its_file_changes() {
+    fn a_record_is_known_by_its_content() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("pulse 1.csv");
-        fs::write(&file, "0,1\n1,2\n").unwrap();
+        fs::write(&file, "t/s,a\n0,1\n1,2\n").unwrap();
+        let modified = fs::metadata(&file).unwrap().modified().unwrap();
         let archive = archive(folder.path());
         let read = |text: &str| archive.record(text).unwrap().unwrap();
         let first = read("pulse 1.csv");
+        let copied = folder.path().join("copy");
+        fs::create_dir(&copied).unwrap();
+        fs::copy(&file, copied.join("pulse 1.csv")).unwrap();
         let uri = format!("FILE://{}", file.display()).replace(' ', "%20");
-        for text in [file.to_str().unwrap(), &uri, &format!("{}/./pulse 1.csv", folder.path().display())] {
-            assert!(Arc::ptr_eq(&first, &read(text)), "{text} was read again");
+        for text in [file.to_str().unwrap(), &uri, copied.join("pulse 1.csv").to_str().unwrap()] {
+            assert!(Arc::ptr_eq(&first, &read(text)), "{text} was parsed again");
         }
-        fs::write(&file, "0,1\n1,2\n2,3\n").unwrap();
+        fs::write(&file, "t/s,a\n0,1\n1,3\n").unwrap();
+        fs::File::options().write(true).open(&file).unwrap().set_modified(modified).unwrap();
         let second = read("pulse 1.csv");
-        assert_eq!(second.record.times(), [0.0, 1.0, 2.0]);
+        assert_eq!((first.record.acceleration(), second.record.acceleration()), (&[1.0, 2.0][..], &[1.0, 3.0][..]));
         assert_ne!(first.digest, second.digest);
-        let paths = READ.lock().unwrap().iter().filter(|(of, _)| of.path.ends_with("pulse 1.csv")).count();
-        assert_eq!(paths, 1, "a file that has changed is kept twice");
+    }
+
+    /// Threads that take and drop the same records all the time: each gets what is in its file.
+    #[test]
+    fn threads_share_records() {
+        let folder = tempfile::tempdir().unwrap();
+        let archive = archive(folder.path());
+        for name in 0..3 {
+            fs::write(folder.path().join(format!("{name}.csv")), format!("t/s,a\n0,{name}\n1,2\n")).unwrap();
+        }
+        std::thread::scope(|scope| {
+            for thread in 0..4 {
+                let archive = &archive;
+                scope.spawn(move || {
+                    for round in 0..300 {
+                        let name = (thread + round) % 3;
+                        let record = archive.record(&format!("{name}.csv")).unwrap().unwrap();
+                        assert_eq!(record.record.acceleration(), [f64::from(name), 2.0]);
+                    }
+                });
+            }
+        });
     }
 
     #[test]
@@ -177,7 +217,7 @@ mod tests {
         let at = folder.path().display();
         let resources = folder.path().join("resources");
         fs::create_dir_all(resources.join("folder.csv")).unwrap();
-        fs::write(folder.path().join("outside.csv"), "0,1\n1,2\n").unwrap();
+        fs::write(folder.path().join("outside.csv"), "t/s,a\n0,1\n1,2\n").unwrap();
         fs::write(resources.join("broken.csv"), "0,1\nroot:x:0:0:secret,2\n").unwrap();
         std::os::unix::fs::symlink(folder.path().join("outside.csv"), resources.join("link.csv")).unwrap();
         let archive = archive(&resources);

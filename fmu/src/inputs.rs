@@ -1,25 +1,45 @@
-//! The inputs: values, slopes, and how an input goes on of which nothing but a value is set.
+//! The inputs: what the host sets at communication points, and the line that each of them follows over a step.
 
 use rocking::load::LOADS;
 use rocking::{LinearLoad, Load};
 use serde::{Deserialize, Serialize};
 
-/// The inputs. A slope is followed for one step, after which the value that it led to is held.
+/// How an input acts between communication points if nothing but its value is set.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) enum Between {
+    /// At once, and held over the step.
+    #[default]
+    Held,
+    /// One step late: in a line from the value of the last communication point to that of the present one.
+    Late,
+    /// At once, and on with the slope of its values at the last two communication points.
+    Extrapolated,
+}
+
+/// The inputs. A slope is followed for one step, after which the value that it led to is held; a step that ended early goes
+/// on where it ended, along the same lines.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Inputs {
-    /// Now, with the slopes set for the next step.
+    /// How they act, in the order of [`LOADS`].
+    between: [Between; 2],
+    /// What acts now, and the slopes of the next step, but for those that are late.
     next: LinearLoad,
-    /// What has been set of each since the last step, in the order of [`LOADS`].
+    /// As the host has set them, or as they have come to be.
+    set: Load,
+    /// What has been set of each since the last step, in the same order.
     given: [Given; 2],
-    /// The slopes that the last step followed, which count for inputs of which nothing has been set since.
-    followed: Load,
-    /// Values when the last step began, and its duration, s; 0 before the first.
+    /// Where the last step led, and the slopes that it followed.
+    followed: LinearLoad,
+    /// What acted at the last communication point that a step began at, and how long ago that was, s; 0 before the first.
     before: (Load, f64),
+    /// Whether the last step ended before the next communication point.
+    ended_early: bool,
 }
 
 /// What has been set of an input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 enum Given {
+    /// Nothing, or what was set before a step that ended early.
     #[default]
     Nothing,
     /// Its value alone.
@@ -29,70 +49,127 @@ enum Given {
 }
 
 impl Inputs {
-    /// The present values.
+    /// The values, as the host has set them or as they have come to be.
     pub(crate) fn values(&self) -> Load {
+        self.set
+    }
+
+    /// What acts now.
+    pub(crate) fn acting(&self) -> Load {
         self.next.value
     }
 
-    /// Sets the value of the input `which` of [`LOADS`], which ends its slope.
-    pub(crate) fn set(&mut self, which: usize, value: f64) {
-        (LOADS[which].set)(&mut self.next.value, value);
-        if self.given[which] == Given::Nothing {
-            self.given[which] = Given::Value;
-        }
+    /// From here on steps are made, and inputs act as `between` says; until then, and where none are made, at once.
+    pub(crate) fn start(&mut self, between: [Between; 2]) {
+        self.between = between;
     }
 
-    /// Sets the slope of the same over the next step.
+    /// Sets the value of the input `which` of [`LOADS`].
+    pub(crate) fn set(&mut self, which: usize, value: f64) {
+        let Inputs { between, next, set, given, followed, before: (before, ago), ended_early } = self;
+        let (input, given) = (&LOADS[which], &mut given[which]);
+        (input.set)(set, value);
+        if *given == Given::Slope {
+            return (input.set)(&mut next.value, value);
+        }
+        *given = Given::Value;
+        let (value, slope) = match between[which] {
+            Between::Late => return,
+            Between::Held => (value, 0.0),
+            Between::Extrapolated if *ended_early && value == (input.get)(before) => {
+                *given = Given::Nothing;
+                ((input.get)(&followed.value), (input.get)(&followed.slope))
+            }
+            Between::Extrapolated => (value, (value - (input.get)(before)) / *ago),
+        };
+        (input.set)(&mut next.value, value);
+        (input.set)(&mut next.slope, if slope.is_finite() { slope } else { 0.0 });
+    }
+
+    /// Sets the slope of the same over the next step, from what has been set of it or else from what acts.
     pub(crate) fn set_slope(&mut self, which: usize, slope: f64) {
-        (LOADS[which].set)(&mut self.next.slope, slope);
-        self.given[which] = Given::Slope;
+        let (input, Inputs { next, set, given, .. }) = (&LOADS[which], self);
+        let is_set = given[which] != Given::Nothing;
+        let (from, to) = if is_set { (set, &mut next.value) } else { (&mut next.value, set) };
+        (input.set)(to, (input.get)(from));
+        (input.set)(&mut next.slope, slope);
+        given[which] = Given::Slope;
     }
 
     /// Sets the value that the same leads to over the next step, which lasts `step` (s), in a straight line.
     pub(crate) fn lead(&mut self, which: usize, value: f64, step: f64) {
-        self.set_slope(which, (value - (LOADS[which].get)(&self.next.value)) / step);
+        self.set_slope(which, 0.0);
+        self.set_slope(which, (value - (LOADS[which].get)(&self.set)) / step);
     }
 
-    /// What they are over a step of `duration` (s). With `extrapolate`, one of which only the value is set goes on with
-    /// the slope from its value at the last communication point to the present one, unless that leads out of its range.
-    pub(crate) fn over(&self, duration: f64, extrapolate: bool) -> LinearLoad {
-        let (mut load, (before, passed)) = (self.next, &self.before);
-        if extrapolate && *passed > 0.0 {
-            for (input, _) in LOADS.iter().zip(self.given).filter(|(_, given)| *given == Given::Value) {
-                let value = (input.get)(&load.value);
-                let slope = (value - (input.get)(before)) / passed;
-                if slope.is_finite() && input.check(value + slope * duration).is_ok() {
-                    (input.set)(&mut load.slope, slope);
-                }
+    /// Whether the same acts as soon as it is set.
+    pub(crate) fn acts_at_once(&self, which: usize) -> bool {
+        self.between[which] != Between::Late || self.given[which] == Given::Slope
+    }
+
+    /// What they are over a step of `duration` (s). An input of which only the value is set is held if its line would lead
+    /// out of its range.
+    #[inline]
+    pub(crate) fn over(&self, duration: f64) -> LinearLoad {
+        let mut load = self.next;
+        for (which, between) in self.between.into_iter().enumerate() {
+            if between == Between::Held || self.given[which] == Given::Slope {
+                continue;
+            }
+            let (input, value) = (&LOADS[which], (LOADS[which].get)(&load.value));
+            let slope = match between {
+                Between::Late => ((input.get)(&self.set) - value) / duration,
+                _ => (input.get)(&load.slope),
+            };
+            let leads_there = slope.is_finite() && input.check(value + slope * duration).is_ok();
+            (input.set)(&mut load.slope, if leads_there { slope } else { 0.0 });
+        }
+        load
+    }
+
+    /// What acts now and how it changes: as it is about to, or as it just did.
+    pub(crate) fn now(&self) -> LinearLoad {
+        let mut load = self.next;
+        for (which, input) in LOADS.iter().enumerate() {
+            if self.given[which] == Given::Nothing || !self.acts_at_once(which) {
+                (input.set)(&mut load.slope, (input.get)(&self.followed.slope));
             }
         }
         load
     }
 
-    /// What they are now and how they change: as they are about to, or as they just did.
-    pub(crate) fn now(&self, extrapolate: bool) -> LinearLoad {
-        let mut load = self.over(0.0, extrapolate);
-        for (input, _) in LOADS.iter().zip(self.given).filter(|(_, given)| *given == Given::Nothing) {
-            (input.set)(&mut load.slope, (input.get)(&self.followed));
+    /// Goes on after `duration` (s) of a step that followed `load`, and that ended early or at the next communication point.
+    #[inline]
+    pub(crate) fn pass(&mut self, load: LinearLoad, duration: f64, ended_early: bool) {
+        if !self.ended_early {
+            self.before = (load.value, 0.0);
         }
-        load
-    }
-
-    /// Goes on after a step of `duration` (s) that followed `load`.
-    pub(crate) fn pass(&mut self, load: LinearLoad, duration: f64) {
-        self.next = LinearLoad { value: load.at(duration), slope: Load::default() };
+        self.before.1 += duration;
+        let (value, set) = (load.at(duration), self.set);
+        let slope = if ended_early { load.slope } else { Load::default() };
+        (self.next, self.set, self.ended_early) = (LinearLoad { value, slope }, value, ended_early);
+        for (which, input) in LOADS.iter().enumerate() {
+            if !self.acts_at_once(which) {
+                let set = (input.get)(&set);
+                (input.set)(&mut self.set, set);
+                if !ended_early {
+                    (input.set)(&mut self.next.value, set); // whatever the rounding
+                }
+            }
+        }
+        self.followed = LinearLoad { value: self.next.value, slope: load.slope };
         self.given = [Given::Nothing; 2];
-        self.followed = load.slope;
-        self.before = (load.value, duration);
     }
 
     /// Whether calls can lead here.
     pub(crate) fn are_possible(&self) -> bool {
-        let Inputs { next: LinearLoad { value, slope }, followed, before: (before, passed), .. } = self;
-        (0.0..f64::INFINITY).contains(passed)
+        let Inputs { next, set, followed, before: (before, ago), .. } = self;
+        (0.0..f64::INFINITY).contains(ago)
             && LOADS.iter().all(|input| {
-                [value, before].iter().all(|load| input.check((input.get)(load)).is_ok())
-                    && [slope, followed].iter().all(|slopes| (input.get)(slopes).is_finite())
+                [&next.value, set, &followed.value, before]
+                    .into_iter()
+                    .all(|load| input.check((input.get)(load)).is_ok())
+                    && [next.slope, followed.slope].iter().all(|slopes| (input.get)(slopes).is_finite())
             })
     }
 }

@@ -126,15 +126,18 @@ impl Instance {
         for warning in validity::of_parameters(model.engine.structure(), setup.detail) {
             self.logger.warning(&warning);
         }
-        if self.now.interface == Interface::ModelExchange {
-            let watched = [("peaks", self.now.setup.peaks), ("validity", self.now.setup.validity)];
-            for (name, _) in watched.into_iter().filter(|(_, is_watched)| *is_watched) {
-                self.logger.warning(&format!(
-                    "{name} = true watches nothing in model exchange, where the motion between two points is the host's: what it \
-                     stands for is NaN; use co-simulation"
-                ));
+        match self.now.interface {
+            Interface::CoSimulation(_) => self.now.inputs.start(self.now.setup.between()),
+            Interface::ModelExchange => {
+                let watched = [("peaks", self.now.setup.peaks), ("validity", self.now.setup.validity)];
+                for (name, _) in watched.into_iter().filter(|(_, is_watched)| *is_watched) {
+                    self.logger.warning(&format!(
+                        "{name} = true watches nothing in model exchange, where the motion between two points is the host's: what \
+                         it stands for is NaN; use co-simulation"
+                    ));
+                }
+                self.start_outside()?;
             }
-            self.start_outside()?;
         }
         self.now.stage = self.now.interface.first_stage();
         Ok(())
@@ -185,7 +188,8 @@ impl Instance {
 
     /// As instantiated. FMU states stay the host's until it frees them.
     pub fn reset(&mut self) -> Result<(), Failure> {
-        self.now = Present::new(&self.archive, self.now.interface);
+        let record = self.now.record.take();
+        self.now = Present { record, ..Present::new(&self.archive, self.now.interface) };
         self.logger.set_events(self.events_at_start);
         Ok(())
     }
@@ -222,7 +226,7 @@ impl Instance {
         let Some(model) = model.as_ref().filter(|_| is_computed) else {
             return write(references, values, setting);
         };
-        let shown = Shown::new(model, setup, model.load(setup, load.into()).value);
+        let shown = Shown::new(model, setup, model.load(setup, inputs.acting().into()).value);
         if let Some(variable) = reaction {
             let Reactions { R_h, R_v, R_m } = shown.reactions();
             if !(R_h + R_v + R_m).is_finite() {
@@ -423,7 +427,7 @@ impl Instance {
         values: &mut [MaybeUninit<f64>],
     ) -> Result<(), Failure> {
         let (model, setup, inputs, _) = self.now.parts(&self.archive)?;
-        let load = model.load(setup, inputs.now(setup.extrapolate));
+        let load = model.load(setup, inputs.now());
         let time = model.engine.motion().time;
         let (outputs, reactions) = model.engine.rates(load);
         let rate = |reference: &u32, order: i32| {
@@ -477,6 +481,7 @@ impl Instance {
                 return Err(Failure::BadSlope { variable, value });
             }
             match variable.source {
+                Source::Input(which) if !self.now.inputs.acts_at_once(which) => (),
                 Source::Input(which) => {
                     let sum = (LOADS[which].get)(&direction) + value;
                     (LOADS[which].set)(&mut direction, sum);
@@ -503,7 +508,7 @@ impl Instance {
         let unknowns = unknowns.iter().map(unknown).collect::<Result<Vec<_>, _>>()?;
 
         let (model, setup, inputs, _) = self.now.parts(&self.archive)?;
-        let inputs = inputs.now(false);
+        let inputs = inputs.acting().into();
         let mut by_states = vec![0.0; unknowns.len()];
         for (which, seed) in of_state.into_iter().enumerate().filter(|(_, seed)| *seed != 0.0) {
             let by = by_state(model, setup, inputs, &unknowns, which)?;
@@ -600,7 +605,7 @@ impl Instance {
         let (logger, stops) = (&self.logger, self.now.interface.stepping().hands_over());
         let (model, setup, inputs, stage) = self.now.parts(&self.archive)?;
         check_step(model, setup, point, step)?;
-        let load = inputs.over(step, setup.extrapolate);
+        let load = inputs.over(step);
         let last = load.at(step);
         for quantity in &LOADS {
             quantity.check((quantity.get)(&last)).map_err(Failure::InputRunsOut)?;
@@ -621,7 +626,7 @@ impl Instance {
                 let reached = model.engine.motion().time;
                 let passed = if reached == point + step { step } else { reached - point };
                 if passed > 0.0 {
-                    inputs.pass(load, passed);
+                    inputs.pass(load, passed, reached < point + step);
                 }
                 known.iter().for_each(|known| warn(logger, known, &model.validity));
                 if progress == Progress::Overturned {

@@ -1,6 +1,7 @@
 //! What is set before a simulation starts.
 
 use crate::ground::GroundRecord;
+use crate::inputs::Between;
 use crate::resources::Contents;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::ground_motion::Placement;
@@ -20,8 +21,10 @@ pub struct Setup {
     /// Which record the ground follows; none if empty.
     pub(crate) record: Arc<str>,
     pub(crate) placement: Placement,
-    /// Whether an input of which only the value is set goes on with the slope of its last two.
-    pub(crate) extrapolate: bool,
+    /// Whether a_g is followed one step late.
+    pub(crate) a_g_late: bool,
+    /// Whether F_t goes on with the slope of its last two values.
+    pub(crate) F_t_extrapolated: bool,
     /// Whether peaks are watched.
     pub(crate) peaks: bool,
     /// Whether it is watched what the motion goes beyond.
@@ -40,10 +43,18 @@ impl Setup {
             stop_time: None,
             record: contents.default_record().into(),
             placement: Placement::default(),
-            extrapolate: false,
+            a_g_late: false,
+            F_t_extrapolated: false,
             peaks: false,
             validity: false,
         }
+    }
+
+    /// How the inputs act between communication points.
+    pub(crate) fn between(&self) -> [Between; 2] {
+        let a_g = if self.a_g_late { Between::Late } else { Between::Held };
+        let F_t = if self.F_t_extrapolated { Between::Extrapolated } else { Between::Held };
+        [a_g, F_t]
     }
 
     /// `record` as it acts.

@@ -57,7 +57,7 @@ impl Snapshots {
 }
 
 const MAGIC: [u8; 8] = *b"FlexRock";
-const VERSION: u32 = 6;
+const VERSION: u32 = 7;
 
 /// A condition as bytes.
 pub fn serialize(condition: &Condition) -> Vec<u8> {

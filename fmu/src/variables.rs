@@ -222,8 +222,11 @@ fn overturned(motion: &Motion) -> i32 {
     i32::from(matches!(motion.phase, Phase::Overturned(_)))
 }
 
+/// How many variables there are: their table is no allocation, which would be left behind where the library is unloaded.
+const COUNT: usize = 86;
+
 /// All variables, in the order of the model description.
-pub static VARIABLES: LazyLock<Vec<Variable>> = LazyLock::new(|| {
+pub static VARIABLES: LazyLock<[Variable; COUNT]> = LazyLock::new(|| {
     let inputs = (0..LOADS.len()).map(input);
     inputs
         .chain(outputs())
@@ -240,7 +243,9 @@ pub static VARIABLES: LazyLock<Vec<Variable>> = LazyLock::new(|| {
         .chain(switches())
         .chain(calculated_parameters())
         .chain([time()])
-        .collect()
+        .collect::<Vec<_>>()
+        .try_into()
+        .unwrap_or_else(|found: Vec<_>| panic!("{} variables, not {COUNT}", found.len()))
 });
 
 const RECORD: &str = "ground motion record that the ground follows beside a_g: the name of a file in the archive's \
@@ -504,16 +509,21 @@ fn validity() -> Vec<Variable> {
         .collect()
 }
 
-fn switches() -> [Variable; 3] {
-    static EXTRAPOLATE: Switch = Switch { get: |setup| setup.extrapolate, set: |setup, on| setup.extrapolate = on };
+fn switches() -> [Variable; 4] {
+    static LATE: Switch = Switch { get: |setup| setup.a_g_late, set: |setup, on| setup.a_g_late = on };
+    static EXTRAPOLATED: Switch =
+        Switch { get: |setup| setup.F_t_extrapolated, set: |setup, on| setup.F_t_extrapolated = on };
     static PEAKS: Switch = Switch { get: |setup| setup.peaks, set: |setup, on| setup.peaks = on };
     static VALIDITY: Switch = Switch { get: |setup| setup.validity, set: |setup, on| setup.validity = on };
     let validity =
         "whether it is watched what the motion goes beyond: tension, edges that pull, friction, energy gained";
-    let extrapolate = "whether an input that is set without its derivative goes on with the slope of its values at the \
-                       last two communication points, and is not held";
+    let late = "whether a_g, set without its derivative, is followed one communication step late, in a straight line from \
+                each value to the next, and is not held";
+    let extrapolated = "whether F_t, set without its derivative, goes on with the slope of its values at the last two \
+                        communication points, and is not held";
     [
-        parameter("extrapolate", extrapolate, DataType::Boolean, Source::Switch(&EXTRAPOLATE)),
+        parameter("a_g_late", late, DataType::Boolean, Source::Switch(&LATE)),
+        parameter("F_t_extrapolated", extrapolated, DataType::Boolean, Source::Switch(&EXTRAPOLATED)),
         parameter(
             "peaks",
             "whether the largest magnitudes theta_max, u_max, ... are watched for",

@@ -66,7 +66,7 @@ const SCALES: (f64, f64) = (0.4, 1.25);
 
 fn read(path: &Path) -> Record {
     let (record, _) = Record::read(path, &Reading::default(), Parameters::EVISON.g).unwrap();
-    record.scaled(SCALES.0, SCALES.1)
+    record.scaled(SCALES.0, SCALES.1).unwrap()
 }
 
 /// Relative tolerance: what differs is then not the solver's.
@@ -231,7 +231,7 @@ fn a_record_comes_when_it_is_asked_for() {
 #[test]
 fn the_input_adds_to_the_record() {
     let host = Host::initializing(&[]);
-    host.write("line.csv", "0,1\n1,2\n2,0\n");
+    host.write("line.csv", "t (s),a\n0,1\n1,2\n2,0\n");
     assert_eq!((host.set_record("line.csv"), host.exit()), (OK, OK));
     assert_eq!((host.set(&[("a_g", 0.5), ("F_t", 30.0)]), host.set_slope("a_g", 1, -0.25)), (OK, OK));
     assert_eq!(host.set_slope("F_t", 1, 8.0), OK);
@@ -310,7 +310,7 @@ fn a_record_that_cannot_be_followed_is_refused() {
     let host = Host::initializing(&[]);
     let folder = host.resources.path().display().to_string();
     host.write("broken.csv", "t,a\n0,1\n0.1,root:x:0\n0.2,3\n");
-    host.write("strong.csv", "0,1\n1,-6000\n");
+    host.write("strong.csv", "t (s),a\n0,1\n1,-6000\n");
     fs::create_dir(host.resources.path().join("folder.csv")).unwrap();
     let is_no_file = |path: &str| format!("record: {path} is not a file");
     for (record, message) in [
@@ -341,7 +341,7 @@ fn a_record_that_cannot_be_followed_is_refused() {
     assert_eq!((host.get("a_ground"), host.get("record_duration")), (-1.0, 1.0));
 }
 
-/// A process reads a record once: neither another run nor another instance reads it again.
+/// A record is parsed once: neither another run nor another instance does more than to read the bytes of its file.
 #[test]
 fn a_record_is_shared_by_runs_and_instances() {
     let folder = tempfile::tempdir().unwrap();
@@ -353,10 +353,10 @@ fn a_record_is_shared_by_runs_and_instances() {
         allocation_counter::measure(|| assert_eq!(host.exit(), OK)).bytes_total
     };
     let first = Host::new();
-    assert!(allocated(&first) > size);
+    assert!(allocated(&first) > 2 * size);
     assert_eq!(first.reset(), OK);
     for again in [allocated(&first), allocated(&Host::new())] {
-        assert!(again < size / 10, "{again} bytes for a file of {size}");
+        assert!(again < size + size / 10, "{again} bytes for a file of {size}");
     }
 }
 

@@ -1,4 +1,6 @@
-//! θ, u and a_t over a whole run as series in time, and how far two runs are apart, exactly.
+//! θ, u and a_t as series in time, and how far two motions are apart, exactly.
+//!
+//! What both have covered is compared and left: neither is kept whole.
 
 use crate::extremes;
 use crate::outputs::Measure;
@@ -9,16 +11,15 @@ use crate::taylor::{self, Series};
 /// does so within this time, their distance is that jump and says nothing of either.
 const SAME_LANDING: f64 = 1e-3;
 
-/// A motion from its start on.
-#[derive(Clone, Debug)]
+/// What has been seen of a motion and is still to be compared.
+#[derive(Clone, Debug, Default)]
 pub struct History {
-    omega_u: f64,
-    stretches: Vec<Stretch>,
+    pub stretches: Vec<Stretch>,
 }
 
 /// One of its series.
 #[derive(Clone, Debug)]
-struct Stretch {
+pub struct Stretch {
     start: f64,
     end: f64,
     /// Transitions before it.
@@ -28,38 +29,42 @@ struct Stretch {
     series: [Series; 3],
 }
 
-impl History {
+/// How far two motions of a structure have been apart.
+#[derive(Clone, Copy, Debug)]
+pub struct Distance {
+    omega_u: f64,
+    /// The largest |Δθ| (rad), |Δu| (m) and |Δa_t| (m/s²) over the time that both have covered.
+    pub largest: [f64; 3],
+    /// Since the one has had a transition that the other has not: how long, s, and how far they have been apart.
+    apart: (f64, [f64; 3]),
+}
+
+impl Distance {
     /// Of a structure whose vibration mode has the circular frequency `omega_u` (rad/s), nothing seen yet.
-    pub fn new(omega_u: f64) -> History {
-        History { omega_u, stretches: Vec::new() }
+    pub fn new(omega_u: f64) -> Distance {
+        Distance { omega_u, largest: [0.0; 3], apart: (0.0, [0.0; 3]) }
     }
 
-    /// The largest |Δθ| (rad), |Δu| (m) and |Δa_t| (m/s²) over the time that both cover.
-    pub fn differences(&self, other: &History) -> [f64; 3] {
-        let mut largest = [0.0; 3];
-        // since the one has had a transition that the other has not: how long, and how far they have been apart
-        let mut apart = (0.0, largest);
-        let (mut ours, mut theirs) = (self.stretches.iter().peekable(), other.stretches.iter().peekable());
-        while let (Some(a), Some(b)) = (ours.peek(), theirs.peek()) {
+    /// Compares what follows of both motions, as far as both are known: how many stretches of each need not be kept.
+    pub fn go_on(&mut self, ours: &[Stretch], theirs: &[Stretch]) -> [usize; 2] {
+        let Distance { omega_u, largest, apart } = self;
+        let mut done = [0; 2];
+        while let (Some(a), Some(b)) = (ours.get(done[0]), theirs.get(done[1])) {
             let (from, to) = (a.start.max(b.start), a.end.min(b.end));
             if to > from {
                 let are_even = a.transitions == b.transitions;
-                apart = if are_even { (0.0, [0.0; 3]) } else { (apart.0 + (to - from), apart.1) };
-                let of_these = if are_even { &mut largest } else { &mut apart.1 };
+                *apart = if are_even { (0.0, [0.0; 3]) } else { (apart.0 + (to - from), apart.1) };
+                let of_these = if are_even { &mut *largest } else { &mut apart.1 };
                 for (i, of_these) in of_these.iter_mut().enumerate() {
                     *of_these = f64::max(*of_these, difference(a, b, i, from, to, *of_these));
                 }
-                if apart.0 * self.omega_u >= SAME_LANDING * std::f64::consts::TAU {
+                if apart.0 * *omega_u >= SAME_LANDING * std::f64::consts::TAU {
                     largest.iter_mut().zip(apart.1).for_each(|(largest, apart)| *largest = largest.max(apart));
                 }
             }
-            if a.end <= b.end {
-                ours.next()
-            } else {
-                theirs.next()
-            };
+            done[usize::from(a.end > b.end)] += 1;
         }
-        largest
+        done
     }
 }
 

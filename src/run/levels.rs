@@ -1,10 +1,11 @@
 //! Levels of detail compared on one run: the errors of each, what it costs, and the cheapest that will do.
 
-use super::history::History;
-use super::peaks::Peaks;
-use super::{Ending, Run, RunError};
+use super::history::{Distance, History};
+use super::peaks::{PeakWatch, Peaks};
+use super::{Course, Ending, Run, RunError};
 use crate::Detail;
 use crate::motion::Work;
+use crate::record::Segment;
 
 /// Tolerance of the run that all others are measured by.
 pub const REFERENCE_TOLERANCE: f64 = 1e-12;
@@ -15,6 +16,9 @@ pub const SIMPLEST_FIRST: [Detail; 6] =
 
 /// Costs within this factor of the least count as the same: the equations then decide.
 const SAME_COST: f64 = 2.0;
+
+/// Levels go on together, from sample to sample, but no longer than this over ω_u at once: of what lies between nothing is kept.
+const LONGEST_STRETCH: f64 = 2000.0;
 
 /// What a level's error is measured by.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,45 +88,122 @@ pub struct Comparison {
 
 /// Does `run` at every level.
 pub fn compare(run: &Run) -> Result<Comparison, RunError> {
+    let none = Peaks::new(&run.structure);
+    let (mut exact_peaks, mut peaks) = (none, SIMPLEST_FIRST.map(|_| none));
     let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..run.clone() };
-    let (reference, exact_history) = respond(&exact)?;
-    let (mut verdicts, mut refused) = (Vec::new(), Vec::new());
-    for detail in SIMPLEST_FIRST {
-        match respond(&Run { detail, ..run.clone() }) {
-            Ok((response, history)) => {
-                let peaks = [Peaks::theta, Peaks::u, Peaks::a_t].map(|of| {
-                    let [found, expected] = [&response.peaks, &reference.peaks].map(|peaks| of(peaks).magnitude);
-                    ((found - expected).abs(), expected)
-                });
-                let differences = history.differences(&exact_history);
-                let histories = std::array::from_fn(|i| (differences[i], peaks[i].1));
-                let [theta, u, a_t] = peaks.map(relative);
-                let [theta_history, u_history, a_t_history] = <[_; 3]>::map(histories, relative);
-                verdicts.push(Verdict {
-                    is_right_about_overturning: reference
-                        .overturns()
-                        .map(|overturns| response.overturns() == Some(overturns)),
-                    errors: [theta, u, a_t, theta_history, u_history, a_t_history],
-                    response,
-                });
-            }
+    let mut reference = start(&exact, &mut exact_peaks)?;
+    let (mut trials, mut refused) = (Vec::new(), Vec::new());
+    for (detail, peaks) in SIMPLEST_FIRST.into_iter().zip(&mut peaks) {
+        match start(&Run { detail, ..run.clone() }, peaks) {
+            Ok(trial) => trials.push(trial),
             Err(error) => refused.push((detail, error)),
         }
     }
-    Ok(Comparison { reference, verdicts, refused })
+    while reference.ending.is_none() || trials.iter().any(|trial| trial.ending.is_none()) {
+        reference.go_on()?;
+        trials.retain_mut(|trial| {
+            let went_on = trial.go_on();
+            went_on.map_err(|error| refused.push((trial.detail, error))).is_ok()
+        });
+        trials.iter_mut().for_each(|trial| trial.compare(&reference));
+        let known = reference.history.stretches.len();
+        let done = trials.iter().map(|trial| trial.compared).min().unwrap_or(known);
+        reference.history.stretches.drain(..done);
+        trials.iter_mut().for_each(|trial| trial.compared -= done);
+    }
+    refused.sort_by_key(|(detail, _)| SIMPLEST_FIRST.iter().position(|of_all| of_all == detail));
+    let (reference, _) = reference.response();
+    let verdicts = trials
+        .into_iter()
+        .map(Trial::response)
+        .map(|(response, distance)| Verdict::new(response, distance, &reference));
+    Ok(Comparison { verdicts: verdicts.collect(), reference, refused })
 }
 
-fn respond(run: &Run) -> Result<(Response, History), RunError> {
-    let (mut peaks, mut history) = (Peaks::new(&run.structure), History::new(run.structure.omega_u));
-    let finish = run.follow(&mut (&mut peaks.watch(), &mut history))?;
-    let response = Response {
+/// A level on its way.
+struct Trial<'a, Segments> {
+    detail: Detail,
+    course: Course<Segments>,
+    peaks: PeakWatch<'a>,
+    /// What is still to be compared with the reference.
+    history: History,
+    /// From the reference.
+    distance: Distance,
+    /// How many stretches of the reference it has been compared with.
+    compared: usize,
+    /// How it ended, once it has.
+    ending: Option<Ending>,
+}
+
+/// Of `run`, whose `peaks` will be there.
+fn start<'g, 'a>(
+    run: &Run<'g>,
+    peaks: &'a mut Peaks,
+) -> Result<Trial<'a, impl Iterator<Item = Segment> + use<'g>>, RunError> {
+    let omega_u = run.structure.omega_u;
+    let Course { engine, segments, end, rest } = run.course()?;
+    let segments = segments.flat_map(move |segment| cut(segment, LONGEST_STRETCH / omega_u));
+    Ok(Trial {
         detail: run.detail,
-        peaks,
-        ending: finish.ending,
-        transitions: finish.motion.transitions,
-        work: finish.motion.work,
-    };
-    Ok((response, history))
+        course: Course { engine, segments, end, rest },
+        peaks: peaks.watch(),
+        history: History::default(),
+        distance: Distance::new(omega_u),
+        compared: 0,
+        ending: None,
+    })
+}
+
+/// `segment` in equal parts of at most `longest` (s).
+fn cut(segment: Segment, longest: f64) -> impl Iterator<Item = Segment> {
+    let Segment { start, end, .. } = segment;
+    let parts = ((end - start) / longest).ceil().max(1.0);
+    let at = move |part: f64| if part == parts { end } else { start + (end - start) * (part / parts) };
+    (0..parts as u64).map(move |part| {
+        let (start, end) = (at(part as f64), at((part + 1) as f64));
+        Segment { start, end, a_g: segment.from(start) }
+    })
+}
+
+impl<Segments: Iterator<Item = Segment>> Trial<'_, Segments> {
+    /// Goes on over the next stretch unless it has ended.
+    fn go_on(&mut self) -> Result<(), RunError> {
+        if self.ending.is_none() {
+            self.ending = self.course.go_on(&mut (&mut self.peaks, &mut self.history))?;
+            if self.ending.is_some() {
+                self.course.engine.done(&mut self.peaks);
+            }
+        }
+        Ok(())
+    }
+
+    /// Compares as much of it as is known with as much as is known of the `reference`.
+    fn compare(&mut self, reference: &Self) {
+        let (ours, theirs) = (&mut self.history.stretches, &reference.history.stretches);
+        let [done, compared] = self.distance.go_on(ours, &theirs[self.compared..]);
+        ours.drain(..done);
+        self.compared += compared;
+        // what the one goes on for after the other has ended is compared with nothing
+        if self.ending.is_some() && ours.is_empty() {
+            self.compared = theirs.len();
+        }
+        if reference.ending.is_some() && self.compared == theirs.len() {
+            ours.clear();
+        }
+    }
+
+    /// What came of it, and how far from the reference it has been.
+    fn response(self) -> (Response, Distance) {
+        let motion = self.course.engine.motion();
+        let response = Response {
+            detail: self.detail,
+            peaks: *self.peaks.peaks(),
+            ending: self.ending.expect("it has been followed to its end"),
+            transitions: motion.transitions,
+            work: motion.work,
+        };
+        (response, self.distance)
+    }
 }
 
 /// A difference in proportion to what is expected: 0 where there is none, ∞ where nothing is expected.
@@ -147,6 +228,22 @@ impl Response {
 }
 
 impl Verdict {
+    /// Of a `response` that has been this far from the `reference`.
+    fn new(response: Response, distance: Distance, reference: &Response) -> Verdict {
+        let peaks = [Peaks::theta, Peaks::u, Peaks::a_t].map(|of| {
+            let [found, expected] = [&response.peaks, &reference.peaks].map(|peaks| of(peaks).magnitude);
+            ((found - expected).abs(), expected)
+        });
+        let histories = std::array::from_fn(|i| (distance.largest[i], peaks[i].1));
+        let [theta, u, a_t] = peaks.map(relative);
+        let [theta_history, u_history, a_t_history] = <[_; 3]>::map(histories, relative);
+        Verdict {
+            is_right_about_overturning: reference.overturns().map(|overturns| response.overturns() == Some(overturns)),
+            errors: [theta, u, a_t, theta_history, u_history, a_t_history],
+            response,
+        }
+    }
+
     /// Whether it is right about overturning, or leaves it open as the reference does, and its errors by every one of `criteria` are at most `within`.
     pub fn is_within(&self, within: f64, criteria: &[Criterion]) -> bool {
         let error = |criterion: &Criterion| self.errors[*criterion as usize];

@@ -32,25 +32,18 @@ pub struct Axis {
     is_log: bool,
 }
 
-/// One structure under one shape of pulse.
+/// One structure under one shape of pulse, at every point of which there is such a pulse.
 #[derive(Clone, Debug)]
 pub struct Map {
-    /// The structure.
-    pub structure: Structure,
-    /// The pulse but for its frequency and its amplitude.
-    pub pulse: Pulse,
-    /// Frequencies: in Hz, or, where the map is dimensionless, ω/p_l.
-    pub frequency: Axis,
-    /// Amplitudes: in m/s², or, where the map is dimensionless, a_p/(g tan α_cg).
-    pub amplitude: Axis,
-    /// Whether the axes are in units of the structure.
-    pub is_dimensionless: bool,
-    /// Level of detail.
-    pub detail: Detail,
-    /// Relative tolerance of the results.
-    pub tolerance: f64,
-    /// Whether each point's condition is found, by a second run.
-    pub finds_condition: bool,
+    structure: Structure,
+    /// But for its frequency and its amplitude.
+    pulse: Pulse,
+    frequency: Axis,
+    amplitude: Axis,
+    is_dimensionless: bool,
+    detail: Detail,
+    tolerance: f64,
+    finds_condition: bool,
 }
 
 /// Where a point is: counted in 1/256 of the steps of the grid.
@@ -276,6 +269,51 @@ impl Map {
         }
     }
 
+    /// The same with each point's condition, by a second run, if it `finds_condition`.
+    pub fn with_condition(self, finds_condition: bool) -> Map {
+        Map { finds_condition, ..self }
+    }
+
+    /// The structure.
+    pub fn structure(&self) -> &Structure {
+        &self.structure
+    }
+
+    /// What the pulses are called.
+    pub fn pulse_name(&self) -> String {
+        self.pulse.name()
+    }
+
+    /// Frequencies: in Hz, or, where the map is dimensionless, ω/p_l.
+    pub fn frequency(&self) -> &Axis {
+        &self.frequency
+    }
+
+    /// Amplitudes: in m/s², or, where the map is dimensionless, a_p/(g tan α_cg).
+    pub fn amplitude(&self) -> &Axis {
+        &self.amplitude
+    }
+
+    /// Whether the axes are in units of the structure.
+    pub fn is_dimensionless(&self) -> bool {
+        self.is_dimensionless
+    }
+
+    /// Level of detail.
+    pub fn detail(&self) -> Detail {
+        self.detail
+    }
+
+    /// Relative tolerance of the results.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// Whether each point's condition is found.
+    pub fn finds_condition(&self) -> bool {
+        self.finds_condition
+    }
+
     /// The pulse at `place`.
     pub fn pulse(&self, place: Place) -> Pulse {
         let [frequency, amplitude] = place.steps();
@@ -284,15 +322,28 @@ impl Map {
         Pulse { frequency: frequency * of_frequency, amplitude: amplitude * of_amplitude, ..self.pulse }
     }
 
+    /// The pulse at `place` in straight lines. Their corners stand a little outside the curve; where the curve does not push
+    /// hard enough to lift a rigid structure off, nor do they.
+    fn ground(&self, place: Place) -> Record {
+        let pulse = self.pulse(place);
+        let ground = pulse.record().expect("the map's corners have been checked");
+        let (least_push, _) = units_of(&self.structure);
+        let pga = ground.pga();
+        if self.detail == Detail::Rigid && pulse.amplitude <= least_push && least_push < pga {
+            return ground.scaled(1.0, least_push / pga);
+        }
+        ground
+    }
+
     /// Runs the structure under the pulse at `place`.
     pub fn run(&self, place: Place) -> Point {
-        let ground = self.pulse(place).record().expect("the map's corners have been checked");
+        let ground = self.ground(place);
         let respond = |ground: &Record| {
             Point::of(&Run { detail: self.detail, tolerance: self.tolerance, ..Run::new(self.structure, ground) })
         };
         let mut point = respond(&ground);
         if self.finds_condition {
-            let other = respond(&ground.scaled(1.0, 1.0 + PERTURBATION));
+            let other = respond(&ground.multiplied(1.0 + PERTURBATION));
             point.condition = Some(point.condition(&other));
         }
         point

@@ -8,11 +8,14 @@
 use crate::extremes::Bound;
 use crate::outputs::Measure;
 use crate::piece::{Equations, KeptPiece, Piece, Watch};
-use crate::{Outputs, Structure, extremes};
+use crate::{Motion, Outputs, Structure, extremes};
 use serde::{Deserialize, Serialize};
 
 /// A bound above the largest magnitude by no more than this part of it may be rounding.
 const ROUNDING: f64 = 1e-14;
+
+/// Magnitudes that differ by no more than this part are the same but for what rounding adds up to in many steps.
+const SAME: f64 = 1e-12;
 
 /// How often an exact leap is halved before a polynomial is asked for: a bound on a half has a quarter of the slack.
 const HALVINGS: u32 = 2;
@@ -31,9 +34,17 @@ pub struct Peak {
 
 impl Peak {
     fn see(&mut self, value: f64, time: f64) {
-        if value.abs() > self.magnitude || value.abs() == self.magnitude && time < self.time {
-            *self = Peak { magnitude: value.abs(), time };
+        let magnitude = value.abs();
+        if (magnitude - self.magnitude).abs() <= SAME * self.magnitude {
+            *self = Peak { magnitude: magnitude.max(self.magnitude), time: time.min(self.time) };
+        } else if magnitude > self.magnitude {
+            *self = Peak { magnitude, time };
         }
+    }
+
+    /// Whether a magnitude of at most `bound` at `time` (s) or later may be more than it, or the same and sooner.
+    fn may_change(&self, bound: f64, time: f64) -> bool {
+        bound > self.magnitude * if time < self.time { 1.0 - SAME } else { 1.0 + ROUNDING }
     }
 }
 
@@ -160,17 +171,18 @@ impl Peaks {
 
     /// Looks for those of `measures` at the part of `piece` in hand, where it may hold larger magnitudes; `halvings` are left.
     fn look(&mut self, measures: &[Measure], piece: &mut Piece, halvings: u32) {
-        if !self.may_be_beaten_within(measures, &piece.crude_bounds()) {
+        let start = piece.before.time + piece.passed();
+        if !self.may_change_within(measures, &piece.crude_bounds(), start) {
             return;
         }
         let bounds = piece.bounds();
         let mut is_open = false;
         for &measure in measures {
             let bound = &bounds[measure as usize];
-            if self.may_be_beaten(measure, bound.ends) {
+            if self.may_change(measure, bound.ends, start) {
                 self.see_ends(measure, piece);
             }
-            is_open |= self.is_open(measure, bound);
+            is_open |= self.is_open(measure, bound, start);
         }
         if !is_open {
             return;
@@ -188,7 +200,7 @@ impl Peaks {
         loop {
             piece.arc();
             for &measure in measures {
-                if self.is_open(measure, &bounds[measure as usize]) {
+                if self.is_open(measure, &bounds[measure as usize], start) {
                     self.search(measure, piece);
                 }
             }
@@ -199,19 +211,19 @@ impl Peaks {
         }
     }
 
-    /// Whether magnitudes of `measures` within `bounds` may be more than what has been seen.
-    fn may_be_beaten_within(&self, measures: &[Measure], bounds: &[f64; 4]) -> bool {
-        measures.iter().any(|measure| self.may_be_beaten(*measure, bounds[*measure as usize]))
+    /// Whether magnitudes of `measures` within `bounds` from `time` (s) on may change what has been seen.
+    fn may_change_within(&self, measures: &[Measure], bounds: &[f64; 4], time: f64) -> bool {
+        measures.iter().any(|measure| self.may_change(*measure, bounds[*measure as usize], time))
     }
 
-    /// Whether a magnitude of at most `bound` may be more than what has been seen.
-    fn may_be_beaten(&self, measure: Measure, bound: f64) -> bool {
-        bound > self.largest[measure as usize].magnitude * (1.0 + ROUNDING)
+    /// Whether a magnitude of at most `bound` from `time` (s) on may do so.
+    fn may_change(&self, measure: Measure, bound: f64, time: f64) -> bool {
+        self.largest[measure as usize].may_change(bound, time)
     }
 
-    /// Whether it may be so between the ends.
-    fn is_open(&self, measure: Measure, bound: &Bound) -> bool {
-        bound.may_turn() && self.may_be_beaten(measure, bound.largest())
+    /// Whether it may do so between the ends.
+    fn is_open(&self, measure: Measure, bound: &Bound, time: f64) -> bool {
+        bound.may_turn() && self.may_change(measure, bound.largest(), time)
     }
 
     /// Looks at both ends of the part in hand.
@@ -226,7 +238,7 @@ impl Peaks {
         let (start, span) = (piece.before.time + piece.passed(), piece.arc.span);
         piece.series(measure, &mut |from, arc, series| {
             let series = arc.used(series);
-            if !self.may_be_beaten(measure, extremes::bound_by_cubic(series, arc.reach)) {
+            if !self.may_change(measure, extremes::bound_by_cubic(series, arc.reach), start + from * span) {
                 return;
             }
             extremes::stationary_points(series, arc.reach, |sigma| {
@@ -250,10 +262,15 @@ pub struct PeakWatch<'a> {
 }
 
 impl PeakWatch<'_> {
+    /// The peaks so far.
+    pub(super) fn peaks(&self) -> &Peaks {
+        self.peaks
+    }
+
     /// Looks at what has been kept, the latest first, which is often the largest.
     fn look_back(&mut self, equations: &mut Equations) {
         while let Some((bounds, mut piece)) = self.kept.pop() {
-            if self.peaks.may_be_beaten_within(&Measure::ALL, &bounds) {
+            if self.peaks.may_change_within(&Measure::ALL, &bounds, piece.before().time) {
                 let mut piece = piece.piece(equations);
                 self.peaks.look(&Measure::ALL, &mut piece, HALVINGS);
                 self.peaks.evaluations += piece.evaluations();
@@ -270,12 +287,20 @@ impl Watch for PeakWatch<'_> {
             self.peaks.ground.see(piece.load.at(tau).a_g, piece.before.time + tau);
         }
         let bounds = piece.crude_bounds();
-        if !self.peaks.may_be_beaten_within(&Measure::ALL, &bounds) {
+        // what is the same as the largest but for rounding is looked at, too, where that costs nothing: at the ends
+        if !self.peaks.may_change_within(&Measure::ALL, &bounds, f64::NEG_INFINITY) {
             return;
         }
-        self.peaks.see_instant(piece.before.time + piece.duration, &piece.last_outputs());
+        for (tau, outputs) in piece.ends() {
+            self.peaks.see_instant(piece.before.time + tau, &outputs);
+        }
         let peaks = &*self.peaks;
-        self.kept.retain(|(bounds, _)| peaks.may_be_beaten_within(&Measure::ALL, bounds));
+        let may_change =
+            |bounds: &[f64; 4], motion: &Motion| peaks.may_change_within(&Measure::ALL, bounds, motion.time);
+        if !may_change(&bounds, piece.before) {
+            return;
+        }
+        self.kept.retain(|(bounds, piece)| may_change(bounds, piece.before()));
         if self.kept.len() == KEPT {
             self.look_back(&mut piece.equations());
         }
@@ -298,7 +323,7 @@ impl Watch for ThetaWatch<'_> {
 
     #[inline]
     fn piece(&mut self, piece: &mut Piece) {
-        if !self.peaks.may_be_beaten(Measure::Theta, piece.crude_bound_of_theta()) {
+        if !self.peaks.may_change(Measure::Theta, piece.crude_bound_of_theta(), f64::NEG_INFINITY) {
             return;
         }
         match piece.bound_of_theta() {
@@ -307,7 +332,7 @@ impl Watch for ThetaWatch<'_> {
                 for (tau, state) in [piece.part.start, piece.part.end] {
                     self.peaks.largest[Measure::Theta as usize].see(state.theta, start + tau);
                 }
-                if self.peaks.is_open(Measure::Theta, &bound) {
+                if self.peaks.is_open(Measure::Theta, &bound, start) {
                     self.peaks.search(Measure::Theta, piece);
                 }
             }

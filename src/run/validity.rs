@@ -31,7 +31,7 @@ use serde::{Deserialize, Serialize};
 /// Something worse by no more than this part may be rounding.
 const ROUNDING: f64 = 1e-14;
 
-/// A force that is worse by no more than this part of the weight is not looked for.
+/// A force that is worse by no more than this part of the weight is not looked for, and what differs by no more is the same.
 const MARGIN: f64 = 1e-12;
 
 /// A series of reactions that is off by less than this part of its terms at its end has converged.
@@ -186,12 +186,19 @@ impl Found {
         Found { worst, gains: 0, impacts: 0, settlings: 0, held: 0.0, duration: 0.0, evaluations: 0 }
     }
 
-    /// Sees `value` of assumption `which` at `time` (s).
+    /// Sees `value` of assumption `which` at `time` (s). Of values that are the same but for rounding the first counts.
     fn see(&mut self, which: usize, value: f64, time: f64) {
         let worst = &mut self.worst[which];
+        let is_same =
+            value == worst.value || (value - worst.value).abs() <= MARGIN * value.abs().min(worst.value.abs());
         let is_worse = if which == EDGE_LOAD { value < worst.value } else { value > worst.value };
+        if is_same {
+            worst.time = worst.time.min(time);
+        } else if is_worse {
+            worst.time = time;
+        }
         if is_worse {
-            (worst.value, worst.time) = (value, time);
+            worst.value = value;
         }
     }
 
@@ -241,11 +248,10 @@ impl Validity {
 
     /// The `reactions` in `phase` at `time` (s), which need not be in a piece.
     pub fn see_instant(&mut self, time: f64, phase: Phase, reactions: &Reactions) {
-        if phase == Phase::FullContact {
-            self.found.see(TENSION, self.value(TENSION, reactions), time);
-        }
-        for which in [EDGE_LOAD, FRICTION] {
-            self.found.see(which, self.value(which, reactions), time);
+        for which in [TENSION, EDGE_LOAD, FRICTION] {
+            if which != TENSION || phase == Phase::FullContact {
+                self.found.see(which, self.value(which, reactions), time);
+            }
         }
     }
 
@@ -333,21 +339,18 @@ impl Validity {
             return;
         }
         let phase = piece.before.phase;
+        // no friction is enough from where R_v is 0, which may be sooner than either end
+        if let Some((start, _)) = stretch.above(&[[0.0, -1.0, 0.0, 0.0]]).first() {
+            self.found.see(FRICTION, f64::INFINITY, stretch.time(*start));
+        }
         for sigma in [0.0, arc.reach] {
             self.see_instant(stretch.time(sigma), phase, &stretch.reactions(sigma));
-        }
-        if phase == Phase::FullContact {
-            self.search(TENSION, &stretch);
-        }
-        self.search(EDGE_LOAD, &stretch);
-        match stretch.above(&[[0.0, -1.0, 0.0, 0.0]]).first() {
-            Some((start, _)) => self.found.see(FRICTION, f64::INFINITY, stretch.time(*start)),
-            None => self.search(FRICTION, &stretch),
         }
         for which in [TENSION, EDGE_LOAD, FRICTION] {
             if which == TENSION && phase != Phase::FullContact {
                 continue;
             }
+            self.search(which, &stretch);
             let beyond = self.worse(which, (ASSUMPTIONS[which].limit)(&self.limits));
             for (start, end) in stretch.above(&beyond) {
                 self.found.see_beyond(which, stretch.time(start), (end - start) * arc.span);
@@ -359,6 +362,9 @@ impl Validity {
     fn search(&mut self, which: usize, stretch: &Stretch) {
         loop {
             let worst = self.found.worst[which].value;
+            if worst.is_infinite() {
+                return;
+            }
             let combinations = self.worse(which, worst);
             for combination in &combinations {
                 let series = stretch.combination(combination);
@@ -372,7 +378,7 @@ impl Validity {
             }
             let now = self.found.worst[which].value;
             // where friction is stationary is not where its combination is, unless with the friction found there
-            if which != FRICTION || now <= worst * (1.0 + ROUNDING) || now.is_infinite() {
+            if which != FRICTION || now <= worst * (1.0 + ROUNDING) {
                 return;
             }
         }
@@ -402,9 +408,6 @@ impl Watch for Validity {
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &mut Piece) {
-        if piece.duration == 0.0 {
-            return; // after a landing that leaves uplift due nothing is held down
-        }
         self.found.duration += piece.duration;
         self.found.held += piece.before.chatter.held.min(piece.duration);
         let is_leap = piece.is_leap() && piece.before.phase == Phase::FullContact;

@@ -2,7 +2,7 @@
 //! and amplitude.
 use crate::{
     output_files::OutputFiles,
-    record_args::{described, say_warnings},
+    record_args::{RecordOptions, with_key},
     structure_args::Preset,
     talk::say,
 };
@@ -13,7 +13,7 @@ use rocking::{
     intensity::IntensityMeasure,
     natural_quantities::Given,
     record::pulse::{Pulse, Shape},
-    record::{Reading, Record, Unit},
+    record::{Column, Record, Unit},
     run::map::{Axis, MAX_REFINEMENTS, Map},
     run::outcome::Limit,
     run::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population},
@@ -119,15 +119,25 @@ struct PulseGrid {
 #[serde(untagged, expecting = "expected a path or pattern, or { file = ..., scale = ... }")]
 enum Source {
     AsTheyAre(String),
-    Scaled(ScaledSource),
+    /// With a `file` and its options.
+    As(toml::Table),
 }
 
-/// The same with their accelerations multiplied.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ScaledSource {
-    file: String,
-    scale: f64,
+impl Source {
+    /// The pattern of the files, and how they are read.
+    fn pattern_and_options(&self) -> anyhow::Result<(&str, RecordOptions)> {
+        match self {
+            Source::AsTheyAre(pattern) => Ok((pattern, RecordOptions::default())),
+            Source::As(table) => {
+                let pattern = table.get("file").and_then(toml::Value::as_str);
+                let pattern = pattern.context("records: a table without file: expected { file = ..., scale = ... }")?;
+                let mut options = table.clone();
+                options.remove("file");
+                let options = RecordOptions::deserialize(options).with_context(|| format!("records {pattern:?}"))?;
+                Ok((pattern, options))
+            }
+        }
+    }
 }
 
 fn one() -> f64 {
@@ -187,12 +197,14 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         let g = gravity(&file.structures)?;
         let populations = file.structures.iter().map(StructureGrid::population).collect::<Result<_, _>>()?;
         let mut said = Vec::new();
-        let read = |path: &Path| {
+        let read = |path: &Path, options: &RecordOptions| {
             files.add_input(path);
-            let (record, source) = Record::read(path, &Reading { unit, ..Reading::default() }, g)?;
-            said.push(described(path, &record, &source, g));
-            say_warnings(path, &source);
-            Ok(record.scaled(time_scale, 1.0))
+            let (unit, time_scale) = (options.unit.or(unit), options.time_scale.or(Some(time_scale)));
+            let options = RecordOptions { unit, time_scale, scale: None, ..options.clone() };
+            let understood = options.understand(path, g).map_err(with_key)?;
+            understood.say_warnings(path);
+            said.push(understood.described);
+            Ok(understood.record)
         };
         let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read)?;
         let plan = Plan::new(populations, motions, scales)?.under(conditions)?;
@@ -211,7 +223,7 @@ impl MapFile {
             let name = is_one_line(&grid.name)?;
             ensure!(maps.iter().all(|(other, _)| other != name), "two structures have the name {name:?}: rename one");
             let map = self.map(grid).with_context(|| format!("structures {name:?}"))?;
-            maps.push((name.into(), Map { finds_condition: condition, ..map }));
+            maps.push((name.into(), map.with_condition(condition)));
         }
         Ok(MapSweep { maps, refinements: refine })
     }
@@ -332,14 +344,17 @@ impl StructureGrid {
 fn motions(
     sources: &[Source],
     folder: &Path,
-    mut read: impl FnMut(&Path) -> anyhow::Result<Record>,
+    mut read: impl FnMut(&Path, &RecordOptions) -> anyhow::Result<Record>,
 ) -> anyhow::Result<Vec<NamedRecord>> {
-    let (mut motions, mut scales) = (Vec::new(), HashMap::new());
+    let (mut motions, mut named) = (Vec::new(), HashMap::new());
     let mut named_twice: Vec<PathBuf> = Vec::new();
     for source in sources {
-        let (pattern, scale) = match source {
-            Source::AsTheyAre(pattern) => (pattern, 1.0),
-            Source::Scaled(ScaledSource { file, scale }) => (file, *scale),
+        let (pattern, options) = source.pattern_and_options()?;
+        let scale = options.scale.unwrap_or(1.0);
+        let column = match &options.column {
+            None => String::new(),
+            Some(Column::Number(number)) => format!(" column {number}"),
+            Some(Column::Heading(heading)) => format!(" column {heading}"),
         };
         let in_folder = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
         let mut paths = glob::glob(&in_folder.to_string_lossy()).with_context(|| format!("records {pattern:?}"))?;
@@ -347,10 +362,10 @@ fn motions(
         ensure!(paths.peek().is_some(), "records: there is no file {}", folder.join(pattern).display());
         for path in paths {
             let path = path?;
-            if let Some(other) = scales.insert(path.canonicalize()?, scale) {
+            if let Some(other) = named.insert((path.canonicalize()?, column.clone()), options.clone()) {
                 ensure!(
-                    other == scale,
-                    "{} is named twice in records, with the scales {other} and {scale}: leave one out",
+                    other == options,
+                    "{} is named twice in records, with different options: leave one out",
                     path.display()
                 );
                 named_twice.push(path);
@@ -358,7 +373,8 @@ fn motions(
             }
             // The same on every system, so that a sweep can go on on another.
             let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace(MAIN_SEPARATOR, "/");
-            motions.push(NamedRecord::new(is_one_line(&name)?, read(&path)?, scale)?);
+            let name = name + &column;
+            motions.push(NamedRecord::new(is_one_line(&name)?, read(&path, &options)?, scale)?);
         }
     }
     if let Some(first) = named_twice.first() {

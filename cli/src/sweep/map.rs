@@ -60,7 +60,7 @@ pub fn run(args: &SweepArgs, sweep: MapSweep, output: &Path, picture: Picture) -
     let largest = sweep.maps.iter().map(|(_, map)| map.grid().count()).max().unwrap_or(0);
     let pool = thread_pool(args, if sweep.refinements > 0 { usize::MAX } else { largest })?;
     for (name, map) in &sweep.maps {
-        let warnings = validity::of_parameters(&map.structure, map.detail);
+        let warnings = validity::of_parameters(map.structure(), map.detail());
         warnings.iter().for_each(|warning| say!("{name}: {warning}"));
     }
     let clock = Instant::now();
@@ -150,7 +150,7 @@ fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
         });
         let [x, y] = picture::axis_names(map);
         let refined = points.len() - map.grid().count();
-        writeln!(out, "{name}: {}; {}", map.pulse.name(), map.detail.name())?;
+        writeln!(out, "{name}: {}; {}", map.pulse_name(), map.detail().name())?;
         writeln!(out, "  {x}: {frequency}\n  {y}: {amplitude}")?;
         for Count { class, points, part, .. } in counts.iter().filter(|count| count.structure == name) {
             writeln!(out, "  {class:<28} {points:>9} {:>7.3} %", 100.0 * part)?;
@@ -158,7 +158,7 @@ fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
         if refined > 0 {
             writeln!(out, "  {:<28} {refined:>9}", "more along the boundaries")?;
         }
-        if map.finds_condition {
+        if map.finds_condition() {
             let changes = points.values().filter(|point| point.condition == Some(f64::INFINITY)).count();
             writeln!(out, "  {:<28} {changes:>9}", "change class under 1e-12")?;
         }

@@ -48,11 +48,11 @@ impl Version for Fmi2 {
             Function::SetInteger => Call::SetDiscrete(&["detail"], 4, |c, vr, nvr, value, _| unsafe {
                 fmi2SetInteger(c, vr, nvr, value.cast())
             }),
-            Function::SetBoolean => {
-                Call::SetDiscrete(&["extrapolate", "peaks", "validity"], 4, |c, vr, nvr, value, _| unsafe {
-                    fmi2SetBoolean(c, vr, nvr, value.cast())
-                })
-            }
+            Function::SetBoolean => Call::SetDiscrete(
+                &["a_g_late", "F_t_extrapolated", "peaks", "validity"],
+                4,
+                |c, vr, nvr, value, _| unsafe { fmi2SetBoolean(c, vr, nvr, value.cast()) },
+            ),
             Function::SetString => Call::SetStrings(|c, vr, nvr, value, _| unsafe { fmi2SetString(c, vr, nvr, value) }),
             Function::GetFMUstate => Call::GetState(fmi2GetFMUstate),
             Function::SetFMUstate => Call::SetState(fmi2SetFMUstate),

@@ -80,11 +80,11 @@ impl Version for Fmi3 {
             Function::SetInt64 => Call::SetDiscrete(&["detail"], 8, |c, vr, nvr, values, n| unsafe {
                 fmi3SetInt64(c, vr, nvr, values.cast(), n)
             }),
-            Function::SetBoolean => {
-                Call::SetDiscrete(&["extrapolate", "peaks", "validity"], 1, |c, vr, nvr, values, n| unsafe {
-                    fmi3SetBoolean(c, vr, nvr, values.cast(), n)
-                })
-            }
+            Function::SetBoolean => Call::SetDiscrete(
+                &["a_g_late", "F_t_extrapolated", "peaks", "validity"],
+                1,
+                |c, vr, nvr, values, n| unsafe { fmi3SetBoolean(c, vr, nvr, values.cast(), n) },
+            ),
             Function::SetString => {
                 Call::SetStrings(|c, vr, nvr, values, n| unsafe { fmi3SetString(c, vr, nvr, values, n) })
             }

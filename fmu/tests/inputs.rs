@@ -1,0 +1,160 @@
+//! Inputs of which nothing but the value is set, for hosts that cannot send slopes: a_g one step late, F_t extrapolated.
+#![allow(unsafe_code, non_snake_case)] // the C interface; F_t
+
+mod host;
+
+use FlexibleRocking::fmi2::fmi2GetDirectionalDerivative;
+use approx::assert_relative_eq;
+use host::*;
+
+const SHOWN: [&str; 6] = ["theta", "u", "a_t", "R_h", "a_g", "F_t"];
+
+fn started(switches: &[&str], start_values: &[(&str, f64)]) -> Host {
+    let host = Host::initializing(start_values);
+    switches.iter().for_each(|switch| assert_eq!(host.set_boolean(switch, 1), OK));
+    assert_eq!(host.exit(), OK);
+    host
+}
+
+fn assert_close(host: &Host, other: &Host) {
+    for (found, expected) in host.try_get(&SHOWN).unwrap().into_iter().zip(other.try_get(&SHOWN).unwrap()) {
+        assert_relative_eq!(found, expected, max_relative = 1e-11);
+    }
+}
+
+/// Beside a host that sends the lines themselves, over steps of different lengths: from the value at the start on, to what is
+/// set, or on where nothing is; a slope that is set wins. Outputs between two steps are those of what acts.
+#[test]
+fn a_g_is_followed_one_step_late() {
+    let other = Host::started(&[("a_g", 0.5)]);
+    let host = started(&["a_g_late", "peaks"], &[("a_g", 0.5)]);
+    assert_eq!(host.get("a_ground"), 0.5);
+    let mut time = 0.0;
+    // value and slope that are set, step, value and slope that act
+    for (a_g, slope, step, line) in [
+        (Some(1.5), None, 0.1, (0.5, 10.0)),
+        (Some(0.5), None, 0.05, (1.5, -20.0)),
+        (None, None, 0.1, (0.5, 0.0)),
+        (Some(3.0), Some(-4.0), 0.25, (3.0, -4.0)),
+        (Some(-2.0), None, 0.2, (2.0, -20.0)),
+        (None, Some(5.0), 0.1, (-2.0, 5.0)),
+        (Some(-1.5), Some(0.0), 0.1, (-1.5, 0.0)),
+        (Some(0.0), None, 0.1, (-1.5, 15.0)),
+    ] {
+        // set again and again, as a master does that iterates: the last value counts
+        a_g.into_iter().for_each(|a_g| assert_eq!(host.set(&[("a_g", 9.0), ("a_g", a_g)]), OK));
+        slope.into_iter().for_each(|slope| assert_eq!(host.set_slope("a_g", 1, slope), OK));
+        let shown = a_g.unwrap_or(line.0);
+        assert_relative_eq!(host.get("a_g"), shown, max_relative = 1e-13);
+        assert_relative_eq!(host.get("a_ground"), line.0, max_relative = 1e-13);
+        assert_eq!((other.set(&[("a_g", line.0)]), other.set_slope("a_g", 1, line.1)), (OK, OK));
+        assert_eq!((host.step(time, step), other.step(time, step)), (OK, OK));
+        assert_close(&host, &other);
+        assert_relative_eq!(host.rate("R_h", 1).unwrap(), other.rate("R_h", 1).unwrap(), max_relative = 1e-9);
+        time += step;
+    }
+}
+
+/// While a_g is late it has no feedthrough: what is set changes no output before the next step.
+#[test]
+fn what_is_late_does_not_act_at_once() {
+    let host = started(&["a_g_late"], &[("theta_0", 0.02)]);
+    let by_a_g = |host: &Host| {
+        let (R_h, a_g, seed, mut value) = (reference("R_h"), reference("a_g"), 1.0, f64::NAN);
+        let status = unsafe { fmi2GetDirectionalDerivative(host.component, &R_h, 1, &a_g, 1, &seed, &mut value) };
+        assert_eq!(status, OK);
+        value
+    };
+    assert_eq!((host.set(&[("a_g", 1.0)]), host.step(0.0, 0.01)), (OK, OK));
+    let before = host.try_get(&["R_h", "a_t", "a_ground"]).unwrap();
+    assert_eq!((host.set(&[("a_g", 5.0)]), host.try_get(&["R_h", "a_t", "a_ground"]).unwrap()), (OK, before));
+    assert_eq!(by_a_g(&host), 0.0);
+    assert_eq!(host.set_slope("a_g", 1, 0.0), OK);
+    assert_eq!((host.get("a_ground"), by_a_g(&host) < -1.0), (5.0, true));
+}
+
+/// Beside a host that sends the slopes: from the second step on, of what is set and has no slope of its own.
+#[test]
+fn F_t_goes_on_with_the_slope_of_its_last_two_values() {
+    let [host, other] = [started(&["F_t_extrapolated"], &[]), started(&[], &[])];
+    let mut time = 0.0;
+    // value and slope that are set, step, slope that is followed
+    for (F_t, slope, step, followed) in [
+        (Some(100.0), None, 0.1, 0.0),
+        (Some(200.0), None, 0.05, 1000.0),
+        (Some(300.0), None, 0.1, 2000.0),
+        (None, None, 0.1, 0.0),
+        (Some(450.0), Some(-100.0), 0.2, -100.0),
+        (Some(-100.0), Some(0.0), 0.1, 0.0),
+        (Some(-200.0), None, 0.1, -1000.0),
+    ] {
+        F_t.into_iter().for_each(|F_t| assert_eq!(host.set(&[("F_t", 900.0), ("F_t", F_t)]), OK));
+        slope.into_iter().for_each(|slope| assert_eq!(host.set_slope("F_t", 1, slope), OK));
+        assert_eq!((other.set(&[("F_t", host.get("F_t"))]), other.set_slope("F_t", 1, followed)), (OK, OK));
+        // of what is not set, the rates tell how it came here
+        if F_t.is_some() {
+            let [found, expected] = [&host, &other].map(|host| host.rate("R_h", 1).unwrap());
+            assert_relative_eq!(found, expected, max_relative = 1e-12, epsilon = 1e-9);
+        }
+        assert_eq!((host.step(time, step), other.step(time, step)), (OK, OK));
+        assert_close(&host, &other);
+        time += step;
+    }
+}
+
+/// What went before is part of a state: a step repeated, in this instance or another, has the same bits.
+#[test]
+fn a_state_remembers_the_values_before() {
+    let host = started(&["a_g_late", "F_t_extrapolated"], &[("theta_0", 0.02)]);
+    let step = |host: &Host, time: f64, a_g: f64| {
+        assert_eq!((host.set(&[("a_g", a_g), ("F_t", 20.0 * a_g)]), host.step(time, 0.01)), (OK, OK));
+        host.try_get(&SHOWN).unwrap()
+    };
+    step(&host, 0.0, 1.0);
+    assert_eq!(host.set(&[("a_g", 3.0)]), OK); // and nothing more
+    let (state, bytes) = (host.keep(), host.bytes());
+    let first = [step(&host, 0.01, 3.0), step(&host, 0.02, 2.0)];
+    assert_eq!(host.go_back(state), OK);
+    assert_eq!([step(&host, 0.01, 3.0), step(&host, 0.02, 2.0)], first);
+    let other = Host::new();
+    assert_eq!(other.go_back(other.deserialize(&bytes).unwrap()), OK);
+    assert_eq!(other.get("a_g"), 3.0);
+    assert_eq!([step(&other, 0.01, 3.0), step(&other, 0.02, 2.0)], first);
+}
+
+/// A jump over a tiny step has a slope that leads nowhere: the input is held, and the late one where it was.
+#[test]
+fn a_slope_that_leads_out_of_the_range_is_not_followed() {
+    let host = started(&["a_g_late", "F_t_extrapolated"], &[]);
+    assert_eq!((host.set(&[("F_t", 1.0)]), host.step(0.0, 1e-9)), (OK, OK));
+    assert_eq!((host.set(&[("F_t", 1e8)]), host.step(1e-9, 0.1)), (OK, OK));
+    assert_eq!(host.get("F_t"), 1e8);
+    for a_g in [1e4, -1e4, 1e4] {
+        assert_eq!((host.set(&[("a_g", a_g), ("F_t", 0.0)]), host.step(host.last_successful_time(), 1e-6)), (OK, OK));
+        assert_eq!(host.get("a_ground"), a_g);
+    }
+}
+
+/// Held, a force is right to the first order of the step; extrapolated, to the second.
+#[test]
+fn the_error_is_of_second_order() {
+    let at_end = |steps: u32, switches: Option<&[&str]>| {
+        let host = started(switches.unwrap_or_default(), &[("theta_0", 0.1)]);
+        let step = 0.1 / f64::from(steps);
+        let F_t = |k: u32| 1000.0 * (30.0 * step * f64::from(k)).sin();
+        for k in 0..steps {
+            assert_eq!(host.set(&[("F_t", F_t(k))]), OK);
+            if switches.is_none() {
+                assert_eq!(host.set_slope("F_t", 1, (F_t(k + 1) - F_t(k)) / step), OK);
+            }
+            assert_eq!(host.step(step * f64::from(k), step), OK);
+        }
+        host.get("theta")
+    };
+    let exact = at_end(4000, None);
+    for (switches, order) in [(&[][..], 1.0), (&["F_t_extrapolated"], 2.0)] {
+        let [coarse, fine] = [50, 100].map(|steps| (at_end(steps, Some(switches)) - exact).abs());
+        let found = (coarse / fine).log2();
+        assert!((found - order).abs() < 0.2, "order {found} for {order}: {coarse:e}, {fine:e}");
+    }
+}
