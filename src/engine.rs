@@ -8,8 +8,8 @@
 //! Steps are bounded as transitions are ([`crate::transition`]): an advance takes at most one for itself, two for each
 //! transition, and one for each 1/Ω of time, Ω the largest of ω_u, 2 ζ_u ω_u, 2 ζ_fc ω_fc and p_l. Only what is thrown
 //! about takes more, up to four for each 1/Ω with |θ̇|, |u̇|/ρ and √(|ü|/ρ) among them, ρ² = (J0 + m0 B²)/m + (sB − u)².
-//! One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps. Where full contact has an exact flow, what is left of a long
-//! advance once the base is down for good is one step.
+//! One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps. What is left of a long one once the base is down for good takes
+//! no more of them where full contact has an exact flow.
 
 use crate::detail::{AnyLevel, Detail};
 use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
@@ -41,9 +41,8 @@ const LARGEST_LOCAL_ERROR: f64 = 1e-11;
 /// step has to be searched for transitions throughout; a longer interval has to be cut.
 pub const MAX_STEPS_PER_ADVANCE: u64 = 2_000_000;
 
-/// What is left of an advance in full contact is leapt over, if it may be, where it is longer than this, as ω_fc h in rad:
-/// one leap takes the place of hundreds of steps.
-const LONG_REST: f64 = 1000.0;
+/// An advance over more than this, as ω_fc h in rad, may be long over before it ends.
+const FAR: f64 = 1000.0;
 
 /// A step shorter than this part of 1/ω_u is not the doing of the step's end or of a transition: the solution ends.
 const STALLED: f64 = 1e-12;
@@ -144,6 +143,8 @@ pub struct Engine {
     motion: Motion,
     /// Whether an advance ends where a transition is due.
     stops: bool,
+    /// An advance over more than this, s, is taken in parts.
+    far: f64,
     /// The step in hand.
     arc: Arc,
 }
@@ -176,7 +177,8 @@ impl Engine {
             chatter: Chatter::NONE,
             due: None,
         };
-        Ok(Engine { structure, level, local_error, motion, stops: false, arc: Arc::default() })
+        let far = FAR / structure.omega_fc;
+        Ok(Engine { structure, level, local_error, motion, stops: false, far, arc: Arc::default() })
     }
 
     /// The structure.
@@ -257,7 +259,10 @@ impl Engine {
         if self.motion.due.is_some() {
             return self.advance_past_transition(last_step, interval, load, watch);
         }
-        let &mut Engine { ref structure, ref mut level, local_error, ref mut motion, stops, ref mut arc } = self;
+        if interval > self.far {
+            return self.advance_far(last_step, interval, load, watch);
+        }
+        let &mut Engine { ref structure, ref mut level, local_error, ref mut motion, stops, ref mut arc, .. } = self;
         // each level gets a loop of its own, so that nothing stands between the loop and the level's equations
         match &mut **level {
             AnyLevel::Nonlinear(level) => {
@@ -276,6 +281,47 @@ impl Engine {
                 Hand { structure, level, arc, local_error, last_step, stops }.advance(motion, interval, load, watch)
             }
         }
+    }
+
+    /// The same over a long time: in parts, each twice as long as the one before, until all that is left is one leap.
+    #[cold]
+    fn advance_far<W: Watch>(
+        &mut self,
+        last_step: u64,
+        interval: f64,
+        load: LinearLoad,
+        watch: &mut W,
+    ) -> Result<Progress, AdvanceError> {
+        let (before, until) = (self.motion, self.motion.time + interval);
+        let (mut elapsed, mut part) = (0.0, std::mem::replace(&mut self.far, f64::INFINITY));
+        let far = part;
+        let mut result = Ok(Progress::Complete);
+        while elapsed < interval && result == Ok(Progress::Complete) {
+            let (left, load) = (interval - elapsed, load.from(elapsed));
+            let is_last = part >= left || self.can_leap(left, load);
+            result = self.advance_within(last_step, if is_last { left } else { part }, load, watch);
+            elapsed = if is_last { interval } else { elapsed + part };
+            if result == Ok(Progress::Complete) {
+                self.motion.time = if is_last { until } else { before.time + elapsed };
+            }
+            part *= 2.0;
+        }
+        self.far = far;
+        result.map_err(|mut error| {
+            self.motion = before;
+            if let AdvanceError::TooLong { until: told, .. } = &mut error {
+                *told = until;
+            }
+            error
+        })
+    }
+
+    /// Whether `interval` (s) under `load` is one leap.
+    fn can_leap(&mut self, interval: f64, load: LinearLoad) -> bool {
+        let &mut Engine { ref structure, ref mut level, local_error, ref motion, .. } = self;
+        let (a_g, a_top) = (load.on_foundation(), load.on_top(structure));
+        let start = Start { state: motion.state, a_g, a_top, interval, local_error };
+        motion.held() == 0.0 && level.get_mut().leap(structure, motion.phase, &start).is_some()
     }
 
     /// The same from where a transition is due.
@@ -382,7 +428,16 @@ impl<L: Level> Hand<'_, L> {
         let (a_g, a_top) = (load.on_foundation(), load.on_top(structure));
         let begin = Start { state: now.state, a_g, a_top, interval, local_error };
         if let Some(end) = self.leap(now, &begin) {
-            self.leap_to(end, now, interval, load, now.time + interval, watch)?;
+            if now.work.steps == self.last_step {
+                return Err(AdvanceError::TooLong { time: now.time, until: now.time + interval });
+            }
+            if W::SEES_PIECES {
+                watch.piece(&mut self.piece(now, interval, load, end, false));
+            }
+            now.state = end;
+            now.time += interval;
+            now.work.steps += 1;
+            now.chatter.pass(interval);
             return Ok(Progress::Complete);
         }
         let before = *now;
@@ -393,31 +448,7 @@ impl<L: Level> Hand<'_, L> {
         result
     }
 
-    /// Takes `now` to the state `end` of a leap over `duration` (s) under `load`, which ends at `until` (s).
-    #[inline(always)]
-    fn leap_to<W: Watch>(
-        &mut self,
-        end: State,
-        now: &mut Motion,
-        duration: f64,
-        load: LinearLoad,
-        until: f64,
-        watch: &mut W,
-    ) -> Result<(), AdvanceError> {
-        if now.work.steps == self.last_step {
-            return Err(AdvanceError::TooLong { time: now.time, until });
-        }
-        if W::SEES_PIECES {
-            watch.piece(&mut self.piece(now, duration, load, end, false));
-        }
-        now.state = end;
-        now.time = until;
-        now.work.steps += 1;
-        now.chatter.pass(duration);
-        Ok(())
-    }
-
-    /// [`Hand::advance`] over the interval of `begin`, step by step.
+    /// The same over the interval of `begin`, step by step.
     #[inline(always)]
     fn step<W: Watch>(
         &mut self,
@@ -427,7 +458,6 @@ impl<L: Level> Hand<'_, L> {
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
         let &Start { a_g, a_top, interval, local_error, .. } = begin;
-        let long_rest = LONG_REST / self.structure.omega_fc;
         let start = motion.time;
         let until = start + interval;
         // Time runs from the start of the interval: transitions are then as sharp at t = 1000 s as at 0.
@@ -441,13 +471,6 @@ impl<L: Level> Hand<'_, L> {
                 interval: left,
                 local_error,
             };
-            if left > long_rest
-                && motion.phase == Phase::FullContact
-                && let Some(end) = self.leap(motion, &begin)
-            {
-                self.leap_to(end, motion, left, load.from(elapsed), until, watch)?;
-                break;
-            }
             let event = match motion.phase {
                 Phase::FullContact => self.step_in_full_contact(begin, motion.chatter.held),
                 Phase::Rocking(side) => self.step_while_rocking(&begin, side),

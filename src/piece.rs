@@ -408,6 +408,16 @@ impl Piece<'_> {
         show(from, arc, &series);
     }
 
+    /// The outputs at its start.
+    pub(crate) fn first_outputs(&self) -> Outputs {
+        self.level.outputs(self.structure, self.before.phase, &self.before.state, self.load.value)
+    }
+
+    /// The outputs at its end.
+    pub(crate) fn last_outputs(&self) -> Outputs {
+        self.level.outputs(self.structure, self.before.phase, &self.end, self.load.at(self.duration))
+    }
+
     /// The outputs at both ends of the part in hand, with seconds from the start of the piece.
     pub(crate) fn ends(&self) -> [(f64, Outputs); 2] {
         [self.part.start, self.part.end]

@@ -93,7 +93,7 @@ fn product(a: &Series, b: &Series, k: usize) -> f64 {
 }
 
 /// The |a_top| (m/s²) from which on the base lifts off.
-fn least_push(structure: &Structure) -> f64 {
+pub(crate) fn least_push(structure: &Structure) -> f64 {
     (1.0 + LEAST_EXCESS) * structure.parameters().g * structure.tan_alpha_cg
 }
 

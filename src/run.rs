@@ -202,41 +202,66 @@ struct Course<Segments> {
 impl<Segments: Iterator<Item = Segment>> Course<Segments> {
     /// Follows the motion to the end.
     fn finish<W: Watch>(&mut self, watch: &mut W) -> Result<Ending, RunError> {
+        self.advance_to_end(watch).map_err(|cause| self.error(cause))
+    }
+
+    /// Follows the motion over the next stretch: how it has ended, if it has.
+    fn go_on<W: Watch>(&mut self, watch: &mut W) -> Result<Option<Ending>, RunError> {
+        let went_on = match self.segments.next() {
+            Some(segment) => {
+                let progress = self.advance(segment, watch);
+                progress.map(|progress| (progress == Progress::Overturned).then_some(Ending::Overturned))
+            }
+            None => self.rest(watch),
+        };
+        went_on.map_err(|cause| self.error(cause))
+    }
+
+    fn error(&self, cause: AdvanceError) -> RunError {
+        match cause {
+            AdvanceError::TooLong { time, until } => RunError::TooLong { time, until },
+            cause => RunError::Advance { time: cause.time().unwrap_or(self.engine.motion().time), cause },
+        }
+    }
+
+    fn advance_to_end<W: Watch>(&mut self, watch: &mut W) -> Result<Ending, AdvanceError> {
+        while let Some(segment) = self.segments.next() {
+            if self.advance(segment, watch)? == Progress::Overturned {
+                return Ok(Ending::Overturned);
+            }
+        }
         loop {
-            if let Some(ending) = self.go_on(watch)? {
+            if let Some(ending) = self.rest(watch)? {
                 return Ok(ending);
             }
         }
     }
 
-    /// Follows the motion over the next stretch: how it has ended, if it has.
-    fn go_on<W: Watch>(&mut self, watch: &mut W) -> Result<Option<Ending>, RunError> {
-        self.advance(watch).map_err(|cause| match cause {
-            AdvanceError::TooLong { time, until } => RunError::TooLong { time, until },
-            cause => RunError::Advance { time: cause.time().unwrap_or(self.engine.motion().time), cause },
-        })
+    #[inline]
+    fn advance<W: Watch>(&mut self, segment: Segment, watch: &mut W) -> Result<Progress, AdvanceError> {
+        let progress = self.engine.go_on(segment.end - segment.start, segment.a_g, watch)?;
+        if progress != Progress::Overturned {
+            self.engine.set_time(segment.end);
+        }
+        Ok(progress)
     }
 
-    fn advance<W: Watch>(&mut self, watch: &mut W) -> Result<Option<Ending>, AdvanceError> {
-        let Course { engine, segments, end, rest } = self;
+    /// On ground at rest.
+    fn rest<W: Watch>(&mut self, watch: &mut W) -> Result<Option<Ending>, AdvanceError> {
+        let Course { engine, end, rest, .. } = self;
         let &Structure { p_l, omega_fc, .. } = engine.structure();
-        let progress = if let Some(Segment { start, end, a_g }) = segments.next() {
-            let progress = engine.go_on(end - start, a_g, watch)?;
-            if progress != Progress::Overturned {
-                engine.set_time(end);
-            }
-            progress
-        } else if let End::At(_) = end {
+        if let End::At(_) = end {
             return Ok(Some(Ending::AtTime));
-        } else if engine.stays_down() {
+        }
+        if engine.stays_down() {
             engine.go_on(TAU / omega_fc, Ramp::default(), watch)?;
             return Ok(Some(Ending::AtRest));
-        } else if *rest == 0.0 {
+        }
+        if *rest == 0.0 {
             return Ok(Some(Ending::StillRocking));
-        } else {
-            *rest -= 1.0;
-            engine.go_on(1.0 / p_l, Ramp::default(), watch)?
-        };
+        }
+        *rest -= 1.0;
+        let progress = engine.go_on(1.0 / p_l, Ramp::default(), watch)?;
         Ok((progress == Progress::Overturned).then_some(Ending::Overturned))
     }
 }

@@ -72,10 +72,11 @@ fn the_rigid_boundary_is_the_closed_form() {
 #[test]
 fn a_rigid_block_lifts_off_at_one() {
     let structure = block(20.0);
-    for frequency in [0.3, 3.0, 30.0] {
-        let class = |amplitude| fate(&structure, Shape::Sine, frequency, amplitude).class();
+    let shapes = [Shape::Sine, Shape::HalfSine, Shape::Cosine];
+    for (shape, frequency) in shapes.into_iter().zip([0.3, 3.0, 30.0]) {
+        let class = |amplitude| fate(&structure, shape, frequency, amplitude).class();
         // although its lines' corners stand outside the curve by 2/3 of 1e-6
-        for amplitude in [0.5, 1.0 - 1e-7, 1.0] {
+        for amplitude in [0.5, 1.0 - 1e-7, 1.0, 1.0 + 1e-15] {
             assert_eq!(class(amplitude), Class::NoUplift, "{amplitude}");
         }
         assert_ne!(class(1.0 + 1e-6), Class::NoUplift);

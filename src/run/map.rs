@@ -9,7 +9,7 @@ use super::{Ending, Run, peaks::Peaks};
 use crate::engine::DEFAULT_TOLERANCE;
 use crate::record::Record;
 use crate::record::pulse::{Pulse, PulseError, units_of};
-use crate::{Detail, Structure, Transition, TransitionKind};
+use crate::{Detail, Structure, Transition, TransitionKind, rigid_rocking};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
 
@@ -327,10 +327,9 @@ impl Map {
     fn ground(&self, place: Place) -> Record {
         let pulse = self.pulse(place);
         let ground = pulse.record().expect("the map's corners have been checked");
-        let (least_push, _) = units_of(&self.structure);
-        let pga = ground.pga();
-        if self.detail == Detail::Rigid && pulse.amplitude <= least_push && least_push < pga {
-            return ground.scaled(1.0, least_push / pga);
+        let (least_push, pga) = (rigid_rocking::least_push(&self.structure), ground.pga());
+        if self.detail == Detail::Rigid && pulse.amplitude < least_push && least_push < pga {
+            return ground.scaled(1.0, pulse.amplitude / pga);
         }
         ground
     }

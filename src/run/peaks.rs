@@ -8,7 +8,7 @@
 use crate::extremes::Bound;
 use crate::outputs::Measure;
 use crate::piece::{Equations, KeptPiece, Piece, Watch};
-use crate::{Motion, Outputs, Structure, extremes};
+use crate::{Motion, Outputs, Structure, Transition, extremes};
 use serde::{Deserialize, Serialize};
 
 /// A bound above the largest magnitude by no more than this part of it may be rounding.
@@ -35,11 +35,18 @@ pub struct Peak {
 impl Peak {
     fn see(&mut self, value: f64, time: f64) {
         let magnitude = value.abs();
-        if (magnitude - self.magnitude).abs() <= SAME * self.magnitude {
-            *self = Peak { magnitude: magnitude.max(self.magnitude), time: time.min(self.time) };
-        } else if magnitude > self.magnitude {
-            *self = Peak { magnitude, time };
+        if !self.may_be_same(magnitude) {
+            return;
         }
+        let is_more = magnitude > self.magnitude * (1.0 + SAME);
+        let time = if is_more { time } else { time.min(self.time) };
+        *self = Peak { magnitude: magnitude.max(self.magnitude), time };
+    }
+
+    /// Whether a magnitude of at most `bound` may be more than it, or the same.
+    #[inline]
+    fn may_be_same(&self, bound: f64) -> bool {
+        bound >= self.magnitude * (1.0 - SAME)
     }
 
     /// Whether a magnitude of at most `bound` at `time` (s) or later may be more than it, or the same and sooner.
@@ -161,7 +168,7 @@ impl Peaks {
 
     /// Looks for more of them in the pieces of a motion.
     pub fn watch(&mut self) -> PeakWatch<'_> {
-        PeakWatch { peaks: self, kept: Vec::new() }
+        PeakWatch { peaks: self, kept: Vec::new(), is_torn: true }
     }
 
     /// The same for that of θ alone, and with it of the uplift: the others stay as they are.
@@ -221,6 +228,12 @@ impl Peaks {
         self.largest[measure as usize].may_change(bound, time)
     }
 
+    /// Whether a magnitude of at most `bound` may be more than what has been seen, or the same.
+    #[inline]
+    fn may_be_same(&self, measure: Measure, bound: f64) -> bool {
+        bound > 0.0 && self.largest[measure as usize].may_be_same(bound)
+    }
+
     /// Whether it may do so between the ends.
     fn is_open(&self, measure: Measure, bound: &Bound, time: f64) -> bool {
         bound.may_turn() && self.may_change(measure, bound.largest(), time)
@@ -259,6 +272,8 @@ pub struct PeakWatch<'a> {
     peaks: &'a mut Peaks,
     /// Pieces that may hold more than what has been seen, and bounds of what they hold.
     kept: Vec<([f64; 4], KeptPiece)>,
+    /// Whether the next piece may begin with other outputs than the last one ended with.
+    is_torn: bool,
 }
 
 impl PeakWatch<'_> {
@@ -287,24 +302,31 @@ impl Watch for PeakWatch<'_> {
             self.peaks.ground.see(piece.load.at(tau).a_g, piece.before.time + tau);
         }
         let bounds = piece.crude_bounds();
-        // what is the same as the largest but for rounding is looked at, too, where that costs nothing: at the ends
-        if !self.peaks.may_change_within(&Measure::ALL, &bounds, f64::NEG_INFINITY) {
+        let is_torn = std::mem::take(&mut self.is_torn);
+        if !Measure::ALL.iter().any(|measure| self.peaks.may_be_same(*measure, bounds[*measure as usize])) {
             return;
         }
-        for (tau, outputs) in piece.ends() {
-            self.peaks.see_instant(piece.before.time + tau, &outputs);
+        if is_torn {
+            self.peaks.see_instant(piece.before.time, &piece.first_outputs());
         }
+        self.peaks.see_instant(piece.before.time + piece.duration, &piece.last_outputs());
         let peaks = &*self.peaks;
         let may_change =
             |bounds: &[f64; 4], motion: &Motion| peaks.may_change_within(&Measure::ALL, bounds, motion.time);
         if !may_change(&bounds, piece.before) {
             return;
         }
-        self.kept.retain(|(bounds, piece)| may_change(bounds, piece.before()));
+        if self.kept.len() == KEPT {
+            self.kept.retain(|(bounds, piece)| may_change(bounds, piece.before()));
+        }
         if self.kept.len() == KEPT {
             self.look_back(&mut piece.equations());
         }
         self.kept.push((bounds, piece.keep()));
+    }
+
+    fn transition(&mut self, _transition: &Transition) {
+        self.is_torn = true;
     }
 
     fn done(&mut self, equations: &mut Equations) {
@@ -323,7 +345,7 @@ impl Watch for ThetaWatch<'_> {
 
     #[inline]
     fn piece(&mut self, piece: &mut Piece) {
-        if !self.peaks.may_change(Measure::Theta, piece.crude_bound_of_theta(), f64::NEG_INFINITY) {
+        if !self.peaks.may_be_same(Measure::Theta, piece.crude_bound_of_theta()) {
             return;
         }
         match piece.bound_of_theta() {
