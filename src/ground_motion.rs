@@ -103,14 +103,15 @@ impl GroundMotion<'_> {
     /// The same for an integrator at `elapsed` that has dealt with all samples up to `dealt_with`: a later one that it has
     /// just arrived at is still to come, so that the ground acceleration is the one that led there.
     pub fn since(&self, dealt_with: Elapsed, elapsed: Elapsed) -> Ramp {
-        let here = self.reached(elapsed);
-        let passed = (0..here).rfind(|i| self.ahead(*i, elapsed) < -self.rounding(*i)).map_or(0, |last| last + 1);
-        self.ramp_from(self.reached(dealt_with).clamp(passed, here), elapsed)
+        let reached = |at: Elapsed| self.reached(at, |i| self.same_instant(i));
+        let here = reached(elapsed);
+        let passed = (0..here).rfind(|i| self.ahead(*i, elapsed) < -self.same_instant(*i)).map_or(0, |last| last + 1);
+        self.ramp_from(reached(dealt_with).clamp(passed, here), elapsed)
     }
 
     /// `elapsed`, or that of the sample which a clock that is right to `resolution` (s) cannot tell from it.
     pub fn by_clock(&self, elapsed: Elapsed, resolution: f64) -> Elapsed {
-        let next = self.reached(elapsed);
+        let next = self.reached(elapsed, |i| self.same_instant(i));
         let mut near = next.saturating_sub(1)..self.record.times().len().min(next + 1);
         let sample = near.find(|i| self.ahead(*i, elapsed).abs() <= resolution);
         sample.map_or(elapsed, |i| Elapsed::default().and(self.placement.start + (self.time(i) - self.time(0))))

@@ -499,6 +499,22 @@ fn the_indicators_are_variables() {
     assert_eq!(count, [2, 4]);
 }
 
+/// An acceleration that a host sets at an event lifts a rigid structure off there and then, unless it is to come one step late.
+#[test]
+fn what_acts_at_an_event_is_what_lifts_off_there() {
+    for (a_g_late, phase_after) in [(0, 3), (1, 1)] {
+        let host = Host::new_slave();
+        let (rigid, mut phase) = (5, 0);
+        assert_eq!(unsafe { fmi3SetInt64(host.c, &reference("detail"), 1, &rigid, 1) }, OK);
+        assert_eq!(unsafe { fmi3SetBoolean(host.c, &reference("a_g_late"), 1, &a_g_late, 1) }, OK);
+        let host = host.at_event(&[]);
+        host.set(&[("a_g", -50.0)]);
+        host.update();
+        assert_eq!(unsafe { fmi3GetInt64(host.c, &reference("phase"), 1, &mut phase, 1) }, OK);
+        assert_eq!(phase, phase_after, "a_g_late = {a_g_late}");
+    }
+}
+
 /// Of another host's integration a state can be gone to by a host of its own kind alone.
 #[test]
 fn a_models_state_is_none_of_a_slave() {

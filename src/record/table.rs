@@ -557,7 +557,8 @@ fn is_one_column<'a, L: Iterator<Item = &'a str>>(
     before: &[&str],
     how: &Reading,
 ) -> Result<bool, String> {
-    let has_times = before.iter().filter_map(|line| headings(line, 2)).flatten().any(|cell| TimeUnit::of(cell).is_some());
+    let has_times =
+        before.iter().filter_map(|line| headings(line, 2)).flatten().any(|cell| TimeUnit::of(cell).is_some());
     if has_times || matches!(how.column, Some(Column::Number(2..))) {
         return Ok(false);
     }
@@ -709,7 +710,10 @@ mod tests {
         assert_eq!((record.times(), source.unit), (&[0.0, 1.0][..], Unit::CentimetrePerSecondSquared));
         let array = "1 50\n2 60\n1 70\n0 60\n";
         assert_eq!(read(array, &step).unwrap_err().remedy, Some(Remedy::Column), "the columns of two instruments");
-        assert_eq!(problem("n,a\n1,0\n2,0\n4,0\n5,-1\n", &step), "4: column 1 counts on by 2, and by 1 before: something may be missing there");
+        assert_eq!(
+            problem("n,a\n1,0\n2,0\n4,0\n5,-1\n", &step),
+            "4: column 1 counts on by 2, and by 1 before: something may be missing there"
+        );
         for (column, expected) in [
             (Column::Number(4), "column 4 is asked for, and there are 3"),
             (Column::Number(1), "column 1 has the times, and cannot have the accelerations"),
@@ -763,8 +767,13 @@ mod tests {
         }
         assert_eq!(read(two, &with(Some(2))).unwrap().0.acceleration, [1.0, 2.0, 3.0, 5.0]);
         assert_eq!(read(&format!("t (ms),a\n{two}"), &AS_IT_IS).unwrap().0.times, [0.0, 0.001, 0.002, 0.003]);
-        assert!(problem("0,01,0,12\n0,02,0,15\n", &with(None)).contains("commas stand between numbers and before decimals"));
-        assert_eq!(problem("0,5;0.1\n1;1,234.5\n", &AS_IT_IS), "1: the acceleration \"0.1\" has a point, and others have decimal commas");
+        assert!(
+            problem("0,01,0,12\n0,02,0,15\n", &with(None)).contains("commas stand between numbers and before decimals")
+        );
+        assert_eq!(
+            problem("0,5;0.1\n1;1,234.5\n", &AS_IT_IS),
+            "1: the acceleration \"0.1\" has a point, and others have decimal commas"
+        );
     }
 
     /// It may be that of a peak, or of the accelerations: the user says.

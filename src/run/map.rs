@@ -329,7 +329,7 @@ impl Map {
         let ground = pulse.record().expect("the map's corners have been checked");
         let (least_push, pga) = (rigid_rocking::least_push(&self.structure), ground.pga());
         if self.detail == Detail::Rigid && pulse.amplitude < least_push && least_push < pga {
-            return ground.scaled(1.0, pulse.amplitude / pga);
+            return ground.multiplied(pulse.amplitude / pga);
         }
         ground
     }
