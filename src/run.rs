@@ -140,10 +140,9 @@ impl<'a> Run<'a> {
 
     /// Follows the motion to the end.
     pub fn follow<W: Watch>(&self, watch: &mut W) -> Result<Finish, RunError> {
-        let mut course = self.course()?;
-        let ending = course.finish(watch)?;
-        course.engine.done(watch);
-        Ok(Finish { ending, motion: *course.engine.motion() })
+        let (ending, mut engine) = self.course()?.finish(watch)?;
+        engine.done(watch);
+        Ok(Finish { ending, motion: *engine.motion() })
     }
 
     /// The run before its start.
@@ -173,12 +172,11 @@ impl<'a> Run<'a> {
         show: impl FnMut(&Sample),
         watch: &mut W,
     ) -> Result<Finish, RunError> {
-        let mut course = self.course()?;
         let mut samples = Samples::new(times, show);
-        let ending = course.finish(&mut (&mut *watch, &mut samples))?;
-        course.engine.done(watch);
-        samples.end(&course.engine);
-        Ok(Finish { ending, motion: *course.engine.motion() })
+        let (ending, mut engine) = self.course()?.finish(&mut (&mut *watch, &mut samples))?;
+        engine.done(watch);
+        samples.end(&engine);
+        Ok(Finish { ending, motion: *engine.motion() })
     }
 
     /// The exact peaks of the run, and how it ended.
@@ -201,67 +199,72 @@ struct Course<Segments> {
 
 impl<Segments: Iterator<Item = Segment>> Course<Segments> {
     /// Follows the motion to the end.
-    fn finish<W: Watch>(&mut self, watch: &mut W) -> Result<Ending, RunError> {
-        self.advance_to_end(watch).map_err(|cause| self.error(cause))
+    fn finish<W: Watch>(self, watch: &mut W) -> Result<(Ending, Engine), RunError> {
+        let Course { mut engine, segments, end, mut rest } = self;
+        for segment in segments {
+            if over(&mut engine, segment, watch).map_err(|cause| error(&engine, cause))? == Progress::Overturned {
+                return Ok((Ending::Overturned, engine));
+            }
+        }
+        loop {
+            let ending = come_to_rest(&mut engine, end, &mut rest, watch);
+            if let Some(ending) = ending.map_err(|cause| error(&engine, cause))? {
+                return Ok((ending, engine));
+            }
+        }
     }
 
     /// Follows the motion over the next stretch: how it has ended, if it has.
     fn go_on<W: Watch>(&mut self, watch: &mut W) -> Result<Option<Ending>, RunError> {
-        let went_on = match self.segments.next() {
-            Some(segment) => {
-                let progress = self.advance(segment, watch);
-                progress.map(|progress| (progress == Progress::Overturned).then_some(Ending::Overturned))
-            }
-            None => self.rest(watch),
+        let Course { engine, segments, end, rest } = self;
+        let went_on = match segments.next() {
+            Some(segment) => over(engine, segment, watch)
+                .map(|progress| (progress == Progress::Overturned).then_some(Ending::Overturned)),
+            None => come_to_rest(engine, *end, rest, watch),
         };
-        went_on.map_err(|cause| self.error(cause))
+        went_on.map_err(|cause| error(engine, cause))
     }
+}
 
-    fn error(&self, cause: AdvanceError) -> RunError {
-        match cause {
-            AdvanceError::TooLong { time, until } => RunError::TooLong { time, until },
-            cause => RunError::Advance { time: cause.time().unwrap_or(self.engine.motion().time), cause },
-        }
+/// Why a run of `engine` cannot go on.
+#[cold]
+fn error(engine: &Engine, cause: AdvanceError) -> RunError {
+    match cause {
+        AdvanceError::TooLong { time, until } => RunError::TooLong { time, until },
+        cause => RunError::Advance { time: cause.time().unwrap_or(engine.motion().time), cause },
     }
+}
 
-    fn advance_to_end<W: Watch>(&mut self, watch: &mut W) -> Result<Ending, AdvanceError> {
-        while let Some(segment) = self.segments.next() {
-            if self.advance(segment, watch)? == Progress::Overturned {
-                return Ok(Ending::Overturned);
-            }
-        }
-        loop {
-            if let Some(ending) = self.rest(watch)? {
-                return Ok(ending);
-            }
-        }
+/// Follows a structure over `segment`.
+#[inline]
+fn over<W: Watch>(engine: &mut Engine, segment: Segment, watch: &mut W) -> Result<Progress, AdvanceError> {
+    let progress = engine.go_on(segment.end - segment.start, segment.a_g, watch)?;
+    if progress != Progress::Overturned {
+        engine.set_time(segment.end);
     }
+    Ok(progress)
+}
 
-    #[inline]
-    fn advance<W: Watch>(&mut self, segment: Segment, watch: &mut W) -> Result<Progress, AdvanceError> {
-        let progress = self.engine.go_on(segment.end - segment.start, segment.a_g, watch)?;
-        if progress != Progress::Overturned {
-            self.engine.set_time(segment.end);
-        }
-        Ok(progress)
+/// Follows a structure on ground at rest, if the run goes on to that `end`, for as long as decides what comes next; `rest` is
+/// for how long it may rock on. How the run has ended, if it has.
+fn come_to_rest<W: Watch>(
+    engine: &mut Engine,
+    end: End,
+    rest: &mut f64,
+    watch: &mut W,
+) -> Result<Option<Ending>, AdvanceError> {
+    let &Structure { p_l, omega_fc, .. } = engine.structure();
+    if let End::At(_) = end {
+        return Ok(Some(Ending::AtTime));
     }
-
-    /// On ground at rest.
-    fn rest<W: Watch>(&mut self, watch: &mut W) -> Result<Option<Ending>, AdvanceError> {
-        let Course { engine, end, rest, .. } = self;
-        let &Structure { p_l, omega_fc, .. } = engine.structure();
-        if let End::At(_) = end {
-            return Ok(Some(Ending::AtTime));
-        }
-        if engine.stays_down() {
-            engine.go_on(TAU / omega_fc, Ramp::default(), watch)?;
-            return Ok(Some(Ending::AtRest));
-        }
-        if *rest == 0.0 {
-            return Ok(Some(Ending::StillRocking));
-        }
-        *rest -= 1.0;
-        let progress = engine.go_on(1.0 / p_l, Ramp::default(), watch)?;
-        Ok((progress == Progress::Overturned).then_some(Ending::Overturned))
+    if engine.stays_down() {
+        engine.go_on(TAU / omega_fc, Ramp::default(), watch)?;
+        return Ok(Some(Ending::AtRest));
     }
+    if *rest == 0.0 {
+        return Ok(Some(Ending::StillRocking));
+    }
+    *rest -= 1.0;
+    let progress = engine.go_on(1.0 / p_l, Ramp::default(), watch)?;
+    Ok((progress == Progress::Overturned).then_some(Ending::Overturned))
 }
