@@ -76,8 +76,9 @@ def of_force(fmus, time, a_g) -> list[float]:
 
     exact = course(functools.partial(between_transitions, MASTERS["iqn-ils"]()), True, 1)
     peaks = np.max(np.abs(exact), axis=0)
-    return [np.max((np.max(np.abs(course(functools.partial(jacobi, guess), False, parts) - exact), axis=0) / peaks)[peaks > 0])
-            for parts in PARTS for guess in GUESSES.values()]
+    errors = [np.max(np.abs(course(functools.partial(jacobi, guess), False, parts) - exact), axis=0)
+              for parts in PARTS for guess in GUESSES.values()]
+    return [np.max(error[peaks > 0] / peaks[peaks > 0]) for error in errors]
 
 
 def tables(fmus) -> dict[str, str]:
