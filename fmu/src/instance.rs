@@ -210,7 +210,7 @@ impl Instance {
             self.now.model(&self.archive)?;
         }
         let Present { setup, inputs, model, .. } = &self.now;
-        let load = inputs.values();
+        let load = inputs.shown();
         let setting = |source: Source| match source {
             Source::Input(which) => Some((LOADS[which].get)(&load)),
             source => source.setting(setup),
@@ -218,7 +218,7 @@ impl Instance {
         let Some(model) = model.as_ref().filter(|_| is_computed) else {
             return write(references, values, setting);
         };
-        let shown = Shown::new(model, setup, model.load(setup, inputs.acting().into()).value);
+        let shown = Shown::new(model, setup, model.load(setup, inputs.values().into()).value);
         if let Some(variable) = reaction {
             let Reactions { R_h, R_v, R_m } = shown.reactions();
             if !(R_h + R_v + R_m).is_finite() {
@@ -500,7 +500,7 @@ impl Instance {
         let unknowns = unknowns.iter().map(unknown).collect::<Result<Vec<_>, _>>()?;
 
         let (model, setup, inputs, _) = self.now.parts(&self.archive)?;
-        let inputs = inputs.acting().into();
+        let inputs = inputs.values().into();
         let mut by_states = vec![0.0; unknowns.len()];
         for (which, seed) in of_state.into_iter().enumerate().filter(|(_, seed)| *seed != 0.0) {
             let by = by_state(model, setup, inputs, &unknowns, which)?;
@@ -594,9 +594,10 @@ impl Instance {
         match model.advance(setup, step, load, &mut |transition: &Transition| log(logger, transition)) {
             Ok(progress) => {
                 let reached = model.engine.motion().time;
-                let passed = if progress == Progress::Complete { step } else { reached - point };
+                let ended_early = progress != Progress::Complete && reached < point + step;
+                let passed = if ended_early { reached - point } else { step };
                 if passed > 0.0 {
-                    inputs.pass(load, passed, progress != Progress::Complete && reached < point + step);
+                    inputs.pass(load, passed, ended_early);
                 }
                 known.iter().for_each(|known| warn(logger, known, &model.validity));
                 if progress == Progress::Overturned {
