@@ -49,14 +49,14 @@ enum Given {
 }
 
 impl Inputs {
-    /// The values, as the host has set them or as they have come to be.
+    /// What acts now.
     pub(crate) fn values(&self) -> Load {
-        self.set
+        self.next.value
     }
 
-    /// What acts now.
-    pub(crate) fn acting(&self) -> Load {
-        self.next.value
+    /// What the host is shown: as it has set them, or as they have come to be.
+    pub(crate) fn shown(&self) -> Load {
+        self.set
     }
 
     /// From here on steps are made, and inputs act as `between` says; until then, and where none are made, at once.

@@ -218,7 +218,7 @@ impl Instance {
             self.now.model(&self.archive)?;
         }
         let Present { setup, inputs, model, .. } = &self.now;
-        let load = inputs.values();
+        let load = inputs.shown();
         let setting = |source: Source| match source {
             Source::Input(which) => Some((LOADS[which].get)(&load)),
             source => source.setting(setup),
@@ -226,7 +226,7 @@ impl Instance {
         let Some(model) = model.as_ref().filter(|_| is_computed) else {
             return write(references, values, setting);
         };
-        let shown = Shown::new(model, setup, model.load(setup, inputs.acting().into()).value);
+        let shown = Shown::new(model, setup, model.load(setup, inputs.values().into()).value);
         if let Some(variable) = reaction {
             let Reactions { R_h, R_v, R_m } = shown.reactions();
             if !(R_h + R_v + R_m).is_finite() {
@@ -508,7 +508,7 @@ impl Instance {
         let unknowns = unknowns.iter().map(unknown).collect::<Result<Vec<_>, _>>()?;
 
         let (model, setup, inputs, _) = self.now.parts(&self.archive)?;
-        let inputs = inputs.acting().into();
+        let inputs = inputs.values().into();
         let mut by_states = vec![0.0; unknowns.len()];
         for (which, seed) in of_state.into_iter().enumerate().filter(|(_, seed)| *seed != 0.0) {
             let by = by_state(model, setup, inputs, &unknowns, which)?;
