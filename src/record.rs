@@ -16,11 +16,11 @@ mod unit;
 
 use crate::{GroundMotion, Ramp};
 use parsed::{Parsed, usual_step};
-use text::nine_digits;
 pub use source::{Column, Format, Reading, Source, UnitFrom};
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+use text::nine_digits;
 pub use unit::Unit;
 
 /// Largest file that is read, bytes: 256 MiB.
@@ -402,7 +402,10 @@ mod tests {
         assert_eq!(read(&broken).unwrap_err().to_string(), expected);
         let peer = b"PEER\nNu\nVELOCITY TIME SERIES IN UNITS OF CM/S\nNPTS= 2, DT= .01 SEC\n1 2\n";
         let refused = read(&write("a.VT2", peer)).unwrap_err().to_string();
-        assert!(refused.ends_with("SERIES IN UNITS OF CM/S\" is before the data, and accelerations are needed"), "{refused}");
+        assert!(
+            refused.ends_with("SERIES IN UNITS OF CM/S\" is before the data, and accelerations are needed"),
+            "{refused}"
+        );
         assert!(matches!(read(&folder.join("absent.at2")), Err(RecordError::Unreadable { .. })));
         fs::remove_dir_all(folder).unwrap();
     }
@@ -461,9 +464,15 @@ mod tests {
     #[test]
     fn scales_that_leave_no_ground_motion_are_refused() {
         let record = || Record::from_samples("pulse", vec![1.0, 2.0, 4.0], vec![2.0, 4.0, 0.0]).unwrap();
-        for (time_scale, scale) in
-            [(0.0, 1.0), (-1.0, 1.0), (f64::NAN, 1.0), (f64::INFINITY, 1.0), (1e-320, 1.0), (1.0, f64::NAN), (1.0, 1e308)]
-        {
+        for (time_scale, scale) in [
+            (0.0, 1.0),
+            (-1.0, 1.0),
+            (f64::NAN, 1.0),
+            (f64::INFINITY, 1.0),
+            (1e-320, 1.0),
+            (1.0, f64::NAN),
+            (1.0, 1e308),
+        ] {
             let refused = record().scaled(time_scale, scale).unwrap_err().to_string();
             let expected = format!("time_scale = {time_scale:?} and scale = {scale:?} leave no ground motion");
             assert!(refused.starts_with(&expected), "{refused}");
@@ -484,13 +493,15 @@ mod tests {
         assert_eq!(doubts(4000, 5e-5, 0.0, 3.0), ["a step of 0.00005 s: is the time in another unit?"]);
         assert_eq!(doubts(40_000, 0.1, 0.0, 3.0), ["a duration of 1.1 hours: is the time in another unit?"]);
         assert_eq!(doubts(4000, 0.01, 0.0, 59.0), ["a peak of 6 g: is the unit right?"]);
-        let drift = "a mean acceleration of 0.29 g, after which the ground moves on at 114 m/s: is it the right column?";
+        let drift =
+            "a mean acceleration of 0.29 g, after which the ground moves on at 114 m/s: is it the right column?";
         assert_eq!(doubts(4000, 0.01, 0.29 * 9.81, 3.0), [drift]);
     }
 
     #[test]
     fn segments_are_linear_between_samples_and_at_rest_after_them() {
-        let record = Record::from_samples("", vec![1.0, 2.0, 4.0], vec![2.0, 4.0, 0.0]).unwrap().scaled(0.5, 10.0).unwrap();
+        let record =
+            Record::from_samples("", vec![1.0, 2.0, 4.0], vec![2.0, 4.0, 0.0]).unwrap().scaled(0.5, 10.0).unwrap();
         assert_eq!(record.times(), [0.5, 1.0, 2.0]);
         let segment = |start, end, value, slope| Segment { start, end, a_g: Ramp { value, slope } };
         let first = segment(0.5, 1.0, 20.0, 40.0);

@@ -185,7 +185,11 @@ fn what_is_no_acceleration_is_refused() {
     let velocity = String::from_utf8(all(50).remove(2).bytes).unwrap();
     let velocity = velocity.replace("DATA_TYPE: ACCELERATION", "DATA_TYPE: VELOCITY").replace("cm/s^2", "cm/s");
     for (name, text, expected) in [
-        ("raw.V0", raw, "the accelerations are in \"counts\", which is none of g, m/s2, cm/s2, gal, mm/s2, in/s2, ft/s2, mg, %g"),
+        (
+            "raw.V0",
+            raw,
+            "the accelerations are in \"counts\", which is none of g, m/s2, cm/s2, gal, mm/s2, in/s2, ft/s2, mg, %g",
+        ),
         ("vel.ASC", velocity, "DATA_TYPE is \"VELOCITY\", and accelerations are needed"),
     ] {
         let refused = Record::from_bytes(Path::new(name), text.as_bytes(), &Reading::default()).unwrap_err();

@@ -1,7 +1,7 @@
 //! `export`: packs the shared libraries, with all that describes them, into an FMU.
 
-use crate::output_files::{OutputFile, OutputFiles};
 use crate::input;
+use crate::output_files::{OutputFile, OutputFiles};
 use crate::record_args::{RecordOptions, with_option};
 use crate::structure_args::{StructureArgs, in_one_line};
 use crate::tables::Table;
@@ -95,7 +95,8 @@ fn record(options: &RecordOptions, path: &Path, g: f64, folder: &Path) -> anyhow
     if options.are_none() && !input::is_standard(path) {
         return Ok(path.into());
     }
-    let name = if input::is_standard(path) { Path::new("record") } else { Path::new(path.file_stem().unwrap_or_default()) };
+    let name =
+        if input::is_standard(path) { Path::new("record") } else { Path::new(path.file_stem().unwrap_or_default()) };
     let packed = folder.join(name.with_added_extension("csv"));
     let mut packed_already = OutputFiles::default();
     understood.write(Table::create(&mut packed_already, &packed)?)?;

@@ -271,7 +271,10 @@ fn wrong_usage_exits_with_2() {
         ("simulate --free 0", "a finite number greater than 0 is needed"),
         ("simulate --free 1 --interval inf", "a finite number greater than 0 is needed"),
         ("simulate --free 1 --tolerance 1", "a number less than 1 is needed"),
-        ("simulate --record pulse.csv --unit km/s2", "[possible values: g, m/s2, cm/s2, gal, mm/s2, in/s2, ft/s2, mg, %g]"),
+        (
+            "simulate --record pulse.csv --unit km/s2",
+            "[possible values: g, m/s2, cm/s2, gal, mm/s2, in/s2, ft/s2, mg, %g]",
+        ),
         ("describe --preset evison --parameters a.toml", "cannot be used with"),
         ("describe --preset housner", "[possible values: evison, mcmanus]"),
     ] {

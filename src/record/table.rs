@@ -117,7 +117,8 @@ impl<'a> Table<'a> {
         let mut beginning = numbered(text).take(LONGEST_HEADER);
         let Some((mut first, sample)) = beginning.find(|(_, line)| !is_comment(line) && is_numbers(line)) else {
             let last = text.lines().take(LONGEST_HEADER).count().max(1);
-            let problem = "no line of numbers alone up to here; two or more samples are needed, without columns of text";
+            let problem =
+                "no line of numbers alone up to here; two or more samples are needed, without columns of text";
             return Err(bad(last, problem));
         };
         let before: Vec<_> = text.lines().take(first - 1).filter(|line| !line.trim().is_empty()).collect();
@@ -470,17 +471,17 @@ fn unquoted(field: &str) -> &str {
 }
 
 /// The `count` cells of a line of headings, which may be a comment: however it is divided, and without numbers among them.
-/// Single blanks divide headings of one word each, of which one has times or a unit.
+/// Single blanks divide headings of one word each, of which one has times.
 fn headings<'a>(line: &'a str, count: usize) -> Option<Vec<&'a str>> {
     let line = line.trim_start_matches([' ', '\t', '#', '%', '!', '/']).trim_end_matches([' ', '\t', ',', ';']);
-    let is_heading = |word: &&str| TimeUnit::of(word).is_some() || matches!(Stated::of(word), Stated::Unit(_));
+    let is_time = |word: &&str| TimeUnit::of(word).is_some();
     let divided: [&dyn Fn() -> Vec<&'a str>; 6] = [
         &|| split(line, |letter| letter == ';'),
         &|| split(line, |letter| letter == ','),
         &|| not_blank(split(line, |letter| letter == '\t')),
         &|| not_blank(line.split_inclusive([')', ']', '}'])),
         &|| not_blank(line.split("  ")),
-        &|| Some(words(line)).filter(|words| words.iter().any(is_heading)).unwrap_or_default(),
+        &|| Some(words(line)).filter(|words| words.iter().any(is_time)).unwrap_or_default(),
     ];
     let cells = divided.into_iter().map(|cells| cells()).find(|cells| cells.len() == count)?;
     let cells: Vec<_> = cells.into_iter().map(unquoted).collect();
@@ -561,7 +562,8 @@ fn is_one_column<'a, L: Iterator<Item = &'a str>>(
     before: &[&str],
     how: &Reading,
 ) -> Result<bool, String> {
-    let has_times = before.iter().filter_map(|line| headings(line, 2)).flatten().any(|cell| TimeUnit::of(cell).is_some());
+    let has_times =
+        before.iter().filter_map(|line| headings(line, 2)).flatten().any(|cell| TimeUnit::of(cell).is_some());
     if has_times || matches!(how.column, Some(Column::Number(2..))) {
         return Ok(false);
     }
@@ -713,7 +715,10 @@ mod tests {
         assert_eq!((record.times(), source.unit), (&[0.0, 1.0][..], Unit::CentimetrePerSecondSquared));
         let array = "1 50\n2 60\n1 70\n0 60\n";
         assert_eq!(read(array, &step).unwrap_err().remedy, Some(Remedy::Column), "the columns of two instruments");
-        assert_eq!(problem("n,a\n1,0\n2,0\n4,0\n5,-1\n", &step), "4: column 1 counts on by 2, and by 1 before: something may be missing there");
+        assert_eq!(
+            problem("n,a\n1,0\n2,0\n4,0\n5,-1\n", &step),
+            "4: column 1 counts on by 2, and by 1 before: something may be missing there"
+        );
         for (column, expected) in [
             (Column::Number(4), "column 4 is asked for, and there are 3"),
             (Column::Number(1), "column 1 has the times, and cannot have the accelerations"),
@@ -767,8 +772,13 @@ mod tests {
         }
         assert_eq!(read(two, &with(Some(2))).unwrap().0.acceleration, [1.0, 2.0, 3.0, 5.0]);
         assert_eq!(read(&format!("t (ms),a\n{two}"), &AS_IT_IS).unwrap().0.times, [0.0, 0.001, 0.002, 0.003]);
-        assert!(problem("0,01,0,12\n0,02,0,15\n", &with(None)).contains("commas stand between numbers and before decimals"));
-        assert_eq!(problem("0,5;0.1\n1;1,234.5\n", &AS_IT_IS), "1: the acceleration \"0.1\" has a point, and others have decimal commas");
+        assert!(
+            problem("0,01,0,12\n0,02,0,15\n", &with(None)).contains("commas stand between numbers and before decimals")
+        );
+        assert_eq!(
+            problem("0,5;0.1\n1;1,234.5\n", &AS_IT_IS),
+            "1: the acceleration \"0.1\" has a point, and others have decimal commas"
+        );
     }
 
     /// It may be that of a peak, or of the accelerations: the user says.
@@ -848,12 +858,18 @@ mod tests {
             ("t,a\n\n0,1\n", "3: the file ends after 1 sample(s); two or more are needed"),
             ("# c\n0.1,1\nx,2\n", "3: the time \"x\" is not a number"),
             ("0,1\ninf,2\n", "2: the time \"inf\" is not a number"),
-            ("t,a\nt,a\n", "2: no line of numbers alone up to here; two or more samples are needed, without columns of text"),
+            (
+                "t,a\nt,a\n",
+                "2: no line of numbers alone up to here; two or more samples are needed, without columns of text",
+            ),
             ("0,1\n1,NaN\n", "2: the acceleration \"NaN\" is not a number"),
             ("0,1\n1,\n", "2: 1 column(s) instead of 2 as on line 1"),
             ("0,1,2\n1,,2\n", "2: in column 2, \"\" is not a number"),
             ("t,a\n0,1\n.5,2\n0.5,3\n", "4: the time 0.5 s does not come after the one before it, 0.5 s"),
-            ("0,1\n.5,2\n0.5,3\n", "3: column 1 has 0.5 after 0.5, which are no times: the time between samples is not known"),
+            (
+                "0,1\n.5,2\n0.5,3\n",
+                "3: column 1 has 0.5 after 0.5, which are no times: the time between samples is not known",
+            ),
             ("0,.1\n1,.2\n\n2,.3\n", "3: a blank line amid the data: something may be missing there"),
             ("0 1\n1 2 3\n", "2: 3 column(s) instead of 2 as on line 1"),
             ("0;1\n0,5;1.234,5\n", "2: the acceleration \"1.234,5\" has a point, and others have decimal commas"),

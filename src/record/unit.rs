@@ -174,7 +174,9 @@ pub(super) fn bracketed(heading: &str) -> Vec<&str> {
 /// Whether `text`, which is no unit that is known here, is meant as one, and not as a remark.
 pub(super) fn is_like_a_unit(text: &str) -> bool {
     let text = text.to_lowercase();
-    text.contains("/s") || text.contains(['^', '%']) || matches!(&*text, "counts" | "count" | "v" | "mv" | "volts" | "ug")
+    text.contains("/s")
+        || text.contains(['^', '%'])
+        || matches!(&*text, "counts" | "count" | "v" | "mv" | "volts" | "ug")
 }
 
 /// Whether `line` has a unit of accelerations as a word anywhere.
@@ -218,9 +220,9 @@ impl Stated {
         let after = [after_blank, after_slash].map(|parts| parts.map(|(_, unit)| unit));
         let candidates = || [Some(heading), after[0], last, after[1]].into_iter().flatten();
         let after_underscore = || {
-            let (name, unit) = heading.match_indices('_').find_map(|(index, _)| {
-                Some((&heading[..index], Unit::named(&heading[index + 1..])?))
-            })?;
+            let (name, unit) = heading
+                .match_indices('_')
+                .find_map(|(index, _)| Some((&heading[..index], Unit::named(&heading[index + 1..])?)))?;
             (unit != Unit::G || !name.eq_ignore_ascii_case("a")).then_some(unit)
         };
         match candidates().find_map(Unit::named).or_else(after_underscore) {
@@ -288,7 +290,8 @@ mod tests {
         ] {
             assert_eq!(Stated::of(heading), Stated::Unit(unit), "{heading}");
         }
-        for nothing in ["a_g", "acc", "acceleration", "ground motion", "", "a_G", "ag", "EW", "peak 0.3 g", "in g: 0.3"] {
+        for nothing in ["a_g", "acc", "acceleration", "ground motion", "", "a_G", "ag", "EW", "peak 0.3 g", "in g: 0.3"]
+        {
             assert_eq!(Stated::of(nothing), Stated::Nothing, "{nothing}");
         }
         for other in ["cm/s", "counts", "km/s2", "nm/s^2"] {
