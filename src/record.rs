@@ -204,13 +204,14 @@ impl Record {
     fn doubts(&self, g: f64) -> Vec<String> {
         let duration = self.end() - self.start();
         let last = self.velocities_and_displacements().last();
-        let (step, velocity) = (usual_step(&self.times).unwrap_or_default(), last.unwrap_or_default()[0]);
+        let step = nine_digits(usual_step(&self.times).unwrap_or_default());
+        let velocity = last.unwrap_or_default()[0];
         let (peak, mean) = (self.pga() / g, velocity / duration / g);
         let is_drift = mean.abs() > LARGEST_USUAL_MEAN && velocity.abs() > LARGEST_USUAL_VELOCITY;
         let is_usual = USUAL_STEPS.contains(&step);
         let doubts = [
             (peak > LARGEST_USUAL_PEAK).then(|| format!("a peak of {peak:.0} g: is the unit right?")),
-            (!is_usual).then(|| format!("a step of {} s: is the time in another unit?", nine_digits(step))),
+            (!is_usual).then(|| format!("a step of {step} s: is the time in another unit?")),
             (duration > LONGEST_USUAL)
                 .then(|| format!("a duration of {:.1} hours: is the time in another unit?", duration / 3600.0)),
             is_drift.then(|| {

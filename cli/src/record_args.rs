@@ -141,7 +141,7 @@ fn steps(record: &Record) -> String {
 pub fn with_option(error: anyhow::Error) -> anyhow::Error {
     with_remedy(error, |remedy| match remedy {
         Remedy::IgnoreCount => "--ignore-npts takes those",
-        Remedy::Step => "give the time between samples with --dt SECONDS",
+        Remedy::Step => "give it with --dt SECONDS",
         Remedy::Column => "choose with --column, by number or heading",
         Remedy::Channel => "choose with --column, by number",
         Remedy::Unit => "say with --unit what they are",
@@ -153,7 +153,7 @@ pub fn with_option(error: anyhow::Error) -> anyhow::Error {
 pub fn with_key(error: anyhow::Error) -> anyhow::Error {
     with_remedy(error, |remedy| match remedy {
         Remedy::IgnoreCount => "{ file = ..., ignore_npts = true } takes those",
-        Remedy::Step => "give the time between samples, { file = ..., dt = SECONDS }",
+        Remedy::Step => "give it, { file = ..., dt = SECONDS }",
         Remedy::Column => "choose by number or heading, { file = ..., column = ... }",
         Remedy::Channel => "choose by number, { file = ..., column = ... }",
         Remedy::Unit => "say what they are, { file = ..., unit = ... }",

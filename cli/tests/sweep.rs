@@ -626,7 +626,7 @@ fn a_refused_sweep_says_what_to_change() {
     ] {
         assert!(SWEEP.contains(from));
         let folder = sweep(&SWEEP.replacen(from, to, 1));
-        fs::write(folder.path().join("zero.csv"), "0,0\n.5,0\n").unwrap();
+        fs::write(folder.path().join("zero.csv"), "0,0\n.05,0\n").unwrap();
         fs::create_dir(folder.path().join("copy")).unwrap();
         fs::copy(folder.path().join("pulse.AT2"), folder.path().join("copy/pulse.AT2")).unwrap();
         let (code, message) = fail(folder.path(), "sweep sweep.toml");

@@ -193,7 +193,7 @@ fn a_record_comes_when_it_is_asked_for() {
     let mut shown = Vec::new();
     for start_time in [0.0, -7.0, 1048576.0] {
         let host = Host::new();
-        host.write("steps.csv", "5,2\n6,4\n7,1\n");
+        host.write("steps.csv", "t (s),a\n5,2\n6,4\n7,1\n");
         let placement = [("record_scale", -0.5), ("record_time_scale", 0.5), ("record_start", 0.25)];
         assert_eq!((host.set(&placement), host.set_record("steps.csv"), host.watch_peaks()), (OK, OK, OK));
         assert_eq!((host.setup(None, start_time, None), host.enter()), (OK, OK));
@@ -220,7 +220,7 @@ fn a_record_comes_when_it_is_asked_for() {
 
     // what is in the midst of its record at the start
     let host = Host::initializing(&[("record_start", -0.25)]);
-    host.write("steps.csv", "5,2\n6,4\n7,1\n");
+    host.write("steps.csv", "t (s),a\n5,2\n6,4\n7,1\n");
     assert_eq!(host.set_record("steps.csv"), OK);
     assert_eq!(host.get("a_ground"), 2.5);
     let at_rest = host.get("R_h");
@@ -310,20 +310,19 @@ fn a_record_that_cannot_be_followed_is_refused() {
     let host = Host::initializing(&[]);
     let folder = host.resources.path().display().to_string();
     host.write("broken.csv", "t,a\n0,1\n0.1,root:x:0\n0.2,3\n");
+    host.write("passwd", "root:x:0:0:root:/root:/bin/sh\n");
     host.write("strong.csv", "t (s),a\n0,1\n1,-6000\n");
     fs::create_dir(host.resources.path().join("folder.csv")).unwrap();
     let is_no_file = |path: &str| format!("record: {path} is not a file");
     for (record, message) in [
-        (
-            "broken.csv",
-            format!("record: {folder}/broken.csv, line 3: the acceleration \"root:x:0\" is not a number"),
-        ),
+        ("broken.csv", format!("record: {folder}/broken.csv, line 3: the acceleration \"root:x:0\" is not a number")),
         ("folder.csv", is_no_file(&format!("{folder}/folder.csv"))),
         (
-            "/etc/passwd",
-            "record: /etc/passwd: neither its content nor its extension is that of a record: PEER .AT2, ESM .ASC, K-NET, \
-             COSMOS, or columns of text in .csv, .txt, .dat; rename the file or convert it"
-                .to_owned(),
+            "passwd",
+            format!(
+                "record: {folder}/passwd, line 1: no line of numbers alone up to here; two or more samples are needed, \
+                 without columns of text"
+            ),
         ),
         (
             "strong.csv",

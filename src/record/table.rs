@@ -117,7 +117,8 @@ impl<'a> Table<'a> {
         let mut beginning = numbered(text).take(LONGEST_HEADER);
         let Some((mut first, sample)) = beginning.find(|(_, line)| !is_comment(line) && is_numbers(line)) else {
             let last = text.lines().take(LONGEST_HEADER).count().max(1);
-            let problem = "no line of numbers alone up to here; two or more samples are needed";
+            let problem =
+                "no line of numbers alone up to here; two or more samples are needed, without columns of text";
             return Err(bad(last, problem));
         };
         let before: Vec<_> = text.lines().take(first - 1).filter(|line| !line.trim().is_empty()).collect();
@@ -225,6 +226,14 @@ impl<'a> Table<'a> {
             Some((npts, _)) => npts == self.numbers.len() && npts != rows || !begins_with_times && npts != rows,
             None => !begins_with_times && (self.short.is_some() || !self.has_headings() && self.is_smooth()),
         };
+        if let (1, None, [npts, after @ ..]) = (count, self.stated, self.numbers.as_slice())
+            && *npts > 1.0
+            && [after.len(), after.len().saturating_sub(1)].contains(&(*npts as usize))
+            && npts.fract() == 0.0
+        {
+            let problem = format!("{npts} is the number of the samples after it");
+            return Err(bad(first, problem).remedied_by(Remedy::Comment));
+        }
         if count == 1 || headed.is_none() && how.column.is_none() && are_all {
             return Ok(Samples::All);
         }
@@ -295,24 +304,20 @@ impl<'a> Table<'a> {
 
     /// Why there are no times.
     fn without_times(&self) -> BadLine {
-        let fall = || self.column(0).zip(self.column(0).skip(1)).position(|(before, after)| after <= before);
-        let (line, problem) = match self.count {
-            1 => (self.first, "one column: the time between its samples is not known".into()),
-            _ => match fall() {
-                Some(row) => {
-                    let mut pair = self.column(0).skip(row);
-                    let [before, after] = [pair.next(), pair.next()].map(Option::unwrap_or_default);
-                    let problem = format!("column 1 has {after:?} after {before:?}, which are no times");
-                    (self.line(row + 1), problem)
-                }
-                None => {
-                    let problem = "column 1 has whole numbers, which count the samples or are milliseconds: a heading \
-                                   such as time (s) or time (ms) tells, or the time between samples";
-                    (self.first, problem.into())
-                }
-            },
+        let times = || self.column(0);
+        let fall = times().zip(times().skip(1)).enumerate().find(|(_, (before, after))| after <= before);
+        let (line, why) = match (self.count, fall) {
+            (1, _) => (self.first, "one column".to_owned()),
+            (_, Some((row, (before, after)))) => {
+                (self.line(row + 1), format!("column 1 has {after:?} after {before:?}, which are no times"))
+            }
+            (_, None) => {
+                let why = "column 1 has whole numbers, which count the samples or are milliseconds, for no heading has \
+                           a unit, as time (ms) does";
+                (self.first, why.to_owned())
+            }
         };
-        bad(line, problem).remedied_by(Remedy::Step)
+        bad(line, format!("{why}: the time between samples is not known")).remedied_by(Remedy::Step)
     }
 
     /// Refuses a column that counts the samples and leaves some out.
@@ -466,17 +471,17 @@ fn unquoted(field: &str) -> &str {
 }
 
 /// The `count` cells of a line of headings, which may be a comment: however it is divided, and without numbers among them.
-/// Single blanks divide headings of one word each, of which one has times or a unit.
+/// Single blanks divide headings of one word each, of which one has times.
 fn headings<'a>(line: &'a str, count: usize) -> Option<Vec<&'a str>> {
     let line = line.trim_start_matches([' ', '\t', '#', '%', '!', '/']).trim_end_matches([' ', '\t', ',', ';']);
-    let is_heading = |word: &&str| TimeUnit::of(word).is_some() || matches!(Stated::of(word), Stated::Unit(_));
+    let is_time = |word: &&str| TimeUnit::of(word).is_some();
     let divided: [&dyn Fn() -> Vec<&'a str>; 6] = [
         &|| split(line, |letter| letter == ';'),
         &|| split(line, |letter| letter == ','),
         &|| not_blank(split(line, |letter| letter == '\t')),
         &|| not_blank(line.split_inclusive([')', ']', '}'])),
         &|| not_blank(line.split("  ")),
-        &|| Some(words(line)).filter(|words| words.iter().any(is_heading)).unwrap_or_default(),
+        &|| Some(words(line)).filter(|words| words.iter().any(is_time)).unwrap_or_default(),
     ];
     let cells = divided.into_iter().map(|cells| cells()).find(|cells| cells.len() == count)?;
     let cells: Vec<_> = cells.into_iter().map(unquoted).collect();
@@ -818,6 +823,10 @@ mod tests {
             let (record, _) = read(&format!("{title}\n0.0 0.1\n0.5 0.2\n"), &AS_IT_IS).unwrap();
             assert_eq!((record.times, record.acceleration), (vec![0.0, 0.5], vec![0.1, 0.2]), "{title}");
         }
+        for text in ["3\n0.1\n0.2\n0.3\n", "3\n0.01\n0.1\n0.2\n0.3\n"] {
+            let refused = read(text, &Reading { dt: Some(0.01), ..AS_IT_IS }).unwrap_err();
+            assert_eq!((refused.line, refused.remedy), (1, Some(Remedy::Comment)), "{text}");
+        }
         for line in ["0,O.1", "0.0;1..5", "1999 Kocaeli"] {
             let refused = read(&format!("{line}\n0.01;0.1\n0.02;0.2\n"), &AS_IT_IS).unwrap_err();
             assert_eq!((refused.line, refused.remedy), (1, Some(Remedy::Comment)), "{line}");
@@ -845,16 +854,22 @@ mod tests {
     #[test]
     fn a_refused_table_says_what_was_found_on_which_line() {
         for (text, expected) in [
-            ("", "1: no line of numbers alone up to here; two or more samples are needed"),
+            ("", "1: no line of numbers alone up to here; two or more samples are needed, without columns of text"),
             ("t,a\n\n0,1\n", "3: the file ends after 1 sample(s); two or more are needed"),
             ("# c\n0.1,1\nx,2\n", "3: the time \"x\" is not a number"),
             ("0,1\ninf,2\n", "2: the time \"inf\" is not a number"),
-            ("t,a\nt,a\n", "2: no line of numbers alone up to here; two or more samples are needed"),
+            (
+                "t,a\nt,a\n",
+                "2: no line of numbers alone up to here; two or more samples are needed, without columns of text",
+            ),
             ("0,1\n1,NaN\n", "2: the acceleration \"NaN\" is not a number"),
             ("0,1\n1,\n", "2: 1 column(s) instead of 2 as on line 1"),
             ("0,1,2\n1,,2\n", "2: in column 2, \"\" is not a number"),
             ("t,a\n0,1\n.5,2\n0.5,3\n", "4: the time 0.5 s does not come after the one before it, 0.5 s"),
-            ("0,1\n.5,2\n0.5,3\n", "3: column 1 has 0.5 after 0.5, which are no times"),
+            (
+                "0,1\n.5,2\n0.5,3\n",
+                "3: column 1 has 0.5 after 0.5, which are no times: the time between samples is not known",
+            ),
             ("0,.1\n1,.2\n\n2,.3\n", "3: a blank line amid the data: something may be missing there"),
             ("0 1\n1 2 3\n", "2: 3 column(s) instead of 2 as on line 1"),
             ("0;1\n0,5;1.234,5\n", "2: the acceleration \"1.234,5\" has a point, and others have decimal commas"),
