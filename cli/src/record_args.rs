@@ -70,6 +70,13 @@ impl RecordArgs {
     }
 }
 
+impl RecordArgs {
+    /// Factors on the record's times and on its accelerations.
+    pub fn factors(&self) -> [f64; 2] {
+        [self.time_scale, self.scale]
+    }
+}
+
 /// What a record's file is, and what was assumed where it says nothing, in a line; `g` (m/s²) is what a record's g stands
 /// for.
 pub fn described(path: &Path, record: &Record, source: &Source, g: f64) -> String {
