@@ -4,11 +4,16 @@
 //! |---|---|---|
 //! | PGA | largest magnitude of the ground acceleration, max abs(a_g) | g |
 //! | PGV | largest magnitude of the ground velocity, max abs(∫ a_g dt), at rest before the first sample | m/s |
+//! | I_A | Arias intensity, π/(2 g) ∫ a_g² dt | m/s |
+//! | D_5–95 | time from 5 % to 95 % of the Arias intensity, the significant duration | s |
 //! | S_a | largest acceleration of the structure on a fixed base, S_a(1/f_fc, ζ_fc) | g |
 //!
-//! All are exact for a record that is linear between its samples, and grow in proportion to it.
+//! All are exact for a record that is linear between its samples. PGA, PGV and S_a grow in proportion to it, and can be
+//! what runs are measured by ([`IntensityMeasure`]).
 
+use crate::bisection::last_where;
 use crate::record::Record;
+use std::f64::consts::FRAC_PI_2;
 
 /// An intensity measure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -69,6 +74,40 @@ pub fn peak_velocity(record: &Record) -> f64 {
     peak
 }
 
+/// Arias intensity π/(2 g) ∫ a_g² dt of `record`, m/s; `g` in m/s².
+pub fn arias_intensity(record: &Record, g: f64) -> f64 {
+    FRAC_PI_2 / g * squares(record).sum::<f64>()
+}
+
+/// The instants at which 5 % and 95 % of the Arias intensity of `record` have come, s: the significant duration D_5–95 is
+/// between them. Those of the record's start where the ground is at rest.
+pub fn significant_duration(record: &Record) -> [f64; 2] {
+    let total: f64 = squares(record).sum();
+    [0.05, 0.95].map(|part| {
+        let (mut before, wanted) = (0.0, part * total);
+        for (i, square) in squares(record).enumerate() {
+            if before + square >= wanted && square > 0.0 {
+                let (step, a) = (record.times()[i + 1] - record.times()[i], &record.acceleration()[i..]);
+                let until = |tau: f64| square_of(tau, a[0], a[0] + (a[1] - a[0]) * tau / step);
+                return record.times()[i] + last_where(0.0, step, |tau| before + until(tau) <= wanted);
+            }
+            before += square;
+        }
+        record.start()
+    })
+}
+
+/// ∫ a_g² dt between each two samples, m²/s³.
+fn squares(record: &Record) -> impl Iterator<Item = f64> {
+    let samples = record.times().windows(2).zip(record.acceleration().windows(2));
+    samples.map(|(t, a)| square_of(t[1] - t[0], a[0], a[1]))
+}
+
+/// ∫ a² dt of what goes from `first` to `last` in a straight line over `duration`.
+fn square_of(duration: f64, first: f64, last: f64) -> f64 {
+    duration / 3.0 * (first * first + first * last + last * last)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -85,6 +124,20 @@ mod tests {
         assert_relative_eq!(peak(&[5.0, 6.0, 7.0], &[0.0, -3.0, 0.0]), 3.0, max_relative = 1e-15);
         assert_relative_eq!(peak(&[0.0, 1.0], &[1.0, -3.0]), 1.0, max_relative = 1e-15); // ends at -1, was 1/8
         assert_relative_eq!(peak(&[0.0, 0.5, 2.0], &[4.0, -4.0, -4.0]), 6.0, max_relative = 1e-15);
+    }
+
+    /// Of a_g = t over 1 s: ∫ t² = 1/3, of which a part comes until its cube root; then of a rest, which adds nothing.
+    #[test]
+    fn the_arias_intensity_of_a_ramp_has_its_closed_form() {
+        for times in [vec![2.0, 3.0, 3.0 + 1e-9, 9.0], vec![2.0, 2.5, 3.0, 3.0 + 1e-9, 9.0]] {
+            let a = times.iter().map(|t| if *t <= 3.0 { t - 2.0 } else { 0.0 }).collect();
+            let record = Record::from_samples("", times, a).unwrap();
+            assert_relative_eq!(arias_intensity(&record, 10.0), FRAC_PI_2 / 30.0, max_relative = 1e-8);
+            let [first, last] = significant_duration(&record);
+            assert_relative_eq!(first, 2.0 + 0.05_f64.cbrt(), max_relative = 1e-8);
+            assert_relative_eq!(last, 2.0 + 0.95_f64.cbrt(), max_relative = 1e-8);
+        }
+        assert_eq!(significant_duration(&Record::at_rest(3.0)), [0.0, 0.0]);
     }
 
     /// A sine of amplitude 1: the velocity (1 - cos(ω t))/ω peaks at 2/ω, but for the chords' share (ω h)²/12 of it.

@@ -15,11 +15,12 @@ mod text;
 mod unit;
 
 use crate::{GroundMotion, Ramp};
-use parsed::Parsed;
+use parsed::{Parsed, usual_step};
 pub use source::{Column, Format, Reading, Source, UnitFrom};
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
+use text::nine_digits;
 pub use unit::Unit;
 
 /// Largest file that is read, bytes: 256 MiB.
@@ -30,6 +31,16 @@ pub const MAX_SAMPLES: usize = 10_000_000;
 
 /// A peak above this, in g, is rather one in another unit.
 const LARGEST_USUAL_PEAK: f64 = 5.0;
+
+/// A mean above this, in g, with a velocity at the end above that, in m/s, is of no earthquake.
+const LARGEST_USUAL_MEAN: f64 = 0.05;
+const LARGEST_USUAL_VELOCITY: f64 = 2.0;
+
+/// Steps of recorders, s.
+const USUAL_STEPS: std::ops::RangeInclusive<f64> = 1e-4..=0.1;
+
+/// Longest duration of a record, s: an hour.
+const LONGEST_USUAL: f64 = 3600.0;
 
 /// A ground motion: at least two samples, finite, at strictly increasing times.
 #[derive(Clone, Debug, PartialEq)]
@@ -75,16 +86,6 @@ pub enum RecordError {
         /// Its size.
         size: u64,
     },
-    /// Neither the content nor the extension is that of a known format.
-    #[error(
-        "{}: neither its content nor its extension is that of a record: PEER .AT2, ESM .ASC, K-NET, COSMOS, or columns of \
-         text in .csv, .txt, .dat; rename the file or convert it",
-        path.display()
-    )]
-    UnknownFormat {
-        /// The file.
-        path: PathBuf,
-    },
     /// A line is not what the format asks for.
     #[error("{}, line {line}: {problem}", path.display())]
     Malformed {
@@ -96,6 +97,19 @@ pub enum RecordError {
         problem: String,
         /// What would make it readable.
         remedy: Option<Remedy>,
+    },
+    /// Scales that leave no ground motion.
+    #[error(
+        "time_scale = {time_scale:?} and scale = {scale:?} leave no ground motion of {title:?}: a finite time_scale greater \
+         than 0 is needed, and finite accelerations and slopes"
+    )]
+    BadScales {
+        /// What the record is called.
+        title: String,
+        /// What was to multiply its times.
+        time_scale: f64,
+        /// What was to multiply its accelerations.
+        scale: f64,
     },
     /// Samples in memory are no ground motion.
     #[error("{title:?}: {problem}")]
@@ -120,10 +134,12 @@ pub enum Remedy {
     Channel,
     /// The unit.
     Unit,
+    /// Nothing: the line itself must begin with `#`, if it is one of text.
+    Comment,
 }
 
 /// A line that is not what the format asks for, before the file's name is known.
-#[derive(Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 struct BadLine {
     line: usize,
     problem: String,
@@ -154,13 +170,8 @@ impl Record {
     /// Reads the record in the file at `path` as `how` says, with accelerations in m/s²; `g` (m/s²) is what a record's g
     /// stands for.
     pub fn read(path: &Path, how: &Reading, g: f64) -> Result<(Record, Source), RecordError> {
-        let (record, mut source) = Record::read_raw(path, how)?;
-        let record = record.scaled(1.0, source.unit.in_m_s2(g));
-        let peak = record.pga() / g;
-        if peak > LARGEST_USUAL_PEAK {
-            source.warnings.push(format!("a peak of {peak:.0} g: is the unit right?"));
-        }
-        Ok((record, source))
+        let (record, source) = Record::read_raw(path, how)?;
+        Ok(record.in_m_s2(source, g))
     }
 
     /// The same with its accelerations as the file gives them; their unit is the source's.
@@ -173,13 +184,44 @@ impl Record {
         let malformed =
             |BadLine { line, problem, remedy }| RecordError::Malformed { path: path.into(), line, problem, remedy };
         let text = text::decode(bytes).map_err(malformed)?;
-        let format = format(path, &text).ok_or_else(|| RecordError::UnknownFormat { path: path.into() })?;
         let (mut record, source) =
-            parse(&text, format, how).and_then(|parsed| parsed.record(how)).map_err(malformed)?;
+            parse(&text, format(path, &text), how).and_then(|parsed| parsed.record(how)).map_err(malformed)?;
         if record.title.is_empty() {
             record.title = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         }
         Ok((record, source))
+    }
+
+    /// The record as its file gives it, with its accelerations in m/s²; `g` (m/s²) is what a record's g stands for. What no
+    /// earthquake has is among the warnings of the `source`.
+    pub fn in_m_s2(self, mut source: Source, g: f64) -> (Record, Source) {
+        let record = self.multiplied(source.unit.in_m_s2(g));
+        source.warnings.extend(record.doubts(g));
+        (record, source)
+    }
+
+    /// What no record of an earthquake has, and one that is read wrongly has; `g` in m/s².
+    fn doubts(&self, g: f64) -> Vec<String> {
+        let duration = self.end() - self.start();
+        let last = self.velocities_and_displacements().last();
+        let step = nine_digits(usual_step(&self.times).unwrap_or_default());
+        let velocity = last.unwrap_or_default()[0];
+        let (peak, mean) = (self.pga() / g, velocity / duration / g);
+        let is_drift = mean.abs() > LARGEST_USUAL_MEAN && velocity.abs() > LARGEST_USUAL_VELOCITY;
+        let is_usual = USUAL_STEPS.contains(&step);
+        let doubts = [
+            (peak > LARGEST_USUAL_PEAK).then(|| format!("a peak of {peak:.0} g: is the unit right?")),
+            (!is_usual).then(|| format!("a step of {step} s: is the time in another unit?")),
+            (duration > LONGEST_USUAL)
+                .then(|| format!("a duration of {:.1} hours: is the time in another unit?", duration / 3600.0)),
+            is_drift.then(|| {
+                format!(
+                    "a mean acceleration of {mean:.2} g, after which the ground moves on at {velocity:.0} m/s: is it \
+                     the right column?"
+                )
+            }),
+        ];
+        doubts.into_iter().flatten().collect()
     }
 
     /// Ground at rest for `duration` (s), greater than 0: free vibration.
@@ -188,9 +230,20 @@ impl Record {
     }
 
     /// The same ground motion with every time multiplied by `time_scale`, greater than 0, and every acceleration by
-    /// `scale`.
-    pub fn scaled(mut self, time_scale: f64, scale: f64) -> Record {
+    /// `scale`; an error where that leaves no motion whose accelerations and slopes are finite.
+    pub fn scaled(mut self, time_scale: f64, scale: f64) -> Result<Record, RecordError> {
         self.times.iter_mut().for_each(|time| *time *= time_scale);
+        let record = self.multiplied(scale);
+        let samples = record.times.windows(2).zip(record.acceleration.windows(2));
+        let is_motion = |(t, a): (&[f64], &[f64])| t[1] > t[0] && ((a[1] - a[0]) / (t[1] - t[0])).is_finite();
+        match samples.into_iter().all(is_motion) && record.end().is_finite() {
+            true => Ok(record),
+            false => Err(RecordError::BadScales { title: record.title, time_scale, scale }),
+        }
+    }
+
+    /// The same with every acceleration multiplied by a finite `scale`.
+    pub(crate) fn multiplied(mut self, scale: f64) -> Record {
         self.acceleration.iter_mut().for_each(|acceleration| *acceleration *= scale);
         self
     }
@@ -261,21 +314,15 @@ impl Segment {
     }
 }
 
-/// The layout of `text`, the content of the file at `path`: what it shows itself, or what the extension tells.
-fn format(path: &Path, text: &str) -> Option<Format> {
-    if esm::is_its(text) {
-        return Some(Format::Esm);
+/// The layout of `text`, the content of the file at `path`: what it shows itself. A damaged AT2 file is known by its
+/// extension.
+fn format(path: &Path, text: &str) -> Format {
+    let is_at2 = || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("at2"));
+    match () {
+        () if esm::is_its(text) => Format::Esm,
+        () if knet::is_its(text) => Format::KNet,
+        () => cosmos::format(text).unwrap_or(if is_at2() || at2::is_its(text) { Format::At2 } else { Format::Table }),
     }
-    if knet::is_its(text) {
-        return Some(Format::KNet);
-    }
-    let extension = path.extension().map(|extension| extension.to_string_lossy().to_lowercase());
-    cosmos::format(text).or(match extension.as_deref() {
-        Some("at2") => Some(Format::At2),
-        Some("csv" | "txt" | "dat" | "tsv" | "asc" | "acc") if at2::is_its(text) => Some(Format::At2),
-        Some("csv" | "txt" | "dat" | "tsv" | "asc" | "acc") => Some(Format::Table),
-        _ => None,
-    })
 }
 
 fn parse(text: &str, format: Format, how: &Reading) -> Result<Parsed, BadLine> {
@@ -348,12 +395,17 @@ mod tests {
         let record = read(&latin).unwrap();
         assert_eq!(record.title(), "N\u{fa}\u{f1}oz, 90");
         assert_eq!((record.times(), record.acceleration()), (&[0.0, 0.5][..], &[9.81, 19.62][..]));
-        assert_eq!(read(&write("pulse.TXT", b"0,1\n1,0\n")).unwrap().title(), "pulse");
+        assert_eq!(read(&write("pulse.TXT", b"0,1\n.5,0\n")).unwrap().title(), "pulse");
 
         let broken = write("broken.csv", b"0,1\n1,?\n");
         let expected = format!("{}, line 2: the acceleration \"?\" is not a number", broken.display());
         assert_eq!(read(&broken).unwrap_err().to_string(), expected);
-        assert!(matches!(read(&write("a.VT2", b"0,1\n1,0\n")), Err(RecordError::UnknownFormat { .. })));
+        let peer = b"PEER\nNu\nVELOCITY TIME SERIES IN UNITS OF CM/S\nNPTS= 2, DT= .01 SEC\n1 2\n";
+        let refused = read(&write("a.VT2", peer)).unwrap_err().to_string();
+        assert!(
+            refused.ends_with("SERIES IN UNITS OF CM/S\" is before the data, and accelerations are needed"),
+            "{refused}"
+        );
         assert!(matches!(read(&folder.join("absent.at2")), Err(RecordError::Unreadable { .. })));
         fs::remove_dir_all(folder).unwrap();
     }
@@ -410,8 +462,46 @@ mod tests {
     }
 
     #[test]
+    fn scales_that_leave_no_ground_motion_are_refused() {
+        let record = || Record::from_samples("pulse", vec![1.0, 2.0, 4.0], vec![2.0, 4.0, 0.0]).unwrap();
+        for (time_scale, scale) in [
+            (0.0, 1.0),
+            (-1.0, 1.0),
+            (f64::NAN, 1.0),
+            (f64::INFINITY, 1.0),
+            (1e-320, 1.0),
+            (1.0, f64::NAN),
+            (1.0, 1e308),
+        ] {
+            let refused = record().scaled(time_scale, scale).unwrap_err().to_string();
+            let expected = format!("time_scale = {time_scale:?} and scale = {scale:?} leave no ground motion");
+            assert!(refused.starts_with(&expected), "{refused}");
+        }
+        assert_eq!(record().scaled(2.0, -1.0).unwrap().acceleration(), [-2.0, -4.0, 0.0]);
+    }
+
+    /// Each has one fault, and is right otherwise.
+    #[test]
+    fn what_no_earthquake_has_is_told() {
+        let doubts = |count: usize, step: f64, offset: f64, amplitude: f64| {
+            let times: Vec<f64> = (0..count).map(|i| i as f64 * step).collect();
+            let a = times.iter().map(|t| offset + amplitude * (6.0 * t).sin()).collect();
+            Record::from_samples("", times, a).unwrap().doubts(9.81)
+        };
+        assert!(doubts(4000, 0.01, 0.0, 3.0).is_empty());
+        assert_eq!(doubts(4000, 0.5, 0.0, 3.0), ["a step of 0.5 s: is the time in another unit?"]);
+        assert_eq!(doubts(4000, 5e-5, 0.0, 3.0), ["a step of 0.00005 s: is the time in another unit?"]);
+        assert_eq!(doubts(40_000, 0.1, 0.0, 3.0), ["a duration of 1.1 hours: is the time in another unit?"]);
+        assert_eq!(doubts(4000, 0.01, 0.0, 59.0), ["a peak of 6 g: is the unit right?"]);
+        let drift =
+            "a mean acceleration of 0.29 g, after which the ground moves on at 114 m/s: is it the right column?";
+        assert_eq!(doubts(4000, 0.01, 0.29 * 9.81, 3.0), [drift]);
+    }
+
+    #[test]
     fn segments_are_linear_between_samples_and_at_rest_after_them() {
-        let record = Record::from_samples("", vec![1.0, 2.0, 4.0], vec![2.0, 4.0, 0.0]).unwrap().scaled(0.5, 10.0);
+        let record =
+            Record::from_samples("", vec![1.0, 2.0, 4.0], vec![2.0, 4.0, 0.0]).unwrap().scaled(0.5, 10.0).unwrap();
         assert_eq!(record.times(), [0.5, 1.0, 2.0]);
         let segment = |start, end, value, slope| Segment { start, end, a_g: Ramp { value, slope } };
         let first = segment(0.5, 1.0, 20.0, 40.0);

@@ -143,7 +143,7 @@ fn a_channel_of_csmip_is_chosen_and_its_line_may_end_early() {
 fn a_peak_that_no_earthquake_has_is_told() {
     let path = std::env::temp_dir().join(format!("rocking-peak-{}.csv", std::process::id()));
     let warnings = |peak: f64| {
-        std::fs::write(&path, format!("t,a\n0,0\n1,{peak}\n")).unwrap();
+        std::fs::write(&path, format!("t,a\n0,{peak}\n.05,-{peak}\n")).unwrap();
         Record::read(&path, &Reading::default(), 9.81).unwrap().1.warnings
     };
     assert_eq!(warnings(46.0 * 9.81), ["a peak of 46 g: is the unit right?"]);
@@ -185,7 +185,11 @@ fn what_is_no_acceleration_is_refused() {
     let velocity = String::from_utf8(all(50).remove(2).bytes).unwrap();
     let velocity = velocity.replace("DATA_TYPE: ACCELERATION", "DATA_TYPE: VELOCITY").replace("cm/s^2", "cm/s");
     for (name, text, expected) in [
-        ("raw.V0", raw, "the accelerations are in \"counts\", which is none of g, m/s2, cm/s2, gal, mm/s2"),
+        (
+            "raw.V0",
+            raw,
+            "the accelerations are in \"counts\", which is none of g, m/s2, cm/s2, gal, mm/s2, in/s2, ft/s2, mg, %g",
+        ),
         ("vel.ASC", velocity, "DATA_TYPE is \"VELOCITY\", and accelerations are needed"),
     ] {
         let refused = Record::from_bytes(Path::new(name), text.as_bytes(), &Reading::default()).unwrap_err();

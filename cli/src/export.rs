@@ -1,14 +1,15 @@
 //! `export`: packs the shared libraries, with all that describes them, into an FMU.
 
+use crate::input;
 use crate::output_files::{OutputFile, OutputFiles};
-use crate::record_args::{described, say_warnings};
+use crate::record_args::{RecordOptions, with_option};
 use crate::structure_args::{StructureArgs, in_one_line};
+use crate::tables::Table;
 use crate::talk::say;
 use FlexibleRocking::guid;
 use anyhow::{Context, bail};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
-use rocking::record::{Reading, Record};
 use std::env;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::io::Write;
@@ -22,11 +23,13 @@ const INSTALLED: &str = "flexible-rocking/FlexibleRocking.fmu";
 pub struct ExportArgs {
     #[command(flatten)]
     structure: StructureArgs,
-    /// Ground motion records to pack: PEER .AT2, ESM, K-NET, COSMOS or CSMIP as published, or .csv, .txt, .dat with lines
-    /// of time (s) and acceleration (m/s2 unless a heading states the unit); the FMU follows the first, and the others by
-    /// their names
-    #[arg(long, value_name = "FILE", num_args = 1..)]
+    /// Ground motion records to pack: PEER .AT2, ESM, K-NET, COSMOS or CSMIP as published, or tables of text; the FMU follows
+    /// the first, and the others by their names. Those that are read with options, or from standard input, `-`, are packed
+    /// as they are understood, in a CSV file
+    #[arg(long, value_name = "FILE", num_args = 1.., help_heading = "Ground motion")]
     record: Vec<PathBuf>,
+    #[command(flatten, next_help_heading = "Ground motion")]
+    options: RecordOptions,
     /// Version of FMI, for co-simulation and model exchange: 2 (2.0), 3 (3.0)
     #[arg(long, value_name = "VERSION", default_value = "2", value_parser = versions())]
     fmi: Version,
@@ -66,13 +69,11 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
         say!("{}: hosts know an FMU by the ending .fmu", output.display());
     }
     let g = structure.parameters().g;
-    for path in &args.record {
-        let (record, source) = Record::read(path, &Reading::default(), g)?;
-        say!("{}", described(path, &record, &source, g));
-        say_warnings(path, &source);
-    }
+    let understood = tempfile::tempdir()?;
+    let records: Vec<_> =
+        args.record.iter().map(|path| record(&args.options, path, g, understood.path())).collect::<Result<_, _>>()?;
     let mut file = OutputFiles::of_inputs(inputs).create(&output)?;
-    let (contents, archive) = fmu_export::export(args.fmi, &args.name, &structure, &args.record, &libraries)?;
+    let (contents, archive) = fmu_export::export(args.fmi, &args.name, &structure, &records, &libraries)?;
     OutputFile::named(&output, file.write_all(&archive))?;
     file.finish()?;
     say!("{}: {} kB", output.display(), archive.len().div_ceil(1000));
@@ -84,6 +85,22 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
         say!("  record     {}", packed.file);
     }
     Ok(())
+}
+
+/// The file to pack for the record at `path`: itself, or what is understood of it, which is written to `folder`.
+fn record(options: &RecordOptions, path: &Path, g: f64, folder: &Path) -> anyhow::Result<PathBuf> {
+    let understood = options.understand(path, g).map_err(with_option)?;
+    say!("{}", understood.described);
+    understood.warnings(path).for_each(|warning| say!("{warning}"));
+    if options.are_none() && !input::is_standard(path) {
+        return Ok(path.into());
+    }
+    let name =
+        if input::is_standard(path) { Path::new("record") } else { Path::new(path.file_stem().unwrap_or_default()) };
+    let packed = folder.join(name.with_added_extension("csv"));
+    let mut packed_already = OutputFiles::default();
+    understood.write(Table::create(&mut packed_already, &packed)?)?;
+    Ok(packed)
 }
 
 /// The shared libraries that were built with `executable`, one for each platform that there is one for. Where it is in

@@ -6,12 +6,14 @@ mod cause;
 mod describe;
 mod estimate;
 mod export;
+mod input;
 mod modes;
 mod output_files;
 mod picture;
 mod pulse;
 mod pushover;
 mod quantities;
+mod record;
 mod record_args;
 mod results;
 mod scene_args;
@@ -70,6 +72,7 @@ enum Command {
   rocking-fmu export --preset evison -o Evison.fmu
   rocking-fmu export --fmi 3
   rocking-fmu export --record RSN77_SFERN_PUL164.AT2 RSN6_IMPVALL.I_I-ELC180.AT2
+  rocking-fmu export --record column.txt --dt 0.005 --unit gal
   rocking-fmu export --parameters pier.toml --name Pier1")]
     Export(export::ExportArgs),
     /// Simulate the response to a ground motion record, or free vibration
@@ -81,6 +84,7 @@ enum Command {
   rocking-fmu simulate --parameters pier.toml --record table.csv --unit g --interval 0.001 -o pier.csv
   rocking-fmu simulate --record column.txt --dt 0.005 --unit gal --format json
   rocking-fmu simulate --record array.csv --column E-W
+  rocking-fmu pulse sine --amplitude 0.6 --period 0.5 -o - | rocking-fmu simulate --record -
   rocking-fmu simulate --preset evison --free 2 --theta-0 0.04 --events impacts.csv --picture wall.svg
   rocking-fmu simulate --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45 --detail modal")]
     Simulate(simulate::SimulateArgs),
@@ -142,7 +146,7 @@ enum Command {
   rocking-fmu sweep spectrum.toml --picture spectrum.png
 
 A file of records, fragility.toml:
-  records = ['records/*.AT2']
+  records = ['records/*.AT2', { file = 'array.csv', column = 'E-W', scale = 0.5 }]  # as the options of `record`
   scale = { from = 0.2, to = 2, count = 10 }
   [limits]
   'theta/alpha_cg' = [0.1, 0.5]
@@ -173,6 +177,16 @@ A file of pulses, spectrum.toml, a map of each structure:
   rocking-fmu pulse mavroeidis_papageorgiou --amplitude 0.4 --period 1.2 --cycles 2.5 --phase 1.5708 --rest 5
   rocking-fmu pulse ricker --amplitude 0.5 --frequency 1 -o ricker.csv && rocking-fmu simulate --record ricker.csv")]
     Pulse(pulse::PulseArgs),
+    /// Show what is understood of a record, and write it as a table that is read without options
+    ///
+    /// Its samples and their step, its peaks, how long it shakes, and where it leaves the ground at the end: what is far from 0
+    /// there comes of an offset, a wrong column or a wrong unit.
+    #[command(after_help = "Examples:
+  rocking-fmu record RSN77_SFERN_PUL164.AT2 --picture record.svg
+  rocking-fmu record column.txt --dt 0.005 --unit gal -o record.csv
+  rocking-fmu record array.csv --column E-W --format json
+  unzip -p records.zip E-W.txt | rocking-fmu record - --dt 0.01 --unit mg")]
+    Record(record::RecordCommand),
     /// Print completions for a shell
     #[command(after_help = "Examples:
   rocking-fmu completions bash > ~/.local/share/bash-completion/completions/rocking-fmu
@@ -221,6 +235,7 @@ fn main() -> ExitCode {
         Command::Modes(args) => modes::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Pulse(args) => pulse::run(&args),
+        Command::Record(args) => record::run(&args),
         Command::Completions(args) => shell::completions(&args),
         Command::Man(args) => shell::man(&args),
     };

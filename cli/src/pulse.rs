@@ -2,12 +2,9 @@
 use crate::{
     cause::Cause,
     output_files::OutputFiles,
-    picture::{
-        Picture, PictureFile, TITLE, colour,
-        histories::{Histories, Panel},
-        titled,
-    },
+    picture::{Picture, PictureFile, TITLE, titled},
     quantities::{Line, write_columns},
+    record::picture::histories,
     record_args::positive,
     results::{Format, FormatArgs, print, print_traced},
     significant::short,
@@ -26,7 +23,6 @@ use rocking::{
         Record,
         pulse::{DEFAULT_ERROR, Pulse, Shape, units_of},
     },
-    run::peaks::Peak,
 };
 use std::path::{Path, PathBuf};
 
@@ -162,16 +158,7 @@ fn amounts(pulse: &Pulse, record: &Record, structure: &Structure) -> Vec<Line> {
 
 /// Draws `record` and its integrals.
 fn draw(picture: Picture, record: &Record, g: f64) -> anyhow::Result<()> {
-    let none = Peak::default();
-    let samples = || record.times().iter().copied().zip(record.velocities_and_displacements());
-    let accelerations = record.times().iter().copied().zip(record.acceleration().iter().copied()).collect();
-    let of = |i: usize| samples().map(|(time, integrals)| (time, integrals[i])).collect();
-    let panels = vec![
-        Panel::of("acceleration", (g, "g"), colour::BLUE, accelerations, none),
-        Panel::of("velocity", (1.0, "m/s"), colour::VERMILLION, of(0), none),
-        Panel::of("displacement", (1.0, "m"), colour::INK, of(1), none),
-    ];
-    let histories = Histories { panels, marks: Vec::new(), time: record.start()..record.end() };
+    let histories = histories(record, g);
     let about = "the ground's acceleration and its integrals, at rest before the start";
     picture.draw((860, TITLE + histories.height()), |area| histories.draw(&titled(area, record.title(), about)?))
 }

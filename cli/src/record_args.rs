@@ -1,85 +1,133 @@
 //! Which ground motion record a command works on, how it is read, and how it is scaled.
-use crate::{significant::short, talk::say};
+use crate::{input, significant::short, tables::Table, talk::say};
 use anyhow::{anyhow, ensure};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use rocking::record::{Column, Reading, Record, RecordError, Remedy, Source, Unit, UnitFrom};
+use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
 /// The record asked for, if any.
 #[derive(clap::Args)]
 #[command(next_help_heading = "Ground motion")]
 pub struct RecordArgs {
-    /// Ground motion record: PEER .AT2, ESM, K-NET, COSMOS or CSMIP as published, or columns of text (.csv, .txt, .dat)
+    /// Ground motion record, `-` for standard input: PEER .AT2, ESM, K-NET, COSMOS or CSMIP as published, or a table of text
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
+    #[command(flatten)]
+    options: RecordOptions,
+}
+
+/// How a record is read and scaled: on the command line, and beside its file's name in the file of a sweep.
+#[derive(clap::Args, Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(deny_unknown_fields, default)]
+pub struct RecordOptions {
     /// Unit of accelerations whose file does not state it [default: m/s2]
     #[arg(long, value_parser = unit_parser(), requires = "record")]
-    unit: Option<Unit>,
-    /// Time between the samples of a record without times: one column; times that are there must not contradict it
+    pub unit: Option<Unit>,
+    /// Time between the samples of a record without times; times that are there must not contradict it
     #[arg(long, value_name = "SECONDS", value_parser = positive, requires = "record", allow_negative_numbers = true)]
-    dt: Option<f64>,
+    pub dt: Option<f64>,
     /// Column that has the accelerations, by number or heading; or channel of a COSMOS or CSMIP file, by number
     #[arg(long, value_name = "COLUMN", value_parser = column, requires = "record")]
-    column: Option<Column>,
+    pub column: Option<Column>,
     /// Take the samples that are there where the file states another number of them
     #[arg(long, requires = "record")]
-    ignore_npts: bool,
-    /// Multiplies the record's times
-    #[arg(
-        long,
-        value_name = "FACTOR",
-        default_value_t = 1.0,
-        value_parser = positive,
-        requires = "record",
-        allow_negative_numbers = true
-    )]
-    time_scale: f64,
-    /// Multiplies the record's accelerations
-    #[arg(
-        long,
-        value_name = "FACTOR",
-        default_value_t = 1.0,
-        value_parser = finite,
-        requires = "record",
-        allow_negative_numbers = true
-    )]
-    scale: f64,
+    pub ignore_npts: bool,
+    /// Multiplies the record's times [default: 1]
+    #[arg(long, value_name = "FACTOR", value_parser = positive, requires = "record", allow_negative_numbers = true)]
+    pub time_scale: Option<f64>,
+    /// Multiplies the record's accelerations [default: 1]
+    #[arg(long, value_name = "FACTOR", value_parser = finite, requires = "record", allow_negative_numbers = true)]
+    pub scale: Option<f64>,
 }
 
 impl RecordArgs {
     /// The record, scaled; `g` (m/s²) is what a record's g stands for. Says what was read, and what was assumed.
     pub fn load(&self, g: f64) -> anyhow::Result<Option<Record>> {
         let Some(path) = &self.record else { return Ok(None) };
-        let &RecordArgs { unit, dt, ref column, ignore_npts: ignores_count, time_scale, scale, .. } = self;
-        let how = Reading { unit, dt, column: column.clone(), ignores_count };
-        let (record, source) = Record::read(path, &how, g).map_err(with_remedy)?;
-        say!("record         {}", described(path, &record, &source, g));
-        say_warnings(path, &source);
-        if (time_scale, scale) == (1.0, 1.0) {
-            return Ok(Some(record));
+        self.options.load(path, g).map(Some)
+    }
+}
+
+/// A record as it is understood.
+pub struct Understood {
+    /// Scaled, in m/s².
+    pub record: Record,
+    /// The same in the unit of its file.
+    in_file: Record,
+    source: Source,
+    /// What it was called, and what was found and assumed, in a line.
+    pub described: String,
+}
+
+impl RecordOptions {
+    /// The record in the file at `path`, scaled, in m/s²; `g` (m/s²) is what a record's g stands for. Says what was read,
+    /// and what was assumed.
+    pub fn load(&self, path: &Path, g: f64) -> anyhow::Result<Record> {
+        let understood = self.understand(path, g).map_err(with_option)?;
+        say!("record         {}", understood.described);
+        understood.warnings(path).for_each(|warning| say!("{warning}"));
+        let record = understood.record;
+        if self.time_scale.is_some() || self.scale.is_some() {
+            say!("scaled         {}, peak {} g", steps(&record), short(record.pga() / g));
         }
-        let record = record.scaled(time_scale, scale);
-        let slopes = record.times().windows(2).zip(record.acceleration().windows(2));
-        let is_finite = |(t, a): (&[f64], &[f64])| ((a[1] - a[0]) / (t[1] - t[0])).is_finite();
-        ensure!(
-            record.pga().is_finite() && slopes.into_iter().all(is_finite),
-            "--time-scale {time_scale:?} and --scale {scale:?} leave no ground motion with finite accelerations and slopes"
-        );
-        say!("scaled         {}, peak {} g", steps(&record), short(record.pga() / g));
-        Ok(Some(record))
+        Ok(record)
+    }
+
+    /// The same before anything is said.
+    pub fn understand(&self, path: &Path, g: f64) -> anyhow::Result<Understood> {
+        let &RecordOptions { unit, dt, ref column, ignore_npts: ignores_count, time_scale, scale } = self;
+        if let Some(dt) = dt {
+            ensure!(dt > 0.0 && dt.is_finite(), "dt = {dt} is out of range: a finite number greater than 0 is needed");
+        }
+        let how = Reading { unit, dt, column: column.clone(), ignores_count };
+        let (in_file, source) = match input::is_standard(path) {
+            true => Record::from_bytes(Path::new(input::NAME), &input::read(path)?, &how)?,
+            false => Record::read_raw(path, &how)?,
+        };
+        let (record, source) = in_file.clone().in_m_s2(source, g);
+        let described = described(path, &record, &source, g);
+        let scaled = |record: Record| record.scaled(time_scale.unwrap_or(1.0), scale.unwrap_or(1.0));
+        Ok(Understood { record: scaled(record)?, in_file: scaled(in_file)?, source, described })
+    }
+
+    /// Whether a file is read as it is.
+    pub fn are_none(&self) -> bool {
+        *self == RecordOptions::default()
+    }
+}
+
+impl Understood {
+    /// What is likely wrong with the record in the file at `path`, a line each.
+    pub fn warnings(&self, path: &Path) -> impl Iterator<Item = String> {
+        self.source.warnings.iter().map(move |warning| format!("warning: {}: {warning}", input::name(path)))
+    }
+
+    /// Whether nobody has said in which unit it is.
+    pub fn unit_is_assumed(&self) -> bool {
+        self.source.unit_from == UnitFrom::Assumed
+    }
+
+    /// Writes it to a `table` that is read without options, number for number: times in s, accelerations in the unit of its
+    /// file.
+    pub fn write(&self, mut table: Table) -> anyhow::Result<()> {
+        table.write(["time[s]".into(), format!("a_g[{}]", self.source.unit)])?;
+        let Understood { in_file, .. } = self;
+        in_file.times().iter().zip(in_file.acceleration()).try_for_each(|sample| table.write(sample))?;
+        table.finish()
     }
 }
 
 impl RecordArgs {
     /// Factors on the record's times and on its accelerations.
     pub fn factors(&self) -> [f64; 2] {
-        [self.time_scale, self.scale]
+        [self.options.time_scale, self.options.scale].map(|factor| factor.unwrap_or(1.0))
     }
 }
 
 /// What a record's file is, and what was assumed where it says nothing, in a line; `g` (m/s²) is what a record's g stands
 /// for.
-pub fn described(path: &Path, record: &Record, source: &Source, g: f64) -> String {
+fn described(path: &Path, record: &Record, source: &Source, g: f64) -> String {
     let unit_from = match source.unit_from {
         UnitFrom::File => "as the file states",
         UnitFrom::User => "as --unit says",
@@ -87,15 +135,8 @@ pub fn described(path: &Path, record: &Record, source: &Source, g: f64) -> Strin
     };
     let remarks: String = source.remarks.iter().map(|remark| format!(", {remark}")).collect();
     let (format, unit, peak) = (source.format, source.unit, short(record.pga() / g));
-    let (path, samples) = (path.display(), record.times().len());
+    let (path, samples) = (input::name(path), record.times().len());
     format!("{path}: {format}{remarks}; {unit} {unit_from}; {samples} samples, {}, peak {peak} g", steps(record))
-}
-
-/// Says what is likely wrong with the record in the file at `path`, a line each.
-pub fn say_warnings(path: &Path, source: &Source) {
-    for warning in &source.warnings {
-        say!("warning: {}: {warning}", path.display());
-    }
 }
 
 /// The time between samples.
@@ -107,16 +148,34 @@ fn steps(record: &Record) -> String {
 }
 
 /// The error with the option that helps.
-fn with_remedy(error: RecordError) -> anyhow::Error {
-    let RecordError::Malformed { remedy: Some(remedy), .. } = &error else { return error.into() };
-    let remedy = match remedy {
+pub fn with_option(error: anyhow::Error) -> anyhow::Error {
+    with_remedy(error, |remedy| match remedy {
         Remedy::IgnoreCount => "--ignore-npts takes those",
         Remedy::Step => "give it with --dt SECONDS",
         Remedy::Column => "choose with --column, by number or heading",
         Remedy::Channel => "choose with --column, by number",
         Remedy::Unit => "say with --unit what they are",
-    };
-    anyhow!("{error}; {remedy}")
+        Remedy::Comment => "begin a line that is no sample with #",
+    })
+}
+
+/// The error with what helps in the file of a sweep.
+pub fn with_key(error: anyhow::Error) -> anyhow::Error {
+    with_remedy(error, |remedy| match remedy {
+        Remedy::IgnoreCount => "{ file = ..., ignore_npts = true } takes those",
+        Remedy::Step => "give it, { file = ..., dt = SECONDS }",
+        Remedy::Column => "choose by number or heading, { file = ..., column = ... }",
+        Remedy::Channel => "choose by number, { file = ..., column = ... }",
+        Remedy::Unit => "say what they are, { file = ..., unit = ... }",
+        Remedy::Comment => "begin a line that is no sample with #",
+    })
+}
+
+fn with_remedy(error: anyhow::Error, words: impl Fn(&Remedy) -> &'static str) -> anyhow::Error {
+    match error.downcast_ref() {
+        Some(RecordError::Malformed { remedy: Some(remedy), .. }) => anyhow!("{error}; {}", words(remedy)),
+        _ => error,
+    }
 }
 
 fn column(text: &str) -> Result<Column, String> {

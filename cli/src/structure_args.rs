@@ -1,6 +1,6 @@
 //! Which structure a command works on: one of the paper's specimens, or parameters from a file, with single numbers in
 //! the place of theirs, or numbers that are all of it. What nobody has given is said.
-use crate::talk::say;
+use crate::{input, talk::say};
 use anyhow::{Context, anyhow};
 use clap::{Arg, ArgMatches, Command, FromArgMatches, ValueEnum, parser::ValueSource, value_parser};
 use rocking::natural_quantities::{DEFAULTS, Given, GivenError, NATURAL, names};
@@ -16,7 +16,7 @@ pub struct StructureArgs {
     /// Specimen of the paper [default: mcmanus, where nothing of a structure is given]
     #[arg(long, value_enum, conflicts_with = "parameters")]
     preset: Option<Preset>,
-    /// TOML file of parameters, as `describe --template` writes it
+    /// TOML file of parameters, as `describe --template` writes it, `-` for standard input
     #[arg(long, value_name = "FILE.toml")]
     parameters: Option<PathBuf>,
     #[command(flatten)]
@@ -93,10 +93,10 @@ impl StructureArgs {
         let parameters = match (&self.parameters, self.preset) {
             (Some(path), _) => {
                 let mut read = || -> anyhow::Result<Structure> {
-                    of_file = toml::from_str(&std::fs::read_to_string(path)?)?;
+                    of_file = toml::from_str(&input::text(path)?)?;
                     Ok(Structure::new(of_file.parameters()?)?)
                 };
-                let structure = read().with_context(|| format!("parameters in {}", path.display()))?;
+                let structure = read().with_context(|| format!("parameters in {}", input::name(path)))?;
                 numbers.over(structure.parameters())?
             }
             (None, Some(preset)) => numbers.over(&preset.parameters())?,

@@ -244,7 +244,7 @@ fn an_error_names_its_cause_and_exits_with_1() {
         ("simulate --record pulse.AT2 -o no/out.csv", "error: no/out.csv cannot be written: there is no folder no"),
         (
             "simulate --record pulse.AT2 --scale 1e308",
-            "error: --time-scale 1.0 and --scale 1e308 leave no ground motion",
+            "error: time_scale = 1.0 and scale = 1e308 leave no ground motion of \"Full sine\"",
         ),
         ("simulate --free 1 --theta-dot-0 0.1", "error: theta_dot_0 = 0.1 rad/s contradicts theta_0 = 0"),
         ("simulate --free 1 --theta-0 nan", "error: theta_0 = NaN rad is out of range"),
@@ -272,7 +272,10 @@ fn wrong_usage_exits_with_2() {
         ("simulate --free 0", "a finite number greater than 0 is needed"),
         ("simulate --free 1 --interval inf", "a finite number greater than 0 is needed"),
         ("simulate --free 1 --tolerance 1", "a number less than 1 is needed"),
-        ("simulate --record pulse.csv --unit ft/s2", "[possible values: g, m/s2, cm/s2, gal, mm/s2]"),
+        (
+            "simulate --record pulse.csv --unit km/s2",
+            "[possible values: g, m/s2, cm/s2, gal, mm/s2, in/s2, ft/s2, mg, %g]",
+        ),
         ("describe --preset evison --parameters a.toml", "cannot be used with"),
         ("describe --preset housner", "[possible values: evison, mcmanus]"),
     ] {

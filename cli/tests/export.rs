@@ -94,7 +94,7 @@ fn records_are_packed_and_named() {
         let mut export = Command::new(env!("CARGO_BIN_EXE_rocking-fmu"));
         export.current_dir(folder.path()).arg("export").args(arguments).output().unwrap()
     };
-    for (name, text) in [("pulse.csv", "0,1\n1,2\n"), ("sine.txt", "0,1\n1,2\n"), ("broken.csv", "0,1\n1,?\n")] {
+    for (name, text) in [("pulse.csv", "0,.1\n.5,.2\n"), ("sine.txt", "0,.1\n.5,.2\n"), ("broken.csv", "0,1\n1,?\n")] {
         std::fs::write(folder.path().join(name), text).unwrap();
     }
     let output = export(&["--record", "pulse.csv", "sine.txt", "-o", "quakes.fmu"]);

@@ -11,7 +11,8 @@ use std::{fs, path::Path};
 
 /// The pulse under McManus's specimen with this restitution.
 fn found(folder: &Path, r: f64, scale: f64, limits: Limits, end: End) -> Found {
-    let ground = Record::read(&folder.join("pulse.AT2"), &Reading::default(), 9.81).unwrap().0.scaled(1.0, scale);
+    let ground =
+        Record::read(&folder.join("pulse.AT2"), &Reading::default(), 9.81).unwrap().0.scaled(1.0, scale).unwrap();
     let structure = Structure::new(Parameters { r, ..Parameters::MCMANUS }).unwrap();
     Run { end, ..Run::new(structure, &ground) }.validity(limits).unwrap().0
 }

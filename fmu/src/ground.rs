@@ -155,7 +155,7 @@ mod tests {
     fn a_record_is_read_once_until_its_file_changes() {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("pulse 1.csv");
-        fs::write(&file, "0,1\n1,2\n").unwrap();
+        fs::write(&file, "t/s,a\n0,1\n1,2\n").unwrap();
         let archive = archive(folder.path());
         let read = |text: &str| archive.record(text).unwrap().unwrap();
         let first = read("pulse 1.csv");
@@ -163,7 +163,7 @@ mod tests {
         for text in [file.to_str().unwrap(), &uri, &format!("{}/./pulse 1.csv", folder.path().display())] {
             assert!(Arc::ptr_eq(&first, &read(text)), "{text} was read again");
         }
-        fs::write(&file, "0,1\n1,2\n2,3\n").unwrap();
+        fs::write(&file, "t/s,a\n0,1\n1,2\n2,3\n").unwrap();
         let second = read("pulse 1.csv");
         assert_eq!(second.record.times(), [0.0, 1.0, 2.0]);
         assert_ne!(first.digest, second.digest);
@@ -177,7 +177,7 @@ mod tests {
         let at = folder.path().display();
         let resources = folder.path().join("resources");
         fs::create_dir_all(resources.join("folder.csv")).unwrap();
-        fs::write(folder.path().join("outside.csv"), "0,1\n1,2\n").unwrap();
+        fs::write(folder.path().join("outside.csv"), "t/s,a\n0,1\n1,2\n").unwrap();
         fs::write(resources.join("broken.csv"), "0,1\nroot:x:0:0:secret,2\n").unwrap();
         std::os::unix::fs::symlink(folder.path().join("outside.csv"), resources.join("link.csv")).unwrap();
         let archive = archive(&resources);

@@ -137,7 +137,7 @@ fn overturning_ends_the_simulation() {
 fn the_record_acts_at_every_instant_and_its_jumps_are_foreseen() {
     let pushed = |tolerance: f64| {
         let host = Host::new_model();
-        host.write("push.csv", "0,0.5\n1,0.25\n2,1\n");
+        host.write("push.csv", "t (s),a\n0,0.5\n1,0.25\n2,1\n");
         assert_eq!((host.set_record("push.csv"), host.set(&[("record_start", 0.5)])), (OK, OK));
         assert_eq!((host.setup(Some(tolerance), 10.0, None), host.enter(), host.exit()), (OK, OK, OK));
         host

@@ -66,7 +66,7 @@ const SCALES: (f64, f64) = (0.4, 1.25);
 
 fn read(path: &Path) -> Record {
     let (record, _) = Record::read(path, &Reading::default(), Parameters::EVISON.g).unwrap();
-    record.scaled(SCALES.0, SCALES.1)
+    record.scaled(SCALES.0, SCALES.1).unwrap()
 }
 
 /// Relative tolerance: what differs is then not the solver's.
@@ -231,7 +231,7 @@ fn a_record_comes_when_it_is_asked_for() {
 #[test]
 fn the_input_adds_to_the_record() {
     let host = Host::initializing(&[]);
-    host.write("line.csv", "0,1\n1,2\n2,0\n");
+    host.write("line.csv", "t (s),a\n0,1\n1,2\n2,0\n");
     assert_eq!((host.set_record("line.csv"), host.exit()), (OK, OK));
     assert_eq!((host.set(&[("a_g", 0.5), ("F_t", 30.0)]), host.set_slope("a_g", 1, -0.25)), (OK, OK));
     assert_eq!(host.set_slope("F_t", 1, 8.0), OK);
@@ -310,7 +310,7 @@ fn a_record_that_cannot_be_followed_is_refused() {
     let host = Host::initializing(&[]);
     let folder = host.resources.path().display().to_string();
     host.write("broken.csv", "t,a\n0,1\n0.1,root:x:0\n0.2,3\n");
-    host.write("strong.csv", "0,1\n1,-6000\n");
+    host.write("strong.csv", "t (s),a\n0,1\n1,-6000\n");
     fs::create_dir(host.resources.path().join("folder.csv")).unwrap();
     let is_no_file = |path: &str| format!("record: {path} is not a file");
     for (record, message) in [

@@ -48,7 +48,7 @@ fn check_unit(line: &str) -> Result<(), String> {
 }
 
 /// NPTS and DT (s) from `NPTS=  4172, DT=   .0100 SEC,` or `4164    0.0100    NPTS, DT`.
-fn npts_and_dt(line: &str) -> Result<(usize, f64), String> {
+pub(super) fn npts_and_dt(line: &str) -> Result<(usize, f64), String> {
     let upper = line.to_uppercase();
     let words: Vec<_> = upper.split([' ', '\t', ',', '=']).filter(|word| !word.is_empty()).collect();
     let (npts, dt) = match words.as_slice() {

@@ -3,6 +3,7 @@
 use super::Unit;
 use super::text::quote;
 use super::unit::{Stated, is_like_a_unit};
+use serde::Deserialize;
 use std::fmt;
 
 /// What the user says of a file; the file says the rest.
@@ -19,7 +20,8 @@ pub struct Reading {
 }
 
 /// One column of a table.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[serde(untagged)]
 pub enum Column {
     /// By its number, counted from 1.
     Number(usize),
@@ -96,11 +98,11 @@ pub(super) fn decide(stated: &Stated, asked: Option<Unit>) -> Result<(Unit, Unit
         (_, Some(asked)) => Ok((asked, UnitFrom::User)),
         (Stated::Nothing, None) => Ok((Unit::MetrePerSecondSquared, UnitFrom::Assumed)),
         (Stated::Other(other), None) => {
-            Err(format!("the accelerations are in {}, which is none of g, m/s2, cm/s2, gal, mm/s2", quote(other)))
+            let known = Unit::NAMES.map(|(name, _)| name).join(", ");
+            Err(format!("the accelerations are in {}, which is none of {known}", quote(other)))
         }
-        (Stated::Value(value), None) => {
-            let value = quote(value);
-            Err(format!("{value} is before the data, and the unit of the accelerations is not stated"))
+        (Stated::Mentioned(line), None) => {
+            Err(format!("{} has a unit, and no heading says that it is that of the accelerations", quote(line)))
         }
     }
 }

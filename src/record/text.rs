@@ -3,6 +3,9 @@
 use super::{BadLine, bad};
 use std::borrow::Cow;
 
+/// What DOS writes after the last line.
+const END_OF_DOS: char = '\x1a';
+
 /// The text of a file in UTF-8, UTF-16 or Latin-1, its lines ended by `\n` alone.
 pub(super) fn decode(bytes: &[u8]) -> Result<Cow<'_, str>, BadLine> {
     let utf_16 = |order: fn([u8; 2]) -> u16, bytes: &[u8]| {
@@ -20,6 +23,10 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Cow<'_, str>, BadLine> {
             Ok(text) => Cow::Borrowed(text.trim_start_matches('\u{feff}')),
             Err(_) => Cow::Owned(bytes.iter().map(|&byte| char::from(byte)).collect()),
         },
+    };
+    let text = match text.trim_end().strip_suffix(END_OF_DOS) {
+        Some(before) => Cow::Owned(before.to_owned()),
+        None => text,
     };
     if let Some(index) = text.find('\0') {
         let line = 1 + text[..index].matches('\n').count();
@@ -116,6 +123,7 @@ mod tests {
             big,
             text.replace('\n', "\r\n").into_bytes(),
             text.replace('\n', "\r").into_bytes(),
+            marked(text.as_bytes(), b"\x1a\r\n"),
         ] {
             assert_eq!(decode(&bytes).unwrap(), text, "{bytes:?}");
         }

@@ -1,5 +1,7 @@
 //! Units of acceleration, and how files write them.
 
+use super::Remedy;
+use super::text::{number, quote};
 use serde::Deserialize;
 use std::fmt;
 
@@ -18,16 +20,32 @@ pub enum Unit {
     /// mm/s².
     #[serde(rename = "mm/s2")]
     MillimetrePerSecondSquared,
+    /// in/s², 0.0254 m/s².
+    #[serde(rename = "in/s2")]
+    InchPerSecondSquared,
+    /// ft/s², 0.3048 m/s².
+    #[serde(rename = "ft/s2")]
+    FootPerSecondSquared,
+    /// Thousandths of g.
+    #[serde(rename = "mg")]
+    MilliG,
+    /// Hundredths of g.
+    #[serde(rename = "%g")]
+    PercentG,
 }
 
 impl Unit {
     /// Every name by which a unit can be asked for.
-    pub const NAMES: [(&str, Unit); 5] = [
+    pub const NAMES: [(&str, Unit); 9] = [
         ("g", Unit::G),
         ("m/s2", Unit::MetrePerSecondSquared),
         ("cm/s2", Unit::CentimetrePerSecondSquared),
         ("gal", Unit::CentimetrePerSecondSquared),
         ("mm/s2", Unit::MillimetrePerSecondSquared),
+        ("in/s2", Unit::InchPerSecondSquared),
+        ("ft/s2", Unit::FootPerSecondSquared),
+        ("mg", Unit::MilliG),
+        ("%g", Unit::PercentG),
     ];
 
     /// The unit in m/s², where `g` (m/s²) is what a record's g stands for.
@@ -37,6 +55,10 @@ impl Unit {
             Unit::MetrePerSecondSquared => 1.0,
             Unit::CentimetrePerSecondSquared => 1e-2,
             Unit::MillimetrePerSecondSquared => 1e-3,
+            Unit::InchPerSecondSquared => 0.0254,
+            Unit::FootPerSecondSquared => 0.3048,
+            Unit::MilliG => g / 1e3,
+            Unit::PercentG => g / 1e2,
         }
     }
 
@@ -46,6 +68,8 @@ impl Unit {
         let length = match text.as_str() {
             "g" | "g's" => return Some(Unit::G),
             "gal" | "gals" => return Some(Unit::CentimetrePerSecondSquared),
+            "mg" | "milli-g" | "millig" => return Some(Unit::MilliG),
+            "%g" => return Some(Unit::PercentG),
             text => text.strip_suffix("/s2").or(text.strip_suffix("/s/s")).or(text.strip_suffix("/ss")),
         };
         let length = length.or(text.strip_suffix("s-2")).or(text.strip_suffix("ps2")).or(text.strip_suffix("s2"));
@@ -53,6 +77,8 @@ impl Unit {
             "m" => Some(Unit::MetrePerSecondSquared),
             "cm" => Some(Unit::CentimetrePerSecondSquared),
             "mm" => Some(Unit::MillimetrePerSecondSquared),
+            "in" | "inch" => Some(Unit::InchPerSecondSquared),
+            "ft" | "feet" => Some(Unit::FootPerSecondSquared),
             _ => None,
         }
     }
@@ -65,12 +91,54 @@ impl fmt::Display for Unit {
     }
 }
 
-/// What the heading of a column of times says of their unit, in s; nothing if it says none that is known.
-pub(super) fn seconds(text: &str) -> Option<f64> {
-    match plain(text).as_str() {
-        "s" | "sec" | "secs" | "second" | "seconds" => Some(1.0),
-        "ms" | "msec" | "msecs" | "millisecond" | "milliseconds" => Some(1e-3),
-        _ => None,
+/// What the heading of a column of times says of their unit.
+#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum TimeUnit {
+    Unstated,
+    Second,
+    Millisecond,
+    /// One that is not known here.
+    Other(String),
+}
+
+impl TimeUnit {
+    /// Of `time`, `t`, what begins so and goes on with a unit, and of what is a unit or has one in brackets; nothing of
+    /// any other heading.
+    pub(super) fn of(heading: &str) -> Option<TimeUnit> {
+        let heading = heading.trim().to_lowercase();
+        let bare = heading.trim_matches(['(', ')', '[', ']', '{', '}']);
+        let in_brackets = || bracketed(&heading).into_iter().find(|text| !text.is_empty());
+        if let Some(unit) = TimeUnit::named(bare).or_else(|| TimeUnit::named(in_brackets()?)) {
+            return Some(unit);
+        }
+        let name = heading.split(['(', '[', '{']).next().unwrap_or_default();
+        let mut words = name.split(|letter: char| !letter.is_alphanumeric() && letter != '\u{b5}');
+        if !matches!(words.next(), Some("t" | "time" | "times")) {
+            return None;
+        }
+        let mut unit = in_brackets().map_or(TimeUnit::Unstated, |text| TimeUnit::Other(text.into()));
+        for word in words.filter(|word| !word.is_empty() && *word != "in") {
+            unit = TimeUnit::named(word)?;
+        }
+        Some(unit)
+    }
+
+    fn named(text: &str) -> Option<TimeUnit> {
+        match text {
+            "s" | "sec" | "secs" | "second" | "seconds" => Some(TimeUnit::Second),
+            "ms" | "msec" | "msecs" | "millisecond" | "milliseconds" => Some(TimeUnit::Millisecond),
+            "us" | "\u{b5}s" | "usec" | "min" | "minutes" | "hr" | "hours" => Some(TimeUnit::Other(text.into())),
+            _ => None,
+        }
+    }
+
+    /// How many seconds it has; those that are not stated are seconds.
+    pub(super) fn in_seconds(&self) -> Result<f64, String> {
+        match self {
+            TimeUnit::Unstated | TimeUnit::Second => Ok(1.0),
+            TimeUnit::Millisecond => Ok(1e-3),
+            TimeUnit::Other(unit) => Err(format!("the times are in {}, which is neither s nor ms", quote(unit))),
+        }
     }
 }
 
@@ -105,9 +173,19 @@ pub(super) fn bracketed(heading: &str) -> Vec<&str> {
 
 /// Whether `text`, which is no unit that is known here, is meant as one, and not as a remark.
 pub(super) fn is_like_a_unit(text: &str) -> bool {
-    const OTHERS: [&str; 9] = ["mg", "ug", "%g", "counts", "count", "v", "mv", "volts", "milli-g"];
     let text = text.to_lowercase();
-    text.contains(['/', '^', '%']) || OTHERS.contains(&text.as_str())
+    text.contains("/s")
+        || text.contains(['^', '%'])
+        || matches!(&*text, "counts" | "count" | "v" | "mv" | "volts" | "ug")
+}
+
+/// Whether `line` has a unit of accelerations as a word anywhere.
+pub(super) fn mentions_unit(line: &str) -> bool {
+    let words = line.split(|letter: char| letter.is_whitespace() || ",;:=()[]{}\"".contains(letter));
+    words.filter(|word| !word.is_empty()).any(|word| {
+        let unit = word.trim_start_matches(|letter: char| letter.is_ascii_digit() || "+-.".contains(letter));
+        Unit::named(unit).is_some() || word.rsplit('/').next().is_some_and(|last| Unit::named(last).is_some())
+    })
 }
 
 /// What a heading says of the unit of its column.
@@ -117,34 +195,61 @@ pub(super) enum Stated {
     Unit(Unit),
     /// A unit of something else, or one that is not known here.
     Other(String),
-    /// No unit of the samples, but a value with one, such as a peak of 0.3 g.
-    Value(String),
+    /// No heading states one, but a line before the data, which is this, has one.
+    Mentioned(String),
 }
 
 impl Stated {
-    /// The unit that the `heading` of a column of accelerations states: in brackets, after the last blank or comma, or
-    /// after the last underscore. `a_g` is the ground acceleration, whatever its unit.
+    /// The unit that the `heading` of a column of accelerations states: in brackets, after a blank, a slash or an
+    /// underscore, or as all of it. `a_g` is the ground acceleration, whatever its unit; after a number stands the unit of
+    /// that.
     pub(super) fn of(heading: &str) -> Stated {
-        let brackets = bracketed(heading);
+        let is_number = |word: &str| number(&word.replace(',', ".")).is_some();
+        let brackets: Vec<_> =
+            bracketed(heading).into_iter().filter(|text| !text.is_empty() && !is_number(text)).collect();
         if let Some(unit) = brackets.iter().find_map(|text| Unit::named(text)) {
             return Stated::Unit(unit);
         }
-        if let Some(other) = brackets.iter().find(|text| !text.is_empty()) {
+        if let Some(other) = brackets.first() {
             return Stated::Other((*other).to_owned());
         }
         let heading = heading.trim();
-        if let Some(unit) = Unit::named(heading) {
-            return Stated::Unit(unit);
+        let mut words = heading.split([' ', '\t', ',', ':', '=']).filter(|word| !word.is_empty()).rev();
+        let last = words.next().filter(|_| !words.next().is_some_and(is_number));
+        let (after_blank, after_slash) = (heading.split_once(char::is_whitespace), heading.split_once('/'));
+        let after = [after_blank, after_slash].map(|parts| parts.map(|(_, unit)| unit));
+        let candidates = || [Some(heading), after[0], last, after[1]].into_iter().flatten();
+        let after_underscore = || {
+            let (name, unit) = heading
+                .match_indices('_')
+                .find_map(|(index, _)| Some((&heading[..index], Unit::named(&heading[index + 1..])?)))?;
+            (unit != Unit::G || !name.eq_ignore_ascii_case("a")).then_some(unit)
+        };
+        match candidates().find_map(Unit::named).or_else(after_underscore) {
+            Some(unit) => Stated::Unit(unit),
+            None => match candidates().skip(2).find(|text| is_like_a_unit(text)) {
+                Some(other) => Stated::Other(other.to_owned()),
+                None => Stated::Nothing,
+            },
         }
-        let after_blank = heading.split_once(char::is_whitespace).and_then(|(_, unit)| {
-            let last = unit.rsplit([' ', '\t', ',', ':', '=']).next();
-            Unit::named(unit).or(last.and_then(Unit::named))
-        });
-        let after_underscore = heading.char_indices().filter(|(_, letter)| *letter == '_').find_map(|(index, _)| {
-            let (name, unit) = (&heading[..index], &heading[index + 1..]);
-            if name.eq_ignore_ascii_case("a") { None } else { Unit::named(unit) }
-        });
-        after_blank.or(after_underscore).map_or(Stated::Nothing, Stated::Unit)
+    }
+
+    /// The same of a line of text before accelerations that have no columns.
+    pub(super) fn of_line(line: &str) -> Stated {
+        match Stated::of(line.trim_start_matches([' ', '\t', '#', '%', '!', '/'])) {
+            Stated::Other(other) if !is_like_a_unit(&other) => Stated::Nothing,
+            stated => stated,
+        }
+    }
+
+    /// What the user can say where it is not known whether this is the unit.
+    pub(super) fn remedy(&self) -> Option<Remedy> {
+        let is_unclear = match self {
+            Stated::Other(other) => !is_like_a_unit(other),
+            Stated::Mentioned(_) => true,
+            _ => false,
+        };
+        is_unclear.then_some(Remedy::Unit)
     }
 }
 
@@ -175,14 +280,23 @@ mod tests {
             ("{cm/s\u{b2}}", cm),
             ("a (filtered) [mm/s2]", mm),
             ("a mm/s/s", mm),
+            ("a/g", g),
+            ("Acc. / (m/s\u{b2})", m),
+            ("a_ms2", m),
+            ("a [in/sec^2]", Unit::InchPerSecondSquared),
+            ("acc_ft/s2", Unit::FootPerSecondSquared),
+            ("ACC (mg)", Unit::MilliG),
+            ("acc, %g", Unit::PercentG),
         ] {
             assert_eq!(Stated::of(heading), Stated::Unit(unit), "{heading}");
         }
-        for nothing in ["a_g", "acc", "acceleration", "ground motion", "", "a_G", "ag", "EW"] {
+        for nothing in ["a_g", "acc", "acceleration", "ground motion", "", "a_G", "ag", "EW", "peak 0.3 g", "in g: 0.3"]
+        {
             assert_eq!(Stated::of(nothing), Stated::Nothing, "{nothing}");
         }
-        for other in ["cm/s", "counts", "ft/s2", "mg", "in/s2", "%g"] {
+        for other in ["cm/s", "counts", "km/s2", "nm/s^2"] {
             assert_eq!(Stated::of(&format!("acc ({other})")), Stated::Other(other.into()));
+            assert_eq!(Stated::of(&format!("acc {other}")), Stated::Other(other.into()));
         }
     }
 
@@ -192,6 +306,29 @@ mod tests {
             assert_eq!(Unit::named(name), Some(unit));
             assert_eq!(Unit::named(&unit.to_string()), Some(unit));
         }
-        assert_eq!([Unit::G, Unit::CentimetrePerSecondSquared].map(|unit| unit.in_m_s2(9.81)), [9.81, 0.01]);
+        let in_m_s2 = Unit::NAMES.map(|(_, unit)| unit.in_m_s2(9.81));
+        assert_eq!(in_m_s2, [9.81, 1.0, 0.01, 0.01, 0.001, 12.0_f64.recip() * 0.3048, 0.3048, 9.81 / 1e3, 0.0981]);
+    }
+
+    #[test]
+    fn a_heading_of_times_states_their_unit() {
+        for (heading, unit) in [
+            ("t", TimeUnit::Unstated),
+            ("Time", TimeUnit::Unstated),
+            ("t/s", TimeUnit::Second),
+            ("Zeit [s]", TimeUnit::Second),
+            ("time, sec", TimeUnit::Second),
+            ("t/ms", TimeUnit::Millisecond),
+            ("time_ms", TimeUnit::Millisecond),
+            ("(ms)", TimeUnit::Millisecond),
+            ("time in ms", TimeUnit::Millisecond),
+            ("t (h)", TimeUnit::Other("h".into())),
+            ("time min", TimeUnit::Other("min".into())),
+        ] {
+            assert_eq!(TimeUnit::of(heading), Some(unit), "{heading}");
+        }
+        for other in ["time history", "trigger", "theta", "a (m/s2)", "acc", "", "T1"] {
+            assert_eq!(TimeUnit::of(other), None, "{other}");
+        }
     }
 }

@@ -292,7 +292,7 @@ impl Map {
         };
         let mut point = respond(&ground);
         if self.finds_condition {
-            let other = respond(&ground.scaled(1.0, 1.0 + PERTURBATION));
+            let other = respond(&ground.multiplied(1.0 + PERTURBATION));
             point.condition = Some(point.condition(&other));
         }
         point

@@ -393,7 +393,7 @@ impl Case<'_> {
 
     /// Does it while `watch` sees it go by.
     pub fn outcome_watched(&self, watch: &mut impl Watch) -> Outcome {
-        let ground = self.motion.record.clone().scaled(1.0, self.factor());
+        let ground = self.motion.record.clone().multiplied(self.factor());
         let &Conditions { initial, detail, tolerance, duration } = self.conditions;
         let end = duration.map_or(End::AtRest, |duration| End::At(ground.start() + duration));
         Outcome::of(&Run { initial, detail, tolerance, end, ..Run::new(self.structure, &ground) }, watch)
@@ -555,7 +555,7 @@ mod tests {
         let conditions = Conditions { initial, detail: Detail::Linear, tolerance: 1e-6, duration: Some(0.7) };
         let pier = Population::new("pier", Parameters::MCMANUS);
         let plan = Plan::new(vec![pier], vec![pulse()], vec![0.5]).unwrap().under(conditions).unwrap();
-        let ground = pulse().record.scaled(1.0, 0.5);
+        let ground = pulse().record.multiplied(0.5);
         let Conditions { detail, tolerance, .. } = conditions;
         let usual = Run::new(Structure::new(Parameters::MCMANUS).unwrap(), &ground);
         let run = Run { initial, detail, tolerance, end: End::At(0.7), ..usual.clone() };
@@ -571,7 +571,7 @@ mod tests {
     fn a_record_may_have_a_scale_of_its_own() {
         let piers = || Population::new("piers", Parameters::MCMANUS).vary("f_fc", vec![2.0, 5.0]).unwrap();
         let own = NamedRecord::new("own", pulse().record, -0.5).unwrap();
-        let multiplied = NamedRecord::new("multiplied", pulse().record.scaled(1.0, -0.5), 1.0).unwrap();
+        let multiplied = NamedRecord::new("multiplied", pulse().record.multiplied(-0.5), 1.0).unwrap();
         let plan = Plan::new(vec![piers()], vec![pulse(), own, multiplied], vec![2.0]).unwrap();
         for structure in [0, 3] {
             let [whole, own, multiplied] = [0, 1, 2].map(|motion| plan.case(structure + motion));
@@ -600,7 +600,7 @@ mod tests {
             |case: Case| (0, case.intensity(IntensityMeasure::Pga), case.outcome().exceeds(&Limit::Overturning));
         let trials = Trials::count(plan.cases().map(overturned));
         let expected = scales.map(|scale| {
-            let ground = pulse().record.scaled(1.0, scale);
+            let ground = pulse().record.multiplied(scale);
             let overturns = |f_fc: &&f64| {
                 let structure = Structure::new(Parameters { f_fc: **f_fc, ..Parameters::MCMANUS }).unwrap();
                 Run::new(structure, &ground).peaks().unwrap().1.ending == Ending::Overturned

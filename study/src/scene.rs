@@ -73,7 +73,7 @@ impl Scene {
     pub fn mcmanus_pacoima(records: &Path) -> Result<Scene> {
         let key = "mcmanus-pacoima";
         let title = "McManus's specimen, Pacoima Dam 1971 (164)";
-        let record = read_record(records, PACOIMA)?.scaled(PACOIMA_TIME_SCALE, PACOIMA_SCALE);
+        let record = read_record(records, PACOIMA)?.scaled(PACOIMA_TIME_SCALE, PACOIMA_SCALE)?;
         from_rest(key, title, Parameters::MCMANUS, &record, 2000)
     }
 
@@ -105,7 +105,7 @@ impl Scene {
         let State { u, u_dot, theta, theta_dot } = self.initial;
         let initial =
             State { u: factor * u, u_dot: factor * u_dot, theta: factor * theta, theta_dot: factor * theta_dot };
-        Scene { initial, ground: self.ground.clone().scaled(1.0, factor), ..self.clone() }
+        Scene { initial, ground: self.ground.clone().scaled(1.0, factor).expect("a finite factor"), ..self.clone() }
     }
 
     /// The engine's run of it at the level `detail`, to `tolerance`. A rigid structure starts without elastic motion.

@@ -127,7 +127,7 @@ fn scenes(records: &Path) -> Result<Vec<(String, Scene)>> {
             "McManus at 0.05 Hz, 5 times Pacoima Dam as recorded".into(),
             Scene {
                 structure: crate::scene::structure(slow),
-                ground: read_record(records, PACOIMA)?.scaled(1.0, 5.0),
+                ground: read_record(records, PACOIMA)?.scaled(1.0, 5.0)?,
                 ..pacoima
             },
         ),

@@ -70,7 +70,7 @@ pub fn all(count: usize) -> Vec<Layout> {
         (";", ",", "Zeit [s];Beschleunigung [cm/s^2]"),
         ("\t", ".", "t\tgal"),
         ("  ", ".", "time   acceleration_gal"),
-        ("   ", ",", "# time and acceleration (gal)"),
+        ("   ", ",", "# time   acceleration (gal)"),
         (" , ", ".", "\"time\",\"acc, cm/s/s\""),
     ] {
         let mut text = format!("{heading}\n");
@@ -81,14 +81,31 @@ pub fn all(count: usize) -> Vec<Layout> {
         all.push(layout("table.dat", Format::Table, gal, text));
     }
     let column = cm.iter().map(|value| format!("{value}\n")).collect::<String>();
-    let mut one = layout("column.txt", Format::Table, gal, column);
-    one.how = Reading { dt: Some(DT), unit: Some(gal), ..Reading::default() };
-    all.push(one);
+    let with_step = |unit| Reading { dt: Some(DT), unit, ..Reading::default() };
+    let read_as = |how: Reading, layout: Layout| Layout { how, ..layout };
+    all.push(read_as(with_step(Some(gal)), layout("column.txt", Format::Table, gal, column)));
     let array = |(i, value): (usize, &f64)| format!("{},{},\"{value}\",{i}\r\n", i as f64 * DT, -2.0 * value);
     let array = "Time (s),N-S (gal),E-W (gal),n\r\n".to_owned() + &cm.iter().enumerate().map(array).collect::<String>();
     let mut chosen = layout("array.csv", Format::Table, gal, array);
     chosen.how = Reading { column: Some(Column::Heading("E-W".into())), ..Reading::default() };
     all.push(chosen);
+    let table = |heading: &str, time: fn(usize) -> String| {
+        let line = |(i, value): (usize, &f64)| format!("{},{value}\n", time(i));
+        let text = format!("{heading}\n") + &cm.iter().enumerate().map(line).collect::<String>();
+        layout("table.csv", Format::Table, gal, text)
+    };
+    let several = |before: &str, columns| {
+        let text = before.to_owned() + &lines(&cm, columns, |value| format!(" {value:11.5}"));
+        layout("values.out", Format::Table, gal, text)
+    };
+    all.extend([
+        table("# peak in g: 0.3\nt/ms,a/gal", |i| (5 * i).to_string()),
+        table("Time,Acceleration\n(sec),(cm/sec^2)", |i| format!("{:.3}", i as f64 * DT)),
+        read_as(with_step(None), table("n,acc (gal)", |i| (i + 1).to_string())),
+        read_as(with_step(Some(gal)), several("", 8)),
+        read_as(with_step(None), several("El Centro 1940 05 18\nAccelerations in units of cm/sec^2.\n", 5)),
+        read_as(Reading { unit: Some(gal), ..Reading::default() }, several(&format!("{count} {DT}\n"), 5)),
+    ]);
     all
 }
 

@@ -2,7 +2,7 @@
 //! and amplitude.
 use crate::{
     output_files::OutputFiles,
-    record_args::described,
+    record_args::{RecordOptions, with_key},
     structure_args::{Preset, left_open},
     talk::{say, say_few},
 };
@@ -13,7 +13,7 @@ use rocking::{
     intensity::IntensityMeasure,
     natural_quantities::Given,
     record::pulse::{Pulse, Shape},
-    record::{Reading, Record, Unit, UnitFrom},
+    record::{Column, Record, Unit},
     run::map::{Axis, MAX_REFINEMENTS, Map},
     run::outcome::Limit,
     run::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population},
@@ -123,15 +123,25 @@ struct PulseGrid {
 #[serde(untagged, expecting = "expected a path or pattern, or { file = ..., scale = ... }")]
 enum Source {
     AsTheyAre(String),
-    Scaled(ScaledSource),
+    /// With a `file` and its options.
+    As(toml::Table),
 }
 
-/// The same with their accelerations multiplied.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct ScaledSource {
-    file: String,
-    scale: f64,
+impl Source {
+    /// The pattern of the files, and how they are read.
+    fn pattern_and_options(&self) -> anyhow::Result<(&str, RecordOptions)> {
+        match self {
+            Source::AsTheyAre(pattern) => Ok((pattern, RecordOptions::default())),
+            Source::As(table) => {
+                let pattern = table.get("file").and_then(toml::Value::as_str);
+                let pattern = pattern.context("records: a table without file: expected { file = ..., scale = ... }")?;
+                let mut options = table.clone();
+                options.remove("file");
+                let options = RecordOptions::deserialize(options).with_context(|| format!("records {pattern:?}"))?;
+                Ok((pattern, options))
+            }
+        }
+    }
 }
 
 fn one() -> f64 {
@@ -191,12 +201,14 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         let g = gravity(&file.structures)?;
         let populations = file.structures.iter().map(StructureGrid::population).collect::<Result<_, _>>()?;
         let (mut said, mut warnings) = (Vec::new(), Vec::new());
-        let read = |path: &Path| {
+        let read = |path: &Path, options: &RecordOptions| {
             files.add_input(path);
-            let (record, source) = Record::read(path, &Reading { unit, ..Reading::default() }, g)?;
-            said.push((source.unit_from != UnitFrom::Assumed, described(path, &record, &source, g)));
-            warnings.extend(source.warnings.iter().map(|warning| format!("warning: {}: {warning}", path.display())));
-            Ok(record.scaled(time_scale, 1.0))
+            let (unit, time_scale) = (options.unit.or(unit), options.time_scale.or(Some(time_scale)));
+            let options = RecordOptions { unit, time_scale, scale: None, ..options.clone() };
+            let understood = options.understand(path, g).map_err(with_key)?;
+            warnings.extend(understood.warnings(path));
+            said.push((!understood.unit_is_assumed(), understood.described));
+            Ok(understood.record)
         };
         let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read);
         say_few(&warnings, "warnings");
@@ -354,14 +366,17 @@ impl StructureGrid {
 fn motions(
     sources: &[Source],
     folder: &Path,
-    mut read: impl FnMut(&Path) -> anyhow::Result<Record>,
+    mut read: impl FnMut(&Path, &RecordOptions) -> anyhow::Result<Record>,
 ) -> anyhow::Result<Vec<NamedRecord>> {
-    let (mut motions, mut scales) = (Vec::new(), HashMap::new());
+    let (mut motions, mut named) = (Vec::new(), HashMap::new());
     let (mut named_twice, mut bad): (Vec<PathBuf>, Vec<anyhow::Error>) = (Vec::new(), Vec::new());
     for source in sources {
-        let (pattern, scale) = match source {
-            Source::AsTheyAre(pattern) => (pattern, 1.0),
-            Source::Scaled(ScaledSource { file, scale }) => (file, *scale),
+        let (pattern, options) = source.pattern_and_options()?;
+        let scale = options.scale.unwrap_or(1.0);
+        let column = match &options.column {
+            None => String::new(),
+            Some(Column::Number(number)) => format!(" column {number}"),
+            Some(Column::Heading(heading)) => format!(" column {heading}"),
         };
         let in_folder = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
         let mut paths = glob::glob(&in_folder.to_string_lossy()).with_context(|| format!("records {pattern:?}"))?;
@@ -371,10 +386,10 @@ fn motions(
         }
         for path in paths {
             let path = path?;
-            if let Some(other) = scales.insert(path.canonicalize()?, scale) {
+            if let Some(other) = named.insert((path.canonicalize()?, column.clone()), options.clone()) {
                 ensure!(
-                    other == scale,
-                    "{} is named twice in records, with the scales {other} and {scale}: leave one out",
+                    other == options,
+                    "{} is named twice in records, with different options: leave one out",
                     path.display()
                 );
                 named_twice.push(path);
@@ -382,8 +397,9 @@ fn motions(
             }
             // The same on every system, so that a sweep can go on on another.
             let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace(MAIN_SEPARATOR, "/");
+            let name = name + &column;
             let name = is_one_line(&name)?;
-            match read(&path).and_then(|record| Ok(NamedRecord::new(name, record, scale)?)) {
+            match read(&path, &options).and_then(|record| Ok(NamedRecord::new(name, record, scale)?)) {
                 Ok(motion) => motions.push(motion),
                 Err(error) => bad.push(error),
             }

@@ -294,8 +294,8 @@ mod tests {
             fs::write(&path, text).unwrap();
             path
         };
-        let [pulse, sine] = [write("pulse 1.csv", "0,1\r\n1,2\r\n"), write("sine.txt", "0,1\n1,-1\n")];
-        let [same, broken] = [write("other/Sine.TXT", "0,2\n1,0\n"), write("broken.csv", "0,1\n1,?\n")];
+        let [pulse, sine] = [write("pulse 1.csv", "t/s,a\r\n0,1\r\n1,2\r\n"), write("sine.txt", "t/s,a\n0,1\n1,-1\n")];
+        let [same, broken] = [write("other/Sine.TXT", "t/s,a\n0,2\n1,0\n"), write("broken.csv", "0,1\n1,?\n")];
         let export = |records: &[&PathBuf]| {
             let records: Vec<_> = records.iter().map(|path| path.to_path_buf()).collect();
             super::export(
@@ -310,8 +310,8 @@ mod tests {
         assert_eq!(contents.default_record(), "pulse 1.csv");
         let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
         let mut read = |name: &str| std::io::read_to_string(archive.by_name(name).unwrap()).unwrap();
-        assert_eq!(read("resources/pulse 1.csv"), "0,1\r\n1,2\r\n");
-        assert_eq!(read("resources/sine.txt"), "0,1\n1,-1\n");
+        assert_eq!(read("resources/pulse 1.csv"), "t/s,a\r\n0,1\r\n1,2\r\n");
+        assert_eq!(read("resources/sine.txt"), "t/s,a\n0,1\n1,-1\n");
         assert!(read("modelDescription.xml").contains("<String start=\"pulse 1.csv\"/>"));
         let names: Records = toml::from_str(&read("resources/records.toml")).unwrap();
         assert_eq!(names.record, contents.records);

@@ -95,7 +95,7 @@ pub fn case(k: usize, records: &[Record]) -> Case {
     let structure = structure(parameters);
     let record = &records[(record * records.len() as f64) as usize];
     let pga = logarithmic(strength, STRENGTH) * parameters.g * structure.tan_alpha_cg;
-    Case { structure, ground: record.clone().scaled(1.0, pga / record.pga()) }
+    Case { structure, ground: record.clone().scaled(1.0, pga / record.pga()).expect("a finite factor") }
 }
 
 /// All of them, which end with their records.

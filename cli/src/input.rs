@@ -1,0 +1,40 @@
+//! What a command reads: a file, or standard input under the name `-`.
+
+use anyhow::{Context, ensure};
+use rocking::record::MAX_FILE;
+use std::fs;
+use std::io::{Read, stdin};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// What standard input is called.
+pub const NAME: &str = "standard input";
+
+static IS_READ: AtomicBool = AtomicBool::new(false);
+
+/// Whether `path` stands for standard input.
+pub fn is_standard(path: &Path) -> bool {
+    path == Path::new("-")
+}
+
+/// What `path` is called.
+pub fn name(path: &Path) -> String {
+    if is_standard(path) { NAME.into() } else { path.display().to_string() }
+}
+
+/// What is at `path`. Standard input has an end, and comes once.
+pub fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
+    if !is_standard(path) {
+        return Ok(fs::read(path)?);
+    }
+    ensure!(!IS_READ.swap(true, Ordering::Relaxed), "{NAME} is read already: only one file can be `-`");
+    let mut bytes = Vec::new();
+    stdin().lock().take(MAX_FILE + 1).read_to_end(&mut bytes).context(NAME)?;
+    ensure!(bytes.len() as u64 <= MAX_FILE, "{NAME} has more than {MAX_FILE} bytes, which no record has");
+    Ok(bytes)
+}
+
+/// The same as text.
+pub fn text(path: &Path) -> anyhow::Result<String> {
+    String::from_utf8(read(path)?).context("it is no text in UTF-8")
+}

@@ -1,0 +1,92 @@
+//! `record`: what is understood of a record, and the same as a table that is read without options.
+pub mod picture;
+
+use crate::{
+    output_files::OutputFiles,
+    picture::PictureFile,
+    quantities::{Line, write_columns},
+    record_args::{RecordOptions, with_option},
+    results::{Format, FormatArgs, print, print_rows},
+    tables::Table,
+    talk::say,
+};
+use rocking::{
+    Parameters,
+    intensity::{arias_intensity, peak_velocity, significant_duration},
+    record::Record,
+};
+use std::path::{Path, PathBuf};
+
+/// What a record's g stands for, m/s².
+const G: f64 = Parameters::MCMANUS.g;
+
+/// Which record, and what to make of it.
+#[derive(clap::Args)]
+pub struct RecordCommand {
+    /// Ground motion record, `-` for standard input: PEER .AT2, ESM, K-NET, COSMOS or CSMIP as published, or a table of text
+    #[arg(value_name = "FILE")]
+    record: PathBuf,
+    #[command(flatten)]
+    options: RecordOptions,
+    /// The record as CSV of time (s) and acceleration in the unit of its file, scaled, `-` for standard output
+    #[arg(short, long, value_name = "FILE.csv")]
+    output: Option<PathBuf>,
+    #[command(flatten)]
+    results: FormatArgs,
+    /// Draw acceleration, velocity and displacement of the ground, and the response spectrum
+    #[arg(long, value_name = "FILE.svg|png")]
+    picture: Option<PictureFile>,
+}
+
+/// Prints what was understood, and writes it.
+pub fn run(args: &RecordCommand) -> anyhow::Result<()> {
+    let understood = args.options.understand(&args.record, G).map_err(with_option)?;
+    say!("record         {}", understood.described);
+    understood.warnings(&args.record).for_each(|warning| say!("{warning}"));
+    let mut files = OutputFiles::of_inputs([args.record.as_path()]);
+    args.results.reserve(&mut files);
+    let table = args.output.as_ref().map(|path| Table::create(&mut files, path)).transpose()?;
+    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
+    let record = &understood.record;
+    if let Some(table) = table {
+        understood.write(table)?;
+    }
+    let lines = amounts(record);
+    if args.results.format == Format::Text {
+        let mut text = format!("{}\n", record.title());
+        write_columns(&mut text, &lines, G)?;
+        let is_table_printed = args.output.as_deref() == Some(Path::new("-"));
+        if is_table_printed { say!("{}", text.trim_end()) } else { print(&text)? }
+    } else {
+        print_rows(args.results.format, &lines)?;
+    }
+    if let Some(path) = args.output.as_deref().filter(|path| *path != Path::new("-")) {
+        say!("written        {}", path.display());
+    }
+    match picture {
+        Some(picture) => picture::draw(picture, record, G),
+        None => Ok(()),
+    }
+}
+
+/// What the record amounts to.
+fn amounts(record: &Record) -> Vec<Line> {
+    let [velocity, displacement] = record.velocities_and_displacements().last().expect("a record has samples");
+    let steps = || record.times().windows(2).map(|pair| pair[1] - pair[0]);
+    let [from, until] = significant_duration(record);
+    let line = |name, value, unit, description| Line::new(name, value, unit, "", description);
+    vec![
+        line("samples", record.times().len() as f64, "1", "samples"),
+        line("step_min", steps().fold(f64::INFINITY, f64::min), "s", "least time between two samples"),
+        line("step_max", steps().fold(0.0, f64::max), "s", "most time between two samples"),
+        line("t_start", record.start(), "s", "instant of the first sample"),
+        line("t_end", record.end(), "s", "instant of the last sample"),
+        line("PGA", record.pga(), "m/s2", "peak ground acceleration"),
+        line("PGV", peak_velocity(record), "m/s", "peak ground velocity, at rest before the first sample"),
+        line("I_A", arias_intensity(record, G), "m/s", "Arias intensity, pi/(2 g) times the integral of a_g^2"),
+        line("D_5-95", until - from, "s", "significant duration: from 5 % to 95 % of the Arias intensity"),
+        line("t_5", from, "s", "its begin"),
+        line("v_end", velocity, "m/s", "velocity at the end, a drift unless it is 0"),
+        line("d_end", displacement, "m", "displacement at the end"),
+    ]
+}
