@@ -11,7 +11,7 @@
 //! What is given together with what it stands for is refused: neither of the two is right for certain.
 
 use crate::parameters::{PARAMETERS, Parameters};
-use crate::quantity::{OutOfRange, with_unit};
+use crate::quantity::{OutOfRange, Quantity, with_unit};
 use crate::structure::{DERIVED, Derived};
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
 use std::fmt;
@@ -40,6 +40,9 @@ pub const NATURAL: [Natural; 6] = [
     Natural { name: "alpha_cg", min: 1e-3, max: 1.57, stands_for: "H", in_place_of: "H, or of B where H is given" },
     Natural { name: "p_l", min: 1e-4, max: 1e3, stands_for: "J0", in_place_of: "J0" },
 ];
+
+/// What a parameter is that may be left out, in its unit.
+pub const DEFAULTS: [(&str, f64); 3] = [("J0", 0.0), ("c_ratio", 1.0), ("g", 9.81)];
 
 /// Numbers that are given for a structure, by name: parameters and natural quantities.
 ///
@@ -80,16 +83,9 @@ pub enum GivenError {
         /// What it would determine.
         determined: &'static str,
     },
-    /// Too few.
-    #[error("{name} ({description}) is missing: give {}", ways.join(" or "))]
-    Missing {
-        /// The parameter.
-        name: &'static str,
-        /// What it is.
-        description: &'static str,
-        /// What may be given for it, with units.
-        ways: Vec<String>,
-    },
+    /// Too few: all parameters that are not determined.
+    #[error("{}", in_words(.0))]
+    Missing(Vec<Missing>),
     /// A natural quantity asks for a parameter that is impossible.
     #[error("{natural} = {} does not fit: {cause}", with_unit(*value, unit))]
     Impossible {
@@ -116,6 +112,33 @@ pub enum GivenError {
     },
 }
 
+/// A parameter that is not determined.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Missing {
+    /// The parameter.
+    pub name: &'static str,
+    /// What it is.
+    pub description: &'static str,
+    /// Names and units of what may be given for it.
+    pub ways: Vec<(&'static str, &'static str)>,
+}
+
+impl Missing {
+    /// What to give, with each name as it is `called` where it is given.
+    pub fn advice(&self, called: impl Fn(&str) -> String) -> String {
+        let way = |&(name, unit): &(&str, &str)| match unit {
+            "1" => called(name),
+            _ => format!("{} ({unit})", called(name)),
+        };
+        let ways = self.ways.iter().map(way).collect::<Vec<_>>().join(" or ");
+        format!("{} ({}) is missing: give {ways}", self.name, self.description)
+    }
+}
+
+fn in_words(missing: &[Missing]) -> String {
+    missing.iter().map(|missing| missing.advice(str::to_owned)).collect::<Vec<_>>().join("; ")
+}
+
 /// What may be given, by name.
 pub fn names() -> impl Iterator<Item = &'static str> {
     PARAMETERS.iter().map(|parameter| parameter.name).chain(NATURAL.iter().map(|natural| natural.name))
@@ -139,20 +162,29 @@ impl Given {
         Ok(())
     }
 
-    /// The parameters that these numbers determine on their own; what they leave open of J0, c_ratio and g is 0, 1 and
-    /// 9.81 m/s².
+    /// The parameters that these numbers determine on their own; what they leave open of [`DEFAULTS`] is that.
     pub fn parameters(&self) -> Result<Parameters, GivenError> {
-        self.solve(|name| match name {
-            "J0" => Some(0.0),
-            "c_ratio" => Some(1.0),
-            "g" => Some(9.81),
-            _ => None,
-        })
+        self.solve(|name| DEFAULTS.iter().find(|(default, _)| *default == name).map(|(_, value)| *value))
     }
 
     /// The parameters `base` with these numbers in the place of its own. α_cg moves H, unless H is given: then B.
     pub fn over(&self, base: &Parameters) -> Result<Parameters, GivenError> {
         self.solve(|name| PARAMETERS.iter().find(|parameter| parameter.name == name).map(|of| (of.get)(base)))
+    }
+
+    /// Whether none is given.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Whether these numbers determine the parameter called `name`: by itself, or by what stands for it.
+    pub fn determine(&self, name: &str) -> bool {
+        let stands_in = |natural: &Natural| match natural.name {
+            "alpha_cg" => name == if self.get("H").is_some() { "B" } else { "H" },
+            _ => natural.stands_for == name,
+        };
+        let is_given = |name| self.get(name).is_some();
+        is_given(name) || NATURAL.iter().any(|natural| stands_in(natural) && is_given(natural.name))
     }
 
     fn get(&self, name: &str) -> Option<f64> {
@@ -162,12 +194,17 @@ impl Given {
     /// The parameters; what is not given is left to `otherwise`.
     fn solve(&self, otherwise: impl Fn(&str) -> Option<f64>) -> Result<Parameters, GivenError> {
         self.check()?;
-        let own = |name: &'static str| self.get(name).or_else(|| otherwise(name)).ok_or_else(|| missing(name));
+        let is_missing = |name: &&Quantity<Parameters>| !self.determine(name.name) && otherwise(name.name).is_none();
+        let missing: Vec<_> = PARAMETERS.iter().filter(is_missing).map(missing).collect();
+        if !missing.is_empty() {
+            return Err(GivenError::Missing(missing));
+        }
+        let own = |name| self.get(name).or_else(|| otherwise(name)).expect("nothing is missing");
         let or = |name: &'static str, natural: &'static str, from: &dyn Fn(f64) -> f64| match self.get(natural) {
             Some(value) => parameter_for(natural, value, name, from(value)),
-            None => own(name),
+            None => Ok(own(name)),
         };
-        let g = own("g")?;
+        let g = own("g");
         let m = or("m", "weight", &|weight| 1e3 * weight / g)?;
         let m0 = or("m0", "weight0", &|weight0| 1e3 * weight0 / g)?;
         let f_fc = or("f_fc", "period_fc", &|period_fc| period_fc.recip())?;
@@ -179,13 +216,13 @@ impl Given {
                 let B = B()?;
                 (parameter_for("alpha_cg", alpha_cg, "H", gamma * B / alpha_cg.tan())?, B)
             }
-            (None, _) => (own("H")?, B()?),
+            (None, _) => (own("H"), B()?),
         };
         let J0 = match self.get("p_l") {
             Some(p_l) => inertia(p_l, m * g * H, m * H * H + (m + m0) * B * B)?,
-            None => own("J0")?,
+            None => own("J0"),
         };
-        Ok(Parameters { m, m0, H, B, J0, f_fc, zeta_fc: own("zeta_fc")?, c_ratio: own("c_ratio")?, r: own("r")?, g })
+        Ok(Parameters { m, m0, H, B, J0, f_fc, zeta_fc: own("zeta_fc"), c_ratio: own("c_ratio"), r: own("r"), g })
     }
 
     /// Whether every natural quantity is in its range, and nothing that it determines is given as well.
@@ -240,12 +277,10 @@ fn inertia(p_l: f64, m_g_H: f64, without_J0: f64) -> Result<f64, GivenError> {
     }
 }
 
-fn missing(name: &'static str) -> GivenError {
-    let parameter = PARAMETERS.iter().find(|parameter| parameter.name == name).expect("it is one of them");
+fn missing(&Quantity { name, unit, description, .. }: &Quantity<Parameters>) -> Missing {
     let stand_ins = NATURAL.iter().filter(|natural| natural.stands_for == name).map(Natural::derived);
-    let all = [(name, parameter.unit)].into_iter().chain(stand_ins.map(|derived| (derived.name, derived.unit)));
-    let ways = all.map(|(name, unit)| if unit == "1" { name.into() } else { format!("{name} ({unit})") }).collect();
-    GivenError::Missing { name, description: parameter.description, ways }
+    let ways = [(name, unit)].into_iter().chain(stand_ins.map(|derived| (derived.name, derived.unit)));
+    Missing { name, description, ways: ways.collect() }
 }
 
 impl<'de> Deserialize<'de> for Given {
@@ -376,10 +411,18 @@ mod tests {
             )
         );
         let alone = |numbers: &[(&str, f64)]| given(numbers).parameters().unwrap_err().to_string();
-        assert_eq!(alone(&[]), "m (top mass) is missing: give m (kg) or weight (kN)");
+        let all = alone(&[]);
+        let all: Vec<_> = all.split("; ").map(|one| one.split(' ').next().unwrap()).collect();
+        assert_eq!(all, ["m", "m0", "H", "B", "f_fc", "zeta_fc", "r"]);
+        assert_eq!(
+            alone(&[("m0", 1.0), ("H", 1.0), ("alpha_cg", 0.2), ("f_fc", 1.0), ("r", 1.0)]),
+            "m (top mass) is missing: give m (kg) or weight (kN); zeta_fc (damping ratio in full contact) is missing: give \
+             zeta_fc"
+        );
         let most = [("m", 1.0), ("m0", 1.0), ("f_fc", 1.0), ("zeta_fc", 0.0), ("r", 1.0)];
         assert!(
-            alone(&most).ends_with("(height of the top mass above the base) is missing: give H (m) or alpha_cg (rad)")
+            alone(&most)
+                .starts_with("H (height of the top mass above the base) is missing: give H (m) or alpha_cg (rad); B ")
         );
         assert_eq!(Given::default().give("mass", 1.0).unwrap_err(), GivenError::Unknown { name: "mass".into() });
         assert_eq!(given(&[("m", 1.0)]).give("m", 2.0), Err(GivenError::Twice("m")));

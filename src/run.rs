@@ -5,6 +5,7 @@
 
 pub mod curve;
 pub mod exceedances;
+pub mod fall;
 mod history;
 pub mod levels;
 pub mod map;

@@ -114,6 +114,26 @@ def test_what_is_drawn_is_the_response(opened, view, exaggeration):
             assert abs(reading(page, name) - now[column] / unit) <= 2e-3 * largest[column] / unit, (name, row)
 
 
+def test_on_paper_nothing_is_cut_off(opened):
+    """Narrower than the window, and laid out by styles alone: no script runs before it is printed."""
+    page = opened()
+    page.evaluate("""() => {
+        const measured = Element.prototype.getBoundingClientRect;
+        const of_window = Object.fromEntries(["scene", "histories"].map(id => [id, measured.call(document.getElementById(id))]));
+        Element.prototype.getBoundingClientRect = function () { return of_window[this.id] ?? measured.call(this); };
+    }""")
+    page.emulate_media(media="print")
+    page.set_viewport_size({"width": 700, "height": 1000})  # A4 within its margins
+    left, right, bottom = page.evaluate("""() => {
+        const drawn = [...document.querySelectorAll("#scene text, #surface, #histories text, #histories .curve")];
+        const boxes = drawn.map(each => each.getBoundingClientRect()).filter(box => box.width > 0);
+        return [Math.min(...boxes.map(box => box.left)), Math.max(...boxes.map(box => box.right)),
+                Math.max(...boxes.map(box => box.bottom))];
+    }""")
+    assert 0 <= left < right <= 700 and bottom <= 1000  # one page
+    assert not page.locator("footer").is_visible()
+
+
 def test_what_is_drawn_is_true_to_scale(opened):
     """A base 0.57 m wide and a mass 1.84 m above it, measured on the screen."""
     page = opened()

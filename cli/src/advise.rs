@@ -3,9 +3,11 @@
 mod picture;
 
 use crate::{
+    cause::Cause,
     output_files::OutputFiles,
     picture::PictureFile,
-    results::{Format, FormatArgs, print, print_rows},
+    quantities::in_readable_unit,
+    results::{Format, FormatArgs, Number, print, print_traced},
     scene_args::{GroundArgs, InitialArgs},
     structure_args::StructureArgs,
     talk::say,
@@ -117,7 +119,8 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     if args.results.format == Format::Text {
         print(&text(args, &run, &comparison, advised)?)?;
     } else {
-        print_rows(args.results.format, &rows(&comparison, advised))?;
+        let cause = Cause::new(&structure).under(&args.ground.record, &ground).computed(None, initial);
+        print_traced(args.results.format, &cause, &rows(&comparison, advised))?;
     }
     match picture {
         Some(picture) => picture::draw(picture, &comparison, (args.allowed.within, &criteria), advised, ground.title()),
@@ -150,9 +153,9 @@ fn print_reference(out: &mut impl Write, structure: &Structure, comparison: &Com
     let reference = &comparison.reference;
     let (peaks, g) = (&reference.peaks, structure.parameters().g);
     let theta = peaks.theta().magnitude;
-    let [u, a_t, V_t, M_t] =
-        [1e3 * peaks.u().magnitude, peaks.a_t().magnitude / g, peaks.V_t().magnitude, peaks.M_t().magnitude]
-            .map(significant);
+    let [u, a_t] = [1e3 * peaks.u().magnitude, peaks.a_t().magnitude / g].map(significant);
+    let [V_t, M_t] = [(peaks.V_t(), "N"), (peaks.M_t(), "N.m")]
+        .map(|(peak, unit)| in_readable_unit(peak.magnitude, unit, significant));
     writeln!(out, "Reference: nonlinear, tolerance {REFERENCE_TOLERANCE:e}, {} transitions", reference.transitions)?;
     if reference.overturns().is_none() {
         let limit = significant(LONGEST_REST / structure.p_l);
@@ -161,7 +164,7 @@ fn print_reference(out: &mut impl Write, structure: &Structure, comparison: &Com
             "  it still rocks {limit} s after the record: whether it overturns is not known; see --duration"
         )?;
     }
-    writeln!(out, "  peaks: theta {} rad, u {u} mm, a_t {a_t} g, V_t {V_t} N, M_t {M_t} N.m", significant(theta))?;
+    writeln!(out, "  peaks: theta {} rad, u {u} mm, a_t {a_t} g, V_t {V_t}, M_t {M_t}", significant(theta))?;
     if reference.overturns() == Some(true) {
         return writeln!(out, "  the structure overturns\n");
     }
@@ -219,19 +222,19 @@ fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&
 #[derive(Serialize)]
 struct Row {
     level: &'static str,
-    error_theta: f64,
-    error_u: f64,
-    error_a_t: f64,
-    error_theta_history: f64,
-    error_u_history: f64,
-    error_a_t_history: f64,
+    error_theta: Number,
+    error_u: Number,
+    error_a_t: Number,
+    error_theta_history: Number,
+    error_u_history: Number,
+    error_a_t_history: Number,
     /// None if it still rocks.
     overturned: Option<bool>,
     /// None if the reference still rocks.
     is_right_about_overturning: Option<bool>,
     steps: u64,
     evaluations: u64,
-    cost_of_auto: Option<f64>,
+    cost_of_auto: Option<Number>,
     advised: bool,
     theta: f64,
     u: f64,
@@ -244,7 +247,8 @@ struct Row {
 fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Row> {
     let auto = comparison.cost_of_auto();
     let row = |level, response: &Response, errors: [f64; 6], is_right_about_overturning, advised| {
-        let [error_theta, error_u, error_a_t, error_theta_history, error_u_history, error_a_t_history] = errors;
+        let [error_theta, error_u, error_a_t, error_theta_history, error_u_history, error_a_t_history] =
+            errors.map(Number);
         let peaks = &response.peaks;
         let [theta, u, a_t, V_t, M_t] =
             [peaks.theta(), peaks.u(), peaks.a_t(), peaks.V_t(), peaks.M_t()].map(|peak| peak.magnitude);
@@ -260,7 +264,7 @@ fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Row> {
             is_right_about_overturning,
             steps: response.work.steps,
             evaluations: response.work.evaluations,
-            cost_of_auto: auto.map(|auto| response.cost() as f64 / auto),
+            cost_of_auto: auto.map(|auto| Number(response.cost() as f64 / auto)),
             advised,
             theta,
             u,

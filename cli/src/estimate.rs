@@ -2,11 +2,12 @@
 mod picture;
 
 use crate::{
+    cause::Cause,
     output_files::OutputFiles,
     picture::PictureFile,
     quantities::{Line, write_columns},
     record_args::RecordArgs,
-    results::{Format, FormatArgs, print, print_rows},
+    results::{Format, FormatArgs, print, print_traced},
     significant::significant,
     structure_args::StructureArgs,
 };
@@ -84,7 +85,12 @@ pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
         })
     });
     let lines: Vec<_> = fixed_base.into_iter().chain(rocking).chain(frequencies).collect();
-    print_rows(args.results.format, &lines)
+    let cause = Cause::new(&structure);
+    let cause = match &record {
+        Some(record) => cause.under(&args.ground, record),
+        None => cause,
+    };
+    print_traced(args.results.format, &cause, &lines)
 }
 
 /// The values in columns for people.

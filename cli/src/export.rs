@@ -91,7 +91,7 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
 fn record(options: &RecordOptions, path: &Path, g: f64, folder: &Path) -> anyhow::Result<PathBuf> {
     let understood = options.understand(path, g).map_err(with_option)?;
     say!("{}", understood.described);
-    understood.say_warnings(path);
+    understood.warnings(path).for_each(|warning| say!("{warning}"));
     if options.are_none() && !input::is_standard(path) {
         return Ok(path.into());
     }

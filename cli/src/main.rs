@@ -2,6 +2,7 @@
 #![allow(non_snake_case)] // H, B, V_t: the paper's own letters
 
 mod advise;
+mod cause;
 mod describe;
 mod estimate;
 mod export;
@@ -45,10 +46,12 @@ const STOPPED: i32 = 130;
 
 /// A flexible structure that rocks on its foundation: FMU exporter and simulator.
 ///
-/// A command works on the McManus specimen of the paper unless --preset or --parameters says otherwise; single numbers
-/// such as --f-fc 8 take the place of theirs. SI units throughout, angles in rad.
+/// A structure is a specimen of the paper (--preset), a file (--parameters), or numbers that determine all of it; beside
+/// --preset and --parameters single numbers such as --f-fc 8 take the place of theirs. Where nothing of it is given, it is
+/// the McManus specimen. SI units throughout, angles in rad.
 ///
-/// Results go to standard output, all else that is said to standard error. Exit codes: 0 the command did what was asked,
+/// Results go to standard output, all else that is said to standard error. With --format json a number that is infinite is
+/// the text "inf". Exit codes: 0 the command did what was asked,
 /// or whoever reads its output has seen enough; 1 it failed, for the reason on standard error; 2 it was called wrongly; 130 it
 /// was stopped.
 #[derive(Parser)]
@@ -74,7 +77,7 @@ enum Command {
     Export(export::ExportArgs),
     /// Simulate the response to a ground motion record, or free vibration
     ///
-    /// Writes the response as CSV and prints its peaks. The ground acceleration is linear between samples; the
+    /// Prints the peaks of the response, and writes it as CSV where -o asks for it. The ground acceleration is linear between samples; the
     /// structure starts at rest unless initial values are given. Overturning ends the run.
     #[command(after_help = "Examples:
   rocking-fmu simulate --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45
@@ -107,7 +110,7 @@ enum Command {
     #[command(after_help = "Examples:
   rocking-fmu describe
   rocking-fmu describe --preset evison --f-fc 8 --r 0.9
-  rocking-fmu describe --weight 500 --weight0 0 --width 3 --alpha-cg 0.25 --J0 0
+  rocking-fmu describe --weight 500 --weight0 0 --width 3 --alpha-cg 0.25 --period-fc 0.4 --zeta-fc 0.02 --r 0.95
   rocking-fmu describe --template > pier.toml
   rocking-fmu describe --preset evison --picture wall.svg
   rocking-fmu describe --parameters pier.toml")]

@@ -1,17 +1,11 @@
 //! `modes`: a response split into rocking and vibration mode (Eqs 12, 16, 19).
 mod picture;
 
-use crate::{
-    output_files::OutputFiles,
-    picture::PictureFile,
-    structure_args::{StructureArgs, in_one_line},
-    tables::{self, Table},
-    talk::say,
-};
-use anyhow::{Context, bail, ensure};
+use crate::{output_files::OutputFiles, picture::PictureFile, structure_args::StructureArgs, tables::Table, talk::say};
+use anyhow::{Context, ensure};
 use csv::{Position, StringRecord};
 use rocking::{
-    Phase, Side, State, Structure,
+    Outputs, Phase, Side, State,
     modal_split::{ModalAccelerations, Modes},
 };
 use std::path::PathBuf;
@@ -61,7 +55,7 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let mut files = OutputFiles::of_inputs(inputs);
     let headings = response.headers().with_context(named)?.clone();
     let columns = Columns::find(&headings).with_context(named)?;
-    check_structure(&headings, &structure).with_context(named)?;
+    let mut check = Check::new(&headings);
     let mut table = Table::create(&mut files, &args.output)?;
     let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     table.write(HEADINGS)?;
@@ -82,11 +76,13 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
             stretches.push(Vec::new());
         }
         let state = State { u, u_dot, theta, theta_dot };
+        check.see(&line, &Outputs::of(&structure, phase, &state, 0.0));
         let modes @ Modes { q_r, q_u, .. } = Modes::of(&structure, &state);
         let accelerations = ModalAccelerations::of(&structure, side, &state, a_g);
         table.write((time, q_r, q_u, accelerations.a_r, accelerations.a_u, accelerations.a_t()))?;
         stretches.last_mut().context("it has just begun")?.push((time, modes, accelerations));
     }
+    check.refuse_another_structure().with_context(named)?;
     table.finish()?;
     say!(
         "modes          {}: {rocking} of {instants} instants, those at which the structure rocks",
@@ -134,13 +130,60 @@ impl Columns {
     }
 }
 
-/// Refuses the response of another structure, which its last heading names; a table that names none is taken.
-fn check_structure(headings: &StringRecord, structure: &Structure) -> anyhow::Result<()> {
-    let Some(of) = headings.iter().find_map(|heading| heading.strip_prefix(tables::STRUCTURE)) else { return Ok(()) };
-    let here = in_one_line(structure);
-    let other = of.split("; ").zip(here.split(", ")).find(|(there, here)| there != here);
-    if let Some((there, here)) = other {
-        bail!("it is the response of another structure: {there} there, and {here} here; see --preset, --parameters");
+type Of = fn(&Outputs) -> f64;
+
+/// A column of a response that follows from its state and the structure.
+struct Shown {
+    name: &'static str,
+    of: Of,
+    column: usize,
+    /// The largest value found.
+    largest: f64,
+    /// How far the farthest is from what it should be.
+    off: f64,
+}
+
+/// Whether a response is that of the structure.
+struct Check(Vec<Shown>);
+
+impl Check {
+    fn new(headings: &StringRecord) -> Check {
+        let columns: [(_, Of); 5] = [
+            ("uplift[m]", |outputs| outputs.uplift),
+            ("delta_t[m]", |outputs| outputs.delta_t),
+            ("a_t[m/s2]", |outputs| outputs.a_t),
+            ("V_t[N]", |outputs| outputs.V_t),
+            ("M_t[N.m]", |outputs| outputs.M_t),
+        ];
+        let find = |(name, of)| {
+            let column = headings.iter().position(|heading| heading == name)?;
+            Some(Shown { name, of, column, largest: 0.0, off: 0.0 })
+        };
+        Check(columns.into_iter().filter_map(find).collect())
     }
-    Ok(())
+
+    /// Looks at a `line` whose state has these `outputs`. One without deformation may be of the level `rigid`, whose a_t is no
+    /// strut's.
+    fn see(&mut self, line: &StringRecord, outputs: &Outputs) {
+        if (outputs.u, outputs.u_dot) == (0.0, 0.0) {
+            return;
+        }
+        for Shown { of, column, largest, off, .. } in &mut self.0 {
+            if let Ok(found) = line[*column].parse::<f64>() {
+                *largest = largest.max(found.abs());
+                *off = off.max((found - of(outputs)).abs());
+            }
+        }
+    }
+
+    fn refuse_another_structure(&self) -> anyhow::Result<()> {
+        const ROUNDING: f64 = 1e-3; // of tables in few digits
+        for Shown { name, largest, off, .. } in &self.0 {
+            ensure!(
+                *off <= ROUNDING * largest,
+                "{name} does not follow from theta and u: it is the response of another structure; see --preset, --parameters"
+            );
+        }
+        Ok(())
+    }
 }

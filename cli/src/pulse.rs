@@ -1,11 +1,12 @@
 //! `pulse`: one of the field's standard ground motions as a CSV file that every other command reads.
 use crate::{
+    cause::Cause,
     output_files::OutputFiles,
     picture::{Picture, PictureFile, TITLE, titled},
     quantities::{Line, write_columns},
     record::picture::histories,
     record_args::positive,
-    results::{Format, FormatArgs, print, print_rows},
+    results::{Format, FormatArgs, print, print_traced},
     significant::short,
     structure_args::StructureArgs,
     tables::Table,
@@ -124,7 +125,7 @@ pub fn run(args: &PulseArgs) -> anyhow::Result<()> {
         write_columns(&mut text, &lines, g)?;
         if args.output == Path::new("-") { say!("{}", text.trim_end()) } else { print(&text)? }
     } else {
-        print_rows(args.results.format, &lines)?;
+        print_traced(args.results.format, &Cause::new(&structure), &lines)?;
     }
     if args.output != Path::new("-") {
         let (path, samples) = (args.output.display(), record.times().len());

@@ -2,9 +2,11 @@
 mod picture;
 
 use crate::{
+    cause::Cause,
     output_files::OutputFiles,
     picture::PictureFile,
-    results::{Format, FormatArgs, print, print_rows},
+    quantities::in_readable_unit,
+    results::{Format, FormatArgs, print, print_traced},
     significant::significant,
     structure_args::StructureArgs,
     tables::Table,
@@ -27,8 +29,8 @@ pub struct PushoverArgs {
     #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(2..=MOST_POINTS))]
     points: u32,
     /// Curve as CSV, `-` for standard output
-    #[arg(short, long, value_name = "FILE.csv", default_value = "pushover.csv")]
-    output: PathBuf,
+    #[arg(short, long, value_name = "FILE.csv")]
+    output: Option<PathBuf>,
     #[command(flatten)]
     results: FormatArgs,
     /// Draw force and moment against displacement
@@ -52,11 +54,13 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     let curve = curve.context(too_soft)?;
     let mut files = OutputFiles::of_inputs(args.structure.input());
     args.results.reserve(&mut files);
-    let mut table = Table::create(&mut files, &args.output)?;
+    let table = args.output.as_ref().map(|output| Table::create(&mut files, output)).transpose()?;
     let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
-    table.write(HEADINGS)?;
-    curve.iter().try_for_each(|at| table.write(line(at)))?;
-    table.finish()?;
+    if let Some(mut table) = table {
+        table.write(HEADINGS)?;
+        curve.iter().try_for_each(|at| table.write(line(at)))?;
+        table.finish()?;
+    }
     let corners = [
         ("uplift", in_full_contact(&structure, structure.u_cr)),
         ("start of rocking", at_rotation(&structure, 0.0).context(too_soft)?),
@@ -67,14 +71,15 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
         let Equilibrium { theta, delta_t, force: P, moment: M, .. } = corner;
         rows.push(Corner { name, delta_t, theta, P, M });
     }
+    let is_printed = args.output.as_deref() == Some(Path::new("-"));
     if args.results.format == Format::Text {
         let text: String = rows.iter().map(Corner::line).collect();
-        if args.output == Path::new("-") { say!("{}", text.trim_end()) } else { print(&text)? }
+        if is_printed { say!("{}", text.trim_end()) } else { print(&text)? }
     } else {
-        print_rows(args.results.format, &rows)?;
+        print_traced(args.results.format, &Cause::new(&structure), &rows)?;
     }
-    if args.output != Path::new("-") {
-        say!("curve            {}", args.output.display());
+    if let Some(output) = args.output.as_ref().filter(|_| !is_printed) {
+        say!("curve            {}", output.display());
     }
     match picture {
         Some(picture) => picture::draw(picture, &structure, &curve, corners.map(|corner| corner.1)),
@@ -95,8 +100,11 @@ struct Corner {
 impl Corner {
     fn line(&self) -> String {
         let &Corner { name, delta_t, theta, P, M } = self;
-        let [theta, delta_t, force, moment] = [theta, 1e3 * delta_t, P, M].map(significant);
-        format!("{name:<16} delta_t {delta_t:>8} mm, theta {theta:>8} rad, P {force:>8} N, M {moment:>8} N.m\n")
+        let ([theta, delta_t], [force, moment]) = (
+            [theta, 1e3 * delta_t].map(significant),
+            [(P, "N"), (M, "N.m")].map(|(of, unit)| in_readable_unit(of, unit, significant)),
+        );
+        format!("{name:<16} delta_t {delta_t:>8} mm, theta {theta:>8} rad, P {force:>10}, M {moment:>12}\n")
     }
 }
 

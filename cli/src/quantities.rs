@@ -25,12 +25,28 @@ impl Line {
     }
 }
 
+/// The unit in which people read a force or a moment in N or N.m of this `magnitude`, as how many SI units it has and what
+/// it is called; any other `unit` stays.
+pub fn readable(magnitude: f64, unit: &str) -> (f64, &str) {
+    match unit {
+        "N" if magnitude.abs() >= 1e3 => (1e3, "kN"),
+        "N.m" if magnitude.abs() >= 1e3 => (1e3, "kN.m"),
+        unit => (1.0, unit),
+    }
+}
+
+/// A force or a moment in that unit, in as many `digits` as are asked for.
+pub fn in_readable_unit(value: f64, unit: &str, digits: fn(f64) -> String) -> String {
+    let (per_unit, unit) = readable(value, unit);
+    format!("{} {unit}", digits(value / per_unit))
+}
+
 /// Writes `lines` in columns; accelerations also in multiples of `g` (m/s²).
 pub fn write_columns(out: &mut impl Write, lines: &[Line], g: f64) -> fmt::Result {
     for Line { name, value, unit, equation, description } in lines {
         let in_g = if *unit == "m/s2" { format!("{:.4} g", value / g) } else { String::new() };
-        let unit = if *unit == "1" { "-" } else { unit };
-        let value = significant(*value);
+        let (per_unit, unit) = readable(*value, if *unit == "1" { "-" } else { unit });
+        let value = significant(*value / per_unit);
         writeln!(out, "  {name:<20} {value:>12} {unit:<6} {in_g:>10}  {equation:<13} {description}")?;
     }
     Ok(())

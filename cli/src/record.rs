@@ -42,7 +42,7 @@ pub struct RecordCommand {
 pub fn run(args: &RecordCommand) -> anyhow::Result<()> {
     let understood = args.options.understand(&args.record, G).map_err(with_option)?;
     say!("record         {}", understood.described);
-    understood.say_warnings(&args.record);
+    understood.warnings(&args.record).for_each(|warning| say!("{warning}"));
     let mut files = OutputFiles::of_inputs([args.record.as_path()]);
     args.results.reserve(&mut files);
     let table = args.output.as_ref().map(|path| Table::create(&mut files, path)).transpose()?;

@@ -66,7 +66,7 @@ impl RecordOptions {
     pub fn load(&self, path: &Path, g: f64) -> anyhow::Result<Record> {
         let understood = self.understand(path, g).map_err(with_option)?;
         say!("record         {}", understood.described);
-        understood.say_warnings(path);
+        understood.warnings(path).for_each(|warning| say!("{warning}"));
         let record = understood.record;
         if self.time_scale.is_some() || self.scale.is_some() {
             say!("scaled         {}, peak {} g", steps(&record), short(record.pga() / g));
@@ -98,11 +98,14 @@ impl RecordOptions {
 }
 
 impl Understood {
-    /// Says what is likely wrong with the record in the file at `path`, a line each.
-    pub fn say_warnings(&self, path: &Path) {
-        for warning in &self.source.warnings {
-            say!("warning: {}: {warning}", input::name(path));
-        }
+    /// What is likely wrong with the record in the file at `path`, a line each.
+    pub fn warnings(&self, path: &Path) -> impl Iterator<Item = String> {
+        self.source.warnings.iter().map(move |warning| format!("warning: {}: {warning}", input::name(path)))
+    }
+
+    /// Whether nobody has said in which unit it is.
+    pub fn unit_is_assumed(&self) -> bool {
+        self.source.unit_from == UnitFrom::Assumed
     }
 
     /// Writes it to a `table` that is read without options, number for number: times in s, accelerations in the unit of its
@@ -112,6 +115,13 @@ impl Understood {
         let Understood { in_file, .. } = self;
         in_file.times().iter().zip(in_file.acceleration()).try_for_each(|sample| table.write(sample))?;
         table.finish()
+    }
+}
+
+impl RecordArgs {
+    /// Factors on the record's times and on its accelerations.
+    pub fn factors(&self) -> [f64; 2] {
+        [self.options.time_scale, self.options.scale].map(|factor| factor.unwrap_or(1.0))
     }
 }
 

@@ -2,25 +2,27 @@
 mod picture;
 
 use crate::{
+    cause::Cause,
     output_files::OutputFiles,
     picture::PictureFile,
     record_args::positive,
     results::{Format, FormatArgs, print},
     scene_args::MotionArgs,
     significant::short,
-    summary::{self, Summary, instant},
+    summary::{self, Found, Summary, instant},
     tables::{self, Table},
     talk::{self, say},
     validity::{self, LimitArgs},
 };
 use anyhow::ensure;
 use rocking::{
-    Transition,
+    Run, Transition,
     record::Record,
     run::{
-        End,
+        End, Ending,
+        fall::Fall,
         peaks::Peaks,
-        validity::{Found, Validity},
+        validity::{Found as Beyond, Validity},
     },
 };
 use std::path::{Path, PathBuf};
@@ -39,11 +41,10 @@ pub struct SimulateArgs {
 #[derive(clap::Args)]
 #[command(next_help_heading = "Results")]
 struct ResultArgs {
-    /// Output interval [default: the record's samples; 0.001 in free vibration]
-    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    /// Interval of the response [default: the record's samples; 0.001 in free vibration]
+    #[arg(long, value_name = "SECONDS", value_parser = positive, requires = "output", allow_negative_numbers = true)]
     interval: Option<f64>,
-    /// Response as CSV, `-` for standard output [default: the record's name and _response.csv, or free_vibration.csv, in
-    /// this folder]
+    /// Response as CSV, `-` for standard output
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
     /// Transitions as CSV: instant, kind, state before and after
@@ -51,7 +52,7 @@ struct ResultArgs {
     events: Option<PathBuf>,
     #[command(flatten)]
     format: FormatArgs,
-    /// Draw ground acceleration, uplift, acceleration and base shear over time, with marks at transitions
+    /// Draw ground acceleration, rotation, displacements and acceleration over time, with marks at transitions
     #[arg(long, value_name = "FILE.svg|png")]
     picture: Option<PictureFile>,
 }
@@ -67,11 +68,10 @@ impl SimulateArgs {
         }
     }
 
-    /// Refuses an interval at which the table would have no end.
-    fn check_rows(&self, ground: &Record) -> anyhow::Result<()> {
-        const MOST_ROWS: f64 = 1e7;
+    /// Refuses an interval at which the table of a run until `end` (s) would have no end.
+    fn check_rows(&self, ground: &Record, end: f64) -> anyhow::Result<()> {
+        const MOST_ROWS: f64 = 1e6; // 200 MB
         let (samples, interval) = self.samples_and_interval(ground);
-        let end = if let End::At(end) = self.motion.ground.end(ground) { end } else { ground.end() };
         let rows = samples.len() as f64 + (end - samples[samples.len() - 1]) / interval;
         ensure!(
             rows <= MOST_ROWS,
@@ -82,93 +82,102 @@ impl SimulateArgs {
         Ok(())
     }
 
-    fn output_path(&self) -> PathBuf {
-        match (&self.results.output, self.motion.ground.record.record.as_deref().and_then(Path::file_stem)) {
-            (Some(path), _) => path.clone(),
-            (None, Some(record)) => format!("{}_response.csv", record.to_string_lossy()).into(),
-            (None, None) => "free_vibration.csv".into(),
-        }
+    /// Writes the response of `run` at the instants asked for.
+    fn write_response(&self, run: &Run, mut response: Table) -> anyhow::Result<()> {
+        let progress = talk::progress(run.ground.times().len());
+        let (samples, interval) = self.samples_and_interval(run.ground);
+        let from = samples[samples.len() - 1];
+        let times = samples.iter().copied().chain((1_u64..).map(|i| from + i as f64 * interval));
+        let (mut rows, mut last) = (response.write(tables::RESPONSE), None);
+        run.sample(
+            times,
+            |sample| {
+                progress.inc(1);
+                let next = (sample.motion.time, tables::response_line(sample));
+                // an instant that misses the end by rounding is the end
+                if let Some((time, line)) = last.replace(next)
+                    && time < sample.motion.time - 1e-6 * interval
+                    && rows.is_ok()
+                {
+                    rows = response.write(line);
+                }
+            },
+            &mut (),
+        )?;
+        progress.finish_and_clear();
+        rows?;
+        last.map_or(Ok(()), |(_, line)| response.write(line))?;
+        response.finish()
     }
 }
 
-/// Writes the response and prints its summary.
+/// Prints the summary of the response, and writes what is asked for.
 pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let (structure, ground) = args.motion.load()?;
     let run = args.motion.run(structure, &ground);
 
-    args.check_rows(&ground)?;
-    let output = args.output_path();
-    let mut files = OutputFiles::of_inputs(args.motion.inputs());
-    if args.results.output.is_none() {
-        tables::refuse_other_than_response(&output)?;
+    let output = args.results.output.as_deref();
+    if let (Some(_), End::At(end)) = (output, run.end) {
+        args.check_rows(&ground, end)?;
     }
+    let mut files = OutputFiles::of_inputs(args.motion.inputs());
     args.results.format.reserve(&mut files);
-    let mut response = Table::create(&mut files, &output)?;
+    let response = output.map(|path| Table::create(&mut files, path)).transpose()?;
     let events = args.results.events.as_deref();
     let mut events = events.map(|path| Table::create(&mut files, path)).transpose()?;
     let picture = args.results.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
-    response.write(tables::response_headings(&structure, ground.title()))?;
     if let Some(events) = &mut events {
         events.write(tables::EVENTS)?;
     }
-    let progress = talk::progress(ground.times().len());
-    let (mut peaks, mut summary, mut written) =
-        (Peaks::since(ground.start(), &structure), Summary::new(&structure), Ok(()));
+    let (mut peaks, mut summary) = (Peaks::since(ground.start(), &structure), Summary::new(&structure));
+    let (mut fall, mut written) = (Fall::new(&structure), Ok(()));
     let mut transition = |transition: &Transition| {
         if let (Some(events), Ok(())) = (&mut events, &written) {
             written = events.write(tables::event_line(transition));
         }
     };
     let limits = args.limits.limits();
-    let mut validity = Validity::new(&structure, limits, Found::since(ground.start()));
-    let (samples, interval) = args.samples_and_interval(&ground);
-    let from = samples[samples.len() - 1];
-    let times = samples.iter().copied().chain((1_u64..).map(|i| from + i as f64 * interval));
-    let (mut rows, mut last) = (Ok(()), None);
-    let finish = run.sample(
-        times,
-        |sample| {
-            progress.inc(1);
-            let next = (sample.motion.time, tables::response_line(sample));
-            // an instant that misses the end by rounding is the end
-            if let Some((time, line)) = last.replace(next)
-                && time < sample.motion.time - 1e-6 * interval
-                && rows.is_ok()
-            {
-                rows = response.write(line);
-            }
-        },
-        &mut (&mut peaks.watch(), &mut (&mut validity, &mut (&mut summary, &mut transition))),
-    );
-    progress.finish_and_clear();
-    let finish = finish?;
-    rows.and(written)?;
-    last.map_or(Ok(()), |(_, line)| response.write(line))?;
-    response.finish()?;
+    let mut validity = Validity::new(&structure, limits, Beyond::since(ground.start()));
+    let finish = run.follow(&mut (
+        &mut peaks.watch(),
+        &mut (&mut validity, &mut (&mut fall, &mut (&mut summary, &mut transition))),
+    ))?;
+    written?;
     events.map_or(Ok(()), Table::finish)?;
+    let fall = fall.instant().filter(|_| finish.ending == Ending::Overturned);
+    if let Some(fall) = fall {
+        peaks = run.peaks_until(fall)?;
+    }
+    let found = Found { ground: summary::peak_of_ground(&ground), peaks, fall, start: ground.start(), finish };
+    if let Some(response) = response {
+        args.check_rows(&ground, finish.motion.time)?;
+        args.write_response(&run, response)?;
+    }
     let (start, end) = (instant(ground.start()), instant(finish.motion.time));
     if args.results.format.format == Format::Text {
-        let mut text = format!("{}, {start} to {end} s\n{}", ground.title(), summary.text(&peaks, &finish)?);
+        let mut text = format!("{}, {start} to {end} s\n{}", ground.title(), summary.text(&found)?);
         for line in validity::section(&structure, run.detail, validity.found(), &limits) {
             text = text + &line + "\n";
         }
         // What goes to standard output stays one table.
-        if output == Path::new("-") { say!("{}", text.trim_end()) } else { print(&text)? }
+        if output == Some(Path::new("-")) { say!("{}", text.trim_end()) } else { print(&text)? }
     } else {
         let validity = validity::rows(validity.found(), &limits);
-        summary.print(args.results.format.format, &peaks, validity, ground.title(), ground.start(), &finish)?;
+        let cause = Cause::new(&structure).under(&args.motion.ground.record, &ground);
+        let cause = cause.computed(Some((run.detail, run.tolerance)), run.initial);
+        summary.print(args.results.format.format, &cause, &found, validity)?;
     }
-    if summary::shows_no_motion(&peaks) {
+    if summary::shows_no_motion(&found) {
         say!("nothing moves: the ground is at rest and the structure stands; see --record, --theta-0, --u-0");
     }
-    if output != Path::new("-") {
+    if let Some(output) = output.filter(|output| *output != Path::new("-")) {
         say!("response       {}", output.display());
     }
     if let Some(events) = &args.results.events {
         say!("transitions    {}", events.display());
     }
     match picture {
-        Some(picture) => picture::draw(picture, &run),
+        Some(picture) => picture::draw(picture, &run, &found),
         None => Ok(()),
     }
 }

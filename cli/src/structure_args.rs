@@ -1,9 +1,9 @@
 //! Which structure a command works on: one of the paper's specimens, or parameters from a file, with single numbers in
-//! the place of theirs.
-use crate::input;
-use anyhow::Context;
-use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource, value_parser};
-use rocking::natural_quantities::{Given, NATURAL, names};
+//! the place of theirs, or numbers that are all of it. What nobody has given is said.
+use crate::{input, talk::say};
+use anyhow::{Context, anyhow};
+use clap::{Arg, ArgMatches, Command, FromArgMatches, ValueEnum, parser::ValueSource, value_parser};
+use rocking::natural_quantities::{DEFAULTS, Given, GivenError, NATURAL, names};
 use rocking::parameters::PARAMETERS;
 use rocking::quantity::Quantity;
 use rocking::structure::Derived;
@@ -13,9 +13,9 @@ use std::path::{Path, PathBuf};
 /// The structure asked for.
 #[derive(clap::Args, Debug)]
 pub struct StructureArgs {
-    /// Specimen of the paper
-    #[arg(long, value_enum, default_value_t = Preset::Mcmanus, conflicts_with = "parameters")]
-    preset: Preset,
+    /// Specimen of the paper [default: mcmanus, where nothing of a structure is given]
+    #[arg(long, value_enum, conflicts_with = "parameters")]
+    preset: Option<Preset>,
     /// TOML file of parameters, as `describe --template` writes it, `-` for standard input
     #[arg(long, value_name = "FILE.toml")]
     parameters: Option<PathBuf>,
@@ -23,7 +23,7 @@ pub struct StructureArgs {
     numbers: Numbers,
 }
 
-/// Numbers in the place of the specimen's or the file's: an option for every parameter and natural quantity.
+/// Numbers in the place of the specimen's or the file's, or alone: an option for every parameter and natural quantity.
 #[derive(Debug)]
 struct Numbers(Given);
 
@@ -45,16 +45,38 @@ impl Preset {
             Preset::Mcmanus => Parameters::MCMANUS,
         }
     }
+
+    /// What it is called.
+    pub fn name(self) -> String {
+        self.to_possible_value().map_or_else(String::new, |value| value.get_name().into())
+    }
 }
 
 /// The structure's parameters in one line.
 pub fn in_one_line(structure: &Structure) -> String {
-    let values = PARAMETERS.iter().map(|parameter| {
-        let value = (parameter.get)(structure.parameters());
+    listed(structure.parameters(), |_| true)
+}
+
+/// The `parameters` whose names are `meant`, in one line.
+fn listed(parameters: &Parameters, meant: impl Fn(&str) -> bool) -> String {
+    let value = |parameter: &Quantity<Parameters>| {
+        let value = (parameter.get)(parameters);
         let unit = if parameter.unit == "1" { String::new() } else { format!(" {}", parameter.unit) };
         format!("{} = {value}{unit}", parameter.name)
-    });
-    values.collect::<Vec<_>>().join(", ")
+    };
+    PARAMETERS.iter().filter(|parameter| meant(parameter.name)).map(value).collect::<Vec<_>>().join(", ")
+}
+
+/// Where what is not `given` by name of `parameters` comes from: from a specimen, or by default. None if all is given.
+pub fn left_open(preset: Option<&str>, parameters: &Parameters, given: impl Fn(&str) -> bool) -> Option<String> {
+    let Some(preset) = preset else {
+        let is_default = |name: &str| DEFAULTS.iter().any(|(default, _)| *default == name);
+        let open = listed(parameters, |name| !given(name) && is_default(name));
+        return (!open.is_empty()).then(|| format!("by default: {open}"));
+    };
+    let open = listed(parameters, |name| !given(name));
+    let is_all = PARAMETERS.iter().all(|parameter| !given(parameter.name));
+    (!open.is_empty()).then(|| if is_all { preset.to_owned() } else { format!("from {preset}: {open}") })
 }
 
 impl StructureArgs {
@@ -63,18 +85,48 @@ impl StructureArgs {
         self.parameters.as_deref()
     }
 
-    /// Reads the parameters and derives the structure; a refusal names the file, the line and the key.
+    /// Reads the parameters and derives the structure, and says what of it was not given; a refusal names the file, the line
+    /// and the key.
     pub fn load(&self) -> anyhow::Result<Structure> {
-        let Some(path) = &self.parameters else {
-            return Ok(Structure::new(self.numbers.0.over(&self.preset.parameters())?)?);
+        let numbers = &self.numbers.0;
+        let mut of_file = Given::default();
+        let parameters = match (&self.parameters, self.preset) {
+            (Some(path), _) => {
+                let mut read = || -> anyhow::Result<Structure> {
+                    of_file = toml::from_str(&input::text(path)?)?;
+                    Ok(Structure::new(of_file.parameters()?)?)
+                };
+                let structure = read().with_context(|| format!("parameters in {}", input::name(path)))?;
+                numbers.over(structure.parameters())?
+            }
+            (None, Some(preset)) => numbers.over(&preset.parameters())?,
+            (None, None) if numbers.is_empty() => Preset::Mcmanus.parameters(),
+            (None, None) => numbers.parameters().map_err(with_options)?,
         };
-        let read = || -> anyhow::Result<Structure> {
-            let given: Given = toml::from_str(&input::text(path)?)?;
-            Ok(Structure::new(given.parameters()?)?)
+        let structure = Structure::new(parameters)?;
+        let preset = match self.preset {
+            Some(preset) => Some(preset.name()),
+            None if self.parameters.is_some() || !numbers.is_empty() => None,
+            None => Some(format!("{}, for none is given: see --preset, --parameters", Preset::Mcmanus.name())),
         };
-        let structure = read().with_context(|| format!("parameters in {}", input::name(path)))?;
-        Ok(Structure::new(self.numbers.0.over(structure.parameters())?)?)
+        let given = |name: &str| numbers.determine(name) || of_file.determine(name);
+        if let Some(open) = left_open(preset.as_deref(), &parameters, given) {
+            say!("structure      {open}");
+        }
+        Ok(structure)
     }
+}
+
+/// The error with the options that help.
+fn with_options(error: GivenError) -> anyhow::Error {
+    let GivenError::Missing(missing) = &error else { return error.into() };
+    let advice = missing.iter().map(|missing| missing.advice(|name| format!("--{}", option_name(name))));
+    let presets = Preset::value_variants().iter().map(|preset| format!("--preset {}", preset.name()));
+    anyhow!(
+        "{}; or take what is missing from a specimen of the paper: {}",
+        advice.collect::<Vec<_>>().join("; "),
+        presets.collect::<Vec<_>>().join(" or ")
+    )
 }
 
 /// A limit of a range, which may be far from 1.
@@ -92,7 +144,7 @@ fn option(name: &'static str, unit: &'static str, help: String) -> Arg {
         .long(option_name(name))
         .value_name(if unit == "1" { "NUMBER".into() } else { unit.to_uppercase() })
         .help(help)
-        .help_heading("Numbers in the place of the preset's or the file's")
+        .help_heading("Numbers in the place of the preset's or the file's, or of both")
         .hide_short_help(true)
         .allow_negative_numbers(true)
         .value_parser(value_parser!(f64))

@@ -1,7 +1,10 @@
 //! What `simulate` prints at the end of a run.
-use crate::results::{Format, print_json, print_rows};
+use crate::cause::Cause;
+use crate::quantities::readable;
+use crate::results::{Format, Number, print_json, print_traced};
 use crate::validity;
 use fmu_export::significant::significant;
+use rocking::record::Record;
 use rocking::run::{
     Ending, Finish, LONGEST_REST,
     peaks::{PEAKS, Peak, Peaks},
@@ -40,7 +43,7 @@ struct Line {
 #[derive(Serialize)]
 #[serde(untagged)]
 enum Value {
-    Number(f64),
+    Number(Number),
     Count(u64),
     Ending(Ending),
 }
@@ -48,12 +51,15 @@ enum Value {
 /// All of it, for programs; instants in s.
 #[derive(Serialize)]
 struct Whole<'a> {
-    record: &'a str,
+    #[serde(flatten)]
+    cause: &'a Cause,
     start: f64,
     end: f64,
     ending: Ending,
     /// None if it still rocks.
     overturned: Option<bool>,
+    /// Since when it falls: the peaks are those before.
+    fall: Option<f64>,
     peaks: Vec<Row>,
     first_uplift: Option<f64>,
     first_impact: Option<f64>,
@@ -76,26 +82,45 @@ impl Watch for Summary {
     }
 }
 
+/// What was found in a run.
+pub struct Found {
+    /// Of the ground: the whole record's.
+    pub ground: Peak,
+    /// Of the structure: of one that overturns, before it falls.
+    pub peaks: Peaks,
+    /// When it begins to fall, s.
+    pub fall: Option<f64>,
+    /// When the run began, s.
+    pub start: f64,
+    /// What it came to.
+    pub finish: Finish,
+}
+
+/// The largest ground acceleration of `record`, where it has it first.
+pub fn peak_of_ground(record: &Record) -> Peak {
+    let magnitude = record.pga();
+    let first = record.acceleration().iter().position(|a_g| a_g.abs() == magnitude);
+    Peak { magnitude, time: record.times()[first.unwrap_or(0)] }
+}
+
 impl Summary {
     /// Of a run of `structure`, nothing seen yet.
     pub fn new(structure: &Structure) -> Summary {
         Summary { structure: *structure, first_uplift: None, first_impact: None }
     }
 
-    /// Prints it for programs, with the `peaks`, what the model leaves out and what the run counted and came to; `title`
-    /// is the ground motion's.
+    /// Prints it for programs, with the `cause` of the run, what was `found` in it and what the model leaves out.
     pub fn print(
         &self,
         format: Format,
-        peaks: &Peaks,
+        cause: &Cause,
+        found: &Found,
         validity: Vec<validity::Row>,
-        title: &str,
-        start: f64,
-        &Finish { ending, motion }: &Finish,
     ) -> anyhow::Result<()> {
+        let &Found { ground, ref peaks, fall, start, finish: Finish { ending, motion } } = found;
         let row = |name, unit, Peak { magnitude: peak, time }| Row { name, peak, unit, time };
         let of_structure = PEAKS.iter().map(|peak| row(peak.name, peak.unit, (peak.of)(peaks)));
-        let rows: Vec<_> = [row("a_g", "m/s2", peaks.a_g())].into_iter().chain(of_structure).collect();
+        let rows: Vec<_> = [row("a_g", "m/s2", ground)].into_iter().chain(of_structure).collect();
         let &Summary { first_uplift, first_impact, .. } = self;
         let (work, transitions) = (motion.work, motion.transitions);
         if format == Format::Csv {
@@ -103,30 +128,32 @@ impl Summary {
             let count = |name, count| line(name, Some(Value::Count(count)), "1", None);
             let peaks = rows
                 .into_iter()
-                .map(|Row { name, peak, unit, time }| line(name, Some(Value::Number(peak)), unit, Some(time)));
+                .map(|Row { name, peak, unit, time }| line(name, Some(Value::Number(Number(peak))), unit, Some(time)));
             let validity =
-                validity.iter().map(|row| line(row.name, Some(Value::Number(row.value)), "1", Some(row.time)));
+                validity.into_iter().map(|row| line(row.name, Some(Value::Number(row.value)), "1", Some(row.time)));
             let rest = [
                 line("start", None, "", Some(start)),
                 line("ending", Some(Value::Ending(ending)), "", Some(motion.time)),
+                line("fall", None, "", fall),
                 line("first_uplift", None, "", first_uplift),
                 line("first_impact", None, "", first_impact),
                 count("transitions", transitions),
                 count("steps", work.steps),
                 count("evaluations", work.evaluations),
             ];
-            return print_rows(format, &peaks.chain(rest).chain(validity).collect::<Vec<_>>());
+            return print_traced(format, cause, &peaks.chain(rest).chain(validity).collect::<Vec<_>>());
         }
         let overturned = match ending {
             Ending::StillRocking => None,
             ending => Some(ending == Ending::Overturned),
         };
         print_json(&Whole {
-            record: title,
+            cause,
             start,
             end: motion.time,
             ending,
             overturned,
+            fall,
             peaks: rows,
             first_uplift,
             first_impact,
@@ -138,11 +165,12 @@ impl Summary {
     }
 
     /// The same in lines for people.
-    pub fn text(&self, peaks: &Peaks, &Finish { ending, motion }: &Finish) -> Result<String, fmt::Error> {
+    pub fn text(&self, found: &Found) -> Result<String, fmt::Error> {
+        let &Found { ground, ref peaks, fall, finish: Finish { ending, motion }, .. } = found;
         let mut out = String::new();
         let &Parameters { g, .. } = self.structure.parameters();
         for (name, peak, unit, per_unit) in [
-            ("a_g", peaks.a_g(), "g", g),
+            ("a_g", ground, "g", g),
             ("theta", peaks.theta(), "rad", 1.0),
             ("u", peaks.u(), "mm", 1e-3),
             ("delta_t", peaks.delta_t(), "mm", 1e-3),
@@ -151,8 +179,12 @@ impl Summary {
             ("V_t", peaks.V_t(), "N", 1.0),
             ("M_t", peaks.M_t(), "N.m", 1.0),
         ] {
-            let (magnitude, time) = (significant(peak.magnitude / per_unit), instant(peak.time));
+            let (more, unit) = readable(peak.magnitude, unit);
+            let (magnitude, time) = (significant(peak.magnitude / per_unit / more), instant(peak.time));
             writeln!(out, "{:<14} {magnitude:>12} {unit:<4} at {time} s", format!("peak |{name}|"))?;
+        }
+        if let Some(fall) = fall {
+            writeln!(out, "fall           from {} s on, beyond alpha_cg: the peaks are those before", instant(fall))?;
         }
         let first = |time: Option<f64>| time.map_or("none".into(), |time| format!("at {} s", instant(time)));
         writeln!(out, "first uplift   {}", first(self.first_uplift))?;
@@ -181,9 +213,9 @@ impl Summary {
     }
 }
 
-/// Whether `peaks` are those of a structure that stood still on ground at rest all the while.
-pub fn shows_no_motion(peaks: &Peaks) -> bool {
-    let magnitudes = PEAKS.iter().map(|peak| (peak.of)(peaks)).chain([peaks.a_g()]);
+/// Whether a structure stood still on ground at rest all the while.
+pub fn shows_no_motion(found: &Found) -> bool {
+    let magnitudes = PEAKS.iter().map(|peak| (peak.of)(&found.peaks)).chain([found.ground]);
     magnitudes.into_iter().all(|peak| peak.magnitude == 0.0)
 }
 

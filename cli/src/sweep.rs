@@ -13,7 +13,7 @@ use crate::{
     picture::{Picture, PictureFile},
     results::{Format, FormatArgs, print, print_json, print_rows},
     significant::significant,
-    talk::{self, say},
+    talk::{self, say, say_few},
 };
 use anyhow::{Context, bail};
 use clap::value_parser;
@@ -28,12 +28,12 @@ use rocking::run::{
     validity::{Found, Limits, Validity},
 };
 use row_file::RowFile;
+use rows::Key;
 use std::{
     path::{Path, PathBuf},
     sync::Mutex,
     time::Instant,
 };
-use uuid::Uuid;
 
 /// What to run.
 #[derive(clap::Args)]
@@ -78,18 +78,19 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
 
 /// Every record at every scale factor on every structure.
 fn run_records(args: &SweepArgs, sweep: Sweep, output: &Path, picture: Picture) -> anyhow::Result<()> {
-    let Sweep { plan, limits, measure, records } = sweep;
+    let Sweep { plan, limits, measure, records, structures } = sweep;
     let keys = rows::keys(&plan, args.validity);
     let (rows, found) = rows::open(output, &keys)?;
     let mut outcomes = found.outcomes;
     let missing: Vec<_> = (0..plan.len()).filter(|index| outcomes[*index].is_none()).collect();
     let done = plan.len() - missing.len();
-    let (name, [structures, motions, scales]) = (output.display(), plan.size());
+    let (name, [members, motions, scales]) = (output.display(), plan.size());
     say!(
-        "{name}: {done} of {} runs done, structures: {structures}, records: {motions}, scale factors: {scales}",
+        "{name}: {done} of {} runs done, structures: {members}, records: {motions}, scale factors: {scales}",
         plan.len()
     );
-    records.iter().for_each(|record| say!("{record}"));
+    say_few(&structures, "structures");
+    say_few(&records, "records");
     let others = "of runs that are not in this sweep (other inputs, or another build of the program): kept";
     say_other_rows(output, (found.others, others), found.repeated);
 
@@ -151,18 +152,18 @@ fn progress_style(what: &str) -> anyhow::Result<ProgressStyle> {
 }
 
 /// Says how many runs failed, and which the first is.
-fn report_failures(plan: &Plan, keys: &[Uuid], outcomes: &[Outcome]) -> anyhow::Result<()> {
+fn report_failures(plan: &Plan, keys: &[Key], outcomes: &[Outcome]) -> anyhow::Result<()> {
     let failed = || (0..plan.len()).filter(|index| matches!(outcomes[*index], Outcome::Failed { .. }));
     let Some(first) = failed().next() else { return Ok(()) };
     let (count, Case { population, motion, scale, .. }) = (failed().count(), plan.case(first));
-    let (name, motion, scale, key) = (population.name(), motion.name(), with_unit(scale, "1"), keys[first]);
+    let (name, motion, scale, key) = (population.name(), motion.name(), with_unit(scale, "1"), keys[first].run);
     bail!("{count} of {} runs failed; the first: {name}, {motion}, scale {scale}, see row {key}", plan.len())
 }
 
 /// Does the runs numbered `missing` and appends them to `rows` as they end.
 fn do_runs(
     plan: &Plan,
-    keys: &[Uuid],
+    keys: &[Key],
     missing: &[usize],
     validity: bool,
     rows: RowFile,
@@ -178,8 +179,8 @@ fn do_runs(
         } else {
             (case.outcome(), None)
         };
-        let mut rows = rows.lock().expect("no thread panics with the file in hand");
-        rows::append(&mut rows, &keys[index], &case, &outcome, found.as_ref())?;
+        let row = rows::row(&keys[index], &case, &outcome, found.as_ref())?;
+        rows.lock().expect("no thread panics with the file in hand").append(&row)?;
         progress.inc(1);
         Ok((index, outcome))
     });

@@ -1,13 +1,10 @@
 //! The tables that `simulate` writes: the response and its transitions as CSV.
 use crate::output_files::{OutputFile, OutputFiles};
-use crate::structure_args::in_one_line;
-use anyhow::ensure;
 use rocking::piece::Sample;
-use rocking::{Impulse, Outputs, Reactions, State, Structure, Transition};
+use rocking::{Impulse, Outputs, Reactions, State, Transition};
 use serde::Serialize;
 use std::{
-    fs::File,
-    io::{self, Read},
+    io,
     path::{Path, PathBuf},
 };
 
@@ -47,7 +44,7 @@ fn of_the_file(error: csv::Error) -> io::Error {
 }
 
 /// Headings of the response: the ground acceleration, and the outputs of the FMU under their names and units.
-const RESPONSE: [&str; 20] = [
+pub const RESPONSE: [&str; 20] = [
     "time[s]",
     "a_g[m/s2]",
     "theta[rad]",
@@ -70,31 +67,6 @@ const RESPONSE: [&str; 20] = [
     "transitions",
 ];
 
-/// How the last heading of a response begins, which says what responded to what.
-pub const STRUCTURE: &str = "structure: ";
-
-/// Headings of the response of `structure` to the ground motion called `title`: under the last there is nothing. It has no
-/// letter that a reader of CSV takes for anything else.
-pub fn response_headings(structure: &Structure, title: &str) -> Vec<String> {
-    let plain = |text: String| text.replace(", ", "; ").replace([',', '"', '#'], " ");
-    let of = format!("{STRUCTURE}{}; record: {}", plain(in_one_line(structure)), plain(title.into()));
-    RESPONSE.into_iter().map(String::from).chain([of]).collect()
-}
-
-/// Refuses a file at `path` that is no response: nobody asked for that name.
-pub fn refuse_other_than_response(path: &Path) -> anyhow::Result<()> {
-    let Ok(file) = File::open(path) else { return Ok(()) };
-    let headings = RESPONSE.join(",");
-    let mut first = Vec::new();
-    file.take(headings.len() as u64).read_to_end(&mut first)?;
-    ensure!(
-        first == headings.as_bytes(),
-        "{}: there is a file that is no response; name another by -o",
-        path.display()
-    );
-    Ok(())
-}
-
 /// A line of the response.
 pub fn response_line(sample: &Sample) -> impl Serialize + use<> {
     let &Sample { motion, load, .. } = sample;
@@ -102,7 +74,7 @@ pub fn response_line(sample: &Sample) -> impl Serialize + use<> {
     let Reactions { R_h, R_v, R_m } = sample.reactions();
     let Impulse { I_h, I_v, I_m } = motion.impulse;
     let of_motion = (theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t);
-    (motion.time, load.a_g, of_motion, (R_h, R_v, R_m, I_h, I_v, I_m), motion.phase.name(), motion.transitions, "")
+    (motion.time, load.a_g, of_motion, (R_h, R_v, R_m, I_h, I_v, I_m), motion.phase.name(), motion.transitions)
 }
 
 /// Headings of the transitions.

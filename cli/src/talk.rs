@@ -16,6 +16,18 @@ macro_rules! say {
 }
 pub(crate) use say;
 
+/// More lines of one kind than this are not read.
+const FEW: usize = 5;
+
+/// Says `lines` of one kind of things, which are called `what`: of many the first.
+pub fn say_few(lines: &[String], what: &str) {
+    let shown = if lines.len() > FEW + 1 { FEW } else { lines.len() };
+    lines[..shown].iter().for_each(|line| say!("{line}"));
+    if shown < lines.len() {
+        say!("... and {} more {what}", lines.len() - shown);
+    }
+}
+
 static QUIET: AtomicBool = AtomicBool::new(false);
 static IF_STOPPED: Mutex<String> = Mutex::new(String::new());
 

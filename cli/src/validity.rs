@@ -1,5 +1,6 @@
 //! What the model leaves out on a scene: the section that `simulate` and `advise` print, and the limits it goes by.
 
+use crate::results::Number;
 use crate::significant::significant;
 use rocking::run::validity::{self, ASSUMPTIONS, Assumption, Found, Limits, Worst};
 use rocking::{Detail, Structure};
@@ -56,8 +57,7 @@ const LABELS: [&str; ASSUMPTIONS.len()] = [
 #[derive(Serialize)]
 pub struct Row {
     pub name: &'static str,
-    /// Infinite is null in JSON.
-    pub value: f64,
+    pub value: Number,
     /// Its instant, s.
     pub time: f64,
     limit: f64,
@@ -71,7 +71,14 @@ pub struct Row {
 pub fn rows(found: &Found, limits: &Limits) -> Vec<Row> {
     let row = |(assumption, worst): (&Assumption, &Worst)| {
         let Worst { value, time, first_beyond, beyond } = *worst;
-        Row { name: assumption.name, value, time, limit: (assumption.limit)(limits), first_beyond, beyond }
+        Row {
+            name: assumption.name,
+            value: Number(value),
+            time,
+            limit: (assumption.limit)(limits),
+            first_beyond,
+            beyond,
+        }
     };
     ASSUMPTIONS.iter().zip(&found.worst).map(row).collect()
 }

@@ -132,7 +132,7 @@ fn a_level_that_misses_overturning_is_not_advised() {
 #[test]
 fn nothing_is_wrong_where_the_reference_does_not_know() {
     let folder = folder();
-    let run = "advise --record pulse.AT2 --r 1 --zeta-fc 0";
+    let run = "advise --record pulse.AT2 --preset mcmanus --r 1 --zeta-fc 0";
     let (table, _) = succeed(folder.path(), run);
     assert!(table.contains("whether it overturns is not known") && !table.contains("wrong"), "{table}");
     assert_eq!(row(&table, "fixed_base")[7..9], ["no", "(?)"]);

@@ -1,4 +1,5 @@
 //! The command line driven from outside: `describe` and `simulate`, their tables, messages and exit codes.
+#![allow(non_snake_case)] // V_t, M_t: the paper's own letters
 
 mod command_line;
 
@@ -45,7 +46,7 @@ fn describe_shows_the_specimen_with_units_and_equations() {
     assert_eq!(mcmanus, succeed(folder.path(), "describe --preset mcmanus").0);
 
     let (evison, _) = succeed(folder.path(), "describe --preset evison");
-    let (computed, _) = succeed(folder.path(), "describe --width 3 --alpha-cg 0.25");
+    let (computed, _) = succeed(folder.path(), "describe --preset mcmanus --width 3 --alpha-cg 0.25");
     assert!(computed.contains("  H               8.82752 m "), "{computed}");
     assert!(evison.contains("  f_u             36.5739 Hz     before Eq 18"), "{evison}");
 
@@ -57,13 +58,12 @@ fn describe_shows_the_specimen_with_units_and_equations() {
 #[test]
 fn the_response_has_every_output_of_the_fmu_under_its_name_and_unit() {
     let folder = folder();
-    succeed(folder.path(), "simulate --record pulse.AT2");
-    let (headings, _) = table(&folder.path().join("pulse_response.csv"));
+    succeed(folder.path(), "simulate --record pulse.AT2 -o response.csv");
+    let (headings, lines) = table(&folder.path().join("response.csv"));
+    assert!(lines.iter().all(|line| line.len() == 20 && line.iter().all(|cell| !cell.is_empty())));
     let mut expected = BTreeSet::from(["time[s]".to_owned(), "a_g[m/s2]".to_owned()]);
     let locals = ["theta_dot", "u_dot", "phase", "transitions"];
     let is_shown = |v: &&Variable| v.causality == Causality::Output || locals.contains(&v.name);
-    let of = headings.iter().find(|heading| heading.starts_with("structure: m = 130.1 kg; m0 = 65.4 kg; ")).unwrap();
-    expected.insert(of.clone());
     expected.extend(VARIABLES.iter().filter(is_shown).map(|variable| match variable.data_type {
         DataType::Real { unit, .. } => format!("{}[{unit}]", variable.name),
         _ => variable.name.to_owned(),
@@ -121,8 +121,9 @@ fn the_response_reads_back_to_the_engines_numbers() {
 fn free_vibration_of_the_wall_has_its_impacts_on_time() {
     let folder = folder();
     let u_cr = Structure::new(Parameters::EVISON).unwrap().u_cr;
-    let run =
-        format!("simulate --preset evison --free 2 --theta-0 0.04 --u-0 {u_cr} --interval 1e-5 --events events.csv");
+    let run = format!(
+        "simulate --preset evison --free 2 --theta-0 0.04 --u-0 {u_cr} --interval 1e-5 --events events.csv -o free.csv"
+    );
     let (summary, talk) = succeed(folder.path(), &run);
 
     let (headings, events) = table(&folder.path().join("events.csv"));
@@ -150,8 +151,8 @@ fn free_vibration_of_the_wall_has_its_impacts_on_time() {
     ] {
         assert!(summary.lines().any(|found| found == line), "{line}\n{summary}");
     }
-    assert_eq!(talk, "response       free_vibration.csv\ntransitions    events.csv\n");
-    let a_t = column(&folder.path().join("free_vibration.csv"), "a_t[m/s2]");
+    assert!(talk.ends_with("\nresponse       free.csv\ntransitions    events.csv\n"), "{talk}");
+    let a_t = column(&folder.path().join("free.csv"), "a_t[m/s2]");
     assert_eq!(a_t.len(), 200_001);
 }
 
@@ -193,7 +194,7 @@ fn standard_output_gets_the_same_table_and_may_be_closed_early() {
     assert_eq!(stdout, fs::read_to_string(folder.path().join("out.csv")).unwrap());
     assert!(summary.contains("peak |theta|") && !summary.contains("response"), "{summary}");
 
-    let run = "simulate --free 100 --theta-0 0.1 -o -";
+    let run = "simulate --free 100 --theta-0 0.1 -o - --quiet";
     let mut child = command(folder.path(), run).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     let mut first = [0; 7];
     child.stdout.take().unwrap().read_exact(&mut first).unwrap();
@@ -206,8 +207,8 @@ fn standard_output_gets_the_same_table_and_may_be_closed_early() {
 fn overturning_is_a_result() {
     let folder = folder();
     let (summary, _) =
-        succeed(folder.path(), "simulate --record pulse.AT2 --scale 0 --theta-0 -0.3 --events events.csv");
-    let (_, lines) = table(&folder.path().join("pulse_response.csv"));
+        succeed(folder.path(), "simulate --record pulse.AT2 --scale 0 --theta-0 -0.3 --events events.csv -o out.csv");
+    let (_, lines) = table(&folder.path().join("out.csv"));
     let (_, events) = table(&folder.path().join("events.csv"));
     let [.., before, last] = lines.as_slice() else { panic!("{lines:?}") };
     assert_eq!([&before[18], &last[18]], ["rocking left", "overturned"]);
@@ -310,9 +311,22 @@ fn a_damaged_response_is_refused_where_it_is_damaged() {
         damaged[line][column] = value.to_owned();
         let text: Vec<_> = [&headings].into_iter().chain(&damaged).map(|line| line.join(",")).collect();
         fs::write(folder.path().join("damaged.csv"), text.join("\n") + "\n").unwrap();
-        let (code, message) = fail(folder.path(), "modes --response damaged.csv");
+        let (code, message) = fail(folder.path(), "modes --response damaged.csv --quiet");
         assert_eq!((code, message), (1, format!("error: damaged.csv: line {number}, {expected}\n")));
         assert!(!folder.path().join("modes.csv").exists());
+    }
+}
+
+#[test]
+fn the_response_of_another_structure_is_refused() {
+    let folder = folder();
+    succeed(folder.path(), "simulate --preset mcmanus --record pulse.AT2 -o response.csv");
+    succeed(folder.path(), "modes --preset mcmanus --r 0.9 --response response.csv"); // r moves it, and shows nowhere
+    for other in
+        ["--preset evison", "--preset mcmanus --m 131", "--preset mcmanus --f-fc 5.1", "--preset mcmanus --B 0.3"]
+    {
+        let (code, message) = fail(folder.path(), &format!("modes {other} --response response.csv"));
+        assert!(code == 1 && message.contains("it is the response of another structure"), "{other}: {message}");
     }
 }
 
@@ -321,24 +335,167 @@ fn what_cannot_be_written_is_found_before_the_run() {
     let folder = folder();
     let (code, message) = fail(folder.path(), "simulate --free 1 --theta-0 0.1 -o - --events -"); // and prints nothing
     assert!(code == 1 && message.contains("standard output: something else is written there, too"), "{message}");
-    let (code, message) = fail(folder.path(), "simulate --record pulse.AT2 --duration 1e9 --quiet");
-    let expected = "error: an interval of 0.01 s over 1000000000 s makes 1e11 rows: 1e7 are possible; see --interval\n";
-    assert_eq!((code, message.as_str()), (1, expected));
+    for (options, expected) in [
+        (
+            "--duration 1e9",
+            "an interval of 0.01 s over 1000000000 s makes 1e11 rows: 1e6 are possible; see --interval\n",
+        ),
+        // the pulse is over long before the structure stands
+        ("--interval 9e-7 --time-scale 0.2", "an interval of 9e-7 s over "),
+    ] {
+        let (code, message) = fail(folder.path(), &format!("simulate --record pulse.AT2 {options} -o out.csv --quiet"));
+        assert!(code == 1 && message.starts_with(&format!("error: {expected}")), "{message}");
+        assert!(!folder.path().join("out.csv").exists());
+    }
 }
 
-/// A name that nobody asked for overwrites an earlier response, and nothing else.
 #[test]
-fn a_default_name_overwrites_no_other_file() {
+fn files_are_written_that_are_asked_for() {
     let folder = folder();
-    let path = folder.path().join("free_vibration.csv");
-    fs::write(&path, "my notes\n").unwrap();
-    let run = "simulate --free 1 --theta-0 0.1";
-    let (code, message) = fail(folder.path(), run);
-    assert!(code == 1 && message.contains("free_vibration.csv: there is a file that is no response"), "{message}");
-    assert_eq!(fs::read_to_string(&path).unwrap(), "my notes\n");
-    succeed(folder.path(), &format!("{run} -o free_vibration.csv"));
-    succeed(folder.path(), &format!("{run} --theta-0 0.2").replace(" --theta-0 0.1", ""));
-    assert_eq!(column(&path, "theta[rad]")[0], 0.2);
+    for arguments in ["simulate --record pulse.AT2", "simulate --free 1 --theta-0 0.1", "pushover"] {
+        let (_, said) = succeed(folder.path(), arguments);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "{arguments}: {said}");
+    }
+    let (code, message) = fail(folder.path(), "simulate --free 1 --theta-0 0.1 --interval 0.1");
+    assert!(code == 2 && message.contains("--output <FILE.csv>"), "{message}");
+}
+
+/// The peaks of a fall are those before it begins, and the ground's is the record's, though the run ends before it.
+#[test]
+fn the_peaks_of_a_fall_are_those_before() {
+    let folder = folder();
+    let alpha_cg = Structure::new(Parameters::MCMANUS).unwrap().tan_alpha_cg.atan();
+    // the pulse, and a stronger one long after it
+    let samples: Vec<_> = (0..=1200)
+        .map(|i| {
+            format!(
+                "{},{}\n",
+                f64::from(i) * DT,
+                1.5 * pulse(i as usize) - 2.0 * pulse((i as usize + 10).abs_diff(1000))
+            )
+        })
+        .collect();
+    fs::write(folder.path().join("two.csv"), format!("t (s),a (g)\n{}", samples.concat())).unwrap();
+    let run = "simulate --preset mcmanus --record two.csv";
+    let (json, _) = succeed(folder.path(), &format!("{run} --format json -o out.csv --interval 0.001"));
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!(json["ending"], "overturned");
+    let fall = json["fall"].as_f64().unwrap();
+    let out = folder.path().join("out.csv");
+    let time = column(&out, "time[s]");
+    let last = column(&out, "theta[rad]").iter().rposition(|theta| theta.abs() < alpha_cg).unwrap();
+    assert!(time[last] <= fall && fall <= time[last + 1], "{fall}");
+    for (i, heading) in ["a_g[m/s2]", "theta[rad]", "u[m]", "delta_t[m]", "uplift[m]", "a_t[m/s2]"].iter().enumerate() {
+        let peak = |of: &str| json["peaks"][i][of].as_f64().unwrap();
+        let values = column(&out, heading);
+        let most = values[..=last].iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        if i == 0 {
+            assert!(
+                peak("time") > *time.last().unwrap() && peak("peak") > 1.1 * most,
+                "the second pulse is the stronger"
+            );
+        } else {
+            assert!(peak("time") <= fall && most <= peak("peak") && peak("peak") < 1.1 * most, "{heading}: {most}");
+        }
+    }
+    let (text, _) = succeed(folder.path(), run);
+    assert!(text.contains("\nfall           from "), "{text}");
+}
+
+/// What a result comes from stands beside it, in both formats.
+#[test]
+fn a_result_can_be_traced_to_its_cause() {
+    let folder = folder();
+    let scene = "--preset evison --f-fc 8 --record pulse.AT2 --time-scale 0.5 --scale 1.5";
+    let level = "--detail modal --tolerance 1e-7 --theta-0 0.01";
+    let version = format!("{}+{}", env!("CARGO_PKG_VERSION"), &FlexibleRocking::BUILD[1..9]);
+    let of_structure = [
+        ("/structure/J0", "J0[kg.m2]", "0.0"),
+        ("/structure/f_fc", "f_fc[Hz]", "8.0"),
+        ("/structure/g", "g[m/s2]", "9.81"),
+    ];
+    let of_record = [("/time_scale", "time_scale", "0.5"), ("/scale", "scale", "1.5")];
+    let of_level = [("/tolerance", "tolerance", "1e-7"), ("/initial/theta", "theta_0[rad]", "0.01")];
+    for (command, numbers) in [
+        (format!("simulate {scene} {level}"), [&of_structure[..], &of_record, &of_level].concat()),
+        (format!("advise {scene}"), [&of_structure[..], &of_record].concat()),
+        (format!("estimate {scene}"), [&of_structure[..], &of_record].concat()),
+        ("pushover --preset evison --f-fc 8".to_owned(), of_structure.to_vec()),
+    ] {
+        let json: serde_json::Value =
+            serde_json::from_str(&succeed(folder.path(), &format!("{command} --format json")).0).unwrap();
+        let csv = succeed(folder.path(), &format!("{command} --format csv")).0;
+        let mut table = csv::Reader::from_reader(csv.as_bytes());
+        let headings = table.headers().unwrap().clone();
+        let rows: Vec<_> = table.records().map(Result::unwrap).collect();
+        let is_in_every_row = |heading: &str, expected: &str| {
+            let column = headings.iter().position(|found| found == heading).unwrap();
+            assert!(rows.len() > 2 && rows.iter().all(|row| &row[column] == expected), "{command}: {heading}\n{csv}");
+        };
+        assert_eq!(json["version"], version);
+        is_in_every_row("version", &version);
+        for (pointer, heading, expected) in &numbers {
+            let found = json.pointer(pointer).and_then(serde_json::Value::as_f64);
+            assert_eq!(found, Some(expected.parse().unwrap()), "{command}: {pointer}");
+            is_in_every_row(heading, expected);
+        }
+        if numbers.len() > of_structure.len() {
+            assert_eq!((&json["record"], &json["file"]), (&"Full sine".into(), &"pulse.AT2".into()));
+            is_in_every_row("file", "pulse.AT2");
+        }
+        if command.starts_with("simulate") {
+            assert_eq!(json["detail"], "modal");
+            is_in_every_row("detail", "modal");
+        }
+    }
+}
+
+/// Of a structure as large as a bridge in kN and kN.m, of a specimen in N.
+#[test]
+fn forces_are_in_units_of_their_size() {
+    let folder = folder();
+    let pier = "--H 30 --width 9 --weight 12000 --weight0 6000 --period-fc 1.0 --zeta-fc 0.05 --r 0.93";
+    let csv = succeed(folder.path(), &format!("simulate --record pulse.AT2 {pier} --format csv")).0;
+    let value = |name: &str| -> f64 {
+        let line = csv.lines().find(|line| line.starts_with(&format!("{name},"))).unwrap();
+        line.split(',').nth(1).unwrap().parse().unwrap()
+    };
+    let [V_t, M_t] = ["V_t", "M_t"].map(|name| 1e-3 * value(name));
+    let shown = |command: &str, before: &str, unit: &str| -> f64 {
+        let text = succeed(folder.path(), command).0;
+        let line = text.lines().find(|line| line.contains(before)).unwrap_or_else(|| panic!("{text}"));
+        let (_, after) = line.split_once(before).unwrap();
+        let mut words = after.split_whitespace();
+        let number = words.next().unwrap().parse().unwrap();
+        assert_eq!(words.next().unwrap().trim_end_matches(','), unit, "{line}");
+        number
+    };
+    for (command, before) in [("simulate", ["peak |V_t|", "peak |M_t|"]), ("advise", [" V_t ", " M_t "])] {
+        for (before, (expected, unit)) in before.into_iter().zip([(V_t, "kN"), (M_t, "kN.m")]) {
+            let found = shown(&format!("{command} --record pulse.AT2 {pier}"), before, unit);
+            assert!((found / expected - 1.0).abs() < 1e-5, "{command}: {found} {expected}");
+        }
+    }
+    shown(&format!("estimate {pier}"), "  V_t ", "kN");
+    shown(&format!("pushover {pier}"), ", P ", "kN");
+    shown("simulate --preset mcmanus --record pulse.AT2", "peak |V_t|", "N");
+}
+
+/// Asked as bash asks: of the last word that has been begun.
+#[test]
+fn bash_completes_options_of_a_command() {
+    let folder = folder();
+    let (script, _) = succeed(folder.path(), "completions bash");
+    fs::write(folder.path().join("completions"), script).unwrap();
+    for (words, expected) in [("sim", "simulate"), ("simulate --re", "--record"), ("simulate --detail mod", "modal")] {
+        let before = words.rsplit_once(' ').map_or("rocking-fmu", |(before, _)| before.rsplit(' ').next().unwrap());
+        let ask = format!(
+            "source completions; COMP_WORDS=(rocking-fmu {words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); \
+             _rocking__fmu rocking-fmu \"${{COMP_WORDS[COMP_CWORD]}}\" {before}; echo \"${{COMPREPLY[*]}}\""
+        );
+        let answer = std::process::Command::new("bash").args(["-c", &ask]).current_dir(folder.path()).output().unwrap();
+        assert_eq!(String::from_utf8(answer.stdout).unwrap(), format!("{expected}\n"), "{words}");
+    }
 }
 
 #[test]
@@ -352,11 +509,12 @@ fn a_tip_is_one_that_helps() {
 #[test]
 fn a_table_for_programs_has_the_ending_and_the_counts() {
     let folder = folder();
-    let (stdout, _) = succeed(folder.path(), "simulate --record pulse.AT2 --scale 0 --theta-0 -0.3 --format csv");
+    let (stdout, _) =
+        succeed(folder.path(), "simulate --record pulse.AT2 --scale 0 --theta-0 -0.3 --format csv -o out.csv");
     let lines: Vec<Vec<_>> = stdout.lines().map(|line| line.split(',').collect()).collect();
-    let line = |name: &str| lines.iter().find(|line| line[0] == name).unwrap()[1..].to_vec();
+    let line = |name: &str| lines.iter().find(|line| line[0] == name).unwrap()[1..4].to_vec();
     assert_eq!(line("name"), ["value", "unit", "time"]);
-    let end = column(&folder.path().join("pulse_response.csv"), "time[s]").pop().unwrap().to_string();
+    let end = column(&folder.path().join("out.csv"), "time[s]").pop().unwrap().to_string();
     assert_eq!(line("ending"), ["overturned", "", &end]);
     assert_eq!(line("transitions"), ["1", "1", ""]);
     assert_eq!(line("first_uplift"), ["", "", ""]);

@@ -14,7 +14,7 @@ fn the_library_of_the_same_build_is_found_and_packed() {
     assert!(output.status.success(), "{said}");
     let size = folder.path().join("FlexibleRocking.fmu").metadata().unwrap().len();
     let start = format!("FlexibleRocking.fmu: {} kB\n  GUID       {{", size.div_ceil(1000));
-    assert!(said.starts_with(&start) && said.contains("  structure  m = 125.8 kg, "), "{said}");
+    assert!(said.contains(&start) && said.contains("  structure  m = 125.8 kg, "), "{said}");
 }
 
 /// The libraries are looked for where cargo makes them, beside the program, and in an archive where an installation has it;
@@ -42,7 +42,8 @@ fn libraries_are_found_where_they_are_built_and_where_they_are_installed() {
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
         let said = String::from_utf8(output.stderr).unwrap();
         let line = said.lines().find_map(|line| line.strip_prefix("  platforms  ")).map(str::to_owned);
-        (line.unwrap(), said.split(':').next().unwrap().to_owned())
+        let written = said.lines().find_map(|line| line.strip_suffix(" kB")).and_then(|line| line.split(':').next());
+        (line.unwrap(), written.unwrap().to_owned())
     };
 
     let none = refusal(&[]);
@@ -67,7 +68,7 @@ fn libraries_are_found_where_they_are_built_and_where_they_are_installed() {
     assert_eq!(platforms(&["--library", library, "-o", "a.fmu"]), (platform.clone(), "a.fmu".to_owned()));
     let twice = refusal(&["--library", library, "a.fmu", "-o", "b.fmu"]);
     let tuple = format!("{ARCH}-{OS}"); // as FMI 3.0 calls it
-    assert_eq!(twice, format!("error: two shared libraries are for {tuple}: leave one out\n"));
+    assert!(twice.ends_with(&format!("error: two shared libraries are for {tuple}: leave one out\n")), "{twice}");
 
     // Built for a named target, from other sources.
     let stale = folder.path().join("x86_64-unknown-linux-gnu/bin/libFlexibleRocking.so");
@@ -80,7 +81,7 @@ fn libraries_are_found_where_they_are_built_and_where_they_are_installed() {
     let output = export(&[]);
     let stderr = String::from_utf8(output.stderr).unwrap();
     let left_out = format!("{} is left out: it is of another build\n", stale.canonicalize().unwrap().display());
-    assert!(stderr.starts_with(&left_out), "{stderr}");
+    assert!(stderr.contains(&left_out), "{stderr}");
     let stale = refusal(&["--library", stale.to_str().unwrap()]);
     assert!(stale.contains(" is of another build: the name of this one, {"), "{stale}");
 }
@@ -103,6 +104,6 @@ fn records_are_packed_and_named() {
     assert!(said.contains(assumed), "{said}");
     let output = export(&["--record", "broken.csv", "-o", "broken.fmu"]);
     let stderr = String::from_utf8(output.stderr).unwrap();
-    assert_eq!(stderr, "error: broken.csv, line 2: the acceleration \"?\" is not a number\n");
+    assert!(stderr.ends_with("\nerror: broken.csv, line 2: the acceleration \"?\" is not a number\n"), "{stderr}");
     assert!(!output.status.success() && !folder.path().join("broken.fmu").exists());
 }

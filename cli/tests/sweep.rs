@@ -70,8 +70,8 @@ fn every_run_has_a_row_whatever_the_threads() {
     }
     succeed(folder.path(), "sweep sweep.toml");
     let one = read(&folder, "one.csv");
-    let headings = "run,structures,m[kg],m0[kg],H[m],B[m],J0[kg.m2],f_fc[Hz],zeta_fc,c_ratio,r,g[m/s2],slenderness,\
-                    record,record_scale,scale,PGA[g],PGV[m/s],S_a[g],detail,tolerance,duration[s],theta_0[rad],\
+    let headings = "run,structures,version,m[kg],m0[kg],H[m],B[m],J0[kg.m2],f_fc[Hz],zeta_fc,c_ratio,r,g[m/s2],slenderness,\
+                    record,record_digest,record_scale,scale,PGA[g],PGV[m/s],S_a[g],detail,tolerance,duration[s],theta_0[rad],\
                     theta_dot_0[rad/s],u_0[m],u_dot_0[m/s],\
                     ending,end[s],peak_theta[rad],peak_u[m],peak_delta_t[m],peak_uplift[m],\
                     peak_a_t[m/s2],peak_V_t[N],peak_M_t[N.m],peak_theta/alpha_cg,transitions,steps,evaluations,\
@@ -273,6 +273,12 @@ fn rows_of_other_inputs_are_kept_and_not_counted() {
         assert!(progress.starts_with(&format!("sweep.csv: {done} of ")), "{changed}: {progress}");
         let said = format!("{others} row(s) are of runs that are not in this sweep (other inputs, or another build");
         assert_eq!(progress.contains(&said), others > 0, "{progress}");
+        // which of two runs under one name is of which samples can be read
+        let digests: HashSet<_> =
+            column(&read(&folder, "sweep.csv"), "record_digest").iter().map(|of| of.to_string()).collect();
+        let names: HashSet<_> = column(&read(&folder, "sweep.csv"), "record").iter().map(|of| of.to_string()).collect();
+        let is_changed = changed.contains("time_scale") || *record != pulse;
+        assert_eq!(digests.len(), names.len() + usize::from(is_changed), "{changed}");
         assert!(read(&folder, "sweep.csv").starts_with(&original));
     }
     write("sweep.toml", SWEEP);
@@ -305,7 +311,7 @@ fn a_row_that_was_changed_is_refused_by_its_line() {
     let (ending, other) = if row.contains("at rest") { ("at rest", "overturned") } else { ("overturned", "at rest") };
     refused(row.replacen(ending, other, 1).as_bytes(), sums);
     refused(row.replacen("pier", "wall", 1).as_bytes(), sums);
-    let theta = row.split(',').nth(28).unwrap();
+    let theta = row.split(',').nth(30).unwrap();
     refused(row.replacen(theta, "NaN", 1).as_bytes(), sums);
     refused(content.as_bytes(), sums);
     refused(b"1,2", sums);
@@ -558,7 +564,46 @@ vary = { slenderness = [4, 5, 6, 8], r = [0.8, 0.9, 1] }
             (is_beyond, is_beyond),
             "{table}"
         );
+        assert_eq!(read(&folder, "sweep.svg").contains("beyond the runs: "), is_beyond, "the picture says so, too");
+        let json = succeed(folder.path(), "sweep sweep.toml --format json --quiet").0;
+        let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+        let of_limit = json.as_array().unwrap().iter().find(|curve| curve["median"].is_number()).unwrap();
+        assert_eq!(of_limit["median_is_beyond_the_runs"], is_beyond);
     }
+}
+
+/// All that is wrong with the records is said at once; what is right with very many is not said of each.
+#[test]
+fn many_records_are_read_at_once() {
+    let folder = sweep(&SWEEP.replace("'pulse.AT2'", "'*.csv', 'absent.AT2'"));
+    let record =
+        |i: usize| fs::write(folder.path().join(format!("{i:03}.csv")), format!("0,0\n0.5,{i}\n1,0\n")).unwrap();
+    (1..=40).for_each(record);
+    for (name, text) in [("007.csv", "0,0\n0.5,much\n"), ("021.csv", "0,0\n0.5,0\n")] {
+        fs::write(folder.path().join(name), text).unwrap();
+    }
+    let (_, message) = fail(folder.path(), "sweep sweep.toml --quiet");
+    let lines: Vec<_> = message.lines().collect();
+    assert_eq!(lines[0], "error: sweep in sweep.toml: 3 of 41 records cannot be taken:");
+    for (line, start) in lines[1..].iter().zip([
+        "  007.csv, line 2: the acceleration \"much\" is not a number",
+        "  the ground motion \"021.csv\" is at rest throughout",
+        "  records: there is no file absent.AT2",
+    ]) {
+        assert!(line.starts_with(start), "{message}");
+    }
+    assert_eq!(lines.len(), 4, "{message}");
+
+    [7, 21].into_iter().for_each(record);
+    fs::write(folder.path().join("stated.csv"), "t (s),a (g)\n0,0\n0.5,1\n1,0\n").unwrap();
+    let few =
+        "records = ['*.csv']\nscale = [0.01]\n[[structures]]\nname = 'pier'\npreset = 'mcmanus'\nvary.H = [1.5]\n";
+    fs::write(folder.path().join("sweep.toml"), few).unwrap();
+    let (_, said) = succeed(folder.path(), "sweep sweep.toml");
+    assert!(said.contains("\n... and 36 more records\n") && said.lines().count() < 20, "{said}");
+    assert!(!said.contains("stated.csv"), "those whose unit is assumed come first: {said}");
+    let inherited = "pier: from mcmanus: m = 130.1 kg, m0 = 65.4 kg, B = 0.285 m, ";
+    assert!(said.lines().any(|line| line.starts_with(inherited)), "{said}");
 }
 
 #[test]
@@ -596,7 +641,7 @@ fn a_refused_sweep_says_what_to_change() {
         (
             "'pulse.AT2'",
             "'pulse.AT2', 'copy/pulse.AT2'",
-            "the ground motions \"pulse.AT2\" and \"copy/pulse.AT2\" are the same and would count twice: leave one out\n",
+            "the ground motions \"pulse.AT2\" and \"copy/pulse.AT2\": they are the same and would count twice: leave one out\n",
         ),
         ("records", "intensity = 'PGD'\nrecords", "intensity = \"PGD\" is unknown; these are known: PGA, PGV, S_a\n"),
         ("records", "tolerance = 1\nrecords", "tolerance = 1 is out of range: a number between 0 and 1 is needed\n"),

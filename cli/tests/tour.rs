@@ -63,7 +63,9 @@ fn transcript(folder: &Path, line: &str) -> String {
     let Output { status, stdout, stderr } = shell.output().unwrap();
     let plain = |bytes: Vec<u8>| {
         let text = String::from_utf8(bytes).unwrap().replace(&folder.display().to_string(), "[FOLDER]");
-        text.replace(env!("CARGO_PKG_VERSION"), "[VERSION]").replace(FlexibleRocking::BUILD, "[BUILD]")
+        text.replace(env!("CARGO_PKG_VERSION"), "[VERSION]")
+            .replace(FlexibleRocking::BUILD, "[BUILD]")
+            .replace(&FlexibleRocking::BUILD[1..9], "[BUILD]")
     };
     let mut out = format!("{line}\n{}", plain(stdout));
     if !out.ends_with('\n') {

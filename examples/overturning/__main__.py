@@ -60,7 +60,7 @@ def beyond(exporter: Path, points: list[dict[str, str]], folder: Path) -> list[d
                         "--frequency-ratio", point["omega/p_l"], "--amplitude-ratio", point["a_p/(g tan alpha_cg)"],
                         "-o", folder / "pulse.csv"], check=True, capture_output=True)
         said = subprocess.run([exporter, "simulate", "--preset", "mcmanus", "--record", folder / "pulse.csv", "--quiet",
-                               "-o", folder / "response.csv", "--format", "json"], check=True, capture_output=True, text=True)
+                               "--format", "json"], check=True, capture_output=True, text=True)
         found.append({row["name"]: row for row in json.loads(said.stdout)["validity"]})
     return found
 

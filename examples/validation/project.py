@@ -43,7 +43,7 @@ class Project:
     def events(self, *arguments) -> list[dict[str, str]]:
         """The transitions of a run of `simulate`, line by line."""
         events = self.folder / "events.csv"
-        self.run("simulate", *arguments, "--output", self.folder / "response.csv", "--events", events)
+        self.run("simulate", *arguments, "--events", events)
         return list(csv.DictReader(events.read_text().splitlines()))
 
     def sweep(self, plan: str) -> pd.DataFrame:

@@ -5,7 +5,8 @@
 //! contains that table, and packs no library of another build. How the exporter words the table in XML may be put
 //! right, and is then as right of a library that was built before.
 //!
-//! Compiler and target are left out: the libraries in one archive have one GUID.
+//! Compiler and target are left out: the libraries in one archive have one GUID. So is how the system that builds writes
+//! paths and ends lines.
 
 use serde::Deserialize;
 use std::collections::BTreeSet;
@@ -64,7 +65,8 @@ pub fn build_id(workspace: &Path) -> Result<String, Box<dyn Error>> {
     }
     sources.sort();
     for source in sources {
-        add(&source.display().to_string(), &fs::read(workspace.join(&source))?);
+        let text = fs::read_to_string(workspace.join(&source))?.replace("\r\n", "\n");
+        add(&name_of(&source), text.as_bytes());
     }
     let lock: Lock = toml::from_str(&fs::read_to_string(workspace.join(LOCK))?)?;
     let mut packages = BTreeSet::new();
@@ -86,6 +88,12 @@ pub fn build_id(workspace: &Path) -> Result<String, Box<dyn Error>> {
         add(name, format!("{version} {}", checksum.as_deref().unwrap_or_default()).as_bytes());
     }
     Ok(Uuid::new_v5(&Uuid::NAMESPACE_OID, &content).braced().to_string())
+}
+
+/// `path` as it is called on every system.
+fn name_of(path: &Path) -> String {
+    let parts = path.components().map(|part| part.as_os_str().to_string_lossy());
+    parts.collect::<Vec<_>>().join("/")
 }
 
 /// Appends `path` (relative to `workspace`), or all files under it.

@@ -143,9 +143,12 @@ pub enum PlanError {
         /// What both are called.
         name: String,
     },
-    /// Two ground motions are the same.
-    #[error("the ground motions {0:?} and {1:?} are the same and would count twice: leave one out")]
-    SameMotion(String, String),
+    /// Ground motions are the same: all that are, in pairs.
+    #[error(
+        "{}: they are the same and would count twice: leave one out",
+        .0.iter().map(|[one, other]| format!("the ground motions {one:?} and {other:?}")).collect::<Vec<_>>().join(", ")
+    )]
+    SameMotions(Vec<[String; 2]>),
     /// The runs cannot start.
     #[error(transparent)]
     Initial(#[from] InitialStateError),
@@ -434,14 +437,15 @@ fn check_names<'a>(kind: &'static str, names: impl Iterator<Item = &'a str>) -> 
 /// Each ground motion once; equal ones have equal peaks.
 fn check_motions(motions: &[NamedRecord]) -> Result<(), PlanError> {
     let mut by_peaks: HashMap<_, Vec<&NamedRecord>> = HashMap::new();
+    let mut same = Vec::new();
     for one in motions {
         let alike = by_peaks.entry([one.pga, one.pgv].map(f64::to_bits)).or_default();
-        if let Some(other) = alike.iter().find(|other| other.is_same(one)) {
-            return Err(PlanError::SameMotion(other.name.clone(), one.name.clone()));
+        match alike.iter().find(|other| other.is_same(one)) {
+            Some(other) => same.push([other.name.clone(), one.name.clone()]),
+            None => alike.push(one),
         }
-        alike.push(one);
     }
-    Ok(())
+    if same.is_empty() { Ok(()) } else { Err(PlanError::SameMotions(same)) }
 }
 
 /// Finite numbers, one or more, each of them once.
@@ -626,10 +630,11 @@ mod tests {
             plan(vec![pier()], vec![pulse(), pulse()], vec![1.0]),
             "two ground motions have the name \"pulse\": rename one"
         );
-        let copy = NamedRecord { name: "copy".into(), ..pulse() };
+        let copy = |name: &str| NamedRecord { name: name.into(), ..pulse() };
         assert_eq!(
-            plan(vec![pier()], vec![pulse(), copy], vec![1.0]),
-            "the ground motions \"pulse\" and \"copy\" are the same and would count twice: leave one out"
+            plan(vec![pier()], vec![pulse(), copy("copy"), copy("again")], vec![1.0]),
+            "the ground motions \"pulse\" and \"copy\", the ground motions \"pulse\" and \"again\": they are the same and \
+             would count twice: leave one out"
         );
         let slender = pier().vary("slenderness", vec![1.0, 2000.0]).unwrap();
         assert!(plan(vec![slender], vec![pulse()], vec![1.0]).starts_with("structures \"pier\": H/B = 2000"));

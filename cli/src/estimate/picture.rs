@@ -2,6 +2,7 @@
 use crate::picture::{
     Area, Picture, SMALL, TITLE, axes, chart, colour, dot, line, px, range, rounded, stroke, titled, words, words_about,
 };
+use crate::quantities::in_readable_unit;
 use plotters::prelude::*;
 use rocking::{
     Structure, demand::Demand, effective_frequency::effective_frequency, record::Record,
@@ -30,9 +31,9 @@ pub fn draw(
 ) -> anyhow::Result<()> {
     let rows = if record.is_some() { 2 } else { 1 };
     let about = format!(
-        "base shear {} kN, overturning moment {} kN m while rocking",
-        rounded(1e-3 * demand.V_t),
-        rounded(1e-3 * demand.M_t)
+        "base shear {}, overturning moment {} while rocking",
+        in_readable_unit(demand.V_t, "N", rounded),
+        in_readable_unit(demand.M_t, "N.m", rounded)
     );
     let title = record.map_or("Demand while rocking, the ground at rest", Record::title);
     picture.draw((WIDTH, TITLE + rows * PANEL), |area| {

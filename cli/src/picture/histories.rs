@@ -86,6 +86,14 @@ impl Panel {
             peak: (magnitude > 0.0).then_some((peak.time, sign * magnitude, words)),
         }
     }
+
+    /// The same with `more` beside its peak.
+    pub fn with(mut self, more: String) -> Panel {
+        if let Some((_, _, words)) = &mut self.peak {
+            *words += &format!(", {more}");
+        }
+        self
+    }
 }
 
 impl Marks {

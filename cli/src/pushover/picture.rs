@@ -2,6 +2,7 @@
 use crate::picture::{
     Area, Picture, SMALL, TITLE, axes, chart, colour, dot, line, mass, px, range, rounded, titled, words,
 };
+use crate::quantities::readable;
 use plotters::prelude::*;
 use rocking::{Parameters, Structure, pushover::Equilibrium};
 use std::ops::Range;
@@ -16,9 +17,6 @@ const FIRST_PART: f64 = 360.0;
 /// How far that goes, in parts of u_cr.
 const BEYOND_UPLIFT: f64 = 4.0;
 
-/// What the moment and the force have beside them.
-const FORCE: &str = "force P (kN)";
-const MOMENT: &str = "moment M (kN m)";
 const DISPLACEMENT: &str = "displacement δ_t (mm)";
 
 /// Draws the equilibria of `curve`, branch by branch, and its corners: uplift, the start of rocking, overturning.
@@ -35,12 +33,14 @@ pub fn draw(
         let below = titled(area, "Static pushover", &about)?;
         let (upper, lower) = below.split_vertically(px(f64::from(PANEL)));
         let rows = [
-            (upper, 6.0, "", FORCE, (|at| at.force) as fn(&Equilibrium) -> f64),
-            (lower, f64::from(BELOW), DISPLACEMENT, MOMENT, |at| at.moment),
+            (upper, 6.0, "", ("force P", "N"), (|at| at.force) as fn(&Equilibrium) -> f64),
+            (lower, f64::from(BELOW), DISPLACEMENT, ("moment M", "N.m"), |at| at.moment),
         ];
-        for (row, below, x, y, value) in rows {
+        for (row, below, x, (name, unit), value) in rows {
+            let (per_unit, unit) = readable(curve.iter().map(value).fold(0.0, f64::max), unit);
+            let y = &format!("{name} ({unit})");
             let (first, all) = row.split_horizontally(px(FIRST_PART));
-            let points = |at: &Equilibrium| (1e3 * at.delta_t, 1e-3 * value(at));
+            let points = |at: &Equilibrium| (1e3 * at.delta_t, value(at) / per_unit);
             let [uplift, rocking, overturning] = corners.each_ref().map(points);
             let start = 0.0..BEYOND_UPLIFT * uplift.0;
             let corners = [("uplift", uplift, Beside::Above), ("start of rocking", rocking, Beside::Below)];

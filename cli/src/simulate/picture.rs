@@ -1,15 +1,18 @@
-//! The picture of a run, as Fig 9: ground, uplift, acceleration and base shear over time, marks at the transitions.
+//! The picture of a run: ground, rotation, displacements and acceleration over time, marks at the transitions.
 use crate::picture::{
     Picture, TITLE, colour,
     histories::{Histories, Marks, Panel},
     mass, rounded, titled,
 };
+use crate::quantities::in_readable_unit;
+use crate::summary::Found;
 use anyhow::Context;
 use rocking::{
     Parameters, Run, Structure,
     run::{
         Ending,
         curve::{Curve, Point},
+        peaks::Peak,
     },
 };
 
@@ -18,12 +21,12 @@ const PART: f64 = 1e-3;
 
 const WIDTH: u32 = 860;
 
-/// Runs `run` once more, for its curve, and draws it.
-pub fn draw(picture: Picture, run: &Run) -> anyhow::Result<()> {
+/// Runs `run` once more, for its curve, and draws it with the peaks that were `found`.
+pub fn draw(picture: Picture, run: &Run, found: &Found) -> anyhow::Result<()> {
     let curve = run.curve(PART)?;
     let first = curve.points.first().context("a run has a start")?;
     let histories = Histories {
-        panels: panels(run, &curve),
+        panels: panels(run, &curve, found),
         marks: Marks::of(&curve.transitions.iter().map(|at| (at.time, at.kind)).collect::<Vec<_>>()),
         time: first.time..curve.finish.motion.time,
     };
@@ -32,18 +35,22 @@ pub fn draw(picture: Picture, run: &Run) -> anyhow::Result<()> {
     })
 }
 
-fn panels(run: &Run, curve: &Curve) -> Vec<Panel> {
+fn panels(run: &Run, curve: &Curve, &Found { ground, ref peaks, finish, .. }: &Found) -> Vec<Panel> {
     let g = run.structure.parameters().g;
     let over_time = |value: fn(&Point) -> f64| curve.points.iter().map(|at| (at.time, value(at))).collect();
-    let peaks = &curve.peaks;
-    let ground = Panel::of("ground acceleration", (g, "g"), colour::GREY, over_time(|at| at.a_g), peaks.a_g());
+    let shown = if ground.time <= finish.motion.time { ground } else { Peak::default() };
+    let a_g = Panel::of("ground acceleration", (g, "g"), colour::GREY, over_time(|at| at.a_g), shown);
+    let panel = |name, unit, value, peak| Panel::of(name, unit, colour::BLUE, over_time(value), peak);
+    let uplift = rounded(1e3 * peaks.uplift().magnitude);
+    let V_t = in_readable_unit(peaks.V_t().magnitude, "N", rounded);
     let structure = [
-        Panel::of("uplift", (1e-3, "mm"), colour::BLUE, over_time(|at| at.outputs.uplift), peaks.uplift()),
-        Panel::of("acceleration a_t", (g, "g"), colour::BLUE, over_time(|at| at.outputs.a_t), peaks.a_t()),
-        Panel::of("base shear V_t", (1e3, "kN"), colour::BLUE, over_time(|at| at.outputs.V_t), peaks.V_t()),
+        panel("rotation θ", (1.0, "rad"), |at| at.outputs.theta, peaks.theta()).with(format!("uplift {uplift} mm")),
+        panel("displacement u", (1e-3, "mm"), |at| at.outputs.u, peaks.u()),
+        panel("displacement δ_t", (1e-3, "mm"), |at| at.outputs.delta_t, peaks.delta_t()),
+        panel("acceleration a_t", (g, "g"), |at| at.outputs.a_t, peaks.a_t()).with(format!("V_t {V_t}")),
     ];
     // free vibration needs no panel of a ground at rest
-    (peaks.a_g().magnitude > 0.0).then_some(ground).into_iter().chain(structure).collect()
+    (ground.magnitude > 0.0).then_some(a_g).into_iter().chain(structure).collect()
 }
 
 /// The structure and what became of it, in a line.

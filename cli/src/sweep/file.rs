@@ -3,10 +3,10 @@
 use crate::{
     output_files::OutputFiles,
     record_args::{RecordOptions, with_key},
-    structure_args::Preset,
-    talk::say,
+    structure_args::{Preset, left_open},
+    talk::{say, say_few},
 };
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, anyhow, bail, ensure};
 use rocking::{
     Detail, Parameters, State, Structure,
     engine::DEFAULT_TOLERANCE,
@@ -31,8 +31,10 @@ pub struct Sweep {
     pub limits: Vec<Limit>,
     /// By what a run's ground motion is measured.
     pub measure: IntensityMeasure,
-    /// What was read of each record, and what was assumed, in a line.
+    /// What was read of each record, and what was assumed, in a line: where the unit was assumed first.
     pub records: Vec<String>,
+    /// What of each structure was not given, in a line.
+    pub structures: Vec<String>,
 }
 
 /// Maps of pulses.
@@ -41,6 +43,8 @@ pub struct MapSweep {
     pub maps: Vec<(String, Map)>,
     /// How often their grids are refined along boundaries.
     pub refinements: u32,
+    /// What of each structure was not given, in a line.
+    pub structures: Vec<String>,
 }
 
 /// What a file asks for.
@@ -196,19 +200,23 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         let conditions = file.conditions()?;
         let g = gravity(&file.structures)?;
         let populations = file.structures.iter().map(StructureGrid::population).collect::<Result<_, _>>()?;
-        let mut said = Vec::new();
+        let (mut said, mut warnings) = (Vec::new(), Vec::new());
         let read = |path: &Path, options: &RecordOptions| {
             files.add_input(path);
             let (unit, time_scale) = (options.unit.or(unit), options.time_scale.or(Some(time_scale)));
             let options = RecordOptions { unit, time_scale, scale: None, ..options.clone() };
             let understood = options.understand(path, g).map_err(with_key)?;
-            understood.say_warnings(path);
-            said.push(understood.described);
+            warnings.extend(understood.warnings(path));
+            said.push((!understood.unit_is_assumed(), understood.described));
             Ok(understood.record)
         };
-        let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read)?;
-        let plan = Plan::new(populations, motions, scales)?.under(conditions)?;
-        Ok(Asked::Records(Sweep { plan, limits, measure, records: said }))
+        let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read);
+        say_few(&warnings, "warnings");
+        let plan = Plan::new(populations, motions?, scales)?.under(conditions)?;
+        said.sort_by_key(|(is_stated, _)| *is_stated);
+        let records = said.into_iter().map(|(_, line)| line).collect();
+        let structures = left_open_of(&file.structures)?;
+        Ok(Asked::Records(Sweep { plan, limits, measure, records, structures }))
     };
     read().with_context(|| format!("sweep in {}", path.display()))
 }
@@ -225,7 +233,7 @@ impl MapFile {
             let map = self.map(grid).with_context(|| format!("structures {name:?}"))?;
             maps.push((name.into(), map.with_condition(condition)));
         }
-        Ok(MapSweep { maps, refinements: refine })
+        Ok(MapSweep { maps, refinements: refine, structures: left_open_of(&self.structures)? })
     }
 
     fn map(&self, grid: &StructureGrid) -> anyhow::Result<Map> {
@@ -290,6 +298,12 @@ fn gravity(structures: &[StructureGrid]) -> anyhow::Result<f64> {
     found.context("structures is empty: name one or more")
 }
 
+/// What of each structure was not given, in a line.
+fn left_open_of(structures: &[StructureGrid]) -> anyhow::Result<Vec<String>> {
+    let lines = structures.iter().map(|grid| Ok(grid.left_open()?.map(|line| format!("{}: {line}", grid.name))));
+    lines.filter_map(Result::transpose).collect()
+}
+
 impl Values {
     fn list(&self) -> anyhow::Result<Vec<f64>> {
         match *self {
@@ -330,6 +344,14 @@ impl StructureGrid {
         }
     }
 
+    /// Where what neither is given nor varies comes from.
+    fn left_open(&self) -> anyhow::Result<Option<String>> {
+        let varies = |name: &str| self.vary.contains_key(name) || name == "H" && self.vary.contains_key("slenderness");
+        let given = |name: &str| varies(name) || self.parameters.as_ref().is_some_and(|given| given.determine(name));
+        let preset = self.preset.map(Preset::name);
+        Ok(left_open(preset.as_deref(), &self.base()?, given))
+    }
+
     fn population(&self) -> anyhow::Result<Population> {
         let vary = |population: Population, (name, values): (&String, &Values)| -> anyhow::Result<_> {
             Ok(population.vary(name, values.list().context(name.clone())?)?)
@@ -347,7 +369,7 @@ fn motions(
     mut read: impl FnMut(&Path, &RecordOptions) -> anyhow::Result<Record>,
 ) -> anyhow::Result<Vec<NamedRecord>> {
     let (mut motions, mut named) = (Vec::new(), HashMap::new());
-    let mut named_twice: Vec<PathBuf> = Vec::new();
+    let (mut named_twice, mut bad): (Vec<PathBuf>, Vec<anyhow::Error>) = (Vec::new(), Vec::new());
     for source in sources {
         let (pattern, options) = source.pattern_and_options()?;
         let scale = options.scale.unwrap_or(1.0);
@@ -359,7 +381,9 @@ fn motions(
         let in_folder = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
         let mut paths = glob::glob(&in_folder.to_string_lossy()).with_context(|| format!("records {pattern:?}"))?;
         let mut paths = paths.by_ref().peekable();
-        ensure!(paths.peek().is_some(), "records: there is no file {}", folder.join(pattern).display());
+        if paths.peek().is_none() {
+            bad.push(anyhow!("records: there is no file {}", folder.join(pattern).display()));
+        }
         for path in paths {
             let path = path?;
             if let Some(other) = named.insert((path.canonicalize()?, column.clone()), options.clone()) {
@@ -374,7 +398,19 @@ fn motions(
             // The same on every system, so that a sweep can go on on another.
             let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace(MAIN_SEPARATOR, "/");
             let name = name + &column;
-            motions.push(NamedRecord::new(is_one_line(&name)?, read(&path, &options)?, scale)?);
+            let name = is_one_line(&name)?;
+            match read(&path, &options).and_then(|record| Ok(NamedRecord::new(name, record, scale)?)) {
+                Ok(motion) => motions.push(motion),
+                Err(error) => bad.push(error),
+            }
+        }
+    }
+    match bad.len() {
+        0 => {}
+        1 => return Err(bad.remove(0)),
+        count => {
+            let each: String = bad.iter().map(|error| format!("\n  {error:#}")).collect();
+            bail!("{count} of {} records cannot be taken:{each}", count + motions.len());
         }
     }
     if let Some(first) = named_twice.first() {

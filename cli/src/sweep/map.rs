@@ -8,7 +8,7 @@ use crate::{
     picture::Picture,
     results::{Format, print, print_rows},
     significant::short,
-    talk::{self, say},
+    talk::{self, say, say_few},
 };
 use anyhow::{bail, ensure};
 use picture::Shown;
@@ -59,6 +59,7 @@ pub fn run(args: &SweepArgs, sweep: MapSweep, output: &Path, picture: Picture) -
     let file = Mutex::new(file);
     let largest = sweep.maps.iter().map(|(_, map)| map.grid().count()).max().unwrap_or(0);
     let pool = thread_pool(args, if sweep.refinements > 0 { usize::MAX } else { largest })?;
+    say_few(&sweep.structures, "structures");
     for (name, map) in &sweep.maps {
         let warnings = validity::of_parameters(map.structure(), map.detail());
         warnings.iter().for_each(|warning| say!("{name}: {warning}"));
@@ -118,8 +119,8 @@ fn do_points(
     let run: anyhow::Result<Vec<_>> = (lacking.par_iter())
         .map(|(place, key)| {
             let point = map.run(*place);
-            let mut file = file.lock().expect("no thread panics with the file in hand");
-            rows::append(&mut file, key, name, map, (level, *place), &point)?;
+            let row = rows::row(key, name, map, (level, *place), &point)?;
+            file.lock().expect("no thread panics with the file in hand").append(&row)?;
             progress.inc(1);
             Ok((*place, point))
         })

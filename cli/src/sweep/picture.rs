@@ -1,5 +1,6 @@
 //! The picture of a sweep: the parts of the runs that exceed a limit as dots, fragility curves as lines in their bands,
 //! both against the intensity of the single run.
+use super::table::{BEYOND_THE_RUNS, is_beyond_the_runs};
 use crate::picture::{
     Area, Picture, SMALL, TITLE, axes, chart, colour, line, px, rounded, titled, words, words_before,
 };
@@ -59,7 +60,7 @@ pub fn draw(picture: Picture, populations: &[Exceedances], measure: IntensityMea
         for (i, (of, fragility)) in all().enumerate() {
             draw_dots(&mut plot, of, fragility, most, colour_of(i))?;
         }
-        draw_legend(&lower, all().map(|(of, fragility)| (of.population.as_str(), fragility)), measure, (least, most))
+        draw_legend(&lower, all(), measure, (least, most))
     })
 }
 
@@ -119,7 +120,7 @@ fn draw_dots(
 /// A line for each curve below the plot: what it is of, median and dispersion.
 fn draw_legend<'a>(
     area: &Area,
-    all: impl Iterator<Item = (&'a str, &'a Fragility)>,
+    all: impl Iterator<Item = (&'a Exceedances, &'a Fragility)>,
     measure: IntensityMeasure,
     (least, most): (usize, usize),
 ) -> anyhow::Result<()> {
@@ -133,7 +134,8 @@ fn draw_legend<'a>(
         cell(x, height(0), heading, colour::GREY)?;
     }
     let mut lines = 1;
-    for (i, (population, Fragility { limit, curve, .. })) in all.enumerate() {
+    for (i, (of, fragility)) in all.enumerate() {
+        let (Exceedances { population, .. }, Fragility { limit, curve, .. }) = (of, fragility);
         let (y, colour) = (height(lines), colour_of(i));
         area.draw(&PathElement::new([(swatch - px(14.0), y), (swatch + px(14.0), y)], line(colour)))?;
         area.draw(&Circle::new((swatch, y), px(4.0), colour.filled()))?;
@@ -141,7 +143,9 @@ fn draw_legend<'a>(
         match curve {
             Ok(curve) => {
                 let ends = curve.median_range().map(|(low, high)| format!("{} to {}", rounded(low), rounded(high)));
-                cell(median, y, rounded(curve.median), colour::INK)?;
+                let beyond =
+                    if is_beyond_the_runs(of, fragility) { format!("{BEYOND_THE_RUNS}: ") } else { String::new() };
+                cell(median, y, format!("{beyond}{}", rounded(curve.median)), colour::INK)?;
                 cell(range, y, ends.unwrap_or("–".into()), colour::INK)?;
                 cell(dispersion, y, rounded(curve.dispersion), colour::INK)?;
             }

@@ -70,15 +70,11 @@ impl RowFile {
         Ok((RowFile { path: path.into(), file, length: length as u64, has_failed: false }, found))
     }
 
-    /// Adds a row and its checksum; its numbers read back to the same bits. After a failure there is none to add.
-    pub fn append(&mut self, row: &impl Serialize) -> anyhow::Result<()> {
+    /// Adds a row. After a failure there is none to add.
+    pub fn append(&mut self, Row(row): &Row) -> anyhow::Result<()> {
         let named = || format!("{} cannot be written", self.path.display());
-        let mut row = line(row)?;
-        row.pop();
-        let checksum = checksum(&row);
-        row.extend(format!(",{checksum}\n").into_bytes());
         ensure!(!self.has_failed, named());
-        let written = self.file.seek(SeekFrom::Start(self.length)).and_then(|_| self.file.write_all(&row));
+        let written = self.file.seek(SeekFrom::Start(self.length)).and_then(|_| self.file.write_all(row));
         if let Err(error) = written {
             self.has_failed = true;
             let cut = self.file.set_len(self.length);
@@ -89,9 +85,18 @@ impl RowFile {
     }
 }
 
-/// The heading of a column of numbers.
-pub fn heading(name: &str, unit: &str) -> String {
-    if unit == "1" { name.into() } else { format!("{name}[{unit}]") }
+/// A row with its checksum, as it is written: whoever has the file in hand has nothing left to compute.
+pub struct Row(Vec<u8>);
+
+impl Row {
+    /// Of these values; numbers read back to the same bits.
+    pub fn new(values: &impl Serialize) -> anyhow::Result<Row> {
+        let mut row = line(values)?;
+        row.pop();
+        let checksum = checksum(&row);
+        row.extend(format!(",{checksum}\n").into_bytes());
+        Ok(Row(row))
+    }
 }
 
 /// The headings of columns that are called the same whatever the sweep is of.

@@ -1,7 +1,8 @@
 //! The rows of a sweep: headings, and what they say of each run.
 //!
 //! A run's key stands for names, parameters, samples, scale factors, conditions, the build of the program.
-use super::row_file::{FIRST_HEADINGS, RowFile, digest, fixed, heading, key, key_of, records};
+use super::row_file::{FIRST_HEADINGS, Row, RowFile, digest, fixed, key, key_of, records};
+use crate::cause::{heading, version};
 use anyhow::{Context, bail, ensure};
 use csv::StringRecord;
 use rocking::{
@@ -19,9 +20,9 @@ const FAILED: &str = "failed";
 
 /// Columns of what a run goes beyond, empty where that is not asked for.
 const BEYOND: usize = 2 * ASSUMPTIONS.len() + 2;
-/// Columns before the ending: the key and the name of the population; the structure; the record, its scale and the
-/// sweep's; intensities; detail, tolerance, duration and initial values.
-const BEFORE: usize = 2 + AXES.len() + 3 + IntensityMeasure::ALL.len() + 3 + INITIAL_VALUES.len();
+/// Columns before the ending: the key, the name of the population and the program's version; the structure; the record, its
+/// digest, its scale and the sweep's; intensities; detail, tolerance, duration and initial values.
+const BEFORE: usize = 3 + AXES.len() + 4 + IntensityMeasure::ALL.len() + 3 + INITIAL_VALUES.len();
 
 /// Columns of an ended run's outcome beside its peaks: ending, end; transitions, steps, evaluations.
 const OTHERS: usize = 5;
@@ -37,23 +38,32 @@ pub struct Found {
     pub repeated: usize,
 }
 
+/// What tells a run and its record from others.
+pub struct Key {
+    /// Stands for all that the run depends on.
+    pub run: Uuid,
+    /// Stands for the samples of its record, whatever its file is called.
+    record: Uuid,
+}
+
 /// The key of each run of `plan`, which is another one where it is asked what a run goes beyond.
-pub fn keys(plan: &Plan, validity: bool) -> Vec<Uuid> {
+pub fn keys(plan: &Plan, validity: bool) -> Vec<Key> {
     let of_motion = |of: &NamedRecord| {
         let samples = (of.record().times(), of.record().acceleration());
-        (ptr::from_ref(of), digest(&Uuid::NAMESPACE_OID, &samples).into_bytes())
+        (ptr::from_ref(of), digest(&Uuid::NAMESPACE_OID, &samples))
     };
     let digests: HashMap<_, _> = plan.motions().iter().map(of_motion).collect();
     let of_case = |case: Case| {
         let names = (case.population.name(), case.motion.name());
-        let motion = (digests[&ptr::from_ref(case.motion)], case.motion.scale(), case.scale);
-        key(&(names, case.structure.parameters(), motion, case.conditions, validity))
+        let record = digests[&ptr::from_ref(case.motion)];
+        let motion = (record.into_bytes(), case.motion.scale(), case.scale);
+        Key { run: key(&(names, case.structure.parameters(), motion, case.conditions, validity)), record }
     };
     plan.cases().map(of_case).collect()
 }
 
 /// Opens the file at `path`, or begins it, and finds the rows of the runs that have `keys`.
-pub fn open(path: &Path, keys: &[Uuid]) -> anyhow::Result<(RowFile, Found)> {
+pub fn open(path: &Path, keys: &[Key]) -> anyhow::Result<(RowFile, Found)> {
     RowFile::open(path, &headings(), |rows| read(rows, keys))
 }
 
@@ -65,8 +75,9 @@ fn headings() -> Vec<String> {
     let peaks = MEASURES.map(|(name, unit)| heading(&format!("peak_{name}"), unit));
     [
         fixed(&FIRST_HEADINGS),
+        fixed(&["version"]),
         quantities.into(),
-        fixed(&["record", "record_scale", "scale"]),
+        fixed(&["record", "record_digest", "record_scale", "scale"]),
         intensities.into(),
         fixed(&["detail", "tolerance", "duration[s]"]),
         initial.into(),
@@ -79,24 +90,20 @@ fn headings() -> Vec<String> {
     .concat()
 }
 
-/// Adds the row of a run.
-pub fn append(
-    file: &mut RowFile,
-    key: &Uuid,
-    case: &Case,
-    outcome: &Outcome,
-    beyond: Option<&Beyond>,
-) -> anyhow::Result<()> {
-    let structure = (key.to_string(), case.population.name(), AXES.map(|axis| case.value(axis)));
+/// The row of a run.
+pub fn row(key: &Key, case: &Case, outcome: &Outcome, beyond: Option<&Beyond>) -> anyhow::Result<Row> {
+    let values = AXES.map(|axis| case.value(axis));
+    let structure = (key.run.to_string(), case.population.name(), version(), values);
     let intensities = IntensityMeasure::ALL.map(|measure| case.intensity(measure));
-    let motion = (case.motion.name(), case.motion.scale(), case.scale, intensities);
+    let record = (case.motion.name(), format!("{:016x}", key.record.as_u64_pair().0));
+    let motion = (record, case.motion.scale(), case.scale, intensities);
     let Conditions { initial, detail, tolerance, duration } = case.conditions;
     let initial = INITIAL_VALUES.each_ref().map(|quantity| (quantity.get)(initial));
     let before = (structure, motion, (detail.name(), tolerance, duration, initial));
     match outcome {
-        Outcome::Ended(summary) => file.append(&(before, summary, columns(beyond), "")),
+        Outcome::Ended(summary) => Row::new(&(before, summary, columns(beyond), "")),
         Outcome::Failed { time, reason } => {
-            file.append(&(before, FAILED, time, [""; MEASURES.len() + OTHERS - 2], columns(None), reason))
+            Row::new(&(before, FAILED, time, [""; MEASURES.len() + OTHERS - 2], columns(None), reason))
         }
     }
 }
@@ -109,8 +116,8 @@ fn columns(beyond: Option<&Beyond>) -> Vec<Option<f64>> {
 }
 
 /// What complete `rows` say of the runs that have `keys`.
-fn read(rows: &[u8], keys: &[Uuid]) -> anyhow::Result<Found> {
-    let numbers: HashMap<_, _> = keys.iter().zip(0..).collect();
+fn read(rows: &[u8], keys: &[Key]) -> anyhow::Result<Found> {
+    let numbers: HashMap<_, _> = keys.iter().map(|key| key.run).zip(0..).collect();
     ensure!(
         numbers.len() == keys.len(),
         "two runs are the same: values that vary differ by less than a rounding error"

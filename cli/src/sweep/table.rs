@@ -1,4 +1,5 @@
 //! What a sweep prints of a population: how often its structures exceed a limit, by intensity, and the curves.
+use crate::results::Number;
 use crate::significant::significant;
 use rocking::{
     fragility::{FEWEST_GROUPS, FragilityCurve},
@@ -11,6 +12,16 @@ use std::fmt::{self, Write};
 
 /// Columns of a limit are this wide, or as wide as its name.
 const WIDTH: usize = 18;
+
+/// What is said of a median beyond all runs: nothing there was counted.
+pub const BEYOND_THE_RUNS: &str = "beyond the runs";
+
+/// Whether the median of `fragility` is weaker or stronger than the ground motion of every run `of` its population.
+pub fn is_beyond_the_runs(of: &Exceedances, fragility: &Fragility) -> bool {
+    let lowest = of.bins.iter().map(|bin| bin.lowest).fold(f64::INFINITY, f64::min);
+    let highest = of.bins.iter().map(|bin| bin.highest).fold(0.0, f64::max);
+    fragility.curve.as_ref().is_ok_and(|curve| !(lowest..=highest).contains(&curve.median))
+}
 
 /// Writes one population, its intensities in `measure`.
 pub fn write(out: &mut impl Write, of: &Exceedances, measure: IntensityMeasure) -> fmt::Result {
@@ -36,11 +47,11 @@ pub fn write(out: &mut impl Write, of: &Exceedances, measure: IntensityMeasure) 
         fragility.curve.as_ref().ok().and_then(text).unwrap_or("none".into())
     };
     line(["median", "", &format!("({unit})"), ""], &|of| of_curve(of, &|curve| Some(significant(curve.median))))?;
-    let lowest = bins.iter().map(|bin| bin.lowest).fold(f64::INFINITY, f64::min);
-    let highest = bins.iter().map(|bin| bin.highest).fold(0.0, f64::max);
-    let is_beyond = |of: &Fragility| of.curve.as_ref().is_ok_and(|curve| !(lowest..=highest).contains(&curve.median));
+    let is_beyond = |fragility: &Fragility| is_beyond_the_runs(of, fragility);
     if fragilities.iter().any(is_beyond) {
-        line(["", "", "", ""], &|of| if is_beyond(of) { "beyond the runs".into() } else { String::new() })?;
+        line(["", "", "", ""], &|fragility| {
+            if is_beyond(fragility) { BEYOND_THE_RUNS.into() } else { String::new() }
+        })?;
     }
     for (heading, end) in [("from", 0), ("to", 1)] {
         line(["", "95 %", heading, ""], &|of| {
@@ -82,11 +93,12 @@ pub struct CurveRow {
     limit: String,
     measure: &'static str,
     unit: &'static str,
-    median: Option<f64>,
+    median: Option<Number>,
+    median_is_beyond_the_runs: Option<bool>,
     /// Of the 95 % band of the median.
-    median_from: Option<f64>,
-    median_to: Option<f64>,
-    dispersion: Option<f64>,
+    median_from: Option<Number>,
+    median_to: Option<Number>,
+    dispersion: Option<Number>,
     /// Why there is no curve.
     reason: Option<String>,
 }
@@ -115,7 +127,8 @@ struct BinRow {
 /// Every curve of `populations`, whose intensities are in `measure`.
 pub fn curves(populations: &[Exceedances], measure: IntensityMeasure) -> Vec<Curve> {
     let all = populations.iter().flat_map(|of| of.fragilities.iter().map(move |fragility| (of, fragility)));
-    all.map(|(of, Fragility { limit, curve, tallies, .. })| {
+    all.map(|(of, fragility)| {
+        let Fragility { limit, curve, tallies, .. } = fragility;
         let fitted = curve.as_ref().ok();
         let range = fitted.and_then(FragilityCurve::median_range);
         let row = CurveRow {
@@ -123,10 +136,11 @@ pub fn curves(populations: &[Exceedances], measure: IntensityMeasure) -> Vec<Cur
             limit: limit.to_string(),
             measure: measure.name(),
             unit: measure.unit(),
-            median: fitted.map(|curve| curve.median),
-            median_from: range.map(|(from, _)| from),
-            median_to: range.map(|(_, to)| to),
-            dispersion: fitted.map(|curve| curve.dispersion),
+            median: fitted.map(|curve| Number(curve.median)),
+            median_is_beyond_the_runs: fitted.map(|_| is_beyond_the_runs(of, fragility)),
+            median_from: range.map(|(from, _)| Number(from)),
+            median_to: range.map(|(_, to)| Number(to)),
+            dispersion: fitted.map(|curve| Number(curve.dispersion)),
             reason: curve.as_ref().err().map(ToString::to_string),
         };
         let bin = |(&Bin { lowest, mean, highest, runs, .. }, &Tally { known, exceedances }): (&Bin, &Tally)| BinRow {

@@ -133,6 +133,7 @@
   let stage = {};
   function layOutScene() {
     const { width, height } = at("scene").getBoundingClientRect();
+    set(at("scene"), { viewBox: `0 0 ${width} ${height}` }); // on paper it takes the width of the page
     const theta = Math.min(Math.PI / 2, exaggeration * peaks.theta.magnitude);
     const u = exaggeration * peaks.u.magnitude;
     const reach = B * (1 - Math.cos(theta)) + (H + block.height) * Math.sin(theta) + u + block.width / 2;
@@ -273,6 +274,7 @@
   function drawHistories() {
     const svg = at("histories");
     const { width, height } = svg.getBoundingClientRect();
+    set(svg, { viewBox: `0 0 ${width} ${height}` });
     const isNarrow = width < 560;
     const [left, right, gap] = [isNarrow ? 46 : 58, isNarrow ? 56 : 76, 26];
     const laneHeight = 15;

@@ -2,8 +2,9 @@
 //!
 //! A point's key stands for the structure and its name, the pulse, the level of detail, the tolerance, whether its condition is found, and
 //! the build of the program: not for its place, so that another grid through the same point has it.
+use crate::cause::{heading, version};
 use crate::sweep::{
-    row_file::{FIRST_HEADINGS, RowFile, fixed, heading, key, key_of, records},
+    row_file::{FIRST_HEADINGS, Row, RowFile, fixed, key, key_of, records},
     say_other_rows,
 };
 use anyhow::{Context, bail};
@@ -15,9 +16,9 @@ use rocking::{
 use std::{collections::HashMap, path::Path};
 use uuid::Uuid;
 
-/// Columns before what became of the structure: the key and the name; the structure; the pulse; detail and tolerance;
+/// Columns before what became of the structure: the key, the name and the program's version; the structure; the pulse; detail and tolerance;
 /// refinement, frequency and amplitude, alone and in units of the structure.
-const BEFORE: usize = FIRST_HEADINGS.len() + AXES.len() + 4 + 2 + 5;
+const BEFORE: usize = FIRST_HEADINGS.len() + 1 + AXES.len() + 4 + 2 + 5;
 /// Columns of that, with the reason.
 const OF_POINT: usize = 7;
 
@@ -54,6 +55,7 @@ pub fn key_at(name: &str, map: &Map, place: Place) -> Uuid {
 fn headings() -> Vec<String> {
     [
         fixed(&FIRST_HEADINGS),
+        fixed(&["version"]),
         AXES.map(|axis| heading(axis.name, axis.unit)).into(),
         fixed(&["shape", "cycles", "phase[rad]", "error", "detail", "tolerance"]),
         fixed(&["refinement", "frequency[Hz]", "amplitude[m/s2]", "omega/p_l", "a_p/(g tan alpha_cg)"]),
@@ -62,21 +64,15 @@ fn headings() -> Vec<String> {
     .concat()
 }
 
-/// Adds the row of a point, which the refinement of this level has asked for; 0 is the grid.
-pub fn append(
-    file: &mut RowFile,
-    key: &Uuid,
-    name: &str,
-    map: &Map,
-    (level, place): (u32, Place),
-    point: &Point,
-) -> anyhow::Result<()> {
+/// The row of a point, which the refinement of this level has asked for; 0 is the grid.
+pub fn row(key: &Uuid, name: &str, map: &Map, (level, place): (u32, Place), point: &Point) -> anyhow::Result<Row> {
     let pulse = map.pulse(place);
     let (of_amplitude, of_frequency) = units_of(map.structure());
     let of_structure = AXES.map(|axis| (axis.get)(map.structure().parameters()));
     let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, pulse.error, map.detail().name(), map.tolerance());
     let ratios = (pulse.frequency / of_frequency, pulse.amplitude / of_amplitude);
-    file.append(&(key.to_string(), name, of_structure, of_map, level, pulse.frequency, pulse.amplitude, ratios, point))
+    let of_program = (key.to_string(), name, version());
+    Row::new(&(of_program, of_structure, of_map, level, pulse.frequency, pulse.amplitude, ratios, point))
 }
 
 fn read(rows: &[u8]) -> anyhow::Result<Rows> {
