@@ -576,9 +576,9 @@ vary = { slenderness = [4, 5, 6, 8], r = [0.8, 0.9, 1] }
 #[test]
 fn many_records_are_read_at_once() {
     let folder = sweep(&SWEEP.replace("'pulse.AT2'", "'*.csv', 'absent.AT2'"));
-    let record = |i: usize| fs::write(folder.path().join(format!("{i:03}.csv")), format!("0,0\n1,{i}\n2,0\n")).unwrap();
+    let record = |i: usize| fs::write(folder.path().join(format!("{i:03}.csv")), format!("0,0\n0.5,{i}\n1,0\n")).unwrap();
     (1..=40).for_each(record);
-    for (name, text) in [("007.csv", "0,0\n1,much\n"), ("021.csv", "0,0\n1,0\n")] {
+    for (name, text) in [("007.csv", "0,0\n0.5,much\n"), ("021.csv", "0,0\n0.5,0\n")] {
         fs::write(folder.path().join(name), text).unwrap();
     }
     let (_, message) = fail(folder.path(), "sweep sweep.toml --quiet");
@@ -594,7 +594,7 @@ fn many_records_are_read_at_once() {
     assert_eq!(lines.len(), 4, "{message}");
 
     [7, 21].into_iter().for_each(record);
-    fs::write(folder.path().join("stated.csv"), "t (s),a (g)\n0,0\n1,1\n2,0\n").unwrap();
+    fs::write(folder.path().join("stated.csv"), "t (s),a (g)\n0,0\n0.5,1\n1,0\n").unwrap();
     let few =
         "records = ['*.csv']\nscale = [0.01]\n[[structures]]\nname = 'pier'\npreset = 'mcmanus'\nvary.H = [1.5]\n";
     fs::write(folder.path().join("sweep.toml"), few).unwrap();
