@@ -55,15 +55,16 @@ install = $(sudo) apt-get -qq update && \
 
 .PHONY: demo test check lint tools heavy study hosts browser foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
 
+# pip while cargo compiles.
 demo:
 	@echo "Building the FMU and shaking it with a real earthquake: about two minutes the first time, on two cores."
 	$(MAKE) --no-print-directory .venv/ready & $(MAKE) --no-print-directory out/mcmanus.fmu out/evison.fmu && wait $$!
 	cp $(RECORDS)/$(PACOIMA) $(RECORDS)/$(EL_CENTRO) out/
 	$(PYTHON) examples/first_run.py out/mcmanus.fmu
 
-# All in the release profile: what the demo has built, and `cargo run --release` runs, is what is tested.
-test: .venv/test exporter
-	cargo test --release --workspace
+# All of it in the release profile: what the demo has built, and `cargo run --release` runs, is what is tested.
+test:
+	$(MAKE) --no-print-directory .venv/test & cargo test --release --workspace && wait $$!
 	$(PYTEST) -n auto --dist loadfile
 
 CHANGED := git status --porcelain --untracked-files=all --no-renames --
