@@ -1,9 +1,13 @@
 # make demo    run the FMU on a real earthquake and draw docs/pacoima_mcmanus.png (2 minutes)
-# make test    every test but those of `heavy` (5 minutes more)
+# make test    every test but those of `heavy` (7 minutes more)
 # make check   format, clippy and the tests of what differs from the last commit: the loop of whoever changes a line
 # make lint    format and clippy of everything, warnings denied
-# make heavy   what takes longer or needs more: study's tests (`make study`); hosts that bring much (`make hosts`); the page of `view` in a
-#              browser (`make browser`); the libraries for other machines, built, read and, where that can be, run (`make foreign`); packages (`make packaged`)
+# make heavy   what takes longer or needs more, of which each can be made alone:
+# make study     the tests of study/
+# make hosts     hosts that bring much, and Windows' library under wine
+# make browser   the page of `view` in Chromium
+# make foreign   the libraries for other machines, built, read and, where that can be, run
+# make packaged  the package of the source, and the wheel for this machine in a fresh environment
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels  out/wheels: Python packages for Linux, Windows and macOS with the command line and the archive, and one of the source
 # make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
@@ -72,7 +76,7 @@ check: tools
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
 	@packages=$$($(CHANGED) '*.rs' '*.toml' ':!study' ':!benches' ':!tests/hosts' | cut -c4- | while read -r file; do \
-		until test -e "$${file:=.}/Cargo.toml"; do file=$$(dirname "$$file"); done; \
+		until test -e "$$file/Cargo.toml"; do file=$$(dirname "$$file"); done; \
 		echo --package "$$(cargo pkgid --manifest-path "$$file/Cargo.toml")"; done | sort -u); \
 	test -z "$$packages" || { echo cargo test $$packages && cargo test $$packages; }
 	@files=$$($(CHANGED) 'tests/test_*.py' | cut -c4-); \
@@ -90,7 +94,7 @@ tools:
 
 heavy: study hosts browser foreign packaged
 
-study: .venv/ready
+study:
 	cargo test --release --manifest-path study/Cargo.toml
 
 # Hosts that bring much, among them Windows' loader; what cannot be had is skipped, with the reason.
@@ -208,11 +212,11 @@ bench: .venv/ready library
 		$(PYTHON) benches/one_step.py out/measured.fmu "$$record" "$(CRITERION)/record/auto 1e-9/new/sample.json"
 
 licenses:
-	WRITE_LICENSES=1 cargo test --release --workspace --package fmu-export --test licenses
+	WRITE_LICENSES=1 cargo test --release --workspace --test licenses
 
 fuzz:
-	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release --package flexible-rocking-fmu --test hostile_calls -- --nocapture
-	FUZZ_RECORDS=$${FUZZ_RECORDS:-10000000} cargo test --release --package rocking --test records -- --nocapture no_mutation
+	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release --workspace --test hostile_calls -- --nocapture
+	FUZZ_RECORDS=$${FUZZ_RECORDS:-10000000} cargo test --release --workspace --test records -- --nocapture no_mutation
 
 # What the demo takes: the shared library and what packs it. The packages chosen are all of the workspace, or those they share
 # would be built again, with other features, for the command line and the tests.
