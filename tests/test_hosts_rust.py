@@ -4,16 +4,19 @@ and their bytes."""
 import os
 import subprocess
 
-import clang.native
 import numpy as np
 import pytest
 from conftest import ROOT
 from pacoima import A_G, OUTPUTS, STEPS, TIME, distance, held, instants, write_record
 
+pytestmark = pytest.mark.heavy
+
 
 @pytest.fixture(scope="module")
 def run(mcmanus, tmp_path_factory):
     """Runs the host in tests/hosts/fmi_crate under a ground acceleration and returns time and OUTPUTS."""
+    import clang.native
+
     folder = ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "fmi_crate"
     # the package libclang brings the library, the C compiler its own headers
     headers = subprocess.run(["cc", "-print-file-name=include"], check=True, stdout=subprocess.PIPE, text=True).stdout

@@ -86,6 +86,7 @@ def test_libcosim_with_the_record_inside(ssp, shaken, exact, tmp_path, step):
         assert distance(np.array(samples[name]), exact(step, name)[1:]) < 1e-9
 
 
+@pytest.mark.heavy
 @pytest.mark.parametrize("step", STEPS)
 def test_ecos_with_the_record_inside(ssp, shaken, exact, step):
     need_libtbb()
@@ -138,6 +139,7 @@ def test_libcosim(ssp, fmus, tmp_path):
         assert distance(np.array(samples[name]), held(fmu)) < 1e-9
 
 
+@pytest.mark.heavy
 def test_ecos(ssp, fmus):
     need_libtbb()
     from ecospy import EcosSimulation

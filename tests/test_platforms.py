@@ -14,6 +14,8 @@ from host import Fmu
 from pacoima import OUTPUTS, distance, instants
 from test_hosts_library import FUNCTIONS, HOST, cargo_build, linux_host, output, run  # noqa: F401
 
+pytestmark = pytest.mark.heavy
+
 X86 = "x86_64-unknown-linux-gnu"
 ARM = "aarch64-unknown-linux-gnu"
 # The loader of glibc 2.31, which `make foreign` takes out of Debian 11's package.
@@ -85,7 +87,7 @@ def test_an_old_system(run, shaken, library):  # noqa: F811
     """Linux's library and its host with the C library of Debian 11, glibc 2.31."""
     if not OLD_LOADER.exists():
         pytest.skip(f"{OLD_LOADER} is missing: `make foreign` fetches it where apt-get can")
-    old = cargo_build("--target", f"{X86}.2.17", "--manifest-path", HOST, tool="zigbuild") / X86 / "release" / "load-library"
+    old = cargo_build("--release", "--target", f"{X86}.2.17", "--manifest-path", HOST, tool="zigbuild") / X86 / "release" / "load-library"
     fmu = shaken["mcmanus"]
     found = run(OLD_LOADER, "--library-path", OLD_LOADER.parent, old, library=library("linux64"), fmu=fmu, step=2e-3)
     expected = run(old, library=library("linux64"), fmu=fmu, step=2e-3)
@@ -94,7 +96,7 @@ def test_an_old_system(run, shaken, library):  # noqa: F811
 
 def test_arm_gives_the_numbers_of_x86(run, linux_host, shaken, mcmanus, library):  # noqa: F811
     command = qemu.command()
-    arm = cargo_build("--target", ARM, "--manifest-path", HOST, tool="zigbuild") / ARM / "release" / "load-library"
+    arm = cargo_build("--release", "--target", ARM, "--manifest-path", HOST, tool="zigbuild") / ARM / "release" / "load-library"
     for fmu, step in ((mcmanus, None), (shaken["mcmanus"], 2e-3)):
         expected = run(linux_host, library=library("linux64"), fmu=fmu, step=step)
         found = run(*command, arm, library=library("aarch64-linux"), fmu=fmu, step=step)

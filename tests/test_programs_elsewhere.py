@@ -15,6 +15,8 @@ from packages import package
 from pacoima import write_record
 from wine import environment
 
+pytestmark = pytest.mark.heavy
+
 SWEEP = """records = ["records/*.csv"]
 scale = { from = 0.5, to = 1.5, count = 3 }
 structures = [{ name = "specimen", preset = "mcmanus" }, { name = "wall", preset = "evison" }]

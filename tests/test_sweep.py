@@ -102,6 +102,7 @@ def test_a_sweep_killed_again_and_again_loses_nothing_and_repeats_nothing(export
     assert len(rows(killed)) == 41 * 40
 
 
+@pytest.mark.heavy
 def test_the_sweep_on_dask_comes_to_the_same(exporter, mcmanus, tmp_path):
     toml = write_sweep(tmp_path, "[0.3, 0.5, 0.8, 1.2]", "{ from = 4, to = 8, count = 3 }")
     output = tmp_path / "dask.csv"

@@ -10,6 +10,8 @@ import pandas as pd
 import pytest
 from test_sweep import RECORDS
 
+pytestmark = pytest.mark.heavy
+
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
 
 END = 4.0  # s

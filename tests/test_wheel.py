@@ -13,6 +13,8 @@ from fmpy import read_model_description, simulate_fmu
 from packages import package
 from pacoima import write_record
 
+pytestmark = pytest.mark.heavy
+
 
 @pytest.fixture(scope="module")
 def installed(tmp_path_factory):

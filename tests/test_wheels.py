@@ -11,6 +11,8 @@ import pytest
 from conftest import ROOT
 from packages import package
 
+pytestmark = pytest.mark.heavy
+
 TAGS = {
     "linux-x86": "py3-none-manylinux2014_x86_64.manylinux_2_17_x86_64",
     "linux-arm": "py3-none-manylinux2014_aarch64.manylinux_2_17_aarch64",

@@ -104,7 +104,7 @@ fn record(options: &RecordOptions, path: &Path, g: f64, folder: &Path) -> anyhow
 }
 
 /// The shared libraries that were built with `executable`, one for each platform that there is one for. Where it is in
-/// cargo's target folder, those built for a named target are beside its profile, and come first: they need no newer system
+/// cargo's target folder, those that `make dist` builds for a named target are beside its profile, and come first: they need no newer system
 /// than they say. Its own platform's is in the folder `deps` beside the program; cargo links it to where the program is
 /// only if the package of the FMU was asked for as well: by `cargo build` and `cargo run` in the root, but not with `-p
 /// rocking-cli`. Once installed, the program is in `bin`, and in `share` beside that is an archive to take them from; what pip
@@ -119,9 +119,8 @@ fn libraries_of(executable: &Path) -> anyhow::Result<Vec<Library>> {
         above.join("share").join(INSTALLED)
     });
     let mut libraries: Vec<Library> = Vec::new();
-    let profile = folder.file_name().unwrap_or_default();
     for platform in Platform::ALL {
-        let path = folder.with_file_name(platform.target()).join(profile).join(platform.file());
+        let path = folder.with_file_name(platform.target()).join("dist").join(platform.file());
         match Library::read(&path) {
             Ok(found) => libraries.extend(found),
             Err(LibraryError::OtherBuild(_)) => say!("{} is left out: it is of another build", path.display()),

@@ -71,7 +71,7 @@ fn libraries_are_found_where_they_are_built_and_where_they_are_installed() {
     assert!(twice.ends_with(&format!("error: two shared libraries are for {tuple}: leave one out\n")), "{twice}");
 
     // Built for a named target, from other sources.
-    let stale = folder.path().join("x86_64-unknown-linux-gnu/bin/libFlexibleRocking.so");
+    let stale = folder.path().join("x86_64-unknown-linux-gnu/dist/libFlexibleRocking.so");
     fs::create_dir_all(stale.parent().unwrap()).unwrap();
     let mut bytes = fs::read(library).unwrap();
     let build = FlexibleRocking::BUILD.as_bytes();

@@ -48,7 +48,7 @@ fn what_enters_the_library_changes_it() {
     assert!(changes("src/of/a/new.rs", |_| "1".into()));
     assert!(changes("fmu/src/variables.rs", |_| "1".into()));
     assert!(changes("Cargo.toml", |text| text.replace("lto = true", "lto = false")));
-    assert!(changes("Cargo.toml", |text| text.replace("nalgebra = \"0.35\"", "nalgebra = \"0.34\"")));
+    assert!(changes("Cargo.toml", |text| text.replace("libm = \"0.2\"", "libm = \"0.1\"")));
     assert!(changes("Cargo.toml", |text| text.replace("edition = \"2024\"", "edition = \"2021\"")));
     assert!(changes("fmu/Cargo.toml", |text| text.replace("\"cdylib\"", "\"dylib\"")));
     for linked in ["libm", "matrixmultiply", "serde_derive", "sha1_smol"] {
@@ -72,10 +72,10 @@ fn nothing_else_changes_it() {
         assert!(!changes(file, |_| "1".into()), "{file}");
     }
     assert!(!changes("Cargo.toml", |text| text.replace("\"cli\"", "\"command\"")));
-    assert!(!changes("Cargo.toml", |text| text.replace("criterion = \"0.8\"", "criterion = \"0.9\"")));
+    assert!(!changes("Cargo.toml", |text| text.replace("fastrand = \"2\"", "fastrand = \"3\"")));
     assert!(!changes("fmu/Cargo.toml", |text| text.replace("fastrand = \"2\"", "fastrand = \"3\"")));
     assert!(!changes("src/lib.rs", |text| text.replace('\n', "\r\n")), "as git checks it out on Windows");
-    for other in ["clap", "plotters", "zip", "quick-xml", "diffsol", "criterion", "fastrand", "minijinja"] {
+    for other in ["clap", "plotters", "zip", "quick-xml", "fastrand", "minijinja"] {
         assert!(!changes(LOCK, |lock| updated(lock, other)), "{other}");
     }
 }

@@ -105,7 +105,7 @@ pub fn write(scene: &Scene, limits: precision::Limits, docs: &Path, progress: &P
 const HEAD: &str = "# Speed
 
 McManus's specimen under El Centro 1940 (180), 0.01 s between samples, 15 s: cost per record sample. `cargo run --release
--p study -- speed` writes this page; all numbers are of one run on one machine. The floor is one 4×6 matrix-vector
+--manifest-path study/Cargo.toml -- speed` writes this page; all numbers are of one run on one machine. The floor is one 4×6 matrix-vector
 product per sample, each on the result of the last: the least that a linear structure can cost. Errors are
 max |Δθ|/max |θ| against the engine at a tolerance of 1e-14.
 
