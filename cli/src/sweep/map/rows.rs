@@ -73,7 +73,7 @@ pub fn append(
 ) -> anyhow::Result<()> {
     let pulse = map.pulse(place);
     let (of_amplitude, of_frequency) = units_of(map.structure());
-    let of_structure = AXES.map(|axis| (axis.get)(map.structure.parameters()));
+    let of_structure = AXES.map(|axis| (axis.get)(map.structure().parameters()));
     let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, pulse.error, map.detail().name(), map.tolerance());
     let ratios = (pulse.frequency / of_frequency, pulse.amplitude / of_amplitude);
     file.append(&(key.to_string(), name, of_structure, of_map, level, pulse.frequency, pulse.amplitude, ratios, point))
