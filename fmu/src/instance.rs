@@ -167,7 +167,7 @@ impl Instance {
         let logger = &self.logger;
         let (model, setup, inputs, _) = self.now.parts(&self.archive)?;
         let known = model.validity;
-        model.transit(setup, inputs.acting(), &mut |transition: &Transition| log(logger, transition));
+        model.transit(setup, inputs.values(), &mut |transition: &Transition| log(logger, transition));
         if setup.validity {
             warn(logger, &known, &model.validity);
         }
