@@ -220,10 +220,13 @@ impl<'a> Table<'a> {
         let headed = self.headed_time();
         let is_acceleration =
             |column| self.headings_of(column).any(|heading| matches!(Stated::of(heading), Stated::Unit(_)));
-        let may_be_times = count == 2 || how.dt.is_none_or(|dt| counts(self.column(0)) || has_step(self.column(0), dt));
+        let may_be_times = count == 2
+            || how
+                .dt
+                .is_none_or(|dt| counts(self.column(0)) || has_step(self.column(0), [dt, dt * (count - 1) as f64]));
         let begins_with_times = count > 1 && rises(self.column(0)) && !is_acceleration(0) && may_be_times;
         let are_all = match self.stated {
-            Some((npts, _)) => npts == self.numbers.len() && npts != rows || !begins_with_times && npts != rows,
+            Some((npts, _)) => npts != rows && (npts == self.numbers.len() || !begins_with_times),
             None => !begins_with_times && (self.short.is_some() || !self.has_headings() && self.is_smooth()),
         };
         if let (1, None, [npts, after @ ..]) = (count, self.stated, self.numbers.as_slice())
@@ -400,9 +403,11 @@ fn counts(mut numbers: impl Iterator<Item = f64>) -> bool {
     numbers.next().is_some_and(is_whole) && numbers.next().is_some_and(is_whole) && numbers.all(is_whole)
 }
 
-/// Whether times that rise from each to the next do so every `dt`.
-fn has_step(times: impl Iterator<Item = f64>, dt: f64) -> bool {
-    usual_step(&times.collect::<Vec<_>>()).is_some_and(|step| (step - dt).abs() < SAME_STEP * dt)
+/// Whether times that rise from each to the next do so by one of the `steps`: of the samples, or of lines that begin with
+/// the time and have several.
+fn has_step(times: impl Iterator<Item = f64>, steps: [f64; 2]) -> bool {
+    let usual = usual_step(&times.collect::<Vec<_>>());
+    usual.is_some_and(|usual| steps.into_iter().any(|step| (usual - step).abs() < SAME_STEP * step))
 }
 
 /// Whether a heading is of velocities or displacements.
@@ -713,6 +718,8 @@ mod tests {
         }
         let (record, source) = chosen(Column::Number(2), Some(1.0)).unwrap();
         assert_eq!((record.times(), source.unit), (&[0.0, 1.0][..], Unit::CentimetrePerSecondSquared));
+        let lines = "0.1 1 2\n1.1 3 2\n2.1 1 0\n";
+        assert_eq!(read(lines, &step).unwrap_err().remedy, Some(Remedy::Column), "a time and two samples a line");
         let array = "1 50\n2 60\n1 70\n0 60\n";
         assert_eq!(read(array, &step).unwrap_err().remedy, Some(Remedy::Column), "the columns of two instruments");
         assert_eq!(
