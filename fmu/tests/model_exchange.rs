@@ -165,7 +165,7 @@ fn the_record_acts_at_every_instant_and_its_jumps_are_foreseen() {
 #[test]
 fn a_jump_is_still_to_come_until_its_event() {
     let host = Host::new_model();
-    host.write("push.csv", "0,4\n1,2\n");
+    host.write("push.csv", "t (s),a_g (m/s2)\n0,4\n1,2\n");
     assert_eq!((host.set_record("push.csv"), host.set(&[("record_start", 0.5)])), (OK, OK));
     assert_eq!((host.setup(None, 10.0, None), host.enter(), host.exit()), (OK, OK, OK));
     assert_eq!((host.update().unwrap().next_event_time, host.go_on()), (10.5, OK));
