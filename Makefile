@@ -1,5 +1,5 @@
 # make demo    run the FMU on a real earthquake and draw docs/pacoima_mcmanus.png (2 minutes)
-# make test    every test but those of `heavy` (7 minutes more)
+# make test    every test but those of `heavy` (4 minutes more)
 # make check   format, clippy and the tests of what differs from the last commit: the loop of whoever changes a line
 # make lint    format and clippy of everything, warnings denied
 # make heavy   what takes longer or needs more, of which each can be made alone:
