@@ -12,7 +12,7 @@ use crate::ground_motion::Elapsed;
 use crate::load::{LinearLoad, Load};
 use crate::piece::{Sample, Watch};
 use crate::transition::{self, Event};
-use crate::{Engine, GroundMotion, Motion, Phase, State};
+use crate::{Engine, GroundMotion, Motion, Phase, Side, State};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
@@ -141,15 +141,21 @@ impl Engine {
 
     /// Lifts the base off if that is due at once under `load`: after a landing, at the start, or when a load jumps.
     pub fn lift_off_if_due<W: Watch>(&mut self, load: Load, watch: &mut W) {
-        let Sample { motion, structure, level, .. } = self.sample(load);
-        if motion.phase != Phase::FullContact || motion.held() > 0.0 {
-            return;
-        }
-        let (margin, side) = level.uplift_margin(structure, &motion.state, load);
-        if margin <= 0.0 {
+        if let Some(side) = self.uplift_due(load) {
+            let Sample { motion, structure, level, .. } = self.sample(load);
             let (motion, transition) = transition::resolve(level, structure, motion, Event::Uplift(side));
             self.set_motion(motion);
             watch.transition(&transition);
         }
+    }
+
+    /// The side about which the base lifts off at once under `load`, if it does.
+    pub fn uplift_due(&self, load: Load) -> Option<Side> {
+        let Sample { motion, structure, level, .. } = self.sample(load);
+        if motion.phase != Phase::FullContact || motion.held() > 0.0 {
+            return None;
+        }
+        let (margin, side) = level.uplift_margin(structure, &motion.state, load);
+        (margin <= 0.0).then_some(side)
     }
 }

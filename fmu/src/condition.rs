@@ -183,10 +183,16 @@ impl Model {
         })
     }
 
+    /// Whether there has been no step, and the structure is in motion or at rest as it stands: contact that ends at once under
+    /// `load` is neither.
+    fn starts_as_it_stands(&self, load: Load) -> bool {
+        self.engine.motion().work.steps == 0 && self.engine.uplift_due(load).is_none()
+    }
+
     /// The peaks since the start; before the first step, the values under `load`.
     pub fn peaks(&self, setup: &Setup, load: Load) -> Peaks {
         let mut peaks = self.peaks;
-        if self.engine.motion().work.steps == 0 {
+        if self.starts_as_it_stands(load) {
             peaks.see_instant(setup.start_time, &self.engine.outputs(load));
         }
         peaks
@@ -195,9 +201,8 @@ impl Model {
     /// What the motion has gone beyond since the start; before the first step, what the reactions under `load` are.
     pub fn validity(&self, setup: &Setup, load: Load) -> Found {
         let mut validity = self.watch_validity();
-        let motion = self.engine.motion();
-        if motion.work.steps == 0 {
-            validity.see_instant(setup.start_time, motion.phase, &self.engine.reactions(load));
+        if self.starts_as_it_stands(load) {
+            validity.see_instant(setup.start_time, self.engine.motion().phase, &self.engine.reactions(load));
         }
         *validity.found()
     }

@@ -12,7 +12,8 @@ fn nothing_is_left_when_the_last_instance_goes() {
     let folder = tempfile::tempdir().unwrap();
     let run = |name: &str| {
         let path = folder.path().join(name);
-        let samples: String = (0..2000).map(|i| format!("{i}e-2,{}\n", i % 7)).collect();
+        let samples: String =
+            (0..2000).map(|i| format!("{:.2},{:.1}\n", 0.01 * f64::from(i), f64::from(i % 7))).collect();
         fs::write(&path, samples).unwrap();
         let [first, second] = [Host::new(), Host::new()];
         for host in [&first, &second] {

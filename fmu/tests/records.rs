@@ -404,6 +404,16 @@ fn peaks_that_nobody_asks_for_are_not_watched() {
     assert_eq!(silent.get("t_overturned"), 0.0);
 }
 
+/// A jump at the start lifts a rigid structure off at once: the contact before it is no motion, and peaks never fall.
+#[test]
+fn contact_that_ends_at_once_has_no_peaks() {
+    let host = Host::initializing(&[("a_g", 20.0)]);
+    assert_eq!((host.set_integer("detail", Detail::Rigid as i32 + 1), host.watch_peaks()), (OK, OK));
+    let before = host.get("a_t_max");
+    assert_eq!((host.exit(), host.step(0.0, 1e-3)), (OK, OK));
+    assert!(before <= host.get("a_t_max") && host.get("a_t_max") < 20.0, "{before}, {}", host.get("a_t_max"));
+}
+
 #[test]
 fn the_instant_of_overturning_is_told() {
     let host = Host::new();
