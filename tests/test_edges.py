@@ -215,7 +215,8 @@ def test_a_step_of_ten_hours_ends_at_rest(evison, level):
 
 
 def test_a_step_of_too_much_work_is_refused_and_a_shorter_one_is_not(evison):
-    """2,000,000 series of 8 rad each: what `nonlinear` takes for a structure at rest."""
+    """2,000,000 series of 8 rad each, but for a few that end where a part of the step does: what `nonlinear` takes for a
+    structure at rest."""
     omega = 2 * pi * 1e4
     with start(evison, "nonlinear", f_fc=1e4) as instance:
         before = instance.reals()
@@ -225,7 +226,7 @@ def test_a_step_of_too_much_work_is_refused_and_a_shorter_one_is_not(evison):
         words = re.fullmatch(r"fmi2DoStep: one advance may take 2000000 steps; they ended at t = (\S+) s of 7200 s: advance in "
                              r"shorter intervals", message)
         assert words, message
-        assert float(words[1]) == pytest.approx(2_000_000 * 8 / omega, rel=1e-9)
+        assert 0 <= 2_000_000 * 8 - float(words[1]) * omega < 20 * 8
         assert instance.reals() == before
         instance.time = 0.0
         instance.step(250.0)

@@ -65,8 +65,8 @@ def _quarter(alpha: float, top: float) -> float:
 def of_model(project: Project, block: Block, release: float) -> Decay:
     """Of the rigid limit, as `rocking-fmu simulate` lists its transitions."""
     duration = 1.5 * housner(release).instants[-1] / block.p
-    events = project.events(*block.options, "--detail", "rigid", "--tolerance", TOLERANCE, "--free", duration,
-                            "--theta-0", repr(float(release * block.tangent)))[:IMPACTS]
+    events = project.events("--preset", "mcmanus", *block.options, "--detail", "rigid", "--tolerance", TOLERANCE,
+                            "--free", duration, "--theta-0", repr(float(release * block.tangent)))[:IMPACTS]
     return Decay(np.array([block.p * float(event["time[s]"]) for event in events]),
                  np.array([abs(float(event["theta_dot_before[rad/s]"])) / block.p / block.tangent for event in events]))
 

@@ -39,7 +39,8 @@ def pacoima_dam() -> tuple[np.ndarray, np.ndarray]:
 
 def write_csv(path: Path, time: np.ndarray, a_g: np.ndarray) -> None:
     """A record as the FMU and the command line read it, to the last digit."""
-    np.savetxt(path, np.column_stack([time, a_g]), fmt="%.17g", delimiter=",")
+    np.savetxt(path, np.column_stack([time, a_g]), fmt="%.17g", delimiter=",",
+               header="time (s),a_g (m/s2)", comments="")
 
 
 def single_pulse(T_p: float, peak: float) -> tuple[np.ndarray, np.ndarray]:
