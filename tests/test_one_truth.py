@@ -41,11 +41,9 @@ def test_peaks_are_the_same_whatever_the_interval_of_the_output(exporter, tmp_pa
 
 
 def test_simulate_advise_and_sweep_have_the_same_peaks(exporter, tmp_path):
-    record = RECORDS["pacoima254"]
+    record = RECORDS["elcentro"]
     simulated = {name: in_si(peak)
                  for name, peak in peaks(run(exporter, tmp_path, "simulate", "--record", record, "-o", "out.csv")).items()}
-    assert simulated["u"] == pytest.approx(5.3046e-3, abs=5e-8)
-
     advised = re.search(r"peaks: (.*)", run(exporter, tmp_path, "advise", "--record", record))[1].split(", ")
     expected = [simulated[name] for name in ("theta", "u", "a_t", "V_t", "M_t")]
     assert [in_si(quantity.partition(" ")[2]) for quantity in advised] == pytest.approx(expected, rel=2e-6)
