@@ -1,10 +1,12 @@
 //! A record is read and run, the levels of detail are compared on it, and piers of four stiffnesses are swept.
 
-use rocking::intensity::IntensityMeasure::Pga;
-use rocking::run::{levels, outcome::Limit, peaks::PEAKS, plan::Case, plan::NamedRecord, plan::Plan, plan::Population};
-use rocking::{
-    Parameters, Run, Structure, fragility::FragilityCurve, fragility::Trials, record::Reading, record::Record,
-};
+use rocking::estimates::intensity::IntensityMeasure::Pga;
+use rocking::run::record::{Reading, Record};
+use rocking::run::{levels, peaks::PEAKS};
+use rocking::{Parameters, Run, Structure};
+use rocking_sweep::fragility::{FragilityCurve, Trials};
+use rocking_sweep::outcome::Limit;
+use rocking_sweep::plan::{Case, NamedRecord, Plan, Population};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let (ground, source) = Record::read("examples/pulse.csv".as_ref(), &Reading::default(), 9.81)?;

@@ -1,28 +1,31 @@
 //! The hybrid engine: phase equations → step → guard → transition, repeated to the end of an interval.
 //!
-//! A step is a Taylor series ([`crate::taylor`]) that ends where its truncation error meets the tolerance, at the end
-//! of the interval, or at the first transition on it, which [`crate::first_crossing`] cannot pass. At the start of
+//! A step is a Taylor series ([`crate::series::taylor`]) that ends where its truncation error meets the tolerance, at the end
+//! of the interval, or at the first transition on it, which [`crate::series::first_crossing`] cannot pass. At the start of
 //! rocking θ is exactly 0; its leading zero coefficients are divided out before the search for its return, so that
 //! neither is a return within microseconds missed nor the start taken for one.
 //!
-//! Steps are bounded as transitions are ([`crate::transition`]): an advance takes at most one for itself, two for each
+//! Steps are bounded as transitions are ([`crate::engine::transition`]): an advance takes at most one for itself, two for each
 //! transition, and one for each 1/Ω of time, Ω the largest of ω_u, 2 ζ_u ω_u, 2 ζ_fc ω_fc and p_l. Only what is thrown
 //! about takes more, up to four for each 1/Ω with |θ̇|, |u̇|/ρ and √(|ü|/ρ) among them, ρ² = (J0 + m0 B²)/m + (sB − u)².
 //! One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps. What is left of a long one once the base is down for good takes
 //! no more of them where full contact has an exact flow.
 
-use crate::detail::{AnyLevel, Detail};
-use crate::first_crossing::{Crossing, Guard, first_time_all_closed};
-use crate::level::Level;
-use crate::load::{LOADS, LinearLoad, Load};
-use crate::motion::{Chatter, Motion, Work};
-use crate::piece::{Equations, Part, Piece, Sample, Watch};
-use crate::quantity::with_unit;
-use crate::reactions::{Impulse, Reactions};
-use crate::state::InitialStateError;
-use crate::taylor::{Arc, Start, sum_of_magnitudes};
-use crate::transition::{self, Event};
+pub mod motion;
+pub mod piece;
+pub mod transition;
+
+use crate::levels::detail::{AnyLevel, Detail};
+use crate::levels::level::Level;
+use crate::mechanics::load::{LOADS, LinearLoad, Load};
+use crate::mechanics::reactions::{Impulse, Reactions};
+use crate::mechanics::state::InitialStateError;
+use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
+use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
+use crate::structure::quantity::with_unit;
 use crate::{Outputs, Phase, Side, State, Structure};
+use motion::{Chatter, Event, Motion, Work};
+use piece::{Equations, Part, Piece, Sample, Watch};
 use std::f64::consts::FRAC_PI_2;
 
 /// The default relative tolerance of the results.

@@ -4,21 +4,22 @@
 //! piece and every transition of it. What is known of a run without a watcher is how it ended.
 
 pub mod curve;
-pub mod exceedances;
 pub mod fall;
+pub mod ground_motion;
 mod history;
 pub mod levels;
-pub mod map;
-pub mod outcome;
+pub mod outside_step;
 pub mod peaks;
-pub mod plan;
+mod reaction_series;
+pub mod record;
 mod samples;
 pub mod validity;
 
+use crate::engine::piece::Sample;
 use crate::engine::{AdvanceError, DEFAULT_TOLERANCE};
-use crate::piece::Sample;
-use crate::record::{Record, Segment};
-use crate::state::InitialStateError;
+use crate::mechanics::state::InitialStateError;
+use crate::run::ground_motion::Segment;
+use crate::run::record::Record;
 use crate::{Detail, Engine, Motion, Progress, Ramp, State, Structure, Watch};
 use peaks::Peaks;
 use samples::Samples;

@@ -1,7 +1,10 @@
 //! Everything that follows from a structure's parameters (before Eq 11, after 4, 8 and 13, before 18).
 
-use crate::State;
-use crate::parameters::{ParameterError, Parameters};
+pub mod natural_quantities;
+pub mod parameters;
+pub mod quantity;
+
+use parameters::{ParameterError, Parameters};
 use std::f64::consts::TAU;
 
 /// A structure: checked parameters and the constants that the equations use.
@@ -120,13 +123,6 @@ impl Structure {
             foundation: (J0 + m0 * B * B) / m,
             zeta_u: c_u / (2.0 * (k * m * one_minus_chi).sqrt()),
         })
-    }
-
-    /// Magnitudes that are usual in a motion: those of a rotation α_cg, at which the structure is about to fall, and of u_cr,
-    /// at which its base lifts off.
-    pub fn usual_state(&self) -> State {
-        let (u, theta) = (self.u_cr, self.tan_alpha_cg.atan());
-        State { u, u_dot: self.omega_fc * u, theta, theta_dot: self.p_l * theta }
     }
 
     /// The parameters that this structure was derived from.

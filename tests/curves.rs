@@ -1,7 +1,7 @@
 //! Curves of runs from outside: what straight lines between their points say, beside the motion itself.
 
-use rocking::record::Record;
 use rocking::run::curve::Point;
+use rocking::run::record::Record;
 use rocking::run::{End, Run};
 use rocking::{Detail, Parameters, Phase, State, Structure, TransitionKind};
 
@@ -43,7 +43,7 @@ fn lines_stay_as_close_to_the_motion_as_was_asked_for() {
                 let found = on_the_line(&curve.points, time);
                 (0..4).for_each(|i| missed[i] = missed[i].max((found[i] - expected[i]).abs() / largest[i].max(1e-12)));
             };
-            let show = |sample: &rocking::piece::Sample| {
+            let show = |sample: &rocking::engine::piece::Sample| {
                 let outputs = sample.outputs();
                 compare(sample.motion.time, [outputs.theta, outputs.u, outputs.a_t, sample.load.a_g]);
             };

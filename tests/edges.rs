@@ -4,8 +4,8 @@
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use proptest::prelude::*;
-use rocking::energy::energy;
 use rocking::engine::{AdvanceError, DEFAULT_TOLERANCE};
+use rocking::mechanics::energy::energy;
 use rocking::{
     Detail, Engine, LinearLoad, Load, Motion, Parameters, Phase, Progress, State, Structure, Transition, TransitionKind,
 };

@@ -3,9 +3,9 @@
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
 use proptest::prelude::*;
-use rocking::energy::energy;
 use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::transition::MAX_TRANSITIONS_PER_PERIOD;
+use rocking::levels::rules::MAX_TRANSITIONS_PER_PERIOD;
+use rocking::mechanics::energy::energy;
 use rocking::{
     Engine, Motion, Outputs, Parameters, Phase, Progress, Ramp, Side, State, Structure, Transition, TransitionKind,
 };

@@ -2,7 +2,7 @@
 #![allow(non_snake_case)]
 
 use approx::{assert_abs_diff_eq, assert_relative_eq};
-use rocking::effective_frequency::time_to_impact;
+use rocking::estimates::effective_frequency::time_to_impact;
 use rocking::{Detail, Engine, Parameters, Phase, Progress, Ramp, Side, State, Structure, Transition, TransitionKind};
 
 const STILL: Ramp = Ramp { value: 0.0, slope: 0.0 };

@@ -2,9 +2,9 @@
 //! the smaller its steps.
 
 use approx::assert_relative_eq;
-use rocking::ground_motion::Elapsed;
-use rocking::outside_step::{BAND, Checked, Known};
-use rocking::record::Record;
+use rocking::run::ground_motion::Elapsed;
+use rocking::run::outside_step::{BAND, Checked, Known};
+use rocking::run::record::Record;
 use rocking::{Detail, Engine, GroundMotion, LinearLoad, Load, Parameters, Phase, State, Structure, Transition};
 
 /// A burst that lifts McManus's pier some twenty times.

@@ -3,8 +3,8 @@
 
 mod shaking;
 
-use rocking::record::Record;
 use rocking::run::peaks::Peaks;
+use rocking::run::record::Record;
 use rocking::run::{End, Run};
 use rocking::{Detail, Engine, Load, Parameters, Phase, Ramp, State, Structure};
 use shaking::shaking;

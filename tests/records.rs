@@ -7,7 +7,7 @@ mod layouts;
 
 use fastrand::Rng;
 use layouts::{DT, Layout, all, cosmos, samples};
-use rocking::record::{Column, Reading, Record, RecordError, Remedy, Unit, UnitFrom};
+use rocking::run::record::{Column, Reading, Record, RecordError, Remedy, Unit, UnitFrom};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::{env, thread};
@@ -83,7 +83,7 @@ fn what_is_missing_is_noticed() {
 
         let shorter = [&lines[..middle], &lines[middle + 1..]].concat();
         let missing = read(&shorter, &how);
-        if matches!(format, rocking::record::Format::Table) {
+        if matches!(format, rocking::run::record::Format::Table) {
             continue;
         }
         let missing = missing.unwrap_err();

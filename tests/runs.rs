@@ -1,6 +1,6 @@
 //! Runs from outside: levels compared on fine records, samples read from long leaps, ends, start times.
 
-use rocking::record::Record;
+use rocking::run::record::Record;
 use rocking::run::{End, Run, RunError, levels};
 use rocking::{Detail, Engine, Parameters, Ramp, State, Structure};
 

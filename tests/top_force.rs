@@ -2,8 +2,8 @@
 #![allow(non_snake_case)]
 
 use approx::assert_relative_eq;
-use rocking::energy::energy;
 use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::mechanics::energy::energy;
 use rocking::{Detail, Engine, LinearLoad, Load, Parameters, Phase, State, Structure, Transition, TransitionKind};
 
 fn start(parameters: Parameters, initial: State, detail: Detail) -> Engine {

@@ -5,7 +5,7 @@
 mod shaking;
 
 use nalgebra::{Matrix2, SMatrix, SVector, Vector2};
-use rocking::record::Record;
+use rocking::run::record::Record;
 use rocking::run::validity::{ASSUMPTIONS, Limits};
 use rocking::run::{End, Run};
 use rocking::{Detail, Parameters, Phase, Side, State, Structure, Transition, TransitionKind};

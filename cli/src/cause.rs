@@ -1,7 +1,10 @@
 //! What a result comes from, so that it can be traced: program, structure, ground motion, and how it was computed.
 use crate::record_args::RecordArgs;
 use FlexibleRocking::BUILD;
-use rocking::{Detail, Parameters, State, Structure, parameters::PARAMETERS, record::Record, state::INITIAL_VALUES};
+use rocking::mechanics::state::INITIAL_VALUES;
+use rocking::run::record::Record;
+use rocking::structure::parameters::PARAMETERS;
+use rocking::{Detail, Parameters, State, Structure};
 use serde::Serialize;
 use std::path::PathBuf;
 

@@ -11,10 +11,10 @@ use crate::{
     significant::{short, significant},
     structure_args::StructureArgs,
 };
+use rocking::structure::parameters::PARAMETERS;
+use rocking::structure::quantity::Quantity;
 use rocking::{
     Structure,
-    parameters::PARAMETERS,
-    quantity::Quantity,
     structure::{DERIVED, Derived},
 };
 use std::fmt::{self, Write};

@@ -11,13 +11,11 @@ use crate::{
     significant::significant,
     structure_args::StructureArgs,
 };
-use rocking::{
-    Structure,
-    demand::{Demand, INSTANT_TRANSITION},
-    effective_frequency::effective_frequency,
-    record::Record,
-    response_spectrum::spectral_acceleration,
-};
+use rocking::Structure;
+use rocking::estimates::demand::{Demand, INSTANT_TRANSITION};
+use rocking::estimates::effective_frequency::effective_frequency;
+use rocking::estimates::response_spectrum::spectral_acceleration;
+use rocking::run::record::Record;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::fmt::{self, Write};
 

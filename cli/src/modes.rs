@@ -4,10 +4,8 @@ mod picture;
 use crate::{output_files::OutputFiles, picture::PictureFile, structure_args::StructureArgs, tables::Table, talk::say};
 use anyhow::{Context, ensure};
 use csv::{Position, StringRecord};
-use rocking::{
-    Outputs, Phase, Side, State,
-    modal_split::{ModalAccelerations, Modes},
-};
+use rocking::estimates::modal_split::{ModalAccelerations, Modes};
+use rocking::{Outputs, Phase, Side, State};
 use std::path::PathBuf;
 
 /// What to split.

@@ -13,10 +13,8 @@ use crate::{
     talk::say,
 };
 use anyhow::Context;
-use rocking::{
-    Phase, Structure,
-    pushover::{Equilibrium, at_displacement, at_overturning, at_rotation, in_full_contact},
-};
+use rocking::estimates::pushover::{Equilibrium, at_displacement, at_overturning, at_rotation, in_full_contact};
+use rocking::{Phase, Structure};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 

@@ -10,11 +10,9 @@ use crate::{
     tables::Table,
     talk::say,
 };
-use rocking::{
-    Parameters,
-    intensity::{arias_intensity, peak_velocity, significant_duration},
-    record::Record,
-};
+use rocking::Parameters;
+use rocking::estimates::intensity::{arias_intensity, peak_velocity, significant_duration};
+use rocking::run::record::Record;
 use std::path::{Path, PathBuf};
 
 /// What a record's g stands for, m/s².

@@ -2,7 +2,7 @@
 use crate::{input, significant::short, tables::Table, talk::say};
 use anyhow::{anyhow, ensure};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use rocking::record::{Column, Reading, Record, RecordError, Remedy, Source, Unit, UnitFrom};
+use rocking::run::record::{Column, Reading, Record, RecordError, Remedy, Source, Unit, UnitFrom};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 

@@ -8,7 +8,8 @@ use clap::{
     ArgGroup,
     builder::{PossibleValuesParser, TypedValueParser},
 };
-use rocking::{Detail, Run, State, Structure, engine::DEFAULT_TOLERANCE, record::Record, run::End};
+use rocking::run::record::Record;
+use rocking::{Detail, Run, State, Structure, engine::DEFAULT_TOLERANCE, run::End};
 use std::path::Path;
 
 /// A motion to follow: of which structure, under which ground motion, from where, and how it is computed.

@@ -3,10 +3,10 @@
 use crate::{input, talk::say};
 use anyhow::{Context, anyhow};
 use clap::{Arg, ArgMatches, Command, FromArgMatches, ValueEnum, parser::ValueSource, value_parser};
-use rocking::natural_quantities::{DEFAULTS, Given, GivenError, NATURAL, names};
-use rocking::parameters::PARAMETERS;
-use rocking::quantity::Quantity;
 use rocking::structure::Derived;
+use rocking::structure::natural_quantities::{DEFAULTS, Given, GivenError, NATURAL, names};
+use rocking::structure::parameters::PARAMETERS;
+use rocking::structure::quantity::Quantity;
 use rocking::{Parameters, Structure};
 use std::path::{Path, PathBuf};
 

@@ -4,7 +4,7 @@ use crate::quantities::readable;
 use crate::results::{Format, Number, print_json, print_traced};
 use crate::validity;
 use fmu_export::significant::significant;
-use rocking::record::Record;
+use rocking::run::record::Record;
 use rocking::run::{
     Ending, Finish, LONGEST_REST,
     peaks::{PEAKS, Peak, Peaks},

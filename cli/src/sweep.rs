@@ -20,12 +20,12 @@ use clap::value_parser;
 use file::{Asked, Sweep};
 use indicatif::ProgressStyle;
 use rayon::{ThreadPool, ThreadPoolBuilder, prelude::*};
-use rocking::quantity::with_unit;
-use rocking::run::{
+use rocking::run::validity::{Found, Limits, Validity};
+use rocking::structure::quantity::with_unit;
+use rocking_sweep::{
     exceedances,
     outcome::Outcome,
     plan::{Case, Plan},
-    validity::{Found, Limits, Validity},
 };
 use row_file::RowFile;
 use rows::Key;

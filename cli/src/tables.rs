@@ -1,6 +1,6 @@
 //! The tables that `simulate` writes: the response and its transitions as CSV.
 use crate::output_files::{OutputFile, OutputFiles};
-use rocking::piece::Sample;
+use rocking::engine::piece::Sample;
 use rocking::{Impulse, Outputs, Reactions, State, Transition};
 use serde::Serialize;
 use std::{

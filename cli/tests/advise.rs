@@ -4,14 +4,11 @@
 mod command_line;
 
 use command_line::{DT, SAMPLES, fail, folder, pulse, succeed};
-use rocking::{
-    Detail, Engine, Load, Parameters, Ramp, State, Structure,
-    demand::Demand,
-    effective_frequency::effective_frequency,
-    engine::DEFAULT_TOLERANCE,
-    record::{Reading, Record},
-    response_spectrum::spectral_acceleration,
-};
+use rocking::estimates::demand::Demand;
+use rocking::estimates::effective_frequency::effective_frequency;
+use rocking::estimates::response_spectrum::spectral_acceleration;
+use rocking::run::record::{Reading, Record};
+use rocking::{Detail, Engine, Load, Parameters, Ramp, State, Structure, engine::DEFAULT_TOLERANCE};
 use std::{f64::consts::TAU, fs};
 
 /// The columns of the row of `level`.

@@ -4,7 +4,7 @@
 mod command_line;
 
 use command_line::{fail, succeed};
-use rocking::record::{
+use rocking::run::record::{
     Reading, Record,
     pulse::{DEFAULT_ERROR, Pulse, Shape},
 };

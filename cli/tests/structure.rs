@@ -4,7 +4,7 @@
 mod command_line;
 
 use command_line::{command, fail, folder, succeed};
-use rocking::natural_quantities::{NATURAL, names};
+use rocking::structure::natural_quantities::{NATURAL, names};
 use std::{collections::BTreeMap, fs, path::Path};
 
 /// The derived quantities that `describe` prints.

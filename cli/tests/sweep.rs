@@ -4,7 +4,9 @@
 mod command_line;
 
 use command_line::{command, fail, folder, pulse, succeed};
-use rocking::{Parameters, Structure, fragility::FragilityCurve, fragility::Trials};
+use rocking::{Parameters, Structure};
+use rocking_sweep::fragility::FragilityCurve;
+use rocking_sweep::fragility::Trials;
 use std::{
     collections::HashSet,
     fs::{self, File},

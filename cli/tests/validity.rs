@@ -3,7 +3,7 @@
 mod command_line;
 
 use command_line::{fail, folder, succeed};
-use rocking::record::{Reading, Record};
+use rocking::run::record::{Reading, Record};
 use rocking::run::validity::{ASSUMPTIONS, Found, Limits};
 use rocking::run::{End, Run};
 use rocking::{Parameters, Structure};

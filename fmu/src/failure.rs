@@ -6,9 +6,9 @@ use crate::resources::ResourceError;
 use crate::state_machine::Stage;
 use crate::variables::{Causality, DataType, Enumeration, VARIABLES, Variable};
 use rocking::engine::AdvanceError;
-use rocking::parameters::ParameterError;
-use rocking::quantity::{OutOfRange, with_unit};
-use rocking::state::InitialStateError;
+use rocking::mechanics::state::InitialStateError;
+use rocking::structure::parameters::ParameterError;
+use rocking::structure::quantity::{OutOfRange, with_unit};
 
 /// Why a call is not done. But for [`Failure::Overturned`] and [`AdvanceError::Singular`], nothing has
 /// changed.

@@ -22,8 +22,8 @@ use crate::state_machine::IsAllowed;
 use crate::variables::{Causality, DataType, Variable};
 use libc::{c_char, c_int, c_uint, c_void, size_t};
 use rocking::Progress;
-use rocking::outside_step::INDICATORS;
-use rocking::state::COMPONENTS;
+use rocking::mechanics::state::COMPONENTS;
+use rocking::run::outside_step::INDICATORS;
 use std::path::PathBuf;
 
 /// `fmi3LogMessageCallback`

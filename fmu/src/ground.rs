@@ -1,7 +1,7 @@
 //! The records that the ground follows: found by name or path, and shared by all instances of the process that hold them.
 
 use crate::resources::{self, Archive};
-use rocking::record::{self, Reading, Record, RecordError, Source, Unit};
+use rocking::run::record::{self, Reading, Record, RecordError, Source, Unit};
 use std::error::Error;
 use std::path::{MAIN_SEPARATOR, Path, PathBuf, is_separator};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};

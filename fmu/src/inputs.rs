@@ -1,6 +1,6 @@
 //! The inputs: what the host sets at communication points, and the line that each of them follows over a step.
 
-use rocking::load::LOADS;
+use rocking::mechanics::load::LOADS;
 use rocking::{LinearLoad, Load};
 use serde::{Deserialize, Serialize};
 

@@ -3,7 +3,7 @@
 
 use percent_encoding::percent_decode_str;
 use rocking::Parameters;
-use rocking::parameters::ParameterError;
+use rocking::structure::parameters::ParameterError;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};

@@ -12,7 +12,7 @@ use crate::ground::GroundRecord;
 use crate::setup::Setup;
 use crate::shown::Shown;
 use crate::variables::{DataType, Variable};
-use rocking::state::COMPONENTS;
+use rocking::mechanics::state::COMPONENTS;
 use rocking::{LinearLoad, Parameters, Phase, State};
 use std::sync::Arc;
 
@@ -72,7 +72,7 @@ pub(crate) fn by_state(
 ) -> Result<Vec<f64>, Failure> {
     let motion = *model.engine.motion();
     let components = motion.state.components();
-    let scale = components[which].abs().max(model.engine.structure().usual_state().components()[which]);
+    let scale = components[which].abs().max(State::usual(model.engine.structure()).components()[which]);
     let load = model.load(setup, inputs).value;
     let mut shown = |value: f64| {
         let mut components = components;

@@ -4,7 +4,7 @@ use crate::ground::GroundRecord;
 use crate::inputs::Between;
 use crate::resources::Contents;
 use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::ground_motion::Placement;
+use rocking::run::ground_motion::Placement;
 use rocking::{Detail, GroundMotion, Parameters, State};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::ground::GroundRecord;
 use crate::setup::Setup;
-use rocking::load::LOADS;
+use rocking::mechanics::load::LOADS;
 use rocking::{Engine, Structure};
 
 impl Setup {

@@ -6,9 +6,11 @@
 
 use super::peaks::Peaks;
 use super::{Finish, Run, RunError};
-use crate::outputs::Measure;
-use crate::piece::{Piece, Watch};
-use crate::{Outputs, Phase, Transition, extremes, taylor};
+use crate::engine::piece::{Piece, Watch};
+use crate::mechanics::outputs::Measure;
+use crate::series::extremes;
+use crate::series::taylor;
+use crate::{Outputs, Phase, Transition};
 
 /// How often a stretch of one polynomial is divided at most.
 const DIVISIONS: u32 = 30;

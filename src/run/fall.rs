@@ -3,7 +3,7 @@
 
 use super::peaks::Peaks;
 use super::{End, Run, RunError};
-use crate::bisection::last_where;
+use crate::series::bisection::last_where;
 use crate::{Load, Piece, Structure, Watch};
 
 /// Watches a motion for the instant.
@@ -75,8 +75,8 @@ impl Run<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::Record;
     use crate::run::Ending;
+    use crate::run::record::Record;
     use crate::{Detail, Outputs, Parameters, State};
     use std::f64::consts::TAU;
 

@@ -2,10 +2,10 @@
 //!
 //! What both have covered is compared and left: neither is kept whole.
 
-use crate::extremes;
-use crate::outputs::Measure;
-use crate::piece::{Piece, Watch};
-use crate::taylor::{self, Series};
+use crate::engine::piece::{Piece, Watch};
+use crate::mechanics::outputs::Measure;
+use crate::series::extremes;
+use crate::series::taylor::{self, Series};
 
 /// Part of the vibration period 2π/ω_u: u̇, and with it a_t, jumps at a landing. Where one motion has landed and the other
 /// does so within this time, their distance is that jump and says nothing of either.

@@ -4,8 +4,8 @@ use super::history::{Distance, History};
 use super::peaks::{PeakWatch, Peaks};
 use super::{Course, Ending, Run, RunError};
 use crate::Detail;
-use crate::motion::Work;
-use crate::record::Segment;
+use crate::engine::motion::Work;
+use crate::run::ground_motion::Segment;
 
 /// Tolerance of the run that all others are measured by.
 pub const REFERENCE_TOLERANCE: f64 = 1e-12;

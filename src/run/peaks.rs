@@ -5,10 +5,11 @@
 //! it is stationary (`extremes`): the largest magnitude is at one of these or at an end. A piece that may hold more than
 //! what has been seen is first kept, since most are soon beaten by the end of another.
 
-use crate::extremes::Bound;
-use crate::outputs::Measure;
-use crate::piece::{Equations, KeptPiece, Piece, Watch};
-use crate::{Motion, Outputs, Structure, Transition, extremes};
+use crate::engine::piece::{Equations, KeptPiece, Piece, Watch};
+use crate::mechanics::outputs::Measure;
+use crate::series::extremes;
+use crate::series::extremes::Bound;
+use crate::{Motion, Outputs, Structure, Transition};
 use serde::{Deserialize, Serialize};
 
 /// A bound above the largest magnitude by no more than this part of it may be rounding.

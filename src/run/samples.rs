@@ -1,8 +1,8 @@
 //! A motion at given instants, read from its pieces.
 
 use crate::Engine;
-use crate::load::Load;
-use crate::piece::{Piece, Sample, Watch};
+use crate::engine::piece::{Piece, Sample, Watch};
+use crate::mechanics::load::Load;
 use std::iter::Peekable;
 
 /// Shows a motion at given instants.

@@ -3,7 +3,7 @@
 //!
 //! The model holds the base down until |u| = u_cr, keeps the edge that it rocks about on the ground, lets nothing slide
 //! and takes θ̇ ← r θ̇ at every impact. With W = (m + m0) g, the reactions R and the impulse I of an impact
-//! ([`reactions`](crate::reactions)), these tell what that asks for:
+//! ([`reactions`](crate::mechanics::reactions)), these tell what that asks for:
 //!
 //! ```text
 //! tension_max      largest (|R_m|/B − R_v)/W in full contact      above 0 the base is held down by tension
@@ -19,13 +19,14 @@
 //! seen so far, until none is positive (Dinkelbach). When, and for how long, a limit is passed is between its roots.
 
 use super::{Finish, Run, RunError};
-use crate::bisection::last_where;
-use crate::level::Rates;
-use crate::piece::{Piece, Watch};
-use crate::reaction_series::{ReactionSeries, accelerations_at_ends, off_chord};
-use crate::taylor::{Arc, Series, Start, evaluate};
+use crate::engine::piece::{Piece, Watch};
+use crate::levels::level::Rates;
+use crate::mechanics::impact;
+use crate::run::reaction_series::{ReactionSeries, accelerations_at_ends, off_chord};
+use crate::series::bisection::last_where;
+use crate::series::extremes;
+use crate::series::taylor::{Arc, Series, Start, evaluate};
 use crate::{Detail, Impulse, Parameters, Phase, Reactions, Side, Structure, Transition, TransitionKind};
-use crate::{extremes, impact};
 use serde::{Deserialize, Serialize};
 
 /// Something worse by no more than this part may be rounding.

@@ -1,7 +1,9 @@
 //! The equations between two transitions, with their evaluations counted.
 
 use nalgebra::Vector2;
-use rocking::{Load, Phase, Ramp, State, Structure, full_contact, nonlinear_rocking};
+use rocking::{Load, Phase, Ramp, State, Structure};
+use rocking::levels::full_contact;
+use rocking::levels::nonlinear;
 use std::cell::Cell;
 
 /// Two second-order equations for the positions (u, θ).

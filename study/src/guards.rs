@@ -1,6 +1,8 @@
 //! When a phase ends, and what follows: the model's rules as a fixed-step code applies them, state by state.
 
-use rocking::{Load, Phase, Side, State, Structure, impact, nonlinear_rocking};
+use rocking::{Load, Phase, Side, State, Structure};
+use rocking::mechanics::impact;
+use rocking::levels::nonlinear;
 use std::f64::consts::FRAC_PI_2;
 
 /// Excess of |u| over u_cr, and of s θ̈ over 0 in units of g/H, that count as uplift. What rounding alone can bring

@@ -1,7 +1,7 @@
 //! The scenes: a structure, where it starts, and the ground under it.
 
 use anyhow::{Context, Result, bail};
-use rocking::record::{Reading, Record};
+use rocking::run::record::{Reading, Record};
 use rocking::run::End;
 use rocking::{Detail, Parameters, Ramp, Run, State, Structure};
 use std::path::{Path, PathBuf};

@@ -12,7 +12,8 @@ use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::validity::{
     ASSUMPTIONS, EDGE_LOAD, ENERGY, FRICTION, Found, IMPACT_FRICTION, IMPACT_TENSION, TENSION,
 };
-use rocking::{Detail, Parameters, impact};
+use rocking::{Detail, Parameters};
+use rocking::mechanics::impact;
 use serde::Serialize;
 use std::path::Path;
 

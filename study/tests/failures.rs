@@ -4,8 +4,9 @@
 mod synthetic;
 
 use approx::assert_relative_eq;
-use rocking::energy::energy;
-use rocking::{Detail, Parameters, Phase, Side, State, Structure, impact};
+use rocking::mechanics::energy::energy;
+use rocking::{Detail, Parameters, Phase, Side, State, Structure};
+use rocking::mechanics::impact;
 use study::failures::energy_gain::some_impact_raises;
 use study::failures::{Exhibit, double_crossing, grazing, history, overturning, zeno};
 use study::fixed_step::runge_kutta_4::RungeKutta4;

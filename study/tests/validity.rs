@@ -5,7 +5,7 @@ mod synthetic;
 
 use rocking::Detail;
 use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::record::Record;
+use rocking::run::record::Record;
 use study::validity::Change;
 use study::validity::population::{Case, FREQUENCY, SLENDERNESS, STRUCTURES, both, case};
 

@@ -1,6 +1,6 @@
 //! A ground motion for tests.
 
-use rocking::record::Record;
+use rocking::run::record::Record;
 
 /// `count` samples of a sum of sines that grows and fades, `dt` (s) apart, of about `peak` (m/s²).
 pub fn shaking(seed: u32, dt: f64, count: usize, peak: f64) -> Record {

@@ -6,7 +6,8 @@ use crate::picture::{
 use crate::significant::significant;
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
-use rocking::{Parameters, Quantity, Structure, parameters::PARAMETERS, structure::DERIVED, structure::Derived};
+use rocking::structure::parameters::PARAMETERS;
+use rocking::{Parameters, Quantity, Structure, structure::DERIVED, structure::Derived};
 use std::ops::Range;
 
 /// Of the drawing and of the words beside it, pixels.

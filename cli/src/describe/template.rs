@@ -1,11 +1,8 @@
 //! A structure as a commented file of parameters.
 use crate::structure_args::short;
-use rocking::{
-    Quantity, Structure,
-    natural_quantities::{NATURAL, Natural},
-    parameters::PARAMETERS,
-    structure::Derived,
-};
+use rocking::structure::natural_quantities::{NATURAL, Natural};
+use rocking::structure::parameters::PARAMETERS;
+use rocking::{Quantity, Structure, structure::Derived};
 use std::fmt::{self, Write};
 
 /// Writes `structure` as a TOML file: every parameter with its unit and range, and what may be given in its place.

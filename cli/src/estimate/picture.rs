@@ -4,10 +4,11 @@ use crate::picture::{
 };
 use crate::quantities::in_readable_unit;
 use plotters::prelude::*;
-use rocking::{
-    Structure, demand::Demand, effective_frequency::effective_frequency, record::Record,
-    response_spectrum::spectral_acceleration,
-};
+use rocking::Structure;
+use rocking::estimates::demand::Demand;
+use rocking::estimates::effective_frequency::effective_frequency;
+use rocking::estimates::response_spectrum::spectral_acceleration;
+use rocking::run::record::Record;
 use std::f64::consts::TAU;
 
 const WIDTH: u32 = 880;

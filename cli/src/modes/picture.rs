@@ -8,7 +8,7 @@ use crate::{
     talk::say,
 };
 use plotters::style::RGBColor;
-use rocking::modal_split::{ModalAccelerations, Modes};
+use rocking::estimates::modal_split::{ModalAccelerations, Modes};
 
 const WIDTH: u32 = 860;
 

@@ -4,7 +4,8 @@ use crate::picture::{
 };
 use crate::quantities::readable;
 use plotters::prelude::*;
-use rocking::{Parameters, Structure, pushover::Equilibrium};
+use rocking::estimates::pushover::Equilibrium;
+use rocking::{Parameters, Structure};
 use std::ops::Range;
 
 const SIZE: (u32, u32) = (900, TITLE + 2 * PANEL + BELOW);

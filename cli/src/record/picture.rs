@@ -5,7 +5,9 @@ use crate::picture::{
     line, px, range, titled,
 };
 use plotters::prelude::*;
-use rocking::{record::Record, response_spectrum::spectral_acceleration, run::peaks::Peak};
+use rocking::estimates::response_spectrum::spectral_acceleration;
+use rocking::run::peaks::Peak;
+use rocking::run::record::Record;
 
 const WIDTH: u32 = 860;
 const SPECTRUM: u32 = 290;

@@ -7,18 +7,15 @@ use crate::{
     talk::{say, say_few},
 };
 use anyhow::{Context, anyhow, bail, ensure};
-use rocking::{
-    Detail, Parameters, State, Structure,
-    engine::DEFAULT_TOLERANCE,
-    intensity::IntensityMeasure,
-    natural_quantities::Given,
-    record::pulse::{Pulse, Shape},
-    record::{Column, Record, Unit},
-    run::map::{Axis, MAX_REFINEMENTS, Map},
-    run::outcome::Limit,
-    run::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population},
-    state::INITIAL_VALUES,
-};
+use rocking::estimates::intensity::IntensityMeasure;
+use rocking::mechanics::state::INITIAL_VALUES;
+use rocking::run::record::{Column, Record, Unit};
+use rocking::structure::natural_quantities::Given;
+use rocking::{Detail, Parameters, State, Structure, engine::DEFAULT_TOLERANCE};
+use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map};
+use rocking_sweep::outcome::Limit;
+use rocking_sweep::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population};
+use rocking_sweep::pulse::{Pulse, Shape};
 use serde::Deserialize;
 use std::path::{MAIN_SEPARATOR, Path, PathBuf};
 use std::{collections::BTreeMap, collections::HashMap};

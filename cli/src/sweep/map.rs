@@ -13,11 +13,8 @@ use crate::{
 use anyhow::{bail, ensure};
 use picture::Shown;
 use rayon::prelude::*;
-use rocking::run::{
-    LONGEST_REST,
-    map::{Class, Map, Place, Point},
-    validity,
-};
+use rocking::run::{LONGEST_REST, validity};
+use rocking_sweep::map::{Class, Map, Place, Point};
 use rows::Rows;
 use serde::Serialize;
 use std::{collections::HashMap, fmt::Write, path::Path, sync::Mutex, time::Instant};

@@ -6,11 +6,9 @@ use crate::picture::{
 };
 use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
-use rocking::{
-    fragility::FragilityCurve,
-    intensity::IntensityMeasure,
-    run::exceedances::{Exceedances, Fragility},
-};
+use rocking::estimates::intensity::IntensityMeasure;
+use rocking_sweep::exceedances::{Exceedances, Fragility};
+use rocking_sweep::fragility::FragilityCurve;
 
 const WIDTH: u32 = 860;
 const PLOT: u32 = 440;

@@ -5,13 +5,11 @@ use super::row_file::{FIRST_HEADINGS, Row, RowFile, digest, fixed, key, key_of, 
 use crate::cause::{heading, version};
 use anyhow::{Context, bail, ensure};
 use csv::StringRecord;
-use rocking::{
-    intensity::IntensityMeasure,
-    run::outcome::{MEASURES, Outcome},
-    run::plan::{AXES, Case, Conditions, NamedRecord, Plan},
-    run::validity::{ASSUMPTIONS, Found as Beyond},
-    state::INITIAL_VALUES,
-};
+use rocking::estimates::intensity::IntensityMeasure;
+use rocking::mechanics::state::INITIAL_VALUES;
+use rocking::run::validity::{ASSUMPTIONS, Found as Beyond};
+use rocking_sweep::outcome::{MEASURES, Outcome};
+use rocking_sweep::plan::{AXES, Case, Conditions, NamedRecord, Plan};
 use std::{collections::HashMap, path::Path, ptr};
 use uuid::Uuid;
 

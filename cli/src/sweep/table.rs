@@ -1,12 +1,10 @@
 //! What a sweep prints of a population: how often its structures exceed a limit, by intensity, and the curves.
 use crate::results::Number;
 use crate::significant::significant;
-use rocking::{
-    fragility::{FEWEST_GROUPS, FragilityCurve},
-    intensity::IntensityMeasure,
-    run::LONGEST_REST,
-    run::exceedances::{Bin, Exceedances, Fragility, Tally},
-};
+use rocking::estimates::intensity::IntensityMeasure;
+use rocking::run::LONGEST_REST;
+use rocking_sweep::exceedances::{Bin, Exceedances, Fragility, Tally};
+use rocking_sweep::fragility::{FEWEST_GROUPS, FragilityCurve};
 use serde::Serialize;
 use std::fmt::{self, Write};
 

@@ -11,10 +11,10 @@ use minijinja::value::Serde;
 use minijinja::{Environment, UndefinedBehavior};
 use rocking::Structure;
 use rocking::engine::{DEFAULT_TOLERANCE, MAX_STEPS_PER_ADVANCE};
-use rocking::parameters::MAX_SLENDERNESS;
-use rocking::record::{MAX_FILE, MAX_SAMPLES};
+use rocking::levels::rules::MAX_TRANSITIONS_PER_PERIOD;
+use rocking::run::record::{MAX_FILE, MAX_SAMPLES};
 use rocking::structure::DERIVED;
-use rocking::transition::MAX_TRANSITIONS_PER_PERIOD;
+use rocking::structure::parameters::MAX_SLENDERNESS;
 use serde::Serialize;
 
 const TEMPLATE: &str = include_str!("../resources/index.html");

@@ -3,7 +3,7 @@
 use model_description::DefaultExperiment;
 use rocking::Structure;
 use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::record::Record;
+use rocking::run::record::Record;
 use std::f64::consts::TAU;
 
 /// Stop time and communication step, s.

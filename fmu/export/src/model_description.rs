@@ -9,8 +9,8 @@ use FlexibleRocking::resources::Contents;
 use FlexibleRocking::variables::{Causality, DETAILS, DataType, Enumeration, PHASES, VARIABLES, Value, Variable};
 use model_description as fmi;
 use rocking::Structure;
-use rocking::outside_step::INDICATORS;
-use rocking::state::COMPONENTS;
+use rocking::mechanics::state::COMPONENTS;
+use rocking::run::outside_step::INDICATORS;
 
 /// What the model is, in one line.
 pub const DESCRIPTION: &str = "A flexible structure that rocks freely on rigid ground under earthquake ground motion";

@@ -2,8 +2,8 @@
 
 use FlexibleRocking::variables::{DataType, Variable};
 use model_description as fmi;
-use rocking::Structure;
-use rocking::parameters::PARAMETERS;
+use rocking::structure::parameters::PARAMETERS;
+use rocking::{State, Structure};
 
 /// The units of the variables, as exponents of kg, m, s, rad.
 pub const UNITS: [(&str, [i32; 4]); 14] = [
@@ -62,7 +62,7 @@ pub fn display_unit(variable: &Variable, structure: &Structure) -> Option<&'stat
 /// three digits.
 pub fn nominal(variable: &Variable, structure: &Structure) -> Option<f64> {
     let parameters = structure.parameters();
-    let usual = structure.usual_state();
+    let usual = State::usual(structure);
     let (m, height, alpha) = (parameters.m, parameters.H, usual.theta);
     let acceleration = parameters.g * structure.tan_alpha_cg;
     let name = ["_max", "_0"].iter().find_map(|ending| variable.name.strip_suffix(ending)).unwrap_or(variable.name);

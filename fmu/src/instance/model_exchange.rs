@@ -9,9 +9,9 @@ use crate::failure::Failure;
 use crate::setup::Setup;
 use crate::state_machine::Stage;
 use rocking::engine::AdvanceError;
-use rocking::ground_motion::Elapsed;
-use rocking::outside_step::{Checked, INDICATORS, Known};
-use rocking::state::COMPONENTS;
+use rocking::mechanics::state::COMPONENTS;
+use rocking::run::ground_motion::Elapsed;
+use rocking::run::outside_step::{Checked, INDICATORS, Known};
 use rocking::{Load, Motion, State, Transition, Watch};
 
 /// The relative tolerance up to which samples of the record are events. A solver of high order that integrates over the kinks
@@ -114,7 +114,7 @@ impl Instance {
 
     /// The magnitudes of the states.
     pub fn nominals(&mut self) -> Result<[f64; COMPONENTS.len()], Failure> {
-        Ok(self.now.model(&self.archive)?.engine.structure().usual_state().components())
+        Ok(State::usual(self.now.model(&self.archive)?.engine.structure()).components())
     }
 
     /// Derivatives of the states.

@@ -23,7 +23,7 @@ use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
 use rocking::engine::MAX_STEPS_PER_ADVANCE;
 use rocking::run::validity::ASSUMPTIONS;
-use rocking::taylor::MAX_ORDER;
+use rocking::series::taylor::MAX_ORDER;
 use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString};
 use std::fmt::Debug;

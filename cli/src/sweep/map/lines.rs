@@ -4,7 +4,7 @@ use crate::picture::{SMALL, colour, px, stroke, words_about};
 use contour::ContourBuilder;
 use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
-use rocking::run::map::{Class, Place, Point, finest_step};
+use rocking_sweep::map::{Class, Place, Point, finest_step};
 use std::collections::HashMap;
 
 /// θ_max/α_cg on the lines.
@@ -102,7 +102,7 @@ fn theta_at(known: &HashMap<Place, Point>, place: Place, levels: u32) -> Option<
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rocking::run::map::Fate;
+    use rocking_sweep::map::Fate;
 
     fn point(fate: Fate, theta: f64) -> Point {
         Point { fate, impacts: 2, theta, transitions: 3, end: 1.0, condition: None, reason: String::new() }

@@ -5,7 +5,7 @@ use crate::picture::{
 };
 use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
-use rocking::run::map::{Axis, Class, Map, Place, Point, finest_step, nearest};
+use rocking_sweep::map::{Axis, Class, Map, Place, Point, finest_step, nearest};
 
 /// Sizes in pixels: of a panel with its axes, of a panel's name, of a line of the legend.
 const PANEL: (u32, u32) = (560, 440);

@@ -8,11 +8,9 @@ use crate::sweep::{
     say_other_rows,
 };
 use anyhow::{Context, bail};
-use rocking::{
-    record::pulse::units_of,
-    run::map::{Map, Place, Point},
-    run::plan::AXES,
-};
+use rocking_sweep::map::{Map, Place, Point};
+use rocking_sweep::plan::AXES;
+use rocking_sweep::pulse::units_of;
 use std::{collections::HashMap, path::Path};
 use uuid::Uuid;
 

@@ -9,7 +9,7 @@ use FlexibleRocking::variables::{Causality, DETAILS, DataType, Enumeration, PHAS
 use model_description as fmi;
 use model_description::fmi3;
 use rocking::Structure;
-use rocking::state::{COMPONENTS, INITIAL_VALUES};
+use rocking::mechanics::state::{COMPONENTS, INITIAL_VALUES};
 
 /// The description of the FMU `name` of `structure` with these `contents`.
 pub fn model_description(

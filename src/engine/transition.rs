@@ -1,0 +1,88 @@
+//! Transitions: their kinds, what follows from each, and the limit on how many there may be.
+//!
+//! # Progress
+//!
+//! Transitions are counted from the first of them on for a vibration period 2π/ω_u, then anew. After
+//! [`MAX_TRANSITIONS_PER_PERIOD`] the next impact is a landing whatever its momentum, and contact is held to the end of
+//! the period ([`TransitionKind::Settling`]): it sees two more at most. Bounces that fast are the start of infinitely
+//! many in finite time, which end in contact; neither specimen comes near them. The rigid limit, which has no vibration
+//! and does come to rest by ever faster impacts, has [`MAX_RIGID_TRANSITIONS_PER_PERIOD`] for each 1/p_l instead.
+
+use crate::engine::motion::{Event, Motion};
+use crate::levels::rules::Rules;
+use crate::mechanics::reactions::Impulse;
+use crate::{Phase, Side, State, Structure};
+
+/// What changed at a transition.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TransitionKind {
+    /// Full contact → rocking about this side.
+    Uplift(Side),
+    /// Rocking → rocking about the other pivot, which is the side given.
+    Impact(Side),
+    /// Rocking → full contact.
+    Landing,
+    /// Rocking → full contact, held to the end of a vibration period that saw too many transitions.
+    Settling,
+    /// |θ| reached π/2 on this side.
+    Overturning(Side),
+}
+
+impl TransitionKind {
+    /// What it is called.
+    pub const fn name(self) -> &'static str {
+        match self {
+            TransitionKind::Uplift(Side::Left) => "uplift left",
+            TransitionKind::Uplift(Side::Right) => "uplift right",
+            TransitionKind::Impact(Side::Left) => "impact left",
+            TransitionKind::Impact(Side::Right) => "impact right",
+            TransitionKind::Landing => "landing",
+            TransitionKind::Settling => "settling",
+            TransitionKind::Overturning(Side::Left) => "overturning left",
+            TransitionKind::Overturning(Side::Right) => "overturning right",
+        }
+    }
+}
+
+/// One transition, as it is reported.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transition {
+    /// Its instant, s.
+    pub time: f64,
+    /// What changed.
+    pub kind: TransitionKind,
+    /// State just before.
+    pub before: State,
+    /// State just after.
+    pub after: State,
+}
+
+/// The `motion` after what `event` leads to, and the transition to be reported.
+#[inline]
+pub(crate) fn resolve(
+    rules: &(impl Rules + ?Sized),
+    structure: &Structure,
+    mut motion: Motion,
+    event: Event,
+) -> (Motion, Transition) {
+    let before = motion.state;
+    let limit = rules.chatter_limit(structure);
+    let (kind, phase, after) = match event {
+        Event::Uplift(side) => (TransitionKind::Uplift(side), Phase::Rocking(side), before),
+        Event::Overturning(side) => (TransitionKind::Overturning(side), Phase::Overturned(side), before),
+        Event::Impact(_) if motion.chatter.is_too_much(limit) => {
+            motion.chatter.hold(limit);
+            (TransitionKind::Settling, Phase::FullContact, rules.land(structure, &before))
+        }
+        Event::Impact(side) => match rules.after_impact(structure, side, &before) {
+            (Phase::Rocking(side), after) => (TransitionKind::Impact(side), Phase::Rocking(side), after),
+            (phase, after) => (TransitionKind::Landing, phase, after),
+        },
+    };
+    motion.chatter.count(limit);
+    motion.transitions += 1;
+    motion.impulse = motion.impulse.and(Impulse::of(structure, (motion.phase, &before), (phase, &after)));
+    motion.phase = phase;
+    motion.state = after;
+    (motion, Transition { time: motion.time, kind, before, after })
+}

@@ -1,0 +1,8 @@
+//! What is known without a time history, or of the ground motion alone.
+
+pub mod demand;
+pub mod effective_frequency;
+pub mod intensity;
+pub mod modal_split;
+pub mod pushover;
+pub mod response_spectrum;

@@ -1,0 +1,114 @@
+//! Demands without a time history (Eqs 21–24).
+//!
+//! ```text
+//! ü_gr,max = C χ/(1−χ) g tan α_cg                                                                      (21)
+//! a_t,max  = (1−χ) S_a(T_u, ζ_u) + (1+C) χ g tan α_cg                                                  (22)
+//! V_t,max  = m a_t,max                                                                                 (23)
+//! M_t,max  = m H a_t,max                                                                               (24)
+//! ```
+//!
+//! S_a is the absolute acceleration spectrum of the ground motion at the vibration mode while rocking
+//! ([`crate::estimates::response_spectrum`]). C is the dynamic amplification of the weight's change of sides at an impact: 2 for
+//! an instant change that meets a quiet structure, down to 0 for a slow one.
+
+use crate::Structure;
+use crate::structure::quantity::OutOfRange;
+
+/// The amplification C of an instant transition, and its largest value.
+pub const INSTANT_TRANSITION: f64 = 2.0;
+
+/// The demands on a rocking structure, term by term.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Demand {
+    /// Largest elastic acceleration excited by the weight's change of sides, ü_gr,max, m/s² (Eq 21).
+    pub u_ddot_gr: f64,
+    /// Vibration that the ground excites: (1−χ) S_a, m/s² (Eq 22).
+    pub ground: f64,
+    /// Rocking mode: χ g tan α_cg, m/s² (Eq 22).
+    pub rocking: f64,
+    /// Vibration that the change of sides excites: C χ g tan α_cg = (1−χ) ü_gr,max, m/s² (Eq 22).
+    pub impact: f64,
+    /// Lateral acceleration of the top mass: the sum of the three terms, m/s² (Eq 22).
+    pub a_t: f64,
+    /// Base shear, N (Eq 23).
+    pub V_t: f64,
+    /// Overturning moment, N·m (Eq 24).
+    pub M_t: f64,
+}
+
+impl Demand {
+    /// The demand from the spectral acceleration `S_a` = S_a(T_u, ζ_u) (m/s²) and the amplification `C`, 0 to 2.
+    pub fn new(structure: &Structure, S_a: f64, C: f64) -> Result<Demand, OutOfRange> {
+        if !(0.0..=INSTANT_TRANSITION).contains(&C) {
+            let description = "dynamic amplification at a transition between rocking phases; 2 for an instant one";
+            return Err(OutOfRange { name: "C", value: C, unit: "1", min: 0.0, max: INSTANT_TRANSITION, description });
+        }
+        let &crate::Parameters { m, H, g, .. } = structure.parameters();
+        let ground = structure.one_minus_chi * S_a;
+        let rocking = structure.chi * g * structure.tan_alpha_cg;
+        let impact = C * rocking;
+        let a_t = ground + rocking + impact;
+        Ok(Demand {
+            u_ddot_gr: impact / structure.one_minus_chi,
+            ground,
+            rocking,
+            impact,
+            a_t,
+            V_t: m * a_t,
+            M_t: m * H * a_t,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::levels::nonlinear::accelerations;
+    use crate::mechanics::load::Load;
+    use crate::{Parameters, Side, State};
+    use approx::assert_relative_eq;
+
+    /// The paper: 0.66 g for McManus with C = 2; Eq 13 gives 0.34 g for Evison with the χ of its table, 0.92 for 0.91.
+    #[test]
+    fn the_specimens_have_the_numbers_of_the_paper() {
+        let in_g = |parameters, C| {
+            let demand = Demand::new(&Structure::new(parameters).unwrap(), 0.0, C).unwrap();
+            format!("{:.4}", demand.a_t / parameters.g)
+        };
+        assert_eq!(in_g(Parameters::MCMANUS, 2.0), "0.6585");
+        assert_eq!(in_g(Parameters::EVISON, 0.0), "0.3333");
+        let tan_alpha_cg = Structure::new(Parameters::EVISON).unwrap().tan_alpha_cg;
+        assert_eq!(format!("{:.2}", 0.92 * tan_alpha_cg), "0.34");
+    }
+
+    #[test]
+    fn the_terms_add_up() {
+        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let &Parameters { m, H, g, .. } = structure.parameters();
+        let demand = Demand::new(&structure, 30.0, 1.4).unwrap();
+        let expected = (1.0 - structure.chi) * 30.0 + 2.4 * structure.chi * g * structure.tan_alpha_cg;
+        assert_relative_eq!(demand.a_t, expected, max_relative = 1e-14);
+        assert_relative_eq!(demand.V_t, m * expected, max_relative = 1e-14);
+        assert_relative_eq!(demand.M_t, m * H * expected, max_relative = 1e-14);
+    }
+
+    /// Eqs 5 and 6 themselves: the change of sides under a quiet structure at the static displacement of the side that
+    /// it leaves sets the top mass off with ü_gr,max for C = 2, but for the terms in g/(ω_u² H) that Eq 18 neglects.
+    #[test]
+    fn an_instant_change_of_sides_accelerates_as_equation_21_says() {
+        let structure = Structure::new(Parameters { f_fc: 1e3, ..Parameters::MCMANUS }).unwrap();
+        let demand = Demand::new(&structure, 0.0, INSTANT_TRANSITION).unwrap();
+        let quiet = State { u: structure.chi * structure.u_cr, ..State::default() };
+        let u_ddot = accelerations(&structure, Side::Left, &quiet, Load::default()).unwrap()[0];
+        assert_relative_eq!(u_ddot, -demand.u_ddot_gr, max_relative = 1e-5);
+    }
+
+    #[test]
+    fn an_amplification_out_of_range_is_refused() {
+        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let refused = |C| Demand::new(&structure, 1.0, C).unwrap_err().to_string();
+        assert!(refused(2.5).starts_with("C = 2.5 is out of range: it must lie between 0 and 2 (dynamic"));
+        assert!(refused(-0.1).starts_with("C = -0.1"));
+        assert!(refused(f64::NAN).starts_with("C = NaN"));
+    }
+}

@@ -1,0 +1,80 @@
+//! Effective frequency of rocking (Eq 14).
+//!
+//! Released at rest from θ_i, the rocking mode (Eq 11 without ground motion) comes down after
+//!
+//! ```text
+//! t = acosh(1/(1 − θ_i/tan α_cg))/p_l,        f_r = 1/(4 t)                                            (14)
+//! ```
+//!
+//! f_r falls from ∞ at θ_i → 0 to 0 at θ_i = tan α_cg, the unstable equilibrium, from which the structure never comes
+//! down. A real structure does not exceed f_fc: rocking that small is vibration in full contact.
+
+use crate::Structure;
+
+/// Time from release at rest at the rotation `theta` (rad) to impact, s; ∞ from tan α_cg on.
+pub fn time_to_impact(structure: &Structure, theta: f64) -> f64 {
+    let part = theta.abs() / structure.tan_alpha_cg;
+    if part >= 1.0 {
+        return f64::INFINITY;
+    }
+    let x = part / (1.0 - part); // acosh(1 + x), with every digit of a small x
+    (x + (x * (x + 2.0)).sqrt()).ln_1p() / structure.p_l
+}
+
+/// Effective rocking frequency f_r of the amplitude `theta` (rad), Hz (Eq 14).
+pub fn effective_frequency(structure: &Structure, theta: f64) -> f64 {
+    0.25 / time_to_impact(structure, theta)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::load::Ramp;
+    use crate::{Engine, Parameters, State, TransitionKind};
+    use approx::assert_relative_eq;
+
+    fn evison() -> Structure {
+        Structure::new(Parameters::EVISON).unwrap()
+    }
+
+    /// Eq 11 with a_g = 0: q_r = tan α_cg − (tan α_cg − θ_i) cosh(p_l t) is 0 at the time found.
+    #[test]
+    fn the_rocking_mode_is_back_at_zero() {
+        let structure = evison();
+        for part in [1e-12, 1e-6, 0.1, 0.5, 0.9, 0.999_999] {
+            let theta = part * structure.tan_alpha_cg;
+            let half = 0.5 * structure.p_l * time_to_impact(&structure, theta);
+            // cosh − 1 = 2 sinh²(half argument)
+            let dropped = (structure.tan_alpha_cg - theta) * 2.0 * half.sinh().powi(2);
+            assert_relative_eq!(dropped, theta, max_relative = 1e-13 / (1.0 - part));
+        }
+    }
+
+    #[test]
+    fn the_limits_are_those_of_a_small_rotation_and_of_the_unstable_equilibrium() {
+        let structure = evison();
+        let small = 1e-14 * structure.tan_alpha_cg;
+        assert_relative_eq!(
+            time_to_impact(&structure, small),
+            1e-7 * 2f64.sqrt() / structure.p_l,
+            max_relative = 1e-13
+        );
+        assert_eq!(effective_frequency(&structure, 0.0), f64::INFINITY);
+        assert_eq!(effective_frequency(&structure, -structure.tan_alpha_cg), 0.0);
+        assert_eq!(effective_frequency(&structure, 1.0), 0.0);
+    }
+
+    /// The full equations of a stiff structure come down after that time, but for the square of the angle.
+    #[test]
+    fn a_stiff_structure_comes_down_after_that_time() {
+        let structure = Structure::new(Parameters { f_fc: 300.0, ..Parameters::EVISON }).unwrap();
+        let theta = 0.01;
+        let initial = State { theta, u: structure.chi * structure.u_cr, ..State::default() };
+        let mut engine = Engine::new(structure, initial, 0.0, 1e-9).unwrap();
+        let mut impacts = Vec::new();
+        let mut observe = |transition: &crate::Transition| impacts.push(*transition);
+        engine.advance(0.1, Ramp::default(), &mut observe).unwrap();
+        assert!(matches!(impacts[0].kind, TransitionKind::Impact(_)));
+        assert_relative_eq!(impacts[0].time, time_to_impact(&structure, theta), max_relative = 1e-3);
+    }
+}

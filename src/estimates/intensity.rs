@@ -1,0 +1,151 @@
+//! Intensity measures of a ground motion: how strong it is, in one number.
+//!
+//! | measure | what | unit |
+//! |---|---|---|
+//! | PGA | largest magnitude of the ground acceleration, max abs(a_g) | g |
+//! | PGV | largest magnitude of the ground velocity, max abs(∫ a_g dt), at rest before the first sample | m/s |
+//! | I_A | Arias intensity, π/(2 g) ∫ a_g² dt | m/s |
+//! | D_5–95 | time from 5 % to 95 % of the Arias intensity, the significant duration | s |
+//! | S_a | largest acceleration of the structure on a fixed base, S_a(1/f_fc, ζ_fc) | g |
+//!
+//! All are exact for a record that is linear between its samples. PGA, PGV and S_a grow in proportion to it, and can be
+//! what runs are measured by ([`IntensityMeasure`]).
+
+use crate::run::record::Record;
+use crate::series::bisection::last_where;
+use std::f64::consts::FRAC_PI_2;
+
+/// An intensity measure.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum IntensityMeasure {
+    /// Peak ground acceleration, g.
+    #[default]
+    Pga,
+    /// Peak ground velocity, m/s.
+    Pgv,
+    /// Spectral acceleration of the fixed base (see [`crate::estimates::response_spectrum`]), g.
+    Sa,
+}
+
+impl IntensityMeasure {
+    /// All of them.
+    pub const ALL: [IntensityMeasure; 3] = [IntensityMeasure::Pga, IntensityMeasure::Pgv, IntensityMeasure::Sa];
+
+    /// Its name in files and tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            IntensityMeasure::Pga => "PGA",
+            IntensityMeasure::Pgv => "PGV",
+            IntensityMeasure::Sa => "S_a",
+        }
+    }
+
+    /// Its unit.
+    pub const fn unit(self) -> &'static str {
+        match self {
+            IntensityMeasure::Pga | IntensityMeasure::Sa => "g",
+            IntensityMeasure::Pgv => "m/s",
+        }
+    }
+
+    /// What it is.
+    pub const fn description(self) -> &'static str {
+        match self {
+            IntensityMeasure::Pga => "peak ground acceleration PGA",
+            IntensityMeasure::Pgv => "peak ground velocity PGV",
+            IntensityMeasure::Sa => "spectral acceleration of the fixed base S_a(1/f_fc, zeta_fc)",
+        }
+    }
+}
+
+/// Peak ground velocity of `record`, m/s: at rest before its first sample. The velocity is largest at a sample or where
+/// the acceleration passes 0.
+pub fn peak_velocity(record: &Record) -> f64 {
+    let (mut velocity, mut peak) = (0.0, 0.0_f64);
+    for (t, a) in record.times().windows(2).zip(record.acceleration().windows(2)) {
+        let step = t[1] - t[0];
+        if a[0] * a[1] < 0.0 {
+            let until_zero = step * (a[0] / (a[0] - a[1]));
+            peak = peak.max(f64::abs(velocity + 0.5 * until_zero * a[0]));
+        }
+        velocity += 0.5 * step * (a[0] + a[1]);
+        peak = peak.max(velocity.abs());
+    }
+    peak
+}
+
+/// Arias intensity π/(2 g) ∫ a_g² dt of `record`, m/s; `g` in m/s².
+pub fn arias_intensity(record: &Record, g: f64) -> f64 {
+    FRAC_PI_2 / g * squares(record).sum::<f64>()
+}
+
+/// The instants at which 5 % and 95 % of the Arias intensity of `record` have come, s: the significant duration D_5–95 is
+/// between them. Those of the record's start where the ground is at rest.
+pub fn significant_duration(record: &Record) -> [f64; 2] {
+    let total: f64 = squares(record).sum();
+    [0.05, 0.95].map(|part| {
+        let (mut before, wanted) = (0.0, part * total);
+        for (i, square) in squares(record).enumerate() {
+            if before + square >= wanted && square > 0.0 {
+                let (step, a) = (record.times()[i + 1] - record.times()[i], &record.acceleration()[i..]);
+                let until = |tau: f64| square_of(tau, a[0], a[0] + (a[1] - a[0]) * tau / step);
+                return record.times()[i] + last_where(0.0, step, |tau| before + until(tau) <= wanted);
+            }
+            before += square;
+        }
+        record.start()
+    })
+}
+
+/// ∫ a_g² dt between each two samples, m²/s³.
+fn squares(record: &Record) -> impl Iterator<Item = f64> {
+    let samples = record.times().windows(2).zip(record.acceleration().windows(2));
+    samples.map(|(t, a)| square_of(t[1] - t[0], a[0], a[1]))
+}
+
+/// ∫ a² dt of what goes from `first` to `last` in a straight line over `duration`.
+fn square_of(duration: f64, first: f64, last: f64) -> f64 {
+    duration / 3.0 * (first * first + first * last + last * last)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    fn peak(times: &[f64], acceleration: &[f64]) -> f64 {
+        peak_velocity(&Record::from_samples("", times.into(), acceleration.into()).unwrap())
+    }
+
+    /// Areas of triangles, by hand.
+    #[test]
+    fn the_velocity_peaks_where_the_acceleration_passes_zero() {
+        assert_relative_eq!(peak(&[0.0, 1.0, 4.0], &[0.0, 2.0, -4.0]), 2.0, max_relative = 1e-15); // falls through 0 at 2
+        assert_relative_eq!(peak(&[5.0, 6.0, 7.0], &[0.0, -3.0, 0.0]), 3.0, max_relative = 1e-15);
+        assert_relative_eq!(peak(&[0.0, 1.0], &[1.0, -3.0]), 1.0, max_relative = 1e-15); // ends at -1, was 1/8
+        assert_relative_eq!(peak(&[0.0, 0.5, 2.0], &[4.0, -4.0, -4.0]), 6.0, max_relative = 1e-15);
+    }
+
+    /// Of a_g = t over 1 s: ∫ t² = 1/3, of which a part comes until its cube root; then of a rest, which adds nothing.
+    #[test]
+    fn the_arias_intensity_of_a_ramp_has_its_closed_form() {
+        for times in [vec![2.0, 3.0, 3.0 + 1e-9, 9.0], vec![2.0, 2.5, 3.0, 3.0 + 1e-9, 9.0]] {
+            let a = times.iter().map(|t| if *t <= 3.0 { t - 2.0 } else { 0.0 }).collect();
+            let record = Record::from_samples("", times, a).unwrap();
+            assert_relative_eq!(arias_intensity(&record, 10.0), FRAC_PI_2 / 30.0, max_relative = 1e-8);
+            let [first, last] = significant_duration(&record);
+            assert_relative_eq!(first, 2.0 + 0.05_f64.cbrt(), max_relative = 1e-8);
+            assert_relative_eq!(last, 2.0 + 0.95_f64.cbrt(), max_relative = 1e-8);
+        }
+        assert_eq!(significant_duration(&Record::at_rest(3.0)), [0.0, 0.0]);
+    }
+
+    /// A sine of amplitude 1: the velocity (1 - cos(ω t))/ω peaks at 2/ω, but for the chords' share (ω h)²/12 of it.
+    #[test]
+    fn a_sine_has_its_closed_form() {
+        let (omega, h) = (3.0_f64, 1e-3);
+        let times: Vec<f64> = (0..=2095).map(|i| f64::from(i) * h).collect();
+        let found = peak(&times, &times.iter().map(|t| (omega * t).sin()).collect::<Vec<_>>());
+        assert_relative_eq!(found, 2.0 / omega, max_relative = (omega * h).powi(2) / 6.0);
+    }
+}

@@ -1,0 +1,212 @@
+//! Displacement-controlled pushover (Fig 1): a horizontal force P on the top mass, slow enough for equilibrium.
+//!
+//! In full contact P = k u up to u_cr (after Eq 4). Beyond it, Eqs 5 and 6 without inertia, damping and ground motion,
+//! P in the direction of each coordinate on the other side:
+//!
+//! ```text
+//! P cos θ                        = k u − m g sin θ                                                     (5)
+//! P [H cos θ + (sB − u) sin θ]   = s (m + m0) g B cos θ − m g H sin θ − m g u cos θ                    (6)
+//! ```
+//!
+//! Without P, for s = +1, they leave a quadratic in u, whose smaller root is the equilibrium:
+//!
+//! ```text
+//! k sin θ u² − [k (H cos θ + B sin θ) + m g] u + g B (m + m0 cos² θ) = 0
+//! ```
+//!
+//! The bracket of P is the height of the top mass, so (6) is the moment about the pivot: P's, and what the weight has
+//! left to restore. At θ → 0 the quadratic gives u_cr/(1 + g/(ω_fc² H)): u_cr leaves out the moment m g u of the top
+//! mass, and the force drops by that part (2e-3 for Evison, 5e-3 for McManus) as the base lifts off.
+
+use crate::mechanics::outputs::Outputs;
+use crate::series::bisection::last_where;
+use crate::{Phase, Side, State, Structure};
+use std::f64::consts::FRAC_PI_2;
+
+/// The structure at rest under a horizontal force on the top mass.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Equilibrium {
+    /// What holds of the base.
+    pub phase: Phase,
+    /// Rotation of the base, rad.
+    pub theta: f64,
+    /// Elastic displacement, m.
+    pub u: f64,
+    /// Lateral displacement of the top mass, m (Eq 26).
+    pub delta_t: f64,
+    /// Horizontal force on the top mass, P, N.
+    pub force: f64,
+    /// Its moment about the base, the restoring moment, N·m.
+    pub moment: f64,
+}
+
+/// Full contact at the elastic displacement `u` (m), |u| ≤ u_cr.
+pub fn in_full_contact(structure: &Structure, u: f64) -> Equilibrium {
+    let force = structure.k * u;
+    let moment = structure.parameters().H * force;
+    Equilibrium { phase: Phase::FullContact, theta: 0.0, u, delta_t: u, force, moment }
+}
+
+/// Rocking at the rotation `theta` (rad), |θ| < π/2; 0 is the start of rocking to the right. `None` for a strut too
+/// soft to hold the structure there.
+pub fn at_rotation(structure: &Structure, theta: f64) -> Option<Equilibrium> {
+    let &crate::Parameters { m, m0, H, B, g, .. } = structure.parameters();
+    let k = structure.k;
+    let side = Side::of(theta);
+    let s = side.sign();
+    let (sin, cos) = theta.abs().sin_cos();
+    let (quadratic, linear) = (k * sin, k * (H * cos + B * sin) + m * g);
+    let constant = g * B * (m + m0 * cos * cos);
+    let discriminant = linear * linear - 4.0 * quadratic * constant;
+    if discriminant < 0.0 {
+        return None;
+    }
+    let u = 2.0 * constant / (linear + discriminant.sqrt());
+    let force = (k * u - m * g * sin) / cos;
+    let moment = force * (H * cos + (B - u) * sin);
+    let phase = Phase::Rocking(side);
+    let state = State { u: s * u, theta, ..State::default() };
+    let delta_t = Outputs::of(structure, phase, &state, 0.0).delta_t;
+    Some(Equilibrium { phase, theta, u: state.u, delta_t, force: s * force, moment: s * moment })
+}
+
+/// The pushover at the lateral displacement `delta_t` (m) of the top mass: full contact up to u_cr, rocking beyond.
+/// `None` where rocking does not reach, B + H at most.
+pub fn at_displacement(structure: &Structure, delta_t: f64) -> Option<Equilibrium> {
+    if delta_t.abs() <= structure.u_cr {
+        return Some(in_full_contact(structure, delta_t));
+    }
+    let reaches = |theta| at_rotation(structure, theta).is_some_and(|there| there.delta_t >= delta_t.abs());
+    if !reaches(FRAC_PI_2) {
+        return None;
+    }
+    let theta = last_where(0.0, FRAC_PI_2, |theta| !reaches(theta));
+    at_rotation(structure, theta.copysign(delta_t))
+}
+
+/// The unstable equilibrium without a force, beyond which the structure overturns (to the right). `None` for a strut
+/// too soft to hold the structure on the way there.
+pub fn at_overturning(structure: &Structure) -> Option<Equilibrium> {
+    let tan_alpha_cg = structure.tan_alpha_cg;
+    let restores = |theta| at_rotation(structure, theta).is_some_and(|there| there.force >= 0.0);
+    at_rotation(structure, last_where(0.0, tan_alpha_cg.atan(), restores))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Parameters;
+    use crate::levels::nonlinear::accelerations;
+    use crate::mechanics::energy::energy;
+    use crate::mechanics::load::Load;
+    use approx::assert_relative_eq;
+    use nalgebra::{Matrix2, Vector2};
+    use proptest::prelude::*;
+
+    fn specimens() -> [Structure; 2] {
+        [Parameters::EVISON, Parameters::MCMANUS].map(|parameters| Structure::new(parameters).unwrap())
+    }
+
+    proptest! {
+        /// The force is what holds the masses against the accelerations that Eqs 5 and 6 would give them.
+        #[test]
+        fn the_force_balances_equations_5_and_6(theta in -1.4..1.4f64, preset in 0..2usize) {
+            let structure = specimens()[preset];
+            let &Parameters { m, m0, H, B, J0, .. } = structure.parameters();
+            let Equilibrium { u, force, .. } = at_rotation(&structure, theta).unwrap();
+            let side = Side::of(theta);
+            let lever = side.sign() * B - u;
+            let state = State { u, theta, ..State::default() };
+            let released = accelerations(&structure, side, &state, Load::default()).unwrap();
+            let mass = Matrix2::new(m, m * H, m * H, J0 + m * H * H + m * lever * lever + m0 * B * B);
+            let direction = Vector2::new(theta.cos(), H * theta.cos() + lever * theta.sin());
+            let unbalanced = mass * released + force * direction;
+            let size = structure.k * u.abs() * H;
+            prop_assert!(unbalanced.norm() < 1e-13 * size, "{unbalanced}");
+        }
+
+        /// The work of the force is the energy that the structure takes up.
+        #[test]
+        fn the_force_is_the_slope_of_the_energy(theta in 1e-3..1.2f64, preset in 0..2usize) {
+            let structure = specimens()[preset];
+            let step = 1e-4;
+            let [before, here, after] =
+                [theta - step, theta, theta + step].map(|theta| at_rotation(&structure, theta).unwrap());
+            let energy = |at: &Equilibrium| {
+                energy(&structure, at.phase, &State { u: at.u, theta: at.theta, ..State::default() })
+            };
+            let slope = (energy(&after) - energy(&before)) / (after.delta_t - before.delta_t);
+            let weight = structure.gamma * structure.parameters().m * structure.parameters().g;
+            prop_assert!((slope - here.force).abs() < 1e-6 * weight, "{slope} {}", here.force);
+        }
+
+        #[test]
+        fn a_displacement_is_met_to_rounding(delta_t in -1.3..1.3f64, preset in 0..2usize) {
+            let structure = specimens()[preset];
+            let there = at_displacement(&structure, delta_t).unwrap();
+            prop_assert!((there.delta_t - delta_t).abs() < 1e-15, "{there:?}");
+        }
+    }
+
+    #[test]
+    fn uplift_follows_full_contact_with_the_drop_that_u_cr_leaves_out() {
+        for structure in specimens() {
+            let &Parameters { H, g, .. } = structure.parameters();
+            let left_out = 1.0 + g / (structure.omega_fc * structure.omega_fc * H);
+            let rocking = at_rotation(&structure, 0.0).unwrap();
+            assert_relative_eq!(rocking.u, structure.u_cr / left_out, max_relative = 1e-15);
+            let contact = at_displacement(&structure, structure.u_cr).unwrap();
+            assert_eq!(contact.phase, Phase::FullContact);
+            assert_relative_eq!(contact.force, left_out * rocking.force, max_relative = 1e-15);
+            let weight_moment = structure.gamma * structure.parameters().m * g * structure.parameters().B;
+            assert_relative_eq!(contact.moment, weight_moment, max_relative = 1e-15);
+            let lifted = at_displacement(&structure, -structure.u_cr.next_up()).unwrap();
+            assert_eq!(lifted.phase, Phase::Rocking(Side::Left));
+        }
+    }
+
+    /// While rocking the force falls all the way to overturning, where the moment is 0 with it.
+    #[test]
+    fn the_stiffness_is_negative_until_overturning() {
+        for structure in specimens() {
+            let end = at_overturning(&structure).unwrap();
+            let weight = structure.gamma * structure.parameters().m * structure.parameters().g;
+            assert!(end.force >= 0.0 && end.force < 1e-13 * weight);
+            assert_relative_eq!(end.theta, structure.tan_alpha_cg.atan(), max_relative = 6e-3);
+            assert!(end.theta < structure.tan_alpha_cg.atan());
+            let forces: Vec<_> = (0..=50)
+                .map(|i| at_rotation(&structure, f64::from(i) / 50.0 * end.theta).unwrap())
+                .map(|there| (there.force, there.moment))
+                .collect();
+            assert!(forces.windows(2).all(|pair| pair[1].0 < pair[0].0 && pair[1].1 < pair[0].1));
+        }
+    }
+
+    /// Closed form of u = 0: the weight's moment about the pivot over the height of the top mass.
+    #[test]
+    fn a_rigid_structure_follows_the_rigid_body() {
+        let structure = Structure::new(Parameters { f_fc: 1e4, ..Parameters::EVISON }).unwrap();
+        let &Parameters { m, m0, H, B, g, .. } = structure.parameters();
+        for theta in [0.0, 0.1, 0.3, 0.5] {
+            let (sin, cos) = f64::sin_cos(theta);
+            let expected = g * ((m + m0) * B * cos - m * H * sin) / (H * cos + B * sin);
+            assert_relative_eq!(at_rotation(&structure, theta).unwrap().force, expected, epsilon = 1e-4);
+        }
+    }
+
+    #[test]
+    fn outputs_show_the_same_force_along_u() {
+        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let there = at_rotation(&structure, 0.1).unwrap();
+        let state = State { u: there.u, theta: there.theta, ..State::default() };
+        let shear = Outputs::of(&structure, there.phase, &state, 0.0).V_t;
+        assert_relative_eq!(-shear, there.force * 0.1f64.cos(), max_relative = 1e-13);
+    }
+
+    #[test]
+    fn too_soft_a_strut_and_too_far_a_displacement_have_no_equilibrium() {
+        let soft = Structure::new(Parameters { f_fc: 0.05, m0: 5e4, ..Parameters::EVISON }).unwrap();
+        assert_eq!(at_rotation(&soft, 0.5), None);
+        assert_eq!(at_displacement(&specimens()[0], 1.4), None);
+    }
+}

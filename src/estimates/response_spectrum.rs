@@ -1,0 +1,206 @@
+//! Response spectrum of a ground motion: S_a(T, ζ), the largest absolute acceleration of an oscillator on it.
+//!
+//! ```text
+//! ü + 2 ζ ω u̇ + ω² u = −a_g,        S_a = max |ü + a_g| = max |2 ζ ω u̇ + ω² u|,        ω = 2π/T
+//! ```
+//!
+//! Of the two accelerations in use this is the absolute one, not the pseudo-acceleration ω² max|u|: it is ü + a_g that
+//! stands in Eqs 2 and 20 and that S_a bounds in Eqs 4 and 22, and the damper's force is part of it. The two are close
+//! at small damping, but ζ_u = ζ_fc c_ratio/√(1−χ) of a slender structure need not be small.
+//!
+//! On ground whose acceleration is a + b τ between two samples, the motion that follows the ground without swinging
+//! has ü + a_g = a + b τ and u̇ = −b/ω². What is left of (u̇, ü + a_g) is free vibration (w, ẇ):
+//!
+//! ```text
+//! w(τ) = (C + ζω S) w₀ + S ẇ₀,   ẇ(τ) = −ω² S w₀ + (C − ζω S) ẇ₀,   C = e^{−ζωτ} cos dτ,  S = e^{−ζωτ} sin(dτ)/d
+//! ```
+//!
+//! with d = ω √(1 − ζ²), hyperbolic functions for ζ > 1 and S = τ e^{−ωτ} for ζ = 1: exact for any step and damping. So
+//! is the peak between samples: |ü + a_g| is largest at a sample or where its rate b + ẅ is 0, and between the zeros of
+//! that rate's own slope, which have a closed form, the rate passes 0 once at most.
+
+use crate::levels::oscillator::Oscillator;
+use crate::run::ground_motion::Segment;
+use crate::run::record::Record;
+use crate::series::bisection::last_where;
+use nalgebra::{Matrix2, Vector2};
+use std::f64::consts::{PI, TAU};
+
+/// S_a of `record` at the period `T` (s) and the damping ratio `zeta`, m/s². The oscillator starts at rest and swings
+/// on for a period after the record's end: its largest swing comes within a quarter of one.
+pub fn spectral_acceleration(record: &Record, T: f64, zeta: f64) -> f64 {
+    Oscillator { omega: TAU / T, zeta }.peak(record.segments_until(record.end() + T))
+}
+
+impl Oscillator {
+    /// Largest |ü + a_g| over `segments`, from rest, m/s².
+    fn peak(&self, segments: impl Iterator<Item = Segment>) -> f64 {
+        let mut flow_over = (f64::NAN, Matrix2::identity()); // of the last step length, which few records change
+        let mut motion = Vector2::zeros(); // (u̇, ü + a_g)
+        let mut peak: f64 = 0.0;
+        for Segment { start, end, a_g } in segments {
+            let step = end - start;
+            if step != flow_over.0 {
+                flow_over = (step, self.free(step));
+            }
+            let follow_ground = |a_g_now: f64| Vector2::new(-a_g.slope / self.omega.powi(2), a_g_now);
+            let free = motion - follow_ground(a_g.value);
+            let swing = free[1].hypot(self.rate(free)[1] / self.omega); // bounds |ẇ| from here on
+            if a_g.value.abs().max(a_g.at(step).abs()) + swing > peak {
+                let acceleration = |tau: f64| a_g.at(tau) + (self.free(tau) * free)[1];
+                peak = self.extremes(free, a_g.slope, step).map(|tau| acceleration(tau).abs()).fold(peak, f64::max);
+            }
+            motion = follow_ground(a_g.at(step)) + flow_over.1 * free;
+        }
+        peak
+    }
+
+    /// (ẇ, ẅ) of free vibration (w, ẇ).
+    fn rate(&self, free: Vector2<f64>) -> Vector2<f64> {
+        Vector2::new(free[1], -2.0 * self.zeta * self.omega * free[1] - self.omega * self.omega * free[0])
+    }
+
+    /// The instants in (0, `step`] that hold the extremes of b τ + ẇ with b = `slope`: its stationary points, and the
+    /// end.
+    fn extremes(&self, free: Vector2<f64>, slope: f64, step: f64) -> impl Iterator<Item = f64> {
+        let swing = self.rate(self.rate(free)); // (ẅ, its rate)
+        let turns = self.zeros(self.rate(swing), step).chain([step]);
+        let rises = move |tau: f64| slope + (self.free(tau) * swing)[0] > 0.0;
+        let stationary = turns.scan(0.0, move |from, to| {
+            let low = std::mem::replace(from, to);
+            let rises_at_first = rises(low);
+            Some((rises(to) != rises_at_first).then(|| last_where(low, to, |tau| rises(tau) == rises_at_first)))
+        });
+        stationary.flatten().chain([step])
+    }
+
+    /// The instants in (0, `end`) at which free vibration (w, ẇ) passes w = 0.
+    fn zeros(&self, free: Vector2<f64>, end: f64) -> impl Iterator<Item = f64> {
+        let d = self.d();
+        let slope = free[1] + self.zeta * self.omega * free[0];
+        let (first, spacing) = if self.zeta < 1.0 {
+            ((d * free[0]).atan2(-slope).rem_euclid(PI) / d, PI / d)
+        } else if d > 0.0 {
+            ((-d * free[0] / slope).atanh() / d, f64::INFINITY)
+        } else {
+            (-free[0] / slope, f64::INFINITY)
+        };
+        let first = if first > 0.0 { first } else { spacing };
+        std::iter::successors(Some(first), move |tau| Some(tau + spacing)).take_while(move |tau| *tau < end)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::levels::full_contact;
+    use crate::mechanics::load::Load;
+    use crate::series::taylor::{Arc, Start};
+    use crate::{Parameters, Ramp, State, Structure};
+    use approx::assert_relative_eq;
+    use proptest::prelude::*;
+
+    fn oscillator(T: f64, zeta: f64) -> Oscillator {
+        Oscillator { omega: TAU / T, zeta }
+    }
+
+    fn segments(times: &[f64], a_g: &[f64]) -> Vec<Segment> {
+        let samples = times.windows(2).zip(a_g.windows(2));
+        let segment = |(t, a): (&[f64], &[f64])| {
+            let a_g = Ramp { value: a[0], slope: (a[1] - a[0]) / (t[1] - t[0]) };
+            Segment { start: t[0], end: t[1], a_g }
+        };
+        samples.map(segment).collect()
+    }
+
+    /// Closed form of the response to ground that takes up the acceleration 1 at once and keeps it: the peak
+    /// 1 + exp(−ζ (π − 2 asin ζ)/√(1−ζ²)) at ω t = (π − 2 asin ζ)/√(1−ζ²) for ζ < 1, 1 + e^{−2} at ω t = 2 for ζ = 1.
+    #[test]
+    fn a_step_has_its_closed_form_however_it_is_cut() {
+        for zeta in [0.0, 0.02, 0.5, 0.9, 1.0] {
+            let exact = if zeta < 1.0 {
+                let quality = f64::sqrt(1.0 - zeta * zeta);
+                1.0 + (-zeta * (PI - 2.0 * zeta.asin()) / quality).exp()
+            } else {
+                1.0 + (-2f64).exp()
+            };
+            for cuts in [1, 7, 1000] {
+                let times: Vec<_> = (0..=cuts).map(|i| 3.0 * f64::from(i) / f64::from(cuts)).collect();
+                let peak = oscillator(1.3, zeta).peak(segments(&times, &vec![1.0; times.len()]).into_iter());
+                assert_relative_eq!(peak, exact, max_relative = 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn damping_of_one_is_the_limit_from_both_sides() {
+        let load = segments(&[0.0, 0.4, 0.5, 2.0], &[0.0, 3.0, -7.0, 0.0]);
+        let critical = oscillator(0.7, 1.0).peak(load.iter().copied());
+        for zeta in [1.0 - 1e-9, 1.0 + 1e-9] {
+            assert_relative_eq!(oscillator(0.7, zeta).peak(load.iter().copied()), critical, max_relative = 1e-8);
+        }
+    }
+
+    /// A stiff oscillator follows the ground, a soft one stays where it is.
+    #[test]
+    fn the_limits_are_the_ground_acceleration_and_the_ground_displacement() {
+        let load = segments(&[0.0, 0.1, 0.2, 0.3, 0.4], &[0.0, 2.0, 0.0, -2.0, 0.0]);
+        assert_relative_eq!(oscillator(1e-5, 0.05).peak(load.iter().copied()), 2.0, max_relative = 1e-3);
+        let displacement = 2.0 * 0.1 * 0.2; // two triangles of velocity 0.2 m/s
+        let T = 1e3;
+        let omega_squared = (TAU / T).powi(2);
+        let soft = oscillator(T, 0.0).peak(load.iter().copied());
+        assert_relative_eq!(soft, omega_squared * displacement, max_relative = 1e-5);
+    }
+
+    /// The swing after the end of a short pulse counts: the impulse that it gave times ω.
+    #[test]
+    fn the_swing_after_the_record_counts() {
+        let record_end = 1e-4;
+        let load = segments(&[0.0, record_end], &[5.0, 5.0]);
+        let rest = Segment { start: record_end, end: record_end + 1.0, a_g: Ramp::default() };
+        let peak = oscillator(1.0, 0.0).peak(load.into_iter().chain([rest]));
+        assert_relative_eq!(peak, TAU * 5.0 * record_end, max_relative = 1e-6);
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+
+        /// Against series of the same oscillator (Eq 1), seen at many instants of each segment.
+        #[test]
+        fn the_peak_is_that_of_the_motion_seen_densely(
+            a_g in prop::collection::vec(-10.0..10.0f64, 3..12),
+            steps in prop::collection::vec(1e-3..0.3f64, 12),
+            f_fc in 0.3..40.0f64,
+            zeta_fc in 0.0..3.0f64,
+        ) {
+            const SEEN: usize = 400;
+            let structure = Structure::new(Parameters { f_fc, zeta_fc, ..Parameters::EVISON }).unwrap();
+            let times: Vec<f64> = (0..a_g.len()).map(|i| steps[..i].iter().sum()).collect();
+            let load = segments(&times, &a_g);
+            let peak = oscillator(1.0 / f_fc, zeta_fc).peak(load.iter().copied());
+
+            let mut state = State::default();
+            let mut arc = Arc::default();
+            let (mut seen, mut fastest) = (0.0f64, 0.0f64);
+            for segment in &load {
+                for i in 0..SEEN {
+                    let at = |i: usize| segment.start + (segment.end - segment.start) * i as f64 / SEEN as f64;
+                    let (mut now, until) = (at(i), at(i + 1));
+                    while now < until {
+                        let interval = until - now;
+                        let start = Start { state, a_g: segment.from(now), a_top: segment.from(now), interval, local_error: 1e-15 };
+                        full_contact::series(&structure, &start, &mut arc);
+                        state = arc.end();
+                        now = if arc.duration() == interval { until } else { now + arc.duration() };
+                    }
+                    let acceleration = full_contact::acceleration(&structure, &state, Load::default());
+                    seen = seen.max(acceleration.abs());
+                    fastest = fastest.max((until - at(i)).powi(2) * (structure.omega_fc.powi(2) * 20.0));
+                }
+            }
+            prop_assert!(peak >= seen * (1.0 - 1e-12), "{peak} {seen}");
+            prop_assert!(peak <= seen + fastest * (1.0 + zeta_fc), "{peak} {seen} {fastest}");
+        }
+    }
+}

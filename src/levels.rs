@@ -1,0 +1,14 @@
+//! Levels of detail: which equations move the structure, and what they make of it.
+
+pub mod detail;
+pub(crate) mod first_uplift;
+pub mod full_contact;
+pub(crate) mod level;
+mod linear;
+mod linear_system;
+mod modal;
+pub mod nonlinear;
+pub(crate) mod oscillator;
+pub(crate) mod output_series;
+mod rigid;
+pub mod rules;

@@ -1,0 +1,99 @@
+//! The first instant of a motion in full contact at which [uplift](crate::mechanics::uplift) is due.
+
+use crate::mechanics::uplift::{LEAST_EXCESS, TurningMoment};
+use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
+use crate::series::taylor::{Arc, Series};
+use crate::{Side, Structure};
+
+/// The first instant of `arc`, a motion in full contact, at which uplift is due, and the side about which it rocks
+/// from there. `turning` is that of the equations by which it will.
+pub(crate) fn first_on(structure: &Structure, turning: &TurningMoment, arc: &Arc) -> (Crossing, Side) {
+    let right = first_about(structure, turning, arc, Side::Right);
+    let left = first_about(structure, turning, arc, Side::Left);
+    if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
+}
+
+fn first_about(structure: &Structure, turning: &TurningMoment, arc: &Arc, side: Side) -> Crossing {
+    let s = side.sign();
+    let u = arc.used(&arc.u);
+    let displacement = Guard::new(u, -s, structure.u_cr);
+    if displacement.is_open_throughout(arc.reach) {
+        return Crossing::None;
+    }
+    let mut moment: Series = arc.u;
+    for (k, coefficient) in moment[..=arc.order].iter_mut().enumerate() {
+        *coefficient = turning.u * arc.u[k] + turning.u_dot * arc.u_dot[k];
+    }
+    let moment = Guard::new(arc.used(&moment), -s, (1.0 + LEAST_EXCESS) * turning.weight);
+    first_time_all_closed([displacement, moment], arc.reach)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Parameters;
+    use crate::levels::full_contact;
+    use crate::levels::nonlinear::accelerations;
+    use crate::mechanics::load::{Load, Ramp};
+    use crate::series::taylor::Start;
+    use proptest::prelude::*;
+
+    fn first_from(structure: &Structure, state: State) -> (Crossing, Side) {
+        let mut arc = Arc::default();
+        let a_g = Ramp::default();
+        full_contact::series(
+            structure,
+            &Start { state, a_g, a_top: a_g, interval: 1e-9, local_error: 1e-13 },
+            &mut arc,
+        );
+        first_on(structure, &TurningMoment::new(structure), &arc)
+    }
+
+    proptest! {
+        /// The condition on the moment is the condition s θ̈ > 0 of Eqs 5 and 6, for every load.
+        #[test]
+        fn the_moment_condition_is_that_of_equations_5_and_6(
+            u in -0.02..0.02f64, u_dot in -3.0..3.0f64, a_g in -20.0..20.0f64, F_t in -3e3..3e3f64,
+        ) {
+            let structure = Structure::new(Parameters { zeta_fc: 0.1, ..Parameters::MCMANUS }).unwrap();
+            let state = State { u, u_dot, ..State::default() };
+            let side = Side::of(u);
+            let theta_ddot = accelerations(&structure, side, &state, Load { a_g, F_t }).unwrap()[1];
+            prop_assume!(theta_ddot.abs() > 1e-6 && (u.abs() - structure.u_cr).abs() > 1e-8);
+            let both = u.abs() >= structure.u_cr && side.sign() * theta_ddot > 0.0;
+            let expected = if both { (Crossing::At(0.0), side) } else { (Crossing::None, Side::Right) };
+            prop_assert_eq!(first_from(&structure, state), expected);
+        }
+    }
+
+    #[test]
+    fn a_displacement_that_reaches_u_cr_lifts_off() {
+        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let at_rest = |factor: f64| State { u: factor * structure.u_cr, ..State::default() };
+        assert_eq!(first_from(&structure, at_rest(1.0)), (Crossing::At(0.0), Side::Right));
+        assert_eq!(first_from(&structure, at_rest(-1.0)), (Crossing::At(0.0), Side::Left));
+        assert_eq!(first_from(&structure, at_rest(1.0 - 1e-12)).0, Crossing::None);
+    }
+
+    /// After a landing with u > u_cr and a velocity whose damping force holds the base down, contact lasts until the
+    /// moment of the weight is overcome.
+    #[test]
+    fn a_landing_beyond_u_cr_waits_for_the_moment() {
+        let structure = Structure::new(Parameters { zeta_fc: 0.2, ..Parameters::EVISON }).unwrap();
+        let state = State { u: 1.05 * structure.u_cr, u_dot: -0.02, ..State::default() };
+        let push = Ramp { value: -40.0, slope: 0.0 }; // turns the velocity round
+        let mut arc = Arc::default();
+        full_contact::series(
+            &structure,
+            &Start { state, a_g: push, a_top: push, interval: 2e-3, local_error: 1e-15 },
+            &mut arc,
+        );
+        let (Crossing::At(sigma), Side::Right) = first_on(&structure, &TurningMoment::new(&structure), &arc) else {
+            panic!("no uplift")
+        };
+        let there = arc.at(sigma);
+        let theta_ddot = accelerations(&structure, Side::Right, &there, Load::ground(push.value)).unwrap()[1];
+        assert!(sigma * arc.span > 1e-5 && there.u > structure.u_cr);
+        assert!((0.0..1e-9).contains(&theta_ddot), "{theta_ddot}");
+    }
+}

@@ -1,0 +1,149 @@
+//! Full contact (Eq 1): a damped oscillator on the ground.
+//!
+//! ```text
+//! ü + 2 ζ_fc ω_fc u̇ + ω_fc² u = −a_g + F_t/m,      θ = θ̇ = 0                                    (1)
+//! ```
+
+use crate::levels::level::Rates;
+use crate::levels::oscillator::{Flow, Kept, Oscillator};
+use crate::mechanics::load::Load;
+use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
+use crate::{State, Structure};
+
+/// Elastic acceleration ü (m/s²) under the `load` by Eq 1.
+pub fn acceleration(structure: &Structure, state: &State, load: Load) -> f64 {
+    -load.on_top(structure) - structure.damping_fc * state.u_dot - structure.stiffness * state.u
+}
+
+/// Part of the velocity at uplift, ω_fc u_cr, below which motion is as good as none.
+const NEGLIGIBLE: f64 = 1e-30;
+
+/// Writes the motion from `start` into `arc`.
+pub(crate) fn series(structure: &Structure, start: &Start, arc: &mut Arc) {
+    let &Start { state, a_top, interval, local_error, .. } = start;
+    let &Structure { stiffness, damping_fc, omega_fc, .. } = structure;
+    let span = interval.min(LONGEST_SPAN / omega_fc);
+    let forcing = a_top.value.abs() + a_top.slope.abs() * span;
+    let response_time = span.min(1.0 / omega_fc);
+    let u_dot = state.u_dot.abs() + response_time * (stiffness * state.u.abs() + forcing);
+    // a structure that comes to rest must not ask for less than numbers can tell
+    let u_dot = u_dot.max(NEGLIGIBLE * omega_fc * structure.u_cr);
+    let truncation = Truncation { u_dot: local_error * u_dot, theta_dot: 0.0 };
+    let mut u_dot = state.u_dot;
+    arc.expand(&state, span, truncation, |arc, k, per| {
+        let u_ddot = -a_top.coefficient(k - 1, span) - damping_fc * u_dot - stiffness * arc.u[k - 1];
+        u_dot = u_ddot * per;
+        (u_dot, 0.0)
+    });
+}
+
+/// Exact propagation over intervals during which the base certainly stays down.
+#[derive(Clone, Debug)]
+pub(crate) struct ExactContact {
+    oscillator: Oscillator,
+    flows: Kept<Flow>,
+}
+
+impl ExactContact {
+    /// For `structure`.
+    pub(crate) fn new(structure: &Structure) -> ExactContact {
+        let oscillator = Oscillator { omega: structure.omega_fc, zeta: structure.parameters().zeta_fc };
+        ExactContact { oscillator, flows: Kept::new(Flow::NONE) }
+    }
+
+    /// The state after the interval of `start` if |u| certainly stays below `limit` (m) until then: u is no farther than its
+    /// whole swing, nor, on the way, from its chord than |ü| h²/8.
+    #[inline]
+    pub(crate) fn leap(&mut self, start: &Start, limit: f64) -> Option<State> {
+        let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
+        let flow = self.flows.over(interval, || self.oscillator.flow(interval));
+        let end = flow.driven([u, u_dot], a_top.value, a_top.slope);
+        let is_low = || {
+            let swing = self.oscillator.swing([u, u_dot], a_top.value, a_top.slope, interval);
+            let [_, u_ddot, _] = self.oscillator.rates(&swing, a_top.slope);
+            let off_chord = u_ddot * interval * interval / 8.0;
+            swing.farthest() < limit || u.abs().max(end[0].abs()) + off_chord < limit
+        };
+        let goes_on = limit == f64::INFINITY || is_low();
+        goes_on.then_some(State { u: end[0], u_dot: end[1], theta: 0.0, theta_dot: 0.0 })
+    }
+
+    /// Bounds of what changes over the interval of `start`.
+    pub(crate) fn rates(&self, start: &Start) -> Rates {
+        let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
+        let swing = self.oscillator.swing([u, u_dot], a_top.value, a_top.slope, interval);
+        let [u_dot, u_ddot, u_dddot] = self.oscillator.rates(&swing, a_top.slope);
+        Rates { u: swing.farthest(), u_dot, u_ddot, u_dddot, ..Rates::default() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Parameters;
+    use crate::mechanics::load::Ramp;
+    use approx::assert_relative_eq;
+    use proptest::prelude::*;
+
+    /// Closed form from rest: free decay plus the particular solution of a linear ramp.
+    fn ramp_from_rest(structure: &Structure, a_g: Ramp, t: f64) -> f64 {
+        let (w, z) = (structure.omega_fc, structure.parameters().zeta_fc);
+        let wd = w * (1.0 - z * z).sqrt();
+        let offset = -a_g.value / (w * w) + 2.0 * z * a_g.slope / w.powi(3);
+        let rate = -a_g.slope / (w * w);
+        let (a, b) = (-offset, (-rate - z * w * offset) / wd);
+        offset + rate * t + (-z * w * t).exp() * (a * (wd * t).cos() + b * (wd * t).sin())
+    }
+
+    fn from(state: State, a_g: Ramp, interval: f64) -> Start {
+        Start { state, a_g, a_top: a_g, interval, local_error: 1e-15 }
+    }
+
+    const RAMP: Ramp = Ramp { value: 0.7, slope: -30.0 };
+
+    #[test]
+    fn the_series_follows_the_closed_form() {
+        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let mut state = State::default();
+        let mut time = 0.0;
+        let mut arc = Arc::default();
+        while time < 0.3 {
+            let a_g = Ramp { value: RAMP.at(time), ..RAMP };
+            series(&structure, &from(state, a_g, 0.3 - time), &mut arc);
+            state = arc.end();
+            time += arc.duration();
+        }
+        assert_relative_eq!(state.u, ramp_from_rest(&structure, RAMP, time), max_relative = 1e-13);
+    }
+
+    #[test]
+    fn the_exact_flow_follows_the_closed_form() {
+        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let mut contact = ExactContact::new(&structure);
+        let end = contact.leap(&from(State::default(), RAMP, 0.3), f64::INFINITY).unwrap();
+        assert_relative_eq!(end.u, ramp_from_rest(&structure, RAMP, 0.3), max_relative = 1e-13);
+    }
+
+    proptest! {
+        /// A leap ends where the series does, and is refused wherever the series reaches the limit on its way.
+        #[test]
+        fn a_leap_agrees_with_the_series_and_never_passes_the_limit(
+            u in -1e-3..1e-3f64, u_dot in -0.1..0.1f64, value in -3.0..3.0f64, slope in -300.0..300.0f64,
+            zeta_fc in prop_oneof![0.0..1.2f64, Just(1.0)], interval in 1e-4..0.02f64,
+        ) {
+            let structure = Structure::new(Parameters { zeta_fc, ..Parameters::EVISON }).unwrap();
+            let state = State { u, u_dot, ..State::default() };
+            let a_g = Ramp { value, slope };
+            let mut arc = Arc::default();
+            series(&structure, &from(state, a_g, interval), &mut arc);
+            prop_assert_eq!(arc.reach, 1.0);
+            let highest = (0..=1000).map(|i| arc.at(i as f64 / 1000.0).u.abs()).fold(0.0, f64::max);
+            let mut contact = ExactContact::new(&structure);
+            if let Some(end) = contact.leap(&from(state, a_g, interval), structure.u_cr) {
+                prop_assert!(highest < structure.u_cr);
+                prop_assert!((end.u - arc.end().u).abs() < 1e-16 + 1e-13 * highest);
+                prop_assert!((end.u_dot - arc.end().u_dot).abs() < structure.omega_fc * (1e-16 + 1e-13 * highest));
+            }
+        }
+    }
+}

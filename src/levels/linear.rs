@@ -1,0 +1,274 @@
+//! Rocking about side s = ±1, linearised about θ = u = 0 (Eqs 7–9).
+//!
+//! ```text
+//! ü + H θ̈ + (c_u/m) u̇ + ω_fc² u − g θ = −a_g                                                              (7)
+//! H ü + (J_P/m) θ̈ − g u − g H θ = −H a_g − s γ g B                                                        (8)
+//! ```
+//!
+//! Solved for the accelerations, with κ = (c_u/m) u̇ + ω_fc² u and i = J_P/m − H² = (J0 + m0 B²)/m + B²:
+//!
+//! ```text
+//! θ̈ = [H κ + g u − s γ g B]/i,      ü = −a_g + g θ − κ − H θ̈
+//! ```
+//!
+//! A force F_t on the top mass makes a_g − F_t/m of a_g. Under loads that are linear in time the exact solution is a
+//! matrix exponential, kept for the step lengths used last; series serve the steps on which a transition may happen.
+
+use crate::levels::level::{ElasticRocking, Rates};
+use crate::levels::linear_system::{LinearSystem, Row};
+use crate::levels::oscillator::Kept;
+use crate::mechanics::load::Load;
+use crate::mechanics::uplift::TurningMoment;
+use crate::series::taylor::{Arc, Start};
+use crate::{Side, State, Structure};
+use nalgebra::{SMatrix, SVector};
+use std::f64::consts::FRAC_PI_2;
+
+/// The longest leap, as Ω h in rad: beyond, the exponential loses digits of its small entries.
+const LONGEST_LEAP: f64 = 10.0;
+
+/// Takes (u, u̇, θ, θ̇, a_g, ȧ_g, s) from the start of a step to the state at its end, by columns.
+type Flow = SMatrix<f64, 4, 7>;
+
+/// Exact propagation by Eqs 7 and 8.
+#[derive(Clone, Debug)]
+pub(crate) struct LinearRocking {
+    pub(crate) system: LinearSystem,
+    /// Flows, and the [`amplification`] over the same time.
+    flows: Kept<(Flow, f64)>,
+    /// Circular frequency Ω of u for θ held, rad/s.
+    omega: f64,
+    /// 1/Ω², s².
+    compliance: f64,
+    /// Bound of what θ̈ has of the speed of the vibration, rad/s² for m/s.
+    turning_per_speed: f64,
+    /// Part of |θ̈| that comes back on it after a time, over the cube of that time, 1/s³.
+    feedback: f64,
+    g: f64,
+}
+
+impl LinearRocking {
+    /// For `structure`.
+    pub(crate) fn new(structure: &Structure) -> LinearRocking {
+        let &crate::Parameters { H, B, g, .. } = structure.parameters();
+        let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
+        let inertia = foundation + B * B;
+        let theta_ddot = Row {
+            u: (H * stiffness + g) / inertia,
+            u_dot: H * damping_u / inertia,
+            theta: 0.0,
+            a_top: 0.0,
+            side: -gamma * g * B / inertia,
+        };
+        let u_ddot = Row {
+            u: -stiffness - H * theta_ddot.u,
+            u_dot: -damping_u - H * theta_ddot.u_dot,
+            theta: g,
+            a_top: -1.0,
+            side: -H * theta_ddot.side,
+        };
+        let omega = (-u_ddot.u).sqrt();
+        let turning_per_speed = theta_ddot.u / omega + theta_ddot.u_dot;
+        LinearRocking {
+            system: LinearSystem { u_ddot, theta_ddot },
+            flows: Kept::new((Flow::zeros(), 1.0)),
+            omega,
+            compliance: 1.0 / (omega * omega),
+            turning_per_speed,
+            feedback: turning_per_speed * g / 2.0,
+            g,
+        }
+    }
+
+    /// Bounds of the speed of the vibration and of |θ̈| over the interval of `start` about `side`, whose [`amplification`] is
+    /// given, and where the vibration is about; no bounds where θ turns too far back on u.
+    ///
+    /// With f = g θ − a_top + s U_s, the vibration about f/Ω² has an energy that grows by the change of f alone, which
+    /// bounds its speed v and with it |θ̈|, on which the change of f depends in turn.
+    #[inline(always)]
+    fn swing(&self, side: Side, start: &Start, amplification: f64) -> Swing {
+        let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
+        let LinearSystem { u_ddot, theta_ddot } = &self.system;
+        let s = side.sign();
+        let following = (self.g * theta - a_top.value + s * u_ddot.side) * self.compliance;
+        let swing = self.omega * (u - following);
+        let speed = (u_dot * u_dot + swing * swing).sqrt() + h * h * (a_top.slope.abs() + self.g * theta_dot.abs());
+        let steady = (theta_ddot.u * following + s * theta_ddot.side).abs();
+        Swing { following, speed, turning: (steady + self.turning_per_speed * speed) * amplification }
+    }
+
+    /// How far θ can leave the cubic with its values and slopes at both ends of a leap from `start` that swings so: |θ⁗| h⁴/384.
+    #[inline(never)] // few leaps ask
+    fn off_cubic(&self, start: &Start, swing: &Swing) -> f64 {
+        let Rates { u_ddot, u_dddot, .. } = self.rates_of(start, swing);
+        let per = &self.system.theta_ddot;
+        (per.u.abs() * u_ddot + per.u_dot.abs() * u_dddot) * start.interval.powi(4) / 384.0
+    }
+
+    /// Bounds of what changes on a leap from `start` that swings so.
+    fn rates_of(&self, start: &Start, swing: &Swing) -> Rates {
+        let &Start { state: State { theta, theta_dot, .. }, a_top, interval: h, .. } = start;
+        let &Swing { following, speed, turning } = swing;
+        let u_ddot = &self.system.u_ddot;
+        let speed = speed + self.g * h * h * h / 2.0 * turning;
+        let theta_dot = theta_dot.abs() + turning * h;
+        let force_rate = a_top.slope.abs() + self.g * theta_dot;
+        let elastic = (self.omega - u_ddot.u_dot) * speed + h * force_rate;
+        Rates {
+            u: following.abs() + speed / self.omega,
+            u_dot: speed,
+            u_ddot: elastic,
+            u_dddot: self.omega * self.omega * speed - u_ddot.u_dot * elastic + force_rate,
+            theta: theta.abs() + theta_dot * h,
+            theta_dot,
+            theta_ddot: turning,
+        }
+    }
+}
+
+/// Bounds of a leap, from [`LinearRocking::swing`].
+struct Swing {
+    following: f64,
+    /// But for what θ̈ adds.
+    speed: f64,
+    turning: f64,
+}
+
+impl ElasticRocking for LinearRocking {
+    /// The state after the interval of `start` if rocking about `side` certainly goes on until then: θ is no farther
+    /// from its chord than |θ̈| h²/8, and no closer to 0 than the Bernstein coefficients of its cubic but for what it leaves
+    /// that.
+    #[inline(always)]
+    fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
+        let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
+        if self.omega * h > LONGEST_LEAP {
+            return None;
+        }
+        let (system, omega, feedback) = (&self.system, self.omega, self.feedback);
+        let compute = || (flow(system, omega, h), amplification(feedback, h));
+        let &(ref flow, amplification) = self.flows.over(h, compute);
+        let s = side.sign();
+        let end = flow * SVector::from([u, u_dot, theta, theta_dot, a_top.value, a_top.slope, s]);
+        let swing = self.swing(side, start, amplification);
+        let off_chord = swing.turning * h * h / 8.0;
+        let (first, last) = (s * theta, s * end[2]);
+        let third = s * h / 3.0;
+        let inner = (first + third * theta_dot).min(last - third * end[3]);
+        let lowest = first.min(last);
+        let stays_up = lowest > off_chord || lowest.min(inner) > self.off_cubic(start, &swing);
+        let goes_on = stays_up && first.max(last) + off_chord < FRAC_PI_2;
+        goes_on.then(|| State { u: end[0], u_dot: end[1], theta: end[2], theta_dot: end[3] })
+    }
+
+    fn rates(&self, side: Side, start: &Start, _end: &State) -> Rates {
+        let swing = self.swing(side, start, amplification(self.feedback, start.interval));
+        if swing.turning < f64::INFINITY { self.rates_of(start, &swing) } else { Rates::NONE }
+    }
+
+    fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
+        self.system.series(structure, side, start, arc);
+    }
+
+    fn turning_moment(&self, _structure: &Structure) -> TurningMoment {
+        self.system.turning_moment()
+    }
+
+    fn accelerations(&self, structure: &Structure, side: Side, state: &State, load: Load) -> [f64; 2] {
+        self.system.accelerations(side, state, load.on_top(structure))
+    }
+}
+
+/// By how much |θ̈|, which comes back on itself through the vibration, may exceed what it would be without that over `duration` (s);
+/// infinite where no bound is known.
+fn amplification(feedback: f64, duration: f64) -> f64 {
+    let part = feedback * duration * duration * duration;
+    if part < 0.5 { 1.0 / (1.0 - part) } else { f64::INFINITY }
+}
+
+/// The flow of `system` over `duration` (s): the exponential of the system augmented by its inputs. Derivatives are
+/// taken over powers of ω, or of 1/h over steps shorter than that, which keeps the entries of one size and with them the
+/// digits of small results.
+fn flow(system: &LinearSystem, omega: f64, duration: f64) -> Flow {
+    let mut rates = SMatrix::<f64, 7, 7>::zeros();
+    rates[(0, 1)] = 1.0;
+    rates[(2, 3)] = 1.0;
+    rates[(4, 5)] = 1.0;
+    for (equation, row) in [(1, &system.u_ddot), (3, &system.theta_ddot)] {
+        rates[(equation, 0)] = row.u;
+        rates[(equation, 1)] = row.u_dot;
+        rates[(equation, 2)] = row.theta;
+        rates[(equation, 4)] = row.a_top;
+        rates[(equation, 6)] = row.side;
+    }
+    let rate = omega.max(1.0 / duration);
+    let turn = (system.theta_ddot.u / system.u_ddot.u).abs();
+    let (square, cube) = (rate * rate, rate * rate * rate);
+    let scale =
+        SVector::<f64, 7>::from([1.0, rate, turn, turn * rate, square, cube, square / system.u_ddot.side.abs()]);
+    let scaled = |matrix: &SMatrix<f64, 7, 7>, scale: &SVector<f64, 7>| {
+        SMatrix::<f64, 7, 7>::from_fn(|i, j| matrix[(i, j)] * scale[j] / scale[i])
+    };
+    let balanced = (scaled(&rates, &scale) * duration).exp();
+    scaled(&balanced, &scale.map(|factor| 1.0 / factor)).fixed_rows::<4>(0).into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Parameters;
+    use crate::levels::nonlinear::accelerations;
+    use crate::mechanics::load::Ramp;
+    use approx::assert_relative_eq;
+    use proptest::prelude::*;
+
+    /// Eqs 7 and 8 as they stand, and their distance from Eqs 5 and 6, which is of second order.
+    #[test]
+    fn the_accelerations_satisfy_equations_7_and_8() {
+        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let &Parameters { m, H, B, g, .. } = structure.parameters();
+        let system = LinearRocking::new(&structure).system;
+        let (side, a_g) = (Side::Left, 0.8);
+        let distance = |scale: f64| {
+            let state = State { u: 1e-3 * scale, u_dot: 0.1 * scale, theta: -0.01 * scale, theta_dot: 0.05 * scale };
+            let [u_ddot, theta_ddot] = system.accelerations(side, &state, a_g * scale);
+            let State { u, u_dot, theta, .. } = state;
+            let elastic = structure.c_u / m * u_dot + structure.omega_fc.powi(2) * u;
+            assert_relative_eq!(u_ddot + H * theta_ddot + elastic - g * theta, -a_g * scale, epsilon = 1e-12);
+            let left = H * u_ddot + structure.J_P / m * theta_ddot - g * u - g * H * theta;
+            assert_relative_eq!(left, -H * a_g * scale + structure.gamma * g * B, max_relative = 1e-12);
+            let full = accelerations(&structure, side, &state, Load::ground(a_g * scale)).unwrap();
+            (full[1] - theta_ddot).abs()
+        };
+        // The weight's moment stays as the rest shrinks: it leaves an error of first order in u/B.
+        assert_relative_eq!(distance(1e-3) / distance(1e-4), 10.0, max_relative = 0.01);
+    }
+
+    proptest! {
+        /// A leap ends where the series does, and is refused wherever the series comes back to the ground.
+        #[test]
+        fn a_leap_agrees_with_the_series_and_never_passes_an_impact(
+            u in -4e-3..4e-3f64, u_dot in -0.4..0.4f64, theta in 1e-4..0.05f64, theta_dot in -1.0..1.0f64,
+            value in -5.0..5.0f64, slope in -300.0..300.0f64, interval in 1e-4..0.01f64, zeta_fc in 0.0..0.2f64,
+        ) {
+            let structure = Structure::new(Parameters { zeta_fc, ..Parameters::MCMANUS }).unwrap();
+            let state = State { u, u_dot, theta, theta_dot };
+            let a_g = Ramp { value, slope };
+            let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15 };
+            let mut rocking = LinearRocking::new(&structure);
+            let mut arc = Arc::default();
+            rocking.system.series(&structure, Side::Right, &start, &mut arc);
+            prop_assert_eq!(arc.reach, 1.0);
+            let lowest = (0..=1000).map(|i| arc.at(i as f64 / 1000.0).theta).fold(1.0, f64::min);
+            if let Some(end) = rocking.leap(Side::Right, &start) {
+                prop_assert!(lowest > 0.0);
+                let expected = arc.end();
+                prop_assert!((end.theta - expected.theta).abs() < 1e-14);
+                prop_assert!((end.theta_dot - expected.theta_dot).abs() < 1e-12);
+                prop_assert!((end.u - expected.u).abs() < 1e-14);
+                prop_assert!((end.u_dot - expected.u_dot).abs() < 1e-12);
+            } else {
+                prop_assert!(lowest < 0.03);
+            }
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! A linear model of rocking about side s: what the levels of detail with linear equations share.
+//!
+//! ```text
+//! ü = U_u u + U_u̇ u̇ + U_θ θ + U_a (a_g − F_t/m) + s U_s
+//! θ̈ = T_u u + T_u̇ u̇ + T_θ θ + T_a (a_g − F_t/m) + s T_s
+//! ```
+
+use crate::levels::nonlinear::{longest_span, truncation};
+use crate::mechanics::uplift::TurningMoment;
+use crate::series::taylor::{Arc, Start};
+use crate::{Side, State, Structure};
+
+/// One of the two equations: the coefficients of u, u̇, θ, a_g − F_t/m and s.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row {
+    pub u: f64,
+    pub u_dot: f64,
+    pub theta: f64,
+    pub a_top: f64,
+    pub side: f64,
+}
+
+/// Both equations.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LinearSystem {
+    pub u_ddot: Row,
+    pub theta_ddot: Row,
+}
+
+impl Row {
+    /// What it has of the loads.
+    #[inline]
+    fn forcing(&self, a_top: f64, side: f64) -> f64 {
+        self.a_top * a_top + self.side * side
+    }
+}
+
+impl LinearSystem {
+    /// (ü, θ̈) in m/s² and rad/s² in `state` about `side` under the ground acceleration `a_top`
+    /// (m/s²) that the top mass feels.
+    pub(crate) fn accelerations(&self, side: Side, state: &State, a_top: f64) -> [f64; 2] {
+        let &State { u, u_dot, theta, .. } = state;
+        let rate = |row: &Row| row.u * u + row.u_dot * u_dot + row.theta * theta + row.forcing(a_top, side.sign());
+        [rate(&self.u_ddot), rate(&self.theta_ddot)]
+    }
+
+    /// Writes the motion from `start` about `side` into `arc`.
+    pub(crate) fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
+        let &Start { state, a_top, interval, .. } = start;
+        let span = interval.min(longest_span(structure));
+        let rows = [&self.u_ddot, &self.theta_ddot];
+        let mut forcing = rows.map(|row| row.forcing(a_top.value, side.sign()));
+        let mut next_forcing = rows.map(|row| row.forcing(a_top.slope * span, 0.0));
+        let mut u_dot = state.u_dot;
+        arc.expand(&state, span, truncation(structure, start, span), |arc, k, per| {
+            let (u, theta) = (arc.u[k - 1], arc.theta[k - 1]);
+            // what the last order of u̇ adds comes last: only that has to be waited for
+            let [u_rate, theta_rate] = [0, 1].map(|i| {
+                let row = rows[i];
+                (row.u * u + row.theta * theta + forcing[i]) * per + row.u_dot * per * u_dot
+            });
+            (forcing, next_forcing) = (next_forcing, [0.0; 2]);
+            u_dot = u_rate;
+            (u_rate, theta_rate)
+        });
+    }
+
+    /// s θ̈ at θ = θ̇ = 0.
+    pub(crate) fn turning_moment(&self) -> TurningMoment {
+        let Row { u, u_dot, side, .. } = self.theta_ddot;
+        TurningMoment { u, u_dot, weight: -side }
+    }
+}

@@ -1,0 +1,257 @@
+//! Rocking about side s = ±1, in full (Eqs 5, 6).
+//!
+//! ```text
+//! m ü + m H θ̈ = −c_u u̇ − k u − m θ̇² (sB − u) − m a_g cos θ + m g sin θ                            (5)
+//!
+//! m H ü + [J0 + m H² + m (sB − u)² + m0 B²] θ̈
+//!     = 2 m (sB − u) u̇ θ̇ + m g H sin θ + m g u cos θ − s (m + m0) g B cos θ
+//!       − a_g [ m H cos θ + (s (m + m0) B − m u) sin θ ]                                            (6)
+//! ```
+//!
+//! A force F_t on the top mass adds F_t cos θ to (5) and F_t [H cos θ + (sB − u) sin θ] to (6).
+//!
+//! The series are those of momenta rather than velocities, which takes the fewest products. With w = sB − u, κ = (c_u
+//! u̇ + k u)/m, i = (J0 + m0 B²)/m, and y = u̇ + H θ̇ (over m the momentum along u), L = (i + w²) θ̇ (over m the
+//! angular momentum about the pivot of all but y), a = a_g − F_t/m, F = g sin θ − a cos θ, G = g cos θ + a sin θ and G₀
+//! = g cos θ + a_g sin θ, Eq 5 and (6) − H (5) read
+//!
+//! ```text
+//! ẏ = F − κ − w θ̇²
+//! L̇ = H (κ + w θ̇²) − w G − s(γ−1)B G₀
+//! ```
+
+use crate::levels::level::{ElasticRocking, Rates};
+use crate::mechanics::load::Load;
+use crate::mechanics::uplift::TurningMoment;
+use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
+use crate::{Side, State, Structure};
+use nalgebra::{Matrix2, Vector2};
+use wide::f64x2;
+
+/// (ü, θ̈) in m/s² and rad/s² under `load`: Eqs 5 and 6 as they stand, solved for the
+/// accelerations. `None` where the mass matrix is singular: m0 = J0 = 0 and u = sB, the top mass above the pivot.
+pub fn accelerations(structure: &Structure, side: Side, state: &State, load: Load) -> Option<Vector2<f64>> {
+    let Load { a_g, F_t } = load;
+    let &crate::Parameters { m, m0, H, B, J0, g, .. } = structure.parameters();
+    let &State { u, u_dot, theta, theta_dot } = state;
+    let s = side.sign();
+    let (sin, cos) = theta.sin_cos();
+    let lever = s * B - u;
+    let mass = Matrix2::new(m, m * H, m * H, J0 + m * H * H + m * lever * lever + m0 * B * B);
+    let force = Vector2::new(
+        -structure.c_u * u_dot - structure.k * u - m * theta_dot * theta_dot * lever - m * a_g * cos
+            + m * g * sin
+            + F_t * cos,
+        2.0 * m * lever * u_dot * theta_dot + m * g * H * sin + m * g * u * cos
+            - s * (m + m0) * g * B * cos
+            - a_g * (m * H * cos + (s * (m + m0) * B - m * u) * sin)
+            + F_t * (H * cos + lever * sin),
+    );
+    Some(mass.try_inverse()? * force)
+}
+
+/// Part of its inertia at u = 0, height apart, that a structure must keep about its pivot: with less of it, (6) − H (5)
+/// asks for steps without number on the way to a singularity.
+const LEAST_INERTIA: f64 = 1e-6;
+
+/// One order of the factors of six products.
+type Row = [f64x2; 3];
+
+const NO_ROW: Row = [f64x2::ZERO; 3];
+
+/// Factors of six products, one row per order.
+type Factors = [Row; MAX_ORDER + 1];
+
+#[inline(always)]
+fn row(columns: [f64; 6]) -> Row {
+    [f64x2::new([columns[0], columns[1]]), f64x2::new([columns[2], columns[3]]), f64x2::new([columns[4], columns[5]])]
+}
+
+#[inline(always)]
+fn add_product(sum: &mut Row, a: &Row, b: &Row) {
+    for lanes in 0..3 {
+        sum[lanes] += a[lanes] * b[lanes];
+    }
+}
+
+/// Σ a_i b_{n−i} over i = 0 … n in each column: six Cauchy products at once. b is kept backwards, so that both are read in
+/// one direction. The newest factors, a_n and b_n, come last and not from memory, so that the processor can sum the others
+/// before it knows them.
+#[inline(always)]
+fn products(a: &Factors, b: &Factors, newest_a: &Row, newest_b: &Row, n: usize) -> [f64; 6] {
+    let mut sum = NO_ROW;
+    if n > 0 {
+        for (a, b) in a[1..n].iter().zip(&b[MAX_ORDER - n + 1..MAX_ORDER]) {
+            add_product(&mut sum, a, b);
+        }
+        add_product(&mut sum, newest_a, &b[MAX_ORDER]);
+    }
+    add_product(&mut sum, &a[0], newest_b);
+    let [first, second, third] = sum.map(f64x2::to_array);
+    [first[0], first[1], second[0], second[1], third[0], third[1]]
+}
+
+/// Series of the motion by Eqs 5 and 6, with room for the factors of its products. Row i of `left`, and of `right` counted
+/// from its end, holds
+///
+/// ```text
+/// left:   θ̇       θ̇      θ̇         w θ̇       w θ̇     w
+/// right:  cos θ   sin θ   w, next   w, next   θ̇       G
+/// ```
+///
+/// of order i ("next": of order i + 1). Column by column they multiply to the rates of sin θ and −cos θ, to what the
+/// later coefficients of w contribute to w θ̇ and w² θ̇, to w θ̇² and to the moment of the top mass's weight.
+#[derive(Clone, Debug)]
+pub(crate) struct NonlinearRocking {
+    left: Factors,
+    right: Factors,
+}
+
+impl Default for NonlinearRocking {
+    fn default() -> NonlinearRocking {
+        NonlinearRocking { left: [NO_ROW; MAX_ORDER + 1], right: [NO_ROW; MAX_ORDER + 1] }
+    }
+}
+
+impl ElasticRocking for NonlinearRocking {
+    fn rates(&self, _side: Side, _start: &Start, _end: &State) -> Rates {
+        Rates::NONE
+    }
+
+    fn is_singular(&self, structure: &Structure, side: Side, state: &State) -> bool {
+        let (foundation, B) = (structure.foundation, structure.parameters().B);
+        let lever = side.sign() * B - state.u;
+        foundation + lever * lever < LEAST_INERTIA * (foundation + B * B)
+    }
+
+    fn turning_moment(&self, structure: &Structure) -> TurningMoment {
+        TurningMoment::new(structure)
+    }
+
+    fn accelerations(&self, structure: &Structure, side: Side, state: &State, load: Load) -> [f64; 2] {
+        accelerations(structure, side, state, load).map_or([f64::NAN; 2], Into::into)
+    }
+
+    #[inline(always)]
+    fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
+        let &Start { state, a_g, a_top, interval, .. } = start;
+        let &crate::Parameters { H, B, g, .. } = structure.parameters();
+        let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
+        let span = interval.min(longest_span(structure));
+        let [(a, slope), (a_ground, slope_ground)] = [a_top, a_g].map(|a| (a.value, a.slope * span));
+        let weight_offset = side.sign() * (gamma - 1.0) * B; // s(γ−1)B
+        let lever = side.sign() * B - state.u; // w at the start
+        let per_inertia = 1.0 / (foundation + lever * lever);
+        // over the inertia, so that few operations stand between one order of θ̇ and the next
+        let [height, offset, lever_start] = [H, weight_offset, lever].map(|factor| factor * per_inertia);
+
+        let State { u, u_dot, theta, theta_dot } = state;
+        let (mut sin, mut cos) = theta.sin_cos();
+        let mut weight = g * cos + a * sin; // G
+        let mut weight_below = g * cos + a_ground * sin; // G₀
+        let mut along = g * sin - a * cos; // F
+        let mut elastic = damping_u * u_dot + stiffness * u; // κ
+        let (left, right) = (&mut self.left, &mut self.right);
+        let mut newest_left = row([theta_dot, theta_dot, theta_dot, lever * theta_dot, lever * theta_dot, lever]);
+        let mut theta_dot = theta_dot;
+
+        let truncation = truncation(structure, start, span);
+        arc.expand(&state, span, truncation, |arc, k, per| {
+            let before = k - 1;
+            let newest_right = row([cos, sin, -arc.u[k], -arc.u[k], theta_dot, weight]);
+            left[before] = newest_left;
+            right[MAX_ORDER - before] = newest_right;
+            let [sin_rate, minus_cos_rate, w_turning, w_w_turning, centrifugal, weight_moment] =
+                products(left, right, &newest_left, &newest_right, before);
+            let y = (along - elastic - centrifugal) * per;
+            let moment =
+                (height * elastic - offset * weight_below) + (height * centrifugal - per_inertia * weight_moment);
+            theta_dot = moment * per - (lever_start * w_turning + per_inertia * w_w_turning);
+            let u_dot = y - H * theta_dot;
+
+            let (sin_before, cos_before) = (sin, cos);
+            (sin, cos) = (sin_rate * per, -minus_cos_rate * per);
+            let lever_turning = lever * theta_dot + w_turning;
+            weight = g * cos + a * sin + slope * sin_before;
+            weight_below = g * cos + a_ground * sin + slope_ground * sin_before;
+            along = g * sin - a * cos - slope * cos_before;
+            elastic = damping_u * u_dot + stiffness * arc.u[k];
+            newest_left = row([theta_dot, theta_dot, theta_dot, lever_turning, lever_turning, -arc.u[k]]);
+            (u_dot, theta_dot)
+        });
+    }
+}
+
+/// The longest span (s) that a series is tried over while rocking.
+pub(crate) fn longest_span(structure: &Structure) -> f64 {
+    LONGEST_SPAN / structure.omega_u.max(structure.p_l)
+}
+
+/// The truncation that `start` asks for over a step of `span` s while rocking.
+pub(crate) fn truncation(structure: &Structure, start: &Start, span: f64) -> Truncation {
+    let &Start { state, a_top, local_error, .. } = start;
+    let omega = structure.omega_u;
+    let response_time = span.min(1.0 / omega);
+    let gravity = structure.parameters().g * structure.tan_alpha_cg;
+    let forcing = a_top.value.abs() + a_top.slope.abs() * span + gravity;
+    let u_dot = state.u_dot.abs() + response_time * (omega * omega * state.u.abs() + forcing);
+    let theta_dot = state.theta_dot.abs() + u_dot / structure.parameters().H;
+    Truncation { u_dot: local_error * u_dot, theta_dot: local_error * theta_dot }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Parameters;
+    use crate::mechanics::load::LinearLoad;
+    use crate::series::taylor::Series;
+    use approx::assert_relative_eq;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// The series' first coefficients are the accelerations of Eqs 5 and 6 as they stand, and the second ones
+        /// their time derivatives (central differences along the motion).
+        #[test]
+        fn the_series_satisfies_equations_5_and_6(
+            u in -0.05..0.05f64, u_dot in -2.0..2.0f64, theta in -1.2..1.2f64, theta_dot in -3.0..3.0f64,
+            value in -20.0..20.0f64, slope in -500.0..500.0f64, force in -3e3..3e3f64, force_slope in -1e5..1e5f64,
+        ) {
+            let structure = Structure::new(Parameters::MCMANUS).unwrap();
+            let side = Side::of(theta);
+            let state = State { u, u_dot, theta, theta_dot };
+            let mut arc = Arc::default();
+            let value = Load { a_g: value, F_t: force };
+            let load = LinearLoad { value, slope: Load { a_g: slope, F_t: force_slope } };
+            let (a_g, a_top) = (load.on_foundation(), load.on_top(&structure));
+            let start = Start { state, a_g, a_top, interval: 2e-3, local_error: 1e-16 };
+            NonlinearRocking::default().series(&structure, side, &start, &mut arc);
+            for sigma in [0.0, 0.2, 0.55, 1.0] {
+                let load = load.at(sigma * arc.span);
+                let expected = accelerations(&structure, side, &arc.at(sigma), load).unwrap();
+                let derivative = |series: &Series| -> f64 {
+                    (1..=arc.order).map(|k| k as f64 * series[k] * sigma.powi(k as i32 - 1)).sum::<f64>() / arc.span
+                };
+                let size = expected.norm() + 100.0;
+                prop_assert!((derivative(&arc.u_dot) - expected[0]).abs() < 1e-10 * size);
+                prop_assert!((derivative(&arc.theta_dot) - expected[1]).abs() < 1e-10 * size);
+            }
+        }
+    }
+
+    #[test]
+    fn the_mass_matrix_is_singular_with_the_top_mass_above_the_pivot_of_a_massless_foundation() {
+        let structure = Structure::new(Parameters { m0: 0.0, J0: 0.0, B: 0.25, ..Parameters::EVISON }).unwrap();
+        let above_the_pivot = State { u: 0.25, theta: 0.01, ..State::default() };
+        assert_eq!(accelerations(&structure, Side::Right, &above_the_pivot, Load::default()), None);
+    }
+
+    #[test]
+    fn mirrored_states_have_mirrored_accelerations() {
+        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let state = State { u: 1e-3, u_dot: 0.02, theta: 0.03, theta_dot: -0.1 };
+        let mirrored = State { u: -1e-3, u_dot: -0.02, theta: -0.03, theta_dot: 0.1 };
+        let right = accelerations(&structure, Side::Right, &state, Load { a_g: 1.5, F_t: 200.0 }).unwrap();
+        let left = accelerations(&structure, Side::Left, &mirrored, Load { a_g: -1.5, F_t: -200.0 }).unwrap();
+        assert_relative_eq!(right, -left, max_relative = 1e-15);
+    }
+}

@@ -1,0 +1,209 @@
+//! The damped oscillator and its exact flow, which full contact, the vibration mode and response spectra share.
+//!
+//! ```text
+//! ẅ + 2 ζ ω ẇ + ω² w = −(a + b τ)
+//! w(τ) = (C + ζω S) w₀ + S ẇ₀ − W a − R b,   ẇ(τ) = −ω² S w₀ + (C − ζω S) ẇ₀ − S a − W b
+//! C = e^{−ζωτ} cos dτ,   S = e^{−ζωτ} sin(dτ)/d,   W = [1 − (C + ζω S)]/ω²,   R = ∫ W dτ = [τ − S − 2ζω W]/ω²
+//! ```
+//!
+//! with d = ω √(1 − ζ²), hyperbolic functions for ζ > 1 and S = τ e^{−ωτ} for ζ = 1.
+
+use crate::series::taylor::reciprocal;
+use nalgebra::Matrix2;
+
+/// An oscillator of circular frequency ω (rad/s) and damping ratio ζ.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Oscillator {
+    pub omega: f64,
+    pub zeta: f64,
+}
+
+/// What takes an oscillator over a length of time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flow {
+    free: Matrix2<f64>,
+    /// W, s².
+    step: f64,
+    /// R, s³.
+    ramp: f64,
+}
+
+impl Flow {
+    /// Over no time at all.
+    pub(crate) const NONE: Flow = Flow { free: Matrix2::new(1.0, 0.0, 0.0, 1.0), step: 0.0, ramp: 0.0 };
+
+    /// (w, ẇ) at the end, from `start` under the load a + b τ: `value` = a in m/s², `slope` = b in m/s³.
+    #[inline]
+    pub(crate) fn driven(&self, start: [f64; 2], value: f64, slope: f64) -> [f64; 2] {
+        let Flow { free, step, ramp } = self;
+        [
+            free.m11 * start[0] + free.m12 * start[1] - (step * value + ramp * slope),
+            free.m21 * start[0] + free.m22 * start[1] - (free.m12 * value + step * slope),
+        ]
+    }
+}
+
+impl Oscillator {
+    /// The matrix that takes free vibration (w, ẇ) `tau` seconds ahead.
+    pub(crate) fn free(&self, tau: f64) -> Matrix2<f64> {
+        let &Oscillator { omega, zeta } = self;
+        let d = self.d();
+        let (C, S) = if zeta < 1.0 {
+            let (sin, cos) = (d * tau).sin_cos();
+            let decay = (-zeta * omega * tau).exp();
+            (decay * cos, decay * sin / d)
+        } else {
+            // e^{(d − ζω)τ} alone is not small; the other exponential is e^{−2dτ} of it
+            let slow = (-omega / (zeta + d / omega) * tau).exp();
+            let lost = -(-2.0 * d * tau).exp_m1();
+            (slow * (1.0 - 0.5 * lost), slow * if d > 0.0 { 0.5 * lost / d } else { tau })
+        };
+        let damping = zeta * omega * S;
+        Matrix2::new(C + damping, S, -omega * omega * S, C - damping)
+    }
+
+    /// d = ω √|1 − ζ²|, rad/s.
+    pub(crate) fn d(&self) -> f64 {
+        self.omega * ((1.0 - self.zeta) * (1.0 + self.zeta)).abs().sqrt()
+    }
+
+    /// What takes it `tau` seconds ahead.
+    pub(crate) fn flow(&self, tau: f64) -> Flow {
+        let &Oscillator { omega, zeta } = self;
+        let free = self.free(tau);
+        let [step, ramp] = if (1.0 + 2.0 * zeta) * omega * tau < 1.0 {
+            self.short_response(tau)
+        } else if zeta > 1.5 {
+            self.slow_response(tau)
+        } else {
+            let step = (1.0 - free.m11) / (omega * omega);
+            [step, (tau - free.m12 - 2.0 * zeta * omega * step) / (omega * omega)]
+        };
+        Flow { free, step, ramp }
+    }
+
+    /// W and R far beyond critical damping, where 2ζω W all but cancels τ, by the two rates of decay λ, λ':
+    /// W = [(1 − e^{−λτ})/λ − (1 − e^{−λ'τ})/λ']/2d, and R is its integral.
+    fn slow_response(&self, tau: f64) -> [f64; 2] {
+        let d = self.d();
+        let fast = self.zeta * self.omega + d;
+        let held = |x: f64| -(-x).exp_m1() / x;
+        // (x − 1 + e^{−x})/x² = 1/2! − x/3! + x²/4! − …
+        let ramped = |x: f64| {
+            if x < 1.0 {
+                let next = |sum: f64, k: usize| (1.0 - x * sum) * reciprocal(k);
+                0.5 * (3..19).rev().fold(0.0, next).mul_add(-x, 1.0)
+            } else {
+                (1.0 - held(x)) / x
+            }
+        };
+        let [slow, fast] = [self.omega * self.omega / fast, fast].map(|rate| rate * tau);
+        let per = tau / (2.0 * d);
+        [per * (held(slow) - held(fast)), per * tau * (ramped(slow) - ramped(fast))]
+    }
+
+    /// W and R over a short time, whose differences would be lost to rounding, by their series in τ.
+    fn short_response(&self, tau: f64) -> [f64; 2] {
+        const TERMS: usize = 20; // of at most 1/k! for (1 + 2ζ) ωτ < 1
+        let (x, damping) = (self.omega * tau, 2.0 * self.zeta * self.omega * tau);
+        let (mut before, mut term) = (0.0, 0.5); // coefficients of τ^{k−1} and τ^k in W/τ²
+        let (mut step, mut ramp) = (term, term / 3.0);
+        for k in 2..TERMS {
+            let rest = damping * k as f64 * term + x * x * before;
+            (before, term) = (term, -rest * reciprocal(k) * reciprocal(k + 1));
+            step += term;
+            ramp += term * reciprocal(k + 2);
+        }
+        [step * tau * tau, ramp * tau * tau * tau]
+    }
+
+    /// About the motion that follows the load a + b τ, w = −(a + b (τ − 2ζ/ω))/ω², the rest vibrates freely, and the
+    /// energy of free vibration does not grow: where it is bound to stay for `tau` seconds from `start`.
+    #[inline]
+    pub(crate) fn swing(&self, start: [f64; 2], value: f64, slope: f64, tau: f64) -> Swing {
+        let per_stiffness = 1.0 / (self.omega * self.omega);
+        let lag = 2.0 * self.zeta / self.omega;
+        let following = [0.0, tau].map(|tau| -(value + slope * (tau - lag)) * per_stiffness);
+        let (rest, rest_dot) = (start[0] - following[0], start[1] + slope * per_stiffness);
+        Swing { following, amplitude: (rest * rest + rest_dot * rest_dot * per_stiffness).sqrt() }
+    }
+
+    /// Bounds of |ẇ|, |ẅ| and |w⃛| of a `swing` of this oscillator under a load of this `slope`.
+    pub(crate) fn rates(&self, swing: &Swing, slope: f64) -> [f64; 3] {
+        let &Oscillator { omega, zeta } = self;
+        let velocity = omega * swing.amplitude;
+        let acceleration = omega * velocity * (1.0 + 2.0 * zeta);
+        let jerk = omega * (omega * velocity + 2.0 * zeta * acceleration);
+        [velocity + slope.abs() / (omega * omega), acceleration, jerk]
+    }
+}
+
+/// Where a driven oscillator is bound to be.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Swing {
+    /// Position that follows the load, at the start and at the end; linear in between.
+    pub following: [f64; 2],
+    /// Bound of the distance from it.
+    pub amplitude: f64,
+}
+
+impl Swing {
+    /// Bound of |w|.
+    #[inline]
+    pub(crate) fn farthest(&self) -> f64 {
+        self.following[0].abs().max(self.following[1].abs()) + self.amplitude
+    }
+}
+
+/// Flows kept at once. Records sampled at t = i·dt have a handful of step lengths, which differ in their last bits.
+const KEPT: usize = 16;
+
+/// The flows used last, by the exact length of time; what is not kept is computed anew, so that results do not depend
+/// on what is.
+#[derive(Clone, Debug)]
+pub(crate) struct Kept<Flow> {
+    flows: [(f64, Flow); KEPT],
+}
+
+impl<Flow: Copy> Kept<Flow> {
+    /// Nothing kept yet; `unused` fills the places.
+    pub(crate) fn new(unused: Flow) -> Kept<Flow> {
+        Kept { flows: [(f64::NAN, unused); KEPT] }
+    }
+
+    /// The flow over `duration` (s), by `compute` where it is not kept.
+    #[inline]
+    pub(crate) fn over(&mut self, duration: f64, compute: impl FnOnce() -> Flow) -> &Flow {
+        // the top bits of a multiplicative hash: lengths that differ in their last bits go to different places
+        let place = (duration.to_bits().wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 60) as usize;
+        let kept = &mut self.flows[place];
+        if kept.0 != duration {
+            *kept = (duration, compute());
+        }
+        &kept.1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// On both sides of the limit between series and closed form W and R are the same to rounding, and for a motion
+    /// much shorter than the period they are τ²/2 and τ³/6.
+    #[test]
+    fn loads_keep_their_digits_over_short_times() {
+        for zeta in [0.0, 0.02, 0.7, 1.0, 4.0] {
+            let oscillator = Oscillator { omega: 30.0, zeta };
+            let limit = 1.0 / ((1.0 + 2.0 * zeta) * oscillator.omega);
+            let [below, above] = [1.0 - 1e-15, 1.0 + 1e-15].map(|part| oscillator.flow(part * limit));
+            let rounding = 50.0 * (1.0 + 2.0 * zeta).powi(2) * f64::EPSILON;
+            assert_relative_eq!(below.step, above.step, max_relative = rounding);
+            assert_relative_eq!(below.ramp, above.ramp, max_relative = rounding);
+            let tau = 1e-9 * limit;
+            let [step, ramp] = [oscillator.flow(tau).step, oscillator.flow(tau).ramp];
+            assert_relative_eq!(step, tau.powi(2) / 2.0, max_relative = 2e-9);
+            assert_relative_eq!(ramp, tau.powi(3) / 6.0, max_relative = 2e-9);
+        }
+    }
+}

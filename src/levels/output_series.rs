@@ -1,0 +1,102 @@
+//! The outputs over a step of the solver, as series in time like the motion itself.
+//!
+//! θ and u are series already; sin θ and cos θ follow from that of θ by their own derivatives, and δ_t (Eq 26) and a_t
+//! (Eq 27) are sums and products of these. They tell *where* an output is largest; what it is there is evaluated from
+//! the state.
+
+use crate::mechanics::load::LinearLoad;
+use crate::mechanics::outputs::damping;
+use crate::series::extremes;
+use crate::series::extremes::Bound;
+use crate::series::taylor::{Arc, Series, ZERO};
+use crate::{Phase, State, Structure};
+
+/// sin θ and cos θ.
+#[derive(Clone, Debug)]
+pub(crate) struct Turn {
+    pub sin: Series,
+    pub cos: Series,
+}
+
+impl Turn {
+    /// Of `arc`, to its order: [`Piece::series`](crate::engine::piece::Piece::series) looks at what that leaves out.
+    pub(crate) fn of(arc: &Arc) -> Turn {
+        let mut turn = Turn { sin: ZERO, cos: ZERO };
+        (turn.sin[0], turn.cos[0]) = arc.theta[0].sin_cos();
+        for k in 1..=arc.order {
+            let (mut sin, mut cos) = (0.0, 0.0);
+            for j in 1..=k.min(arc.order) {
+                let rate = j as f64 * arc.theta[j];
+                sin += rate * turn.cos[k - j];
+                cos -= rate * turn.sin[k - j];
+            }
+            (turn.sin[k], turn.cos[k]) = (sin / k as f64, cos / k as f64);
+        }
+        turn
+    }
+}
+
+/// δ_t over `arc` (Eq 26).
+pub(crate) fn delta_t(structure: &Structure, phase: Phase, arc: &Arc, turn: &Turn) -> Series {
+    let &crate::Parameters { H, B, .. } = structure.parameters();
+    let offset = phase.side().sign() * B;
+    arc.series(|k| {
+        let elastic: f64 = (0..=k).map(|i| arc.u[i] * turn.cos[k - i]).sum();
+        let one = if k == 0 { 1.0 } else { 0.0 };
+        offset * (one - turn.cos[k]) + elastic + H * turn.sin[k]
+    })
+}
+
+/// a_t over `arc` under `load`, by Eq 5: g sin θ − (c u̇ + k u)/m + (F_t/m) cos θ.
+pub(crate) fn a_t(structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc, turn: &Turn) -> Series {
+    let &crate::Parameters { m, g, .. } = structure.parameters();
+    let damping = damping(structure, phase) / m;
+    let (push, push_slope) = (load.value.F_t / m, load.slope.F_t / m * arc.span);
+    arc.series(|k| {
+        let elastic = damping * arc.u_dot[k] + structure.stiffness * arc.u[k];
+        let pushed = push * turn.cos[k] + if k > 0 { push_slope * turn.cos[k - 1] } else { 0.0 };
+        g * turn.sin[k] - elastic + pushed
+    })
+}
+
+/// Bounds of |θ|, |u|, |δ_t| and |a_t| that follow from those of |θ|, |u| and |u̇|; `F_t` is that of |F_t|.
+pub(crate) fn crude_bounds(structure: &Structure, phase: Phase, F_t: f64, [theta, u, u_dot]: [f64; 3]) -> [f64; 4] {
+    let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
+    let a_t = g * theta + structure.stiffness * u + (damping(structure, phase) * u_dot + F_t) / m;
+    [theta, u, u + H * theta + B * theta * theta / 2.0, a_t]
+}
+
+/// Bounds of |θ|, |u| and |u̇| over `arc`, which ends in `end`.
+#[inline]
+pub(crate) fn crude_bounds_of_state(arc: &Arc, end: &State) -> [f64; 3] {
+    [(&arc.theta, end.theta), (&arc.u, end.u), (&arc.u_dot, end.u_dot)]
+        .map(|(series, end)| crude_bound_of(arc, series, end))
+}
+
+/// Bound of the magnitude of a `series` of `arc`, which ends in `end`.
+#[inline]
+pub(crate) fn crude_bound_of(arc: &Arc, series: &Series, end: f64) -> f64 {
+    series[0].abs().max(end.abs()) + extremes::off_chord(arc.used(series), arc.reach)
+}
+
+/// Bounds of |θ|, |u|, |δ_t| and |a_t| over `arc` under `load`: of what is linear in θ and u, and of the rest.
+#[inline]
+pub(crate) fn bounds(structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc) -> [Bound; 4] {
+    let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
+    let (stiffness, damping) = (structure.stiffness, damping(structure, phase) / m);
+    let push = [load.value.F_t / m, load.slope.F_t / m * arc.span];
+    let row = |k: usize| {
+        let (theta, u) = (arc.theta[k], arc.u[k]);
+        let push = if k < 2 { push[k] } else { 0.0 };
+        [theta, u, u + H * theta, g * theta - damping * arc.u_dot[k] - stiffness * u + push]
+    };
+    let [theta, u, sway, pull] = extremes::bounds(row, arc.order, arc.reach);
+    let (most_theta, most_u, most_push) = (theta.largest(), u.largest(), push[0].abs() + push[1].abs());
+    let [theta_rate, u_rate] = [theta, u].map(|bound| bound.rate[1]);
+    let square = most_theta * most_theta;
+    let delta_t = square * ((B + most_u) / 2.0 + H * most_theta / 6.0);
+    let delta_t_rate = most_theta * theta_rate * (B + most_u + H * most_theta / 2.0) + square * u_rate / 2.0;
+    let a_t = square * (g * most_theta / 6.0 + most_push / 2.0);
+    let a_t_rate = most_theta * theta_rate * (g * most_theta / 2.0 + most_push) + square * push[1].abs() / 2.0;
+    [theta, u, sway.and(delta_t, delta_t_rate), pull.and(a_t, a_t_rate)]
+}

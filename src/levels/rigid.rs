@@ -1,0 +1,246 @@
+//! The rigid limit u ≡ 0: Housner's block with the paper's impact rule.
+//!
+//! Eq 6 with u = 0, over J_P:
+//!
+//! ```text
+//! θ̈ = p_l² [P − (a_g/g) Q],      P = sin θ − s tan α_cg cos θ,   Q = cos θ + s tan α_cg sin θ
+//! ```
+//!
+//! P' = Q θ̇ and Q' = −P θ̇, so that its series take two products. A force F_t on the top mass adds p_l² (F_t/(m g)) T
+//! to θ̈, T = cos θ + s (B/H) sin θ, a combination of P and Q. The base lifts off when |a_g − F_t/m| ≥ g tan α_cg,
+//! towards the side away from the push; an impact leaves r θ̇ about the other pivot, also of a structure so squat that
+//! the momentum rule of the other levels would end rocking: with u = 0 that rule speaks of the shape alone.
+//!
+//! # Zeno
+//!
+//! With r < 1 the structure comes to rest by infinitely many impacts in finite time. It is brought to rest at the first
+//! impact after which |θ̇| ≤ ε p_l tan α_cg, ε the error that a step may have: what is left out, while the ground may still
+//! move, is an error that later impacts amplify like a step's. The kinetic energy left behind, ½ J_P θ̇², is at most ε² of
+//! ½ m g H tan² α_cg, which overturning takes at small angles.
+
+use crate::levels::level::{Level, Rates};
+use crate::levels::output_series::{self, Turn};
+use crate::levels::rules::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD, Rules};
+use crate::mechanics::load::{LinearLoad, Load};
+use crate::mechanics::state::InitialStateError;
+use crate::series::extremes::Bound;
+use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
+use crate::series::taylor::{Arc, LONGEST_SPAN, Series, Start, Truncation, ZERO};
+
+use crate::mechanics::uplift::least_push;
+use crate::series::extremes;
+use crate::{Outputs, Phase, Side, State, Structure};
+
+/// P and Q at `theta`.
+fn shape(structure: &Structure, side: Side, theta: f64) -> [f64; 2] {
+    let (sin, cos) = theta.sin_cos();
+    let slenderness = side.sign() * structure.tan_alpha_cg;
+    [sin - slenderness * cos, cos + slenderness * sin]
+}
+
+/// The coefficients of P and Q in T.
+fn force_by_shape(structure: &Structure, side: Side) -> [f64; 2] {
+    let &crate::Parameters { H, B, .. } = structure.parameters();
+    let [slenderness, aspect] = [structure.tan_alpha_cg, B / H].map(|tangent| side.sign() * tangent);
+    [aspect - slenderness, 1.0 + aspect * slenderness].map(|part| part / (1.0 + slenderness * slenderness))
+}
+
+/// (ü, θ̈) = (0, θ̈) in m/s² and rad/s² in `phase`; nothing moves relative to the ground in full contact.
+fn accelerations(structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2] {
+    let &crate::Parameters { m, g, .. } = structure.parameters();
+    match phase {
+        Phase::Rocking(side) => {
+            let [p, q] = shape(structure, side, state.theta);
+            let [of_p, of_q] = force_by_shape(structure, side);
+            [0.0, structure.p_l.powi(2) * (p - load.a_g / g * q + load.F_t / (m * g) * (of_p * p + of_q * q))]
+        }
+        Phase::FullContact | Phase::Overturned(_) => [0.0; 2],
+    }
+}
+
+/// Writes the motion from `start` about `side` into `arc`.
+fn series(structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
+    let &Start { state, a_g, a_top, interval, local_error } = start;
+    let &Structure { p_l, tan_alpha_cg, .. } = structure;
+    let g = structure.parameters().g;
+    let span = interval.min(LONGEST_SPAN / p_l.max(state.theta_dot.abs()));
+    let stiffness = p_l * p_l;
+    let (push, push_slope) = (a_g.value / g, a_g.slope * span / g);
+    let (pull, pull_slope) = ((a_g.value - a_top.value) / g, (a_g.slope - a_top.slope) * span / g);
+    let [of_p, of_q] = force_by_shape(structure, side);
+    // θ̈ is p_l² of these times P, Q and, for the slopes, times what P and Q were one order before
+    let (p_now, q_now) = (1.0 + pull * of_p, pull * of_q - push);
+    let (p_slope, q_slope) = (pull_slope * of_p, pull_slope * of_q - push_slope);
+    let loads = [push, push_slope, pull, pull_slope].map(f64::abs).iter().sum::<f64>();
+    let forcing = stiffness * (tan_alpha_cg + loads + state.theta.abs());
+    let theta_dot = state.theta_dot.abs() + span.min(1.0 / p_l) * forcing;
+    let (mut p, mut q) = (ZERO, ZERO);
+    [p[0], q[0]] = shape(structure, side, state.theta);
+    let (mut p_before, mut q_before) = (0.0, 0.0);
+    let truncation = Truncation { u_dot: 0.0, theta_dot: local_error * theta_dot };
+    arc.expand(&State { u: 0.0, u_dot: 0.0, ..state }, span, truncation, |arc, k, per| {
+        let shaped = p_now * p[k - 1] + q_now * q[k - 1] + q_slope * q_before + p_slope * p_before;
+        let theta_dot = stiffness * shaped * per;
+        (p_before, q_before) = (p[k - 1], q[k - 1]);
+        p[k] = product(&q, &arc.theta_dot, k - 1) * per;
+        q[k] = -product(&p, &arc.theta_dot, k - 1) * per;
+        (0.0, theta_dot)
+    });
+}
+
+/// Coefficient `k` of the product of two series.
+fn product(a: &Series, b: &Series, k: usize) -> f64 {
+    a[..=k].iter().zip(b[..=k].iter().rev()).map(|(a, b)| a * b).sum()
+}
+
+/// The rigid limit as a level of detail.
+#[derive(Debug)]
+pub(crate) struct Rigid {
+    /// Error ε that a step may have.
+    pub local_error: f64,
+}
+
+impl Rules for Rigid {
+    fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
+        let theta_dot = structure.parameters().r * before.theta_dot;
+        if theta_dot.abs() <= self.local_error * structure.p_l * structure.tan_alpha_cg {
+            return (Phase::FullContact, State::default());
+        }
+        (Phase::Rocking(side.opposite()), State { theta_dot, ..State::default() })
+    }
+
+    fn land(&self, _structure: &Structure, _before: &State) -> State {
+        State::default()
+    }
+
+    fn chatter_limit(&self, structure: &Structure) -> ChatterLimit {
+        ChatterLimit { period: 1.0 / structure.p_l, transitions: MAX_RIGID_TRANSITIONS_PER_PERIOD }
+    }
+}
+
+impl Level for Rigid {
+    fn check_start(&self, &State { u, u_dot, .. }: &State) -> Result<(), InitialStateError> {
+        if (u, u_dot) == (0.0, 0.0) { Ok(()) } else { Err(InitialStateError::DeformedRigid { u, u_dot }) }
+    }
+
+    fn leap(&mut self, _structure: &Structure, _phase: Phase, _start: &Start) -> Option<State> {
+        None
+    }
+
+    fn rates(&self, _phase: Phase, _start: &Start, _end: &State) -> Rates {
+        Rates::NONE
+    }
+
+    /// Rest on the ground in full contact.
+    fn series(&mut self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc) {
+        match phase {
+            Phase::Rocking(side) => series(structure, side, start, arc),
+            Phase::FullContact | Phase::Overturned(_) => {
+                let nothing = Truncation { u_dot: 0.0, theta_dot: 0.0 };
+                arc.expand(&State::default(), start.interval, nothing, |_, _, _| (0.0, 0.0));
+            }
+        }
+    }
+
+    /// |a_top|, a_top = a_g − F_t/m, exceeds g tan α_cg.
+    fn first_uplift(&self, structure: &Structure, start: &Start, arc: &Arc) -> (Crossing, Side) {
+        let limit = least_push(structure);
+        let push = [start.a_top.value, start.a_top.slope * arc.span];
+        let first = |side: Side| first_time_all_closed([Guard::new(&push, side.sign(), limit)], 1.0);
+        let (right, left) = (first(Side::Right), first(Side::Left));
+        if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
+    }
+
+    fn stays_down(&self, _structure: &Structure, _state: &State) -> bool {
+        true
+    }
+
+    fn uplift_margin(&self, structure: &Structure, _state: &State, load: Load) -> (f64, Side) {
+        let push = load.on_top(structure) / least_push(structure);
+        (1.0 - push.abs(), Side::of(-push))
+    }
+
+    fn admissible(&self, phase: Phase, state: State) -> State {
+        match phase {
+            Phase::FullContact => State::default(),
+            Phase::Rocking(_) | Phase::Overturned(_) => State { u: 0.0, u_dot: 0.0, ..state },
+        }
+    }
+
+    fn accelerations(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2] {
+        accelerations(structure, phase, state, load)
+    }
+
+    /// Here u says nothing of the forces: a_t is that of Eq 27 as it stands, which follows the ground.
+    fn outputs(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> Outputs {
+        let &crate::Parameters { H, B, .. } = structure.parameters();
+        let s = phase.side().sign();
+        let [_, theta_ddot] = accelerations(structure, phase, state, load);
+        let a_t = H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * state.theta.cos();
+        Outputs::of(structure, phase, state, load.F_t).with_a_t(structure, a_t)
+    }
+
+    fn output_rates(
+        &self,
+        structure: &Structure,
+        phase: Phase,
+        state: &State,
+        [accelerations, jerks]: [[f64; 2]; 2],
+        load: LinearLoad,
+    ) -> Outputs {
+        let &crate::Parameters { H, B, .. } = structure.parameters();
+        let &State { theta, theta_dot, .. } = state;
+        let s = phase.side().sign();
+        let a_t = match phase {
+            Phase::Overturned(_) => 0.0,
+            _ => {
+                H * jerks[1] + 2.0 * s * B * theta_dot * accelerations[1] + load.slope.a_g * theta.cos()
+                    - load.value.a_g * theta.sin() * theta_dot
+            }
+        };
+        Outputs::rates_by(structure, phase, state, accelerations, load).with_a_t(structure, a_t)
+    }
+
+    fn a_t_series(&self, structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc, turn: &Turn) -> Series {
+        let &crate::Parameters { H, B, .. } = structure.parameters();
+        let offset = phase.side().sign() * B;
+        let (now, slope) = (load.value.a_g, load.slope.a_g * arc.span);
+        arc.series(|k| {
+            let theta_ddot = if k < arc.order { (k + 1) as f64 * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
+            let centripetal: f64 = (0..=k).map(|i| arc.theta_dot[i] * arc.theta_dot[k - i]).sum();
+            let ground = now * turn.cos[k] + if k > 0 { slope * turn.cos[k - 1] } else { 0.0 };
+            H * theta_ddot + offset * centripetal + ground
+        })
+    }
+
+    /// The state does not bound a_t here, nor is there anything crude that does.
+    fn crude_output_bounds(&self, structure: &Structure, phase: Phase, F_t: f64, of_state: [f64; 3]) -> [f64; 4] {
+        let [theta, u, delta_t, _] = output_series::crude_bounds(structure, phase, F_t, of_state);
+        [theta, u, delta_t, f64::INFINITY]
+    }
+
+    /// a_t about H θ̈ + s B θ̇₀² + a_g cos θ₀, θ₀ and θ̇₀ those at the start.
+    fn output_bounds(&self, structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc) -> [Bound; 4] {
+        let &crate::Parameters { H, B, .. } = structure.parameters();
+        let offset = phase.side().sign() * B;
+        let [theta, _, delta_t, _] = output_series::bounds(structure, phase, load, arc);
+        let cos = arc.theta[0].cos();
+        let ground = [load.value.a_g, load.slope.a_g * arc.span];
+        let row = |k: usize| {
+            let theta_ddot = if k < arc.order { (k + 1) as f64 * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
+            let centripetal = if k == 0 { offset * arc.theta_dot[0].powi(2) } else { 0.0 };
+            let ground = if k < 2 { cos * ground[k] } else { 0.0 };
+            [H * theta_ddot + centripetal + ground]
+        };
+        let [a_t] = extremes::bounds(row, arc.order, arc.reach);
+        let change = |of: &Series| arc.used(of)[1..].iter().map(|c| c.abs()).sum::<f64>();
+        let rate = |of: &Series| (1..).zip(&arc.used(of)[1..]).map(|(k, c)| f64::from(k) * c.abs()).sum::<f64>();
+        let (turned, hastened) = (change(&arc.theta), change(&arc.theta_dot));
+        let fastest = arc.theta_dot[0].abs() + hastened;
+        let ground_most = ground[0].abs() + ground[1].abs();
+        let most = B * hastened * (fastest + arc.theta_dot[0].abs()) + turned * ground_most;
+        let ground_rate = rate(&arc.theta) * ground_most + turned * ground[1].abs();
+        let most_rate = 2.0 * B * fastest * rate(&arc.theta_dot) + ground_rate;
+        [theta, Bound::default(), delta_t, a_t.and(most, most_rate)]
+    }
+}

@@ -1,0 +1,37 @@
+//! What follows from an impact, and how many transitions there may be.
+
+use crate::mechanics::impact;
+use crate::{Phase, Side, State, Structure};
+use std::f64::consts::TAU;
+
+/// Transitions within one period of the vibration mode (2π/ω_u) after which contact is held.
+pub const MAX_TRANSITIONS_PER_PERIOD: u32 = 1000;
+
+/// Transitions within 1/p_l after which contact is held at the rigid level: coming to rest with r = 0.9997 takes as
+/// many.
+pub const MAX_RIGID_TRANSITIONS_PER_PERIOD: u32 = 100_000;
+
+/// How many transitions a period (s) may see.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct ChatterLimit {
+    pub period: f64,
+    pub transitions: u32,
+}
+
+/// What follows from transitions. Where nothing else is said it is as with an elastic strut.
+pub(crate) trait Rules {
+    /// Phase and state just after an impact that ends rocking about `side` in the state `before`.
+    fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
+        impact::resolve(structure, side, before)
+    }
+
+    /// The state just after a landing.
+    fn land(&self, structure: &Structure, before: &State) -> State {
+        impact::land(structure, before)
+    }
+
+    /// How many transitions may happen how fast.
+    fn chatter_limit(&self, structure: &Structure) -> ChatterLimit {
+        ChatterLimit { period: TAU / structure.omega_u, transitions: MAX_TRANSITIONS_PER_PERIOD }
+    }
+}

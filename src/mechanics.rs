@@ -1,0 +1,10 @@
+//! The paper's equations, without a solver: state, loads, outputs, reactions, energy, what starts and what follows an impact.
+
+pub mod energy;
+pub mod impact;
+pub(crate) mod kinematics;
+pub mod load;
+pub mod outputs;
+pub mod reactions;
+pub mod state;
+pub mod uplift;

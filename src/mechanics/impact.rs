@@ -1,0 +1,226 @@
+//! Impact: what happens when s θ returns to 0.
+//!
+//! L is the angular momentum about the pivot that comes down, −s, just before:
+//!
+//! ```text
+//! L = m H (u̇ + H θ̇) − [ m (B² − u²) + m0 B² − J0 ] θ̇
+//! ```
+//!
+//! - L θ̇ > 0: rocking goes on about the other pivot: s ← −s, θ̇ ← r θ̇, u and u̇ unchanged;
+//! - otherwise full contact: u̇ ← u̇ + H θ̇ (horizontal momentum is kept), θ = θ̇ = 0.
+
+use crate::{Phase, Side, State, Structure};
+
+/// Angular momentum L about the pivot that comes down, kg·m²/s, of a structure that touches the ground (θ = 0).
+pub fn angular_momentum(structure: &Structure, before: &State) -> f64 {
+    let &crate::Parameters { m, m0, H, B, J0, .. } = structure.parameters();
+    let &State { u, u_dot, theta_dot, .. } = before;
+    m * H * (u_dot + H * theta_dot) - (m * (B * B - u * u) + m0 * B * B - J0) * theta_dot
+}
+
+/// Phase and state just after an impact that ends rocking about `side` in the state `before`.
+pub fn resolve(structure: &Structure, side: Side, before: &State) -> (Phase, State) {
+    if angular_momentum(structure, before) * before.theta_dot > 0.0 {
+        let theta_dot = structure.parameters().r * before.theta_dot;
+        (Phase::Rocking(side.opposite()), State { theta: 0.0, theta_dot, ..*before })
+    } else {
+        (Phase::FullContact, land(structure, before))
+    }
+}
+
+/// By how much the energy grows, J, at an impact that ends rocking about `side` in the state `before` and is followed by
+/// rocking about the other pivot, J₋ the inertia about the pivot before it:
+///
+/// ```text
+/// T₊ − T₋ = −(1−r) m H u̇ θ̇ − ½ (1−r²) J₋ θ̇² + 2 r² m B s u θ̇²,      J₋ = J0 + m0 B² + m H² + m (sB−u)²
+/// ```
+///
+/// Where u̇ and θ̇ differ in sign, taking momentum from the base and not from the top mass adds to the energy; and so does
+/// to keep θ̇ about a pivot that the top mass is farther from than from the one before, s u > 0: with r = 1, too. A landing
+/// always loses ½ J₋ θ̇² less ½ m H² θ̇².
+pub fn energy_gained(structure: &Structure, side: Side, before: &State) -> f64 {
+    let &crate::Parameters { m, H, B, r, .. } = structure.parameters();
+    let &State { u, u_dot, theta_dot, .. } = before;
+    let s = side.sign();
+    let (square, inertia) = (theta_dot * theta_dot, inertia_before(structure, s * u));
+    -(1.0 - r) * m * H * u_dot * theta_dot - 0.5 * (1.0 - r * r) * inertia * square
+        + 2.0 * r * r * m * B * s * u * square
+}
+
+/// J₋ at the displacement `u` (m) towards the pivot, kg·m².
+fn inertia_before(structure: &Structure, u: f64) -> f64 {
+    let &crate::Parameters { m, B, .. } = structure.parameters();
+    structure.J_P + m * u * (u - 2.0 * B)
+}
+
+/// Kinetic energy T₋ in the state `before`, which ends rocking about `side`, J.
+pub(crate) fn kinetic_energy(structure: &Structure, side: Side, before: &State) -> f64 {
+    let &crate::Parameters { m, H, .. } = structure.parameters();
+    let &State { u, u_dot, theta_dot, .. } = before;
+    let about_height = inertia_before(structure, side.sign() * u) - m * H * H;
+    0.5 * (m * (u_dot + H * theta_dot).powi(2) + about_height * theta_dot * theta_dot)
+}
+
+/// A = J0 + m (H² + u²) and F = (m + m0) B², kg·m²: J₋ is A + F − 2 m B s u.
+fn inertias(structure: &Structure, u: f64) -> [f64; 2] {
+    let &crate::Parameters { m, m0, H, B, J0, .. } = structure.parameters();
+    [J0 + m * (H * H + u * u), (m + m0) * B * B]
+}
+
+/// The supremum of (T₊ − T₋)/θ̇², kg·m², over all impacts at the displacement `u` (m) towards the pivot rocked about (s u,
+/// so negative away from it) after which rocking goes on.
+///
+/// It falls as u̇/θ̇ rises, which L θ̇ > 0 bounds from below; there it is, with A = J0 + m (H² + u²) and F = (m + m0) B²,
+///
+/// ```text
+/// ½ (1−r) [(1−r) A − (3+r) F] + (1+r²) m B s u
+/// ```
+pub fn greatest_gain(structure: &Structure, u: f64) -> f64 {
+    let &crate::Parameters { m, B, r, .. } = structure.parameters();
+    let [a, f] = inertias(structure, u);
+    0.5 * (1.0 - r) * ((1.0 - r) * a - (3.0 + r) * f) + (1.0 + r * r) * m * B * u
+}
+
+/// The coefficients of restitution between which no impact at the displacement `u` (m) towards the pivot raises the energy:
+/// where [`greatest_gain`] is not positive, or none. With U = 2 m B s u they are
+///
+/// ```text
+/// r = [A − F ± √(4 F² − 2 U (A − F) − U²)]/(A + F + U),      at u = 0: 1 − 4 (m + m0) B²/J_P and 1
+/// ```
+pub fn lossless_restitution(structure: &Structure, u: f64) -> Option<[f64; 2]> {
+    let &crate::Parameters { m, B, .. } = structure.parameters();
+    let [a, f] = inertias(structure, u);
+    let lift = 2.0 * m * B * u;
+    let square = 4.0 * f * f - 2.0 * lift * (a - f) - lift * lift;
+    (square >= 0.0).then(|| [-square.sqrt(), square.sqrt()].map(|root| (a - f + root) / (a + f + lift)))
+}
+
+/// The coefficient of restitution below which an impact with u = 0 takes an impulse that pulls at the edge that lifts off:
+///
+/// ```text
+/// r < 1 − 2 (m + m0) B²/J_P
+/// ```
+///
+/// The impulse at that edge is (I_v + s I_m/B)/2 = (|θ̇|/2B) [(1+r) F − (1−r) A + 2 r m B s u], A and F as above.
+pub fn pulling_restitution(structure: &Structure) -> f64 {
+    let [_, f] = inertias(structure, 0.0);
+    1.0 - 2.0 * f / structure.J_P
+}
+
+/// The state just after landing: both pivots down, horizontal momentum kept.
+pub fn land(structure: &Structure, before: &State) -> State {
+    let u_dot = before.u_dot + structure.parameters().H * before.theta_dot;
+    State { u: before.u, u_dot, theta: 0.0, theta_dot: 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Parameters;
+    use crate::mechanics::energy::energy;
+    use crate::mechanics::reactions::Impulse;
+    use approx::assert_relative_eq;
+    use nalgebra::Vector2;
+
+    /// L written out from its definition: Σ r × m v about the pivot that comes down, plus the foundation's own spin.
+    #[test]
+    fn angular_momentum_is_that_of_the_masses_about_the_other_pivot() {
+        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let &Parameters { m, m0, H, B, J0, .. } = structure.parameters();
+        for side in [Side::Right, Side::Left] {
+            let s = side.sign();
+            let state = State { u: 0.004, u_dot: -0.3, theta: 0.0, theta_dot: -0.2 * s };
+            let pivot = Vector2::new(s * B, 0.0);
+            let top = Vector2::new(state.u, H);
+            let middle = Vector2::new(0.0, 0.0);
+            // θ > 0 turns clockwise: v = θ̇ (y − y_P, −(x − x_P)), plus u̇ along x for the top
+            let velocity =
+                |point: Vector2<f64>| state.theta_dot * Vector2::new(point.y - pivot.y, -(point.x - pivot.x));
+            let incoming = -pivot;
+            let clockwise = |point: Vector2<f64>, velocity: Vector2<f64>| {
+                let arm = point - incoming;
+                arm.y * velocity.x - arm.x * velocity.y
+            };
+            let expected = m * clockwise(top, velocity(top) + Vector2::new(state.u_dot, 0.0))
+                + m0 * clockwise(middle, velocity(middle))
+                + J0 * state.theta_dot;
+            assert_relative_eq!(angular_momentum(&structure, &state), expected, max_relative = 1e-13);
+        }
+    }
+
+    /// Just outside those restitutions an impact at the least u̇/θ̇ with L θ̇ > 0 raises the energy; just inside none does.
+    #[test]
+    fn energy_can_grow_outside_the_lossless_restitutions() {
+        for (parameters, part) in [(Parameters::EVISON, 0.0), (Parameters::EVISON, 1.0), (Parameters::MCMANUS, 1.0)] {
+            let structure = Structure::new(parameters).unwrap();
+            let u = part * structure.u_cr;
+            let [least, most] = lossless_restitution(&structure, u).unwrap();
+            assert!(part > 0.0 || (least - (1.0 - 4.0 * structure.one_minus_chi)).abs() < 1e-14);
+            for (r, can_gain) in
+                [(least - 1e-6, true), (least + 1e-6, false), (most - 1e-6, false), (most + 1e-6, true)]
+            {
+                if r >= 1.0 {
+                    continue;
+                }
+                let structure = Structure::new(Parameters { r, ..parameters }).unwrap();
+                assert_eq!(greatest_gain(&structure, u) > 0.0, can_gain);
+                let &Parameters { m, m0, H, B, J0, .. } = structure.parameters();
+                let bound = ((m + m0) * B * B - J0 - m * H * H - m * u * u) / (m * H);
+                let theta_dot = -0.3;
+                let before = State { u, u_dot: theta_dot * (bound + 1e-9), theta: 0.0, theta_dot };
+                let (phase, after) = resolve(&structure, Side::Right, &before);
+                assert_eq!(phase, Phase::Rocking(Side::Left));
+                let gain = energy(&structure, phase, &after) - energy(&structure, Phase::Rocking(Side::Right), &before);
+                assert_eq!(gain > 0.0, can_gain, "r = {r}: {gain} J");
+            }
+        }
+    }
+
+    /// The energy gained and the kinetic energy are those of the states before and after.
+    #[test]
+    fn the_energy_gained_is_that_of_the_states() {
+        let structure = Structure::new(Parameters { r: 0.7, ..Parameters::MCMANUS }).unwrap();
+        for (side, u) in [(Side::Right, 6e-3), (Side::Left, 6e-3), (Side::Right, 0.0)] {
+            let before = State { u, u_dot: 0.1, theta: 0.0, theta_dot: -0.4 * side.sign() };
+            let (phase, after) = resolve(&structure, side, &before);
+            assert_eq!(phase, Phase::Rocking(side.opposite()));
+            let at_rest = State { u, ..State::default() };
+            let of = |phase, state: &State| energy(&structure, phase, state) - energy(&structure, phase, &at_rest);
+            let [before_it, after_it] = [of(Phase::Rocking(side), &before), of(phase, &after)];
+            assert_relative_eq!(energy_gained(&structure, side, &before), after_it - before_it, max_relative = 1e-11);
+            assert_relative_eq!(kinetic_energy(&structure, side, &before), before_it, max_relative = 1e-12);
+        }
+    }
+
+    /// Below that restitution the impulse about the edge that comes down turns the other edge upwards.
+    #[test]
+    fn the_edge_that_lifts_off_pulls_below_the_pulling_restitution() {
+        for parameters in [Parameters::EVISON, Parameters::MCMANUS] {
+            let limit = pulling_restitution(&Structure::new(parameters).unwrap());
+            for (r, pulls) in [(limit - 1e-6, true), (limit + 1e-6, false)] {
+                let structure = Structure::new(Parameters { r, ..parameters }).unwrap();
+                let before = State { u: 0.0, u_dot: 0.0, theta: 0.0, theta_dot: -0.3 };
+                let (phase, after) = resolve(&structure, Side::Right, &before);
+                // about the right edge, which lifts off, only the impulse at the left one has a moment, 2B I_left
+                let Impulse { I_v, I_m, .. } =
+                    Impulse::of(&structure, (Phase::Rocking(Side::Right), &before), (phase, &after));
+                let right = 0.5 * (I_v + I_m / parameters.B);
+                assert_eq!(right < 0.0, pulls, "r = {r}: {right}");
+            }
+        }
+    }
+
+    #[test]
+    fn rocking_goes_on_or_ends_by_the_sign_of_the_momentum() {
+        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let turning = State { u: 1e-4, u_dot: 0.0, theta: 0.0, theta_dot: -0.1 };
+        let (phase, after) = resolve(&structure, Side::Right, &turning);
+        assert_eq!(phase, Phase::Rocking(Side::Left));
+        assert_eq!(after, State { theta_dot: -0.1 * 0.96, ..turning });
+
+        let vibrating = State { u_dot: 0.5, ..turning };
+        let (phase, after) = resolve(&structure, Side::Right, &vibrating);
+        assert_eq!(phase, Phase::FullContact);
+        assert_eq!(after, State { u: 1e-4, u_dot: 0.5 - 1.05 * 0.1, theta: 0.0, theta_dot: 0.0 });
+    }
+}

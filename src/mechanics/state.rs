@@ -1,0 +1,163 @@
+//! The state of the structure and the phase it is in.
+
+use crate::Structure;
+use crate::structure::quantity::{OutOfRange, Quantity, quantity};
+use serde::{Deserialize, Serialize};
+
+/// State of the structure.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct State {
+    /// Elastic displacement of the top mass in the frame that turns with the base, m.
+    pub u: f64,
+    /// Its rate, m/s.
+    pub u_dot: f64,
+    /// Rotation of the base, rad; positive about the right pivot.
+    pub theta: f64,
+    /// Its rate, rad/s.
+    pub theta_dot: f64,
+}
+
+/// Names of the components of a state, in the order of [`State::components`].
+pub const COMPONENTS: [&str; 4] = ["u", "u_dot", "theta", "theta_dot"];
+
+/// The pivot about which the structure rocks: the sign s of θ.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Side {
+    /// About the left pivot, θ < 0, s = −1.
+    Left,
+    /// About the right pivot, θ > 0, s = +1.
+    Right,
+}
+
+impl Side {
+    /// s: +1 right, −1 left.
+    pub fn sign(self) -> f64 {
+        match self {
+            Side::Left => -1.0,
+            Side::Right => 1.0,
+        }
+    }
+
+    /// The other pivot.
+    pub fn opposite(self) -> Side {
+        match self {
+            Side::Left => Side::Right,
+            Side::Right => Side::Left,
+        }
+    }
+
+    /// The side whose sign `x` has; right for 0.
+    pub fn of(x: f64) -> Side {
+        if x < 0.0 { Side::Left } else { Side::Right }
+    }
+}
+
+/// What holds of the base.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Phase {
+    /// Both pivots down: θ = θ̇ = 0, Eq 1.
+    FullContact,
+    /// Rocking about one pivot: Eqs 5, 6.
+    Rocking(Side),
+    /// |θ| has reached π/2; the simulation is over.
+    Overturned(Side),
+}
+
+impl Phase {
+    /// What it is called.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Phase::FullContact => "full contact",
+            Phase::Rocking(Side::Left) => "rocking left",
+            Phase::Rocking(Side::Right) => "rocking right",
+            Phase::Overturned(_) => "overturned",
+        }
+    }
+
+    /// The pivot; in full contact, where it does not matter, the right one.
+    pub fn side(self) -> Side {
+        match self {
+            Phase::FullContact => Side::Right,
+            Phase::Rocking(side) | Phase::Overturned(side) => side,
+        }
+    }
+
+    /// The same, or that in which the structure overturned.
+    pub(crate) fn in_motion(self) -> Phase {
+        match self {
+            Phase::Overturned(side) => Phase::Rocking(side),
+            phase => phase,
+        }
+    }
+}
+
+/// The initial values with their units and ranges, under their names in files and in the FMU.
+pub const INITIAL_VALUES: [Quantity<State>; 4] = [
+    quantity!("theta_0", theta["rad"] - 1.5, 1.5, "initial rotation of the base; 0 is full contact"),
+    quantity!("theta_dot_0", theta_dot["rad/s"] - 1e3, 1e3, "initial angular velocity of the base"),
+    quantity!("u_0", u["m"] - 1e4, 1e4, "initial elastic displacement of the top mass"),
+    quantity!("u_dot_0", u_dot["m/s"] - 1e4, 1e4, "initial elastic velocity of the top mass"),
+];
+
+/// Why an initial state is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum InitialStateError {
+    /// One value is outside its own range.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+    /// The base turns although both pivots are down.
+    #[error(
+        "theta_dot_0 = {0:?} rad/s contradicts theta_0 = 0 (full contact, where theta and theta_dot are both 0): \
+         set theta_dot_0 to 0, or theta_0 to an angle with the sign of the pivot that the structure rocks about"
+    )]
+    TurningInFullContact(f64),
+    /// The base is turned although it is fixed.
+    #[error("theta_0 = {0:?} rad contradicts detail = fixed_base, where the base cannot turn: set theta_0 to 0")]
+    TurnedFixedBase(f64),
+    /// The structure is deformed although it is rigid.
+    #[error("u_0 = {u:?} m, u_dot_0 = {u_dot:?} m/s contradict detail = rigid, where u is always 0: set both to 0")]
+    DeformedRigid {
+        /// u_0, m.
+        u: f64,
+        /// u_dot_0, m/s.
+        u_dot: f64,
+    },
+}
+
+impl State {
+    /// u, u̇, θ, θ̇ in m, m/s, rad, rad/s.
+    pub fn components(&self) -> [f64; 4] {
+        [self.u, self.u_dot, self.theta, self.theta_dot]
+    }
+
+    /// The state with these components.
+    pub fn of([u, u_dot, theta, theta_dot]: [f64; 4]) -> State {
+        State { u, u_dot, theta, theta_dot }
+    }
+
+    /// Magnitudes that are usual in a motion of `structure`: those of a rotation α_cg, at which it is about to fall, and of u_cr,
+    /// at which its base lifts off.
+    pub fn usual(structure: &Structure) -> State {
+        let (u, theta) = (structure.u_cr, structure.tan_alpha_cg.atan());
+        State { u, u_dot: structure.omega_fc * u, theta, theta_dot: structure.p_l * theta }
+    }
+
+    /// Whether it consists of numbers.
+    pub fn is_finite(&self) -> bool {
+        (self.u + self.u_dot + self.theta + self.theta_dot).abs() <= f64::MAX // as Load::is_finite does
+    }
+
+    /// The phase that this state starts in: full contact for θ = 0, otherwise rocking about the side of θ's sign.
+    pub fn initial_phase(&self) -> Result<Phase, InitialStateError> {
+        for quantity in &INITIAL_VALUES {
+            quantity.check((quantity.get)(self))?;
+        }
+        if self.theta != 0.0 {
+            Ok(Phase::Rocking(Side::of(self.theta)))
+        } else if self.theta_dot == 0.0 {
+            Ok(Phase::FullContact)
+        } else {
+            Err(InitialStateError::TurningInFullContact(self.theta_dot))
+        }
+    }
+}

@@ -1,0 +1,53 @@
+//! Uplift: full contact → rocking.
+//!
+//! With s = sign(u), the base lifts off at the first instant at which
+//!
+//! ```text
+//! s u ≥ u_cr      and      s θ̈ > 0,   θ̈ by (5, 6) at θ = θ̇ = 0
+//! ```
+//!
+//! There the equations leave [(J0 + m0 B²)/m + (sB − u)²] θ̈ = H (c_u u̇ + k u)/m + g u − sγ g B, whatever a_g and F_t
+//! are: the second condition is that the moment which turns the structure about the pivot exceeds that of its weight.
+//! While |u| grows through u_cr it always does; after a landing with |u| > u_cr it may not, and leaving it out makes
+//! contact open and shut without end. "> 0" is taken as more than 1e-12 of the weight's moment, far above rounding.
+
+use crate::{Side, State, Structure};
+
+/// Smallest excess of the turning moment over the weight's, as a part of the latter: far above rounding, so that what
+/// has lifted off moves away from the ground.
+pub(crate) const LEAST_EXCESS: f64 = 1e-12;
+
+/// The sign of s θ̈ at θ = θ̇ = 0 is that of s (u·`u` + u̇·`u_dot`) − `weight`.
+#[derive(Clone, Copy, Debug)]
+pub struct TurningMoment {
+    /// Moment per displacement.
+    pub u: f64,
+    /// Moment per velocity.
+    pub u_dot: f64,
+    /// Moment of the weight.
+    pub weight: f64,
+}
+
+impl TurningMoment {
+    /// By Eqs 5 and 6: over m, H (c_u u̇ + k u)/m + g u against γ g B.
+    pub fn new(structure: &Structure) -> TurningMoment {
+        let &crate::Parameters { H, B, g, .. } = structure.parameters();
+        let &Structure { stiffness, damping_u, gamma, .. } = structure;
+        TurningMoment { u: H * stiffness + g, u_dot: H * damping_u, weight: gamma * g * B }
+    }
+}
+
+/// The |a_top| (m/s²) from which on the base of a rigid structure lifts off: g tan α_cg.
+pub fn least_push(structure: &Structure) -> f64 {
+    (1.0 + LEAST_EXCESS) * structure.parameters().g * structure.tan_alpha_cg
+}
+
+/// How far a structure in full contact in `state` is from uplift, in parts of u_cr or of the moment of the weight, whichever
+/// lacks more, and the side that lacks less. Uplift is due where it is not positive.
+pub fn margin(structure: &Structure, turning: &TurningMoment, state: &State) -> (f64, Side) {
+    let displacement = state.u / structure.u_cr;
+    let moment = (turning.u * state.u + turning.u_dot * state.u_dot) / turning.weight;
+    let about = |side: Side| (1.0 - side.sign() * displacement).max(1.0 + LEAST_EXCESS - side.sign() * moment);
+    let (right, left) = (about(Side::Right), about(Side::Left));
+    if right <= left { (right, Side::Right) } else { (left, Side::Left) }
+}

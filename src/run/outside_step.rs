@@ -1,0 +1,162 @@
+//! Steps that another integrator takes: the equations that it integrates, what tells it of transitions, and a check that it
+//! has passed none over.
+//!
+//! Such an integrator knows ẋ = f(x, t) of the phase, and event indicators: they are positive while the phase lasts, and a
+//! root of one of them ends it. Many find no root, or not all of them: after an uplift θ starts at 0 as t³, a return within
+//! the step shows no change of sign, steps are fixed. So each complete step is gone over once more by the engine, which
+//! passes nothing over. Where there was a transition on the way, or where the integrator ended beyond one that there was
+//! not, the engine's own motion from the start of the step counts.
+
+use crate::engine::AdvanceError;
+use crate::engine::motion::Event;
+use crate::engine::piece::{Sample, Watch};
+use crate::engine::transition;
+use crate::mechanics::load::{LinearLoad, Load};
+use crate::run::ground_motion::Elapsed;
+use crate::{Engine, GroundMotion, Motion, Phase, Side, State};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::FRAC_PI_2;
+
+/// How many event indicators there are.
+pub const INDICATORS: usize = 2;
+
+/// How far beyond its guard a phase lasts for the indicators, in parts of α_cg or of what uplift takes: no integration
+/// starts on a root, and no rounding makes one.
+pub const BAND: f64 = 1e-9;
+
+impl Sample<'_> {
+    /// (u̇, ü, θ̇, θ̈) by the equations of the level and the phase; not numbers where these have no solution.
+    pub fn state_rates(&self) -> State {
+        let State { u_dot, theta_dot, .. } = self.level.admissible(self.motion.phase, self.motion.state);
+        let [u_ddot, theta_ddot] = self.accelerations();
+        match self.motion.phase {
+            Phase::Overturned(_) => State::default(),
+            Phase::FullContact | Phase::Rocking(_) => {
+                State { u: u_dot, u_dot: u_ddot, theta: theta_dot, theta_dot: theta_ddot }
+            }
+        }
+    }
+
+    /// Of the end of contact at a pivot (in full contact uplift, while rocking impact) and of overturning: continuous, of
+    /// order one, positive while the phase lasts.
+    pub fn event_indicators(&self) -> [f64; INDICATORS] {
+        let &Motion { phase, state, .. } = &self.motion;
+        match phase {
+            Phase::FullContact if self.motion.held() > 0.0 => [1.0; INDICATORS],
+            Phase::FullContact => {
+                let (margin, _) = self.level.uplift_margin(self.structure, &state, self.load);
+                [margin + BAND, 1.0]
+            }
+            Phase::Rocking(side) => {
+                let height = side.sign() * state.theta / self.structure.tan_alpha_cg.atan();
+                [height + BAND, 1.0 - state.theta.abs() / FRAC_PI_2]
+            }
+            Phase::Overturned(_) => [1.0; INDICATORS],
+        }
+    }
+}
+
+/// What became of a step.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Checked {
+    /// The motion at its end.
+    pub motion: Motion,
+    /// Whether that is the engine's own and not where the integrator ended.
+    pub is_corrected: bool,
+    /// Whether the step's end shows nothing of the transitions on its way.
+    pub was_hidden: bool,
+}
+
+/// Where a motion that another integrator carries on was last known: at the start, after a complete step, after an event.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Known {
+    /// The motion.
+    pub motion: Motion,
+    /// Time since the start, on ground that follows a record.
+    pub elapsed: Elapsed,
+    /// What acted beside the record.
+    pub load: Load,
+}
+
+impl Known {
+    /// Checks the step from here to where `engine` is now, under `load`, which came about linearly, and on `ground`. The engine
+    /// stays where it is; transitions on the way are shown to `watch`.
+    pub fn check<W: Watch>(
+        &self,
+        engine: &mut Engine,
+        ground: Option<&GroundMotion>,
+        elapsed: Elapsed,
+        load: Load,
+        watch: &mut W,
+    ) -> Result<Checked, AdvanceError> {
+        if let Phase::Overturned(_) = self.motion.phase {
+            return Ok(Checked { motion: self.motion, is_corrected: false, was_hidden: false });
+        }
+        let end = *engine.motion();
+        let now: LinearLoad = load.into();
+        let now = ground.map_or(now, |ground| now.on_ground(ground.since(self.elapsed, elapsed)));
+        let is_beyond = !engine.sample(now.value).event_indicators().iter().all(|indicator| *indicator > 0.0);
+        engine.set_motion(self.motion);
+        let own = self.go_on(engine, ground, end.time - self.motion.time, load, watch);
+        let own = own.map(|()| *engine.motion());
+        engine.set_motion(end);
+        let own = own?;
+        let has_changed = own.transitions != self.motion.transitions;
+        let is_corrected = has_changed || is_beyond;
+        let time = if let Phase::Overturned(_) = own.phase { own.time } else { end.time };
+        let state = if is_corrected { own.state } else { end.state };
+        Ok(Checked { motion: Motion { time, state, ..own }, is_corrected, was_hidden: has_changed && !is_beyond })
+    }
+
+    /// The engine's own motion from here over `interval` (s).
+    fn go_on<W: Watch>(
+        &self,
+        engine: &mut Engine,
+        ground: Option<&GroundMotion>,
+        interval: f64,
+        load: Load,
+        watch: &mut W,
+    ) -> Result<(), AdvanceError> {
+        if interval == 0.0 {
+            return Ok(());
+        }
+        let slope =
+            |from: f64, to: f64| Some((to - from) / interval).filter(|slope| slope.is_finite()).unwrap_or_default();
+        let slope = Load { a_g: slope(self.load.a_g, load.a_g), F_t: slope(self.load.F_t, load.F_t) };
+        let load = LinearLoad { value: self.load, slope };
+        match ground {
+            Some(ground) => ground.advance(engine, self.elapsed, interval, load, watch),
+            None => engine.advance(interval, load, watch),
+        }
+        .map(|_| ())
+    }
+}
+
+impl Engine {
+    /// Takes `state` from another integrator; what does not move in the present phase stays at rest.
+    pub fn set_state(&mut self, state: State) {
+        let Sample { motion, level, .. } = self.sample(Load::default());
+        let state = level.admissible(motion.phase, state);
+        self.set_motion(Motion { state, ..motion });
+    }
+
+    /// Lifts the base off if that is due at once under `load`: after a landing, at the start, or when a load jumps.
+    pub fn lift_off_if_due<W: Watch>(&mut self, load: Load, watch: &mut W) {
+        if let Some(side) = self.uplift_due(load) {
+            let Sample { motion, structure, level, .. } = self.sample(load);
+            let (motion, transition) = transition::resolve(level, structure, motion, Event::Uplift(side));
+            self.set_motion(motion);
+            watch.transition(&transition);
+        }
+    }
+
+    /// The side about which the base lifts off at once under `load`, if it does.
+    pub fn uplift_due(&self, load: Load) -> Option<Side> {
+        let Sample { motion, structure, level, .. } = self.sample(load);
+        if motion.phase != Phase::FullContact || motion.held() > 0.0 {
+            return None;
+        }
+        let (margin, side) = level.uplift_margin(structure, &motion.state, load);
+        (margin <= 0.0).then_some(side)
+    }
+}

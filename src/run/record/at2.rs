@@ -1,0 +1,274 @@
+//! AT2, the acceleration records of PEER.
+
+use super::parsed::{Parsed, Times};
+use super::text::{acceleration, number, numbered, quote, without_blanks};
+use super::unit::Stated;
+use super::{BadLine, Format, MAX_SAMPLES, Reading, Unit, bad, source::decide};
+
+/// Whether `text` is one of these files.
+pub(super) fn is_its(text: &str) -> bool {
+    text.lines().nth(2).is_some_and(|line| check_unit(line).is_ok()) && text.lines().nth(3).is_some_and(is_counts)
+}
+
+fn is_counts(line: &str) -> bool {
+    line.to_uppercase().contains("NPTS")
+}
+
+/// A title on line 2, the unit on line 3, NPTS and DT on line 4, then NPTS accelerations.
+pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
+    const HEADER_LINES: usize = 4;
+    let header: Vec<_> = text.lines().take(HEADER_LINES).collect();
+    let &[_, title, unit, counts] = header.as_slice() else {
+        return Err(bad(header.len().max(1), "the file ends within the four header lines of an AT2 file"));
+    };
+    check_unit(unit).map_err(|problem| bad(3, problem))?;
+    let (unit, unit_from) = decide(&Stated::Unit(Unit::G), how.unit).map_err(|problem| bad(3, problem))?;
+    let (npts, dt) = npts_and_dt(counts).map_err(|problem| bad(4, problem))?;
+
+    let mut parsed = Parsed::new(Format::At2, title.trim(), unit, unit_from, Times::Every(dt));
+    for line in without_blanks(numbered(text).skip(HEADER_LINES)) {
+        let (line, values) = line?;
+        for value in values.split_whitespace().flat_map(split_run_together) {
+            parsed.add(acceleration(value), line)?;
+        }
+    }
+    parsed.check_count("NPTS", npts, how)?;
+    Ok(parsed)
+}
+
+/// `ACCELERATION TIME SERIES IN UNITS OF G` or `ACCELERATION TIME HISTORY IN UNITS OF G. FILTER ...`.
+fn check_unit(line: &str) -> Result<(), String> {
+    let upper = line.to_uppercase();
+    let unit = upper.split_once("UNITS OF").and_then(|(_, rest)| rest.split_whitespace().next());
+    if upper.contains("ACCELERATION") && unit.is_some_and(|unit| unit.trim_end_matches(['.', ',', ';']) == "G") {
+        Ok(())
+    } else {
+        Err(format!("found {} where an AT2 file states ACCELERATION ... IN UNITS OF G", quote(line)))
+    }
+}
+
+/// NPTS and DT (s) from `NPTS=  4172, DT=   .0100 SEC,` or `4164    0.0100    NPTS, DT`.
+pub(super) fn npts_and_dt(line: &str) -> Result<(usize, f64), String> {
+    let upper = line.to_uppercase();
+    let words: Vec<_> = upper.split([' ', '\t', ',', '=']).filter(|word| !word.is_empty()).collect();
+    let (npts, dt) = match words.as_slice() {
+        ["NPTS", npts, "DT", dt] => (npts, dt.trim_end_matches("SEC")),
+        ["NPTS", npts, "DT", dt, unit, ..] if unit.starts_with("SEC") => (npts, *dt),
+        [npts, dt, "NPTS", "DT", ..] => (npts, *dt),
+        _ => {
+            let expected = "`NPTS= 4172, DT= .0100 SEC` or `4172 0.0100 NPTS, DT`";
+            return Err(format!("found {} where an AT2 file states {expected}", quote(line)));
+        }
+    };
+    let npts: usize = match npts.parse() {
+        Ok(npts) if (2..=MAX_SAMPLES).contains(&npts) => npts,
+        _ => return Err(format!("NPTS = {} must be a whole number, 2 to {MAX_SAMPLES}", quote(npts))),
+    };
+    match number(dt) {
+        Some(dt) if dt > 0.0 && (npts as f64 * dt).is_finite() => Ok((npts, dt)),
+        _ => Err(format!("DT = {} must be a number of seconds greater than 0", quote(dt))),
+    }
+}
+
+/// Full columns of a fixed width leave no blank between numbers: `.1297983E-02-.4E-03`. A sign after the digits of an
+/// exponent can only begin the next number.
+fn split_run_together(mut word: &str) -> impl Iterator<Item = &str> {
+    std::iter::from_fn(move || {
+        let exponent = word.find(['e', 'E', 'd', 'D']).unwrap_or(word.len());
+        let next = word.char_indices().find(|&(i, c)| i > exponent + 1 && matches!(c, '+' | '-'));
+        let (number, rest) = word.split_at(next.map_or(word.len(), |(i, _)| i));
+        word = rest;
+        (!number.is_empty()).then_some(number)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::record::{Column, Record, Remedy};
+    use proptest::prelude::*;
+
+    const PACOIMA: &str = "PEER NGA STRONG MOTION DATABASE RECORD\n\
+        San Fernando, 2/9/1971, Pacoima Dam (upper left abut), 164\n\
+        ACCELERATION TIME SERIES IN UNITS OF G\n";
+
+    /// The counts of every header variant, and what they say.
+    const COUNTS: [(&str, usize, f64); 9] = [
+        ("NPTS=   3, DT=   .0100 SEC,                    ", 3, 0.01),
+        ("NPTS= 3, DT= 0.01 SEC", 3, 0.01),
+        ("NPTS=     3  DT=  0.0050 SEC,", 3, 0.005),
+        ("NPTS= 3 DT= 0.0050000", 3, 0.005),
+        ("NPTS=3,DT=.02SEC", 3, 0.02),
+        ("  3    0.0100    NPTS, DT", 3, 0.01),
+        ("3 .0050 npts,dt", 3, 0.005),
+        ("npts=   3, dt=   5.0e-3 sec", 3, 0.005),
+        ("\tNPTS =\t3 ,\tDT =\t1D-2\tSEC", 3, 0.01),
+    ];
+
+    fn read(text: &str, how: &Reading) -> Result<Record, BadLine> {
+        Ok(parse(text, how)?.record(how)?.0)
+    }
+
+    fn at2(counts: &str, values: &str) -> Result<Record, BadLine> {
+        read(&format!("{PACOIMA}{counts}\n{values}"), &Reading::default())
+    }
+
+    fn at2_problem(counts: &str, values: &str) -> String {
+        let BadLine { line, problem, .. } = at2(counts, values).unwrap_err();
+        format!("{line}: {problem}")
+    }
+
+    #[test]
+    fn every_header_variant_gives_the_same_samples() {
+        for (counts, npts, dt) in COUNTS {
+            let record = at2(counts, " .1297983E-02\t-.4E-03\n1.2d-03  \n\n \n").unwrap();
+            assert_eq!(record.title(), "San Fernando, 2/9/1971, Pacoima Dam (upper left abut), 164");
+            assert_eq!(record.times(), (0..npts).map(|i| i as f64 * dt).collect::<Vec<_>>(), "{counts}");
+            assert_eq!(record.acceleration(), [0.1297983e-2, -0.4e-3, 1.2e-3], "{counts}");
+        }
+    }
+
+    #[test]
+    fn the_unit_line_must_state_acceleration_in_g() {
+        for accepted in [
+            "ACCELERATION TIME SERIES IN UNITS OF G",
+            "acceleration time history in units of g\r",
+            "ACCELERATION TIME HISTORY IN UNITS OF G. FILTER POINTS: HP=0.1 Hz LP=30.0 Hz",
+            " ACCELERATION TIME SERIES IN UNITS OF g (9.81)",
+        ] {
+            assert_eq!(check_unit(accepted), Ok(()));
+        }
+        for refused in [
+            "VELOCITY TIME SERIES IN UNITS OF CM/S",
+            "DISPLACEMENT TIME SERIES IN UNITS OF CM",
+            "ACCELERATION TIME SERIES IN UNITS OF GAL",
+            "ACCELERATION TIME SERIES IN UNITS OF G/10",
+            "ACCELERATION TIME SERIES",
+            "",
+        ] {
+            assert!(check_unit(refused).is_err(), "{refused}");
+        }
+        let velocity = "a\nb\nVELOCITY TIME SERIES IN UNITS OF CM/S\nNPTS= 2, DT= .01 SEC\n1 2\n";
+        assert_eq!(
+            read(velocity, &Reading::default()),
+            Err(bad(
+                3,
+                "found \"VELOCITY TIME SERIES IN UNITS OF CM/S\" where an AT2 file states \
+                 ACCELERATION ... IN UNITS OF G"
+            ))
+        );
+    }
+
+    #[test]
+    fn a_refused_at2_file_says_what_was_found_on_which_line() {
+        const THREE: &str = "NPTS= 3, DT= .01 SEC";
+        assert_eq!(read("", &Reading::default()).unwrap_err().line, 1);
+        let ends = "the file ends within the four header lines of an AT2 file";
+        assert_eq!(read(PACOIMA, &Reading::default()), Err(bad(3, ends)));
+        assert_eq!(at2_problem(THREE, ".1 .2\n\n"), "5: NPTS states 3 samples, and the file has 2");
+        assert_eq!(at2_problem(THREE, ""), "1: NPTS states 3 samples, and the file has 0");
+        assert_eq!(at2_problem(THREE, ".1\n.2\n.3 .4\n"), "7: NPTS states 3 samples, and the file has 4");
+        for not_a_number in ["x", "1.2.3", "********", "nan", "-inf", "1e999", ".1-.2", "1E-", "1e308", "ÿ"] {
+            assert_eq!(
+                at2_problem(THREE, &format!(".1\n {not_a_number}\n.3\n")),
+                format!("6: the acceleration {not_a_number:?} is not a number")
+            );
+        }
+        assert_eq!(at2_problem("NPTS= 1, DT= .01 SEC", ".1"), "4: NPTS = \"1\" must be a whole number, 2 to 10000000");
+        assert_eq!(at2_problem("3.5 .01 NPTS, DT", ".1"), "4: NPTS = \"3.5\" must be a whole number, 2 to 10000000");
+        for dt in ["0.0", "-.01", "NAN", "1E308", "X"] {
+            assert_eq!(
+                at2_problem(&format!("NPTS= 3, DT= {dt} SEC"), ".1 .2 .3"),
+                format!("4: DT = {dt:?} must be a number of seconds greater than 0")
+            );
+        }
+        assert_eq!(
+            at2_problem("NPTS= 3, DT= 10 MSEC", ".1 .2 .3"),
+            "4: found \"NPTS= 3, DT= 10 MSEC\" where an AT2 file states \
+             `NPTS= 4172, DT= .0100 SEC` or `4172 0.0100 NPTS, DT`"
+        );
+        assert_eq!(
+            at2_problem(THREE, &"9".repeat(400)),
+            format!("5: the acceleration \"{}\"... is not a number", "9".repeat(40))
+        );
+    }
+
+    /// With both numbers, and with a way out.
+    #[test]
+    fn the_samples_that_are_there_can_be_taken() {
+        let how = Reading { ignores_count: true, ..Reading::default() };
+        for (values, found) in [(".1 .2", 2), (".1 .2 .3 .4", 4)] {
+            let text = format!("{PACOIMA}NPTS= 3, DT= .01 SEC\n{values}\n");
+            assert_eq!(parse(&text, &Reading::default()).unwrap_err().remedy, Some(Remedy::IgnoreCount));
+            let parsed = parse(&text, &how).unwrap();
+            assert_eq!(parsed.source.remarks, [format!("NPTS states 3 samples, and the file has {found}")]);
+            assert_eq!(parsed.record(&how).unwrap().0.times().len(), found);
+        }
+    }
+
+    #[test]
+    fn what_contradicts_the_file_is_refused() {
+        let text = format!("{PACOIMA}NPTS= 3, DT= .01 SEC\n.1 .2 .3\n");
+        let problem = |how: &Reading| read(&text, how).unwrap_err().problem;
+        let si = Reading { unit: Some(Unit::MetrePerSecondSquared), ..Reading::default() };
+        assert_eq!(problem(&si), "the file states accelerations in g, and m/s2 is asked for");
+        let other_step = Reading { dt: Some(0.02), ..Reading::default() };
+        assert_eq!(problem(&other_step), "the file states a sample every 0.01 s, and 0.02 s is asked for");
+        let column = Reading { column: Some(Column::Number(2)), ..Reading::default() };
+        assert_eq!(problem(&column), "column 2 is asked for, and a file of PEER AT2 has none");
+        let same = Reading { unit: Some(Unit::G), dt: Some(0.01), ..Reading::default() };
+        assert!(read(&text, &same).is_ok());
+        let gap = format!("{PACOIMA}NPTS= 3, DT= .01 SEC\n.1 .2\n\n.3\n");
+        assert_eq!(read(&gap, &same).unwrap_err().line, 6);
+    }
+
+    #[test]
+    fn full_columns_of_a_fixed_width_come_apart() {
+        let together: Vec<_> = split_run_together("-.1297E-02-.4000E-03+1.5D+00.2").collect();
+        assert_eq!(together, ["-.1297E-02", "-.4000E-03", "+1.5D+00.2"]);
+        assert_eq!(split_run_together("1.5E0-2").collect::<Vec<_>>(), ["1.5E0", "-2"]);
+        assert_eq!(split_run_together(".1-.2").collect::<Vec<_>>(), [".1-.2"]);
+    }
+
+    /// Any finite value as AT2 files write them: 1.5E-3, -.15D-2, fixed point.
+    fn written(value: f64, style: usize) -> String {
+        match style {
+            0 => format!("{value:e}"),
+            1 => format!("{value:E}").replace('E', "D"),
+            _ => format!("{value}").replacen("0.", ".", usize::from(value.abs() < 1.0)),
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn at2_reads_what_was_written(
+            values in prop::collection::vec((-1e3..1e3_f64, 0..3_usize), 2..40),
+            columns in 1..9_usize,
+            dt in 1e-4..1.0_f64,
+            variant in 0..3_usize,
+        ) {
+            let npts = values.len();
+            let counts = match variant {
+                0 => format!("NPTS= {npts:6}, DT= {dt} SEC,"),
+                1 => format!("{npts}    {dt}    NPTS, DT"),
+                _ => format!("npts={npts}, dt={dt:e} sec"),
+            };
+            let words: Vec<_> = values.iter().map(|&(value, style)| written(value, style)).collect();
+            let lines: Vec<_> = words.chunks(columns).map(|line| line.join("  ")).collect();
+            let text = format!("{PACOIMA}{counts}\n{}\n", lines.join("\n"));
+            let record = read(&text, &Reading::default()).unwrap();
+            prop_assert_eq!(record.times(), (0..npts).map(|i| i as f64 * dt).collect::<Vec<_>>());
+            prop_assert_eq!(record.acceleration(), values.iter().map(|&(value, _)| value).collect::<Vec<_>>());
+        }
+
+        /// A file cut short is refused, unless all that is lost is from its last number on.
+        #[test]
+        fn a_file_cut_anywhere_is_refused(values in prop::collection::vec(-1.0..1.0_f64, 2..12), cut in 0.0..1.0_f64) {
+            let words: Vec<_> = values.iter().map(|value| format!("{value:14.7e}")).collect();
+            let text = format!("{PACOIMA}NPTS= {}, DT= .01 SEC\n{}\n", words.len(), words.join("\n"));
+            let cut = (cut * text.len() as f64) as usize;
+            let record = read(&text[..cut], &Reading::default());
+            prop_assert!(record.is_err() || cut > text.trim_end().rfind('\n').unwrap());
+        }
+    }
+}

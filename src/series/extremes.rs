@@ -1,0 +1,219 @@
+//! Where a polynomial is largest: a bound over a step, and its stationary points, none of which is passed over.
+
+use crate::series::first_crossing::{Crossing, Guard, first_time_closed_from};
+use crate::series::taylor::{MAX_ORDER, Series, ZERO, evaluate};
+
+/// max (σ − σᵏ) over 0 ≤ σ ≤ 1 for each k, rounded up.
+const OFF_CHORD: Series = {
+    let mut off = [1.0; MAX_ORDER + 2];
+    let known =
+        [0.0, 0.0, 0.25, 0.385, 0.473, 0.535, 0.583, 0.62, 0.651, 0.676, 0.697, 0.716, 0.732, 0.746, 0.758, 0.77];
+    let mut k = 0;
+    while k < known.len() {
+        off[k] = known[k];
+        k += 1;
+    }
+    off
+};
+
+/// What is known of |Σ c_k σᵏ| over a step without looking for its extremes.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Bound {
+    /// The larger of its ends.
+    pub ends: f64,
+    /// By how much it may exceed that in between.
+    pub between: f64,
+    /// How fast it changes at least, and at most, per unit of σ/reach. The least is not above 0 where it may turn round.
+    pub rate: [f64; 2],
+}
+
+impl Bound {
+    /// The same where something else, of which `most` and its rate `most_rate` are bounds, is added.
+    pub fn and(self, most: f64, most_rate: f64) -> Bound {
+        let rate = [self.rate[0] - most_rate, self.rate[1] + most_rate];
+        Bound { ends: self.ends + most, between: self.between, rate }
+    }
+
+    /// Whether it may turn round.
+    pub fn may_turn(&self) -> bool {
+        self.rate[0] <= 0.0
+    }
+
+    /// Bound of its magnitude.
+    pub fn largest(&self) -> f64 {
+        self.ends + if self.may_turn() { self.between } else { 0.0 }
+    }
+}
+
+/// Bounds of several |Σ c_k σᵏ| up to σ = `reach`; `row` gives their coefficients of each order up to `order`.
+///
+/// Each is at its ends what its terms add up to there, and leaves the chord between them by no more than the terms of
+/// higher order do; where these are too small to turn it round it rises or falls throughout.
+#[inline]
+pub fn bounds<const N: usize>(row: impl Fn(usize) -> [f64; N], order: usize, reach: f64) -> [Bound; N] {
+    let start = row(0);
+    let [mut end, mut between, mut slope, mut turning] = [start, [0.0; N], [0.0; N], [0.0; N]];
+    let mut power = 1.0;
+    for (k, off_chord) in OFF_CHORD.iter().enumerate().take(order + 1).skip(1) {
+        power *= reach;
+        let terms = row(k);
+        for i in 0..N {
+            let term = terms[i] * power;
+            end[i] += term;
+            if k == 1 {
+                slope[i] = term.abs();
+            } else {
+                between[i] += off_chord * term.abs();
+                turning[i] += k as f64 * term.abs();
+            }
+        }
+    }
+    std::array::from_fn(|i| Bound {
+        ends: start[i].abs().max(end[i].abs()),
+        between: between[i],
+        rate: [slope[i] - turning[i], slope[i] + turning[i]],
+    })
+}
+
+/// How far Σ c_k σᵏ can leave the chord between its ends up to σ = `reach`.
+#[inline]
+pub fn off_chord(coefficients: &[f64], reach: f64) -> f64 {
+    let (weights, higher) = (&OFF_CHORD[2..], coefficients.get(2..).unwrap_or_default());
+    if reach < 1.0 {
+        let powers = std::iter::successors(Some(reach * reach), |power| Some(power * reach));
+        return weights.iter().zip(higher).zip(powers).map(|((weight, c), power)| weight * power * c.abs()).sum();
+    }
+    // four sums side by side: a sum waits for the one before it
+    let (fours, rest) = higher.as_chunks::<4>();
+    let mut sums = [0.0; 4];
+    for (weights, four) in weights.as_chunks::<4>().0.iter().zip(fours) {
+        for i in 0..4 {
+            sums[i] += weights[i] * four[i].abs();
+        }
+    }
+    let of_rest = weights[4 * fours.len()..].iter().zip(rest).map(|(weight, c)| weight * c.abs()).sum::<f64>();
+    sums.iter().sum::<f64>() + of_rest
+}
+
+/// [`bounds`] of one.
+pub fn bound(coefficients: &[f64], reach: f64) -> f64 {
+    let [bound] = bounds(|k| [coefficients[k]], coefficients.len() - 1, reach);
+    bound.largest()
+}
+
+/// A tighter bound of |Σ c_k σᵏ| up to σ = `reach`: the largest of the cubic with its values and slopes at both ends, and
+/// how far the terms of higher order can leave that.
+pub fn bound_by_cubic(coefficients: &[f64], reach: f64) -> f64 {
+    let (mut end, mut slope_end, mut off_cubic, mut power) = (0.0, 0.0, 0.0, 1.0);
+    for (k, c) in coefficients.iter().enumerate() {
+        let term = c * power;
+        power *= reach;
+        end += term;
+        slope_end += k as f64 * term;
+        if k > 3 {
+            off_cubic += OFF_CUBIC * k as f64 * term.abs();
+        }
+    }
+    let slope_start = coefficients.get(1).map_or(0.0, |c| c * reach);
+    largest_of_cubic([coefficients[0], end], [slope_start, slope_end]) + off_cubic
+}
+
+/// max |σᵏ − its cubic| over 0 ≤ σ ≤ 1 is at most this times k.
+const OFF_CUBIC: f64 = 0.1295;
+
+/// The largest magnitude over 0 ≤ σ ≤ 1 of the cubic with these values and slopes at the ends.
+fn largest_of_cubic([start, end]: [f64; 2], [from, to]: [f64; 2]) -> f64 {
+    let rise = end - start;
+    // the slope is from + b σ + a σ²
+    let (a, b) = (3.0 * (from + to - 2.0 * rise), 2.0 * (3.0 * rise - 2.0 * from - to));
+    let q = -0.5 * (b + (b * b - 4.0 * a * from).max(0.0).sqrt().copysign(b));
+    let at = |sigma: f64| (start + sigma * (from + sigma * (b / 2.0 + sigma * a / 3.0))).abs();
+    let turns = [q / a, from / q].into_iter().filter(|sigma| (0.0..=1.0).contains(sigma));
+    turns.map(at).fold(start.abs().max(end.abs()), f64::max)
+}
+
+/// Shows every σ in (0, `reach`) at which Σ c_k σᵏ is stationary, in their order: between them it rises or falls
+/// throughout.
+pub fn stationary_points(coefficients: &[f64], reach: f64, mut show: impl FnMut(f64)) {
+    let mut slope = ZERO;
+    let mut orders = coefficients.len().saturating_sub(1);
+    for k in 1..=orders {
+        slope[k - 1] = k as f64 * coefficients[k];
+    }
+    let mut sigma = 0.0;
+    // each turn divides a root out of the slope, or gets on
+    while orders > 1 {
+        let rises = evaluate(&slope[..orders], sigma);
+        let (at, is_root) = match rises.is_normal() {
+            false => (sigma, true),
+            true => match first_time_closed_from(Guard::new(&slope[..orders], rises.signum(), 0.0), sigma, reach) {
+                Crossing::None => return,
+                Crossing::At(at) => (at, true),
+                // no further without a root that cannot be told from where this is
+                Crossing::NoneUntil(at) => (at, at - sigma <= f64::EPSILON),
+            },
+        };
+        sigma = at;
+        if is_root {
+            show(sigma);
+            divide_out(&mut slope[..orders], sigma);
+            orders -= 1;
+        }
+    }
+}
+
+/// Divides a polynomial by (σ − `root`); what is left over, which is rounding, is dropped. The last coefficient is then
+/// of no meaning.
+fn divide_out(coefficients: &mut [f64], root: f64) {
+    let mut quotient = 0.0;
+    for c in coefficients.iter_mut().rev() {
+        (*c, quotient) = (quotient, *c + root * quotient);
+    }
+}
+
+/// The largest |Σ c_k σᵏ| up to σ = `reach`.
+pub fn largest(coefficients: &[f64], reach: f64) -> f64 {
+    let at = |sigma: f64| evaluate(coefficients, sigma).abs();
+    let mut largest = at(0.0).max(at(reach));
+    stationary_points(coefficients, reach, |sigma| largest = largest.max(at(sigma)));
+    largest
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_abs_diff_eq;
+    use proptest::prelude::*;
+
+    proptest! {
+        /// Never below any sample, never above what the samples' spacing explains, within the bound.
+        #[test]
+        fn the_largest_magnitude_is_that_of_the_samples(
+            coefficients in proptest::collection::vec(-1.0..1.0f64, 1..12), reach in 0.1..1.0f64,
+        ) {
+            let value = largest(&coefficients, reach);
+            const SAMPLES: usize = 20_000;
+            let at = |i: usize| evaluate(&coefficients, reach * i as f64 / SAMPLES as f64).abs();
+            let sampled = (0..=SAMPLES).map(at).fold(0.0, f64::max);
+            let curvature: f64 = coefficients.iter().enumerate().map(|(k, c)| (k * k) as f64 * c.abs()).sum();
+            let unseen = curvature * (reach / SAMPLES as f64).powi(2) / 8.0;
+            prop_assert!(value >= sampled * (1.0 - 1e-14) && value <= sampled + unseen + 1e-14, "{value} {sampled}");
+            prop_assert!(bound(&coefficients, reach) >= value * (1.0 - 1e-14));
+            prop_assert!(bound_by_cubic(&coefficients, reach) >= value * (1.0 - 1e-14));
+        }
+    }
+
+    #[test]
+    fn every_stationary_point_is_found() {
+        // derivative (σ − 0.1)(σ − 0.1000001)(σ − 0.7)
+        let (a, b, c) = (0.1, 0.1000001, 0.7);
+        let slope = [-a * b * c, a * b + a * c + b * c, -(a + b + c), 1.0];
+        let polynomial: Vec<_> = std::iter::once(0.3).chain((1..).zip(slope).map(|(k, c)| c / f64::from(k))).collect();
+        let mut found = Vec::new();
+        stationary_points(&polynomial, 1.0, |sigma| found.push(sigma));
+        assert_eq!(found.len(), 3, "{found:?}");
+        for (found, expected) in found.into_iter().zip([a, b, c]) {
+            assert_abs_diff_eq!(found, expected, epsilon = 2e-8); // where rounding puts roots 1e-7 apart
+        }
+    }
+}

@@ -1,0 +1,282 @@
+//! Truncated Taylor series in time: the solver's representation of a motion over one step.
+//!
+//! The equations of every phase are analytic, so their solution over a step is expanded to as high an order as the
+//! tolerance asks. The expansion is its own dense output: a transition is a root of one of its polynomials.
+//!
+//! Time within a step is σ = τ/span, 0 at its start and 1 at the end of the span that was asked for; the coefficients
+//! are then the terms themselves at the end, which can be compared with the tolerance and summed as they are.
+
+use crate::State;
+use crate::mechanics::load::Ramp;
+
+/// Highest order of an expansion. At a local error of 1e-16 it carries ω·h of more than 3 rad per step.
+pub const MAX_ORDER: usize = 28;
+
+/// The longest span, as ω·h in rad, that an expansion is tried over: more than [`MAX_ORDER`] ever reaches.
+pub const LONGEST_SPAN: f64 = 8.0;
+
+/// Coefficients c_k of Σ c_k σ^k.
+pub type Series = [f64; MAX_ORDER + 2];
+
+/// A series of zeros.
+pub const ZERO: Series = [0.0; MAX_ORDER + 2];
+
+/// Value at `sigma` of the polynomial with these coefficients.
+#[inline]
+pub fn evaluate(coefficients: &[f64], sigma: f64) -> f64 {
+    if sigma == 1.0 {
+        return coefficients.iter().rev().sum();
+    }
+    coefficients.iter().rev().fold(0.0, |sum, c| sum * sigma + c)
+}
+
+/// Σ |c_k|, in four sums side by side: a sum waits for the one before it.
+#[inline]
+pub(crate) fn sum_of_magnitudes(coefficients: &[f64]) -> f64 {
+    let (fours, rest) = coefficients.as_chunks::<4>();
+    let mut sums = [0.0; 4];
+    for four in fours {
+        for i in 0..4 {
+            sums[i] += four[i].abs();
+        }
+    }
+    sums.iter().sum::<f64>() + rest.iter().map(|c| c.abs()).sum::<f64>()
+}
+
+/// Coefficients of the same polynomial about `by`.
+fn shift(coefficients: &mut [f64], by: f64) {
+    let last = coefficients.len().saturating_sub(1);
+    for start in 0..last {
+        for k in (start..last).rev() {
+            coefficients[k] += by * coefficients[k + 1];
+        }
+    }
+}
+
+/// Coefficients of the same polynomial over `scale` from `from` on: 0 is then what `from` was, and 1 what lay `scale` beyond.
+pub fn stretch(coefficients: &mut [f64], from: f64, scale: f64) {
+    shift(coefficients, from);
+    coefficients.iter_mut().fold(1.0, |power, c| {
+        *c *= power;
+        power * scale
+    });
+}
+
+/// The motion over one step: a polynomial in time for each component of the state.
+#[derive(Clone, Debug)]
+pub struct Arc {
+    /// Elastic displacement, m.
+    pub u: Series,
+    /// Its rate, m/s.
+    pub u_dot: Series,
+    /// Rotation, rad.
+    pub theta: Series,
+    /// Its rate, rad/s.
+    pub theta_dot: Series,
+    /// Highest order in use.
+    pub order: usize,
+    /// Duration of σ = 1, s.
+    pub span: f64,
+    /// The σ up to which the truncation error is within the tolerance; at most 1.
+    pub reach: f64,
+}
+
+impl Default for Arc {
+    fn default() -> Arc {
+        Arc { u: ZERO, u_dot: ZERO, theta: ZERO, theta_dot: ZERO, order: 0, span: 0.0, reach: 0.0 }
+    }
+}
+
+impl Arc {
+    /// How long it lasts, s.
+    pub fn duration(&self) -> f64 {
+        self.reach * self.span
+    }
+
+    /// The coefficients of `series` up to the order in use.
+    #[inline]
+    pub fn used<'a>(&self, series: &'a Series) -> &'a [f64] {
+        &series[..=self.order]
+    }
+
+    /// A series of the same order, of these `coefficients`.
+    pub(crate) fn series(&self, coefficients: impl Fn(usize) -> f64) -> Series {
+        let mut series = ZERO;
+        series.iter_mut().enumerate().take(self.order + 1).for_each(|(k, c)| *c = coefficients(k));
+        series
+    }
+
+    /// Whether the expansion consists of numbers: what is not one stays so from order to order.
+    pub fn is_finite(&self) -> bool {
+        let last = self.order;
+        (self.u_dot[last] + self.theta_dot[last] + self.reach).is_finite()
+    }
+
+    /// The same motion from σ = `from` to σ = `to` alone.
+    pub(crate) fn between(&self, from: f64, to: f64) -> Arc {
+        let (mut part, scale) = (self.clone(), to - from);
+        for series in [&mut part.u, &mut part.u_dot, &mut part.theta, &mut part.theta_dot] {
+            stretch(&mut series[..=self.order], from, scale);
+        }
+        Arc { span: self.span * scale, reach: 1.0, ..part }
+    }
+
+    /// The state at the end of the step.
+    #[inline]
+    pub fn end(&self) -> State {
+        self.at(self.reach)
+    }
+
+    /// The state at `sigma`.
+    #[inline]
+    pub fn at(&self, sigma: f64) -> State {
+        State {
+            u: evaluate(self.used(&self.u), sigma),
+            u_dot: evaluate(self.used(&self.u_dot), sigma),
+            theta: evaluate(self.used(&self.theta), sigma),
+            theta_dot: evaluate(self.used(&self.theta_dot), sigma),
+        }
+    }
+}
+
+/// What a step starts from and what is asked of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Start {
+    /// The state there.
+    pub state: State,
+    /// Ground acceleration from there on.
+    pub a_g: Ramp,
+    /// The ground acceleration that the top mass feels from there on.
+    pub a_top: Ramp,
+    /// How far it may go at most, s.
+    pub interval: f64,
+    /// Truncation error over the largest velocities that the step can bring.
+    pub local_error: f64,
+}
+
+/// The largest truncated terms that a step may have.
+#[derive(Clone, Copy, Debug)]
+pub struct Truncation {
+    /// Of u̇, m/s.
+    pub u_dot: f64,
+    /// Of θ̇, rad/s.
+    pub theta_dot: f64,
+}
+
+/// Fewest orders in an expansion, so that terms that vanish at rest cannot end it early.
+const MIN_ORDER: usize = 5;
+
+/// 1/k, looked up.
+#[inline]
+pub(crate) fn reciprocal(k: usize) -> f64 {
+    const RECIPROCAL: Series = {
+        let mut reciprocal = ZERO;
+        let mut k = 1;
+        while k < reciprocal.len() {
+            reciprocal[k] = 1.0 / k as f64;
+            k += 1;
+        }
+        reciprocal
+    };
+    RECIPROCAL[k]
+}
+
+impl Arc {
+    /// Expands the motion from `state` over `span` (s), order by order, until its last two terms are within
+    /// `truncation`; coefficients of an earlier use are overwritten.
+    ///
+    /// `velocities(arc, k, per)` gives the coefficients of (u̇, θ̇) at order k ≥ 1, from u and θ to order k and from u̇
+    /// and θ̇ to order k − 1; `per` is span/k, which integrates a coefficient of order k − 1. When [`MAX_ORDER`] is not
+    /// enough for the span, the arc reaches as far as its last two terms allow.
+    #[inline(always)]
+    pub fn expand(
+        &mut self,
+        state: &State,
+        span: f64,
+        truncation: Truncation,
+        mut velocities: impl FnMut(&Arc, usize, f64) -> (f64, f64),
+    ) {
+        self.span = span;
+        self.reach = 1.0;
+        (self.u[0], self.u_dot[0]) = (state.u, state.u_dot);
+        (self.theta[0], self.theta_dot[0]) = (state.theta, state.theta_dot);
+        let mut previous_is_small = false;
+        for k in 1..MAX_ORDER + 1 {
+            let per = span * reciprocal(k);
+            self.u[k] = self.u_dot[k - 1] * per;
+            self.theta[k] = self.theta_dot[k - 1] * per;
+            let (u_dot, theta_dot) = velocities(self, k, per);
+            self.u_dot[k] = u_dot;
+            self.theta_dot[k] = theta_dot;
+            self.order = k;
+            let is_small = u_dot.abs() <= truncation.u_dot && theta_dot.abs() <= truncation.theta_dot;
+            if is_small && previous_is_small && k >= MIN_ORDER {
+                return;
+            }
+            previous_is_small = is_small;
+        }
+        self.reach = reach(self, truncation).min(1.0);
+    }
+}
+
+/// The σ up to which the last two terms of a full expansion stay within `truncation`.
+#[cold]
+fn reach(arc: &Arc, truncation: Truncation) -> f64 {
+    [MAX_ORDER - 1, MAX_ORDER]
+        .into_iter()
+        .map(|k| {
+            let ratios = [truncation.u_dot / arc.u_dot[k].abs(), truncation.theta_dot / arc.theta_dot[k].abs()];
+            ratios[0].min(ratios[1]).powf(1.0 / k as f64)
+        })
+        .fold(f64::INFINITY, f64::min)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::assert_relative_eq;
+
+    /// u = cos t, θ = e^t.
+    fn cosine_and_exponential(span: f64, error: f64) -> Arc {
+        let state = State { u: 1.0, u_dot: 0.0, theta: 1.0, theta_dot: 1.0 };
+        let mut arc = Arc::default();
+        arc.expand(&state, span, Truncation { u_dot: error, theta_dot: error }, |arc, k, per| {
+            (-arc.u[k - 1] * per, arc.theta[k - 1] * per)
+        });
+        arc
+    }
+
+    /// The expansion reproduces both to the truncation asked for, and says how far it holds.
+    #[test]
+    fn an_expansion_holds_as_far_as_it_says() {
+        for (span, error) in [(0.1, 1e-4), (0.5, 1e-9), (1.0, 1e-14), (50.0, 1e-14)] {
+            let arc = cosine_and_exponential(span, error);
+            let duration = arc.duration();
+            let end = arc.end();
+            let rounding = 4e-15 * duration.exp();
+            assert!((end.u - duration.cos()).abs() <= error.max(rounding));
+            assert!((end.theta - duration.exp()).abs() <= error.max(rounding));
+            assert!(arc.reach == 1.0 || (arc.order == MAX_ORDER && duration > 3.0));
+        }
+    }
+
+    #[test]
+    fn the_order_follows_the_tolerance() {
+        let order = |error| cosine_and_exponential(1.0, error).order;
+        assert!(order(1e-4) < order(1e-8) && order(1e-8) < order(1e-15));
+    }
+
+    #[test]
+    fn a_polynomial_is_evaluated_at_its_end_and_before() {
+        assert_relative_eq!(evaluate(&[1.0, 2.0, 3.0], 2.0), 1.0 + 4.0 + 12.0);
+        assert_relative_eq!(evaluate(&[1.0, 2.0, 3.0], 1.0), 6.0);
+    }
+
+    #[test]
+    fn a_shift_moves_the_origin() {
+        let mut coefficients = [1.0, -2.0, 3.0, 0.5];
+        let expected = evaluate(&coefficients, 0.9);
+        shift(&mut coefficients, 0.4);
+        assert_relative_eq!(evaluate(&coefficients, 0.5), expected, max_relative = 1e-15);
+    }
+}

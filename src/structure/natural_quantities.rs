@@ -1,0 +1,449 @@
+//! Parameters from the numbers that engineers have at hand, each of which stands for one parameter.
+//!
+//! | given | stands for | by |
+//! |---|---|---|
+//! | `period_fc` | f_fc | f_fc = 1/period_fc |
+//! | `weight`, `weight0` | m, m0 | m = weight/g, m0 = weight0/g |
+//! | `width` | B | B = width/2 |
+//! | `alpha_cg` | H, or B where H is given | tan α_cg = γ B/H, γ = (m + m0)/m (before Eq 11) |
+//! | `p_l` | J0 | J_P = m g H/p_l² = J0 + m (H² + B²) + m0 B² (before Eq 11, after Eq 8) |
+//!
+//! What is given together with what it stands for is refused: neither of the two is right for certain.
+
+use crate::structure::parameters::{PARAMETERS, Parameters};
+use crate::structure::quantity::{OutOfRange, Quantity, with_unit};
+use crate::structure::{DERIVED, Derived};
+use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
+use std::fmt;
+
+/// A derived quantity that may be given in the place of a parameter.
+#[derive(Debug)]
+pub struct Natural {
+    /// Its name among the [`DERIVED`] quantities.
+    pub name: &'static str,
+    /// Smallest value accepted, in its unit.
+    pub min: f64,
+    /// Largest value accepted.
+    pub max: f64,
+    /// The parameter that it stands for.
+    pub stands_for: &'static str,
+    /// The same for a reader.
+    pub in_place_of: &'static str,
+}
+
+/// All of them. What follows from a value in its range is checked as a parameter once more.
+pub const NATURAL: [Natural; 6] = [
+    Natural { name: "period_fc", min: 1e-4, max: 1e3, stands_for: "f_fc", in_place_of: "f_fc" },
+    Natural { name: "weight", min: 1e-9, max: 1e12, stands_for: "m", in_place_of: "m" },
+    Natural { name: "weight0", min: 0.0, max: 1e12, stands_for: "m0", in_place_of: "m0" },
+    Natural { name: "width", min: 2e-3, max: 2e4, stands_for: "B", in_place_of: "B" },
+    Natural { name: "alpha_cg", min: 1e-3, max: 1.57, stands_for: "H", in_place_of: "H, or of B where H is given" },
+    Natural { name: "p_l", min: 1e-4, max: 1e3, stands_for: "J0", in_place_of: "J0" },
+];
+
+/// What a parameter is that may be left out, in its unit.
+pub const DEFAULTS: [(&str, f64); 3] = [("J0", 0.0), ("c_ratio", 1.0), ("g", 9.81)];
+
+/// Numbers that are given for a structure, by name: parameters and natural quantities.
+///
+/// As a file: `name = value`; an unknown name is an error.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Given(Vec<(&'static str, f64)>);
+
+/// Why numbers determine no structure.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum GivenError {
+    /// No number is called that.
+    #[error("{name:?} is unknown; these are known: {}", names().collect::<Vec<_>>().join(", "))]
+    Unknown {
+        /// The refused name.
+        name: String,
+    },
+    /// A number is given twice.
+    #[error("{0} is given twice")]
+    Twice(&'static str),
+    /// A natural quantity, or the parameter that it determines, is outside its range.
+    #[error(transparent)]
+    OutOfRange(OutOfRange),
+    /// More numbers than are free.
+    #[error(
+        "{natural} = {} is given beside {}: {natural} determines {determined}, leave one of them out",
+        with_unit(*value, unit),
+        with.join(" and ")
+    )]
+    OverDetermined {
+        /// The natural quantity.
+        natural: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// What else is given.
+        with: Vec<&'static str>,
+        /// What it would determine.
+        determined: &'static str,
+    },
+    /// Too few: all parameters that are not determined.
+    #[error("{}", in_words(.0))]
+    Missing(Vec<Missing>),
+    /// A natural quantity asks for a parameter that is impossible.
+    #[error("{natural} = {} does not fit: {cause}", with_unit(*value, unit))]
+    Impossible {
+        /// The natural quantity.
+        natural: &'static str,
+        /// Its value.
+        value: f64,
+        /// Its unit.
+        unit: &'static str,
+        /// What is wrong with the parameter that it determines.
+        cause: OutOfRange,
+    },
+    /// The masses alone turn too slowly for this frequency parameter.
+    #[error(
+        "p_l = {} does not fit: it would take a negative J0; with these masses, H and B it is {} at most",
+        with_unit(*p_l, "rad/s"),
+        with_unit(*largest, "rad/s")
+    )]
+    TooFast {
+        /// The refused value, rad/s.
+        p_l: f64,
+        /// That of J0 = 0, rad/s.
+        largest: f64,
+    },
+}
+
+/// A parameter that is not determined.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Missing {
+    /// The parameter.
+    pub name: &'static str,
+    /// What it is.
+    pub description: &'static str,
+    /// Names and units of what may be given for it.
+    pub ways: Vec<(&'static str, &'static str)>,
+}
+
+impl Missing {
+    /// What to give, with each name as it is `called` where it is given.
+    pub fn advice(&self, called: impl Fn(&str) -> String) -> String {
+        let way = |&(name, unit): &(&str, &str)| match unit {
+            "1" => called(name),
+            _ => format!("{} ({unit})", called(name)),
+        };
+        let ways = self.ways.iter().map(way).collect::<Vec<_>>().join(" or ");
+        format!("{} ({}) is missing: give {ways}", self.name, self.description)
+    }
+}
+
+fn in_words(missing: &[Missing]) -> String {
+    missing.iter().map(|missing| missing.advice(str::to_owned)).collect::<Vec<_>>().join("; ")
+}
+
+/// What may be given, by name.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    PARAMETERS.iter().map(|parameter| parameter.name).chain(NATURAL.iter().map(|natural| natural.name))
+}
+
+impl Natural {
+    /// The derived quantity that it is.
+    pub fn derived(&self) -> &'static Derived {
+        const { &DERIVED }.iter().find(|derived| derived.name == self.name).expect("it is one of them")
+    }
+}
+
+impl Given {
+    /// Adds the number called `name`.
+    pub fn give(&mut self, name: &str, value: f64) -> Result<(), GivenError> {
+        let name = names().find(|known| *known == name).ok_or_else(|| GivenError::Unknown { name: name.into() })?;
+        if self.get(name).is_some() {
+            return Err(GivenError::Twice(name));
+        }
+        self.0.push((name, value));
+        Ok(())
+    }
+
+    /// The parameters that these numbers determine on their own; what they leave open of [`DEFAULTS`] is that.
+    pub fn parameters(&self) -> Result<Parameters, GivenError> {
+        self.solve(|name| DEFAULTS.iter().find(|(default, _)| *default == name).map(|(_, value)| *value))
+    }
+
+    /// The parameters `base` with these numbers in the place of its own. α_cg moves H, unless H is given: then B.
+    pub fn over(&self, base: &Parameters) -> Result<Parameters, GivenError> {
+        self.solve(|name| PARAMETERS.iter().find(|parameter| parameter.name == name).map(|of| (of.get)(base)))
+    }
+
+    /// Whether none is given.
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Whether these numbers determine the parameter called `name`: by itself, or by what stands for it.
+    pub fn determine(&self, name: &str) -> bool {
+        let stands_in = |natural: &Natural| match natural.name {
+            "alpha_cg" => name == if self.get("H").is_some() { "B" } else { "H" },
+            _ => natural.stands_for == name,
+        };
+        let is_given = |name| self.get(name).is_some();
+        is_given(name) || NATURAL.iter().any(|natural| stands_in(natural) && is_given(natural.name))
+    }
+
+    fn get(&self, name: &str) -> Option<f64> {
+        self.0.iter().find(|(given, _)| *given == name).map(|(_, value)| *value)
+    }
+
+    /// The parameters; what is not given is left to `otherwise`.
+    fn solve(&self, otherwise: impl Fn(&str) -> Option<f64>) -> Result<Parameters, GivenError> {
+        self.check()?;
+        let is_missing = |name: &&Quantity<Parameters>| !self.determine(name.name) && otherwise(name.name).is_none();
+        let missing: Vec<_> = PARAMETERS.iter().filter(is_missing).map(missing).collect();
+        if !missing.is_empty() {
+            return Err(GivenError::Missing(missing));
+        }
+        let own = |name| self.get(name).or_else(|| otherwise(name)).expect("nothing is missing");
+        let or = |name: &'static str, natural: &'static str, from: &dyn Fn(f64) -> f64| match self.get(natural) {
+            Some(value) => parameter_for(natural, value, name, from(value)),
+            None => Ok(own(name)),
+        };
+        let g = own("g");
+        let m = or("m", "weight", &|weight| 1e3 * weight / g)?;
+        let m0 = or("m0", "weight0", &|weight0| 1e3 * weight0 / g)?;
+        let f_fc = or("f_fc", "period_fc", &|period_fc| period_fc.recip())?;
+        let B = || or("B", "width", &|width| width / 2.0);
+        let gamma = (m + m0) / m;
+        let (H, B) = match (self.get("alpha_cg"), self.get("H")) {
+            (Some(alpha_cg), Some(H)) => (H, parameter_for("alpha_cg", alpha_cg, "B", H * alpha_cg.tan() / gamma)?),
+            (Some(alpha_cg), None) => {
+                let B = B()?;
+                (parameter_for("alpha_cg", alpha_cg, "H", gamma * B / alpha_cg.tan())?, B)
+            }
+            (None, _) => (own("H"), B()?),
+        };
+        let J0 = match self.get("p_l") {
+            Some(p_l) => inertia(p_l, m * g * H, m * H * H + (m + m0) * B * B)?,
+            None => own("J0"),
+        };
+        Ok(Parameters { m, m0, H, B, J0, f_fc, zeta_fc: own("zeta_fc"), c_ratio: own("c_ratio"), r: own("r"), g })
+    }
+
+    /// Whether every natural quantity is in its range, and nothing that it determines is given as well.
+    fn check(&self) -> Result<(), GivenError> {
+        for natural in &NATURAL {
+            let Some(value) = self.get(natural.name) else { continue };
+            let &Natural { name, min, max, stands_for, .. } = natural;
+            let &Derived { unit, description, .. } = natural.derived();
+            if !(min..=max).contains(&value) {
+                return Err(GivenError::OutOfRange(OutOfRange { name, value, unit, min, max, description }));
+            }
+            let given = |name: &&'static str| self.get(name).is_some();
+            let with: Vec<_> = match name {
+                "alpha_cg" => {
+                    let width = ["B", "width"].into_iter().find(given);
+                    Some("H").filter(given).zip(width).map_or(Vec::new(), |(H, width)| vec![H, width])
+                }
+                _ => Some(stands_for).filter(given).into_iter().collect(),
+            };
+            let determined = if name == "alpha_cg" { "the ratio of the two" } else { stands_for };
+            if !with.is_empty() {
+                return Err(GivenError::OverDetermined { natural: name, value, unit, with, determined });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// `value` as the parameter called `name`, which `natural` determines.
+fn parameter_for(natural: &'static str, given: f64, name: &'static str, value: f64) -> Result<f64, GivenError> {
+    let parameter = PARAMETERS.iter().find(|parameter| parameter.name == name).expect("it is one of them");
+    let impossible = |cause| {
+        let natural = NATURAL.iter().find(|known| known.name == natural).expect("it is one of them");
+        GivenError::Impossible { natural: natural.name, value: given, unit: natural.derived().unit, cause }
+    };
+    parameter.check(value).map_err(impossible)?;
+    Ok(value)
+}
+
+/// J0 = J_P − J_0 of the frequency parameter `p_l`, kg·m²: J_P = m g H/p_l², and J_0 that of a foundation without
+/// inertia of its own. What is negative by rounding alone is 0.
+fn inertia(p_l: f64, m_g_H: f64, without_J0: f64) -> Result<f64, GivenError> {
+    const ROUNDING: f64 = 1e-14;
+    let J_P = m_g_H / (p_l * p_l);
+    let J0 = J_P - without_J0;
+    if J0.abs() <= ROUNDING * J_P {
+        Ok(0.0)
+    } else if J0 < 0.0 {
+        Err(GivenError::TooFast { p_l, largest: (m_g_H / without_J0).sqrt() })
+    } else {
+        parameter_for("p_l", p_l, "J0", J0)
+    }
+}
+
+fn missing(&Quantity { name, unit, description, .. }: &Quantity<Parameters>) -> Missing {
+    let stand_ins = NATURAL.iter().filter(|natural| natural.stands_for == name).map(Natural::derived);
+    let ways = [(name, unit)].into_iter().chain(stand_ins.map(|derived| (derived.name, derived.unit)));
+    Missing { name, description, ways: ways.collect() }
+}
+
+impl<'de> Deserialize<'de> for Given {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Given, D::Error> {
+        struct OfNames;
+
+        /// A known name; an unknown one is refused where it stands.
+        struct Name(&'static str);
+
+        impl<'de> Deserialize<'de> for Name {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Name, D::Error> {
+                let name = String::deserialize(deserializer)?;
+                let known = names().find(|known| *known == name);
+                known.map(Name).ok_or_else(|| D::Error::custom(GivenError::Unknown { name }))
+            }
+        }
+
+        impl<'de> Visitor<'de> for OfNames {
+            type Value = Given;
+
+            fn expecting(&self, out: &mut fmt::Formatter) -> fmt::Result {
+                out.write_str("parameters, each as name = value")
+            }
+
+            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Given, A::Error> {
+                let mut given = Given::default();
+                while let Some(Name(name)) = map.next_key()? {
+                    given.give(name, map.next_value()?).map_err(A::Error::custom)?;
+                }
+                Ok(given)
+            }
+        }
+
+        deserializer.deserialize_map(OfNames)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Structure;
+    use proptest::prelude::*;
+
+    fn given(numbers: &[(&str, f64)]) -> Given {
+        let mut given = Given::default();
+        numbers.iter().for_each(|(name, value)| given.give(name, *value).unwrap());
+        given
+    }
+
+    fn derived(parameters: Parameters, name: &str) -> f64 {
+        let derived = DERIVED.iter().find(|derived| derived.name == name).unwrap();
+        (derived.value)(&Structure::new(parameters).unwrap())
+    }
+
+    /// A rigid block on end, 6 m by 1.5 m, as one mass: its slenderness and frequency parameter in closed form.
+    #[test]
+    fn a_block_follows_from_its_weight_slenderness_and_frequency_parameter() {
+        let (half_height, half_width) = (3.0_f64, 0.75_f64);
+        let (alpha, R) = ((half_width / half_height).atan(), half_height.hypot(half_width));
+        let p_l = (3.0 * 9.81 / (4.0 * R) * alpha.cos()).sqrt(); // Housner's p, and m g H = m g R cos(alpha)
+        let block = given(&[
+            ("weight", 98.1),
+            ("m0", 0.0),
+            ("width", 1.5),
+            ("alpha_cg", alpha),
+            ("p_l", p_l),
+            ("period_fc", 0.25),
+            ("zeta_fc", 0.0),
+            ("r", 0.9),
+        ]);
+        let found = block.parameters().unwrap();
+        // A mass at R needs J0 = m R²/3 to have the block's 4/3 m R².
+        for (name, found, expected) in [
+            ("m", found.m, 1e4),
+            ("H", found.H, half_height),
+            ("B", found.B, half_width),
+            ("J0", found.J0, 1e4 * R * R / 3.0),
+            ("f_fc", found.f_fc, 4.0),
+        ] {
+            assert!((found - expected).abs() <= 1e-13 * expected, "{name}: {found}, {expected}");
+        }
+        assert_eq!((found.c_ratio, found.g), (1.0, 9.81));
+    }
+
+    #[test]
+    fn over_a_base_the_slenderness_moves_the_height_unless_that_is_given() {
+        let base = &Parameters::MCMANUS;
+        let tan = 0.2_f64.tan();
+        let gamma = (base.m + base.m0) / base.m;
+        let moved = given(&[("alpha_cg", 0.2)]).over(base).unwrap();
+        assert_eq!(moved, Parameters { H: gamma * base.B / tan, ..*base });
+        let narrowed = given(&[("alpha_cg", 0.2), ("H", 2.0)]).over(base).unwrap();
+        assert_eq!(narrowed, Parameters { H: 2.0, B: 2.0 * tan / gamma, ..*base });
+        let widened = given(&[("alpha_cg", 0.2), ("width", 0.8)]).over(base).unwrap();
+        assert_eq!(widened, Parameters { H: gamma * 0.4 / tan, B: 0.4, ..*base });
+        assert_eq!(given(&[("r", 0.9), ("f_fc", 8.0)]).over(base).unwrap(), Parameters { r: 0.9, f_fc: 8.0, ..*base });
+        assert_eq!(given(&[]).over(base).unwrap(), *base);
+    }
+
+    #[test]
+    fn conflicts_and_gaps_are_named() {
+        let over = |numbers: &[(&str, f64)]| given(numbers).over(&Parameters::EVISON).unwrap_err().to_string();
+        assert_eq!(
+            over(&[("weight", 2.0), ("m", 200.0)]),
+            "weight = 2 kN is given beside m: weight determines m, leave one of them out"
+        );
+        assert_eq!(
+            over(&[("B", 0.3), ("alpha_cg", 0.3), ("H", 1.0)]),
+            "alpha_cg = 0.3 rad is given beside H and B: alpha_cg determines the ratio of the two, leave one of them out"
+        );
+        assert!(over(&[("width", 0.6), ("alpha_cg", 0.3), ("H", 1.0)]).contains("rad is given beside H and width"));
+        assert!(over(&[("p_l", 2.0), ("J0", 1.0)]).starts_with("p_l = 2 rad/s is given beside J0: p_l determines J0"));
+        assert!(over(&[("period_fc", 0.1), ("f_fc", 9.0)]).starts_with("period_fc = 0.1 s is given beside f_fc"));
+        assert!(over(&[("width", 1.0), ("B", 0.5)]).starts_with("width = 1 m is given beside B"));
+        assert!(over(&[("weight0", 1.0), ("m0", 0.5)]).starts_with("weight0 = 1 kN is given beside m0"));
+        assert!(
+            over(&[("alpha_cg", 4.0)])
+                .starts_with("alpha_cg = 4 rad is out of range: it must lie between 0.001 and 1.57")
+        );
+        assert!(over(&[("p_l", -2.0)]).starts_with("p_l = -2 rad/s is out of range"));
+        assert!(over(&[("alpha_cg", 1e-3), ("width", 2e4)]).starts_with("alpha_cg = 0.001 rad does not fit: H = 1"));
+        let largest = derived(Parameters::EVISON, "p_l"); // whose J0 is 0
+        assert_eq!(
+            over(&[("p_l", 3.0)]),
+            format!(
+                "p_l = 3 rad/s does not fit: it would take a negative J0; with these masses, H and B it is {largest} \
+                 rad/s at most"
+            )
+        );
+        let alone = |numbers: &[(&str, f64)]| given(numbers).parameters().unwrap_err().to_string();
+        let all = alone(&[]);
+        let all: Vec<_> = all.split("; ").map(|one| one.split(' ').next().unwrap()).collect();
+        assert_eq!(all, ["m", "m0", "H", "B", "f_fc", "zeta_fc", "r"]);
+        assert_eq!(
+            alone(&[("m0", 1.0), ("H", 1.0), ("alpha_cg", 0.2), ("f_fc", 1.0), ("r", 1.0)]),
+            "m (top mass) is missing: give m (kg) or weight (kN); zeta_fc (damping ratio in full contact) is missing: give \
+             zeta_fc"
+        );
+        let most = [("m", 1.0), ("m0", 1.0), ("f_fc", 1.0), ("zeta_fc", 0.0), ("r", 1.0)];
+        assert!(
+            alone(&most)
+                .starts_with("H (height of the top mass above the base) is missing: give H (m) or alpha_cg (rad); B ")
+        );
+        assert_eq!(Given::default().give("mass", 1.0).unwrap_err(), GivenError::Unknown { name: "mass".into() });
+        assert_eq!(given(&[("m", 1.0)]).give("m", 2.0), Err(GivenError::Twice("m")));
+    }
+
+    proptest! {
+        /// What a structure's natural quantities are, it is again when they are given: the tangent of a slenderness near a
+        /// right angle, of hardly any mass on top of a wide base, has lost its digits.
+        #[test]
+        fn natural_quantities_give_the_structure_back(
+            m in 1.0..1e6f64, mass_ratio in 0.0..10.0f64, H in 1.0..30.0f64, B in 0.2..10.0f64, J0 in 0.0..1e7f64, f_fc in 0.1..30.0f64,
+        ) {
+            let original = Parameters { m, m0: mass_ratio * m, H, B, J0, f_fc, ..Parameters::MCMANUS };
+            let every: Vec<_> = NATURAL.iter().map(|natural| (natural.name, derived(original, natural.name))).collect();
+            let found = given(&every).over(&Parameters::MCMANUS).unwrap();
+            let J_P = derived(original, "J_P");
+            for parameter in &PARAMETERS {
+                let (found, expected) = ((parameter.get)(&found), (parameter.get)(&original));
+                let size = if parameter.name == "J0" { J_P } else { expected };
+                prop_assert!((found - expected).abs() <= 1e-13 * size, "{}: {found}, {expected}", parameter.name);
+            }
+        }
+    }
+}

@@ -1,0 +1,130 @@
+//! The numbers that a user gives: one structure's parameters, their ranges, and the paper's two specimens.
+
+use crate::structure::quantity::{OutOfRange, Quantity, quantity};
+use serde::{Deserialize, Serialize};
+
+/// Parameters of a flexible rocking structure (Fig 2 of the paper). SI units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Parameters {
+    /// Top mass, kg.
+    pub m: f64,
+    /// Foundation mass, kg.
+    pub m0: f64,
+    /// Height of the top mass above the base, m.
+    pub H: f64,
+    /// Half-width of the base, m.
+    pub B: f64,
+    /// Rotational inertia of the foundation about the middle of the base, kg·m².
+    pub J0: f64,
+    /// Natural frequency in full contact (fixed base), Hz.
+    pub f_fc: f64,
+    /// Damping ratio in full contact.
+    pub zeta_fc: f64,
+    /// Viscous damping while rocking over viscous damping in full contact, c_u/c_fc.
+    pub c_ratio: f64,
+    /// Coefficient of restitution on the angular velocity at impact.
+    pub r: f64,
+    /// Acceleration of gravity, m/s².
+    pub g: f64,
+}
+
+/// Every parameter with its unit and range, in the order of the file and of the FMU.
+pub const PARAMETERS: [Quantity<Parameters>; 10] = [
+    quantity!(m ["kg"] 1e-6, 1e12, "top mass"),
+    quantity!(m0 ["kg"] 0.0, 1e12, "foundation mass"),
+    quantity!(H ["m"] 1e-3, 1e4, "height of the top mass above the base"),
+    quantity!(B ["m"] 1e-3, 1e4, "half-width of the base"),
+    quantity!(J0 ["kg.m2"] 0.0, 1e20, "rotational inertia of the foundation about the middle of the base"),
+    quantity!(f_fc ["Hz"] 1e-3, 1e4, "natural frequency in full contact (fixed base)"),
+    quantity!(zeta_fc ["1"] 0.0, 10.0, "damping ratio in full contact"),
+    quantity!(c_ratio ["1"] 0.0, 100.0, "viscous damping while rocking over viscous damping in full contact, c_u/c_fc"),
+    quantity!(r ["1"] 1e-3, 1.0, "coefficient of restitution on the angular velocity at impact"),
+    quantity!(g ["m/s2"] 1e-3, 1e3, "acceleration of gravity"),
+];
+
+/// The slenderest structure accepted: H/B beyond it leaves 1 − χ (after Eq 13) without significant digits.
+pub const MAX_SLENDERNESS: f64 = 1e3;
+
+/// Why a set of parameters is refused.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ParameterError {
+    /// One parameter is outside its own range.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+    /// Height and half-width do not fit together.
+    #[error("H/B = {0} is out of range: H must not exceed {MAX_SLENDERNESS} B; lower H or raise B")]
+    TooSlender(f64),
+}
+
+impl Parameters {
+    /// Evison's shear wall specimen (Table 1).
+    pub const EVISON: Parameters = Parameters {
+        m: 125.8,
+        m0: 44.02,
+        H: 1.05,
+        B: 0.285,
+        J0: 0.0,
+        f_fc: 11.0,
+        zeta_fc: 0.015,
+        c_ratio: 1.0,
+        r: 0.96,
+        g: 9.81,
+    };
+
+    /// McManus's bridge pier specimen (Table 2).
+    pub const MCMANUS: Parameters = Parameters {
+        m: 130.1,
+        m0: 65.4,
+        H: 1.84,
+        B: 0.285,
+        J0: 10.7,
+        f_fc: 5.0,
+        zeta_fc: 0.02,
+        c_ratio: 1.0,
+        r: 0.99,
+        g: 9.81,
+    };
+
+    /// Checks every parameter against [`PARAMETERS`] and the slenderness against [`MAX_SLENDERNESS`].
+    pub fn check(&self) -> Result<(), ParameterError> {
+        for quantity in &PARAMETERS {
+            quantity.check((quantity.get)(self))?;
+        }
+        let slenderness = self.H / self.B;
+        if slenderness > MAX_SLENDERNESS {
+            return Err(ParameterError::TooSlender(slenderness));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_refusal_names_the_parameter_its_value_and_the_limit() {
+        let refused = |change: fn(&mut Parameters)| {
+            let mut parameters = Parameters::EVISON;
+            change(&mut parameters);
+            parameters.check().unwrap_err().to_string()
+        };
+        assert!(refused(|p| p.r = 0.0).starts_with("r = 0 is out of range: it must lie between 0.001 and 1 ("));
+        assert!(refused(|p| p.B = -0.3).starts_with("B = -0.3 m is out of range: it must lie between 0.001"));
+        assert!(refused(|p| p.m = f64::NAN).starts_with("m = NaN kg"));
+        assert!(refused(|p| p.H = f64::INFINITY).starts_with("H = inf m"));
+        assert!(refused(|p| p.H = 300.0).starts_with("H/B = 1052.6"));
+    }
+
+    #[test]
+    fn the_table_reads_and_writes_the_field_it_names() {
+        for quantity in &PARAMETERS {
+            let mut parameters = Parameters::MCMANUS;
+            (quantity.set)(&mut parameters, 0.125);
+            assert_eq!((quantity.get)(&parameters), 0.125);
+            let changed: Vec<_> =
+                PARAMETERS.iter().filter(|q| (q.get)(&parameters) != (q.get)(&Parameters::MCMANUS)).collect();
+            assert_eq!(changed.len(), 1, "{}", quantity.name);
+        }
+    }
+}

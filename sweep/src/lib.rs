@@ -1,0 +1,19 @@
+//! Many runs: plans of cases, maps over pulses, what became of each run, how often limits are exceeded.
+//!
+//! | module | what it computes |
+//! |---|---|
+//! | [`plan`] | the cases of a sweep: structures × records × scales |
+//! | [`outcome`] | what is kept of a run |
+//! | [`exceedances`] | how often limits are exceeded over an intensity |
+//! | [`fragility`] | the curve through these, and how sure it is |
+//! | [`pulse`] | the field's standard pulses as ground motions |
+//! | [`map`] | overturning spectra: the fate under a pulse over its amplitude and frequency |
+
+#![allow(non_snake_case)] // H, B, J0: the paper's own letters
+
+pub mod exceedances;
+pub mod fragility;
+pub mod map;
+pub mod outcome;
+pub mod plan;
+pub mod pulse;

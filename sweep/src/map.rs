@@ -1,0 +1,398 @@
+//! Overturning spectra: what becomes of a structure under pulses of every frequency and amplitude of a grid.
+//!
+//! A map is no list of runs: a point's pulse is made of the point's two numbers when it is run, and what it comes to
+//! depends on nothing else. Points have places in 1/256 of the grid's steps. A refinement halves the steps where it matters:
+//! in squares between neighbouring points that differ in [`Class`], and from there along the boundary wherever the finer
+//! points show that it goes.
+
+use crate::pulse::{Pulse, PulseError, units_of};
+use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::mechanics::uplift::least_push;
+use rocking::run::record::Record;
+use rocking::run::{Ending, Run, peaks::Peaks};
+use rocking::{Detail, Structure, Transition, TransitionKind};
+use serde::{Deserialize, Serialize};
+use std::collections::{BTreeSet, HashMap};
+
+/// Parts of the grid's steps that a place can have.
+const PARTS: u32 = 1 << MAX_REFINEMENTS;
+
+/// How often a grid's steps can be halved.
+pub const MAX_REFINEMENTS: u32 = 8;
+
+/// Most points of a grid.
+pub const MAX_POINTS: usize = 10_000_000;
+
+/// Relative change of the amplitude by which the condition is found.
+pub const PERTURBATION: f64 = 1e-12;
+
+/// Values that a pulse's frequency, or its amplitude, goes through.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    values: Vec<f64>,
+    is_log: bool,
+}
+
+/// One structure under one shape of pulse, at every point of which there is such a pulse.
+#[derive(Clone, Debug)]
+pub struct Map {
+    structure: Structure,
+    /// But for its frequency and its amplitude.
+    pulse: Pulse,
+    frequency: Axis,
+    amplitude: Axis,
+    is_dimensionless: bool,
+    detail: Detail,
+    tolerance: f64,
+    finds_condition: bool,
+}
+
+/// Where a point is: counted in 1/256 of the steps of the grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub struct Place {
+    /// Along the amplitudes.
+    pub amplitude: u32,
+    /// Along the frequencies.
+    pub frequency: u32,
+}
+
+/// What becomes of a structure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Fate {
+    /// Its base stays down.
+    #[serde(rename = "no uplift")]
+    NoUplift,
+    /// It rocks, and stands in the end.
+    #[serde(rename = "stands")]
+    Stands,
+    /// |θ| reaches π/2.
+    #[serde(rename = "overturns")]
+    Overturns,
+    /// It still rocks [`LONGEST_REST`](rocking::run::LONGEST_REST) after the pulse: not decided.
+    #[serde(rename = "still rocking")]
+    StillRocking,
+    /// The motion cannot be continued: not decided.
+    #[serde(rename = "failed")]
+    Failed,
+}
+
+/// What tells neighbours apart: the fate, and of what overturns how often its base came down before.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Class {
+    /// [`Fate::NoUplift`].
+    NoUplift,
+    /// [`Fate::Stands`].
+    Stands,
+    /// Overturns without impact.
+    OverturnsAtOnce,
+    /// Overturns after one impact.
+    OverturnsAfterOne,
+    /// Overturns after more.
+    OverturnsAfterMore,
+    /// [`Fate::StillRocking`].
+    StillRocking,
+    /// [`Fate::Failed`].
+    Failed,
+}
+
+/// A point that has been run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Point {
+    /// What became of the structure.
+    pub fate: Fate,
+    /// How often its base came down: impacts and landings.
+    pub impacts: u64,
+    /// The largest |θ|/α_cg, exact.
+    pub theta: f64,
+    /// Transitions of every kind.
+    pub transitions: u64,
+    /// When the run ended, s after the start of the pulse.
+    pub end: f64,
+    /// Relative change of `theta`, and of what overturns of `end`, over that of the amplitude, 1e-12; infinite where the
+    /// [`Class`] changes.
+    pub condition: Option<f64>,
+    /// Why it failed; empty if it did not.
+    pub reason: String,
+}
+
+/// Why there is no map.
+#[derive(Debug, thiserror::Error)]
+pub enum MapError {
+    /// The values of an axis do not rise, or are too few.
+    #[error("{0} needs two or more finite values greater than 0, each larger than the one before")]
+    Axis(&'static str),
+    /// Some pulse is impossible.
+    #[error(transparent)]
+    Pulse(#[from] PulseError),
+    /// More than [`MAX_POINTS`].
+    #[error("{frequencies} frequencies x {amplitudes} amplitudes: more than {MAX_POINTS} points")]
+    TooMany {
+        /// Frequencies.
+        frequencies: usize,
+        /// Amplitudes.
+        amplitudes: usize,
+    },
+    /// It lies between 0 and 1.
+    #[error("tolerance = {0} is out of range: a number between 0 and 1 is needed")]
+    Tolerance(f64),
+}
+
+impl Axis {
+    /// The axis with these values; between two of them, where a refinement looks, they are spaced evenly, or evenly in
+    /// their logarithms.
+    pub fn new(values: Vec<f64>, is_log: bool) -> Axis {
+        Axis { values, is_log }
+    }
+
+    /// The values of the grid.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// Whether they are spaced evenly in their logarithms.
+    pub fn is_log(&self) -> bool {
+        self.is_log
+    }
+
+    /// The value at `steps` of the grid from its first, between the first and the last.
+    pub fn at(&self, steps: f64) -> f64 {
+        let steps = steps.clamp(0.0, (self.values.len() - 1) as f64);
+        let (from, part) = (self.values[steps as usize], steps.fract());
+        if part == 0.0 {
+            return from;
+        }
+        let to = self.values[steps as usize + 1];
+        if self.is_log { from * (part * (to / from).ln()).exp() } else { from + part * (to - from) }
+    }
+
+    fn check(&self, name: &'static str) -> Result<(), MapError> {
+        let rises = self.values.windows(2).all(|pair| pair[0] < pair[1]);
+        let is_finite = self.values.iter().all(|value| *value > 0.0 && value.is_finite());
+        if self.values.len() < 2 || !rises || !is_finite { Err(MapError::Axis(name)) } else { Ok(()) }
+    }
+}
+
+impl Place {
+    /// Point (`frequency`, `amplitude`) of the grid, counted from 0.
+    pub fn of_grid(frequency: usize, amplitude: usize) -> Place {
+        Place { amplitude: amplitude as u32 * PARTS, frequency: frequency as u32 * PARTS }
+    }
+
+    /// Steps of the grid from its first point, along frequencies and amplitudes.
+    pub fn steps(self) -> [f64; 2] {
+        [self.frequency, self.amplitude].map(|place| f64::from(place) / f64::from(PARTS))
+    }
+}
+
+impl Point {
+    /// What tells it from its neighbours.
+    pub fn class(&self) -> Class {
+        match (self.fate, self.impacts) {
+            (Fate::NoUplift, _) => Class::NoUplift,
+            (Fate::Stands, _) => Class::Stands,
+            (Fate::Overturns, 0) => Class::OverturnsAtOnce,
+            (Fate::Overturns, 1) => Class::OverturnsAfterOne,
+            (Fate::Overturns, _) => Class::OverturnsAfterMore,
+            (Fate::StillRocking, _) => Class::StillRocking,
+            (Fate::Failed, _) => Class::Failed,
+        }
+    }
+
+    fn of(run: &Run) -> Point {
+        let mut peaks = Peaks::since(run.ground.start(), &run.structure);
+        let mut impacts = 0;
+        let mut count = |transition: &Transition| {
+            let comes_down = matches!(
+                transition.kind,
+                TransitionKind::Impact(_) | TransitionKind::Landing | TransitionKind::Settling
+            );
+            impacts += u64::from(comes_down);
+        };
+        let finish = run.follow(&mut (&mut peaks.watch_theta(), &mut count));
+        let theta = peaks.theta().magnitude / run.structure.tan_alpha_cg.atan();
+        let (fate, transitions, end, reason) = match finish {
+            Ok(finish) => {
+                let fate = match finish.ending {
+                    Ending::Overturned => Fate::Overturns,
+                    Ending::StillRocking => Fate::StillRocking,
+                    Ending::AtRest | Ending::AtTime if finish.motion.transitions == 0 => Fate::NoUplift,
+                    Ending::AtRest | Ending::AtTime => Fate::Stands,
+                };
+                (fate, finish.motion.transitions, finish.motion.time, String::new())
+            }
+            Err(error) => (Fate::Failed, 0, error.time().unwrap_or(run.ground.start()), error.to_string()),
+        };
+        Point { fate, impacts, theta, transitions, end, condition: None, reason }
+    }
+
+    /// How much it differs from `other`, whose amplitude is larger by [`PERTURBATION`].
+    fn condition(&self, other: &Point) -> f64 {
+        let change = |of: fn(&Point) -> f64| (of(other) - of(self)).abs() / of(self) / PERTURBATION;
+        match self.fate {
+            _ if self.class() != other.class() => f64::INFINITY,
+            Fate::NoUplift | Fate::Failed => 0.0,
+            Fate::Overturns => change(|point| point.end),
+            Fate::Stands | Fate::StillRocking => change(|point| point.theta),
+        }
+    }
+}
+
+impl Map {
+    /// Of `structure` under `pulse` at each of the frequencies (Hz) and amplitudes (m/s²), or, where it `is_dimensionless`,
+    /// at these ω/p_l and a_p/(g tan α_cg); at the level of detail `auto` to the default tolerance.
+    pub fn new(
+        structure: Structure,
+        pulse: Pulse,
+        [frequency, amplitude]: [Axis; 2],
+        is_dimensionless: bool,
+    ) -> Result<Map, MapError> {
+        frequency.check("frequency")?;
+        amplitude.check("amplitude")?;
+        let [frequencies, amplitudes] = [&frequency, &amplitude].map(|axis| axis.values.len());
+        if frequencies.saturating_mul(amplitudes) > MAX_POINTS {
+            return Err(MapError::TooMany { frequencies, amplitudes });
+        }
+        let (detail, tolerance) = (Detail::default(), DEFAULT_TOLERANCE);
+        let finds_condition = false;
+        let map = Map { structure, pulse, frequency, amplitude, is_dimensionless, detail, tolerance, finds_condition };
+        for place in [Place::of_grid(0, 0), Place::of_grid(frequencies - 1, amplitudes - 1)] {
+            map.pulse(place).check()?;
+        }
+        Ok(map)
+    }
+
+    /// The same to the relative `tolerance`, at the level `detail`.
+    pub fn computed_by(self, detail: Detail, tolerance: f64) -> Result<Map, MapError> {
+        if tolerance > 0.0 && tolerance < 1.0 {
+            Ok(Map { detail, tolerance, ..self })
+        } else {
+            Err(MapError::Tolerance(tolerance))
+        }
+    }
+
+    /// The same with each point's condition, by a second run, if it `finds_condition`.
+    pub fn with_condition(self, finds_condition: bool) -> Map {
+        Map { finds_condition, ..self }
+    }
+
+    /// The structure.
+    pub fn structure(&self) -> &Structure {
+        &self.structure
+    }
+
+    /// What the pulses are called.
+    pub fn pulse_name(&self) -> String {
+        self.pulse.name()
+    }
+
+    /// Frequencies: in Hz, or, where the map is dimensionless, ω/p_l.
+    pub fn frequency(&self) -> &Axis {
+        &self.frequency
+    }
+
+    /// Amplitudes: in m/s², or, where the map is dimensionless, a_p/(g tan α_cg).
+    pub fn amplitude(&self) -> &Axis {
+        &self.amplitude
+    }
+
+    /// Whether the axes are in units of the structure.
+    pub fn is_dimensionless(&self) -> bool {
+        self.is_dimensionless
+    }
+
+    /// Level of detail.
+    pub fn detail(&self) -> Detail {
+        self.detail
+    }
+
+    /// Relative tolerance of the results.
+    pub fn tolerance(&self) -> f64 {
+        self.tolerance
+    }
+
+    /// Whether each point's condition is found.
+    pub fn finds_condition(&self) -> bool {
+        self.finds_condition
+    }
+
+    /// The pulse at `place`.
+    pub fn pulse(&self, place: Place) -> Pulse {
+        let [frequency, amplitude] = place.steps();
+        let (frequency, amplitude) = (self.frequency.at(frequency), self.amplitude.at(amplitude));
+        let (of_amplitude, of_frequency) = if self.is_dimensionless { units_of(&self.structure) } else { (1.0, 1.0) };
+        Pulse { frequency: frequency * of_frequency, amplitude: amplitude * of_amplitude, ..self.pulse }
+    }
+
+    /// The pulse at `place` in straight lines. Their corners stand a little outside the curve; where the curve does not push
+    /// hard enough to lift a rigid structure off, nor do they.
+    fn ground(&self, place: Place) -> Record {
+        let pulse = self.pulse(place);
+        let ground = pulse.record().expect("the map's corners have been checked");
+        let (least, pga) = (least_push(&self.structure), ground.pga());
+        if self.detail == Detail::Rigid && pulse.amplitude < least && least < pga {
+            return ground.multiplied(pulse.amplitude / pga);
+        }
+        ground
+    }
+
+    /// Runs the structure under the pulse at `place`.
+    pub fn run(&self, place: Place) -> Point {
+        let ground = self.ground(place);
+        let respond = |ground: &Record| {
+            Point::of(&Run { detail: self.detail, tolerance: self.tolerance, ..Run::new(self.structure, ground) })
+        };
+        let mut point = respond(&ground);
+        if self.finds_condition {
+            let other = respond(&ground.multiplied(1.0 + PERTURBATION));
+            point.condition = Some(point.condition(&other));
+        }
+        point
+    }
+
+    /// The points of the grid, amplitudes changing last.
+    pub fn grid(&self) -> impl Iterator<Item = Place> {
+        let frequencies = self.frequency.values.len();
+        (0..self.amplitude.values.len())
+            .flat_map(move |amplitude| (0..frequencies).map(move |frequency| Place::of_grid(frequency, amplitude)))
+    }
+
+    /// Points that refining `known` for the `level`th time, 1 to [`MAX_REFINEMENTS`], still lacks: of the squares of half as
+    /// many levels' steps those that hold different classes get their middle and the middles of their edges. With these
+    /// known there may be more; when there are none the refinement is complete.
+    pub fn refinement(&self, level: u32, known: &HashMap<Place, Point>) -> Vec<Place> {
+        let half = PARTS >> level;
+        let at = |of: Place, [frequency, amplitude]: [u32; 2]| Place {
+            amplitude: of.amplitude + amplitude * half,
+            frequency: of.frequency + frequency * half,
+        };
+        let mut lacking = BTreeSet::new();
+        for &corner in known.keys() {
+            let is_corner = corner.frequency.is_multiple_of(2 * half) && corner.amplitude.is_multiple_of(2 * half);
+            let corners = [[0, 0], [2, 0], [0, 2], [2, 2]].map(|part| at(corner, part));
+            if !is_corner || !corners.iter().all(|corner| known.contains_key(corner)) {
+                continue;
+            }
+            let between = [[1, 0], [0, 1], [1, 1], [2, 1], [1, 2]].map(|part| at(corner, part));
+            let class = known[&corner].class();
+            if corners.iter().chain(&between).filter_map(|place| known.get(place)).any(|of| of.class() != class) {
+                lacking.extend(between.into_iter().filter(|place| !known.contains_key(place)));
+            }
+        }
+        lacking.into_iter().collect()
+    }
+}
+
+/// The point of `known` that stands for `place`, one of a map refined `levels` times: itself, or a corner of the square
+/// that needed no refinement.
+pub fn nearest(known: &HashMap<Place, Point>, place: Place, levels: u32) -> Option<&Point> {
+    let corner = |level: u32| {
+        let step = PARTS >> level;
+        Place { amplitude: place.amplitude / step * step, frequency: place.frequency / step * step }
+    };
+    (0..=levels).rev().find_map(|level| known.get(&corner(level)))
+}
+
+/// The places of a map refined `levels` times from one to the next.
+pub fn finest_step(levels: u32) -> u32 {
+    PARTS >> levels
+}

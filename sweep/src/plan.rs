@@ -1,0 +1,682 @@
+//! Many runs: every structure of some populations under every ground motion at every scale factor.
+
+use crate::outcome::Outcome;
+use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::estimates::intensity::{IntensityMeasure, peak_velocity};
+use rocking::estimates::response_spectrum::spectral_acceleration;
+use rocking::mechanics::state::InitialStateError;
+use rocking::run::record::Record;
+use rocking::run::{End, Run};
+use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS, ParameterError};
+use rocking::structure::quantity::with_unit;
+use rocking::{Detail, Engine, Parameters, Quantity, State, Structure, Watch};
+use serde::Serialize;
+use std::collections::{HashMap, HashSet};
+use std::sync::OnceLock;
+
+/// More runs than this are refused: thousands of runs a second take hours for them.
+pub const MAX_RUNS: usize = 10_000_000;
+
+/// H/B, which varies H at constant B; m, m0, J0 and f_fc stay as they are.
+const SLENDERNESS: Quantity<Parameters> = Quantity {
+    name: "slenderness",
+    unit: "1",
+    description: "height of the top mass over half-width of the base, H/B",
+    min: 0.0,
+    max: MAX_SLENDERNESS,
+    get: |parameters| parameters.H / parameters.B,
+    set: |parameters, slenderness| parameters.H = slenderness * parameters.B,
+};
+
+/// What can vary; slenderness last, so that it applies to the B of the same structure.
+pub const AXES: [&Quantity<Parameters>; PARAMETERS.len() + 1] = {
+    const OWN: &[Quantity<Parameters>; PARAMETERS.len()] = &PARAMETERS;
+    let mut axes = [&SLENDERNESS; OWN.len() + 1];
+    let mut i = 0;
+    while i < OWN.len() {
+        axes[i] = &OWN[i];
+        i += 1;
+    }
+    axes
+};
+
+/// Structures that count together: one in which some numbers vary, in every combination.
+#[derive(Clone, Debug)]
+pub struct Population {
+    name: String,
+    base: Parameters,
+    /// Positions in [`AXES`], increasing, and the values there.
+    varying: Vec<(usize, Vec<f64>)>,
+}
+
+/// A ground motion record under a name.
+#[derive(Clone, Debug)]
+pub struct NamedRecord {
+    name: String,
+    record: Record,
+    /// Its own factor on the acceleration.
+    scale: f64,
+    /// Peak ground acceleration of the record, m/s².
+    pga: f64,
+    /// Peak ground velocity of the record, m/s.
+    pgv: f64,
+}
+
+/// What all runs of a plan have in common.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Conditions {
+    /// State at the first sample.
+    pub initial: State,
+    /// Level of detail.
+    pub detail: Detail,
+    /// Relative tolerance of the results.
+    pub tolerance: f64,
+    /// Time from the first sample to the end of a run, s; without it a run goes on until nothing more can happen.
+    pub duration: Option<f64>,
+}
+
+impl Default for Conditions {
+    fn default() -> Conditions {
+        Conditions {
+            initial: State::default(),
+            detail: Detail::default(),
+            tolerance: DEFAULT_TOLERANCE,
+            duration: None,
+        }
+    }
+}
+
+/// Populations × ground motions × scale factors.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    populations: Vec<Population>,
+    motions: Vec<NamedRecord>,
+    scales: Vec<f64>,
+    conditions: Conditions,
+    /// Of every structure under every ground motion before it is scaled, m/s²: worked out when asked for.
+    spectral: Vec<OnceLock<f64>>,
+}
+
+/// One run of a plan.
+#[derive(Clone, Debug)]
+pub struct Case<'a> {
+    /// What the structure is one of.
+    pub population: &'a Population,
+    /// Which one, counted from 0.
+    member: usize,
+    /// The structure.
+    pub structure: Structure,
+    /// The ground motion before it is scaled.
+    pub motion: &'a NamedRecord,
+    /// Factor on its acceleration, beside its own.
+    pub scale: f64,
+    /// What it has in common with the others.
+    pub conditions: &'a Conditions,
+    /// Runs of different groups do not depend on each other: the ground motion's number, or where there is one alone the
+    /// structure's.
+    pub group: usize,
+    spectral: &'a OnceLock<f64>,
+}
+
+/// Why there is no plan.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PlanError {
+    /// Nothing to run.
+    #[error("{0} is empty: give one or more")]
+    Empty(String),
+    /// A value is NaN or infinite.
+    #[error("{name} = {value} is not a finite number")]
+    NotFinite {
+        /// What is listed.
+        name: String,
+        /// The refused value.
+        value: f64,
+    },
+    /// Something would be counted twice.
+    #[error("{0} is there twice and would count twice: leave one out")]
+    Repeated(String),
+    /// Two populations, or two ground motions, cannot be told apart.
+    #[error("two {kind} have the name {name:?}: rename one")]
+    SameName {
+        /// What they are.
+        kind: &'static str,
+        /// What both are called.
+        name: String,
+    },
+    /// Ground motions are the same: all that are, in pairs.
+    #[error(
+        "{}: they are the same and would count twice: leave one out",
+        .0.iter().map(|[one, other]| format!("the ground motions {one:?} and {other:?}")).collect::<Vec<_>>().join(", ")
+    )]
+    SameMotions(Vec<[String; 2]>),
+    /// The runs cannot start.
+    #[error(transparent)]
+    Initial(#[from] InitialStateError),
+    /// A number that all runs have in common is out of range.
+    #[error("{name} = {} is out of range: {needed} is needed", with_unit(*value, "1"))]
+    Condition {
+        /// What it is called.
+        name: &'static str,
+        /// The refused value.
+        value: f64,
+        /// What would be accepted.
+        needed: &'static str,
+    },
+    /// No parameter is called that.
+    #[error("{name:?} cannot vary: these can: {}", AXES.map(|axis| axis.name).join(", "))]
+    Unknown {
+        /// The refused name.
+        name: String,
+    },
+    /// Two axes set one number.
+    #[error("H and slenderness cannot both vary: slenderness sets H")]
+    HeightTwice,
+    /// A scale factor of 0.
+    #[error("scale = 0 leaves no ground motion: leave it out")]
+    NoScale,
+    /// A ground motion without motion has no intensity.
+    #[error("the ground motion {0:?} is at rest throughout: leave it out")]
+    NoMotion(String),
+    /// A structure is impossible.
+    #[error("structures {population:?}: {problem}")]
+    Structure {
+        /// Its population.
+        population: String,
+        /// What is wrong with it.
+        problem: ParameterError,
+    },
+    /// More than [`MAX_RUNS`].
+    #[error("{structures} structures x {motions} ground motions x {scales} scale factors: more than {MAX_RUNS} runs")]
+    TooMany {
+        /// Structures, or more.
+        structures: usize,
+        /// Ground motions.
+        motions: usize,
+        /// Scale factors.
+        scales: usize,
+    },
+}
+
+impl Population {
+    /// Of the one structure `base`, until something varies.
+    pub fn new(name: impl Into<String>, base: Parameters) -> Population {
+        Population { name: name.into(), base, varying: Vec::new() }
+    }
+
+    /// Every structure that there is so far with each of `values` of the parameter called `name`, or of `slenderness`,
+    /// which is H/B: H = slenderness × B, while B, m, m0, J0 and f_fc stay.
+    pub fn vary(mut self, name: &str, values: Vec<f64>) -> Result<Population, PlanError> {
+        let axis =
+            AXES.iter().position(|axis| axis.name == name).ok_or_else(|| PlanError::Unknown { name: name.into() })?;
+        check_list(name, &values)?;
+        match self.varying.binary_search_by_key(&axis, |(axis, _)| *axis) {
+            Ok(_) => return Err(PlanError::Repeated(name.into())),
+            Err(position) => self.varying.insert(position, (axis, values)),
+        }
+        let varies = |name| self.varying.iter().any(|(axis, _)| AXES[*axis].name == name);
+        if varies("H") && varies(SLENDERNESS.name) {
+            return Err(PlanError::HeightTwice);
+        }
+        Ok(self)
+    }
+
+    /// What it is called.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// How many structures there are, or [`usize::MAX`] if there are more.
+    fn len(&self) -> usize {
+        self.varying.iter().fold(1, |len, (_, values)| len.saturating_mul(values.len()))
+    }
+
+    /// What varies, and its value in structure `member`: the last axis changes first.
+    fn values(&self, member: usize) -> impl Iterator<Item = (&'static Quantity<Parameters>, f64)> {
+        let mut stride = self.len();
+        self.varying.iter().map(move |(axis, values)| {
+            stride /= values.len();
+            (AXES[*axis], values[member / stride % values.len()])
+        })
+    }
+
+    fn structure(&self, member: usize) -> Result<Structure, PlanError> {
+        let mut parameters = self.base;
+        self.values(member).for_each(|(axis, value)| (axis.set)(&mut parameters, value));
+        let named = |problem| PlanError::Structure { population: self.name.clone(), problem };
+        Structure::new(parameters).map_err(named)
+    }
+}
+
+impl NamedRecord {
+    /// The ground motion `record`, which must not be at rest throughout, with its accelerations times `scale`.
+    pub fn new(name: impl Into<String>, record: Record, scale: f64) -> Result<NamedRecord, PlanError> {
+        let (name, pga) = (name.into(), record.pga());
+        if pga == 0.0 || scale == 0.0 {
+            return Err(PlanError::NoMotion(name));
+        }
+        if !scale.is_finite() {
+            return Err(PlanError::NotFinite { name: format!("scale of {name:?}"), value: scale });
+        }
+        let pgv = peak_velocity(&record);
+        Ok(NamedRecord { name, record, scale, pga, pgv })
+    }
+
+    /// What it is called.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its samples before they are scaled.
+    pub fn record(&self) -> &Record {
+        &self.record
+    }
+
+    /// Its own factor on the acceleration.
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// Whether `other` is the same motion under whatever name.
+    fn is_same(&self, other: &NamedRecord) -> bool {
+        let (one, two) = (&self.record, &other.record);
+        self.scale == other.scale && one.acceleration() == two.acceleration() && one.times() == two.times()
+    }
+}
+
+impl Conditions {
+    fn check(&self, structure: &Structure) -> Result<(), PlanError> {
+        let Conditions { initial, detail, tolerance, duration } = *self;
+        let refused = |name, value, needed| Err(PlanError::Condition { name, value, needed });
+        if !(tolerance > 0.0 && tolerance < 1.0) {
+            return refused("tolerance", tolerance, "a number between 0 and 1");
+        }
+        match duration {
+            Some(duration) if !(duration > 0.0 && duration.is_finite()) => {
+                return refused("duration", duration, "a finite number greater than 0");
+            }
+            _ => {}
+        }
+        Engine::with_detail(*structure, initial, 0.0, tolerance, detail)?;
+        Ok(())
+    }
+}
+
+impl Plan {
+    /// Every structure of `populations` under each of `motions` times each of `scales`.
+    pub fn new(populations: Vec<Population>, motions: Vec<NamedRecord>, scales: Vec<f64>) -> Result<Plan, PlanError> {
+        check_list("scale", &scales)?;
+        if scales.contains(&0.0) {
+            return Err(PlanError::NoScale);
+        }
+        for (name, is_empty) in [("structures", populations.is_empty()), ("records", motions.is_empty())] {
+            if is_empty {
+                return Err(PlanError::Empty(name.into()));
+            }
+        }
+        check_names("populations", populations.iter().map(Population::name))?;
+        check_names("ground motions", motions.iter().map(NamedRecord::name))?;
+        check_motions(&motions)?;
+        let (conditions, spectral) = (Conditions::default(), Vec::new());
+        let mut plan = Plan { populations, motions, scales, conditions, spectral };
+        let [structures, motions, scales] = plan.size();
+        if structures.saturating_mul(motions).saturating_mul(scales) > MAX_RUNS {
+            return Err(PlanError::TooMany { structures, motions, scales });
+        }
+        for population in &plan.populations {
+            (0..population.len()).try_for_each(|member| population.structure(member).map(|_| ()))?;
+        }
+        plan.spectral = vec![OnceLock::new(); structures * motions];
+        Ok(plan)
+    }
+
+    /// The same runs under other `conditions`.
+    pub fn under(self, conditions: Conditions) -> Result<Plan, PlanError> {
+        conditions.check(&self.case(0).structure)?;
+        Ok(Plan { conditions, ..self })
+    }
+
+    /// Numbers of structures, ground motions and scale factors.
+    pub fn size(&self) -> [usize; 3] {
+        let structures = self.populations.iter().fold(0, |sum: usize, population| sum.saturating_add(population.len()));
+        [structures, self.motions.len(), self.scales.len()]
+    }
+
+    /// The populations.
+    pub fn populations(&self) -> &[Population] {
+        &self.populations
+    }
+
+    /// The ground motions.
+    pub fn motions(&self) -> &[NamedRecord] {
+        &self.motions
+    }
+
+    /// The scale factors.
+    pub fn scales(&self) -> &[f64] {
+        &self.scales
+    }
+
+    /// How many runs there are.
+    #[expect(clippy::len_without_is_empty, reason = "a plan is never empty")]
+    pub fn len(&self) -> usize {
+        self.size().into_iter().product()
+    }
+
+    /// Run `index` < [`Plan::len`]: scale factors change first, then ground motions, then structures.
+    pub fn case(&self, index: usize) -> Case<'_> {
+        let (rest, scale) = (index / self.scales.len(), self.scales[index % self.scales.len()]);
+        let (mut member, motion) = (rest / self.motions.len(), &self.motions[rest % self.motions.len()]);
+        let mut populations = self.populations.iter();
+        let population = populations.find(|population| {
+            let is_of_it = member < population.len();
+            member -= if is_of_it { 0 } else { population.len() };
+            is_of_it
+        });
+        let population = population.expect("the plan has such a run");
+        let structure = population.structure(member).expect("the plan has been checked");
+        let group = if self.motions.len() > 1 { rest % self.motions.len() } else { rest };
+        let (conditions, spectral) = (&self.conditions, &self.spectral[rest]);
+        Case { population, member, structure, motion, scale, conditions, group, spectral }
+    }
+
+    /// Every run, in this order.
+    pub fn cases(&self) -> impl Iterator<Item = Case<'_>> {
+        (0..self.len()).map(|index| self.case(index))
+    }
+}
+
+impl Case<'_> {
+    /// Does it.
+    pub fn outcome(&self) -> Outcome {
+        self.outcome_watched(&mut ())
+    }
+
+    /// Does it while `watch` sees it go by.
+    pub fn outcome_watched(&self, watch: &mut impl Watch) -> Outcome {
+        let ground = self.motion.record.clone().multiplied(self.factor());
+        let &Conditions { initial, detail, tolerance, duration } = self.conditions;
+        let end = duration.map_or(End::AtRest, |duration| End::At(ground.start() + duration));
+        Outcome::of(&Run { initial, detail, tolerance, end, ..Run::new(self.structure, &ground) }, watch)
+    }
+
+    /// How strong the ground motion is, in the unit of `measure`.
+    pub fn intensity(&self, measure: IntensityMeasure) -> f64 {
+        let &Parameters { g, f_fc, zeta_fc, .. } = self.structure.parameters();
+        let unscaled = match measure {
+            IntensityMeasure::Pga => self.motion.pga / g,
+            IntensityMeasure::Pgv => self.motion.pgv,
+            IntensityMeasure::Sa => {
+                let of_record = || spectral_acceleration(&self.motion.record, f_fc.recip(), zeta_fc);
+                self.spectral.get_or_init(of_record) / g
+            }
+        };
+        unscaled * self.factor().abs()
+    }
+
+    /// What the record's accelerations are multiplied by.
+    fn factor(&self) -> f64 {
+        self.motion.scale * self.scale
+    }
+
+    /// The structure's number on `axis`, one of [`AXES`], to the bit as it was given.
+    pub fn value(&self, axis: &Quantity<Parameters>) -> f64 {
+        let varying = self.population.values(self.member).find(|(varying, _)| varying.name == axis.name);
+        varying.map_or_else(|| (axis.get)(self.structure.parameters()), |(_, value)| value)
+    }
+}
+
+/// Each name once.
+fn check_names<'a>(kind: &'static str, names: impl Iterator<Item = &'a str>) -> Result<(), PlanError> {
+    let mut seen = HashSet::new();
+    match { names }.find(|name| !seen.insert(*name)) {
+        Some(name) => Err(PlanError::SameName { kind, name: name.into() }),
+        None => Ok(()),
+    }
+}
+
+/// Each ground motion once; equal ones have equal peaks.
+fn check_motions(motions: &[NamedRecord]) -> Result<(), PlanError> {
+    let mut by_peaks: HashMap<_, Vec<&NamedRecord>> = HashMap::new();
+    let mut same = Vec::new();
+    for one in motions {
+        let alike = by_peaks.entry([one.pga, one.pgv].map(f64::to_bits)).or_default();
+        match alike.iter().find(|other| other.is_same(one)) {
+            Some(other) => same.push([other.name.clone(), one.name.clone()]),
+            None => alike.push(one),
+        }
+    }
+    if same.is_empty() { Ok(()) } else { Err(PlanError::SameMotions(same)) }
+}
+
+/// Finite numbers, one or more, each of them once.
+fn check_list(name: &str, values: &[f64]) -> Result<(), PlanError> {
+    if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
+        return Err(PlanError::NotFinite { name: name.into(), value });
+    }
+    let mut sorted = values.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    match sorted.windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => Err(PlanError::Repeated(format!("{name} = {}", with_unit(pair[0], "1")))),
+        None if values.is_empty() => Err(PlanError::Empty(name.into())),
+        None => Ok(()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::fragility::Trials;
+    use crate::outcome::{Limit, MEASURES, Summary};
+    use rocking::run::{End, Ending};
+    use std::f64::consts::{FRAC_PI_2, TAU};
+
+    /// A full sine of 0.5 s and 0.6 g that ends with its last sample.
+    fn pulse() -> NamedRecord {
+        let times: Vec<_> = (0..=50).map(|i| f64::from(i) * 0.01).collect();
+        let acceleration = times.iter().map(|time| 0.6 * 9.81 * (TAU * time / 0.5).sin()).collect();
+        NamedRecord::new("pulse", Record::from_samples("", times, acceleration).unwrap(), 1.0).unwrap()
+    }
+
+    fn only(base: Parameters, scale: f64) -> Outcome {
+        let plan = Plan::new(vec![Population::new("only", base)], vec![pulse()], vec![scale]).unwrap();
+        assert_eq!(plan.len(), 1);
+        plan.case(0).outcome()
+    }
+
+    /// With the record's last sample it still stands, and overturns in free motion.
+    #[test]
+    fn a_structure_has_until_it_is_at_rest_to_overturn() {
+        let Outcome::Ended(Summary { ending, end, peaks, .. }) = only(Parameters::MCMANUS, 1.5) else { panic!() };
+        assert_eq!((ending, peaks[0]), (Ending::Overturned, FRAC_PI_2));
+        assert!((end - 2.96).abs() < 0.005, "{end}");
+        assert_eq!(MEASURES[0], ("theta", "rad"));
+        assert_eq!(peaks[7], FRAC_PI_2 / Structure::new(Parameters::MCMANUS).unwrap().tan_alpha_cg.atan());
+
+        let Outcome::Ended(standing) = only(Parameters::MCMANUS, 1.0) else { panic!() };
+        assert_eq!(standing.ending, Ending::AtRest);
+        assert!(standing.end > 0.5 && standing.transitions > 0);
+    }
+
+    /// A slow structure has hardly begun to vibrate when the record ends.
+    #[test]
+    fn the_vibration_after_a_record_counts() {
+        let slow = Parameters { m0: 0.0, J0: 0.0, f_fc: 0.2, ..Parameters::MCMANUS };
+        let Outcome::Ended(found) = only(slow, 1.0) else { panic!() };
+        let long = Run { end: End::At(20.0), ..Run::new(Structure::new(slow).unwrap(), &pulse().record) }.peaks();
+        let (peaks, _) = long.unwrap();
+        assert_eq!(found.ending, Ending::AtRest);
+        for (name, found, expected) in [("u", found.peaks[1], peaks.u()), ("a_t", found.peaks[4], peaks.a_t())] {
+            assert!((found - expected.magnitude).abs() < 1e-12 * found, "{name}: {found}, {expected:?}");
+        }
+    }
+
+    #[test]
+    fn a_run_that_cannot_be_continued_has_an_outcome() {
+        let Outcome::Failed { time, reason } =
+            only(Parameters { m0: 0.0, J0: 0.0, f_fc: 0.2, ..Parameters::MCMANUS }, 6.0)
+        else {
+            panic!()
+        };
+        assert!(reason.contains(&format!("cannot be continued beyond t = {time} s")), "{reason}");
+        assert!((time - 0.51).abs() < 0.01, "{time}");
+    }
+
+    #[test]
+    fn cases_are_all_combinations_in_order() {
+        let piers = Population::new("piers", Parameters::MCMANUS).vary("slenderness", vec![4.0, 6.3]).unwrap();
+        let piers = piers.vary("B", vec![0.3, 0.2, 0.1]).unwrap();
+        let wall = Population::new("wall", Parameters::EVISON);
+        let halved = NamedRecord::new("half", pulse().record, 0.5).unwrap();
+        let plan = Plan::new(vec![piers, wall], vec![pulse(), halved], vec![1.0, -2.0]).unwrap();
+        assert_eq!((plan.size(), plan.len()), ([7, 2, 2], 28));
+        let [axis_B, slenderness] = [AXES[3], AXES[10]];
+        let cases: Vec<_> = plan.cases().collect();
+        let column = |of: fn(&Case, [&Quantity<Parameters>; 2]) -> f64, step| {
+            cases.iter().step_by(step).map(|case| of(case, [axis_B, slenderness])).collect::<Vec<_>>()
+        };
+        assert_eq!(column(|case, _| case.scale, 1)[..3], [1.0, -2.0, 1.0]);
+        assert_eq!(column(|case, [B, _]| case.value(B), 4), [0.3, 0.3, 0.2, 0.2, 0.1, 0.1, 0.285]);
+        assert_eq!(column(|case, [_, slenderness]| case.value(slenderness), 4)[..3], [4.0, 6.3, 4.0]);
+        assert_eq!(column(|case, _| case.structure.parameters().H, 4)[1], 6.3 * 0.3);
+        let pga = 0.6 * (TAU * 0.12 / 0.5).sin();
+        for (intensity, expected) in
+            column(|case, _| case.intensity(IntensityMeasure::Pga), 1).into_iter().zip([pga, 2.0 * pga, 0.5 * pga])
+        {
+            assert!((intensity - expected).abs() < 1e-15);
+        }
+        assert_eq!(cases[26..].iter().map(|case| case.motion.name()).collect::<Vec<_>>(), ["half"; 2]);
+        assert_eq!(cases[27].population.name(), "wall");
+    }
+
+    /// Against the run itself: the same conditions, the same bits.
+    #[test]
+    fn conditions_are_those_of_every_run() {
+        let initial = State { theta: 0.05, ..State::default() };
+        let conditions = Conditions { initial, detail: Detail::Linear, tolerance: 1e-6, duration: Some(0.7) };
+        let pier = Population::new("pier", Parameters::MCMANUS);
+        let plan = Plan::new(vec![pier], vec![pulse()], vec![0.5]).unwrap().under(conditions).unwrap();
+        let ground = pulse().record.multiplied(0.5);
+        let Conditions { detail, tolerance, .. } = conditions;
+        let usual = Run::new(Structure::new(Parameters::MCMANUS).unwrap(), &ground);
+        let run = Run { initial, detail, tolerance, end: End::At(0.7), ..usual.clone() };
+        assert_eq!(plan.case(0).outcome(), Outcome::of(&run, &mut ()));
+        let Outcome::Ended(Summary { ending, end, .. }) = plan.case(0).outcome() else { panic!() };
+        assert_eq!((ending, end), (Ending::AtTime, 0.7));
+        assert_ne!(plan.case(0).outcome(), Outcome::of(&Run { detail: Detail::Auto, ..run }, &mut ()));
+        assert_ne!(plan.case(0).outcome(), Outcome::of(&usual, &mut ()));
+    }
+
+    /// A record with a factor of its own is the record with its samples multiplied; measures grow with it.
+    #[test]
+    fn a_record_may_have_a_scale_of_its_own() {
+        let piers = || Population::new("piers", Parameters::MCMANUS).vary("f_fc", vec![2.0, 5.0]).unwrap();
+        let own = NamedRecord::new("own", pulse().record, -0.5).unwrap();
+        let multiplied = NamedRecord::new("multiplied", pulse().record.multiplied(-0.5), 1.0).unwrap();
+        let plan = Plan::new(vec![piers()], vec![pulse(), own, multiplied], vec![2.0]).unwrap();
+        for structure in [0, 3] {
+            let [whole, own, multiplied] = [0, 1, 2].map(|motion| plan.case(structure + motion));
+            assert_eq!(own.outcome(), multiplied.outcome());
+            for measure in IntensityMeasure::ALL {
+                let [whole, own, multiplied] = [&whole, &own, &multiplied].map(|case| case.intensity(measure));
+                for expected in [multiplied, 0.5 * whole] {
+                    assert!((own - expected).abs() <= 1e-14 * own, "{measure:?}: {own} {expected}");
+                }
+            }
+        }
+        let [f_2, f_5] = [0, 3].map(|index| plan.case(index).intensity(IntensityMeasure::Sa));
+        let expected = |T| 2.0 * spectral_acceleration(&pulse().record, T, 0.02) / 9.81;
+        assert_eq!([f_2, f_5], [0.5, 0.2].map(expected));
+        assert_eq!([0, 1, 2, 3, 4, 5].map(|index| plan.case(index).group), [0, 1, 2, 0, 1, 2]);
+        let alone = Plan::new(vec![piers()], vec![pulse()], vec![1.0, 2.0]).unwrap();
+        assert_eq!([0, 1, 2, 3].map(|index| alone.case(index).group), [0, 0, 1, 1]);
+    }
+
+    #[test]
+    fn trials_are_counted_from_outcomes() {
+        let scales = [0.1, 1.25, 3.0];
+        let piers = Population::new("piers", Parameters::MCMANUS).vary("f_fc", vec![3.0, 4.0, 5.0]).unwrap();
+        let plan = Plan::new(vec![piers], vec![pulse()], scales.into()).unwrap();
+        let overturned =
+            |case: Case| (0, case.intensity(IntensityMeasure::Pga), case.outcome().exceeds(&Limit::Overturning));
+        let trials = Trials::count(plan.cases().map(overturned));
+        let expected = scales.map(|scale| {
+            let ground = pulse().record.multiplied(scale);
+            let overturns = |f_fc: &&f64| {
+                let structure = Structure::new(Parameters { f_fc: **f_fc, ..Parameters::MCMANUS }).unwrap();
+                Run::new(structure, &ground).peaks().unwrap().1.ending == Ending::Overturned
+            };
+            (3, [3.0, 4.0, 5.0].iter().filter(overturns).count())
+        });
+        assert_eq!(trials.iter().map(|at| (at.runs, at.exceedances)).collect::<Vec<_>>(), expected);
+        assert_ne!(expected[0], expected[2]);
+    }
+
+    #[test]
+    fn a_refused_plan_says_what_to_change() {
+        let pier = || Population::new("pier", Parameters::MCMANUS);
+        let plan = |populations, motions, scales| Plan::new(populations, motions, scales).unwrap_err().to_string();
+        let scale = |scales| plan(vec![pier()], vec![pulse()], scales);
+        assert_eq!(scale(vec![]), "scale is empty: give one or more");
+        assert_eq!(scale(vec![1.0, 0.0]), "scale = 0 leaves no ground motion: leave it out");
+        assert_eq!(scale(vec![1.0, f64::NAN]), "scale = NaN is not a finite number");
+        assert_eq!(scale(vec![1.0, 2.0, 1.0]), "scale = 1 is there twice and would count twice: leave one out");
+        assert_eq!(plan(vec![], vec![pulse()], vec![1.0]), "structures is empty: give one or more");
+        assert_eq!(plan(vec![pier()], vec![], vec![1.0]), "records is empty: give one or more");
+        assert_eq!(
+            plan(vec![pier(); 2], vec![pulse()], vec![1.0]),
+            "two populations have the name \"pier\": rename one"
+        );
+        assert_eq!(
+            plan(vec![pier()], vec![pulse(), pulse()], vec![1.0]),
+            "two ground motions have the name \"pulse\": rename one"
+        );
+        let copy = |name: &str| NamedRecord { name: name.into(), ..pulse() };
+        assert_eq!(
+            plan(vec![pier()], vec![pulse(), copy("copy"), copy("again")], vec![1.0]),
+            "the ground motions \"pulse\" and \"copy\", the ground motions \"pulse\" and \"again\": they are the same and \
+             would count twice: leave one out"
+        );
+        let slender = pier().vary("slenderness", vec![1.0, 2000.0]).unwrap();
+        assert!(plan(vec![slender], vec![pulse()], vec![1.0]).starts_with("structures \"pier\": H/B = 2000"));
+
+        let many = || (1..=4000).map(f64::from).collect::<Vec<_>>();
+        let huge = PARAMETERS.iter().fold(pier(), |pier, axis| pier.vary(axis.name, many()).unwrap());
+        assert!(plan(vec![huge], vec![pulse()], vec![1.0]).contains(": more than 10000000 runs"));
+        assert_eq!(
+            plan(vec![pier().vary("H", many()).unwrap()], vec![pulse()], many()),
+            "4000 structures x 1 ground motions x 4000 scale factors: more than 10000000 runs"
+        );
+
+        let vary =
+            |name: &str, values| pier().vary("H", vec![1.0]).unwrap().vary(name, values).unwrap_err().to_string();
+        assert!(vary("q", vec![1.0]).starts_with("\"q\" cannot vary: these can: m, m0, H, B, J0, f_fc"));
+        assert_eq!(vary("slenderness", vec![4.0]), "H and slenderness cannot both vary: slenderness sets H");
+        assert_eq!(vary("H", vec![4.0]), "H is there twice and would count twice: leave one out");
+        assert_eq!(vary("r", vec![]), "r is empty: give one or more");
+        assert_eq!(vary("m0", vec![0.0, -0.0]), "m0 = -0 is there twice and would count twice: leave one out");
+        let refused = |record, scale| NamedRecord::new("rest", record, scale).unwrap_err().to_string();
+        for (record, scale) in [(Record::at_rest(1.0), 1.0), (pulse().record, 0.0)] {
+            assert_eq!(refused(record, scale), "the ground motion \"rest\" is at rest throughout: leave it out");
+        }
+        assert_eq!(refused(pulse().record, f64::NAN), "scale of \"rest\" = NaN is not a finite number");
+
+        let under = |conditions| {
+            let plan = Plan::new(vec![pier()], vec![pulse()], vec![1.0]).unwrap();
+            plan.under(conditions).unwrap_err().to_string()
+        };
+        let usual = Conditions::default();
+        assert_eq!(
+            under(Conditions { tolerance: 1.0, ..usual }),
+            "tolerance = 1 is out of range: a number between 0 and 1 is needed"
+        );
+        assert_eq!(
+            under(Conditions { duration: Some(0.0), ..usual }),
+            "duration = 0 is out of range: a finite number greater than 0 is needed"
+        );
+        let turned = State { theta: 0.1, ..State::default() };
+        assert!(
+            under(Conditions { initial: turned, detail: Detail::FixedBase, ..usual })
+                .starts_with("theta_0 = 0.1 rad contradicts detail = fixed_base")
+        );
+    }
+}

@@ -1,0 +1,523 @@
+//! Pulses: the motions by which the field compares structures that rock, as their papers define them.
+//!
+//! a_p is the amplitude, ω = 2π f the circular frequency, T = 1/f, t = 0 the pulse's start or, where it says so, its middle.
+//!
+//! [`Shape::definition`] has the ground acceleration of each. The authors of the last, Mavroeidis and Papageorgiou, give the
+//! velocity and its amplitude A; a_p is ω A, and the peak of the acceleration 0.87 to 1 times as much, after γ and ν. n and γ
+//! are `cycles`, φ and ν `phase`. A Ricker wavelet has no end: what is below 1e-9 of a_p is cut.
+//!
+//! # Straight lines
+//!
+//! On a step h of its lines the curve's second derivative moves them off by up to h²/8 of it, all to one side. The corners
+//! stand h²/12 of it outside the curve instead: every line then has the curve's impulse to O(h⁴), and so has what the
+//! motion does to a structure, and it is still within h²/8 of the curve (between −h²/12 and h²/24 of it, to O(h³)). h is
+//! the largest step for which max h²/8 abs(a″) ≤ `error` a_p that divides the pulse evenly: its ends, where a sine has
+//! its kinks, are corners. Where it begins or ends off 0 there is a jump: at the start and the end of the record itself, and
+//! over 1e-9 T where there is a lead-in or a rest.
+
+use rocking::Structure;
+use rocking::run::record::{MAX_SAMPLES, Record, RecordError};
+use rocking::structure::quantity::{OutOfRange, Quantity, quantity};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::{FRAC_PI_2, SQRT_2, TAU};
+
+/// A pulse between a lead-in and a rest at 0.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pulse {
+    /// Its shape.
+    pub shape: Shape,
+    /// Amplitude a_p, m/s².
+    pub amplitude: f64,
+    /// Frequency ω/2π, Hz.
+    pub frequency: f64,
+    /// How many periods it has, n or γ: [`Shape::cycles`] where the shape leaves no choice.
+    pub cycles: f64,
+    /// Phase φ or ν, rad: 0 where the shape leaves no choice.
+    pub phase: f64,
+    /// Time before it, s.
+    pub lead_in: f64,
+    /// Time after it, s.
+    pub rest: f64,
+    /// How far its straight lines may be off the curve, in parts of the amplitude.
+    pub error: f64,
+}
+
+/// The shape of a pulse.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    /// Half a period of a sine.
+    HalfSine,
+    /// A sine.
+    Sine,
+    /// A cosine.
+    Cosine,
+    /// The symmetric Ricker wavelet, second derivative of a Gaussian.
+    Ricker,
+    /// The antisymmetric Ricker wavelet, third derivative of a Gaussian.
+    AntisymmetricRicker,
+    /// Mavroeidis and Papageorgiou's velocity pulse.
+    MavroeidisPapageorgiou,
+}
+
+/// The numbers of a pulse, with ranges.
+pub const PULSE: [Quantity<Pulse>; 7] = [
+    quantity!(amplitude ["m/s2"] 1e-9, 1e9, "amplitude of the ground acceleration"),
+    quantity!(frequency ["Hz"] 1e-6, 1e6, "frequency of the pulse"),
+    quantity!(cycles ["1"] 1e-2, 1e4, "periods of the pulse"),
+    quantity!(phase["rad"] - TAU, TAU, "phase of the pulse"),
+    quantity!(lead_in ["s"] 0.0, 1e9, "time before the pulse"),
+    quantity!(rest ["s"] 0.0, 1e9, "time after the pulse"),
+    quantity!(error ["1"] 1e-12, 1e-2, "distance of the straight lines from the curve over the amplitude"),
+];
+
+/// The default of [`Pulse::error`]: some 220 lines to a period, and 1e-8 of a structure's peaks.
+pub const DEFAULT_ERROR: f64 = 1e-4;
+
+/// Longest time before a pulse, and after it, in periods: a jump lasts 1e-9 of one.
+pub const LONGEST_LEAD_IN: f64 = 1e5;
+
+/// Part of a period over which the acceleration jumps.
+const JUMP: f64 = 1e-9;
+
+/// A wavelet less than this part of its amplitude has ended, and a pulse that begins or ends with less begins or ends at 0.
+const NOTHING: f64 = 1e-9;
+
+/// Where x has made both wavelets less than [`NOTHING`].
+const RICKER_END: f64 = 7.5;
+
+/// The largest magnitude of (x³ − 3x) e^(−x²/2), at x² = 3 − √6.
+fn beta() -> f64 {
+    let x2 = 3.0 - 6.0_f64.sqrt();
+    6.0_f64.sqrt() * x2.sqrt() * (-0.5 * x2).exp()
+}
+
+/// Why there is no such pulse.
+#[derive(Debug, thiserror::Error)]
+pub enum PulseError {
+    /// A number is out of its range.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+    /// The shape has that number itself.
+    #[error("{name} = {value} is not possible: {} has {own}", shape.name())]
+    Fixed {
+        /// The shape.
+        shape: Shape,
+        /// `cycles` or `phase`.
+        name: &'static str,
+        /// The refused value.
+        value: f64,
+        /// What it has.
+        own: f64,
+    },
+    /// γ ≤ 1 leaves no pulse between the ends of its bell.
+    #[error("cycles = {0} is out of range: mavroeidis_papageorgiou needs more than 1 (its gamma)")]
+    TooFewCycles(f64),
+    /// A jump takes longer.
+    #[error("{name} = {value} s is out of range: 0 is possible, or {least} s and more")]
+    TooShort {
+        /// `lead_in` or `rest`.
+        name: &'static str,
+        /// The refused value, s.
+        value: f64,
+        /// The least, s.
+        least: f64,
+    },
+    /// A jump would be lost beside it.
+    #[error("{name} = {value} s is out of range: at most {LONGEST_LEAD_IN} periods are possible, {most} s")]
+    TooLong {
+        /// `lead_in` or `rest`.
+        name: &'static str,
+        /// The refused value, s.
+        value: f64,
+        /// The largest, s.
+        most: f64,
+    },
+    /// More lines than a record may have.
+    #[error("error = {error} takes {samples:.0} samples: {MAX_SAMPLES} are possible; allow a larger error")]
+    TooManySamples {
+        /// What was asked for.
+        error: f64,
+        /// What it takes.
+        samples: f64,
+    },
+    /// The samples are no record.
+    #[error(transparent)]
+    Record(#[from] RecordError),
+}
+
+impl Shape {
+    /// All of them, in the order of the table.
+    pub const ALL: [Shape; 6] = [
+        Shape::HalfSine,
+        Shape::Sine,
+        Shape::Cosine,
+        Shape::Ricker,
+        Shape::AntisymmetricRicker,
+        Shape::MavroeidisPapageorgiou,
+    ];
+
+    /// Its name in files and on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Shape::HalfSine => "half_sine",
+            Shape::Sine => "sine",
+            Shape::Cosine => "cosine",
+            Shape::Ricker => "ricker",
+            Shape::AntisymmetricRicker => "antisymmetric_ricker",
+            Shape::MavroeidisPapageorgiou => "mavroeidis_papageorgiou",
+        }
+    }
+
+    /// Its ground acceleration, and where that is from.
+    pub const fn definition(self) -> &'static str {
+        match self {
+            Shape::HalfSine => "a_p sin(w t), 0 <= t <= T/2 (Housner 1963)",
+            Shape::Sine => {
+                "a_p sin(w t + phi), 0 <= t <= n T; n = 1, phi = 0: type A of Zhang and Makris (2001); n = k + 1/2 - phi/pi: \
+                 type C_k of Makris and Roussos (2000), whose phi leaves no velocity at the end"
+            }
+            Shape::Cosine => "a_p cos(w t + phi), 0 <= t <= n T; n = 1, phi = 0: type B of Zhang and Makris (2001)",
+            Shape::Ricker => {
+                "a_p (1 - x^2) exp(-x^2/2), x = w t/sqrt(2), t = 0 in the middle; f is where its spectrum is largest \
+                 (Ricker 1943; Vassiliou and Makris 2011)"
+            }
+            Shape::AntisymmetricRicker => {
+                "a_p (x^3 - 3 x) exp(-x^2/2)/beta, x = w t/sqrt(3), t = 0 in the middle, beta = 1.3801: the peak is a_p; f as above \
+                 (Vassiliou and Makris 2011)"
+            }
+            Shape::MavroeidisPapageorgiou => {
+                "d/dt of A/2 (1 + cos(w t/gamma)) cos(w t + nu), |t| <= gamma T/2, a_p = w A: its peak is 0.87 to 1 times a_p \
+                 (Mavroeidis and Papageorgiou 2003)"
+            }
+        }
+    }
+
+    /// How many periods it has unless something else is asked for.
+    pub const fn cycles(self) -> f64 {
+        match self {
+            Shape::HalfSine => 0.5,
+            Shape::MavroeidisPapageorgiou => 2.0,
+            _ => 1.0,
+        }
+    }
+
+    /// Whether cycles and phase can be chosen.
+    const fn has_choice(self) -> bool {
+        matches!(self, Shape::Sine | Shape::Cosine | Shape::MavroeidisPapageorgiou)
+    }
+}
+
+/// What a structure measures pulses by: g tan α_cg (m/s²), below which a rigid one does not lift off, and p_l/2π (Hz).
+pub fn units_of(structure: &Structure) -> (f64, f64) {
+    (structure.parameters().g * structure.tan_alpha_cg, structure.p_l / TAU)
+}
+
+impl Pulse {
+    /// The pulse of this `amplitude` (m/s²) and `frequency` (Hz) with nothing before and after it.
+    pub fn new(shape: Shape, amplitude: f64, frequency: f64) -> Pulse {
+        let cycles = shape.cycles();
+        Pulse { shape, amplitude, frequency, cycles, phase: 0.0, lead_in: 0.0, rest: 0.0, error: DEFAULT_ERROR }
+    }
+
+    /// What it is called: its shape and, where there is a choice, cycles and phase.
+    pub fn name(&self) -> String {
+        let &Pulse { shape, .. } = self;
+        let [cycles, phase] = [self.cycles, self.phase].map(six_digits);
+        let name = shape.name().replace('_', " ");
+        match shape {
+            Shape::MavroeidisPapageorgiou => format!("{name}, gamma {cycles}, nu {phase} rad"),
+            _ if cycles == shape.cycles() && phase == 0.0 => name,
+            _ => format!("{name}, {cycles} cycles, phase {phase} rad"),
+        }
+    }
+
+    /// Whether there is such a pulse.
+    pub fn check(&self) -> Result<(), PulseError> {
+        let &Pulse { shape, frequency, cycles, phase, error, .. } = self;
+        PULSE.iter().try_for_each(|quantity| quantity.check((quantity.get)(self)))?;
+        for (name, value, own) in [("cycles", cycles, shape.cycles()), ("phase", phase, 0.0)] {
+            if value != own && !shape.has_choice() {
+                return Err(PulseError::Fixed { shape, name, value, own });
+            }
+        }
+        if shape == Shape::MavroeidisPapageorgiou && cycles <= 1.0 {
+            return Err(PulseError::TooFewCycles(cycles));
+        }
+        let (least, most) = (2.0 * JUMP / frequency, LONGEST_LEAD_IN / frequency);
+        for (name, value) in [("lead_in", self.lead_in), ("rest", self.rest)] {
+            if value > 0.0 && value < least {
+                return Err(PulseError::TooShort { name, value, least });
+            }
+            if value > most {
+                return Err(PulseError::TooLong { name, value, most });
+            }
+        }
+        let samples = self.lines();
+        if samples > (MAX_SAMPLES - 4) as f64 {
+            return Err(PulseError::TooManySamples { error, samples });
+        }
+        Ok(())
+    }
+
+    /// How long the pulse itself lasts, s.
+    pub fn duration(&self) -> f64 {
+        match self.shape {
+            Shape::Ricker => 2.0 * RICKER_END * SQRT_2 / (TAU * self.frequency),
+            Shape::AntisymmetricRicker => 2.0 * RICKER_END * 3.0_f64.sqrt() / (TAU * self.frequency),
+            _ => self.cycles / self.frequency,
+        }
+    }
+
+    /// The ground acceleration a_g at `time` (s) after the start of the lead-in, m/s².
+    pub fn acceleration(&self, time: f64) -> f64 {
+        let time = time - self.lead_in;
+        if (0.0..=self.duration()).contains(&time) { self.curve(time)[0] } else { 0.0 }
+    }
+
+    /// The pulse in straight lines, from the start of the lead-in at 0 s to the end of the rest.
+    pub fn record(&self) -> Result<Record, PulseError> {
+        self.check()?;
+        let &Pulse { amplitude, frequency, lead_in, rest, .. } = self;
+        let (duration, lines) = (self.duration(), self.lines());
+        let outside = (duration / lines).powi(2) / 12.0;
+        let corner = |i: usize| {
+            let time = duration * (i as f64 / lines);
+            let [a_g, curvature] = self.curve(time);
+            let a_g = a_g - outside * curvature;
+            (lead_in + time, if a_g.abs() < NOTHING * amplitude { 0.0 } else { a_g })
+        };
+        let mut samples: Vec<_> = (0..=lines as usize).map(corner).collect();
+        let (start, end) = (samples[0], samples[samples.len() - 1]);
+        if lead_in > 0.0 {
+            let jump = (start.1 != 0.0).then_some((start.0 - JUMP / frequency, 0.0));
+            samples.splice(..0, [(0.0, 0.0)].into_iter().chain(jump));
+        }
+        if rest > 0.0 {
+            samples.extend((end.1 != 0.0).then_some((end.0 + JUMP / frequency, 0.0)));
+            samples.push((end.0 + rest, 0.0));
+        }
+        let (times, acceleration) = samples.into_iter().unzip();
+        let [of, at] = [amplitude, frequency].map(six_digits);
+        let title = format!("{}, {of} m/s2, {at} Hz", self.name());
+        Ok(Record::from_samples(title, times, acceleration)?)
+    }
+
+    /// How many straight lines keep to the error.
+    fn lines(&self) -> f64 {
+        (self.duration() * (self.largest_curvature() / (8.0 * self.error)).sqrt()).ceil()
+    }
+
+    /// Largest magnitude of the second derivative of a_g over a_p, or a bound on it, 1/s².
+    fn largest_curvature(&self) -> f64 {
+        // of (x³ − 3x) e^(−x²/2): it has it at the first zero of the Hermite polynomial He₆
+        const OF_ANTISYMMETRIC: f64 = 5.7834;
+        let of_x = match self.shape {
+            Shape::HalfSine | Shape::Sine | Shape::Cosine => 1.0,
+            Shape::Ricker => 3.0 / 2.0,
+            Shape::AntisymmetricRicker => OF_ANTISYMMETRIC / (3.0 * beta()),
+            // that of its three sines together
+            Shape::MavroeidisPapageorgiou => 1.0 + 1.5 / self.cycles.powi(2),
+        };
+        of_x * (TAU * self.frequency).powi(2)
+    }
+
+    /// a_g and its second derivative at `time` (s) after the start of the pulse, m/s² and m/s⁴.
+    fn curve(&self, time: f64) -> [f64; 2] {
+        let &Pulse { shape, amplitude, frequency, cycles, phase, .. } = self;
+        let omega = TAU * frequency;
+        let sine = |phase: f64| {
+            let a_g = amplitude * (omega * time + phase).sin();
+            [a_g, -omega * omega * a_g]
+        };
+        let middle = time - 0.5 * self.duration();
+        match shape {
+            Shape::HalfSine | Shape::Sine => sine(phase),
+            Shape::Cosine => sine(phase + FRAC_PI_2),
+            Shape::Ricker => {
+                let x = omega * middle / SQRT_2;
+                let (x2, bell) = (x * x, amplitude * (-0.5 * x * x).exp());
+                [(1.0 - x2) * bell, -0.5 * omega * omega * ((x2 - 6.0) * x2 + 3.0) * bell]
+            }
+            Shape::AntisymmetricRicker => {
+                let x = omega * middle / 3.0_f64.sqrt();
+                let (x2, bell) = (x * x, amplitude / beta() * (-0.5 * x * x).exp());
+                [(x2 - 3.0) * x * bell, omega * omega / 3.0 * ((x2 - 10.0) * x2 + 15.0) * x * bell]
+            }
+            Shape::MavroeidisPapageorgiou => {
+                // its velocity is a sum of three cosines: ½ A (cos(ωt + ν) + ½ Σ cos((1 ± 1/γ) ωt + ν))
+                let mut sum = [0.0; 2];
+                for (part, of_omega) in [(0.5, 1.0), (0.25, 1.0 + 1.0 / cycles), (0.25, 1.0 - 1.0 / cycles)] {
+                    let omega_k = of_omega * omega;
+                    let a_g = -amplitude * part * of_omega * (omega_k * middle + phase).sin();
+                    sum = [sum[0] + a_g, sum[1] - omega_k * omega_k * a_g];
+                }
+                sum
+            }
+        }
+    }
+}
+
+fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().expect("a number in Rust's own notation")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use approx::{assert_abs_diff_eq, assert_relative_eq};
+    use rocking::estimates::intensity::peak_velocity;
+    use std::f64::consts::PI;
+
+    const AMPLITUDE: f64 = 3.0;
+    const FREQUENCY: f64 = 2.5;
+    const OMEGA: f64 = TAU * FREQUENCY;
+
+    fn pulse(shape: Shape) -> Pulse {
+        Pulse { error: 1e-6, ..Pulse::new(shape, AMPLITUDE, FREQUENCY) }
+    }
+
+    /// Velocity and displacement at the end of `record`.
+    fn end_of(record: &Record) -> [f64; 2] {
+        record.velocities_and_displacements().last().unwrap()
+    }
+
+    /// Of (x³ − 3x) e^(−x²/2), looked for between 0 and 2.
+    fn largest_of_third_hermite() -> f64 {
+        let values = (0..20_000).map(|i| 1e-4 * f64::from(i)).map(|x| (3.0 * x - x.powi(3)) * (-0.5 * x * x).exp());
+        values.fold(0.0, f64::max)
+    }
+
+    /// The integrals of the papers' formulas by hand: largest velocity, velocity and displacement at the end.
+    #[test]
+    fn velocities_and_displacements_have_their_closed_forms() {
+        let unit = AMPLITUDE / OMEGA;
+        let gamma = 3.0;
+        let with = |shape, cycles, phase| Pulse { cycles, phase, ..pulse(shape) };
+        for (pulse, largest, velocity, displacement) in [
+            (pulse(Shape::HalfSine), 2.0 * unit, 2.0 * unit, PI * unit / OMEGA),
+            (pulse(Shape::Sine), 2.0 * unit, 0.0, TAU * unit / OMEGA),
+            (with(Shape::Sine, 1.5, 0.0), 2.0 * unit, 2.0 * unit, 3.0 * PI * unit / OMEGA),
+            (with(Shape::Sine, 2.0, PI), 2.0 * unit, 0.0, -2.0 * TAU * unit / OMEGA),
+            (pulse(Shape::Cosine), unit, 0.0, 0.0),
+            (with(Shape::Cosine, 3.0, -FRAC_PI_2), 2.0 * unit, 0.0, 3.0 * TAU * unit / OMEGA),
+            (pulse(Shape::Ricker), unit * 2.0_f64.sqrt() * (-0.5_f64).exp(), 0.0, 0.0),
+            (pulse(Shape::AntisymmetricRicker), unit * 3.0_f64.sqrt() / largest_of_third_hermite(), 0.0, 0.0),
+            // ν = 0: the velocity is A at the middle; ∫ of it is that of three cosines over γT
+            (
+                with(Shape::MavroeidisPapageorgiou, gamma, 0.0),
+                unit,
+                0.0,
+                unit * [(1.0, 2.0), (1.0 + 1.0 / gamma, 1.0), (1.0 - 1.0 / gamma, 1.0)]
+                    .map(|(part, weight): (f64, f64)| 0.5 * weight * (part * gamma * PI).sin() / (part * OMEGA))
+                    .iter()
+                    .sum::<f64>(),
+            ),
+            (with(Shape::MavroeidisPapageorgiou, 2.5, FRAC_PI_2), f64::NAN, 0.0, 0.0),
+        ] {
+            let record = pulse.record().unwrap();
+            if !largest.is_nan() {
+                assert_relative_eq!(peak_velocity(&record), largest, max_relative = 1e-6);
+            }
+            let [v, d] = end_of(&record);
+            assert_abs_diff_eq!(v, velocity, epsilon = 1e-8 * unit);
+            assert_abs_diff_eq!(d, displacement, epsilon = 1e-7 * unit / OMEGA);
+        }
+    }
+
+    /// The peak of a wavelet is its amplitude, which β = 1.3801 does for the antisymmetric one.
+    #[test]
+    fn wavelets_peak_at_their_amplitude() {
+        assert_abs_diff_eq!(beta(), 1.3801, epsilon = 5e-5);
+        for shape in [Shape::Ricker, Shape::AntisymmetricRicker] {
+            assert_relative_eq!(pulse(shape).record().unwrap().pga(), AMPLITUDE, max_relative = 1e-6);
+        }
+    }
+
+    /// Lines stay within the error of the curve at a hundred points each, and are not much better than that: no more of
+    /// them than it takes. With the curve's impulse they are off to both sides.
+    #[test]
+    fn straight_lines_keep_to_the_error() {
+        for shape in Shape::ALL {
+            for error in [1e-2, 1e-4, 1e-5] {
+                let pulse = Pulse { error, ..pulse(shape) };
+                let record = pulse.record().unwrap();
+                let mut off = [0.0_f64; 2];
+                for (t, a) in record.times().windows(2).zip(record.acceleration().windows(2)) {
+                    for part in (0..=100).map(|i| f64::from(i) / 100.0) {
+                        let line = a[0] + part * (a[1] - a[0]);
+                        let time = (t[0] + part * (t[1] - t[0])).min(pulse.duration());
+                        let excess = (line - pulse.acceleration(time)) / AMPLITUDE;
+                        off = [off[0].min(excess), off[1].max(excess)];
+                    }
+                }
+                let most = off[1].max(-off[0]);
+                assert!((0.3 * error..=error).contains(&most), "{shape:?}, {error}: {off:?}");
+            }
+        }
+    }
+
+    /// Steps four times as long are 256 times as far off in what the whole motion does: the impulse is kept.
+    #[test]
+    fn impulses_are_kept_to_fourth_order() {
+        let velocity = |error| end_of(&Pulse { error, ..pulse(Shape::HalfSine) }.record().unwrap())[0];
+        let off = [1.6e-3, 1e-4].map(|error| (velocity(error) * OMEGA / (2.0 * AMPLITUDE) - 1.0).abs());
+        assert!((150.0..400.0).contains(&(off[0] / off[1])), "{off:?}");
+        assert!(off[1] < 1e-8, "{off:?}");
+    }
+
+    /// What [`Shape::definition`] says of the peak, at the γ and ν of the least one and of the largest.
+    #[test]
+    fn the_peak_of_a_velocity_pulse_is_nearly_its_amplitude() {
+        let peak = |cycles, phase| {
+            Pulse { cycles, phase, ..pulse(Shape::MavroeidisPapageorgiou) }.record().unwrap().pga() / AMPLITUDE
+        };
+        let phases = || (0..=20).map(|i| PI * f64::from(i) / 20.0);
+        let peaks: Vec<_> = [1.01, 1.2, 1.3, 1.4, 1.7, 2.0, 3.0, 5.0]
+            .into_iter()
+            .flat_map(|cycles| phases().map(move |phase| (cycles, phase)))
+            .map(|(cycles, phase)| peak(cycles, phase))
+            .collect();
+        let [least, most] =
+            [f64::min as fn(f64, f64) -> f64, f64::max].map(|of| peaks.iter().copied().reduce(of).unwrap());
+        assert_abs_diff_eq!(least, 0.872, epsilon = 1e-3);
+        assert_abs_diff_eq!(most, 1.0, epsilon = 1e-5);
+    }
+
+    #[test]
+    fn jumps_are_steep_and_ends_are_at_rest() {
+        let with_rest = |shape| Pulse { lead_in: 1.0, rest: 2.0, ..pulse(shape) }.record().unwrap();
+        let record = with_rest(Shape::Cosine);
+        let (times, a_g) = (record.times(), record.acceleration());
+        let n = times.len();
+        assert_eq!((times[0], a_g[0], a_g[1], a_g[n - 2], a_g[n - 1]), (0.0, 0.0, 0.0, 0.0, 0.0));
+        assert_relative_eq!(a_g[2], AMPLITUDE, max_relative = 1e-6);
+        assert_eq!(times[2], 1.0);
+        for jump in [times[2] - times[1], times[n - 2] - times[n - 3]] {
+            assert_relative_eq!(jump, 1e-9 / FREQUENCY, max_relative = 1e-5);
+        }
+        assert_relative_eq!(times[n - 1], 3.0 + 1.0 / FREQUENCY, max_relative = 1e-15);
+        let sine = with_rest(Shape::Sine);
+        let (times, a_g) = (sine.times(), sine.acceleration());
+        assert_eq!((&times[..2], &a_g[..2]), (&[0.0, 1.0][..], &[0.0, 0.0][..]));
+        assert_eq!(a_g[a_g.len() - 2..], [0.0, 0.0]);
+    }
+
+    #[test]
+    fn refusals_name_the_number_its_value_and_the_limit() {
+        let refused = |pulse: Pulse| pulse.record().unwrap_err().to_string();
+        let one = pulse(Shape::Sine);
+        let amplitude = refused(Pulse { amplitude: 0.0, ..one });
+        assert!(amplitude.starts_with("amplitude = 0 m/s2 is out of range: it must lie between"), "{amplitude}");
+        let cycles = refused(Pulse { cycles: 3.0, ..pulse(Shape::HalfSine) });
+        assert_eq!(cycles, "cycles = 3 is not possible: half_sine has 0.5");
+        let gamma = refused(Pulse { cycles: 1.0, ..pulse(Shape::MavroeidisPapageorgiou) });
+        assert_eq!(gamma, "cycles = 1 is out of range: mavroeidis_papageorgiou needs more than 1 (its gamma)");
+        let lead_in = refused(Pulse { lead_in: 5e4, ..one });
+        assert_eq!(lead_in, "lead_in = 50000 s is out of range: at most 100000 periods are possible, 40000 s");
+        let jump = refused(Pulse { rest: 1e-10, ..one });
+        assert_eq!(jump, "rest = 0.0000000001 s is out of range: 0 is possible, or 0.0000000008 s and more");
+        let samples = refused(Pulse { cycles: 1e4, error: 1e-12, ..one });
+        assert!(samples.starts_with("error = 0.000000000001 takes 2221"), "{samples}");
+    }
+}

@@ -1,0 +1,179 @@
+//! Overturning under pulses: the rigid block's boundary against its closed form, maps that refine, conditions.
+#![allow(non_snake_case)] // B, H: the paper's own letters
+
+use rocking::{Detail, Parameters, Structure};
+use rocking_sweep::map::{Axis, Class, Fate, Map, Place, Point, nearest};
+use rocking_sweep::pulse::{Pulse, Shape, units_of};
+use std::collections::HashMap;
+
+/// A rigid block of this `slenderness` H/B, all of its mass at the top.
+fn block(slenderness: f64) -> Structure {
+    let parameters = Parameters { m0: 1e-3, J0: 0.0, H: 1.0, B: 1.0 / slenderness, ..Parameters::MCMANUS };
+    Structure::new(parameters).unwrap()
+}
+
+/// What becomes of `structure` at the level `rigid` under one pulse, both numbers in its units.
+fn fate(structure: &Structure, shape: Shape, frequency: f64, amplitude: f64) -> Point {
+    let axis = |value: f64| Axis::new(vec![value, 2.0 * value], false);
+    let pulse = Pulse { error: 1e-6, ..Pulse::new(shape, 1.0, 1.0) };
+    let map = Map::new(*structure, pulse, [axis(frequency), axis(amplitude)], true).unwrap();
+    map.computed_by(Detail::Rigid, 1e-12).unwrap().run(Place::of_grid(0, 0))
+}
+
+/// The value between `low` and `high` at which `is_high` becomes true, to rounding.
+fn bisect(mut low: f64, mut high: f64, is_high: impl Fn(f64) -> bool) -> f64 {
+    assert!(is_high(high) && !is_high(low));
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        *(if is_high(middle) { &mut high } else { &mut low }) = middle;
+    }
+    0.5 * (low + high)
+}
+
+/// The least amplitude a/(g α) of a half sine of ω/p = `frequency` that overturns a slender block, which takes no impact.
+///
+/// y = θ/α of the slender block obeys ÿ = p² (y - 1 + a sin ωt) from the instant t₀ on at which a sin ωt₀ = 1 lifts it. It
+/// falls where the growing part of y survives: ẏ + p y is e^(pt) times the integral of p² e^(-pt) (a sin ωt - 1), which
+/// over all time after t₀ must not be negative,
+///
+///     a ∫ p e^(-pt) sin ωt dt, t₀ to π/ω, ≥ e^(-p t₀)
+fn least_amplitude_of_half_sine(frequency: f64) -> f64 {
+    // ∫ e^(-t) sin ωt dt = -e^(-t) (sin ωt + ω cos ωt)/(1 + ω²), p = 1
+    let integral = |t: f64| -(-t).exp() * ((frequency * t).sin() + frequency * (frequency * t).cos());
+    let excess = |a: f64| {
+        let t0 = (1.0 / a).asin() / frequency;
+        let end = std::f64::consts::PI / frequency;
+        a * (integral(end) - integral(t0)) / (1.0 + frequency * frequency) - (-t0).exp()
+    };
+    bisect(1.0 + 1e-12, 1e3, |a| excess(a) > 0.0)
+}
+
+/// Housner's (1963) block: the boundary under a half sine is the closed form's to 1e-6 once the slenderness is
+/// extrapolated to none, from angles of 1/50 and 1/100: what a finite angle adds goes with its square.
+#[test]
+fn the_rigid_boundary_is_the_closed_form() {
+    for frequency in [0.5, 1.5, 4.0] {
+        let exact = least_amplitude_of_half_sine(frequency);
+        let found = [50.0, 100.0].map(|slenderness| {
+            let structure = block(slenderness);
+            bisect(0.9 * exact, 1.1 * exact, |amplitude| {
+                fate(&structure, Shape::HalfSine, frequency, amplitude).fate == Fate::Overturns
+            })
+        });
+        let extrapolated = found[1] + (found[1] - found[0]) / 3.0;
+        let off = (extrapolated / exact - 1.0).abs();
+        assert!(off < 1e-6, "omega/p = {frequency}: {found:?}, extrapolated {extrapolated}, exact {exact}: {off:e}");
+        let of_angle = (found[0] / exact - 1.0) / (found[1] / exact - 1.0);
+        assert!((3.5..4.5).contains(&of_angle), "omega/p = {frequency}: {found:?}, exact {exact}: {of_angle}");
+    }
+}
+
+/// A slender block lifts off where a_p/(g tan alpha) = 1, whatever the frequency.
+#[test]
+fn a_rigid_block_lifts_off_at_one() {
+    let structure = block(20.0);
+    let shapes = [Shape::Sine, Shape::HalfSine, Shape::Cosine];
+    for (shape, frequency) in shapes.into_iter().zip([0.3, 3.0, 30.0]) {
+        let class = |amplitude| fate(&structure, shape, frequency, amplitude).class();
+        // although its lines' corners stand outside the curve by 2/3 of 1e-6
+        for amplitude in [0.5, 1.0 - 1e-7, 1.0, 1.0 + 1e-15] {
+            assert_eq!(class(amplitude), Class::NoUplift, "{amplitude}");
+        }
+        assert_ne!(class(1.0 + 1e-6), Class::NoUplift);
+    }
+}
+
+/// A map of McManus at a level that costs little: some of all classes that a sine has.
+fn map(count: usize, finds_condition: bool) -> Map {
+    let axis = |from: f64, to: f64| {
+        let last = (count - 1) as f64;
+        Axis::new((0..count).map(|i| from + (to - from) * i as f64 / last).collect(), false)
+    };
+    let structure = Structure::new(Parameters { r: 0.9, ..Parameters::MCMANUS }).unwrap();
+    let pulse = Pulse { error: 1e-3, ..Pulse::new(Shape::Sine, 1.0, 1.0) };
+    let map = Map::new(structure, pulse, [axis(1.0, 9.0), axis(0.5, 8.5)], true).unwrap();
+    map.computed_by(Detail::Modal, 1e-9).unwrap().with_condition(finds_condition)
+}
+
+/// All points of `map`, refined so many times.
+fn complete(map: &Map, refinements: u32) -> HashMap<Place, Point> {
+    let mut known: HashMap<_, _> = map.grid().map(|place| (place, map.run(place))).collect();
+    for level in 1..=refinements {
+        loop {
+            let lacking = map.refinement(level, &known);
+            if lacking.is_empty() {
+                break;
+            }
+            known.extend(lacking.into_iter().map(|place| (place, map.run(place))));
+        }
+    }
+    known
+}
+
+/// A refined map has every point of the boundary that a grid as fine has, at a fraction of its runs: where the grid's
+/// neighbours differ the refined map holds both, and the same.
+#[test]
+fn a_refined_map_has_the_boundary_of_a_fine_grid() {
+    let (coarse, fine) = (map(17, false), map(33, false));
+    let (refined, all) = (complete(&coarse, 1), complete(&fine, 0));
+    assert!(refined.len() < all.len() * 3 / 4, "{} of {}", refined.len(), all.len());
+    let classes: std::collections::BTreeSet<_> = all.values().map(Point::class).collect();
+    assert!(classes.len() >= 4, "{classes:?}");
+    let mut differing = 0;
+    for (place, point) in &all {
+        let on_coarse = Place { amplitude: place.amplitude / 2, frequency: place.frequency / 2 };
+        if let Some(known) = refined.get(&on_coarse) {
+            assert_eq!(known, point, "{place:?}");
+        }
+        // what was left out has the class of the corner that stands for it, but for islands smaller than a square
+        differing += usize::from(nearest(&refined, on_coarse, 1).unwrap().class() != point.class());
+    }
+    assert!(differing <= all.len() / 100, "{differing} of {}", all.len());
+}
+
+/// Where the structure stays down nothing changes; elsewhere a change of the amplitude is amplified, or damped, by few
+/// orders of magnitude away from the boundaries.
+#[test]
+fn conditions_are_of_the_order_of_the_change() {
+    let map = map(5, true);
+    let points = complete(&map, 0);
+    for (place, point) in &points {
+        let condition = point.condition.unwrap();
+        match point.fate {
+            Fate::NoUplift => assert_eq!(condition, 0.0, "{place:?}"),
+            // of a pulse and few impacts; a change of 1e-12 is seen among roundings, so that only its order is known
+            _ => assert!((1e-3..1e5).contains(&condition), "{place:?}: {condition}"),
+        }
+    }
+}
+
+#[test]
+fn places_are_values_of_the_axes() {
+    let (lin, log) = (Axis::new(vec![1.0, 3.0, 4.0], false), Axis::new(vec![1.0, 4.0, 16.0], true));
+    assert_eq!([0.0, 0.25, 1.0, 1.5, 2.0, 3.0].map(|steps| lin.at(steps)), [1.0, 1.5, 3.0, 3.5, 4.0, 4.0]);
+    for (steps, value) in [(0.0, 1.0), (0.5, 2.0), (1.5, 8.0), (2.0, 16.0)] {
+        assert!((log.at(steps) / value - 1.0_f64).abs() < 1e-15);
+    }
+    let structure = Structure::new(Parameters::EVISON).unwrap();
+    let map = Map::new(structure, Pulse::new(Shape::Cosine, 1.0, 1.0), [lin, log], true).unwrap();
+    let pulse = map.pulse(Place::of_grid(1, 2));
+    let (amplitude, frequency) = units_of(&structure);
+    assert_eq!((pulse.amplitude, pulse.frequency), (16.0 * amplitude, 3.0 * frequency));
+}
+
+#[test]
+fn refusals_name_the_axis_and_the_limit() {
+    let structure = Structure::new(Parameters::EVISON).unwrap();
+    let refused = |frequency: Vec<f64>, amplitude: Vec<f64>| {
+        let axes = [frequency, amplitude].map(|values| Axis::new(values, false));
+        Map::new(structure, Pulse::new(Shape::Sine, 1.0, 1.0), axes, false).unwrap_err().to_string()
+    };
+    let rising =
+        |name| format!("{name} needs two or more finite values greater than 0, each larger than the one before");
+    assert_eq!(refused(vec![1.0], vec![1.0, 2.0]), rising("frequency"));
+    assert_eq!(refused(vec![1.0, 2.0], vec![2.0, 1.0]), rising("amplitude"));
+    assert_eq!(refused(vec![1.0, f64::NAN], vec![1.0, 2.0]), rising("frequency"));
+    let many = || (1..=4000).map(f64::from).collect::<Vec<_>>();
+    assert_eq!(refused(many(), many()), "4000 frequencies x 4000 amplitudes: more than 10000000 points");
+    assert!(refused(vec![1.0, 1e7], vec![1.0, 2.0]).starts_with("frequency = 1e7 Hz is out of range"));
+}
