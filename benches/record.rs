@@ -5,9 +5,9 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use nalgebra::{SMatrix, Vector4, Vector6};
 use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::run::record::{Reading, Record};
-use rocking::run::ground_motion::Segment;
 use rocking::run::End;
+use rocking::run::ground_motion::Segment;
+use rocking::run::record::{Reading, Record};
 use rocking::{Detail, Motion, Parameters, Run, Structure};
 use std::{env, hint::black_box, path::Path, time::Instant};
 

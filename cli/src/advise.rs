@@ -16,13 +16,13 @@ use crate::{
 use anyhow::Context;
 use clap::{ValueEnum, builder::PossibleValue};
 use fmu_export::significant::significant;
+use rocking::estimates::demand::{Demand, INSTANT_TRANSITION};
+use rocking::estimates::effective_frequency::effective_frequency;
+use rocking::estimates::response_spectrum::spectral_acceleration;
+use rocking::run::record::Record;
 use rocking::{
     Detail, Structure,
-    demand::{Demand, INSTANT_TRANSITION},
-    effective_frequency::effective_frequency,
     engine::DEFAULT_TOLERANCE,
-    record::Record,
-    response_spectrum::spectral_acceleration,
     run::{
         LONGEST_REST, Run,
         levels::{self, Comparison, Criterion, REFERENCE_TOLERANCE, Response, Verdict},

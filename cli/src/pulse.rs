@@ -16,14 +16,10 @@ use clap::{
     ArgGroup,
     builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
 };
-use rocking::{
-    Structure,
-    intensity::peak_velocity,
-    record::{
-        Record,
-        pulse::{DEFAULT_ERROR, Pulse, Shape, units_of},
-    },
-};
+use rocking::Structure;
+use rocking::estimates::intensity::peak_velocity;
+use rocking::run::record::Record;
+use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
 use std::path::{Path, PathBuf};
 
 /// Which pulse.

@@ -15,9 +15,9 @@ use crate::{
     validity::{self, LimitArgs},
 };
 use anyhow::ensure;
+use rocking::run::record::Record;
 use rocking::{
     Run, Transition,
-    record::Record,
     run::{
         End, Ending,
         fall::Fall,

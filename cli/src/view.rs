@@ -5,9 +5,9 @@ use crate::{
     talk::say,
 };
 use anyhow::Context;
+use rocking::run::record::Record;
 use rocking::{
     Outputs, Run, Structure,
-    record::Record,
     run::{
         Ending, RunError,
         curve::{Curve, Point},

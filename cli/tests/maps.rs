@@ -4,10 +4,8 @@
 mod command_line;
 
 use command_line::{fail, succeed};
-use rocking::run::record::{
-    Reading, Record,
-    pulse::{DEFAULT_ERROR, Pulse, Shape},
-};
+use rocking::run::record::{Reading, Record};
+use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape};
 use std::{
     collections::BTreeMap,
     fs,

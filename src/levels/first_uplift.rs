@@ -31,7 +31,7 @@ fn first_about(structure: &Structure, turning: &TurningMoment, arc: &Arc, side: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Parameters;
+    use crate::{Parameters, State};
     use crate::levels::full_contact;
     use crate::levels::nonlinear::accelerations;
     use crate::mechanics::load::{Load, Ramp};

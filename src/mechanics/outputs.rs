@@ -155,7 +155,7 @@ mod tests {
         let &Parameters { H, B, .. } = structure.parameters();
         let state = State { u: 3e-3, u_dot: -0.2, theta: -0.08, theta_dot: 0.6 };
         let load = Load { a_g: 7.0, F_t: 300.0 };
-        let accelerations = nonlinear_rocking::accelerations(&structure, Side::Left, &state, load).unwrap();
+        let accelerations = nonlinear::accelerations(&structure, Side::Left, &state, load).unwrap();
         let expected = accelerations[0]
             + H * accelerations[1]
             + state.theta_dot.powi(2) * (-B - state.u)

@@ -1,9 +1,9 @@
 //! The equations between two transitions, with their evaluations counted.
 
 use nalgebra::Vector2;
-use rocking::{Load, Phase, Ramp, State, Structure};
 use rocking::levels::full_contact;
 use rocking::levels::nonlinear;
+use rocking::{Load, Phase, Ramp, State, Structure};
 use std::cell::Cell;
 
 /// Two second-order equations for the positions (u, θ).
@@ -33,7 +33,7 @@ impl Equations for PhaseEquations<'_> {
                 Vector2::new(full_contact::acceleration(self.structure, &state, Load::ground(self.a_g.at(tau))), 0.0)
             }
             Phase::Rocking(side) | Phase::Overturned(side) => {
-                nonlinear_rocking::accelerations(self.structure, side, &state, Load::ground(self.a_g.at(tau)))
+                nonlinear::accelerations(self.structure, side, &state, Load::ground(self.a_g.at(tau)))
                     .unwrap_or_else(|| Vector2::repeat(f64::NAN))
             }
         }

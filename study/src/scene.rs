@@ -1,8 +1,8 @@
 //! The scenes: a structure, where it starts, and the ground under it.
 
 use anyhow::{Context, Result, bail};
-use rocking::run::record::{Reading, Record};
 use rocking::run::End;
+use rocking::run::record::{Reading, Record};
 use rocking::{Detail, Parameters, Ramp, Run, State, Structure};
 use std::path::{Path, PathBuf};
 

@@ -9,11 +9,11 @@ use anyhow::Result;
 use indicatif::ProgressBar;
 use population::{Pair, both};
 use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::mechanics::impact;
 use rocking::run::validity::{
     ASSUMPTIONS, EDGE_LOAD, ENERGY, FRICTION, Found, IMPACT_FRICTION, IMPACT_TENSION, TENSION,
 };
 use rocking::{Detail, Parameters};
-use rocking::mechanics::impact;
 use serde::Serialize;
 use std::path::Path;
 

@@ -5,8 +5,8 @@ mod synthetic;
 
 use approx::assert_relative_eq;
 use rocking::mechanics::energy::energy;
-use rocking::{Detail, Parameters, Phase, Side, State, Structure};
 use rocking::mechanics::impact;
+use rocking::{Detail, Parameters, Phase, Side, State, Structure};
 use study::failures::energy_gain::some_impact_raises;
 use study::failures::{Exhibit, double_crossing, grazing, history, overturning, zeno};
 use study::fixed_step::runge_kutta_4::RungeKutta4;

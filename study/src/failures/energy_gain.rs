@@ -6,8 +6,8 @@ use crate::chart::{Axis, Entry, Figure, Marker, Panel, Style, colour};
 use crate::scene::structure;
 use anyhow::{Context, Result};
 use rocking::mechanics::energy::energy;
-use rocking::{Detail, Motion, Parameters, Phase, Side, State, Structure, Transition, TransitionKind};
 use rocking::mechanics::impact;
+use rocking::{Detail, Motion, Parameters, Phase, Side, State, Structure, Transition, TransitionKind};
 
 /// Whether any impact with u = 0 after which rocking goes on raises the energy, found by trying states through the
 /// library's own reset and energy.

@@ -2,8 +2,8 @@
 
 use crate::engine::REFERENCE_TOLERANCE;
 use crate::scene::{Scene, structure};
-use rocking::run::record::Record;
 use rocking::run::RunError;
+use rocking::run::record::Record;
 use rocking::{Detail, Motion, Parameters, State, Transition, TransitionKind};
 
 /// A response over time, and its transitions.

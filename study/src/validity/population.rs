@@ -7,8 +7,8 @@
 use crate::scene::{read_record, structure};
 use anyhow::Result;
 use rayon::prelude::*;
-use rocking::run::record::Record;
 use rocking::run::peaks::Peaks;
+use rocking::run::record::Record;
 use rocking::run::validity::{Found, Limits, Validity};
 use rocking::run::{End, Ending, RunError};
 use rocking::{Parameters, Run, Structure};
