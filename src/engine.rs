@@ -5,7 +5,7 @@
 //! rocking θ is exactly 0; its leading zero coefficients are divided out before the search for its return, so that
 //! neither is a return within microseconds missed nor the start taken for one.
 //!
-//! Steps are bounded as transitions are ([`crate::engine::transition`]): an advance takes at most one for itself, two for each
+//! Steps are bounded as transitions are ([`crate::levels::rules`]): an advance takes at most one for itself, two for each
 //! transition, and one for each 1/Ω of time, Ω the largest of ω_u, 2 ζ_u ω_u, 2 ζ_fc ω_fc and p_l. Only what is thrown
 //! about takes more, up to four for each 1/Ω with |θ̇|, |u̇|/ρ and √(|ü|/ρ) among them, ρ² = (J0 + m0 B²)/m + (sB − u)².
 //! One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps. What is left of a long one once the base is down for good takes

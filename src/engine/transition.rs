@@ -1,12 +1,4 @@
-//! Transitions: their kinds, what follows from each, and the limit on how many there may be.
-//!
-//! # Progress
-//!
-//! Transitions are counted from the first of them on for a vibration period 2π/ω_u, then anew. After
-//! [`MAX_TRANSITIONS_PER_PERIOD`] the next impact is a landing whatever its momentum, and contact is held to the end of
-//! the period ([`TransitionKind::Settling`]): it sees two more at most. Bounces that fast are the start of infinitely
-//! many in finite time, which end in contact; neither specimen comes near them. The rigid limit, which has no vibration
-//! and does come to rest by ever faster impacts, has [`MAX_RIGID_TRANSITIONS_PER_PERIOD`] for each 1/p_l instead.
+//! Transitions: their kinds, and what follows from each.
 
 use crate::engine::motion::{Event, Motion};
 use crate::levels::rules::Rules;

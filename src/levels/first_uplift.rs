@@ -31,11 +31,11 @@ fn first_about(structure: &Structure, turning: &TurningMoment, arc: &Arc, side: 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Parameters, State};
     use crate::levels::full_contact;
     use crate::levels::nonlinear::accelerations;
     use crate::mechanics::load::{Load, Ramp};
     use crate::series::taylor::Start;
+    use crate::{Parameters, State};
     use proptest::prelude::*;
 
     fn first_from(structure: &Structure, state: State) -> (Crossing, Side) {

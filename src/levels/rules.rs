@@ -1,4 +1,12 @@
 //! What follows from an impact, and how many transitions there may be.
+//!
+//! # Progress
+//!
+//! Transitions are counted from the first of them on for a vibration period 2π/ω_u, then anew. After
+//! [`MAX_TRANSITIONS_PER_PERIOD`] the next impact is a landing whatever its momentum, and contact is held to the end of
+//! the period ([`Settling`](crate::TransitionKind::Settling)): it sees two more at most. Bounces that fast are the start of infinitely
+//! many in finite time, which end in contact; neither specimen comes near them. The rigid limit, which has no vibration
+//! and does come to rest by ever faster impacts, has [`MAX_RIGID_TRANSITIONS_PER_PERIOD`] for each 1/p_l instead.
 
 use crate::mechanics::impact;
 use crate::{Phase, Side, State, Structure};
