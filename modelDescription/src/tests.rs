@@ -2,7 +2,40 @@
 
 use super::*;
 
+fn variable(
+    name: &str,
+    causality: Causality,
+    variability: Variability,
+    initial: Option<Initial>,
+    variable_type: VariableType,
+) -> ScalarVariable {
+    let description = "a < b".into();
+    ScalarVariable {
+        name: name.into(),
+        value_reference: 7,
+        description,
+        causality,
+        variability,
+        initial,
+        variable_type,
+    }
+}
+
 fn spring() -> FmiModelDescription {
+    let (exact, calculated) = (Some(Initial::Exact), Some(Initial::Calculated));
+    let angle = Real {
+        unit: Some("rad".into()),
+        display_unit: Some("deg".into()),
+        min: Some(0.0),
+        max: Some(1e20),
+        nominal: Some(0.25),
+        start: Some(0.1),
+        ..Real::default()
+    };
+    let speed = Real { derivative: Some(1), reinit: Some(true), ..Real::default() };
+    let branch = Enumeration { declared_type: "Branch".into(), start: None };
+    let (cycles, soft) = (Integer { min: Some(0) }, Boolean { start: Some(true) });
+    let history = Text { start: Some("a & b.csv".into()) };
     FmiModelDescription {
         fmi_version: FmiVersion::V2_0,
         model_name: "Spring".into(),
@@ -61,137 +94,37 @@ fn spring() -> FmiModelDescription {
         default_experiment: DefaultExperiment { start_time: 0.0, stop_time: 2.5, tolerance: 1e-9, step_size: 1e-5 },
         model_variables: ModelVariables {
             scalar_variables: vec![
-                ScalarVariable {
-                    name: "angle".into(),
-                    value_reference: 0,
-                    description: "rotation".into(),
-                    causality: Causality::Input,
-                    variability: Variability::Continuous,
-                    initial: None,
-                    variable_type: VariableType::Real(Real {
-                        unit: Some("rad".into()),
-                        display_unit: Some("deg".into()),
-                        nominal: Some(0.25),
-                        start: Some(0.0),
-                        ..Real::default()
-                    }),
-                },
-                ScalarVariable {
-                    name: "ratio".into(),
-                    value_reference: 1,
-                    description: "hardening".into(),
-                    causality: Causality::Parameter,
-                    variability: Variability::Fixed,
-                    initial: Some(Initial::Exact),
-                    variable_type: VariableType::Real(Real {
-                        unit: None,
-                        min: Some(0.0),
-                        max: Some(1e20),
-                        start: Some(0.1),
-                        ..Real::default()
-                    }),
-                },
-                ScalarVariable {
-                    name: "doubled".into(),
-                    value_reference: 2,
-                    description: "twice the hardening".into(),
-                    causality: Causality::CalculatedParameter,
-                    variability: Variability::Fixed,
-                    initial: Some(Initial::Calculated),
-                    variable_type: VariableType::Real(Real::default()),
-                },
-                ScalarVariable {
-                    name: "branch".into(),
-                    value_reference: 0,
-                    description: "where the force is".into(),
-                    causality: Causality::Output,
-                    variability: Variability::Discrete,
-                    initial: Some(Initial::Calculated),
-                    variable_type: VariableType::Enumeration(Enumeration {
-                        declared_type: "Branch".into(),
-                        start: None,
-                    }),
-                },
-                ScalarVariable {
-                    name: "cycles".into(),
-                    value_reference: 1,
-                    description: "changes of branch".into(),
-                    causality: Causality::Output,
-                    variability: Variability::Discrete,
-                    initial: Some(Initial::Calculated),
-                    variable_type: VariableType::Integer(Integer { min: Some(0) }),
-                },
-                ScalarVariable {
-                    name: "broken".into(),
-                    value_reference: 0,
-                    description: "beyond repair".into(),
-                    causality: Causality::Output,
-                    variability: Variability::Discrete,
-                    initial: Some(Initial::Calculated),
-                    variable_type: VariableType::Boolean(Boolean::default()),
-                },
-                ScalarVariable {
-                    name: "soft".into(),
-                    value_reference: 1,
-                    description: "whether it softens".into(),
-                    causality: Causality::Parameter,
-                    variability: Variability::Fixed,
-                    initial: Some(Initial::Exact),
-                    variable_type: VariableType::Boolean(Boolean { start: Some(true) }),
-                },
-                ScalarVariable {
-                    name: "history".into(),
-                    value_reference: 0,
-                    description: "file of forces".into(),
-                    causality: Causality::Parameter,
-                    variability: Variability::Fixed,
-                    initial: Some(Initial::Exact),
-                    variable_type: VariableType::String(Text { start: Some("a & b.csv".into()) }),
-                },
-                ScalarVariable {
-                    name: "largest".into(),
-                    value_reference: 3,
-                    description: "largest force".into(),
-                    causality: Causality::Local,
-                    variability: Variability::Continuous,
-                    initial: Some(Initial::Calculated),
-                    variable_type: VariableType::Real(Real {
-                        derivative: Some(1),
-                        reinit: Some(true),
-                        ..Real::default()
-                    }),
-                },
+                variable("angle", Causality::Input, Variability::Continuous, None, VariableType::Real(angle)),
+                variable(
+                    "branch",
+                    Causality::Output,
+                    Variability::Discrete,
+                    calculated,
+                    VariableType::Enumeration(branch),
+                ),
+                variable("cycles", Causality::Local, Variability::Discrete, calculated, VariableType::Integer(cycles)),
+                variable("soft", Causality::Parameter, Variability::Fixed, exact, VariableType::Boolean(soft)),
+                variable("history", Causality::Parameter, Variability::Fixed, exact, VariableType::String(history)),
+                variable(
+                    "speed",
+                    Causality::CalculatedParameter,
+                    Variability::Fixed,
+                    calculated,
+                    VariableType::Real(speed),
+                ),
             ],
         },
         model_structure: ModelStructure {
-            outputs: Outputs {
-                unknowns: vec![
-                    Unknown { index: 4, dependencies: vec![], dependencies_kind: vec![] },
-                    Unknown { index: 5, dependencies: vec![], dependencies_kind: vec![] },
-                    Unknown { index: 6, dependencies: vec![], dependencies_kind: vec![] },
-                ],
-            },
-            derivatives: Derivatives {
-                unknowns: vec![Unknown {
-                    index: 9,
-                    dependencies: vec![1],
-                    dependencies_kind: vec![DependenciesKind::Dependent],
-                }],
-            },
-            initial_unknowns: InitialUnknowns {
-                unknowns: vec![
-                    Unknown { index: 3, dependencies: vec![2], dependencies_kind: vec![DependenciesKind::Dependent] },
-                    Unknown {
-                        index: 4,
-                        dependencies: vec![1, 2],
-                        dependencies_kind: vec![DependenciesKind::Dependent, DependenciesKind::Dependent],
-                    },
-                    Unknown { index: 5, dependencies: vec![], dependencies_kind: vec![] },
-                    Unknown { index: 6, dependencies: vec![], dependencies_kind: vec![] },
-                ],
-            },
+            outputs: Outputs { unknowns: vec![Unknown { index: 2, dependencies: vec![], dependencies_kind: vec![] }] },
+            derivatives: Derivatives { unknowns: vec![dependent(6, vec![1])] },
+            initial_unknowns: InitialUnknowns { unknowns: vec![dependent(2, vec![1, 4])] },
         },
     }
+}
+
+fn dependent(index: usize, dependencies: Vec<usize>) -> Unknown {
+    let dependencies_kind = vec![DependenciesKind::Dependent; dependencies.len()];
+    Unknown { index, dependencies, dependencies_kind }
 }
 
 const SPRING: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
@@ -221,48 +154,34 @@ const SPRING: &str = r#"<?xml version="1.0" encoding="UTF-8"?>
   </LogCategories>
   <DefaultExperiment startTime="0.0" stopTime="2.5" tolerance="1e-9" stepSize="1e-5"/>
   <ModelVariables>
-    <ScalarVariable name="angle" valueReference="0" description="rotation" causality="input" variability="continuous">
-      <Real unit="rad" displayUnit="deg" nominal="0.25" start="0.0"/>
+    <ScalarVariable name="angle" valueReference="7" description="a &lt; b" causality="input" variability="continuous">
+      <Real unit="rad" displayUnit="deg" min="0.0" max="1e20" nominal="0.25" start="0.1"/>
     </ScalarVariable>
-    <ScalarVariable name="ratio" valueReference="1" description="hardening" causality="parameter" variability="fixed" initial="exact">
-      <Real min="0.0" max="1e20" start="0.1"/>
-    </ScalarVariable>
-    <ScalarVariable name="doubled" valueReference="2" description="twice the hardening" causality="calculatedParameter" variability="fixed" initial="calculated">
-      <Real/>
-    </ScalarVariable>
-    <ScalarVariable name="branch" valueReference="0" description="where the force is" causality="output" variability="discrete" initial="calculated">
+    <ScalarVariable name="branch" valueReference="7" description="a &lt; b" causality="output" variability="discrete" initial="calculated">
       <Enumeration declaredType="Branch"/>
     </ScalarVariable>
-    <ScalarVariable name="cycles" valueReference="1" description="changes of branch" causality="output" variability="discrete" initial="calculated">
+    <ScalarVariable name="cycles" valueReference="7" description="a &lt; b" causality="local" variability="discrete" initial="calculated">
       <Integer min="0"/>
     </ScalarVariable>
-    <ScalarVariable name="broken" valueReference="0" description="beyond repair" causality="output" variability="discrete" initial="calculated">
-      <Boolean/>
-    </ScalarVariable>
-    <ScalarVariable name="soft" valueReference="1" description="whether it softens" causality="parameter" variability="fixed" initial="exact">
+    <ScalarVariable name="soft" valueReference="7" description="a &lt; b" causality="parameter" variability="fixed" initial="exact">
       <Boolean start="true"/>
     </ScalarVariable>
-    <ScalarVariable name="history" valueReference="0" description="file of forces" causality="parameter" variability="fixed" initial="exact">
+    <ScalarVariable name="history" valueReference="7" description="a &lt; b" causality="parameter" variability="fixed" initial="exact">
       <String start="a &amp; b.csv"/>
     </ScalarVariable>
-    <ScalarVariable name="largest" valueReference="3" description="largest force" causality="local" variability="continuous" initial="calculated">
+    <ScalarVariable name="speed" valueReference="7" description="a &lt; b" causality="calculatedParameter" variability="fixed" initial="calculated">
       <Real derivative="1" reinit="true"/>
     </ScalarVariable>
   </ModelVariables>
   <ModelStructure>
     <Outputs>
-      <Unknown index="4" dependencies="" dependenciesKind=""/>
-      <Unknown index="5" dependencies="" dependenciesKind=""/>
-      <Unknown index="6" dependencies="" dependenciesKind=""/>
+      <Unknown index="2" dependencies="" dependenciesKind=""/>
     </Outputs>
     <Derivatives>
-      <Unknown index="9" dependencies="1" dependenciesKind="dependent"/>
+      <Unknown index="6" dependencies="1" dependenciesKind="dependent"/>
     </Derivatives>
     <InitialUnknowns>
-      <Unknown index="3" dependencies="2" dependenciesKind="dependent"/>
-      <Unknown index="4" dependencies="1 2" dependenciesKind="dependent dependent"/>
-      <Unknown index="5" dependencies="" dependenciesKind=""/>
-      <Unknown index="6" dependencies="" dependenciesKind=""/>
+      <Unknown index="2" dependencies="1 4" dependenciesKind="dependent dependent"/>
     </InitialUnknowns>
   </ModelStructure>
 </fmiModelDescription>
