@@ -6,9 +6,11 @@
 mod at2;
 mod cosmos;
 mod esm;
+mod fields;
 mod knet;
 mod parsed;
 pub mod pulse;
+mod sampling;
 mod source;
 mod table;
 mod text;
@@ -130,6 +132,8 @@ pub enum Remedy {
     Step,
     /// The column.
     Column,
+    /// The column, or that every number is a sample.
+    ColumnOrAll,
     /// The channel, which has no name but its number.
     Channel,
     /// The unit.

@@ -1,9 +1,10 @@
 //! AT2, the acceleration records of PEER.
 
 use super::parsed::{Parsed, Times};
-use super::text::{acceleration, number, numbered, quote, without_blanks};
+use super::sampling::Sampling;
+use super::text::{acceleration, numbered, quote, without_blanks};
 use super::unit::Stated;
-use super::{BadLine, Format, MAX_SAMPLES, Reading, Unit, bad, source::decide};
+use super::{BadLine, Format, Reading, Unit, bad, source::decide};
 
 /// Whether `text` is one of these files.
 pub(super) fn is_its(text: &str) -> bool {
@@ -23,7 +24,10 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     };
     check_unit(unit).map_err(|problem| bad(3, problem))?;
     let (unit, unit_from) = decide(&Stated::Unit(Unit::G), how.unit).map_err(|problem| bad(3, problem))?;
-    let (npts, dt) = npts_and_dt(counts).map_err(|problem| bad(4, problem))?;
+    let Sampling { npts: Some(npts), dt: Some(dt) } = Sampling::of(4, counts)? else {
+        let expected = "`NPTS= 4172, DT= .0100 SEC` or `4172 0.0100 NPTS, DT`";
+        return Err(bad(4, format!("found {} where an AT2 file states {expected}", quote(counts))));
+    };
 
     let mut parsed = Parsed::new(Format::At2, title.trim(), unit, unit_from, Times::Every(dt));
     for line in without_blanks(numbered(text).skip(HEADER_LINES)) {
@@ -44,29 +48,6 @@ fn check_unit(line: &str) -> Result<(), String> {
         Ok(())
     } else {
         Err(format!("found {} where an AT2 file states ACCELERATION ... IN UNITS OF G", quote(line)))
-    }
-}
-
-/// NPTS and DT (s) from `NPTS=  4172, DT=   .0100 SEC,` or `4164    0.0100    NPTS, DT`.
-pub(super) fn npts_and_dt(line: &str) -> Result<(usize, f64), String> {
-    let upper = line.to_uppercase();
-    let words: Vec<_> = upper.split([' ', '\t', ',', '=']).filter(|word| !word.is_empty()).collect();
-    let (npts, dt) = match words.as_slice() {
-        ["NPTS", npts, "DT", dt] => (npts, dt.trim_end_matches("SEC")),
-        ["NPTS", npts, "DT", dt, unit, ..] if unit.starts_with("SEC") => (npts, *dt),
-        [npts, dt, "NPTS", "DT", ..] => (npts, *dt),
-        _ => {
-            let expected = "`NPTS= 4172, DT= .0100 SEC` or `4172 0.0100 NPTS, DT`";
-            return Err(format!("found {} where an AT2 file states {expected}", quote(line)));
-        }
-    };
-    let npts: usize = match npts.parse() {
-        Ok(npts) if (2..=MAX_SAMPLES).contains(&npts) => npts,
-        _ => return Err(format!("NPTS = {} must be a whole number, 2 to {MAX_SAMPLES}", quote(npts))),
-    };
-    match number(dt) {
-        Some(dt) if dt > 0.0 && (npts as f64 * dt).is_finite() => Ok((npts, dt)),
-        _ => Err(format!("DT = {} must be a number of seconds greater than 0", quote(dt))),
     }
 }
 
@@ -93,7 +74,7 @@ mod tests {
         ACCELERATION TIME SERIES IN UNITS OF G\n";
 
     /// The counts of every header variant, and what they say.
-    const COUNTS: [(&str, usize, f64); 9] = [
+    const COUNTS: [(&str, usize, f64); 14] = [
         ("NPTS=   3, DT=   .0100 SEC,                    ", 3, 0.01),
         ("NPTS= 3, DT= 0.01 SEC", 3, 0.01),
         ("NPTS=     3  DT=  0.0050 SEC,", 3, 0.005),
@@ -103,6 +84,11 @@ mod tests {
         ("3 .0050 npts,dt", 3, 0.005),
         ("npts=   3, dt=   5.0e-3 sec", 3, 0.005),
         ("\tNPTS =\t3 ,\tDT =\t1D-2\tSEC", 3, 0.01),
+        ("NPTS= 3, DT= .01 SEC, UNITS=G", 3, 0.01),
+        ("DT=0.01 s; NPTS: 3 of 3", 3, 0.01),
+        ("NPTS= 3 DT= 0.01s", 3, 0.01),
+        ("NPTS= 3, DT= 10 MSEC.", 3, 0.01),
+        ("NPTS= 3, SAMPLING INTERVAL DT= .01, START 0.0", 3, 0.01),
     ];
 
     fn read(text: &str, how: &Reading) -> Result<Record, BadLine> {
@@ -176,15 +162,15 @@ mod tests {
         }
         assert_eq!(at2_problem("NPTS= 1, DT= .01 SEC", ".1"), "4: NPTS = \"1\" must be a whole number, 2 to 10000000");
         assert_eq!(at2_problem("3.5 .01 NPTS, DT", ".1"), "4: NPTS = \"3.5\" must be a whole number, 2 to 10000000");
-        for dt in ["0.0", "-.01", "NAN", "1E308", "X"] {
+        for dt in ["0.0", "-.01", "1E308", "0X"] {
             assert_eq!(
                 at2_problem(&format!("NPTS= 3, DT= {dt} SEC"), ".1 .2 .3"),
                 format!("4: DT = {dt:?} must be a number of seconds greater than 0")
             );
         }
         assert_eq!(
-            at2_problem("NPTS= 3, DT= 10 MSEC", ".1 .2 .3"),
-            "4: found \"NPTS= 3, DT= 10 MSEC\" where an AT2 file states \
+            at2_problem("NPTS= 3, DT= X", ".1 .2 .3"),
+            "4: found \"NPTS= 3, DT= X\" where an AT2 file states \
              `NPTS= 4172, DT= .0100 SEC` or `4172 0.0100 NPTS, DT`"
         );
         assert_eq!(
