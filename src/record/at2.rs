@@ -32,7 +32,7 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     let mut parsed = Parsed::new(Format::At2, title.trim(), unit, unit_from, Times::Every(dt));
     for line in without_blanks(numbered(text).skip(HEADER_LINES)) {
         let (line, values) = line?;
-        for value in values.split_whitespace().flat_map(split_run_together) {
+        for value in values.split_whitespace() {
             parsed.add(acceleration(value), line)?;
         }
     }
@@ -49,18 +49,6 @@ fn check_unit(line: &str) -> Result<(), String> {
     } else {
         Err(format!("found {} where an AT2 file states ACCELERATION ... IN UNITS OF G", quote(line)))
     }
-}
-
-/// Full columns of a fixed width leave no blank between numbers: `.1297983E-02-.4E-03`. A sign after the digits of an
-/// exponent can only begin the next number.
-fn split_run_together(mut word: &str) -> impl Iterator<Item = &str> {
-    std::iter::from_fn(move || {
-        let exponent = word.find(['e', 'E', 'd', 'D']).unwrap_or(word.len());
-        let next = word.char_indices().find(|&(i, c)| i > exponent + 1 && matches!(c, '+' | '-'));
-        let (number, rest) = word.split_at(next.map_or(word.len(), |(i, _)| i));
-        word = rest;
-        (!number.is_empty()).then_some(number)
-    })
 }
 
 #[cfg(test)]
@@ -206,14 +194,6 @@ mod tests {
         assert!(read(&text, &same).is_ok());
         let gap = format!("{PACOIMA}NPTS= 3, DT= .01 SEC\n.1 .2\n\n.3\n");
         assert_eq!(read(&gap, &same).unwrap_err().line, 6);
-    }
-
-    #[test]
-    fn full_columns_of_a_fixed_width_come_apart() {
-        let together: Vec<_> = split_run_together("-.1297E-02-.4000E-03+1.5D+00.2").collect();
-        assert_eq!(together, ["-.1297E-02", "-.4000E-03", "+1.5D+00.2"]);
-        assert_eq!(split_run_together("1.5E0-2").collect::<Vec<_>>(), ["1.5E0", "-2"]);
-        assert_eq!(split_run_together(".1-.2").collect::<Vec<_>>(), [".1-.2"]);
     }
 
     /// Any finite value as AT2 files write them: 1.5E-3, -.15D-2, fixed point.

@@ -90,6 +90,11 @@ impl Layout {
             // a comma that stands in quotes alone is one before decimals
             return Ok(Layout { separator: None, decimal_comma: has(',') });
         }
+        let is_part = |field: &str| field.len() > 1 && field.starts_with('0') && field.parse::<u64>().is_ok();
+        let has_parts = |line: &str| commas(line) > 1 && line.split(',').any(|field| is_part(field.trim()));
+        if !has('.') && lines().any(has_parts) && !lines().any(|line| line.trim().contains(char::is_whitespace)) {
+            return Err("commas stand between numbers and before decimals: write a semicolon between columns".into());
+        }
         let is_decimal = |pair: &[&str]| {
             pair[0].ends_with(|letter: char| letter.is_ascii_digit())
                 && pair[1].starts_with(|letter: char| letter.is_ascii_digit())
@@ -104,10 +109,6 @@ impl Layout {
             return Ok(Layout { decimal_comma: lines().any(has_comma_in_quotes), ..separated(',') });
         }
         let is_one_column = lines().all(|line| commas(line) < 2) && is_one_column(&lines, before, how)?;
-        let is_part = |field: &str| field.len() > 1 && field.starts_with('0');
-        if !is_one_column && lines().any(|line| line.split(',').any(is_part)) {
-            return Err("commas stand between numbers and before decimals: write a semicolon between columns".into());
-        }
         Ok(if is_one_column { Layout { separator: None, decimal_comma: true } } else { separated(',') })
     }
 

@@ -67,11 +67,6 @@ impl Parsed {
         self.source.remarks.push(remark.into());
     }
 
-    /// One more thing that is likely wrong.
-    pub fn warn(&mut self, warning: impl Into<String>) {
-        self.source.warnings.push(warning.into());
-    }
-
     /// Whether there are as many samples as `name` states.
     pub fn check_count(&mut self, name: &str, stated: usize, how: &Reading) -> Result<(), BadLine> {
         let found = self.values.len();

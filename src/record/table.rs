@@ -5,13 +5,11 @@
 //! the samples, or are milliseconds: the file does not tell, so that the time between samples is to be given.
 
 use super::fields::{Layout, headings, is_number, is_numbers, words};
-use super::parsed::{Parsed, Times, usual_step};
+use super::parsed::{Parsed, Times};
 use super::sampling::Sampling;
-use super::text::{nine_digits, number, numbered, quote, without_blanks};
+use super::text::{number, numbered, quote, without_blanks};
 use super::unit::{Stated, TimeUnit, mentions_unit};
 use super::{BadLine, Column, Format, Reading, Remedy, bad, source::decide};
-
-const LONGEST_HEADER: usize = 1000;
 
 /// The numbers of a file, and what is said before them.
 struct Table<'a> {
@@ -36,8 +34,8 @@ struct Table<'a> {
 enum Samples {
     /// All numbers are samples, one after the other.
     All,
-    /// The column of times, with their unit in s, if there is one; that of accelerations.
-    Columns { time: Option<(usize, f64)>, value: usize },
+    /// The column of times, with their unit in s, or that which counts the samples, or neither; that of accelerations.
+    Columns { time: Option<(usize, f64)>, index: Option<usize>, value: usize },
 }
 
 /// The samples of a table as `how` says; `#` begins a comment line.
@@ -58,7 +56,15 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
         (_, Some(dt), _) => Times::Every(dt),
         (_, None, Some(dt)) => Times::Asked(dt),
         (_, None, None) => {
-            let problem = table.why_no_times() + ": the time between samples is not known";
+            let why = match samples {
+                Samples::Columns { index: Some(index), .. } => format!(
+                    "column {} has whole numbers, which count the samples or are milliseconds, for no heading has a unit, as \
+                     time (ms) does",
+                    index + 1
+                ),
+                _ => "no column has times".into(),
+            };
+            let problem = why + ": the time between samples is not known";
             return Err(bad(table.first, problem).remedied_by(Remedy::Step));
         }
     };
@@ -91,10 +97,6 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
         {
             return Err(bad(table.first, format!("DT states a sample every {dt:?} s, and the times have {found:?} s")));
         }
-        if let Some((row, step, usual)) = gap(times) {
-            let ([step, usual], line) = ([step, usual].map(nine_digits), table.line(row));
-            parsed.warn(format!("line {line}: {step} s after the sample before it, where most steps are {usual} s"));
-        }
     }
     if let Some(npts) = table.stated.npts {
         parsed.check_count("NPTS", npts, how)?;
@@ -102,19 +104,10 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     Ok(parsed)
 }
 
-/// The first sample that comes more than five usual steps after the one before it: its index, that step, and the usual
-/// one (s).
-fn gap(times: &[f64]) -> Option<(usize, f64, f64)> {
-    const MOST: f64 = 5.0;
-    let usual = usual_step(times)?;
-    let index = times.windows(2).position(|pair| pair[1] - pair[0] > MOST * usual)?;
-    Some((index + 1, times[index + 1] - times[index], usual))
-}
-
 impl<'a> Table<'a> {
     fn read(text: &'a str, how: &Reading) -> Result<Table<'a>, BadLine> {
-        let mut beginning = numbered(text).take(LONGEST_HEADER);
-        let Some((mut first, sample)) = beginning.find(|(_, line)| !is_comment(line) && is_numbers(line)) else {
+        let is_sample = |(_, line): &(usize, &str)| !is_comment(line) && is_numbers(line);
+        let Some((mut first, sample)) = numbered(text).find(is_sample) else {
             return Err(without_samples(text));
         };
         let before: Vec<_> = numbered(text).take(first - 1).filter(|(_, line)| !line.trim().is_empty()).collect();
@@ -163,14 +156,14 @@ impl<'a> Table<'a> {
     }
 
     fn no_number(&self, column: usize, field: &str) -> String {
+        let has_both = self.layout.decimal_comma && field.contains('.');
+        let is = if has_both { "has a point, and others have decimal commas" } else { "is not a number" };
         let time = self.headed_time().map_or(0, |(time, _)| time);
         let what = match self.count {
             2 if column == time => "the time".to_owned(),
             1 | 2 => "the acceleration".to_owned(),
             _ => format!("in column {},", column + 1),
         };
-        let has_both = self.layout.decimal_comma && field.contains('.');
-        let is = if has_both { "has a point, and others have decimal commas" } else { "is not a number" };
         format!("{what} {} {is}", quote(field))
     }
 
@@ -212,10 +205,16 @@ impl<'a> Table<'a> {
         if let (Some(Column::All), Some((time, _))) = (&how.column, &headed) {
             return Err(bad(first, format!("column {} has the times, and not all are accelerations", time + 1)));
         }
-        if count == 1 {
-            return self.check_lone_count().map(|()| Samples::All);
+        if let ([npts, after @ ..], 1) = (self.numbers.as_slice(), count)
+            && self.stated.npts.is_none()
+            && *npts > 1.0
+            && [after.len(), after.len().saturating_sub(1)].contains(&(*npts as usize))
+            && npts.fract() == 0.0
+        {
+            let problem = format!("{npts} is the number of the samples after it");
+            return Err(bad(first, problem).remedied_by(Remedy::Comment));
         }
-        if headed.is_none() && self.are_all(how) {
+        if count == 1 || headed.is_none() && self.are_all(how) {
             return Ok(Samples::All);
         }
         if let Some(uneven) = &self.uneven {
@@ -230,7 +229,9 @@ impl<'a> Table<'a> {
             headed => headed,
         };
         let time_column = time.as_ref().map(|(column, _)| *column);
-        if let Some((column, heading)) = time_column.and_then(|column| Some((column, self.no_time(column)?))) {
+        if let Some(column) = time_column
+            && let Some(heading) = self.headings_of(column).find(|heading| has_word(heading, NO_TIME))
+        {
             let problem = format!("column {} is {}, and times are needed there", column + 1, quote(heading));
             return Err(bad(first, problem));
         }
@@ -252,16 +253,16 @@ impl<'a> Table<'a> {
             let problem = format!("column {} has the times, and cannot have the accelerations", value + 1);
             return Err(bad(first, problem));
         }
-        if let Some(heading) = self.headings_of(value).find(|heading| is_no_acceleration(heading)) {
+        if let Some(heading) = self.headings_of(value).find(|heading| has_word(heading, NO_ACCELERATION)) {
             let problem = format!("column {} is {}, and accelerations are needed", value + 1, quote(heading));
             return Err(bad(first, problem));
         }
         let Some((time, unit)) = time else {
             time_column.map_or(Ok(()), |counted| self.check_steps(counted))?;
-            return Ok(Samples::Columns { time: None, value });
+            return Ok(Samples::Columns { time: None, index: time_column.or(index), value });
         };
         let second = unit.in_seconds().map_err(|problem| bad(first, problem))?;
-        Ok(Samples::Columns { time: Some((time, second)), value })
+        Ok(Samples::Columns { time: Some((time, second)), index, value })
     }
 
     /// Whether each number is a sample, as the option says, or NPTS, or a line of text; but where the first column may have
@@ -278,18 +279,6 @@ impl<'a> Table<'a> {
                 (self.uneven.is_some() || npts * self.count != self.numbers.len()) && !rises(self.column(0))
             }
             (None, None) => self.before.iter().any(is_series) && !rises(self.column(0)),
-        }
-    }
-
-    /// Refuses numbers that begin with how many come after it, or after the step that follows it.
-    fn check_lone_count(&self) -> Result<(), BadLine> {
-        let is_count = |npts: f64, after: usize| npts == after as f64 || npts + 1.0 == after as f64;
-        match self.numbers.as_slice() {
-            [npts, after @ ..] if self.stated.npts.is_none() && *npts > 1.0 && is_count(*npts, after.len()) => {
-                let problem = format!("{npts} is the number of the samples after it");
-                Err(bad(self.first, problem).remedied_by(Remedy::Comment))
-            }
-            _ => Ok(()),
         }
     }
 
@@ -316,8 +305,7 @@ impl<'a> Table<'a> {
         match (found.as_slice(), self.headings().next()) {
             ([one], _) => Ok(*one),
             (_, None) => Err(format!("column {asked} is asked for, and there are no headings")),
-            ([], Some(names)) => Err(format!("column {asked} is asked for, and the headings are {}", listed(names))),
-            _ => Err(format!("column {asked} is asked for, and {} columns have that heading", found.len())),
+            (_, Some(names)) => Err(format!("column {asked} is asked for, and the headings are {}", listed(names))),
         }
     }
 
@@ -326,46 +314,13 @@ impl<'a> Table<'a> {
         self.headings_of(column).any(|heading| matches!(Stated::of(heading), Stated::Unit(_)))
     }
 
-    /// The heading of the column that says that it has no times.
-    fn no_time(&self, column: usize) -> Option<&'a str> {
-        const OTHERS: [&str; 12] = [
-            "hz",
-            "mm",
-            "cm",
-            "m",
-            "km",
-            "frequency",
-            "freq",
-            "period",
-            "distance",
-            "depth",
-            "velocity",
-            "displacement",
-        ];
-        self.headings_of(column).find(|heading| {
-            heading.to_lowercase().split(|letter: char| !letter.is_alphanumeric()).any(|word| OTHERS.contains(&word))
-        })
-    }
-
     /// The first column falls, or stays, and no heading has times.
     fn no_times(&self) -> BadLine {
         let times = || self.column(0).zip(self.column(0).skip(1));
         let (row, (before, at)) = times().enumerate().find(|(_, (before, at))| at <= before).unwrap_or_default();
-        let why = if at == before { "they are too rounded, or none" } else { "it has none" };
-        let problem = format!("column 1 has {at:?} after {before:?}, and no heading says that it has times: {why}");
+        let what = if at == before { "no times, or too rounded ones" } else { "no times" };
+        let problem = format!("column 1 has {at:?} after {before:?}, which are {what}");
         bad(self.line(row + 1), problem).remedied_by(Remedy::ColumnOrAll)
-    }
-
-    /// Why the time between samples does not follow from the table.
-    fn why_no_times(&self) -> String {
-        let is_index = self.count > 1 && self.uneven.is_none() && counts(self.column(0)) && rises(self.column(0));
-        let why = if is_index {
-            "column 1 has whole numbers, which count the samples or are milliseconds, for no heading has a unit, as time (ms) \
-             does"
-        } else {
-            "no column has times"
-        };
-        why.into()
     }
 
     /// Refuses a column that counts the samples and leaves some out.
@@ -390,7 +345,7 @@ impl<'a> Table<'a> {
         for (line, cells) in &self.before {
             let stated = match value {
                 Some(value) => cells.as_ref().map_or(Stated::Nothing, |cells| Stated::of(cells[value])),
-                None if is_no_acceleration(line) && !line.to_lowercase().contains("acc") => {
+                None if has_word(line, NO_ACCELERATION) && !line.to_lowercase().contains("acc") => {
                     let problem = format!("{} is before the data, and accelerations are needed", quote(line));
                     return Err(bad(self.first, problem));
                 }
@@ -412,7 +367,7 @@ impl<'a> Table<'a> {
 
 /// Why a file has no samples.
 fn without_samples(text: &str) -> BadLine {
-    let lines = text.lines().take(LONGEST_HEADER).count();
+    let lines = text.lines().count();
     if text.trim().is_empty() {
         return bad(lines.max(1), "the file is empty");
     }
@@ -448,12 +403,16 @@ fn counts(mut numbers: impl Iterator<Item = f64>) -> bool {
     numbers.next().is_some_and(is_whole) && numbers.next().is_some_and(is_whole) && numbers.all(is_whole)
 }
 
-/// Whether a heading is of velocities or displacements.
-fn is_no_acceleration(heading: &str) -> bool {
-    let heading = heading.to_lowercase();
-    heading
-        .split(|letter: char| !letter.is_alphabetic())
-        .any(|word| matches!(word, "vel" | "velocity" | "disp" | "displ" | "displacement"))
+/// Words of headings that have no accelerations.
+const NO_ACCELERATION: &[&str] = &["vel", "velocity", "disp", "displ", "displacement"];
+
+/// Words and units of headings that have no times.
+const NO_TIME: &[&str] =
+    &["hz", "mm", "cm", "m", "km", "frequency", "freq", "period", "distance", "depth", "velocity", "displacement"];
+
+/// Whether one of the `words` stands in `heading`.
+fn has_word(heading: &str, words: &[&str]) -> bool {
+    heading.to_lowercase().split(|letter: char| !letter.is_alphabetic()).any(|word| words.contains(&word))
 }
 
 /// The first of `headings`, as many as a message can show.
@@ -777,14 +736,6 @@ mod tests {
     }
 
     #[test]
-    fn a_gap_is_said_with_its_line() {
-        let warnings = |text: &str| read(text, &AS_IT_IS).unwrap().1.warnings;
-        let gap = "t a\n0 1\n0.01 2\n0.02 3\n# pause\n0.23 4\n0.24 5\n";
-        assert_eq!(warnings(gap), ["line 6: 0.21 s after the sample before it, where most steps are 0.01 s"]);
-        assert!(warnings("t a\n0 1\n0.01 2\n0.02 3\n0.07 4\n").is_empty());
-    }
-
-    #[test]
     fn a_message_does_not_grow_with_the_table() {
         let row = |cell: &str| vec![cell; 20_001].join(";");
         let text = format!("{}\n{}\n{}\n", row("heading"), row("1"), row("2"));
@@ -814,11 +765,8 @@ mod tests {
                 "4: the time 0.5 s is that of the sample before it, too: times need more digits",
             ),
             ("t,a\n0,1\n.5,2\n0.4,3\n", "4: the time 0.4 s does not come after the one before it, 0.5 s"),
-            (
-                "0,1\n.5,2\n0.5,3\n",
-                "3: column 1 has 0.5 after 0.5, and no heading says that it has times: they are too rounded, or none",
-            ),
-            ("0,1\n.5,2\n0.4,3\n", "3: column 1 has 0.4 after 0.5, and no heading says that it has times: it has none"),
+            ("0,1\n.5,2\n0.5,3\n", "3: column 1 has 0.5 after 0.5, which are no times, or too rounded ones"),
+            ("0,1\n.5,2\n0.4,3\n", "3: column 1 has 0.4 after 0.5, which are no times"),
             ("0,.1\n1,.2\n\n2,.3\n", "3: a blank line amid the data: something may be missing there"),
             ("0 1\n1 2 3\n", "2: 3 column(s) instead of 2 as on line 1"),
             ("0;1\n0,5;1.234,5\n", "2: the acceleration \"1.234,5\" has a point, and others have decimal commas"),
