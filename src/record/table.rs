@@ -214,8 +214,16 @@ impl<'a> Table<'a> {
             let problem = format!("{npts} is the number of the samples after it");
             return Err(bad(first, problem).remedied_by(Remedy::Comment));
         }
-        if count == 1 || headed.is_none() && self.are_all(how) {
+        if count == 1 && self.uneven.is_none() || headed.is_none() && self.are_all(how) {
             return Ok(Samples::All);
+        }
+        let numbers = self.numbers.len();
+        if let (Some(npts), None, None) = (self.stated.npts, &headed, &how.column)
+            && (self.uneven.is_some() || npts * count != numbers)
+        {
+            let problem =
+                format!("NPTS states {npts} samples, and the file has {numbers} numbers, {count} on this line");
+            return Err(bad(first, problem).remedied_by(Remedy::ColumnOrAll));
         }
         if let Some(uneven) = &self.uneven {
             return Err(uneven.clone());
@@ -265,8 +273,7 @@ impl<'a> Table<'a> {
         Ok(Samples::Columns { time: Some((time, second)), index, value })
     }
 
-    /// Whether each number is a sample, as the option says, or NPTS, or a line of text; but where the first column may have
-    /// times, each line is one unless NPTS says otherwise.
+    /// Whether each number is a sample, as the option says, or NPTS; or a line of text, unless the first column may be times.
     fn are_all(&self, how: &Reading) -> bool {
         let is_series = |(line, _): &(&str, _)| {
             let lower = line.to_lowercase();
@@ -274,10 +281,7 @@ impl<'a> Table<'a> {
         };
         match (&how.column, self.stated.npts) {
             (Some(column), _) => *column == Column::All,
-            (None, Some(npts)) if npts == self.numbers.len() => true,
-            (None, Some(npts)) => {
-                (self.uneven.is_some() || npts * self.count != self.numbers.len()) && !rises(self.column(0))
-            }
+            (None, Some(npts)) => npts == self.numbers.len(),
             (None, None) => self.before.iter().any(is_series) && !rises(self.column(0)),
         }
     }
@@ -592,6 +596,11 @@ mod tests {
             let found = read(&stated, &AS_IT_IS);
             assert_eq!(found.unwrap_or_else(|error| panic!("{text}: {error:?}")).0.acceleration, expected, "{text}");
         }
+        assert_eq!(read("1\n2 3\n", &step).unwrap_err().remedy, Some(Remedy::ColumnOrAll));
+        let cut = "NPTS=8 DT=.5\n3 2 1\n1 2 3\n";
+        let expected = "2: NPTS states 8 samples, and the file has 6 numbers, 3 on this line";
+        assert_eq!(problem(cut, &Reading { ignores_count: true, ..AS_IT_IS }), expected);
+        assert_eq!(read(cut, &all).unwrap_err().remedy, Some(Remedy::IgnoreCount));
         let series = "ACCELERATION TIME HISTORY IN UNITS OF CM/S**2\n3 2 1\n1 2 3\n";
         assert_eq!(read(series, &step).unwrap().0.acceleration, [3.0, 2.0, 1.0, 1.0, 2.0, 3.0]);
         assert_eq!(problem("t,a\n0,1\n.5,2\n", &all), "2: column 1 has the times, and not all are accelerations");
@@ -677,6 +686,7 @@ mod tests {
         assert!(
             problem("0,01,0,12\n0,02,0,15\n", &with(None)).contains("commas stand between numbers and before decimals")
         );
+        assert!(problem("0,01,0,12\n0,02,-0,15\n", &with(None)).contains("commas stand between numbers"));
         assert_eq!(
             problem("0,5;0.1\n1;1,234.5\n", &AS_IT_IS),
             "1: the acceleration \"0.1\" has a point, and others have decimal commas"
