@@ -377,7 +377,7 @@ fn without_samples(text: &str) -> BadLine {
     }
     bad(
         lines,
-        format!("{lines} line(s) of text and none of numbers alone: two or more are needed, without columns of text"),
+        format!("{lines} line(s) of text and no samples: lines of numbers alone are needed, without columns of text"),
     )
 }
 
@@ -765,7 +765,7 @@ mod tests {
             ("0,1\ninf,2\n", "2: the time \"inf\" is not a number"),
             (
                 "t,a\n",
-                "1: 1 line(s) of text and none of numbers alone: two or more are needed, without columns of text",
+                "1: 1 line(s) of text and no samples: lines of numbers alone are needed, without columns of text",
             ),
             ("0,1\n1,NaN\n", "2: the acceleration \"NaN\" is not a number"),
             ("0,1\n1,\n", "2: 1 column(s) instead of 2 as on line 1"),
