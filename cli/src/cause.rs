@@ -1,12 +1,12 @@
 //! What a result comes from, so that it can be traced: program, structure, ground motion, and how it was computed.
-use crate::record_args::RecordArgs;
+use crate::record_args::{RecordArgs, RecordOptions, Understood};
 use FlexibleRocking::BUILD;
 use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::record::Record;
 use rocking::structure::parameters::PARAMETERS;
 use rocking::{Detail, Parameters, State, Structure};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Version of the program, and the first digits of its build.
 pub fn version() -> String {
@@ -22,7 +22,8 @@ pub fn heading(name: &str, unit: &str) -> String {
 #[derive(Serialize)]
 pub struct Cause {
     version: String,
-    structure: Parameters,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    structure: Option<Parameters>,
     #[serde(flatten)]
     ground: Option<Ground>,
     #[serde(flatten)]
@@ -35,6 +36,9 @@ struct Ground {
     /// Its title.
     record: String,
     file: Option<PathBuf>,
+    /// Unit of the accelerations in the file, where they are looked at alone.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    record_unit: Option<String>,
     time_scale: f64,
     scale: f64,
 }
@@ -53,17 +57,29 @@ struct Level {
     tolerance: f64,
 }
 
+impl Ground {
+    fn new(file: Option<PathBuf>, options: &RecordOptions, record: &Record) -> Ground {
+        let [time_scale, scale] = options.factors();
+        Ground { record: record.title().into(), file, record_unit: None, time_scale, scale }
+    }
+}
+
 impl Cause {
     /// Of what follows from `structure`.
     pub fn new(structure: &Structure) -> Cause {
-        Cause { version: version(), structure: *structure.parameters(), ground: None, run: None }
+        Cause { version: version(), structure: Some(*structure.parameters()), ground: None, run: None }
+    }
+
+    /// Of what follows from the record in the file at `path` alone, which is understood as `options` say.
+    pub fn of_record(path: &Path, options: &RecordOptions, understood: &Understood) -> Cause {
+        let record_unit = Some(understood.unit().to_string());
+        let ground = Ground { record_unit, ..Ground::new(Some(path.into()), options, &understood.record) };
+        Cause { version: version(), structure: None, ground: Some(ground), run: None }
     }
 
     /// The same under the `record` that `args` ask for.
     pub fn under(self, args: &RecordArgs, record: &Record) -> Cause {
-        let [time_scale, scale] = args.factors();
-        let ground = Ground { record: record.title().into(), file: args.record.clone(), time_scale, scale };
-        Cause { ground: Some(ground), ..self }
+        Cause { ground: Some(Ground::new(args.record.clone(), &args.options, record)), ..self }
     }
 
     /// The same of a run from `initial`, at one level of detail or at all.
@@ -76,10 +92,13 @@ impl Cause {
     pub fn columns(&self) -> Vec<(String, String)> {
         let mut columns = vec![("version".to_owned(), self.version.clone())];
         let number = |name: &str, unit, value: f64| (heading(name, unit), format!("{value:?}"));
-        columns.extend(PARAMETERS.iter().map(|of| number(of.name, of.unit, (of.get)(&self.structure))));
-        if let Some(Ground { record, file, time_scale, scale }) = &self.ground {
+        if let Some(structure) = &self.structure {
+            columns.extend(PARAMETERS.iter().map(|of| number(of.name, of.unit, (of.get)(structure))));
+        }
+        if let Some(Ground { record, file, record_unit, time_scale, scale }) = &self.ground {
             let file = file.as_ref().map_or_else(String::new, |file| file.display().to_string());
             columns.extend([("record".to_owned(), record.clone()), ("file".to_owned(), file)]);
+            columns.extend(record_unit.iter().map(|unit| ("record_unit".to_owned(), unit.clone())));
             columns.extend([number("time_scale", "1", *time_scale), number("scale", "1", *scale)]);
         }
         if let Some(OfRun { level, initial }) = &self.run {

@@ -95,10 +95,7 @@ fn record(options: &RecordOptions, path: &Path, g: f64, folder: &Path) -> anyhow
     if options.are_none() && !input::is_standard(path) {
         return Ok(path.into());
     }
-    let mut name =
-        if input::is_standard(path) { "record".into() } else { path.file_stem().unwrap_or_default().to_owned() };
-    name.push(".csv");
-    let packed = folder.join(name);
+    let packed = folder.join(input::stem(path) + ".csv");
     let mut packed_already = OutputFiles::default();
     understood.write(Table::create(&mut packed_already, &packed)?)?;
     Ok(packed)

@@ -22,6 +22,15 @@ pub fn name(path: &Path) -> String {
     if is_standard(path) { NAME.into() } else { path.display().to_string() }
 }
 
+/// What a file of `path` that is made of it is called after.
+pub fn stem(path: &Path) -> String {
+    if is_standard(path) {
+        "record".into()
+    } else {
+        path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
+    }
+}
+
 /// What is at `path`. Standard input has an end, and comes once.
 pub fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
     if !is_standard(path) {

@@ -2,11 +2,12 @@
 pub mod picture;
 
 use crate::{
+    cause::Cause,
     output_files::OutputFiles,
     picture::PictureFile,
     quantities::{Line, write_columns},
     record_args::{RecordOptions, with_option},
-    results::{Format, FormatArgs, print, print_rows},
+    results::{Format, FormatArgs, print, print_traced},
     tables::Table,
     talk::say,
 };
@@ -56,7 +57,8 @@ pub fn run(args: &RecordCommand) -> anyhow::Result<()> {
         let is_table_printed = args.output.as_deref() == Some(Path::new("-"));
         if is_table_printed { say!("{}", text.trim_end()) } else { print(&text)? }
     } else {
-        print_rows(args.results.format, &lines)?;
+        let cause = Cause::of_record(&args.record, &args.options, &understood);
+        print_traced(args.results.format, &cause, &lines)?;
     }
     if let Some(path) = args.output.as_deref().filter(|path| *path != Path::new("-")) {
         say!("written        {}", path.display());

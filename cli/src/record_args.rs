@@ -14,7 +14,7 @@ pub struct RecordArgs {
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
     #[command(flatten)]
-    options: RecordOptions,
+    pub options: RecordOptions,
 }
 
 /// How a record is read and scaled: on the command line, and beside its file's name in the file of a sweep.
@@ -27,7 +27,8 @@ pub struct RecordOptions {
     /// Time between the samples of a record without times; times that are there must not contradict it
     #[arg(long, value_name = "SECONDS", value_parser = positive, requires = "record", allow_negative_numbers = true)]
     pub dt: Option<f64>,
-    /// Column that has the accelerations, by number or heading; or channel of a COSMOS or CSMIP file, by number
+    /// Column that has the accelerations, by number or heading, or `all` where every number is one, as many on a line as
+    /// there are; or channel of a COSMOS or CSMIP file, by number
     #[arg(long, value_name = "COLUMN", value_parser = column, requires = "record")]
     pub column: Option<Column>,
     /// Take the samples that are there where the file states another number of them
@@ -76,7 +77,8 @@ impl RecordOptions {
 
     /// The same before anything is said.
     pub fn understand(&self, path: &Path, g: f64) -> anyhow::Result<Understood> {
-        let &RecordOptions { unit, dt, ref column, ignore_npts: ignores_count, time_scale, scale } = self;
+        let &RecordOptions { unit, dt, ref column, ignore_npts: ignores_count, .. } = self;
+        let [time_scale, scale] = self.factors();
         if let Some(dt) = dt {
             ensure!(dt > 0.0 && dt.is_finite(), "dt = {dt} is out of range: a finite number greater than 0 is needed");
         }
@@ -87,8 +89,13 @@ impl RecordOptions {
         };
         let (record, source) = in_file.clone().in_m_s2(source, g);
         let described = described(path, &record, &source, g);
-        let scaled = |record: Record| record.scaled(time_scale.unwrap_or(1.0), scale.unwrap_or(1.0));
+        let scaled = |record: Record| record.scaled(time_scale, scale);
         Ok(Understood { record: scaled(record)?, in_file: scaled(in_file)?, source, described })
+    }
+
+    /// Factors on the record's times and on its accelerations.
+    pub fn factors(&self) -> [f64; 2] {
+        [self.time_scale, self.scale].map(|factor| factor.unwrap_or(1.0))
     }
 
     /// Whether a file is read as it is.
@@ -103,6 +110,11 @@ impl Understood {
         self.source.warnings.iter().map(move |warning| format!("warning: {}: {warning}", input::name(path)))
     }
 
+    /// The unit of its file.
+    pub fn unit(&self) -> Unit {
+        self.source.unit
+    }
+
     /// Whether nobody has said in which unit it is.
     pub fn unit_is_assumed(&self) -> bool {
         self.source.unit_from == UnitFrom::Assumed
@@ -115,13 +127,6 @@ impl Understood {
         let Understood { in_file, .. } = self;
         in_file.times().iter().zip(in_file.acceleration()).try_for_each(|sample| table.write(sample))?;
         table.finish()
-    }
-}
-
-impl RecordArgs {
-    /// Factors on the record's times and on its accelerations.
-    pub fn factors(&self) -> [f64; 2] {
-        [self.options.time_scale, self.options.scale].map(|factor| factor.unwrap_or(1.0))
     }
 }
 
@@ -153,6 +158,10 @@ pub fn with_option(error: anyhow::Error) -> anyhow::Error {
         Remedy::IgnoreCount => "--ignore-npts takes those",
         Remedy::Step => "give it with --dt SECONDS",
         Remedy::Column => "choose with --column, by number or heading",
+        Remedy::ColumnOrAll => {
+            "choose one with --column NUMBER, or say that every number is a sample, with --column all or a line NPTS= ..., \
+             DT= ... before them"
+        }
         Remedy::Channel => "choose with --column, by number",
         Remedy::Unit => "say with --unit what they are",
         Remedy::Comment => "begin a line that is no sample with #",
@@ -165,6 +174,10 @@ pub fn with_key(error: anyhow::Error) -> anyhow::Error {
         Remedy::IgnoreCount => "{ file = ..., ignore_npts = true } takes those",
         Remedy::Step => "give it, { file = ..., dt = SECONDS }",
         Remedy::Column => "choose by number or heading, { file = ..., column = ... }",
+        Remedy::ColumnOrAll => {
+            "choose one, { file = ..., column = NUMBER }, or say that every number is a sample, { file = ..., column = 'all' } \
+             or a line NPTS= ..., DT= ... before them"
+        }
         Remedy::Channel => "choose by number, { file = ..., column = ... }",
         Remedy::Unit => "say what they are, { file = ..., unit = ... }",
         Remedy::Comment => "begin a line that is no sample with #",
@@ -179,10 +192,9 @@ fn with_remedy(error: anyhow::Error, words: impl Fn(&Remedy) -> &'static str) ->
 }
 
 fn column(text: &str) -> Result<Column, String> {
-    match text.parse() {
-        Ok(0) => Err("columns are counted from 1".into()),
-        Ok(number) => Ok(Column::Number(number)),
-        Err(_) => Ok(Column::Heading(text.into())),
+    match Column::from(text) {
+        Column::Number(0) => Err("columns are counted from 1".into()),
+        column => Ok(column),
     }
 }
 
@@ -213,9 +225,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_column_has_a_number_or_a_heading() {
+    fn a_column_has_a_number_or_a_heading_or_is_all() {
         assert_eq!(column("3"), Ok(Column::Number(3)));
         assert_eq!(column("E-W"), Ok(Column::Heading("E-W".into())));
+        assert_eq!(column("all"), Ok(Column::All));
         assert!(column("0").is_err());
     }
 }

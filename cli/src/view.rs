@@ -1,5 +1,6 @@
 //! `view`: a page that shows the structure in motion, one file that needs nothing else.
 use crate::{
+    input,
     output_files::{OutputFile, OutputFiles},
     scene_args::MotionArgs,
     talk::say,
@@ -71,9 +72,9 @@ fn curve(run: &Run) -> Result<(f64, Curve), RunError> {
 
 impl ViewArgs {
     fn output_path(&self) -> PathBuf {
-        match (&self.output, self.motion.ground.record.record.as_deref().and_then(Path::file_stem)) {
+        match (&self.output, &self.motion.ground.record.record) {
             (Some(path), _) => path.clone(),
-            (None, Some(record)) => format!("{}_view.html", record.to_string_lossy()).into(),
+            (None, Some(record)) => format!("{}_view.html", input::stem(record)).into(),
             (None, None) => "free_vibration_view.html".into(),
         }
     }

@@ -27,8 +27,12 @@ const OPTIONS: &str = "--dt 0.01 --column east --unit mg --scale 2 --time-scale 
 fn what_a_record_amounts_to_is_that_of_a_sine() {
     let folder = folder();
     let (printed, _) = succeed(folder.path(), "record pulse.AT2 --format json --picture pulse.svg -o pulse.csv");
-    let lines: Vec<Value> = serde_json::from_str(&printed).unwrap();
+    let printed: Value = serde_json::from_str(&printed).unwrap();
+    let lines = printed["rows"].as_array().unwrap();
     let amount = |name: &str| lines.iter().find(|line| line["name"] == name).unwrap()["value"].as_f64().unwrap();
+    assert_eq!((&printed["file"], &printed["record_unit"]), (&"pulse.AT2".into(), &"g".into()));
+    assert_eq!((&printed["scale"], &printed["time_scale"]), (&1.0.into(), &1.0.into()));
+    assert!(printed["record"].is_string() && printed["version"].is_string(), "{printed}");
     let (a, period) = (0.6 * G, 0.5);
     let error = (TAU / period * DT).powi(2) / 4.0;
     assert_relative_eq!(amount("PGA"), a, max_relative = error);
@@ -89,6 +93,12 @@ fn every_command_reads_with_the_same_options() {
     let mut archive = zip::ZipArchive::new(fs::File::open(here.join("odd.fmu")).unwrap()).unwrap();
     let packed = std::io::read_to_string(archive.by_name("resources/odd.csv").unwrap()).unwrap();
     assert_eq!(packed, fs::read_to_string(here.join("plain.csv")).unwrap());
+    fs::write(here.join("block.txt"), "0.1 0.3 0.2\n0.4 -0.1 0.2\n").unwrap();
+    fs::write(here.join("lines.csv"), "time[s],a_g[m/s2]\n0,.1\n.01,.3\n.02,.2\n.03,.4\n.04,-.1\n.05,.2\n").unwrap();
+    assert_eq!(sweep("{ file = 'block.txt', dt = 0.01, column = 'all' }"), sweep("'lines.csv'"));
+    let (_, refused) = fail(here, "record block.txt --dt 0.01");
+    assert!(refused.contains("--column NUMBER") && refused.contains("--column all"), "{refused}");
+    succeed(here, "export --record block.txt --dt 0.01 --column all -o block.fmu");
     let (_, refused) = fail(here, "export --record odd.txt -o odd.fmu");
     assert!(refused.ends_with("choose with --column, by number or heading\n"), "{refused}");
 }
@@ -109,6 +119,8 @@ fn a_record_and_parameters_come_from_standard_input_each_alone() {
         let found = piped(&command.replace("FILE", "-"), &record).0;
         assert_eq!(found.replace(",-,", ",pulse.AT2,"), expected, "but for the name of the file");
     }
+    piped("view --record - --duration 0.1", &record);
+    assert!(folder.path().join("record_view.html").exists());
     let parameters = succeed(folder.path(), "describe --template --preset evison").0;
     let expected = succeed(folder.path(), "describe --preset evison --format csv").0;
     assert_eq!(piped("describe --parameters - --format csv", parameters.as_bytes()).0, expected);

@@ -320,7 +320,7 @@ fn a_record_that_cannot_be_followed_is_refused() {
         (
             "passwd",
             format!(
-                "record: {folder}/passwd, line 1: no line of numbers alone up to here; two or more samples are needed, \
+                "record: {folder}/passwd, line 1: 1 line(s) of text and no samples: lines of numbers alone are needed, \
                  without columns of text"
             ),
         ),

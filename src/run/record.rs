@@ -6,8 +6,10 @@
 mod at2;
 mod cosmos;
 mod esm;
+mod fields;
 mod knet;
 mod parsed;
+mod sampling;
 mod source;
 mod table;
 mod text;
@@ -36,6 +38,9 @@ const LARGEST_USUAL_VELOCITY: f64 = 2.0;
 
 /// Steps of recorders, s.
 const USUAL_STEPS: std::ops::RangeInclusive<f64> = 1e-4..=0.1;
+
+/// Most usual steps between two samples.
+const LONGEST_GAP: f64 = 5.0;
 
 /// Longest duration of a record, s: an hour.
 const LONGEST_USUAL: f64 = 3600.0;
@@ -117,6 +122,8 @@ pub enum Remedy {
     Step,
     /// The column.
     Column,
+    /// The column, or that every number is a sample.
+    ColumnOrAll,
     /// The channel, which has no name but its number.
     Channel,
     /// The unit.
@@ -192,6 +199,7 @@ impl Record {
         let duration = self.end() - self.start();
         let last = self.velocities_and_displacements().last();
         let step = nine_digits(usual_step(&self.times).unwrap_or_default());
+        let longest = nine_digits(self.times.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max));
         let velocity = last.unwrap_or_default()[0];
         let (peak, mean) = (self.pga() / g, velocity / duration / g);
         let is_drift = mean.abs() > LARGEST_USUAL_MEAN && velocity.abs() > LARGEST_USUAL_VELOCITY;
@@ -199,6 +207,8 @@ impl Record {
         let doubts = [
             (peak > LARGEST_USUAL_PEAK).then(|| format!("a peak of {peak:.0} g: is the unit right?")),
             (!is_usual).then(|| format!("a step of {step} s: is the time in another unit?")),
+            (longest > LONGEST_GAP * step)
+                .then(|| format!("a step of {longest} s, where most are {step} s: is something missing?")),
             (duration > LONGEST_USUAL)
                 .then(|| format!("a duration of {:.1} hours: is the time in another unit?", duration / 3600.0)),
             is_drift.then(|| {
@@ -458,6 +468,8 @@ mod tests {
         assert_eq!(doubts(4000, 5e-5, 0.0, 3.0), ["a step of 0.00005 s: is the time in another unit?"]);
         assert_eq!(doubts(40_000, 0.1, 0.0, 3.0), ["a duration of 1.1 hours: is the time in another unit?"]);
         assert_eq!(doubts(4000, 0.01, 0.0, 59.0), ["a peak of 6 g: is the unit right?"]);
+        let gap = Record::from_samples("", vec![0.0, 0.01, 0.02, 0.03, 0.24, 0.25], vec![0.0; 6]).unwrap().doubts(9.81);
+        assert_eq!(gap, ["a step of 0.21 s, where most are 0.01 s: is something missing?"]);
         let drift =
             "a mean acceleration of 0.29 g, after which the ground moves on at 114 m/s: is it the right column?";
         assert_eq!(doubts(4000, 0.01, 0.29 * 9.81, 3.0), [drift]);

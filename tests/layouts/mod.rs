@@ -102,8 +102,8 @@ pub fn all(count: usize) -> Vec<Layout> {
         table("# peak in g: 0.3\nt/ms,a/gal", |i| (5 * i).to_string()),
         table("Time,Acceleration\n(sec),(cm/sec^2)", |i| format!("{:.3}", i as f64 * DT)),
         read_as(with_step(None), table("n,acc (gal)", |i| (i + 1).to_string())),
-        read_as(with_step(Some(gal)), several("", 8)),
-        read_as(with_step(None), several("El Centro 1940 05 18\nAccelerations in units of cm/sec^2.\n", 5)),
+        read_as(Reading { column: Some(Column::All), ..with_step(Some(gal)) }, several("", 8)),
+        read_as(with_step(None), several("El Centro 1940 05 18\nACCELERATION TIME SERIES IN UNITS OF CM/SEC^2.\n", 5)),
         read_as(Reading { unit: Some(gal), ..Reading::default() }, several(&format!("{count} {DT}\n"), 5)),
     ]);
     all

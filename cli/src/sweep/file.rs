@@ -372,8 +372,8 @@ fn motions(
         let scale = options.scale.unwrap_or(1.0);
         let column = match &options.column {
             None => String::new(),
-            Some(Column::Number(number)) => format!(" column {number}"),
             Some(Column::Heading(heading)) => format!(" column {heading}"),
+            Some(column) => format!(" column {column}"),
         };
         let in_folder = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
         let mut paths = glob::glob(&in_folder.to_string_lossy()).with_context(|| format!("records {pattern:?}"))?;

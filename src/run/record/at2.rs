@@ -1,9 +1,10 @@
 //! AT2, the acceleration records of PEER.
 
 use super::parsed::{Parsed, Times};
-use super::text::{acceleration, number, numbered, quote, without_blanks};
+use super::sampling::Sampling;
+use super::text::{acceleration, numbered, quote, without_blanks};
 use super::unit::Stated;
-use super::{BadLine, Format, MAX_SAMPLES, Reading, Unit, bad, source::decide};
+use super::{BadLine, Format, Reading, Unit, bad, source::decide};
 
 /// Whether `text` is one of these files.
 pub(super) fn is_its(text: &str) -> bool {
@@ -23,12 +24,15 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     };
     check_unit(unit).map_err(|problem| bad(3, problem))?;
     let (unit, unit_from) = decide(&Stated::Unit(Unit::G), how.unit).map_err(|problem| bad(3, problem))?;
-    let (npts, dt) = npts_and_dt(counts).map_err(|problem| bad(4, problem))?;
+    let Sampling { npts: Some(npts), dt: Some(dt) } = Sampling::of(4, counts)? else {
+        let expected = "`NPTS= 4172, DT= .0100 SEC` or `4172 0.0100 NPTS, DT`";
+        return Err(bad(4, format!("found {} where an AT2 file states {expected}", quote(counts))));
+    };
 
     let mut parsed = Parsed::new(Format::At2, title.trim(), unit, unit_from, Times::Every(dt));
     for line in without_blanks(numbered(text).skip(HEADER_LINES)) {
         let (line, values) = line?;
-        for value in values.split_whitespace().flat_map(split_run_together) {
+        for value in values.split_whitespace() {
             parsed.add(acceleration(value), line)?;
         }
     }
@@ -47,41 +51,6 @@ fn check_unit(line: &str) -> Result<(), String> {
     }
 }
 
-/// NPTS and DT (s) from `NPTS=  4172, DT=   .0100 SEC,` or `4164    0.0100    NPTS, DT`.
-pub(super) fn npts_and_dt(line: &str) -> Result<(usize, f64), String> {
-    let upper = line.to_uppercase();
-    let words: Vec<_> = upper.split([' ', '\t', ',', '=']).filter(|word| !word.is_empty()).collect();
-    let (npts, dt) = match words.as_slice() {
-        ["NPTS", npts, "DT", dt] => (npts, dt.trim_end_matches("SEC")),
-        ["NPTS", npts, "DT", dt, unit, ..] if unit.starts_with("SEC") => (npts, *dt),
-        [npts, dt, "NPTS", "DT", ..] => (npts, *dt),
-        _ => {
-            let expected = "`NPTS= 4172, DT= .0100 SEC` or `4172 0.0100 NPTS, DT`";
-            return Err(format!("found {} where an AT2 file states {expected}", quote(line)));
-        }
-    };
-    let npts: usize = match npts.parse() {
-        Ok(npts) if (2..=MAX_SAMPLES).contains(&npts) => npts,
-        _ => return Err(format!("NPTS = {} must be a whole number, 2 to {MAX_SAMPLES}", quote(npts))),
-    };
-    match number(dt) {
-        Some(dt) if dt > 0.0 && (npts as f64 * dt).is_finite() => Ok((npts, dt)),
-        _ => Err(format!("DT = {} must be a number of seconds greater than 0", quote(dt))),
-    }
-}
-
-/// Full columns of a fixed width leave no blank between numbers: `.1297983E-02-.4E-03`. A sign after the digits of an
-/// exponent can only begin the next number.
-fn split_run_together(mut word: &str) -> impl Iterator<Item = &str> {
-    std::iter::from_fn(move || {
-        let exponent = word.find(['e', 'E', 'd', 'D']).unwrap_or(word.len());
-        let next = word.char_indices().find(|&(i, c)| i > exponent + 1 && matches!(c, '+' | '-'));
-        let (number, rest) = word.split_at(next.map_or(word.len(), |(i, _)| i));
-        word = rest;
-        (!number.is_empty()).then_some(number)
-    })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -93,7 +62,7 @@ mod tests {
         ACCELERATION TIME SERIES IN UNITS OF G\n";
 
     /// The counts of every header variant, and what they say.
-    const COUNTS: [(&str, usize, f64); 9] = [
+    const COUNTS: [(&str, usize, f64); 14] = [
         ("NPTS=   3, DT=   .0100 SEC,                    ", 3, 0.01),
         ("NPTS= 3, DT= 0.01 SEC", 3, 0.01),
         ("NPTS=     3  DT=  0.0050 SEC,", 3, 0.005),
@@ -103,6 +72,11 @@ mod tests {
         ("3 .0050 npts,dt", 3, 0.005),
         ("npts=   3, dt=   5.0e-3 sec", 3, 0.005),
         ("\tNPTS =\t3 ,\tDT =\t1D-2\tSEC", 3, 0.01),
+        ("NPTS= 3, DT= .01 SEC, UNITS=G", 3, 0.01),
+        ("DT=0.01 s; NPTS: 3 of 3", 3, 0.01),
+        ("NPTS= 3 DT= 0.01s", 3, 0.01),
+        ("NPTS= 3, DT= 10 MSEC.", 3, 0.01),
+        ("NPTS= 3, SAMPLING INTERVAL DT= .01, START 0.0", 3, 0.01),
     ];
 
     fn read(text: &str, how: &Reading) -> Result<Record, BadLine> {
@@ -176,15 +150,15 @@ mod tests {
         }
         assert_eq!(at2_problem("NPTS= 1, DT= .01 SEC", ".1"), "4: NPTS = \"1\" must be a whole number, 2 to 10000000");
         assert_eq!(at2_problem("3.5 .01 NPTS, DT", ".1"), "4: NPTS = \"3.5\" must be a whole number, 2 to 10000000");
-        for dt in ["0.0", "-.01", "NAN", "1E308", "X"] {
+        for dt in ["0.0", "-.01", "1E308", "0X"] {
             assert_eq!(
                 at2_problem(&format!("NPTS= 3, DT= {dt} SEC"), ".1 .2 .3"),
                 format!("4: DT = {dt:?} must be a number of seconds greater than 0")
             );
         }
         assert_eq!(
-            at2_problem("NPTS= 3, DT= 10 MSEC", ".1 .2 .3"),
-            "4: found \"NPTS= 3, DT= 10 MSEC\" where an AT2 file states \
+            at2_problem("NPTS= 3, DT= X", ".1 .2 .3"),
+            "4: found \"NPTS= 3, DT= X\" where an AT2 file states \
              `NPTS= 4172, DT= .0100 SEC` or `4172 0.0100 NPTS, DT`"
         );
         assert_eq!(
@@ -220,14 +194,6 @@ mod tests {
         assert!(read(&text, &same).is_ok());
         let gap = format!("{PACOIMA}NPTS= 3, DT= .01 SEC\n.1 .2\n\n.3\n");
         assert_eq!(read(&gap, &same).unwrap_err().line, 6);
-    }
-
-    #[test]
-    fn full_columns_of_a_fixed_width_come_apart() {
-        let together: Vec<_> = split_run_together("-.1297E-02-.4000E-03+1.5D+00.2").collect();
-        assert_eq!(together, ["-.1297E-02", "-.4000E-03", "+1.5D+00.2"]);
-        assert_eq!(split_run_together("1.5E0-2").collect::<Vec<_>>(), ["1.5E0", "-2"]);
-        assert_eq!(split_run_together(".1-.2").collect::<Vec<_>>(), [".1-.2"]);
     }
 
     /// Any finite value as AT2 files write them: 1.5E-3, -.15D-2, fixed point.

@@ -41,8 +41,7 @@ pub(super) fn parse(text: &str, format: Format, how: &Reading) -> Result<Parsed,
         (asked, count) => {
             let asked = match asked {
                 None => "which to take is not known".into(),
-                Some(Column::Number(number)) => format!("channel {number} is asked for"),
-                Some(Column::Heading(heading)) => format!("{} is asked for; they have numbers", quote(heading)),
+                Some(asked) => format!("{asked} is asked for; they have numbers"),
             };
             let remedy = Remedy::Channel;
             return Err(bad(channels[0].line, format!("{count} channel(s), and {asked}")).remedied_by(remedy));

@@ -1,10 +1,13 @@
 //! What the parsers of all layouts make: samples as the file gives them.
 
 use super::text::nine_digits;
-use super::{BadLine, Column, Format, MAX_SAMPLES, Reading, Record, Remedy, Source, Unit, UnitFrom, bad};
+use super::{BadLine, Format, MAX_SAMPLES, Reading, Record, Remedy, Source, Unit, UnitFrom, bad};
 
 /// Steps that differ by no more than this part are the same.
 const SAME_STEP: f64 = 1e-6;
+
+/// Part of a step that the last of rounded times may be off.
+const ROUNDING: f64 = 0.1;
 
 /// The samples of a file, and what was found out about them.
 #[derive(Debug)]
@@ -25,6 +28,21 @@ pub(super) enum Times {
     Asked(f64),
     /// At these times, s.
     At(Vec<f64>),
+}
+
+impl Times {
+    /// The step that the file has (s), and whether it is `dt` (s): times as they are written may be rounded, and after the
+    /// last step be off by a tenth of one. None if the user alone says the step.
+    pub fn have_step(&self, dt: f64) -> Option<(f64, bool)> {
+        match self {
+            Times::Every(step) => Some((*step, (step - dt).abs() <= SAME_STEP * dt)),
+            Times::At(times) if times.len() > 1 => {
+                let (steps, duration) = ((times.len() - 1) as f64, times[times.len() - 1] - times[0]);
+                Some((nine_digits(duration / steps), (duration - steps * dt).abs() < ROUNDING * dt))
+            }
+            Times::At(_) | Times::Asked(_) => None,
+        }
+    }
 }
 
 impl Parsed {
@@ -49,11 +67,6 @@ impl Parsed {
         self.source.remarks.push(remark.into());
     }
 
-    /// One more thing that is likely wrong.
-    pub fn warn(&mut self, warning: impl Into<String>) {
-        self.source.warnings.push(warning.into());
-    }
-
     /// Whether there are as many samples as `name` states.
     pub fn check_count(&mut self, name: &str, stated: usize, how: &Reading) -> Result<(), BadLine> {
         let found = self.values.len();
@@ -71,25 +84,12 @@ impl Parsed {
     /// The record, once all of the file is read.
     pub fn record(self, how: &Reading) -> Result<(Record, Source), BadLine> {
         let Parsed { title, times, values: acceleration, source, last_line } = self;
-        let stated = match &times {
-            Times::Every(dt) => Some(*dt),
-            Times::At(times) if times.len() > 1 => {
-                Some(nine_digits((times[times.len() - 1] - times[0]) / (times.len() - 1) as f64))
-            }
-            Times::At(_) | Times::Asked(_) => None,
-        };
-        if let (Some(stated), Some(asked)) = (stated, how.dt)
-            && (stated - asked).abs() > SAME_STEP * asked
-        {
+        if let (Some((stated, false)), Some(asked)) = (how.dt.and_then(|dt| times.have_step(dt)), how.dt) {
             let problem = format!("the file states a sample every {stated:?} s, and {asked:?} s is asked for");
             return Err(bad(last_line, problem));
         }
         let has_columns = matches!(source.format, Format::Table | Format::Cosmos | Format::Csmip);
         if let (false, Some(asked)) = (has_columns, &how.column) {
-            let asked = match asked {
-                Column::Number(number) => number.to_string(),
-                Column::Heading(heading) => format!("{heading:?}"),
-            };
             return Err(bad(1, format!("column {asked} is asked for, and a file of {} has none", source.format)));
         }
         let count = acceleration.len();

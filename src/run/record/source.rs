@@ -3,7 +3,7 @@
 use super::Unit;
 use super::text::quote;
 use super::unit::{Stated, is_like_a_unit};
-use serde::Deserialize;
+use serde::{Deserialize, Deserializer, de::Error};
 use std::fmt;
 
 /// What the user says of a file; the file says the rest.
@@ -19,13 +19,16 @@ pub struct Reading {
     pub ignores_count: bool,
 }
 
-/// One column of a table.
+/// What has the accelerations in a table.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(untagged)]
 pub enum Column {
-    /// By its number, counted from 1.
+    /// Every number is one, whatever the line it stands on: `all`.
+    #[serde(deserialize_with = "all")]
+    All,
+    /// One column, by its number, counted from 1.
     Number(usize),
-    /// By its heading, or what stands before the unit in it.
+    /// One column, by its heading, or what stands before the unit in it.
     Heading(String),
 }
 
@@ -70,6 +73,36 @@ pub enum UnitFrom {
     User,
     /// Nobody.
     Assumed,
+}
+
+impl Column {
+    const ALL: &str = "all";
+}
+
+fn all<'de, D: Deserializer<'de>>(word: D) -> Result<(), D::Error> {
+    let is_all = String::deserialize(word)? == Column::ALL;
+    is_all.then_some(()).ok_or_else(|| D::Error::custom("another column"))
+}
+
+impl From<&str> for Column {
+    /// `all`, a number or a heading.
+    fn from(text: &str) -> Column {
+        match text.parse() {
+            Ok(number) => Column::Number(number),
+            Err(_) if text == Column::ALL => Column::All,
+            Err(_) => Column::Heading(text.into()),
+        }
+    }
+}
+
+impl fmt::Display for Column {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            Column::All => out.write_str(Column::ALL),
+            Column::Number(number) => write!(out, "{number}"),
+            Column::Heading(heading) => out.write_str(&quote(heading)),
+        }
+    }
 }
 
 impl fmt::Display for Format {

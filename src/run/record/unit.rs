@@ -123,7 +123,7 @@ impl TimeUnit {
         Some(unit)
     }
 
-    fn named(text: &str) -> Option<TimeUnit> {
+    pub(super) fn named(text: &str) -> Option<TimeUnit> {
         match text {
             "s" | "sec" | "secs" | "second" | "seconds" => Some(TimeUnit::Second),
             "ms" | "msec" | "msecs" | "millisecond" | "milliseconds" => Some(TimeUnit::Millisecond),
