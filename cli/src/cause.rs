@@ -3,7 +3,6 @@ use crate::record_args::RecordArgs;
 use FlexibleRocking::BUILD;
 use rocking::{Detail, Parameters, State, Structure, parameters::PARAMETERS, record::Record, state::INITIAL_VALUES};
 use serde::Serialize;
-use std::path::PathBuf;
 
 /// Version of the program, and the first digits of its build.
 pub fn version() -> String {
@@ -31,7 +30,8 @@ pub struct Cause {
 struct Ground {
     /// Its title.
     record: String,
-    file: Option<PathBuf>,
+    /// Its name, as far as it is text.
+    file: Option<String>,
     time_scale: f64,
     scale: f64,
 }
@@ -59,7 +59,8 @@ impl Cause {
     /// The same under the `record` that `args` ask for.
     pub fn under(self, args: &RecordArgs, record: &Record) -> Cause {
         let [time_scale, scale] = args.factors();
-        let ground = Ground { record: record.title().into(), file: args.record.clone(), time_scale, scale };
+        let file = args.record.as_ref().map(|path| path.display().to_string());
+        let ground = Ground { record: record.title().into(), file, time_scale, scale };
         Cause { ground: Some(ground), ..self }
     }
 
@@ -75,7 +76,7 @@ impl Cause {
         let number = |name: &str, unit, value: f64| (heading(name, unit), format!("{value:?}"));
         columns.extend(PARAMETERS.iter().map(|of| number(of.name, of.unit, (of.get)(&self.structure))));
         if let Some(Ground { record, file, time_scale, scale }) = &self.ground {
-            let file = file.as_ref().map_or_else(String::new, |file| file.display().to_string());
+            let file = file.clone().unwrap_or_default();
             columns.extend([("record".to_owned(), record.clone()), ("file".to_owned(), file)]);
             columns.extend([number("time_scale", "1", *time_scale), number("scale", "1", *scale)]);
         }

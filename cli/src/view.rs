@@ -100,6 +100,8 @@ struct Scene<'a> {
     parameters: &'a rocking::Parameters,
     start: f64,
     ending: Ending,
+    /// Since when it falls: the peaks are those before.
+    fall: Option<f64>,
     part: f64,
     time: Column,
     a_g: Column,
@@ -144,7 +146,7 @@ fn quanta(duration: f64) -> i64 {
 
 impl<'a> Scene<'a> {
     fn new(structure: &'a Structure, ground: &'a Record, part: f64, curve: &Curve) -> Scene<'a> {
-        let Found { ground: a_g, peaks, start, finish, .. } = curve.found;
+        let Found { ground: a_g, peaks, fall, start, finish } = curve.found;
         let column = |value: fn(&Outputs) -> f64| Column::new(curve, move |at| value(&at.outputs));
         let mut phases: Vec<_> = curve.points.iter().map(|at| at.phase.name()).enumerate().collect();
         phases.dedup_by_key(|(_, phase)| *phase);
@@ -155,6 +157,7 @@ impl<'a> Scene<'a> {
             parameters: structure.parameters(),
             start,
             ending: finish.ending,
+            fall,
             part,
             time: Column::of_time(curve, start),
             a_g: Column::new(curve, |at| at.a_g),

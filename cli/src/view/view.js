@@ -180,11 +180,11 @@
     set(lift, { x: x + scale * edge.x - 8 * side, y: y + (scale * edge.y) / 2 + 4, "text-anchor": side > 0 ? "end" : "start" });
     drawShaking(state.a_g, width);
     const fallen = at("fallen");
-    fallen.textContent = state.phase === "overturned" ? `overturned at ${fixed(end, 3)} s` : "";
+    fallen.textContent = state.phase === "overturned" ? `overturned at ${fixed(end, 3)} s, peaks until ${fixed(data.fall, 3)} s` : "";
     set(fallen, { x, y: 62, "text-anchor": "middle" });
   }
 
-  /** The ground acceleration as an arrow; the record's largest is a quarter of the width. */
+  /** The ground acceleration as an arrow; the largest is a quarter of the width. */
   function drawShaking(a_g, width) {
     const [line, head, text] = at("shaking").children;
     const length = largest.a_g > 0 ? (0.24 * width * a_g) / largest.a_g : 0;
