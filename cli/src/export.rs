@@ -10,10 +10,10 @@ use FlexibleRocking::guid;
 use anyhow::{Context, bail};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
-use std::env;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::{env, fs};
 
 /// Where the folder `share` of an installation has the archive with the libraries for every platform.
 const INSTALLED: &str = "flexible-rocking/FlexibleRocking.fmu";
@@ -73,7 +73,10 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     let understood = tempfile::tempdir()?;
     let mut files = OutputFiles::of_inputs(inputs);
     let mut file = files.create(&output)?;
-    let packed = args.record.iter().map(|path| record(&args.options, path, g, understood.path(), &mut files));
+    let packed = args.record.iter().enumerate().map(|(i, path)| {
+        // those of one name are refused under that
+        record(&args.options, path, g, &understood.path().join(i.to_string()), &mut files)
+    });
     let records: Vec<_> = packed.collect::<Result<_, _>>()?;
     let (contents, archive) = fmu_export::export(args.fmi, &args.name, &structure, &records, &libraries)?;
     OutputFile::named(&output, file.write_all(&archive))?;
@@ -89,7 +92,7 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The file to pack for the record at `path`: itself, or what is understood of it, which is written to `folder`.
+/// The file to pack for the record at `path`: itself, or what is understood of it, which is written to the new `folder`.
 fn record(
     options: &RecordOptions,
     path: &Path,
@@ -106,6 +109,7 @@ fn record(
     let mut name =
         if input::is_standard(path) { "record".into() } else { path.file_stem().unwrap_or_default().to_owned() };
     name.push(".csv");
+    fs::create_dir(folder)?;
     let packed = folder.join(name);
     understood.write(Table::create(files, &packed)?)?;
     Ok(packed)
