@@ -57,10 +57,10 @@ impl Run<'_> {
         let mut tracer = Tracer { within, exact, pga, points: Vec::new(), transitions: Vec::new(), is_torn: true };
         self.follow(&mut tracer)?;
         let Tracer { points, transitions, .. } = tracer;
-        match points.get(MOST_POINTS) {
-            Some(point) => Err(RunError::TooManyPoints { most: MOST_POINTS, time: point.time }),
-            None => Ok(Curve { points, transitions, found }),
+        if points.len() > MOST_POINTS {
+            return Err(RunError::TooManyPoints { most: MOST_POINTS, time: points[MOST_POINTS - 1].time });
         }
+        Ok(Curve { points, transitions, found })
     }
 }
 
