@@ -92,7 +92,7 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The file to pack for the record at `path`: itself, or what is understood of it, which is written to the new `folder`.
+/// The file to pack for the record at `path`: itself, or what is understood of it, written to the new `folder`.
 fn record(
     options: &RecordOptions,
     path: &Path,
@@ -119,8 +119,8 @@ fn record(
 /// cargo's target folder, those that `make dist` builds for a named target are beside its profile, and come first: they
 /// need no newer system than they say. Its own platform's is in the folder `deps` beside the program; cargo links it to
 /// where the program is only if the package of the FMU was asked for as well: by `cargo build` and `cargo run` in the
-/// root, but not with `-p rocking-cli`. Once installed, the program is in `bin`, and in `share` beside that is an archive
-/// to take them from; what pip installs for one user of Windows has a folder of Python's version between the two.
+/// root, but not with `-p rocking-cli`. Once installed, the program is in `bin`, and in `share` beside that is an
+/// archive to take them from; what pip installs for one user of Windows has a folder of Python's version between the two.
 fn libraries_of(executable: &Path) -> anyhow::Result<Vec<Library>> {
     let own = format!("{DLL_PREFIX}FlexibleRocking{DLL_SUFFIX}");
     let beside = executable.with_file_name(&own);

@@ -46,8 +46,8 @@ const STOPPED: i32 = 130;
 
 /// A flexible structure that rocks on its foundation: FMU exporter and simulator.
 ///
-/// A structure is a specimen of the paper (--preset), a file (--parameters), or numbers that determine all of it; beside
-/// either of --preset and --parameters single numbers such as --f-fc 8 take the place of theirs. Where nothing of it is
+/// A structure is a specimen of the paper (--preset), a file (--parameters), or numbers that determine all of it;
+/// beside either of --preset and --parameters single numbers such as --f-fc 8 take the place of theirs. Where nothing of it is
 /// given, it is the McManus specimen. SI units throughout, angles in rad.
 ///
 /// Results go to standard output, all else that is said to standard error. With --format json a number that is infinite
@@ -179,8 +179,8 @@ A file of pulses, spectrum.toml, a map of each structure:
     Pulse(pulse::PulseArgs),
     /// Show what is understood of a record, and write it as a table that is read without options
     ///
-    /// Its samples and their step, its peaks, how long it shakes, and where it leaves the ground at the end: what is far
-    /// from 0 there comes of an offset, a wrong column or a wrong unit.
+    /// Its samples and their step, its peaks, how long it shakes, and where it leaves the ground at the end: what is
+    /// far from 0 there comes of an offset, a wrong column or a wrong unit.
     #[command(after_help = "Examples:
   rocking-fmu record RSN77_SFERN_PUL164.AT2 --picture record.svg
   rocking-fmu record column.txt --dt 0.005 --unit gal -o record.csv

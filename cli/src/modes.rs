@@ -157,9 +157,9 @@ impl Shown {
     }
 }
 
-/// Whether a response is that of the structure. Of the reactions R_v is the weight in full contact; while it rocks they depend
-/// on the accelerations, and these on the level of detail, which a response does not tell. R_m in full contact follows from
-/// what the other columns show.
+/// Whether a response is that of the structure. Of the reactions R_v is the weight in full contact; while it rocks they
+/// depend on the accelerations, and these on the level of detail, which a response does not tell. R_m in full contact
+/// follows from what the other columns show.
 struct Check {
     rocking: Vec<(Of, Shown)>,
     R_v: Option<Shown>,

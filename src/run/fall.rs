@@ -1,5 +1,5 @@
-//! Where a structure that overturns begins to fall: when |θ| passes α_cg, beyond which its weight pulls it over, for the
-//! last time. Its peaks are those before.
+//! Where a structure that overturns begins to fall: when |θ| passes α_cg, beyond which its weight pulls it over, for
+//! the last time. Its peaks are those before.
 
 use super::peaks::{Peak, Peaks};
 use super::{End, Ending, Finish, Run, RunError};
@@ -61,8 +61,8 @@ impl Watch for Fall {
 }
 
 impl Fall {
-    /// When |θ| passes α_cg for the last time on the arc of `piece`, at whose end it is beyond, s: the first time going back
-    /// from the end of the arc.
+    /// When |θ| passes α_cg for the last time on the arc of `piece`, at whose end it is beyond, s: the first time going
+    /// back from the end of the arc.
     fn last_passing(&self, piece: &mut Piece) -> Option<f64> {
         let (start, side) = (piece.before.time + piece.passed(), piece.end.theta.signum());
         let arc = piece.arc();
@@ -177,8 +177,8 @@ mod tests {
         }
     }
 
-    /// Released at rest about α_cg, near which the structure turns back, or falls after it has been back: against samples of
-    /// its way.
+    /// Released at rest about α_cg, near which the structure turns back, or falls after it has been back: against
+    /// samples of its way.
     #[test]
     fn a_fall_after_a_return_is_found_exactly() {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();

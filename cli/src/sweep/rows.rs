@@ -135,8 +135,8 @@ fn read(rows: &[u8], keys: &[Key]) -> anyhow::Result<Found> {
         let (key, outcome) = parse(&row?).with_context(|| format!("line {line} cannot be read"))?;
         match numbers.get(&key).map(|number: &usize| &mut found.outcomes[*number]) {
             None if otherwise.contains(&key) => bail!(
-                "line {line} is of a run of this sweep, but with --validity or without it, unlike now: give it as then, or \
-                 name another file with -o"
+                "line {line} is of a run of this sweep, but with --validity or without it, unlike now: give it as \
+                 then, or name another file with -o"
             ),
             None => found.others += 1,
             Some(Some(known)) if *known == outcome => found.repeated += 1,
