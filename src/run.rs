@@ -106,6 +106,16 @@ pub enum RunError {
         /// End of the stretch, s.
         until: f64,
     },
+    /// It takes more points than a curve may have.
+    #[error(
+        "a picture of the run needs more than {most} points, which end at t = {time:?} s; give it a shorter duration"
+    )]
+    TooManyPoints {
+        /// How many a curve may have.
+        most: usize,
+        /// Where they end, s.
+        time: f64,
+    },
     /// The run cannot go on.
     #[error("{cause}")]
     Advance {
@@ -121,7 +131,7 @@ impl RunError {
     pub fn time(&self) -> Option<f64> {
         match self {
             RunError::Advance { time, .. } | RunError::TooLong { time, .. } => Some(*time),
-            RunError::Initial(_) | RunError::End { .. } => None,
+            RunError::Initial(_) | RunError::End { .. } | RunError::TooManyPoints { .. } => None,
         }
     }
 }
@@ -181,7 +191,7 @@ impl<'a> Run<'a> {
         Ok(Finish { ending, motion: *engine.motion() })
     }
 
-    /// The exact peaks of the run, and how it ended.
+    /// The exact peaks of all of the run, a fall too, and how it ended; those that are shown are [`Run::found`]'s.
     pub fn peaks(&self) -> Result<(Peaks, Finish), RunError> {
         let mut peaks = Peaks::since(self.ground.start(), &self.structure);
         let finish = self.follow(&mut peaks.watch())?;

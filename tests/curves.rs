@@ -2,7 +2,7 @@
 
 use rocking::run::curve::Point;
 use rocking::run::record::Record;
-use rocking::run::{End, Run};
+use rocking::run::{End, Run, RunError};
 use rocking::{Detail, Parameters, Phase, State, Structure, TransitionKind};
 
 /// Lifts, bounces and lands the McManus specimen at every level: two sines that die away.
@@ -32,12 +32,13 @@ fn lines_stay_as_close_to_the_motion_as_was_asked_for() {
     let structure = Structure::new(Parameters::MCMANUS).unwrap();
     for detail in Detail::ALL {
         let run = Run { detail, end: End::At(8.0), ..Run::new(structure, &ground) };
-        let (peaks, finish) = run.peaks().unwrap();
+        let found = run.found(&mut ()).unwrap();
+        let peaks = found.peaks;
         let largest = [peaks.theta(), peaks.u(), peaks.a_t(), peaks.a_g()].map(|peak| peak.magnitude);
         for part in [1e-2, 1e-4] {
             let curve = run.curve(part).unwrap();
-            assert_eq!((curve.peaks, curve.finish), (peaks, finish));
-            let times = (0..80_000).map(|i| 1e-4 * f64::from(i)).take_while(|time| *time < finish.motion.time);
+            assert_eq!(curve.found, found);
+            let times = (0..80_000).map(|i| 1e-4 * f64::from(i)).take_while(|time| *time < found.finish.motion.time);
             let mut missed = [0.0f64; 4];
             let mut compare = |time: f64, expected: [f64; 4]| {
                 let found = on_the_line(&curve.points, time);
@@ -60,7 +61,8 @@ fn peaks_and_transitions_are_points() {
     let ground = ground();
     let structure = Structure::new(Parameters::MCMANUS).unwrap();
     let curve = Run::new(structure, &ground).curve(1e-2).unwrap();
-    let peaks = [curve.peaks.theta(), curve.peaks.u(), curve.peaks.a_t(), curve.peaks.a_g()];
+    let peaks = curve.found.peaks;
+    let peaks = [peaks.theta(), peaks.u(), peaks.a_t(), peaks.a_g()];
     for (i, peak) in peaks.into_iter().enumerate() {
         let most = curve.points.iter().map(|point| values(point)[i].abs()).fold(0.0, f64::max);
         assert!((most / peak.magnitude - 1.0).abs() < 1e-9, "{i}: {most} {peak:?}");
@@ -84,6 +86,17 @@ fn a_curve_ends_where_the_structure_lies() {
     let initial = State { theta: -0.4, ..State::default() };
     let curve = Run { initial, ..Run::new(structure, &ground) }.curve(1e-3).unwrap();
     let last = curve.points.last().unwrap();
-    assert_eq!(last.time, curve.finish.motion.time);
+    assert_eq!(last.time, curve.found.finish.motion.time);
     assert!((last.outputs.theta + std::f64::consts::FRAC_PI_2).abs() < 1e-12, "{last:?}");
+}
+
+/// What would fill the memory is refused, however long the run is.
+#[test]
+fn a_curve_has_no_more_points_than_a_picture_needs() {
+    let ground = Record::at_rest(1.0);
+    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let initial = State { u: 1e-3, ..State::default() };
+    let run = Run { initial, end: End::At(1e7), ..Run::new(structure, &ground) };
+    let Err(RunError::TooManyPoints { most: 1_000_000, time }) = run.curve(1e-3) else { panic!("it is drawn") };
+    assert!(time > 1.0 && time < 1e6, "{time}");
 }

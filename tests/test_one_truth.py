@@ -1,6 +1,7 @@
 """Numbers that several commands print are the same in all of them, whatever is asked for beside them."""
 
 import csv
+import json
 import re
 import subprocess
 from importlib import resources
@@ -40,8 +41,10 @@ def test_peaks_are_the_same_whatever_the_interval_of_the_output(exporter, tmp_pa
         assert peaks(run(exporter, tmp_path, *scene, "--interval", dt)) == expected
 
 
-def test_simulate_advise_and_sweep_have_the_same_peaks(exporter, tmp_path):
-    record = RECORDS["elcentro"]
+@pytest.mark.parametrize("name", RECORDS)
+def test_simulate_advise_sweep_and_view_have_the_same_peaks(exporter, tmp_path, name):
+    """Under pacoima254 the structure overturns."""
+    record = RECORDS[name]
     simulated = {name: in_si(peak)
                  for name, peak in peaks(run(exporter, tmp_path, "simulate", "--record", record, "-o", "out.csv")).items()}
     advised = re.search(r"peaks: (.*)", run(exporter, tmp_path, "advise", "--record", record))[1].split(", ")
@@ -57,6 +60,12 @@ def test_simulate_advise_and_sweep_have_the_same_peaks(exporter, tmp_path):
              (("theta", "rad"), ("u", "m"), ("delta_t", "m"), ("uplift", "m"), ("a_t", "m/s2"), ("V_t", "N"), ("M_t", "N.m"))}
     for name, value in swept.items():
         assert simulated[name] == pytest.approx(value, rel=2e-5), name
+
+    run(exporter, tmp_path, "view", "--record", record, "-o", "view.html")
+    page = (tmp_path / "view.html").read_text()
+    scene = json.loads(re.search(r'<script[^>]*id="data"[^>]*>(.*?)</script>', page, re.S)[1])
+    viewed = {name: magnitude for name, magnitude, _ in scene["peaks"]}
+    assert viewed == pytest.approx({name: simulated[name] for name in viewed}, rel=2e-5)
 
 
 def test_watching_for_peaks_asks_for_few_evaluations(exporter, tmp_path):

@@ -78,7 +78,7 @@ def test_overturning_is_that_of_the_fmu(exporter, mcmanus, tmp_path):
         overturned_at = instance.slave.getRealStatus(fmi2LastSuccessfulTime)
     assert row["ending"] == "overturned"
     assert row["end[s]"] == pytest.approx(overturned_at, rel=1e-6)
-    assert row["peak_theta[rad]"] == pytest.approx(np.pi / 2, rel=1e-12)
+    assert row["peak_theta/alpha_cg"] == pytest.approx(1, rel=1e-12), "the peaks are those before the fall"
 
 
 def test_a_sweep_killed_again_and_again_loses_nothing_and_repeats_nothing(exporter, tmp_path):
@@ -116,7 +116,8 @@ def test_the_sweep_on_dask_comes_to_the_same(exporter, mcmanus, tmp_path):
     overturned = expected["ending"] == "overturned"
     assert list(overturned) == list(found["overturned_at[s]"].notna())
     for peak, column in (("theta_max", "peak_theta[rad]"), ("u_max", "peak_u[m]"), ("a_t_max", "peak_a_t[m/s2]")):
-        assert np.allclose(found[peak], expected[column], rtol=1e-9, atol=0)
+        stands = ~overturned  # the FMU's own peaks have the fall in them
+        assert np.allclose(found[peak][stands], expected[column][stands], rtol=1e-9, atol=0)
     assert 0 < overturned.sum() < 16
     assert f"{overturned.sum()} of 16 overturned" in printed and "on each of 2 workers" in printed
 

@@ -6,7 +6,7 @@ use rocking::run::record::Record;
 use rocking::structure::parameters::PARAMETERS;
 use rocking::{Detail, Parameters, State, Structure};
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Version of the program, and the first digits of its build.
 pub fn version() -> String {
@@ -35,7 +35,8 @@ pub struct Cause {
 struct Ground {
     /// Its title.
     record: String,
-    file: Option<PathBuf>,
+    /// Its name, as far as it is text.
+    file: Option<String>,
     /// Unit of the accelerations in the file, where they are looked at alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     record_unit: Option<String>,
@@ -58,8 +59,9 @@ struct Level {
 }
 
 impl Ground {
-    fn new(file: Option<PathBuf>, options: &RecordOptions, record: &Record) -> Ground {
+    fn new(path: Option<&Path>, options: &RecordOptions, record: &Record) -> Ground {
         let [time_scale, scale] = options.factors();
+        let file = path.map(|path| path.display().to_string());
         Ground { record: record.title().into(), file, record_unit: None, time_scale, scale }
     }
 }
@@ -73,13 +75,13 @@ impl Cause {
     /// Of what follows from the record in the file at `path` alone, which is understood as `options` say.
     pub fn of_record(path: &Path, options: &RecordOptions, understood: &Understood) -> Cause {
         let record_unit = Some(understood.unit().to_string());
-        let ground = Ground { record_unit, ..Ground::new(Some(path.into()), options, &understood.record) };
+        let ground = Ground { record_unit, ..Ground::new(Some(path), options, &understood.record) };
         Cause { version: version(), structure: None, ground: Some(ground), run: None }
     }
 
     /// The same under the `record` that `args` ask for.
     pub fn under(self, args: &RecordArgs, record: &Record) -> Cause {
-        Cause { ground: Some(Ground::new(args.record.clone(), &args.options, record)), ..self }
+        Cause { ground: Some(Ground::new(args.record.as_deref(), &args.options, record)), ..self }
     }
 
     /// The same of a run from `initial`, at one level of detail or at all.
@@ -96,7 +98,7 @@ impl Cause {
             columns.extend(PARAMETERS.iter().map(|of| number(of.name, of.unit, (of.get)(structure))));
         }
         if let Some(Ground { record, file, record_unit, time_scale, scale }) = &self.ground {
-            let file = file.as_ref().map_or_else(String::new, |file| file.display().to_string());
+            let file = file.clone().unwrap_or_default();
             columns.extend([("record".to_owned(), record.clone()), ("file".to_owned(), file)]);
             columns.extend(record_unit.iter().map(|unit| ("record_unit".to_owned(), unit.clone())));
             columns.extend([number("time_scale", "1", *time_scale), number("scale", "1", *scale)]);

@@ -10,10 +10,10 @@ use FlexibleRocking::guid;
 use anyhow::{Context, bail};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
-use std::env;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::{env, fs};
 
 /// Where the folder `share` of an installation has the archive with the libraries for every platform.
 const INSTALLED: &str = "flexible-rocking/FlexibleRocking.fmu";
@@ -23,9 +23,9 @@ const INSTALLED: &str = "flexible-rocking/FlexibleRocking.fmu";
 pub struct ExportArgs {
     #[command(flatten)]
     structure: StructureArgs,
-    /// Ground motion records to pack: PEER .AT2, ESM, K-NET, COSMOS or CSMIP as published, or tables of text; the FMU follows
-    /// the first, and the others by their names. Those that are read with options, or from standard input, `-`, are packed
-    /// as they are understood, in a CSV file
+    /// Ground motion records to pack: PEER .AT2, ESM, K-NET, COSMOS or CSMIP as published, or tables of text; the FMU
+    /// follows the first, and the others by their names. Those that are read with options, or from standard input, `-`,
+    /// are packed as they are understood, in a CSV file
     #[arg(long, value_name = "FILE", num_args = 1.., help_heading = "Ground motion")]
     record: Vec<PathBuf>,
     #[command(flatten, next_help_heading = "Ground motion")]
@@ -39,7 +39,8 @@ pub struct ExportArgs {
     /// Archive to write, `-` for standard output; one that is there is replaced [default: NAME.fmu]
     #[arg(short, long, value_name = "FILE.fmu")]
     output: Option<PathBuf>,
-    /// Shared libraries to pack, or an FMU of this build to take them from [default: those that were built with this program]
+    /// Shared libraries to pack, or an FMU of this build to take them from [default: those that were built with this
+    /// program]
     #[arg(long, value_name = "PATH", num_args = 1..)]
     library: Vec<PathBuf>,
 }
@@ -70,9 +71,13 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     }
     let g = structure.parameters().g;
     let understood = tempfile::tempdir()?;
-    let records: Vec<_> =
-        args.record.iter().map(|path| record(&args.options, path, g, understood.path())).collect::<Result<_, _>>()?;
-    let mut file = OutputFiles::of_inputs(inputs).create(&output)?;
+    let mut files = OutputFiles::of_inputs(inputs);
+    let mut file = files.create(&output)?;
+    let packed = args.record.iter().enumerate().map(|(i, path)| {
+        // those of one name are refused under that
+        record(&args.options, path, g, &understood.path().join(i.to_string()), &mut files)
+    });
+    let records: Vec<_> = packed.collect::<Result<_, _>>()?;
     let (contents, archive) = fmu_export::export(args.fmi, &args.name, &structure, &records, &libraries)?;
     OutputFile::named(&output, file.write_all(&archive))?;
     file.finish()?;
@@ -87,26 +92,32 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The file to pack for the record at `path`: itself, or what is understood of it, which is written to `folder`.
-fn record(options: &RecordOptions, path: &Path, g: f64, folder: &Path) -> anyhow::Result<PathBuf> {
+/// The file to pack for the record at `path`: itself, or what is understood of it, written to the new `folder`.
+fn record(
+    options: &RecordOptions,
+    path: &Path,
+    g: f64,
+    folder: &Path,
+    files: &mut OutputFiles,
+) -> anyhow::Result<PathBuf> {
     let understood = options.understand(path, g).map_err(with_option)?;
     say!("{}", understood.described);
     understood.warnings(path).for_each(|warning| say!("{warning}"));
     if options.are_none() && !input::is_standard(path) {
         return Ok(path.into());
     }
+    fs::create_dir(folder)?;
     let packed = folder.join(input::stem(path) + ".csv");
-    let mut packed_already = OutputFiles::default();
-    understood.write(Table::create(&mut packed_already, &packed)?)?;
+    understood.write(Table::create(files, &packed)?)?;
     Ok(packed)
 }
 
 /// The shared libraries that were built with `executable`, one for each platform that there is one for. Where it is in
-/// cargo's target folder, those that `make dist` builds for a named target are beside its profile, and come first: they need no newer system
-/// than they say. Its own platform's is in the folder `deps` beside the program; cargo links it to where the program is
-/// only if the package of the FMU was asked for as well: by `cargo build` and `cargo run` in the root, but not with `-p
-/// rocking-cli`. Once installed, the program is in `bin`, and in `share` beside that is an archive to take them from; what pip
-/// installs for one user of Windows has a folder of Python's version between the two.
+/// cargo's target folder, those that `make dist` builds for a named target are beside its profile, and come first: they
+/// need no newer system than they say. Its own platform's is in the folder `deps` beside the program; cargo links it to
+/// where the program is only if the package of the FMU was asked for as well: by `cargo build` and `cargo run` in the
+/// root, but not with `-p rocking-cli`. Once installed, the program is in `bin`, and in `share` beside that is an
+/// archive to take them from; what pip installs for one user of Windows has a folder of Python's version between the two.
 fn libraries_of(executable: &Path) -> anyhow::Result<Vec<Library>> {
     let own = format!("{DLL_PREFIX}FlexibleRocking{DLL_SUFFIX}");
     let beside = executable.with_file_name(&own);
@@ -135,8 +146,8 @@ fn libraries_of(executable: &Path) -> anyhow::Result<Vec<Library>> {
     }
     if libraries.is_empty() {
         bail!(
-            "there is no shared library to pack, neither {} nor {} nor {}: build it with `cargo build --release`, or say \
-             with --library PATH where it is, or where an FMU of this build is",
+            "there is no shared library to pack, neither {} nor {} nor {}: build it with `cargo build --release`, or \
+             say with --library PATH where it is, or where an FMU of this build is",
             beside.display(),
             in_deps.display(),
             installed.display()

@@ -46,14 +46,13 @@ const STOPPED: i32 = 130;
 
 /// A flexible structure that rocks on its foundation: FMU exporter and simulator.
 ///
-/// A structure is a specimen of the paper (--preset), a file (--parameters), or numbers that determine all of it; beside
-/// --preset and --parameters single numbers such as --f-fc 8 take the place of theirs. Where nothing of it is given, it is
-/// the McManus specimen. SI units throughout, angles in rad.
+/// A structure is a specimen of the paper (--preset), a file (--parameters), or numbers that determine all of it;
+/// beside either of --preset and --parameters single numbers such as --f-fc 8 take the place of theirs. Where nothing of it is
+/// given, it is the McManus specimen. SI units throughout, angles in rad.
 ///
-/// Results go to standard output, all else that is said to standard error. With --format json a number that is infinite is
-/// the text "inf". Exit codes: 0 the command did what was asked,
-/// or whoever reads its output has seen enough; 1 it failed, for the reason on standard error; 2 it was called wrongly; 130 it
-/// was stopped.
+/// Results go to standard output, all else that is said to standard error. With --format json a number that is infinite
+/// is the text "inf". Exit codes: 0 the command did what was asked, or whoever reads its output has seen enough; 1 it
+/// failed, for the reason on standard error; 2 it was called wrongly; 130 it was stopped.
 #[derive(Parser)]
 #[command(name = "rocking-fmu", version, long_version = long_version())]
 struct CommandLine {
@@ -77,8 +76,8 @@ enum Command {
     Export(export::ExportArgs),
     /// Simulate the response to a ground motion record, or free vibration
     ///
-    /// Prints the peaks of the response, and writes it as CSV where -o asks for it. The ground acceleration is linear between samples; the
-    /// structure starts at rest unless initial values are given. Overturning ends the run.
+    /// Prints the peaks of the response, and writes it as CSV where -o asks for it. The ground acceleration is linear
+    /// between samples; the structure starts at rest unless initial values are given. Overturning ends the run.
     #[command(after_help = "Examples:
   rocking-fmu simulate --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45
   rocking-fmu simulate --parameters pier.toml --record table.csv --unit g --interval 0.001 -o pier.csv
@@ -170,7 +169,8 @@ A file of pulses, spectrum.toml, a map of each structure:
     /// Write a pulse as a record: half sine, sine, cosine, Ricker, Mavroeidis and Papageorgiou
     ///
     /// The field's standard motions as their papers define them, in straight lines that keep to --error and have the
-    /// curve's impulse on each. Amplitude and frequency can be given in units of the structure's g tan(alpha_cg) and p_l.
+    /// curve's impulse on each. Amplitude and frequency can be given in units of the structure's g tan(alpha_cg) and
+    /// p_l.
     #[command(after_help = "Examples:
   rocking-fmu pulse sine --amplitude 0.6 --period 0.5
   rocking-fmu pulse cosine --amplitude-ratio 2.5 --frequency-ratio 4 --preset evison -o cosine.csv --picture cosine.svg
@@ -179,8 +179,8 @@ A file of pulses, spectrum.toml, a map of each structure:
     Pulse(pulse::PulseArgs),
     /// Show what is understood of a record, and write it as a table that is read without options
     ///
-    /// Its samples and their step, its peaks, how long it shakes, and where it leaves the ground at the end: what is far from 0
-    /// there comes of an offset, a wrong column or a wrong unit.
+    /// Its samples and their step, its peaks, how long it shakes, and where it leaves the ground at the end: what is
+    /// far from 0 there comes of an offset, a wrong column or a wrong unit.
     #[command(after_help = "Examples:
   rocking-fmu record RSN77_SFERN_PUL164.AT2 --picture record.svg
   rocking-fmu record column.txt --dt 0.005 --unit gal -o record.csv

@@ -5,7 +5,7 @@ use crate::{output_files::OutputFiles, picture::PictureFile, structure_args::Str
 use anyhow::{Context, ensure};
 use csv::{Position, StringRecord};
 use rocking::estimates::modal_split::{ModalAccelerations, Modes};
-use rocking::{Outputs, Phase, Side, State};
+use rocking::{Outputs, Parameters, Phase, Side, State, Structure};
 use std::path::PathBuf;
 
 /// What to split.
@@ -53,7 +53,7 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let mut files = OutputFiles::of_inputs(inputs);
     let headings = response.headers().with_context(named)?.clone();
     let columns = Columns::find(&headings).with_context(named)?;
-    let mut check = Check::new(&headings);
+    let mut check = Check::new(&headings, &structure);
     let mut table = Table::create(&mut files, &args.output)?;
     let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     table.write(HEADINGS)?;
@@ -66,6 +66,7 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
         before = time;
         instants += 1;
         let Phase::Rocking(side) = phase else {
+            check.see_standing(&line, phase);
             rocks_about = None;
             continue;
         };
@@ -133,7 +134,6 @@ type Of = fn(&Outputs) -> f64;
 /// A column of a response that follows from its state and the structure.
 struct Shown {
     name: &'static str,
-    of: Of,
     column: usize,
     /// The largest value found.
     largest: f64,
@@ -141,11 +141,32 @@ struct Shown {
     off: f64,
 }
 
-/// Whether a response is that of the structure.
-struct Check(Vec<Shown>);
+impl Shown {
+    fn find(headings: &StringRecord, name: &'static str) -> Option<Shown> {
+        let column = headings.iter().position(|heading| heading == name)?;
+        Some(Shown { name, column, largest: 0.0, off: 0.0 })
+    }
+
+    fn see(&mut self, line: &StringRecord, expected: f64) {
+        if let Ok(found) = line[self.column].parse::<f64>() {
+            self.largest = self.largest.max(found.abs());
+            self.off = self.off.max((found - expected).abs());
+        }
+    }
+}
+
+/// Whether a response is that of the structure. Of the reactions R_v is the weight in full contact; while it rocks they
+/// depend on the accelerations, and these on the level of detail, which a response does not tell. R_m in full contact
+/// follows from what the other columns show.
+struct Check {
+    rocking: Vec<(Of, Shown)>,
+    R_v: Option<Shown>,
+    /// N.
+    weight: f64,
+}
 
 impl Check {
-    fn new(headings: &StringRecord) -> Check {
+    fn new(headings: &StringRecord, structure: &Structure) -> Check {
         let columns: [(_, Of); 5] = [
             ("uplift[m]", |outputs| outputs.uplift),
             ("delta_t[m]", |outputs| outputs.delta_t),
@@ -153,11 +174,20 @@ impl Check {
             ("V_t[N]", |outputs| outputs.V_t),
             ("M_t[N.m]", |outputs| outputs.M_t),
         ];
-        let find = |(name, of)| {
-            let column = headings.iter().position(|heading| heading == name)?;
-            Some(Shown { name, of, column, largest: 0.0, off: 0.0 })
-        };
-        Check(columns.into_iter().filter_map(find).collect())
+        let find = |(name, of)| Some((of, Shown::find(headings, name)?));
+        let &Parameters { m, m0, g, .. } = structure.parameters();
+        Check {
+            rocking: columns.into_iter().filter_map(find).collect(),
+            R_v: Shown::find(headings, "R_v[N]"),
+            weight: (m + m0) * g,
+        }
+    }
+
+    /// Looks at a `line` of a `phase` in which it does not rock.
+    fn see_standing(&mut self, line: &StringRecord, phase: Phase) {
+        if let (Phase::FullContact, Some(R_v)) = (phase, &mut self.R_v) {
+            R_v.see(line, self.weight);
+        }
     }
 
     /// Looks at a `line` whose state has these `outputs`. One without deformation may be of the level `rigid`, whose a_t is no
@@ -166,20 +196,15 @@ impl Check {
         if (outputs.u, outputs.u_dot) == (0.0, 0.0) {
             return;
         }
-        for Shown { of, column, largest, off, .. } in &mut self.0 {
-            if let Ok(found) = line[*column].parse::<f64>() {
-                *largest = largest.max(found.abs());
-                *off = off.max((found - of(outputs)).abs());
-            }
-        }
+        self.rocking.iter_mut().for_each(|(of, shown)| shown.see(line, of(outputs)));
     }
 
     fn refuse_another_structure(&self) -> anyhow::Result<()> {
         const ROUNDING: f64 = 1e-3; // of tables in few digits
-        for Shown { name, largest, off, .. } in &self.0 {
+        for Shown { name, largest, off, .. } in self.rocking.iter().map(|(_, shown)| shown).chain(&self.R_v) {
             ensure!(
                 *off <= ROUNDING * largest,
-                "{name} does not follow from theta and u: it is the response of another structure; see --preset, --parameters"
+                "{name} does not follow from the state and the structure: it is the response of another structure; see --preset, --parameters"
             );
         }
         Ok(())

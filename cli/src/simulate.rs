@@ -9,7 +9,7 @@ use crate::{
     results::{Format, FormatArgs, print},
     scene_args::MotionArgs,
     significant::short,
-    summary::{self, Found, Summary, instant},
+    summary::{self, Summary, instant},
     tables::{self, Table},
     talk::{self, say},
     validity::{self, LimitArgs},
@@ -19,9 +19,7 @@ use rocking::run::record::Record;
 use rocking::{
     Run, Transition,
     run::{
-        End, Ending,
-        fall::Fall,
-        peaks::Peaks,
+        End,
         validity::{Found as Beyond, Validity},
     },
 };
@@ -86,7 +84,7 @@ impl SimulateArgs {
     fn write_response(&self, run: &Run, mut response: Table) -> anyhow::Result<()> {
         let progress = talk::progress(run.ground.times().len());
         let (samples, interval) = self.samples_and_interval(run.ground);
-        let from = samples[samples.len() - 1];
+        let (start, from) = (samples[0], samples[samples.len() - 1]);
         let times = samples.iter().copied().chain((1_u64..).map(|i| from + i as f64 * interval));
         let (mut rows, mut last) = (response.write(tables::RESPONSE), None);
         run.sample(
@@ -95,8 +93,9 @@ impl SimulateArgs {
                 progress.inc(1);
                 let next = (sample.motion.time, tables::response_line(sample));
                 // an instant that misses the end by rounding is the end
+                let rounding = 1e-6 * interval.min(sample.motion.time - start);
                 if let Some((time, line)) = last.replace(next)
-                    && time < sample.motion.time - 1e-6 * interval
+                    && time < sample.motion.time - rounding
                     && rows.is_ok()
                 {
                     rows = response.write(line);
@@ -129,8 +128,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     if let Some(events) = &mut events {
         events.write(tables::EVENTS)?;
     }
-    let (mut peaks, mut summary) = (Peaks::since(ground.start(), &structure), Summary::new(&structure));
-    let (mut fall, mut written) = (Fall::new(&structure), Ok(()));
+    let (mut summary, mut written) = (Summary::new(&structure), Ok(()));
     let mut transition = |transition: &Transition| {
         if let (Some(events), Ok(())) = (&mut events, &written) {
             written = events.write(tables::event_line(transition));
@@ -138,22 +136,14 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     };
     let limits = args.limits.limits();
     let mut validity = Validity::new(&structure, limits, Beyond::since(ground.start()));
-    let finish = run.follow(&mut (
-        &mut peaks.watch(),
-        &mut (&mut validity, &mut (&mut fall, &mut (&mut summary, &mut transition))),
-    ))?;
+    let found = run.found(&mut (&mut validity, &mut (&mut summary, &mut transition)))?;
     written?;
     events.map_or(Ok(()), Table::finish)?;
-    let fall = fall.instant().filter(|_| finish.ending == Ending::Overturned);
-    if let Some(fall) = fall {
-        peaks = run.peaks_until(fall)?;
-    }
-    let found = Found { ground: summary::peak_of_ground(&ground), peaks, fall, start: ground.start(), finish };
     if let Some(response) = response {
-        args.check_rows(&ground, finish.motion.time)?;
+        args.check_rows(&ground, found.finish.motion.time)?;
         args.write_response(&run, response)?;
     }
-    let (start, end) = (instant(ground.start()), instant(finish.motion.time));
+    let (start, end) = (instant(found.start), instant(found.finish.motion.time));
     if args.results.format.format == Format::Text {
         let mut text = format!("{}, {start} to {end} s\n{}", ground.title(), summary.text(&found)?);
         for line in validity::section(&structure, run.detail, validity.found(), &limits) {
@@ -177,7 +167,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
         say!("transitions    {}", events.display());
     }
     match picture {
-        Some(picture) => picture::draw(picture, &run, &found),
+        Some(picture) => picture::draw(picture, &run),
         None => Ok(()),
     }
 }

@@ -144,7 +144,7 @@ fn option(name: &'static str, unit: &'static str, help: String) -> Arg {
         .long(option_name(name))
         .value_name(if unit == "1" { "NUMBER".into() } else { unit.to_uppercase() })
         .help(help)
-        .help_heading("Numbers in the place of the preset's or the file's, or of both")
+        .help_heading("Numbers in the place of the preset's or the file's, or alone")
         .hide_short_help(true)
         .allow_negative_numbers(true)
         .value_parser(value_parser!(f64))

@@ -4,10 +4,10 @@ use crate::quantities::readable;
 use crate::results::{Format, Number, print_json, print_traced};
 use crate::validity;
 use fmu_export::significant::significant;
-use rocking::run::record::Record;
 use rocking::run::{
     Ending, Finish, LONGEST_REST,
-    peaks::{PEAKS, Peak, Peaks},
+    fall::Found,
+    peaks::{PEAKS, Peak},
 };
 use rocking::{Parameters, Phase, Side, Structure, Transition, TransitionKind, Watch};
 use serde::Serialize;
@@ -80,27 +80,6 @@ impl Watch for Summary {
         };
         first.get_or_insert(transition.time);
     }
-}
-
-/// What was found in a run.
-pub struct Found {
-    /// Of the ground: the whole record's.
-    pub ground: Peak,
-    /// Of the structure: of one that overturns, before it falls.
-    pub peaks: Peaks,
-    /// When it begins to fall, s.
-    pub fall: Option<f64>,
-    /// When the run began, s.
-    pub start: f64,
-    /// What it came to.
-    pub finish: Finish,
-}
-
-/// The largest ground acceleration of `record`, where it has it first.
-pub fn peak_of_ground(record: &Record) -> Peak {
-    let magnitude = record.pga();
-    let first = record.acceleration().iter().position(|a_g| a_g.abs() == magnitude);
-    Peak { magnitude, time: record.times()[first.unwrap_or(0)] }
 }
 
 impl Summary {

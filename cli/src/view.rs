@@ -5,14 +5,14 @@ use crate::{
     scene_args::MotionArgs,
     talk::say,
 };
-use anyhow::Context;
 use rocking::run::record::Record;
 use rocking::{
     Outputs, Run, Structure,
     run::{
         Ending, RunError,
         curve::{Curve, Point},
-        peaks::{PEAKS, Peak},
+        fall::Found,
+        peaks::PEAKS,
     },
 };
 use serde::Serialize;
@@ -38,7 +38,7 @@ const PARTS: [f64; 3] = [1e-4, 1e-3, 1e-2];
 /// About 5 MB.
 const MOST_POINTS: usize = 200_000;
 
-/// Part of a peak that a value on the page is rounded to, and the same of time, s.
+/// Part of the largest that a value on the page is rounded to, and the same of time, s.
 const QUANTUM: f64 = 1e-5;
 const QUANTUM_OF_TIME: f64 = 1e-7;
 
@@ -49,7 +49,7 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
     let path = args.output_path();
     let mut file = OutputFiles::of_inputs(args.motion.inputs()).create(&path)?;
     let (part, curve) = curve(&run)?;
-    let page = page(&Scene::new(&structure, &ground, part, &curve).context("a run has a start")?)?;
+    let page = page(&Scene::new(&structure, &ground, part, &curve))?;
     OutputFile::named(&path, file.write_all(page.as_bytes()))?;
     file.finish()?;
     if path != Path::new("-") {
@@ -61,13 +61,17 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
 /// The run as a curve, and how exact it is.
 fn curve(run: &Run) -> Result<(f64, Curve), RunError> {
     let [finest, coarser @ ..] = PARTS;
-    let mut found = (finest, run.curve(finest)?);
+    let mut found = (finest, run.curve(finest));
     for part in coarser {
-        if found.1.points.len() > MOST_POINTS {
-            found = (part, run.curve(part)?);
+        let takes_too_many = match &found.1 {
+            Ok(curve) => curve.points.len() > MOST_POINTS,
+            Err(error) => matches!(error, RunError::TooManyPoints { .. }),
+        };
+        if takes_too_many {
+            found = (part, run.curve(part));
         }
     }
-    Ok(found)
+    Ok((found.0, found.1?))
 }
 
 impl ViewArgs {
@@ -97,6 +101,8 @@ struct Scene<'a> {
     parameters: &'a rocking::Parameters,
     start: f64,
     ending: Ending,
+    /// Since when it falls: the peaks are those before.
+    fall: Option<f64>,
     part: f64,
     time: Column,
     a_g: Column,
@@ -120,8 +126,9 @@ struct Column {
 }
 
 impl Column {
-    fn new(curve: &Curve, peak: Peak, value: impl Fn(&Point) -> f64) -> Column {
-        let quantum = if peak.magnitude > 0.0 { QUANTUM * peak.magnitude } else { 1.0 };
+    fn new(curve: &Curve, value: impl Fn(&Point) -> f64) -> Column {
+        let most = curve.points.iter().map(|at| value(at).abs()).fold(0.0, f64::max);
+        let quantum = if most > 0.0 { QUANTUM * most } else { 1.0 };
         Column { quantum, values: curve.points.iter().map(|at| (value(at) / quantum).round() as i64).collect() }
     }
 
@@ -139,27 +146,28 @@ fn quanta(duration: f64) -> i64 {
 }
 
 impl<'a> Scene<'a> {
-    fn new(structure: &'a Structure, ground: &'a Record, part: f64, curve: &Curve) -> Option<Scene<'a>> {
-        let (start, peaks) = (curve.points.first()?.time, &curve.peaks);
-        let column = |peak, value: fn(&Outputs) -> f64| Column::new(curve, peak, move |at| value(&at.outputs));
+    fn new(structure: &'a Structure, ground: &'a Record, part: f64, curve: &Curve) -> Scene<'a> {
+        let Found { ground: a_g, peaks, fall, start, finish } = curve.found;
+        let column = |value: fn(&Outputs) -> f64| Column::new(curve, move |at| value(&at.outputs));
         let mut phases: Vec<_> = curve.points.iter().map(|at| at.phase.name()).enumerate().collect();
         phases.dedup_by_key(|(_, phase)| *phase);
-        let all_peaks = PEAKS.iter().map(|peaking| (peaking.name, (peaking.of)(peaks)));
-        let all_peaks = [("a_g", peaks.a_g())].into_iter().chain(all_peaks);
-        Some(Scene {
+        let all_peaks = PEAKS.iter().map(|peaking| (peaking.name, (peaking.of)(&peaks)));
+        let all_peaks = [("a_g", a_g)].into_iter().chain(all_peaks);
+        Scene {
             title: ground.title(),
             parameters: structure.parameters(),
             start,
-            ending: curve.finish.ending,
+            ending: finish.ending,
+            fall,
             part,
             time: Column::of_time(curve, start),
-            a_g: Column::new(curve, peaks.a_g(), |at| at.a_g),
-            theta: column(peaks.theta(), |outputs| outputs.theta),
-            u: column(peaks.u(), |outputs| outputs.u),
-            a_t: column(peaks.a_t(), |outputs| outputs.a_t),
+            a_g: Column::new(curve, |at| at.a_g),
+            theta: column(|outputs| outputs.theta),
+            u: column(|outputs| outputs.u),
+            a_t: column(|outputs| outputs.a_t),
             phases,
             transitions: curve.transitions.iter().map(|at| (quanta(at.time - start), at.kind.name())).collect(),
             peaks: all_peaks.map(|(name, peak)| (name, peak.magnitude, peak.time)).collect(),
-        })
+        }
     }
 }

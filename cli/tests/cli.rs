@@ -322,9 +322,13 @@ fn the_response_of_another_structure_is_refused() {
     let folder = folder();
     succeed(folder.path(), "simulate --preset mcmanus --record pulse.AT2 -o response.csv");
     succeed(folder.path(), "modes --preset mcmanus --r 0.9 --response response.csv"); // r moves it, and shows nowhere
-    for other in
-        ["--preset evison", "--preset mcmanus --m 131", "--preset mcmanus --f-fc 5.1", "--preset mcmanus --B 0.3"]
-    {
+    for other in [
+        "--preset evison",
+        "--preset mcmanus --m 131",
+        "--preset mcmanus --m0 66",
+        "--preset mcmanus --f-fc 5.1",
+        "--preset mcmanus --B 0.3",
+    ] {
         let (code, message) = fail(folder.path(), &format!("modes {other} --response response.csv"));
         assert!(code == 1 && message.contains("it is the response of another structure"), "{other}: {message}");
     }
@@ -400,6 +404,51 @@ fn the_peaks_of_a_fall_are_those_before() {
     }
     let (text, _) = succeed(folder.path(), run);
     assert!(text.contains("\nfall           from "), "{text}");
+}
+
+#[test]
+fn the_peak_of_the_ground_is_that_of_the_record_as_it_is_followed() {
+    let folder = folder();
+    let (json, _) = succeed(folder.path(), "simulate --record pulse.AT2 --duration 0.055 --format json");
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    let peak = &json["peaks"][0];
+    let expected = 9.81 * 0.5 * (pulse(5) + pulse(6));
+    assert!((peak["peak"].as_f64().unwrap() / expected - 1.0).abs() < 1e-12, "{peak}");
+    assert_eq!((&peak["name"], &peak["time"]), (&"a_g".into(), &0.055.into()));
+}
+
+#[test]
+fn a_response_has_its_first_and_its_last_row_whatever_the_interval() {
+    let folder = folder();
+    for interval in ["0.4", "1e7"] {
+        succeed(folder.path(), &format!("simulate --free 0.5 --theta-0 0.01 -o out.csv --interval {interval}"));
+        let times = column(&folder.path().join("out.csv"), "time[s]");
+        assert_eq!((times[0], times[times.len() - 1]), (0.0, 0.5), "{interval}");
+    }
+}
+
+/// As far as it is text.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_whose_name_is_no_text_is_named_in_results() {
+    use std::{ffi::OsStr, os::unix::ffi::OsStrExt};
+    let folder = folder();
+    let name = OsStr::from_bytes(b"puls\xe9.AT2");
+    fs::rename(folder.path().join("pulse.AT2"), folder.path().join(name)).unwrap();
+    for format in ["json", "csv"] {
+        let arguments = format!("simulate --duration 1 --format {format} --record");
+        let Output { status, stdout, stderr } = command(folder.path(), &arguments).arg(name).output().unwrap();
+        assert!(status.success(), "{}", String::from_utf8_lossy(&stderr));
+        assert!(String::from_utf8(stdout).unwrap().contains("puls\u{fffd}.AT2"));
+    }
+}
+
+#[test]
+fn help_does_not_offer_what_is_refused() {
+    let folder = folder();
+    let (code, _) = fail(folder.path(), "describe --preset evison --parameters wall.toml");
+    let (help, _) = succeed(folder.path(), "describe --help");
+    assert!(code == 2 && !help.contains("both"), "{help}");
 }
 
 /// What a result comes from stands beside it, in both formats.

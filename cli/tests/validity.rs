@@ -115,7 +115,7 @@ fn what_the_parameters_say_is_said() {
     assert!(message.contains("a number of at least 0 is needed"), "{message}");
 }
 
-/// The columns of a sweep are filled where they are asked for, and rows without them do not count as done.
+/// The columns of a sweep are filled where they are asked for. A file has the same runs with them or without, not both.
 #[test]
 fn a_sweep_has_columns_of_it() {
     let folder = folder();
@@ -124,18 +124,19 @@ fn a_sweep_has_columns_of_it() {
     fs::write(path.join("sweep.toml"), sweep).unwrap();
     succeed(path, "sweep sweep.toml");
     let plain = fs::read_to_string(path.join("sweep.csv")).unwrap();
-    succeed(path, "sweep sweep.toml --validity");
-    let both = fs::read_to_string(path.join("sweep.csv")).unwrap();
-    let added = both.strip_prefix(&plain).unwrap();
+    let (_, message) = fail(path, "sweep sweep.toml --validity");
+    assert!(message.contains("line 2 is of a run of this sweep, but with --validity or without it"), "{message}");
+    succeed(path, "sweep sweep.toml --validity -o beyond.csv");
+    let beyond = fs::read_to_string(path.join("beyond.csv")).unwrap();
     let headings: Vec<_> = plain.lines().next().unwrap().split(',').collect();
     let cell = |row: &str, heading: &str| {
         let position = headings.iter().position(|found| *found == heading).unwrap();
         row.split(',').nth(position).unwrap().to_owned()
     };
-    assert_eq!((plain.lines().count(), added.lines().count()), (5, 4));
+    assert_eq!((plain.lines().count(), beyond.lines().count()), (5, 5));
     assert!(plain.lines().skip(1).all(|row| cell(row, "R_v_min").is_empty()));
     let mut gains = 0;
-    for row in added.lines() {
+    for row in beyond.lines().skip(1) {
         let number = |heading: &str| cell(row, heading).parse::<f64>().unwrap();
         let found = found(path, number("r"), number("scale"), Limits::default(), End::AtRest);
         for (assumption, worst) in ASSUMPTIONS.iter().zip(&found.worst) {

@@ -471,7 +471,11 @@ fn peaks() -> Vec<Variable> {
                 peak(
                     concat!(stringify!($name), "_max"),
                     $unit,
-                    concat!("largest |", stringify!($name), "| since startTime, exact: within steps, too; NaN unless peaks is true"),
+                    concat!(
+                        "largest |",
+                        stringify!($name),
+                        "| since startTime, exact: within steps, too, and during a fall to overturning; NaN unless peaks is true"
+                    ),
                     |peaks| peaks.$name().magnitude,
                 ),
                 peak(
@@ -520,7 +524,7 @@ fn switches() -> [Variable; 4] {
     let late = "whether a_g, set without its derivative, is followed one communication step late, in a straight line from \
                 each value to the next, and is not held";
     let extrapolated = "whether F_t, set without its derivative, goes on with the slope of its values at the last two \
-                        communication points, and is not held";
+                        communication points, and is not held; where it is not set before a step it is held over that";
     [
         parameter("a_g_late", late, DataType::Boolean, Source::Switch(&LATE)),
         parameter("F_t_extrapolated", extrapolated, DataType::Boolean, Source::Switch(&EXTRAPOLATED)),

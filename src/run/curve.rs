@@ -4,12 +4,11 @@
 //! ends by no more than is allowed. Where two points have the same instant there is a transition between them,
 //! or the record ends there.
 
-use super::peaks::Peaks;
-use super::{Finish, Run, RunError};
+use super::fall::Found;
+use super::{Run, RunError};
 use crate::engine::piece::{Piece, Watch};
 use crate::mechanics::outputs::Measure;
-use crate::series::extremes;
-use crate::series::taylor;
+use crate::series::{extremes, taylor};
 use crate::{Outputs, Phase, Transition};
 
 /// How often a stretch of one polynomial is divided at most.
@@ -17,6 +16,9 @@ const DIVISIONS: u32 = 30;
 
 /// How far off, over what is allowed, a stretch is halved and not yet divided into as many parts as it takes.
 const NEARLY: f64 = 16.0;
+
+/// More points are no picture: 100 MB.
+const MOST_POINTS: usize = 1_000_000;
 
 /// Part of its peak by which a_g may differ between the end of a piece and the start of the next without a jump.
 const ROUNDING: f64 = 1e-9;
@@ -37,28 +39,29 @@ pub struct Point {
 /// A run as it is drawn.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// In the order of time; straight lines join them. The peaks of a_g, θ, u and a_t are among them.
+    /// In the order of time; straight lines join them. The largest a_g, θ, u and a_t of all of it are among them.
     pub points: Vec<Point>,
     /// In the order of time, too.
     pub transitions: Vec<Transition>,
-    /// Exact peaks.
-    pub peaks: Peaks,
-    /// How the run ended.
-    pub finish: Finish,
+    /// Exact peaks, and how the run ended.
+    pub found: Found,
 }
 
 impl Run<'_> {
     /// The run as points between which θ, u and a_t leave straight lines by at most `part` of their peaks; the ground
-    /// acceleration does not leave them at all.
+    /// acceleration does not leave them at all. Refuses a run that takes more than a million of them.
     pub fn curve(&self, part: f64) -> Result<Curve, RunError> {
-        let (peaks, _) = self.peaks()?;
+        let (found, peaks) = self.found_and_all(&mut ())?;
         let within = [peaks.theta(), peaks.u(), peaks.a_t()].map(|peak| part * peak.magnitude);
         let exact = [peaks.a_g(), peaks.theta(), peaks.u(), peaks.a_t()].map(|peak| peak.time);
         let pga = peaks.a_g().magnitude;
         let mut tracer = Tracer { within, exact, pga, points: Vec::new(), transitions: Vec::new(), is_torn: true };
-        let finish = self.follow(&mut tracer)?;
+        self.follow(&mut tracer)?;
         let Tracer { points, transitions, .. } = tracer;
-        Ok(Curve { points, transitions, peaks, finish })
+        if points.len() > MOST_POINTS {
+            return Err(RunError::TooManyPoints { most: MOST_POINTS, time: points[MOST_POINTS - 1].time });
+        }
+        Ok(Curve { points, transitions, found })
     }
 }
 
@@ -77,6 +80,10 @@ struct Tracer {
 }
 
 impl Tracer {
+    fn is_full(&self) -> bool {
+        self.points.len() > MOST_POINTS
+    }
+
     fn see(&mut self, piece: &Piece, tau: f64, outputs: Outputs) {
         let (time, phase) = (piece.before.time + tau, piece.before.phase);
         self.points.push(Point { time, phase, a_g: piece.load.at(tau).a_g, outputs });
@@ -87,6 +94,9 @@ impl Watch for Tracer {
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &mut Piece) {
+        if self.is_full() {
+            return;
+        }
         let [(_, first), (duration, last)] = piece.ends();
         // after its last sample the ground is at rest at once
         let a_g = piece.load.at(0.0).a_g;
@@ -116,7 +126,7 @@ impl Watch for Tracer {
                 self.see(piece, passed + sigma * span, outputs);
             }
             // the last of them is at the end of the arc
-            if !piece.skip() {
+            if !piece.skip() || self.is_full() {
                 break;
             }
         }
@@ -126,7 +136,9 @@ impl Watch for Tracer {
     }
 
     fn transition(&mut self, transition: &Transition) {
-        self.transitions.push(*transition);
+        if !self.is_full() {
+            self.transitions.push(*transition);
+        }
         self.is_torn = true;
     }
 }

@@ -1,10 +1,27 @@
-//! Where a structure that overturns begins to fall: when |θ| passes α_cg, beyond which its weight pulls it over, for the last
-//! time.
+//! Where a structure that overturns begins to fall: when |θ| passes α_cg, beyond which its weight pulls it over, for
+//! the last time. Its peaks are those before.
 
-use super::peaks::Peaks;
-use super::{End, Run, RunError};
-use crate::series::bisection::last_where;
+use super::ground_motion::GroundMotion;
+use super::peaks::{Peak, Peaks};
+use super::{End, Ending, Finish, Run, RunError};
+use crate::series::first_crossing::{Crossing, Guard, first_time_closed_from};
+use crate::series::taylor;
 use crate::{Load, Piece, Structure, Watch};
+
+/// What a run came to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Found {
+    /// Of the ground acceleration (m/s²), as far as the record is asked for: past an overturning, too.
+    pub ground: Peak,
+    /// Of the structure: of one that overturns, before it falls.
+    pub peaks: Peaks,
+    /// Since when it falls, s.
+    pub fall: Option<f64>,
+    /// When the run began, s.
+    pub start: f64,
+    /// How it ended.
+    pub finish: Finish,
+}
 
 /// Watches a motion for the instant.
 #[derive(Clone, Copy, Debug)]
@@ -32,35 +49,83 @@ impl Watch for Fall {
     fn piece(&mut self, piece: &mut Piece) {
         if piece.end.theta.abs() < self.alpha_cg {
             self.instant = None;
-        } else if self.instant.is_none() {
-            self.instant = Some(self.passing(piece));
+            return;
+        }
+        loop {
+            let start = piece.before.time + piece.passed();
+            self.instant = self.last_passing(piece).or(self.instant).or(Some(start));
+            if !piece.skip() {
+                return;
+            }
         }
     }
 }
 
 impl Fall {
-    /// When |θ| passes α_cg in `piece`, at whose end it is beyond, s.
-    fn passing(&self, piece: &mut Piece) -> f64 {
-        let start = piece.before.time;
-        if piece.before.state.theta.abs() >= self.alpha_cg {
-            return start;
-        }
+    /// When |θ| passes α_cg for the last time on the arc of `piece`, at whose end it is beyond, s: the first time going
+    /// back from the end of the arc.
+    fn last_passing(&self, piece: &mut Piece) -> Option<f64> {
+        let (start, side) = (piece.before.time + piece.passed(), piece.end.theta.signum());
+        let arc = piece.arc();
+        let mut theta = arc.theta;
+        let back = &mut theta[..=arc.order];
+        taylor::stretch(back, arc.reach, -arc.reach);
+        let beyond = Guard::new(back, side, -self.alpha_cg);
+        let mut sigma = 0.0;
         loop {
-            let (passed, reach, span) = (piece.passed(), piece.arc().reach, piece.arc().span);
-            let is_before = |sigma: f64| piece.outputs(sigma).theta.abs() < self.alpha_cg;
-            if !is_before(reach) {
-                return start + passed + last_where(0.0, reach, is_before) * span;
-            }
-            if !piece.skip() {
-                return start + piece.duration; // by rounding
+            match first_time_closed_from(beyond, sigma, 1.0) {
+                Crossing::None => return None,
+                Crossing::NoneUntil(until) if until - sigma > f64::EPSILON => sigma = until,
+                Crossing::At(last) | Crossing::NoneUntil(last) => return Some(start + (1.0 - last) * arc.duration()),
             }
         }
+    }
+
+    /// Of the peaks of `all` of `run`, which has ended so, those before the fall, and since when it falls (s).
+    pub(super) fn peaks_before(
+        &self,
+        run: &Run,
+        ending: Ending,
+        all: &Peaks,
+    ) -> Result<(Peaks, Option<f64>), RunError> {
+        let fall = self.instant.filter(|_| ending == Ending::Overturned);
+        Ok((fall.map_or(Ok(*all), |fall| run.peaks_until(fall))?, fall))
     }
 }
 
 impl Run<'_> {
+    /// Follows the motion to the end, which `watch` sees, too, and finds its exact peaks.
+    pub fn found(&self, watch: &mut impl Watch) -> Result<Found, RunError> {
+        Ok(self.found_and_all(watch)?.0)
+    }
+
+    /// The same beside the peaks of all of it, a fall too.
+    pub(super) fn found_and_all(&self, watch: &mut impl Watch) -> Result<(Found, Peaks), RunError> {
+        let start = self.ground.start();
+        let (mut all, mut fall) = (Peaks::since(start, &self.structure), Fall::new(&self.structure));
+        let finish = self.follow(&mut (&mut all.watch(), &mut (&mut fall, watch)))?;
+        let (peaks, fall) = fall.peaks_before(self, finish.ending, &all)?;
+        Ok((Found { ground: self.peak_of_ground(), peaks, fall, start, finish }, all))
+    }
+
+    /// The largest ground acceleration (m/s²) until the run is asked to end, whatever becomes of the structure.
+    fn peak_of_ground(&self) -> Peak {
+        let (times, acceleration) = (self.ground.times(), self.ground.acceleration());
+        let until = if let End::At(end) = self.end { end } else { self.ground.end() };
+        let next = times.partition_point(|time| *time <= until);
+        let cut = (next < times.len()).then(|| {
+            let from = times[next - 1];
+            (until, GroundMotion::from(self.ground).ramp(next).at(until - from))
+        });
+        let samples = times[..next].iter().copied().zip(acceleration[..next].iter().copied());
+        let most = |most: Peak, (time, a_g): (f64, f64)| {
+            if a_g.abs() > most.magnitude { Peak { magnitude: a_g.abs(), time } } else { most }
+        };
+        samples.chain(cut).fold(Peak { magnitude: 0.0, time: self.ground.start() }, most)
+    }
+
     /// The exact peaks until `instant` (s), which may be the first sample's.
-    pub fn peaks_until(&self, instant: f64) -> Result<Peaks, RunError> {
+    fn peaks_until(&self, instant: f64) -> Result<Peaks, RunError> {
         let start = self.ground.start();
         if instant > start {
             return Ok(Run { end: End::At(instant), ..self.clone() }.peaks()?.0);
@@ -111,6 +176,38 @@ mod tests {
                 assert!(most >= peak.magnitude * 0.99, "{detail:?}: {most} {peak:?}");
             }
         }
+    }
+
+    /// Released at rest about α_cg, near which the structure turns back, or falls after it has been back: against
+    /// samples of its way.
+    #[test]
+    fn a_fall_after_a_return_is_found_exactly() {
+        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let alpha_cg = structure.tan_alpha_cg.atan();
+        let (ground, mut returned) = (Record::at_rest(60.0), 0);
+        for detail in [Detail::Auto, Detail::Linear, Detail::Modal, Detail::Rigid] {
+            for beyond in (0..40).map(|i| 1e-4 * f64::from(i)) {
+                let initial = State { theta: -alpha_cg * (1.0 + beyond), ..State::default() };
+                let run = Run { detail, initial, ..Run::new(structure, &ground) };
+                let (mut fall, mut seen) = (Fall::new(&structure), Vec::new());
+                let times = (0..100_000).map(|i| f64::from(i) * 2e-4);
+                let show = |at: &crate::engine::piece::Sample| seen.push((at.motion.time, at.motion.state.theta.abs()));
+                if run.sample(times, show, &mut fall).unwrap().ending != Ending::Overturned {
+                    continue;
+                }
+                let instant = fall.instant().unwrap();
+                let Some(last) = seen.iter().rposition(|(_, theta)| *theta < alpha_cg) else {
+                    assert_eq!(instant, 0.0, "{detail:?} {beyond}");
+                    continue;
+                };
+                assert!(seen[last].0 <= instant && instant <= seen[last + 1].0, "{detail:?} {beyond}: {instant}");
+                let mut there = Vec::new();
+                run.sample([instant], |at| there.push(at.motion.state.theta.abs()), &mut ()).unwrap();
+                assert!((there[0] - alpha_cg).abs() < 1e-13, "{detail:?} {beyond}: {there:?}");
+                returned += 1;
+            }
+        }
+        assert!(returned > 30, "{returned}");
     }
 
     #[test]

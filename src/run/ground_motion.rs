@@ -283,7 +283,7 @@ impl GroundMotion<'_> {
     }
 
     /// The ground acceleration from the last of `reached` samples to the next.
-    fn ramp(&self, reached: usize) -> Ramp {
+    pub(super) fn ramp(&self, reached: usize) -> Ramp {
         if reached == 0 || reached >= self.record.times().len() {
             return Ramp::default();
         }

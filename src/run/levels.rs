@@ -1,5 +1,6 @@
 //! Levels of detail compared on one run: the errors of each, what it costs, and the cheapest that will do.
 
+use super::fall::Fall;
 use super::history::{Distance, History};
 use super::peaks::{PeakWatch, Peaks};
 use super::{Course, Ending, Run, RunError};
@@ -29,7 +30,7 @@ pub enum Criterion {
     U,
     /// Peak of |a_t|, and with it of V_t and M_t.
     At,
-    /// θ over time: largest difference over the largest |θ|, while both structures stand.
+    /// θ over time: largest difference over the largest |θ|, until one of the structures lies; a fall is in both.
     ThetaHistory,
     /// u over time, likewise.
     UHistory,
@@ -54,7 +55,7 @@ impl Criterion {
 pub struct Response {
     /// The level.
     pub detail: Detail,
-    /// Its peaks.
+    /// Its peaks: of a structure that overturns, those before it falls.
     pub peaks: Peaks,
     /// How it ended.
     pub ending: Ending,
@@ -103,7 +104,7 @@ pub fn compare(run: &Run) -> Result<Comparison, RunError> {
         reference.go_on()?;
         trials.retain_mut(|trial| {
             let went_on = trial.go_on();
-            went_on.map_err(|error| refused.push((trial.detail, error))).is_ok()
+            went_on.map_err(|error| refused.push((trial.run.detail, error))).is_ok()
         });
         trials.iter_mut().for_each(|trial| trial.compare(&reference));
         let known = reference.history.stretches.len();
@@ -111,20 +112,23 @@ pub fn compare(run: &Run) -> Result<Comparison, RunError> {
         reference.history.stretches.drain(..done);
         trials.iter_mut().for_each(|trial| trial.compared -= done);
     }
+    let all = *reference.peaks.peaks();
+    let reference = reference.response()?.0;
+    let verdict = |trial: Trial<_>| {
+        let (response, distance) = trial.response()?;
+        Ok(Verdict::new(response, distance, &reference, &all))
+    };
+    let verdicts = trials.into_iter().map(verdict).collect::<Result<_, RunError>>()?;
     refused.sort_by_key(|(detail, _)| SIMPLEST_FIRST.iter().position(|of_all| of_all == detail));
-    let (reference, _) = reference.response();
-    let verdicts = trials
-        .into_iter()
-        .map(Trial::response)
-        .map(|(response, distance)| Verdict::new(response, distance, &reference));
-    Ok(Comparison { verdicts: verdicts.collect(), reference, refused })
+    Ok(Comparison { verdicts, reference, refused })
 }
 
 /// A level on its way.
 struct Trial<'a, Segments> {
-    detail: Detail,
+    run: Run<'a>,
     course: Course<Segments>,
     peaks: PeakWatch<'a>,
+    fall: Fall,
     /// What is still to be compared with the reference.
     history: History,
     /// From the reference.
@@ -136,17 +140,18 @@ struct Trial<'a, Segments> {
 }
 
 /// Of `run`, whose `peaks` will be there.
-fn start<'g, 'a>(
-    run: &Run<'g>,
+fn start<'a>(
+    run: &Run<'a>,
     peaks: &'a mut Peaks,
-) -> Result<Trial<'a, impl Iterator<Item = Segment> + use<'g>>, RunError> {
+) -> Result<Trial<'a, impl Iterator<Item = Segment> + use<'a>>, RunError> {
     let omega_u = run.structure.omega_u;
     let Course { engine, segments, end, rest } = run.course()?;
     let segments = segments.flat_map(move |segment| cut(segment, LONGEST_STRETCH / omega_u));
     Ok(Trial {
-        detail: run.detail,
+        run: run.clone(),
         course: Course { engine, segments, end, rest },
         peaks: peaks.watch(),
+        fall: Fall::new(&run.structure),
         history: History::default(),
         distance: Distance::new(omega_u),
         compared: 0,
@@ -169,7 +174,7 @@ impl<Segments: Iterator<Item = Segment>> Trial<'_, Segments> {
     /// Goes on over the next stretch unless it has ended.
     fn go_on(&mut self) -> Result<(), RunError> {
         if self.ending.is_none() {
-            self.ending = self.course.go_on(&mut (&mut self.peaks, &mut self.history))?;
+            self.ending = self.course.go_on(&mut (&mut self.peaks, &mut (&mut self.fall, &mut self.history)))?;
             if self.ending.is_some() {
                 self.course.engine.done(&mut self.peaks);
             }
@@ -193,16 +198,12 @@ impl<Segments: Iterator<Item = Segment>> Trial<'_, Segments> {
     }
 
     /// What came of it, and how far from the reference it has been.
-    fn response(self) -> (Response, Distance) {
+    fn response(self) -> Result<(Response, Distance), RunError> {
         let motion = self.course.engine.motion();
-        let response = Response {
-            detail: self.detail,
-            peaks: *self.peaks.peaks(),
-            ending: self.ending.expect("it has been followed to its end"),
-            transitions: motion.transitions,
-            work: motion.work,
-        };
-        (response, self.distance)
+        let ending = self.ending.expect("it has been followed to its end");
+        let (peaks, _) = self.fall.peaks_before(&self.run, ending, self.peaks.peaks())?;
+        let (transitions, work) = (motion.transitions, motion.work);
+        Ok((Response { detail: self.run.detail, peaks, ending, transitions, work }, self.distance))
     }
 }
 
@@ -228,13 +229,14 @@ impl Response {
 }
 
 impl Verdict {
-    /// Of a `response` that has been this far from the `reference`.
-    fn new(response: Response, distance: Distance, reference: &Response) -> Verdict {
+    /// Of a `response` that has been this far from the `reference`, whose peaks are these with a fall, `all` of it.
+    fn new(response: Response, distance: Distance, reference: &Response, all: &Peaks) -> Verdict {
         let peaks = [Peaks::theta, Peaks::u, Peaks::a_t].map(|of| {
             let [found, expected] = [&response.peaks, &reference.peaks].map(|peaks| of(peaks).magnitude);
             ((found - expected).abs(), expected)
         });
-        let histories = std::array::from_fn(|i| (distance.largest[i], peaks[i].1));
+        let expected = [all.theta(), all.u(), all.a_t()];
+        let histories = std::array::from_fn(|i| (distance.largest[i], expected[i].magnitude));
         let [theta, u, a_t] = peaks.map(relative);
         let [theta_history, u_history, a_t_history] = <[_; 3]>::map(histories, relative);
         Verdict {

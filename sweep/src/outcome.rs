@@ -1,7 +1,8 @@
 //! What a run came to, in a few numbers, and whether a limit was exceeded.
 
 use rocking::Watch;
-use rocking::run::peaks::{PEAKS, Peaks};
+use rocking::run::fall::Found;
+use rocking::run::peaks::PEAKS;
 use rocking::run::{Ending, Run};
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -27,7 +28,7 @@ pub struct Summary {
     pub ending: Ending,
     /// When, s.
     pub end: f64,
-    /// Largest magnitudes, in the order of [`MEASURES`].
+    /// Largest magnitudes, in the order of [`MEASURES`]; of a structure that overturns, before it falls.
     pub peaks: [f64; MEASURES.len()],
     /// Transitions.
     pub transitions: u64,
@@ -84,9 +85,8 @@ pub enum LimitError {
 impl Outcome {
     /// Does `run`, which `watch` sees go by.
     pub fn of(run: &Run, watch: &mut impl Watch) -> Outcome {
-        let mut peaks = Peaks::since(run.ground.start(), &run.structure);
-        let finish = match run.follow(&mut (&mut peaks.watch(), watch)) {
-            Ok(finish) => finish,
+        let Found { peaks, finish, .. } = match run.found(watch) {
+            Ok(found) => found,
             Err(error) => {
                 let time = error.time().unwrap_or(run.ground.start());
                 return Outcome::Failed { time, reason: error.to_string() };

@@ -5,13 +5,13 @@ use crate::picture::{
     mass, rounded, titled,
 };
 use crate::quantities::in_readable_unit;
-use crate::summary::Found;
 use anyhow::Context;
 use rocking::{
     Parameters, Run, Structure,
     run::{
         Ending,
         curve::{Curve, Point},
+        fall::Found,
         peaks::Peak,
     },
 };
@@ -21,24 +21,25 @@ const PART: f64 = 1e-3;
 
 const WIDTH: u32 = 860;
 
-/// Runs `run` once more, for its curve, and draws it with the peaks that were `found`.
-pub fn draw(picture: Picture, run: &Run, found: &Found) -> anyhow::Result<()> {
+/// Runs `run` once more, for its curve, and draws it with its peaks.
+pub fn draw(picture: Picture, run: &Run) -> anyhow::Result<()> {
     let curve = run.curve(PART)?;
     let first = curve.points.first().context("a run has a start")?;
     let histories = Histories {
-        panels: panels(run, &curve, found),
+        panels: panels(run, &curve),
         marks: Marks::of(&curve.transitions.iter().map(|at| (at.time, at.kind)).collect::<Vec<_>>()),
-        time: first.time..curve.finish.motion.time,
+        time: first.time..curve.found.finish.motion.time,
     };
     picture.draw((WIDTH, TITLE + histories.height()), |area| {
         histories.draw(&titled(area, run.ground.title(), &about(&run.structure, &curve))?)
     })
 }
 
-fn panels(run: &Run, curve: &Curve, &Found { ground, ref peaks, finish, .. }: &Found) -> Vec<Panel> {
+fn panels(run: &Run, curve: &Curve) -> Vec<Panel> {
+    let Found { ground, peaks, finish, .. } = &curve.found;
     let g = run.structure.parameters().g;
     let over_time = |value: fn(&Point) -> f64| curve.points.iter().map(|at| (at.time, value(at))).collect();
-    let shown = if ground.time <= finish.motion.time { ground } else { Peak::default() };
+    let shown = if ground.time <= finish.motion.time { *ground } else { Peak::default() };
     let a_g = Panel::of("ground acceleration", (g, "g"), colour::GREY, over_time(|at| at.a_g), shown);
     let panel = |name, unit, value, peak| Panel::of(name, unit, colour::BLUE, over_time(value), peak);
     let uplift = rounded(1e3 * peaks.uplift().magnitude);
@@ -57,7 +58,7 @@ fn panels(run: &Run, curve: &Curve, &Found { ground, ref peaks, finish, .. }: &F
 fn about(structure: &Structure, curve: &Curve) -> String {
     let &Parameters { m, H, B, f_fc, .. } = structure.parameters();
     let (m, [H, base, f_fc]) = (mass(m), [H, 2.0 * B, f_fc].map(rounded));
-    let end = match curve.finish.ending {
+    let end = match curve.found.finish.ending {
         Ending::Overturned => ", overturned",
         Ending::StillRocking => ", still rocking",
         Ending::AtRest | Ending::AtTime => "",

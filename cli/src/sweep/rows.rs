@@ -10,7 +10,11 @@ use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::validity::{ASSUMPTIONS, Found as Beyond};
 use rocking_sweep::outcome::{MEASURES, Outcome};
 use rocking_sweep::plan::{AXES, Case, Conditions, NamedRecord, Plan};
-use std::{collections::HashMap, path::Path, ptr};
+use std::{
+    collections::{HashMap, HashSet},
+    path::Path,
+    ptr,
+};
 use uuid::Uuid;
 
 /// The word for the ending of a run that has none.
@@ -40,6 +44,8 @@ pub struct Found {
 pub struct Key {
     /// Stands for all that the run depends on.
     pub run: Uuid,
+    /// Stands for the same where what it goes beyond is asked for, and was not, or the other way round.
+    otherwise: Uuid,
     /// Stands for the samples of its record, whatever its file is called.
     record: Uuid,
 }
@@ -55,7 +61,8 @@ pub fn keys(plan: &Plan, validity: bool) -> Vec<Key> {
         let names = (case.population.name(), case.motion.name());
         let record = digests[&ptr::from_ref(case.motion)];
         let motion = (record.into_bytes(), case.motion.scale(), case.scale);
-        Key { run: key(&(names, case.structure.parameters(), motion, case.conditions, validity)), record }
+        let run = |validity: bool| key(&(names, case.structure.parameters(), motion, case.conditions, validity));
+        Key { run: run(validity), otherwise: run(!validity), record }
     };
     plan.cases().map(of_case).collect()
 }
@@ -120,10 +127,15 @@ fn read(rows: &[u8], keys: &[Key]) -> anyhow::Result<Found> {
         numbers.len() == keys.len(),
         "two runs are the same: values that vary differ by less than a rounding error"
     );
+    let otherwise: HashSet<_> = keys.iter().map(|key| key.otherwise).collect();
     let mut found = Found { outcomes: vec![None; keys.len()], ..Found::default() };
     for (line, row) in records(rows) {
         let (key, outcome) = parse(&row?).with_context(|| format!("line {line} cannot be read"))?;
         match numbers.get(&key).map(|number: &usize| &mut found.outcomes[*number]) {
+            None if otherwise.contains(&key) => bail!(
+                "line {line} is of a run of this sweep, but with --validity or without it, unlike now: give it as \
+                 then, or name another file with -o"
+            ),
             None => found.others += 1,
             Some(Some(known)) if *known == outcome => found.repeated += 1,
             Some(Some(_)) => bail!("line {line} contradicts another row of run {key}: remove one of them"),

@@ -17,6 +17,11 @@
   const transitions = data.transitions.map(([sum, kind]) => ({ instant: start + sum * data.time.quantum, kind }));
   const peaks = Object.fromEntries(data.peaks.map(([name, magnitude, instant]) => [name, { magnitude, instant }]));
 
+  /** The largest magnitude of each history, that of a fall, too. */
+  const largest = Object.fromEntries(
+    Object.entries(motion).map(([name, values]) => [name, values.reduce((most, value) => Math.max(most, Math.abs(value)), 0)]),
+  );
+
   /** How many of the rising numbers are at most `value`. */
   function countUpTo(numbers, value, of = (number) => number) {
     let [low, high] = [0, numbers.length];
@@ -108,7 +113,7 @@
 
   const foundation = 0.11 * H;
   const block = { width: 0.42 * Math.min(2 * B, H), height: 0.28 * Math.min(2 * B, H) };
-  const largestMotion = Math.max(peaks.theta.magnitude, peaks.u.magnitude / H);
+  const largestMotion = Math.max(largest.theta, largest.u / H);
   const exaggerations = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].filter(
     (factor) => factor === 1 || (largestMotion > 0 && factor * largestMotion < 0.6),
   );
@@ -134,8 +139,8 @@
   function layOutScene() {
     const { width, height } = at("scene").getBoundingClientRect();
     set(at("scene"), { viewBox: `0 0 ${width} ${height}` }); // on paper it takes the width of the page
-    const theta = Math.min(Math.PI / 2, exaggeration * peaks.theta.magnitude);
-    const u = exaggeration * peaks.u.magnitude;
+    const theta = Math.min(Math.PI / 2, exaggeration * largest.theta);
+    const u = exaggeration * largest.u;
     const reach = B * (1 - Math.cos(theta)) + (H + block.height) * Math.sin(theta) + u + block.width / 2;
     const tall = Math.hypot(H + block.height, theta > 0.5 ? 2 * B : 0);
     const [left, right, top, below] = [64, 40, 64, 58];
@@ -175,19 +180,18 @@
     set(lift, { x: x + scale * edge.x - 8 * side, y: y + (scale * edge.y) / 2 + 4, "text-anchor": side > 0 ? "end" : "start" });
     drawShaking(state.a_g, width);
     const fallen = at("fallen");
-    fallen.textContent = state.phase === "overturned" ? `overturned at ${fixed(end, 3)} s` : "";
+    fallen.textContent = state.phase === "overturned" ? `overturned at ${fixed(end, 3)} s, peaks until ${fixed(data.fall, 3)} s` : "";
     set(fallen, { x, y: 62, "text-anchor": "middle" });
   }
 
-  /** The ground acceleration as an arrow; the record's largest is a quarter of the width. */
+  /** The ground acceleration as an arrow; the largest is a quarter of the width. */
   function drawShaking(a_g, width) {
     const [line, head, text] = at("shaking").children;
-    const largest = peaks.a_g.magnitude;
-    const length = largest > 0 ? (0.24 * width * a_g) / largest : 0;
+    const length = largest.a_g > 0 ? (0.24 * width * a_g) / largest.a_g : 0;
     const [x, y, tip] = [stage.x, stage.y + 6, Math.sign(length) * Math.min(9, Math.abs(length))];
     set(line, { x1: x, x2: x + length - tip, y1: y, y2: y });
     set(head, { d: `M${x + length} ${y}l${-tip} -5v10z` });
-    text.textContent = largest > 0 ? `a_g = ${quantities.a_g.show(a_g)} g` : "ground at rest";
+    text.textContent = largest.a_g > 0 ? `a_g = ${quantities.a_g.show(a_g)} g` : "ground at rest";
     set(text, { x: width - 12, y: stage.y + 32, "text-anchor": "end", class: "muted" });
   }
 
@@ -227,7 +231,7 @@
 
   // ---- Histories
 
-  const angle = peaks.theta.magnitude < 0.1 ? { unit: "mrad", per: 1e-3 } : { unit: "rad", per: 1 };
+  const angle = largest.theta < 0.1 ? { unit: "mrad", per: 1e-3 } : { unit: "rad", per: 1 };
   const panels = [
     { name: "a_g", meaning: "ground acceleration", title: "a_g (g)", per: g, colour: "--grey" },
     { name: "theta", meaning: "rotation", title: `θ (${angle.unit})`, per: angle.per, colour: "--blue" },
@@ -236,7 +240,7 @@
       name: "a_t", meaning: "acceleration of the top", title: "a_t (g)", per: g, colour: "--blue",
       right: { meaning: "base shear", title: "V_t (kN)", factor: (m * g) / 1e3 },
     },
-  ].filter(({ name }) => ["theta", "a_t"].includes(name) || peaks[name].magnitude > 0);
+  ].filter(({ name }) => ["theta", "a_t"].includes(name) || largest[name] > 0);
   const kinds = [
     { name: "uplift", colour: "--green", is: (kind) => kind.startsWith("uplift") },
     { name: "impact", colour: "--orange", is: (kind) => kind.startsWith("impact") },
@@ -301,7 +305,7 @@
     panels.forEach((panel, k) => {
       const [top, bottom] = [k * high + gap, (k + 1) * high];
       const { magnitude, instant } = peaks[panel.name];
-      const most = (magnitude > 0 ? magnitude / panel.per : 1) * 1.12;
+      const most = (largest[panel.name] > 0 ? largest[panel.name] / panel.per : 1) * 1.12;
       const y = (value) => (top + bottom) / 2 - ((value / panel.per / most) * (bottom - top)) / 2;
       panel.y = y;
       for (const { value } of times) element(svg, "line", { class: "grid", x1: across(value), x2: across(value), y1: top, y2: bottom });
