@@ -7,7 +7,8 @@ use nalgebra::{SMatrix, Vector4, Vector6};
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::End;
 use rocking::run::ground_motion::Segment;
-use rocking::run::record::{Reading, Record};
+use rocking_records::Reading;
+use rocking::run::record::Record;
 use rocking::{Detail, Motion, Parameters, Run, Structure};
 use std::{env, hint::black_box, path::Path, time::Instant};
 
@@ -19,7 +20,7 @@ const TURNS: usize = 200;
 
 fn record() -> Record {
     let file = env::var("RECORD").expect("RECORD must name an AT2 file; `make bench` takes El Centro 1940");
-    Record::read(Path::new(&file), &Reading::default(), 9.81).expect("the record is readable").0
+    rocking_records::read(Path::new(&file), &Reading::default(), 9.81).expect("the record is readable").0
 }
 
 fn run(ground: &Record, detail: Detail, tolerance: f64) -> Run<'_> {

@@ -1,15 +1,16 @@
 //! A record is read and run, the levels of detail are compared on it, and piers of four stiffnesses are swept.
 
 use rocking::estimates::intensity::IntensityMeasure::Pga;
-use rocking::run::record::{Reading, Record};
+use rocking::run::record::Record;
 use rocking::run::{levels, peaks::PEAKS};
 use rocking::{Parameters, Run, Structure};
+use rocking_records::Reading;
 use rocking_sweep::fragility::{FragilityCurve, Trials};
 use rocking_sweep::outcome::Limit;
 use rocking_sweep::plan::{Case, NamedRecord, Plan, Population};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
-    let (ground, source) = Record::read("examples/pulse.csv".as_ref(), &Reading::default(), 9.81)?;
+    let (ground, source) = rocking_records::read("examples/pulse.csv".as_ref(), &Reading::default(), 9.81)?;
     println!("{}: {}", ground.title(), source.unit);
     let run = Run::new(Structure::new(Parameters::MCMANUS)?, &ground);
     let (peaks, finish) = run.peaks()?;

@@ -1,7 +1,7 @@
 //! What a command reads: a file, or standard input under the name `-`.
 
 use anyhow::{Context, ensure};
-use rocking::run::record::MAX_FILE;
+use rocking_records::MAX_FILE;
 use std::fs;
 use std::io::{Read, stdin};
 use std::path::Path;

@@ -2,7 +2,8 @@
 use crate::{input, significant::short, tables::Table, talk::say};
 use anyhow::{anyhow, ensure};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use rocking::run::record::{Column, Reading, Record, RecordError, Remedy, Source, Unit, UnitFrom};
+use rocking::run::record::Record;
+use rocking_records::{Column, Reading, RecordError, Remedy, Source, Unit, UnitFrom};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -84,10 +85,10 @@ impl RecordOptions {
         }
         let how = Reading { unit, dt, column: column.clone(), ignores_count };
         let (in_file, source) = match input::is_standard(path) {
-            true => Record::from_bytes(Path::new(input::NAME), &input::read(path)?, &how)?,
-            false => Record::read_raw(path, &how)?,
+            true => rocking_records::from_bytes(Path::new(input::NAME), &input::read(path)?, &how)?,
+            false => rocking_records::read_raw(path, &how)?,
         };
-        let (record, source) = in_file.clone().in_m_s2(source, g);
+        let (record, source) = rocking_records::in_m_s2(in_file.clone(), source, g);
         let described = described(path, &record, &source, g);
         let scaled = |record: Record| record.scaled(time_scale, scale);
         Ok(Understood { record: scaled(record)?, in_file: scaled(in_file)?, source, described })

@@ -7,8 +7,8 @@ use command_line::{DT, SAMPLES, fail, folder, pulse, succeed};
 use rocking::estimates::demand::Demand;
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::estimates::response_spectrum::spectral_acceleration;
-use rocking::run::record::{Reading, Record};
 use rocking::{Detail, Engine, Load, Parameters, Ramp, State, Structure, engine::DEFAULT_TOLERANCE};
+use rocking_records::Reading;
 use std::{f64::consts::TAU, fs};
 
 /// The columns of the row of `level`.
@@ -75,7 +75,7 @@ fn the_errors_are_those_of_the_engines() {
     }
 
     let structure = Structure::new(Parameters::MCMANUS).unwrap();
-    let (record, _) = Record::read(&folder.path().join("pulse.AT2"), &Reading::default(), 9.81).unwrap();
+    let (record, _) = rocking_records::read(&folder.path().join("pulse.AT2"), &Reading::default(), 9.81).unwrap();
     let S_a = spectral_acceleration(&record, TAU / structure.omega_u, structure.zeta_u);
     let estimate = Demand::new(&structure, S_a, 2.0).unwrap().a_t;
     let shown: f64 = row(&table, "estimate")[3].parse().unwrap();

@@ -4,7 +4,7 @@
 mod command_line;
 
 use command_line::{fail, succeed};
-use rocking::run::record::{Reading, Record};
+use rocking_records::Reading;
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape};
 use std::{
     collections::BTreeMap,
@@ -167,7 +167,7 @@ fn a_pulse_is_written_as_the_library_makes_it() {
         succeed(folder.path(), &format!("pulse {name} --amplitude 0.5 --period 0.8 --lead-in 0.1 --rest 0.2"));
         let pulse = Pulse { lead_in: 0.1, rest: 0.2, ..Pulse::new(shape, 0.5 * 9.81, 1.0 / 0.8) };
         let expected = pulse.record().unwrap();
-        let (record, _) = Record::read(&folder.path().join("pulse.csv"), &Reading::default(), 9.81).unwrap();
+        let (record, _) = rocking_records::read(&folder.path().join("pulse.csv"), &Reading::default(), 9.81).unwrap();
         assert_eq!(record.times(), expected.times(), "{name}");
         for (found, expected) in record.acceleration().iter().zip(expected.acceleration()) {
             assert!((found - expected).abs() <= 4.0 * f64::EPSILON * expected.abs(), "{name}: {found} {expected}");

@@ -3,16 +3,19 @@
 mod command_line;
 
 use command_line::{fail, folder, succeed};
-use rocking::run::record::{Reading, Record};
 use rocking::run::validity::{ASSUMPTIONS, Found, Limits};
 use rocking::run::{End, Run};
 use rocking::{Parameters, Structure};
+use rocking_records::Reading;
 use std::{fs, path::Path};
 
 /// The pulse under McManus's specimen with this restitution.
 fn found(folder: &Path, r: f64, scale: f64, limits: Limits, end: End) -> Found {
-    let ground =
-        Record::read(&folder.join("pulse.AT2"), &Reading::default(), 9.81).unwrap().0.scaled(1.0, scale).unwrap();
+    let ground = rocking_records::read(&folder.join("pulse.AT2"), &Reading::default(), 9.81)
+        .unwrap()
+        .0
+        .scaled(1.0, scale)
+        .unwrap();
     let structure = Structure::new(Parameters { r, ..Parameters::MCMANUS }).unwrap();
     Run { end, ..Run::new(structure, &ground) }.validity(limits).unwrap().0
 }

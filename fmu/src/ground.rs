@@ -1,7 +1,8 @@
 //! The records that the ground follows: found by name or path, and shared by all instances of the process that hold them.
 
 use crate::resources::{self, Archive};
-use rocking::run::record::{self, Reading, Record, RecordError, Source, Unit};
+use rocking::run::record::Record;
+use rocking_records::{Reading, RecordError, Source, Unit};
 use std::error::Error;
 use std::path::{MAIN_SEPARATOR, Path, PathBuf, is_separator};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, Weak};
@@ -56,12 +57,12 @@ pub enum GroundError {
 impl GroundRecord {
     /// Reads it; accelerations whose unit its file does not state are in m/s².
     pub fn read(path: &Path) -> Result<GroundRecord, RecordError> {
-        GroundRecord::from_bytes(path, &record::read_file(path)?)
+        GroundRecord::from_bytes(path, &rocking_records::read_file(path)?)
     }
 
     /// The same of `bytes`, which are the content of the file at `path`.
     fn from_bytes(path: &Path, bytes: &[u8]) -> Result<GroundRecord, RecordError> {
-        let (record, Source { unit, .. }) = Record::from_bytes(path, bytes, &Reading::default())?;
+        let (record, Source { unit, .. }) = rocking_records::from_bytes(path, bytes, &Reading::default())?;
         let numbers = record.times().iter().chain(record.acceleration());
         let bytes: Vec<_> = numbers.flat_map(|number| number.to_le_bytes()).chain([unit as u8]).collect();
         let digest = Uuid::new_v5(&Uuid::NAMESPACE_OID, &bytes).into_bytes();
@@ -138,7 +139,7 @@ impl Archive {
 /// The record in the file `path`, which is parsed unless somebody holds a record of the same content. Files are read and
 /// parsed without the lock: of two threads that parse the same, one will throw its record away.
 fn shared(path: &Path) -> Result<Arc<GroundRecord>, RecordError> {
-    let bytes = record::read_file(path)?;
+    let bytes = rocking_records::read_file(path)?;
     let name = path.file_name().unwrap_or_default().as_encoded_bytes();
     let content = Uuid::new_v5(&Uuid::new_v5(&Uuid::NAMESPACE_OID, name), &bytes);
     if let Some(record) = find(&held(), content) {

@@ -9,9 +9,10 @@ use FlexibleRocking::snapshot;
 use approx::assert_relative_eq;
 use host::*;
 use rocking::run::peaks::{PEAKS, Peaks};
-use rocking::run::record::{Reading, Record};
+use rocking::run::record::Record;
 use rocking::run::{End, Run};
 use rocking::{Detail, LinearLoad, Load, Parameters, Ramp, Structure};
+use rocking_records::Reading;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 use tempfile::TempDir;
@@ -65,7 +66,7 @@ fn records() -> (TempDir, Vec<PathBuf>) {
 const SCALES: (f64, f64) = (0.4, 1.25);
 
 fn read(path: &Path) -> Record {
-    let (record, _) = Record::read(path, &Reading::default(), Parameters::EVISON.g).unwrap();
+    let (record, _) = rocking_records::read(path, &Reading::default(), Parameters::EVISON.g).unwrap();
     record.scaled(SCALES.0, SCALES.1).unwrap()
 }
 

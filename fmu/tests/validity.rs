@@ -6,10 +6,10 @@ mod host;
 use FlexibleRocking::snapshot;
 use approx::assert_relative_eq;
 use host::*;
-use rocking::run::record::{Reading, Record};
 use rocking::run::validity::{ASSUMPTIONS, Found, Limits};
 use rocking::run::{End, Run};
 use rocking::{Parameters, Structure};
+use rocking_records::Reading;
 use std::fs;
 
 /// With full restitution a structure gains energy at impacts, and without stiffness it takes tension to hold its base down.
@@ -47,7 +47,7 @@ fn expected() -> Found {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("quake.csv");
     fs::write(&path, quake()).unwrap();
-    let (ground, _) = Record::read(&path, &Reading::default(), 9.81).unwrap();
+    let (ground, _) = rocking_records::read(&path, &Reading::default(), 9.81).unwrap();
     let structure = Structure::new(Parameters { r: 1.0, f_fc: 4.0, ..Parameters::EVISON }).unwrap();
     let run = Run { end: End::At(5.0), ..Run::new(structure, &ground) };
     run.validity(Limits::default()).unwrap().0

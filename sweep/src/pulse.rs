@@ -16,7 +16,7 @@
 //! over 1e-9 T where there is a lead-in or a rest.
 
 use rocking::Structure;
-use rocking::run::record::{MAX_SAMPLES, Record, RecordError};
+use rocking::run::record::{MAX_SAMPLES, Record, SamplesError};
 use rocking::structure::quantity::{OutOfRange, Quantity, quantity};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{FRAC_PI_2, SQRT_2, TAU};
@@ -143,7 +143,7 @@ pub enum PulseError {
     },
     /// The samples are no record.
     #[error(transparent)]
-    Record(#[from] RecordError),
+    Record(#[from] SamplesError),
 }
 
 impl Shape {

@@ -9,9 +9,10 @@ use crate::{
 use anyhow::{Context, anyhow, bail, ensure};
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::mechanics::state::INITIAL_VALUES;
-use rocking::run::record::{Column, Record, Unit};
+use rocking::run::record::Record;
 use rocking::structure::natural_quantities::Given;
 use rocking::{Detail, Parameters, State, Structure, engine::DEFAULT_TOLERANCE};
+use rocking_records::{Column, Unit};
 use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map};
 use rocking_sweep::outcome::Limit;
 use rocking_sweep::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population};

@@ -12,9 +12,10 @@ use minijinja::{Environment, UndefinedBehavior};
 use rocking::Structure;
 use rocking::engine::{DEFAULT_TOLERANCE, MAX_STEPS_PER_ADVANCE};
 use rocking::levels::rules::MAX_TRANSITIONS_PER_PERIOD;
-use rocking::run::record::{MAX_FILE, MAX_SAMPLES};
+use rocking::run::record::MAX_SAMPLES;
 use rocking::structure::DERIVED;
 use rocking::structure::parameters::MAX_SLENDERNESS;
+use rocking_records::MAX_FILE;
 use serde::Serialize;
 
 const TEMPLATE: &str = include_str!("../resources/index.html");

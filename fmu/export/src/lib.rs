@@ -16,7 +16,7 @@ use archive::Entry;
 use experiment::Experiment;
 pub use library::{Library, LibraryError, Platform};
 use rocking::Structure;
-use rocking::run::record::RecordError;
+use rocking_records::RecordError;
 use std::fs;
 use std::path::PathBuf;
 use std::str::FromStr;

@@ -278,7 +278,7 @@ mod tests {
             r#"<String start="pulse &amp; rest.csv"/>"#,
             r#"description="whether the largest magnitudes theta_max, u_max, ... are watched for" causality="parameter" variability="fixed" initial="exact">
       <Boolean start="false"/>"#,
-            r#"exact: within steps, too; NaN unless peaks is true" causality="local" variability="continuous" initial="calculated">
+            r#"exact: within steps, too, and during a fall to overturning; NaN unless peaks is true" causality="local" variability="continuous" initial="calculated">
       <Real unit="rad" displayUnit="deg" nominal="0.351"/>"#,
             r#"modelName="Pier" guid"#,
             r#"<CoSimulation modelIdentifier="Pier" "#,

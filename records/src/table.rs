@@ -442,7 +442,7 @@ fn is_damaged(line: &str, sample: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::record::{Record, Source, Unit, UnitFrom};
+    use crate::{Record, Source, Unit, UnitFrom};
     use proptest::prelude::*;
 
     fn read(text: &str, how: &Reading) -> Result<(Record, Source), BadLine> {
@@ -591,10 +591,10 @@ mod tests {
             let words =
                 text.split(|letter: char| letter.is_whitespace() || letter == ';').filter(|word| !word.is_empty());
             let expected: Vec<f64> = words.map(|word| word.replace(',', ".").parse().unwrap()).collect();
-            assert_eq!(read(text, &all).unwrap().0.acceleration, expected, "{text}");
+            assert_eq!(read(text, &all).unwrap().0.acceleration(), expected, "{text}");
             let stated = format!("NPTS={} DT=0.5\n{text}", expected.len());
             let found = read(&stated, &AS_IT_IS);
-            assert_eq!(found.unwrap_or_else(|error| panic!("{text}: {error:?}")).0.acceleration, expected, "{text}");
+            assert_eq!(found.unwrap_or_else(|error| panic!("{text}: {error:?}")).0.acceleration(), expected, "{text}");
         }
         assert_eq!(read("1\n2 3\n", &step).unwrap_err().remedy, Some(Remedy::ColumnOrAll));
         let cut = "NPTS=8 DT=.5\n3 2 1\n1 2 3\n";
@@ -602,7 +602,7 @@ mod tests {
         assert_eq!(problem(cut, &Reading { ignores_count: true, ..AS_IT_IS }), expected);
         assert_eq!(read(cut, &all).unwrap_err().remedy, Some(Remedy::IgnoreCount));
         let series = "ACCELERATION TIME HISTORY IN UNITS OF CM/S**2\n3 2 1\n1 2 3\n";
-        assert_eq!(read(series, &step).unwrap().0.acceleration, [3.0, 2.0, 1.0, 1.0, 2.0, 3.0]);
+        assert_eq!(read(series, &step).unwrap().0.acceleration(), [3.0, 2.0, 1.0, 1.0, 2.0, 3.0]);
         assert_eq!(problem("t,a\n0,1\n.5,2\n", &all), "2: column 1 has the times, and not all are accelerations");
         assert_eq!(read("3 2 1\n1 2 3\n", &AS_IT_IS).unwrap_err().remedy, Some(Remedy::ColumnOrAll));
     }
@@ -673,7 +673,7 @@ mod tests {
         for one in ["0,12\n-0,35\n0,5\n1,25\n", "1,25\n-2,05\n3,75\n", "a\n1,0\n-2,00\n3\n"] {
             let expected: Vec<f64> = one.lines().filter_map(|line| line.replace(',', ".").parse().ok()).collect();
             for column in [None, Some(1)] {
-                assert_eq!(read(one, &with(column)).unwrap().0.acceleration, expected, "{one}");
+                assert_eq!(read(one, &with(column)).unwrap().0.acceleration(), expected, "{one}");
             }
             assert_eq!(read(one, &AS_IT_IS).unwrap_err().remedy, Some(Remedy::Step));
         }
@@ -681,8 +681,8 @@ mod tests {
         for (text, how) in [(two, AS_IT_IS), (two, with(None)), ("1,25\n-2,5\n3,75\n", with(None))] {
             assert!(problem(text, &how).contains("may be two whole numbers or one with a decimal comma"));
         }
-        assert_eq!(read(two, &with(Some(2))).unwrap().0.acceleration, [1.0, 2.0, 3.0, 5.0]);
-        assert_eq!(read(&format!("t (ms),a\n{two}"), &AS_IT_IS).unwrap().0.times, [0.0, 0.001, 0.002, 0.003]);
+        assert_eq!(read(two, &with(Some(2))).unwrap().0.acceleration(), [1.0, 2.0, 3.0, 5.0]);
+        assert_eq!(read(&format!("t (ms),a\n{two}"), &AS_IT_IS).unwrap().0.times(), [0.0, 0.001, 0.002, 0.003]);
         assert!(
             problem("0,01,0,12\n0,02,0,15\n", &with(None)).contains("commas stand between numbers and before decimals")
         );
@@ -722,8 +722,8 @@ mod tests {
             "5 0.01\n0.00 0.1\n0.01 -0.2\n0.02 0.3\n0.03 0.5\n0.04 -0.4\n",
         ] {
             let (record, _) = read(text, &AS_IT_IS).unwrap_or_else(|error| panic!("{text}: {error:?}"));
-            assert_eq!(record.acceleration, samples, "{text}");
-            assert_eq!(record.times, [0.0, 0.01, 0.02, 0.03, 0.04], "{text}");
+            assert_eq!(record.acceleration(), samples, "{text}");
+            assert_eq!(record.times(), [0.0, 0.01, 0.02, 0.03, 0.04], "{text}");
             let fewer = &text[..text.trim_end().rfind(['\n', ' ']).unwrap()];
             assert!(read(fewer, &AS_IT_IS).is_err(), "{fewer}");
         }
@@ -733,7 +733,7 @@ mod tests {
     fn text_is_no_data_and_damaged_data_are_no_text() {
         for title in ["Kocaeli 1999 08 17", "17 March, run 4", "(1) 2 3"] {
             let (record, _) = read(&format!("{title}\n0.0 0.1\n0.5 0.2\n"), &AS_IT_IS).unwrap();
-            assert_eq!((record.times, record.acceleration), (vec![0.0, 0.5], vec![0.1, 0.2]), "{title}");
+            assert_eq!((record.times(), record.acceleration()), (&[0.0, 0.5][..], &[0.1, 0.2][..]), "{title}");
         }
         for text in ["3\n0.1\n0.2\n0.3\n", "3\n0.01\n0.1\n0.2\n0.3\n"] {
             let refused = read(text, &Reading { dt: Some(0.01), ..AS_IT_IS }).unwrap_err();
@@ -801,7 +801,7 @@ mod tests {
                 expected.1.push(value);
             }
             let (record, _) = read(&text, &AS_IT_IS).unwrap();
-            prop_assert_eq!((record.times, record.acceleration), expected);
+            prop_assert_eq!((record.times().to_vec(), record.acceleration().to_vec()), expected);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Files of every layout that is read, written here from known samples as their publishers lay them out.
 
-use rocking::run::record::{Column, Format, Reading, Unit};
+use rocking_records::{Column, Format, Reading, Unit};
 use std::fmt::Write;
 use std::path::PathBuf;
 

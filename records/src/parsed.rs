@@ -107,7 +107,8 @@ impl Parsed {
                 format!("the time {after:?} s does not come after the one before it, {before:?} s"),
             ));
         }
-        Ok((Record { title, times, acceleration }, source))
+        let record = Record::from_samples(title, times, acceleration);
+        record.map(|record| (record, source)).map_err(|error| bad(last_line, error.to_string()))
     }
 }
 

@@ -54,7 +54,7 @@ fn check_unit(line: &str) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::record::{Column, Record, Remedy};
+    use crate::{Column, Record, Remedy};
     use proptest::prelude::*;
 
     const PACOIMA: &str = "PEER NGA STRONG MOTION DATABASE RECORD\n\

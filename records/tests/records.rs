@@ -7,7 +7,7 @@ mod layouts;
 
 use fastrand::Rng;
 use layouts::{DT, Layout, all, cosmos, samples};
-use rocking::run::record::{Column, Reading, Record, RecordError, Remedy, Unit, UnitFrom};
+use rocking_records::{Column, Reading, RecordError, Remedy, Unit, UnitFrom};
 use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::{env, thread};
@@ -17,7 +17,7 @@ fn every_layout_gives_its_samples_in_its_unit() {
     for Layout { path, bytes, how, format, unit, expected } in all(403) {
         let text = String::from_utf8_lossy(&bytes[..bytes.len().min(200)]).into_owned();
         let (record, source) =
-            Record::from_bytes(&path, &bytes, &how).unwrap_or_else(|error| panic!("{error}: {text}"));
+            rocking_records::from_bytes(&path, &bytes, &how).unwrap_or_else(|error| panic!("{error}: {text}"));
         assert_eq!((source.format, source.unit), (format, unit), "{text}");
         let from = if how.unit.is_some() { UnitFrom::User } else { UnitFrom::File };
         assert_eq!(source.unit_from, from, "{text}");
@@ -34,7 +34,7 @@ fn every_layout_gives_its_samples_in_its_unit() {
 fn every_layout_is_read_in_every_encoding() {
     for Layout { path, bytes, how, .. } in all(40) {
         let text = String::from_utf8(bytes.clone()).unwrap().replace("\r\n", "\n");
-        let expected = Record::from_bytes(&path, &bytes, &how).unwrap();
+        let expected = rocking_records::from_bytes(&path, &bytes, &how).unwrap();
         let utf_16: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
         for bytes in [
             text.replace('\n', "\r\n").into_bytes(),
@@ -42,7 +42,7 @@ fn every_layout_is_read_in_every_encoding() {
             [b"\xef\xbb\xbf", text.as_bytes()].concat(),
             [b"\xff\xfe", utf_16.as_slice()].concat(),
         ] {
-            assert_eq!(Record::from_bytes(&path, &bytes, &how).unwrap(), expected, "{}", path.display());
+            assert_eq!(rocking_records::from_bytes(&path, &bytes, &how).unwrap(), expected, "{}", path.display());
         }
     }
 }
@@ -51,7 +51,7 @@ fn every_layout_is_read_in_every_encoding() {
 #[test]
 fn what_contradicts_a_file_is_refused() {
     for Layout { path, bytes, how, unit, .. } in all(40).into_iter().filter(|layout| layout.how.unit.is_none()) {
-        let read = |how: &Reading| Record::from_bytes(&path, &bytes, how);
+        let read = |how: &Reading| rocking_records::from_bytes(&path, &bytes, how);
         assert!(read(&Reading { unit: Some(unit), ..how.clone() }).is_ok());
         let refused = read(&Reading { unit: Some(Unit::MillimetrePerSecondSquared), ..how.clone() }).unwrap_err();
         let expected = format!("the file states accelerations in {unit}, and mm/s2 is asked for");
@@ -75,14 +75,14 @@ fn what_is_missing_is_noticed() {
         let end = lines.iter().position(|line| line.contains("velocity") || line.contains("veloc data"));
         let end = end.unwrap_or(lines.iter().position(|line| line.starts_with("End-of")).unwrap_or(lines.len()));
         let middle = end - 3;
-        let read = |lines: &[&str], how: &Reading| Record::from_bytes(&path, lines.join("\n").as_bytes(), how);
+        let read = |lines: &[&str], how: &Reading| rocking_records::from_bytes(&path, lines.join("\n").as_bytes(), how);
 
         let blank = read(&[&lines[..middle], &["  "], &lines[middle..]].concat(), &how).unwrap_err();
         assert_eq!(line_of(&blank).0, middle + 1, "{format}: {blank}");
 
         let shorter = [&lines[..middle], &lines[middle + 1..]].concat();
         let missing = read(&shorter, &how);
-        if matches!(format, rocking::run::record::Format::Table) {
+        if matches!(format, rocking_records::Format::Table) {
             continue;
         }
         let missing = missing.unwrap_err();
@@ -99,7 +99,7 @@ fn a_channel_of_several_is_chosen() {
     let text = [&first, &second].map(|values| cosmos("Corrected acceleration", values, true)).concat();
     let read = |column| {
         let how = Reading { column, ..Reading::default() };
-        Record::from_bytes(Path::new("two.V2c"), text.as_bytes(), &how)
+        rocking_records::from_bytes(Path::new("two.V2c"), text.as_bytes(), &how)
     };
     assert_eq!(line_of(&read(None).unwrap_err()).1, Some(Remedy::Channel));
     for (number, expected) in [(1, &first), (2, &second)] {
@@ -115,7 +115,7 @@ fn a_channel_of_several_is_chosen() {
 fn a_channel_of_csmip_is_chosen_and_its_line_may_end_early() {
     let layout = all(50).remove(6);
     let text = String::from_utf8(layout.bytes).unwrap();
-    let read = |text: &str, how: &Reading| Record::from_bytes(&layout.path, text.as_bytes(), how);
+    let read = |text: &str, how: &Reading| rocking_records::from_bytes(&layout.path, text.as_bytes(), how);
     let one = read(&text, &Reading::default()).unwrap().0;
     let three = text.repeat(3);
     assert_eq!(line_of(&read(&three, &Reading::default()).unwrap_err()).1, Some(Remedy::Channel));
@@ -143,7 +143,7 @@ fn a_peak_that_no_earthquake_has_is_told() {
     let path = std::env::temp_dir().join(format!("rocking-peak-{}.csv", std::process::id()));
     let warnings = |peak: f64| {
         std::fs::write(&path, format!("t,a\n0,{peak}\n.05,-{peak}\n")).unwrap();
-        Record::read(&path, &Reading::default(), 9.81).unwrap().1.warnings
+        rocking_records::read(&path, &Reading::default(), 9.81).unwrap().1.warnings
     };
     assert_eq!(warnings(46.0 * 9.81), ["a peak of 46 g: is the unit right?"]);
     assert!(warnings(4.9 * 9.81).is_empty());
@@ -161,7 +161,7 @@ fn the_stated_maximum_tells_whether_there_is_an_offset() {
         let (_, after) = line.split_once('\n').unwrap();
         let header = format!("{before}Max. Acc. (gal)   {maximum}\n{after}").replace("Time(s)  0.25", "Time(s)  0.02");
         let text = header + "     1000     3000     1000     1000\n";
-        Record::from_bytes(&layout.path, text.as_bytes(), &layout.how).unwrap()
+        rocking_records::from_bytes(&layout.path, text.as_bytes(), &layout.how).unwrap()
     };
     let gal = 3920.0 / 6182761.0;
     let counts = |values: [f64; 4]| values.map(|count| count * gal);
@@ -191,7 +191,7 @@ fn what_is_no_acceleration_is_refused() {
         ),
         ("vel.ASC", velocity, "DATA_TYPE is \"VELOCITY\", and accelerations are needed"),
     ] {
-        let refused = Record::from_bytes(Path::new(name), text.as_bytes(), &Reading::default()).unwrap_err();
+        let refused = rocking_records::from_bytes(Path::new(name), text.as_bytes(), &Reading::default()).unwrap_err();
         assert!(refused.to_string().ends_with(expected), "{refused}");
     }
 }
@@ -249,7 +249,7 @@ fn survives(layouts: &[Layout], number: u64) -> bool {
     }
     let path = if rng.u8(..8) == 0 { Path::new("any.csv") } else { &layout.path };
     let mut result = None;
-    let counted = allocation_counter::measure(|| result = Some(Record::from_bytes(path, &bytes, &how)));
+    let counted = allocation_counter::measure(|| result = Some(rocking_records::from_bytes(path, &bytes, &how)));
     assert!(counted.bytes_max <= bound(&bytes), "mutation {number}: {} bytes of memory", counted.bytes_max);
     let Some(Ok((record, _))) = result else { return false };
     let (times, acceleration) = (record.times(), record.acceleration());
@@ -347,7 +347,7 @@ fn a_large_file_of_anything_stays_in_bounds() {
     for Layout { path, bytes, how, .. } in all(10) {
         for word in WORDS {
             let hostile = [&bytes[..bytes.len() * 2 / 3], &word.repeat(SIZE / word.len())].concat();
-            let counted = allocation_counter::measure(|| drop(Record::from_bytes(&path, &hostile, &how)));
+            let counted = allocation_counter::measure(|| drop(rocking_records::from_bytes(&path, &hostile, &how)));
             assert!(counted.bytes_max <= bound(&hostile), "{}, {word:?}: {}", path.display(), counted.bytes_max);
         }
     }

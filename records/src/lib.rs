@@ -1,0 +1,293 @@
+//! Files of ground motions as the world's archives publish them.
+//!
+//! What a file is, its content tells: PEER AT2, ESM and ITACA, K-NET, COSMOS, CSMIP, or columns of text. [`read`] gives its
+//! samples in m/s², and what was found in the file or assumed of it.
+
+mod at2;
+mod cosmos;
+mod esm;
+mod fields;
+mod knet;
+mod parsed;
+mod sampling;
+mod source;
+mod table;
+mod text;
+mod unit;
+
+use parsed::{Parsed, usual_step};
+use rocking::run::record::{MAX_SAMPLES, Record};
+pub use source::{Column, Format, Reading, Source, UnitFrom};
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+use text::nine_digits;
+pub use unit::Unit;
+
+/// Largest file that is read, bytes: 256 MiB.
+pub const MAX_FILE: u64 = 1 << 28;
+
+/// A peak above this, in g, is rather one in another unit.
+const LARGEST_USUAL_PEAK: f64 = 5.0;
+
+/// A mean above this, in g, with a velocity at the end above that, in m/s, is of no earthquake.
+const LARGEST_USUAL_MEAN: f64 = 0.05;
+const LARGEST_USUAL_VELOCITY: f64 = 2.0;
+
+/// Steps of recorders, s.
+const USUAL_STEPS: std::ops::RangeInclusive<f64> = 1e-4..=0.1;
+
+/// Most usual steps between two samples.
+const LONGEST_GAP: f64 = 5.0;
+
+/// Longest duration of a record, s: an hour.
+const LONGEST_USUAL: f64 = 3600.0;
+
+/// Why a file is refused.
+#[derive(Debug, thiserror::Error)]
+pub enum RecordError {
+    /// The file cannot be opened or read.
+    #[error("the record {} cannot be read", path.display())]
+    Unreadable {
+        /// The file.
+        path: PathBuf,
+        /// What the system says.
+        source: io::Error,
+    },
+    /// A folder, a device or a pipe: nothing is read of these.
+    #[error("{} is not a file", path.display())]
+    NotAFile {
+        /// What is no file.
+        path: PathBuf,
+    },
+    /// The file is larger than any record.
+    #[error("{} has {size} bytes; a record may have {MAX_FILE}", path.display())]
+    TooLarge {
+        /// The file.
+        path: PathBuf,
+        /// Its size.
+        size: u64,
+    },
+    /// A line is not what the format asks for.
+    #[error("{}, line {line}: {problem}", path.display())]
+    Malformed {
+        /// The file.
+        path: PathBuf,
+        /// The line, counted from 1.
+        line: usize,
+        /// What was found there and what belongs there.
+        problem: String,
+        /// What would make it readable.
+        remedy: Option<Remedy>,
+    },
+}
+
+/// What [`Reading`] must say to make a file readable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Remedy {
+    /// That the number of samples does not matter.
+    IgnoreCount,
+    /// The time between samples.
+    Step,
+    /// The column.
+    Column,
+    /// The column, or that every number is a sample.
+    ColumnOrAll,
+    /// The channel, which has no name but its number.
+    Channel,
+    /// The unit.
+    Unit,
+    /// Nothing: the line itself must begin with `#`, if it is one of text.
+    Comment,
+}
+
+/// A line that is not what the format asks for, before the file's name is known.
+#[derive(Clone, Debug, PartialEq)]
+struct BadLine {
+    line: usize,
+    problem: String,
+    remedy: Option<Remedy>,
+}
+
+impl BadLine {
+    fn remedied_by(self, remedy: Remedy) -> BadLine {
+        BadLine { remedy: Some(remedy), ..self }
+    }
+}
+
+/// Reads the record in the file at `path` as `how` says, with accelerations in m/s²; `g` (m/s²) is what a record's g
+/// stands for.
+pub fn read(path: &Path, how: &Reading, g: f64) -> Result<(Record, Source), RecordError> {
+    let (record, source) = read_raw(path, how)?;
+    Ok(in_m_s2(record, source, g))
+}
+
+/// The same with its accelerations as the file gives them; their unit is the source's.
+pub fn read_raw(path: &Path, how: &Reading) -> Result<(Record, Source), RecordError> {
+    from_bytes(path, &read_file(path)?, how)
+}
+
+/// The same of `bytes`, which are the content of the file at `path`.
+pub fn from_bytes(path: &Path, bytes: &[u8], how: &Reading) -> Result<(Record, Source), RecordError> {
+    let malformed =
+        |BadLine { line, problem, remedy }| RecordError::Malformed { path: path.into(), line, problem, remedy };
+    let text = text::decode(bytes).map_err(malformed)?;
+    let (record, source) =
+        parse(&text, format(path, &text), how).and_then(|parsed| parsed.record(how)).map_err(malformed)?;
+    match record.title() {
+        "" => Ok((record.titled(path.file_stem().unwrap_or_default().to_string_lossy()), source)),
+        _ => Ok((record, source)),
+    }
+}
+
+/// The record as its file gives it, with its accelerations in m/s²; `g` (m/s²) is what a record's g stands for. What no
+/// earthquake has is among the warnings of the `source`.
+pub fn in_m_s2(record: Record, mut source: Source, g: f64) -> (Record, Source) {
+    let record = record.multiplied(source.unit.in_m_s2(g));
+    source.warnings.extend(doubts(&record, g));
+    (record, source)
+}
+
+/// What no record of an earthquake has, and one that is read wrongly has; `g` in m/s².
+fn doubts(record: &Record, g: f64) -> Vec<String> {
+    let duration = record.end() - record.start();
+    let last = record.velocities_and_displacements().last();
+    let step = nine_digits(usual_step(record.times()).unwrap_or_default());
+    let longest = nine_digits(record.times().windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max));
+    let velocity = last.unwrap_or_default()[0];
+    let (peak, mean) = (record.pga() / g, velocity / duration / g);
+    let is_drift = mean.abs() > LARGEST_USUAL_MEAN && velocity.abs() > LARGEST_USUAL_VELOCITY;
+    let is_usual = USUAL_STEPS.contains(&step);
+    let doubts = [
+        (peak > LARGEST_USUAL_PEAK).then(|| format!("a peak of {peak:.0} g: is the unit right?")),
+        (!is_usual).then(|| format!("a step of {step} s: is the time in another unit?")),
+        (longest > LONGEST_GAP * step)
+            .then(|| format!("a step of {longest} s, where most are {step} s: is something missing?")),
+        (duration > LONGEST_USUAL)
+            .then(|| format!("a duration of {:.1} hours: is the time in another unit?", duration / 3600.0)),
+        is_drift.then(|| {
+            format!(
+                "a mean acceleration of {mean:.2} g, after which the ground moves on at {velocity:.0} m/s: is it \
+                 the right column?"
+            )
+        }),
+    ];
+    doubts.into_iter().flatten().collect()
+}
+
+/// The layout of `text`, the content of the file at `path`: what it shows itself. A damaged AT2 file is known by its
+/// extension.
+fn format(path: &Path, text: &str) -> Format {
+    let is_at2 = || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("at2"));
+    match () {
+        () if esm::is_its(text) => Format::Esm,
+        () if knet::is_its(text) => Format::KNet,
+        () => cosmos::format(text).unwrap_or(if is_at2() || at2::is_its(text) { Format::At2 } else { Format::Table }),
+    }
+}
+
+fn parse(text: &str, format: Format, how: &Reading) -> Result<Parsed, BadLine> {
+    match format {
+        Format::At2 => at2::parse(text, how),
+        Format::Esm => esm::parse(text, how),
+        Format::KNet => knet::parse(text, how),
+        Format::Cosmos | Format::Csmip => cosmos::parse(text, format, how),
+        Format::Table => table::parse(text, how),
+    }
+}
+
+/// The bytes of the file of a record. Whether `path` is one is asked before it is opened, for opening a pipe may last for ever.
+pub fn read_file(path: &Path) -> Result<Vec<u8>, RecordError> {
+    let unreadable = |source| RecordError::Unreadable { path: path.into(), source };
+    let told = fs::metadata(path).map_err(unreadable)?;
+    if !told.is_file() {
+        return Err(RecordError::NotAFile { path: path.into() });
+    }
+    if told.len() > MAX_FILE {
+        return Err(RecordError::TooLarge { path: path.into(), size: told.len() });
+    }
+    let mut bytes = Vec::with_capacity(told.len() as usize);
+    File::open(path).and_then(|file| file.take(MAX_FILE).read_to_end(&mut bytes)).map_err(unreadable)?;
+    Ok(bytes)
+}
+
+fn bad(line: usize, problem: impl Into<String>) -> BadLine {
+    BadLine { line, problem: problem.into(), remedy: None }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_is_named_and_need_not_be_utf8() {
+        let folder = std::env::temp_dir().join(format!("rocking-record-{}", std::process::id()));
+        fs::create_dir_all(&folder).unwrap();
+        let write = |name: &str, text: &[u8]| {
+            let path = folder.join(name);
+            fs::write(&path, text).unwrap();
+            path
+        };
+        let read = |path: &Path| super::read(path, &Reading::default(), 9.81).map(|(record, _)| record);
+
+        let latin =
+            write("latin.At2", b"x\r\nN\xfa\xf1oz, 90\r\nacceleration in units of g\r\n2 .5 npts, dt\r\n1 2\r\n");
+        let record = read(&latin).unwrap();
+        assert_eq!(record.title(), "N\u{fa}\u{f1}oz, 90");
+        assert_eq!((record.times(), record.acceleration()), (&[0.0, 0.5][..], &[9.81, 19.62][..]));
+        assert_eq!(read(&write("pulse.TXT", b"0,1\n.5,0\n")).unwrap().title(), "pulse");
+
+        let broken = write("broken.csv", b"0,1\n1,?\n");
+        let expected = format!("{}, line 2: the acceleration \"?\" is not a number", broken.display());
+        assert_eq!(read(&broken).unwrap_err().to_string(), expected);
+        let peer = b"PEER\nNu\nVELOCITY TIME SERIES IN UNITS OF CM/S\nNPTS= 2, DT= .01 SEC\n1 2\n";
+        let refused = read(&write("a.VT2", peer)).unwrap_err().to_string();
+        assert!(
+            refused.ends_with("SERIES IN UNITS OF CM/S\" is before the data, and accelerations are needed"),
+            "{refused}"
+        );
+        assert!(matches!(read(&folder.join("absent.at2")), Err(RecordError::Unreadable { .. })));
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    /// Nothing is read of what is no file, or too large for a record: neither hangs.
+    #[test]
+    #[cfg(unix)]
+    fn what_is_no_file_is_refused_unread() {
+        let folder = std::env::temp_dir().join(format!("rocking-no-record-{}", std::process::id()));
+        fs::create_dir_all(folder.join("folder.csv")).unwrap();
+        let [zero, pipe, large] = ["zero.csv", "pipe.csv", "large.csv"].map(|name| folder.join(name));
+        std::os::unix::fs::symlink("/dev/zero", &zero).unwrap();
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        let refusal = |path: &Path| super::read(path, &Reading::default(), 9.81).unwrap_err().to_string();
+        for path in [&folder.join("folder.csv"), &zero, &pipe] {
+            assert_eq!(refusal(path), format!("{} is not a file", path.display()));
+        }
+        File::create(&large).unwrap().set_len(MAX_FILE + 1).unwrap();
+        let expected = format!("{} has 268435457 bytes; a record may have 268435456", large.display());
+        assert_eq!(refusal(&large), expected);
+        fs::remove_dir_all(folder).unwrap();
+    }
+
+    /// Each has one fault, and is right otherwise.
+    #[test]
+    fn what_no_earthquake_has_is_told() {
+        let doubts = |count: usize, step: f64, offset: f64, amplitude: f64| {
+            let times: Vec<f64> = (0..count).map(|i| i as f64 * step).collect();
+            let a = times.iter().map(|t| offset + amplitude * (6.0 * t).sin()).collect();
+            Record::from_samples("", times, a).map(|record| super::doubts(&record, 9.81)).unwrap()
+        };
+        assert!(doubts(4000, 0.01, 0.0, 3.0).is_empty());
+        assert_eq!(doubts(4000, 0.5, 0.0, 3.0), ["a step of 0.5 s: is the time in another unit?"]);
+        assert_eq!(doubts(4000, 5e-5, 0.0, 3.0), ["a step of 0.00005 s: is the time in another unit?"]);
+        assert_eq!(doubts(40_000, 0.1, 0.0, 3.0), ["a duration of 1.1 hours: is the time in another unit?"]);
+        assert_eq!(doubts(4000, 0.01, 0.0, 59.0), ["a peak of 6 g: is the unit right?"]);
+        let gap = Record::from_samples("", vec![0.0, 0.01, 0.02, 0.03, 0.24, 0.25], vec![0.0; 6])
+            .map(|record| super::doubts(&record, 9.81))
+            .unwrap();
+        assert_eq!(gap, ["a step of 0.21 s, where most are 0.01 s: is something missing?"]);
+        let drift =
+            "a mean acceleration of 0.29 g, after which the ground moves on at 114 m/s: is it the right column?";
+        assert_eq!(doubts(4000, 0.01, 0.29 * 9.81, 3.0), [drift]);
+    }
+}
