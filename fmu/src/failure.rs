@@ -14,7 +14,7 @@ use rocking::state::InitialStateError;
 /// changed.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
-    /// Not in this stage.
+    /// The function may not be called in this stage.
     #[error("not allowed in the state \"{stage}\"; allowed in: {allowed_in}")]
     WrongStage {
         /// The present stage.
@@ -25,7 +25,7 @@ pub enum Failure {
     /// A pointer that must not be null or is not aligned.
     #[error("{0} must be a valid pointer; it is null or misaligned")]
     BadPointer(&'static str),
-    /// A length beyond any use.
+    /// More values than one call may pass.
     #[error("{length} values are too many for one call: at most {limit}")]
     TooLong {
         /// How many.
@@ -41,7 +41,7 @@ pub enum Failure {
         /// The limit.
         limit: usize,
     },
-    /// A number that stands for something, and does not.
+    /// A number that stands for none of the choices.
     #[error("{name} = {value} is not one of {accepted}")]
     BadChoice {
         /// The argument.
@@ -51,7 +51,7 @@ pub enum Failure {
         /// What would be.
         accepted: &'static str,
     },
-    /// An interface of the standard that this unit has not.
+    /// An interface of the standard that this unit does not have.
     #[error("this FMU is for model exchange and co-simulation: see modelDescription.xml")]
     NotThisInterface,
     /// Event mode of a host that said it has none.
@@ -73,7 +73,7 @@ pub enum Failure {
         /// What follows from the library's build and the parameters.
         needed: String,
     },
-    /// The archive's own parameters.
+    /// The archive's resources cannot be read.
     #[error(transparent)]
     Resource(#[from] ResourceError),
     /// No such log category.
@@ -143,7 +143,7 @@ pub enum Failure {
     /// A slope of something else than an input.
     #[error("{} has no derivative that can be set: only the inputs have", .0.name)]
     NoInput(&'static Variable),
-    /// A known that is none.
+    /// By this variable no directional derivative exists.
     #[error(
         "{} cannot be a known of a directional derivative: only the inputs can, in initialization mode real parameters and \
          initial values, later u, u_dot, theta, theta_dot and time",
@@ -201,7 +201,7 @@ pub enum Failure {
         /// Where the FMU is, s.
         time: f64,
     },
-    /// A step that is none.
+    /// A step of no length, or of no number.
     #[error(
         "communicationStepSize = {step} s is out of range: it must be positive, finite, and large enough to move t = {time} s"
     )]
@@ -228,7 +228,7 @@ pub enum Failure {
         /// s.
         time: f64,
     },
-    /// A time that is none.
+    /// A time that is not finite.
     #[error("time = {} is out of range: it must be finite, and so its distance from startTime", with_unit(*.0, "s"))]
     BadTime(f64),
     /// A step of the host's integrator that ends before it starts.

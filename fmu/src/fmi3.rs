@@ -4,7 +4,7 @@
 //! In co-simulation, where the host handles events and takes an early return, a step ends at the first transition on it:
 //! state and phase are those before it until `fmi3UpdateDiscreteStates` applies it. A host that can be called back gives
 //! the inputs at the end of every step before it is computed, and they are straight lines over the step; else they are held.
-//! It can read all variables once it has been.
+//! After the step is computed it can read all variables.
 #![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
 
 mod co_simulation;
@@ -12,14 +12,17 @@ mod model_exchange;
 
 use crate::c_abi::{
     self, call, call_on, check_count, check_pointer, complete_step, escaped, free_state, functions, instantiate,
-    keep_state, read_all, read_state, room, text, values, write, write_all, write_state, write_state_size,
+    keep_state, names_events, read_all, read_state, room, text, values, write, write_all, write_state,
+    write_state_size,
 };
-use crate::condition::{Interface, Stepping};
 use crate::failure::Failure;
 use crate::instance::{self, Instance, Updated};
-use crate::logger::{Category, Logger, Sink};
-use crate::state_machine::IsAllowed;
-use crate::variables::{Causality, DataType, Variable};
+pub use crate::interface::IntermediateUpdateCallback;
+use crate::interface::{Interface, IntermediateUpdate, Stepping};
+use crate::logger::{Logger, Sink};
+use crate::present::find;
+use crate::state_machine::Table;
+use crate::variables::{Causality, DataType, VARIABLES, Variable};
 use libc::{c_char, c_int, c_uint, c_void, size_t};
 use rocking::Progress;
 use rocking::outside_step::INDICATORS;
@@ -28,9 +31,6 @@ use std::path::PathBuf;
 
 /// `fmi3LogMessageCallback`
 pub type LogMessageCallback = unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
-
-/// `fmi3IntermediateUpdateCallback`
-pub type IntermediateUpdateCallback = unsafe extern "C" fn(*mut c_void, f64, u8, u8, u8, u8, *mut u8, *mut f64);
 
 const MAGIC: u64 = 0x526f_636b_696e_6733;
 
@@ -64,14 +64,14 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
         }?;
         let (mut sets_inputs, mut gets_outputs) = (false, false);
         for reference in required {
-            let is_input = instance::find(*reference)?.causality == Causality::Input;
+            let is_input = find(VARIABLES.as_slice(), *reference)?.causality == Causality::Input;
             (sets_inputs, gets_outputs) = (sets_inputs || is_input, gets_outputs || !is_input);
         }
         let environment = instanceEnvironment;
         let host =
             intermediateUpdate.map(|update| IntermediateUpdate { update, environment, sets_inputs, gets_outputs });
-        let is_allowed: IsAllowed<Function> = co_simulation::is_allowed;
-        Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), is_allowed, host))
+        let allowed_in: &Table = &co_simulation::ALLOWED_IN;
+        Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), allowed_in, host))
     };
     let arguments = [instanceName, instantiationToken, resourcePath];
     let host = (instanceEnvironment, logMessage);
@@ -89,8 +89,8 @@ pub unsafe extern "C" fn fmi3InstantiateModelExchange(
     instanceEnvironment: *mut c_void,
     logMessage: Option<LogMessageCallback>,
 ) -> *mut c_void {
-    let is_allowed: IsAllowed<Function> = model_exchange::is_allowed;
-    let interface = || Ok((Interface::ModelExchange, is_allowed, None));
+    let allowed_in: &Table = &model_exchange::ALLOWED_IN;
+    let interface = || Ok((Interface::ModelExchange, allowed_in, None));
     let (arguments, host) = ([instanceName, instantiationToken, resourcePath], (instanceEnvironment, logMessage));
     unsafe { create("fmi3InstantiateModelExchange", arguments, loggingOn, host, interface) }
 }
@@ -121,12 +121,12 @@ unsafe fn create(
     [name, token, folder]: [*const c_char; 3],
     logging_on: u8,
     (environment, log): (*mut c_void, Option<LogMessageCallback>),
-    interface: impl FnOnce() -> Result<(Interface, IsAllowed<Function>, Option<IntermediateUpdate>), Failure>,
+    interface: impl FnOnce() -> Result<(Interface, &'static Table, Option<IntermediateUpdate>), Failure>,
 ) -> *mut c_void {
     instantiate::<Function>(|| {
         let logger = Logger::new(sink(log, environment));
         let found = || {
-            let (interface, is_allowed, called_back) = interface()?;
+            let (interface, allowed_in, called_back) = interface()?;
             let name = unsafe { text("instanceName", name) }?;
             let token = unsafe { text("instantiationToken", token) }?;
             let folder = unsafe { text("resourcePath", folder) }?;
@@ -135,11 +135,11 @@ unsafe fn create(
                 return Err(Failure::NoName);
             }
             let archive = instance::open("instantiationToken", token, PathBuf::from(folder))?;
-            Ok((archive, interface, is_allowed, called_back, events))
+            Ok((archive, interface, allowed_in, called_back, events))
         };
         match found() {
-            Ok((archive, interface, is_allowed, called_back, events)) => {
-                Some((Instance::new(archive, interface, events, logger).calling_back(called_back), is_allowed))
+            Ok((archive, interface, allowed_in, called_back, events)) => {
+                Some((Instance::new(archive, interface, events, logger).calling_back(called_back), allowed_in))
             }
             Err(failure) => {
                 logger.failure(failure.status(), &format!("{function}: {failure}"));
@@ -155,17 +155,6 @@ fn sink(log: Option<LogMessageCallback>, environment: *mut c_void) -> Sink {
     Box::new(move |status, category, message| unsafe {
         log(environment, status as c_int, category.as_ptr(), escaped(message, &['#']).as_ptr());
     })
-}
-
-/// How a host is called back within a step. Nothing of it has to be dropped, so that it needs no instance once it is there.
-#[derive(Clone, Copy)]
-pub(crate) struct IntermediateUpdate {
-    update: IntermediateUpdateCallback,
-    environment: *mut c_void,
-    /// Whether the host sets inputs at the end of a step before it is computed.
-    pub sets_inputs: bool,
-    /// Whether it reads other variables once the step is computed.
-    pub gets_outputs: bool,
 }
 
 impl IntermediateUpdate {
@@ -300,11 +289,9 @@ functions! {
     fmi3SetDebugLogging = SetDebugLogging(
         loggingOn: u8, nCategories: size_t, categories: *const *const c_char,
     ) |instance| {
-        let names = values("categories", categories, nCategories)?;
-        let named = |name: &*const c_char| Category::named(text("category", *name)?);
-        let categories = names.iter().map(named).collect::<Result<Vec<_>, _>>()?;
+        let has_events = names_events(nCategories, categories)?;
         let on = boolean("loggingOn", loggingOn)?;
-        if categories.is_empty() || categories.contains(&Category::Events) {
+        if has_events {
             instance.log_events(on);
         }
         Ok(())
@@ -374,11 +361,8 @@ functions! {
     /// No integer can be set.
     fmi3SetInt32 = SetInt32(
         valueReferences: *const c_uint, nValueReferences: size_t, _values: *const i32, nValues: size_t,
-    ) |_instance| {
-        match references(valueReferences, nValueReferences, nValues)? {
-            [] => Ok(()),
-            [first, ..] => Err(instance::refused(instance::find(*first)?)),
-        }
+    ) |instance| {
+        instance.set_no_integer(references(valueReferences, nValueReferences, nValues)?)
     }
 
     fmi3SetInt64 = SetInt64(

@@ -59,7 +59,7 @@ impl GroundRecord {
         GroundRecord::from_bytes(path, &record::read_file(path)?)
     }
 
-    /// The same of `bytes`, which are the content of the file at `path`.
+    /// Reads `bytes`, which are the content of the file at `path`.
     fn from_bytes(path: &Path, bytes: &[u8]) -> Result<GroundRecord, RecordError> {
         let (record, Source { unit, .. }) = Record::from_bytes(path, bytes, &Reading::default())?;
         let numbers = record.times().iter().chain(record.acceleration());

@@ -65,44 +65,52 @@ impl Inputs {
     }
 
     /// Sets the value of the input `which` of [`LOADS`].
+    #[inline]
     pub(crate) fn set(&mut self, which: usize, value: f64) {
         let Inputs { between, next, set, given, followed, before: (before, ago), ended_early } = self;
-        let (input, given) = (&LOADS[which], &mut given[which]);
-        (input.set)(set, value);
+        let given = &mut given[which];
+        set[which] = value;
         if *given == Given::Slope {
-            return (input.set)(&mut next.value, value);
+            next.value[which] = value;
+            return;
         }
         *given = Given::Value;
         let (value, slope) = match between[which] {
             Between::Late => return,
             Between::Held => (value, 0.0),
-            Between::Extrapolated if *ended_early && value == (input.get)(before) => {
+            Between::Extrapolated if *ended_early && value == before[which] => {
                 *given = Given::Nothing;
-                ((input.get)(&followed.value), (input.get)(&followed.slope))
+                (followed.value[which], followed.slope[which])
             }
-            Between::Extrapolated => (value, (value - (input.get)(before)) / *ago),
+            Between::Extrapolated => {
+                let slope = (value - before[which]) / *ago;
+                (value, if slope.is_finite() { slope } else { 0.0 })
+            }
         };
-        (input.set)(&mut next.value, value);
-        (input.set)(&mut next.slope, if slope.is_finite() { slope } else { 0.0 });
+        (next.value[which], next.slope[which]) = (value, slope);
     }
 
-    /// Sets the slope of the same over the next step, from what has been set of it or else from what acts.
+    /// Sets the slope of an input over the next step, from what has been set of it or else from what acts.
+    #[inline]
     pub(crate) fn set_slope(&mut self, which: usize, slope: f64) {
-        let (input, Inputs { next, set, given, .. }) = (&LOADS[which], self);
-        let is_set = given[which] != Given::Nothing;
-        let (from, to) = if is_set { (set, &mut next.value) } else { (&mut next.value, set) };
-        (input.set)(to, (input.get)(from));
-        (input.set)(&mut next.slope, slope);
+        let Inputs { next, set, given, .. } = self;
+        if given[which] == Given::Nothing {
+            set[which] = next.value[which];
+        } else {
+            next.value[which] = set[which];
+        }
+        next.slope[which] = slope;
         given[which] = Given::Slope;
     }
 
-    /// Sets the value that the same leads to over the next step, which lasts `step` (s), in a straight line.
+    /// Sets the value that an input leads to over the next step, which lasts `step` (s), in a straight line.
     pub(crate) fn lead(&mut self, which: usize, value: f64, step: f64) {
         self.set_slope(which, 0.0);
-        self.set_slope(which, (value - (LOADS[which].get)(&self.set)) / step);
+        self.set_slope(which, (value - self.set[which]) / step);
     }
 
-    /// Whether the same acts as soon as it is set.
+    /// Whether an input acts as soon as it is set.
+    #[inline]
     pub(crate) fn acts_at_once(&self, which: usize) -> bool {
         self.between[which] != Between::Late || self.given[which] == Given::Slope
     }
@@ -116,13 +124,13 @@ impl Inputs {
             if between == Between::Held || self.given[which] == Given::Slope {
                 continue;
             }
-            let (input, value) = (&LOADS[which], (LOADS[which].get)(&load.value));
+            let value = load.value[which];
             let slope = match between {
-                Between::Late => ((input.get)(&self.set) - value) / duration,
-                _ => (input.get)(&load.slope),
+                Between::Late => (self.set[which] - value) / duration,
+                _ => load.slope[which],
             };
-            let leads_there = slope.is_finite() && input.check(value + slope * duration).is_ok();
-            (input.set)(&mut load.slope, if leads_there { slope } else { 0.0 });
+            let leads_there = slope.is_finite() && LOADS[which].check(value + slope * duration).is_ok();
+            load.slope[which] = if leads_there { slope } else { 0.0 };
         }
         load
     }
@@ -130,9 +138,9 @@ impl Inputs {
     /// What acts now and how it changes: as it is about to, or as it just did.
     pub(crate) fn now(&self) -> LinearLoad {
         let mut load = self.next;
-        for (which, input) in LOADS.iter().enumerate() {
+        for which in 0..LOADS.len() {
             if self.given[which] == Given::Nothing || !self.acts_at_once(which) {
-                (input.set)(&mut load.slope, (input.get)(&self.followed.slope));
+                load.slope[which] = self.followed.slope[which];
             }
         }
         load
@@ -148,12 +156,11 @@ impl Inputs {
         let (value, set) = (load.at(duration), self.set);
         let slope = if ended_early { load.slope } else { Load::default() };
         (self.next, self.set, self.ended_early) = (LinearLoad { value, slope }, value, ended_early);
-        for (which, input) in LOADS.iter().enumerate() {
+        for which in 0..LOADS.len() {
             if !self.acts_at_once(which) {
-                let set = (input.get)(&set);
-                (input.set)(&mut self.set, set);
+                self.set[which] = set[which];
                 if !ended_early {
-                    (input.set)(&mut self.next.value, set); // whatever the rounding
+                    self.next.value[which] = set[which]; // whatever the rounding
                 }
             }
         }
@@ -165,11 +172,8 @@ impl Inputs {
     pub(crate) fn are_possible(&self) -> bool {
         let Inputs { next, set, followed, before: (before, ago), .. } = self;
         (0.0..f64::INFINITY).contains(ago)
-            && LOADS.iter().all(|input| {
-                [&next.value, set, &followed.value, before]
-                    .into_iter()
-                    .all(|load| input.check((input.get)(load)).is_ok())
-                    && [next.slope, followed.slope].iter().all(|slopes| (input.get)(slopes).is_finite())
-            })
+            && [&next.value, set, &followed.value, before].into_iter().all(|load| load.check().is_ok())
+            && next.slope.is_finite()
+            && followed.slope.is_finite()
     }
 }

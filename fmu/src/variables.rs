@@ -9,7 +9,7 @@ use rocking::ground_motion::{PLACEMENT, Placement};
 use rocking::load::LOADS;
 use rocking::outside_step::INDICATORS;
 use rocking::parameters::PARAMETERS;
-use rocking::quantity::Quantity;
+use rocking::quantity::{OutOfRange, Quantity};
 use rocking::run::peaks::Peaks;
 use rocking::run::validity::{ASSUMPTIONS, Assumption};
 use rocking::state::{COMPONENTS, INITIAL_VALUES};
@@ -52,7 +52,7 @@ pub enum Causality {
     Output,
     /// The FMU, for whoever looks at it.
     Local,
-    /// Nobody: what all others depend on.
+    /// Time, which all others depend on.
     Independent,
 }
 
@@ -126,7 +126,7 @@ pub(crate) enum Source {
     Peak(fn(&Peaks) -> f64),
     /// The worst value of one of [`ASSUMPTIONS`].
     Worst(usize),
-    /// Its instant.
+    /// The instant of the worst value of one of [`ASSUMPTIONS`].
     WorstInstant(usize),
     /// Impacts that raise the energy.
     Gains,
@@ -158,7 +158,17 @@ impl Source {
         }
     }
 
-    /// Sets it.
+    /// Accepts `value` for a Real parameter or an initial value, or says why not.
+    pub fn check(&self, value: f64) -> Result<(), OutOfRange> {
+        match self {
+            Source::Parameter(quantity) => quantity.check(value),
+            Source::InitialValue(quantity) => quantity.check(value),
+            Source::Placement(quantity) => quantity.check(value),
+            _ => Ok(()),
+        }
+    }
+
+    /// Sets a Real parameter or an initial value.
     pub fn set(&self, setup: &mut Setup, value: f64) {
         match self {
             Source::Parameter(quantity) => (quantity.set)(&mut setup.parameters, value),
@@ -348,7 +358,7 @@ fn outputs() -> Vec<Variable> {
     ]
 }
 
-/// What no other model needs.
+/// Variables for whoever looks on: no other model needs them.
 fn locals() -> [Variable; 7] {
     const GROUND: &[&str] = &["g", "record", "record_scale", "record_time_scale", "record_start"];
     let local = |name, unit, description, source, feedthrough, initial_dependencies| Variable {
@@ -416,7 +426,7 @@ fn state_rates() -> [Variable; 4] {
     ]
 }
 
-/// What tells a host that integrates of the end of a phase, in the order in which it is told.
+/// The event indicators, in their order: they tell a host that integrates that a phase ends.
 fn event_indicators() -> [Variable; INDICATORS] {
     const PHASE: &[&str] = &[
         "m",
@@ -534,7 +544,7 @@ fn switches() -> [Variable; 4] {
     ]
 }
 
-/// FMI 2.0 takes it for granted, and its descriptions leave it out; it is last, so that it counts there for nothing.
+/// Time. Descriptions of FMI 2.0 leave it out: it is last, so that the other references are the same in both versions.
 fn time() -> Variable {
     Variable {
         causality: Causality::Independent,
@@ -643,7 +653,7 @@ impl Variable {
         COMPONENTS.iter().position(|name| *name == self.name)
     }
 
-    /// Which of them it is the derivative of.
+    /// Which of the continuous states it is the derivative of.
     pub fn as_state_rate(&self) -> Option<usize> {
         if let Source::StateRate(which) = self.source { Some(which) } else { None }
     }

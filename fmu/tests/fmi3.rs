@@ -4,8 +4,8 @@
 mod host;
 
 use FlexibleRocking::c_abi::Function as _;
-use FlexibleRocking::condition::{Interface, Stepping};
 use FlexibleRocking::fmi3::*;
+use FlexibleRocking::interface::{Interface, Stepping};
 use FlexibleRocking::snapshot;
 use FlexibleRocking::state_machine::Stage;
 use host::fmi3::call_what_is_not_provided;

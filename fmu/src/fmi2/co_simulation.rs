@@ -2,7 +2,7 @@
 //! the standard's states "step in progress" and "step canceled").
 
 use super::Function;
-use crate::state_machine::{Stage, table};
+use crate::state_machine::{Stage, Table, table};
 
 #[rustfmt::skip]
 table! {
@@ -42,7 +42,4 @@ table! {
     GetIntegerStatus              [- - x x x -]
     GetBooleanStatus              [- - x x x -]
     GetStringStatus               [- - x x x -]
-    // nowhere:
-    - CancelStep EnterEventMode NewDiscreteStates EnterContinuousTimeMode CompletedIntegratorStep SetTime
-      SetContinuousStates GetDerivatives GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates
 }

@@ -2,7 +2,7 @@
 //! without continuous states alone; hosts that do so here are let.
 
 use super::Function;
-use crate::state_machine::{Stage, table};
+use crate::state_machine::{Stage, Table, table};
 
 #[rustfmt::skip]
 table! {
@@ -44,7 +44,4 @@ table! {
     GetEventIndicators            [- x x x x x]
     GetContinuousStates           [- x x x x x]
     GetNominalsOfContinuousStates [x x x x x x]
-    // nowhere:
-    - SetRealInputDerivatives GetRealOutputDerivatives DoStep CancelStep GetStatus GetRealStatus GetIntegerStatus
-      GetBooleanStatus GetStringStatus
 }

@@ -2,7 +2,7 @@
 //! to which overturning leads, after which there is nothing to step to, and "error", in which the solver could not go on.
 
 use super::Function;
-use crate::state_machine::{Stage, table};
+use crate::state_machine::{Stage, Table, table};
 
 #[rustfmt::skip]
 table! {
@@ -48,11 +48,4 @@ table! {
     DoStep                          [- - x - - - - - -]
     GetNumberOfEventIndicators      [x x x x x x x x x]
     GetNumberOfContinuousStates     [x x x x x x x x x]
-    // nowhere:
-    - GetFloat32 GetInt8 GetUInt8 GetInt16 GetUInt16 GetUInt32 GetUInt64 GetBinary GetClock SetFloat32 SetInt8
-      SetUInt8 SetInt16 SetUInt16 SetUInt32 SetUInt64 SetBinary SetClock GetNumberOfVariableDependencies
-      GetVariableDependencies EnterConfigurationMode ExitConfigurationMode GetIntervalDecimal GetIntervalFraction
-      GetShiftDecimal GetShiftFraction SetIntervalDecimal SetIntervalFraction SetShiftDecimal SetShiftFraction
-      EnterContinuousTimeMode CompletedIntegratorStep SetTime SetContinuousStates GetContinuousStateDerivatives
-      GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates ActivateModelPartition
 }

@@ -2,7 +2,7 @@
 //! the solver could not go on.
 
 use super::Function;
-use crate::state_machine::{Stage, table};
+use crate::state_machine::{Stage, Table, table};
 
 #[rustfmt::skip]
 table! {
@@ -49,10 +49,4 @@ table! {
     GetNominalsOfContinuousStates   [- x x x x x]
     GetNumberOfEventIndicators      [x x x x x x]
     GetNumberOfContinuousStates     [x x x x x x]
-    // nowhere:
-    - EnterStepMode GetOutputDerivatives DoStep GetFloat32 GetInt8 GetUInt8 GetInt16 GetUInt16 GetUInt32 GetUInt64
-      GetBinary GetClock SetFloat32 SetInt8 SetUInt8 SetInt16 SetUInt16 SetUInt32 SetUInt64 SetBinary SetClock
-      GetNumberOfVariableDependencies GetVariableDependencies EnterConfigurationMode ExitConfigurationMode
-      GetIntervalDecimal GetIntervalFraction GetShiftDecimal GetShiftFraction SetIntervalDecimal SetIntervalFraction
-      SetShiftDecimal SetShiftFraction ActivateModelPartition
 }

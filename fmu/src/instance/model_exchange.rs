@@ -3,9 +3,11 @@
 //!
 //! The engine stands where the host is; [`Known`] is where the motion was last known to be right.
 
-use super::{Instance, Updated, log};
-use crate::condition::{FARTHEST, Model, Outside};
+use super::{Instance, Updated};
+use crate::condition::FARTHEST;
 use crate::failure::Failure;
+use crate::model::{Model, Outside};
+use crate::motion_log::log;
 use crate::setup::Setup;
 use crate::state_machine::Stage;
 use rocking::engine::AdvanceError;
@@ -72,7 +74,7 @@ impl Model {
 impl Instance {
     /// From here on the host integrates.
     pub(super) fn start_outside(&mut self) -> Result<(), Failure> {
-        let (model, _, inputs, _) = self.now.parts(&self.archive)?;
+        let (model, _, inputs, _) = self.now.parts()?;
         let (motion, elapsed, load) = (*model.engine.motion(), model.elapsed, inputs.values());
         model.outside = Some(Outside { known: Known { motion, elapsed, load }, arrived: load, event: elapsed });
         Ok(())
@@ -80,7 +82,7 @@ impl Instance {
 
     /// The host is at `time` (s).
     pub fn set_time(&mut self, time: f64) -> Result<(), Failure> {
-        let (model, setup, _, stage) = self.now.parts(&self.archive)?;
+        let (model, setup, _, stage) = self.now.parts()?;
         if !(time.is_finite() && (time - setup.start_time).is_finite()) {
             return Err(Failure::BadTime(time));
         }
@@ -96,7 +98,7 @@ impl Instance {
     /// The host is at the state u, u̇, θ, θ̇.
     pub fn set_continuous_states(&mut self, states: [f64; COMPONENTS.len()]) -> Result<(), Failure> {
         (0..).zip(states).try_for_each(|(which, value)| check_state(which, value))?;
-        self.now.model(&self.archive)?.engine.set_state(State::of(states));
+        self.now.model()?.engine.set_state(State::of(states));
         Ok(())
     }
 
@@ -109,17 +111,17 @@ impl Instance {
 
     /// Where the host is, or where it is to start from.
     pub fn continuous_states(&mut self) -> Result<[f64; COMPONENTS.len()], Failure> {
-        Ok(self.now.model(&self.archive)?.engine.motion().state.components())
+        Ok(self.now.model()?.engine.motion().state.components())
     }
 
     /// The magnitudes of the states.
     pub fn nominals(&mut self) -> Result<[f64; COMPONENTS.len()], Failure> {
-        Ok(self.now.model(&self.archive)?.engine.structure().usual_state().components())
+        Ok(self.now.model()?.engine.structure().usual_state().components())
     }
 
     /// Derivatives of the states.
     pub fn derivatives(&mut self) -> Result<[f64; COMPONENTS.len()], Failure> {
-        let (model, setup, inputs, _) = self.now.parts(&self.archive)?;
+        let (model, setup, inputs, _) = self.now.parts()?;
         let rates = model.engine.sample(model.acting(setup, inputs.values())).state_rates();
         if !rates.is_finite() {
             let &Motion { time, state: State { u, theta, .. }, .. } = model.engine.motion();
@@ -130,14 +132,14 @@ impl Instance {
 
     /// The event indicators.
     pub fn event_indicators(&mut self) -> Result<[f64; INDICATORS], Failure> {
-        let (model, setup, inputs, _) = self.now.parts(&self.archive)?;
+        let (model, setup, inputs, _) = self.now.parts()?;
         Ok(model.engine.sample(model.acting(setup, inputs.values())).event_indicators())
     }
 
     /// The host has made a step to where it is. Where that has passed a transition over, the step is left as it is until
     /// event mode puts it right.
     pub fn completed_integrator_step(&mut self) -> Result<Completed, Failure> {
-        let (model, setup, inputs, stage) = self.now.parts(&self.archive)?;
+        let (model, setup, inputs, stage) = self.now.parts()?;
         let load = inputs.values();
         let Some(mut outside) = model.outside else {
             return Ok(Completed { needs_event_mode: false, has_ended: false });
@@ -155,7 +157,7 @@ impl Instance {
 
     /// There is an event where the host is.
     pub(super) fn arrive_at_event(&mut self) -> Result<(), Failure> {
-        let (model, _, inputs, stage) = self.now.parts(&self.archive)?;
+        let (model, _, inputs, stage) = self.now.parts()?;
         if let Some(outside) = &mut model.outside
             && *stage == Stage::ContinuousTimeMode
         {
@@ -167,7 +169,7 @@ impl Instance {
     /// Applies the transitions up to where the host is, and the uplift that is due there.
     pub(super) fn catch_up(&mut self) -> Result<Updated, Failure> {
         let logger = &self.logger;
-        let (model, setup, inputs, stage) = self.now.parts(&self.archive)?;
+        let (model, setup, inputs, stage) = self.now.parts()?;
         let Some(outside) = model.outside else {
             return Ok(Updated::default());
         };

@@ -1,8 +1,8 @@
 //! The functions of FMI 2.0 by their arguments.
 
 use crate::{C, Call, Looking, Told, Version, host};
-use FlexibleRocking::condition::Interface;
 use FlexibleRocking::fmi2::*;
+use FlexibleRocking::interface::Interface;
 use FlexibleRocking::state_machine::Stage;
 use fastrand::Rng;
 use host::ERROR;

@@ -2,8 +2,8 @@
 
 use crate::host::fmi3::call_what_is_not_provided;
 use crate::{C, Call, Looking, Told, Version, host};
-use FlexibleRocking::condition::{Interface, Stepping};
 use FlexibleRocking::fmi3::*;
+use FlexibleRocking::interface::{Interface, Stepping};
 use FlexibleRocking::state_machine::Stage;
 use fastrand::Rng;
 use host::{ERROR, OK};

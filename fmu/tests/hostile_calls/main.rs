@@ -10,7 +10,8 @@ mod fmi3;
 mod host;
 
 use FlexibleRocking::c_abi::Function as _;
-use FlexibleRocking::condition::{Condition, Interface, Stepping};
+use FlexibleRocking::condition::Condition;
+use FlexibleRocking::interface::{Interface, Stepping};
 use FlexibleRocking::resources::Archive;
 use FlexibleRocking::snapshot;
 use FlexibleRocking::state_machine::Stage;
