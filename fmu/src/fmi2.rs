@@ -14,7 +14,7 @@ use crate::instance::{self, Instance, Updated};
 use crate::interface::{Interface, Stepping};
 use crate::logger::{Logger, Sink};
 use crate::resources;
-use crate::state_machine::Table;
+use crate::state_machine::{Stage, Table};
 use crate::variables::{DataType, Variable};
 use libc::{c_char, c_double, c_int, c_uint, c_void, size_t};
 use rocking::Progress;
@@ -197,11 +197,11 @@ functions! {
         instance.setup_experiment(tolerance, startTime, stop_time)
     }
 
-    fmi2EnterInitializationMode = EnterInitializationMode() |instance| { instance.enter_initialization_mode() }
+    fmi2EnterInitializationMode = EnterInitializationMode() |instance| { instance.enter(Stage::InitializationMode) }
 
     fmi2ExitInitializationMode = ExitInitializationMode() |instance| { instance.exit_initialization_mode() }
 
-    fmi2Terminate = Terminate() |instance| { instance.terminate() }
+    fmi2Terminate = Terminate() |instance| { instance.enter(Stage::Terminated) }
 
     fmi2Reset = Reset() |instance| { instance.reset() }
 
@@ -338,7 +338,7 @@ functions! {
         })
     }
 
-    fmi2EnterContinuousTimeMode = EnterContinuousTimeMode() |instance| { instance.enter_continuous_time_mode() }
+    fmi2EnterContinuousTimeMode = EnterContinuousTimeMode() |instance| { instance.enter(Stage::ContinuousTimeMode) }
 
     /// Whether the host will go back makes no difference: FMU states are kept until it frees them.
     fmi2CompletedIntegratorStep = CompletedIntegratorStep(

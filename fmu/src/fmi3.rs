@@ -21,7 +21,7 @@ pub use crate::interface::IntermediateUpdateCallback;
 use crate::interface::{Interface, IntermediateUpdate, Stepping};
 use crate::logger::{Logger, Sink};
 use crate::present::find;
-use crate::state_machine::Table;
+use crate::state_machine::{Stage, Table};
 use crate::variables::{Causality, DataType, VARIABLES, Variable};
 use libc::{c_char, c_int, c_uint, c_void, size_t};
 use rocking::Progress;
@@ -303,14 +303,14 @@ functions! {
         let tolerance = boolean("toleranceDefined", toleranceDefined)?.then_some(tolerance);
         let stop_time = boolean("stopTimeDefined", stopTimeDefined)?.then_some(stopTime);
         instance.setup_experiment(tolerance, startTime, stop_time)?;
-        instance.enter_initialization_mode()
+        instance.enter(Stage::InitializationMode)
     }
 
     fmi3ExitInitializationMode = ExitInitializationMode() |instance| { instance.exit_initialization_mode() }
 
     fmi3EnterEventMode = EnterEventMode() |instance| { instance.enter_event_mode() }
 
-    fmi3Terminate = Terminate() |instance| { instance.terminate() }
+    fmi3Terminate = Terminate() |instance| { instance.enter(Stage::Terminated) }
 
     fmi3Reset = Reset() |instance| { instance.reset() }
 
@@ -459,7 +459,7 @@ functions! {
         write("nextEventTime", nextEventTime, next_event.unwrap_or_default())
     }
 
-    fmi3EnterStepMode = EnterStepMode() |instance| { instance.enter_step_mode() }
+    fmi3EnterStepMode = EnterStepMode() |instance| { instance.enter(Stage::StepComplete) }
 
     fmi3GetOutputDerivatives = GetOutputDerivatives(
         valueReferences: *const c_uint, nValueReferences: size_t, orders: *const i32, value: *mut f64,
@@ -470,7 +470,7 @@ functions! {
         instance.get_real_output_derivatives(references, orders, rates)
     }
 
-    fmi3EnterContinuousTimeMode = EnterContinuousTimeMode() |instance| { instance.enter_continuous_time_mode() }
+    fmi3EnterContinuousTimeMode = EnterContinuousTimeMode() |instance| { instance.enter(Stage::ContinuousTimeMode) }
 
     /// Whether the host will go back makes no difference: FMU states are kept until it frees them.
     fmi3CompletedIntegratorStep = CompletedIntegratorStep(

@@ -109,9 +109,9 @@ impl Instance {
         Ok(())
     }
 
-    /// From here on values can be read.
-    pub fn enter_initialization_mode(&mut self) -> Result<(), Failure> {
-        self.now.stage = Stage::InitializationMode;
+    /// Goes to `stage`, at which nothing else is to be done.
+    pub fn enter(&mut self, stage: Stage) -> Result<(), Failure> {
+        self.now.stage = stage;
         Ok(())
     }
 
@@ -166,18 +166,6 @@ impl Instance {
         if setup.validity {
             warn(logger, &known, &model.validity);
         }
-        Ok(())
-    }
-
-    /// From here on the next step can be made.
-    pub fn enter_step_mode(&mut self) -> Result<(), Failure> {
-        self.now.stage = Stage::StepComplete;
-        Ok(())
-    }
-
-    /// Ends the simulation; values can still be read.
-    pub fn terminate(&mut self) -> Result<(), Failure> {
-        self.now.stage = Stage::Terminated;
         Ok(())
     }
 

@@ -6,7 +6,7 @@
 //! |---|---|
 //! | [`fmi2`], [`fmi3`] | name the C functions and their arguments, and the stages that each may be called in |
 //! | [`c_abi`] | checks stage and pointers, makes slices of pointers, catches panics, logs why a call failed |
-//! | [`instance`] | goes from stage to stage; `do_step`, `get_values`, `set_values`, `derivatives`, [`instance::model_exchange`] |
+//! | `instance` | goes from stage to stage; `do_step`, `get_values`, `set_values`, `derivatives`, `model_exchange` |
 //! | [`snapshot`], [`condition`] | FMU states as bytes; all that the future of an instance depends on |
 //! | [`sensitivity`] | derivatives by parameters and states |
 //! | `present` | where an instance stands: stage, setup, inputs, model |
@@ -14,9 +14,9 @@
 //! | `advance` | the model over one step |
 //! | `model` | the structure on its ground, from its start on |
 //! | `motion_log` | the messages about transitions and limits |
-//! | [`failure`] | every message about a call that is refused |
+//! | `failure` | every message about a call that is refused |
 //! | [`variables`] | the table of variables |
-//! | [`setup`], [`inputs`], [`interface`] | what is set before the start and during the simulation; who integrates |
+//! | `setup`, `inputs`, [`interface`] | what is set before the start and during the simulation; who integrates |
 //! | [`ground`], [`resources`] | records; what the archive carries |
 //! | [`logger`], [`state_machine`] | messages to the host; the stages, and tables of them |
 //!
@@ -26,12 +26,12 @@
 mod advance;
 pub mod c_abi;
 pub mod condition;
-pub mod failure;
+mod failure;
 pub mod fmi2;
 pub mod fmi3;
 pub mod ground;
-pub mod inputs;
-pub mod instance;
+mod inputs;
+mod instance;
 pub mod interface;
 pub mod logger;
 mod model;
@@ -39,7 +39,7 @@ mod motion_log;
 mod present;
 pub mod resources;
 pub mod sensitivity;
-pub mod setup;
+mod setup;
 mod shown;
 pub mod snapshot;
 pub mod state_machine;

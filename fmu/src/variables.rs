@@ -277,25 +277,10 @@ fn input(which: usize) -> Variable {
 }
 
 /// What accelerations depend on: the masses, the geometry and theta_dot_0 by the rigid level, the others by the elastic ones.
+#[rustfmt::skip]
 const ACCELERATIONS: &[&str] = &[
-    "m",
-    "m0",
-    "H",
-    "B",
-    "J0",
-    "f_fc",
-    "zeta_fc",
-    "c_ratio",
-    "g",
-    "detail",
-    "theta_0",
-    "theta_dot_0",
-    "u_0",
-    "u_dot_0",
-    "record",
-    "record_scale",
-    "record_time_scale",
-    "record_start",
+    "m", "m0", "H", "B", "J0", "f_fc", "zeta_fc", "c_ratio", "g", "detail", "theta_0", "theta_dot_0", "u_0", "u_dot_0",
+    "record", "record_scale", "record_time_scale", "record_start",
 ];
 
 fn outputs() -> Vec<Variable> {
@@ -428,23 +413,10 @@ fn state_rates() -> [Variable; 4] {
 
 /// The event indicators, in their order: they tell a host that integrates that a phase ends.
 fn event_indicators() -> [Variable; INDICATORS] {
+    #[rustfmt::skip]
     const PHASE: &[&str] = &[
-        "m",
-        "m0",
-        "H",
-        "B",
-        "f_fc",
-        "zeta_fc",
-        "c_ratio",
-        "g",
-        "detail",
-        "theta_0",
-        "u_0",
-        "u_dot_0",
-        "record",
-        "record_scale",
-        "record_time_scale",
-        "record_start",
+        "m", "m0", "H", "B", "f_fc", "zeta_fc", "c_ratio", "g", "detail", "theta_0", "u_0", "u_dot_0",
+        "record", "record_scale", "record_time_scale", "record_start",
     ];
     let indicator = |which, name, description| Variable {
         causality: Causality::Local,

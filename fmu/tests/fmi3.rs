@@ -515,18 +515,74 @@ fn what_acts_at_an_event_is_what_lifts_off_there() {
     }
 }
 
-/// Of another host's integration a state can be gone to by a host of its own kind alone.
+/// A host can go to a state that an instance of its own kind has kept, and to no other.
 #[test]
-fn a_models_state_is_none_of_a_slave() {
-    let (bytes, slave) = (Host::going_model(&[]).bytes(), Host::started(&[]));
-    let (before, mut state) = (slave.bytes(), null_mut());
-    unsafe {
-        assert_eq!(fmi3DeserializeFMUState(slave.c, bytes.as_ptr(), bytes.len(), &mut state), OK);
-        assert_eq!(fmi3SetFMUState(slave.c, state), ERROR);
+fn a_state_is_taken_by_an_instance_of_its_kind_alone() {
+    let plain = Host::new(Interface::CoSimulation(Stepping::default()));
+    for (bytes, slave) in [(Host::going_model(&[]).bytes(), Host::started(&[])), (Host::started(&[]).bytes(), plain)] {
+        let (before, mut state) = (slave.bytes(), null_mut());
+        unsafe {
+            assert_eq!(fmi3DeserializeFMUState(slave.c, bytes.as_ptr(), bytes.len(), &mut state), OK);
+            assert_eq!(fmi3SetFMUState(slave.c, state), ERROR);
+        }
+        assert_eq!(slave.bytes(), before);
+        let message = "fmi3SetFMUState: the FMU state was kept by an instance of another kind: model exchange, co-simulation, \
+                       and co-simulation with eventModeUsed or earlyReturnAllowed have states of their own";
+        assert_eq!(slave.log.take(), [(ERROR, message.to_owned())]);
     }
-    assert_eq!(slave.bytes(), before);
-    let log = slave.log.take();
-    assert!(log[0].1.starts_with("fmi3SetFMUState: the FMU state was kept by an instance of another kind"), "{log:?}");
+}
+
+/// Messages name the function that was called, and end with the function of this version to call instead.
+#[test]
+fn a_refusal_names_the_function_and_what_to_call() {
+    let host = Host::new(Interface::CoSimulation(Stepping::default()));
+    let (c, mut flag, mut real) = (host.c, 0, 0.0);
+    let refused = |status: c_int, message: &str| {
+        assert_eq!(status, ERROR);
+        assert_eq!(host.log.take(), [(ERROR, message.to_owned())]);
+    };
+    unsafe {
+        assert_eq!((fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 1, 2.0), fmi3ExitInitializationMode(c)), (OK, OK));
+        let mut get = |name| fmi3GetFloat64(c, &reference(name), 1, &mut real, 1);
+        refused(get("transitions"), "fmi3GetFloat64: transitions is an integer: call fmi3GetInt32 instead");
+        let message = "fmi3GetFloat64: phase is an enumeration: call fmi3GetInt64 or fmi3SetInt64 instead";
+        refused(get("phase"), message);
+        let message = "fmi3GetFloat64: peaks is a Boolean: call fmi3GetBoolean or fmi3SetBoolean instead";
+        refused(get("peaks"), message);
+        let message = "fmi3GetFloat64: record is a string: call fmi3GetString or fmi3SetString instead";
+        refused(get("record"), message);
+        let message = "fmi3GetInt64: theta is a real number: call fmi3GetFloat64 or fmi3SetFloat64 instead";
+        refused(fmi3GetInt64(c, &reference("theta"), 1, &mut 0, 1), message);
+        let message = "fmi3SetFloat64: m is fixed once the simulation has started: set it before fmi3ExitInitializationMode, \
+                       or call fmi3Reset";
+        refused(fmi3SetFloat64(c, &reference("m"), 1, &1.0, 1), message);
+        refused(fmi3GetFloat64(c, &2, 1, &mut real, 2), "fmi3GetFloat64: nValues = 2 is not 1");
+        let message = "fmi3GetUInt8: not allowed in the state \"step complete\"; allowed in: none";
+        refused(fmi3GetUInt8(c, &2, 1, &mut 0, 1), message);
+        let message = "fmi3EnterEventMode: there is no event mode: the instance was made with eventModeUsed = false";
+        refused(fmi3EnterEventMode(c), message);
+        let mut step = |time: f64, step: f64| fmi3DoStep(c, time, step, 0, &mut flag, &mut 0, &mut 0, &mut 0.0);
+        let message = "fmi3DoStep: currentCommunicationPoint = 1 s is not where the FMU is, t = 0 s: step from there, or go \
+                       back with fmi3SetFMUState";
+        refused(step(1.0, 0.1), message);
+        let message = "fmi3DoStep: the step would end at t = 3 s, past stopTime = 2 s given to fmi3EnterInitializationMode: \
+                       shorten it";
+        refused(step(0.0, 3.0), message);
+        let (mut state, size) = (null_mut(), host.bytes().len());
+        assert_eq!(fmi3GetFMUState(c, &mut state), OK);
+        let message = format!(
+            "fmi3SerializeFMUState: size = 0 does not fit: the serialized FMU state takes {size} bytes \
+             (fmi3SerializedFMUStateSize)"
+        );
+        refused(fmi3SerializeFMUState(c, state, null_mut(), 0), &message);
+        let model = Host::going_model(&[]);
+        assert_eq!((fmi3SetTime(model.c, -1.0), fmi3CompletedIntegratorStep(model.c, 1, &mut 0, &mut 0)), (OK, ERROR));
+        assert!(
+            model.log.take()[0]
+                .1
+                .ends_with("time goes on from an event or a complete step, or goes back with fmi3SetFMUState")
+        );
+    }
 }
 
 /// An instance is of one version: the other's functions find no component in it.

@@ -6,13 +6,12 @@ use crate::state_machine::{Stage, Table, table};
 
 #[rustfmt::skip]
 table! {
-    [Instantiated, InitializationMode, StepComplete, StepFailed, Terminated, Error]
-    //                             instantiated
-    //                               initialization mode
-    //                                 step complete
-    //                                   step failed
-    //                                     terminated
-    //                                       error
+    [                              Instantiated,
+                                     InitializationMode,
+                                       StepComplete,
+                                         StepFailed,
+                                           Terminated,
+                                             Error]
     SetDebugLogging               [x x x x x x]
     SetupExperiment               [x - - - - -]
     EnterInitializationMode       [x - - - - -]

@@ -6,13 +6,12 @@ use crate::state_machine::{Stage, Table, table};
 
 #[rustfmt::skip]
 table! {
-    [Instantiated, InitializationMode, EventMode, ContinuousTimeMode, Terminated, Error]
-    //                             instantiated
-    //                               initialization mode
-    //                                 event mode
-    //                                   continuous-time mode
-    //                                     terminated
-    //                                       error
+    [                              Instantiated,
+                                     InitializationMode,
+                                       EventMode,
+                                         ContinuousTimeMode,
+                                           Terminated,
+                                             Error]
     SetDebugLogging               [x x x x x x]
     SetupExperiment               [x - - - - -]
     EnterInitializationMode       [x - - - - -]

@@ -6,17 +6,15 @@ use crate::state_machine::{Stage, Table, table};
 
 #[rustfmt::skip]
 table! {
-    [Instantiated, InitializationMode, StepComplete, EventMode, IntermediateUpdateMode, IntermediateOutputs, StepFailed,
-     Terminated, Error]
-    //                               instantiated
-    //                                 initialization mode
-    //                                   step mode
-    //                                     event mode
-    //                                       intermediate update mode, for inputs
-    //                                         the same for outputs
-    //                                           step failed: overturned
-    //                                             terminated
-    //                                               error
+    [                                Instantiated,
+                                       InitializationMode,
+                                         StepComplete,
+                                           EventMode,
+                                             IntermediateUpdateMode,
+                                               IntermediateOutputs,
+                                                 StepFailed,
+                                                   Terminated,
+                                                     Error]
     SetDebugLogging                 [x x x x x x x x x]
     EnterInitializationMode         [x - - - - - - - -]
     ExitInitializationMode          [- x - - - - - - -]

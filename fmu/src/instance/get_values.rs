@@ -136,7 +136,7 @@ fn needs(variable: &Variable) -> u8 {
 }
 
 /// Writes what `value` is at each of `references`, all of which exist.
-#[inline]
+#[inline(always)]
 fn write(variables: &[Variable], references: &[u32], values: &mut [MaybeUninit<f64>], value: impl Fn(Source) -> f64) {
     for (reference, place) in references.iter().zip(values) {
         place.write(value(variables[*reference as usize].source));

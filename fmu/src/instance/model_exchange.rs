@@ -203,12 +203,6 @@ impl Instance {
             next_event: model.next_event(setup),
         })
     }
-
-    /// On to the next event.
-    pub fn enter_continuous_time_mode(&mut self) -> Result<(), Failure> {
-        self.now.stage = Stage::ContinuousTimeMode;
-        Ok(())
-    }
 }
 
 /// Where the motion ends, so does the simulation.

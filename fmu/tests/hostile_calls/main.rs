@@ -1,7 +1,8 @@
 //! Hostile calls: random functions in any order, with arguments from sensible to absurd, of every interface of either version.
 //!
 //! `FUZZ_CALLS` says how many calls of each interface to make (`make fuzz`: ten million). Calls come in sequences of a few
-//! hundred on two instances; what a sequence does follows from its number alone, and a failure names it.
+//! hundred on two instances. What a call does follows from its number and from the calls before it; of a sequence that fails
+//! proptest leaves out all calls that need not be there.
 #![allow(unsafe_code)]
 
 mod fmi2;
@@ -21,6 +22,9 @@ use fmi2::Fmi2;
 use fmi3::Fmi3;
 use host::{DISCARD, ERROR, OK};
 use libc::{c_char, c_int, c_uint, c_void};
+use proptest::collection::vec;
+use proptest::prelude::any;
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use rocking::Parameters;
 use rocking::engine::MAX_STEPS_PER_ADVANCE;
 use rocking::run::validity::ASSUMPTIONS;
@@ -29,19 +33,16 @@ use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString};
 use std::fmt::Debug;
 use std::marker::PhantomData;
-use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::Path;
 use std::ptr::{null, null_mut, without_provenance_mut};
 use std::slice;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
-use std::{env, fmt, fs, thread};
+use std::{env, fs};
 use uuid::Uuid;
 
 /// Calls of each interface without `FUZZ_CALLS`.
 const CALLS: u64 = 100_000;
 
-const CALLS_PER_SEQUENCE: u64 = 400;
+const CALLS_PER_SEQUENCE: usize = 400;
 
 /// An instance.
 type C = *mut c_void;
@@ -148,48 +149,35 @@ fn no_call_does_harm<V: Version>(interface: fn(&mut Rng) -> Interface) {
     let resources = host::resources();
     let location = CString::new(V::location(resources.path())).unwrap();
     let records = records(resources.path());
-    let run = |number, tally: &mut Tally<V>| Sequence::<V>::new(number, interface, &location, &records).run(tally);
-    // what threads share is no leak: the records, held here, and what is made when it is first needed
+    // what sequences share is no leak: the records, held here, and what is made when it is first needed
     let archive = Archive::open(resources.path().to_owned()).unwrap();
     let texts = records.iter().filter_map(|text| text.to_str().ok());
     let _held: Vec<_> = texts.filter_map(|text| archive.record(text).ok()).collect();
-    (0..20).for_each(|number| run(number, &mut Tally::new()));
-    let sequences = AtomicU64::new(0);
-    let work = || {
-        let mut tally = Tally::new();
-        loop {
-            let number = sequences.fetch_add(1, Ordering::Relaxed);
-            if number * CALLS_PER_SEQUENCE >= calls {
-                return tally;
-            }
-            let measured = AssertUnwindSafe(|| {
-                let left = allocation_counter::measure(|| run(number, &mut tally));
-                assert_eq!((left.count_current, left.bytes_current), (0, 0), "something is left behind");
-            });
-            if let Err(panic) = catch_unwind(measured) {
-                sequences.store(calls, Ordering::Relaxed);
-                eprintln!("in sequence {number}");
-                resume_unwind(panic)
-            }
-        }
+    let none = vec![false; V::Function::ALL.len()];
+    let tally = RefCell::new(Tally { done: none.clone(), never: none, met: Default::default(), left: Default::default() });
+    let run = |numbers: &[u64]| {
+        Sequence::<V>::new(interface, &location, &records).run(numbers, &mut tally.borrow_mut());
     };
-    let mut tally = Tally::new();
-    thread::scope(|scope| {
-        let threads = thread::available_parallelism().unwrap().get();
-        let threads: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        threads.into_iter().for_each(|thread| tally.add(&thread.join().unwrap_or_else(|panic| resume_unwind(panic))));
+    (0..20)
+        .for_each(|sequence| run(&(0..CALLS_PER_SEQUENCE as u64).map(|call| call << 8 | sequence).collect::<Vec<_>>()));
+    let config = Config {
+        cases: calls.div_ceil(CALLS_PER_SEQUENCE as u64) as u32,
+        failure_persistence: None,
+        ..Config::default()
+    };
+    let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
+    let checked = runner.run(&vec(any::<u64>(), CALLS_PER_SEQUENCE / 2..=3 * CALLS_PER_SEQUENCE / 2), |numbers| {
+        let left = allocation_counter::measure(|| run(&numbers));
+        assert_eq!((left.count_current, left.bytes_current), (0, 0), "something is left behind");
+        Ok(())
     });
-    println!("{tally}");
-    assert!(tally.calls() >= calls);
-    if calls < CALLS {
-        return;
-    }
-    let stages = tally.met.iter().zip(Stage::ALL).filter(|(met, _)| **met).map(|(_, stage)| stage);
-    let is_left = |stage: Stage| tally.freed_in[stage as usize] > 0;
-    assert!(stages.clone().count() >= 6 && stages.clone().all(is_left), "freed in {:?} of {stages:?}", tally.freed_in);
-    for (function, ([ok, discard, _], is_never)) in V::Function::ALL.iter().zip(tally.statuses.iter().zip(&tally.never))
-    {
-        assert_eq!(ok + discard == 0, *is_never, "{} was never done", function.name());
+    checked.unwrap_or_else(|failure| panic!("{failure}"));
+    let Tally { done, never, met, left } = tally.into_inner();
+    if calls >= CALLS {
+        assert!(met.iter().filter(|is_met| **is_met).count() >= 6 && met == left, "met {met:?}, left {left:?}");
+        for ((function, is_done), is_never) in V::Function::ALL.iter().zip(done).zip(never) {
+            assert_ne!(is_done, is_never, "{} was never done", function.name());
+        }
     }
 }
 
@@ -237,73 +225,15 @@ fn records(folder: &Path) -> Vec<CString> {
 }
 
 /// What came of the calls.
-struct Tally<V: Version> {
-    /// OK, Discard and Error of every function.
-    statuses: Vec<[u64; 3]>,
+struct Tally {
+    /// Which functions were done.
+    done: Vec<bool>,
     /// Which are said to be allowed nowhere.
     never: Vec<bool>,
-    instances: u64,
-    refused_instances: u64,
     /// Which stages instances have been in.
     met: [bool; Stage::ALL.len()],
-    /// Instances freed, by stage.
-    freed_in: [u64; Stage::ALL.len()],
-    /// Most steps of the solver in one call.
-    most_steps: u64,
-    longest: Duration,
-    longest_function: &'static str,
-    version: PhantomData<fn() -> V>,
-}
-
-impl<V: Version> Tally<V> {
-    fn new() -> Tally<V> {
-        Tally {
-            statuses: vec![[0; 3]; V::Function::ALL.len()],
-            never: vec![false; V::Function::ALL.len()],
-            instances: 0,
-            refused_instances: 0,
-            met: Default::default(),
-            freed_in: Default::default(),
-            most_steps: 0,
-            longest: Duration::ZERO,
-            longest_function: "",
-            version: PhantomData,
-        }
-    }
-
-    fn calls(&self) -> u64 {
-        self.statuses.iter().flatten().sum::<u64>() + 2 * self.instances + self.refused_instances
-    }
-
-    fn add(&mut self, other: &Tally<V>) {
-        for (sum, more) in self.statuses.iter_mut().flatten().zip(other.statuses.iter().flatten()) {
-            *sum += more;
-        }
-        for (sum, more) in self.freed_in.iter_mut().zip(other.freed_in) {
-            *sum += more;
-        }
-        for (any, more) in self.never.iter_mut().chain(&mut self.met).zip(other.never.iter().chain(&other.met)) {
-            *any |= more;
-        }
-        self.most_steps = self.most_steps.max(other.most_steps);
-        self.instances += other.instances;
-        self.refused_instances += other.refused_instances;
-        if other.longest > self.longest {
-            (self.longest, self.longest_function) = (other.longest, other.longest_function);
-        }
-    }
-}
-
-impl<V: Version> fmt::Display for Tally<V> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{} calls on {} instances ({} refused)", self.calls(), self.instances, self.refused_instances)?;
-        writeln!(f, "{:36}{:>12}{:>12}{:>12}", "", "OK", "Discard", "Error")?;
-        for (function, [ok, discard, error]) in V::Function::ALL.iter().zip(&self.statuses) {
-            writeln!(f, "{:36}{ok:12}{discard:12}{error:12}", function.name())?;
-        }
-        writeln!(f, "most steps in one call: {} of {MAX_STEPS_PER_ADVANCE}", self.most_steps)?;
-        write!(f, "longest call: {:?}, {}", self.longest, self.longest_function)
-    }
+    /// Which stages they have been freed in.
+    left: [bool; Stage::ALL.len()],
 }
 
 /// Where an instance logs to.
@@ -357,19 +287,20 @@ struct Sequence<'a, V: Version> {
 }
 
 impl<'a, V: Version> Sequence<'a, V> {
-    fn new(number: u64, interface: fn(&mut Rng) -> Interface, location: &'a CStr, records: &'a [CString]) -> Self {
+    fn new(interface: fn(&mut Rng) -> Interface, location: &'a CStr, records: &'a [CString]) -> Self {
         let slot =
             || Slot { c: null_mut(), told: Box::default(), is_heard: false, states: Vec::new(), freed: null_mut() };
-        let (rng, slots, bytes) = (Rng::with_seed(number), [slot(), slot()], Vec::new());
+        let (rng, slots, bytes) = (Rng::with_seed(0), [slot(), slot()], Vec::new());
         Sequence { rng, interface, location, records, slots, bytes, version: PhantomData }
     }
 
-    fn run(mut self, tally: &mut Tally<V>) {
-        for _ in 0..CALLS_PER_SEQUENCE {
+    fn run(mut self, numbers: &[u64], tally: &mut Tally) {
+        for number in numbers {
+            self.rng.seed(*number);
             let at = self.rng.usize(..2);
             let is_in_error = self.condition(at).is_some_and(|condition| condition.stage == Stage::Error);
             if self.slots[at].c.is_null() && self.rng.u8(..) > 8 {
-                self.instantiate(at, tally);
+                self.instantiate(at);
             } else if self.one_in(if is_in_error { 5 } else { 100 }) {
                 self.free(at, tally);
             } else {
@@ -385,7 +316,7 @@ impl<'a, V: Version> Sequence<'a, V> {
     }
 
     /// Any function, or one that leads on.
-    fn function(&mut self, at: usize, tally: &mut Tally<V>) -> V::Function {
+    fn function(&mut self, at: usize, tally: &mut Tally) -> V::Function {
         let stage = self.condition(at).map(|condition| condition.stage);
         stage.iter().for_each(|stage| tally.met[*stage as usize] = true);
         let leading_on = V::leading_on(stage.unwrap_or(Stage::Error));
@@ -548,7 +479,7 @@ impl<'a, V: Version> Sequence<'a, V> {
         bytes
     }
 
-    fn instantiate(&mut self, at: usize, tally: &mut Tally<V>) {
+    fn instantiate(&mut self, at: usize) {
         let wrong = |rng: &mut Rng| rng.u8(..20) == 0;
         let rng = &mut self.rng;
         let too_long = CString::new(vec![b'a'; 70_000]).unwrap();
@@ -571,15 +502,14 @@ impl<'a, V: Version> Sequence<'a, V> {
         assert!(messages.len() <= usize::from(c.is_null()), "{messages:?}");
         (slot.c, slot.is_heard) = (c, is_heard);
         slot.told.asked.set((c, 0.0));
-        *if c.is_null() { &mut tally.refused_instances } else { &mut tally.instances } += 1;
         let is_of_kind = self.condition(at).is_none_or(|condition| condition.interface == interface);
         assert!(is_of_kind, "not of the interface {interface:?}");
     }
 
     /// In whatever state, with the FMU states that it has handed out.
-    fn free(&mut self, at: usize, tally: &mut Tally<V>) {
+    fn free(&mut self, at: usize, tally: &mut Tally) {
         if let Some(condition) = self.condition(at) {
-            tally.freed_in[condition.stage as usize] += 1;
+            tally.left[condition.stage as usize] = true;
         }
         let slot = &mut self.slots[at];
         unsafe { (V::LOOKING.free)(slot.c) };
@@ -617,26 +547,20 @@ impl<'a, V: Version> Sequence<'a, V> {
 
     /// Makes `call` and checks what can be said of every call: it returns OK, Discard or Error; it is told to the host
     /// exactly if it does not return OK; if it returns Error, the instance is as it was, unless the solver got stuck.
-    fn call(&mut self, at: usize, function: V::Function, tally: &mut Tally<V>, call: impl FnOnce(C) -> c_int) -> c_int {
+    fn call(&mut self, at: usize, function: V::Function, tally: &mut Tally, call: impl FnOnce(C) -> c_int) -> c_int {
         let c = self.slots[at].c;
         let before = (!c.is_null() && self.one_in(16)).then(|| self.serialized(at));
         let told = &self.slots[at].told;
         told.messages.take();
         told.call_back.set(if self.rng.u8(..64) == 0 { c } else { null_mut() });
-        let begin = Instant::now();
         let status = call(c);
-        let duration = begin.elapsed();
         told.call_back.set(null_mut());
 
         let messages = told.messages.take();
         let name = function.name();
-        let column = [OK, DISCARD, ERROR].iter().position(|column| *column == status);
-        let column = column.unwrap_or_else(|| panic!("{name}: {status} {messages:?}"));
+        assert!([OK, DISCARD, ERROR].contains(&status), "{name}: {status} {messages:?}");
         let number = V::Function::ALL.iter().position(|one| *one == function).unwrap();
-        tally.statuses[number][column] += 1;
-        if duration > tally.longest {
-            (tally.longest, tally.longest_function) = (duration, name);
-        }
+        tally.done[number] |= status != ERROR;
         let failures: Vec<_> = messages.iter().filter(|(status, _)| *status > 1).collect();
         let is_told = status != OK && !c.is_null() && self.slots[at].is_heard;
         assert_eq!(failures.len(), usize::from(is_told), "{messages:?}");
@@ -657,7 +581,7 @@ impl<'a, V: Version> Sequence<'a, V> {
     }
 
     /// Calls `function` with arguments of its kind.
-    fn call_function(&mut self, at: usize, function: V::Function, tally: &mut Tally<V>) {
+    fn call_function(&mut self, at: usize, function: V::Function, tally: &mut Tally) {
         let (name, mut made) = (function.name(), None);
         let mut references = self.references();
         match V::call(function) {
@@ -927,7 +851,7 @@ impl<'a, V: Version> Sequence<'a, V> {
         &mut self,
         at: usize,
         function: V::Function,
-        tally: &mut Tally<V>,
+        tally: &mut Tally,
         mut unknowns: Vec<c_uint>,
         call: fn(C, [*const c_uint; 2], [usize; 2], *const f64, *mut f64) -> c_int,
         is_adjoint: bool,
@@ -963,7 +887,7 @@ impl<'a, V: Version> Sequence<'a, V> {
         &mut self,
         at: usize,
         function: V::Function,
-        tally: &mut Tally<V>,
+        tally: &mut Tally,
         call: fn(C, f64, f64, c_int, [*mut u8; 3], *mut f64) -> c_int,
     ) {
         let motion = |sequence: &Self| sequence.condition(at)?.course.map(|course| course.motion);
@@ -999,7 +923,6 @@ impl<'a, V: Version> Sequence<'a, V> {
             let steps = after.work.steps - before.work.steps;
             assert!(steps <= MAX_STEPS_PER_ADVANCE, "{steps} steps");
             assert!(after.work.evaluations - before.work.evaluations <= steps * MAX_ORDER as u64);
-            tally.most_steps = tally.most_steps.max(steps);
         }
     }
 }
