@@ -7,7 +7,6 @@ from pathlib import PurePosixPath
 
 import numpy as np
 import pytest
-from first_run import RECORD
 from fmpy import read_model_description, simulate_fmu
 from fmpy.container_fmu.cli import create_container_fmu
 from fmpy.container_fmu.config import Component, Configuration

@@ -5,6 +5,8 @@
 //! proptest leaves out all calls that need not be there.
 #![allow(unsafe_code)]
 
+#[path = "../calls/mod.rs"]
+mod calls;
 mod fmi2;
 mod fmi3;
 #[path = "../host/mod.rs"]
@@ -17,9 +19,8 @@ use FlexibleRocking::resources::Archive;
 use FlexibleRocking::snapshot;
 use FlexibleRocking::state_machine::Stage;
 use FlexibleRocking::variables::{Causality, DataType, VARIABLES};
+use calls::{C, Call, Version, fmi2::Fmi2, fmi3::Fmi3};
 use fastrand::Rng;
-use fmi2::Fmi2;
-use fmi3::Fmi3;
 use host::{DISCARD, ERROR, OK};
 use libc::{c_char, c_int, c_uint, c_void};
 use proptest::collection::vec;
@@ -31,7 +32,6 @@ use rocking::run::validity::ASSUMPTIONS;
 use rocking::taylor::MAX_ORDER;
 use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString};
-use std::fmt::Debug;
 use std::marker::PhantomData;
 use std::path::Path;
 use std::ptr::{null, null_mut, without_provenance_mut};
@@ -44,19 +44,8 @@ const CALLS: u64 = 100_000;
 
 const CALLS_PER_SEQUENCE: usize = 400;
 
-/// An instance.
-type C = *mut c_void;
-
-/// A version of the standard: its functions by the arguments that they take.
-trait Version {
-    type Function: FlexibleRocking::c_abi::Function + PartialEq + Debug;
-
-    /// What the driver itself calls to look at an instance.
-    const LOOKING: Looking;
-
-    /// How to call `function`.
-    fn call(function: Self::Function) -> Call;
-
+/// What sequences of hostile calls need of a version of the standard.
+trait Hostile: Version {
     /// Functions that lead on from `stage`.
     fn leading_on(stage: Stage) -> &'static [Self::Function];
 
@@ -65,58 +54,6 @@ trait Version {
 
     /// Makes an instance of `interface`, which tells `told` what it logs, of a name, a token and a location.
     fn instantiate(rng: &mut Rng, interface: Interface, texts: [*const c_char; 3], told: Option<&Told>) -> C;
-}
-
-/// Functions with which an instance is looked at and freed.
-struct Looking {
-    free: unsafe extern "C" fn(C),
-    get_state: unsafe extern "C" fn(C, *mut C) -> c_int,
-    free_state: unsafe extern "C" fn(C, *mut C) -> c_int,
-    size: unsafe extern "C" fn(C, C, *mut usize) -> c_int,
-    serialize: unsafe extern "C" fn(C, C, *mut u8, usize) -> c_int,
-    event_indicators: unsafe extern "C" fn(C, *mut f64, usize) -> c_int,
-}
-
-/// A function by its arguments: value references come with their number; the last number, where there is one, is that of values,
-/// which FMI 3.0 is given as well.
-enum Call {
-    Plain(fn(C) -> c_int),
-    SetDebugLogging(fn(C, c_int, usize, *const *const c_char) -> c_int),
-    /// Tolerance, start and stop time.
-    SetUp(fn(C, c_int, f64, f64, c_int, f64) -> c_int),
-    GetReals(fn(C, *const c_uint, usize, *mut f64, usize) -> c_int),
-    GetRates(fn(C, *const c_uint, usize, *const c_int, *mut f64, usize) -> c_int),
-    SetReals(fn(C, *const c_uint, usize, *const f64, usize) -> c_int),
-    SetSlopes(fn(C, *const c_uint, usize, *const c_int, *const f64) -> c_int),
-    /// Of values of so many bytes.
-    GetDiscrete(usize, fn(C, *const c_uint, usize, *mut c_void, usize) -> c_int),
-    /// The same, of these variables, more often than not.
-    SetDiscrete(&'static [&'static str], usize, fn(C, *const c_uint, usize, *const c_void, usize) -> c_int),
-    GetStrings(fn(C, *const c_uint, usize, *mut *const c_char, usize) -> c_int),
-    SetStrings(fn(C, *const c_uint, usize, *mut *const c_char, usize) -> c_int),
-    /// Unknowns, knowns, seed and what comes out.
-    Directional(fn(C, [*const c_uint; 2], [usize; 2], *const f64, *mut f64) -> c_int),
-    Adjoint(fn(C, [*const c_uint; 2], [usize; 2], *const f64, *mut f64) -> c_int),
-    GetState(unsafe extern "C" fn(C, *mut C) -> c_int),
-    SetState(unsafe extern "C" fn(C, C) -> c_int),
-    FreeState(unsafe extern "C" fn(C, *mut C) -> c_int),
-    StateSize(unsafe extern "C" fn(C, C, *mut usize) -> c_int),
-    Serialize(unsafe extern "C" fn(C, C, *mut u8, usize) -> c_int),
-    Deserialize(unsafe extern "C" fn(C, *const u8, usize, *mut C) -> c_int),
-    /// Point, step, a Boolean, three that come out, and the time that is reached, in FMI 3.0.
-    DoStep(fn(C, f64, f64, c_int, [*mut u8; 3], *mut f64) -> c_int),
-    /// Which status, and where to.
-    Status(fn(C, c_int, *mut c_void) -> c_int),
-    SetTime(unsafe extern "C" fn(C, f64) -> c_int),
-    SetStates(unsafe extern "C" fn(C, *const f64, usize) -> c_int),
-    /// So many numbers.
-    GetNumbers(usize, unsafe extern "C" fn(C, *mut f64, usize) -> c_int),
-    /// How many there are.
-    Count(usize, unsafe extern "C" fn(C, *mut usize) -> c_int),
-    /// A Boolean, and two that come out, of so many bytes.
-    CompleteStep(usize, fn(C, c_int, *mut c_void, *mut c_void) -> c_int),
-    /// With one of the pointers to what comes out null, if any.
-    Update(fn(C, Option<usize>) -> c_int),
 }
 
 const SLAVE: Interface = Interface::CoSimulation(Stepping { event_mode: false, early_return: false });
@@ -144,7 +81,7 @@ fn no_call_of_fmi_3_model_exchange_does_harm() {
 }
 
 /// No crash, no panic, no leak, and what [`Sequence::call`] checks of every call.
-fn no_call_does_harm<V: Version>(interface: fn(&mut Rng) -> Interface) {
+fn no_call_does_harm<V: Hostile>(interface: fn(&mut Rng) -> Interface) {
     let calls = env::var("FUZZ_CALLS").map_or(CALLS, |calls| calls.parse().expect("FUZZ_CALLS is a number"));
     let resources = host::resources();
     let location = CString::new(V::location(resources.path())).unwrap();
@@ -154,7 +91,8 @@ fn no_call_does_harm<V: Version>(interface: fn(&mut Rng) -> Interface) {
     let texts = records.iter().filter_map(|text| text.to_str().ok());
     let _held: Vec<_> = texts.filter_map(|text| archive.record(text).ok()).collect();
     let none = vec![false; V::Function::ALL.len()];
-    let tally = RefCell::new(Tally { done: none.clone(), never: none, met: Default::default(), left: Default::default() });
+    let tally =
+        RefCell::new(Tally { done: none.clone(), never: none, met: Default::default(), left: Default::default() });
     let run = |numbers: &[u64]| {
         Sequence::<V>::new(interface, &location, &records).run(numbers, &mut tally.borrow_mut());
     };
@@ -275,7 +213,7 @@ struct Slot {
 }
 
 /// A run of calls on two instances.
-struct Sequence<'a, V: Version> {
+struct Sequence<'a, V: Hostile> {
     rng: Rng,
     interface: fn(&mut Rng) -> Interface,
     location: &'a CStr,
@@ -286,7 +224,7 @@ struct Sequence<'a, V: Version> {
     version: PhantomData<fn() -> V>,
 }
 
-impl<'a, V: Version> Sequence<'a, V> {
+impl<'a, V: Hostile> Sequence<'a, V> {
     fn new(interface: fn(&mut Rng) -> Interface, location: &'a CStr, records: &'a [CString]) -> Self {
         let slot =
             || Slot { c: null_mut(), told: Box::default(), is_heard: false, states: Vec::new(), freed: null_mut() };
@@ -520,24 +458,12 @@ impl<'a, V: Version> Sequence<'a, V> {
 
     /// The instance as bytes.
     fn serialized(&self, at: usize) -> Vec<u8> {
-        let c = self.slots[at].c;
-        let mut state = null_mut();
-        assert_eq!(unsafe { (V::LOOKING.get_state)(c, &mut state) }, OK);
-        let bytes = self.bytes_of(at, state);
-        assert_eq!(unsafe { (V::LOOKING.free_state)(c, &mut state) }, OK);
-        bytes
+        calls::bytes::<V>(self.slots[at].c)
     }
 
     /// One of the instance's FMU states as bytes.
     fn bytes_of(&self, at: usize, state: C) -> Vec<u8> {
-        let c = self.slots[at].c;
-        let mut size = 0;
-        unsafe {
-            assert_eq!((V::LOOKING.size)(c, state, &mut size), OK);
-            let mut bytes = vec![0; size];
-            assert_eq!((V::LOOKING.serialize)(c, state, bytes.as_mut_ptr(), size), OK);
-            bytes
-        }
+        calls::bytes_of::<V>(self.slots[at].c, state)
     }
 
     /// Where the instance stands, if there is one. Whatever calls have led to can be read back from its bytes.
