@@ -33,6 +33,7 @@ use rocking::taylor::MAX_ORDER;
 use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString};
 use std::marker::PhantomData;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::Path;
 use std::ptr::{null, null_mut, without_provenance_mut};
 use std::slice;
@@ -42,7 +43,11 @@ use uuid::Uuid;
 /// Calls of each interface without `FUZZ_CALLS`.
 const CALLS: u64 = 100_000;
 
+/// On average.
 const CALLS_PER_SEQUENCE: usize = 400;
+
+/// Sequences in which all is made that is made when it is first needed.
+const WARMING_UP: u32 = 20;
 
 /// What sequences of hostile calls need of a version of the standard.
 trait Hostile: Version {
@@ -86,27 +91,30 @@ fn no_call_does_harm<V: Hostile>(interface: fn(&mut Rng) -> Interface) {
     let resources = host::resources();
     let location = CString::new(V::location(resources.path())).unwrap();
     let records = records(resources.path());
-    // what sequences share is no leak: the records, held here, and what is made when it is first needed
+    // what sequences share is no leak: the records, held here
     let archive = Archive::open(resources.path().to_owned()).unwrap();
     let texts = records.iter().filter_map(|text| text.to_str().ok());
     let _held: Vec<_> = texts.filter_map(|text| archive.record(text).ok()).collect();
     let none = vec![false; V::Function::ALL.len()];
     let tally =
         RefCell::new(Tally { done: none.clone(), never: none, met: Default::default(), left: Default::default() });
-    let run = |numbers: &[u64]| {
-        Sequence::<V>::new(interface, &location, &records).run(numbers, &mut tally.borrow_mut());
-    };
-    (0..20)
-        .for_each(|sequence| run(&(0..CALLS_PER_SEQUENCE as u64).map(|call| call << 8 | sequence).collect::<Vec<_>>()));
     let config = Config {
-        cases: calls.div_ceil(CALLS_PER_SEQUENCE as u64) as u32,
+        cases: WARMING_UP + calls.div_ceil(CALLS_PER_SEQUENCE as u64) as u32,
         failure_persistence: None,
         ..Config::default()
     };
-    let mut runner = TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha));
-    let checked = runner.run(&vec(any::<u64>(), CALLS_PER_SEQUENCE / 2..=3 * CALLS_PER_SEQUENCE / 2), |numbers| {
-        let left = allocation_counter::measure(|| run(&numbers));
-        assert_eq!((left.count_current, left.bytes_current), (0, 0), "something is left behind");
+    let (mut runner, runs) =
+        (TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha)), Cell::new(0));
+    let checked = runner.run(&vec(any::<u64>(), 1..2 * CALLS_PER_SEQUENCE), |numbers| {
+        let sequence = || Sequence::<V>::new(interface, &location, &records);
+        let mut done = Ok(());
+        // the counter does not outlive a panic
+        let run = AssertUnwindSafe(|| sequence().run(&numbers, &mut tally.borrow_mut()));
+        let left = allocation_counter::measure(|| done = catch_unwind(run));
+        done.unwrap_or_else(|panic| resume_unwind(panic));
+        runs.set(runs.get() + 1);
+        let is_left = runs.get() > WARMING_UP && (left.count_current, left.bytes_current) != (0, 0);
+        assert!(!is_left, "something is left behind: {left:?}");
         Ok(())
     });
     checked.unwrap_or_else(|failure| panic!("{failure}"));
