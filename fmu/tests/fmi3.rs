@@ -9,7 +9,7 @@ use FlexibleRocking::interface::{Interface, Stepping};
 use FlexibleRocking::snapshot;
 use FlexibleRocking::state_machine::Stage;
 use calls::fmi3::Fmi3;
-use calls::{C, bytes, check};
+use calls::{C, Messages, bytes, check};
 use host::{ERROR, OK, STAGES_OF_MODEL, reference, resources};
 use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
@@ -309,7 +309,7 @@ fn model_in(stage: Stage) -> Host {
     }
 }
 
-fn look(host: &Host) -> (C, Vec<(c_int, String)>) {
+fn look(host: &Host) -> (C, Messages) {
     (host.c, host.log.take())
 }
 

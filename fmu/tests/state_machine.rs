@@ -6,9 +6,8 @@ mod host;
 
 use FlexibleRocking::state_machine::Stage;
 use calls::fmi2::Fmi2;
-use calls::{C, check};
+use calls::{C, Messages, check};
 use host::*;
-use libc::c_int;
 
 /// The table of FMI 2.0.4, section 4.2.4, without the columns of a step in progress or canceled, which a slave with
 /// synchronous steps never sees: instantiated, initialization mode, step complete, step failed, terminated, error. x:
@@ -145,7 +144,7 @@ fn overturned() -> Host {
     host
 }
 
-fn look(host: &Host) -> (C, Vec<(c_int, String)>) {
+fn look(host: &Host) -> (C, Messages) {
     (host.component, host.log.take().into_iter().map(|message| (message.status, message.text)).collect())
 }
 

@@ -15,6 +15,9 @@ use std::ptr::{null, null_mut};
 /// An instance.
 pub type C = *mut c_void;
 
+/// What an instance has logged: status and text.
+pub type Messages = Vec<(c_int, String)>;
+
 /// A version of the standard.
 pub trait Version {
     type Function: FlexibleRocking::c_abi::Function + PartialEq + Debug;
@@ -174,7 +177,7 @@ pub fn check<V: Version, H>(
     stages: &[Stage],
     first: Stage,
     host_in: fn(Stage) -> H,
-    look: fn(&H) -> (C, Vec<(c_int, String)>),
+    look: fn(&H) -> (C, Messages),
 ) {
     let stage_of = |c: C| snapshot::deserialize(&bytes::<V>(c)).unwrap().stage;
     let rows: Vec<Vec<_>> = table.trim().lines().map(|row| row.split_whitespace().collect()).collect();
