@@ -49,15 +49,15 @@ pub struct Condition {
 pub struct Course {
     /// The motion; the host's, if the host integrates.
     pub motion: Motion,
-    /// If the host integrates.
+    /// What is known beside the motion, if the host integrates.
     pub outside: Option<Outside>,
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
     /// Peaks so far, if they are watched.
     pub peaks: Peaks,
-    /// What the motion has gone beyond so far, if it is watched.
+    /// Which limits of the model have been passed so far, if they are watched.
     pub validity: Found,
-    /// Of the record that the ground follows.
+    /// Names the record that the ground follows.
     pub record: Option<Digest>,
 }
 
@@ -121,7 +121,7 @@ fn is_possible(motion: &Motion, farthest: f64) -> bool {
 }
 
 impl Present {
-    /// Its condition.
+    /// The present condition.
     pub fn condition(&self) -> Condition {
         let Present { interface, stage, setup, inputs, model, .. } = self;
         let course = model.as_ref().filter(|_| stage.has_started()).map(|model| Course {

@@ -24,7 +24,7 @@ pub struct Inputs {
     between: [Between; 2],
     /// What acts now, and the slopes of the next step, but for those that are late.
     next: LinearLoad,
-    /// As the host has set them, or as they have come to be.
+    /// The values that the host has set, or that the last step led to.
     set: Load,
     /// What has been set of each since the last step, in the same order.
     given: [Given; 2],
@@ -54,12 +54,12 @@ impl Inputs {
         self.next.value
     }
 
-    /// What the host is shown: as it has set them, or as they have come to be.
+    /// The values that the host reads: those that it has set, or that the last step led to.
     pub(crate) fn shown(&self) -> Load {
         self.set
     }
 
-    /// From here on steps are made, and inputs act as `between` says; until then, and where none are made, at once.
+    /// Makes the inputs act as `between` says. Until then, and where no steps are made, they act at once.
     pub(crate) fn start(&mut self, between: [Between; 2]) {
         self.between = between;
     }
@@ -115,8 +115,8 @@ impl Inputs {
         self.between[which] != Between::Late || self.given[which] == Given::Slope
     }
 
-    /// What they are over a step of `duration` (s). An input of which only the value is set is held if its line would lead
-    /// out of its range.
+    /// The lines that the inputs follow over a step of `duration` (s). An input of which only the value is set is held if its
+    /// line would lead out of its range.
     #[inline]
     pub(crate) fn over(&self, duration: f64) -> LinearLoad {
         let mut load = self.next;
@@ -135,7 +135,7 @@ impl Inputs {
         load
     }
 
-    /// What acts now and how it changes: as it is about to, or as it just did.
+    /// What acts now, with the slopes of the next step, or those of the last step where none are set.
     pub(crate) fn now(&self) -> LinearLoad {
         let mut load = self.next;
         for which in 0..LOADS.len() {

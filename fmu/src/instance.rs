@@ -1,4 +1,5 @@
-//! One instance of the FMU: what each function does, in safe code, whatever a version of the standard calls it.
+//! One instance of the FMU, in safe code that knows no version of the standard: how it is made, goes from stage to stage,
+//! and keeps FMU states.
 
 use crate::failure::Failure;
 use crate::inputs::Inputs;
@@ -30,13 +31,13 @@ pub struct Instance {
     snapshots: Snapshots,
     /// The text that the host was given last, which it may read until the next call.
     shown: CString,
-    /// How the host is called back within a step, if it wants to be.
+    /// The host that is called back within steps, if there is one.
     host: Option<IntermediateUpdate>,
-    /// While it is asked for inputs: how long the step is to be, s.
+    /// While the host is asked for inputs: the duration of the step, s.
     asked: Option<f64>,
-    /// The inputs when it was asked last.
+    /// The inputs before the host was asked for them.
     inputs_before: Inputs,
-    /// While it reads outputs: where the step has led.
+    /// While the host reads outputs: the stage that the step has led to.
     led_to: Option<Stage>,
 }
 
@@ -45,13 +46,13 @@ pub struct Instance {
 pub struct Updated {
     /// Whether the structure has overturned, which ends the simulation.
     pub has_ended: bool,
-    /// Whether the states are not those that the host set.
+    /// Whether the states differ from those that the host set.
     pub has_new_states: bool,
-    /// When the next event is that can be foreseen, s.
+    /// The instant of the next event that can be foreseen, s.
     pub next_event: Option<f64>,
 }
 
-/// The archive with the folder `resources`, if `guid`, the argument `name`, is its.
+/// Opens the archive in the folder `resources`, and compares its GUID with `guid`, the argument `name`.
 pub fn open(name: &'static str, guid: &str, resources: PathBuf) -> Result<Archive, Failure> {
     let archive = Archive::open(resources)?;
     let needed = crate::guid(&archive.contents);
@@ -62,7 +63,7 @@ pub fn open(name: &'static str, guid: &str, resources: PathBuf) -> Result<Archiv
 }
 
 impl Instance {
-    /// Just instantiated from `archive`; `events` says whether events are logged.
+    /// An instance just instantiated from `archive`; `events` says whether events are logged.
     pub fn new(archive: Archive, interface: Interface, events: bool, mut logger: Logger) -> Instance {
         logger.set_events(events);
         let now = Present::new(archive, interface);
@@ -95,7 +96,7 @@ impl Instance {
         self.logger.warning(message);
     }
 
-    /// Tolerance and times; no tolerance means the default.
+    /// Sets tolerance and times; no tolerance means the default.
     pub fn setup_experiment(
         &mut self,
         tolerance: Option<f64>,
@@ -115,7 +116,7 @@ impl Instance {
         Ok(())
     }
 
-    /// From here on parameters and initial values are fixed, and fit together.
+    /// Starts the simulation: parameters and initial values are checked together, and fixed.
     pub fn exit_initialization_mode(&mut self) -> Result<(), Failure> {
         let (model, setup, ..) = self.now.parts()?;
         for warning in validity::of_parameters(model.engine.structure(), setup.detail) {
@@ -138,7 +139,7 @@ impl Instance {
         Ok(())
     }
 
-    /// From here on events are handled, at the end of a step or where the host's integrator is.
+    /// Goes to event mode, at the end of a step or where the host's integrator is.
     pub fn enter_event_mode(&mut self) -> Result<(), Failure> {
         match self.now.interface {
             Interface::CoSimulation(Stepping { event_mode: false, .. }) => return Err(Failure::NoEventMode),
@@ -169,7 +170,7 @@ impl Instance {
         Ok(())
     }
 
-    /// As instantiated. FMU states stay the host's until it frees them.
+    /// Makes the instance as it was instantiated. FMU states stay the host's until it frees them.
     pub fn reset(&mut self) -> Result<(), Failure> {
         self.now.reset();
         self.logger.set_events(self.events_at_start);
@@ -186,27 +187,27 @@ impl Instance {
         Ok(self.now.model()?.has_overturned())
     }
 
-    /// Keeps the condition: into the state `handle`, or into a new one for 0.
+    /// Keeps the condition in the FMU state `handle`, or in a new one for 0; returns the handle.
     pub fn get_fmu_state(&mut self, handle: usize) -> Result<usize, Failure> {
         self.snapshots.keep(handle, self.now.condition())
     }
 
-    /// Goes back to the state `handle`.
+    /// Goes back to the FMU state `handle`.
     pub fn set_fmu_state(&mut self, handle: usize) -> Result<(), Failure> {
         self.now.go_to(self.snapshots.find(handle)?)
     }
 
-    /// Forgets the state `handle`.
+    /// Forgets the FMU state `handle`.
     pub fn free_fmu_state(&mut self, handle: usize) -> Result<(), Failure> {
         self.snapshots.free(handle)
     }
 
-    /// The state `handle` as bytes.
+    /// The FMU state `handle` as bytes.
     pub fn serialize_fmu_state(&self, handle: usize) -> Result<Vec<u8>, Failure> {
         Ok(snapshot::serialize(self.snapshots.find(handle)?))
     }
 
-    /// Keeps what `bytes` hold: into the state `handle`, or into a new one for 0.
+    /// Keeps the condition that `bytes` hold in the FMU state `handle`, or in a new one for 0; returns the handle.
     pub fn deserialize_fmu_state(&mut self, bytes: &[u8], handle: usize) -> Result<usize, Failure> {
         self.snapshots.keep(handle, snapshot::deserialize(bytes)?)
     }

@@ -50,7 +50,7 @@ impl<'a> Shown<'a> {
     }
 
     /// The value of a Real from `source`, if it is one that is computed.
-    #[inline]
+    #[inline(never)]
     pub fn value(&self, source: Source) -> Option<f64> {
         let Shown { model, setup, load, .. } = *self;
         Some(match source {

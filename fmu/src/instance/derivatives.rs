@@ -14,8 +14,8 @@ use std::collections::BTreeMap;
 use std::mem::MaybeUninit;
 
 impl Instance {
-    /// From the equations of motion, under the present inputs and their slopes: those set for the next step, or those
-    /// that the last one followed.
+    /// Rates of outputs by the equations of motion, under the present inputs and their slopes: those set for the next step,
+    /// or else those that the last step followed.
     pub fn get_real_output_derivatives(
         &mut self,
         references: &[u32],
@@ -49,11 +49,10 @@ impl Instance {
         Ok(())
     }
 
-    /// Of outputs and derivatives of states by inputs and, once the simulation has started, by states and by time, at which
-    /// the record is another; in initialization mode by parameters and initial values as well, of calculated
-    /// parameters, too ([`sensitivity`](crate::sensitivity)). The outputs are affine in the inputs, so that a difference
-    /// is the derivative; it is taken over a change of the size of gravity and the strut's force, which keeps its
-    /// digits.
+    /// Derivatives of outputs and of derivatives of states: by inputs; once the simulation has started by states, and by time,
+    /// with which the record changes; in initialization mode by parameters and initial values ([`sensitivity`](crate::sensitivity)),
+    /// then of calculated parameters, too. The outputs are affine in the inputs: the derivative is a difference, taken over a
+    /// change of the size of gravity and the strut's force, which keeps its digits.
     pub fn get_directional_derivative(
         &mut self,
         unknowns: &[u32],
@@ -132,7 +131,7 @@ impl Instance {
         Ok(found)
     }
 
-    /// Adjoint of the same: of each known the derivatives of the unknowns by it, weighted with `seed` and summed.
+    /// For each known the sum of the derivatives of the unknowns by it, weighted with `seed`.
     pub fn get_adjoint_derivative(
         &mut self,
         unknowns: &[u32],

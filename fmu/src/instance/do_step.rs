@@ -14,8 +14,8 @@ use rocking::engine::{AdvanceError, Progress};
 const SAME_TIME: (f64, f64) = (1e-4, 8.0);
 
 impl Instance {
-    /// How a step over `step` (s) from `point` (s) begins: its host is to be asked for the inputs at its end, outside of
-    /// any call, where it wants to be. Then [`Instance::do_step`] is the rest.
+    /// Begins a step over `step` (s) from `point` (s). Returns the host that is to be asked for the inputs at the end of the
+    /// step, outside of any call, if it wants to be; [`Instance::do_step`] comes after that.
     pub(crate) fn begin_step(&mut self, point: f64, step: f64) -> Result<Option<IntermediateUpdate>, Failure> {
         let (model, setup, inputs, stage) = self.now.parts()?;
         check_step(model, setup, point, step)?;
@@ -27,8 +27,8 @@ impl Instance {
         Ok(asked)
     }
 
-    /// From `point` (s), which is where the instance is, over `step` (s), or to the first transition if that is to be
-    /// handed over. The host's clock is right: its point becomes the instance's.
+    /// Steps from `point` (s), where the instance is but for rounding, over `step` (s), or to the first transition if that is
+    /// handed over. The instance takes over the host's clock.
     #[inline(always)]
     pub fn do_step(&mut self, point: f64, step: f64) -> Result<Progress, Failure> {
         let was_asked = self.asked.take().is_some();
@@ -83,8 +83,8 @@ impl Instance {
         }
     }
 
-    /// How a step ends: its host is to read what it has led to, outside of any call, where it wants to. Then
-    /// [`Instance::end_step`] is the rest.
+    /// Returns the host that is to read where the step has led, outside of any call, if it wants to; [`Instance::end_step`]
+    /// comes after that.
     pub(crate) fn show_step(&mut self) -> Option<IntermediateUpdate> {
         let told = self.host.filter(|host| host.gets_outputs);
         if told.is_some() {
@@ -93,18 +93,18 @@ impl Instance {
         told
     }
 
-    /// The host has read.
+    /// Ends the step, once the host has read.
     pub(crate) fn end_step(&mut self) {
         self.now.stage = self.led_to.take().unwrap_or(self.now.stage);
     }
 
-    /// Whether its host takes a step that ends early.
+    /// Whether the host takes a step that ends early.
     pub fn may_return_early(&self) -> bool {
         self.now.interface.stepping().early_return
     }
 }
 
-/// Whether `model` can step from `point` (s) over `step` (s).
+/// Refuses a step that `model` cannot make from `point` (s) over `step` (s).
 #[inline]
 fn check_step(model: &Model, setup: &Setup, point: f64, step: f64) -> Result<(), Failure> {
     let time = model.engine.motion().time;

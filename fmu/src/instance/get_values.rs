@@ -2,6 +2,7 @@
 
 use super::Instance;
 use crate::failure::Failure;
+use crate::inputs::Inputs;
 use crate::present::find;
 use crate::setup::Setup;
 use crate::shown::Shown;
@@ -10,7 +11,7 @@ use std::ffi::{CString, c_char};
 use std::mem::MaybeUninit;
 
 impl Instance {
-    /// All of the values, or none if one is refused.
+    /// Reads Reals: all of them, or none if one is refused.
     #[inline(always)]
     pub fn get_real(&mut self, references: &[u32], values: &mut [MaybeUninit<f64>]) -> Result<(), Failure> {
         let variables = self.now.variables;
@@ -20,13 +21,10 @@ impl Instance {
         if needed & NO_REAL != 0 {
             return Err(self.no_real(references));
         }
-        let set = self.now.inputs.shown();
-        let setting = |setup: &Setup, source: Source| match source {
-            Source::Input(which) => set[which],
-            source => source.setting(setup).expect("a Real that is not computed is set"),
-        };
         if needed & MODEL == 0 {
-            write(variables, references, values, |source| setting(&self.now.setup, source));
+            for (reference, place) in references.iter().zip(values) {
+                place.write(setting(&self.now.setup, &self.now.inputs, variables[*reference as usize].source));
+            }
             return Ok(());
         }
         let (model, setup, inputs, _) = self.now.parts()?;
@@ -34,10 +32,12 @@ impl Instance {
         if needed & SOLUTION != 0 {
             shown.check_solution(references)?;
         }
-        write(variables, references, values, |source| match source {
-            Source::Output(of) => of(&shown.outputs),
-            source => shown.value(source).unwrap_or_else(|| setting(setup, source)),
-        });
+        for (reference, place) in references.iter().zip(values) {
+            place.write(match variables[*reference as usize].source {
+                Source::Output(of) => of(&shown.outputs),
+                source => shown.value(source).unwrap_or_else(|| setting(setup, inputs, source)),
+            });
+        }
         Ok(())
     }
 
@@ -51,7 +51,7 @@ impl Instance {
         wrong.expect("one of them is none")
     }
 
-    /// Integers, the numbers of enumerations, or both: those that `is_of_type`.
+    /// Reads integers, numbers of enumerations, or both: what `is_of_type`.
     pub fn get_numbers<T: From<i32>>(
         &mut self,
         references: &[u32],
@@ -61,7 +61,7 @@ impl Instance {
         self.get_discrete(references, values, is_of_type, T::from)
     }
 
-    /// Booleans.
+    /// Reads Booleans.
     pub fn get_boolean<T: From<bool>>(
         &mut self,
         references: &[u32],
@@ -71,7 +71,7 @@ impl Instance {
         self.get_discrete(references, values, is_boolean, |number| T::from(number != 0))
     }
 
-    /// All of the values, or none if one is refused.
+    /// Reads what is no Real: all of them, or none if one is refused.
     fn get_discrete<T>(
         &mut self,
         references: &[u32],
@@ -101,7 +101,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Texts, good until the next call.
+    /// Reads texts, which the host may use until the next call.
     pub fn get_string(&mut self, references: &[u32], values: &mut [MaybeUninit<*const c_char>]) -> Result<(), Failure> {
         references.iter().try_for_each(|reference| check_is_text(find(self.now.variables, *reference)?))?;
         self.shown = CString::new(self.now.setup.record.as_bytes()).unwrap_or_default(); // it came without NUL
@@ -135,10 +135,10 @@ fn needs(variable: &Variable) -> u8 {
     }
 }
 
-/// Writes what `value` is at each of `references`, all of which exist.
-#[inline(always)]
-fn write(variables: &[Variable], references: &[u32], values: &mut [MaybeUninit<f64>], value: impl Fn(Source) -> f64) {
-    for (reference, place) in references.iter().zip(values) {
-        place.write(value(variables[*reference as usize].source));
+/// The value of a Real that the host sets.
+fn setting(setup: &Setup, inputs: &Inputs, source: Source) -> f64 {
+    match source {
+        Source::Input(which) => inputs.shown()[which],
+        source => source.setting(setup).expect("a Real that is not computed is set"),
     }
 }

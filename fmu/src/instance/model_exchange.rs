@@ -72,7 +72,7 @@ impl Model {
 }
 
 impl Instance {
-    /// From here on the host integrates.
+    /// Leaves the motion to the host's integrator.
     pub(super) fn start_outside(&mut self) -> Result<(), Failure> {
         let (model, _, inputs, _) = self.now.parts()?;
         let (motion, elapsed, load) = (*model.engine.motion(), model.elapsed, inputs.values());
@@ -80,7 +80,7 @@ impl Instance {
         Ok(())
     }
 
-    /// The host is at `time` (s).
+    /// Goes to the host's `time` (s).
     pub fn set_time(&mut self, time: f64) -> Result<(), Failure> {
         let (model, setup, _, stage) = self.now.parts()?;
         if !(time.is_finite() && (time - setup.start_time).is_finite()) {
@@ -95,21 +95,21 @@ impl Instance {
         Ok(())
     }
 
-    /// The host is at the state u, u̇, θ, θ̇.
+    /// Goes to the host's state u, u̇, θ, θ̇.
     pub fn set_continuous_states(&mut self, states: [f64; COMPONENTS.len()]) -> Result<(), Failure> {
         (0..).zip(states).try_for_each(|(which, value)| check_state(which, value))?;
         self.now.model()?.engine.set_state(State::of(states));
         Ok(())
     }
 
-    /// Of these, the host is at `value` of the one at place `which`.
+    /// Goes to the host's `value` of the state at place `which`.
     pub(super) fn set_continuous_state(&mut self, which: usize, value: f64) -> Result<(), Failure> {
         let mut states = self.continuous_states()?;
         states[which] = value;
         self.set_continuous_states(states)
     }
 
-    /// Where the host is, or where it is to start from.
+    /// The state at which the host is, or from which it is to start.
     pub fn continuous_states(&mut self) -> Result<[f64; COMPONENTS.len()], Failure> {
         Ok(self.now.model()?.engine.motion().state.components())
     }
@@ -136,8 +136,7 @@ impl Instance {
         Ok(model.engine.sample(model.acting(setup, inputs.values())).event_indicators())
     }
 
-    /// The host has made a step to where it is. Where that has passed a transition over, the step is left as it is until
-    /// event mode puts it right.
+    /// Checks the step that the host has made to where it is. If it has passed over a transition, event mode puts it right.
     pub fn completed_integrator_step(&mut self) -> Result<Completed, Failure> {
         let (model, setup, inputs, stage) = self.now.parts()?;
         let load = inputs.values();
@@ -155,7 +154,7 @@ impl Instance {
         Ok(Completed { needs_event_mode: is_corrected, has_ended: model.has_overturned() })
     }
 
-    /// There is an event where the host is.
+    /// Remembers what acts where the host goes to event mode.
     pub(super) fn arrive_at_event(&mut self) -> Result<(), Failure> {
         let (model, _, inputs, stage) = self.now.parts()?;
         if let Some(outside) = &mut model.outside
@@ -205,7 +204,7 @@ impl Instance {
     }
 }
 
-/// Where the motion ends, so does the simulation.
+/// Goes to the stage of errors where the equations are singular.
 fn stop_if_singular(stage: &mut Stage, failure: &Failure) {
     if let Failure::Advance(AdvanceError::Singular { .. }) = failure {
         *stage = Stage::Error;

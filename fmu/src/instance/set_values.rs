@@ -11,7 +11,7 @@ use crate::variables::{self, Causality, Source, Variable};
 use rocking::load::LOADS;
 
 impl Instance {
-    /// All of the values, or none if one is refused. While the host integrates it can set the states, too.
+    /// Sets Reals: all of them, or none if one is refused. While the host integrates it can set the states, too.
     #[inline(always)]
     pub fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
         for (reference, &value) in references.iter().zip(values) {
@@ -52,12 +52,12 @@ impl Instance {
         Ok(())
     }
 
-    /// Parameters and initial values are fixed once the simulation has started.
+    /// Refuses a parameter or an initial value once the simulation has started.
     fn check_not_fixed(&self, variable: &'static Variable) -> Result<(), Failure> {
         if self.now.stage.has_started() { Err(Failure::Fixed(variable)) } else { Ok(()) }
     }
 
-    /// All of the values, or none if one is refused. Of integers and enumerations, the parameter `detail` can be set.
+    /// Sets numbers of enumerations, of which the parameter `detail` can be set: all of them, or none if one is refused.
     pub fn set_integer<T: Copy + Into<i64>>(&mut self, references: &[u32], values: &[T]) -> Result<(), Failure> {
         let mut setup = self.now.setup.clone();
         for (reference, &value) in references.iter().zip(values) {
@@ -71,13 +71,13 @@ impl Instance {
         Ok(())
     }
 
-    /// No integer can be set where enumerations have a function of their own.
+    /// Refuses all integers, where enumerations have a function of their own.
     pub fn set_no_integer(&mut self, references: &[u32]) -> Result<(), Failure> {
         let first = references.first().map(|first| find(self.now.variables, *first));
         first.map_or(Ok(()), |first| Err(refused(first?)))
     }
 
-    /// All of the values, or none if one is refused; `truth` says what the value of a name stands for.
+    /// Sets Booleans: all of them, or none if one is refused; `truth` says what the value of a name stands for.
     pub fn set_boolean<T: Copy>(
         &mut self,
         references: &[u32],
@@ -95,7 +95,7 @@ impl Instance {
         Ok(())
     }
 
-    /// All of the values, or none if one is refused. A record is looked for when it is needed.
+    /// Sets texts: all of them, or none if one is refused. A record is looked for when it is needed.
     pub fn set_string(&mut self, references: &[u32], values: &[&str]) -> Result<(), Failure> {
         for reference in references {
             let variable = find(self.now.variables, *reference)?;
@@ -108,7 +108,7 @@ impl Instance {
         Ok(())
     }
 
-    /// Slopes of the inputs over the next step: all of them, or none if one is refused.
+    /// Sets slopes of the inputs over the next step: all of them, or none if one is refused.
     #[inline(always)]
     pub fn set_real_input_derivatives(
         &mut self,
