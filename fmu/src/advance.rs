@@ -10,9 +10,9 @@ use std::f64::consts::FRAC_PI_2;
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 impl Model {
-    /// [`Model::advance`] for a host that transitions are handed over to. One that rounding alone keeps from the end of the step
-    /// is met there: a host that goes back and steps to the instant that it was told meets it again. What is due at the very
-    /// start, since an input has just jumped, is applied: no step is over where it began.
+    /// [`Model::advance`] for a host that transitions are handed over to. One that rounding alone keeps from the end of
+    /// the step is met there: a host that goes back and steps to the instant that it was told meets it again. What is
+    /// due at the very start, since an input has just jumped, is applied: no step is over where it began.
     #[inline(never)]
     pub fn advance_to_transition<W: Watch>(
         &mut self,
@@ -58,8 +58,8 @@ impl Model {
         }
     }
 
-    /// Advances by `step` (s) under `inputs` and the record, with peaks and validity watched as `setup` says. If it fails,
-    /// nothing has changed.
+    /// Advances by `step` (s) under `inputs` and the record, with peaks and validity watched as `setup` says. If it
+    /// fails, nothing has changed.
     #[inline(always)]
     pub fn advance<W: Watch>(
         &mut self,

@@ -4,8 +4,8 @@
 //!
 //! Messages begin with the function that was called and end with the one to call instead: the instance knows neither.
 //!
-//! What C cannot promise is checked: null and misaligned pointers, lengths, numbers of an enumeration, a call from within
-//! the logger, and, as far as that can be told, whether a component is one. A panic becomes [`Status::Fatal`].
+//! What C cannot promise is checked: null and misaligned pointers, lengths, numbers of an enumeration, a call from
+//! within the logger, and, as far as that can be told, whether a component is one. A panic becomes [`Status::Fatal`].
 //!
 //! # Safety
 //!

@@ -1,5 +1,5 @@
-//! Everything that the future of an instance depends on: how it is taken, gone back to, and told from what cannot have come
-//! about by calls.
+//! Everything that the future of an instance depends on: how it is taken, gone back to, and told from what cannot have
+//! come about by calls.
 
 use crate::failure::Failure;
 use crate::ground::Digest;

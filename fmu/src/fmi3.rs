@@ -1,10 +1,10 @@
-//! The C interface of FMI 3.0: what its functions are called, and what they pass. See [`c_abi`] for what holds of all of
-//! them.
+//! The C interface of FMI 3.0: what its functions are called, and what they pass. See [`c_abi`] for what holds of all
+//! of them.
 //!
-//! In co-simulation, where the host handles events and takes an early return, a step ends at the first transition on it:
-//! state and phase are those before it until `fmi3UpdateDiscreteStates` applies it. A host that can be called back gives
-//! the inputs at the end of every step before it is computed, and they are straight lines over the step; else they are held.
-//! After the step is computed it can read all variables.
+//! In co-simulation, where the host handles events and takes an early return, a step ends at the first transition on
+//! it: state and phase are those before it until `fmi3UpdateDiscreteStates` applies it. A host that can be called back
+//! gives the inputs at the end of every step before it is computed, and they are straight lines over the step; else
+//! they are held. After the step is computed it can read all variables.
 #![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
 
 mod co_simulation;
@@ -114,8 +114,8 @@ pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
     unsafe { create("fmi3InstantiateScheduledExecution", arguments, loggingOn, host, interface) }
 }
 
-/// An instance of the `interface` that `function` makes, from the name, the token and the folder; null, with the reason in
-/// the log, if there is none.
+/// An instance of the `interface` that `function` makes, from the name, the token and the folder; null, with the reason
+/// in the log, if there is none.
 unsafe fn create(
     function: &str,
     [name, token, folder]: [*const c_char; 3],
@@ -158,8 +158,8 @@ fn sink(log: Option<LogMessageCallback>, environment: *mut c_void) -> Sink {
 }
 
 impl IntermediateUpdate {
-    /// Asks for the inputs at `time` (s), the end of a step: what the step leads to there is not known yet, which is what a
-    /// tentative update says.
+    /// Asks for the inputs at `time` (s), the end of a step: what the step leads to there is not known yet, which is
+    /// what a tentative update says.
     fn ask_for_inputs(self, time: f64) {
         let (set_requested, get_allowed, step_finished) = (1, 0, 0);
         self.call(time, set_requested, get_allowed, step_finished);
@@ -228,8 +228,8 @@ fn remedy(failure: &Failure) -> &'static str {
 
 /// `fmi3DoStep`
 ///
-/// Whether the host will go back makes no difference: FMU states are kept until it frees them. A host that can be called
-/// back has the instance on loan between the parts of the call.
+/// Whether the host will go back makes no difference: FMU states are kept until it frees them. A host that can be
+/// called back has the instance on loan between the parts of the call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3DoStep(
     c: *mut c_void,

@@ -1,4 +1,5 @@
-//! The records that the ground follows: found by name or path, and shared by all instances of the process that hold them.
+//! The records that the ground follows: found by name or path, and shared by all instances of the process that hold
+//! them.
 
 use crate::resources::{self, Archive};
 use rocking::record::{self, Reading, Record, RecordError, Source, Unit};
@@ -104,7 +105,8 @@ fn find(held: &Records, content: Content) -> Option<Arc<GroundRecord>> {
 }
 
 impl Archive {
-    /// The record that `text` asks for: none if it is empty; one of the archive's by its name, or a file by its path or URI.
+    /// The record that `text` asks for: none if it is empty; one of the archive's by its name, or a file by its path or
+    /// URI.
     pub fn record(&self, text: &str) -> Result<Option<Arc<GroundRecord>>, GroundError> {
         if text.is_empty() {
             return Ok(None);
@@ -141,8 +143,8 @@ fn content(path: &Path, bytes: &[u8]) -> Content {
     Uuid::new_v5(&Uuid::new_v5(&Uuid::NAMESPACE_OID, name), bytes)
 }
 
-/// The record in the file `path`, which is parsed unless somebody holds a record of the same content. Files are read and
-/// parsed without the lock: of two threads that parse the same, one will throw its record away.
+/// The record in the file `path`, which is parsed unless somebody holds a record of the same content. Files are read
+/// and parsed without the lock: of two threads that parse the same, one will throw its record away.
 fn shared(path: &Path) -> Result<Arc<GroundRecord>, RecordError> {
     let bytes = record::read_file(path)?;
     let content = content(path, &bytes);
@@ -169,8 +171,8 @@ mod tests {
         Archive { folder: folder.to_owned(), contents: Contents::from(Parameters::EVISON) }
     }
 
-    /// Whoever holds a record shares it, wherever its file is; a file that is rewritten is another record, even with the
-    /// same size and time.
+    /// Whoever holds a record shares it, wherever its file is; a file that is rewritten is another record, even with
+    /// the same size and time.
     #[test]
     fn a_record_is_known_by_its_content() {
         let folder = tempfile::tempdir().unwrap();

@@ -16,8 +16,8 @@ pub(crate) enum Between {
     Extrapolated,
 }
 
-/// The inputs. A slope is followed for one step, after which the value that it led to is held; a step that ended early goes
-/// on where it ended, along the same lines.
+/// The inputs. A slope is followed for one step, after which the value that it led to is held; a step that ended early
+/// goes on where it ended, along the same lines.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Inputs {
     /// How they act, in the order of [`LOADS`].
@@ -30,7 +30,8 @@ pub struct Inputs {
     given: [Given; 2],
     /// Where the last step led, and the slopes that it followed.
     followed: LinearLoad,
-    /// What acted at the last communication point that a step began at, and how long ago that was, s; 0 before the first.
+    /// What acted at the last communication point that a step began at, and how long ago that was, s; 0 before the
+    /// first.
     before: (Load, f64),
     /// Whether the last step ended before the next communication point.
     ended_early: bool,
@@ -115,8 +116,8 @@ impl Inputs {
         self.between[which] != Between::Late || self.given[which] == Given::Slope
     }
 
-    /// The lines that the inputs follow over a step of `duration` (s). An input of which only the value is set is held if its
-    /// line would lead out of its range.
+    /// The lines that the inputs follow over a step of `duration` (s). An input of which only the value is set is held
+    /// if its line would lead out of its range.
     #[inline]
     pub(crate) fn over(&self, duration: f64) -> LinearLoad {
         let mut load = self.next;
@@ -146,7 +147,8 @@ impl Inputs {
         load
     }
 
-    /// Goes on after `duration` (s) of a step that followed `load`, and that ended early or at the next communication point.
+    /// Goes on after `duration` (s) of a step that followed `load`, and that ended early or at the next communication
+    /// point.
     #[inline]
     pub(crate) fn pass(&mut self, load: LinearLoad, duration: f64, ended_early: bool) {
         if !self.ended_early {

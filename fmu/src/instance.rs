@@ -1,5 +1,5 @@
-//! One instance of the FMU, in safe code that knows no version of the standard: how it is made, goes from stage to stage,
-//! and keeps FMU states.
+//! One instance of the FMU, in safe code that knows no version of the standard: how it is made, goes from stage to
+//! stage, and keeps FMU states.
 
 use crate::failure::Failure;
 use crate::inputs::Inputs;

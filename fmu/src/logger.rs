@@ -89,7 +89,8 @@ impl Logger {
     }
 
     /// Sends a warning. The call that it comes from returns OK: the standard lets a simulation go on after
-    /// `fmi2Warning`, but OMSimulator (2940ef1) ends it there, after `fmi2ExitInitializationMode` as after `fmi2DoStep`.
+    /// `fmi2Warning`, but OMSimulator (2940ef1) ends it there, after `fmi2ExitInitializationMode` as after
+    /// `fmi2DoStep`.
     pub fn warning(&self, message: &str) {
         self.send(Status::Warning, Category::Warning, message);
     }

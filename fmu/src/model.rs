@@ -1,5 +1,5 @@
-//! The structure on its ground: how a simulation starts from its setup, and what acts on the structure and has been found out
-//! about it since.
+//! The structure on its ground: how a simulation starts from its setup, and what acts on the structure and has been
+//! found out about it since.
 
 use crate::failure::Failure;
 use crate::ground::{Digest, GroundRecord};
@@ -95,8 +95,8 @@ impl Model {
         })
     }
 
-    /// Whether there has been no step, and the structure is in motion or at rest as it stands: contact that ends at once under
-    /// `load` is neither.
+    /// Whether there has been no step, and the structure is in motion or at rest as it stands: contact that ends at
+    /// once under `load` is neither.
     fn starts_as_it_stands(&self, load: Load) -> bool {
         self.engine.motion().work.steps == 0 && self.engine.uplift_due(load).is_none()
     }
@@ -150,8 +150,8 @@ impl Model {
         self.outside.is_some()
     }
 
-    /// Applies the transition that is due, if there is one, and the uplift that is due at once then, or since the inputs `load`
-    /// have jumped.
+    /// Applies the transition that is due, if there is one, and the uplift that is due at once then, or since the
+    /// inputs `load` have jumped.
     pub fn transit<W: Watch>(&mut self, setup: &Setup, load: Load, watch: &mut W) {
         let acting = self.load(setup, load.into()).value;
         let mut validity = self.watch_validity();

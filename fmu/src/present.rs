@@ -55,7 +55,8 @@ impl Present {
         }
     }
 
-    /// The structure in motion, or at its start with what has been set so far; its record is in the archive, or on disk.
+    /// The structure in motion, or at its start with what has been set so far; its record is in the archive, or on
+    /// disk.
     pub fn model(&mut self) -> Result<&mut Model, Failure> {
         self.parts().map(|(model, ..)| model)
     }

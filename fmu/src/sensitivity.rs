@@ -60,8 +60,8 @@ pub(crate) fn sensitivities(
     checked.collect()
 }
 
-/// The derivatives of `unknowns` by the state `which` in the present phase under `inputs`. θ is moved away from the floor
-/// alone, at which the height of the free edge has a kink.
+/// The derivatives of `unknowns` by the state `which` in the present phase under `inputs`. θ is moved away from the
+/// floor alone, at which the height of the free edge has a kink.
 pub(crate) fn by_state(
     model: &mut Model,
     setup: &Setup,
@@ -93,8 +93,8 @@ pub(crate) fn by_state(
     unknowns.iter().zip(found).map(|(&variable, found)| found.ok_or(failed(variable))).collect()
 }
 
-/// The derivatives at `x` of what `at` tells, `here` there, by differences from `first` upwards and downwards on; `None`
-/// where there is none.
+/// The derivatives at `x` of what `at` tells, `here` there, by differences from `first` upwards and downwards on;
+/// `None` where there is none.
 fn derivatives(
     x: f64,
     scale: f64,

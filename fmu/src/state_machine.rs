@@ -93,8 +93,8 @@ pub(crate) fn names(stages: Stages) -> String {
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
 
-/// A table of an interface: the stages that it knows, and a row for every function of the version's `Function` that may be
-/// called in one, with x where it may and - where not. The others may be called nowhere.
+/// A table of an interface: the stages that it knows, and a row for every function of the version's `Function` that may
+/// be called in one, with x where it may and - where not. The others may be called nowhere.
 macro_rules! table {
     ([$($stage:ident),* $(,)?] $($function:ident [$($mark:tt)+])*) => {
         /// The stages that each function may be called in.

@@ -232,7 +232,8 @@ fn overturned(motion: &Motion) -> i32 {
     i32::from(matches!(motion.phase, Phase::Overturned(_)))
 }
 
-/// How many variables there are: their table is no allocation, which would be left behind where the library is unloaded.
+/// How many variables there are: their table is no allocation, which would be left behind where the library is
+/// unloaded.
 const COUNT: usize = 86;
 
 /// All variables, in the order of the model description.
@@ -276,7 +277,8 @@ fn input(which: usize) -> Variable {
     }
 }
 
-/// What accelerations depend on: the masses, the geometry and theta_dot_0 by the rigid level, the others by the elastic ones.
+/// What accelerations depend on: the masses, the geometry and theta_dot_0 by the rigid level, the others by the elastic
+/// ones.
 #[rustfmt::skip]
 const ACCELERATIONS: &[&str] = &[
     "m", "m0", "H", "B", "J0", "f_fc", "zeta_fc", "c_ratio", "g", "detail", "theta_0", "theta_dot_0", "u_0", "u_dot_0",

@@ -22,8 +22,8 @@ use tempfile::TempDir;
 /// step mode, event mode, intermediate update mode, step failed, terminated, error. The last three are the standard's
 /// "terminated": after overturning, after `fmi3Terminate`, after an error; after the first of them a simulation has
 /// still to be terminated. Within an intermediate update the inputs can be set, or all values be had: it is said which,
-/// and a step is no state to keep or to leave. The numbers of states and of event indicators can be had at any time, as of the
-/// Reference FMUs.
+/// and a step is no state to keep or to leave. The numbers of states and of event indicators can be had at any time, as
+/// of the Reference FMUs.
 const STANDARD: &str = "
     SetDebugLogging                 x x x x x x x x x
     EnterInitializationMode         x - - - - - - - -
@@ -71,9 +71,9 @@ const STAGES: [Stage; 9] = [
     Stage::Error,
 ];
 
-/// The standard's sections 2.3 and 3.2.1 for a model: instantiated, initialization mode, event mode, continuous-time mode,
-/// terminated, error, which is the standard's "terminated" after an error. Beyond them the Reference FMUs let time be set at an
-/// event, and the numbers be had at any time.
+/// The standard's sections 2.3 and 3.2.1 for a model: instantiated, initialization mode, event mode, continuous-time
+/// mode, terminated, error, which is the standard's "terminated" after an error. Beyond them the Reference FMUs let
+/// time be set at an event, and the numbers be had at any time.
 const STANDARD_OF_MODEL: &str = "
     SetDebugLogging                 x x x x x x
     EnterInitializationMode         x - - - - -
@@ -378,7 +378,8 @@ fn the_indicators_are_variables() {
     assert_eq!(count, [2, 4]);
 }
 
-/// An acceleration that a host sets at an event lifts a rigid structure off there and then, unless it is to come one step late.
+/// An acceleration that a host sets at an event lifts a rigid structure off there and then, unless it is to come one
+/// step late.
 #[test]
 fn what_acts_at_an_event_is_what_lifts_off_there() {
     for (a_g_late, phase_after) in [(0, 3), (1, 1)] {
@@ -475,8 +476,8 @@ fn the_other_versions_functions_refuse_an_instance() {
     assert_eq!(host.stage(), Stage::StepComplete);
 }
 
-/// A host that is called back. It may set inputs before a step is computed and read afterwards, and nothing else; least of
-/// all free the instance.
+/// A host that is called back. It may set inputs before a step is computed and read afterwards, and nothing else; least
+/// of all free the instance.
 struct Called {
     c: *mut c_void,
     /// What the input is to be at the end of the next step.

@@ -56,9 +56,9 @@ const OF_SLAVE: [Stage; 6] = [
     Stage::Error,
 ];
 
-/// The table of FMI 2.0.4, section 3.2.3, for a model: instantiated, initialization mode, event mode, continuous-time mode,
-/// terminated, error. Marks are as above (4: inputs and parameters that are tunable, 5: inputs and states, 9: since 2.0.1 for models
-/// without continuous states alone, before for all).
+/// The table of FMI 2.0.4, section 3.2.3, for a model: instantiated, initialization mode, event mode, continuous-time
+/// mode, terminated, error. Marks are as above (4: inputs and parameters that are tunable, 5: inputs and states, 9:
+/// since 2.0.1 for models without continuous states alone, before for all).
 const STANDARD_OF_MODEL: &str = "
     SetDebugLogging               x x x x x x
     SetupExperiment               x - - - - -

@@ -1,5 +1,5 @@
-//! Which function may be called when: FMI 2.0, section 3.2.3, for a model. Since FMI 2.0.1 time is set at an event of models
-//! without continuous states alone; hosts that do so here are let.
+//! Which function may be called when: FMI 2.0, section 3.2.3, for a model. Since FMI 2.0.1 time is set at an event of
+//! models without continuous states alone; hosts that do so here are let.
 
 use super::Function;
 use crate::state_machine::{Stage, Table, table};

@@ -1,5 +1,6 @@
-//! Which function may be called when: FMI 3.0, sections 2.3 and 4.2.1. Beside the standard's states stand "step failed",
-//! to which overturning leads, after which there is nothing to step to, and "error", in which the solver could not go on.
+//! Which function may be called when: FMI 3.0, sections 2.3 and 4.2.1. Beside the standard's states stand "step
+//! failed", to which overturning leads, after which there is nothing to step to, and "error", in which the solver could
+//! not go on.
 
 use super::Function;
 use crate::state_machine::{Stage, Table, table};

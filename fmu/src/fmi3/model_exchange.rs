@@ -1,5 +1,5 @@
-//! Which function may be called when: FMI 3.0, sections 2.3 and 3.2.1. Beside the standard's states stands "error", in which
-//! the solver could not go on.
+//! Which function may be called when: FMI 3.0, sections 2.3 and 3.2.1. Beside the standard's states stands "error", in
+//! which the solver could not go on.
 
 use super::Function;
 use crate::state_machine::{Stage, Table, table};

@@ -14,8 +14,8 @@ use std::collections::BTreeMap;
 use std::mem::MaybeUninit;
 
 impl Instance {
-    /// Rates of outputs by the equations of motion, under the present inputs and their slopes: those set for the next step,
-    /// or else those that the last step followed.
+    /// Rates of outputs by the equations of motion, under the present inputs and their slopes: those set for the next
+    /// step, or else those that the last step followed.
     pub fn get_real_output_derivatives(
         &mut self,
         references: &[u32],
@@ -49,10 +49,11 @@ impl Instance {
         Ok(())
     }
 
-    /// Derivatives of outputs and of derivatives of states: by inputs; once the simulation has started by states, and by time,
-    /// with which the record changes; in initialization mode by parameters and initial values ([`sensitivity`](crate::sensitivity)),
-    /// then of calculated parameters, too. The outputs are affine in the inputs: the derivative is a difference, taken over a
-    /// change of the size of gravity and the strut's force, which keeps its digits.
+    /// Derivatives of outputs and of derivatives of states: by inputs; once the simulation has started by states, and
+    /// by time, with which the record changes; in initialization mode by parameters and initial values
+    /// ([`sensitivity`](crate::sensitivity)), then of calculated parameters, too. The outputs are affine in the inputs:
+    /// the derivative is a difference, taken over a change of the size of gravity and the strut's force, which keeps
+    /// its digits.
     pub fn get_directional_derivative(
         &mut self,
         unknowns: &[u32],

@@ -14,8 +14,8 @@ use rocking::engine::{AdvanceError, Progress};
 const SAME_TIME: (f64, f64) = (1e-4, 8.0);
 
 impl Instance {
-    /// Begins a step over `step` (s) from `point` (s). Returns the host that is to be asked for the inputs at the end of the
-    /// step, outside of any call, if it wants to be; [`Instance::do_step`] comes after that.
+    /// Begins a step over `step` (s) from `point` (s). Returns the host that is to be asked for the inputs at the end
+    /// of the step, outside of any call, if it wants to be; [`Instance::do_step`] comes after that.
     pub(crate) fn begin_step(&mut self, point: f64, step: f64) -> Result<Option<IntermediateUpdate>, Failure> {
         let (model, setup, inputs, stage) = self.now.parts()?;
         check_step(model, setup, point, step)?;
@@ -27,8 +27,8 @@ impl Instance {
         Ok(asked)
     }
 
-    /// Steps from `point` (s), where the instance is but for rounding, over `step` (s), or to the first transition if that is
-    /// handed over. The instance takes over the host's clock.
+    /// Steps from `point` (s), where the instance is but for rounding, over `step` (s), or to the first transition if
+    /// that is handed over. The instance takes over the host's clock.
     #[inline(always)]
     pub fn do_step(&mut self, point: f64, step: f64) -> Result<Progress, Failure> {
         let was_asked = self.asked.take().is_some();
@@ -83,8 +83,8 @@ impl Instance {
         }
     }
 
-    /// Returns the host that is to read where the step has led, outside of any call, if it wants to; [`Instance::end_step`]
-    /// comes after that.
+    /// Returns the host that is to read where the step has led, outside of any call, if it wants to;
+    /// [`Instance::end_step`] comes after that.
     pub(crate) fn show_step(&mut self) -> Option<IntermediateUpdate> {
         let told = self.host.filter(|host| host.gets_outputs);
         if told.is_some() {
@@ -124,7 +124,8 @@ fn check_step(model: &Model, setup: &Setup, point: f64, step: f64) -> Result<(),
     }
 }
 
-/// Hosts add up steps or multiply them: their times (s) differ in the last digits, but never so far that a step could be missed.
+/// Hosts add up steps or multiply them: their times (s) differ in the last digits, but never so far that a step could
+/// be missed.
 #[inline]
 fn is_same_time(a: f64, b: f64, step: f64) -> bool {
     let (part, places) = SAME_TIME;

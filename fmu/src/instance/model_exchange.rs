@@ -1,5 +1,5 @@
-//! What an instance does for a host that integrates: it gives derivatives and event indicators at any time and state, checks
-//! every complete step, and applies transitions.
+//! What an instance does for a host that integrates: it gives derivatives and event indicators at any time and state,
+//! checks every complete step, and applies transitions.
 //!
 //! The engine stands where the host is; [`Known`] is where the motion was last known to be right.
 
@@ -16,8 +16,8 @@ use rocking::outside_step::{Checked, INDICATORS, Known};
 use rocking::state::COMPONENTS;
 use rocking::{Load, Motion, State, Transition, Watch};
 
-/// The relative tolerance up to which samples of the record are events. A solver of high order that integrates over the kinks
-/// there is not as exact as it believes; below an error of some 1e-5 to start anew at each is the cheaper way
+/// The relative tolerance up to which samples of the record are events. A solver of high order that integrates over the
+/// kinks there is not as exact as it believes; below an error of some 1e-5 to start anew at each is the cheaper way
 /// (docs/model_exchange.md).
 const KINKS_MATTER: f64 = 1e-8;
 
@@ -31,8 +31,8 @@ pub struct Completed {
 }
 
 impl Model {
-    /// The ground's time at the host's clock, whose last digits are coarse where the start is late: what has been announced as
-    /// the instant of a sample is that instant.
+    /// The ground's time at the host's clock, whose last digits are coarse where the start is late: what has been
+    /// announced as the instant of a sample is that instant.
     fn elapsed_at(&self, setup: &Setup, time: f64) -> Elapsed {
         let elapsed = Elapsed::default().and(time - setup.start_time);
         let resolution = 2.0 * f64::EPSILON * time.abs().max(setup.start_time.abs());
@@ -136,7 +136,8 @@ impl Instance {
         Ok(model.engine.sample(model.acting(setup, inputs.values())).event_indicators())
     }
 
-    /// Checks the step that the host has made to where it is. If it has passed over a transition, event mode puts it right.
+    /// Checks the step that the host has made to where it is. If it has passed over a transition, event mode puts it
+    /// right.
     pub fn completed_integrator_step(&mut self) -> Result<Completed, Failure> {
         let (model, setup, inputs, stage) = self.now.parts()?;
         let load = inputs.values();

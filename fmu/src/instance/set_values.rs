@@ -57,7 +57,8 @@ impl Instance {
         if self.now.stage.has_started() { Err(Failure::Fixed(variable)) } else { Ok(()) }
     }
 
-    /// Sets numbers of enumerations, of which the parameter `detail` can be set: all of them, or none if one is refused.
+    /// Sets numbers of enumerations, of which the parameter `detail` can be set: all of them, or none if one is
+    /// refused.
     pub fn set_integer<T: Copy + Into<i64>>(&mut self, references: &[u32], values: &[T]) -> Result<(), Failure> {
         let mut setup = self.now.setup.clone();
         for (reference, &value) in references.iter().zip(values) {

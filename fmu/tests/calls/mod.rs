@@ -42,8 +42,8 @@ pub struct Looking {
     pub event_indicators: unsafe extern "C" fn(C, *mut f64, usize) -> c_int,
 }
 
-/// A function by its arguments: value references come with their number; the last number, where there is one, is that of values,
-/// which FMI 3.0 is given as well.
+/// A function by its arguments: value references come with their number; the last number, where there is one, is that
+/// of values, which FMI 3.0 is given as well.
 pub enum Call {
     Plain(fn(C) -> c_int),
     SetDebugLogging(fn(C, c_int, usize, *const *const c_char) -> c_int),
@@ -169,9 +169,9 @@ fn outcome(name: &str, stage: Stage, first: Stage) -> (c_int, Stage) {
     }
 }
 
-/// Every function in every one of `stages` in which an instance stays, as `table`, which has them as columns, allows it, also
-/// after a reset; what is in no row of it is allowed nowhere. `host_in` makes a host in a stage, `look` gives its instance and
-/// takes its log.
+/// Every function in every one of `stages` in which an instance stays, as `table`, which has them as columns, allows
+/// it, also after a reset; what is in no row of it is allowed nowhere. `host_in` makes a host in a stage, `look` gives
+/// its instance and takes its log.
 pub fn check<V: Version, H>(
     table: &str,
     stages: &[Stage],

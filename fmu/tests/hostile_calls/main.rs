@@ -1,8 +1,9 @@
-//! Hostile calls: random functions in any order, with arguments from sensible to absurd, of every interface of either version.
+//! Hostile calls: random functions in any order, with arguments from sensible to absurd, of every interface of either
+//! version.
 //!
-//! `FUZZ_CALLS` says how many calls of each interface to make (`make fuzz`: ten million). Calls come in sequences of a few
-//! hundred on two instances. What a call does follows from its number and from the calls before it; of a sequence that fails
-//! proptest leaves out all calls that need not be there.
+//! `FUZZ_CALLS` says how many calls of each interface to make (`make fuzz`: ten million). Calls come in sequences of a
+//! few hundred on two instances. What a call does follows from its number and from the calls before it; of a sequence
+//! that fails proptest leaves out all calls that need not be there.
 #![allow(unsafe_code)]
 
 #[path = "../calls/mod.rs"]
@@ -849,8 +850,8 @@ impl<'a, V: Hostile> Sequence<'a, V> {
         self.slots[at].told.asked.set((self.slots[at].c, asked));
         let status = self.call(at, function, tally, |c| call(c, point, step, go_back, pointers, reached));
         if let (Some(before), Some(after)) = (before, motion(self)) {
-            // the host's clock is right, in which the structure may overturn, or be due for a transition, before the end of
-            // the last step
+            // the host's clock is right, in which the structure may overturn, or be due for a transition, before the
+            // end of the last step
             let is_complete = status == OK && flags == [0; 3];
             let is_on = if is_complete { after.time > before.time } else { after.time >= before.time.min(point) };
             assert!(is_on, "from {} to {}", before.time, after.time);
@@ -880,7 +881,8 @@ fn are_written(status: c_int, values: &[f64]) -> bool {
     values.iter().all(|value| if status == OK { value.is_finite() } else { *value == f64::NEG_INFINITY })
 }
 
-/// Whether `value` is that of a variable for which somebody has to watch, and nobody does, or of a friction that is infinite.
+/// Whether `value` is that of a variable for which somebody has to watch, and nobody does, or of a friction that is
+/// infinite.
 fn is_watched(reference: u32, value: f64) -> bool {
     VARIABLES.get(reference as usize).is_some_and(|variable| {
         let is_worst = ASSUMPTIONS.iter().any(|of| [of.name, of.time_name].contains(&variable.name));
