@@ -17,7 +17,7 @@
 # make exchange  regenerate docs/model_exchange.md and its figure (minutes)
 # make bench   criterion benchmark of a whole record, and one step over it through fmpy
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
-# make fuzz    ten million hostile calls of each interface and as many damaged records, on all cores (CI: 100,000 of each and 40,000)
+# make fuzz    ten million hostile calls of each interface and as many damaged records, a core for each (CI: 100,000 of each and 40,000)
 # make records the ground motion records alone, for the charts: cargo run --release --manifest-path study/Cargo.toml -- precision
 #
 # Each does all its own set-up; needed are cargo and python3 (3.11 or later).

@@ -65,7 +65,7 @@ pub enum Progress {
 /// Why an advance failed; the motion is then as it was before, whatever has been shown on the way.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AdvanceError {
-    /// The interval is none.
+    /// The interval is not positive and finite.
     #[error(
         "cannot advance from t = {} over {}: a finite time greater than 0 is needed",
         with_unit(*from, "s"),

@@ -7,7 +7,6 @@ from pathlib import PurePosixPath
 
 import numpy as np
 import pytest
-from first_run import RECORD
 from fmpy import read_model_description, simulate_fmu
 from fmpy.container_fmu.cli import create_container_fmu
 from fmpy.container_fmu.config import Component, Configuration
@@ -219,44 +218,6 @@ def test_the_states_are_those_of_the_model(fmu):
     rates = [unknown.variable for unknown in fmu.description.derivatives]
     assert [(rate.name, rate.derivative.name) for rate in rates] == list(zip(RATES, STATES))
     assert fmu.description.numberOfContinuousStates == 4 and fmu.description.numberOfEventIndicators == 2
-
-
-def test_initial_dependencies_are_the_true_ones(fmu):
-    """Changing one number, at the elastic or at the rigid level, changes exactly those that name it as a dependency."""
-    unknowns = {unknown.variable.name: unknown for unknown in fmu.description.initialUnknowns}
-    names = [name for name in unknowns if fmu.variables[name].type == "Real"]
-    auto, rigid = 1, 5
-    bases = [
-        (auto, dict(theta_0=0.01, theta_dot_0=0.02, u_0=0.0003, u_dot_0=0.004, record_start=-1.2345)),
-        (rigid, dict(theta_0=0.01, theta_dot_0=0.02, record_start=-1.2345)),
-    ]
-
-    def initialized(instance, detail, start):
-        instance.set(**start)
-        instance.slave.setInteger([fmu.variables["detail"].valueReference], [detail])
-        instance.slave.setString([fmu.variables["record"].valueReference], [str(RECORD)])
-        instance.slave.enterInitializationMode()
-        return instance
-
-    def values(detail, start):
-        with fmu.instance() as instance:
-            return initialized(instance, detail, start).reals(names)
-
-    changed = set()
-    for detail, start in bases:
-        with fmu.instance() as instance:
-            initialized(instance, detail, start)
-            numbers = {variable.name: instance.get(variable.name) for variable in fmu.variables.values()
-                       if variable.causality in ("parameter", "input") and variable.type == "Real"}
-        if detail == rigid:  # which does not deform
-            numbers = {name: number for name, number in numbers.items() if name not in ("u_0", "u_dot_0")}
-        before = values(detail, start)
-        for known, number in numbers.items():
-            after = values(detail, start | {known: number * 0.75 if number else 0.75})
-            changed |= {(name, known) for name, old, new in zip(names, before, after)
-                        if new != pytest.approx(old, rel=1e-12)}
-    stated = {(name, v.name) for name in names for v in unknowns[name].dependencies if v.name not in ("detail", "record")}
-    assert changed == stated
 
 
 def test_capabilities(fmu):

@@ -14,7 +14,6 @@ from coupling import bridge, convergence
 from coupling.early_return import EndedAtTransitions, EventBridge, Pier
 from coupling.masters import extrapolate
 from fmpy import read_model_description, simulate_fmu
-from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import FMU2Model
 from fmpy.fmi3 import FMU3Model
 from fmpy.simulation import instantiate_fmu
@@ -339,15 +338,6 @@ def test_a_transition_that_the_host_does_not_deal_with_happens(mcmanus3, slave):
     assert one.instance.getInt32([one.references["transitions"]]) == [1]
 
 
-def test_a_state_is_not_taken_by_a_host_that_meets_transitions_otherwise(mcmanus3, slave):
-    with_events, without = slave(mcmanus3, handles_events=True), slave(mcmanus3)
-    data = with_events.instance.serializeFMUState(with_events.instance.getFMUState())
-    state = without.instance.deserializeFMUState(data)
-    with pytest.raises(FMICallException, match="fmi3SetFMUState failed with status 3"):
-        without.instance.setFMUState(state)
-    assert "eventModeUsed or earlyReturnAllowed" in without.messages[-1].text
-
-
 @pytest.mark.parametrize("handles_events", [False, True])
 def test_overturning_ends_the_simulation(mcmanus3, slave, handles_events):
     one = slave(mcmanus3, handles_events=handles_events, theta_0=0.3)
@@ -379,37 +369,3 @@ def test_a_master_needs_one_further_step_for_a_transition(export3):
     assert system.transitions() == transitions > 20
     assert master.steps - 2 * (len(time) - 1) <= transitions
     assert convergence.error(found, convergence.columns(response)) < 2e-6
-
-
-def test_derivatives_are_those_of_fmi_2_and_their_adjoint(mcmanus, mcmanus3, slave):
-    one, unknowns, knowns = slave(mcmanus3), ("a_t", "R_h", "R_v", "R_m"), ("a_g", "F_t")
-    of = [one.references[name] for name in unknowns], [one.references[name] for name in knowns]
-    with mcmanus.start() as two:
-        expected = [two.slave.getDirectionalDerivative(of[0], [known], [1.0]) for known in of[1]]
-    found = [one.instance.getDirectionalDerivative(of[0], [known], [1.0]) for known in of[1]]
-    assert found == expected
-    weights = [0.5, -2.0, 3.0, 0.25]
-    adjoint = one.instance.getAdjointDerivative(*of, weights, len(knowns))
-    assert adjoint == pytest.approx(np.array(expected) @ weights, rel=1e-14)
-
-
-def test_a_refusal_names_the_function_and_what_to_call(mcmanus3, slave):
-    one = slave(mcmanus3)
-    for call, text in [
-        (lambda: one.instance.setFloat64([one.references["m"]], [1.0]),
-         "fmi3SetFloat64: m is fixed once the simulation has started: set it before fmi3ExitInitializationMode, or call "
-         "fmi3Reset"),
-        (lambda: one.instance.getFloat64([one.references["phase"]]),
-         "fmi3GetFloat64: phase is an enumeration: call fmi3GetInt64 or fmi3SetInt64 instead"),
-        (lambda: one.instance.enterEventMode(),
-         "fmi3EnterEventMode: there is no event mode: the instance was made with eventModeUsed = false"),
-        (lambda: one.instance.getFloat64([one.references["theta"]], nValues=2), "fmi3GetFloat64: nValues = 2 is not 1"),
-        (lambda: one.instance.getUInt8([one.references["theta"]]),
-         'fmi3GetUInt8: not allowed in the state "step complete"; allowed in: none'),
-        (lambda: one.instance.doStep(1.0, 0.1),
-         "fmi3DoStep: currentCommunicationPoint = 1 s is not where the FMU is, t = 0 s: step from there, or go back with "
-         "fmi3SetFMUState"),
-    ]:
-        with pytest.raises(FMICallException, match="failed with status 3"):
-            call()
-        assert one.messages[-1] == Message(3, "logStatusError", text)

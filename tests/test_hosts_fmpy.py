@@ -12,6 +12,7 @@ import numpy as np
 import plotly.io
 import pytest
 from first_run import PACOIMA_DAM
+from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.logging import addLoggerProxy
 from fmpy.util import plot_result, read_csv, write_csv
@@ -173,3 +174,11 @@ def test_fmpy_has_one_logger_per_process():
     _SAID.clear()
     defaultCallbacks.logger(None, b"", 0, b"", b"for someone else")
     assert _SAID == ["for someone else"]
+
+
+def test_a_refused_start_value_ends_the_run_with_the_reason_in_the_log(mcmanus):
+    messages = []
+    with pytest.raises(FMICallException, match="fmi2SetReal failed with status 3"):
+        simulate(mcmanus, messages, stop_time=1.0, start_values={"r": 0.0})
+    (message,) = messages
+    assert message.category == "logStatusError" and "r = 0 " in message.text

@@ -4,9 +4,8 @@
 //!
 //! Messages begin with the function that was called and end with the one to call instead: the instance knows neither.
 //!
-//! What C cannot promise is checked: null and misaligned pointers, lengths, numbers that stand for an enumeration, a
-//! component that is none (as far as that can be told), a call from within the logger callback. A panic becomes
-//! [`Status::Fatal`].
+//! What C cannot promise is checked: null and misaligned pointers, lengths, numbers of an enumeration, a call from
+//! within the logger, and, as far as that can be told, whether a component is one. A panic becomes [`Status::Fatal`].
 //!
 //! # Safety
 //!
@@ -19,12 +18,13 @@
 use crate::failure::Failure;
 use crate::instance::Instance;
 use crate::instance::model_exchange::Completed;
-use crate::logger::Status;
-use crate::state_machine::{IsAllowed, Stage, stages};
+use crate::logger::{Category, Status};
+use crate::state_machine::{Stage, Stages, Table, names};
 use libc::{c_char, c_int, c_void, size_t};
 use std::any::Any;
 use std::cell::{Cell, UnsafeCell};
 use std::ffi::CString;
+use std::marker::PhantomData;
 use std::mem::MaybeUninit;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::atomic::{AtomicU8, Ordering};
@@ -37,6 +37,9 @@ pub trait Function: Copy + Sized + 'static {
 
     /// What a component of this version begins with.
     const MAGIC: u64;
+
+    /// Its place among all of them.
+    fn place(self) -> usize;
 
     /// Its name in the C interface.
     fn name(self) -> &'static str;
@@ -51,9 +54,10 @@ struct Component<F> {
     magic: Cell<u64>,
     /// One of the following.
     availability: AtomicU8,
-    /// That of the interface.
-    is_allowed: IsAllowed<F>,
+    /// The interface's table.
+    allowed_in: &'static Table,
     instance: UnsafeCell<Instance>,
+    version: PhantomData<F>,
 }
 
 const READY: u8 = 0;
@@ -64,21 +68,22 @@ const BUSY: u8 = 1;
 /// A call panicked.
 const BROKEN: u8 = 2;
 
-/// Longest text taken from the host, bytes.
+/// Longest text that a host may pass, bytes.
 const MAX_TEXT: usize = 1 << 16;
 
-/// Most values or bytes taken in one call.
+/// Most values or bytes that a host may pass in one call.
 const MAX_LENGTH: usize = 1 << 24;
 
 /// A component of what `create` makes, with the interface's table of states; null if it makes none or panics.
-pub(crate) fn instantiate<F: Function>(create: impl FnOnce() -> Option<(Instance, IsAllowed<F>)>) -> *mut c_void {
+pub(crate) fn instantiate<F: Function>(create: impl FnOnce() -> Option<(Instance, &'static Table)>) -> *mut c_void {
     let created = catch_unwind(AssertUnwindSafe(create)).ok().flatten();
-    let Some((instance, is_allowed)) = created else { return ptr::null_mut() };
-    let (magic, availability) = (Cell::new(F::MAGIC), AtomicU8::new(READY));
-    Box::into_raw(Box::new(Component { magic, availability, is_allowed, instance: UnsafeCell::new(instance) })).cast()
+    let Some((instance, allowed_in)) = created else { return ptr::null_mut() };
+    let (magic, availability, instance) = (Cell::new(F::MAGIC), AtomicU8::new(READY), UnsafeCell::new(instance));
+    let component = Component::<F> { magic, availability, allowed_in, instance, version: PhantomData };
+    Box::into_raw(Box::new(component)).cast()
 }
 
-/// Frees it. Ignored for null, and while a call is under way, as from within the logger.
+/// Frees a component. Does nothing for null, and while a call is under way, as from within the logger.
 pub(crate) unsafe fn free<F: Function>(c: *mut c_void) {
     let Some(component) = (unsafe { component::<F>(c) }) else { return };
     let availability = component.availability.swap(BUSY, Ordering::Acquire);
@@ -93,7 +98,7 @@ pub(crate) unsafe fn free<F: Function>(c: *mut c_void) {
     // Volatile, so that a call with the freed component finds no magic number as long as the memory is not used anew.
     unsafe { component.magic.as_ptr().write_volatile(0) };
     let free = || drop(unsafe { Box::from_raw(c.cast::<Component<F>>()) });
-    // There is no one to tell that freeing panicked.
+    // Freeing has no status to return: a panic is swallowed.
     let _ = catch_unwind(AssertUnwindSafe(free));
 }
 
@@ -114,7 +119,7 @@ pub(crate) unsafe fn call<F: Function>(
     function: F,
     body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
 ) -> c_int {
-    unsafe { call_if(c, function, |is_allowed, stage| is_allowed(function, stage), body) }
+    unsafe { call_in(c, function, |allowed_in| allowed_in[function.place()], body) }
 }
 
 /// The rest of a call of `function` within which the host had the instance on loan.
@@ -123,13 +128,13 @@ pub(crate) unsafe fn call_on<F: Function>(
     function: F,
     body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
 ) -> c_int {
-    unsafe { call_if(c, function, |_, stage| stage.is_within_step(), body) }
+    unsafe { call_in(c, function, |_| Stage::WITHIN_STEP, body) }
 }
 
-unsafe fn call_if<F: Function>(
+unsafe fn call_in<F: Function>(
     c: *mut c_void,
     function: F,
-    may_go_on: impl FnOnce(IsAllowed<F>, Stage) -> bool,
+    allowed: impl FnOnce(&Table) -> Stages,
     body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
 ) -> c_int {
     let Some(component) = (unsafe { component::<F>(c) }) else { return Status::Error as c_int };
@@ -138,20 +143,19 @@ unsafe fn call_if<F: Function>(
         Err(BROKEN) => return Status::Fatal as c_int,
         Err(_) => return Status::Error as c_int,
     }
-    // The one reference to the instance: nobody gets here while the component is busy.
+    // This is the only reference to the instance: no other call gets here while the component is busy.
     let instance = unsafe { &mut *component.instance.get() };
     let guarded = || {
-        let stage = instance.stage();
-        let is_allowed = component.is_allowed;
-        let refused = || Err(Failure::WrongStage { stage, allowed_in: stages(function, is_allowed) });
-        let result = if may_go_on(is_allowed, stage) { body(instance) } else { refused() };
+        let (stage, stages) = (instance.stage(), allowed(component.allowed_in));
+        let refused = || Err(Failure::WrongStage { stage, allowed_in: names(stages) });
+        let result = if stage.bit() & stages != 0 { body(instance) } else { refused() };
         result.map_or_else(|failure| report(instance, function, &failure), |()| Status::Ok)
     };
     let (status, availability) = match catch_unwind(AssertUnwindSafe(guarded)) {
         Ok(status) => (status, READY),
         Err(panic) => {
             let failure = Failure::Panicked(panic_message(&*panic).to_owned());
-            // Whatever becomes of the message, the status is known.
+            // The logger may panic, too; the status is known without it.
             let _ = catch_unwind(AssertUnwindSafe(|| report(instance, function, &failure)));
             (Status::Fatal, BROKEN)
         }
@@ -161,6 +165,8 @@ unsafe fn call_if<F: Function>(
 }
 
 /// Logs why `function` is not done, and returns its status.
+#[cold]
+#[inline(never)]
 fn report<F: Function>(instance: &Instance, function: F, failure: &Failure) -> Status {
     instance.report(failure.status(), &format!("{}: {failure}{}", function.name(), F::remedy(failure)));
     failure.status()
@@ -257,6 +263,17 @@ pub(crate) unsafe fn text<'a>(name: &'static str, pointer: *const c_char) -> Res
         Ok(text) if length <= MAX_TEXT => Ok(text),
         _ => Err(Failure::BadText { name, limit: MAX_TEXT }),
     }
+}
+
+/// Whether events are among the `length` log categories named at `pointer`; without any, all are meant.
+pub(crate) unsafe fn names_events(length: size_t, pointer: *const *const c_char) -> Result<bool, Failure> {
+    let mut has_events = length == 0;
+    for name in unsafe { values("categories", pointer, length) }? {
+        let name = unsafe { text("category", *name) }?;
+        let category = Category::named(name).ok_or_else(|| Failure::UnknownCategory(name.to_owned()))?;
+        has_events |= category == Category::Events;
+    }
+    Ok(has_events)
 }
 
 /// Keeps the FMU state: in the one that `pointer`, the argument `name`, points to, or in a new one for null.
@@ -373,6 +390,10 @@ macro_rules! functions {
         impl $crate::c_abi::Function for Function {
             const ALL: &'static [Function] = &[$(Function::$apart_function,)* $(Function::$function),*];
             const MAGIC: u64 = MAGIC;
+
+            fn place(self) -> usize {
+                self as usize
+            }
 
             fn name(self) -> &'static str {
                 match self {

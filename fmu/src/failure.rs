@@ -14,44 +14,22 @@ use rocking::structure::quantity::{OutOfRange, with_unit};
 /// changed.
 #[derive(Debug, thiserror::Error)]
 pub enum Failure {
-    /// Not in this stage.
+    /// The function may not be called in this stage.
     #[error("not allowed in the state \"{stage}\"; allowed in: {allowed_in}")]
-    WrongStage {
-        /// The present stage.
-        stage: Stage,
-        /// Where it would be.
-        allowed_in: String,
-    },
+    WrongStage { stage: Stage, allowed_in: String },
     /// A pointer that must not be null or is not aligned.
     #[error("{0} must be a valid pointer; it is null or misaligned")]
     BadPointer(&'static str),
-    /// A length beyond any use.
+    /// More values than one call may pass.
     #[error("{length} values are too many for one call: at most {limit}")]
-    TooLong {
-        /// How many.
-        length: usize,
-        /// The limit.
-        limit: usize,
-    },
+    TooLong { length: usize, limit: usize },
     /// A string without an end, or not in UTF-8.
     #[error("{name} is not UTF-8 text of at most {limit} bytes")]
-    BadText {
-        /// The argument.
-        name: &'static str,
-        /// The limit.
-        limit: usize,
-    },
-    /// A number that stands for something, and does not.
+    BadText { name: &'static str, limit: usize },
+    /// A number that stands for none of the choices.
     #[error("{name} = {value} is not one of {accepted}")]
-    BadChoice {
-        /// The argument.
-        name: &'static str,
-        /// Its value.
-        value: i32,
-        /// What would be.
-        accepted: &'static str,
-    },
-    /// An interface of the standard that this unit has not.
+    BadChoice { name: &'static str, value: i32, accepted: &'static str },
+    /// An interface of the standard that this unit does not have.
     #[error("this FMU is for model exchange and co-simulation: see modelDescription.xml")]
     NotThisInterface,
     /// Event mode of a host that said it has none.
@@ -65,15 +43,8 @@ pub enum Failure {
         "{name} = {given:?} is not {needed}: modelDescription.xml, the library and resources/parameters.toml are not of \
          one FMU; export it again, and unpack every FMU into a folder of its own"
     )]
-    WrongGuid {
-        /// The argument.
-        name: &'static str,
-        /// What the host passed.
-        given: String,
-        /// What follows from the library's build and the parameters.
-        needed: String,
-    },
-    /// The archive's own parameters.
+    WrongGuid { name: &'static str, given: String, needed: String },
+    /// The archive's resources cannot be read.
     #[error(transparent)]
     Resource(#[from] ResourceError),
     /// No such log category.
@@ -90,12 +61,7 @@ pub enum Failure {
     NotSettable(&'static Variable),
     /// A number that stands for no item of an enumeration.
     #[error("{} = {value} is out of range: {}", variable.name, items(variable))]
-    NoSuchItem {
-        /// The enumeration.
-        variable: &'static Variable,
-        /// The number.
-        value: i64,
-    },
+    NoSuchItem { variable: &'static Variable, value: i64 },
     /// No such record.
     #[error(transparent)]
     Ground(#[from] GroundError),
@@ -124,26 +90,14 @@ pub enum Failure {
     InitialState(#[from] InitialStateError),
     /// A setting of the experiment.
     #[error("{name} = {} is out of range: it must be {limit}", with_unit(*value, "1"))]
-    Experiment {
-        /// The argument.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-        /// What it must be.
-        limit: String,
-    },
+    Experiment { name: &'static str, value: f64, limit: String },
     /// A derivative of no use.
     #[error("order = {order} for {} is out of range: only derivatives of order 1 exist", variable.name)]
-    WrongOrder {
-        /// The variable.
-        variable: &'static Variable,
-        /// The order asked for.
-        order: i32,
-    },
+    WrongOrder { variable: &'static Variable, order: i32 },
     /// A slope of something else than an input.
     #[error("{} has no derivative that can be set: only the inputs have", .0.name)]
     NoInput(&'static Variable),
-    /// A known that is none.
+    /// By this variable no directional derivative exists.
     #[error(
         "{} cannot be a known of a directional derivative: only the inputs can, in initialization mode real parameters and \
          initial values, later u, u_dot, theta, theta_dot and time",
@@ -152,12 +106,7 @@ pub enum Failure {
     NoKnown(&'static Variable),
     /// A slope or a part of a direction that is not a number.
     #[error("the derivative of {}, {value}, is out of range: it must be finite", variable.name)]
-    BadSlope {
-        /// The input.
-        variable: &'static Variable,
-        /// Its derivative.
-        value: f64,
-    },
+    BadSlope { variable: &'static Variable, value: f64 },
     /// A derivative of something else than a continuous output.
     #[error("{} has no derivative: only continuous real outputs have", .0.name)]
     NoOutput(&'static Variable),
@@ -167,110 +116,53 @@ pub enum Failure {
          small)",
         variable.name
     )]
-    NoReaction {
-        /// The output.
-        variable: &'static Variable,
-        /// s.
-        time: f64,
-    },
+    NoReaction { variable: &'static Variable, time: f64 },
     /// No derivative by this parameter or initial value, by steps within the ranges to either side.
     #[error(
         "the derivative of {} by {known} does not exist here: {known} cannot change, or not to both sides alike",
         variable.name,
         known = known.name
     )]
-    NoSensitivity {
-        /// The output or calculated parameter.
-        variable: &'static Variable,
-        /// The parameter or initial value.
-        known: &'static Variable,
-    },
+    NoSensitivity { variable: &'static Variable, known: &'static Variable },
     /// The equations of motion are singular here.
     #[error("the derivative of {} does not exist at t = {time} s", variable.name)]
-    NoRate {
-        /// The output.
-        variable: &'static Variable,
-        /// s.
-        time: f64,
-    },
+    NoRate { variable: &'static Variable, time: f64 },
     /// A step from the wrong time.
     #[error("currentCommunicationPoint = {} is not where the FMU is, t = {time} s", with_unit(*given, "s"))]
-    WrongPoint {
-        /// What the host passed, s.
-        given: f64,
-        /// Where the FMU is, s.
-        time: f64,
-    },
-    /// A step that is none.
+    WrongPoint { given: f64, time: f64 },
+    /// A step of no length, or of no number.
     #[error(
         "communicationStepSize = {step} s is out of range: it must be positive, finite, and large enough to move t = {time} s"
     )]
-    BadStep {
-        /// What the host passed, s.
-        step: f64,
-        /// Where the FMU is, s.
-        time: f64,
-    },
+    BadStep { step: f64, time: f64 },
     /// A step past the end.
     #[error("the step would end at t = {until} s, past stopTime = {stop} s")]
-    PastStop {
-        /// End of the step, s.
-        until: f64,
-        /// Stop time, s.
-        stop: f64,
-    },
+    PastStop { until: f64, stop: f64 },
     /// The solver's own.
     #[error(transparent)]
     Advance(#[from] AdvanceError),
     /// The structure has overturned within the step.
     #[error("the structure overturned at t = {time} s; the simulation ends there")]
-    Overturned {
-        /// s.
-        time: f64,
-    },
-    /// A time that is none.
+    Overturned { time: f64 },
+    /// A time that is not finite.
     #[error("time = {} is out of range: it must be finite, and so its distance from startTime", with_unit(*.0, "s"))]
     BadTime(f64),
     /// A step of the host's integrator that ends before it starts.
     #[error(
         "the integrator's step from t = {from} s ends at t = {to} s: time goes on from an event or a complete step"
     )]
-    StepBack {
-        /// Where the last step or event was, s.
-        from: f64,
-        /// Where the host is, s.
-        to: f64,
-    },
+    StepBack { from: f64, to: f64 },
     /// A trial state that is far from any motion.
     #[error("{name} = {value} is out of range: at most 1e12 in SI units; take a shorter step")]
-    FarState {
-        /// The component.
-        name: &'static str,
-        /// Its value.
-        value: f64,
-    },
+    FarState { name: &'static str, value: f64 },
     /// The equations of motion have no solution at a trial state.
     #[error(
         "the derivatives of the states do not exist at t = {time} s (u = {u} m, theta = {theta} rad): take a shorter step"
     )]
-    NoStateRates {
-        /// s.
-        time: f64,
-        /// m.
-        u: f64,
-        /// rad.
-        theta: f64,
-    },
+    NoStateRates { time: f64, u: f64, theta: f64 },
     /// Another number of values, states or indicators.
     #[error("{name} = {given} is not {needed}")]
-    WrongCount {
-        /// The argument.
-        name: &'static str,
-        /// What the host passed.
-        given: usize,
-        /// What there are.
-        needed: usize,
-    },
+    WrongCount { name: &'static str, given: usize, needed: usize },
     /// A state kept by an instance of another interface.
     #[error(
         "the FMU state was kept by an instance of another kind: model exchange, co-simulation, and co-simulation with \
@@ -287,12 +179,7 @@ pub enum Failure {
     UnknownSnapshot(usize),
     /// A buffer of the wrong size.
     #[error("size = {given} does not fit: the serialized FMU state takes {needed} bytes")]
-    WrongSize {
-        /// What the host passed.
-        given: usize,
-        /// What it takes.
-        needed: usize,
-    },
+    WrongSize { given: usize, needed: usize },
     /// Bytes that are no FMU state of this library.
     #[error("serializedState is not a serialized state of this FMU: {0}")]
     BadBytes(&'static str),

@@ -6,15 +6,15 @@ mod co_simulation;
 mod model_exchange;
 
 use crate::c_abi::{
-    self, check_pointer, complete_step, escaped, free_state, functions, keep_state, read_all, read_state, room, text,
-    values, write, write_all, write_state, write_state_size,
+    self, check_pointer, complete_step, escaped, free_state, functions, keep_state, names_events, read_all, read_state,
+    room, text, values, write, write_all, write_state, write_state_size,
 };
-use crate::condition::{Interface, Stepping};
 use crate::failure::Failure;
 use crate::instance::{self, Instance, Updated};
-use crate::logger::{Category, Logger, Sink};
+use crate::interface::{Interface, Stepping};
+use crate::logger::{Logger, Sink};
 use crate::resources;
-use crate::state_machine::IsAllowed;
+use crate::state_machine::{Stage, Table};
 use crate::variables::{DataType, Variable};
 use libc::{c_char, c_double, c_int, c_uint, c_void, size_t};
 use rocking::Progress;
@@ -105,11 +105,11 @@ pub unsafe extern "C" fn fmi2Instantiate(
         };
         match arguments() {
             Ok((archive, interface, events)) => {
-                let is_allowed: IsAllowed<Function> = match interface {
-                    Interface::ModelExchange => model_exchange::is_allowed,
-                    Interface::CoSimulation(_) => co_simulation::is_allowed,
+                let allowed_in: &Table = match interface {
+                    Interface::ModelExchange => &model_exchange::ALLOWED_IN,
+                    Interface::CoSimulation(_) => &co_simulation::ALLOWED_IN,
                 };
-                Some((Instance::new(archive, interface, events, logger), is_allowed))
+                Some((Instance::new(archive, interface, events, logger), allowed_in))
             }
             Err(failure) => {
                 logger.failure(failure.status(), &format!("fmi2Instantiate: {failure}"));
@@ -184,11 +184,8 @@ functions! {
     fmi2SetDebugLogging = SetDebugLogging(
         loggingOn: c_int, nCategories: size_t, categories: *const *const c_char,
     ) |instance| {
-        let names = values("categories", categories, nCategories)?;
-        let named = |name: &*const c_char| Category::named(text("category", *name)?);
-        let categories = names.iter().map(named).collect::<Result<Vec<_>, _>>()?;
-        let on = boolean("loggingOn", loggingOn)?;
-        instance.log_events(on && (categories.is_empty() || categories.contains(&Category::Events)));
+        let has_events = names_events(nCategories, categories)?;
+        instance.log_events(boolean("loggingOn", loggingOn)? && has_events);
         Ok(())
     }
 
@@ -200,11 +197,11 @@ functions! {
         instance.setup_experiment(tolerance, startTime, stop_time)
     }
 
-    fmi2EnterInitializationMode = EnterInitializationMode() |instance| { instance.enter_initialization_mode() }
+    fmi2EnterInitializationMode = EnterInitializationMode() |instance| { instance.enter(Stage::InitializationMode) }
 
     fmi2ExitInitializationMode = ExitInitializationMode() |instance| { instance.exit_initialization_mode() }
 
-    fmi2Terminate = Terminate() |instance| { instance.terminate() }
+    fmi2Terminate = Terminate() |instance| { instance.enter(Stage::Terminated) }
 
     fmi2Reset = Reset() |instance| { instance.reset() }
 
@@ -341,7 +338,7 @@ functions! {
         })
     }
 
-    fmi2EnterContinuousTimeMode = EnterContinuousTimeMode() |instance| { instance.enter_continuous_time_mode() }
+    fmi2EnterContinuousTimeMode = EnterContinuousTimeMode() |instance| { instance.enter(Stage::ContinuousTimeMode) }
 
     /// Whether the host will go back makes no difference: FMU states are kept until it frees them.
     fmi2CompletedIntegratorStep = CompletedIntegratorStep(

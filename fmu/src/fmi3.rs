@@ -1,10 +1,10 @@
-//! The C interface of FMI 3.0: what its functions are called, and what they pass. See [`c_abi`] for what holds of all of
-//! them.
+//! The C interface of FMI 3.0: what its functions are called, and what they pass. See [`c_abi`] for what holds of all
+//! of them.
 //!
-//! In co-simulation, where the host handles events and takes an early return, a step ends at the first transition on it:
-//! state and phase are those before it until `fmi3UpdateDiscreteStates` applies it. A host that can be called back gives
-//! the inputs at the end of every step before it is computed, and they are straight lines over the step; else they are held.
-//! It can read all variables once it has been.
+//! In co-simulation, where the host handles events and takes an early return, a step ends at the first transition on
+//! it: state and phase are those before it until `fmi3UpdateDiscreteStates` applies it. A host that can be called back
+//! gives the inputs at the end of every step before it is computed, and they are straight lines over the step; else
+//! they are held. After the step is computed it can read all variables.
 #![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
 
 mod co_simulation;
@@ -12,14 +12,17 @@ mod model_exchange;
 
 use crate::c_abi::{
     self, call, call_on, check_count, check_pointer, complete_step, escaped, free_state, functions, instantiate,
-    keep_state, read_all, read_state, room, text, values, write, write_all, write_state, write_state_size,
+    keep_state, names_events, read_all, read_state, room, text, values, write, write_all, write_state,
+    write_state_size,
 };
-use crate::condition::{Interface, Stepping};
 use crate::failure::Failure;
 use crate::instance::{self, Instance, Updated};
-use crate::logger::{Category, Logger, Sink};
-use crate::state_machine::IsAllowed;
-use crate::variables::{Causality, DataType, Variable};
+pub use crate::interface::IntermediateUpdateCallback;
+use crate::interface::{Interface, IntermediateUpdate, Stepping};
+use crate::logger::{Logger, Sink};
+use crate::present::find;
+use crate::state_machine::{Stage, Table};
+use crate::variables::{Causality, DataType, VARIABLES, Variable};
 use libc::{c_char, c_int, c_uint, c_void, size_t};
 use rocking::Progress;
 use rocking::mechanics::state::COMPONENTS;
@@ -28,9 +31,6 @@ use std::path::PathBuf;
 
 /// `fmi3LogMessageCallback`
 pub type LogMessageCallback = unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
-
-/// `fmi3IntermediateUpdateCallback`
-pub type IntermediateUpdateCallback = unsafe extern "C" fn(*mut c_void, f64, u8, u8, u8, u8, *mut u8, *mut f64);
 
 const MAGIC: u64 = 0x526f_636b_696e_6733;
 
@@ -64,14 +64,14 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
         }?;
         let (mut sets_inputs, mut gets_outputs) = (false, false);
         for reference in required {
-            let is_input = instance::find(*reference)?.causality == Causality::Input;
+            let is_input = find(VARIABLES.as_slice(), *reference)?.causality == Causality::Input;
             (sets_inputs, gets_outputs) = (sets_inputs || is_input, gets_outputs || !is_input);
         }
         let environment = instanceEnvironment;
         let host =
             intermediateUpdate.map(|update| IntermediateUpdate { update, environment, sets_inputs, gets_outputs });
-        let is_allowed: IsAllowed<Function> = co_simulation::is_allowed;
-        Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), is_allowed, host))
+        let allowed_in: &Table = &co_simulation::ALLOWED_IN;
+        Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), allowed_in, host))
     };
     let arguments = [instanceName, instantiationToken, resourcePath];
     let host = (instanceEnvironment, logMessage);
@@ -89,8 +89,8 @@ pub unsafe extern "C" fn fmi3InstantiateModelExchange(
     instanceEnvironment: *mut c_void,
     logMessage: Option<LogMessageCallback>,
 ) -> *mut c_void {
-    let is_allowed: IsAllowed<Function> = model_exchange::is_allowed;
-    let interface = || Ok((Interface::ModelExchange, is_allowed, None));
+    let allowed_in: &Table = &model_exchange::ALLOWED_IN;
+    let interface = || Ok((Interface::ModelExchange, allowed_in, None));
     let (arguments, host) = ([instanceName, instantiationToken, resourcePath], (instanceEnvironment, logMessage));
     unsafe { create("fmi3InstantiateModelExchange", arguments, loggingOn, host, interface) }
 }
@@ -114,19 +114,19 @@ pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
     unsafe { create("fmi3InstantiateScheduledExecution", arguments, loggingOn, host, interface) }
 }
 
-/// An instance of the `interface` that `function` makes, from the name, the token and the folder; null, with the reason in
-/// the log, if there is none.
+/// An instance of the `interface` that `function` makes, from the name, the token and the folder; null, with the reason
+/// in the log, if there is none.
 unsafe fn create(
     function: &str,
     [name, token, folder]: [*const c_char; 3],
     logging_on: u8,
     (environment, log): (*mut c_void, Option<LogMessageCallback>),
-    interface: impl FnOnce() -> Result<(Interface, IsAllowed<Function>, Option<IntermediateUpdate>), Failure>,
+    interface: impl FnOnce() -> Result<(Interface, &'static Table, Option<IntermediateUpdate>), Failure>,
 ) -> *mut c_void {
     instantiate::<Function>(|| {
         let logger = Logger::new(sink(log, environment));
         let found = || {
-            let (interface, is_allowed, called_back) = interface()?;
+            let (interface, allowed_in, called_back) = interface()?;
             let name = unsafe { text("instanceName", name) }?;
             let token = unsafe { text("instantiationToken", token) }?;
             let folder = unsafe { text("resourcePath", folder) }?;
@@ -135,11 +135,11 @@ unsafe fn create(
                 return Err(Failure::NoName);
             }
             let archive = instance::open("instantiationToken", token, PathBuf::from(folder))?;
-            Ok((archive, interface, is_allowed, called_back, events))
+            Ok((archive, interface, allowed_in, called_back, events))
         };
         match found() {
-            Ok((archive, interface, is_allowed, called_back, events)) => {
-                Some((Instance::new(archive, interface, events, logger).calling_back(called_back), is_allowed))
+            Ok((archive, interface, allowed_in, called_back, events)) => {
+                Some((Instance::new(archive, interface, events, logger).calling_back(called_back), allowed_in))
             }
             Err(failure) => {
                 logger.failure(failure.status(), &format!("{function}: {failure}"));
@@ -157,20 +157,9 @@ fn sink(log: Option<LogMessageCallback>, environment: *mut c_void) -> Sink {
     })
 }
 
-/// How a host is called back within a step. Nothing of it has to be dropped, so that it needs no instance once it is there.
-#[derive(Clone, Copy)]
-pub(crate) struct IntermediateUpdate {
-    update: IntermediateUpdateCallback,
-    environment: *mut c_void,
-    /// Whether the host sets inputs at the end of a step before it is computed.
-    pub sets_inputs: bool,
-    /// Whether it reads other variables once the step is computed.
-    pub gets_outputs: bool,
-}
-
 impl IntermediateUpdate {
-    /// Asks for the inputs at `time` (s), the end of a step: what the step leads to there is not known yet, which is what a
-    /// tentative update says.
+    /// Asks for the inputs at `time` (s), the end of a step: what the step leads to there is not known yet, which is
+    /// what a tentative update says.
     fn ask_for_inputs(self, time: f64) {
         let (set_requested, get_allowed, step_finished) = (1, 0, 0);
         self.call(time, set_requested, get_allowed, step_finished);
@@ -239,8 +228,8 @@ fn remedy(failure: &Failure) -> &'static str {
 
 /// `fmi3DoStep`
 ///
-/// Whether the host will go back makes no difference: FMU states are kept until it frees them. A host that can be called
-/// back has the instance on loan between the parts of the call.
+/// Whether the host will go back makes no difference: FMU states are kept until it frees them. A host that can be
+/// called back has the instance on loan between the parts of the call.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3DoStep(
     c: *mut c_void,
@@ -300,11 +289,9 @@ functions! {
     fmi3SetDebugLogging = SetDebugLogging(
         loggingOn: u8, nCategories: size_t, categories: *const *const c_char,
     ) |instance| {
-        let names = values("categories", categories, nCategories)?;
-        let named = |name: &*const c_char| Category::named(text("category", *name)?);
-        let categories = names.iter().map(named).collect::<Result<Vec<_>, _>>()?;
+        let has_events = names_events(nCategories, categories)?;
         let on = boolean("loggingOn", loggingOn)?;
-        if categories.is_empty() || categories.contains(&Category::Events) {
+        if has_events {
             instance.log_events(on);
         }
         Ok(())
@@ -316,14 +303,14 @@ functions! {
         let tolerance = boolean("toleranceDefined", toleranceDefined)?.then_some(tolerance);
         let stop_time = boolean("stopTimeDefined", stopTimeDefined)?.then_some(stopTime);
         instance.setup_experiment(tolerance, startTime, stop_time)?;
-        instance.enter_initialization_mode()
+        instance.enter(Stage::InitializationMode)
     }
 
     fmi3ExitInitializationMode = ExitInitializationMode() |instance| { instance.exit_initialization_mode() }
 
     fmi3EnterEventMode = EnterEventMode() |instance| { instance.enter_event_mode() }
 
-    fmi3Terminate = Terminate() |instance| { instance.terminate() }
+    fmi3Terminate = Terminate() |instance| { instance.enter(Stage::Terminated) }
 
     fmi3Reset = Reset() |instance| { instance.reset() }
 
@@ -374,11 +361,8 @@ functions! {
     /// No integer can be set.
     fmi3SetInt32 = SetInt32(
         valueReferences: *const c_uint, nValueReferences: size_t, _values: *const i32, nValues: size_t,
-    ) |_instance| {
-        match references(valueReferences, nValueReferences, nValues)? {
-            [] => Ok(()),
-            [first, ..] => Err(instance::refused(instance::find(*first)?)),
-        }
+    ) |instance| {
+        instance.set_no_integer(references(valueReferences, nValueReferences, nValues)?)
     }
 
     fmi3SetInt64 = SetInt64(
@@ -475,7 +459,7 @@ functions! {
         write("nextEventTime", nextEventTime, next_event.unwrap_or_default())
     }
 
-    fmi3EnterStepMode = EnterStepMode() |instance| { instance.enter_step_mode() }
+    fmi3EnterStepMode = EnterStepMode() |instance| { instance.enter(Stage::StepComplete) }
 
     fmi3GetOutputDerivatives = GetOutputDerivatives(
         valueReferences: *const c_uint, nValueReferences: size_t, orders: *const i32, value: *mut f64,
@@ -486,7 +470,7 @@ functions! {
         instance.get_real_output_derivatives(references, orders, rates)
     }
 
-    fmi3EnterContinuousTimeMode = EnterContinuousTimeMode() |instance| { instance.enter_continuous_time_mode() }
+    fmi3EnterContinuousTimeMode = EnterContinuousTimeMode() |instance| { instance.enter(Stage::ContinuousTimeMode) }
 
     /// Whether the host will go back makes no difference: FMU states are kept until it frees them.
     fmi3CompletedIntegratorStep = CompletedIntegratorStep(

@@ -1,4 +1,5 @@
-//! The records that the ground follows: found by name or path, and shared by all instances of the process that hold them.
+//! The records that the ground follows: found by name or path, and shared by all instances of the process that hold
+//! them.
 
 use crate::resources::{self, Archive};
 use rocking::run::record::Record;
@@ -60,7 +61,7 @@ impl GroundRecord {
         GroundRecord::from_bytes(path, &rocking_records::read_file(path)?)
     }
 
-    /// The same of `bytes`, which are the content of the file at `path`.
+    /// Reads `bytes`, which are the content of the file at `path`.
     fn from_bytes(path: &Path, bytes: &[u8]) -> Result<GroundRecord, RecordError> {
         let (record, Source { unit, .. }) = rocking_records::from_bytes(path, bytes, &Reading::default())?;
         let numbers = record.times().iter().chain(record.acceleration());
@@ -105,7 +106,8 @@ fn find(held: &Records, content: Content) -> Option<Arc<GroundRecord>> {
 }
 
 impl Archive {
-    /// The record that `text` asks for: none if it is empty; one of the archive's by its name, or a file by its path or URI.
+    /// The record that `text` asks for: none if it is empty; one of the archive's by its name, or a file by its path or
+    /// URI.
     pub fn record(&self, text: &str) -> Result<Option<Arc<GroundRecord>>, GroundError> {
         if text.is_empty() {
             return Ok(None);
@@ -136,12 +138,17 @@ impl Archive {
     }
 }
 
-/// The record in the file `path`, which is parsed unless somebody holds a record of the same content. Files are read and
-/// parsed without the lock: of two threads that parse the same, one will throw its record away.
+/// Names the `bytes` of the file `path`.
+fn content(path: &Path, bytes: &[u8]) -> Content {
+    let name = path.file_name().unwrap_or_default().as_encoded_bytes();
+    Uuid::new_v5(&Uuid::new_v5(&Uuid::NAMESPACE_OID, name), bytes)
+}
+
+/// The record in the file `path`, which is parsed unless somebody holds a record of the same content. Files are read
+/// and parsed without the lock: of two threads that parse the same, one will throw its record away.
 fn shared(path: &Path) -> Result<Arc<GroundRecord>, RecordError> {
     let bytes = rocking_records::read_file(path)?;
-    let name = path.file_name().unwrap_or_default().as_encoded_bytes();
-    let content = Uuid::new_v5(&Uuid::new_v5(&Uuid::NAMESPACE_OID, name), &bytes);
+    let content = content(path, &bytes);
     if let Some(record) = find(&held(), content) {
         return Ok(record);
     }
@@ -158,15 +165,15 @@ fn shared(path: &Path) -> Result<Arc<GroundRecord>, RecordError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::resources::Contents;
+    use crate::resources::{Contents, PackedRecord};
     use rocking::Parameters;
 
     fn archive(folder: &Path) -> Archive {
         Archive { folder: folder.to_owned(), contents: Contents::from(Parameters::EVISON) }
     }
 
-    /// Whoever holds a record shares it, wherever its file is; a file that is rewritten is another record, even with the
-    /// same size and time.
+    /// Whoever holds a record shares it, wherever its file is; a file that is rewritten is another record, even with
+    /// the same size and time.
     #[test]
     fn a_record_is_known_by_its_content() {
         let folder = tempfile::tempdir().unwrap();
@@ -188,6 +195,29 @@ mod tests {
         let second = read("pulse 1.csv");
         assert_eq!((first.record.acceleration(), second.record.acceleration()), (&[1.0, 2.0][..], &[1.0, 3.0][..]));
         assert_ne!(first.digest, second.digest);
+        let ours = content(&file, &fs::read(&file).unwrap());
+        let count = || held().iter().filter(|(of, _)| *of == ours).count();
+        assert_eq!((count(), read("pulse 1.csv").digest, count()), (1, second.digest, 1));
+        drop(second);
+        assert_eq!(count(), 0);
+    }
+
+    /// A record that was packed is the one whose samples the archive names.
+    #[test]
+    fn a_packed_record_that_was_altered_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = folder.path().join("pulse.csv");
+        fs::write(&file, "t/s,a\n0,1\n1,2\n").unwrap();
+        let digest = GroundRecord::read(&file).unwrap().name();
+        let mut archive = archive(folder.path());
+        archive.contents.records.push(PackedRecord { file: "pulse.csv".to_owned(), digest });
+        assert!(archive.record("pulse.csv").unwrap().is_some());
+        fs::write(&file, "t/s,a\n0,1\n1,3\n").unwrap();
+        assert_eq!(
+            archive.record("pulse.csv").unwrap_err().to_string(),
+            "record = \"pulse.csv\" in the archive is not the one that was exported with it; export it again"
+        );
+        assert!(archive.record(file.to_str().unwrap()).unwrap().is_some(), "by its path it is any file");
     }
 
     /// Threads that take and drop the same records all the time: each gets what is in its file.

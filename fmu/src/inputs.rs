@@ -16,21 +16,22 @@ pub(crate) enum Between {
     Extrapolated,
 }
 
-/// The inputs. A slope is followed for one step, after which the value that it led to is held; a step that ended early goes
-/// on where it ended, along the same lines.
+/// The inputs. A slope is followed for one step, after which the value that it led to is held; a step that ended early
+/// goes on where it ended, along the same lines.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Inputs {
     /// How they act, in the order of [`LOADS`].
     between: [Between; 2],
     /// What acts now, and the slopes of the next step, but for those that are late.
     next: LinearLoad,
-    /// As the host has set them, or as they have come to be.
+    /// The values that the host has set, or that the last step led to.
     set: Load,
     /// What has been set of each since the last step, in the same order.
     given: [Given; 2],
     /// Where the last step led, and the slopes that it followed.
     followed: LinearLoad,
-    /// What acted at the last communication point that a step began at, and how long ago that was, s; 0 before the first.
+    /// What acted at the last communication point that a step began at, and how long ago that was, s; 0 before the
+    /// first.
     before: (Load, f64),
     /// Whether the last step ended before the next communication point.
     ended_early: bool,
@@ -54,61 +55,69 @@ impl Inputs {
         self.next.value
     }
 
-    /// What the host is shown: as it has set them, or as they have come to be.
+    /// The values that the host reads: those that it has set, or that the last step led to.
     pub(crate) fn shown(&self) -> Load {
         self.set
     }
 
-    /// From here on steps are made, and inputs act as `between` says; until then, and where none are made, at once.
+    /// Makes the inputs act as `between` says. Until then, and where no steps are made, they act at once.
     pub(crate) fn start(&mut self, between: [Between; 2]) {
         self.between = between;
     }
 
     /// Sets the value of the input `which` of [`LOADS`].
+    #[inline]
     pub(crate) fn set(&mut self, which: usize, value: f64) {
         let Inputs { between, next, set, given, followed, before: (before, ago), ended_early } = self;
-        let (input, given) = (&LOADS[which], &mut given[which]);
-        (input.set)(set, value);
+        let given = &mut given[which];
+        set[which] = value;
         if *given == Given::Slope {
-            return (input.set)(&mut next.value, value);
+            next.value[which] = value;
+            return;
         }
         *given = Given::Value;
         let (value, slope) = match between[which] {
             Between::Late => return,
             Between::Held => (value, 0.0),
-            Between::Extrapolated if *ended_early && value == (input.get)(before) => {
+            Between::Extrapolated if *ended_early && value == before[which] => {
                 *given = Given::Nothing;
-                ((input.get)(&followed.value), (input.get)(&followed.slope))
+                (followed.value[which], followed.slope[which])
             }
-            Between::Extrapolated => (value, (value - (input.get)(before)) / *ago),
+            Between::Extrapolated => {
+                let slope = (value - before[which]) / *ago;
+                (value, if slope.is_finite() { slope } else { 0.0 })
+            }
         };
-        (input.set)(&mut next.value, value);
-        (input.set)(&mut next.slope, if slope.is_finite() { slope } else { 0.0 });
+        (next.value[which], next.slope[which]) = (value, slope);
     }
 
-    /// Sets the slope of the same over the next step, from what has been set of it or else from what acts.
+    /// Sets the slope of an input over the next step, from what has been set of it or else from what acts.
+    #[inline]
     pub(crate) fn set_slope(&mut self, which: usize, slope: f64) {
-        let (input, Inputs { next, set, given, .. }) = (&LOADS[which], self);
-        let is_set = given[which] != Given::Nothing;
-        let (from, to) = if is_set { (set, &mut next.value) } else { (&mut next.value, set) };
-        (input.set)(to, (input.get)(from));
-        (input.set)(&mut next.slope, slope);
+        let Inputs { next, set, given, .. } = self;
+        if given[which] == Given::Nothing {
+            set[which] = next.value[which];
+        } else {
+            next.value[which] = set[which];
+        }
+        next.slope[which] = slope;
         given[which] = Given::Slope;
     }
 
-    /// Sets the value that the same leads to over the next step, which lasts `step` (s), in a straight line.
+    /// Sets the value that an input leads to over the next step, which lasts `step` (s), in a straight line.
     pub(crate) fn lead(&mut self, which: usize, value: f64, step: f64) {
         self.set_slope(which, 0.0);
-        self.set_slope(which, (value - (LOADS[which].get)(&self.set)) / step);
+        self.set_slope(which, (value - self.set[which]) / step);
     }
 
-    /// Whether the same acts as soon as it is set.
+    /// Whether an input acts as soon as it is set.
+    #[inline]
     pub(crate) fn acts_at_once(&self, which: usize) -> bool {
         self.between[which] != Between::Late || self.given[which] == Given::Slope
     }
 
-    /// What they are over a step of `duration` (s). An input of which only the value is set is held if its line would lead
-    /// out of its range.
+    /// The lines that the inputs follow over a step of `duration` (s). An input of which only the value is set is held
+    /// if its line would lead out of its range.
     #[inline]
     pub(crate) fn over(&self, duration: f64) -> LinearLoad {
         let mut load = self.next;
@@ -116,29 +125,30 @@ impl Inputs {
             if between == Between::Held || self.given[which] == Given::Slope {
                 continue;
             }
-            let (input, value) = (&LOADS[which], (LOADS[which].get)(&load.value));
+            let value = load.value[which];
             let slope = match between {
-                Between::Late => ((input.get)(&self.set) - value) / duration,
-                _ => (input.get)(&load.slope),
+                Between::Late => (self.set[which] - value) / duration,
+                _ => load.slope[which],
             };
-            let leads_there = slope.is_finite() && input.check(value + slope * duration).is_ok();
-            (input.set)(&mut load.slope, if leads_there { slope } else { 0.0 });
+            let leads_there = slope.is_finite() && LOADS[which].check(value + slope * duration).is_ok();
+            load.slope[which] = if leads_there { slope } else { 0.0 };
         }
         load
     }
 
-    /// What acts now and how it changes: as it is about to, or as it just did.
+    /// What acts now, with the slopes of the next step, or those of the last step where none are set.
     pub(crate) fn now(&self) -> LinearLoad {
         let mut load = self.next;
-        for (which, input) in LOADS.iter().enumerate() {
+        for which in 0..LOADS.len() {
             if self.given[which] == Given::Nothing || !self.acts_at_once(which) {
-                (input.set)(&mut load.slope, (input.get)(&self.followed.slope));
+                load.slope[which] = self.followed.slope[which];
             }
         }
         load
     }
 
-    /// Goes on after `duration` (s) of a step that followed `load`, and that ended early or at the next communication point.
+    /// Goes on after `duration` (s) of a step that followed `load`, and that ended early or at the next communication
+    /// point.
     #[inline]
     pub(crate) fn pass(&mut self, load: LinearLoad, duration: f64, ended_early: bool) {
         if !self.ended_early {
@@ -148,12 +158,11 @@ impl Inputs {
         let (value, set) = (load.at(duration), self.set);
         let slope = if ended_early { load.slope } else { Load::default() };
         (self.next, self.set, self.ended_early) = (LinearLoad { value, slope }, value, ended_early);
-        for (which, input) in LOADS.iter().enumerate() {
+        for which in 0..LOADS.len() {
             if !self.acts_at_once(which) {
-                let set = (input.get)(&set);
-                (input.set)(&mut self.set, set);
+                self.set[which] = set[which];
                 if !ended_early {
-                    (input.set)(&mut self.next.value, set); // whatever the rounding
+                    self.next.value[which] = set[which]; // whatever the rounding
                 }
             }
         }
@@ -165,11 +174,8 @@ impl Inputs {
     pub(crate) fn are_possible(&self) -> bool {
         let Inputs { next, set, followed, before: (before, ago), .. } = self;
         (0.0..f64::INFINITY).contains(ago)
-            && LOADS.iter().all(|input| {
-                [&next.value, set, &followed.value, before]
-                    .into_iter()
-                    .all(|load| input.check((input.get)(load)).is_ok())
-                    && [next.slope, followed.slope].iter().all(|slopes| (input.get)(slopes).is_finite())
-            })
+            && [&next.value, set, &followed.value, before].into_iter().all(|load| load.check().is_ok())
+            && next.slope.is_finite()
+            && followed.slope.is_finite()
     }
 }

@@ -1,29 +1,47 @@
 //! Unit of a flexible rocking structure for co-simulation and model exchange, of FMI 2.0 and of FMI 3.0.
 //!
-//! A call of the host enters by [`fmi2`] or [`fmi3`], whose shell [`c_abi`] asks a table of [`state_machine`] whether it
-//! is legal and turns pointers into slices. [`instance`], which knows no version, finds its variables in [`variables`] and
-//! lets [`rocking`] do the physics; what goes wrong is a [`failure::Failure`], which [`logger`] hands to the host. All that
-//! the future depends on is a [`condition::Condition`], which [`snapshot`] keeps: what was set before the start, in
-//! [`setup`], the [`inputs`], and how far the motion has come; whether it can start is in `start`. [`sensitivity`]
-//! differentiates by parameters. [`resources`] reads what the archive carries, and [`ground`] the records, of the archive
-//! or on disk.
+//! A call of the host goes down this list; what is on a line knows nothing of the lines above it.
+//!
+//! | file | does |
+//! |---|---|
+//! | [`fmi2`], [`fmi3`] | name the C functions and their arguments, and the stages that each may be called in |
+//! | [`c_abi`] | checks stage and pointers, makes slices of pointers, catches panics, logs why a call failed |
+//! | `instance` | goes from stage to stage; `do_step`, `get_values`, `set_values`, `derivatives`, `model_exchange` |
+//! | [`snapshot`], [`condition`] | FMU states as bytes; all that the future of an instance depends on |
+//! | [`sensitivity`] | derivatives by parameters and states |
+//! | `present` | where an instance stands: stage, setup, inputs, model |
+//! | `shown` | every Real that is computed, at an instant |
+//! | `advance` | the model over one step |
+//! | `model` | the structure on its ground, from its start on |
+//! | `motion_log` | the messages about transitions and limits |
+//! | `failure` | every message about a call that is refused |
+//! | [`variables`] | the table of variables |
+//! | `setup`, `inputs`, [`interface`] | what is set before the start and during the simulation; who integrates |
+//! | [`ground`], [`resources`] | records; what the archive carries |
+//! | [`logger`], [`state_machine`] | messages to the host; the stages, and tables of them |
+//!
+//! The physics is [`rocking`]'s.
 #![allow(non_snake_case)] // the shared library's name, and the standard's names of arguments
 
+mod advance;
 pub mod c_abi;
 pub mod condition;
-pub mod failure;
+mod failure;
 pub mod fmi2;
 pub mod fmi3;
 pub mod ground;
-pub mod inputs;
-pub mod instance;
+mod inputs;
+mod instance;
+pub mod interface;
 pub mod logger;
+mod model;
+mod motion_log;
+mod present;
 pub mod resources;
 pub mod sensitivity;
-pub mod setup;
+mod setup;
 mod shown;
 pub mod snapshot;
-mod start;
 pub mod state_machine;
 pub mod variables;
 

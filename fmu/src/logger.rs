@@ -1,6 +1,5 @@
 //! Messages to the host.
 
-use crate::failure::Failure;
 use std::ffi::CStr;
 
 /// Result of a call, numbered as in the standard.
@@ -46,10 +45,9 @@ impl Category {
         }
     }
 
-    /// The one called `name`.
-    pub fn named(name: &str) -> Result<Category, Failure> {
-        let found = Category::ALL.into_iter().find(|category| category.name().to_str() == Ok(name));
-        found.ok_or_else(|| Failure::UnknownCategory(name.to_owned()))
+    /// The one called `name`, if there is one.
+    pub fn named(name: &str) -> Option<Category> {
+        Category::ALL.into_iter().find(|category| category.name().to_str() == Ok(name))
     }
 
     /// What it is about, in one line.
@@ -91,7 +89,8 @@ impl Logger {
     }
 
     /// Sends a warning. The call that it comes from returns OK: the standard lets a simulation go on after
-    /// `fmi2Warning`, but OMSimulator (2940ef1) ends it there, after `fmi2ExitInitializationMode` as after `fmi2DoStep`.
+    /// `fmi2Warning`, but OMSimulator (2940ef1) ends it there, after `fmi2ExitInitializationMode` as after
+    /// `fmi2DoStep`.
     pub fn warning(&self, message: &str) {
         self.send(Status::Warning, Category::Warning, message);
     }

@@ -1,14 +1,13 @@
-//! Derivatives by what has no formula for it: of initial values and calculated parameters by what is set before the start,
-//! and by the states later on.
+//! Derivatives that have no formula: by what is set before the start, and by the states later on.
 //!
 //! Differences to either side of the value are extrapolated to the limit of no difference (Neville's scheme, its entry
 //! of least change), each within the value's range and without passing 0, at which phases change and ranges end. Where
 //! both sides have room, they must agree: at a step or a kink there is no derivative. What is returned is exact to
 //! [`ACCURACY`], or to what rounding leaves of reactions that are small beside the forces they are made of.
 
-use crate::condition::Model;
 use crate::failure::Failure;
 use crate::ground::GroundRecord;
+use crate::model::Model;
 use crate::setup::Setup;
 use crate::shown::Shown;
 use crate::variables::{DataType, Variable};
@@ -19,7 +18,7 @@ use std::sync::Arc;
 /// Relative to the derivative, or to the unknown's value over the known's scale where that is more.
 pub const ACCURACY: f64 = 1e-8;
 
-/// The same, of what is not taken for a step or a kink.
+/// How far two limits may be apart, as [`ACCURACY`] counts it, that are not taken for a step or a kink.
 const AGREEMENT: f64 = 1e-4;
 
 /// First difference, in parts of the known's scale.
@@ -61,8 +60,8 @@ pub(crate) fn sensitivities(
     checked.collect()
 }
 
-/// The derivatives of `unknowns` by the state `which` in the present phase under `inputs`. θ is moved away from the floor
-/// alone, at which the height of the free edge has a kink.
+/// The derivatives of `unknowns` by the state `which` in the present phase under `inputs`. θ is moved away from the
+/// floor alone, at which the height of the free edge has a kink.
 pub(crate) fn by_state(
     model: &mut Model,
     setup: &Setup,
@@ -94,8 +93,8 @@ pub(crate) fn by_state(
     unknowns.iter().zip(found).map(|(&variable, found)| found.ok_or(failed(variable))).collect()
 }
 
-/// The derivatives at `x` of what `at` tells, `here` there, by differences from `first` upwards and downwards on; `None`
-/// where there is none.
+/// The derivatives at `x` of what `at` tells, `here` there, by differences from `first` upwards and downwards on;
+/// `None` where there is none.
 fn derivatives(
     x: f64,
     scale: f64,

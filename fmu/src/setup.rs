@@ -27,12 +27,12 @@ pub struct Setup {
     pub(crate) F_t_extrapolated: bool,
     /// Whether peaks are watched.
     pub(crate) peaks: bool,
-    /// Whether it is watched what the motion goes beyond.
+    /// Whether the limits of the model are watched.
     pub(crate) validity: bool,
 }
 
 impl Setup {
-    /// That of an instance of an archive with these contents.
+    /// The setup of an instance just instantiated from an archive with these contents.
     pub(crate) fn new(contents: &Contents) -> Setup {
         Setup {
             parameters: contents.parameters,

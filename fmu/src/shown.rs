@@ -1,8 +1,9 @@
 //! What a model shows at an instant: everything real that is computed.
 
-use crate::condition::Model;
+use crate::failure::Failure;
+use crate::model::Model;
 use crate::setup::Setup;
-use crate::variables::Source;
+use crate::variables::{Source, VARIABLES};
 use rocking::{Load, Outputs, Reactions, State};
 use std::cell::OnceCell;
 
@@ -29,13 +30,27 @@ impl<'a> Shown<'a> {
         self.reactions.get_or_init(|| self.model.engine.reactions(self.load))
     }
 
+    /// Refuses the reactions, then the rates, that are among `references` where the equations have no solution.
+    #[cold]
+    pub fn check_solution(&self, references: &[u32]) -> Result<(), Failure> {
+        let time = self.model.engine.motion().time;
+        let last = |is_one: fn(Source) -> bool| {
+            let variables = references.iter().rev().map(|reference| &VARIABLES[*reference as usize]);
+            variables.into_iter().find(|variable| is_one(variable.source))
+        };
+        let Reactions { R_h, R_v, R_m } = self.reactions();
+        let reaction = last(|source| matches!(source, Source::Reaction(_))).filter(|_| !(R_h + R_v + R_m).is_finite());
+        let rate = last(|source| matches!(source, Source::StateRate(_))).filter(|_| !self.state_rates().is_finite());
+        reaction.or(rate).map_or(Ok(()), |variable| Err(Failure::NoReaction { variable, time }))
+    }
+
     /// Derivatives of the states.
     pub fn state_rates(&self) -> State {
         self.model.engine.sample(self.load).state_rates()
     }
 
     /// The value of a Real from `source`, if it is one that is computed.
-    #[inline]
+    #[inline(never)]
     pub fn value(&self, source: Source) -> Option<f64> {
         let Shown { model, setup, load, .. } = *self;
         Some(match source {

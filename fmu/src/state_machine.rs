@@ -15,7 +15,7 @@ pub enum Stage {
     StepComplete,
     /// Within a step, while the host is asked for the inputs at its end.
     IntermediateUpdateMode,
-    /// The same at its end, while the host reads what it has led to.
+    /// At the end of a step, while the host reads what it has led to.
     IntermediateOutputs,
     /// The structure has overturned; there is nothing left to step to.
     StepFailed,
@@ -25,7 +25,7 @@ pub enum Stage {
     ContinuousTimeMode,
     /// The simulation is over.
     Terminated,
-    /// The solver could not go on; values are good for debugging only.
+    /// The solver could not go on; values are for debugging only.
     Error,
 }
 
@@ -44,9 +44,17 @@ impl Stage {
         Stage::Error,
     ];
 
-    /// Whether a step is under way, within which the host has the instance on loan.
+    /// The stages within a step, in which the host has the instance on loan.
+    pub(crate) const WITHIN_STEP: Stages = Stage::IntermediateUpdateMode.bit() | Stage::IntermediateOutputs.bit();
+
+    /// Whether a step is under way.
     pub const fn is_within_step(self) -> bool {
-        matches!(self, Stage::IntermediateUpdateMode | Stage::IntermediateOutputs)
+        self.bit() & Stage::WITHIN_STEP != 0
+    }
+
+    /// The set of this stage alone.
+    pub(crate) const fn bit(self) -> Stages {
+        1 << self as u8
     }
 
     /// Whether initialization has ended.
@@ -72,31 +80,37 @@ impl fmt::Display for Stage {
     }
 }
 
-/// Whether a function may be called in a stage.
-pub type IsAllowed<F> = fn(F, Stage) -> bool;
+/// A set of stages: of each the bit [`Stage::bit`].
+pub type Stages = u16;
 
-/// The stages that `function` may be called in, for a message.
-pub(crate) fn stages<F: Copy>(function: F, is_allowed: IsAllowed<F>) -> String {
-    let names: Vec<_> =
-        Stage::ALL.into_iter().filter(|stage| is_allowed(function, *stage)).map(|stage| stage.to_string()).collect();
+/// The stages that each function of a version may be called in, by its place in the version's `Function`.
+pub type Table = [Stages; 128];
+
+/// The names of `stages`, for a message.
+pub(crate) fn names(stages: Stages) -> String {
+    let listed = Stage::ALL.into_iter().filter(|stage| stage.bit() & stages != 0);
+    let names: Vec<_> = listed.map(|stage| stage.to_string()).collect();
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
 
-/// A table of an interface: the stages that it knows, and a row for every function of the version's `Function`, with x
-/// where it may be called and - where not; behind a last - those that may be called nowhere.
+/// A table of an interface: the stages that it knows, and a row for every function of the version's `Function` that may
+/// be called in one, with x where it may and - where not. The others may be called nowhere.
 macro_rules! table {
-    ([$($stage:ident),* $(,)?] $($function:ident [$($mark:tt)+])* - $($never:ident)*) => {
-        /// The stages of this interface.
-        const STAGES: &[Stage] = &[$(Stage::$stage),*];
-
-        /// Whether `function` may be called in `stage`.
-        pub(crate) fn is_allowed(function: Function, stage: Stage) -> bool {
-            let marks: [bool; STAGES.len()] = match function {
-                $(Function::$function => [$($crate::state_machine::table!(@ $mark)),+],)*
-                $(Function::$never)|* => return false,
-            };
-            STAGES.iter().zip(marks).any(|(column, mark)| mark && *column == stage)
-        }
+    ([$($stage:ident),* $(,)?] $($function:ident [$($mark:tt)+])*) => {
+        /// The stages that each function may be called in.
+        pub(crate) static ALLOWED_IN: Table = {
+            let stages = [$(Stage::$stage),*];
+            let mut table: Table = [0; 128];
+            $({
+                let marks = [$($crate::state_machine::table!(@ $mark)),+];
+                let mut at = 0;
+                while at < stages.len() {
+                    table[Function::$function as usize] |= if marks[at] { stages[at].bit() } else { 0 };
+                    at += 1;
+                }
+            })*
+            table
+        };
     };
     (@ x) => { true };
     (@ -) => { false };

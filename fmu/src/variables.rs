@@ -12,7 +12,7 @@ use rocking::run::outside_step::INDICATORS;
 use rocking::run::peaks::Peaks;
 use rocking::run::validity::{ASSUMPTIONS, Assumption};
 use rocking::structure::parameters::PARAMETERS;
-use rocking::structure::quantity::Quantity;
+use rocking::structure::quantity::{OutOfRange, Quantity};
 use rocking::structure::{DERIVED, Derived};
 use rocking::{Detail, Impulse, Load, Outputs, Parameters, Phase, Reactions, Side, State};
 use std::sync::LazyLock;
@@ -52,7 +52,7 @@ pub enum Causality {
     Output,
     /// The FMU, for whoever looks at it.
     Local,
-    /// Nobody: what all others depend on.
+    /// Time, which all others depend on.
     Independent,
 }
 
@@ -126,7 +126,7 @@ pub(crate) enum Source {
     Peak(fn(&Peaks) -> f64),
     /// The worst value of one of [`ASSUMPTIONS`].
     Worst(usize),
-    /// Its instant.
+    /// The instant of the worst value of one of [`ASSUMPTIONS`].
     WorstInstant(usize),
     /// Impacts that raise the energy.
     Gains,
@@ -158,7 +158,17 @@ impl Source {
         }
     }
 
-    /// Sets it.
+    /// Accepts `value` for a Real parameter or an initial value, or says why not.
+    pub fn check(&self, value: f64) -> Result<(), OutOfRange> {
+        match self {
+            Source::Parameter(quantity) => quantity.check(value),
+            Source::InitialValue(quantity) => quantity.check(value),
+            Source::Placement(quantity) => quantity.check(value),
+            _ => Ok(()),
+        }
+    }
+
+    /// Sets a Real parameter or an initial value.
     pub fn set(&self, setup: &mut Setup, value: f64) {
         match self {
             Source::Parameter(quantity) => (quantity.set)(&mut setup.parameters, value),
@@ -222,7 +232,8 @@ fn overturned(motion: &Motion) -> i32 {
     i32::from(matches!(motion.phase, Phase::Overturned(_)))
 }
 
-/// How many variables there are: their table is no allocation, which would be left behind where the library is unloaded.
+/// How many variables there are: their table is no allocation, which would be left behind where the library is
+/// unloaded.
 const COUNT: usize = 86;
 
 /// All variables, in the order of the model description.
@@ -266,26 +277,12 @@ fn input(which: usize) -> Variable {
     }
 }
 
-/// What accelerations depend on: the masses, the geometry and theta_dot_0 by the rigid level, the others by the elastic ones.
+/// What accelerations depend on: the masses, the geometry and theta_dot_0 by the rigid level, the others by the elastic
+/// ones.
+#[rustfmt::skip]
 const ACCELERATIONS: &[&str] = &[
-    "m",
-    "m0",
-    "H",
-    "B",
-    "J0",
-    "f_fc",
-    "zeta_fc",
-    "c_ratio",
-    "g",
-    "detail",
-    "theta_0",
-    "theta_dot_0",
-    "u_0",
-    "u_dot_0",
-    "record",
-    "record_scale",
-    "record_time_scale",
-    "record_start",
+    "m", "m0", "H", "B", "J0", "f_fc", "zeta_fc", "c_ratio", "g", "detail", "theta_0", "theta_dot_0", "u_0", "u_dot_0",
+    "record", "record_scale", "record_time_scale", "record_start",
 ];
 
 fn outputs() -> Vec<Variable> {
@@ -348,7 +345,7 @@ fn outputs() -> Vec<Variable> {
     ]
 }
 
-/// What no other model needs.
+/// Variables for whoever looks on: no other model needs them.
 fn locals() -> [Variable; 7] {
     const GROUND: &[&str] = &["g", "record", "record_scale", "record_time_scale", "record_start"];
     let local = |name, unit, description, source, feedthrough, initial_dependencies| Variable {
@@ -416,25 +413,12 @@ fn state_rates() -> [Variable; 4] {
     ]
 }
 
-/// What tells a host that integrates of the end of a phase, in the order in which it is told.
+/// The event indicators, in their order: they tell a host that integrates that a phase ends.
 fn event_indicators() -> [Variable; INDICATORS] {
+    #[rustfmt::skip]
     const PHASE: &[&str] = &[
-        "m",
-        "m0",
-        "H",
-        "B",
-        "f_fc",
-        "zeta_fc",
-        "c_ratio",
-        "g",
-        "detail",
-        "theta_0",
-        "u_0",
-        "u_dot_0",
-        "record",
-        "record_scale",
-        "record_time_scale",
-        "record_start",
+        "m", "m0", "H", "B", "f_fc", "zeta_fc", "c_ratio", "g", "detail", "theta_0", "u_0", "u_dot_0",
+        "record", "record_scale", "record_time_scale", "record_start",
     ];
     let indicator = |which, name, description| Variable {
         causality: Causality::Local,
@@ -538,7 +522,7 @@ fn switches() -> [Variable; 4] {
     ]
 }
 
-/// FMI 2.0 takes it for granted, and its descriptions leave it out; it is last, so that it counts there for nothing.
+/// Time. Descriptions of FMI 2.0 leave it out: it is last, so that the other references are the same in both versions.
 fn time() -> Variable {
     Variable {
         causality: Causality::Independent,
@@ -647,7 +631,7 @@ impl Variable {
         COMPONENTS.iter().position(|name| *name == self.name)
     }
 
-    /// Which of them it is the derivative of.
+    /// Which of the continuous states it is the derivative of.
     pub fn as_state_rate(&self) -> Option<usize> {
         if let Source::StateRate(which) = self.source { Some(which) } else { None }
     }

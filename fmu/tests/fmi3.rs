@@ -1,15 +1,16 @@
 //! FMI 3.0: which call is allowed when, and that it is one instance with FMI 2.0.
 #![allow(unsafe_code)] // the C interface
 
+mod calls;
 mod host;
 
-use FlexibleRocking::c_abi::Function as _;
-use FlexibleRocking::condition::{Interface, Stepping};
 use FlexibleRocking::fmi3::*;
+use FlexibleRocking::interface::{Interface, Stepping};
 use FlexibleRocking::snapshot;
 use FlexibleRocking::state_machine::Stage;
-use host::fmi3::call_what_is_not_provided;
-use host::{DISCARD, ERROR, OK, STAGES_OF_MODEL, reference, resources};
+use calls::fmi3::Fmi3;
+use calls::{C, Messages, bytes, check};
+use host::{ERROR, OK, STAGES_OF_MODEL, reference, resources};
 use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
 use std::cell::RefCell;
@@ -21,8 +22,8 @@ use tempfile::TempDir;
 /// step mode, event mode, intermediate update mode, step failed, terminated, error. The last three are the standard's
 /// "terminated": after overturning, after `fmi3Terminate`, after an error; after the first of them a simulation has
 /// still to be terminated. Within an intermediate update the inputs can be set, or all values be had: it is said which,
-/// and a step is no state to keep or to leave. The numbers of states and of event indicators can be had at any time, as of the
-/// Reference FMUs.
+/// and a step is no state to keep or to leave. The numbers of states and of event indicators can be had at any time, as
+/// of the Reference FMUs.
 const STANDARD: &str = "
     SetDebugLogging                 x x x x x x x x x
     EnterInitializationMode         x - - - - - - - -
@@ -70,9 +71,9 @@ const STAGES: [Stage; 9] = [
     Stage::Error,
 ];
 
-/// The standard's sections 2.3 and 3.2.1 for a model: instantiated, initialization mode, event mode, continuous-time mode,
-/// terminated, error, which is the standard's "terminated" after an error. Beyond them the Reference FMUs let time be set at an
-/// event, and the numbers be had at any time.
+/// The standard's sections 2.3 and 3.2.1 for a model: instantiated, initialization mode, event mode, continuous-time
+/// mode, terminated, error, which is the standard's "terminated" after an error. Beyond them the Reference FMUs let
+/// time be set at an event, and the numbers be had at any time.
 const STANDARD_OF_MODEL: &str = "
     SetDebugLogging                 x x x x x x
     EnterInitializationMode         x - - - - -
@@ -240,15 +241,7 @@ impl Host {
     }
 
     fn bytes(&self) -> Vec<u8> {
-        let (mut state, mut size) = (null_mut(), 0);
-        unsafe {
-            assert_eq!(fmi3GetFMUState(self.c, &mut state), OK);
-            assert_eq!(fmi3SerializedFMUStateSize(self.c, state, &mut size), OK);
-            let mut bytes = vec![0; size];
-            assert_eq!(fmi3SerializeFMUState(self.c, state, bytes.as_mut_ptr(), size), OK);
-            assert_eq!(fmi3FreeFMUState(self.c, &mut state), OK);
-            bytes
-        }
+        bytes::<Fmi3>(self.c)
     }
 
     /// As its state tells.
@@ -316,132 +309,18 @@ fn model_in(stage: Stage) -> Host {
     }
 }
 
-/// Calls `function` with arguments that are of no use, but harmless where it is allowed.
-fn call(host: &Host, function: Function) -> c_int {
-    let c = host.c;
-    let keep = || {
-        let mut state = null_mut();
-        assert_eq!(unsafe { fmi3GetFMUState(c, &mut state) }, OK);
-        state
-    };
-    let mut flags = [0u8; 5];
-    unsafe {
-        match function {
-            Function::SetDebugLogging => fmi3SetDebugLogging(c, 0, 0, null()),
-            Function::EnterInitializationMode => fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0),
-            Function::ExitInitializationMode => fmi3ExitInitializationMode(c),
-            Function::EnterEventMode => fmi3EnterEventMode(c),
-            Function::Terminate => fmi3Terminate(c),
-            Function::Reset => fmi3Reset(c),
-            Function::GetFloat64 => fmi3GetFloat64(c, null(), 0, null_mut(), 0),
-            Function::GetInt32 => fmi3GetInt32(c, null(), 0, null_mut(), 0),
-            Function::GetInt64 => fmi3GetInt64(c, null(), 0, null_mut(), 0),
-            Function::GetBoolean => fmi3GetBoolean(c, null(), 0, null_mut(), 0),
-            Function::GetString => fmi3GetString(c, null(), 0, null_mut(), 0),
-            Function::SetFloat64 => fmi3SetFloat64(c, null(), 0, null(), 0),
-            Function::SetInt32 => fmi3SetInt32(c, null(), 0, null(), 0),
-            Function::SetInt64 => fmi3SetInt64(c, null(), 0, null(), 0),
-            Function::SetBoolean => fmi3SetBoolean(c, null(), 0, null(), 0),
-            Function::SetString => fmi3SetString(c, null(), 0, null(), 0),
-            Function::GetFMUState => fmi3GetFMUState(c, &mut null_mut()),
-            Function::SetFMUState => fmi3SetFMUState(c, keep()),
-            Function::FreeFMUState => fmi3FreeFMUState(c, null_mut()),
-            Function::SerializedFMUStateSize => fmi3SerializedFMUStateSize(c, keep(), &mut 0),
-            Function::SerializeFMUState => {
-                let mut bytes = host.bytes();
-                fmi3SerializeFMUState(c, keep(), bytes.as_mut_ptr(), bytes.len())
-            }
-            Function::DeserializeFMUState => {
-                let bytes = host.bytes();
-                fmi3DeserializeFMUState(c, bytes.as_ptr(), bytes.len(), &mut null_mut())
-            }
-            Function::GetDirectionalDerivative => {
-                fmi3GetDirectionalDerivative(c, null(), 0, null(), 0, null(), 0, null_mut(), 0)
-            }
-            Function::GetAdjointDerivative => {
-                fmi3GetAdjointDerivative(c, null(), 0, null(), 0, null(), 0, null_mut(), 0)
-            }
-            Function::EvaluateDiscreteStates => fmi3EvaluateDiscreteStates(c),
-            Function::UpdateDiscreteStates => {
-                let [a, b, d, e, f] = &mut flags;
-                fmi3UpdateDiscreteStates(c, a, b, d, e, f, &mut 0.0)
-            }
-            Function::EnterStepMode => fmi3EnterStepMode(c),
-            Function::GetOutputDerivatives => fmi3GetOutputDerivatives(c, null(), 0, null(), null_mut(), 0),
-            Function::DoStep => host.step(0.0, 1e-3),
-            Function::EnterContinuousTimeMode => fmi3EnterContinuousTimeMode(c),
-            Function::CompletedIntegratorStep => fmi3CompletedIntegratorStep(c, 0, &mut 0, &mut 0),
-            Function::SetTime => fmi3SetTime(c, 0.0),
-            Function::SetContinuousStates => fmi3SetContinuousStates(c, [0.0; 4].as_ptr(), 4),
-            Function::GetContinuousStateDerivatives => fmi3GetContinuousStateDerivatives(c, [0.0; 4].as_mut_ptr(), 4),
-            Function::GetEventIndicators => fmi3GetEventIndicators(c, [0.0; 2].as_mut_ptr(), 2),
-            Function::GetContinuousStates => fmi3GetContinuousStates(c, [0.0; 4].as_mut_ptr(), 4),
-            Function::GetNominalsOfContinuousStates => fmi3GetNominalsOfContinuousStates(c, [0.0; 4].as_mut_ptr(), 4),
-            Function::GetNumberOfEventIndicators => fmi3GetNumberOfEventIndicators(c, &mut 0),
-            Function::GetNumberOfContinuousStates => fmi3GetNumberOfContinuousStates(c, &mut 0),
-            not_provided => call_what_is_not_provided(c, not_provided),
-        }
-    }
-}
-
-/// What an allowed call of [`call`] returns, and where it leads.
-fn outcome(function: Function, stage: Stage) -> (c_int, Stage) {
-    match function {
-        // where the equations are singular
-        Function::GetContinuousStateDerivatives if stage == Stage::Error => (DISCARD, stage),
-        Function::EnterInitializationMode => (OK, Stage::InitializationMode),
-        Function::ExitInitializationMode | Function::EnterEventMode => (OK, Stage::EventMode),
-        Function::EnterStepMode => (OK, Stage::StepComplete),
-        Function::EnterContinuousTimeMode => (OK, Stage::ContinuousTimeMode),
-        Function::Terminate => (OK, Stage::Terminated),
-        Function::Reset => (OK, Stage::Instantiated),
-        _ => (OK, stage),
-    }
-}
-
-/// Every function in every one of `stages` in which an instance stays, as `table` allows it; what is in no row of it is
-/// allowed nowhere.
-fn check(table: &str, stages: &[Stage], host_in: fn(Stage) -> Host) {
-    let rows: Vec<Vec<_>> = table.trim().lines().map(|row| row.split_whitespace().collect()).collect();
-    let functions: Vec<_> = Function::ALL.iter().map(|function| function.name()).collect();
-    assert!(rows.iter().all(|row| functions.contains(&&*format!("fmi3{}", row[0])) && row.len() == 1 + stages.len()));
-    for function in Function::ALL.iter().copied() {
-        let name = function.name();
-        let row = rows.iter().find(|row| format!("fmi3{}", row[0]) == name);
-        let is_allowed = |stage: &Stage| {
-            let column = 1 + stages.iter().position(|column| column == stage).unwrap();
-            row.is_some_and(|row| row[column] == "x")
-        };
-        let allowed: Vec<_> =
-            Stage::ALL.into_iter().filter(|stage| stages.contains(stage) && is_allowed(stage)).collect();
-        let names: Vec<_> = allowed.iter().map(Stage::to_string).collect();
-        let names = if names.is_empty() { "none".to_owned() } else { names.join(", ") };
-        for stage in stages.iter().copied().filter(|stage| !stage.is_within_step()) {
-            let host = host_in(stage);
-            assert_eq!(host.stage(), stage);
-            host.log.borrow_mut().clear();
-            let (before, status) = (host.bytes(), call(&host, function));
-            let log = host.log.take();
-            if allowed.contains(&stage) {
-                assert_eq!((status, host.stage()), outcome(function, stage), "{name} in {stage}: {log:?}");
-                assert_eq!(log.len(), usize::from(status != OK), "{log:?}");
-            } else {
-                let refusal = format!("{name}: not allowed in the state \"{stage}\"; allowed in: {names}");
-                assert_eq!((status, log), (ERROR, vec![(ERROR, refusal)]));
-                assert_eq!(host.bytes(), before, "the refused {name} changed something");
-            }
-        }
-    }
+fn look(host: &Host) -> (C, Messages) {
+    (host.c, host.log.take())
 }
 
 #[test]
 fn a_call_of_a_slave_is_allowed_where_the_standard_says_so() {
-    check(STANDARD, &STAGES, slave_in);
+    check::<Fmi3, _>(STANDARD, &STAGES, Stage::EventMode, slave_in, look);
 }
 
 #[test]
 fn a_call_of_a_model_is_allowed_where_the_standard_says_so() {
-    check(STANDARD_OF_MODEL, &STAGES_OF_MODEL, model_in);
+    check::<Fmi3, _>(STANDARD_OF_MODEL, &STAGES_OF_MODEL, Stage::EventMode, model_in, look);
 }
 
 /// The same calls lead to the same bytes, from which either goes on.
@@ -499,7 +378,8 @@ fn the_indicators_are_variables() {
     assert_eq!(count, [2, 4]);
 }
 
-/// An acceleration that a host sets at an event lifts a rigid structure off there and then, unless it is to come one step late.
+/// An acceleration that a host sets at an event lifts a rigid structure off there and then, unless it is to come one
+/// step late.
 #[test]
 fn what_acts_at_an_event_is_what_lifts_off_there() {
     for (a_g_late, phase_after) in [(0, 3), (1, 1)] {
@@ -515,18 +395,74 @@ fn what_acts_at_an_event_is_what_lifts_off_there() {
     }
 }
 
-/// Of another host's integration a state can be gone to by a host of its own kind alone.
+/// A host can go to a state that an instance of its own kind has kept, and to no other.
 #[test]
-fn a_models_state_is_none_of_a_slave() {
-    let (bytes, slave) = (Host::going_model(&[]).bytes(), Host::started(&[]));
-    let (before, mut state) = (slave.bytes(), null_mut());
-    unsafe {
-        assert_eq!(fmi3DeserializeFMUState(slave.c, bytes.as_ptr(), bytes.len(), &mut state), OK);
-        assert_eq!(fmi3SetFMUState(slave.c, state), ERROR);
+fn a_state_is_taken_by_an_instance_of_its_kind_alone() {
+    let plain = Host::new(Interface::CoSimulation(Stepping::default()));
+    for (bytes, slave) in [(Host::going_model(&[]).bytes(), Host::started(&[])), (Host::started(&[]).bytes(), plain)] {
+        let (before, mut state) = (slave.bytes(), null_mut());
+        unsafe {
+            assert_eq!(fmi3DeserializeFMUState(slave.c, bytes.as_ptr(), bytes.len(), &mut state), OK);
+            assert_eq!(fmi3SetFMUState(slave.c, state), ERROR);
+        }
+        assert_eq!(slave.bytes(), before);
+        let message = "fmi3SetFMUState: the FMU state was kept by an instance of another kind: model exchange, co-simulation, \
+                       and co-simulation with eventModeUsed or earlyReturnAllowed have states of their own";
+        assert_eq!(slave.log.take(), [(ERROR, message.to_owned())]);
     }
-    assert_eq!(slave.bytes(), before);
-    let log = slave.log.take();
-    assert!(log[0].1.starts_with("fmi3SetFMUState: the FMU state was kept by an instance of another kind"), "{log:?}");
+}
+
+/// Messages name the function that was called, and end with the function of this version to call instead.
+#[test]
+fn a_refusal_names_the_function_and_what_to_call() {
+    let host = Host::new(Interface::CoSimulation(Stepping::default()));
+    let (c, mut flag, mut real) = (host.c, 0, 0.0);
+    let refused = |status: c_int, message: &str| {
+        assert_eq!(status, ERROR);
+        assert_eq!(host.log.take(), [(ERROR, message.to_owned())]);
+    };
+    unsafe {
+        assert_eq!((fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 1, 2.0), fmi3ExitInitializationMode(c)), (OK, OK));
+        let mut get = |name| fmi3GetFloat64(c, &reference(name), 1, &mut real, 1);
+        refused(get("transitions"), "fmi3GetFloat64: transitions is an integer: call fmi3GetInt32 instead");
+        let message = "fmi3GetFloat64: phase is an enumeration: call fmi3GetInt64 or fmi3SetInt64 instead";
+        refused(get("phase"), message);
+        let message = "fmi3GetFloat64: peaks is a Boolean: call fmi3GetBoolean or fmi3SetBoolean instead";
+        refused(get("peaks"), message);
+        let message = "fmi3GetFloat64: record is a string: call fmi3GetString or fmi3SetString instead";
+        refused(get("record"), message);
+        let message = "fmi3GetInt64: theta is a real number: call fmi3GetFloat64 or fmi3SetFloat64 instead";
+        refused(fmi3GetInt64(c, &reference("theta"), 1, &mut 0, 1), message);
+        let message = "fmi3SetFloat64: m is fixed once the simulation has started: set it before fmi3ExitInitializationMode, \
+                       or call fmi3Reset";
+        refused(fmi3SetFloat64(c, &reference("m"), 1, &1.0, 1), message);
+        refused(fmi3GetFloat64(c, &2, 1, &mut real, 2), "fmi3GetFloat64: nValues = 2 is not 1");
+        let message = "fmi3GetUInt8: not allowed in the state \"step complete\"; allowed in: none";
+        refused(fmi3GetUInt8(c, &2, 1, &mut 0, 1), message);
+        let message = "fmi3EnterEventMode: there is no event mode: the instance was made with eventModeUsed = false";
+        refused(fmi3EnterEventMode(c), message);
+        let mut step = |time: f64, step: f64| fmi3DoStep(c, time, step, 0, &mut flag, &mut 0, &mut 0, &mut 0.0);
+        let message = "fmi3DoStep: currentCommunicationPoint = 1 s is not where the FMU is, t = 0 s: step from there, or go \
+                       back with fmi3SetFMUState";
+        refused(step(1.0, 0.1), message);
+        let message = "fmi3DoStep: the step would end at t = 3 s, past stopTime = 2 s given to fmi3EnterInitializationMode: \
+                       shorten it";
+        refused(step(0.0, 3.0), message);
+        let (mut state, size) = (null_mut(), host.bytes().len());
+        assert_eq!(fmi3GetFMUState(c, &mut state), OK);
+        let message = format!(
+            "fmi3SerializeFMUState: size = 0 does not fit: the serialized FMU state takes {size} bytes \
+             (fmi3SerializedFMUStateSize)"
+        );
+        refused(fmi3SerializeFMUState(c, state, null_mut(), 0), &message);
+        let model = Host::going_model(&[]);
+        assert_eq!((fmi3SetTime(model.c, -1.0), fmi3CompletedIntegratorStep(model.c, 1, &mut 0, &mut 0)), (OK, ERROR));
+        assert!(
+            model.log.take()[0]
+                .1
+                .ends_with("time goes on from an event or a complete step, or goes back with fmi3SetFMUState")
+        );
+    }
 }
 
 /// An instance is of one version: the other's functions find no component in it.
@@ -540,8 +476,8 @@ fn the_other_versions_functions_refuse_an_instance() {
     assert_eq!(host.stage(), Stage::StepComplete);
 }
 
-/// A host that is called back. It may set inputs before a step is computed and read afterwards, and nothing else; least of
-/// all free the instance.
+/// A host that is called back. It may set inputs before a step is computed and read afterwards, and nothing else; least
+/// of all free the instance.
 struct Called {
     c: *mut c_void,
     /// What the input is to be at the end of the next step.

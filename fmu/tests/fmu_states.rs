@@ -38,7 +38,8 @@ fn going_back_repeats_the_same_bits() {
     let state = host.keep();
     assert_eq!(host.step(1.0, 0.01), OK);
     let first = (host.try_get(&OUTPUTS).unwrap(), run(&host, 1.01), host.bytes());
-    assert!(host.integer("transitions") > 3);
+    assert!(host.integer("transitions") > 3 && host.rate("R_h", 1).is_ok());
+    assert_eq!(host.bytes(), first.2, "reading changes nothing");
     for _ in 0..2 {
         assert_eq!(host.go_back(state), OK);
         assert_eq!(host.step(1.0, 0.01), OK);

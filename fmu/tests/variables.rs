@@ -246,6 +246,18 @@ fn a_variable_is_read_as_what_it_is() {
     let host = Host::started(&[]);
     let message = "fmi2GetReal: phase is an enumeration: call fmi2GetInteger or fmi2SetInteger instead";
     host.assert_refused(|| host.try_get(&["theta", "phase"]), Err(ERROR), message);
+    let last = VARIABLES.len() - 1;
+    let unknown = format!("fmi2GetReal: value reference 4000000000 does not exist; they run from 0 to {last}");
+    let get = |references: [u32; 2]| unsafe {
+        let mut values = [f64::MAX; 2];
+        let status = fmi2GetReal(host.component, references.as_ptr(), 2, values.as_mut_ptr());
+        (status, values)
+    };
+    for (references, message) in
+        [([4_000_000_000, reference("phase")], unknown.as_str()), ([reference("phase"), 4_000_000_000], message)]
+    {
+        host.assert_refused(|| get(references), (ERROR, [f64::MAX; 2]), message);
+    }
     let message = "fmi2GetReal: overturned is a Boolean: call fmi2GetBoolean or fmi2SetBoolean instead";
     host.assert_refused(|| host.try_get(&["overturned"]), Err(ERROR), message);
     let message = "fmi2GetInteger: theta is a real number: call fmi2GetReal or fmi2SetReal instead";

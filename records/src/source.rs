@@ -71,7 +71,7 @@ pub enum UnitFrom {
     File,
     /// The user, where the file says nothing.
     User,
-    /// Nobody.
+    /// No one: the unit is assumed.
     Assumed,
 }
 

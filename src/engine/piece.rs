@@ -17,7 +17,7 @@ use std::f64::consts::TAU;
 
 /// Watches a motion go by.
 pub trait Watch {
-    /// Whether it looks at pieces: who does not does not pay for them.
+    /// Whether it looks at pieces. If not, none is made for it.
     const SEES_PIECES: bool;
 
     /// The next piece of it.
@@ -40,12 +40,12 @@ pub struct Equations<'a> {
     pub(crate) level: &'a mut dyn Level,
 }
 
-/// Nobody.
+/// A watch that sees nothing.
 impl Watch for () {
     const SEES_PIECES: bool = false;
 }
 
-/// Whoever wants the transitions alone.
+/// A watch of transitions alone.
 impl<F: FnMut(&Transition)> Watch for F {
     const SEES_PIECES: bool = false;
 
@@ -54,7 +54,7 @@ impl<F: FnMut(&Transition)> Watch for F {
     }
 }
 
-/// Two at once.
+/// Two watches at once.
 impl<A: Watch, B: Watch> Watch for (&mut A, &mut B) {
     const SEES_PIECES: bool = A::SEES_PIECES || B::SEES_PIECES;
 

@@ -11,8 +11,9 @@
 //! Uplift asks for s u ≥ u_cr and s θ̈ > 0, which neither of them enters; impacts are too short for both.
 
 use crate::Structure;
-use crate::structure::quantity::{Quantity, quantity};
+use crate::structure::quantity::{OutOfRange, Quantity, quantity};
 use serde::{Deserialize, Serialize};
+use std::ops::{Index, IndexMut};
 
 /// An acceleration over one interval, positive to the right: `value + slope·(t − start of the interval)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -51,7 +52,7 @@ pub static LOADS: [Quantity<Load>; 2] = [
     quantity!(F_t["N"] - 1e15, 1e15, "external horizontal force on the top mass, positive to the right"),
 ];
 
-/// What acts at one instant, or its rate.
+/// What acts at one instant, or its rate; indexed in the order of [`LOADS`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Load {
     /// Ground acceleration, m/s², positive to the right.
@@ -73,10 +74,41 @@ impl Load {
         self.a_g.abs() <= f64::MAX && self.F_t.abs() <= f64::MAX
     }
 
+    /// Accepts what lies within the ranges of [`LOADS`].
+    #[inline]
+    pub fn check(&self) -> Result<(), OutOfRange> {
+        LOADS[0].check(self.a_g)?;
+        LOADS[1].check(self.F_t)
+    }
+
     /// a_g − F_t/m, the ground acceleration that the top mass feels, m/s².
     #[inline]
     pub fn on_top(self, structure: &Structure) -> f64 {
         self.a_g - self.F_t / structure.parameters().m
+    }
+}
+
+impl Index<usize> for Load {
+    type Output = f64;
+
+    #[inline]
+    fn index(&self, which: usize) -> &f64 {
+        match which {
+            0 => &self.a_g,
+            1 => &self.F_t,
+            _ => panic!("there is no load {which}"),
+        }
+    }
+}
+
+impl IndexMut<usize> for Load {
+    #[inline]
+    fn index_mut(&mut self, which: usize) -> &mut f64 {
+        match which {
+            0 => &mut self.a_g,
+            1 => &mut self.F_t,
+            _ => panic!("there is no load {which}"),
+        }
     }
 }
 

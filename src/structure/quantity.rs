@@ -44,18 +44,15 @@ pub struct OutOfRange {
 
 impl<T> Quantity<T> {
     /// Accepts `value` (in the quantity's unit), or says by name, value and limit why not. NaN and ±∞ are refused.
+    #[inline]
     pub fn check(&self, value: f64) -> Result<(), OutOfRange> {
-        if (self.min..=self.max).contains(&value) {
-            return Ok(());
-        }
-        Err(OutOfRange {
-            name: self.name,
-            value,
-            unit: self.unit,
-            min: self.min,
-            max: self.max,
-            description: self.description,
-        })
+        if (self.min..=self.max).contains(&value) { Ok(()) } else { Err(self.refused(value)) }
+    }
+
+    #[cold]
+    fn refused(&self, value: f64) -> OutOfRange {
+        let &Quantity { name, unit, description, min, max, .. } = self;
+        OutOfRange { name, value, unit, min, max, description }
     }
 }
 

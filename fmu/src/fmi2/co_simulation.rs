@@ -2,17 +2,16 @@
 //! the standard's states "step in progress" and "step canceled").
 
 use super::Function;
-use crate::state_machine::{Stage, table};
+use crate::state_machine::{Stage, Table, table};
 
 #[rustfmt::skip]
 table! {
-    [Instantiated, InitializationMode, StepComplete, StepFailed, Terminated, Error]
-    //                             instantiated
-    //                               initialization mode
-    //                                 step complete
-    //                                   step failed
-    //                                     terminated
-    //                                       error
+    [                              Instantiated,
+                                     InitializationMode,
+                                       StepComplete,
+                                         StepFailed,
+                                           Terminated,
+                                             Error]
     SetDebugLogging               [x x x x x x]
     SetupExperiment               [x - - - - -]
     EnterInitializationMode       [x - - - - -]
@@ -42,7 +41,4 @@ table! {
     GetIntegerStatus              [- - x x x -]
     GetBooleanStatus              [- - x x x -]
     GetStringStatus               [- - x x x -]
-    // nowhere:
-    - CancelStep EnterEventMode NewDiscreteStates EnterContinuousTimeMode CompletedIntegratorStep SetTime
-      SetContinuousStates GetDerivatives GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates
 }

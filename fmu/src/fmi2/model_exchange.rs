@@ -1,18 +1,17 @@
-//! Which function may be called when: FMI 2.0, section 3.2.3, for a model. Since FMI 2.0.1 time is set at an event of models
-//! without continuous states alone; hosts that do so here are let.
+//! Which function may be called when: FMI 2.0, section 3.2.3, for a model. Since FMI 2.0.1 time is set at an event of
+//! models without continuous states alone; hosts that do so here are let.
 
 use super::Function;
-use crate::state_machine::{Stage, table};
+use crate::state_machine::{Stage, Table, table};
 
 #[rustfmt::skip]
 table! {
-    [Instantiated, InitializationMode, EventMode, ContinuousTimeMode, Terminated, Error]
-    //                             instantiated
-    //                               initialization mode
-    //                                 event mode
-    //                                   continuous-time mode
-    //                                     terminated
-    //                                       error
+    [                              Instantiated,
+                                     InitializationMode,
+                                       EventMode,
+                                         ContinuousTimeMode,
+                                           Terminated,
+                                             Error]
     SetDebugLogging               [x x x x x x]
     SetupExperiment               [x - - - - -]
     EnterInitializationMode       [x - - - - -]
@@ -44,7 +43,4 @@ table! {
     GetEventIndicators            [- x x x x x]
     GetContinuousStates           [- x x x x x]
     GetNominalsOfContinuousStates [x x x x x x]
-    // nowhere:
-    - SetRealInputDerivatives GetRealOutputDerivatives DoStep CancelStep GetStatus GetRealStatus GetIntegerStatus
-      GetBooleanStatus GetStringStatus
 }

@@ -1,22 +1,21 @@
-//! Which function may be called when: FMI 3.0, sections 2.3 and 4.2.1. Beside the standard's states stand "step failed",
-//! to which overturning leads, after which there is nothing to step to, and "error", in which the solver could not go on.
+//! Which function may be called when: FMI 3.0, sections 2.3 and 4.2.1. Beside the standard's states stand "step
+//! failed", to which overturning leads, after which there is nothing to step to, and "error", in which the solver could
+//! not go on.
 
 use super::Function;
-use crate::state_machine::{Stage, table};
+use crate::state_machine::{Stage, Table, table};
 
 #[rustfmt::skip]
 table! {
-    [Instantiated, InitializationMode, StepComplete, EventMode, IntermediateUpdateMode, IntermediateOutputs, StepFailed,
-     Terminated, Error]
-    //                               instantiated
-    //                                 initialization mode
-    //                                   step mode
-    //                                     event mode
-    //                                       intermediate update mode, for inputs
-    //                                         the same for outputs
-    //                                           step failed: overturned
-    //                                             terminated
-    //                                               error
+    [                                Instantiated,
+                                       InitializationMode,
+                                         StepComplete,
+                                           EventMode,
+                                             IntermediateUpdateMode,
+                                               IntermediateOutputs,
+                                                 StepFailed,
+                                                   Terminated,
+                                                     Error]
     SetDebugLogging                 [x x x x x x x x x]
     EnterInitializationMode         [x - - - - - - - -]
     ExitInitializationMode          [- x - - - - - - -]
@@ -48,11 +47,4 @@ table! {
     DoStep                          [- - x - - - - - -]
     GetNumberOfEventIndicators      [x x x x x x x x x]
     GetNumberOfContinuousStates     [x x x x x x x x x]
-    // nowhere:
-    - GetFloat32 GetInt8 GetUInt8 GetInt16 GetUInt16 GetUInt32 GetUInt64 GetBinary GetClock SetFloat32 SetInt8
-      SetUInt8 SetInt16 SetUInt16 SetUInt32 SetUInt64 SetBinary SetClock GetNumberOfVariableDependencies
-      GetVariableDependencies EnterConfigurationMode ExitConfigurationMode GetIntervalDecimal GetIntervalFraction
-      GetShiftDecimal GetShiftFraction SetIntervalDecimal SetIntervalFraction SetShiftDecimal SetShiftFraction
-      EnterContinuousTimeMode CompletedIntegratorStep SetTime SetContinuousStates GetContinuousStateDerivatives
-      GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates ActivateModelPartition
 }

@@ -1,18 +1,17 @@
-//! Which function may be called when: FMI 3.0, sections 2.3 and 3.2.1. Beside the standard's states stands "error", in which
-//! the solver could not go on.
+//! Which function may be called when: FMI 3.0, sections 2.3 and 3.2.1. Beside the standard's states stands "error", in
+//! which the solver could not go on.
 
 use super::Function;
-use crate::state_machine::{Stage, table};
+use crate::state_machine::{Stage, Table, table};
 
 #[rustfmt::skip]
 table! {
-    [Instantiated, InitializationMode, EventMode, ContinuousTimeMode, Terminated, Error]
-    //                               instantiated
-    //                                 initialization mode
-    //                                   event mode
-    //                                     continuous-time mode
-    //                                       terminated
-    //                                         error
+    [                                Instantiated,
+                                       InitializationMode,
+                                         EventMode,
+                                           ContinuousTimeMode,
+                                             Terminated,
+                                               Error]
     SetDebugLogging                 [x x x x x x]
     EnterInitializationMode         [x - - - - -]
     ExitInitializationMode          [- x - - - -]
@@ -49,10 +48,4 @@ table! {
     GetNominalsOfContinuousStates   [- x x x x x]
     GetNumberOfEventIndicators      [x x x x x x]
     GetNumberOfContinuousStates     [x x x x x x]
-    // nowhere:
-    - EnterStepMode GetOutputDerivatives DoStep GetFloat32 GetInt8 GetUInt8 GetInt16 GetUInt16 GetUInt32 GetUInt64
-      GetBinary GetClock SetFloat32 SetInt8 SetUInt8 SetInt16 SetUInt16 SetUInt32 SetUInt64 SetBinary SetClock
-      GetNumberOfVariableDependencies GetVariableDependencies EnterConfigurationMode ExitConfigurationMode
-      GetIntervalDecimal GetIntervalFraction GetShiftDecimal GetShiftFraction SetIntervalDecimal SetIntervalFraction
-      SetShiftDecimal SetShiftFraction ActivateModelPartition
 }

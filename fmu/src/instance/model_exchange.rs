@@ -1,11 +1,13 @@
-//! What an instance does for a host that integrates: it gives derivatives and event indicators at any time and state, checks
-//! every complete step, and applies transitions.
+//! What an instance does for a host that integrates: it gives derivatives and event indicators at any time and state,
+//! checks every complete step, and applies transitions.
 //!
 //! The engine stands where the host is; [`Known`] is where the motion was last known to be right.
 
-use super::{Instance, Updated, log};
-use crate::condition::{FARTHEST, Model, Outside};
+use super::{Instance, Updated};
+use crate::condition::FARTHEST;
 use crate::failure::Failure;
+use crate::model::{Model, Outside};
+use crate::motion_log::log;
 use crate::setup::Setup;
 use crate::state_machine::Stage;
 use rocking::engine::AdvanceError;
@@ -14,8 +16,8 @@ use rocking::run::ground_motion::Elapsed;
 use rocking::run::outside_step::{Checked, INDICATORS, Known};
 use rocking::{Load, Motion, State, Transition, Watch};
 
-/// The relative tolerance up to which samples of the record are events. A solver of high order that integrates over the kinks
-/// there is not as exact as it believes; below an error of some 1e-5 to start anew at each is the cheaper way
+/// The relative tolerance up to which samples of the record are events. A solver of high order that integrates over the
+/// kinks there is not as exact as it believes; below an error of some 1e-5 to start anew at each is the cheaper way
 /// (docs/model_exchange.md).
 const KINKS_MATTER: f64 = 1e-8;
 
@@ -29,8 +31,8 @@ pub struct Completed {
 }
 
 impl Model {
-    /// The ground's time at the host's clock, whose last digits are coarse where the start is late: what has been announced as
-    /// the instant of a sample is that instant.
+    /// The ground's time at the host's clock, whose last digits are coarse where the start is late: what has been
+    /// announced as the instant of a sample is that instant.
     fn elapsed_at(&self, setup: &Setup, time: f64) -> Elapsed {
         let elapsed = Elapsed::default().and(time - setup.start_time);
         let resolution = 2.0 * f64::EPSILON * time.abs().max(setup.start_time.abs());
@@ -70,17 +72,17 @@ impl Model {
 }
 
 impl Instance {
-    /// From here on the host integrates.
+    /// Leaves the motion to the host's integrator.
     pub(super) fn start_outside(&mut self) -> Result<(), Failure> {
-        let (model, _, inputs, _) = self.now.parts(&self.archive)?;
+        let (model, _, inputs, _) = self.now.parts()?;
         let (motion, elapsed, load) = (*model.engine.motion(), model.elapsed, inputs.values());
         model.outside = Some(Outside { known: Known { motion, elapsed, load }, arrived: load, event: elapsed });
         Ok(())
     }
 
-    /// The host is at `time` (s).
+    /// Goes to the host's `time` (s).
     pub fn set_time(&mut self, time: f64) -> Result<(), Failure> {
-        let (model, setup, _, stage) = self.now.parts(&self.archive)?;
+        let (model, setup, _, stage) = self.now.parts()?;
         if !(time.is_finite() && (time - setup.start_time).is_finite()) {
             return Err(Failure::BadTime(time));
         }
@@ -93,33 +95,33 @@ impl Instance {
         Ok(())
     }
 
-    /// The host is at the state u, u̇, θ, θ̇.
+    /// Goes to the host's state u, u̇, θ, θ̇.
     pub fn set_continuous_states(&mut self, states: [f64; COMPONENTS.len()]) -> Result<(), Failure> {
         (0..).zip(states).try_for_each(|(which, value)| check_state(which, value))?;
-        self.now.model(&self.archive)?.engine.set_state(State::of(states));
+        self.now.model()?.engine.set_state(State::of(states));
         Ok(())
     }
 
-    /// Of these, the host is at `value` of the one at place `which`.
+    /// Goes to the host's `value` of the state at place `which`.
     pub(super) fn set_continuous_state(&mut self, which: usize, value: f64) -> Result<(), Failure> {
         let mut states = self.continuous_states()?;
         states[which] = value;
         self.set_continuous_states(states)
     }
 
-    /// Where the host is, or where it is to start from.
+    /// The state at which the host is, or from which it is to start.
     pub fn continuous_states(&mut self) -> Result<[f64; COMPONENTS.len()], Failure> {
-        Ok(self.now.model(&self.archive)?.engine.motion().state.components())
+        Ok(self.now.model()?.engine.motion().state.components())
     }
 
     /// The magnitudes of the states.
     pub fn nominals(&mut self) -> Result<[f64; COMPONENTS.len()], Failure> {
-        Ok(State::usual(self.now.model(&self.archive)?.engine.structure()).components())
+        Ok(State::usual(self.now.model()?.engine.structure()).components())
     }
 
     /// Derivatives of the states.
     pub fn derivatives(&mut self) -> Result<[f64; COMPONENTS.len()], Failure> {
-        let (model, setup, inputs, _) = self.now.parts(&self.archive)?;
+        let (model, setup, inputs, _) = self.now.parts()?;
         let rates = model.engine.sample(model.acting(setup, inputs.values())).state_rates();
         if !rates.is_finite() {
             let &Motion { time, state: State { u, theta, .. }, .. } = model.engine.motion();
@@ -130,14 +132,14 @@ impl Instance {
 
     /// The event indicators.
     pub fn event_indicators(&mut self) -> Result<[f64; INDICATORS], Failure> {
-        let (model, setup, inputs, _) = self.now.parts(&self.archive)?;
+        let (model, setup, inputs, _) = self.now.parts()?;
         Ok(model.engine.sample(model.acting(setup, inputs.values())).event_indicators())
     }
 
-    /// The host has made a step to where it is. Where that has passed a transition over, the step is left as it is until
-    /// event mode puts it right.
+    /// Checks the step that the host has made to where it is. If it has passed over a transition, event mode puts it
+    /// right.
     pub fn completed_integrator_step(&mut self) -> Result<Completed, Failure> {
-        let (model, setup, inputs, stage) = self.now.parts(&self.archive)?;
+        let (model, setup, inputs, stage) = self.now.parts()?;
         let load = inputs.values();
         let Some(mut outside) = model.outside else {
             return Ok(Completed { needs_event_mode: false, has_ended: false });
@@ -153,9 +155,9 @@ impl Instance {
         Ok(Completed { needs_event_mode: is_corrected, has_ended: model.has_overturned() })
     }
 
-    /// There is an event where the host is.
+    /// Remembers what acts where the host goes to event mode.
     pub(super) fn arrive_at_event(&mut self) -> Result<(), Failure> {
-        let (model, _, inputs, stage) = self.now.parts(&self.archive)?;
+        let (model, _, inputs, stage) = self.now.parts()?;
         if let Some(outside) = &mut model.outside
             && *stage == Stage::ContinuousTimeMode
         {
@@ -167,7 +169,7 @@ impl Instance {
     /// Applies the transitions up to where the host is, and the uplift that is due there.
     pub(super) fn catch_up(&mut self) -> Result<Updated, Failure> {
         let logger = &self.logger;
-        let (model, setup, inputs, stage) = self.now.parts(&self.archive)?;
+        let (model, setup, inputs, stage) = self.now.parts()?;
         let Some(outside) = model.outside else {
             return Ok(Updated::default());
         };
@@ -201,15 +203,9 @@ impl Instance {
             next_event: model.next_event(setup),
         })
     }
-
-    /// On to the next event.
-    pub fn enter_continuous_time_mode(&mut self) -> Result<(), Failure> {
-        self.now.stage = Stage::ContinuousTimeMode;
-        Ok(())
-    }
 }
 
-/// Where the motion ends, so does the simulation.
+/// Goes to the stage of errors where the equations are singular.
 fn stop_if_singular(stage: &mut Stage, failure: &Failure) {
     if let Failure::Advance(AdvanceError::Singular { .. }) = failure {
         *stage = Stage::Error;

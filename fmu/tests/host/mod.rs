@@ -1,8 +1,6 @@
 //! A host: loads nothing, calls the C functions directly, keeps what is logged.
 #![allow(unsafe_code, dead_code)] // the C interface; every test file uses a part of this
 
-pub mod fmi3;
-
 use FlexibleRocking::fmi2::*;
 use FlexibleRocking::guid;
 use FlexibleRocking::resources::PARAMETERS_FILE;

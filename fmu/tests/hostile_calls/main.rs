@@ -1,60 +1,57 @@
-//! Hostile calls: random functions in any order, with arguments from sensible to absurd, of every interface of either version.
+//! Hostile calls: random functions in any order, with arguments from sensible to absurd, of every interface of either
+//! version.
 //!
-//! `FUZZ_CALLS` says how many calls of each interface to make (`make fuzz`: ten million). Calls come in sequences of a few
-//! hundred on two instances; what a sequence does follows from its number alone, and a failure names it.
+//! `FUZZ_CALLS` says how many calls of each interface to make (`make fuzz`: ten million). Calls come in sequences of a
+//! few hundred on two instances. What a call does follows from its number and from the calls before it; of a sequence
+//! that fails proptest leaves out all calls that need not be there.
 #![allow(unsafe_code)]
 
+#[path = "../calls/mod.rs"]
+mod calls;
 mod fmi2;
 mod fmi3;
 #[path = "../host/mod.rs"]
 mod host;
 
 use FlexibleRocking::c_abi::Function as _;
-use FlexibleRocking::condition::{Condition, Interface, Stepping};
+use FlexibleRocking::condition::Condition;
+use FlexibleRocking::interface::{Interface, Stepping};
 use FlexibleRocking::resources::Archive;
 use FlexibleRocking::snapshot;
 use FlexibleRocking::state_machine::Stage;
 use FlexibleRocking::variables::{Causality, DataType, VARIABLES};
+use calls::{C, Call, Version, fmi2::Fmi2, fmi3::Fmi3};
 use fastrand::Rng;
-use fmi2::Fmi2;
-use fmi3::Fmi3;
 use host::{DISCARD, ERROR, OK};
 use libc::{c_char, c_int, c_uint, c_void};
+use proptest::collection::vec;
+use proptest::prelude::any;
+use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use rocking::Parameters;
 use rocking::engine::MAX_STEPS_PER_ADVANCE;
 use rocking::run::validity::ASSUMPTIONS;
 use rocking::series::taylor::MAX_ORDER;
 use std::cell::{Cell, RefCell};
 use std::ffi::{CStr, CString};
-use std::fmt::Debug;
 use std::marker::PhantomData;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::path::Path;
 use std::ptr::{null, null_mut, without_provenance_mut};
 use std::slice;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::{Duration, Instant};
-use std::{env, fmt, fs, thread};
+use std::{env, fs};
 use uuid::Uuid;
 
 /// Calls of each interface without `FUZZ_CALLS`.
 const CALLS: u64 = 100_000;
 
-const CALLS_PER_SEQUENCE: u64 = 400;
+/// On average.
+const CALLS_PER_SEQUENCE: usize = 400;
 
-/// An instance.
-type C = *mut c_void;
+/// Sequences in which all is made that is made when it is first needed.
+const WARMING_UP: u32 = 20;
 
-/// A version of the standard: its functions by the arguments that they take.
-trait Version {
-    type Function: FlexibleRocking::c_abi::Function + PartialEq + Debug;
-
-    /// What the driver itself calls to look at an instance.
-    const LOOKING: Looking;
-
-    /// How to call `function`.
-    fn call(function: Self::Function) -> Call;
-
+/// What sequences of hostile calls need of a version of the standard.
+trait Hostile: Version {
     /// Functions that lead on from `stage`.
     fn leading_on(stage: Stage) -> &'static [Self::Function];
 
@@ -63,58 +60,6 @@ trait Version {
 
     /// Makes an instance of `interface`, which tells `told` what it logs, of a name, a token and a location.
     fn instantiate(rng: &mut Rng, interface: Interface, texts: [*const c_char; 3], told: Option<&Told>) -> C;
-}
-
-/// Functions with which an instance is looked at and freed.
-struct Looking {
-    free: unsafe extern "C" fn(C),
-    get_state: unsafe extern "C" fn(C, *mut C) -> c_int,
-    free_state: unsafe extern "C" fn(C, *mut C) -> c_int,
-    size: unsafe extern "C" fn(C, C, *mut usize) -> c_int,
-    serialize: unsafe extern "C" fn(C, C, *mut u8, usize) -> c_int,
-    event_indicators: unsafe extern "C" fn(C, *mut f64, usize) -> c_int,
-}
-
-/// A function by its arguments: value references come with their number; the last number, where there is one, is that of values,
-/// which FMI 3.0 is given as well.
-enum Call {
-    Plain(fn(C) -> c_int),
-    SetDebugLogging(fn(C, c_int, usize, *const *const c_char) -> c_int),
-    /// Tolerance, start and stop time.
-    SetUp(fn(C, c_int, f64, f64, c_int, f64) -> c_int),
-    GetReals(fn(C, *const c_uint, usize, *mut f64, usize) -> c_int),
-    GetRates(fn(C, *const c_uint, usize, *const c_int, *mut f64, usize) -> c_int),
-    SetReals(fn(C, *const c_uint, usize, *const f64, usize) -> c_int),
-    SetSlopes(fn(C, *const c_uint, usize, *const c_int, *const f64) -> c_int),
-    /// Of values of so many bytes.
-    GetDiscrete(usize, fn(C, *const c_uint, usize, *mut c_void, usize) -> c_int),
-    /// The same, of these variables, more often than not.
-    SetDiscrete(&'static [&'static str], usize, fn(C, *const c_uint, usize, *const c_void, usize) -> c_int),
-    GetStrings(fn(C, *const c_uint, usize, *mut *const c_char, usize) -> c_int),
-    SetStrings(fn(C, *const c_uint, usize, *mut *const c_char, usize) -> c_int),
-    /// Unknowns, knowns, seed and what comes out.
-    Directional(fn(C, [*const c_uint; 2], [usize; 2], *const f64, *mut f64) -> c_int),
-    Adjoint(fn(C, [*const c_uint; 2], [usize; 2], *const f64, *mut f64) -> c_int),
-    GetState(unsafe extern "C" fn(C, *mut C) -> c_int),
-    SetState(unsafe extern "C" fn(C, C) -> c_int),
-    FreeState(unsafe extern "C" fn(C, *mut C) -> c_int),
-    StateSize(unsafe extern "C" fn(C, C, *mut usize) -> c_int),
-    Serialize(unsafe extern "C" fn(C, C, *mut u8, usize) -> c_int),
-    Deserialize(unsafe extern "C" fn(C, *const u8, usize, *mut C) -> c_int),
-    /// Point, step, a Boolean, three that come out, and the time that is reached, in FMI 3.0.
-    DoStep(fn(C, f64, f64, c_int, [*mut u8; 3], *mut f64) -> c_int),
-    /// Which status, and where to.
-    Status(fn(C, c_int, *mut c_void) -> c_int),
-    SetTime(unsafe extern "C" fn(C, f64) -> c_int),
-    SetStates(unsafe extern "C" fn(C, *const f64, usize) -> c_int),
-    /// So many numbers.
-    GetNumbers(usize, unsafe extern "C" fn(C, *mut f64, usize) -> c_int),
-    /// How many there are.
-    Count(usize, unsafe extern "C" fn(C, *mut usize) -> c_int),
-    /// A Boolean, and two that come out, of so many bytes.
-    CompleteStep(usize, fn(C, c_int, *mut c_void, *mut c_void) -> c_int),
-    /// With one of the pointers to what comes out null, if any.
-    Update(fn(C, Option<usize>) -> c_int),
 }
 
 const SLAVE: Interface = Interface::CoSimulation(Stepping { event_mode: false, early_return: false });
@@ -142,53 +87,44 @@ fn no_call_of_fmi_3_model_exchange_does_harm() {
 }
 
 /// No crash, no panic, no leak, and what [`Sequence::call`] checks of every call.
-fn no_call_does_harm<V: Version>(interface: fn(&mut Rng) -> Interface) {
+fn no_call_does_harm<V: Hostile>(interface: fn(&mut Rng) -> Interface) {
     let calls = env::var("FUZZ_CALLS").map_or(CALLS, |calls| calls.parse().expect("FUZZ_CALLS is a number"));
     let resources = host::resources();
     let location = CString::new(V::location(resources.path())).unwrap();
     let records = records(resources.path());
-    let run = |number, tally: &mut Tally<V>| Sequence::<V>::new(number, interface, &location, &records).run(tally);
-    // what threads share is no leak: the records, held here, and what is made when it is first needed
+    // what sequences share is no leak: the records, held here
     let archive = Archive::open(resources.path().to_owned()).unwrap();
     let texts = records.iter().filter_map(|text| text.to_str().ok());
     let _held: Vec<_> = texts.filter_map(|text| archive.record(text).ok()).collect();
-    (0..20).for_each(|number| run(number, &mut Tally::new()));
-    let sequences = AtomicU64::new(0);
-    let work = || {
-        let mut tally = Tally::new();
-        loop {
-            let number = sequences.fetch_add(1, Ordering::Relaxed);
-            if number * CALLS_PER_SEQUENCE >= calls {
-                return tally;
-            }
-            let measured = AssertUnwindSafe(|| {
-                let left = allocation_counter::measure(|| run(number, &mut tally));
-                assert_eq!((left.count_current, left.bytes_current), (0, 0), "something is left behind");
-            });
-            if let Err(panic) = catch_unwind(measured) {
-                sequences.store(calls, Ordering::Relaxed);
-                eprintln!("in sequence {number}");
-                resume_unwind(panic)
-            }
-        }
+    let none = vec![false; V::Function::ALL.len()];
+    let tally =
+        RefCell::new(Tally { done: none.clone(), never: none, met: Default::default(), left: Default::default() });
+    let config = Config {
+        cases: WARMING_UP + calls.div_ceil(CALLS_PER_SEQUENCE as u64) as u32,
+        failure_persistence: None,
+        ..Config::default()
     };
-    let mut tally = Tally::new();
-    thread::scope(|scope| {
-        let threads = thread::available_parallelism().unwrap().get();
-        let threads: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
-        threads.into_iter().for_each(|thread| tally.add(&thread.join().unwrap_or_else(|panic| resume_unwind(panic))));
+    let (mut runner, runs) =
+        (TestRunner::new_with_rng(config, TestRng::deterministic_rng(RngAlgorithm::ChaCha)), Cell::new(0));
+    let checked = runner.run(&vec(any::<u64>(), 1..2 * CALLS_PER_SEQUENCE), |numbers| {
+        let sequence = || Sequence::<V>::new(interface, &location, &records);
+        let mut done = Ok(());
+        // the counter does not outlive a panic
+        let run = AssertUnwindSafe(|| sequence().run(&numbers, &mut tally.borrow_mut()));
+        let left = allocation_counter::measure(|| done = catch_unwind(run));
+        done.unwrap_or_else(|panic| resume_unwind(panic));
+        runs.set(runs.get() + 1);
+        let is_left = runs.get() > WARMING_UP && (left.count_current, left.bytes_current) != (0, 0);
+        assert!(!is_left, "something is left behind: {left:?}");
+        Ok(())
     });
-    println!("{tally}");
-    assert!(tally.calls() >= calls);
-    if calls < CALLS {
-        return;
-    }
-    let stages = tally.met.iter().zip(Stage::ALL).filter(|(met, _)| **met).map(|(_, stage)| stage);
-    let is_left = |stage: Stage| tally.freed_in[stage as usize] > 0;
-    assert!(stages.clone().count() >= 6 && stages.clone().all(is_left), "freed in {:?} of {stages:?}", tally.freed_in);
-    for (function, ([ok, discard, _], is_never)) in V::Function::ALL.iter().zip(tally.statuses.iter().zip(&tally.never))
-    {
-        assert_eq!(ok + discard == 0, *is_never, "{} was never done", function.name());
+    checked.unwrap_or_else(|failure| panic!("{failure}"));
+    let Tally { done, never, met, left } = tally.into_inner();
+    if calls >= CALLS {
+        assert!(met.iter().filter(|is_met| **is_met).count() >= 6 && met == left, "met {met:?}, left {left:?}");
+        for ((function, is_done), is_never) in V::Function::ALL.iter().zip(done).zip(never) {
+            assert_ne!(is_done, is_never, "{} was never done", function.name());
+        }
     }
 }
 
@@ -236,73 +172,15 @@ fn records(folder: &Path) -> Vec<CString> {
 }
 
 /// What came of the calls.
-struct Tally<V: Version> {
-    /// OK, Discard and Error of every function.
-    statuses: Vec<[u64; 3]>,
+struct Tally {
+    /// Which functions were done.
+    done: Vec<bool>,
     /// Which are said to be allowed nowhere.
     never: Vec<bool>,
-    instances: u64,
-    refused_instances: u64,
     /// Which stages instances have been in.
     met: [bool; Stage::ALL.len()],
-    /// Instances freed, by stage.
-    freed_in: [u64; Stage::ALL.len()],
-    /// Most steps of the solver in one call.
-    most_steps: u64,
-    longest: Duration,
-    longest_function: &'static str,
-    version: PhantomData<fn() -> V>,
-}
-
-impl<V: Version> Tally<V> {
-    fn new() -> Tally<V> {
-        Tally {
-            statuses: vec![[0; 3]; V::Function::ALL.len()],
-            never: vec![false; V::Function::ALL.len()],
-            instances: 0,
-            refused_instances: 0,
-            met: Default::default(),
-            freed_in: Default::default(),
-            most_steps: 0,
-            longest: Duration::ZERO,
-            longest_function: "",
-            version: PhantomData,
-        }
-    }
-
-    fn calls(&self) -> u64 {
-        self.statuses.iter().flatten().sum::<u64>() + 2 * self.instances + self.refused_instances
-    }
-
-    fn add(&mut self, other: &Tally<V>) {
-        for (sum, more) in self.statuses.iter_mut().flatten().zip(other.statuses.iter().flatten()) {
-            *sum += more;
-        }
-        for (sum, more) in self.freed_in.iter_mut().zip(other.freed_in) {
-            *sum += more;
-        }
-        for (any, more) in self.never.iter_mut().chain(&mut self.met).zip(other.never.iter().chain(&other.met)) {
-            *any |= more;
-        }
-        self.most_steps = self.most_steps.max(other.most_steps);
-        self.instances += other.instances;
-        self.refused_instances += other.refused_instances;
-        if other.longest > self.longest {
-            (self.longest, self.longest_function) = (other.longest, other.longest_function);
-        }
-    }
-}
-
-impl<V: Version> fmt::Display for Tally<V> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{} calls on {} instances ({} refused)", self.calls(), self.instances, self.refused_instances)?;
-        writeln!(f, "{:36}{:>12}{:>12}{:>12}", "", "OK", "Discard", "Error")?;
-        for (function, [ok, discard, error]) in V::Function::ALL.iter().zip(&self.statuses) {
-            writeln!(f, "{:36}{ok:12}{discard:12}{error:12}", function.name())?;
-        }
-        writeln!(f, "most steps in one call: {} of {MAX_STEPS_PER_ADVANCE}", self.most_steps)?;
-        write!(f, "longest call: {:?}, {}", self.longest, self.longest_function)
-    }
+    /// Which stages they have been freed in.
+    left: [bool; Stage::ALL.len()],
 }
 
 /// Where an instance logs to.
@@ -344,7 +222,7 @@ struct Slot {
 }
 
 /// A run of calls on two instances.
-struct Sequence<'a, V: Version> {
+struct Sequence<'a, V: Hostile> {
     rng: Rng,
     interface: fn(&mut Rng) -> Interface,
     location: &'a CStr,
@@ -355,20 +233,21 @@ struct Sequence<'a, V: Version> {
     version: PhantomData<fn() -> V>,
 }
 
-impl<'a, V: Version> Sequence<'a, V> {
-    fn new(number: u64, interface: fn(&mut Rng) -> Interface, location: &'a CStr, records: &'a [CString]) -> Self {
+impl<'a, V: Hostile> Sequence<'a, V> {
+    fn new(interface: fn(&mut Rng) -> Interface, location: &'a CStr, records: &'a [CString]) -> Self {
         let slot =
             || Slot { c: null_mut(), told: Box::default(), is_heard: false, states: Vec::new(), freed: null_mut() };
-        let (rng, slots, bytes) = (Rng::with_seed(number), [slot(), slot()], Vec::new());
+        let (rng, slots, bytes) = (Rng::with_seed(0), [slot(), slot()], Vec::new());
         Sequence { rng, interface, location, records, slots, bytes, version: PhantomData }
     }
 
-    fn run(mut self, tally: &mut Tally<V>) {
-        for _ in 0..CALLS_PER_SEQUENCE {
+    fn run(mut self, numbers: &[u64], tally: &mut Tally) {
+        for number in numbers {
+            self.rng.seed(*number);
             let at = self.rng.usize(..2);
             let is_in_error = self.condition(at).is_some_and(|condition| condition.stage == Stage::Error);
             if self.slots[at].c.is_null() && self.rng.u8(..) > 8 {
-                self.instantiate(at, tally);
+                self.instantiate(at);
             } else if self.one_in(if is_in_error { 5 } else { 100 }) {
                 self.free(at, tally);
             } else {
@@ -384,7 +263,7 @@ impl<'a, V: Version> Sequence<'a, V> {
     }
 
     /// Any function, or one that leads on.
-    fn function(&mut self, at: usize, tally: &mut Tally<V>) -> V::Function {
+    fn function(&mut self, at: usize, tally: &mut Tally) -> V::Function {
         let stage = self.condition(at).map(|condition| condition.stage);
         stage.iter().for_each(|stage| tally.met[*stage as usize] = true);
         let leading_on = V::leading_on(stage.unwrap_or(Stage::Error));
@@ -547,7 +426,7 @@ impl<'a, V: Version> Sequence<'a, V> {
         bytes
     }
 
-    fn instantiate(&mut self, at: usize, tally: &mut Tally<V>) {
+    fn instantiate(&mut self, at: usize) {
         let wrong = |rng: &mut Rng| rng.u8(..20) == 0;
         let rng = &mut self.rng;
         let too_long = CString::new(vec![b'a'; 70_000]).unwrap();
@@ -570,15 +449,14 @@ impl<'a, V: Version> Sequence<'a, V> {
         assert!(messages.len() <= usize::from(c.is_null()), "{messages:?}");
         (slot.c, slot.is_heard) = (c, is_heard);
         slot.told.asked.set((c, 0.0));
-        *if c.is_null() { &mut tally.refused_instances } else { &mut tally.instances } += 1;
         let is_of_kind = self.condition(at).is_none_or(|condition| condition.interface == interface);
         assert!(is_of_kind, "not of the interface {interface:?}");
     }
 
     /// In whatever state, with the FMU states that it has handed out.
-    fn free(&mut self, at: usize, tally: &mut Tally<V>) {
+    fn free(&mut self, at: usize, tally: &mut Tally) {
         if let Some(condition) = self.condition(at) {
-            tally.freed_in[condition.stage as usize] += 1;
+            tally.left[condition.stage as usize] = true;
         }
         let slot = &mut self.slots[at];
         unsafe { (V::LOOKING.free)(slot.c) };
@@ -589,24 +467,12 @@ impl<'a, V: Version> Sequence<'a, V> {
 
     /// The instance as bytes.
     fn serialized(&self, at: usize) -> Vec<u8> {
-        let c = self.slots[at].c;
-        let mut state = null_mut();
-        assert_eq!(unsafe { (V::LOOKING.get_state)(c, &mut state) }, OK);
-        let bytes = self.bytes_of(at, state);
-        assert_eq!(unsafe { (V::LOOKING.free_state)(c, &mut state) }, OK);
-        bytes
+        calls::bytes::<V>(self.slots[at].c)
     }
 
     /// One of the instance's FMU states as bytes.
     fn bytes_of(&self, at: usize, state: C) -> Vec<u8> {
-        let c = self.slots[at].c;
-        let mut size = 0;
-        unsafe {
-            assert_eq!((V::LOOKING.size)(c, state, &mut size), OK);
-            let mut bytes = vec![0; size];
-            assert_eq!((V::LOOKING.serialize)(c, state, bytes.as_mut_ptr(), size), OK);
-            bytes
-        }
+        calls::bytes_of::<V>(self.slots[at].c, state)
     }
 
     /// Where the instance stands, if there is one. Whatever calls have led to can be read back from its bytes.
@@ -616,26 +482,20 @@ impl<'a, V: Version> Sequence<'a, V> {
 
     /// Makes `call` and checks what can be said of every call: it returns OK, Discard or Error; it is told to the host
     /// exactly if it does not return OK; if it returns Error, the instance is as it was, unless the solver got stuck.
-    fn call(&mut self, at: usize, function: V::Function, tally: &mut Tally<V>, call: impl FnOnce(C) -> c_int) -> c_int {
+    fn call(&mut self, at: usize, function: V::Function, tally: &mut Tally, call: impl FnOnce(C) -> c_int) -> c_int {
         let c = self.slots[at].c;
         let before = (!c.is_null() && self.one_in(16)).then(|| self.serialized(at));
         let told = &self.slots[at].told;
         told.messages.take();
         told.call_back.set(if self.rng.u8(..64) == 0 { c } else { null_mut() });
-        let begin = Instant::now();
         let status = call(c);
-        let duration = begin.elapsed();
         told.call_back.set(null_mut());
 
         let messages = told.messages.take();
         let name = function.name();
-        let column = [OK, DISCARD, ERROR].iter().position(|column| *column == status);
-        let column = column.unwrap_or_else(|| panic!("{name}: {status} {messages:?}"));
+        assert!([OK, DISCARD, ERROR].contains(&status), "{name}: {status} {messages:?}");
         let number = V::Function::ALL.iter().position(|one| *one == function).unwrap();
-        tally.statuses[number][column] += 1;
-        if duration > tally.longest {
-            (tally.longest, tally.longest_function) = (duration, name);
-        }
+        tally.done[number] |= status != ERROR;
         let failures: Vec<_> = messages.iter().filter(|(status, _)| *status > 1).collect();
         let is_told = status != OK && !c.is_null() && self.slots[at].is_heard;
         assert_eq!(failures.len(), usize::from(is_told), "{messages:?}");
@@ -656,7 +516,7 @@ impl<'a, V: Version> Sequence<'a, V> {
     }
 
     /// Calls `function` with arguments of its kind.
-    fn call_function(&mut self, at: usize, function: V::Function, tally: &mut Tally<V>) {
+    fn call_function(&mut self, at: usize, function: V::Function, tally: &mut Tally) {
         let (name, mut made) = (function.name(), None);
         let mut references = self.references();
         match V::call(function) {
@@ -926,7 +786,7 @@ impl<'a, V: Version> Sequence<'a, V> {
         &mut self,
         at: usize,
         function: V::Function,
-        tally: &mut Tally<V>,
+        tally: &mut Tally,
         mut unknowns: Vec<c_uint>,
         call: fn(C, [*const c_uint; 2], [usize; 2], *const f64, *mut f64) -> c_int,
         is_adjoint: bool,
@@ -962,7 +822,7 @@ impl<'a, V: Version> Sequence<'a, V> {
         &mut self,
         at: usize,
         function: V::Function,
-        tally: &mut Tally<V>,
+        tally: &mut Tally,
         call: fn(C, f64, f64, c_int, [*mut u8; 3], *mut f64) -> c_int,
     ) {
         let motion = |sequence: &Self| sequence.condition(at)?.course.map(|course| course.motion);
@@ -990,15 +850,14 @@ impl<'a, V: Version> Sequence<'a, V> {
         self.slots[at].told.asked.set((self.slots[at].c, asked));
         let status = self.call(at, function, tally, |c| call(c, point, step, go_back, pointers, reached));
         if let (Some(before), Some(after)) = (before, motion(self)) {
-            // the host's clock is right, in which the structure may overturn, or be due for a transition, before the end of
-            // the last step
+            // the host's clock is right, in which the structure may overturn, or be due for a transition, before the
+            // end of the last step
             let is_complete = status == OK && flags == [0; 3];
             let is_on = if is_complete { after.time > before.time } else { after.time >= before.time.min(point) };
             assert!(is_on, "from {} to {}", before.time, after.time);
             let steps = after.work.steps - before.work.steps;
             assert!(steps <= MAX_STEPS_PER_ADVANCE, "{steps} steps");
             assert!(after.work.evaluations - before.work.evaluations <= steps * MAX_ORDER as u64);
-            tally.most_steps = tally.most_steps.max(steps);
         }
     }
 }
@@ -1022,7 +881,8 @@ fn are_written(status: c_int, values: &[f64]) -> bool {
     values.iter().all(|value| if status == OK { value.is_finite() } else { *value == f64::NEG_INFINITY })
 }
 
-/// Whether `value` is that of a variable for which somebody has to watch, and nobody does, or of a friction that is infinite.
+/// Whether `value` is that of a variable for which somebody has to watch, and nobody does, or of a friction that is
+/// infinite.
 fn is_watched(reference: u32, value: f64) -> bool {
     VARIABLES.get(reference as usize).is_some_and(|variable| {
         let is_worst = ASSUMPTIONS.iter().any(|of| [of.name, of.time_name].contains(&variable.name));

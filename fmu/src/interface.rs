@@ -1,0 +1,73 @@
+//! What an instance was made for: model exchange, or co-simulation with or without event mode and calls back.
+
+use crate::state_machine::Stage;
+use libc::c_void;
+use serde::{Deserialize, Serialize};
+
+/// Who integrates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Interface {
+    /// The FMU.
+    CoSimulation(Stepping),
+    /// The host.
+    ModelExchange,
+}
+
+/// How the host of a co-simulation meets transitions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Stepping {
+    /// It handles events, between steps.
+    pub event_mode: bool,
+    /// It takes a step that ends early.
+    pub early_return: bool,
+}
+
+impl Stepping {
+    /// Whether a step ends at a transition, which is handed over: the host must be able to do both.
+    pub fn hands_over(self) -> bool {
+        self.event_mode && self.early_return
+    }
+}
+
+impl Interface {
+    /// The stage in which a simulation starts.
+    pub const fn first_stage(self) -> Stage {
+        match self {
+            Interface::CoSimulation(Stepping { event_mode: false, .. }) => Stage::StepComplete,
+            Interface::CoSimulation(Stepping { event_mode: true, .. }) | Interface::ModelExchange => Stage::EventMode,
+        }
+    }
+
+    /// How the host meets transitions that the FMU comes across.
+    pub fn stepping(self) -> Stepping {
+        match self {
+            Interface::CoSimulation(stepping) => stepping,
+            Interface::ModelExchange => Stepping::default(),
+        }
+    }
+
+    /// Whether an FMU state can be kept in `stage`. Within a step none is.
+    pub(crate) const fn keeps_states_in(self, stage: Stage) -> bool {
+        match stage {
+            Stage::StepComplete | Stage::StepFailed => matches!(self, Interface::CoSimulation(_)),
+            Stage::EventMode => matches!(self.first_stage(), Stage::EventMode),
+            Stage::ContinuousTimeMode => matches!(self, Interface::ModelExchange),
+            Stage::IntermediateUpdateMode | Stage::IntermediateOutputs => false,
+            Stage::Instantiated | Stage::InitializationMode | Stage::Terminated | Stage::Error => true,
+        }
+    }
+}
+
+/// `fmi3IntermediateUpdateCallback`
+pub type IntermediateUpdateCallback = unsafe extern "C" fn(*mut c_void, f64, u8, u8, u8, u8, *mut u8, *mut f64);
+
+/// How a host is called back within a step. It is copied out of the instance, which the host has on loan meanwhile.
+#[derive(Clone, Copy)]
+pub(crate) struct IntermediateUpdate {
+    pub update: IntermediateUpdateCallback,
+    pub environment: *mut c_void,
+    /// Whether the host sets inputs at the end of a step before it is computed.
+    pub sets_inputs: bool,
+    /// Whether it reads other variables once the step is computed.
+    pub gets_outputs: bool,
+}

@@ -1,0 +1,67 @@
+//! What the host is told of the motion: its transitions, and the limits of the model that it passes.
+
+use crate::logger::Logger;
+use rocking::run::validity::{ASSUMPTIONS, Found, Limits};
+use rocking::{Side, Transition, TransitionKind};
+
+/// Warns of the limits that `found` is beyond and `known`, found before, was not.
+pub(crate) fn warn(logger: &Logger, known: &Found, found: &Found) {
+    let is_new = |which: &usize| known.worst[*which].first_beyond.is_none();
+    (0..ASSUMPTIONS.len())
+        .filter(is_new)
+        .filter_map(|which| found.warning(which, &Limits::default()))
+        .for_each(|warning| logger.warning(&warning));
+}
+
+/// An event; where contact is held by force, which is not the model's, a warning.
+pub(crate) fn log(logger: &Logger, transition: &Transition) {
+    match transition.kind {
+        TransitionKind::Settling => logger.warning(&format!(
+            "{}; too many transitions within one vibration period: contact is held for the rest of it",
+            describe(transition)
+        )),
+        _ => logger.event(|| describe(transition)),
+    }
+}
+
+fn describe(transition: &Transition) -> String {
+    let Transition { time, kind, before, after } = transition;
+    let side = |side| if side == Side::Left { "left" } else { "right" };
+    let what = match *kind {
+        TransitionKind::Uplift(pivot) => format!("uplift, rocking about the {} edge", side(pivot)),
+        TransitionKind::Impact(pivot) => format!("impact, rocking on about the {} edge", side(pivot)),
+        TransitionKind::Landing | TransitionKind::Settling => "landing in full contact".to_owned(),
+        TransitionKind::Overturning(pivot) => format!("overturning about the {} edge", side(pivot)),
+    };
+    format!(
+        "t = {time} s: {what}; u = {} m, u_dot = {} m/s (before: {}), theta_dot = {} rad/s (before: {})",
+        after.u, after.u_dot, before.u_dot, after.theta_dot, before.theta_dot
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::logger::Status;
+    use rocking::State;
+    use std::cell::RefCell;
+    use std::rc::Rc;
+
+    /// A result that is not the model's alone is said to be so, even if no events are asked for.
+    #[test]
+    fn contact_held_by_force_is_a_warning() {
+        let sent = Rc::new(RefCell::new(Vec::new()));
+        let logger = Logger::new(Box::new({
+            let sent = Rc::clone(&sent);
+            move |status, category, text| sent.borrow_mut().push((status, category.to_owned(), text.to_owned()))
+        }));
+        let before = State { u: 0.001, u_dot: 0.25, theta: 0.0, theta_dot: -0.5 };
+        let after = State { u_dot: -0.75, theta_dot: 0.0, ..before };
+        log(&logger, &Transition { time: 1.5, kind: TransitionKind::Landing, before, after });
+        log(&logger, &Transition { time: 2.5, kind: TransitionKind::Settling, before, after });
+        let text = "t = 2.5 s: landing in full contact; u = 0.001 m, u_dot = -0.75 m/s (before: 0.25), theta_dot = 0 \
+                     rad/s (before: -0.5); too many transitions within one vibration period: contact is held for the \
+                     rest of it";
+        assert_eq!(*sent.borrow(), [(Status::Warning, c"logStatusWarning".to_owned(), text.to_owned())]);
+    }
+}
