@@ -8,7 +8,6 @@ import subprocess
 import numpy as np
 import pandas as pd
 import pytest
-from test_sweep import RECORDS
 
 pytestmark = pytest.mark.heavy
 
@@ -114,26 +113,6 @@ def test_what_is_drawn_is_the_response(opened, view, exaggeration):
                                    ("uplift", "uplift[m]", 1e-3), ("a_t", "a_t[m/s2]", 9.81), ("V_t", "V_t[N]", 1e3),
                                    ("M_t", "M_t[N.m]", 1e3)]:
             assert abs(reading(page, name) - now[column] / unit) <= 2e-3 * largest[column] / unit, (name, row)
-
-
-def test_on_paper_nothing_is_cut_off(opened):
-    """Narrower than the window, and laid out by styles alone: no script runs before it is printed."""
-    page = opened()
-    page.evaluate("""() => {
-        const measured = Element.prototype.getBoundingClientRect;
-        const of_window = Object.fromEntries(["scene", "histories"].map(id => [id, measured.call(document.getElementById(id))]));
-        Element.prototype.getBoundingClientRect = function () { return of_window[this.id] ?? measured.call(this); };
-    }""")
-    page.emulate_media(media="print")
-    page.set_viewport_size({"width": 700, "height": 1000})  # A4 within its margins
-    left, right, bottom = page.evaluate("""() => {
-        const drawn = [...document.querySelectorAll("#scene text, #surface, #histories text, #histories .curve")];
-        const boxes = drawn.map(each => each.getBoundingClientRect()).filter(box => box.width > 0);
-        return [Math.min(...boxes.map(box => box.left)), Math.max(...boxes.map(box => box.right)),
-                Math.max(...boxes.map(box => box.bottom))];
-    }""")
-    assert 0 <= left < right <= 700 and bottom <= 1000  # one page
-    assert not page.locator("footer").is_visible()
 
 
 def test_what_is_drawn_is_true_to_scale(opened):
@@ -287,25 +266,3 @@ def test_a_hostile_title_is_text(opened, exporter, tmp_path):
     page = opened(tmp_path / "view.html")
     assert page.locator("#title").text_content().strip() == HOSTILE
     assert page.title().startswith("</script>")
-
-
-def test_free_vibration_and_a_fixed_base(opened, exporter, tmp_path):
-    subprocess.run([exporter, "view", "--preset", "evison", "--free", "2", "--theta-0", "0.04"], cwd=tmp_path, check=True)
-    page = opened(tmp_path / "free_vibration_view.html")
-    assert page.locator("path.curve").count() == 3  # the ground is at rest
-    assert abs(reading(page, "theta") - 0.04) < 1e-6
-    page.keyboard.press(".")
-    assert page.locator("tr.phase td").text_content() == "rocking left"
-
-
-@pytest.mark.parametrize("f_fc, digits", [(5, 4), (30, 3)])
-def test_a_page_is_of_moderate_size(opened, exporter, tmp_path, f_fc, digits):
-    """Less exact, and shown with fewer digits, where a stiff structure vibrates on and on."""
-    record = next((RECORDS.parent / "imperialValley_elCentro_1940").glob("*ELC180*.AT2"))
-    (tmp_path / "pier.toml").write_text(
-        f"m = 130.1\nm0 = 65.4\nH = 1.84\nB = 0.285\nJ0 = 10.7\nf_fc = {f_fc}\nzeta_fc = 0.005\nr = 0.99\n")
-    scene = ["--record", record, "--parameters", "pier.toml"]
-    subprocess.run([exporter, "view", *scene, "-o", "view.html"], cwd=tmp_path, check=True)
-    assert (tmp_path / "view.html").stat().st_size < 5e6
-    shown = opened(tmp_path / "view.html").locator("tr[data-name=theta] td").nth(1).text_content()
-    assert len(shown.replace(".", "").lstrip("0")) == digits

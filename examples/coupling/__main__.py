@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from . import added_mass, convergence, early_return, no_slopes, one_system, stability
+from . import convergence, early_return, no_slopes, one_system, stability
 from .bridge import PIERS, deck
 from .tables import markdown
 
@@ -62,7 +62,6 @@ def main() -> None:
     stability.plot_iterated(figures / "stability_sweeps.png", measured)
     steps, of_variants, transitions, _ = errors["Pacoima Dam"]
     page = (Path(__file__).parent / "page.md").read_text(encoding="utf-8").format(
-        added_mass=added_mass.table(PIERS["McManus"]),
         convergence=convergence_table(steps, of_variants),
         early_return=early_return.table(*to_transitions),
         frequency=stability.FREQUENCY,

@@ -1,4 +1,4 @@
-"""Section 3: uplift, frequency while rocking, impacts and overturning of flexible structures."""
+"""Section 2: frequency while rocking, impacts and overturning of flexible structures."""
 
 from collections.abc import Callable
 
@@ -7,7 +7,6 @@ import numpy as np
 from first_run import G
 from scipy.linalg import eigvals, logm
 from validation.project import Project
-from validation.records import write_csv
 from validation.report import table
 from validation.stepper import LINEAR, RIGID
 
@@ -21,24 +20,6 @@ STRUCTURES = {"McManus": MCMANUS, "Evison": EVISON, "stiff": Block(MCMANUS.param
               "soft": Block(MCMANUS.parameters | {"f_fc": 1.5}),
               "massless base": Block(EVISON.parameters | {"m0": 0.0})}
 STATE = ["u", "u_dot", "theta", "theta_dot"]
-RAMP = 400  # duration of the slow ramp, natural periods
-
-
-def uplift(project: Project) -> str:
-    """The table of uplift under a ground acceleration that grows slowly."""
-    lines = []
-    for name, of in STRUCTURES.items():
-        duration = RAMP / of.parameters["f_fc"]
-        ramp = project.folder / "ramp.csv"
-        write_csv(ramp, np.array([0, duration]), np.array([0, -1.2 * G * of.tangent]))
-        damped = Block(of.parameters | {"zeta_fc": 1.0})
-        first = project.events(*damped.options, "--record", ramp, "--duration", duration, "--tolerance", 1e-12)[0]
-        u, at = float(first["u_before[m]"]), float(first["time[s]"])
-        balance = of.u_cr / (1 + G / (of.parameters["H"] * of.omega_fc**2))
-        lines.append([name, f"{1e3 * of.u_cr:.5f}", f"{1e3 * u:.5f}", f"{1e3 * balance:.5f}", f"{of.tangent:.5f}",
-                      f"{1.2 * of.tangent * at / duration:.5f}"])
-    return table(["structure", "u_cr (mm)", "FMU's u at uplift (mm)", "balance of moments (mm)", "tan α_cg",
-                  "a_g/g at uplift"], lines)
 
 
 def identified(project: Project, of: Block) -> np.ndarray:
