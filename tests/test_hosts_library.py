@@ -6,7 +6,6 @@ import re
 import shutil
 import subprocess
 import sys
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -108,30 +107,6 @@ def test_linux_host(on_linux, mcmanus):
 def test_linux_host_with_the_record_inside(run, linux_host, linux_library, shaken, exact, step):
     found = run(linux_host, library=linux_library, fmu=shaken["mcmanus"], step=step)
     assert distance(found, exact(step)) < 1e-9
-
-
-@pytest.mark.heavy
-def test_windows_library(windows):
-    table = output(f"{MINGW}-objdump", "-p", windows / "FlexibleRocking.dll")
-    assert set(re.findall(r"^\t\[ *\d+\].* (\S+)$", table.partition("Ordinal/Name")[2], re.MULTILINE)) == FUNCTIONS
-    assert {name.lower() for name in re.findall(r"DLL Name: (\S+)", table)} <= WINDOWS_RUN_TIME
-
-
-@pytest.mark.heavy
-def test_one_archive_for_both(windows, linux_library, exporter, mcmanus, tmp_path):
-    """With other libraries the rest of the archive is the same; a library may come out of an archive."""
-    path, again = tmp_path / "both.fmu", tmp_path / "again.fmu"
-    dll = windows / "FlexibleRocking.dll"
-    output(exporter, "export", "--preset", "mcmanus", "--library", linux_library, dll, "-o", path)
-    output(exporter, "export", "--preset", "mcmanus", "--library", path, "-o", again)
-    assert again.read_bytes() == path.read_bytes()
-    with zipfile.ZipFile(mcmanus.path) as one, zipfile.ZipFile(path) as both:
-        libraries = {name: both.read(name) for name in both.namelist() if name.startswith("binaries/")}
-        assert libraries == {"binaries/win64/FlexibleRocking.dll": dll.read_bytes(),
-                             "binaries/linux64/FlexibleRocking.so": Path(linux_library).read_bytes()}
-        for name in set(one.namelist()) | set(both.namelist()):
-            if not name.startswith(("binaries/", "documentation/index.html")):
-                assert one.read(name) == both.read(name), name
 
 
 @pytest.fixture(scope="module")

@@ -4,9 +4,9 @@ import numpy as np
 import pandas as pd
 import pytest
 from literature import ensemble, overturning
-from literature.block import Block, PulseRuns, homogeneous
+from literature.block import PulseRuns
 from literature.flexible import EVISON, MCMANUS
-from literature.slender_block import HALF_SINE, ONE_COSINE, ONE_SINE, PULSES, boundaries, follow, half_sine_boundary
+from literature.slender_block import HALF_SINE, ONE_COSINE, ONE_SINE, boundaries, follow, half_sine_boundary
 from scipy.integrate import solve_ivp
 from validation.project import Project
 
@@ -78,14 +78,6 @@ def test_the_extrapolated_boundaries_are_the_closed_forms(runs):
         assert overturning.counted(runs, ONE_SINE, 4, limit.values[-1] * (1 + 1e-9)) == of.impacts
 
 
-def test_the_rigid_limit_depends_on_p_and_alpha_alone(runs):
-    alike = Block({"m": 40.0, "m0": 300.0, "H": 9.0, "B": 0.2 * 9 * 40 / 340, "J0": 700.0, "r": 0.9})
-    block = homogeneous(0.2, 0.9)
-    amplitudes = [runs.boundary(of, HALF_SINE, 4, half_sine_boundary(4)) for of in (block, alike)]
-    assert alike.p / block.p < 0.9
-    assert amplitudes[0] == pytest.approx(amplitudes[1], rel=1e-9)
-
-
 def test_derived_quantities_are_the_programs(project):
     for name, block in (("mcmanus", MCMANUS), ("evison", EVISON)):
         derived = project.values("describe", "--preset", name)
@@ -113,16 +105,3 @@ def test_an_ensemble_compared_with_itself_and_with_a_scaled_one():
     expected = max(np.mean(theta <= x) - np.mean(2 * theta <= x) for x in theta)
     assert doubled.distance == pytest.approx(expected, rel=1e-12)
     assert np.all(doubled.difference == 0) and doubled.distance_most >= doubled.distance
-
-
-def test_halves_of_the_records():
-    """Of the three ways to halve four records, two mix the two kinds that the third one parts."""
-    runs = some_runs(1.0)
-    alike = ensemble.between_halves(runs, "pier")
-    runs.loc[runs["record"].isin(["c", "d"]), "auto"] += 10
-    mixed = ensemble.between_halves(runs, "pier")
-    for halves in (alike, mixed):
-        assert halves.overturned == 0 and halves.distance < 0.12
-    runs["record"] = runs["record"].replace({"b": "a", "d": "c"})
-    parted = ensemble.between_halves(runs, "pier")
-    assert parted.distance == pytest.approx(0.9) and parted.ratios[0] == pytest.approx(10.5 / 0.5, rel=0.05)

@@ -208,33 +208,6 @@ def test_scrubbing_and_the_keyboard(opened):
     assert not page.locator("#help").is_visible()
 
 
-def test_less_time_is_shown_in_more_detail(opened):
-    page = opened()
-    go_to(page, 1)
-    length = lambda: page.locator("path[data-name=a_t]").get_attribute("d").count("L")
-    whole, ticks = length(), page.locator("line.tick").count()
-    for _ in range(3):
-        page.keyboard.press("+")
-    assert page.locator("line.tick").count() < ticks and length() != whole
-    assert page.locator("line.cursor").get_attribute("visibility") == "visible"
-    page.keyboard.press("End")
-    assert page.locator("line.cursor").get_attribute("visibility") == "visible"  # the part that is shown follows
-    page.keyboard.press("0")
-    assert (length(), page.locator("line.tick").count()) == (whole, ticks)
-
-
-def test_light_and_dark(opened):
-    page = opened(color_scheme="dark")
-    lightness = lambda: sum(map(int, re.findall(r"\d+", page.evaluate("getComputedStyle(document.body).backgroundColor"))[:3]))
-    assert lightness() < 150
-    page.emulate_media(color_scheme="light")
-    assert lightness() > 600
-    page.locator("#theme").click()
-    assert lightness() < 150
-    page.keyboard.press("d")
-    assert lightness() > 600
-
-
 def test_a_narrow_screen_shows_everything(opened):
     page = opened(viewport={"width": 390, "height": 844})
     assert page.evaluate("document.documentElement.scrollWidth") <= 390

@@ -60,7 +60,7 @@ def main() -> None:
             tangents=", ".join(f"{tangent:g}" for tangent in limit.TANGENTS),
             shear_pgas=" and ".join(f"{pga:g}" for pga in flexible.PGAS),
             frequencies=flexible.frequencies(project),
-            impacts=flexible.impacts(project),
+            impacts=flexible.impacts(),
             flexibility=flexibility,
             base_shear=flexible.base_shear(project),
             records="\n".join(f"- {record.name}: {len(record.a_g)} samples, {record.dt:g} s, "
