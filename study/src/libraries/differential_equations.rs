@@ -13,7 +13,6 @@ use nalgebra::Vector2;
 
 /// DOP853 to a relative tolerance, with or without the crate's events.
 pub struct DifferentialEquations {
-    /// Relative tolerance.
     pub tolerance: f64,
     /// Whether its own events end a phase; otherwise the phase is over where a step ends beyond its end.
     pub own_events: bool,
@@ -68,26 +67,6 @@ impl Solout<f64, Y> for StopBeyond<'_, '_> {
     }
 }
 
-impl DifferentialEquations {
-    fn solve(
-        &self,
-        motion: &Motion,
-        end: Option<&PhaseEnd>,
-        tau: f64,
-        from: &Point,
-        until: f64,
-    ) -> Result<Solution<f64, Y>, String> {
-        let y = [from.position[0], from.position[1], from.velocity[0], from.velocity[1]];
-        let problem = IVP::ode(motion, tau, until, y);
-        let method = ExplicitRungeKutta::dop853().rtol(self.tolerance).atol(ABSOLUTE * self.tolerance);
-        let solution = match end {
-            Some(end) if self.own_events => problem.event(&Guard(end)).method(method).solve(),
-            _ => problem.solout(StopBeyond(end)).method(method).solve(),
-        };
-        solution.map_err(|error| format!("{error:?}"))
-    }
-}
-
 impl Integrator for DifferentialEquations {
     fn advance(
         &self,
@@ -95,9 +74,17 @@ impl Integrator for DifferentialEquations {
         tau: f64,
         from: &Point,
         until: f64,
-        end: &PhaseEnd,
+        end: Option<&PhaseEnd>,
     ) -> Result<Stretch, String> {
-        let solution = self.solve(&Motion(equations), Some(end), tau, from, until)?;
+        let motion = Motion(equations);
+        let y = [from.position[0], from.position[1], from.velocity[0], from.velocity[1]];
+        let problem = IVP::ode(&motion, tau, until, y);
+        let method = ExplicitRungeKutta::dop853().rtol(self.tolerance).atol(ABSOLUTE * self.tolerance);
+        let solution = match end {
+            Some(end) if self.own_events => problem.event(&Guard(end)).method(method).solve(),
+            _ => problem.solout(StopBeyond(end)).method(method).solve(),
+        };
+        let solution = solution.map_err(|error| format!("{error:?}"))?;
         let last = solution.t.len() - 1;
         let is_over = matches!(solution.status, Status::Interrupted);
         let before = last.saturating_sub(1);
@@ -108,10 +95,5 @@ impl Integrator for DifferentialEquations {
             to: point(&solution.y[last]),
             is_over,
         })
-    }
-
-    fn flow(&self, equations: &PhaseEquations, tau: f64, from: &Point, h: f64) -> Result<Point, String> {
-        let solution = self.solve(&Motion(equations), None, tau, from, tau + h)?;
-        Ok(point(&solution.y[solution.y.len() - 1]))
     }
 }

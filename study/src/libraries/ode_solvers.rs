@@ -18,17 +18,13 @@ use rocking::State;
 /// Which pair.
 #[derive(Clone, Copy, Debug)]
 pub enum Pair {
-    /// Orders 5(4).
-    Dopri5,
-    /// Orders 8(5, 3).
-    Dop853,
+    Dopri5, // orders 5(4)
+    Dop853, // orders 8(5, 3)
 }
 
 /// One of the two, to a relative tolerance.
 pub struct OdeSolvers {
-    /// Which.
     pub pair: Pair,
-    /// Relative tolerance.
     pub tolerance: f64,
 }
 
@@ -99,10 +95,10 @@ impl Integrator for OdeSolvers {
         tau: f64,
         from: &Point,
         until: f64,
-        end: &PhaseEnd,
+        end: Option<&PhaseEnd>,
     ) -> Result<Stretch, String> {
-        let (before, last) = self.last_step(equations, Some(end), tau, from, until)?;
-        let is_over = end.is_over(&last.1);
+        let (before, last) = self.last_step(equations, end, tau, from, until)?;
+        let is_over = end.is_some_and(|end| end.is_over(&last.1));
         Ok(Stretch {
             start: before.0,
             end: if is_over { last.0 } else { until },
@@ -110,10 +106,5 @@ impl Integrator for OdeSolvers {
             to: Point::start(&last.1),
             is_over,
         })
-    }
-
-    fn flow(&self, equations: &PhaseEquations, tau: f64, from: &Point, h: f64) -> Result<Point, String> {
-        let (_, last) = self.last_step(equations, None, tau, from, tau + h)?;
-        Ok(Point::start(&last.1))
     }
 }
