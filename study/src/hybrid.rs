@@ -18,6 +18,14 @@ pub enum Transitions {
     AtStepEnds,
 }
 
+/// What is to be integrated: from `from`, `tau` s into the interval, to `until` (s).
+pub struct Span<'a> {
+    pub equations: &'a PhaseEquations<'a>,
+    pub tau: f64,
+    pub from: Point,
+    pub until: f64,
+}
+
 /// A part of smooth motion: times are counted from the start of the interval.
 pub struct Stretch {
     pub start: f64, // its start, s
@@ -29,20 +37,12 @@ pub struct Stretch {
 
 /// What moves a structure between transitions.
 pub trait Integrator {
-    /// Steps from `from`, `tau` s into the interval, to `until` or to where `end` says that the phase is over; yields
-    /// the last step.
-    fn advance(
-        &self,
-        equations: &PhaseEquations,
-        tau: f64,
-        from: &Point,
-        until: f64,
-        end: Option<&PhaseEnd>,
-    ) -> Result<Stretch, String>;
+    /// Steps over `span`, or to where `end` says that the phase is over; yields the last step.
+    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String>;
 
     /// The point `h` s after `from`, which is `tau` s into the interval.
     fn flow(&self, equations: &PhaseEquations, tau: f64, from: &Point, h: f64) -> Result<Point, String> {
-        Ok(self.advance(equations, tau, from, tau + h, None)?.to)
+        Ok(self.advance(&Span { equations, tau, from: *from, until: tau + h }, None)?.to)
     }
 }
 
@@ -57,14 +57,8 @@ pub struct Grid<'a> {
 const SLIVER: f64 = 1e-9;
 
 impl Integrator for Grid<'_> {
-    fn advance(
-        &self,
-        equations: &PhaseEquations,
-        tau: f64,
-        from: &Point,
-        until: f64,
-        end: Option<&PhaseEnd>,
-    ) -> Result<Stretch, String> {
+    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String> {
+        let &Span { equations, tau, ref from, until } = span;
         let next = ((tau / self.h + SLIVER).floor() + 1.0) * self.h;
         let next = if next > until - SLIVER * self.h { until } else { next };
         let to = self.method.step(equations, tau, from, next - tau);
@@ -145,7 +139,8 @@ impl<'a> Motion<'a> {
             let equations = PhaseEquations { structure, phase, a_g, evaluations: &self.evaluations };
             let end = PhaseEnd { structure, uplift: self.uplift, phase };
             let gave_up = |message| Failure::GaveUp { time: start + tau, message };
-            let stretch = integrator.advance(&equations, tau, &self.point, dt, Some(&end)).map_err(gave_up)?;
+            let span = Span { equations: &equations, tau, from: self.point, until: dt };
+            let stretch = integrator.advance(&span, Some(&end)).map_err(gave_up)?;
             let is_over = stretch.is_over;
             (tau, self.point) = match transitions {
                 Transitions::Located if is_over => locate(&equations, integrator, &end, &stretch).map_err(gave_up)?,

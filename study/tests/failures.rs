@@ -9,19 +9,11 @@ use study::failures::{Exhibit, double_crossing, grazing, history, overturning, z
 use study::fixed_step::runge_kutta_4::RungeKutta4;
 use study::guards::{displacement_excess, uplift_excess};
 use study::hybrid::{Grid, Transitions, run};
-use study::libraries::differential_equations::DifferentialEquations;
 use study::response::Failure;
 
 fn series(exhibit: &Exhibit, panel: usize, name: &str) -> Vec<(f64, f64)> {
     let series = exhibit.panels[panel].series.iter().find(|series| series.name == name).unwrap();
     series.points.clone()
-}
-
-#[test]
-fn a_library_whose_events_miss_a_return_is_seen_to_fall() {
-    let library = DifferentialEquations { tolerance: 1e-6, own_events: true };
-    let response = run(&synthetic::scene(), &library, Transitions::AtStepEnds, uplift_excess, &mut |_, _| ());
-    assert!(matches!(response.failure, Some(Failure::ThroughTheFloor { .. })), "{:?}", response.failure);
 }
 
 #[test]

@@ -7,7 +7,7 @@ use crate::equations::PhaseEquations;
 use crate::fixed_step::runge_kutta_4::RungeKutta4;
 use crate::fixed_step::{OneStep, Point};
 use crate::guards::{PhaseEnd, uplift_excess};
-use crate::hybrid::{self, Integrator, Stretch, Transitions};
+use crate::hybrid::{self, Integrator, Span, Stretch, Transitions};
 use anyhow::{Context, Result};
 use minijinja::context;
 use rocking::{Detail, Parameters, State};
@@ -32,14 +32,8 @@ struct Blind {
 }
 
 impl Integrator for Blind {
-    fn advance(
-        &self,
-        equations: &PhaseEquations,
-        tau: f64,
-        from: &Point,
-        until: f64,
-        end: Option<&PhaseEnd>,
-    ) -> Result<Stretch, String> {
+    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String> {
+        let &Span { equations, tau, ref from, until } = span;
         let next = (((tau / LOOK + 1e-9).floor() + 1.0) * LOOK).min(until);
         let h = (next - tau) / INNER as f64;
         let mut to = *from;

@@ -5,7 +5,7 @@ use super::ABSOLUTE;
 use crate::equations::{Equations, PhaseEquations, state};
 use crate::fixed_step::Point;
 use crate::guards::PhaseEnd;
-use crate::hybrid::{Integrator, Stretch};
+use crate::hybrid::{Integrator, Span, Stretch};
 use differential_equations::methods::ExplicitRungeKutta;
 use differential_equations::prelude::*;
 use differential_equations::status::Status;
@@ -68,14 +68,8 @@ impl Solout<f64, Y> for StopBeyond<'_, '_> {
 }
 
 impl Integrator for DifferentialEquations {
-    fn advance(
-        &self,
-        equations: &PhaseEquations,
-        tau: f64,
-        from: &Point,
-        until: f64,
-        end: Option<&PhaseEnd>,
-    ) -> Result<Stretch, String> {
+    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String> {
+        let &Span { equations, tau, ref from, until } = span;
         let motion = Motion(equations);
         let y = [from.position[0], from.position[1], from.velocity[0], from.velocity[1]];
         let problem = IVP::ode(&motion, tau, until, y);

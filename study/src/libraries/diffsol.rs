@@ -5,7 +5,7 @@ use super::ABSOLUTE;
 use crate::equations::{Equations, PhaseEquations, state};
 use crate::fixed_step::Point;
 use crate::guards::PhaseEnd;
-use crate::hybrid::{Integrator, Stretch};
+use crate::hybrid::{Integrator, Span, Stretch};
 use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeEquationsImplicit, OdeSolverMethod, OdeSolverStopReason};
 use nalgebra::Vector2;
 
@@ -50,14 +50,8 @@ fn derivative(equations: &PhaseEquations, tau: f64, y: &[f64], v: &[f64], jv: &m
 }
 
 impl Integrator for Diffsol {
-    fn advance(
-        &self,
-        equations: &PhaseEquations,
-        tau: f64,
-        from: &Point,
-        until: f64,
-        end: Option<&PhaseEnd>,
-    ) -> Result<Stretch, String> {
+    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String> {
+        let &Span { equations, tau, ref from, until } = span;
         let start = [from.position[0], from.position[1], from.velocity[0], from.velocity[1]];
         let problem = OdeBuilder::<M>::new()
             .t0(tau)

@@ -9,7 +9,7 @@ use super::ABSOLUTE;
 use crate::equations::{Equations, PhaseEquations, state};
 use crate::fixed_step::Point;
 use crate::guards::PhaseEnd;
-use crate::hybrid::{Integrator, Stretch};
+use crate::hybrid::{Integrator, Span, Stretch};
 use nalgebra::Vector2;
 use ode_solvers::dop_shared::OutputType;
 use ode_solvers::{Dop853, Dopri5, SVector, System};
@@ -60,14 +60,8 @@ impl System<f64, Y> for Motion<'_, '_> {
 
 impl OdeSolvers {
     /// Start and end of the last step from `from` to `until` or to the end of the phase.
-    fn last_step(
-        &self,
-        equations: &PhaseEquations,
-        end: Option<&PhaseEnd>,
-        tau: f64,
-        from: &Point,
-        until: f64,
-    ) -> Result<(Node, Node), String> {
+    fn last_step(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<(Node, Node), String> {
+        let &Span { equations, tau, ref from, until } = span;
         let (relative, absolute) = (self.tolerance, ABSOLUTE * self.tolerance);
         let motion = Motion { equations, end, start: tau, clock: absolute * ABSOLUTE };
         let y = Y::from([from.position[0], from.position[1], from.velocity[0], from.velocity[1], 0.0]);
@@ -89,19 +83,12 @@ impl OdeSolvers {
 }
 
 impl Integrator for OdeSolvers {
-    fn advance(
-        &self,
-        equations: &PhaseEquations,
-        tau: f64,
-        from: &Point,
-        until: f64,
-        end: Option<&PhaseEnd>,
-    ) -> Result<Stretch, String> {
-        let (before, last) = self.last_step(equations, end, tau, from, until)?;
+    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String> {
+        let (before, last) = self.last_step(span, end)?;
         let is_over = end.is_some_and(|end| end.is_over(&last.1));
         Ok(Stretch {
             start: before.0,
-            end: if is_over { last.0 } else { until },
+            end: if is_over { last.0 } else { span.until },
             from: Point::start(&before.1),
             to: Point::start(&last.1),
             is_over,
