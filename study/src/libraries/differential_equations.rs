@@ -1,15 +1,13 @@
 //! The crate differential-equations: Dormand and Prince's pair of orders 8(5, 3) and Verner's of orders 9(8), with the
 //! crate's own events.
 
-use super::ABSOLUTE;
-use crate::equations::{Equations, PhaseEquations, state};
-use crate::fixed_step::Point;
+use super::{ABSOLUTE, numbers, point, rates};
+use crate::equations::PhaseEquations;
 use crate::guards::PhaseEnd;
 use crate::hybrid::{Integrator, Span, Stretch};
 use differential_equations::methods::ExplicitRungeKutta;
 use differential_equations::prelude::*;
 use differential_equations::status::Status;
-use nalgebra::Vector2;
 
 /// DOP853 to a relative tolerance, with or without the crate's events.
 pub struct DifferentialEquations {
@@ -22,14 +20,9 @@ struct Motion<'a, 'b>(&'a PhaseEquations<'b>);
 
 type Y = [f64; 4];
 
-fn point(y: &Y) -> Point {
-    Point::start(&state(Vector2::new(y[0], y[1]), Vector2::new(y[2], y[3])))
-}
-
 impl ODE<f64, Y> for Motion<'_, '_> {
     fn diff(&self, tau: f64, y: &Y, dydt: &mut Y) {
-        let acceleration = self.0.acceleration(tau, Vector2::new(y[0], y[1]), Vector2::new(y[2], y[3]));
-        *dydt = [y[2], y[3], acceleration[0], acceleration[1]];
+        *dydt = rates(self.0, tau, y);
     }
 }
 
@@ -71,8 +64,7 @@ impl Integrator for DifferentialEquations {
     fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String> {
         let &Span { equations, tau, ref from, until } = span;
         let motion = Motion(equations);
-        let y = [from.position[0], from.position[1], from.velocity[0], from.velocity[1]];
-        let problem = IVP::ode(&motion, tau, until, y);
+        let problem = IVP::ode(&motion, tau, until, numbers(from));
         let method = ExplicitRungeKutta::dop853().rtol(self.tolerance).atol(ABSOLUTE * self.tolerance);
         let solution = match end {
             Some(end) if self.own_events => problem.event(&Guard(end)).method(method).solve(),

@@ -1,13 +1,11 @@
 //! The crate diffsol: BDF of variable order and ESDIRK of order 3(4), implicit methods for stiff equations,
 //! with the crate's own root finding.
 
-use super::ABSOLUTE;
-use crate::equations::{Equations, PhaseEquations, state};
-use crate::fixed_step::Point;
+use super::{ABSOLUTE, numbers, point, rates};
+use crate::equations::PhaseEquations;
 use crate::guards::PhaseEnd;
 use crate::hybrid::{Integrator, Span, Stretch};
 use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeEquationsImplicit, OdeSolverMethod, OdeSolverStopReason};
-use nalgebra::Vector2;
 
 /// Which method.
 #[derive(Clone, Copy, Debug)]
@@ -25,15 +23,6 @@ pub struct Diffsol {
 type M = NalgebraMat<f64>;
 type Lu = NalgebraLU<f64>;
 
-fn point(y: &[f64]) -> Point {
-    Point::start(&state(Vector2::new(y[0], y[1]), Vector2::new(y[2], y[3])))
-}
-
-fn right_hand_side(equations: &PhaseEquations, tau: f64, y: &[f64], dy: &mut [f64]) {
-    let acceleration = equations.acceleration(tau, Vector2::new(y[0], y[1]), Vector2::new(y[2], y[3]));
-    dy.copy_from_slice(&[y[2], y[3], acceleration[0], acceleration[1]]);
-}
-
 /// The derivative of the right-hand side along `v`, from a difference quotient.
 fn derivative(equations: &PhaseEquations, tau: f64, y: &[f64], v: &[f64], jv: &mut [f64]) {
     const DIFFERENCE: f64 = 1e-7;
@@ -43,23 +32,21 @@ fn derivative(equations: &PhaseEquations, tau: f64, y: &[f64], v: &[f64], jv: &m
     }
     let step = DIFFERENCE / length;
     let moved: Vec<f64> = y.iter().zip(v).map(|(y, v)| y + step * v).collect();
-    let mut here = [0.0; 4];
-    right_hand_side(equations, tau, y, &mut here);
-    right_hand_side(equations, tau, &moved, jv);
-    jv.iter_mut().zip(here).for_each(|(jv, here)| *jv = (*jv - here) / step);
+    let (here, there) = (rates(equations, tau, y), rates(equations, tau, &moved));
+    jv.iter_mut().zip(there.iter().zip(here)).for_each(|(jv, (there, here))| *jv = (there - here) / step);
 }
 
 impl Integrator for Diffsol {
     fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String> {
         let &Span { equations, tau, ref from, until } = span;
-        let start = [from.position[0], from.position[1], from.velocity[0], from.velocity[1]];
+        let start = numbers(from);
         let problem = OdeBuilder::<M>::new()
             .t0(tau)
             .h0(until - tau)
             .rtol(self.tolerance)
             .atol([ABSOLUTE * self.tolerance])
             .rhs_implicit(
-                |y: &[f64], _: &[f64], tau, dy: &mut [f64]| right_hand_side(equations, tau, y, dy),
+                |y: &[f64], _: &[f64], tau, dy: &mut [f64]| dy.copy_from_slice(&rates(equations, tau, y)),
                 |y: &[f64], _: &[f64], tau, v: &[f64], jv: &mut [f64]| derivative(equations, tau, y, v, jv),
             )
             .init(|_: &[f64], _, y: &mut [f64]| y.copy_from_slice(&start), 4)
