@@ -1,4 +1,4 @@
-"""The shared library itself: what it offers and what it needs, on Linux and Windows; the same numbers on both."""
+"""The shared library itself: what it offers and what it needs on Linux, and the same numbers on Windows."""
 
 import functools
 import os
@@ -33,10 +33,6 @@ FUNCTIONS = {f"fmi2{name}" for name in """
 
 # The C library, its parts of before glibc 2.34, its mathematics and start-up, and the compiler's run time.
 LINUX_RUN_TIME = {"libc.so.6", "libdl.so.2", "libpthread.so.0", "libm.so.6", "libgcc_s.so.1", "ld-linux-x86-64.so.2"}
-
-# The C library, and what every Windows has had since version 10.
-WINDOWS_RUN_TIME = {"msvcrt.dll", "kernel32.dll", "ntdll.dll", "ws2_32.dll", "userenv.dll", "bcryptprimitives.dll",
-                    "api-ms-win-core-synch-l1-2-0.dll"}
 
 
 def output(*command, cwd=ROOT, **arguments) -> str:

@@ -1,5 +1,4 @@
-//! The crate differential-equations: Dormand and Prince's pair of orders 8(5, 3) and Verner's of orders 9(8), with the
-//! crate's own events.
+//! The crate differential-equations: Dormand and Prince's pair of orders 8(5, 3), with the crate's own events.
 
 use super::{ABSOLUTE, numbers, point, rates};
 use crate::equations::PhaseEquations;
