@@ -33,7 +33,9 @@ def test_commands_run_as_they_are_printed(exporter, tmp_path):
 
 @pytest.mark.parametrize("preset, version", [("mcmanus", "2"), ("evison", "3")])
 def test_the_demo_has_the_fmu_of_the_command_line(exporter, tmp_path, preset, version):
-    library, program, demo = exporter.with_name("deps") / "libFlexibleRocking.so", tmp_path / "program.fmu", tmp_path / "demo.fmu"
-    subprocess.run([exporter, "export", "--preset", preset, "--fmi", version, "--library", library, "-o", program], check=True)
+    library = exporter.with_name("deps") / "libFlexibleRocking.so"
+    program, demo = tmp_path / "program.fmu", tmp_path / "demo.fmu"
+    command = [exporter, "export", "--preset", preset, "--fmi", version, "--library", library, "-o", program]
+    subprocess.run(command, check=True)
     subprocess.run([exporter.with_name("fmu-export"), library, preset, version, demo], check=True)
     assert demo.read_bytes() == program.read_bytes()

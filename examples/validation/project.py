@@ -81,7 +81,8 @@ class Project:
         path = self.folder / "response.csv"
         units = {"time": "s", "theta": "rad", "u": "m", "theta_dot": "rad/s", "u_dot": "m/s"}
         table = pd.DataFrame({f"{name}[{unit}]": response[name] for name, unit in units.items()})
-        table.assign(**{"a_g[m/s2]": 0.0, "phase": [PHASES[int(item)] for item in response["phase"]]}).to_csv(path, index=False)
+        table["a_g[m/s2]"], table["phase"] = 0.0, [PHASES[int(item)] for item in response["phase"]]
+        table.to_csv(path, index=False)
         return self.columns("modes", "--preset", preset, "--response", path, "-o", "-")
 
     @cache
