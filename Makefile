@@ -199,7 +199,7 @@ coupling: .venv/test exporter out/mcmanus.fmu out/evison.fmu out/mcmanus3.fmu ou
 	PYTHONPATH=examples:tests OMP_NUM_THREADS=1 $(PYTHON) -m coupling
 
 exchange: .venv/test out/mcmanus.fmu
-	PYTHONPATH=examples:tests OMP_NUM_THREADS=1 $(PYTHON) -m model_exchange --fmu out/mcmanus.fmu
+	PYTHONPATH=examples OMP_NUM_THREADS=1 $(PYTHON) -m model_exchange --fmu out/mcmanus.fmu
 
 records: .venv/ready
 

@@ -7,9 +7,9 @@ use nalgebra::{SMatrix, Vector4, Vector6};
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::End;
 use rocking::run::ground_motion::Segment;
-use rocking_records::Reading;
 use rocking::run::record::Record;
 use rocking::{Detail, Motion, Parameters, Run, Structure};
+use rocking_records::Reading;
 use std::{env, hint::black_box, path::Path, time::Instant};
 
 /// Length of the scene, s.

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 from conftest import ROOT
-from test_hosts_library import WINDOWS_RUN_TIME
 
 lief = pytest.importorskip("lief", reason="lief is missing: `make foreign` installs it")
 
@@ -21,6 +20,9 @@ PLACES = [ROOT, Path(os.environ.get("CARGO_HOME", Path.home() / ".cargo"))]
 # The parts of glibc, as they were before 2.34 joined them.
 LINUX_RUN_TIME = {f"lib{name}.so" for name in ("c", "m", "pthread", "dl")}
 LINUX_LOADERS = {"X86_64": "ld-linux-x86-64.so", "AARCH64": "ld-linux-aarch64.so"}
+# The C library, and what every Windows has had since version 10.
+WINDOWS_RUN_TIME = {"msvcrt.dll", "kernel32.dll", "ntdll.dll", "ws2_32.dll", "userenv.dll", "bcryptprimitives.dll",
+                    "api-ms-win-core-synch-l1-2-0.dll"}
 MACOS_RUN_TIME = {f"/usr/lib/lib{name}.dylib" for name in ("System.B", "charset.1", "iconv.2")}
 
 

@@ -13,6 +13,7 @@ iteration on fresh integrations from the start of the step, because the polynomi
 
 from __future__ import annotations
 
+import copy
 import math
 from dataclasses import dataclass, field
 
@@ -220,9 +221,15 @@ class _Step:
     def __init__(self, solver: DOP853):
         self.solver, self.t0, self.h = solver, solver.t_old, solver.t - solver.t_old
         dense = solver.dense_output()
-        self.y0 = dense.y_old
+        self.y0, self.y1 = dense.y_old, solver.y
         self.powers = _POWERS @ dense.F
         self.powers[0] += self.y0
+
+    def part(self, at: slice) -> _Step:
+        """The same of a part of the state."""
+        part = copy.copy(self)
+        part.powers, part.y1 = self.powers[:, at], self.y1[at]
+        return part
 
     def at(self, x: float) -> np.ndarray:
         """The state at x, by the polynomial."""
@@ -277,13 +284,13 @@ def _first_uplift(p: Structure, step: _Step) -> tuple[float, int, tuple] | None:
     return None
 
 
-def _first_touch(s: int, step: _Step, zeros_at_start: int) -> tuple[float, tuple] | None:
-    """The first x in (0, 1] at which s theta is 0 again or pi/2, and that guard."""
+def _first_touch(s: int, step: _Step, zeros_at_start: int) -> tuple[float, int, tuple] | None:
+    """The first x in (0, 1] at which s theta is 0 again or pi/2, s, and that guard."""
     returned, flat = (np.array([0.0, 0.0, s, 0.0]), 0.0), (np.array([0.0, 0.0, s, 0.0]), -math.pi / 2)
-    touches = [(x, returned) for x in step.roots(returned, zeros_at_start) if x > 0]
-    touches += [(x, flat) for x in step.roots(flat)]
-    if s * step.solver.y[2] <= 0:  # also when rounding hides the root at the very end of the step
-        touches.append((1.0, returned))
+    touches = [(x, s, returned) for x in step.roots(returned, zeros_at_start) if x > 0]
+    touches += [(x, s, flat) for x in step.roots(flat)]
+    if s * step.y1[2] <= 0:  # also when rounding hides the root at the very end of the step
+        touches.append((1.0, s, returned))
     return min(touches, key=lambda touch: touch[0], default=None)
 
 
@@ -295,55 +302,67 @@ def integrate(p: Structure, knots, a_g, initial=(0.0, 0.0, 0.0, 0.0), *, F_t=Non
     `initial` is (u, u_dot, theta, theta_dot). The response is given at the knots and at per_sample - 1 instants
     evenly between each two. It ends early, at that instant, when the structure overturns.
     """
-    run = _Run(p, np.array(initial, dtype=float), float(knots[0]), float(knots[1] - knots[0]), rtol, atol)
-    rows = [run.row()]
+    def rates(phases, load):
+        return full_contact(p, load) if phases[0] == FULL_CONTACT else rocking(p, phases[0], load)
+
+    run = Run([p], rates, np.array(initial, dtype=float), float(knots[0]), float(knots[1] - knots[0]), rtol, atol)
+    run.test_uplifts()
+    transitions, rows = run.transitions[0], [run.row()]
     F_t = np.zeros(len(knots)) if F_t is None else F_t
     for t0, t1, a0, a1, F0, F1 in zip(knots[:-1], knots[1:], a_g[:-1], a_g[1:], F_t[:-1], F_t[1:]):
         load = Load(*map(float, (t0, a0, (a1 - a0) / (t1 - t0), F0, (F1 - F0) / (t1 - t0))))
-        budget = len(run.transitions) + TRANSITIONS_PER_SAMPLE
+        budget = len(transitions) + TRANSITIONS_PER_SAMPLE
         for part in range(1, per_sample + 1):
             end = float(t0 + (t1 - t0) * part / per_sample) if part < per_sample else float(t1)
             while run.t < end and not run.overturned:
                 run.advance(end, load)
-                if len(run.transitions) > budget:
+                if len(transitions) > budget:
                     raise RuntimeError(f"more than {TRANSITIONS_PER_SAMPLE} transitions in the sample from {t0} s")
             rows.append(run.row())
             if run.overturned:
-                return _response(p, rows, run.transitions)
-    return _response(p, rows, run.transitions)
+                return _response(p, rows, transitions)
+    return _response(p, rows, transitions)
 
 
-class _Run:
-    """The hybrid system at one instant, and how it gets on from there."""
+class Run:
+    """The hybrid system of one structure, or of several with a state that goes before theirs, at one instant, and how it
+    gets on from there."""
 
-    def __init__(self, p: Structure, y: np.ndarray, t: float, h: float, rtol: float, atol: float):
-        self.p, self.y, self.t, self.h, self.rtol, self.atol = p, y, t, h, rtol, atol
-        self.phase = int(np.sign(y[2]))
-        self.zeros_at_start = 0  # how many zeros of theta(t) lie at the start of this phase, while at its start
+    def __init__(self, structures, rates, y: np.ndarray, t: float, h: float, rtol: float, atol: float, recoil=None):
+        """`rates` gives the right-hand side for the phases and a load; `recoil` what a transition that takes a structure from
+        one (s, state) to another adds to the second number of the state."""
+        self.structures, self.rates, self.recoil = structures, rates, recoil
+        self.y, self.t, self.h, self.rtol, self.atol = y, t, h, rtol, atol
+        before = len(y) - 4 * len(structures)
+        self.parts = [slice(before + 4 * i, before + 4 * i + 4) for i in range(len(structures))]
+        self.phases = [int(np.sign(y[at][2])) for at in self.parts]
+        self.zeros_at_start = [0] * len(structures)  # of theta(t), at the start of a phase, while there
         self.overturned = False
-        self.transitions: list[Transition] = []
-        self.test_uplift()
+        self.transitions: list[list[Transition]] = [[] for _ in structures]
 
     def row(self) -> tuple:
-        return (self.t, *self.y.tolist(), self.phase)
+        return (self.t, *self.y.tolist(), *self.phases)
 
-    def enter(self, kind: str, side: int, phase: int, y: np.ndarray):
-        self.transitions.append(Transition(self.t, kind, side, tuple(self.y.tolist()), tuple(y.tolist())))
-        self.phase, self.y = phase, y
-        self.zeros_at_start = {"uplift": 2, "impact": 1}.get(kind, 0)
+    def enter(self, i: int, kind: str, side: int, phase: int, y: np.ndarray):
+        before, after = (tuple(state[self.parts[i]].tolist()) for state in (self.y, y))
+        self.transitions[i].append(Transition(self.t, kind, side, before, after))
+        self.phases[i], self.y = phase, y
+        self.zeros_at_start[i] = {"uplift": 2, "impact": 1}.get(kind, 0)
 
-    def test_uplift(self) -> bool:
-        """Lifts off if the condition of uplift holds as the state stands."""
-        s = 1 if self.y[0] >= 0 else -1
-        if self.phase != FULL_CONTACT or not lifts(self.p, s, self.y[0], self.y[1]):
-            return False
-        self.enter("uplift", s, s, self.y)
-        return True
+    def test_uplifts(self) -> bool:
+        """Lifts every structure off for which the condition of uplift holds as the state stands."""
+        lifted = False
+        for i, p in enumerate(self.structures):
+            u, u_dot = self.y[self.parts[i]][:2]
+            s = 1 if u >= 0 else -1
+            if self.phases[i] == FULL_CONTACT and lifts(p, s, u, u_dot):
+                self.enter(i, "uplift", s, s, self.y)
+                lifted = True
+        return lifted
 
-    def advance(self, end: float, load: Load):
+    def advance(self, end: float, load):
         """Gets on to `end` or to the first transition before it, whichever comes first."""
-        rates = full_contact(self.p, load) if self.phase == FULL_CONTACT else rocking(self.p, self.phase, load)
-        solver = DOP853(rates, self.t, self.y, end, rtol=self.rtol, atol=self.atol,
+        solver = DOP853(self.rates(tuple(self.phases), load), self.t, self.y, end, rtol=self.rtol, atol=self.atol,
                         first_step=min(self.h, end - self.t))
         while solver.status == "running":
             message = solver.step()
@@ -352,31 +371,37 @@ class _Run:
             self.h = max(self.h, solver.h_abs) if solver.status == "finished" else solver.h_abs
             if self.transition(_Step(solver)):
                 return
-            self.t, self.y, self.zeros_at_start = solver.t, solver.y, 0
-            if self.test_uplift():
+            self.t, self.y, self.zeros_at_start = solver.t, solver.y, [0] * len(self.phases)
+            if self.test_uplifts():
                 return
 
     def transition(self, step: _Step) -> bool:
-        """Makes the first transition within `step`, if there is one."""
-        if self.phase == FULL_CONTACT:
-            found = _first_uplift(self.p, step)
-            if found:
-                x, s, guard = found
-                self.t, self.y = step.refine(x, guard, self.rtol, self.atol)
-                self.enter("uplift", s, s, self.y)
-            return found is not None
-        found = _first_touch(self.phase, step, self.zeros_at_start)
-        if found:
-            x, guard = found
-            self.t, self.y = step.refine(x, guard, self.rtol, self.atol)
-            if guard[1] != 0:
-                self.overturned = True
-                self.enter("overturned", self.phase, self.phase, self.y)
-            else:
-                kind, phase, y = impact(self.p, self.phase, self.y)
-                self.enter(kind, self.phase, phase, y)
-                self.test_uplift()
-        return found is not None
+        """Makes the first transition of any structure within `step`, if there is one."""
+        found = []
+        for i, (p, s, at) in enumerate(zip(self.structures, self.phases, self.parts)):
+            part = step.part(at)
+            first = _first_uplift(p, part) if s == FULL_CONTACT else _first_touch(s, part, self.zeros_at_start[i])
+            found += [(*first, i)] if first else []
+        if not found:
+            return False
+        x, s, (normal, constant), i = min(found, key=lambda candidate: candidate[0])
+        p, at, of_all = self.structures[i], self.parts[i], np.zeros(len(self.y))
+        of_all[at] = normal
+        self.t, self.y = step.refine(x, (of_all, constant), self.rtol, self.atol)
+        self.zeros_at_start = [0] * len(self.phases)
+        if self.phases[i] == FULL_CONTACT:
+            self.enter(i, "uplift", s, s, self.y)
+        elif constant != 0:
+            self.overturned = True
+            self.enter(i, "overturned", s, s, self.y)
+        else:
+            y = self.y.copy()
+            kind, phase, y[at] = impact(p, s, self.y[at])
+            if self.recoil:
+                y[1] += self.recoil(p, (s, self.y[at]), (phase, y[at]))
+            self.enter(i, kind, s, phase, y)
+            self.test_uplifts()
+        return True
 
 
 def reactions(p: Structure, s: int, y, load: Load) -> tuple[float, float, float]:

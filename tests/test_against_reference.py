@@ -42,12 +42,12 @@ def solved(request):
 
 
 def differences(exact, other) -> dict[str, float]:
-    """max|difference|/max|exact| of theta, u and, away from transitions, of a_t."""
+    """max|difference|/max|exact| of the motion and, away from transitions, of a_t."""
     away = np.ones(len(exact.t), dtype=bool)
     for transition in exact.transitions:
         away &= np.abs(exact.t - transition.time) > NEAR_A_TRANSITION
     result = {}
-    for name, where in (("theta", slice(None)), ("u", slice(None)), ("a_t", away)):
+    for name, where in (*((name, slice(None)) for name in ("theta", "u", "delta_t", "v_t", "uplift")), ("a_t", away)):
         a, b = getattr(exact, name), getattr(other, name)
         result[name] = float(np.max(np.abs(a - b)[where]) / np.max(np.abs(a)))
     return result
@@ -67,6 +67,8 @@ def test_response(solved, tolerance, limit, mcmanus):
     np.testing.assert_allclose([event.time for event in events], instants, rtol=limit)
     for name, error in differences(exact, rows).items():
         assert error <= limit, f"{name}: relative error {error:.1e} > {limit:.0e}"
+    np.testing.assert_allclose(rows.V_t, scene.structure.m * rows.a_t, rtol=1e-14)
+    np.testing.assert_allclose(rows.M_t, scene.structure.H * rows.V_t, rtol=1e-14)
 
 
 def first_difference(events, transitions) -> str:

@@ -12,13 +12,12 @@ import numpy as np
 import pytest
 import reference
 from coupling import bridge_ssp, building_on_soil, convergence, one_system, stability
-from coupling.bridge import MASS, Bridge, deck, linear, pier, simulate
+from coupling.bridge import Bridge, deck, linear, pier, simulate
 from coupling.building_on_soil import OnSoil
 from coupling.masters import MASTERS, TOLERANCE, Diverged, Iterated, between_transitions
 from coupling.masters import extrapolate, gauss_seidel, hold, jacobi
 from coupling.swaying_mass import SwayingMass
 from reference import EVISON, MCMANUS
-from scipy.linalg import expm
 from validation.records import pacoima_dam
 
 TIME, A_G = pacoima_dam()
@@ -50,28 +49,6 @@ def test_without_a_deck_the_monolithic_piers_are_the_single_ones():
         assert len(together.transitions[i]) == len(single.transitions) >= 10
         for column, expected in zip(together.y[:, 2 + 4 * i:].T, (single.u, single.u_dot, single.theta)):
             assert column == pytest.approx(expected, abs=1e-11 * np.max(np.abs(expected)))
-
-
-def test_the_monolithic_bridge_with_bases_down_is_a_linear_system():
-    """Three masses on springs and dashpots, by a matrix exponential, under a steadily growing ground acceleration."""
-    M, k, c = MASS, 2e4, 300.0
-    stiffness, damping = np.zeros((3, 3)), np.zeros((3, 3))
-    for i, p in enumerate((MCMANUS, EVISON), start=1):
-        spring = np.array([[1.0, -1.0], [-1.0, 1.0]])
-        stiffness[np.ix_((0, i), (0, i))] += k * spring
-        damping[np.ix_((0, i), (0, i))] += c * spring
-        stiffness[i, i] += p.k
-        damping[i, i] += p.c_fc
-    inverse = np.diag(1 / np.array([M, MCMANUS.m, EVISON.m]))
-    rates = np.zeros((8, 8))
-    rates[:3, 3:6] = np.eye(3)
-    rates[3:6, :3], rates[3:6, 3:6], rates[3:6, 6] = -inverse @ stiffness, -inverse @ damping, -1
-    rates[6, 7] = 1
-    slope, end = 0.7, 0.6
-    x = (expm(rates * end) @ [0, 0, 0, 0, 0, 0, 0, slope])[:6]
-    time = np.linspace(0, end, 31)
-    y = monolithic.integrate(monolithic.Bridge((MCMANUS, EVISON), M, k, c), time, slope * time).y[-1]
-    assert y[[0, 2, 6, 1, 3, 7]] == pytest.approx(x, rel=1e-11)
 
 
 @pytest.mark.parametrize("variant", convergence.VARIANTS)
@@ -147,19 +124,6 @@ def test_one_solver_over_bridge_and_piers_in_model_exchange(piers):
     assert system.transitions() == sum(map(len, expected.transitions)) > 20
     loose, tight, tightest = errors
     assert tightest < 1e-6 < tight < 1e-4 < loose < 0.3
-
-
-def test_a_stiff_and_heavy_deck_is_no_matter_to_one_solver(piers):
-    """At any of the masters' steps beyond 5 ms this bridge blows up."""
-    ratio, frequency = 30.0, 25.0
-    for master, guess in ((jacobi, extrapolate), (gauss_seidel, extrapolate)):
-        assert stability.growth(master, guess, ratio, 5e-3, True, frequency) > stability.GROWTH
-    assert stability.contraction(ratio, 5e-3, True, frequency) > 1
-    of_deck, until = deck(stability.mass(ratio), frequency), slice(300)
-    expected = monolithic.integrate(convergence.monolithic_bridge(of_deck), TIME[until], A_G[until], rtol=1e-9, atol=1e-12)
-    assert sum(map(len, expected.transitions)) > 4
-    found, _ = one_system.response(piers, of_deck, 1e-6, TIME[until])
-    assert convergence.error(found, convergence.columns(expected)) < 1e-3
 
 
 @functools.cache

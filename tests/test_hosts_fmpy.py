@@ -9,16 +9,14 @@ from pathlib import Path
 
 import fmpy
 import numpy as np
-import plotly.io
 import pytest
 from first_run import PACOIMA_DAM
 from fmpy.fmi1 import FMICallException
 from fmpy.fmi2 import defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.logging import addLoggerProxy
-from fmpy.util import plot_result, read_csv, write_csv
+from fmpy.util import read_csv
 from host import simulate
 from pacoima import A_G, END, OUTPUTS, STEP, STEPS, TIME, distance, held, instants, linear, rows, write_record
-from plotly.io.base_renderers import ExternalRenderer
 
 _SAID = []
 
@@ -57,29 +55,6 @@ def test_command_line_with_the_record_inside(mcmanus, pacoima_record, exact, tmp
     assert distance(rows(read_csv(tmp_path / "out.csv")), exact(step)) < 1e-9
 
 
-def test_the_default_result_can_be_plotted_and_read(shaken, tmp_path):
-    """plot_result makes room for 17 curves at most; read_csv reads numbers alone."""
-    result = fmpy.simulate_fmu(shaken["mcmanus"].path, stop_time=END)
-    write_csv(tmp_path / "out.csv", result)
-    again = read_csv(tmp_path / "out.csv")
-    assert again.dtype.names == result.dtype.names
-    assert all(np.allclose(again[name], result[name], rtol=1e-15, atol=0) for name in result.dtype.names)
-    shown = []
-
-    class Screen(ExternalRenderer):
-        def render(self, figure):
-            shown.append(figure)
-
-    plotly.io.renderers["screen"] = Screen()
-    default, plotly.io.renderers.default = plotly.io.renderers.default, "screen"
-    try:
-        plot_result(result)  # what --show-plot calls
-    finally:
-        plotly.io.renderers.default = default
-    (figure,) = shown
-    assert len(figure["data"]) == len(result.dtype.names) - 1
-
-
 def test_simulate_fmu_holds_inputs(mcmanus):
     result, events = simulate(mcmanus, stop_time=TIME[-1], output_interval=STEP, input=table(TIME, A_G), output=OUTPUTS)
     assert len(events) == 31
@@ -90,10 +65,6 @@ def test_simulate_fmu_cannot_pass_slopes_on(mcmanus):
     """fmpy 0.3.23 to 0.3.32 make room for nine slopes, whatever the number of inputs."""
     with pytest.raises(ValueError, match="Can only assign sequence of same size"):
         fmpy.simulate_fmu(mcmanus.path, stop_time=1.0, input=table(TIME, A_G), set_input_derivatives=True)
-
-
-def test_held_and_linear_inputs_differ(mcmanus):
-    assert 1e-2 < distance(held(mcmanus), linear(mcmanus)) < 1
 
 
 def test_the_page_inside_says_what_holding_costs(mcmanus, exact):

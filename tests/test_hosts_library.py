@@ -1,4 +1,4 @@
-"""The shared library itself: what it offers and what it needs, on Linux and Windows; the same numbers on both."""
+"""The shared library itself: what it offers and what it needs on Linux, and the same numbers on Windows."""
 
 import functools
 import os
@@ -6,7 +6,6 @@ import re
 import shutil
 import subprocess
 import sys
-import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -34,10 +33,6 @@ FUNCTIONS = {f"fmi2{name}" for name in """
 
 # The C library, its parts of before glibc 2.34, its mathematics and start-up, and the compiler's run time.
 LINUX_RUN_TIME = {"libc.so.6", "libdl.so.2", "libpthread.so.0", "libm.so.6", "libgcc_s.so.1", "ld-linux-x86-64.so.2"}
-
-# The C library, and what every Windows has had since version 10.
-WINDOWS_RUN_TIME = {"msvcrt.dll", "kernel32.dll", "ntdll.dll", "ws2_32.dll", "userenv.dll", "bcryptprimitives.dll",
-                    "api-ms-win-core-synch-l1-2-0.dll"}
 
 
 def output(*command, cwd=ROOT, **arguments) -> str:
@@ -108,30 +103,6 @@ def test_linux_host(on_linux, mcmanus):
 def test_linux_host_with_the_record_inside(run, linux_host, linux_library, shaken, exact, step):
     found = run(linux_host, library=linux_library, fmu=shaken["mcmanus"], step=step)
     assert distance(found, exact(step)) < 1e-9
-
-
-@pytest.mark.heavy
-def test_windows_library(windows):
-    table = output(f"{MINGW}-objdump", "-p", windows / "FlexibleRocking.dll")
-    assert set(re.findall(r"^\t\[ *\d+\].* (\S+)$", table.partition("Ordinal/Name")[2], re.MULTILINE)) == FUNCTIONS
-    assert {name.lower() for name in re.findall(r"DLL Name: (\S+)", table)} <= WINDOWS_RUN_TIME
-
-
-@pytest.mark.heavy
-def test_one_archive_for_both(windows, linux_library, exporter, mcmanus, tmp_path):
-    """With other libraries the rest of the archive is the same; a library may come out of an archive."""
-    path, again = tmp_path / "both.fmu", tmp_path / "again.fmu"
-    dll = windows / "FlexibleRocking.dll"
-    output(exporter, "export", "--preset", "mcmanus", "--library", linux_library, dll, "-o", path)
-    output(exporter, "export", "--preset", "mcmanus", "--library", path, "-o", again)
-    assert again.read_bytes() == path.read_bytes()
-    with zipfile.ZipFile(mcmanus.path) as one, zipfile.ZipFile(path) as both:
-        libraries = {name: both.read(name) for name in both.namelist() if name.startswith("binaries/")}
-        assert libraries == {"binaries/win64/FlexibleRocking.dll": dll.read_bytes(),
-                             "binaries/linux64/FlexibleRocking.so": Path(linux_library).read_bytes()}
-        for name in set(one.namelist()) | set(both.namelist()):
-            if not name.startswith(("binaries/", "documentation/index.html")):
-                assert one.read(name) == both.read(name), name
 
 
 @pytest.fixture(scope="module")

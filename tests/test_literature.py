@@ -1,14 +1,12 @@
 """The page of the literature: its closed forms against integration, the FMU against the closed forms."""
 
-from math import acosh
-
 import numpy as np
 import pandas as pd
 import pytest
-from literature import ensemble, free_rocking, overturning
-from literature.block import Block, PulseRuns, homogeneous
+from literature import ensemble, overturning
+from literature.block import PulseRuns
 from literature.flexible import EVISON, MCMANUS
-from literature.slender_block import HALF_SINE, ONE_COSINE, ONE_SINE, PULSES, boundaries, follow, half_sine_boundary
+from literature.slender_block import HALF_SINE, ONE_COSINE, ONE_SINE, boundaries, follow, half_sine_boundary
 from scipy.integrate import solve_ivp
 from validation.project import Project
 
@@ -69,17 +67,6 @@ def test_the_half_sine_by_its_one_equation(omega):
     assert not follow(HALF_SINE, omega, 0.9, of.amplitude * (1 - 1e-12)).overturns
 
 
-def test_a_short_pulse_overturns_by_its_area_alone():
-    """omega to infinity: an impulse 2 A/omega gives the velocity 1, that of the edge."""
-    assert 2 * half_sine_boundary(2000) / 2000 == pytest.approx(1, abs=1e-3)
-
-
-@pytest.mark.parametrize("pulse", PULSES, ids=lambda pulse: pulse.name)
-def test_lift_off(pulse):
-    t = pulse.lift_off(3.0, 1.7)
-    assert t == 0.0 if pulse is ONE_COSINE else 1.7 * pulse.shape(3.0, t)[0] == pytest.approx(1, rel=1e-14)
-
-
 def test_the_extrapolated_boundaries_are_the_closed_forms(runs):
     """One sine at omega = 4 p: after an impact and without."""
     first, _, last = boundaries(ONE_SINE, 4, overturning.R, 6, step=0.02)
@@ -91,30 +78,12 @@ def test_the_extrapolated_boundaries_are_the_closed_forms(runs):
         assert overturning.counted(runs, ONE_SINE, 4, limit.values[-1] * (1 + 1e-9)) == of.impacts
 
 
-def test_the_rigid_limit_depends_on_p_and_alpha_alone(runs):
-    alike = Block({"m": 40.0, "m0": 300.0, "H": 9.0, "B": 0.2 * 9 * 40 / 340, "J0": 700.0, "r": 0.9})
-    block = homogeneous(0.2, 0.9)
-    amplitudes = [runs.boundary(of, HALF_SINE, 4, half_sine_boundary(4)) for of in (block, alike)]
-    assert alike.p / block.p < 0.9
-    assert amplitudes[0] == pytest.approx(amplitudes[1], rel=1e-9)
-
-
 def test_derived_quantities_are_the_programs(project):
     for name, block in (("mcmanus", MCMANUS), ("evison", EVISON)):
         derived = project.values("describe", "--preset", name)
         for quantity, value in (("p_l", block.p_l), ("J_P", block.J_P), ("alpha_cg", np.arctan(block.tangent)),
                                 ("u_cr", block.u_cr), ("chi", 1 - block.one_minus_chi)):
             assert value == pytest.approx(derived[quantity], rel=1e-12), quantity
-
-
-def test_free_rocking(project):
-    """Housner's quarter period, the quadrature's limit, and the model against the quadrature."""
-    assert free_rocking.housner(0.6).instants[0] == pytest.approx(acosh(1 / 0.4), rel=1e-14)
-    slender, almost = free_rocking.housner(0.6), free_rocking.stocky(1e-4, 0.6)
-    stocky, model = free_rocking.stocky(0.3, 0.6), free_rocking.of_model(project, homogeneous(0.3, free_rocking.R), 0.6)
-    for quantity in ("instants", "speeds"):
-        assert getattr(almost, quantity) == pytest.approx(getattr(slender, quantity), rel=1e-7)
-        assert getattr(model, quantity) == pytest.approx(getattr(stocky, quantity), rel=1e-11)
 
 
 def some_runs(factor: float) -> pd.DataFrame:
@@ -136,16 +105,3 @@ def test_an_ensemble_compared_with_itself_and_with_a_scaled_one():
     expected = max(np.mean(theta <= x) - np.mean(2 * theta <= x) for x in theta)
     assert doubled.distance == pytest.approx(expected, rel=1e-12)
     assert np.all(doubled.difference == 0) and doubled.distance_most >= doubled.distance
-
-
-def test_halves_of_the_records():
-    """Of the three ways to halve four records, two mix the two kinds that the third one parts."""
-    runs = some_runs(1.0)
-    alike = ensemble.between_halves(runs, "pier")
-    runs.loc[runs["record"].isin(["c", "d"]), "auto"] += 10
-    mixed = ensemble.between_halves(runs, "pier")
-    for halves in (alike, mixed):
-        assert halves.overturned == 0 and halves.distance < 0.12
-    runs["record"] = runs["record"].replace({"b": "a", "d": "c"})
-    parted = ensemble.between_halves(runs, "pier")
-    assert parted.distance == pytest.approx(0.9) and parted.ratios[0] == pytest.approx(10.5 / 0.5, rel=0.05)

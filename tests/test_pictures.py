@@ -36,13 +36,13 @@ class Drawing:
                   if anchor == "end" and x - 40 < at < x and top - 5 <= y <= bottom + 5]
         return straight(*zip(*beside))
 
-    def across(self, panel, scale=lambda x: x):
+    def across(self, panel):
         """Pixels to the right -> values, by the numbers below the axis or below the panels that end with it."""
         x, _, bottom = panel
         below = [(at, y, value(text)) for text, at, y, anchor in self.words
                  if anchor == "middle" and y > bottom and at >= x - 5 and re.fullmatch(r"[−\d.e]+", text)]
         row = min(y for _, y, _ in below)
-        return straight(*zip(*[(at, scale(number)) for at, y, number in below if abs(y - row) < 2]))
+        return straight(*zip(*[(at, number) for at, y, number in below if abs(y - row) < 2]))
 
     def curves(self, colour, panel):
         """The data lines of a colour that lie in a panel."""
@@ -164,72 +164,6 @@ def test_a_png_is_the_svg_with_its_words(run, pacoima_record, response):
     assert 0.005 < dark(0, 0, width, height) < 0.2
 
 
-def test_a_pushover_is_its_table(run):
-    run("pushover", "--preset", "evison", "-o", "push.csv", "--picture", "push.svg")
-    table = pd.read_csv(run.folder / "push.csv")
-    drawing = read(run.folder / "push.svg")
-    panels = drawing.panels()
-    for panel, below, column in [(panels[1], panels[3], "P[N]"), (panels[3], panels[3], "M[N.m]")]:
-        displacement, values = drawing.across(below), drawing.upward(panel)
-        full_contact, rocking = sorted(drawing.curves(BLUE, panel) + [
-            points for colour, points in drawing.lines
-            if colour == BLUE and len(points) == 2 and abs(points[0, 0] - panel[0]) < 1 and panel[1] <= points[1, 1] <= panel[2]
-        ], key=lambda points: points[-1, 0])
-        for curve, phase in [(full_contact, "full contact"), (rocking, "rocking right")]:
-            rows = table[table["phase"] == phase]
-            assert np.abs(displacement(curve[[0, -1], 0]) - 1e3 * rows["delta_t[m]"].iloc[[0, -1]]).max() < 1
-            assert np.abs(values(curve[[0, -1], 1]) - rows[column].iloc[[0, -1]]).max() < 2
-
-
-def test_modes_are_their_table(run, response):
-    run("modes", "--response", "response.csv", "-o", "modes.csv", "--picture", "modes.svg")
-    table = pd.read_csv(run.folder / "modes.csv")
-    drawing = read(run.folder / "modes.svg")
-    panels = drawing.panels()
-    time = drawing.across(panels[-1])
-    for panel, column, unit, colour in [(panels[0], "q_r[rad]", 1, BLUE), (panels[0], "q_u[rad]", 1, VERMILLION),
-                                        (panels[1], "a_r[m/s2]", 9.81, BLUE), (panels[1], "a_u[m/s2]", 9.81, VERMILLION),
-                                        (panels[2], "a_t[m/s2]", 9.81, INK)]:
-        curves = drawing.curves(colour, panel)
-        assert len(curves) > 10
-        for curve in curves:
-            is_on(table["time[s]"].to_numpy(), table[column].to_numpy() / unit, time, drawing.upward(panel), curve)
-
-
-def test_advice_shows_the_errors_of_the_table(run, pacoima_record):
-    printed = run("advise", "--record", pacoima_record, "--picture", "advice.svg")
-    drawing = read(run.folder / "advice.svg")
-    numbers = {text.strip("≤≥ %"): x for text, x, y, anchor in drawing.words if text.endswith(" %")}
-    error = straight(list(numbers.values()), [np.log10(float(number)) for number in numbers])
-    for level in ("fixed_base", "rigid", "modal", "linear"):
-        [height] = [y for text, _, y, _ in drawing.words if text == level]
-        columns = re.search(rf"^[> ] {level} +(.*)$", printed, re.MULTILINE)[1].split()
-        theta, u, a_t, theta_history, u_history, a_t_history = map(float, columns[:6])
-        found = sorted(error(x) for _, x, y in drawing.dots if abs(y - height) < 20)[-6:]
-        expected = np.log10(sorted([theta, u, a_t, theta_history, u_history, a_t_history]))
-        assert np.abs(found - expected).max() < 0.05, level
-        assert f"{float(columns[-1]):.2f} × auto" in [text for text, *_ in drawing.words]
-    assert any(text.startswith("use detail = auto") for text, *_ in drawing.words)
-
-
-def test_an_estimate_shows_its_numbers(run, pacoima_record):
-    scene = ["estimate", "--record", pacoima_record, "--format", "csv", "--picture", "estimate.svg"]
-    (run.folder / "estimate.csv").write_text(run(*scene))
-    values = pd.read_csv(run.folder / "estimate.csv", index_col="name")["value"]
-    drawing = read(run.folder / "estimate.svg")
-    spectra, demand, frequency = drawing.panels()
-    period, S_a = drawing.across(spectra, np.log10), drawing.upward(spectra)
-    [(_, x, y)] = [dot for dot in drawing.dots if dot[0] == BLUE]
-    assert abs(10 ** period(x) / values["T_u"] - 1) < 5e-3
-    assert abs(S_a(y) * 9.81 / values["S_a(T_u, zeta_u)"] - 1) < 5e-3
-    words = [text for text, *_ in drawing.words]
-    assert f"{values['a_t'] / 9.81:.3f} g" in words and f"{values['S_a(T_fc, zeta_fc)'] / 9.81:.2f} g" in words
-    part, f_r = drawing.across(frequency), drawing.upward(frequency)
-    marks = sorted((part(x), f_r(y)) for colour, x, y in drawing.dots if colour == INK and y > frequency[1])
-    expected = [(float(name[4:-1]), values[name]) for name in values.index if name.startswith("f_r")]
-    assert np.abs(np.array(marks) - expected).max() < 5e-3
-
-
 def test_any_title_can_be_drawn(run):
     title = "</text><script>throw 1</script> & \x01\x1f\uffff " + "long " * 60
     header = f"PEER\n{title}\nACCELERATION TIME SERIES IN UNITS OF G\nNPTS= 4, DT= .0100 SEC,\n"
@@ -238,9 +172,3 @@ def test_any_title_can_be_drawn(run):
         run("simulate", "--record", "title.AT2", "--picture", picture)
     shown = read(run.folder / "title.svg").words[0][0]
     assert shown.startswith("</text><script>throw 1</script> & ") and shown.endswith("…")
-
-
-def test_a_picture_is_svg_or_png(exporter, tmp_path):
-    done = subprocess.run([exporter, "pushover", "--picture", "push.pdf"], cwd=tmp_path, capture_output=True, text=True)
-    assert done.returncode == 2 and ".svg or .png is needed" in done.stderr
-    assert list(tmp_path.iterdir()) == []

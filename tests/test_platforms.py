@@ -1,17 +1,15 @@
 """The libraries in out/FlexibleRocking.fmu, which `make dist` writes: what each offers and needs, and Linux's numbers on
-64-bit ARM, on an old system and, of macOS' libraries, in an emulated processor. Wine runs Windows' in test_hosts_library.py."""
+64-bit ARM and on an old system. Wine runs Windows' in test_hosts_library.py; nothing here runs macOS'."""
 
 import zipfile
-from pathlib import Path
 
 import binaries
-import numpy as np
 import pytest
 import qemu
 from conftest import ROOT
 from fmpy import read_model_description
 from host import Fmu
-from pacoima import OUTPUTS, distance, instants
+from pacoima import distance
 from test_hosts_library import FUNCTIONS, HOST, cargo_build, linux_host, output, run  # noqa: F401
 
 pytestmark = pytest.mark.heavy
@@ -101,36 +99,3 @@ def test_arm_gives_the_numbers_of_x86(run, linux_host, shaken, mcmanus, library)
         expected = run(linux_host, library=library("linux64"), fmu=fmu, step=step)
         found = run(*command, arm, library=library("aarch64-linux"), fmu=fmu, step=step)
         assert distance(found, expected) < 1e-12
-
-
-@pytest.mark.parametrize("cpu", ["X86_64", "ARM64"])
-def test_macos_gives_the_numbers_of_linux(cpu, run, linux_host, shaken, library):  # noqa: F811
-    """Its functions one after the other, the record inside; not macOS' loader, nor its own sine."""
-    fmu = shaken["mcmanus"]
-    found = follow(pytest.importorskip("macos").Library(library("darwin64"), cpu), fmu, instants(10e-3))
-    assert distance(found, run(linux_host, library=library("linux64"), fmu=fmu, step=10e-3)) < 1e-12
-
-
-def follow(library, fmu, times):
-    """OUTPUTS at these times, by calls of the emulated library."""
-    resources = f"{Path(fmu.folder).as_uri()}/resources"
-    name, guid, location = map(library.text, ("emulated", fmu.description.guid, resources))
-    instance = library.call("fmi2Instantiate", name, 1, guid, location, library.put("5Q", *5 * [0]), 0, 0)
-    assert instance
-
-    def call(function, *arguments):
-        assert library.call(function, instance, *arguments) & 0xFFFFFFFF == 0, function
-
-    call("fmi2SetupExperiment", 0, 0.0, 0.0, 0, 0.0)
-    call("fmi2EnterInitializationMode")
-    call("fmi2ExitInitializationMode")
-    references = library.put("3I", *(fmu.variables[name].valueReference for name in OUTPUTS))
-    values, found = library.put("3d", *3 * [0.0]), []
-    for time, step in zip(times, np.diff(times, append=np.nan)):
-        call("fmi2GetReal", references, len(OUTPUTS), values)
-        found.append(library.get(values, "3d"))
-        if time < times[-1]:
-            call("fmi2DoStep", float(time), float(step), 1)
-    call("fmi2Terminate")
-    library.call("fmi2FreeInstance", instance)
-    return np.array(found)

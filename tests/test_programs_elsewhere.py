@@ -1,5 +1,5 @@
 """The programs in the wheels for Windows and for Linux on ARM64, as pip lays them out, under wine and qemu: they write what this
-machine's writes, and their files as carefully."""
+machine's writes."""
 
 import json
 import shutil
@@ -7,7 +7,7 @@ import subprocess
 import zipfile
 from pathlib import Path
 
-import numpy as np
+import pandas as pd
 import pytest
 import qemu
 from conftest import ROOT
@@ -88,13 +88,6 @@ def same_bytes(both, *names):
     assert not list(there.glob(".rocking-fmu-*"))
 
 
-@pytest.mark.parametrize("machine", ["windows on x86_64", "linux on aarch64"])
-def test_version(request, linux, tmp_path, machine):
-    there = request.getfixturevalue("windows" if "windows" in machine else "arm")
-    found, here = (run("--version", cwd=tmp_path).stdout for run in (there, linux))
-    assert found == here.replace("for linux on x86_64", f"for {machine}") and f"\nfor {machine}; " in found
-
-
 def test_simulate(both):
     """The histories, transitions and peaks of Pacoima Dam."""
     runs = both("simulate", "--record", "pacoima.csv", "--format", "json", "-o", "response.csv", "--events", "events.csv")
@@ -104,20 +97,11 @@ def test_simulate(both):
         assert peak["name"] == expected["name"]
         assert [peak["peak"], peak["time"]] == pytest.approx([expected["peak"], expected["time"]], rel=1e-12, abs=0)
     for name in ("response.csv", "events.csv"):
-        there, here = ([line.split(",") for line in (folder / name).read_text().splitlines()] for folder, _ in runs)
-        assert len(here) > 20 and there[0] == here[0]
-        for column, expected in zip(zip(*there[1:], strict=True), zip(*here[1:], strict=True), strict=True):
-            try:
-                column, expected = np.array(column, float), np.array(expected, float)
-            except ValueError:
-                assert column == expected  # words
-            else:
-                assert np.abs(column - expected).max() <= 1e-12 * np.abs(expected).max()
-
-
-def test_describe(both):
-    (_, there), (_, here) = both("describe", "--preset", "evison", "--format", "csv")
-    assert there == here != ""
+        there, here = (pd.read_csv(folder / name) for folder, _ in runs)
+        assert len(here) > 20 and list(there) == list(here)
+        numbers, words = here.select_dtypes("number"), here.select_dtypes(exclude="number")
+        assert there[words.columns].equals(words)
+        assert ((there[numbers.columns] - numbers).abs().max() <= 1e-12 * numbers.abs().max()).all()
 
 
 def test_pictures_and_page(both):
@@ -150,25 +134,3 @@ def test_sweep(both, linux):
     before = (there / "runs.csv").read_bytes()
     assert linux("sweep", "sweep.toml", "-o", "runs.csv", cwd=there).returncode == 0
     assert (there / "runs.csv").read_bytes() == before
-
-
-def test_files_are_written_with_care(windows, tmp_path):
-    """What is read is not overwritten, under whatever name; what is written leaves no trace beside it."""
-    write_record(tmp_path / "pacoima.csv")
-    record = (tmp_path / "pacoima.csv").read_bytes()
-    (tmp_path / "same.csv").hardlink_to(tmp_path / "pacoima.csv")
-    for output, reason in {
-        ".\\PACOIMA.CSV": ".\\PACOIMA.CSV: it would overwrite pacoima.csv, which is read; name another file",
-        "same.csv": "same.csv: it would overwrite pacoima.csv, which is read; name another file",
-        "no\\such\\out.csv": "no\\such\\out.csv cannot be written: there is no folder no\\such",
-        "folder\\": "folder\\ cannot be written: it is a folder; name a file in it",
-    }.items():
-        failed = windows("simulate", "--record", "pacoima.csv", "-o", output, cwd=tmp_path)
-        assert failed.returncode == 1 and reason in failed.stderr, failed.stderr
-    assert (tmp_path / "pacoima.csv").read_bytes() == record
-    (tmp_path / "out.csv").write_text("before")
-    for output in ("out.csv", "NUL"):
-        done = windows("simulate", "--record", "pacoima.csv", "-o", output, cwd=tmp_path)
-        assert done.returncode == 0, done.stderr
-    assert (tmp_path / "out.csv").read_text().startswith("time")
-    assert {path.name for path in tmp_path.iterdir()} == {"pacoima.csv", "same.csv", "out.csv"}

@@ -1,9 +1,10 @@
-"""README's first script does what it says; that of the wheel is in test_wheel.py."""
+"""README's first script and commands do what they say; the script of the wheel is in test_wheel.py."""
 
 import re
 import subprocess
 import sys
 
+import pytest
 from conftest import ROOT
 from first_run import RECORD
 
@@ -28,3 +29,13 @@ def test_commands_run_as_they_are_printed(exporter, tmp_path):
     assert len(commands) >= 2
     for command in commands:
         subprocess.run(command, shell=True, cwd=tmp_path, check=True, capture_output=True)
+
+
+@pytest.mark.parametrize("preset, version", [("mcmanus", "2"), ("evison", "3")])
+def test_the_demo_has_the_fmu_of_the_command_line(exporter, tmp_path, preset, version):
+    library = exporter.with_name("deps") / "libFlexibleRocking.so"
+    program, demo = tmp_path / "program.fmu", tmp_path / "demo.fmu"
+    command = [exporter, "export", "--preset", preset, "--fmi", version, "--library", library, "-o", program]
+    subprocess.run(command, check=True)
+    subprocess.run([exporter.with_name("fmu-export"), library, preset, version, demo], check=True)
+    assert demo.read_bytes() == program.read_bytes()

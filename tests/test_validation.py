@@ -1,4 +1,4 @@
-"""The numbers of the validation report: those of the first six sections in full, of the last on a few structures."""
+"""The validation report: the first six sections in full, the last on a few structures."""
 
 from pathlib import Path
 
@@ -7,51 +7,13 @@ import pytest
 import reference
 from host import G
 from validation import demand_bound, derived_quantities, free_vibration, isolation, modal_components
-from validation import rocking_frequency, static_pushover, structure_study
+from validation import rocking_frequency, static_pushover
 from validation.half_cycles import half_cycles
 from validation.project import Project
 from validation.records import horizontal_records, single_pulse
 from validation.report import Row, comparison
 
 PAGE = Path(__file__).parents[1] / "docs" / "validation.md"
-
-# section, words of the quantity, paper, computed as the report prints it
-NUMBERS = [
-    (static_pushover, "Evison: displacement at uplift", "0.7525", "0.7525"),
-    (static_pushover, "Evison: moment at uplift", "474.8", "474.8"),
-    (static_pushover, "McManus: displacement at uplift", "2.3135", "2.3135"),
-    (static_pushover, "McManus: ground acceleration at uplift", "0.2328", "0.2328"),
-    (static_pushover, "McManus: rotation at overturning", "0.2287", "0.2275"),
-    (static_pushover, "McManus: the same, of the FMU", "0.2275", "0.2275"),
-    (derived_quantities, "Evison, Table 1: J_P", "152.5", "152.49"),
-    (derived_quantities, "Evison, Table 1: p_l", "2.92", "2.9151"),
-    (derived_quantities, "Evison, Table 1: α_cg", "0.35", "0.3512"),
-    (derived_quantities, "Evison, Table 1: χ", "0.92", "0.9095"),
-    (derived_quantities, "McManus, Table 2: J_P", "467", "467.05"),
-    (derived_quantities, "McManus, Table 2: p_l", "2.24", "2.2423"),
-    (derived_quantities, "McManus, Table 2: α_cg", "0.23", "0.2287"),
-    (derived_quantities, "McManus, Table 2: χ", "0.94", "0.9431"),
-    (free_vibration, "peak a_t of the first three", "0.85", "0.921"),
-    (modal_components, "step of the rocking mode", "0.34", "0.3333"),
-    (modal_components, "vibration frequency while rocking", "39", "36.57"),
-    (modal_components, "frequency in the spectrum", "35", "36.6"),
-    (modal_components, "frequency of the uplift's oscillation", "35", "36.6"),
-    (modal_components, "vibration frequency in full contact", "11", "11.00"),
-    (modal_components, "peak acceleration of the vibration", "0.48", "0.553"),
-    (modal_components, "C from the first vibration cycle", "1.4", "1.66"),
-    (modal_components, "C at the instant", "2", "1.98"),
-    (rocking_frequency, "frequency of the smallest half cycles", "11", "10.999"),
-    (isolation, "Pacoima Dam: peak a_t on a fixed base", "2.1", "2.098"),
-    (isolation, "Pacoima Dam: peak a_t, rocking, measured", "0.55", "0.538"),
-    (isolation, "Pacoima Dam: Eq 22, first term", "0.10", "0.141"),
-    (isolation, "Pacoima Dam: (1−χ) PGA", "0.10", "0.101"),
-    (isolation, "Eq 22, second term", "0.66", "0.6585"),
-    (isolation, "Pacoima Dam: Eq 22, C = 2", "0.76", "0.800"),
-    (isolation, "Bucharest stand-in: peak a_t on a fixed base", "1.1", "1.100"),
-    (isolation, "Bucharest stand-in: peak a_t, rocking", "0.5", "0.521"),
-    (isolation, "Bucharest stand-in: Eq 22, first term", "0.02", "0.021"),
-    (isolation, "Bucharest stand-in: Eq 22, C = 2", "0.68", "0.679"),
-]
 
 
 @pytest.fixture(scope="module")
@@ -65,13 +27,6 @@ def sections(project, tmp_path_factory):
     folder = tmp_path_factory.mktemp("figures")
     modules = [static_pushover, derived_quantities, free_vibration, modal_components, rocking_frequency, isolation]
     return {module: module.section(project, folder) for module in modules}
-
-
-@pytest.mark.parametrize(("module", "words", "paper", "computed"), NUMBERS,
-                         ids=lambda value: getattr(value, "__name__", value))
-def test_number(sections, module, words, paper, computed):
-    row = next(row for row in sections[module].rows if row.quantity.startswith(words))
-    assert (row.paper, f"{row.computed:{row.form}}") == (paper, computed)
 
 
 def test_equation_14_is_within_a_percent_for_large_amplitudes(sections):
@@ -120,26 +75,13 @@ def test_the_pulse_is_the_derivative_of_its_velocity():
     assert a_g[5:-5] == pytest.approx(-(slope / np.max(np.abs(slope)) * 3.0)[5:-5], abs=5e-3)
 
 
-@pytest.fixture(scope="module")
-def few(project):
-    """The study of section 7 on a few structures."""
-    return structure_study.compute(project, structure_study.population(6), lambda: None)
-
-
-def test_a_case_is_what_the_reference_integration_and_the_formulas_give(few):
-    case = next(case for case in few.cases if case.record.startswith("Sylmar") and case.zeta_u < 0.1)
-    record = next(record for record in horizontal_records() if record.name == case.record)
-    p = reference.Structure(**case.structure.parameters)
+def test_a_case_is_what_the_reference_integration_and_the_formulas_give(project):
+    structures = demand_bound.population(6)
+    cases = demand_bound.cases_of(demand_bound.compute(project, structures, lambda: None))
+    case = next(case for case in cases.itertuples() if "SYL" in case.record and case.zeta_u < 0.1)
+    record = next(record for record in horizontal_records() if str(record.path) == case.record)
+    p = reference.Structure(**structures[case.structure])
     response = reference.integrate(p, np.arange(len(record.a_g)) * record.dt, record.a_g, per_sample=16)
     assert case.peak == pytest.approx(np.max(np.abs(response.a_t)) / G, rel=3e-3)
-    assert case.transitions == len(response.transitions)
     assert case.step == pytest.approx(p.chi * p.tan_alpha_cg, rel=1e-12)
-    assert case.amplitude == pytest.approx(np.max(np.abs(response.delta_t)) / (p.H * p.tan_alpha_cg), rel=3e-3)
-    assert case.pga == pytest.approx(np.max(np.abs(record.a_g)) / G, rel=1e-12)
-
-
-def test_few_structures_tell_the_same_as_many(few):
-    rows = {row.quantity.partition(",")[0]: row.computed for row in demand_bound.rows(few)}
-    assert rows["cases within Eq 22 with C = 2"] >= 90
-    assert few.free_ratios == pytest.approx(1, abs=0.03)
-    assert len(few.cases) + few.overturned <= few.structures * few.records
+    assert case.rigid_ground == pytest.approx((1 - p.chi) * np.max(np.abs(record.a_g)) / G, rel=1e-9)

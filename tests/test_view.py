@@ -8,7 +8,6 @@ import subprocess
 import numpy as np
 import pandas as pd
 import pytest
-from test_sweep import RECORDS
 
 pytestmark = pytest.mark.heavy
 
@@ -116,26 +115,6 @@ def test_what_is_drawn_is_the_response(opened, view, exaggeration):
             assert abs(reading(page, name) - now[column] / unit) <= 2e-3 * largest[column] / unit, (name, row)
 
 
-def test_on_paper_nothing_is_cut_off(opened):
-    """Narrower than the window, and laid out by styles alone: no script runs before it is printed."""
-    page = opened()
-    page.evaluate("""() => {
-        const measured = Element.prototype.getBoundingClientRect;
-        const of_window = Object.fromEntries(["scene", "histories"].map(id => [id, measured.call(document.getElementById(id))]));
-        Element.prototype.getBoundingClientRect = function () { return of_window[this.id] ?? measured.call(this); };
-    }""")
-    page.emulate_media(media="print")
-    page.set_viewport_size({"width": 700, "height": 1000})  # A4 within its margins
-    left, right, bottom = page.evaluate("""() => {
-        const drawn = [...document.querySelectorAll("#scene text, #surface, #histories text, #histories .curve")];
-        const boxes = drawn.map(each => each.getBoundingClientRect()).filter(box => box.width > 0);
-        return [Math.min(...boxes.map(box => box.left)), Math.max(...boxes.map(box => box.right)),
-                Math.max(...boxes.map(box => box.bottom))];
-    }""")
-    assert 0 <= left < right <= 700 and bottom <= 1000  # one page
-    assert not page.locator("footer").is_visible()
-
-
 def test_what_is_drawn_is_true_to_scale(opened):
     """A base 0.57 m wide and a mass 1.84 m above it, measured on the screen."""
     page = opened()
@@ -229,33 +208,6 @@ def test_scrubbing_and_the_keyboard(opened):
     assert not page.locator("#help").is_visible()
 
 
-def test_less_time_is_shown_in_more_detail(opened):
-    page = opened()
-    go_to(page, 1)
-    length = lambda: page.locator("path[data-name=a_t]").get_attribute("d").count("L")
-    whole, ticks = length(), page.locator("line.tick").count()
-    for _ in range(3):
-        page.keyboard.press("+")
-    assert page.locator("line.tick").count() < ticks and length() != whole
-    assert page.locator("line.cursor").get_attribute("visibility") == "visible"
-    page.keyboard.press("End")
-    assert page.locator("line.cursor").get_attribute("visibility") == "visible"  # the part that is shown follows
-    page.keyboard.press("0")
-    assert (length(), page.locator("line.tick").count()) == (whole, ticks)
-
-
-def test_light_and_dark(opened):
-    page = opened(color_scheme="dark")
-    lightness = lambda: sum(map(int, re.findall(r"\d+", page.evaluate("getComputedStyle(document.body).backgroundColor"))[:3]))
-    assert lightness() < 150
-    page.emulate_media(color_scheme="light")
-    assert lightness() > 600
-    page.locator("#theme").click()
-    assert lightness() < 150
-    page.keyboard.press("d")
-    assert lightness() > 600
-
-
 def test_a_narrow_screen_shows_everything(opened):
     page = opened(viewport={"width": 390, "height": 844})
     assert page.evaluate("document.documentElement.scrollWidth") <= 390
@@ -287,25 +239,3 @@ def test_a_hostile_title_is_text(opened, exporter, tmp_path):
     page = opened(tmp_path / "view.html")
     assert page.locator("#title").text_content().strip() == HOSTILE
     assert page.title().startswith("</script>")
-
-
-def test_free_vibration_and_a_fixed_base(opened, exporter, tmp_path):
-    subprocess.run([exporter, "view", "--preset", "evison", "--free", "2", "--theta-0", "0.04"], cwd=tmp_path, check=True)
-    page = opened(tmp_path / "free_vibration_view.html")
-    assert page.locator("path.curve").count() == 3  # the ground is at rest
-    assert abs(reading(page, "theta") - 0.04) < 1e-6
-    page.keyboard.press(".")
-    assert page.locator("tr.phase td").text_content() == "rocking left"
-
-
-@pytest.mark.parametrize("f_fc, digits", [(5, 4), (30, 3)])
-def test_a_page_is_of_moderate_size(opened, exporter, tmp_path, f_fc, digits):
-    """Less exact, and shown with fewer digits, where a stiff structure vibrates on and on."""
-    record = next((RECORDS.parent / "imperialValley_elCentro_1940").glob("*ELC180*.AT2"))
-    (tmp_path / "pier.toml").write_text(
-        f"m = 130.1\nm0 = 65.4\nH = 1.84\nB = 0.285\nJ0 = 10.7\nf_fc = {f_fc}\nzeta_fc = 0.005\nr = 0.99\n")
-    scene = ["--record", record, "--parameters", "pier.toml"]
-    subprocess.run([exporter, "view", *scene, "-o", "view.html"], cwd=tmp_path, check=True)
-    assert (tmp_path / "view.html").stat().st_size < 5e6
-    shown = opened(tmp_path / "view.html").locator("tr[data-name=theta] td").nth(1).text_content()
-    assert len(shown.replace(".", "").lstrip("0")) == digits

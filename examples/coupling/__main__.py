@@ -6,11 +6,10 @@
 import argparse
 from pathlib import Path
 
-import numpy as np
 from tqdm import tqdm
 
-from . import added_mass, convergence, early_return, no_slopes, one_system, stability
-from .bridge import PIERS, deck
+from . import convergence, early_return, no_slopes, one_system, stability
+from .bridge import PIERS
 from .tables import markdown
 
 
@@ -18,27 +17,6 @@ def convergence_table(steps, errors) -> str:
     """Errors of every variant at every step."""
     rows = [[name, *(f"{value:.1e}" for value in values)] for name, values in errors.items()]
     return markdown(["Pacoima Dam, step", *(f"{1e3 * h:g} ms" for h in steps)], rows)
-
-
-def limits_table() -> str:
-    """h sqrt(k/m) at the limits of the extrapolating masters and of the fixed point, over mass ratio and frequency."""
-    ratios, frequencies = (0.3, 1.0, 3.0, 10.0, 30.0), (2.5, 8.0, 25.0)
-    lightest = min(p.m for p in convergence.STRUCTURES)
-    rows = []
-    for frequency in frequencies:
-        for name in ("Jacobi, extrapolated", "Gauss-Seidel, extrapolated", "fixed point"):
-            limits = [stability.first_unstable(lambda h: unstable(name, ratio, h, frequency)) for ratio in ratios]
-            bearings = [deck(stability.mass(ratio), frequency).k / len(convergence.STRUCTURES) for ratio in ratios]
-            numbers = [f"{h * np.sqrt(k / lightest):.2f}".replace("nan", "–") for h, k in zip(limits, bearings)]
-            rows.append([f"{frequency:g} Hz", name, *numbers])
-    return markdown(["deck / top masses", "", *(f"{ratio:g}" for ratio in ratios)], rows)
-
-
-def unstable(name: str, ratio: float, h: float, frequency: float) -> bool:
-    """Whether a step is too long while both piers rock."""
-    if name in stability.WEAK:
-        return stability.growth(*stability.WEAK[name], ratio, h, True, frequency) > stability.GROWTH
-    return stability.contraction(ratio, h, True, frequency) > 1
 
 
 def main() -> None:
@@ -62,11 +40,9 @@ def main() -> None:
     stability.plot_iterated(figures / "stability_sweeps.png", measured)
     steps, of_variants, transitions, _ = errors["Pacoima Dam"]
     page = (Path(__file__).parent / "page.md").read_text(encoding="utf-8").format(
-        added_mass=added_mass.table(PIERS["McManus"]),
         convergence=convergence_table(steps, of_variants),
         early_return=early_return.table(*to_transitions),
         frequency=stability.FREQUENCY,
-        limits=limits_table(),
         one_system=one_system.table(*to_transitions),
         one_system_stability=one_system.stability_table(),
         transitions=transitions,

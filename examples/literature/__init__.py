@@ -4,8 +4,7 @@
     block.py                  the rigid limit as Housner's block, driven through the FMU
     limit.py                  the limit of a vanishing slenderness: rate and extrapolation
     overturning.py            section 1: the amplitudes that overturn, with and without impact
-    free_rocking.py           section 2: Housner's period and decay
-    flexible.py               section 3: uplift, frequency while rocking, impact, overturning of flexible structures
-    ensemble.py               section 4: many records on four structures at every level of detail
+    flexible.py               section 2: frequency while rocking, impact, overturning of flexible structures
+    ensemble.py               section 3: many records on four structures at every level of detail
     page.md                   the page's words, with places for the tables and numbers
 """

@@ -12,7 +12,7 @@ from validation.records import horizontal_records
 from validation.report import filled
 from validation.stepper import AUTO
 
-from . import block, ensemble, flexible, free_rocking, limit, overturning, point_reyes, slender_block
+from . import block, ensemble, flexible, limit, overturning, point_reyes
 
 PAGE = Path(__file__).parent / "page.md"
 
@@ -24,8 +24,8 @@ def main() -> None:
     arguments = parser.parse_args()
     figures = arguments.output.with_suffix("")
 
-    total = (len(overturning.CASES) + len(point_reyes.RESTITUTIONS) + len(free_rocking.RELEASES)
-             + len(flexible.FREQUENCIES) + len(ensemble.VARIANTS) * len(ensemble.TIME_SCALES))
+    total = (len(overturning.CASES) + len(point_reyes.RESTITUTIONS) + len(flexible.FREQUENCIES)
+             + len(ensemble.VARIANTS) * len(ensemble.TIME_SCALES))
     with tempfile.TemporaryDirectory() as folder, tqdm(total=total, unit="") as progress:
         project = Project(arguments.exporter.resolve(), Path(folder))
         fmu = project.fmu("mcmanus")
@@ -34,8 +34,6 @@ def main() -> None:
         cases = overturning.compute(rigid, progress.update)
         overturning.draw(cases, figures / "overturning.svg")
         trains, train_between = point_reyes.rows(rigid, progress.update)
-        progress.set_description("free rocking")
-        releases = free_rocking.compute(project, progress.update)
         progress.set_description("flexible")
         flexibility = flexible.flexibility(block.PulseRuns(fmu, project.folder, AUTO), progress.update)
         progress.set_description("ensemble")
@@ -43,8 +41,6 @@ def main() -> None:
         ensemble.draw(runs, figures / "ensemble.svg")
         found = ensemble.comparisons(runs)
         rates = [case.limit.rate for case in cases]
-        free = [of for case in releases for of in (case.instant, case.speed)]
-        free_rates = [of.rate for of in free]
         page = PAGE.read_text(encoding="utf-8").format(
             restitution=overturning.R,
             impacts_agree=sum(case.impacts == case.boundary.impacts for case in cases),
@@ -61,16 +57,10 @@ def main() -> None:
             half_sines=overturning.half_sines(),
             trains=trains,
             train_between=train_between,
-            releases=free_rocking.rows(releases),
-            release_error=f"{max(of.error for of in free):.0e}",
-            release_rates=f"{min(free_rates):.3f} to {max(free_rates):.3f}",
-            quadrature_error=f"{max(max(case.stocky) for case in releases):.0e}",
             tangents=", ".join(f"{tangent:g}" for tangent in limit.TANGENTS),
-            ramp=flexible.RAMP,
             shear_pgas=" and ".join(f"{pga:g}" for pga in flexible.PGAS),
-            uplift=flexible.uplift(project),
             frequencies=flexible.frequencies(project),
-            impacts=flexible.impacts(project),
+            impacts=flexible.impacts(),
             flexibility=flexibility,
             base_shear=flexible.base_shear(project),
             records="\n".join(f"- {record.name}: {len(record.a_g)} samples, {record.dt:g} s, "

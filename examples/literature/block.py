@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from first_run import G
 from validation.records import write_csv
-from validation.stepper import RIGID, History, Stepper
+from validation.stepper import RIGID, Outcome, Stepper
 
 from .slender_block import Pulse
 
@@ -105,11 +105,11 @@ class PulseRuns:
             write_csv(path, time, pulse.shape(1.0, time * pulse.duration(1.0))[0] * np.tan(half) / half)
         return path
 
-    def run(self, block: Block, pulse: Pulse, omega: float, amplitude: float) -> History:
+    def run(self, block: Block, pulse: Pulse, omega: float, amplitude: float) -> Outcome:
         """The block at rest under the pulse with omega over p and its amplitude over g tan alpha."""
         duration = pulse.duration(omega) / block.p
         scales = {"record_scale": amplitude * G * block.tangent, "record_time_scale": duration}
-        return self.stepper.run(block.parameters | scales, duration + REST / block.p, 1, self.record(pulse))
+        return self.stepper.run(block.parameters | scales, duration + REST / block.p, self.record(pulse))
 
     def boundary(self, block: Block, pulse: Pulse, omega: float, near: float) -> float:
         """The amplitude at which the fate changes, bisected between those on both sides of `near` that differ."""

@@ -1,4 +1,4 @@
-"""Section 4: eight records, scaled in time and amplitude, on four structures at every level of detail, by `sweep`."""
+"""Section 3: eight records, scaled in time and amplitude, on four structures at every level of detail, by `sweep`."""
 
 from collections.abc import Callable
 from dataclasses import dataclass

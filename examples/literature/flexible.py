@@ -1,4 +1,4 @@
-"""Section 3: uplift, frequency while rocking, impacts and overturning of flexible structures."""
+"""Section 2: frequency while rocking, impacts and overturning of flexible structures."""
 
 from collections.abc import Callable
 
@@ -7,7 +7,6 @@ import numpy as np
 from first_run import G
 from scipy.linalg import eigvals, logm
 from validation.project import Project
-from validation.records import write_csv
 from validation.report import table
 from validation.stepper import LINEAR, RIGID
 
@@ -21,24 +20,6 @@ STRUCTURES = {"McManus": MCMANUS, "Evison": EVISON, "stiff": Block(MCMANUS.param
               "soft": Block(MCMANUS.parameters | {"f_fc": 1.5}),
               "massless base": Block(EVISON.parameters | {"m0": 0.0})}
 STATE = ["u", "u_dot", "theta", "theta_dot"]
-RAMP = 400  # duration of the slow ramp, natural periods
-
-
-def uplift(project: Project) -> str:
-    """The table of uplift under a ground acceleration that grows slowly."""
-    lines = []
-    for name, of in STRUCTURES.items():
-        duration = RAMP / of.parameters["f_fc"]
-        ramp = project.folder / "ramp.csv"
-        write_csv(ramp, np.array([0, duration]), np.array([0, -1.2 * G * of.tangent]))
-        damped = Block(of.parameters | {"zeta_fc": 1.0})
-        first = project.events(*damped.options, "--record", ramp, "--duration", duration, "--tolerance", 1e-12)[0]
-        u, at = float(first["u_before[m]"]), float(first["time[s]"])
-        balance = of.u_cr / (1 + G / (of.parameters["H"] * of.omega_fc**2))
-        lines.append([name, f"{1e3 * of.u_cr:.5f}", f"{1e3 * u:.5f}", f"{1e3 * balance:.5f}", f"{of.tangent:.5f}",
-                      f"{1.2 * of.tangent * at / duration:.5f}"])
-    return table(["structure", "u_cr (mm)", "FMU's u at uplift (mm)", "balance of moments (mm)", "tan α_cg",
-                  "a_g/g at uplift"], lines)
 
 
 def identified(project: Project, of: Block) -> np.ndarray:
@@ -74,42 +55,18 @@ def frequencies(project: Project) -> str:
                   "vibration by Eqs 7, 8 (Hz)", "FMU", "p_l (rad/s)", "rocking by Eqs 7, 8 (rad/s)", "FMU"], lines)
 
 
-def impacts(project: Project) -> str:
+def impacts() -> str:
     """The table of impacts: restitution that keeps the rigid body's angular momentum, and the energy that goes."""
     blocks = {f"homogeneous, α = {alpha:g}": homogeneous(np.tan(alpha), 1.0) for alpha in (0.1, 0.35)}
     lines = []
     for name, of in (blocks | STRUCTURES).items():
         kept = 1 - 2 * (of.parameters["m"] + of.parameters["m0"]) * of.parameters["B"] ** 2 / of.J_P
         housner = 1 - 1.5 * np.sin(np.arctan(of.tangent)) ** 2
-        if name in blocks:
-            lines.append([name, f"{housner:.6f}", f"{kept:.6f}", "", f"{100 * (1 - kept**2):.1f}", "", ""])
-            continue
-        r, lost = of.parameters["r"], lost_at_impacts(project, of)
-        lines.append([name, f"{housner:.6f}", f"{kept:.6f}", f"{r:g}", f"{100 * (1 - kept**2):.1f}",
-                      f"{100 * (1 - r**2):.1f}", f"{100 * np.min(lost):.2f} to {100 * np.max(lost):.2f}"])
+        r = of.parameters["r"]
+        chosen = ["", ""] if name in blocks else [f"{r:g}", f"{100 * (1 - r**2):.1f}"]
+        lines.append([name, f"{housner:.6f}", f"{kept:.6f}", chosen[0], f"{100 * (1 - kept**2):.1f}", chosen[1]])
     return table(["structure", "1 − 3/2 sin²α", "1 − 2 (m + m0) B²/J_P", "r of the model", "energy lost by momentum (%)",
-                  "by r (%)", "FMU, elastic (%)"], lines)
-
-
-def lost_at_impacts(project: Project, of: Block) -> np.ndarray:
-    """Part of the kinetic energy, from the states, that each of ten impacts takes after a release from tan alpha/2."""
-    m, m0, H, B, J0 = (of.parameters[name] for name in ("m", "m0", "H", "B", "J0"))
-
-    def kinetic(event, when, s):
-        u, u_dot, theta_dot = (float(event[f"{name}_{when}[{unit}]"])
-                               for name, unit in (("u", "m"), ("u_dot", "m/s"), ("theta_dot", "rad/s")))
-        top = (u_dot + H * theta_dot) ** 2 + (s * B - u) ** 2 * theta_dot**2
-        return 0.5 * (m * top + (J0 + m0 * B**2) * theta_dot**2)
-
-    release = ["--theta-0", 0.5 * of.tangent, "--u-0", (1 - of.one_minus_chi) * of.u_cr]
-    events = project.events(*of.options, *release, "--free", 30 / of.p_l)
-    lost = []
-    for event in events:
-        if event["kind"].startswith("impact"):
-            s = -1 if event["kind"].endswith("left") else 1  # the side that it goes on about
-            before, after = kinetic(event, "before", -s), kinetic(event, "after", s)
-            lost.append(1 - after / before)
-    return np.array(lost[:10])
+                  "by r (%)"], lines)
 
 
 FREQUENCIES = [200, 100, 50, 20, 10, 5, 3, 2, 1]  # f_fc, Hz

@@ -10,6 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tqdm import tqdm
+from validation.report import table
 
 FOLDER = Path(__file__).parent
 SCENES = ["rigid", "specimens", "stiffness", "islands"]
@@ -65,12 +66,6 @@ def beyond(exporter: Path, points: list[dict[str, str]], folder: Path) -> list[d
     return found
 
 
-def markdown(headings: list[str], rows: list[list[str]]) -> str:
-    """A table whose first column is words."""
-    rule = ["---", *["---:"] * (len(headings) - 1)]
-    return "\n".join("| " + " | ".join(cells) + " |" for cells in [headings, rule, *rows])
-
-
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
     parser.add_argument("--exporter", type=Path, default=Path("target/release/rocking-fmu"), help="executable")
@@ -94,23 +89,23 @@ def main() -> None:
              "overturns after impacts": lambda point: point["fate"] == "overturns" and point["impacts"] != "0"}
     of_kinds = {name: [rows for point, rows in found if is_one(point)] for name, is_one in kinds.items()}
     page = (FOLDER / "page.md").read_text(encoding="utf-8").format(
-        classes=markdown(["% of the points", *(structure for _, structure in one_sine)],
+        classes=table(["% of the points", *(structure for _, structure in one_sine)],
                          [[of_class, *(scene.part(structure, of_class) for scene, structure in one_sine)]
                           for of_class in CLASSES]),
-        least=markdown(["ω/p_l", *(structure for _, structure in one_sine)],
+        least=table(["ω/p_l", *(structure for _, structure in one_sine)],
                        [[str(ratio), *(scene.least(structure, ratio) for scene, structure in one_sine)]
                         for ratio in RATIOS]),
-        amplified=markdown(["amplified more than", "points"],
+        amplified=table(["amplified more than", "points"],
                            [[f"{limit} times", f"{100 * sum(c > float(limit) for c in conditions) / len(conditions):.2f} %"]
                             for limit in AMPLIFIED]),
         checked=CHECKED,
-        beyond=markdown(["the structure", "points", "R_v below 0 at some instant", "friction above 0.5 needed"],
+        beyond=table(["the structure", "points", "R_v below 0 at some instant", "friction above 0.5 needed"],
                         [[name, str(len(of)), *(str(sum(rows[which]["first_beyond"] is not None for rows in of))
                                                for which in ("R_v_min", "mu_required"))] for name, of in of_kinds.items()]),
         largest=f"{max(c for c in conditions if c < float('inf')):.1e}",
         changes=sum(c == float("inf") for c in conditions),
         islands=len(conditions),
-        costs=markdown(["maps", "points", "processor time", "points per processor second"],
+        costs=table(["maps", "points", "processor time", "points per processor second"],
                        [[f"[{name}.toml](../examples/overturning/{name}.toml)", f"{len(scene.points):,}",
                          f"{scene.seconds:.1f} s", f"{len(scene.points) / scene.seconds:.0f}"]
                         for name, scene in scenes.items()]),

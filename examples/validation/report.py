@@ -52,8 +52,8 @@ class Section:
     title: str
     introduction: str
     rows: list[Row]
-    figure: str  # file name
-    caption: str
+    figure: str = ""  # file name
+    caption: str = ""
     findings: list[str] = field(default_factory=list)  # paragraphs and tables after the figure
     source: str = "paper"  # what the second column holds
 
@@ -84,8 +84,8 @@ def markdown(sections: list[Section], figures: str) -> str:
     """The report; figures are found in the folder `figures` beside it."""
     parts = [INTRODUCTION, "## What agrees, and what does not", summary(sections)]
     for number, section in enumerate(sections, 1):
-        parts += [f"## {number}. {section.title}", section.introduction, comparison(section),
-                  f"![{section.title}]({figures}/{section.figure})", f"*{section.caption}*", *section.findings]
+        figure = [f"![{section.title}]({figures}/{section.figure})", f"*{section.caption}*"] if section.figure else []
+        parts += [f"## {number}. {section.title}", section.introduction, comparison(section), *figure, *section.findings]
     blocks = "\n\n".join(parts).split("\n\n")
     return "\n\n".join(map(filled, blocks)) + "\n"
 
@@ -102,8 +102,8 @@ def filled(block: str) -> str:
 INTRODUCTION = """# Validation against the paper
 
 Every number of the paper that its text gives the data for, beside the one that the exported FMU gives. `make report`
-writes this page and its figures: the FMU is exported and driven by fmpy, at a tolerance of 1e-10 (1e-8 in section 7),
-and what the library itself computes (pushover, demands, effective frequency, modes) is asked of `rocking-fmu`.
+writes this page and its figures: the FMU is exported and driven by fmpy, at a tolerance of 1e-10, and what the library
+itself computes (pushover, demands, effective frequency, modes, many runs) is asked of `rocking-fmu`.
 Equation, figure and table numbers are the paper's. Its measured histories are printed as pictures only and are not
 redrawn; of them the values that the text states are compared. Closed forms, and what others publish, are
 [the second part](validation_literature.md).

@@ -29,31 +29,21 @@ pub mod colour {
 /// How a series of points is drawn.
 #[derive(Clone, Copy, Debug)]
 pub struct Style {
-    /// Colour.
     pub colour: RGBColor,
-    /// Width of the line, pixels; 0 for points alone.
-    pub width: u32,
-    /// Whether the line is dashed.
+    pub width: u32, // width of the line, pixels; 0 for points alone
     pub dashed: bool,
-    /// At each point.
-    pub marker: Marker,
+    pub marker: Marker, // at each point
 }
 
 /// A mark at a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Marker {
-    /// Nothing.
     None,
-    /// A filled circle.
     Circle,
-    /// A filled square.
     Square,
-    /// A filled triangle.
     Triangle,
-    /// A filled diamond.
     Diamond,
-    /// A cross: failed.
-    Cross,
+    Cross, // A cross: failed
 }
 
 impl Style {
@@ -76,24 +66,17 @@ impl Style {
 /// Points and how they are drawn.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// What they are.
     pub name: String,
-    /// In data units.
-    pub points: Vec<(f64, f64)>,
-    /// How.
+    pub points: Vec<(f64, f64)>, // in data units
     pub style: Style,
 }
 
 /// One axis.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// What it shows, with its unit.
-    pub label: String,
-    /// From, in data units.
-    pub low: f64,
-    /// To.
+    pub label: String, // what it shows, with its unit
+    pub low: f64,      // from, in data units
     pub high: f64,
-    /// Whether it is logarithmic.
     pub logarithmic: bool,
 }
 
@@ -212,46 +195,32 @@ pub fn scientific(value: f64) -> String {
 /// A filled rectangle behind the data.
 #[derive(Clone, Copy, Debug)]
 pub struct Area {
-    /// From and to, in data units.
-    pub x: (f64, f64),
-    /// From and to, in data units.
-    pub y: (f64, f64),
-    /// Its colour.
+    pub x: (f64, f64), // from and to, in data units
+    pub y: (f64, f64), // from and to, in data units
     pub colour: RGBColor,
 }
 
 /// Words at a point.
 #[derive(Clone, Debug)]
 pub struct Note {
-    /// In data units.
-    pub at: (f64, f64),
-    /// The words.
+    pub at: (f64, f64), // in data units
     pub text: String,
-    /// Their colour.
     pub colour: RGBColor,
-    /// Whether they end at the point instead of beginning there.
-    pub ends_there: bool,
+    pub ends_there: bool, // whether they end at the point instead of beginning there
 }
 
 /// One pair of axes with what is drawn on it.
 #[derive(Clone, Debug)]
 pub struct Panel {
-    /// Above it.
-    pub title: String,
-    /// Across.
-    pub x: Axis,
-    /// Up.
-    pub y: Axis,
-    /// Behind everything.
-    pub areas: Vec<Area>,
-    /// The data, the last on top.
-    pub series: Vec<Series>,
-    /// On top of the data.
-    pub notes: Vec<Note>,
+    pub title: String,       // above it
+    pub x: Axis,             // across
+    pub y: Axis,             // up
+    pub areas: Vec<Area>,    // behind everything
+    pub series: Vec<Series>, // the data, the last on top
+    pub notes: Vec<Note>,    // on top of the data
 }
 
 impl Panel {
-    /// An empty panel.
     pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Panel {
         Panel { title: title.into(), x, y, areas: Vec::new(), series: Vec::new(), notes: Vec::new() }
     }
@@ -289,14 +258,11 @@ impl Panel {
 /// What a line means.
 #[derive(Clone, Debug)]
 pub struct Entry {
-    /// Its meaning.
     pub text: String,
-    /// How it looks.
     pub style: Style,
 }
 
 impl Entry {
-    /// An entry.
     pub fn new(text: impl Into<String>, style: Style) -> Entry {
         Entry { text: text.into(), style }
     }
@@ -304,18 +270,12 @@ impl Entry {
 
 /// Panels in rows, a legend below them.
 pub struct Figure {
-    /// On top.
-    pub title: String,
-    /// Size of one panel, pixels.
-    pub panel: (u32, u32),
-    /// Panels in a row.
-    pub columns: usize,
-    /// Row by row.
-    pub panels: Vec<Panel>,
-    /// Columns of the legend.
-    pub legend_columns: usize,
-    /// The legend, column by column.
-    pub legend: Vec<Entry>,
+    pub title: String,         // on top
+    pub panel: (u32, u32),     // size of one panel, pixels
+    pub columns: usize,        // panels in a row
+    pub panels: Vec<Panel>,    // row by row
+    pub legend_columns: usize, // columns of the legend
+    pub legend: Vec<Entry>,    // the legend, column by column
 }
 
 /// Drawing units to a pixel: coordinates are whole numbers.

@@ -14,13 +14,9 @@ pub trait Equations {
 
 /// The equations of one phase over one interval: Eq 1 in full contact, Eqs 5 and 6 while rocking.
 pub struct PhaseEquations<'a> {
-    /// The structure.
     pub structure: &'a Structure,
-    /// The phase.
     pub phase: Phase,
-    /// Ground acceleration from the start of the interval on.
-    pub a_g: Ramp,
-    /// Evaluations so far.
+    pub a_g: Ramp, // ground acceleration from the start of the interval on
     pub evaluations: &'a Cell<u64>,
 }
 

@@ -9,12 +9,12 @@ pub mod history;
 pub mod overturning;
 pub mod zeno;
 
-use crate::chart::{Figure, Style, colour};
+use crate::chart::{Entry, Figure, Panel, Style, colour};
 use crate::scene::Scene;
 use anyhow::Result;
 use indicatif::ProgressBar;
+use minijinja::Value;
 use rayon::prelude::*;
-use serde::Serialize;
 use std::path::Path;
 
 /// What is right is drawn so.
@@ -25,18 +25,12 @@ const WRONG: Style = Style::line(colour::VERMILLION, 2);
 
 /// One failure.
 pub struct Exhibit {
-    /// Name in file names.
-    pub key: &'static str,
-    /// Its name.
+    pub key: &'static str, // name in file names
     pub title: &'static str,
-    /// Why it happens, in two sentences.
-    pub cause: String,
-    /// What this project does about it.
-    pub remedy: String,
-    /// What the picture shows.
-    pub caption: String,
-    /// The picture.
-    pub figure: Figure,
+    pub values: Value, // of the page's words
+    pub panels: Vec<Panel>,
+    pub legend_columns: usize,
+    pub legend: Vec<Entry>,
 }
 
 /// The failures, each as a function of the scenes under Pacoima Dam and El Centro.
@@ -44,9 +38,7 @@ type Show = fn(&Scenes) -> Result<Exhibit>;
 
 /// The scenes in which some of the failures happen.
 pub struct Scenes {
-    /// McManus's specimen under Pacoima Dam.
     pub pacoima: Scene,
-    /// McManus's specimen under El Centro.
     pub el_centro: Scene,
 }
 
@@ -60,36 +52,20 @@ const EXHIBITS: [Show; 7] = [
     |_| energy_gain::show(),
 ];
 
-/// The page.
-#[derive(Serialize)]
-struct Page {
-    entries: Vec<Entry>,
-}
-
-/// An exhibit as the page shows it.
-#[derive(Serialize)]
-struct Entry {
-    key: &'static str,
-    title: &'static str,
-    cause: String,
-    remedy: String,
-    caption: String,
-}
-
 /// Writes `docs/failures.md` with its pictures and numbers.
 pub fn write(scenes: &Scenes, docs: &Path, progress: &ProgressBar) -> Result<()> {
     progress.inc_length(EXHIBITS.len() as u64);
     let entries = EXHIBITS
         .par_iter()
         .map(|show| {
-            let exhibit = show(scenes)?;
-            progress.set_message(exhibit.title);
-            exhibit.figure.save(&docs.join(format!("failure-{}.svg", exhibit.key)))?;
-            exhibit.figure.save_numbers(&docs.join(format!("failure-{}.csv", exhibit.key)))?;
+            let Exhibit { key, title, values, panels, legend_columns, legend } = show(scenes)?;
+            progress.set_message(title);
+            let figure = Figure { title: title.into(), panel: (600, 380), columns: 2, panels, legend_columns, legend };
+            figure.save(&docs.join(format!("failure-{key}.svg")))?;
+            figure.save_numbers(&docs.join(format!("failure-{key}.csv")))?;
             progress.inc(1);
-            let Exhibit { key, title, cause, remedy, caption, .. } = exhibit;
-            Ok(Entry { key, title, cause, remedy, caption })
+            Ok((key.replace('-', "_"), values))
         })
         .collect::<Result<Vec<_>>>()?;
-    crate::page::write(docs, "failures", &Page { entries })
+    crate::page::write(docs, "failures", include_str!("../pages/failures.md"), Value::from_pairs(entries))
 }

@@ -15,10 +15,8 @@ use rocking::State;
 /// Positions (u, θ), velocities, and what a method carries over from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
-    /// (u, θ), m and rad.
-    pub position: Vector2<f64>,
-    /// (u̇, θ̇), m/s and rad/s.
-    pub velocity: Vector2<f64>,
+    pub position: Vector2<f64>, // (u, θ), m and rad
+    pub velocity: Vector2<f64>, // (u̇, θ̇), m/s and rad/s
     /// The method's own acceleration; none after a transition.
     pub acceleration: Option<Vector2<f64>>,
 }
@@ -57,11 +55,8 @@ pub trait OneStep: Sync {
 
 /// A method as the study knows it.
 pub struct Textbook {
-    /// Name on charts.
-    pub name: &'static str,
-    /// Order of its global error.
-    pub order: u32,
-    /// Its step.
+    pub name: &'static str, // name on charts
+    pub order: u32,         // order of its global error
     pub method: &'static dyn OneStep,
 }
 

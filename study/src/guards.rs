@@ -31,11 +31,8 @@ pub type UpliftRule = fn(&Structure, &State) -> f64;
 
 /// The end of a phase.
 pub struct PhaseEnd<'a> {
-    /// The structure.
     pub structure: &'a Structure,
-    /// The rule for uplift.
     pub uplift: UpliftRule,
-    /// The phase.
     pub phase: Phase,
 }
 

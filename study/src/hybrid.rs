@@ -13,70 +13,60 @@ use std::f64::consts::FRAC_PI_2;
 /// When a transition is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Transitions {
-    /// Where its guard closes, found within the step, which then ends there.
-    Located,
+    Located, // where its guard closes, found within the step, which then ends there
     /// Where the integrator ends: at the end of the step on which its guard closes, unless the integrator finds events.
     AtStepEnds,
 }
 
+/// What is to be integrated: from `from`, `tau` s into the interval, to `until` (s).
+pub struct Span<'a> {
+    pub equations: &'a PhaseEquations<'a>,
+    pub tau: f64,
+    pub from: Point,
+    pub until: f64,
+}
+
 /// A part of smooth motion: times are counted from the start of the interval.
 pub struct Stretch {
-    /// Its start, s.
-    pub start: f64,
-    /// Its end, s.
-    pub end: f64,
-    /// At its start.
+    pub start: f64, // its start, s
+    pub end: f64,   // its end, s
     pub from: Point,
-    /// At its end.
     pub to: Point,
-    /// Whether the phase is over there.
     pub is_over: bool,
 }
 
 /// What moves a structure between transitions.
 pub trait Integrator {
-    /// Steps from `from`, `tau` s into the interval, to `until` or to where `end` says that the phase is over; yields
-    /// the last step.
-    fn advance(
-        &self,
-        equations: &PhaseEquations,
-        tau: f64,
-        from: &Point,
-        until: f64,
-        end: &PhaseEnd,
-    ) -> Result<Stretch, String>;
+    /// Steps over `span`, or to where `end` says that the phase is over; yields the last step.
+    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String>;
 
     /// The point `h` s after `from`, which is `tau` s into the interval.
-    fn flow(&self, equations: &PhaseEquations, tau: f64, from: &Point, h: f64) -> Result<Point, String>;
+    fn flow(&self, equations: &PhaseEquations, tau: f64, from: &Point, h: f64) -> Result<Point, String> {
+        Ok(self.advance(&Span { equations, tau, from: *from, until: tau + h }, None)?.to)
+    }
 }
 
 /// A textbook method on a grid of steps of `h` s from the start of each interval; a step that a transition cut is
 /// followed by one to the next point of the grid.
 pub struct Grid<'a> {
-    /// The method.
     pub method: &'a dyn OneStep,
-    /// The step, s.
-    pub h: f64,
+    pub h: f64, // the step, s
 }
 
 /// A remainder of a step below this part of it is no step of its own.
 const SLIVER: f64 = 1e-9;
 
 impl Integrator for Grid<'_> {
-    fn advance(
-        &self,
-        equations: &PhaseEquations,
-        tau: f64,
-        from: &Point,
-        until: f64,
-        end: &PhaseEnd,
-    ) -> Result<Stretch, String> {
+    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String> {
+        let &Span { equations, tau, ref from, until } = span;
         let next = ((tau / self.h + SLIVER).floor() + 1.0) * self.h;
         let next = if next > until - SLIVER * self.h { until } else { next };
         let to = self.method.step(equations, tau, from, next - tau);
-        Ok(Stretch { start: tau, end: next, from: *from, to, is_over: end.is_over(&to.state()) })
+        let is_over = end.is_some_and(|end| end.is_over(&to.state()));
+        Ok(Stretch { start: tau, end: next, from: *from, to, is_over })
     }
 
+    /// One step, so that nothing is rounded to the grid.
     fn flow(&self, equations: &PhaseEquations, tau: f64, from: &Point, h: f64) -> Result<Point, String> {
         Ok(self.method.step(equations, tau, from, h))
     }
@@ -149,7 +139,8 @@ impl<'a> Motion<'a> {
             let equations = PhaseEquations { structure, phase, a_g, evaluations: &self.evaluations };
             let end = PhaseEnd { structure, uplift: self.uplift, phase };
             let gave_up = |message| Failure::GaveUp { time: start + tau, message };
-            let stretch = integrator.advance(&equations, tau, &self.point, dt, &end).map_err(gave_up)?;
+            let span = Span { equations: &equations, tau, from: self.point, until: dt };
+            let stretch = integrator.advance(&span, Some(&end)).map_err(gave_up)?;
             let is_over = stretch.is_over;
             (tau, self.point) = match transitions {
                 Transitions::Located if is_over => locate(&equations, integrator, &end, &stretch).map_err(gave_up)?,

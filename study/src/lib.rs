@@ -1,4 +1,4 @@
-//! Speed against accuracy, stability maps and a gallery of failures, for the flexible rocking structure.
+//! Speed against accuracy, limits of stability and a gallery of failures, for the flexible rocking structure.
 //!
 //! | read | for |
 //! |---|---|

@@ -29,29 +29,3 @@ pub fn first_root<T, E>(open: f64, end: f64, mut guard: impl FnMut(f64) -> Resul
     }
     Ok((tau, found))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use approx::assert_relative_eq;
-
-    #[test]
-    fn a_root_is_found_to_rounding_with_few_evaluations() {
-        let mut evaluations = 0;
-        let guard = |tau: f64| {
-            evaluations += 1;
-            Ok::<_, ()>((tau.cos() - tau, tau))
-        };
-        let (tau, found) = first_root(1.0, 1.0, guard).unwrap();
-        assert_relative_eq!(tau, 0.739_085_133_215_160_6, max_relative = 1e-15);
-        assert_eq!(tau, found);
-        assert!(evaluations <= 8, "{evaluations}");
-    }
-
-    /// A secant across the kink points far from the root.
-    #[test]
-    fn a_kink_that_misleads_the_secant_is_bracketed() {
-        let guard = |tau: f64| Ok::<_, ()>((if tau < 0.9 { 1e-3 * (0.9 - tau) } else { 10.0 * (0.9 - tau) }, ()));
-        assert_relative_eq!(first_root(9e-4, 1.0, guard).unwrap().0, 0.9, max_relative = 1e-11);
-    }
-}

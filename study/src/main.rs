@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use study::scene::{Scene, default_records};
 use study::{failures, precision, speed, stability, validity};
 
-/// Speed against accuracy, stability maps and a gallery of failures: writes the pages, pictures and numbers in docs/.
+/// Speed against accuracy, limits of stability and a gallery of failures: writes the pages, pictures and numbers in docs/.
 #[derive(Parser)]
 struct Arguments {
     #[command(subcommand)]

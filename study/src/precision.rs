@@ -19,74 +19,51 @@ pub const PERTURBATION: f64 = 1e-12;
 /// One method over its settings.
 #[derive(Debug)]
 pub struct Curve {
-    /// Name on charts.
-    pub name: String,
-    /// What it belongs to.
+    pub name: String, // name on charts
     pub family: Family,
-    /// What its setting is, with unit.
-    pub setting: &'static str,
-    /// From coarse to fine.
-    pub points: Vec<Point>,
+    pub setting: &'static str, // what its setting is, with unit
+    pub points: Vec<Point>,    // from coarse to fine
 }
 
 /// Where a curve belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
-    /// This project's engine as it is by default.
     Ours,
-    /// One of its other levels of detail.
-    Level,
-    /// Textbook method, transitions located.
-    Located,
-    /// Textbook method, transitions at step ends.
-    AtStepEnds,
-    /// Another library's solver.
+    Level,      // one of its other levels of detail
+    Located,    // textbook method, transitions located
+    AtStepEnds, // textbook method, transitions at step ends
     Library,
-    /// The FMU.
     Fmu,
 }
 
 /// One run.
 #[derive(Debug)]
 pub struct Point {
-    /// Step in s, or tolerance.
-    pub setting: f64,
-    /// Time per sample over that of the floor.
-    pub cost: f64,
-    /// Right-hand-side evaluations per sample.
-    pub evaluations: f64,
-    /// Uplifts, impacts and landings.
-    pub transitions: u64,
-    /// Against the reference, or why there are none.
-    pub errors: Result<Errors, Failure>,
+    pub setting: f64,                    // step in s, or tolerance
+    pub cost: f64,                       // time per sample over that of the floor
+    pub evaluations: f64,                // right-hand-side evaluations per sample
+    pub transitions: u64,                // uplifts, impacts and landings
+    pub errors: Result<Errors, Failure>, // against the reference, or why there are none
 }
 
 /// All curves on one scene.
 #[derive(Debug)]
 pub struct Diagram {
-    /// The scene's name in file names.
     pub key: &'static str,
-    /// The scene's name on charts.
     pub title: &'static str,
-    /// Time per sample of the floor, s.
-    pub floor: f64,
+    pub floor: f64, // time per sample of the floor, s
     /// How far the response moves when the input is scaled by 1 + [`PERTURBATION`].
     pub conditioning: Errors,
-    /// Transitions of the reference.
-    pub transitions: u64,
-    /// Time between samples, s.
-    pub dt: f64,
-    /// One per method.
+    pub transitions: u64, // transitions of the reference
+    pub dt: f64,          // time between samples, s
     pub curves: Vec<Curve>,
 }
 
 /// How far a sweep goes.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
-    /// No finer setting after a run of this many seconds.
-    pub run: f64,
-    /// No fewer points than these on a curve.
-    pub points: usize,
+    pub run: f64,      // no finer setting after a run of this many seconds
+    pub points: usize, // no fewer points than these on a curve
 }
 
 /// What a curve of the full study is made of.

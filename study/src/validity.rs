@@ -7,6 +7,7 @@ pub mod population;
 use crate::scene::{PACOIMA, Scene, read_record};
 use anyhow::Result;
 use indicatif::ProgressBar;
+use minijinja::{Value, context};
 use population::{Pair, both};
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::impact;
@@ -14,16 +15,13 @@ use rocking::run::validity::{
     ASSUMPTIONS, EDGE_LOAD, ENERGY, FRICTION, Found, IMPACT_FRICTION, IMPACT_TENSION, TENSION,
 };
 use rocking::{Detail, Parameters};
-use serde::Serialize;
 use std::path::Path;
 
 /// How much the repaired rule of uplift changes the peaks, over those of the model.
 #[derive(Clone, Copy, Debug)]
 pub struct Change {
-    /// Of |θ|; that of a base that lifts by one rule alone is 1.
-    pub theta: f64,
-    /// Of |a_t|.
-    pub a_t: f64,
+    pub theta: f64, // of |θ|; that of a base that lifts by one rule alone is 1
+    pub a_t: f64,   // of |a_t|
 }
 
 impl Change {
@@ -36,83 +34,6 @@ impl Change {
         });
         Change { theta, a_t }
     }
-}
-
-/// A scene in the table.
-#[derive(Serialize)]
-struct SceneRow {
-    name: String,
-    tension: String,
-    load: String,
-    friction: String,
-    impact_friction: String,
-    pull: String,
-    gains: String,
-    theta: String,
-    a_t: String,
-    transitions: String,
-}
-
-/// One of the things taken for granted, over all structures.
-#[derive(Serialize)]
-struct Row {
-    name: &'static str,
-    limit: f64,
-    beyond: usize,
-    median: String,
-    worst: String,
-}
-
-/// The energy gained, over all structures.
-#[derive(Serialize)]
-struct Gains {
-    /// Structures that gain although r is at or above the limit at u = 0.
-    above: usize,
-    /// Of those, how many have r = 1.
-    elastic: usize,
-    /// Of those, how many are warned of at the start now.
-    warned: usize,
-    /// The largest gain with r < 1 above that limit, %, its r and that limit.
-    largest: String,
-    r: String,
-    limit: String,
-}
-
-/// The effect of the repaired rule.
-#[derive(Serialize)]
-struct Repair {
-    rocking: usize,
-    theta_median: String,
-    theta_beyond: usize,
-    a_t_median: String,
-    a_t_beyond: usize,
-    overturns_model: usize,
-    overturns_repaired: usize,
-    overturns_changed: usize,
-    tension: String,
-}
-
-/// The page's numbers.
-#[derive(Serialize)]
-struct Page {
-    structures: usize,
-    rows: Vec<Row>,
-    scenes: Vec<SceneRow>,
-    gains: Gains,
-    slow: Slow,
-    above_b: usize,
-    pulling: usize,
-    settlings: usize,
-    repair: Repair,
-}
-
-/// McManus's geometry at 0.05 Hz.
-#[derive(Serialize)]
-struct Slow {
-    u_cr: String,
-    transitions: u64,
-    tension: String,
-    repaired: String,
 }
 
 /// The paper's scenes, and two more of its specimens.
@@ -154,21 +75,21 @@ fn with_share(found: &Found, which: usize) -> String {
     }
 }
 
-fn scene_row(name: String, pair: &Pair) -> SceneRow {
+fn scene_row(name: String, pair: &Pair) -> Value {
     let found = &pair.model.found;
     let of_impacts = |which: usize| if found.impacts == 0 { "–".into() } else { number(found.worst[which].value) };
     let change = Change::of(pair);
-    SceneRow {
+    context! {
         name,
-        tension: with_share(found, TENSION),
-        load: with_share(found, EDGE_LOAD),
-        friction: with_share(found, FRICTION),
-        impact_friction: of_impacts(IMPACT_FRICTION),
-        pull: of_impacts(IMPACT_TENSION),
-        gains: format!("{} of {}", found.gains, found.impacts),
-        theta: percent(change.theta),
-        a_t: percent(change.a_t),
-        transitions: format!("{} → {}", pair.model.transitions, pair.repaired.transitions),
+        tension => with_share(found, TENSION),
+        load => with_share(found, EDGE_LOAD),
+        friction => with_share(found, FRICTION),
+        impact_friction => of_impacts(IMPACT_FRICTION),
+        pull => of_impacts(IMPACT_TENSION),
+        gains => format!("{} of {}", found.gains, found.impacts),
+        theta => percent(change.theta),
+        a_t => percent(change.a_t),
+        transitions => format!("{} → {}", pair.model.transitions, pair.repaired.transitions),
     }
 }
 
@@ -177,7 +98,7 @@ fn median(mut values: Vec<f64>) -> f64 {
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
-fn rows(population: &[Pair]) -> Vec<Row> {
+fn rows(population: &[Pair]) -> Vec<Value> {
     let row = |(which, assumption): (usize, &rocking::run::validity::Assumption)| {
         let of = |pair: &Pair| pair.model.found.worst[which].value;
         let values: Vec<_> = population
@@ -190,18 +111,18 @@ fn rows(population: &[Pair]) -> Vec<Row> {
         } else {
             values.iter().copied().filter(|value| value.is_finite()).fold(f64::NEG_INFINITY, f64::max)
         };
-        Row {
-            name: assumption.name,
-            limit: (assumption.limit)(&rocking::run::validity::Limits::default()),
-            beyond: population.iter().filter(|pair| pair.model.found.worst[which].first_beyond.is_some()).count(),
-            median: number(median(values)),
-            worst: number(worst),
+        context! {
+            name => assumption.name,
+            limit => (assumption.limit)(&rocking::run::validity::Limits::default()),
+            beyond => population.iter().filter(|pair| pair.model.found.worst[which].first_beyond.is_some()).count(),
+            median => number(median(values)),
+            worst => number(worst),
         }
     };
     ASSUMPTIONS.iter().enumerate().map(row).collect()
 }
 
-fn gains(population: &[Pair]) -> Gains {
+fn gains(population: &[Pair]) -> Value {
     let limit = |pair: &Pair| impact::lossless_restitution(&pair.structure, 0.0).map_or(0.0, |[least, _]| least);
     let r = |pair: &Pair| pair.structure.parameters().r;
     let above: Vec<_> = population.iter().filter(|pair| pair.model.found.gains > 0 && r(pair) >= limit(pair)).collect();
@@ -210,32 +131,32 @@ fn gains(population: &[Pair]) -> Gains {
     let of_largest = |of: &dyn Fn(&Pair) -> f64, digits: usize| {
         largest.map_or("–".into(), |pair| format!("{:.digits$}", of(pair)))
     };
-    Gains {
-        above: above.len(),
-        elastic: above.iter().filter(|pair| r(pair) == 1.0).count(),
-        warned: above.iter().filter(|pair| impact::greatest_gain(&pair.structure, pair.structure.u_cr) > 0.0).count(),
-        largest: of_largest(&|pair| 100.0 * gain(pair), 1),
-        r: of_largest(&r, 3),
-        limit: of_largest(&limit, 3),
+    context! {
+        above => above.len(),
+        elastic => above.iter().filter(|pair| r(pair) == 1.0).count(),
+        warned => above.iter().filter(|pair| impact::greatest_gain(&pair.structure, pair.structure.u_cr) > 0.0).count(),
+        largest => of_largest(&|pair| 100.0 * gain(pair), 1),
+        r => of_largest(&r, 3),
+        limit => of_largest(&limit, 3),
     }
 }
 
-fn repair(population: &[Pair]) -> Repair {
+fn repair(population: &[Pair]) -> Value {
     let rocking: Vec<_> =
         population.iter().filter(|pair| pair.model.transitions + pair.repaired.transitions > 0).collect();
     let changes: Vec<_> = rocking.iter().map(|pair| Change::of(pair)).collect();
     let count = |of: fn(&Pair) -> bool| population.iter().filter(|pair| of(pair)).count();
     let tension = population.iter().map(|pair| pair.repaired.found.worst[TENSION].value).fold(-1.0, f64::max);
-    Repair {
-        rocking: rocking.len(),
-        theta_median: percent(median(changes.iter().map(|change| change.theta).collect())),
-        theta_beyond: changes.iter().filter(|change| change.theta > 0.05).count(),
-        a_t_median: percent(median(changes.iter().map(|change| change.a_t).collect())),
-        a_t_beyond: changes.iter().filter(|change| change.a_t > 0.05).count(),
-        overturns_model: count(|pair| pair.model.overturns),
-        overturns_repaired: count(|pair| pair.repaired.overturns),
-        overturns_changed: count(|pair| pair.model.overturns != pair.repaired.overturns),
-        tension: crate::chart::scientific(tension.max(0.0)),
+    context! {
+        rocking => rocking.len(),
+        theta_median => percent(median(changes.iter().map(|change| change.theta).collect())),
+        theta_beyond => changes.iter().filter(|change| change.theta > 0.05).count(),
+        a_t_median => percent(median(changes.iter().map(|change| change.a_t).collect())),
+        a_t_beyond => changes.iter().filter(|change| change.a_t > 0.05).count(),
+        overturns_model => count(|pair| pair.model.overturns),
+        overturns_repaired => count(|pair| pair.repaired.overturns),
+        overturns_changed => count(|pair| pair.model.overturns != pair.repaired.overturns),
+        tension => crate::chart::scientific(tension.max(0.0)),
     }
 }
 
@@ -256,28 +177,27 @@ pub fn write(records: &Path, docs: &Path, progress: &ProgressBar) -> Result<()> 
     }
     save_numbers(&population, &docs.join("validity.csv"))?;
     let slow = &scenes[4].1;
-    let slow = Slow {
-        u_cr: format!("{:.1}", slow.structure.u_cr),
-        transitions: slow.model.transitions,
-        tension: number(slow.model.found.worst[TENSION].value),
-        repaired: match slow.repaired.overturns {
-            true => format!("it overturns after {} transitions", slow.repaired.transitions),
-            false => format!("there are {} transitions", slow.repaired.transitions),
-        },
-    };
     let count = |of: &dyn Fn(&Pair) -> bool| population.iter().filter(|pair| of(pair)).count();
-    let page = Page {
-        structures: population.len(),
-        rows: rows(&population),
-        gains: gains(&population),
-        slow,
-        above_b: count(&|pair| pair.structure.u_cr > pair.structure.parameters().B),
-        pulling: count(&|pair| pair.structure.parameters().r < impact::pulling_restitution(&pair.structure)),
-        settlings: count(&|pair| pair.model.found.settlings > 0),
-        repair: repair(&population),
-        scenes: scenes.into_iter().map(|(name, pair)| scene_row(name, &pair)).collect(),
+    let values = context! {
+        structures => population.len(),
+        rows => rows(&population),
+        gains => gains(&population),
+        slow => context! {
+            u_cr => format!("{:.1}", slow.structure.u_cr),
+            transitions => slow.model.transitions,
+            tension => number(slow.model.found.worst[TENSION].value),
+            repaired => match slow.repaired.overturns {
+                true => format!("it overturns after {} transitions", slow.repaired.transitions),
+                false => format!("there are {} transitions", slow.repaired.transitions),
+            },
+        },
+        above_b => count(&|pair| pair.structure.u_cr > pair.structure.parameters().B),
+        pulling => count(&|pair| pair.structure.parameters().r < impact::pulling_restitution(&pair.structure)),
+        settlings => count(&|pair| pair.model.found.settlings > 0),
+        repair => repair(&population),
+        scenes => scenes.iter().map(|(name, pair)| scene_row(name.clone(), pair)).collect::<Vec<_>>(),
     };
-    crate::page::write(docs, "validity", &page)
+    crate::page::write(docs, "validity", include_str!("../pages/validity.md"), values)
 }
 
 /// A row for every structure: what it is, what it goes beyond, what the repaired rule changes.
@@ -292,7 +212,7 @@ fn save_numbers(population: &[Pair], path: &Path) -> Result<()> {
         let peaks = [model, repaired].map(|of| [of.peaks.theta().magnitude, of.peaks.a_t().magnitude]);
         let numbers = [m, m0, H, B, J0, f_fc, zeta_fc, r].into_iter().chain(model.found.worst.map(|worst| worst.value));
         let numbers = numbers.chain([model.found.gains as f64]).chain(peaks.into_iter().flatten());
-        csv.write_record(numbers.map(|number| format!("{number:.5}").to_string()))?;
+        csv.write_record(numbers.map(|number| format!("{number:.5}")))?;
     }
     Ok(csv.flush()?)
 }

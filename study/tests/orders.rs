@@ -1,16 +1,13 @@
 //! Observed orders of convergence: on smooth motion, and through transitions that are located.
 #![allow(non_snake_case)]
 
-mod synthetic;
-
-use rocking::{Detail, Parameters, State, Structure};
+use rocking::{Parameters, State, Structure};
 use study::engine;
 use study::fixed_step::TEXTBOOK;
-use study::fmu::Fmu;
 use study::guards::uplift_excess;
 use study::hybrid::{self, Grid, Transitions};
 use study::response::{Errors, Response};
-use study::scene::{Input, Scene, ground};
+use study::scene::{Scene, ground};
 
 /// A textbook method's response with `steps` steps between samples.
 fn textbook(scene: &Scene, method: usize, transitions: Transitions, steps: u32) -> Response {
@@ -75,36 +72,4 @@ fn transitions_at_step_ends_cost_the_order() {
     assert!(error(Transitions::AtStepEnds, 256) > 1e6 * error(Transitions::Located, 256));
     let over_four_halvings = order(error(Transitions::AtStepEnds, 64), error(Transitions::AtStepEnds, 1024)) / 4.0;
     assert!(over_four_halvings < 1.3, "{over_four_halvings}");
-}
-
-/// The engine's own order is that of its tolerance: the error falls with it from 1e-6 on, in the mean, and stays below it.
-#[test]
-fn the_engines_error_follows_its_tolerance() {
-    let scene = synthetic::scene();
-    let exact = engine::reference(&scene);
-    let tolerances: Vec<f64> = (1..=9).map(|k| 10f64.powi(-k)).collect();
-    for detail in [Detail::Auto, Detail::Nonlinear] {
-        let errors: Vec<f64> = tolerances
-            .iter()
-            .map(|tolerance| error(&engine::run(&scene, detail, *tolerance, &mut ()), &exact))
-            .collect();
-        for (tolerance, error) in tolerances.iter().zip(&errors) {
-            assert!(error < tolerance, "{detail:?}: {error} at tolerance {tolerance}");
-        }
-        let per_decade = (errors[5] / errors[8]).log10() / 3.0; // looser ones are as 1e-6
-        assert!((0.8..1.3).contains(&per_decade), "{detail:?}: {per_decade} {errors:?}");
-    }
-}
-
-#[test]
-fn the_fmu_is_of_first_order_with_its_input_held_and_exact_with_its_slope() {
-    let scene = synthetic::scene();
-    let exact = engine::reference(&scene);
-    let fmu = Fmu::new(&scene, 1e-12).unwrap();
-    let error = |input, cuts| error(&fmu.run(input, cuts), &exact);
-    let observed = order(error(Input::Constant, 32), error(Input::Constant, 64));
-    assert!((observed - 1.0).abs() < 0.1, "{observed}");
-    for cuts in [1, 3] {
-        assert!(error(Input::Linear, cuts) < 1e-11, "{cuts}");
-    }
 }

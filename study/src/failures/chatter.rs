@@ -2,12 +2,13 @@
 
 use super::history::{every, exact};
 use super::{Exhibit, RIGHT, WRONG};
-use crate::chart::{Axis, Entry, Figure, Panel, Style, colour};
+use crate::chart::{Axis, Entry, Panel, Style, colour};
 use crate::fixed_step::runge_kutta_4::RungeKutta4;
 use crate::guards::{displacement_excess, uplift_excess};
 use crate::hybrid::{self, Grid, Transitions};
 use crate::scene::Scene;
 use anyhow::{Context, Result};
+use minijinja::context;
 use rocking::{Detail, Motion, TransitionKind};
 
 /// Steps of RK4 to a sample.
@@ -79,33 +80,20 @@ pub fn show(scene: &Scene) -> Result<Exhibit> {
     Ok(Exhibit {
         key: "chatter",
         title: "Chatter after a landing with |u| > u_cr",
-        cause: format!(
-            "A landing can leave |u| above u_cr while u̇ is such that the moment still holds the base down. The rule \
-             `uplift when |u| ≥ u_cr` alone lifts it off at once, gravity brings it down at once, and so on without \
-             end and without time passing: here at t = {stuck:.3} s, after {before} transitions."
-        ),
-        remedy: "Uplift needs both |u| ≥ u_cr and s θ̈ > 0 by Eqs 5 and 6. And whatever a structure does, no vibration \
-                 period sees more than a fixed number of transitions: the engine then holds contact to the end of the \
-                 period and reports it."
-            .into(),
-        caption: format!(
-            "McManus's specimen under El Centro, RK4 with transitions located exactly. Left: with |u| ≥ u_cr alone the \
-             count runs away; the complete rule makes {} transitions in {duration:.0} s. Right: the two conditions \
-             after that landing: |u| is beyond u_cr, but the moment is not; uplift comes {held:.0} ms later.",
-            all.len()
-        ),
-        figure: Figure {
-            title: "Chatter after a landing with |u| > u_cr".into(),
-            panel: (600, 380),
-            columns: 2,
-            panels: vec![counts, conditions],
-            legend_columns: 2,
-            legend: vec![
-                Entry::new("this project: both conditions", RIGHT),
-                Entry::new("|u| ≥ u_cr alone", WRONG),
-                Entry::new("|u|/u_cr − 1", Style::line(colour::BLUE, 2)),
-                Entry::new("s θ̈ H/g, from Eqs 5 and 6", Style::line(colour::ORANGE, 2)),
-            ],
+        values: context! {
+            all => all.len(),
+            before,
+            duration => format!("{duration:.0}"),
+            held => format!("{held:.0}"),
+            stuck => format!("{stuck:.3}"),
         },
+        panels: vec![counts, conditions],
+        legend_columns: 2,
+        legend: vec![
+            Entry::new("this project: both conditions", RIGHT),
+            Entry::new("|u| ≥ u_cr alone", WRONG),
+            Entry::new("|u|/u_cr − 1", Style::line(colour::BLUE, 2)),
+            Entry::new("s θ̈ H/g, from Eqs 5 and 6", Style::line(colour::ORANGE, 2)),
+        ],
     })
 }

@@ -2,13 +2,14 @@
 
 use super::history::{at_rest, every, exact, window};
 use super::{Exhibit, RIGHT, WRONG};
-use crate::chart::{Axis, Entry, Figure, Marker, Panel, Style, colour};
+use crate::chart::{Axis, Entry, Marker, Panel, Style, colour};
 use crate::equations::PhaseEquations;
 use crate::fixed_step::runge_kutta_4::RungeKutta4;
 use crate::fixed_step::{OneStep, Point};
 use crate::guards::{PhaseEnd, uplift_excess};
-use crate::hybrid::{self, Integrator, Stretch, Transitions};
+use crate::hybrid::{self, Integrator, Span, Stretch, Transitions};
 use anyhow::{Context, Result};
+use minijinja::context;
 use rocking::{Detail, Parameters, State};
 use std::cell::RefCell;
 
@@ -31,14 +32,8 @@ struct Blind {
 }
 
 impl Integrator for Blind {
-    fn advance(
-        &self,
-        equations: &PhaseEquations,
-        tau: f64,
-        from: &Point,
-        until: f64,
-        end: &PhaseEnd,
-    ) -> Result<Stretch, String> {
+    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String> {
+        let &Span { equations, tau, ref from, until } = span;
         let next = (((tau / LOOK + 1e-9).floor() + 1.0) * LOOK).min(until);
         let h = (next - tau) / INNER as f64;
         let mut to = *from;
@@ -47,7 +42,7 @@ impl Integrator for Blind {
             to = RungeKutta4.step(equations, tau + k as f64 * h, &to, h);
             path.push((tau + (k + 1) as f64 * h, to.position[1]));
         }
-        let is_over = end.is_over(&to.state());
+        let is_over = end.is_some_and(|end| end.is_over(&to.state()));
         if is_over {
             // What follows the crossing that is noticed is taken back.
             let stays = path.iter().rposition(|(_, theta)| theta * to.position[1] <= 0.0).map_or(0, |last| last + 1);
@@ -90,33 +85,18 @@ pub fn show() -> Result<Exhibit> {
     Ok(Exhibit {
         key: "double-crossing",
         title: "Two crossings within one step",
-        cause: format!(
-            "The vibration takes θ through 0 at t = {:.1} ms and brings it back at {:.1} ms; a solver that compares \
-             signs at the ends of its steps sees none of it when both crossings fall into one step. The integration \
-             between the looks is exact here: a tighter tolerance cannot help.",
-            1e3 * begins,
-            1e3 * ends
-        ),
-        remedy: "Guards are searched with a bound on their curvature over the step: from an open guard the search \
-                 advances by no more than that bound proves safe, so that it cannot step over a root, nor over two."
-            .into(),
-        caption: format!(
-            "McManus's specimen, released while it vibrates. This project has an impact at t = {:.1} ms; the other goes \
-             through the floor and comes back, and its motion is another from there on.",
-            1e3 * first
-        ),
-        figure: Figure {
-            title: "Two crossings within one step".into(),
-            panel: (600, 380),
-            columns: 2,
-            panels: vec![close, whole],
-            legend_columns: 2,
-            legend: vec![
-                Entry::new("this project", RIGHT),
-                Entry::new("floor", floor),
-                Entry::new("exact integration, sign looked at every 20 ms", WRONG),
-                Entry::new("where it looks", look),
-            ],
+        values: context! {
+            first => format!("{:.1}", 1e3 * first),
+            begins => format!("{:.1}", 1e3 * begins),
+            ends => format!("{:.1}", 1e3 * ends),
         },
+        panels: vec![close, whole],
+        legend_columns: 2,
+        legend: vec![
+            Entry::new("this project", RIGHT),
+            Entry::new("floor", floor),
+            Entry::new("exact integration, sign looked at every 20 ms", WRONG),
+            Entry::new("where it looks", look),
+        ],
     })
 }

@@ -2,9 +2,10 @@
 
 use super::history::{History, at_rest, every, exact};
 use super::{Exhibit, RIGHT, WRONG};
-use crate::chart::{Axis, Entry, Figure, Marker, Panel, Style, colour};
+use crate::chart::{Axis, Entry, Marker, Panel, Style, colour};
 use crate::scene::structure;
 use anyhow::{Context, Result};
+use minijinja::context;
 use rocking::mechanics::energy::energy;
 use rocking::mechanics::impact;
 use rocking::{Detail, Motion, Parameters, Phase, Side, State, Structure, Transition, TransitionKind};
@@ -70,7 +71,7 @@ pub fn show() -> Result<Exhibit> {
             let parameters = Parameters { H: x * 2f64.sqrt() * 0.285, B: 0.285, m0, r, ..Parameters::EVISON };
             if some_impact_raises(&structure(parameters)) {
                 let (left, low) = (1.0 + i as f64 * width, j as f64 * height);
-                map = map.area((left, left + width), (low, low + height), RAISES);
+                map = map.area((left, left + width), (low, low + height), colour::PALE);
             }
         }
     }
@@ -118,42 +119,18 @@ pub fn show() -> Result<Exhibit> {
     Ok(Exhibit {
         key: "energy-gain",
         title: "Energy gained at impact",
-        cause: format!(
-            "With J₋ the inertia about the pivot before the impact, J0 + m0 B² + m H² + m (sB − u)², the reset θ̇ ← r θ̇ \
-             with u and u̇ kept changes the energy by T₊ − T₋ = −(1 − r) m H u̇ θ̇ − ½ (1 − r²) J₋ θ̇² + 2 r² m B s u θ̇². The \
-             first term is positive where u̇ and θ̇ have opposite signs: momentum is taken from the base and not from the \
-             top mass. The last is positive where the top mass leans towards the pivot that lifts off, s u > 0, and with \
-             r = 1 it is all that there is: then every such impact gains. With u = 0 an impact can gain if and only if r < \
-             1 − 4 (m + m0) B²/J_P, {:.3} for Evison's geometry and {:.3} for McManus's; but u is never 0. With s u = u_cr \
-             no impact gains only for {} (Evison) and {} (McManus).",
-            limit(Parameters::EVISON),
-            limit(Parameters::MCMANUS),
-            lossless(Parameters::EVISON, 1.0),
-            lossless(Parameters::MCMANUS, 1.0),
-        ),
-        remedy: "The rule itself is at fault, and no solver can help: choose an r that is neither so low nor 1. The FMU warns \
-                 at the start of an r that can gain with s u = u_cr; with `validity` it tells the largest gain and how many \
-                 impacts gain, as `rocking-fmu simulate` does. [Where the model itself ends](validity.md) shows how often that \
-                 is. A landing always loses."
-            .into(),
-        caption:
-            "Left: grey where trying states through the engine's own reset finds a gain; the line is the closed form. \
-                  Right: McManus's geometry with f_fc = 2 Hz and r = 0.5, released at θ = 0.02 rad."
-                .into(),
-        figure: Figure {
-            title: "Energy gained at impact".into(),
-            panel: (600, 420),
-            columns: 2,
-            panels: vec![map, example],
-            legend_columns: 3,
-            legend: vec![
-                Entry::new("r = 1 − 4 (m + m0) B²/J_P", RIGHT),
-                Entry::new("the specimens", specimen),
-                Entry::new("the example and its energy", WRONG),
-            ],
+        values: context! {
+            evison => format!("{:.3}", limit(Parameters::EVISON)),
+            mcmanus => format!("{:.3}", limit(Parameters::MCMANUS)),
+            evison_at_u_cr => lossless(Parameters::EVISON, 1.0),
+            mcmanus_at_u_cr => lossless(Parameters::MCMANUS, 1.0),
         },
+        panels: vec![map, example],
+        legend_columns: 3,
+        legend: vec![
+            Entry::new("r = 1 − 4 (m + m0) B²/J_P", RIGHT),
+            Entry::new("the specimens", specimen),
+            Entry::new("the example and its energy", WRONG),
+        ],
     })
 }
-
-/// Colour of the region where states that gain are found.
-const RAISES: plotters::style::RGBColor = colour::PALE;

@@ -2,8 +2,9 @@
 
 use super::history::{History, at_rest, every, exact};
 use super::{Exhibit, RIGHT, WRONG};
-use crate::chart::{Axis, Entry, Figure, Marker, Panel, Style, colour, scientific};
+use crate::chart::{Axis, Entry, Marker, Panel, Style, colour, scientific};
 use anyhow::{Context, Result};
+use minijinja::context;
 use rocking::{Detail, Parameters, State, Transition};
 
 /// How long the structure is followed, s.
@@ -19,10 +20,8 @@ fn released(theta_dot: f64, u_dot: f64) -> Result<History> {
 pub struct Family {
     name: &'static str,
     theta_dot: f64,
-    /// Between these the first transition becomes another.
-    bracket: (f64, f64),
-    /// +1 or −1: to which side u̇ is changed.
-    towards: f64,
+    bracket: (f64, f64), // between these the first transition becomes another
+    towards: f64,        // +1 or −1: to which side u̇ is changed
     style: Style,
 }
 
@@ -119,31 +118,14 @@ pub fn show() -> Result<Exhibit> {
     Ok(Exhibit {
         key: "grazing",
         title: "Grazes that decide differently under a change of 10⁻¹²",
-        cause: format!(
-            "At an impact the sign of one number, the momentum L about the incoming pivot, decides between rocking on and \
-             full contact; where L passes through 0 (here at t = {:.2} ms) the answer is discontinuous, and 10⁻¹² in the \
-             start becomes {:.0} % of the answer. Where θ only touches 0, the velocity of the touch is the root of the \
-             distance: 10⁻¹² becomes {}, against {} elsewhere.",
-            1e3 * impact.time,
-            100.0 * jump,
-            scientific(touch),
-            scientific(clear)
-        ),
-        remedy: "No solver can remedy it: the model is discontinuous there. What can be done is to say how near an answer \
-                 is to such a place: errors are reported beside the conditioning floor, the change of the answer under a \
-                 change of its input by one part in 10¹²."
-            .into(),
-        caption: "McManus's specimen released shortly before an impact, θ₀ = 2 mrad. Left: one start on either side of \
-                  L = 0. Right: the change of the answer over that of the start; slope 0 where L passes through 0, slope ½ \
-                  where θ touches 0, slope 1 elsewhere."
-            .into(),
-        figure: Figure {
-            title: "Grazes that decide differently under a change of 10⁻¹²".into(),
-            panel: (600, 380),
-            columns: 2,
-            panels: vec![two, distance],
-            legend_columns: 3,
-            legend,
+        values: context! {
+            impact => format!("{:.2}", 1e3 * impact.time),
+            jump => format!("{:.0}", 100.0 * jump),
+            touch => scientific(touch),
+            clear => scientific(clear),
         },
+        panels: vec![two, distance],
+        legend_columns: 3,
+        legend,
     })
 }

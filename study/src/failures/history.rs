@@ -8,10 +8,8 @@ use rocking::{Detail, Motion, Parameters, State, Transition, TransitionKind};
 
 /// A response over time, and its transitions.
 pub struct History {
-    /// At the instants asked for, and at the end.
-    pub motions: Vec<Motion>,
-    /// All of them, in order.
-    pub transitions: Vec<Transition>,
+    pub motions: Vec<Motion>,         // at the instants asked for, and at the end
+    pub transitions: Vec<Transition>, // all of them, in order
 }
 
 impl History {

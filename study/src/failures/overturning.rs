@@ -2,9 +2,10 @@
 
 use super::history::{History, at_rest, every, exact};
 use super::{Exhibit, RIGHT, WRONG};
-use crate::chart::{Axis, Entry, Figure, Panel, Style, colour};
+use crate::chart::{Axis, Entry, Panel, Style, colour};
 use crate::scene::structure;
 use anyhow::Result;
+use minijinja::context;
 use rocking::run::RunError;
 use rocking::{Detail, Parameters, State, TransitionKind};
 
@@ -72,30 +73,14 @@ pub fn show() -> Result<Exhibit> {
     Ok(Exhibit {
         key: "near-overturning",
         title: "Near-overturning",
-        cause: format!(
-            "At θ ≈ α_cg the structure balances on its edge, and whatever separates two solutions grows like e^(p t), here \
-             with p = p_l/√cos α_cg = {rate:.3}/s: it doubles every {doubling:.0} ms, for as long as the balance lasts. \
-             Between falling back and overturning no error is small enough in the end."
-        ),
-        remedy: "Overturning is located as exactly as an impact, and the tolerance holds for what the solver adds; what the \
-                 model adds, the conditioning floor shows. Ask for `tolerance` 10⁻¹² where a structure nearly overturns, and \
-                 read overturning as a matter of probability there."
-            .into(),
-        caption: "McManus's specimen released at rest, one part in 10¹² inside and outside the angle at which it balances \
-                  for ever. Right: the difference against e^(p t)."
-            .into(),
-        figure: Figure {
-            title: "Near-overturning".into(),
-            panel: (600, 380),
-            columns: 2,
-            panels: vec![history, growth],
-            legend_columns: 4,
-            legend: vec![
-                Entry::new("θ₀ (1 − 10⁻¹²): falls back", RIGHT),
-                Entry::new("θ₀ (1 + 10⁻¹²): overturns", WRONG),
-                Entry::new("e^(p t)", guide),
-                Entry::new("unstable equilibrium", balance),
-            ],
-        },
+        values: context! { rate => format!("{rate:.3}"), doubling => format!("{doubling:.0}") },
+        panels: vec![history, growth],
+        legend_columns: 4,
+        legend: vec![
+            Entry::new("θ₀ (1 − 10⁻¹²): falls back", RIGHT),
+            Entry::new("θ₀ (1 + 10⁻¹²): overturns", WRONG),
+            Entry::new("e^(p t)", guide),
+            Entry::new("unstable equilibrium", balance),
+        ],
     })
 }

@@ -2,9 +2,10 @@
 
 use super::Exhibit;
 use super::history::{at_rest, every, exact, is_impact};
-use crate::chart::{Axis, Entry, Figure, Marker, Panel, Style, colour};
+use crate::chart::{Axis, Entry, Marker, Panel, Style, colour};
 use crate::scene::structure;
 use anyhow::Result;
+use minijinja::context;
 use rocking::{Detail, Parameters, State, Transition};
 
 /// Evison's specimen with a coefficient of restitution low enough to come to rest soon.
@@ -62,27 +63,9 @@ pub fn show() -> Result<Exhibit> {
     Ok(Exhibit {
         key: "zeno",
         title: "Zeno at rest in the rigid limit",
-        cause: "Each impact of a rigid block leaves the fraction r of its angular velocity, so that the times between \
-                impacts shrink like rⁿ: infinitely many fit into a finite time, and a solver that stops at each never \
-                gets beyond. A flexible structure lands as soon as its momentum about the incoming pivot has the \
-                other sign, but the stiffer it is the later."
-            .into(),
-        remedy:
-            "The rigid level ends the series where the energy left is below the tolerance, and says so as a landing; \
-                 at all levels the number of transitions in a vibration period is bounded."
-                .into(),
-        caption: format!(
-            "Evison's specimen with r = 0.9, released at θ = 0.04 rad. The rigid level makes {number} impacts, the last \
-             at {last:.3} s, and rests. Flexible structures land after {}.",
-            counts.join(", ")
-        ),
-        figure: Figure {
-            title: "Zeno at rest in the rigid limit".into(),
-            panel: (600, 380),
-            columns: 2,
-            panels: vec![history, times],
-            legend_columns: 5,
-            legend,
-        },
+        values: context! { number, last => format!("{last:.3}"), counts => counts.join(", ") },
+        panels: vec![history, times],
+        legend_columns: 5,
+        legend,
     })
 }

@@ -1,19 +1,15 @@
-//! The crate differential-equations: Dormand and Prince's pair of orders 8(5, 3) and Verner's of orders 9(8), with the
-//! crate's own events.
+//! The crate differential-equations: Dormand and Prince's pair of orders 8(5, 3), with the crate's own events.
 
-use super::ABSOLUTE;
-use crate::equations::{Equations, PhaseEquations, state};
-use crate::fixed_step::Point;
+use super::{ABSOLUTE, numbers, point, rates};
+use crate::equations::PhaseEquations;
 use crate::guards::PhaseEnd;
-use crate::hybrid::{Integrator, Stretch};
+use crate::hybrid::{Integrator, Span, Stretch};
 use differential_equations::methods::ExplicitRungeKutta;
 use differential_equations::prelude::*;
 use differential_equations::status::Status;
-use nalgebra::Vector2;
 
 /// DOP853 to a relative tolerance, with or without the crate's events.
 pub struct DifferentialEquations {
-    /// Relative tolerance.
     pub tolerance: f64,
     /// Whether its own events end a phase; otherwise the phase is over where a step ends beyond its end.
     pub own_events: bool,
@@ -23,14 +19,9 @@ struct Motion<'a, 'b>(&'a PhaseEquations<'b>);
 
 type Y = [f64; 4];
 
-fn point(y: &Y) -> Point {
-    Point::start(&state(Vector2::new(y[0], y[1]), Vector2::new(y[2], y[3])))
-}
-
 impl ODE<f64, Y> for Motion<'_, '_> {
     fn diff(&self, tau: f64, y: &Y, dydt: &mut Y) {
-        let acceleration = self.0.acceleration(tau, Vector2::new(y[0], y[1]), Vector2::new(y[2], y[3]));
-        *dydt = [y[2], y[3], acceleration[0], acceleration[1]];
+        *dydt = rates(self.0, tau, y);
     }
 }
 
@@ -68,36 +59,17 @@ impl Solout<f64, Y> for StopBeyond<'_, '_> {
     }
 }
 
-impl DifferentialEquations {
-    fn solve(
-        &self,
-        motion: &Motion,
-        end: Option<&PhaseEnd>,
-        tau: f64,
-        from: &Point,
-        until: f64,
-    ) -> Result<Solution<f64, Y>, String> {
-        let y = [from.position[0], from.position[1], from.velocity[0], from.velocity[1]];
-        let problem = IVP::ode(motion, tau, until, y);
+impl Integrator for DifferentialEquations {
+    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String> {
+        let &Span { equations, tau, ref from, until } = span;
+        let motion = Motion(equations);
+        let problem = IVP::ode(&motion, tau, until, numbers(from));
         let method = ExplicitRungeKutta::dop853().rtol(self.tolerance).atol(ABSOLUTE * self.tolerance);
         let solution = match end {
             Some(end) if self.own_events => problem.event(&Guard(end)).method(method).solve(),
             _ => problem.solout(StopBeyond(end)).method(method).solve(),
         };
-        solution.map_err(|error| format!("{error:?}"))
-    }
-}
-
-impl Integrator for DifferentialEquations {
-    fn advance(
-        &self,
-        equations: &PhaseEquations,
-        tau: f64,
-        from: &Point,
-        until: f64,
-        end: &PhaseEnd,
-    ) -> Result<Stretch, String> {
-        let solution = self.solve(&Motion(equations), Some(end), tau, from, until)?;
+        let solution = solution.map_err(|error| format!("{error:?}"))?;
         let last = solution.t.len() - 1;
         let is_over = matches!(solution.status, Status::Interrupted);
         let before = last.saturating_sub(1);
@@ -108,10 +80,5 @@ impl Integrator for DifferentialEquations {
             to: point(&solution.y[last]),
             is_over,
         })
-    }
-
-    fn flow(&self, equations: &PhaseEquations, tau: f64, from: &Point, h: f64) -> Result<Point, String> {
-        let solution = self.solve(&Motion(equations), None, tau, from, tau + h)?;
-        Ok(point(&solution.y[solution.y.len() - 1]))
     }
 }

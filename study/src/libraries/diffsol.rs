@@ -1,44 +1,27 @@
-//! The crate diffsol: BDF of variable order, ESDIRK of order 3(4) and TR-BDF2, implicit methods for stiff equations,
+//! The crate diffsol: BDF of variable order and ESDIRK of order 3(4), implicit methods for stiff equations,
 //! with the crate's own root finding.
 
-use super::ABSOLUTE;
-use crate::equations::{Equations, PhaseEquations, state};
-use crate::fixed_step::Point;
+use super::{ABSOLUTE, numbers, point, rates};
+use crate::equations::PhaseEquations;
 use crate::guards::PhaseEnd;
-use crate::hybrid::{Integrator, Stretch};
+use crate::hybrid::{Integrator, Span, Stretch};
 use diffsol::{NalgebraLU, NalgebraMat, OdeBuilder, OdeEquationsImplicit, OdeSolverMethod, OdeSolverStopReason};
-use nalgebra::Vector2;
 
 /// Which method.
 #[derive(Clone, Copy, Debug)]
 pub enum Method {
-    /// Backward differences of variable order.
-    Bdf,
-    /// An ESDIRK pair of orders 3(4).
-    Esdirk34,
+    Bdf,      // backward differences of variable order
+    Esdirk34, // an ESDIRK pair of orders 3(4)
 }
 
 /// One of them, to a relative tolerance.
 pub struct Diffsol {
-    /// Which.
     pub method: Method,
-    /// Relative tolerance.
     pub tolerance: f64,
-    /// Whether its own root finding ends a phase; otherwise the phase is over where a step ends beyond its end.
-    pub own_events: bool,
 }
 
 type M = NalgebraMat<f64>;
 type Lu = NalgebraLU<f64>;
-
-fn point(y: &[f64]) -> Point {
-    Point::start(&state(Vector2::new(y[0], y[1]), Vector2::new(y[2], y[3])))
-}
-
-fn right_hand_side(equations: &PhaseEquations, tau: f64, y: &[f64], dy: &mut [f64]) {
-    let acceleration = equations.acceleration(tau, Vector2::new(y[0], y[1]), Vector2::new(y[2], y[3]));
-    dy.copy_from_slice(&[y[2], y[3], acceleration[0], acceleration[1]]);
-}
 
 /// The derivative of the right-hand side along `v`, from a difference quotient.
 fn derivative(equations: &PhaseEquations, tau: f64, y: &[f64], v: &[f64], jv: &mut [f64]) {
@@ -49,29 +32,21 @@ fn derivative(equations: &PhaseEquations, tau: f64, y: &[f64], v: &[f64], jv: &m
     }
     let step = DIFFERENCE / length;
     let moved: Vec<f64> = y.iter().zip(v).map(|(y, v)| y + step * v).collect();
-    let mut here = [0.0; 4];
-    right_hand_side(equations, tau, y, &mut here);
-    right_hand_side(equations, tau, &moved, jv);
-    jv.iter_mut().zip(here).for_each(|(jv, here)| *jv = (*jv - here) / step);
+    let (here, there) = (rates(equations, tau, y), rates(equations, tau, &moved));
+    jv.iter_mut().zip(there.iter().zip(here)).for_each(|(jv, (there, here))| *jv = (there - here) / step);
 }
 
-impl Diffsol {
-    fn solve(
-        &self,
-        equations: &PhaseEquations,
-        end: Option<&PhaseEnd>,
-        tau: f64,
-        from: &Point,
-        until: f64,
-    ) -> Result<Stretch, String> {
-        let start = [from.position[0], from.position[1], from.velocity[0], from.velocity[1]];
+impl Integrator for Diffsol {
+    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String> {
+        let &Span { equations, tau, ref from, until } = span;
+        let start = numbers(from);
         let problem = OdeBuilder::<M>::new()
             .t0(tau)
             .h0(until - tau)
             .rtol(self.tolerance)
             .atol([ABSOLUTE * self.tolerance])
             .rhs_implicit(
-                |y: &[f64], _: &[f64], tau, dy: &mut [f64]| right_hand_side(equations, tau, y, dy),
+                |y: &[f64], _: &[f64], tau, dy: &mut [f64]| dy.copy_from_slice(&rates(equations, tau, y)),
                 |y: &[f64], _: &[f64], tau, v: &[f64], jv: &mut [f64]| derivative(equations, tau, y, v, jv),
             )
             .init(|_: &[f64], _, y: &mut [f64]| y.copy_from_slice(&start), 4)
@@ -82,56 +57,31 @@ impl Diffsol {
             .build()
             .map_err(|error| error.to_string())?;
         let stretch = match self.method {
-            Method::Bdf => self.steps(&mut problem.bdf::<Lu>().map_err(|error| error.to_string())?, end, until),
-            Method::Esdirk34 => {
-                self.steps(&mut problem.esdirk34::<Lu>().map_err(|error| error.to_string())?, end, until)
-            }
+            Method::Bdf => steps(&mut problem.bdf::<Lu>().map_err(|error| error.to_string())?, until),
+            Method::Esdirk34 => steps(&mut problem.esdirk34::<Lu>().map_err(|error| error.to_string())?, until),
         };
         stretch.map_err(|error| error.to_string())
     }
-
-    /// Steps to `until` or to the end of the phase.
-    fn steps<'a, E>(
-        &self,
-        solver: &mut impl OdeSolverMethod<'a, E>,
-        end: Option<&PhaseEnd>,
-        until: f64,
-    ) -> Result<Stretch, diffsol::error::DiffsolError>
-    where
-        E: OdeEquationsImplicit<T = f64, V = diffsol::NalgebraVec<f64>> + 'a,
-    {
-        solver.set_stop_time(until)?;
-        loop {
-            let (start, from) = (solver.state().t, point(solver.state().y.batch_as_slice(0)));
-            let reason = solver.step()?;
-            let (tau, to) = (solver.state().t, point(solver.state().y.batch_as_slice(0)));
-            let stretch = |end, to, is_over| Stretch { start, end, from, to, is_over };
-            match (reason, end) {
-                (OdeSolverStopReason::RootFound(root, _), _) if self.own_events => {
-                    let there = solver.interpolate(root)?;
-                    return Ok(stretch(root, point(there.batch_as_slice(0)), true));
-                }
-                (_, Some(end)) if !self.own_events && end.is_over(&to.state()) => return Ok(stretch(tau, to, true)),
-                (OdeSolverStopReason::TstopReached, _) => return Ok(stretch(until, to, false)),
-                _ => (),
-            }
-        }
-    }
 }
 
-impl Integrator for Diffsol {
-    fn advance(
-        &self,
-        equations: &PhaseEquations,
-        tau: f64,
-        from: &Point,
-        until: f64,
-        end: &PhaseEnd,
-    ) -> Result<Stretch, String> {
-        self.solve(equations, Some(end), tau, from, until)
-    }
-
-    fn flow(&self, equations: &PhaseEquations, tau: f64, from: &Point, h: f64) -> Result<Point, String> {
-        Ok(self.solve(equations, None, tau, from, tau + h)?.to)
+/// Steps to `until` or to the end of the phase.
+fn steps<'a, E>(solver: &mut impl OdeSolverMethod<'a, E>, until: f64) -> Result<Stretch, diffsol::error::DiffsolError>
+where
+    E: OdeEquationsImplicit<T = f64, V = diffsol::NalgebraVec<f64>> + 'a,
+{
+    solver.set_stop_time(until)?;
+    loop {
+        let (start, from) = (solver.state().t, point(solver.state().y.batch_as_slice(0)));
+        let reason = solver.step()?;
+        let to = point(solver.state().y.batch_as_slice(0));
+        let stretch = |end, to, is_over| Stretch { start, end, from, to, is_over };
+        match reason {
+            OdeSolverStopReason::RootFound(root, _) => {
+                let there = solver.interpolate(root)?;
+                return Ok(stretch(root, point(there.batch_as_slice(0)), true));
+            }
+            OdeSolverStopReason::TstopReached => return Ok(stretch(until, to, false)),
+            _ => (),
+        }
     }
 }

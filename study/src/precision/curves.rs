@@ -18,22 +18,16 @@ use std::rc::Rc;
 
 /// One method.
 pub struct Method<'a> {
-    /// Name on charts.
-    pub name: String,
-    /// What it belongs to.
+    pub name: String, // name on charts
     pub family: Family,
-    /// What its setting is, with unit.
-    pub setting: &'static str,
-    /// From coarse to fine.
-    pub settings: Vec<Setting<'a>>,
+    pub setting: &'static str,      // what its setting is, with unit
+    pub settings: Vec<Setting<'a>>, // from coarse to fine
 }
 
 /// One setting of a method.
 pub struct Setting<'a> {
-    /// Step in s, or tolerance.
-    pub value: f64,
-    /// A run of the whole scene.
-    pub run: Box<dyn Fn() -> Response + 'a>,
+    pub value: f64,                          // step in s, or tolerance
+    pub run: Box<dyn Fn() -> Response + 'a>, // A run of the whole scene
     /// Counts the evaluations, where the run itself does not.
     pub evaluations: Option<Box<dyn Fn() -> u64 + 'a>>,
 }
@@ -92,9 +86,7 @@ fn libraries(scene: &Scene) -> [Method<'_>; 6] {
     let method =
         |name: &str, settings| Method { name: name.into(), family: Family::Library, setting: "tolerance", settings };
     let pair = |pair| tolerances(move |tolerance| hybrid(scene, OdeSolvers { pair, tolerance }, Located));
-    let own_events = true;
-    let diffsol =
-        |method| tolerances(move |tolerance| hybrid(scene, Diffsol { method, tolerance, own_events }, AtStepEnds));
+    let diffsol = |method| tolerances(move |tolerance| hybrid(scene, Diffsol { method, tolerance }, AtStepEnds));
     let with_events = |own_events, transitions| {
         tolerances(move |tolerance| hybrid(scene, DifferentialEquations { tolerance, own_events }, transitions))
     };

@@ -1,6 +1,6 @@
 //! The diagrams as pictures and as numbers.
 
-use super::{Curve, Diagram, Family, Point};
+use super::{Curve, Diagram, Family};
 use crate::chart::colour::{BLACK, BLUE, GREEN, GREY, ORANGE, PALE, PURPLE, SKY, VERMILLION};
 use crate::chart::{Axis, Entry, Figure, Marker, Panel, Style};
 use crate::response::Errors;
@@ -73,88 +73,60 @@ impl Diagram {
     }
 
     /// Error over cost for some families of curves.
-    fn panel(
-        &self,
-        title: &str,
-        families: &[Family],
-        (x_label, cost): (&str, fn(&Point) -> f64),
-        (y_label, error): (&str, fn(&Errors) -> f64),
-    ) -> Panel {
+    fn panel(&self, title: &str, families: &[Family]) -> Panel {
+        let error = |errors: &Errors| errors.theta;
         let points = || self.curves.iter().flat_map(|curve| &curve.points);
         let errors = || points().filter_map(|point| point.errors.as_ref().ok()).map(error);
         let decade = |value: f64| 10f64.powf(value.log10().floor());
         let conditioning = error(&self.conditioning);
         let lowest = errors().filter(|error| *error > 0.0).fold(conditioning, f64::min);
         let bottom = decade(lowest.max(conditioning / 100.0));
-        // The exact levels evaluate nothing; they are drawn at the left edge.
-        let least = decade(points().map(cost).filter(|cost| *cost > 0.0).fold(f64::INFINITY, f64::min));
-        let most = 10.0 * decade(points().map(cost).fold(0.0, f64::max));
-        let x = Axis::logarithmic(x_label, least, most);
-        let y = Axis::logarithmic(y_label, bottom, TOP);
+        let least = decade(points().map(|point| point.cost).fold(f64::INFINITY, f64::min));
+        let most = 10.0 * decade(points().map(|point| point.cost).fold(0.0, f64::max));
+        let x = Axis::logarithmic("time per sample / floor", least, most);
+        let y = Axis::logarithmic("max|Δθ| / max|θ|", bottom, TOP);
         let mut panel = Panel::new(title, x, y)
             .area((least, most), (bottom, conditioning), PALE)
             .area((least, most), (MEANINGLESS, TOP), PALE)
             .label((least, FAILED), "fails", BLACK)
             .note((least, (conditioning * bottom).sqrt()), "below the conditioning floor", GREY);
         for (curve, style) in families.iter().rev().flat_map(|family| self.styled(*family)) {
-            let good = curve.points.iter().filter_map(|point| Some((cost(point), error(point.errors.as_ref().ok()?))));
+            let good = curve.points.iter().filter_map(|point| Some((point.cost, error(point.errors.as_ref().ok()?))));
             panel = panel.with(&curve.name, good.map(|(x, error)| (x, error.clamp(bottom, MEANINGLESS))), style);
-            let failed = curve.points.iter().filter(|point| point.errors.is_err()).map(|point| (cost(point), FAILED));
+            let failed = curve.points.iter().filter(|point| point.errors.is_err()).map(|point| (point.cost, FAILED));
             panel = panel.with(&curve.name, failed, Style::marked(style.colour, 0, Marker::Cross));
         }
         panel
     }
 }
 
-const COST: (&str, fn(&Point) -> f64) = ("time per sample / floor", |point| point.cost);
-const EVALUATIONS: (&str, fn(&Point) -> f64) = ("right-hand-side evaluations per sample", |point| point.evaluations);
-const THETA: (&str, fn(&Errors) -> f64) = ("max|Δθ| / max|θ|", |errors| errors.theta);
-const U: (&str, fn(&Errors) -> f64) = ("max|Δu| / max|u|", |errors| errors.u);
-const A_T: (&str, fn(&Errors) -> f64) = ("max|Δa_t| / max|a_t|", |errors| errors.a_t);
-
 const BY_HAND: &[Family] = &[Family::Ours, Family::Located, Family::AtStepEnds];
 const LIBRARIES: &[Family] = &[Family::Ours, Family::Library];
 const LEVELS: &[Family] = &[Family::Ours, Family::Level];
 const FMU: &[Family] = &[Family::Ours, Family::Fmu];
 
-/// What a legend explains: everything, or what is compared with the engine alone.
-const ALL: [Family; 5] = [Family::Ours, Family::Level, Family::Located, Family::Fmu, Family::Library];
-const COMPARED: [Family; 3] = [Family::Ours, Family::Located, Family::Library];
-
 /// Writes the pictures and the numbers of one scene.
 pub fn save(diagram: &Diagram, docs: &Path) -> Result<()> {
-    let figure = |panels: Vec<Panel>, families: &[Family]| Figure {
+    let figure = Figure {
         title: diagram.title.into(),
         panel: (600, 440),
         columns: 2,
-        panels,
+        panels: vec![
+            diagram.panel("textbook methods, fixed step", BY_HAND),
+            diagram.panel("solvers of other libraries", LIBRARIES),
+            diagram.panel("this project's levels of detail", LEVELS),
+            diagram.panel("the FMU, over its communication steps", FMU),
+        ],
         legend_columns: 3,
-        legend: legend(diagram, families),
+        legend: legend(diagram),
     };
-    let first = [
-        diagram.panel("textbook methods, fixed step", BY_HAND, COST, THETA),
-        diagram.panel("solvers of other libraries", LIBRARIES, COST, THETA),
-        diagram.panel("this project's levels of detail", LEVELS, COST, THETA),
-        diagram.panel("the FMU, over its communication steps", FMU, COST, THETA),
-    ];
-    figure(first.into(), &ALL).save(&docs.join(format!("accuracy-{}.svg", diagram.key)))?;
-    let more = [(EVALUATIONS, THETA), (COST, U), (COST, A_T)].map(|(x, y)| {
-        [
-            diagram.panel("textbook methods, fixed step", BY_HAND, x, y),
-            diagram.panel("solvers of other libraries", LIBRARIES, x, y),
-        ]
-    });
-    figure(more.concat(), &COMPARED).save(&docs.join(format!("accuracy-{}-more.svg", diagram.key)))?;
+    figure.save(&docs.join(format!("accuracy-{}.svg", diagram.key)))?;
     save_numbers(diagram, &docs.join(format!("accuracy-{}.csv", diagram.key)))
 }
 
-/// One column for this project and what lines mean, one for the textbook and the FMU, one for libraries; of these
-/// `families`.
-fn legend(diagram: &Diagram, families: &[Family]) -> Vec<Entry> {
-    let of = |wanted: &[Family]| {
-        let wanted: Vec<_> = wanted.iter().copied().filter(|family| families.contains(family)).collect();
-        diagram.legend(&wanted)
-    };
+/// One column for this project and what lines mean, one for the textbook and the FMU, one for libraries.
+fn legend(diagram: &Diagram) -> Vec<Entry> {
+    let of = |families: &[Family]| diagram.legend(families);
     let meanings = [
         Entry::new("textbook: transitions located", Style::line(GREY, 2)),
         Entry::new("textbook: transitions at step ends", Style::dashed(GREY, 2)),

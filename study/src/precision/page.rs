@@ -2,8 +2,9 @@
 
 use super::{Curve, Diagram, Family, PERTURBATION, Point};
 use crate::chart::{power_of_ten, scientific};
+use crate::response::Errors;
 use anyhow::{Context, Result};
-use serde::Serialize;
+use minijinja::{Value, context};
 use std::path::Path;
 
 /// Errors in θ at which costs are compared.
@@ -12,57 +13,10 @@ const ERRORS: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
 /// Steps per sample at which the two ways to take transitions are compared.
 const COMPARED_STEPS: f64 = 64.0;
 
-#[derive(Serialize)]
-struct Page {
-    perturbation: String,
-    errors: Vec<String>,
-    scenes: Vec<Scene>,
-    /// The smallest error at which another method is cheaper than `auto` on any scene.
-    undercut: Option<String>,
-}
-
-#[derive(Serialize)]
-struct Scene {
-    key: &'static str,
-    title: &'static str,
-    dt: String,
-    transitions: u64,
-    floor: String,
-    conditioning: [String; 3],
-    rows: Vec<Row>,
-    step_ends: Vec<StepEnds>,
-    held: [String; 2],
-    slope: String,
-    inside: String,
-    undercut: Vec<Undercut>,
-    failures: Vec<String>,
-}
-
 /// A method that is cheaper than `auto`.
-#[derive(Serialize)]
 struct Undercut {
-    method: String,
-    /// The smallest error in θ at which it is.
-    error: f64,
-    shown: String,
-    cost: String,
-    ours: String,
-}
-
-/// A method's costs in units of the floor at [`ERRORS`], with the settings that they take.
-#[derive(Serialize)]
-struct Row {
-    method: String,
-    costs: Vec<String>,
-    is_ours: bool,
-}
-
-/// Errors of a method with transitions located, and taken at step ends.
-#[derive(Serialize)]
-struct StepEnds {
-    method: String,
-    located: String,
-    at_step_ends: String,
+    error: f64, // the smallest error in θ at which it is
+    shown: Value,
 }
 
 impl Point {
@@ -115,20 +69,19 @@ impl Diagram {
         self.curves.iter().filter(move |curve| curve.family == family)
     }
 
-    fn rows(&self) -> Vec<Row> {
+    fn rows(&self) -> Vec<Value> {
         let cost = |curve: &Curve, error: f64| match curve.cheapest(error) {
             Some(point) => format!("{} ({})", significant(point.cost), curve.setting(point)),
             None => "–".into(),
         };
-        let row = |curve: &Curve| Row {
-            method: curve.full_name(),
-            costs: ERRORS.iter().map(|error| cost(curve, *error)).collect(),
-            is_ours: curve.family == Family::Ours,
+        let row = |curve: &Curve| {
+            let costs: Vec<_> = ERRORS.iter().map(|error| cost(curve, *error)).collect();
+            context! { method => curve.full_name(), costs, is_ours => curve.family == Family::Ours }
         };
         self.curves.iter().map(row).collect()
     }
 
-    fn step_ends(&self) -> Vec<StepEnds> {
+    fn step_ends(&self) -> Vec<Value> {
         let error = |curve: &Curve| {
             let h = self.dt / COMPARED_STEPS;
             let point = curve.points.iter().find(|point| (point.setting / h - 1.0).abs() < 1e-6)?;
@@ -136,11 +89,8 @@ impl Diagram {
         };
         let pair = |located: &Curve| {
             let at_step_ends = self.curve(Family::AtStepEnds, &located.name)?;
-            Some(StepEnds {
-                method: located.name.clone(),
-                located: error(located)?,
-                at_step_ends: error(at_step_ends)?,
-            })
+            let (at_step_ends, method) = (error(at_step_ends)?, located.name.clone());
+            Some(context! { method, located => error(located)?, at_step_ends })
         };
         self.family(Family::Located).filter_map(pair).collect()
     }
@@ -156,8 +106,9 @@ impl Diagram {
                 (error < 1.0 && point.cost < ours).then_some((error, point.cost, ours))
             });
             let (error, cost, ours) = cheaper.min_by(|a, b| a.0.total_cmp(&b.0))?;
-            let (cost, ours) = (significant(cost), significant(ours));
-            Some(Undercut { method: curve.full_name(), error, shown: scientific(error), cost, ours })
+            let (method, shown, cost, ours) =
+                (curve.full_name(), scientific(error), significant(cost), significant(ours));
+            Some(Undercut { error, shown: context! { method, shown, cost, ours } })
         };
         Ok(others
             .into_iter()
@@ -186,43 +137,44 @@ impl Diagram {
         self.curves.iter().filter_map(of_method).collect()
     }
 
-    fn scene(&self) -> Result<Scene> {
-        let held = self.curve(Family::Fmu, "FMU, input held").context("the FMU is measured")?;
-        let slope = self.curve(Family::Fmu, "FMU, input with slope").context("the FMU is measured")?;
-        let inside = self.curve(Family::Fmu, "FMU, record inside").context("the FMU is measured")?;
-        let first = |curve: &Curve| curve.points.first().and_then(Point::theta).map_or("fails".into(), scientific);
-        let last = |curve: &Curve| curve.points.last().and_then(Point::theta).map_or("fails".into(), scientific);
-        Ok(Scene {
-            key: self.key,
-            title: self.title,
-            dt: significant(1e3 * self.dt),
-            transitions: self.transitions,
-            floor: significant(1e9 * self.floor),
-            conditioning: [self.conditioning.theta, self.conditioning.u, self.conditioning.a_t].map(scientific),
-            rows: self.rows(),
-            step_ends: self.step_ends(),
-            held: [first(held), last(held)],
-            slope: first(slope),
-            inside: first(inside),
-            undercut: self.undercut()?,
-            failures: self.failures(),
-        })
+    /// The scene's part of the page, and the smallest error at which another method is cheaper than `auto`.
+    fn scene(&self) -> Result<(Value, f64)> {
+        let fmu = |name: &str| self.curve(Family::Fmu, name).context("the FMU is measured");
+        let [held, slope, inside] =
+            [fmu("FMU, input held")?, fmu("FMU, input with slope")?, fmu("FMU, record inside")?];
+        let error = |point: Option<&Point>| point.and_then(Point::theta).map_or("fails".into(), scientific);
+        let undercut = self.undercut()?;
+        let least = undercut.iter().map(|undercut| undercut.error).fold(f64::INFINITY, f64::min);
+        let Errors { theta, u, a_t } = self.conditioning;
+        let scene = context! {
+            key => self.key,
+            title => self.title,
+            dt => significant(1e3 * self.dt),
+            transitions => self.transitions,
+            floor => significant(1e9 * self.floor),
+            conditioning => [theta, u, a_t].map(scientific).to_vec(),
+            rows => self.rows(),
+            step_ends => self.step_ends(),
+            held => vec![error(held.points.first()), error(held.points.last())],
+            slope => error(slope.points.first()),
+            inside => error(inside.points.first()),
+            undercut => undercut.into_iter().map(|undercut| undercut.shown).collect::<Vec<_>>(),
+            failures => self.failures(),
+        };
+        Ok((scene, least))
     }
 }
 
 /// Writes the page.
 pub fn write(diagrams: &[Diagram], docs: &Path) -> Result<()> {
-    let scenes = diagrams.iter().map(Diagram::scene).collect::<Result<Vec<_>>>()?;
-    let page = Page {
-        perturbation: decade(PERTURBATION),
-        errors: ERRORS.map(decade).into(),
-        undercut: scenes
-            .iter()
-            .flat_map(|scene| &scene.undercut)
-            .map(|undercut| undercut.error)
-            .min_by(f64::total_cmp)
-            .map(scientific),
+    let (scenes, least): (Vec<_>, Vec<_>) =
+        diagrams.iter().map(Diagram::scene).collect::<Result<Vec<_>>>()?.into_iter().unzip();
+    let least = least.into_iter().fold(f64::INFINITY, f64::min);
+    let values = context! {
+        perturbation => decade(PERTURBATION),
+        errors => ERRORS.map(decade).to_vec(),
+        undercut => least.is_finite().then(|| scientific(least)),
         scenes,
     };
-    crate::page::write(docs, "accuracy", &page)
+    crate::page::write(docs, "accuracy", include_str!("../../pages/accuracy.md"), values)
 }

@@ -20,11 +20,8 @@ const RESOLUTION: f64 = 1e-4;
 /// What a measurement says of a method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Limit {
-    /// No step is stable.
     Never,
-    /// The largest stable ω_u h.
-    At(f64),
-    /// Every step is stable.
+    At(f64), // the largest stable ω_u h
     Unbounded,
 }
 

@@ -8,8 +8,8 @@ use crate::hybrid::{self, Grid, Transitions};
 use crate::response::Response;
 use crate::scene::{Scene, ground};
 use anyhow::{Context, Result};
+use minijinja::{Value, context};
 use rocking::{Detail, Parameters, State, Structure, Transition, TransitionKind};
-use serde::Serialize;
 use std::f64::consts::TAU;
 use std::path::Path;
 
@@ -22,21 +22,6 @@ const DURATION: f64 = 4.2;
 /// Growth of its amplitude, in g per second, and its frequency, Hz.
 const RAMP: f64 = 0.15;
 const FREQUENCY: f64 = 1.5;
-
-/// What the page says of it.
-#[derive(Debug, Serialize)]
-pub struct Facts {
-    /// The step, ms.
-    pub step: String,
-    /// ω h with both pivots down.
-    pub down: String,
-    /// ω h while rocking.
-    pub up: String,
-    /// The instant of the first uplift, s.
-    pub uplift: String,
-    /// What the central difference does, in words.
-    pub failure: String,
-}
 
 /// Evison's specimen from rest, on ground that sways more and more.
 pub fn scene() -> Result<Scene> {
@@ -58,8 +43,8 @@ pub fn response(scene: &Scene, method: usize) -> Response {
     hybrid::run(scene, &grid, Transitions::Located, uplift_excess, &mut |_, _| ())
 }
 
-/// Writes picture and numbers.
-pub fn save(docs: &Path) -> Result<Facts> {
+/// Writes picture and numbers, and tells the page what it shows.
+pub fn save(docs: &Path) -> Result<Value> {
     const CENTRAL_DIFFERENCE: usize = 2;
     const NEWMARK: usize = 4;
     let scene = scene()?;
@@ -105,11 +90,11 @@ pub fn save(docs: &Path) -> Result<Facts> {
     };
     figure.save(&docs.join("stability-uplift.svg"))?;
     figure.save_numbers(&docs.join("stability-uplift.csv"))?;
-    Ok(Facts {
-        step: format!("{:.0}", 1e3 * STEP),
-        down: format!("{:.2}", scene.structure.omega_fc * STEP),
-        up: format!("{:.2}", scene.structure.omega_u * STEP),
-        uplift: format!("{uplift:.2}"),
-        failure: failure.to_string(),
+    Ok(context! {
+        step => format!("{:.0}", 1e3 * STEP),
+        down => format!("{:.2}", scene.structure.omega_fc * STEP),
+        up => format!("{:.2}", scene.structure.omega_u * STEP),
+        uplift => format!("{uplift:.2}"),
+        failure => failure.to_string(),
     })
 }

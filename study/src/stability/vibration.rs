@@ -17,10 +17,8 @@ use nalgebra::Vector2;
 /// A freely vibrating structure.
 #[derive(Clone, Copy, Debug)]
 pub struct Vibration {
-    /// Modal participation χ; 0 with both pivots down.
-    pub chi: f64,
-    /// Damping ratio in full contact.
-    pub zeta_fc: f64,
+    pub chi: f64,     // modal participation χ; 0 with both pivots down
+    pub zeta_fc: f64, // damping ratio in full contact
 }
 
 impl Vibration {

@@ -39,33 +39,24 @@ const PART_ELASTIC: f64 = 0.25;
 
 /// One structure on its ground.
 pub struct Case {
-    /// The structure.
     pub structure: Structure,
-    /// The ground motion, as it is scaled.
-    pub ground: Record,
+    pub ground: Record, // the ground motion, as it is scaled
 }
 
 /// What becomes of a structure by one rule of uplift.
 #[derive(Clone, Debug)]
 pub struct Response {
-    /// Its peaks.
     pub peaks: Peaks,
-    /// What it goes beyond.
-    pub found: Found,
-    /// Transitions.
+    pub found: Found, // what it goes beyond
     pub transitions: u64,
-    /// Whether it overturns.
     pub overturns: bool,
 }
 
 /// What becomes of it by both.
 #[derive(Clone, Debug)]
 pub struct Pair {
-    /// The structure.
     pub structure: Structure,
-    /// By the model's rule.
     pub model: Response,
-    /// By the repaired one.
     pub repaired: Response,
 }
 
