@@ -1,7 +1,7 @@
 //! `export`: packs the shared libraries, with all that describes them, into an FMU.
 
 use crate::input;
-use crate::output_files::{OutputFile, OutputFiles};
+use crate::output_files::OutputFiles;
 use crate::record_args::{RecordOptions, with_option};
 use crate::structure_args::{StructureArgs, in_one_line};
 use crate::tables::Table;
@@ -12,7 +12,6 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
 use std::env;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Where the folder `share` of an installation has the archive with the libraries for every platform.
@@ -72,10 +71,9 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     let understood = tempfile::tempdir()?;
     let records: Vec<_> =
         args.record.iter().map(|path| record(&args.options, path, g, understood.path())).collect::<Result<_, _>>()?;
-    let mut file = OutputFiles::of_inputs(inputs).create(&output)?;
+    let file = OutputFiles::of_inputs(inputs).create(&output)?;
     let (contents, archive) = fmu_export::export(args.fmi, &args.name, &structure, &records, &libraries)?;
-    OutputFile::named(&output, file.write_all(&archive))?;
-    file.finish()?;
+    file.write(&archive)?;
     say!("{}: {} kB", output.display(), archive.len().div_ceil(1000));
     say!("  GUID       {}", guid(&contents));
     say!("  structure  {}", in_one_line(&structure));

@@ -13,7 +13,7 @@ use plotters::coord::{Shift, ranged1d::ValueFormatter};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use resvg::{tiny_skia, usvg};
-use std::{io::Write, ops::Range, path::PathBuf, str::FromStr, sync::Arc};
+use std::{ops::Range, path::PathBuf, str::FromStr, sync::Arc};
 
 /// Colours that all eyes tell apart (Okabe and Ito, their purple darker), and those of what is no data.
 #[allow(missing_docs)] // they are called what they are
@@ -91,25 +91,24 @@ impl PictureFile {
 
     /// Begins the file.
     pub fn create(&self, files: &mut OutputFiles) -> anyhow::Result<Picture> {
-        Ok(Picture { path: self.path.clone(), is_png: self.is_png, file: files.create(&self.path)? })
+        Ok(Picture { is_png: self.is_png, file: files.create(&self.path)? })
     }
 }
 
 /// A picture that is being made.
 pub struct Picture {
-    path: PathBuf,
     is_png: bool,
     file: OutputFile,
 }
 
 impl Picture {
     /// Writes what `draw` draws on an area of `size`, in pixels.
-    pub fn draw(mut self, size: (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<()>) -> anyhow::Result<()> {
+    pub fn draw(self, size: (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<()>) -> anyhow::Result<()> {
         let svg = svg(size, draw)?;
         let content = if self.is_png { rasterized(&svg, size)? } else { svg.into_bytes() };
-        OutputFile::named(&self.path, self.file.write_all(&content))?;
-        self.file.finish()?;
-        say!("picture        {}", self.path.display());
+        let path = self.file.path().to_owned();
+        self.file.write(&content)?;
+        say!("picture        {}", path.display());
         Ok(())
     }
 }

@@ -4,8 +4,6 @@ use crate::cause::Cause;
 use crate::output_files::{OutputFile, OutputFiles};
 use clap::ValueEnum;
 use serde::{Serialize, Serializer};
-use std::io::{Write, stdout};
-use std::path::Path;
 
 /// How results are printed.
 #[derive(clap::Args, Clone, Copy)]
@@ -90,6 +88,5 @@ fn csv(rows: &[impl Serialize]) -> anyhow::Result<Vec<u8>> {
 
 /// Prints `text`; that it cannot be printed is an error, as in a file.
 pub fn print(text: &str) -> anyhow::Result<()> {
-    let mut out = stdout().lock();
-    OutputFile::named(Path::new("-"), out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+    OutputFile::standard_output().write(text.as_bytes())
 }
