@@ -3,13 +3,13 @@
 
 mod command_line;
 
-use command_line::{DT, SAMPLES, fail, folder, pulse, succeed};
+use command_line::{DT, SAMPLES, folder, pulse, succeed};
 use rocking::estimates::demand::Demand;
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::estimates::response_spectrum::spectral_acceleration;
 use rocking::run::record::{Reading, Record};
 use rocking::{Detail, Engine, Load, Parameters, Ramp, State, Structure, engine::DEFAULT_TOLERANCE};
-use std::{f64::consts::TAU, fs};
+use std::f64::consts::TAU;
 
 /// The columns of the row of `level`.
 fn row<'a>(table: &'a str, level: &str) -> Vec<&'a str> {
@@ -142,48 +142,4 @@ fn nothing_is_wrong_where_the_reference_does_not_know() {
     assert_eq!(reference[0], "reference");
     let theta: f64 = reference[column("theta")].parse().unwrap();
     assert!(table.contains(&format!("peaks: theta {theta:.6} rad")), "{theta}\n{table}");
-}
-
-#[test]
-fn nonsense_is_refused() {
-    let folder = folder();
-    let limit = "more than 0 and less than 100 % is needed, with a percent sign or as a ratio: 5% or 0.05";
-    for (arguments, expected) in [
-        ("advise --record pulse.AT2 --within 5", limit),
-        ("advise --record pulse.AT2 --within 0%", limit),
-        ("advise --record pulse.AT2 --within nan", limit),
-        (
-            "advise --record pulse.AT2 --of mass",
-            "[possible values: theta, u, a_t, theta_history, u_history, a_t_history]",
-        ),
-        ("advise", "--record <FILE>|--free <SECONDS>"),
-        ("simulate --record pulse.AT2 --detail exact", "auto, nonlinear, linear, modal, rigid, fixed_base"),
-    ] {
-        let (code, message) = fail(folder.path(), arguments);
-        assert_eq!(code, 2, "{arguments}");
-        assert!(message.contains(expected), "{arguments}\n{message}");
-    }
-    let (code, message) = fail(folder.path(), "simulate --free 1 --theta-0 0.1 --detail fixed_base");
-    assert_eq!((code, message.contains("theta_0 = 0.1 rad contradicts detail = fixed_base")), (1, true), "{message}");
-}
-
-#[test]
-fn simulate_moves_by_the_equations_of_the_level() {
-    let folder = folder();
-    for detail in Detail::ALL {
-        let name = detail.name();
-        succeed(folder.path(), &format!("simulate --record pulse.AT2 --duration 4 --detail {name} -o {name}.csv"));
-        let text = fs::read_to_string(folder.path().join(format!("{name}.csv"))).unwrap();
-        let mut lines = text.lines().skip(2);
-        run(detail, DEFAULT_TOLERANCE, 1, |engine, a_g| {
-            let outputs = engine.outputs(Load::ground(a_g));
-            let line: Vec<&str> = lines.next().unwrap().split(',').collect();
-            for (shown, value) in
-                line[2..7].iter().zip([outputs.theta, outputs.u, outputs.a_t, outputs.V_t, outputs.M_t])
-            {
-                let shown: f64 = shown.parse().unwrap();
-                assert!((shown - value).abs() <= 1e-6 * value.abs().max(1e-6), "{name}: {shown} {value}");
-            }
-        });
-    }
 }
