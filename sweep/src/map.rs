@@ -5,7 +5,8 @@
 //! in squares between neighbouring points that differ in [`Class`], and from there along the boundary wherever the finer
 //! points show that it goes.
 
-use crate::pulse::{Pulse, PulseError, units_of};
+use crate::pulse::{Pulse, units_of};
+use crate::{Refused, ensure};
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::uplift::least_push;
 use rocking::run::record::Record;
@@ -115,28 +116,6 @@ pub struct Point {
     pub reason: String,
 }
 
-/// Why there is no map.
-#[derive(Debug, thiserror::Error)]
-pub enum MapError {
-    /// The values of an axis do not rise, or are too few.
-    #[error("{0} needs two or more finite values greater than 0, each larger than the one before")]
-    Axis(&'static str),
-    /// Some pulse is impossible.
-    #[error(transparent)]
-    Pulse(#[from] PulseError),
-    /// More than [`MAX_POINTS`].
-    #[error("{frequencies} frequencies x {amplitudes} amplitudes: more than {MAX_POINTS} points")]
-    TooMany {
-        /// Frequencies.
-        frequencies: usize,
-        /// Amplitudes.
-        amplitudes: usize,
-    },
-    /// It lies between 0 and 1.
-    #[error("tolerance = {0} is out of range: a number between 0 and 1 is needed")]
-    Tolerance(f64),
-}
-
 impl Axis {
     /// The axis with these values; between two of them, where a refinement looks, they are spaced evenly, or evenly in
     /// their logarithms.
@@ -165,10 +144,12 @@ impl Axis {
         if self.is_log { from * (part * (to / from).ln()).exp() } else { from + part * (to - from) }
     }
 
-    fn check(&self, name: &'static str) -> Result<(), MapError> {
+    fn check(&self, name: &str) -> Result<(), Refused> {
         let rises = self.values.windows(2).all(|pair| pair[0] < pair[1]);
         let is_finite = self.values.iter().all(|value| *value > 0.0 && value.is_finite());
-        if self.values.len() < 2 || !rises || !is_finite { Err(MapError::Axis(name)) } else { Ok(()) }
+        ensure(self.values.len() >= 2 && rises && is_finite, || {
+            format!("{name} needs two or more finite values greater than 0, each larger than the one before")
+        })
     }
 }
 
@@ -245,13 +226,13 @@ impl Map {
         pulse: Pulse,
         [frequency, amplitude]: [Axis; 2],
         is_dimensionless: bool,
-    ) -> Result<Map, MapError> {
+    ) -> Result<Map, Refused> {
         frequency.check("frequency")?;
         amplitude.check("amplitude")?;
         let [frequencies, amplitudes] = [&frequency, &amplitude].map(|axis| axis.values.len());
-        if frequencies.saturating_mul(amplitudes) > MAX_POINTS {
-            return Err(MapError::TooMany { frequencies, amplitudes });
-        }
+        ensure(frequencies.saturating_mul(amplitudes) <= MAX_POINTS, || {
+            format!("{frequencies} frequencies x {amplitudes} amplitudes: more than {MAX_POINTS} points")
+        })?;
         let (detail, tolerance) = (Detail::default(), DEFAULT_TOLERANCE);
         let finds_condition = false;
         let map = Map { structure, pulse, frequency, amplitude, is_dimensionless, detail, tolerance, finds_condition };
@@ -262,12 +243,11 @@ impl Map {
     }
 
     /// The same to the relative `tolerance`, at the level `detail`.
-    pub fn computed_by(self, detail: Detail, tolerance: f64) -> Result<Map, MapError> {
-        if tolerance > 0.0 && tolerance < 1.0 {
-            Ok(Map { detail, tolerance, ..self })
-        } else {
-            Err(MapError::Tolerance(tolerance))
-        }
+    pub fn computed_by(self, detail: Detail, tolerance: f64) -> Result<Map, Refused> {
+        ensure(tolerance > 0.0 && tolerance < 1.0, || {
+            format!("tolerance = {tolerance} is out of range: a number between 0 and 1 is needed")
+        })?;
+        Ok(Map { detail, tolerance, ..self })
     }
 
     /// The same with each point's condition, by a second run, if it `finds_condition`.
