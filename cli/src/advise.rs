@@ -4,9 +4,9 @@ mod picture;
 
 use crate::{
     cause::Cause,
-    output_files::OutputFiles,
     picture::PictureFile,
     quantities::in_readable_unit,
+    record_args::one_of,
     results::{Format, FormatArgs, Number, print, print_traced},
     scene_args::{GroundArgs, InitialArgs},
     structure_args::StructureArgs,
@@ -14,7 +14,7 @@ use crate::{
     validity::{self, LimitArgs},
 };
 use anyhow::Context;
-use clap::{ValueEnum, builder::PossibleValue};
+use clap::builder::{PossibleValue, TypedValueParser};
 use fmu_export::significant::significant;
 use rocking::estimates::demand::{Demand, INSTANT_TRANSITION};
 use rocking::estimates::effective_frequency::effective_frequency;
@@ -59,34 +59,25 @@ struct AllowedArgs {
     #[arg(long, value_name = "ERROR", default_value = "5%", value_parser = relative_error)]
     within: f64,
     /// What must stay within it; overturning must always be predicted right
-    #[arg(long, value_name = "LIST", value_enum, num_args = 1.., value_delimiter = ',', default_values_t = Measure::value_variants().to_vec())]
-    of: Vec<Measure>,
+    #[arg(long, value_name = "LIST", value_parser = criteria(), num_args = 1.., value_delimiter = ',', default_values = CRITERIA.map(|of| of.0))]
+    of: Vec<Criterion>,
 }
 
-/// What a level's error is measured by.
-#[derive(Clone, Copy, ValueEnum)]
-#[value(rename_all = "snake_case")]
-enum Measure {
-    /// Peak rotation
-    Theta,
-    /// Peak elastic displacement
-    U,
-    /// Peak acceleration of the top mass, and with it V_t = m a_t and M_t = m H a_t
-    #[value(name = "a_t", aliases = ["V_t", "M_t"])]
-    At,
-    /// Rotation over time: largest difference over the largest rotation
-    ThetaHistory,
-    /// Elastic displacement over time, likewise
-    UHistory,
-    /// Acceleration of the top mass over time, likewise
-    #[value(name = "a_t_history")]
-    AtHistory,
-}
+/// What a level's error is measured by: what it is called, and what that means.
+const CRITERIA: [(&str, &str, Criterion); 6] = [
+    ("theta", "Peak rotation", Criterion::Theta),
+    ("u", "Peak elastic displacement", Criterion::U),
+    ("a_t", "Peak acceleration of the top mass, and with it V_t = m a_t and M_t = m H a_t", Criterion::At),
+    ("theta_history", "Rotation over time: largest difference over the largest rotation", Criterion::ThetaHistory),
+    ("u_history", "Elastic displacement over time, likewise", Criterion::UHistory),
+    ("a_t_history", "Acceleration of the top mass over time, likewise", Criterion::AtHistory),
+];
 
-impl Measure {
-    fn criterion(&self) -> Criterion {
-        Criterion::ALL[*self as usize]
-    }
+fn criteria() -> impl TypedValueParser<Value = Criterion> {
+    one_of(CRITERIA.map(|(name, help, of)| {
+        let aliases: &[&str] = if of == Criterion::At { &["V_t", "M_t"] } else { &[] };
+        (PossibleValue::new(name).help(help).aliases(aliases), of)
+    }))
 }
 
 fn relative_error(text: &str) -> Result<f64, String> {
@@ -105,7 +96,7 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let ground = args.ground.load(structure.parameters().g)?;
     let inputs = args.structure.input().into_iter().chain(args.ground.record.record.as_deref());
-    let mut files = OutputFiles::of_inputs(inputs);
+    let mut files = args.results.files(inputs);
     let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let (initial, end) = (args.initial.state(), args.ground.end(&ground));
     let run = Run { initial, end, ..Run::new(structure, &ground) };
@@ -114,8 +105,8 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     if comparison.reference.peaks.theta().magnitude == 0.0 && comparison.reference.peaks.a_t().magnitude == 0.0 {
         say!("nothing moves: the ground is at rest and the structure stands; see --record, --theta-0");
     }
-    let criteria: Vec<_> = args.allowed.of.iter().map(Measure::criterion).collect();
-    let advised = comparison.recommended(args.allowed.within, &criteria);
+    let (within, criteria) = (args.allowed.within, &args.allowed.of);
+    let advised = comparison.recommended(within, criteria);
     if args.results.format == Format::Text {
         print(&text(args, &run, &comparison, advised)?)?;
     } else {
@@ -123,7 +114,7 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
         print_traced(args.results.format, &cause, &rows(&comparison, advised))?;
     }
     match picture {
-        Some(picture) => picture::draw(picture, &comparison, (args.allowed.within, &criteria), advised, ground.title()),
+        Some(picture) => picture::draw(picture, &comparison, (within, criteria), advised, ground.title()),
         None => Ok(()),
     }
 }
@@ -220,7 +211,7 @@ fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&
 
 /// A level, or the reference, for programs: errors as ratios, peaks in SI units.
 #[derive(Serialize)]
-struct Row {
+struct Level {
     level: &'static str,
     error_theta: Number,
     error_u: Number,
@@ -244,7 +235,7 @@ struct Row {
 }
 
 /// The reference, then the levels.
-fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Row> {
+fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Level> {
     let auto = comparison.cost_of_auto();
     let row = |level, response: &Response, errors: [f64; 6], is_right_about_overturning, advised| {
         let [error_theta, error_u, error_a_t, error_theta_history, error_u_history, error_a_t_history] =
@@ -252,7 +243,7 @@ fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Row> {
         let peaks = &response.peaks;
         let [theta, u, a_t, V_t, M_t] =
             [peaks.theta(), peaks.u(), peaks.a_t(), peaks.V_t(), peaks.M_t()].map(|peak| peak.magnitude);
-        Row {
+        Level {
             level,
             error_theta,
             error_u,
@@ -303,8 +294,7 @@ fn print_advice(
     advised: Option<&Verdict>,
     allowed: &AllowedArgs,
 ) -> fmt::Result {
-    let named: Vec<_> = allowed.of.iter().filter_map(ValueEnum::to_possible_value).collect();
-    let names: Vec<_> = named.iter().map(PossibleValue::get_name).collect();
+    let names: Vec<_> = allowed.of.iter().map(|of| CRITERIA[*of as usize].0).collect();
     let limit = format!("within {} % in {}", shortest_percent(allowed.within), names.join(", "));
     let Some(Verdict { response, .. }) = advised else {
         return writeln!(
@@ -358,12 +348,5 @@ mod tests {
             [0.07, 0.05, 1e-7, 1e-3].map(|ratio| shortest_percent(ratio).to_string()),
             ["7", "5", "0.00001", "0.1"]
         );
-    }
-
-    #[test]
-    fn a_measure_is_the_criterion_of_its_name() {
-        assert_eq!(Measure::value_variants().len(), Criterion::ALL.len());
-        assert_eq!(Measure::At.criterion(), Criterion::At);
-        assert_eq!(Measure::AtHistory.criterion(), Criterion::AtHistory);
     }
 }

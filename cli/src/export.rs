@@ -2,13 +2,12 @@
 
 use crate::input;
 use crate::output_files::OutputFiles;
-use crate::record_args::{RecordOptions, with_option};
+use crate::record_args::{RecordOptions, one_of, with_option};
 use crate::structure_args::{StructureArgs, in_one_line};
 use crate::tables::Table;
 use crate::talk::say;
 use FlexibleRocking::guid;
 use anyhow::{Context, bail};
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
 use std::env;
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
@@ -30,7 +29,7 @@ pub struct ExportArgs {
     #[command(flatten, next_help_heading = "Ground motion")]
     options: RecordOptions,
     /// Version of FMI, for co-simulation and model exchange: 2 (2.0), 3 (3.0)
-    #[arg(long, value_name = "VERSION", default_value = "2", value_parser = versions())]
+    #[arg(long, value_name = "VERSION", default_value = "2", value_parser = one_of([("2", Version::Fmi2), ("3", Version::Fmi3)]))]
     fmi: Version,
     /// Name of the model and of its libraries' files, for hosts that hold several exports
     #[arg(long, value_name = "NAME", default_value = "FlexibleRocking")]
@@ -41,10 +40,6 @@ pub struct ExportArgs {
     /// Shared libraries to pack, or an FMU of this build to take them from [default: those that were built with this program]
     #[arg(long, value_name = "PATH", num_args = 1..)]
     library: Vec<PathBuf>,
-}
-
-fn versions() -> impl TypedValueParser<Value = Version> {
-    PossibleValuesParser::new(["2", "3"]).map(|version| if version == "2" { Version::Fmi2 } else { Version::Fmi3 })
 }
 
 /// Writes the FMU and says what was written.
@@ -98,7 +93,9 @@ fn record(options: &RecordOptions, path: &Path, g: f64, folder: &Path) -> anyhow
     name.push(".csv");
     let packed = folder.join(name);
     let mut packed_already = OutputFiles::default();
-    understood.write(Table::create(&mut packed_already, &packed)?)?;
+    let mut table = Table::create(&mut packed_already, &packed)?;
+    understood.write(&mut table)?;
+    table.close()?;
     Ok(packed)
 }
 

@@ -24,8 +24,20 @@ pub struct ModesArgs {
     picture: Option<PictureFile>,
 }
 
-/// The columns of a response that the split needs: numbers, and the phase.
-const NUMBERS: [&str; 6] = ["time[s]", "a_g[m/s2]", "theta[rad]", "u[m]", "theta_dot[rad/s]", "u_dot[m/s]"];
+/// The columns of a response that the split needs: numbers, the last of which follow from the state and the structure, and
+/// the phase.
+const NUMBERS: [&str; 9] = [
+    "time[s]",
+    "a_g[m/s2]",
+    "theta[rad]",
+    "u[m]",
+    "theta_dot[rad/s]",
+    "u_dot[m/s]",
+    "uplift[m]",
+    "delta_t[m]",
+    "M_t[N.m]",
+];
+const SHOWN: [&str; 3] = [NUMBERS[6], NUMBERS[7], NUMBERS[8]];
 const PHASE: &str = "phase";
 
 /// Phases that a response has.
@@ -53,7 +65,7 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let mut files = OutputFiles::of_inputs(inputs);
     let headings = response.headers().with_context(named)?.clone();
     let columns = Columns::find(&headings).with_context(named)?;
-    let mut check = Check::new(&headings);
+    let mut check = Check::default();
     let mut table = Table::create(&mut files, &args.output)?;
     let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     table.write(HEADINGS)?;
@@ -62,7 +74,8 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let mut before = f64::NEG_INFINITY;
     for line in response.records() {
         let line = line.with_context(named)?;
-        let ([time, a_g, theta, u, theta_dot, u_dot], phase) = columns.read(&line, before).with_context(named)?;
+        let ([time, a_g, theta, u, theta_dot, u_dot, shown @ ..], phase) =
+            columns.read(&line, before).with_context(named)?;
         before = time;
         instants += 1;
         let Phase::Rocking(side) = phase else {
@@ -74,21 +87,15 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
             stretches.push(Vec::new());
         }
         let state = State { u, u_dot, theta, theta_dot };
-        check.see(&line, &Outputs::of(&structure, phase, &state, 0.0));
+        check.see(shown, &Outputs::of(&structure, phase, &state, 0.0));
         let modes @ Modes { q_r, q_u, .. } = Modes::of(&structure, &state);
         let accelerations = ModalAccelerations::of(&structure, side, &state, a_g);
         table.write((time, q_r, q_u, accelerations.a_r, accelerations.a_u, accelerations.a_t()))?;
         stretches.last_mut().context("it has just begun")?.push((time, modes, accelerations));
     }
     check.refuse_another_structure().with_context(named)?;
-    table.finish()?;
-    say!(
-        "modes          {}: {rocking} of {instants} instants, those at which the structure rocks",
-        args.output.display()
-    );
-    if rocking == 0 {
-        say!("it rocks at none of them: there is nothing to split");
-    }
+    table.finish("modes")?;
+    say!("it rocks at {rocking} of {instants} instants");
     match picture {
         Some(picture) => picture::draw(picture, structure.parameters().g, &stretches, &named()),
         None => Ok(()),
@@ -128,57 +135,33 @@ impl Columns {
     }
 }
 
-type Of = fn(&Outputs) -> f64;
+/// How far a response may be from what follows from its state, in parts of the largest value: tables have few digits.
+const ROUNDING: f64 = 1e-3;
 
-/// A column of a response that follows from its state and the structure.
-struct Shown {
-    name: &'static str,
-    of: Of,
-    column: usize,
-    /// The largest value found.
-    largest: f64,
-    /// How far the farthest is from what it should be.
-    off: f64,
+/// Whether a response is that of the structure: the largest of each of [`SHOWN`] that was found, and how far the farthest is
+/// from what it should be.
+#[derive(Default)]
+struct Check {
+    largest: [f64; SHOWN.len()],
+    off: [f64; SHOWN.len()],
 }
 
-/// Whether a response is that of the structure.
-struct Check(Vec<Shown>);
-
 impl Check {
-    fn new(headings: &StringRecord) -> Check {
-        let columns: [(_, Of); 5] = [
-            ("uplift[m]", |outputs| outputs.uplift),
-            ("delta_t[m]", |outputs| outputs.delta_t),
-            ("a_t[m/s2]", |outputs| outputs.a_t),
-            ("V_t[N]", |outputs| outputs.V_t),
-            ("M_t[N.m]", |outputs| outputs.M_t),
-        ];
-        let find = |(name, of)| {
-            let column = headings.iter().position(|heading| heading == name)?;
-            Some(Shown { name, of, column, largest: 0.0, off: 0.0 })
-        };
-        Check(columns.into_iter().filter_map(find).collect())
-    }
-
-    /// Looks at a `line` whose state has these `outputs`. One without deformation may be of the level `rigid`, whose a_t is no
-    /// strut's.
-    fn see(&mut self, line: &StringRecord, outputs: &Outputs) {
-        if (outputs.u, outputs.u_dot) == (0.0, 0.0) {
-            return;
-        }
-        for Shown { of, column, largest, off, .. } in &mut self.0 {
-            if let Ok(found) = line[*column].parse::<f64>() {
-                *largest = largest.max(found.abs());
-                *off = off.max((found - of(outputs)).abs());
+    /// Looks at what a line has of [`SHOWN`], whose state has these `outputs`. One without deformation may be of the level
+    /// `rigid`, whose moment is no strut's.
+    fn see(&mut self, found: [f64; SHOWN.len()], outputs: &Outputs) {
+        if (outputs.u, outputs.u_dot) != (0.0, 0.0) {
+            for (i, expected) in [outputs.uplift, outputs.delta_t, outputs.M_t].into_iter().enumerate() {
+                self.largest[i] = self.largest[i].max(found[i].abs());
+                self.off[i] = self.off[i].max((found[i] - expected).abs());
             }
         }
     }
 
     fn refuse_another_structure(&self) -> anyhow::Result<()> {
-        const ROUNDING: f64 = 1e-3; // of tables in few digits
-        for Shown { name, largest, off, .. } in &self.0 {
+        for ((name, off), largest) in SHOWN.iter().zip(self.off).zip(self.largest) {
             ensure!(
-                *off <= ROUNDING * largest,
+                off <= ROUNDING * largest,
                 "{name} does not follow from theta and u: it is the response of another structure; see --preset, --parameters"
             );
         }

@@ -3,10 +3,9 @@ mod picture;
 
 use crate::{
     cause::Cause,
-    output_files::OutputFiles,
     picture::PictureFile,
     record_args::positive,
-    results::{Format, FormatArgs, print},
+    results::{Format, FormatArgs, print_beside},
     scene_args::MotionArgs,
     significant::short,
     summary::{self, Found, Summary, instant},
@@ -25,7 +24,7 @@ use rocking::{
         validity::{Found as Beyond, Validity},
     },
 };
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// What to simulate.
 #[derive(clap::Args)]
@@ -107,7 +106,7 @@ impl SimulateArgs {
         progress.finish_and_clear();
         rows?;
         last.map_or(Ok(()), |(_, line)| response.write(line))?;
-        response.finish()
+        response.finish("response")
     }
 }
 
@@ -120,12 +119,11 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     if let (Some(_), End::At(end)) = (output, run.end) {
         args.check_rows(&ground, end)?;
     }
-    let mut files = OutputFiles::of_inputs(args.motion.inputs());
-    args.results.format.reserve(&mut files);
+    let ResultArgs { format, picture, events, .. } = &args.results;
+    let mut files = format.files(args.motion.inputs());
     let response = output.map(|path| Table::create(&mut files, path)).transpose()?;
-    let events = args.results.events.as_deref();
-    let mut events = events.map(|path| Table::create(&mut files, path)).transpose()?;
-    let picture = args.results.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
+    let mut events = events.as_deref().map(|path| Table::create(&mut files, path)).transpose()?;
+    let picture = picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     if let Some(events) = &mut events {
         events.write(tables::EVENTS)?;
     }
@@ -143,7 +141,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
         &mut (&mut validity, &mut (&mut fall, &mut (&mut summary, &mut transition))),
     ))?;
     written?;
-    events.map_or(Ok(()), Table::finish)?;
+    events.map_or(Ok(()), |events| events.finish("transitions"))?;
     let fall = fall.instant().filter(|_| finish.ending == Ending::Overturned);
     if let Some(fall) = fall {
         peaks = run.peaks_until(fall)?;
@@ -159,8 +157,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
         for line in validity::section(&structure, run.detail, validity.found(), &limits) {
             text = text + &line + "\n";
         }
-        // What goes to standard output stays one table.
-        if output == Some(Path::new("-")) { say!("{}", text.trim_end()) } else { print(&text)? }
+        print_beside(output, &text)?;
     } else {
         let validity = validity::rows(validity.found(), &limits);
         let cause = Cause::new(&structure).under(&args.motion.ground.record, &ground);
@@ -169,12 +166,6 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     }
     if summary::shows_no_motion(&found) {
         say!("nothing moves: the ground is at rest and the structure stands; see --record, --theta-0, --u-0");
-    }
-    if let Some(output) = output.filter(|output| *output != Path::new("-")) {
-        say!("response       {}", output.display());
-    }
-    if let Some(events) = &args.results.events {
-        say!("transitions    {}", events.display());
     }
     match picture {
         Some(picture) => picture::draw(picture, &run, &found),

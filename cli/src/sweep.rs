@@ -119,7 +119,7 @@ fn run_records(args: &SweepArgs, sweep: Sweep, output: &Path, picture: Picture) 
         Format::Json => print_json(&table::curves(&populations, measure))?,
         Format::Csv => print_rows(
             Format::Csv,
-            &table::curves(&populations, measure).iter().map(|curve| &curve.row).collect::<Vec<_>>(),
+            &table::curves(&populations, measure).iter().map(|of| &of.curve).collect::<Vec<_>>(),
         )?,
     }
     say!("rows           {}", output.display());

@@ -1,5 +1,6 @@
 //! The tables that `simulate` writes: the response and its transitions as CSV.
 use crate::output_files::{OutputFile, OutputFiles};
+use crate::talk::say;
 use rocking::engine::piece::Sample;
 use rocking::{Impulse, Outputs, Reactions, State, Transition};
 use serde::Serialize;
@@ -25,8 +26,18 @@ impl Table {
     }
 
     /// Writes the file.
-    pub fn finish(self) -> anyhow::Result<()> {
+    pub fn close(self) -> anyhow::Result<()> {
         self.file.write(&self.writer.into_inner()?)
+    }
+
+    /// Writes the file, and says where, as `what`.
+    pub fn finish(self, what: &str) -> anyhow::Result<()> {
+        let path = self.file.path().to_owned();
+        self.close()?;
+        if path != Path::new("-") {
+            say!("{what:<14} {}", path.display());
+        }
+        Ok(())
     }
 }
 

@@ -7,7 +7,6 @@ use command_line::{fail, succeed};
 use rocking::run::record::{Reading, Record};
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape};
 use std::{
-    collections::BTreeMap,
     fs,
     path::Path,
     process::{Command, Stdio},
@@ -100,27 +99,6 @@ fn a_stopped_map_leaves_its_rows_alone() {
     assert_eq!(names, ["map.csv", "map.toml"]);
 }
 
-/// With a finer grid along the boundary only its points are run, and the file keeps both.
-#[test]
-fn refining_runs_the_boundary_alone() {
-    let folder = map(&MAP.replace("refine = 1", "refine = 0"));
-    succeed(folder.path(), "sweep map.toml -o map.csv");
-    let coarse = rows(folder.path(), "map.csv");
-    assert_eq!(coarse.len(), 144);
-    fs::write(folder.path().join("map.toml"), MAP.replace("refine = 1", "refine = 2")).unwrap();
-    succeed(folder.path(), "sweep map.toml -o map.csv");
-    let fine = rows(folder.path(), "map.csv");
-    assert!(coarse.iter().all(|row| fine.contains(row)));
-    let mut levels = BTreeMap::new();
-    let refinement = column(folder.path(), "map.csv", "refinement");
-    for row in &fine {
-        *levels.entry(row.split(',').nth(refinement).unwrap().to_owned()).or_insert(0) += 1;
-    }
-    assert_eq!((levels.len(), levels["0"]), (3, 144));
-    // 45 × 45 points of the finest grid
-    assert!(fine.len() < 2025 / 2, "{levels:?}");
-}
-
 /// What a row says of a point is what `simulate` says of the pulse that `pulse` writes.
 #[test]
 fn a_point_is_a_simulation_of_its_pulse() {
@@ -178,7 +156,7 @@ fn a_refused_map_says_what_to_change() {
         ("from = 1,", "from = 10,", "frequency needs two or more finite values greater than 0"),
         ("error = 1e-3", "error = 0.5", "error = 0.5 is out of range: it must lie between"),
         ("from = 0.5,", "from = 0,", "from = 0 to = 9 have no logarithms"),
-        ("[pulses]", "scale = [1]\n[pulses]", "pulses and scale are there: a sweep is of either"),
+        ("[pulses]", "scale = [1]\n[pulses]", "unknown field `scale`"),
         ("preset = 'mcmanus'", "", "structures \"McManus\": give either preset or parameters"),
         ("shape = 'sine'", "shape = 'half_sine'\ncycles = 3", "cycles = 3 is not possible: half_sine has 0.5"),
     ] {

@@ -7,6 +7,7 @@ use crate::outcome::{Limit, Outcome};
 use crate::plan::{Case, Plan};
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::Ending;
+use serde::Serialize;
 
 /// More bins than this are not made, however many runs there are.
 const MOST_BINS: usize = 20;
@@ -30,7 +31,7 @@ pub struct Exceedances {
 }
 
 /// Runs of about the same intensity.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Bin {
     /// Smallest intensity among them.
     pub lowest: f64,
@@ -54,7 +55,7 @@ pub struct Fragility {
 }
 
 /// Runs of a bin.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Tally {
     /// Those of which it is known whether they exceed the limit.
     pub known: usize,

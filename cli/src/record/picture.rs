@@ -33,7 +33,7 @@ pub fn draw(picture: Picture, record: &Record, g: f64) -> anyhow::Result<()> {
 }
 
 /// The acceleration of `record` and its integrals over time; `g` in m/s².
-pub fn histories(record: &Record, g: f64) -> Histories {
+fn histories(record: &Record, g: f64) -> Histories {
     let none = Peak::default();
     let samples = || record.times().iter().copied().zip(record.velocities_and_displacements());
     let accelerations = record.times().iter().copied().zip(record.acceleration().iter().copied()).collect();

@@ -4,9 +4,9 @@ use crate::{
     output_files::OutputFiles,
     record_args::{RecordOptions, with_key},
     structure_args::{Preset, left_open},
-    talk::{say, say_few},
+    talk::say_few,
 };
-use anyhow::{Context, anyhow, bail, ensure};
+use anyhow::{Context, bail, ensure};
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::record::{Column, Record, Unit};
@@ -17,7 +17,7 @@ use rocking_sweep::outcome::Limit;
 use rocking_sweep::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population};
 use rocking_sweep::pulse::{Pulse, Shape};
 use serde::Deserialize;
-use std::path::{MAIN_SEPARATOR, Path, PathBuf};
+use std::path::{MAIN_SEPARATOR, Path};
 use std::{collections::BTreeMap, collections::HashMap};
 
 /// A sweep.
@@ -28,7 +28,7 @@ pub struct Sweep {
     pub limits: Vec<Limit>,
     /// By what a run's ground motion is measured.
     pub measure: IntensityMeasure,
-    /// What was read of each record, and what was assumed, in a line: where the unit was assumed first.
+    /// What was read of each record, and what was assumed, in a line.
     pub records: Vec<String>,
     /// What of each structure was not given, in a line.
     pub structures: Vec<String>,
@@ -56,7 +56,7 @@ pub enum Asked {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SweepFile {
-    records: Vec<Source>,
+    records: Vec<RecordEntry>,
     /// Unit of records that do not state theirs.
     unit: Option<Unit>,
     /// Multiplies the records' times.
@@ -118,18 +118,18 @@ struct PulseGrid {
 /// Records: a path or a pattern such as `records/*.AT2`, from the folder of the file.
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "expected a path or pattern, or { file = ..., scale = ... }")]
-enum Source {
+enum RecordEntry {
     AsTheyAre(String),
     /// With a `file` and its options.
     As(toml::Table),
 }
 
-impl Source {
+impl RecordEntry {
     /// The pattern of the files, and how they are read.
     fn pattern_and_options(&self) -> anyhow::Result<(&str, RecordOptions)> {
         match self {
-            Source::AsTheyAre(pattern) => Ok((pattern, RecordOptions::default())),
-            Source::As(table) => {
+            RecordEntry::AsTheyAre(pattern) => Ok((pattern, RecordOptions::default())),
+            RecordEntry::As(table) => {
                 let pattern = table.get("file").and_then(toml::Value::as_str);
                 let pattern = pattern.context("records: a table without file: expected { file = ..., scale = ... }")?;
                 let mut options = table.clone();
@@ -177,12 +177,6 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         let text = std::fs::read_to_string(path)?;
         let table: toml::Table = toml::from_str(&text)?;
         if table.contains_key("pulses") {
-            let of_records = ["records", "scale"].into_iter().find(|key| table.contains_key(*key));
-            ensure!(
-                of_records.is_none(),
-                "pulses and {} are there: a sweep is of either",
-                of_records.unwrap_or_default()
-            );
             return Ok(Asked::Pulses(toml::from_str::<MapFile>(&text)?.sweep()?));
         }
         let file: SweepFile = toml::from_str(&text)?;
@@ -197,21 +191,19 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         let conditions = file.conditions()?;
         let g = gravity(&file.structures)?;
         let populations = file.structures.iter().map(StructureGrid::population).collect::<Result<_, _>>()?;
-        let (mut said, mut warnings) = (Vec::new(), Vec::new());
+        let (mut records, mut warnings) = (Vec::new(), Vec::new());
         let read = |path: &Path, options: &RecordOptions| {
             files.add_input(path);
             let (unit, time_scale) = (options.unit.or(unit), options.time_scale.or(Some(time_scale)));
             let options = RecordOptions { unit, time_scale, scale: None, ..options.clone() };
             let understood = options.understand(path, g).map_err(with_key)?;
             warnings.extend(understood.warnings(path));
-            said.push((!understood.unit_is_assumed(), understood.described));
+            records.push(understood.described);
             Ok(understood.record)
         };
         let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read);
         say_few(&warnings, "warnings");
         let plan = Plan::new(populations, motions?, scales)?.under(conditions)?;
-        said.sort_by_key(|(is_stated, _)| *is_stated);
-        let records = said.into_iter().map(|(_, line)| line).collect();
         let structures = left_open_of(&file.structures)?;
         Ok(Asked::Records(Sweep { plan, limits, measure, records, structures }))
     };
@@ -225,7 +217,7 @@ impl MapFile {
         ensure!(!self.structures.is_empty(), "structures is empty: name one or more");
         let mut maps: Vec<(String, Map)> = Vec::new();
         for grid in &self.structures {
-            let name = is_one_line(&grid.name)?;
+            let name = &grid.name;
             ensure!(maps.iter().all(|(other, _)| other != name), "two structures have the name {name:?}: rename one");
             let map = self.map(grid).with_context(|| format!("structures {name:?}"))?;
             maps.push((name.into(), map.with_condition(condition)));
@@ -353,20 +345,18 @@ impl StructureGrid {
         let vary = |population: Population, (name, values): (&String, &Values)| -> anyhow::Result<_> {
             Ok(population.vary(name, values.list().context(name.clone())?)?)
         };
-        let name = is_one_line(&self.name)?;
-        let population = || self.vary.iter().try_fold(Population::new(name, self.base()?), vary);
-        population().with_context(|| format!("structures {name:?}"))
+        let population = || self.vary.iter().try_fold(Population::new(&self.name, self.base()?), vary);
+        population().with_context(|| format!("structures {:?}", self.name))
     }
 }
 
 /// The records that `sources` name, each of them once, under their paths from `folder`.
 fn motions(
-    sources: &[Source],
+    sources: &[RecordEntry],
     folder: &Path,
     mut read: impl FnMut(&Path, &RecordOptions) -> anyhow::Result<Record>,
 ) -> anyhow::Result<Vec<NamedRecord>> {
     let (mut motions, mut named) = (Vec::new(), HashMap::new());
-    let (mut named_twice, mut bad): (Vec<PathBuf>, Vec<anyhow::Error>) = (Vec::new(), Vec::new());
     for source in sources {
         let (pattern, options) = source.pattern_and_options()?;
         let scale = options.scale.unwrap_or(1.0);
@@ -376,11 +366,9 @@ fn motions(
             Some(Column::Heading(heading)) => format!(" column {heading}"),
         };
         let in_folder = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
-        let mut paths = glob::glob(&in_folder.to_string_lossy()).with_context(|| format!("records {pattern:?}"))?;
-        let mut paths = paths.by_ref().peekable();
-        if paths.peek().is_none() {
-            bad.push(anyhow!("records: there is no file {}", folder.join(pattern).display()));
-        }
+        let paths = glob::glob(&in_folder.to_string_lossy()).with_context(|| format!("records {pattern:?}"))?;
+        let mut paths = paths.peekable();
+        ensure!(paths.peek().is_some(), "records: there is no file {}", folder.join(pattern).display());
         for path in paths {
             let path = path?;
             if let Some(other) = named.insert((path.canonicalize()?, column.clone()), options.clone()) {
@@ -389,39 +377,12 @@ fn motions(
                     "{} is named twice in records, with different options: leave one out",
                     path.display()
                 );
-                named_twice.push(path);
                 continue;
             }
             // The same on every system, so that a sweep can go on on another.
             let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace(MAIN_SEPARATOR, "/");
-            let name = name + &column;
-            let name = is_one_line(&name)?;
-            match read(&path, &options).and_then(|record| Ok(NamedRecord::new(name, record, scale)?)) {
-                Ok(motion) => motions.push(motion),
-                Err(error) => bad.push(error),
-            }
+            motions.push(NamedRecord::new(name + &column, read(&path, &options)?, scale)?);
         }
-    }
-    match bad.len() {
-        0 => {}
-        1 => return Err(bad.remove(0)),
-        count => {
-            let each: String = bad.iter().map(|error| format!("\n  {error:#}")).collect();
-            bail!("{count} of {} records cannot be taken:{each}", count + motions.len());
-        }
-    }
-    if let Some(first) = named_twice.first() {
-        let (first, count) = (first.display(), named_twice.len());
-        say!(
-            "named twice in records and counted once: {first}{}",
-            if count > 1 { format!(" and {} more", count - 1) } else { String::new() }
-        );
     }
     Ok(motions)
-}
-
-/// A name that is written into rows.
-fn is_one_line(name: &str) -> anyhow::Result<&str> {
-    ensure!(!name.contains(char::is_control), "the name {name:?} must be a line of text, for it is written into rows");
-    Ok(name)
 }
