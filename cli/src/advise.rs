@@ -167,44 +167,32 @@ fn print_reference(out: &mut impl Write, structure: &Structure, comparison: &Com
 }
 
 fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&Verdict>) -> fmt::Result {
-    let row = |out: &mut dyn Write, mark: char, cells: [&str; 11]| {
-        let [level, theta, u, a_t, theta_history, u_history, a_t_history, overturns, steps, evaluations, ratio] = cells;
-        writeln!(
-            out,
-            "{mark} {level:<10} {theta:>8} {u:>8} {a_t:>13} {theta_history:>8} {u_history:>8} {a_t_history:>8} \
-             {overturns:>10} {steps:>8} {evaluations:>11} {ratio:>7}"
-        )
+    const WIDTHS: [usize; 10] = [8, 8, 13, 8, 8, 8, 10, 8, 11, 7];
+    let mut row = |mark: char, level: &str, cells: &[String]| {
+        write!(out, "{mark} {level:<10}")?;
+        cells.iter().zip(WIDTHS).try_for_each(|(cell, width)| write!(out, " {cell:>width$}"))?;
+        writeln!(out)
     };
-    writeln!(out, "  {:<10} {:^31} {:^26} {:>10} {:^28}", "", "error of peaks, %", "of histories, %", "", "cost")?;
-    row(
-        out,
-        ' ',
-        ["level", "theta", "u", "a_t, V_t, M_t", "theta", "u", "a_t", "overturns", "steps", "evaluations", "of auto"],
-    )?;
+    let over = ["error of peaks, %", "of histories, %", "", "cost"];
+    row(' ', "", &[format!("{:^31} {:^26} {:>10} {:^28}", over[0], over[1], over[2], over[3])])?;
+    let headings = ["theta", "u", "a_t, V_t, M_t", "theta", "u", "a_t", "overturns", "steps", "evaluations", "of auto"];
+    row(' ', "level", &headings.map(str::to_owned))?;
     let auto = comparison.cost_of_auto();
-    for verdict in &comparison.verdicts {
-        let response = &verdict.response;
+    for Verdict { response, errors, is_right_about_overturning } in &comparison.verdicts {
         let mark = if advised.is_some_and(|advised| advised.response.detail == response.detail) { '>' } else { ' ' };
         let overturned = match response.overturns() {
             Some(true) => "yes",
             Some(false) => "no",
             None => "unknown",
         };
-        let overturns = match (verdict.is_right_about_overturning, response.overturns()) {
+        let overturns = match (is_right_about_overturning, response.overturns()) {
             (Some(false), _) => format!("{overturned}, wrong"),
             (None, Some(_)) => format!("{overturned} (?)"),
             _ => overturned.into(),
         };
-        let errors = verdict.errors.map(percent);
-        let [theta, u, a_t, theta_history, u_history, a_t_history] = errors.each_ref().map(String::as_str);
         let counts = [response.work.steps, response.work.evaluations].map(|count| count.to_string());
         let ratio = auto.map_or("-".into(), |auto| format!("{:.2}", response.cost() as f64 / auto));
-        let (level, [steps, evaluations]) = (response.detail.name(), counts.each_ref().map(String::as_str));
-        row(
-            out,
-            mark,
-            [level, theta, u, a_t, theta_history, u_history, a_t_history, &overturns, steps, evaluations, &ratio],
-        )?;
+        row(mark, response.detail.name(), &[&errors.map(percent)[..], &[overturns], &counts, &[ratio]].concat())?;
     }
     Ok(())
 }

@@ -339,17 +339,4 @@ mod tests {
         assert_eq!([shown(1.0..3.9), shown(2.0..4.9)], ["1 2 3", "2 3 4"]);
         assert_eq!(log_ticks(&(1e-3..1e9)), [1e-3, 0.1, 10.0, 1e3, 1e5, 1e7, 1e9]);
     }
-
-    #[test]
-    fn three_digits_at_least() {
-        assert_eq!([0.0, 0.538228, -12.345, 6129.47, 7.5e-5].map(rounded), ["0", "0.538", "−12.3", "6129", "0.000075"]);
-        assert_eq!([130.1, 2.4e6].map(mass), ["130 kg", "2400 t"]);
-    }
-
-    #[test]
-    fn a_range_has_room_and_one_that_is_empty_is_drawn() {
-        assert_eq!(range([0.0, 2.0]), 0.0..2.6);
-        assert_eq!(range([1.0, -2.0]), -2.6..2.6);
-        assert_eq!(range([]), -1.0..1.0);
-    }
 }

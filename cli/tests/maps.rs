@@ -1,6 +1,5 @@
 //! Pulses and their overturning spectra, driven from outside.
 
-#[allow(dead_code)] // a record that is no pulse of these
 mod command_line;
 
 use command_line::{fail, succeed};

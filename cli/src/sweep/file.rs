@@ -60,8 +60,7 @@ struct SweepFile {
     /// Unit of records that do not state theirs.
     unit: Option<Unit>,
     /// Multiplies the records' times.
-    #[serde(default = "one")]
-    time_scale: f64,
+    time_scale: Option<f64>,
     /// Multiply the records' accelerations.
     scale: Values,
     structures: Vec<StructureGrid>,
@@ -141,10 +140,6 @@ impl RecordEntry {
     }
 }
 
-fn one() -> f64 {
-    1.0
-}
-
 /// Structures that count as one population: each has its own fragility curve.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -173,7 +168,7 @@ enum Values {
 
 /// Reads the sweep in the TOML file at `path`, and its records, each of which is an input of `files`.
 pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
-    let mut read = || {
+    let mut read = || -> anyhow::Result<_> {
         let text = std::fs::read_to_string(path)?;
         let table: toml::Table = toml::from_str(&text)?;
         if table.contains_key("pulses") {
@@ -181,10 +176,6 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         }
         let file: SweepFile = toml::from_str(&text)?;
         let (unit, time_scale) = (file.unit, file.time_scale);
-        ensure!(
-            time_scale > 0.0 && time_scale.is_finite(),
-            "time_scale = {time_scale} is out of range: a finite number greater than 0 is needed"
-        );
         let scales = file.scale.list().context("scale")?;
         let limits = file.limits().context("limits")?;
         let measure = file.measure()?;
@@ -194,7 +185,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         let (mut records, mut warnings) = (Vec::new(), Vec::new());
         let read = |path: &Path, options: &RecordOptions| {
             files.add_input(path);
-            let (unit, time_scale) = (options.unit.or(unit), options.time_scale.or(Some(time_scale)));
+            let (unit, time_scale) = (options.unit.or(unit), options.time_scale.or(time_scale));
             let options = RecordOptions { unit, time_scale, scale: None, ..options.clone() };
             let understood = options.understand(path, g).map_err(with_key)?;
             warnings.extend(understood.warnings(path));
@@ -212,7 +203,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
 
 impl MapFile {
     fn sweep(&self) -> anyhow::Result<MapSweep> {
-        let &MapFile { refine, condition, .. } = self;
+        let refine = self.refine;
         ensure!(refine <= MAX_REFINEMENTS, "refine = {refine} is out of range: 0 to {MAX_REFINEMENTS} are possible");
         ensure!(!self.structures.is_empty(), "structures is empty: name one or more");
         let mut maps: Vec<(String, Map)> = Vec::new();
@@ -220,7 +211,7 @@ impl MapFile {
             let name = &grid.name;
             ensure!(maps.iter().all(|(other, _)| other != name), "two structures have the name {name:?}: rename one");
             let map = self.map(grid).with_context(|| format!("structures {name:?}"))?;
-            maps.push((name.into(), map.with_condition(condition)));
+            maps.push((name.into(), map));
         }
         Ok(MapSweep { maps, refinements: refine, structures: left_open_of(&self.structures)? })
     }
@@ -232,11 +223,11 @@ impl MapFile {
         let unit = if dimensionless { 1.0 } else { structure.parameters().g };
         let frequency = frequency.axis(1.0).context("frequency")?;
         let amplitude = amplitude.axis(unit).context("amplitude")?;
-        let pulse = Pulse::new(shape, amplitude.values()[0], frequency.values()[0]);
+        let pulse = Pulse::new(shape, amplitude.values[0], frequency.values[0]);
         let (cycles, error) = (cycles.unwrap_or(pulse.cycles), error.unwrap_or(pulse.error));
         let pulse = Pulse { cycles, phase, error, ..pulse };
         let map = Map::new(structure, pulse, [frequency, amplitude], dimensionless).context("pulses")?;
-        Ok(map.computed_by(self.detail, self.tolerance.unwrap_or(DEFAULT_TOLERANCE))?)
+        Ok(map.computed_by(self.detail, self.tolerance.unwrap_or(DEFAULT_TOLERANCE), self.condition)?)
     }
 }
 
@@ -320,7 +311,7 @@ impl Values {
         let is_log = matches!(self, Values::Even { log: true, .. });
         let values: Vec<_> = self.list()?.into_iter().map(|value| value * unit).collect();
         ensure!(!values.is_empty(), "it is empty: give two or more");
-        Ok(Axis::new(values, is_log))
+        Ok(Axis { values, is_log })
     }
 }
 

@@ -13,7 +13,7 @@ use anyhow::{bail, ensure};
 use picture::Shown;
 use rayon::prelude::*;
 use rocking::run::{LONGEST_REST, validity};
-use rocking_sweep::map::{Class, Map, Place, Point};
+use rocking_sweep::map::{Class, Fate, Map, Place, Point};
 use serde::Serialize;
 use std::{collections::HashMap, fmt::Write, path::Path, time::Instant};
 
@@ -29,13 +29,13 @@ pub struct Spectrum {
 
 /// What the classes are called, in their order.
 const CLASSES: [(Class, &str); 7] = [
-    (Class::NoUplift, "no uplift"),
-    (Class::Stands, "rocks and stands"),
-    (Class::OverturnsAtOnce, "overturns without impact"),
-    (Class::OverturnsAfterOne, "overturns after one impact"),
-    (Class::OverturnsAfterMore, "overturns after more"),
-    (Class::StillRocking, "still rocking"),
-    (Class::Failed, "failed"),
+    ((Fate::NoUplift, 0), "no uplift"),
+    ((Fate::Stands, 0), "rocks and stands"),
+    ((Fate::Overturns, 0), "overturns without impact"),
+    ((Fate::Overturns, 1), "overturns after one impact"),
+    ((Fate::Overturns, 2), "overturns after more"),
+    ((Fate::StillRocking, 0), "still rocking"),
+    ((Fate::Failed, 0), "failed"),
 ];
 
 /// How many points of a map's grid are of a class.
@@ -55,7 +55,7 @@ pub fn run(args: &SweepArgs, sweep: MapSweep, output: &Path, picture: Picture) -
     let pool = thread_pool(args, if sweep.refinements > 0 { usize::MAX } else { largest })?;
     say_few(&sweep.structures, "structures");
     for (name, map) in &sweep.maps {
-        let warnings = validity::of_parameters(map.structure(), map.detail());
+        let warnings = validity::of_parameters(&map.structure, map.detail);
         warnings.iter().for_each(|warning| say!("{name}: {warning}"));
     }
     let clock = Instant::now();
@@ -136,7 +136,7 @@ fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
         });
         let [x, y] = picture::axis_names(map);
         let refined = points.len() - map.grid().count();
-        writeln!(out, "{name}: {}; {}", map.pulse_name(), map.detail().name())?;
+        writeln!(out, "{name}: {}; {}", map.pulse_name(), map.detail.name())?;
         writeln!(out, "  {x}: {frequency}\n  {y}: {amplitude}")?;
         for Count { class, points, part, .. } in counts.iter().filter(|count| count.structure == name) {
             writeln!(out, "  {class:<28} {points:>9} {:>7.3} %", 100.0 * part)?;
@@ -144,11 +144,11 @@ fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
         if refined > 0 {
             writeln!(out, "  {:<28} {refined:>9}", "more along the boundaries")?;
         }
-        if map.finds_condition() {
+        if map.finds_condition {
             let changes = points.values().filter(|point| point.condition == Some(f64::INFINITY)).count();
             writeln!(out, "  {:<28} {changes:>9}", "change class under 1e-12")?;
         }
-        if points.values().any(|point| point.class() == Class::StillRocking) {
+        if points.values().any(|point| point.fate == Fate::StillRocking) {
             writeln!(out, "  still rocking: {LONGEST_REST}/p_l after the pulse it is not decided")?;
         }
         writeln!(out)?;
@@ -158,7 +158,7 @@ fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
 
 /// Says how many points failed, and why the first did.
 fn report_failures(spectra: &[Spectrum]) -> anyhow::Result<()> {
-    let failed = || spectra.iter().flat_map(|of| of.points.iter()).filter(|(_, point)| point.class() == Class::Failed);
+    let failed = || spectra.iter().flat_map(|of| of.points.iter()).filter(|(_, point)| point.fate == Fate::Failed);
     match failed().min_by_key(|(place, _)| **place) {
         Some((_, first)) => bail!("{} point(s) failed; one of them: {}", failed().count(), first.reason),
         None => Ok(()),

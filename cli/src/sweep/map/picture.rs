@@ -5,7 +5,7 @@ use crate::picture::{
 };
 use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
-use rocking_sweep::map::{Axis, Class, Map, Place, Point, finest_step, nearest};
+use rocking_sweep::map::{Axis, Fate, Map, Place, Point, finest_step, nearest};
 
 /// Sizes in pixels: of a panel with its axes, of a panel's name, of a line of the legend.
 const PANEL: (u32, u32) = (560, 440);
@@ -62,18 +62,18 @@ const OF_CONDITION: Key = Key { of: condition_of, swatches: &CONDITIONS, suffix:
 
 /// What the axes of a picture of `map` are called.
 pub fn axis_names(map: &Map) -> [&'static str; 2] {
-    if map.is_dimensionless() { ["omega/p_l", "a_p/(g tan alpha_cg)"] } else { ["frequency (Hz)", "amplitude a_p (g)"] }
+    if map.is_dimensionless { ["omega/p_l", "a_p/(g tan alpha_cg)"] } else { ["frequency (Hz)", "amplitude a_p (g)"] }
 }
 
 fn class_of(point: &Point) -> usize {
-    match point.class() {
-        Class::NoUplift => 0,
-        Class::Stands => 1 + (4.0 * point.theta).clamp(0.0, 3.0) as usize,
-        Class::OverturnsAtOnce => 5,
-        Class::OverturnsAfterOne => 6,
-        Class::OverturnsAfterMore => 7,
-        Class::StillRocking => 8,
-        Class::Failed => 9,
+    match (point.fate, point.impacts) {
+        (Fate::NoUplift, _) => 0,
+        (Fate::Stands, _) => 1 + (4.0 * point.theta).clamp(0.0, 3.0) as usize,
+        (Fate::Overturns, 0) => 5,
+        (Fate::Overturns, 1) => 6,
+        (Fate::Overturns, _) => 7,
+        (Fate::StillRocking, _) => 8,
+        (Fate::Failed, _) => 9,
     }
 }
 
@@ -94,7 +94,7 @@ pub fn draw(picture: Picture, spectra: &[Spectrum], refinements: u32) -> anyhow:
     let (width, height) = (PANEL.0, PANEL.1 + NAME as u32);
     let across = (spectra.len() as f64 * f64::from(height) / f64::from(width)).sqrt().ceil() as usize;
     let (keys, across) =
-        if map.finds_condition() { (&[OF_CLASS, OF_CONDITION][..], 2) } else { (&[OF_CLASS][..], across) };
+        if map.finds_condition { (&[OF_CLASS, OF_CONDITION][..], 2) } else { (&[OF_CLASS][..], across) };
     let panels: Vec<_> = spectra.iter().flat_map(|spectrum| keys.iter().map(move |key| (spectrum, *key))).collect();
     let seen = |key: &Key| {
         let is_there = |i: usize| spectra.iter().flat_map(|one| one.points.values()).any(|point| (key.of)(point) == i);
@@ -105,7 +105,7 @@ pub fn draw(picture: Picture, spectra: &[Spectrum], refinements: u32) -> anyhow:
     let down = panels.len().div_ceil(across) as u32;
     let size = (across as u32 * width, TITLE + down * height + legend as u32);
     let title = format!("Overturning spectrum: {}", map.pulse_name());
-    let about = format!("level of detail {}, tolerance {:e}", map.detail().name(), map.tolerance());
+    let about = format!("level of detail {}, tolerance {:e}", map.detail.name(), map.tolerance);
     picture.draw(size, |area| {
         let mut rest = titled(area, &title, &about)?;
         for panels in panels.chunks(across) {
@@ -147,8 +147,8 @@ pub struct Shown<'a> {
 impl Shown<'_> {
     /// Frequency and amplitude of `map`.
     pub fn axes(map: &Map) -> [Shown<'_>; 2] {
-        let g = if map.is_dimensionless() { 1.0 } else { map.structure().parameters().g };
-        [Shown { axis: map.frequency(), unit: 1.0 }, Shown { axis: map.amplitude(), unit: g }]
+        let g = if map.is_dimensionless { 1.0 } else { map.structure.parameters().g };
+        [Shown { axis: &map.frequency, unit: 1.0 }, Shown { axis: &map.amplitude, unit: g }]
     }
 
     /// The value at `steps` of the grid from its first.
@@ -158,7 +158,7 @@ impl Shown<'_> {
 
     /// How many steps its grid has.
     pub fn steps(&self) -> usize {
-        self.axis.values().len() - 1
+        self.axis.values.len() - 1
     }
 
     /// From its first to its last value.
@@ -179,7 +179,7 @@ fn panel((whole, area): (&Area, &Area), spectrum: &Spectrum, refinements: u32, k
             cells(whole, &chart, [&x, &y], spectrum, refinements, key)?;
         }};
     }
-    match (x.axis.is_log(), y.axis.is_log()) {
+    match (x.axis.is_log, y.axis.is_log) {
         (false, false) => paint!(x.range(), y.range()),
         (true, false) => paint!(log_axis(x.range()), y.range()),
         (false, true) => paint!(x.range(), log_axis(y.range())),

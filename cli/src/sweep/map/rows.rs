@@ -20,8 +20,8 @@ pub fn open(path: &Path) -> anyhow::Result<(RowFile, Known<Point>)> {
 
 /// The key of a point of the map of the structure called `name`.
 pub fn key_at(name: &str, map: &Map, place: Place) -> Uuid {
-    let of_map = (map.detail(), map.tolerance(), map.finds_condition());
-    key(&(name, map.structure().parameters(), map.pulse(place), of_map.0, of_map.1, of_map.2))
+    let of_map = (map.detail, map.tolerance, map.finds_condition);
+    key(&(name, map.structure.parameters(), map.pulse(place), of_map.0, of_map.1, of_map.2))
 }
 
 fn headings() -> Vec<String> {
@@ -38,9 +38,9 @@ fn headings() -> Vec<String> {
 /// The row of a point, which the refinement of this level has asked for; 0 is the grid.
 pub fn row(key: &Uuid, name: &str, map: &Map, (level, place): (u32, Place), point: &Point) -> anyhow::Result<Vec<u8>> {
     let pulse = map.pulse(place);
-    let (of_amplitude, of_frequency) = units_of(map.structure());
-    let of_structure = AXES.map(|axis| (axis.get)(map.structure().parameters()));
-    let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, pulse.error, map.detail().name(), map.tolerance());
+    let (of_amplitude, of_frequency) = units_of(&map.structure);
+    let of_structure = AXES.map(|axis| (axis.get)(map.structure.parameters()));
+    let of_map = (pulse.shape.name(), pulse.cycles, pulse.phase, pulse.error, map.detail.name(), map.tolerance);
     let ratios = (pulse.frequency / of_frequency, pulse.amplitude / of_amplitude);
     let of_program = (key.to_string(), name, version());
     line(&(of_program, of_structure, of_map, level, pulse.frequency, pulse.amplitude, ratios, point))
