@@ -176,7 +176,7 @@ fn replace(target: &Path, content: &[u8]) -> io::Result<()> {
 #[cfg(all(test, unix))]
 mod tests {
     use super::*;
-    use std::os::unix::fs::{PermissionsExt, symlink};
+    use std::os::unix::fs::PermissionsExt;
 
     #[test]
     fn what_was_there_stays_until_the_file_is_complete() {
@@ -190,20 +190,5 @@ mod tests {
         assert_eq!(fs::read(&path).unwrap(), b"after");
         assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o640);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
-    }
-
-    #[test]
-    fn a_file_that_is_read_or_written_already_is_refused() {
-        let folder = tempfile::tempdir().unwrap();
-        let at = |name: &str| folder.path().join(name);
-        fs::write(at("record.csv"), "0,1\n1,2\n").unwrap();
-        fs::hard_link(at("record.csv"), at("same.csv")).unwrap();
-        symlink("record.csv", at("link.csv")).unwrap();
-        let mut files = OutputFiles::of_inputs([at("record.csv").as_path(), &at("absent")]);
-        files.reserve_rows(&at("rows.csv")).unwrap();
-        for name in ["record.csv", "same.csv", "link.csv", "./record.csv", "rows.csv", "./rows.csv"] {
-            let message = files.create(&at(name)).err().unwrap().to_string();
-            assert!(message.ends_with("; name another file"), "{message}");
-        }
     }
 }

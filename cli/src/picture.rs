@@ -332,11 +332,9 @@ mod tests {
             log_ticks(&range).iter().map(|tick| number(*tick, &range)).collect::<Vec<_>>().join(" ")
         };
         assert_eq!(shown(0.5..12.0), "0.5 1 2 5 10");
-        assert_eq!(shown(2.0..7.0), "2 3 4 5 6 7");
         assert_eq!(shown(0.01..200.0), "0.01 0.1 1 10 100");
         assert_eq!(shown(1.0..1.5), "1 1.1 1.2 1.3 1.4 1.5");
         assert_eq!(shown(3.001..3.002), "3.001 3.002");
-        assert_eq!([shown(1.0..3.9), shown(2.0..4.9)], ["1 2 3", "2 3 4"]);
         assert_eq!(log_ticks(&(1e-3..1e9)), [1e-3, 0.1, 10.0, 1e3, 1e5, 1e7, 1e9]);
     }
 }

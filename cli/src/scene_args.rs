@@ -65,7 +65,8 @@ pub struct GroundArgs {
 }
 
 /// The state at the start.
-#[derive(clap::Args)]
+#[derive(clap::Args, Default, serde::Deserialize)]
+#[serde(deny_unknown_fields, default)]
 #[command(next_help_heading = "Initial values")]
 pub struct InitialArgs {
     /// Rotation of the base; 0 is full contact

@@ -161,18 +161,14 @@ impl Summary {
         let &Found { ground, ref peaks, fall, finish: Finish { ending, motion }, .. } = found;
         let mut out = String::new();
         let &Parameters { g, .. } = self.structure.parameters();
-        for (name, peak, unit, per_unit) in [
-            ("a_g", ground, "g", g),
-            ("theta", peaks.theta(), "rad", 1.0),
-            ("u", peaks.u(), "mm", 1e-3),
-            ("delta_t", peaks.delta_t(), "mm", 1e-3),
-            ("uplift", peaks.uplift(), "mm", 1e-3),
-            ("a_t", peaks.a_t(), "g", g),
-            ("V_t", peaks.V_t(), "N", 1.0),
-            ("M_t", peaks.M_t(), "N.m", 1.0),
-        ] {
-            let (more, unit) = readable(peak.magnitude, unit);
-            let (magnitude, time) = (significant(peak.magnitude / per_unit / more), instant(peak.time));
+        let of_structure = PEAKS.iter().map(|of| (of.name, (of.of)(peaks), of.unit));
+        for (name, peak, unit) in [("a_g", ground, "m/s2")].into_iter().chain(of_structure) {
+            let (per_unit, unit) = match unit {
+                "m" => (1e-3, "mm"),
+                "m/s2" => (g, "g"),
+                unit => readable(peak.magnitude, unit),
+            };
+            let (magnitude, time) = (significant(peak.magnitude / per_unit), instant(peak.time));
             writeln!(out, "{:<14} {magnitude:>12} {unit:<4} at {time} s", format!("peak |{name}|"))?;
         }
         if let Some(fall) = fall {

@@ -4,7 +4,7 @@
 mod command_line;
 
 use FlexibleRocking::variables::{Causality, DataType, VARIABLES, Variable};
-use command_line::{DT, SAMPLES, fail, folder, pulse, succeed};
+use command_line::{DT, SAMPLES, folder, pulse, succeed};
 use rocking::engine::piece::Sample;
 use rocking::run::record::{Reading, Record};
 use rocking::structure::natural_quantities::names;
@@ -93,64 +93,6 @@ fn output_times_are_the_samples_or_multiples_of_the_interval_and_always_the_end(
     let a_g = column(&folder.path().join("out.csv"), "a_g[m/s2]");
     let expected = [0.0, 0.5, 1.0 / 3.0, 1.0 / 6.0, 0.0, 0.0, 0.0].map(|a_g| a_g * 9.81);
     assert!(a_g.iter().zip(expected).all(|(a_g, expected)| (a_g - expected).abs() < 1e-14), "{a_g:?}");
-}
-
-#[test]
-fn overturning_is_a_result() {
-    let folder = folder();
-    let (summary, _) =
-        succeed(folder.path(), "simulate --record pulse.AT2 --scale 0 --theta-0 -0.3 --events events.csv -o out.csv");
-    let (_, lines) = table(&folder.path().join("out.csv"));
-    let (_, events) = table(&folder.path().join("events.csv"));
-    let [.., before, last] = lines.as_slice() else { panic!("{lines:?}") };
-    assert_eq!([&before[18], &last[18]], ["rocking left", "overturned"]);
-    assert!((last[2].parse::<f64>().unwrap() + std::f64::consts::FRAC_PI_2).abs() < 1e-9);
-    assert_eq!(events.len(), 1);
-    assert_eq!(events[0][..2], [last[0].as_str(), "overturning left"]);
-    assert!(summary.lines().any(|line| line.starts_with("overturned     to the left at 1.61")), "{summary}");
-}
-
-#[test]
-fn a_damaged_response_is_refused_where_it_is_damaged() {
-    let folder = folder();
-    succeed(folder.path(), "simulate --record pulse.AT2 -o whole.csv");
-    let (headings, lines) = table(&folder.path().join("whole.csv"));
-    let line = lines.iter().position(|line| line[18] == "rocking left").unwrap();
-    let number = line + 2;
-    for (column, value, expected) in [
-        (0, "NaN", "column 1, time[s]: \"NaN\" is not a finite number".to_owned()),
-        (0, &lines[line - 1][0], format!("column 1, time[s]: {0:?} does not come after {0} s", lines[line - 1][0])),
-        (1, "", "column 2, a_g[m/s2]: \"\" is not a finite number".to_owned()),
-        (2, "nan", "column 3, theta[rad]: \"nan\" is not a finite number".to_owned()),
-        (8, "inf", "column 9, u_dot[m/s]: \"inf\" is not a finite number".to_owned()),
-        (
-            18,
-            "rocking",
-            "column 19, phase: \"rocking\" is not one of full contact, rocking left, rocking right, overturned"
-                .to_owned(),
-        ),
-    ] {
-        let mut damaged = lines.clone();
-        damaged[line][column] = value.to_owned();
-        let text: Vec<_> = [&headings].into_iter().chain(&damaged).map(|line| line.join(",")).collect();
-        fs::write(folder.path().join("damaged.csv"), text.join("\n") + "\n").unwrap();
-        let (code, message) = fail(folder.path(), "modes --response damaged.csv --quiet");
-        assert_eq!((code, message), (1, format!("error: damaged.csv: line {number}, {expected}\n")));
-        assert!(!folder.path().join("modes.csv").exists());
-    }
-}
-
-#[test]
-fn the_response_of_another_structure_is_refused() {
-    let folder = folder();
-    succeed(folder.path(), "simulate --preset mcmanus --record pulse.AT2 -o response.csv");
-    succeed(folder.path(), "modes --preset mcmanus --r 0.9 --response response.csv"); // r moves it, and shows nowhere
-    for other in
-        ["--preset evison", "--preset mcmanus --m 131", "--preset mcmanus --f-fc 5.1", "--preset mcmanus --B 0.3"]
-    {
-        let (code, message) = fail(folder.path(), &format!("modes {other} --response response.csv"));
-        assert!(code == 1 && message.contains("it is the response of another structure"), "{other}: {message}");
-    }
 }
 
 /// The peaks of a fall are those before it begins, and the ground's is the record's, though the run ends before it.

@@ -3,8 +3,7 @@
 mod command_line;
 
 use command_line::{fail, succeed};
-use rocking::run::record::{Reading, Record};
-use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape};
+use rocking_sweep::pulse::DEFAULT_ERROR;
 use std::{
     fs,
     path::Path,
@@ -121,22 +120,6 @@ fn a_point_is_a_simulation_of_its_pulse() {
     let ratio: f64 = cell("theta_max/alpha_cg").parse().unwrap();
     assert!((theta / alpha / ratio - 1.0).abs() < 1e-9, "{theta} {ratio}");
     assert_eq!(printed["transitions"].to_string(), cell("transitions"));
-}
-
-/// The file of a pulse reads back as the library's own record.
-#[test]
-fn a_pulse_is_written_as_the_library_makes_it() {
-    let folder = TempDir::new().unwrap();
-    for (shape, name) in Shape::ALL.map(|shape| (shape, shape.name())) {
-        succeed(folder.path(), &format!("pulse {name} --amplitude 0.5 --period 0.8 --lead-in 0.1 --rest 0.2"));
-        let pulse = Pulse { lead_in: 0.1, rest: 0.2, ..Pulse::new(shape, 0.5 * 9.81, 1.0 / 0.8) };
-        let expected = pulse.record().unwrap();
-        let (record, _) = Record::read(&folder.path().join("pulse.csv"), &Reading::default(), 9.81).unwrap();
-        assert_eq!(record.times(), expected.times(), "{name}");
-        for (found, expected) in record.acceleration().iter().zip(expected.acceleration()) {
-            assert!((found - expected).abs() <= 4.0 * f64::EPSILON * expected.abs(), "{name}: {found} {expected}");
-        }
-    }
 }
 
 #[test]

@@ -3,15 +3,15 @@
 use crate::{
     output_files::OutputFiles,
     record_args::{RecordOptions, with_key},
+    scene_args::InitialArgs,
     structure_args::{Preset, left_open},
     talk::say_few,
 };
 use anyhow::{Context, bail, ensure};
 use rocking::estimates::intensity::IntensityMeasure;
-use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::record::{Column, Record, Unit};
 use rocking::structure::natural_quantities::Given;
-use rocking::{Detail, Parameters, State, Structure, engine::DEFAULT_TOLERANCE};
+use rocking::{Detail, Parameters, Structure, engine::DEFAULT_TOLERANCE};
 use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map};
 use rocking_sweep::outcome::Limit;
 use rocking_sweep::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population};
@@ -69,9 +69,8 @@ struct SweepFile {
     tolerance: Option<f64>,
     /// From a record's first sample to the end of a run, s.
     duration: Option<f64>,
-    /// By the name of an initial value.
     #[serde(default)]
-    initial: BTreeMap<String, f64>,
+    initial: InitialArgs,
     /// Name of the intensity measure.
     intensity: Option<String>,
     /// By the name of a measure.
@@ -179,7 +178,6 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         let scales = file.scale.list().context("scale")?;
         let limits = file.limits().context("limits")?;
         let measure = file.measure()?;
-        let conditions = file.conditions()?;
         let g = gravity(&file.structures)?;
         let populations = file.structures.iter().map(StructureGrid::population).collect::<Result<_, _>>()?;
         let (mut records, mut warnings) = (Vec::new(), Vec::new());
@@ -194,7 +192,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         };
         let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read);
         say_few(&warnings, "warnings");
-        let plan = Plan::new(populations, motions?, scales)?.under(conditions)?;
+        let plan = Plan::new(populations, motions?, scales)?.under(file.conditions())?;
         let structures = left_open_of(&file.structures)?;
         Ok(Asked::Records(Sweep { plan, limits, measure, records, structures }))
     };
@@ -232,17 +230,9 @@ impl MapFile {
 }
 
 impl SweepFile {
-    fn conditions(&self) -> anyhow::Result<Conditions> {
-        let mut initial = State::default();
-        for (name, value) in &self.initial {
-            let quantity = INITIAL_VALUES.iter().find(|quantity| quantity.name == name);
-            let known = INITIAL_VALUES.each_ref().map(|quantity| quantity.name).join(", ");
-            let quantity =
-                quantity.with_context(|| format!("initial: {name:?} is unknown; these are known: {known}"))?;
-            (quantity.set)(&mut initial, *value);
-        }
+    fn conditions(&self) -> Conditions {
         let tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
-        Ok(Conditions { initial, detail: self.detail, tolerance, duration: self.duration })
+        Conditions { initial: self.initial.state(), detail: self.detail, tolerance, duration: self.duration }
     }
 
     fn measure(&self) -> anyhow::Result<IntensityMeasure> {
