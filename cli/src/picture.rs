@@ -9,7 +9,7 @@ use crate::{
 };
 use anyhow::Context;
 use plotters::coord::combinators::WithKeyPoints;
-use plotters::coord::{Shift, ranged1d::ValueFormatter};
+use plotters::coord::{Shift, ranged1d::ValueFormatter, types::RangedCoordf64};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use resvg::{tiny_skia, usvg};
@@ -152,6 +152,16 @@ pub fn line(colour: RGBColor) -> ShapeStyle {
 /// A line `pixels` wide.
 pub fn stroke(colour: RGBColor, pixels: f64) -> ShapeStyle {
     colour.stroke_width(px(pixels) as u32)
+}
+
+/// A chart of two linear axes.
+pub type Plot<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
+
+/// Draws a dashed line through `points`.
+pub fn dashed(plot: &mut Plot, points: &[(f64, f64)], colour: RGBColor) -> anyhow::Result<()> {
+    let [length, gap] = [5.0, 4.0].map(|pixels| px(pixels) as u32);
+    plot.draw_series(DashedLineSeries::new(points.iter().copied(), length, gap, line(colour)))?;
+    Ok(())
 }
 
 /// Height in pixels of what plotters calls a font of one pixel.

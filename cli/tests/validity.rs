@@ -2,7 +2,7 @@
 
 mod command_line;
 
-use command_line::{fail, folder, succeed};
+use command_line::{folder, succeed};
 use rocking::run::record::{Reading, Record};
 use rocking::run::validity::{ASSUMPTIONS, Found, Limits};
 use rocking::run::{End, Run};
@@ -17,16 +17,7 @@ fn found(folder: &Path, r: f64, scale: f64, limits: Limits, end: End) -> Found {
     Run { end, ..Run::new(structure, &ground) }.validity(limits).unwrap().0
 }
 
-/// The lines of the section: after its heading, in the order of [`ASSUMPTIONS`].
-fn section(text: &str) -> Vec<&str> {
-    text.lines()
-        .skip_while(|line| *line != "what the model leaves out here")
-        .skip(1)
-        .take_while(|l| l.starts_with("  "))
-        .collect()
-}
-
-/// The same for programs, to the bit; in JSON what is infinite is a text.
+/// For programs to the bit; in JSON what is infinite is a text.
 #[test]
 fn programs_read_what_the_run_found() {
     let folder = folder();
@@ -51,23 +42,6 @@ fn programs_read_what_the_run_found() {
         let cells: Vec<_> = line.split(',').collect();
         assert_eq!([cells[1], cells[3]].map(|cell| cell.parse::<f64>().unwrap()), [worst.value, worst.time]);
     }
-}
-
-/// What the parameters alone say comes first.
-#[test]
-fn what_the_parameters_say_is_said() {
-    let folder = folder();
-    let parameters = "m = 100\nm0 = 50\nH = 2\nB = 0.3\nf_fc = 0.2\nzeta_fc = 0.02\nr = 0.5\n";
-    fs::write(folder.path().join("pier.toml"), parameters).unwrap();
-    let (said, _) = succeed(folder.path(), "simulate --parameters pier.toml --record pulse.AT2 --duration 1");
-    let lines = section(&said);
-    for (line, start) in lines.iter().zip(["  u_cr = 1.39", "  r = 0.5 is below", "  r = 0.5 can raise"]) {
-        assert!(line.starts_with(start), "{line}");
-    }
-    let (_, message) = fail(folder.path(), "simulate --record pulse.AT2 --tension 1");
-    assert!(message.contains("a number of at least 0 and less than 1 is needed"), "{message}");
-    let (_, message) = fail(folder.path(), "advise --record pulse.AT2 --friction nan");
-    assert!(message.contains("a number of at least 0 is needed"), "{message}");
 }
 
 /// The columns of a sweep are filled where they are asked for, and rows without them do not count as done.

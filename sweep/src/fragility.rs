@@ -348,20 +348,15 @@ mod tests {
 
     #[test]
     fn few_records_have_no_band() {
-        let groups = |count: usize| {
-            let trials = |group| {
-                [(0.5, 1), (1.0, 2), (2.0, 4)].map(|(intensity, exceedances)| Trials {
-                    group,
-                    intensity,
-                    runs: 5,
-                    exceedances,
-                })
+        let fit = |groups: usize| {
+            let alike = |group| {
+                trials(&[(0.5, 5, 1), (1.0, 5, 2), (2.0, 5, 4)]).into_iter().map(move |of| Trials { group, ..of })
             };
-            FragilityCurve::fit(&(0..count).flat_map(trials).collect::<Vec<_>>()).unwrap()
+            FragilityCurve::fit(&(0..groups).flat_map(alike).collect::<Vec<_>>()).unwrap()
         };
-        let few = groups(FEWEST_GROUPS - 1);
+        let few = fit(FEWEST_GROUPS - 1);
         assert_eq!((few.band(1.0), few.median_range()), (None, None));
-        assert!(groups(FEWEST_GROUPS).band(1.0).is_some());
+        assert!(fit(FEWEST_GROUPS).band(1.0).is_some());
     }
 
     proptest! {

@@ -261,11 +261,6 @@ impl Plan {
         &self.motions
     }
 
-    /// The scale factors.
-    pub fn scales(&self) -> &[f64] {
-        &self.scales
-    }
-
     /// How many runs there are.
     #[expect(clippy::len_without_is_empty, reason = "a plan is never empty")]
     pub fn len(&self) -> usize {
@@ -410,19 +405,6 @@ mod tests {
         let Outcome::Ended(standing) = only(Parameters::MCMANUS, 1.0) else { panic!() };
         assert_eq!(standing.ending, Ending::AtRest);
         assert!(standing.end > 0.5 && standing.transitions > 0);
-    }
-
-    /// A slow structure has hardly begun to vibrate when the record ends.
-    #[test]
-    fn the_vibration_after_a_record_counts() {
-        let slow = Parameters { m0: 0.0, J0: 0.0, f_fc: 0.2, ..Parameters::MCMANUS };
-        let Outcome::Ended(found) = only(slow, 1.0) else { panic!() };
-        let long = Run { end: End::At(20.0), ..Run::new(Structure::new(slow).unwrap(), &pulse().record) }.peaks();
-        let (peaks, _) = long.unwrap();
-        assert_eq!(found.ending, Ending::AtRest);
-        for (name, found, expected) in [("u", found.peaks[1], peaks.u()), ("a_t", found.peaks[4], peaks.a_t())] {
-            assert!((found - expected.magnitude).abs() < 1e-12 * found, "{name}: {found}, {expected:?}");
-        }
     }
 
     #[test]
