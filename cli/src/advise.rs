@@ -10,7 +10,6 @@ use crate::{
     results::{Format, FormatArgs, Number, print, print_traced},
     scene_args::{GroundArgs, InitialArgs},
     structure_args::StructureArgs,
-    talk::say,
     validity::{self, LimitArgs},
 };
 use anyhow::Context;
@@ -102,9 +101,6 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let run = Run { initial, end, ..Run::new(structure, &ground) };
     let comparison = levels::compare(&run).context("detail = nonlinear")?;
 
-    if comparison.reference.peaks.theta().magnitude == 0.0 && comparison.reference.peaks.a_t().magnitude == 0.0 {
-        say!("nothing moves: the ground is at rest and the structure stands; see --record, --theta-0");
-    }
     let (within, criteria) = (args.allowed.within, &args.allowed.of);
     let advised = comparison.recommended(within, criteria);
     if args.results.format == Format::Text {

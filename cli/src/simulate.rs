@@ -10,7 +10,7 @@ use crate::{
     significant::short,
     summary::{self, Found, Summary, instant},
     tables::{self, Table},
-    talk::{self, say},
+    talk,
     validity::{self, LimitArgs},
 };
 use anyhow::ensure;
@@ -163,9 +163,6 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
         let cause = Cause::new(&structure).under(&args.motion.ground.record, &ground);
         let cause = cause.computed(Some((run.detail, run.tolerance)), run.initial);
         summary.print(args.results.format.format, &cause, &found, validity)?;
-    }
-    if summary::shows_no_motion(&found) {
-        say!("nothing moves: the ground is at rest and the structure stands; see --record, --theta-0, --u-0");
     }
     match picture {
         Some(picture) => picture::draw(picture, &run, &found),

@@ -201,12 +201,6 @@ impl Summary {
     }
 }
 
-/// Whether a structure stood still on ground at rest all the while.
-pub fn shows_no_motion(found: &Found) -> bool {
-    let magnitudes = PEAKS.iter().map(|peak| (peak.of)(&found.peaks)).chain([found.ground]);
-    magnitudes.into_iter().all(|peak| peak.magnitude == 0.0)
-}
-
 /// An instant (s) to six digits or to 10 us, whichever is finer.
 pub fn instant(time: f64) -> String {
     if time.abs() < 10.0 { significant(time) } else { format!("{time:.5}") }

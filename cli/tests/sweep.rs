@@ -334,7 +334,6 @@ fn a_refused_sweep_says_what_to_change() {
         ("r = 0.96", "r = 0.96, g = 1.62", "g = 1.62 m/s2 and g = 9.81 m/s2: a sweep has one g"),
         ("\"theta/alpha_cg\"", "drift", "limits: \"drift\" is unknown; these are known: theta, u, delta_t, uplift"),
         ("[0.6]", "[0]", "limits: theta/alpha_cg = 0 is out of range"),
-        ("[0.6]", "[0.6, 0.1, 0.6]", "limits: theta/alpha_cg = 0.6 is there twice: leave one out\n"),
         ("[0.6]", "[]", "limits: theta/alpha_cg is empty: give one or more\n"),
         ("'pulse.AT2'", "'zero.csv'", "the ground motion \"zero.csv\" is at rest throughout: leave it out\n"),
         (

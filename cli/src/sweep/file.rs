@@ -247,9 +247,7 @@ impl SweepFile {
         for (name, values) in &self.limits {
             ensure!(!values.is_empty(), "{name} is empty: give one or more");
             for value in values {
-                let limit = Limit::peak(name, *value)?;
-                ensure!(!limits.contains(&limit), "{name} = {value} is there twice: leave one out");
-                limits.push(limit);
+                limits.push(Limit::peak(name, *value)?);
             }
         }
         Ok(limits)
