@@ -4,17 +4,16 @@ mod picture;
 
 use crate::{
     cause::Cause,
-    output_files::OutputFiles,
     picture::PictureFile,
     quantities::in_readable_unit,
+    record_args::one_of,
     results::{Format, FormatArgs, Number, print, print_traced},
     scene_args::{GroundArgs, InitialArgs},
     structure_args::StructureArgs,
-    talk::say,
     validity::{self, LimitArgs},
 };
 use anyhow::Context;
-use clap::{ValueEnum, builder::PossibleValue};
+use clap::builder::{PossibleValue, TypedValueParser};
 use fmu_export::significant::significant;
 use rocking::estimates::demand::{Demand, INSTANT_TRANSITION};
 use rocking::estimates::effective_frequency::effective_frequency;
@@ -59,34 +58,25 @@ struct AllowedArgs {
     #[arg(long, value_name = "ERROR", default_value = "5%", value_parser = relative_error)]
     within: f64,
     /// What must stay within it; overturning must always be predicted right
-    #[arg(long, value_name = "LIST", value_enum, num_args = 1.., value_delimiter = ',', default_values_t = Measure::value_variants().to_vec())]
-    of: Vec<Measure>,
+    #[arg(long, value_name = "LIST", value_parser = criteria(), num_args = 1.., value_delimiter = ',', default_values = CRITERIA.map(|of| of.0))]
+    of: Vec<Criterion>,
 }
 
-/// What a level's error is measured by.
-#[derive(Clone, Copy, ValueEnum)]
-#[value(rename_all = "snake_case")]
-enum Measure {
-    /// Peak rotation
-    Theta,
-    /// Peak elastic displacement
-    U,
-    /// Peak acceleration of the top mass, and with it V_t = m a_t and M_t = m H a_t
-    #[value(name = "a_t", aliases = ["V_t", "M_t"])]
-    At,
-    /// Rotation over time: largest difference over the largest rotation
-    ThetaHistory,
-    /// Elastic displacement over time, likewise
-    UHistory,
-    /// Acceleration of the top mass over time, likewise
-    #[value(name = "a_t_history")]
-    AtHistory,
-}
+/// What a level's error is measured by: what it is called, and what that means.
+const CRITERIA: [(&str, &str, Criterion); 6] = [
+    ("theta", "Peak rotation", Criterion::Theta),
+    ("u", "Peak elastic displacement", Criterion::U),
+    ("a_t", "Peak acceleration of the top mass, and with it V_t = m a_t and M_t = m H a_t", Criterion::At),
+    ("theta_history", "Rotation over time: largest difference over the largest rotation", Criterion::ThetaHistory),
+    ("u_history", "Elastic displacement over time, likewise", Criterion::UHistory),
+    ("a_t_history", "Acceleration of the top mass over time, likewise", Criterion::AtHistory),
+];
 
-impl Measure {
-    fn criterion(&self) -> Criterion {
-        Criterion::ALL[*self as usize]
-    }
+fn criteria() -> impl TypedValueParser<Value = Criterion> {
+    one_of(CRITERIA.map(|(name, help, of)| {
+        let aliases: &[&str] = if of == Criterion::At { &["V_t", "M_t"] } else { &[] };
+        (PossibleValue::new(name).help(help).aliases(aliases), of)
+    }))
 }
 
 fn relative_error(text: &str) -> Result<f64, String> {
@@ -105,17 +95,14 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let ground = args.ground.load(structure.parameters().g)?;
     let inputs = args.structure.input().into_iter().chain(args.ground.record.record.as_deref());
-    let mut files = OutputFiles::of_inputs(inputs);
+    let mut files = args.results.files(inputs);
     let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let (initial, end) = (args.initial.state(), args.ground.end(&ground));
     let run = Run { initial, end, ..Run::new(structure, &ground) };
     let comparison = levels::compare(&run).context("detail = nonlinear")?;
 
-    if comparison.reference.peaks.theta().magnitude == 0.0 && comparison.reference.peaks.a_t().magnitude == 0.0 {
-        say!("nothing moves: the ground is at rest and the structure stands; see --record, --theta-0");
-    }
-    let criteria: Vec<_> = args.allowed.of.iter().map(Measure::criterion).collect();
-    let advised = comparison.recommended(args.allowed.within, &criteria);
+    let (within, criteria) = (args.allowed.within, &args.allowed.of);
+    let advised = comparison.recommended(within, criteria);
     if args.results.format == Format::Text {
         print(&text(args, &run, &comparison, advised)?)?;
     } else {
@@ -123,7 +110,7 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
         print_traced(args.results.format, &cause, &rows(&comparison, advised))?;
     }
     match picture {
-        Some(picture) => picture::draw(picture, &comparison, (args.allowed.within, &criteria), advised, ground.title()),
+        Some(picture) => picture::draw(picture, &comparison, (within, criteria), advised, ground.title()),
         None => Ok(()),
     }
 }
@@ -176,51 +163,39 @@ fn print_reference(out: &mut impl Write, structure: &Structure, comparison: &Com
 }
 
 fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&Verdict>) -> fmt::Result {
-    let row = |out: &mut dyn Write, mark: char, cells: [&str; 11]| {
-        let [level, theta, u, a_t, theta_history, u_history, a_t_history, overturns, steps, evaluations, ratio] = cells;
-        writeln!(
-            out,
-            "{mark} {level:<10} {theta:>8} {u:>8} {a_t:>13} {theta_history:>8} {u_history:>8} {a_t_history:>8} \
-             {overturns:>10} {steps:>8} {evaluations:>11} {ratio:>7}"
-        )
+    const WIDTHS: [usize; 10] = [8, 8, 13, 8, 8, 8, 10, 8, 11, 7];
+    let mut row = |mark: char, level: &str, cells: &[String]| {
+        write!(out, "{mark} {level:<10}")?;
+        cells.iter().zip(WIDTHS).try_for_each(|(cell, width)| write!(out, " {cell:>width$}"))?;
+        writeln!(out)
     };
-    writeln!(out, "  {:<10} {:^31} {:^26} {:>10} {:^28}", "", "error of peaks, %", "of histories, %", "", "cost")?;
-    row(
-        out,
-        ' ',
-        ["level", "theta", "u", "a_t, V_t, M_t", "theta", "u", "a_t", "overturns", "steps", "evaluations", "of auto"],
-    )?;
+    let over = ["error of peaks, %", "of histories, %", "", "cost"];
+    row(' ', "", &[format!("{:^31} {:^26} {:>10} {:^28}", over[0], over[1], over[2], over[3])])?;
+    let headings = ["theta", "u", "a_t, V_t, M_t", "theta", "u", "a_t", "overturns", "steps", "evaluations", "of auto"];
+    row(' ', "level", &headings.map(str::to_owned))?;
     let auto = comparison.cost_of_auto();
-    for verdict in &comparison.verdicts {
-        let response = &verdict.response;
+    for Verdict { response, errors, is_right_about_overturning } in &comparison.verdicts {
         let mark = if advised.is_some_and(|advised| advised.response.detail == response.detail) { '>' } else { ' ' };
         let overturned = match response.overturns() {
             Some(true) => "yes",
             Some(false) => "no",
             None => "unknown",
         };
-        let overturns = match (verdict.is_right_about_overturning, response.overturns()) {
+        let overturns = match (is_right_about_overturning, response.overturns()) {
             (Some(false), _) => format!("{overturned}, wrong"),
             (None, Some(_)) => format!("{overturned} (?)"),
             _ => overturned.into(),
         };
-        let errors = verdict.errors.map(percent);
-        let [theta, u, a_t, theta_history, u_history, a_t_history] = errors.each_ref().map(String::as_str);
         let counts = [response.work.steps, response.work.evaluations].map(|count| count.to_string());
         let ratio = auto.map_or("-".into(), |auto| format!("{:.2}", response.cost() as f64 / auto));
-        let (level, [steps, evaluations]) = (response.detail.name(), counts.each_ref().map(String::as_str));
-        row(
-            out,
-            mark,
-            [level, theta, u, a_t, theta_history, u_history, a_t_history, &overturns, steps, evaluations, &ratio],
-        )?;
+        row(mark, response.detail.name(), &[&errors.map(percent)[..], &[overturns], &counts, &[ratio]].concat())?;
     }
     Ok(())
 }
 
 /// A level, or the reference, for programs: errors as ratios, peaks in SI units.
 #[derive(Serialize)]
-struct Row {
+struct Level {
     level: &'static str,
     error_theta: Number,
     error_u: Number,
@@ -244,7 +219,7 @@ struct Row {
 }
 
 /// The reference, then the levels.
-fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Row> {
+fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Level> {
     let auto = comparison.cost_of_auto();
     let row = |level, response: &Response, errors: [f64; 6], is_right_about_overturning, advised| {
         let [error_theta, error_u, error_a_t, error_theta_history, error_u_history, error_a_t_history] =
@@ -252,7 +227,7 @@ fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Row> {
         let peaks = &response.peaks;
         let [theta, u, a_t, V_t, M_t] =
             [peaks.theta(), peaks.u(), peaks.a_t(), peaks.V_t(), peaks.M_t()].map(|peak| peak.magnitude);
-        Row {
+        Level {
             level,
             error_theta,
             error_u,
@@ -303,8 +278,7 @@ fn print_advice(
     advised: Option<&Verdict>,
     allowed: &AllowedArgs,
 ) -> fmt::Result {
-    let named: Vec<_> = allowed.of.iter().filter_map(ValueEnum::to_possible_value).collect();
-    let names: Vec<_> = named.iter().map(PossibleValue::get_name).collect();
+    let names: Vec<_> = allowed.of.iter().map(|of| CRITERIA[*of as usize].0).collect();
     let limit = format!("within {} % in {}", shortest_percent(allowed.within), names.join(", "));
     let Some(Verdict { response, .. }) = advised else {
         return writeln!(
@@ -358,12 +332,5 @@ mod tests {
             [0.07, 0.05, 1e-7, 1e-3].map(|ratio| shortest_percent(ratio).to_string()),
             ["7", "5", "0.00001", "0.1"]
         );
-    }
-
-    #[test]
-    fn a_measure_is_the_criterion_of_its_name() {
-        assert_eq!(Measure::value_variants().len(), Criterion::ALL.len());
-        assert_eq!(Measure::At.criterion(), Criterion::At);
-        assert_eq!(Measure::AtHistory.criterion(), Criterion::AtHistory);
     }
 }

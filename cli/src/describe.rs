@@ -4,9 +4,8 @@ mod picture;
 mod template;
 
 use crate::{
-    output_files::OutputFiles,
     picture::PictureFile,
-    quantities::Line,
+    quantities::NamedValue,
     results::{Format, FormatArgs, print, print_rows},
     significant::{short, significant},
     structure_args::StructureArgs,
@@ -38,7 +37,7 @@ pub struct DescribeArgs {
 pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     if let Some(file) = &args.picture {
-        picture::draw(file.create(&mut OutputFiles::of_inputs(args.structure.input()))?, &structure)?;
+        picture::draw(file.create(&mut args.results.files(args.structure.input()))?, &structure)?;
     }
     if args.template {
         let mut out = String::new();
@@ -49,10 +48,10 @@ pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
         return print(&text(&structure)?);
     }
     let given = PARAMETERS.iter().map(|Quantity { name, unit, description, get, .. }| {
-        Line::new(name, get(structure.parameters()), unit, "", description)
+        NamedValue::new(name, get(structure.parameters()), unit, "", description)
     });
     let derived = DERIVED.iter().map(|Derived { name, unit, description, equation, value }| {
-        Line::new(name, value(&structure), unit, equation, description)
+        NamedValue::new(name, value(&structure), unit, equation, description)
     });
     let lines: Vec<_> = given.chain(derived).collect();
     print_rows(args.results.format, &lines)

@@ -3,9 +3,8 @@ mod picture;
 
 use crate::{
     cause::Cause,
-    output_files::OutputFiles,
     picture::PictureFile,
-    quantities::{Line, write_columns},
+    quantities::{NamedValue, write_columns},
     record_args::RecordArgs,
     results::{Format, FormatArgs, print, print_traced},
     significant::significant,
@@ -59,7 +58,7 @@ pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let record = args.ground.load(structure.parameters().g)?;
     let inputs = args.structure.input().into_iter().chain(args.ground.record.as_deref());
-    let mut files = OutputFiles::of_inputs(inputs);
+    let mut files = args.results.files(inputs);
     let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let fixed_base = record.as_ref().map_or(Vec::new(), |record| on_fixed_base(&structure, record));
     let S_a =
@@ -74,7 +73,7 @@ pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
     }
     let frequencies = args.amplitudes.iter().filter_map(|&part| {
         let theta = part * structure.tan_alpha_cg;
-        (theta < FRAC_PI_2).then(|| Line {
+        (theta < FRAC_PI_2).then(|| NamedValue {
             name: format!("f_r({part})"),
             value: effective_frequency(&structure, theta),
             unit: "Hz",
@@ -96,8 +95,8 @@ fn text(
     args: &EstimateArgs,
     structure: &Structure,
     record: Option<&Record>,
-    fixed_base: &[Line],
-    rocking: &[Line],
+    fixed_base: &[NamedValue],
+    rocking: &[NamedValue],
 ) -> Result<String, fmt::Error> {
     let mut out = String::new();
     let g = structure.parameters().g;
@@ -125,29 +124,35 @@ fn text(
 }
 
 /// The ground motion, and what it asks of the structure on a fixed base.
-fn on_fixed_base(structure: &Structure, record: &Record) -> Vec<Line> {
+fn on_fixed_base(structure: &Structure, record: &Record) -> Vec<NamedValue> {
     let S_a = spectral_acceleration(record, TAU / structure.omega_fc, structure.parameters().zeta_fc);
     vec![
-        Line::new("PGA", record.pga(), "m/s2", "", "peak ground acceleration"),
-        Line::new("S_a(T_fc, zeta_fc)", S_a, "m/s2", "Eq 4", "lateral acceleration on a fixed base"),
-        Line::new("V_fc", structure.parameters().m * S_a, "N", "Eq 4", "base shear on a fixed base"),
+        NamedValue::new("PGA", record.pga(), "m/s2", "", "peak ground acceleration"),
+        NamedValue::new("S_a(T_fc, zeta_fc)", S_a, "m/s2", "Eq 4", "lateral acceleration on a fixed base"),
+        NamedValue::new("V_fc", structure.parameters().m * S_a, "N", "Eq 4", "base shear on a fixed base"),
     ]
 }
 
 /// The demand while rocking, term by term, and what it comes from.
-fn while_rocking(structure: &Structure, S_a: f64, C: f64, demand: &Demand) -> Vec<Line> {
+fn while_rocking(structure: &Structure, S_a: f64, C: f64, demand: &Demand) -> Vec<NamedValue> {
     let &Demand { u_ddot_gr, ground, rocking, impact, a_t, V_t, M_t } = demand;
     vec![
-        Line::new("T_u", TAU / structure.omega_u, "s", "before Eq 18", "period of the vibration mode while rocking"),
-        Line::new("zeta_u", structure.zeta_u, "1", "before Eq 18", "its damping ratio"),
-        Line::new("S_a(T_u, zeta_u)", S_a, "m/s2", "after Eq 20", "its absolute spectral acceleration"),
-        Line::new("C", C, "1", "Eq 21", "dynamic amplification at a transition between rocking phases"),
-        Line::new("u_ddot_gr", u_ddot_gr, "m/s2", "Eq 21", "elastic acceleration as the weight changes sides"),
-        Line::new("(1-chi) S_a", ground, "m/s2", "Eq 22", "vibration that the ground excites"),
-        Line::new("chi g tan", rocking, "m/s2", "Eq 22", "rocking mode, chi g tan(alpha_cg)"),
-        Line::new("C chi g tan", impact, "m/s2", "Eq 22", "vibration that the change of sides excites"),
-        Line::new("a_t", a_t, "m/s2", "Eq 22", "lateral acceleration, the sum of these three"),
-        Line::new("V_t", V_t, "N", "Eq 23", "base shear m a_t"),
-        Line::new("M_t", M_t, "N.m", "Eq 24", "overturning moment m H a_t"),
+        NamedValue::new(
+            "T_u",
+            TAU / structure.omega_u,
+            "s",
+            "before Eq 18",
+            "period of the vibration mode while rocking",
+        ),
+        NamedValue::new("zeta_u", structure.zeta_u, "1", "before Eq 18", "its damping ratio"),
+        NamedValue::new("S_a(T_u, zeta_u)", S_a, "m/s2", "after Eq 20", "its absolute spectral acceleration"),
+        NamedValue::new("C", C, "1", "Eq 21", "dynamic amplification at a transition between rocking phases"),
+        NamedValue::new("u_ddot_gr", u_ddot_gr, "m/s2", "Eq 21", "elastic acceleration as the weight changes sides"),
+        NamedValue::new("(1-chi) S_a", ground, "m/s2", "Eq 22", "vibration that the ground excites"),
+        NamedValue::new("chi g tan", rocking, "m/s2", "Eq 22", "rocking mode, chi g tan(alpha_cg)"),
+        NamedValue::new("C chi g tan", impact, "m/s2", "Eq 22", "vibration that the change of sides excites"),
+        NamedValue::new("a_t", a_t, "m/s2", "Eq 22", "lateral acceleration, the sum of these three"),
+        NamedValue::new("V_t", V_t, "N", "Eq 23", "base shear m a_t"),
+        NamedValue::new("M_t", M_t, "N.m", "Eq 24", "overturning moment m H a_t"),
     ]
 }

@@ -1,17 +1,15 @@
 //! `export`: packs the shared libraries, with all that describes them, into an FMU.
 
 use crate::input;
-use crate::output_files::{OutputFile, OutputFiles};
-use crate::record_args::{RecordOptions, with_option};
+use crate::output_files::OutputFiles;
+use crate::record_args::{RecordOptions, one_of, with_option};
 use crate::structure_args::{StructureArgs, in_one_line};
 use crate::tables::Table;
 use crate::talk::say;
 use FlexibleRocking::guid;
 use anyhow::{Context, bail};
-use clap::builder::{PossibleValuesParser, TypedValueParser};
 use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
-use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
@@ -31,7 +29,7 @@ pub struct ExportArgs {
     #[command(flatten, next_help_heading = "Ground motion")]
     options: RecordOptions,
     /// Version of FMI, for co-simulation and model exchange: 2 (2.0), 3 (3.0)
-    #[arg(long, value_name = "VERSION", default_value = "2", value_parser = versions())]
+    #[arg(long, value_name = "VERSION", default_value = "2", value_parser = one_of([("2", Version::Fmi2), ("3", Version::Fmi3)]))]
     fmi: Version,
     /// Name of the model and of its libraries' files, for hosts that hold several exports
     #[arg(long, value_name = "NAME", default_value = "FlexibleRocking")]
@@ -43,10 +41,6 @@ pub struct ExportArgs {
     /// program]
     #[arg(long, value_name = "PATH", num_args = 1..)]
     library: Vec<PathBuf>,
-}
-
-fn versions() -> impl TypedValueParser<Value = Version> {
-    PossibleValuesParser::new(["2", "3"]).map(|version| if version == "2" { Version::Fmi2 } else { Version::Fmi3 })
 }
 
 /// Writes the FMU and says what was written.
@@ -72,15 +66,14 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     let g = structure.parameters().g;
     let understood = tempfile::tempdir()?;
     let mut files = OutputFiles::of_inputs(inputs);
-    let mut file = files.create(&output)?;
     let packed = args.record.iter().enumerate().map(|(i, path)| {
         // those of one name are refused under that
         record(&args.options, path, g, &understood.path().join(i.to_string()), &mut files)
     });
     let records: Vec<_> = packed.collect::<Result<_, _>>()?;
+    let file = files.create(&output)?;
     let (contents, archive) = fmu_export::export(args.fmi, &args.name, &structure, &records, &libraries)?;
-    OutputFile::named(&output, file.write_all(&archive))?;
-    file.finish()?;
+    file.write(&archive)?;
     say!("{}: {} kB", output.display(), archive.len().div_ceil(1000));
     say!("  GUID       {}", guid(&contents));
     say!("  structure  {}", in_one_line(&structure));
@@ -108,7 +101,9 @@ fn record(
     }
     fs::create_dir(folder)?;
     let packed = folder.join(input::stem(path) + ".csv");
-    understood.write(Table::create(files, &packed)?)?;
+    let mut table = Table::create(files, &packed)?;
+    understood.write(&mut table)?;
+    table.close()?;
     Ok(packed)
 }
 

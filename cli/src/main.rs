@@ -27,18 +27,12 @@ mod talk;
 mod validity;
 mod view;
 
-use clap::{
-    Parser, Subcommand,
-    error::{ContextKind, ContextValue},
-};
+use clap::{Parser, Subcommand};
 use fmu_export::{Platform, significant};
 use std::env::consts::{ARCH, OS};
 use std::{
     io,
     process::{self, ExitCode},
-    sync::mpsc,
-    thread,
-    time::Duration,
 };
 
 /// Exit code of a command that the user stops: a shell's for SIGINT.
@@ -207,21 +201,13 @@ fn long_version() -> String {
 }
 
 fn main() -> ExitCode {
-    let CommandLine { command, quiet } =
-        CommandLine::try_parse().unwrap_or_else(|error| without_vain_tip(error).exit());
+    let CommandLine { command, quiet } = CommandLine::parse();
     if quiet {
         talk::be_quiet();
     }
-    // Without it, as under nohup, whose signals stay ignored, a command that is stopped leaves what it has begun.
+    // without it, as under nohup, whose signals stay ignored, a command that is stopped says nothing
     let _ = ctrlc::try_set_handler(|| {
-        let _none_is_begun = output_files::remove_unfinished();
-        let (told, is_told) = mpsc::channel();
-        thread::spawn(move || {
-            talk::say_stopped();
-            let _ = told.send(());
-        });
-        // who does not read what is said holds nothing up
-        let _ = is_told.recv_timeout(Duration::from_secs(1));
+        talk::say_stopped();
         process::exit(STOPPED);
     });
     let result = match command {
@@ -248,26 +234,10 @@ fn main() -> ExitCode {
     }
 }
 
-/// Without the tip that an option of one letter is meant, which is like anything.
-fn without_vain_tip(mut error: clap::Error) -> clap::Error {
-    let is_vain = match error.get(ContextKind::SuggestedArg) {
-        Some(ContextValue::String(tip)) => tip.trim_start_matches('-').len() == 1,
-        _ => false,
-    };
-    if is_vain {
-        error.remove(ContextKind::SuggestedArg);
-        error.remove(ContextKind::Usage); // as if it were meant
-    }
-    error
-}
-
 /// Whether the reader of the output has seen enough, as `head` has.
 fn is_closed_pipe(error: &anyhow::Error) -> bool {
-    error.chain().any(|cause| {
-        let io_error = match cause.downcast_ref::<csv::Error>().map(csv::Error::kind) {
-            Some(csv::ErrorKind::Io(error)) => Some(error),
-            _ => cause.downcast_ref::<io::Error>(),
-        };
-        io_error.is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe)
-    })
+    let is_it = |cause: &(dyn std::error::Error + 'static)| {
+        cause.downcast_ref::<io::Error>().is_some_and(|error| error.kind() == io::ErrorKind::BrokenPipe)
+    };
+    error.chain().any(is_it)
 }

@@ -24,8 +24,21 @@ pub struct ModesArgs {
     picture: Option<PictureFile>,
 }
 
-/// The columns of a response that the split needs: numbers, and the phase.
-const NUMBERS: [&str; 6] = ["time[s]", "a_g[m/s2]", "theta[rad]", "u[m]", "theta_dot[rad/s]", "u_dot[m/s]"];
+/// The columns of a response that the split needs: numbers, the last of which follow from the state and the structure, and
+/// the phase.
+const NUMBERS: [&str; 10] = [
+    "time[s]",
+    "a_g[m/s2]",
+    "theta[rad]",
+    "u[m]",
+    "theta_dot[rad/s]",
+    "u_dot[m/s]",
+    "uplift[m]",
+    "delta_t[m]",
+    "M_t[N.m]",
+    "R_v[N]",
+];
+const SHOWN: [&str; 4] = [NUMBERS[6], NUMBERS[7], NUMBERS[8], NUMBERS[9]];
 const PHASE: &str = "phase";
 
 /// Phases that a response has.
@@ -53,7 +66,7 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let mut files = OutputFiles::of_inputs(inputs);
     let headings = response.headers().with_context(named)?.clone();
     let columns = Columns::find(&headings).with_context(named)?;
-    let mut check = Check::new(&headings, &structure);
+    let mut check = Check::default();
     let mut table = Table::create(&mut files, &args.output)?;
     let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     table.write(HEADINGS)?;
@@ -62,11 +75,15 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let mut before = f64::NEG_INFINITY;
     for line in response.records() {
         let line = line.with_context(named)?;
-        let ([time, a_g, theta, u, theta_dot, u_dot], phase) = columns.read(&line, before).with_context(named)?;
+        let ([time, a_g, theta, u, theta_dot, u_dot, shown @ ..], phase) =
+            columns.read(&line, before).with_context(named)?;
         before = time;
         instants += 1;
         let Phase::Rocking(side) = phase else {
-            check.see_standing(&line, phase);
+            if phase == Phase::FullContact {
+                let &Parameters { m, m0, g, .. } = structure.parameters();
+                check.see(&[0.0, 0.0, 0.0, shown[3]], &[0.0, 0.0, 0.0, (m + m0) * g]);
+            }
             rocks_about = None;
             continue;
         };
@@ -75,21 +92,19 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
             stretches.push(Vec::new());
         }
         let state = State { u, u_dot, theta, theta_dot };
-        check.see(&line, &Outputs::of(&structure, phase, &state, 0.0));
+        if (u, u_dot) != (0.0, 0.0) {
+            // one without deformation may be of the level `rigid`, whose moment is no strut's
+            let Outputs { uplift, delta_t, M_t, .. } = Outputs::of(&structure, phase, &state, 0.0);
+            check.see(&shown[..3], &[uplift, delta_t, M_t]);
+        }
         let modes @ Modes { q_r, q_u, .. } = Modes::of(&structure, &state);
         let accelerations = ModalAccelerations::of(&structure, side, &state, a_g);
         table.write((time, q_r, q_u, accelerations.a_r, accelerations.a_u, accelerations.a_t()))?;
         stretches.last_mut().context("it has just begun")?.push((time, modes, accelerations));
     }
     check.refuse_another_structure().with_context(named)?;
-    table.finish()?;
-    say!(
-        "modes          {}: {rocking} of {instants} instants, those at which the structure rocks",
-        args.output.display()
-    );
-    if rocking == 0 {
-        say!("it rocks at none of them: there is nothing to split");
-    }
+    table.finish("modes")?;
+    say!("it rocks at {rocking} of {instants} instants");
     match picture {
         Some(picture) => picture::draw(picture, structure.parameters().g, &stretches, &named()),
         None => Ok(()),
@@ -129,81 +144,30 @@ impl Columns {
     }
 }
 
-type Of = fn(&Outputs) -> f64;
+/// How far a response may be from what follows from its state, in parts of the largest value: tables have few digits.
+const ROUNDING: f64 = 1e-3;
 
-/// A column of a response that follows from its state and the structure.
-struct Shown {
-    name: &'static str,
-    column: usize,
-    /// The largest value found.
-    largest: f64,
-    /// How far the farthest is from what it should be.
-    off: f64,
-}
-
-impl Shown {
-    fn find(headings: &StringRecord, name: &'static str) -> Option<Shown> {
-        let column = headings.iter().position(|heading| heading == name)?;
-        Some(Shown { name, column, largest: 0.0, off: 0.0 })
-    }
-
-    fn see(&mut self, line: &StringRecord, expected: f64) {
-        if let Ok(found) = line[self.column].parse::<f64>() {
-            self.largest = self.largest.max(found.abs());
-            self.off = self.off.max((found - expected).abs());
-        }
-    }
-}
-
-/// Whether a response is that of the structure. Of the reactions R_v is the weight in full contact; while it rocks they
-/// depend on the accelerations, and these on the level of detail, which a response does not tell. R_m in full contact
-/// follows from what the other columns show.
+/// Whether a response is that of the structure: the largest of each of [`SHOWN`] that was found, and how far the farthest is
+/// from what it should be.
+#[derive(Default)]
 struct Check {
-    rocking: Vec<(Of, Shown)>,
-    R_v: Option<Shown>,
-    /// N.
-    weight: f64,
+    largest: [f64; SHOWN.len()],
+    off: [f64; SHOWN.len()],
 }
 
 impl Check {
-    fn new(headings: &StringRecord, structure: &Structure) -> Check {
-        let columns: [(_, Of); 5] = [
-            ("uplift[m]", |outputs| outputs.uplift),
-            ("delta_t[m]", |outputs| outputs.delta_t),
-            ("a_t[m/s2]", |outputs| outputs.a_t),
-            ("V_t[N]", |outputs| outputs.V_t),
-            ("M_t[N.m]", |outputs| outputs.M_t),
-        ];
-        let find = |(name, of)| Some((of, Shown::find(headings, name)?));
-        let &Parameters { m, m0, g, .. } = structure.parameters();
-        Check {
-            rocking: columns.into_iter().filter_map(find).collect(),
-            R_v: Shown::find(headings, "R_v[N]"),
-            weight: (m + m0) * g,
+    /// Looks at what is `found` in the first columns of [`SHOWN`], and `expected` there.
+    fn see(&mut self, found: &[f64], expected: &[f64]) {
+        for (i, (found, expected)) in found.iter().zip(expected).enumerate() {
+            self.largest[i] = self.largest[i].max(found.abs());
+            self.off[i] = self.off[i].max((found - expected).abs());
         }
-    }
-
-    /// Looks at a `line` of a `phase` in which it does not rock.
-    fn see_standing(&mut self, line: &StringRecord, phase: Phase) {
-        if let (Phase::FullContact, Some(R_v)) = (phase, &mut self.R_v) {
-            R_v.see(line, self.weight);
-        }
-    }
-
-    /// Looks at a `line` whose state has these `outputs`. One without deformation may be of the level `rigid`, whose a_t is no
-    /// strut's.
-    fn see(&mut self, line: &StringRecord, outputs: &Outputs) {
-        if (outputs.u, outputs.u_dot) == (0.0, 0.0) {
-            return;
-        }
-        self.rocking.iter_mut().for_each(|(of, shown)| shown.see(line, of(outputs)));
     }
 
     fn refuse_another_structure(&self) -> anyhow::Result<()> {
-        const ROUNDING: f64 = 1e-3; // of tables in few digits
-        for Shown { name, largest, off, .. } in self.rocking.iter().map(|(_, shown)| shown).chain(&self.R_v) {
+        for ((name, off), largest) in SHOWN.iter().zip(self.off).zip(self.largest) {
             ensure!(
-                *off <= ROUNDING * largest,
+                off <= ROUNDING * largest,
                 "{name} does not follow from the state and the structure: it is the response of another structure; see --preset, --parameters"
             );
         }

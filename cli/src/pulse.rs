@@ -1,26 +1,20 @@
 //! `pulse`: one of the field's standard ground motions as a CSV file that every other command reads.
 use crate::{
     cause::Cause,
-    output_files::OutputFiles,
-    picture::{Picture, PictureFile, TITLE, titled},
-    quantities::{Line, write_columns},
-    record::picture::histories,
-    record_args::positive,
-    results::{Format, FormatArgs, print, print_traced},
-    significant::short,
+    picture::PictureFile,
+    quantities::{NamedValue, write_columns},
+    record::picture,
+    record_args::{one_of, positive},
+    results::{Format, FormatArgs, print_beside, print_traced},
     structure_args::StructureArgs,
     tables::Table,
-    talk::say,
 };
-use clap::{
-    ArgGroup,
-    builder::{PossibleValue, PossibleValuesParser, TypedValueParser},
-};
+use clap::{ArgGroup, builder::PossibleValue};
 use rocking::Structure;
 use rocking::estimates::intensity::peak_velocity;
 use rocking::run::record::Record;
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Which pulse.
 #[derive(clap::Args)]
@@ -36,7 +30,7 @@ pub struct PulseArgs {
     output: PathBuf,
     #[command(flatten)]
     results: FormatArgs,
-    /// Draw acceleration, velocity and displacement of the ground over time
+    /// Draw acceleration, velocity and displacement of the ground, and the response spectrum
     #[arg(long, value_name = "FILE.svg|png")]
     picture: Option<PictureFile>,
 }
@@ -45,7 +39,7 @@ pub struct PulseArgs {
 #[command(next_help_heading = "Pulse")]
 struct OfPulse {
     /// Its shape, with a_p the amplitude, w = 2 pi f, T = 1/f, n and gamma the cycles, phi and nu the phase
-    #[arg(value_name = "SHAPE", value_parser = shape_parser())]
+    #[arg(value_name = "SHAPE", value_parser = one_of(Shape::ALL.map(|of| (PossibleValue::new(of.name()).help(of.definition()), of))))]
     shape: Shape,
     /// Amplitude a_p of the ground acceleration
     #[arg(long, value_name = "G", value_parser = positive, allow_negative_numbers = true)]
@@ -79,14 +73,6 @@ struct OfPulse {
     error: f64,
 }
 
-fn shape_parser() -> impl TypedValueParser<Value = Shape> {
-    let shapes = Shape::ALL.map(|shape| PossibleValue::new(shape.name()).help(shape.definition()));
-    PossibleValuesParser::new(shapes).map(|name| {
-        let is_named = |shape: &Shape| shape.name() == name;
-        Shape::ALL.into_iter().find(is_named).expect("clap accepts these names alone")
-    })
-}
-
 impl OfPulse {
     /// The pulse, in the units of `structure` where it is asked for in these.
     fn pulse(&self, structure: &Structure) -> Pulse {
@@ -107,38 +93,34 @@ pub fn run(args: &PulseArgs) -> anyhow::Result<()> {
     let g = structure.parameters().g;
     let pulse = args.of.pulse(&structure);
     let record = pulse.record()?;
-    let mut files = OutputFiles::of_inputs(args.structure.input());
-    args.results.reserve(&mut files);
+    let mut files = args.results.files(args.structure.input());
     let mut table = Table::create(&mut files, &args.output)?;
     let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     table.write(["time[s]", "a_g[g]"])?;
     let samples = record.times().iter().zip(record.acceleration());
     samples.map(|(time, a_g)| (time, a_g / g)).try_for_each(|sample| table.write(sample))?;
-    table.finish()?;
+    table.finish("pulse")?;
     let lines = amounts(&pulse, &record, &structure);
     if args.results.format == Format::Text {
         let mut text = format!("{}\n", record.title());
         write_columns(&mut text, &lines, g)?;
-        if args.output == Path::new("-") { say!("{}", text.trim_end()) } else { print(&text)? }
+        print_beside(Some(&args.output), &text)?;
     } else {
         print_traced(args.results.format, &Cause::new(&structure), &lines)?;
     }
-    if args.output != Path::new("-") {
-        let (path, samples) = (args.output.display(), record.times().len());
-        say!("pulse          {path}, {samples} samples, lines within {} of the amplitude", short(pulse.error));
-    }
     match picture {
-        Some(picture) => draw(picture, &record, g),
+        Some(picture) => picture::draw(picture, &record, g),
         None => Ok(()),
     }
 }
 
 /// What the pulse amounts to, alone and for `structure`.
-fn amounts(pulse: &Pulse, record: &Record, structure: &Structure) -> Vec<Line> {
+fn amounts(pulse: &Pulse, record: &Record, structure: &Structure) -> Vec<NamedValue> {
     let (of_amplitude, of_frequency) = units_of(structure);
     let [velocity, displacement] = record.velocities_and_displacements().last().expect("a record has samples");
-    let line = |name, value, unit, description| Line::new(name, value, unit, "", description);
+    let line = |name, value, unit, description| NamedValue::new(name, value, unit, "", description);
     vec![
+        line("samples", record.times().len() as f64, "1", "samples"),
         line("a_p", pulse.amplitude, "m/s2", "amplitude"),
         line("PGA", record.pga(), "m/s2", "peak ground acceleration of the straight lines"),
         line("PGV", peak_velocity(record), "m/s", "peak ground velocity"),
@@ -150,11 +132,4 @@ fn amounts(pulse: &Pulse, record: &Record, structure: &Structure) -> Vec<Line> {
         line("a_p/(g tan)", pulse.amplitude / of_amplitude, "1", "amplitude over g tan(alpha_cg) of the structure"),
         line("omega/p_l", pulse.frequency / of_frequency, "1", "circular frequency over p_l of the structure"),
     ]
-}
-
-/// Draws `record` and its integrals.
-fn draw(picture: Picture, record: &Record, g: f64) -> anyhow::Result<()> {
-    let histories = histories(record, g);
-    let about = "the ground's acceleration and its integrals, at rest before the start";
-    picture.draw((860, TITLE + histories.height()), |area| histories.draw(&titled(area, record.title(), about)?))
 }

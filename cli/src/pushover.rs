@@ -3,20 +3,18 @@ mod picture;
 
 use crate::{
     cause::Cause,
-    output_files::OutputFiles,
     picture::PictureFile,
     quantities::in_readable_unit,
-    results::{Format, FormatArgs, print, print_traced},
+    results::{Format, FormatArgs, print_beside, print_traced},
     significant::significant,
     structure_args::StructureArgs,
     tables::Table,
-    talk::say,
 };
 use anyhow::Context;
 use rocking::estimates::pushover::{Equilibrium, at_displacement, at_overturning, at_rotation, in_full_contact};
 use rocking::{Phase, Structure};
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// What to push over.
 #[derive(clap::Args)]
@@ -50,14 +48,13 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
         .map(|delta_t| at_displacement(&structure, delta_t))
         .collect();
     let curve = curve.context(too_soft)?;
-    let mut files = OutputFiles::of_inputs(args.structure.input());
-    args.results.reserve(&mut files);
-    let table = args.output.as_ref().map(|output| Table::create(&mut files, output)).transpose()?;
+    let mut files = args.results.files(args.structure.input());
+    let table = args.output.as_deref().map(|path| Table::create(&mut files, path)).transpose()?;
     let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     if let Some(mut table) = table {
         table.write(HEADINGS)?;
         curve.iter().try_for_each(|at| table.write(line(at)))?;
-        table.finish()?;
+        table.finish("curve")?;
     }
     let corners = [
         ("uplift", in_full_contact(&structure, structure.u_cr)),
@@ -69,15 +66,10 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
         let Equilibrium { theta, delta_t, force: P, moment: M, .. } = corner;
         rows.push(Corner { name, delta_t, theta, P, M });
     }
-    let is_printed = args.output.as_deref() == Some(Path::new("-"));
     if args.results.format == Format::Text {
-        let text: String = rows.iter().map(Corner::line).collect();
-        if is_printed { say!("{}", text.trim_end()) } else { print(&text)? }
+        print_beside(args.output.as_deref(), &rows.iter().map(Corner::line).collect::<String>())?;
     } else {
         print_traced(args.results.format, &Cause::new(&structure), &rows)?;
-    }
-    if let Some(output) = args.output.as_ref().filter(|_| !is_printed) {
-        say!("curve            {}", output.display());
     }
     match picture {
         Some(picture) => picture::draw(picture, &structure, &curve, corners.map(|corner| corner.1)),

@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 
 /// One value.
 #[derive(Serialize)]
-pub struct Line {
+pub struct NamedValue {
     /// Its symbol.
     pub name: String,
     /// The value.
@@ -18,10 +18,10 @@ pub struct Line {
     pub description: String,
 }
 
-impl Line {
+impl NamedValue {
     /// A value of a fixed name.
-    pub fn new(name: &str, value: f64, unit: &'static str, equation: &'static str, description: &str) -> Line {
-        Line { name: name.into(), value, unit, equation, description: description.into() }
+    pub fn new(name: &str, value: f64, unit: &'static str, equation: &'static str, description: &str) -> NamedValue {
+        NamedValue { name: name.into(), value, unit, equation, description: description.into() }
     }
 }
 
@@ -42,8 +42,8 @@ pub fn in_readable_unit(value: f64, unit: &str, digits: fn(f64) -> String) -> St
 }
 
 /// Writes `lines` in columns; accelerations also in multiples of `g` (m/s²).
-pub fn write_columns(out: &mut impl Write, lines: &[Line], g: f64) -> fmt::Result {
-    for Line { name, value, unit, equation, description } in lines {
+pub fn write_columns(out: &mut impl Write, lines: &[NamedValue], g: f64) -> fmt::Result {
+    for NamedValue { name, value, unit, equation, description } in lines {
         let in_g = if *unit == "m/s2" { format!("{:.4} g", value / g) } else { String::new() };
         let (per_unit, unit) = readable(*value, if *unit == "1" { "-" } else { unit });
         let value = significant(*value / per_unit);

@@ -3,18 +3,17 @@ pub mod picture;
 
 use crate::{
     cause::Cause,
-    output_files::OutputFiles,
     picture::PictureFile,
-    quantities::{Line, write_columns},
+    quantities::{NamedValue, write_columns},
     record_args::{RecordOptions, with_option},
-    results::{Format, FormatArgs, print, print_traced},
+    results::{Format, FormatArgs, print_beside, print_traced},
     tables::Table,
     talk::say,
 };
 use rocking::Parameters;
 use rocking::estimates::intensity::{arias_intensity, peak_velocity, significant_duration};
 use rocking::run::record::Record;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// What a record's g stands for, m/s².
 const G: f64 = Parameters::MCMANUS.g;
@@ -42,26 +41,22 @@ pub fn run(args: &RecordCommand) -> anyhow::Result<()> {
     let understood = args.options.understand(&args.record, G).map_err(with_option)?;
     say!("record         {}", understood.described);
     understood.warnings(&args.record).for_each(|warning| say!("{warning}"));
-    let mut files = OutputFiles::of_inputs([args.record.as_path()]);
-    args.results.reserve(&mut files);
-    let table = args.output.as_ref().map(|path| Table::create(&mut files, path)).transpose()?;
+    let mut files = args.results.files([args.record.as_path()]);
+    let table = args.output.as_deref().map(|path| Table::create(&mut files, path)).transpose()?;
     let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let record = &understood.record;
-    if let Some(table) = table {
-        understood.write(table)?;
+    if let Some(mut table) = table {
+        understood.write(&mut table)?;
+        table.finish("written")?;
     }
     let lines = amounts(record);
     if args.results.format == Format::Text {
         let mut text = format!("{}\n", record.title());
         write_columns(&mut text, &lines, G)?;
-        let is_table_printed = args.output.as_deref() == Some(Path::new("-"));
-        if is_table_printed { say!("{}", text.trim_end()) } else { print(&text)? }
+        print_beside(args.output.as_deref(), &text)?;
     } else {
         let cause = Cause::of_record(&args.record, &args.options, &understood);
         print_traced(args.results.format, &cause, &lines)?;
-    }
-    if let Some(path) = args.output.as_deref().filter(|path| *path != Path::new("-")) {
-        say!("written        {}", path.display());
     }
     match picture {
         Some(picture) => picture::draw(picture, record, G),
@@ -70,11 +65,11 @@ pub fn run(args: &RecordCommand) -> anyhow::Result<()> {
 }
 
 /// What the record amounts to.
-fn amounts(record: &Record) -> Vec<Line> {
+fn amounts(record: &Record) -> Vec<NamedValue> {
     let [velocity, displacement] = record.velocities_and_displacements().last().expect("a record has samples");
     let steps = || record.times().windows(2).map(|pair| pair[1] - pair[0]);
     let [from, until] = significant_duration(record);
-    let line = |name, value, unit, description| Line::new(name, value, unit, "", description);
+    let line = |name, value, unit, description| NamedValue::new(name, value, unit, "", description);
     vec![
         line("samples", record.times().len() as f64, "1", "samples"),
         line("step_min", steps().fold(f64::INFINITY, f64::min), "s", "least time between two samples"),

@@ -1,7 +1,7 @@
 //! Which ground motion record a command works on, how it is read, and how it is scaled.
 use crate::{input, significant::short, tables::Table, talk::say};
 use anyhow::{anyhow, ensure};
-use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use rocking::run::record::Record;
 use rocking_records::{Column, Reading, RecordError, Remedy, Source, Unit, UnitFrom};
 use serde::Deserialize;
@@ -23,7 +23,7 @@ pub struct RecordArgs {
 #[serde(deny_unknown_fields, default)]
 pub struct RecordOptions {
     /// Unit of accelerations whose file does not state it [default: m/s2]
-    #[arg(long, value_parser = unit_parser(), requires = "record")]
+    #[arg(long, value_parser = one_of(Unit::NAMES), requires = "record")]
     pub unit: Option<Unit>,
     /// Time between the samples of a record without times; times that are there must not contradict it
     #[arg(long, value_name = "SECONDS", value_parser = positive, requires = "record", allow_negative_numbers = true)]
@@ -116,18 +116,12 @@ impl Understood {
         self.source.unit
     }
 
-    /// Whether nobody has said in which unit it is.
-    pub fn unit_is_assumed(&self) -> bool {
-        self.source.unit_from == UnitFrom::Assumed
-    }
-
     /// Writes it to a `table` that is read without options, number for number: times in s, accelerations in the unit of its
     /// file.
-    pub fn write(&self, mut table: Table) -> anyhow::Result<()> {
+    pub fn write(&self, table: &mut Table) -> anyhow::Result<()> {
         table.write(["time[s]".into(), format!("a_g[{}]", self.source.unit)])?;
         let Understood { in_file, .. } = self;
-        in_file.times().iter().zip(in_file.acceleration()).try_for_each(|sample| table.write(sample))?;
-        table.finish()
+        in_file.times().iter().zip(in_file.acceleration()).try_for_each(|sample| table.write(sample))
     }
 }
 
@@ -214,10 +208,14 @@ fn finite(text: &str) -> Result<f64, String> {
     }
 }
 
-fn unit_parser() -> impl TypedValueParser<Value = Unit> {
-    PossibleValuesParser::new(Unit::NAMES.map(|(name, _)| name)).map(|asked| {
-        let found = Unit::NAMES.into_iter().find(|(name, _)| *name == asked);
-        found.expect("clap accepts these names alone").1
+/// Takes one of `all` by its name.
+pub fn one_of<T: Copy + Send + Sync + 'static>(
+    all: impl IntoIterator<Item = (impl Into<PossibleValue>, T)>,
+) -> impl TypedValueParser<Value = T> {
+    let (names, values): (Vec<PossibleValue>, Vec<T>) = all.into_iter().map(|(name, of)| (name.into(), of)).unzip();
+    PossibleValuesParser::new(names.clone()).map(move |asked| {
+        let found = names.iter().position(|name| name.matches(&asked, false));
+        values[found.expect("clap accepts these names alone")]
     })
 }
 

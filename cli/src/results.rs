@@ -2,9 +2,9 @@
 
 use crate::cause::Cause;
 use crate::output_files::{OutputFile, OutputFiles};
+use crate::talk::say;
 use clap::ValueEnum;
 use serde::{Serialize, Serializer};
-use std::io::{Write, stdout};
 use std::path::Path;
 
 /// How results are printed.
@@ -16,11 +16,13 @@ pub struct FormatArgs {
 }
 
 impl FormatArgs {
-    /// Keeps a table from standard output where results for a program go there.
-    pub fn reserve(&self, files: &mut OutputFiles) {
+    /// The files of a command that reads `inputs` and prints its results so.
+    pub fn files<'a>(&self, inputs: impl IntoIterator<Item = &'a Path>) -> OutputFiles {
+        let mut files = OutputFiles::of_inputs(inputs);
         if self.format != Format::Text {
             files.reserve_standard_output("what --format asks for");
         }
+        files
     }
 }
 
@@ -88,8 +90,16 @@ fn csv(rows: &[impl Serialize]) -> anyhow::Result<Vec<u8>> {
     Ok(writer.into_inner()?)
 }
 
+/// Prints `text`, or says it where standard output has the table that is written to `output`.
+pub fn print_beside(output: Option<&Path>, text: &str) -> anyhow::Result<()> {
+    if output != Some(Path::new("-")) {
+        return print(text);
+    }
+    say!("{}", text.trim_end());
+    Ok(())
+}
+
 /// Prints `text`; that it cannot be printed is an error, as in a file.
 pub fn print(text: &str) -> anyhow::Result<()> {
-    let mut out = stdout().lock();
-    OutputFile::named(Path::new("-"), out.write_all(text.as_bytes()).and_then(|()| out.flush()))
+    OutputFile::standard_output().write(text.as_bytes())
 }

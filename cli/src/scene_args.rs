@@ -1,13 +1,10 @@
 //! The scene that a command simulates: a ground motion record or free vibration, and the initial values.
 use crate::{
-    record_args::{RecordArgs, positive},
+    record_args::{RecordArgs, one_of, positive},
     significant::short,
     structure_args::StructureArgs,
 };
-use clap::{
-    ArgGroup,
-    builder::{PossibleValuesParser, TypedValueParser},
-};
+use clap::ArgGroup;
 use rocking::run::record::Record;
 use rocking::{Detail, Run, State, Structure, engine::DEFAULT_TOLERANCE, run::End};
 use std::path::Path;
@@ -68,7 +65,8 @@ pub struct GroundArgs {
 }
 
 /// The state at the start.
-#[derive(clap::Args)]
+#[derive(clap::Args, Default, serde::Deserialize)]
+#[serde(deny_unknown_fields, default)]
 #[command(next_help_heading = "Initial values")]
 pub struct InitialArgs {
     /// Rotation of the base; 0 is full contact
@@ -90,18 +88,11 @@ pub struct InitialArgs {
 #[command(next_help_heading = "Equations")]
 struct LevelArgs {
     /// Level of detail: the equations that move the structure
-    #[arg(long, value_name = "LEVEL", default_value = Detail::default().name(), value_parser = detail_parser())]
+    #[arg(long, value_name = "LEVEL", default_value = Detail::default().name(), value_parser = one_of(Detail::ALL.map(|of| (of.name(), of))))]
     detail: Detail,
     /// Relative tolerance
     #[arg(long, default_value = format!("{DEFAULT_TOLERANCE:e}"), value_parser = tolerance)]
     tolerance: f64,
-}
-
-fn detail_parser() -> impl TypedValueParser<Value = Detail> {
-    PossibleValuesParser::new(Detail::ALL.map(Detail::name)).map(|name| {
-        let is_named = |detail: &Detail| detail.name() == name;
-        Detail::ALL.into_iter().find(is_named).expect("clap accepts these names alone")
-    })
 }
 
 fn tolerance(text: &str) -> Result<f64, String> {

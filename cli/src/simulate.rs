@@ -3,15 +3,14 @@ mod picture;
 
 use crate::{
     cause::Cause,
-    output_files::OutputFiles,
     picture::PictureFile,
     record_args::positive,
-    results::{Format, FormatArgs, print},
+    results::{Format, FormatArgs, print_beside},
     scene_args::MotionArgs,
     significant::short,
     summary::{self, Summary, instant},
     tables::{self, Table},
-    talk::{self, say},
+    talk,
     validity::{self, LimitArgs},
 };
 use anyhow::ensure;
@@ -23,7 +22,7 @@ use rocking::{
         validity::{Found as Beyond, Validity},
     },
 };
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// What to simulate.
 #[derive(clap::Args)]
@@ -106,7 +105,7 @@ impl SimulateArgs {
         progress.finish_and_clear();
         rows?;
         last.map_or(Ok(()), |(_, line)| response.write(line))?;
-        response.finish()
+        response.finish("response")
     }
 }
 
@@ -119,12 +118,11 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     if let (Some(_), End::At(end)) = (output, run.end) {
         args.check_rows(&ground, end)?;
     }
-    let mut files = OutputFiles::of_inputs(args.motion.inputs());
-    args.results.format.reserve(&mut files);
+    let ResultArgs { format, picture, events, .. } = &args.results;
+    let mut files = format.files(args.motion.inputs());
     let response = output.map(|path| Table::create(&mut files, path)).transpose()?;
-    let events = args.results.events.as_deref();
-    let mut events = events.map(|path| Table::create(&mut files, path)).transpose()?;
-    let picture = args.results.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
+    let mut events = events.as_deref().map(|path| Table::create(&mut files, path)).transpose()?;
+    let picture = picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     if let Some(events) = &mut events {
         events.write(tables::EVENTS)?;
     }
@@ -138,7 +136,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let mut validity = Validity::new(&structure, limits, Beyond::since(ground.start()));
     let found = run.found(&mut (&mut validity, &mut (&mut summary, &mut transition)))?;
     written?;
-    events.map_or(Ok(()), Table::finish)?;
+    events.map_or(Ok(()), |events| events.finish("transitions"))?;
     if let Some(response) = response {
         args.check_rows(&ground, found.finish.motion.time)?;
         args.write_response(&run, response)?;
@@ -149,22 +147,12 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
         for line in validity::section(&structure, run.detail, validity.found(), &limits) {
             text = text + &line + "\n";
         }
-        // What goes to standard output stays one table.
-        if output == Some(Path::new("-")) { say!("{}", text.trim_end()) } else { print(&text)? }
+        print_beside(output, &text)?;
     } else {
         let validity = validity::rows(validity.found(), &limits);
         let cause = Cause::new(&structure).under(&args.motion.ground.record, &ground);
         let cause = cause.computed(Some((run.detail, run.tolerance)), run.initial);
         summary.print(args.results.format.format, &cause, &found, validity)?;
-    }
-    if summary::shows_no_motion(&found) {
-        say!("nothing moves: the ground is at rest and the structure stands; see --record, --theta-0, --u-0");
-    }
-    if let Some(output) = output.filter(|output| *output != Path::new("-")) {
-        say!("response       {}", output.display());
-    }
-    if let Some(events) = &args.results.events {
-        say!("transitions    {}", events.display());
     }
     match picture {
         Some(picture) => picture::draw(picture, &run),

@@ -1,6 +1,6 @@
 //! Which structure a command works on: one of the paper's specimens, or parameters from a file, with single numbers in
 //! the place of theirs, or numbers that are all of it. What nobody has given is said.
-use crate::{input, talk::say};
+use crate::{input, significant::in_full, talk::say};
 use anyhow::{Context, anyhow};
 use clap::{Arg, ArgMatches, Command, FromArgMatches, ValueEnum, parser::ValueSource, value_parser};
 use rocking::structure::Derived;
@@ -129,11 +129,6 @@ fn with_options(error: GivenError) -> anyhow::Error {
     )
 }
 
-/// A limit of a range, which may be far from 1.
-pub fn short(limit: f64) -> String {
-    if limit == 0.0 || (1e-3..1e5).contains(&limit) { limit.to_string() } else { format!("{limit:e}") }
-}
-
 /// The option of the number called `name`: `--f-fc` of f_fc.
 fn option_name(name: &str) -> String {
     name.replace('_', "-")
@@ -153,7 +148,7 @@ fn option(name: &'static str, unit: &'static str, help: String) -> Arg {
 impl clap::Args for Numbers {
     fn augment_args(command: Command) -> Command {
         let parameters = PARAMETERS.iter().map(|&Quantity { name, unit, description, min, max, .. }| {
-            option(name, unit, format!("{description}, {} to {}", short(min), short(max)))
+            option(name, unit, format!("{description}, {} to {}", in_full(min), in_full(max)))
         });
         let natural = NATURAL.iter().map(|natural| {
             let &Derived { name, unit, description, .. } = natural.derived();

@@ -1,7 +1,7 @@
 //! What `simulate` prints at the end of a run.
 use crate::cause::Cause;
 use crate::quantities::readable;
-use crate::results::{Format, Number, print_json, print_traced};
+use crate::results::{Format, print_json, print_traced};
 use crate::validity;
 use fmu_export::significant::significant;
 use rocking::run::{
@@ -22,7 +22,7 @@ pub struct Summary {
 
 /// A peak, for programs.
 #[derive(Serialize)]
-struct Row {
+struct NamedPeak {
     name: &'static str,
     peak: f64,
     unit: &'static str,
@@ -32,20 +32,12 @@ struct Row {
 
 /// A line of the table for programs: what has no value, no unit or no instant leaves it empty.
 #[derive(Serialize)]
-struct Line {
+struct TableLine {
     name: &'static str,
-    value: Option<Value>,
+    value: serde_json::Value,
     unit: &'static str,
     /// s.
     time: Option<f64>,
-}
-
-#[derive(Serialize)]
-#[serde(untagged)]
-enum Value {
-    Number(Number),
-    Count(u64),
-    Ending(Ending),
 }
 
 /// All of it, for programs; instants in s.
@@ -60,13 +52,13 @@ struct Whole<'a> {
     overturned: Option<bool>,
     /// Since when it falls: the peaks are those before.
     fall: Option<f64>,
-    peaks: Vec<Row>,
+    peaks: Vec<NamedPeak>,
     first_uplift: Option<f64>,
     first_impact: Option<f64>,
     transitions: u64,
     steps: u64,
     evaluations: u64,
-    validity: Vec<validity::Row>,
+    validity: Vec<validity::Beyond>,
 }
 
 impl Watch for Summary {
@@ -94,33 +86,33 @@ impl Summary {
         format: Format,
         cause: &Cause,
         found: &Found,
-        validity: Vec<validity::Row>,
+        validity: Vec<validity::Beyond>,
     ) -> anyhow::Result<()> {
         let &Found { ground, ref peaks, fall, start, finish: Finish { ending, motion } } = found;
-        let row = |name, unit, Peak { magnitude: peak, time }| Row { name, peak, unit, time };
+        let row = |name, unit, Peak { magnitude: peak, time }| NamedPeak { name, peak, unit, time };
         let of_structure = PEAKS.iter().map(|peak| row(peak.name, peak.unit, (peak.of)(peaks)));
         let rows: Vec<_> = [row("a_g", "m/s2", ground)].into_iter().chain(of_structure).collect();
         let &Summary { first_uplift, first_impact, .. } = self;
         let (work, transitions) = (motion.work, motion.transitions);
         if format == Format::Csv {
-            let line = |name, value, unit, time| Line { name, value, unit, time };
-            let count = |name, count| line(name, Some(Value::Count(count)), "1", None);
-            let peaks = rows
-                .into_iter()
-                .map(|Row { name, peak, unit, time }| line(name, Some(Value::Number(Number(peak))), unit, Some(time)));
-            let validity =
-                validity.into_iter().map(|row| line(row.name, Some(Value::Number(row.value)), "1", Some(row.time)));
-            let rest = [
-                line("start", None, "", Some(start)),
-                line("ending", Some(Value::Ending(ending)), "", Some(motion.time)),
-                line("fall", None, "", fall),
-                line("first_uplift", None, "", first_uplift),
-                line("first_impact", None, "", first_impact),
+            let line = |name, value, unit, time| TableLine { name, value, unit, time };
+            let (none, count) = (serde_json::Value::Null, |name, count: u64| line(name, count.into(), "1", None));
+            let mut lines: Vec<_> =
+                rows.iter().map(|row| line(row.name, row.peak.into(), row.unit, Some(row.time))).collect();
+            lines.extend([
+                line("start", none.clone(), "", Some(start)),
+                line("ending", serde_json::to_value(ending)?, "", Some(motion.time)),
+                line("fall", none.clone(), "", fall),
+                line("first_uplift", none.clone(), "", first_uplift),
+                line("first_impact", none, "", first_impact),
                 count("transitions", transitions),
                 count("steps", work.steps),
                 count("evaluations", work.evaluations),
-            ];
-            return print_traced(format, cause, &peaks.chain(rest).chain(validity).collect::<Vec<_>>());
+            ]);
+            for row in validity {
+                lines.push(line(row.name, serde_json::to_value(row.value)?, "1", Some(row.time)));
+            }
+            return print_traced(format, cause, &lines);
         }
         let overturned = match ending {
             Ending::StillRocking => None,
@@ -148,18 +140,14 @@ impl Summary {
         let &Found { ground, ref peaks, fall, finish: Finish { ending, motion }, .. } = found;
         let mut out = String::new();
         let &Parameters { g, .. } = self.structure.parameters();
-        for (name, peak, unit, per_unit) in [
-            ("a_g", ground, "g", g),
-            ("theta", peaks.theta(), "rad", 1.0),
-            ("u", peaks.u(), "mm", 1e-3),
-            ("delta_t", peaks.delta_t(), "mm", 1e-3),
-            ("uplift", peaks.uplift(), "mm", 1e-3),
-            ("a_t", peaks.a_t(), "g", g),
-            ("V_t", peaks.V_t(), "N", 1.0),
-            ("M_t", peaks.M_t(), "N.m", 1.0),
-        ] {
-            let (more, unit) = readable(peak.magnitude, unit);
-            let (magnitude, time) = (significant(peak.magnitude / per_unit / more), instant(peak.time));
+        let of_structure = PEAKS.iter().map(|of| (of.name, (of.of)(peaks), of.unit));
+        for (name, peak, unit) in [("a_g", ground, "m/s2")].into_iter().chain(of_structure) {
+            let (per_unit, unit) = match unit {
+                "m" => (1e-3, "mm"),
+                "m/s2" => (g, "g"),
+                unit => readable(peak.magnitude, unit),
+            };
+            let (magnitude, time) = (significant(peak.magnitude / per_unit), instant(peak.time));
             writeln!(out, "{:<14} {magnitude:>12} {unit:<4} at {time} s", format!("peak |{name}|"))?;
         }
         if let Some(fall) = fall {
@@ -190,12 +178,6 @@ impl Summary {
         )?;
         Ok(out)
     }
-}
-
-/// Whether a structure stood still on ground at rest all the while.
-pub fn shows_no_motion(found: &Found) -> bool {
-    let magnitudes = PEAKS.iter().map(|peak| (peak.of)(&found.peaks)).chain([found.ground]);
-    magnitudes.into_iter().all(|peak| peak.magnitude == 0.0)
 }
 
 /// An instant (s) to six digits or to 10 us, whichever is finer.

@@ -19,7 +19,7 @@ use anyhow::{Context, bail};
 use clap::value_parser;
 use file::{Asked, Sweep};
 use indicatif::ProgressStyle;
-use rayon::{ThreadPool, ThreadPoolBuilder, prelude::*};
+use rayon::{ThreadPool, ThreadPoolBuilder};
 use rocking::run::validity::{Found, Limits, Validity};
 use rocking::structure::quantity::with_unit;
 use rocking_sweep::{
@@ -27,11 +27,9 @@ use rocking_sweep::{
     outcome::Outcome,
     plan::{Case, Plan},
 };
-use row_file::RowFile;
 use rows::Key;
 use std::{
     path::{Path, PathBuf},
-    sync::Mutex,
     time::Instant,
 };
 
@@ -80,8 +78,13 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
 fn run_records(args: &SweepArgs, sweep: Sweep, output: &Path, picture: Picture) -> anyhow::Result<()> {
     let Sweep { plan, limits, measure, records, structures } = sweep;
     let keys = rows::keys(&plan, args.validity);
-    let (rows, found) = rows::open(output, &keys)?;
-    let mut outcomes = found.outcomes;
+    let (rows, mut known) = rows::open(output)?;
+    let mut outcomes: Vec<_> = keys.iter().map(|key| known.take(&key.run)).collect();
+    ensure!(
+        keys.iter().all(|key| known.take(&key.otherwise).is_none()),
+        "{} has runs of this sweep with --validity, or without it, unlike now: give it as then, or name another file with -o",
+        output.display()
+    );
     let missing: Vec<_> = (0..plan.len()).filter(|index| outcomes[*index].is_none()).collect();
     let done = plan.len() - missing.len();
     let (name, [members, motions, scales]) = (output.display(), plan.size());
@@ -91,14 +94,23 @@ fn run_records(args: &SweepArgs, sweep: Sweep, output: &Path, picture: Picture) 
     );
     say_few(&structures, "structures");
     say_few(&records, "records");
-    let others = "of runs that are not in this sweep (other inputs, or another build of the program): kept";
-    say_other_rows(output, (found.others, others), found.repeated);
+    known.say_others(output, "runs that are not in this sweep");
 
     let pool = thread_pool(args, missing.len())?;
     let clock = Instant::now();
-    for (index, outcome) in pool.install(|| do_runs(&plan, &keys, &missing, args.validity, rows))? {
-        outcomes[index] = Some(outcome);
-    }
+    let done = pool.install(|| {
+        rows.do_runs("runs", &missing, |&index| {
+            let case = plan.case(index);
+            let found = Found::since(case.motion.record().start());
+            let mut validity = args.validity.then(|| Validity::new(&case.structure, Limits::default(), found));
+            let outcome = match &mut validity {
+                Some(validity) => case.outcome_watched(validity),
+                None => case.outcome(),
+            };
+            Ok((rows::row(&keys[index], &case, &outcome, validity.as_ref().map(Validity::found))?, (index, outcome)))
+        })
+    })?;
+    done.into_iter().for_each(|(index, outcome)| outcomes[index] = Some(outcome));
     say_rate(missing.len(), "runs", clock, &pool);
 
     let outcomes: Vec<_> = outcomes.into_iter().map(|outcome| outcome.expect("every run is done")).collect();
@@ -112,7 +124,7 @@ fn run_records(args: &SweepArgs, sweep: Sweep, output: &Path, picture: Picture) 
         Format::Json => print_json(&table::curves(&populations, measure))?,
         Format::Csv => print_rows(
             Format::Csv,
-            &table::curves(&populations, measure).iter().map(|curve| &curve.row).collect::<Vec<_>>(),
+            &table::curves(&populations, measure).iter().map(|of| &of.curve).collect::<Vec<_>>(),
         )?,
     }
     say!("rows           {}", output.display());
@@ -124,15 +136,6 @@ fn run_records(args: &SweepArgs, sweep: Sweep, output: &Path, picture: Picture) 
 fn thread_pool(args: &SweepArgs, runs: usize) -> anyhow::Result<ThreadPool> {
     let threads = args.threads.map_or(0, |threads| usize::from(threads).min(runs).max(1));
     Ok(ThreadPoolBuilder::new().num_threads(threads).build()?)
-}
-
-/// Says which rows of the file at `output` are not counted: how many others, with what they are, and how many `repeated`.
-fn say_other_rows(output: &Path, others: (usize, &str), repeated: usize) {
-    for (count, what) in [others, (repeated, "there again: counted once")] {
-        if count > 0 {
-            say!("{}: {count} row(s) are {what}", output.display());
-        }
-    }
 }
 
 /// Says how fast the runs that there were to do, which are called `what`, have been done since `clock`.
@@ -158,33 +161,4 @@ fn report_failures(plan: &Plan, keys: &[Key], outcomes: &[Outcome]) -> anyhow::R
     let (count, Case { population, motion, scale, .. }) = (failed().count(), plan.case(first));
     let (name, motion, scale, key) = (population.name(), motion.name(), with_unit(scale, "1"), keys[first].run);
     bail!("{count} of {} runs failed; the first: {name}, {motion}, scale {scale}, see row {key}", plan.len())
-}
-
-/// Does the runs numbered `missing` and appends them to `rows` as they end.
-fn do_runs(
-    plan: &Plan,
-    keys: &[Key],
-    missing: &[usize],
-    validity: bool,
-    rows: RowFile,
-) -> anyhow::Result<Vec<(usize, Outcome)>> {
-    let progress = talk::progress(missing.len()).with_style(progress_style("runs")?);
-    let rows = Mutex::new(rows);
-    let outcomes = missing.par_iter().map(|&index| {
-        let case = plan.case(index);
-        let (outcome, found) = if validity {
-            let found = Found::since(case.motion.record().start());
-            let mut validity = Validity::new(&case.structure, Limits::default(), found);
-            (case.outcome_watched(&mut validity), Some(*validity.found()))
-        } else {
-            (case.outcome(), None)
-        };
-        let row = rows::row(&keys[index], &case, &outcome, found.as_ref())?;
-        rows.lock().expect("no thread panics with the file in hand").append(&row)?;
-        progress.inc(1);
-        Ok((index, outcome))
-    });
-    let outcomes = outcomes.collect();
-    progress.finish_and_clear();
-    outcomes
 }

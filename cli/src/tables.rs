@@ -1,45 +1,43 @@
 //! The tables that `simulate` writes: the response and its transitions as CSV.
 use crate::output_files::{OutputFile, OutputFiles};
+use crate::talk::say;
 use rocking::engine::piece::Sample;
 use rocking::{Impulse, Outputs, Reactions, State, Transition};
 use serde::Serialize;
-use std::{
-    io,
-    path::{Path, PathBuf},
-};
+use std::path::Path;
 
-/// A CSV file that is being written.
+/// A CSV file that is being made.
 pub struct Table {
-    path: PathBuf,
-    writer: csv::Writer<OutputFile>,
+    file: OutputFile,
+    writer: csv::Writer<Vec<u8>>,
 }
 
 impl Table {
     /// A table at `path`, or on standard output for `-`, still without its headings: a command writes nothing before it
     /// has all of its files.
     pub fn create(files: &mut OutputFiles, path: &Path) -> anyhow::Result<Table> {
-        let writer = csv::WriterBuilder::new().has_headers(false).from_writer(files.create(path)?);
-        Ok(Table { path: path.into(), writer })
+        let writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+        Ok(Table { file: files.create(path)?, writer })
     }
 
     /// Adds a line, the headings or another; a number reads back to the same bits.
     pub fn write(&mut self, line: impl Serialize) -> anyhow::Result<()> {
-        OutputFile::named(&self.path, self.writer.serialize(line).map_err(of_the_file))
+        Ok(self.writer.serialize(line)?)
     }
 
-    /// Writes out what is still held back.
-    pub fn finish(mut self) -> anyhow::Result<()> {
-        OutputFile::named(&self.path, self.writer.flush())?;
-        let file = self.writer.into_inner().map_err(|failed| io::Error::from(failed.error().kind()));
-        OutputFile::named(&self.path, file)?.finish()
+    /// Writes the file.
+    pub fn close(self) -> anyhow::Result<()> {
+        self.file.write(&self.writer.into_inner()?)
     }
-}
 
-/// The file's own error, which is all that can go wrong with lines of numbers and words.
-fn of_the_file(error: csv::Error) -> io::Error {
-    match error.into_kind() {
-        csv::ErrorKind::Io(error) => error,
-        other => io::Error::other(format!("{other:?}")),
+    /// Writes the file, and says where, as `what`.
+    pub fn finish(self, what: &str) -> anyhow::Result<()> {
+        let path = self.file.path().to_owned();
+        self.close()?;
+        if path != Path::new("-") {
+            say!("{what:<14} {}", path.display());
+        }
+        Ok(())
     }
 }
 

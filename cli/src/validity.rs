@@ -55,7 +55,7 @@ const LABELS: [&str; ASSUMPTIONS.len()] = [
 
 /// One of [`ASSUMPTIONS`], for programs.
 #[derive(Serialize)]
-pub struct Row {
+pub struct Beyond {
     pub name: &'static str,
     pub value: Number,
     /// Its instant, s.
@@ -68,10 +68,10 @@ pub struct Row {
 }
 
 /// All of them, in a run in which this was `found`.
-pub fn rows(found: &Found, limits: &Limits) -> Vec<Row> {
+pub fn rows(found: &Found, limits: &Limits) -> Vec<Beyond> {
     let row = |(assumption, worst): (&Assumption, &Worst)| {
         let Worst { value, time, first_beyond, beyond } = *worst;
-        Row {
+        Beyond {
             name: assumption.name,
             value: Number(value),
             time,

@@ -1,10 +1,5 @@
 //! `view`: a page that shows the structure in motion, one file that needs nothing else.
-use crate::{
-    input,
-    output_files::{OutputFile, OutputFiles},
-    scene_args::MotionArgs,
-    talk::say,
-};
+use crate::{input, output_files::OutputFiles, scene_args::MotionArgs, talk::say};
 use rocking::run::record::Record;
 use rocking::{
     Outputs, Run, Structure,
@@ -16,10 +11,7 @@ use rocking::{
     },
 };
 use serde::Serialize;
-use std::{
-    io::Write,
-    path::{Path, PathBuf},
-};
+use std::path::{Path, PathBuf};
 
 /// What to show.
 #[derive(clap::Args)]
@@ -47,11 +39,10 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
     let (structure, ground) = args.motion.load()?;
     let run = args.motion.run(structure, &ground);
     let path = args.output_path();
-    let mut file = OutputFiles::of_inputs(args.motion.inputs()).create(&path)?;
+    let file = OutputFiles::of_inputs(args.motion.inputs()).create(&path)?;
     let (part, curve) = curve(&run)?;
     let page = page(&Scene::new(&structure, &ground, part, &curve))?;
-    OutputFile::named(&path, file.write_all(page.as_bytes()))?;
-    file.finish()?;
+    file.write(page.as_bytes())?;
     if path != Path::new("-") {
         say!("view           {}", path.display());
     }

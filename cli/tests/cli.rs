@@ -1,20 +1,16 @@
-//! The command line driven from outside: `describe` and `simulate`, their tables, messages and exit codes.
-#![allow(non_snake_case)] // V_t, M_t: the paper's own letters
+//! The command line driven from outside: structures, what `simulate` and `modes` write, what a result comes from.
+#![allow(non_snake_case)] // H, V_t, M_t: the paper's own letters
 
 mod command_line;
 
-use FlexibleRocking::variables::{Causality, DataType, PHASES, VARIABLES, Variable};
-use command_line::{DT, SAMPLES, command, fail, folder, pulse, succeed};
-use rocking::{
-    Engine, Impulse, Load, Outputs, Parameters, Phase, Ramp, Reactions, State, Structure, engine::DEFAULT_TOLERANCE,
-};
-use std::{
-    collections::BTreeSet,
-    fs,
-    io::Read,
-    path::Path,
-    process::{Output, Stdio},
-};
+use FlexibleRocking::variables::{Causality, DataType, VARIABLES, Variable};
+use command_line::{DT, SAMPLES, folder, pulse, succeed};
+use rocking::engine::piece::Sample;
+use rocking::run::record::Record;
+use rocking::structure::natural_quantities::names;
+use rocking::{Detail, Parameters, Run, Structure, run::End};
+use rocking_records::Reading;
+use std::{collections::BTreeSet, fs, path::Path};
 
 /// The headings and lines of a CSV file.
 fn table(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {
@@ -27,32 +23,6 @@ fn column(path: &Path, heading: &str) -> Vec<f64> {
     let (headings, lines) = table(path);
     let index = headings.iter().position(|found| found == heading).unwrap();
     lines.iter().map(|line| line[index].parse().unwrap()).collect()
-}
-
-#[test]
-fn describe_shows_the_specimen_with_units_and_equations() {
-    let folder = folder();
-    let (mcmanus, _) = succeed(folder.path(), "describe");
-    for line in [
-        "  m                 130.1 kg     top mass",
-        "  r                  0.99 -      coefficient of restitution on the angular velocity at impact",
-        "  u_cr         0.00231348 m      after Eq 4    critical displacement: uplift",
-        "  J_P             467.046 kg.m2  after Eq 8    inertia about a pivot",
-        "  p_l             2.24234 rad/s  before Eq 11  frequency parameter",
-        "  chi            0.943090 -      after Eq 13   modal participation of rocking",
-    ] {
-        assert!(mcmanus.lines().any(|found| found == line), "{line}\n{mcmanus}");
-    }
-    assert_eq!(mcmanus, succeed(folder.path(), "describe --preset mcmanus").0);
-
-    let (evison, _) = succeed(folder.path(), "describe --preset evison");
-    let (computed, _) = succeed(folder.path(), "describe --preset mcmanus --width 3 --alpha-cg 0.25");
-    assert!(computed.contains("  H               8.82752 m "), "{computed}");
-    assert!(evison.contains("  f_u             36.5739 Hz     before Eq 18"), "{evison}");
-
-    let parameters = "m = 125.8\nm0 = 44.02\nH = 1.05\nB = 0.285\nf_fc = 11\nzeta_fc = 0.015\nr = 0.96\n";
-    fs::write(folder.path().join("wall.toml"), parameters).unwrap();
-    assert_eq!(evison, succeed(folder.path(), "describe --parameters wall.toml").0);
 }
 
 #[test]
@@ -71,89 +41,29 @@ fn the_response_has_every_output_of_the_fmu_under_its_name_and_unit() {
     assert_eq!(headings.into_iter().collect::<BTreeSet<_>>(), expected);
 }
 
-/// The CSV holds the bits that the engine has.
+/// At every level the CSV holds the bits that the engine has.
 #[test]
 fn the_response_reads_back_to_the_engines_numbers() {
     let folder = folder();
-    let (summary, _) =
-        succeed(folder.path(), "simulate --record pulse.AT2 --scale -2 --time-scale 0.5 --duration 2 -o out.csv");
-    let (_, lines) = table(&folder.path().join("out.csv"));
-    assert_eq!(lines.len(), SAMPLES);
-
-    let acceleration = |i: usize| pulse(i) * 9.81 * -2.0;
-    let time = |i: usize| i as f64 * DT * 0.5;
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
-    let mut engine = Engine::new(structure, State::default(), 0.0, DEFAULT_TOLERANCE).unwrap();
-    for (i, line) in lines.iter().enumerate() {
-        if i > 0 {
-            let slope = (acceleration(i) - acceleration(i - 1)) / (time(i) - time(i - 1));
-            let a_g = Ramp { value: acceleration(i - 1), slope };
-            engine.advance(time(i) - engine.motion().time, a_g, &mut ()).unwrap();
-        }
-        let motion = engine.motion();
-        let o = Outputs::of(&structure, motion.phase, &motion.state, 0.0);
-        let numbers: Vec<f64> = line[..18].iter().map(|number| number.parse().unwrap()).collect();
-        assert_eq!(numbers[0], time(i));
-        assert!((numbers[1] - acceleration(i)).abs() <= 1e-14 * 12.0, "{} {}", numbers[1], acceleration(i));
-        let expected = [o.theta, o.u, o.a_t, o.V_t, o.M_t, o.theta_dot, o.u_dot, o.uplift, o.delta_t, o.v_t];
-        assert_eq!(numbers[2..12], expected, "line {i}");
-        let Reactions { R_h, R_v, R_m } = engine.reactions(Load::ground(numbers[1]));
-        let Impulse { I_h, I_v, I_m } = motion.impulse;
-        assert_eq!(numbers[12..], [R_h, R_v, R_m, I_h, I_v, I_m], "line {i}");
-        assert!(PHASES.items.contains(&line[18].as_str()));
-        assert_eq!(line[18] == "full contact", motion.phase == Phase::FullContact);
-        assert_eq!(line[19], motion.transitions.to_string());
+    let record = rocking_records::read(&folder.path().join("pulse.AT2"), &Reading::default(), 9.81).unwrap().0;
+    let ground = record.scaled(0.5, -2.0).unwrap();
+    for detail in Detail::ALL {
+        let level = format!("--detail {} --duration 2 -o out.csv", detail.name());
+        succeed(folder.path(), &format!("simulate --record pulse.AT2 --scale -2 --time-scale 0.5 {level}"));
+        let mut lines = table(&folder.path().join("out.csv")).1.into_iter();
+        let run = Run { detail, end: End::At(2.0), ..Run::new(Structure::new(Parameters::MCMANUS).unwrap(), &ground) };
+        let compare = |sample: &Sample| {
+            let line = lines.next().unwrap();
+            let (o, r, i) = (sample.outputs(), sample.reactions(), sample.motion.impulse);
+            let of_motion = [o.theta, o.u, o.a_t, o.V_t, o.M_t, o.theta_dot, o.u_dot, o.uplift, o.delta_t, o.v_t];
+            let on_ground = [r.R_h, r.R_v, r.R_m, i.I_h, i.I_v, i.I_m];
+            let expected = [&[sample.motion.time, sample.load.a_g], &of_motion[..], &on_ground].concat();
+            assert_eq!(line[..18].iter().map(|cell| cell.parse().unwrap()).collect::<Vec<f64>>(), expected);
+            assert_eq!(line[18..], [sample.motion.phase.name().to_owned(), sample.motion.transitions.to_string()]);
+        };
+        let finish = run.sample(ground.times().iter().copied(), compare, &mut ()).unwrap();
+        assert!(lines.next().is_none() && (finish.motion.transitions > 2 || detail == Detail::FixedBase));
     }
-    let transitions = engine.motion().transitions;
-    assert!(transitions > 2);
-    let work = engine.motion().work;
-    for line in [
-        format!("transitions    {transitions}"),
-        "overturned     not by then".into(),
-        format!("work           {} steps, {} evaluations; ", work.steps, work.evaluations),
-    ] {
-        assert!(summary.lines().any(|found| found.starts_with(&line)), "{line}\n{summary}");
-    }
-}
-
-/// The numbers of the paper's Fig 5: released at theta = 0.04 rad, u = u_cr.
-#[test]
-fn free_vibration_of_the_wall_has_its_impacts_on_time() {
-    let folder = folder();
-    let u_cr = Structure::new(Parameters::EVISON).unwrap().u_cr;
-    let run = format!(
-        "simulate --preset evison --free 2 --theta-0 0.04 --u-0 {u_cr} --interval 1e-5 --events events.csv -o free.csv"
-    );
-    let (summary, talk) = succeed(folder.path(), &run);
-
-    let (headings, events) = table(&folder.path().join("events.csv"));
-    assert_eq!(
-        headings[..6].join(" "),
-        "time[s] kind u_before[m] u_dot_before[m/s] theta_before[rad] theta_dot_before[rad/s]"
-    );
-    let impacts: Vec<f64> = column(&folder.path().join("events.csv"), "time[s]");
-    let expected = [0.168487319, 0.486378723, 0.783968665, 1.062370970, 1.321721172, 1.562668213];
-    for (impact, expected) in impacts.iter().zip(expected) {
-        assert!((impact - expected).abs() < 1e-9, "{impact} {expected}");
-    }
-    let (before, after) = (
-        column(&folder.path().join("events.csv"), "theta_dot_before[rad/s]"),
-        column(&folder.path().join("events.csv"), "theta_dot_after[rad/s]"),
-    );
-    assert_eq!(events[0][1], "impact left");
-    assert_eq!(after[0], 0.96 * before[0]);
-
-    for line in [
-        "free vibration, 0.00000 to 2.00000 s",
-        "peak |a_t|         0.920607 g    at 1.33495 s",
-        "first uplift   none",
-        "first impact   at 0.168487 s",
-    ] {
-        assert!(summary.lines().any(|found| found == line), "{line}\n{summary}");
-    }
-    assert!(talk.ends_with("\nresponse       free.csv\ntransitions    events.csv\n"), "{talk}");
-    let a_t = column(&folder.path().join("free.csv"), "a_t[m/s2]");
-    assert_eq!(a_t.len(), 200_001);
 }
 
 #[test]
@@ -184,184 +94,6 @@ fn output_times_are_the_samples_or_multiples_of_the_interval_and_always_the_end(
     let a_g = column(&folder.path().join("out.csv"), "a_g[m/s2]");
     let expected = [0.0, 0.5, 1.0 / 3.0, 1.0 / 6.0, 0.0, 0.0, 0.0].map(|a_g| a_g * 9.81);
     assert!(a_g.iter().zip(expected).all(|(a_g, expected)| (a_g - expected).abs() < 1e-14), "{a_g:?}");
-}
-
-#[test]
-fn standard_output_gets_the_same_table_and_may_be_closed_early() {
-    let folder = folder();
-    succeed(folder.path(), "simulate --record pulse.AT2 -o out.csv");
-    let (stdout, summary) = succeed(folder.path(), "simulate --record pulse.AT2 -o -");
-    assert_eq!(stdout, fs::read_to_string(folder.path().join("out.csv")).unwrap());
-    assert!(summary.contains("peak |theta|") && !summary.contains("response"), "{summary}");
-
-    let run = "simulate --free 100 --theta-0 0.1 -o - --quiet";
-    let mut child = command(folder.path(), run).stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    let mut first = [0; 7];
-    child.stdout.take().unwrap().read_exact(&mut first).unwrap();
-    assert_eq!(&first, b"time[s]");
-    let Output { status, stderr, .. } = child.wait_with_output().unwrap();
-    assert_eq!((status.code(), String::from_utf8(stderr).unwrap()), (Some(0), String::new()));
-}
-
-#[test]
-fn overturning_is_a_result() {
-    let folder = folder();
-    let (summary, _) =
-        succeed(folder.path(), "simulate --record pulse.AT2 --scale 0 --theta-0 -0.3 --events events.csv -o out.csv");
-    let (_, lines) = table(&folder.path().join("out.csv"));
-    let (_, events) = table(&folder.path().join("events.csv"));
-    let [.., before, last] = lines.as_slice() else { panic!("{lines:?}") };
-    assert_eq!([&before[18], &last[18]], ["rocking left", "overturned"]);
-    assert!((last[2].parse::<f64>().unwrap() + std::f64::consts::FRAC_PI_2).abs() < 1e-9);
-    assert_eq!(events.len(), 1);
-    assert_eq!(events[0][..2], [last[0].as_str(), "overturning left"]);
-    assert!(summary.lines().any(|line| line.starts_with("overturned     to the left at 1.61")), "{summary}");
-}
-
-#[test]
-fn an_error_names_its_cause_and_exits_with_1() {
-    let folder = folder();
-    let at2 = fs::read_to_string(folder.path().join("pulse.AT2")).unwrap();
-    for (name, text) in [
-        ("short.at2", at2.trim_end().rsplit_once('\n').unwrap().0),
-        ("velocity.AT2", &at2.replace("ACCELERATION", "VELOCITY")),
-        ("word.csv", "t,a\n0,0\n0.1,much\n"),
-        ("key.toml", "m = 1\nmass = 2\n"),
-        ("range.toml", "m = 1\nm0 = 1\nH = 1\nB = -1\nf_fc = 1\nzeta_fc = 0\nr = 1\n"),
-        ("text.toml", "m = 1\nm0 = 'one'\n"),
-    ] {
-        fs::write(folder.path().join(name), text).unwrap();
-    }
-    for (arguments, expected) in [
-        ("simulate --record absent.AT2", "error: the record absent.AT2 cannot be read: No such file"),
-        ("simulate --record pulse.vt2", "error: the record pulse.vt2 cannot be read: No such file"),
-        (
-            "simulate --record short.at2",
-            "error: short.at2, line 84: NPTS states 401 samples, and the file has 400; --ignore-npts takes those",
-        ),
-        ("simulate --record velocity.AT2", "error: velocity.AT2, line 3: found \"VELOCITY TIME SERIES"),
-        ("simulate --record word.csv", "error: word.csv, line 3: the acceleration \"much\" is not a number"),
-        ("simulate --record pulse.AT2 -o no/out.csv", "error: no/out.csv cannot be written: there is no folder no"),
-        (
-            "simulate --record pulse.AT2 --scale 1e308",
-            "error: time_scale = 1.0 and scale = 1e308 leave no ground motion of \"Full sine\"",
-        ),
-        ("simulate --free 1 --theta-dot-0 0.1", "error: theta_dot_0 = 0.1 rad/s contradicts theta_0 = 0"),
-        ("simulate --free 1 --theta-0 nan", "error: theta_0 = NaN rad is out of range"),
-        ("describe --parameters absent.toml", "error: parameters in absent.toml: No such file"),
-        ("describe --parameters key.toml", "error: parameters in key.toml: TOML parse error at line 2, column 1"),
-        ("describe --parameters text.toml", "error: parameters in text.toml: TOML parse error at line 2, column 6"),
-        ("describe --parameters range.toml", "error: parameters in range.toml: B = -1 m is out of range"),
-    ] {
-        let (code, message) = fail(folder.path(), &format!("{arguments} --quiet"));
-        assert_eq!(code, 1, "{arguments}: {message}");
-        assert!(message.starts_with(expected), "{arguments}: {message}");
-    }
-    let (_, message) = fail(folder.path(), "describe --parameters key.toml");
-    assert!(message.contains("\"mass\" is unknown; these are known: m, m0, H, B, "), "{message}");
-}
-
-#[test]
-fn wrong_usage_exits_with_2() {
-    let folder = folder();
-    for (arguments, expected) in [
-        ("", "Usage: rocking-fmu [OPTIONS] <COMMAND>"),
-        ("simulate", "--record <FILE>"),
-        ("simulate --record pulse.AT2 --free 1", "cannot be used with"),
-        ("simulate --free 1 --scale 2", "cannot be used with"),
-        ("simulate --free 0", "a finite number greater than 0 is needed"),
-        ("simulate --free 1 --interval inf", "a finite number greater than 0 is needed"),
-        ("simulate --free 1 --tolerance 1", "a number less than 1 is needed"),
-        (
-            "simulate --record pulse.csv --unit km/s2",
-            "[possible values: g, m/s2, cm/s2, gal, mm/s2, in/s2, ft/s2, mg, %g]",
-        ),
-        ("describe --preset evison --parameters a.toml", "cannot be used with"),
-        ("describe --preset housner", "[possible values: evison, mcmanus]"),
-    ] {
-        let (code, message) = fail(folder.path(), arguments);
-        assert_eq!(code, 2, "{arguments}: {message}");
-        assert!(message.contains(expected), "{arguments}: {message}");
-    }
-    let version = format!("rocking-fmu {}\nbuild {}\n", env!("CARGO_PKG_VERSION"), FlexibleRocking::BUILD);
-    assert!(succeed(folder.path(), "--version").0.starts_with(&version));
-}
-
-#[test]
-fn a_damaged_response_is_refused_where_it_is_damaged() {
-    let folder = folder();
-    succeed(folder.path(), "simulate --record pulse.AT2 -o whole.csv");
-    let (headings, lines) = table(&folder.path().join("whole.csv"));
-    let line = lines.iter().position(|line| line[18] == "rocking left").unwrap();
-    let number = line + 2;
-    for (column, value, expected) in [
-        (0, "NaN", "column 1, time[s]: \"NaN\" is not a finite number".to_owned()),
-        (0, &lines[line - 1][0], format!("column 1, time[s]: {0:?} does not come after {0} s", lines[line - 1][0])),
-        (1, "", "column 2, a_g[m/s2]: \"\" is not a finite number".to_owned()),
-        (2, "nan", "column 3, theta[rad]: \"nan\" is not a finite number".to_owned()),
-        (8, "inf", "column 9, u_dot[m/s]: \"inf\" is not a finite number".to_owned()),
-        (
-            18,
-            "rocking",
-            "column 19, phase: \"rocking\" is not one of full contact, rocking left, rocking right, overturned"
-                .to_owned(),
-        ),
-    ] {
-        let mut damaged = lines.clone();
-        damaged[line][column] = value.to_owned();
-        let text: Vec<_> = [&headings].into_iter().chain(&damaged).map(|line| line.join(",")).collect();
-        fs::write(folder.path().join("damaged.csv"), text.join("\n") + "\n").unwrap();
-        let (code, message) = fail(folder.path(), "modes --response damaged.csv --quiet");
-        assert_eq!((code, message), (1, format!("error: damaged.csv: line {number}, {expected}\n")));
-        assert!(!folder.path().join("modes.csv").exists());
-    }
-}
-
-#[test]
-fn the_response_of_another_structure_is_refused() {
-    let folder = folder();
-    succeed(folder.path(), "simulate --preset mcmanus --record pulse.AT2 -o response.csv");
-    succeed(folder.path(), "modes --preset mcmanus --r 0.9 --response response.csv"); // r moves it, and shows nowhere
-    for other in [
-        "--preset evison",
-        "--preset mcmanus --m 131",
-        "--preset mcmanus --m0 66",
-        "--preset mcmanus --f-fc 5.1",
-        "--preset mcmanus --B 0.3",
-    ] {
-        let (code, message) = fail(folder.path(), &format!("modes {other} --response response.csv"));
-        assert!(code == 1 && message.contains("it is the response of another structure"), "{other}: {message}");
-    }
-}
-
-#[test]
-fn what_cannot_be_written_is_found_before_the_run() {
-    let folder = folder();
-    let (code, message) = fail(folder.path(), "simulate --free 1 --theta-0 0.1 -o - --events -"); // and prints nothing
-    assert!(code == 1 && message.contains("standard output: something else is written there, too"), "{message}");
-    for (options, expected) in [
-        (
-            "--duration 1e9",
-            "an interval of 0.01 s over 1000000000 s makes 1e11 rows: 1e6 are possible; see --interval\n",
-        ),
-        // the pulse is over long before the structure stands
-        ("--interval 9e-7 --time-scale 0.2", "an interval of 9e-7 s over "),
-    ] {
-        let (code, message) = fail(folder.path(), &format!("simulate --record pulse.AT2 {options} -o out.csv --quiet"));
-        assert!(code == 1 && message.starts_with(&format!("error: {expected}")), "{message}");
-        assert!(!folder.path().join("out.csv").exists());
-    }
-}
-
-#[test]
-fn files_are_written_that_are_asked_for() {
-    let folder = folder();
-    for arguments in ["simulate --record pulse.AT2", "simulate --free 1 --theta-0 0.1", "pushover"] {
-        let (_, said) = succeed(folder.path(), arguments);
-        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "{arguments}: {said}");
-    }
-    let (code, message) = fail(folder.path(), "simulate --free 1 --theta-0 0.1 --interval 0.1");
-    assert!(code == 2 && message.contains("--output <FILE.csv>"), "{message}");
 }
 
 /// The peaks of a fall are those before it begins, and the ground's is the record's, though the run ends before it.
@@ -499,37 +231,6 @@ fn a_result_can_be_traced_to_its_cause() {
     }
 }
 
-/// Of a structure as large as a bridge in kN and kN.m, of a specimen in N.
-#[test]
-fn forces_are_in_units_of_their_size() {
-    let folder = folder();
-    let pier = "--H 30 --width 9 --weight 12000 --weight0 6000 --period-fc 1.0 --zeta-fc 0.05 --r 0.93";
-    let csv = succeed(folder.path(), &format!("simulate --record pulse.AT2 {pier} --format csv")).0;
-    let value = |name: &str| -> f64 {
-        let line = csv.lines().find(|line| line.starts_with(&format!("{name},"))).unwrap();
-        line.split(',').nth(1).unwrap().parse().unwrap()
-    };
-    let [V_t, M_t] = ["V_t", "M_t"].map(|name| 1e-3 * value(name));
-    let shown = |command: &str, before: &str, unit: &str| -> f64 {
-        let text = succeed(folder.path(), command).0;
-        let line = text.lines().find(|line| line.contains(before)).unwrap_or_else(|| panic!("{text}"));
-        let (_, after) = line.split_once(before).unwrap();
-        let mut words = after.split_whitespace();
-        let number = words.next().unwrap().parse().unwrap();
-        assert_eq!(words.next().unwrap().trim_end_matches(','), unit, "{line}");
-        number
-    };
-    for (command, before) in [("simulate", ["peak |V_t|", "peak |M_t|"]), ("advise", [" V_t ", " M_t "])] {
-        for (before, (expected, unit)) in before.into_iter().zip([(V_t, "kN"), (M_t, "kN.m")]) {
-            let found = shown(&format!("{command} --record pulse.AT2 {pier}"), before, unit);
-            assert!((found / expected - 1.0).abs() < 1e-5, "{command}: {found} {expected}");
-        }
-    }
-    shown(&format!("estimate {pier}"), "  V_t ", "kN");
-    shown(&format!("pushover {pier}"), ", P ", "kN");
-    shown("simulate --preset mcmanus --record pulse.AT2", "peak |V_t|", "N");
-}
-
 /// Asked as bash asks: of the last word that has been begun.
 #[test]
 fn bash_completes_options_of_a_command() {
@@ -548,23 +249,38 @@ fn bash_completes_options_of_a_command() {
 }
 
 #[test]
-fn a_tip_is_one_that_helps() {
+fn the_template_is_the_structure() {
     let folder = folder();
-    let (_, message) = fail(folder.path(), "modes --format json");
-    assert_eq!(message, "error: unexpected argument '--format' found\n\nFor more information, try '--help'.\n");
-    assert!(fail(folder.path(), "modes --respons a.csv").1.contains("a similar argument exists: '--response'"));
+    for structure in ["--preset evison --c-ratio 0.5", "--preset mcmanus --m0 0 --g 1.62"] {
+        let (template, talk) = succeed(folder.path(), &format!("describe {structure} --template"));
+        assert!(talk.starts_with("structure      from ") && talk.lines().count() == 1, "{talk}");
+        fs::write(folder.path().join("pier.toml"), &template).unwrap();
+        let described = succeed(folder.path(), &format!("describe {structure}")).0;
+        assert_eq!(succeed(folder.path(), "describe --parameters pier.toml").0, described);
+        for name in names() {
+            let has_line =
+                template.lines().any(|line| line.trim_start_matches("# ").starts_with(&format!("{name} = ")));
+            assert!(has_line, "{name}\n{template}");
+        }
+    }
 }
 
+/// The dimensions' ends are dots: their distances are those of the structure, in proportion.
 #[test]
-fn a_table_for_programs_has_the_ending_and_the_counts() {
+fn the_drawing_is_to_scale() {
     let folder = folder();
-    let (stdout, _) =
-        succeed(folder.path(), "simulate --record pulse.AT2 --scale 0 --theta-0 -0.3 --format csv -o out.csv");
-    let lines: Vec<Vec<_>> = stdout.lines().map(|line| line.split(',').collect()).collect();
-    let line = |name: &str| lines.iter().find(|line| line[0] == name).unwrap()[1..4].to_vec();
-    assert_eq!(line("name"), ["value", "unit", "time"]);
-    let end = column(&folder.path().join("out.csv"), "time[s]").pop().unwrap().to_string();
-    assert_eq!(line("ending"), ["overturned", "", &end]);
-    assert_eq!(line("transitions"), ["1", "1", ""]);
-    assert_eq!(line("first_uplift"), ["", "", ""]);
+    for (H, width) in [(1.84, 0.57), (5.0, 4.0), (1.0, 8.0)] {
+        succeed(folder.path(), &format!("describe --preset mcmanus --H {H} --width {width} --picture pier.svg"));
+        let svg = fs::read_to_string(folder.path().join("pier.svg")).unwrap();
+        let of = |circle: &str, name: &str| {
+            let (_, rest) = circle.split_once(&format!("{name}=\"")).unwrap();
+            rest.split_once('"').unwrap().0.parse::<f64>().unwrap()
+        };
+        let dots: Vec<_> = svg.lines().filter(|line| line.contains("<circle") && line.contains("#D55E00")).collect();
+        assert_eq!(dots.len(), 4, "{svg}");
+        let across = of(dots[1], "cx") - of(dots[0], "cx");
+        let upwards = of(dots[2], "cy") - of(dots[3], "cy");
+        assert!((across / upwards / (width / H) - 1.0).abs() < 5e-3, "{across} {upwards} {width} {H}");
+        assert_eq!((of(dots[0], "cy"), of(dots[2], "cx")), (of(dots[1], "cy"), of(dots[3], "cx")));
+    }
 }

@@ -1,10 +1,8 @@
 //! `sweep` driven from outside: its rows, its resumption after a violent end, its refusals, its probabilities.
-#![allow(non_snake_case)] // V_t, M_t, B: the paper's own letters
 
 mod command_line;
 
-use command_line::{command, fail, folder, pulse, succeed};
-use rocking::{Parameters, Structure};
+use command_line::{command, fail, folder, succeed};
 use rocking_sweep::fragility::FragilityCurve;
 use rocking_sweep::fragility::Trials;
 use std::{
@@ -79,7 +77,7 @@ fn every_run_has_a_row_whatever_the_threads() {
                     peak_a_t[m/s2],peak_V_t[N],peak_M_t[N.m],peak_theta/alpha_cg,transitions,steps,evaluations,\
                     tension_max,t_tension_max[s],R_v_min,t_R_v_min[s],mu_required,t_mu_required[s],mu_impact,\
                     t_mu_impact[s],tension_impact,t_tension_impact[s],energy_gain_max,t_energy_gain_max[s],\
-                    energy_gains,settlings,reason,checksum";
+                    energy_gains,settlings,reason";
     assert_eq!(one.lines().next(), Some(headings));
     assert_eq!(rows(&one).len(), RUNS);
     for other in ["two.csv", "seven.csv", "sweep.csv"] {
@@ -88,121 +86,27 @@ fn every_run_has_a_row_whatever_the_threads() {
     assert_eq!(column(&one, "run").iter().collect::<HashSet<_>>().len(), RUNS);
 }
 
-/// Slenderness is H/B; what does not vary in an entry is shown as it is there.
-#[test]
-fn rows_hold_the_structure_and_peaks_that_belong_together() {
-    let folder = sweep(SWEEP);
-    succeed(folder.path(), "sweep sweep.toml");
-    let text = read(&folder, "sweep.csv");
-    let numbers =
-        |heading| column(&text, heading).iter().map(|value| value.parse::<f64>().unwrap()).collect::<Vec<_>>();
-    assert_eq!(numbers("scale")[..7], [0.5, 1.0, 2.0, 3.0, 4.0, 6.0, 0.5]);
-    let each_sixth = |values: Vec<f64>| values.into_iter().step_by(6).collect::<Vec<_>>();
-    assert_eq!(each_sixth(numbers("r")), [0.9, 0.9, 0.9, 1.0, 1.0, 1.0, 0.96, 0.96, 0.96]);
-    assert_eq!(each_sixth(numbers("slenderness"))[..7], [4.0, 6.0, 8.0, 4.0, 6.0, 8.0, 1.05 / 0.2]);
-    assert_eq!(each_sixth(numbers("B[m]"))[5..], [0.285, 0.2, 0.25, 0.3]);
-    assert_eq!(each_sixth(numbers("J0[kg.m2]"))[5..7], [10.7, 0.0]);
-    assert_eq!(column(&text, "structures")[35..37], ["pier", "wall"]);
-
-    let (theta, uplift, a_t) = (numbers("peak_theta[rad]"), numbers("peak_uplift[m]"), numbers("peak_a_t[m/s2]"));
-    let (V_t, M_t, relative) = (numbers("peak_V_t[N]"), numbers("peak_M_t[N.m]"), numbers("peak_theta/alpha_cg"));
-    for (i, slenderness) in numbers("slenderness").into_iter().enumerate() {
-        let (base, B) = (if i < 36 { Parameters::MCMANUS } else { Parameters::EVISON }, numbers("B[m]")[i]);
-        let structure = Structure::new(Parameters { H: slenderness * B, B, ..base }).unwrap();
-        let close = |a: f64, b: f64| assert!((a - b).abs() <= 1e-12 * b.abs(), "run {i}: {a} {b}");
-        close(uplift[i], 2.0 * B * theta[i].sin());
-        close(V_t[i], base.m * a_t[i]);
-        close(M_t[i], base.m * slenderness * B * a_t[i]);
-        close(relative[i], theta[i] / structure.tan_alpha_cg.atan());
-    }
-    let pga = numbers("PGA[g]");
-    assert!((pga[1] - 0.6 * (std::f64::consts::TAU * 0.12 / 0.5).sin()).abs() < 1e-12);
-    assert_eq!(pga[2], 2.0 * pga[1]);
-    for (ending, (theta, relative)) in column(&text, "ending").into_iter().zip(theta.into_iter().zip(relative)) {
-        // of a fall the peak is before it
-        assert!(theta < 1.57 && (ending == "at rest" || relative >= 1.0 - 1e-12), "{ending} {relative}");
-    }
-}
-
-/// A record that ends while the structure still rocks: it has the time that it takes.
-#[test]
-fn a_run_does_not_end_with_its_record() {
-    let folder = sweep(
-        "records = ['short.csv']\nunit = 'g'\nscale = [1, 1.5]\n[[structures]]\nname = 'pier'\npreset = 'mcmanus'\n",
-    );
-    let samples: Vec<_> = (0..=50).map(|i| format!("{},{}\n", f64::from(i) * 0.01, pulse(i as usize))).collect();
-    fs::write(folder.path().join("short.csv"), samples.concat()).unwrap();
-    succeed(folder.path(), "sweep sweep.toml");
-    let text = read(&folder, "sweep.csv");
-    assert_eq!(column(&text, "ending"), ["at rest", "overturned"]);
-    let ends: Vec<f64> = column(&text, "end[s]").iter().map(|value| value.parse().unwrap()).collect();
-    assert!(ends[0] > 1.0 && (ends[1] - 2.96).abs() < 0.005, "{ends:?}");
-}
-
 /// A top mass that passes above the pivot of a foundation without inertia: the run is done, and not again.
 #[test]
 fn a_failed_run_is_an_outcome() {
-    let toml = "
-records = ['pulse.AT2']
-scale = [1, 6]
-[[structures]]
-name = 'light'
-parameters = { m = 130.1, m0 = 0, H = 1.84, B = 0.285, f_fc = 0.2, zeta_fc = 0.02, r = 0.99 }
-[[structures]]
-name = 'pier'
-preset = 'mcmanus'
-";
-    let folder = sweep(toml);
+    let light = "{ m = 130.1, m0 = 0, H = 1.84, B = 0.285, f_fc = 0.2, zeta_fc = 0.02, r = 0.99 }";
+    let folder = sweep(&format!(
+        "records = ['pulse.AT2']\nscale = [1, 6]\n[[structures]]\nname = 'light'\nparameters = {light}\n"
+    ));
     let mut before = None;
-    for done in [0, 4] {
+    for done in [0, 2] {
         let Output { status, stdout, stderr } = command(folder.path(), "sweep sweep.toml").output().unwrap();
         let (summary, message) = (String::from_utf8(stdout).unwrap(), String::from_utf8(stderr).unwrap());
         assert_eq!(status.code(), Some(1));
-        assert!(message.starts_with(&format!("sweep.csv: {done} of 4 runs done")), "{message}");
-        let (_, error) = message.split_once("error: ").unwrap();
-        assert!(error.starts_with("1 of 4 runs failed; the first: light, pulse.AT2, scale 6, see row "), "{error}");
+        assert!(message.starts_with(&format!("sweep.csv: {done} of 2 runs done")), "{message}");
+        assert!(
+            message.contains("error: 1 of 2 runs failed; the first: light, pulse.AT2, scale 6, see row "),
+            "{message}"
+        );
         assert!(summary.contains("1 failed and are not counted"), "{summary}");
-        let line = |start: &str| summary.lines().find(|line| line.trim().starts_with(start)).unwrap().to_owned();
-        assert!(line("0.59").ends_with("0/1"), "{summary}");
-
         let text = read(&folder, "sweep.csv");
-        assert_eq!(column(&text, "ending"), ["at rest", "failed", "at rest", "overturned"]);
-        let (_, reason) = text.split_once(",\"the motion cannot be continued beyond t = ").unwrap();
-        let (instant, _) = reason.split_once(" s ").unwrap();
-        assert_eq!(column(&text, "end[s]")[1], instant);
-        assert!(instant.starts_with("0.51"), "{instant}");
         assert_eq!(*before.get_or_insert(text.clone()), text);
     }
-}
-
-/// The system ends the program in the middle of a write when the file reaches a size limit, again and again.
-#[cfg(unix)]
-#[test]
-fn a_sweep_killed_while_it_writes_goes_on_where_it_was() {
-    let folder = sweep(SWEEP);
-    succeed(folder.path(), "sweep sweep.toml -o whole.csv");
-    let mut before = String::new();
-    let mut half_written = 0;
-    for blocks in [1, 4, 9, 13, 20] {
-        let limited = format!("ulimit -c 0; ulimit -f {blocks}; exec \"$0\" sweep sweep.toml --threads 2");
-        let program = env!("CARGO_BIN_EXE_rocking-fmu");
-        let end = Command::new("sh").args(["-c", &limited, program]).current_dir(folder.path()).output().unwrap();
-        assert_eq!(end.status.code(), None, "a signal ends it");
-        let text = read(&folder, "sweep.csv");
-        assert!(text.starts_with(&before) && text.len() > before.len());
-        let complete = text.rfind('\n').map_or(0, |end| end + 1);
-        half_written += usize::from(complete < text.len());
-        before = text[..complete].into();
-    }
-    assert!(half_written > 0 && before.lines().count() > 10);
-
-    let done = before.lines().count() - 1;
-    let (_, progress) = succeed(folder.path(), "sweep sweep.toml --threads 2");
-    assert!(progress.starts_with(&format!("sweep.csv: {done} of 54 runs done")), "{progress}");
-    assert!(progress.contains(&format!("{} runs in ", RUNS - done)), "{progress}");
-    let text = read(&folder, "sweep.csv");
-    assert!(text.starts_with(&before), "rows that were complete stay as they are");
-    assert_eq!(rows(&text), rows(&read(&folder, "whole.csv")));
 }
 
 #[test]
@@ -248,24 +152,16 @@ fn rows_of_other_inputs_are_kept_and_not_counted() {
     let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
     let original = read(&folder, "sweep.csv");
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
-    write("second.csv", "0,0\n0.1,3\n0.3,-2\n0.4,0\n");
-    let more = "[[structures]]\nname = 'other'\npreset = 'evison'\nvary.m0 = [0, 40]\n";
     let pulse = read(&folder, "pulse.AT2");
     for (changed, record, done, others) in [
         (SWEEP.replace("0.5, 1, 2", "0.5, 1, 2, 2.5"), &pulse, 54, 0),
-        (SWEEP.replace("'pulse.AT2'", "'second.csv', 'pulse.AT2'"), &pulse, 54, 0),
-        (
-            SWEEP.replace("[[structures]]\nname = 'wall'", &format!("{more}[[structures]]\nname = 'wall'")),
-            &pulse,
-            54,
-            0,
-        ),
-        (SWEEP.replace("r = [0.9, 1]", "r = [1, 0.95, 0.9]"), &pulse, 54, 0),
         (SWEEP.replace("0.5, 1, 2", "0.5, 1, 2.5"), &pulse, 45, 9),
         (SWEEP.replace("zeta_fc = 0.015", "zeta_fc = 0.0150001"), &pulse, 36, 18),
         (SWEEP.replace("name = 'wall'", "name = 'shear wall'"), &pulse, 36, 18),
         (SWEEP.replace("records", "time_scale = 0.5\nrecords"), &pulse, 0, 54),
         (SWEEP.into(), &pulse.replacen("0e0", "1e-9", 1), 0, 54),
+        // a record that two patterns name counts once
+        (SWEEP.replace("'pulse.AT2'", "'pulse.AT2', '*.AT2'"), &pulse, 54, 0),
         // What leaves the runs as they are may change: limits, patterns, comments.
         (format!("# ...\n{}", SWEEP.replace("[0.6]", "[0.1, 1.0]").replace("pulse.AT2", "p*.AT2")), &pulse, 54, 0),
     ] {
@@ -277,123 +173,30 @@ fn rows_of_other_inputs_are_kept_and_not_counted() {
         let said = format!("{others} row(s) are of runs that are not in this sweep (other inputs, or another build");
         assert_eq!(progress.contains(&said), others > 0, "{progress}");
         // which of two runs under one name is of which samples can be read
-        let digests: HashSet<_> =
-            column(&read(&folder, "sweep.csv"), "record_digest").iter().map(|of| of.to_string()).collect();
-        let names: HashSet<_> = column(&read(&folder, "sweep.csv"), "record").iter().map(|of| of.to_string()).collect();
-        let is_changed = changed.contains("time_scale") || *record != pulse;
-        assert_eq!(digests.len(), names.len() + usize::from(is_changed), "{changed}");
-        assert!(read(&folder, "sweep.csv").starts_with(&original));
+        let text = read(&folder, "sweep.csv");
+        let digests: HashSet<_> = column(&text, "record_digest").into_iter().collect();
+        assert_eq!(digests.len(), if done == 0 { 2 } else { 1 }, "{changed}");
+        assert!(text.starts_with(&original));
     }
     write("sweep.toml", SWEEP);
     write("pulse.AT2", &pulse);
     assert_eq!(succeed(folder.path(), "sweep sweep.toml").0, summary);
 }
 
+/// What an editor of another system makes of the file is gone on with; rows that are there twice count once.
 #[test]
-fn a_row_that_was_changed_is_refused_by_its_line() {
-    let folder = sweep(SWEEP);
-    succeed(folder.path(), "sweep sweep.toml --threads 1");
-    let whole = read(&folder, "sweep.csv");
-    let lines: Vec<_> = whole.lines().collect();
-    let number = 5;
-    let row = lines[number - 1];
-    let (content, checksum) = row.rsplit_once(',').unwrap();
-    let refused = |damaged: &[u8], expected: &str| {
-        let (before, after) = whole.split_at(whole.find(row).unwrap());
-        let damaged = [before.as_bytes(), damaged, &after.as_bytes()[row.len()..]].concat();
-        fs::write(folder.path().join("sweep.csv"), &damaged).unwrap();
-        let (code, message) = fail(folder.path(), "sweep sweep.toml");
-        assert_eq!(code, 1);
-        let start = format!(
-            "error: sweep.csv: line {number} is not a row as it was written: remove it, to do its run again: {expected}"
-        );
-        assert!(message.starts_with(&start), "{message}");
-        assert_eq!(fs::read(folder.path().join("sweep.csv")).unwrap(), damaged, "it is left as it is");
-    };
-    let sums = "its checksum is ";
-    let (ending, other) = if row.contains("at rest") { ("at rest", "overturned") } else { ("overturned", "at rest") };
-    refused(row.replacen(ending, other, 1).as_bytes(), sums);
-    refused(row.replacen("pier", "wall", 1).as_bytes(), sums);
-    let theta = row.split(',').nth(30).unwrap();
-    refused(row.replacen(theta, "NaN", 1).as_bytes(), sums);
-    refused(content.as_bytes(), sums);
-    refused(b"1,2", sums);
-    refused(b"short", "it has one column");
-    refused(b"", "it has one column");
-    refused(&row.as_bytes()[..row.len() - 1], &format!("{sums}{checksum} and not "));
-    for position in (0..row.len()).step_by(29).chain([row.len() - 1]) {
-        let mut flipped = row.as_bytes().to_vec();
-        flipped[position] ^= 1;
-        refused(&flipped, sums);
-        flipped[position] ^= 0x81;
-        refused(&flipped, sums);
-    }
-}
-
-/// What an editor of another system makes of the file is gone on with.
-#[test]
-fn lines_may_end_as_they_do_elsewhere() {
+fn lines_may_end_as_they_do_elsewhere_and_be_there_twice() {
     let folder = sweep(SWEEP);
     let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
     let whole = read(&folder, "sweep.csv");
-    let edited: String = whole.lines().take(20).map(|line| format!("{line}\r\n")).collect();
+    let lines: Vec<_> = whole.lines().take(20).chain(whole.lines().skip(1).take(3)).collect();
+    let edited: String = lines.iter().map(|line| format!("{line}\r\n")).collect();
     fs::write(folder.path().join("sweep.csv"), &edited).unwrap();
-    let (again, progress) = succeed(folder.path(), "sweep sweep.toml");
-    assert!(progress.starts_with("sweep.csv: 19 of 54 runs done"), "{progress}");
+    let (again, said) = succeed(folder.path(), "sweep sweep.toml");
+    assert!(said.starts_with("sweep.csv: 19 of 54 runs done"), "{said}");
+    assert!(said.contains("sweep.csv: 3 row(s) are there again: counted once"), "{said}");
     assert_eq!(again, summary);
-    let text = read(&folder, "sweep.csv");
-    assert!(text.starts_with(&edited) && rows(&text) == rows(&whole));
-}
-
-/// Every line has as many fields as there are headings, whatever the names, and numbers wherever there are some.
-#[test]
-fn the_rows_are_a_table_as_they_are() {
-    let toml = "
-records = ['pulse.AT2', { file = 'a, \"b\"/pulse.AT2', scale = 0.5 }, { file = 'c/*.AT2', scale = -0.5 }]
-scale = [1, 6]
-[[structures]]
-name = 'light, \"slow\"'
-parameters = { m = 130.1, m0 = 0, H = 1.84, B = 0.285, f_fc = 0.2, zeta_fc = 0.02, r = 0.99 }
-";
-    let folder = sweep(toml);
-    for name in ["a, \"b\"", "c"] {
-        fs::create_dir(folder.path().join(name)).unwrap();
-        fs::copy(folder.path().join("pulse.AT2"), folder.path().join(name).join("pulse.AT2")).unwrap();
-    }
-    let (code, message) = {
-        let output = command(folder.path(), "sweep sweep.toml").output().unwrap();
-        (output.status.code(), String::from_utf8(output.stderr).unwrap())
-    };
-    assert!(code == Some(1) && message.contains("of 6 runs failed"), "{message}");
-    let mut table = csv::Reader::from_path(folder.path().join("sweep.csv")).unwrap();
-    let headings = table.headers().unwrap().clone();
-    let at = |name: &str| headings.iter().position(|heading| heading == name).unwrap();
-    let (record, record_scale, pga) = (at("record"), at("record_scale"), at("PGA[g]"));
-    let rows: Vec<_> = table.records().map(|row| row.unwrap()).collect(); // the reader refuses other numbers of fields
-    assert_eq!(rows.len(), 6);
-    let mut found: Vec<_> = rows.iter().map(|row| (row[record].to_owned(), row[record_scale].to_owned())).collect();
-    found.sort();
-    found.dedup();
-    let expected = [("a, \"b\"/pulse.AT2", "0.5"), ("c/pulse.AT2", "-0.5"), ("pulse.AT2", "1.0")];
-    assert_eq!(found, expected.map(|(name, scale)| (name.to_owned(), scale.to_owned())));
-    for row in &rows {
-        let (own, scale): (f64, f64) = (row[record_scale].parse().unwrap(), row[at("scale")].parse().unwrap());
-        let expected = 0.6 * (std::f64::consts::TAU * 0.12 / 0.5).sin() * (own * scale).abs();
-        assert!((row[pga].parse::<f64>().unwrap() - expected).abs() < 1e-12);
-        assert_eq!(&row[at("structures")], "light, \"slow\"");
-        assert!(row[at("end[s]")].parse::<f64>().unwrap() > 0.5);
-    }
-}
-
-/// The picture has a place of its own.
-#[test]
-fn rows_and_picture_are_two_files() {
-    let folder = sweep(SWEEP);
-    let (code, message) = fail(folder.path(), "sweep sweep.toml -o z.svg");
-    assert_eq!(code, 1);
-    let expected = "error: picture of the sweep: z.svg: something else is written there, too; name another file\n";
-    assert_eq!(message, expected);
-    assert!(!folder.path().join("z.svg").exists());
+    assert!(read(&folder, "sweep.csv").starts_with(&edited));
 }
 
 /// Conditions are in the rows and in their keys; the intensity measure is neither.
@@ -425,61 +228,8 @@ fn conditions_of_a_sweep_are_those_of_its_runs() {
         assert!(progress.starts_with("sweep.csv: 54 of 54 runs done"), "{progress}");
         assert!(table.contains(&format!("{measure}: from ")) && table.contains(&format!(" to ({unit}) ")), "{table}");
         assert_ne!(table, usual);
-        let text = read(&folder, "sweep.csv");
-        let intensities = column(&text, &format!("{measure}[{unit}]"));
-        let largest = intensities.iter().map(|x| x.parse::<f64>().unwrap()).fold(0.0, f64::max);
-        assert!(table.contains(&format!("{largest:.5}")[..5]), "{largest}: {table}");
         assert!(read(&folder, "sweep.svg").contains(&format!("({unit})")));
     }
-}
-
-#[test]
-fn rows_that_are_there_twice_count_once() {
-    let folder = sweep(SWEEP);
-    let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
-    let whole = read(&folder, "sweep.csv");
-    let twice = whole.clone() + &whole.lines().skip(1).take(3).map(|row| format!("{row}\n")).collect::<String>();
-    fs::write(folder.path().join("sweep.csv"), &twice).unwrap();
-    let (again, progress) = succeed(folder.path(), "sweep sweep.toml");
-    assert_eq!(again, summary);
-    assert!(progress.contains("sweep.csv: 3 row(s) are there again: counted once"), "{progress}");
-    assert_eq!(read(&folder, "sweep.csv"), twice);
-}
-
-/// The file of something else is left as it is.
-#[test]
-fn the_headings_are_checked() {
-    let folder = sweep(SWEEP);
-    succeed(folder.path(), "sweep sweep.toml");
-    let whole = read(&folder, "sweep.csv");
-    let (headings, rows) = whole.split_once('\n').unwrap();
-    for (content, expected) in [
-        (rows, format!("error: sweep.csv: line 1 is a row: put the headings back before it:\n{headings}\n")),
-        ("a,b\n1,2\n", "error: sweep.csv: line 1, \"a,b\", is not the headings of a sweep's rows: name ano".into()),
-        ("# rocking-fmu sweep\n", "error: sweep.csv: line 1, \"# rocking-fmu sweep\", is not the headings".into()),
-        (
-            "run,structures,m[kg],scale,PGA[g]\n1,2,3,4,5\n",
-            "error: sweep.csv: the headings in line 1 are those of another kind of sweep (of records, of pulses) or of \
-             another version of this program: name another"
-                .into(),
-        ),
-    ] {
-        fs::write(folder.path().join("sweep.csv"), content).unwrap();
-        let (code, message) = fail(folder.path(), "sweep sweep.toml");
-        assert!(code == 1 && message.starts_with(&expected), "{message}");
-        assert_eq!(read(&folder, "sweep.csv"), content);
-    }
-}
-
-#[test]
-fn a_record_that_two_patterns_name_counts_once() {
-    let folder = sweep(SWEEP);
-    let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
-    let twice = SWEEP.replace("'pulse.AT2'", "'pulse.AT2', '*.AT2'");
-    fs::write(folder.path().join("sweep.toml"), twice).unwrap();
-    let (again, progress) = succeed(folder.path(), "sweep sweep.toml");
-    assert_eq!(again, summary);
-    assert!(progress.starts_with("named twice in records and counted once: pulse.AT2\n"), "{progress}");
 }
 
 #[test]
@@ -557,56 +307,15 @@ vary = { slenderness = [4, 5, 6, 8], r = [0.8, 0.9, 1] }
     for (scales, is_beyond) in [("[1, 1.2]", true), ("[1, 1.2, 2]", false)] {
         let folder = sweep(&toml.replace("[1, 1.2]", scales));
         let (table, _) = succeed(folder.path(), "sweep sweep.toml");
-        let words = |line: &str| line.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
-        let rows: Vec<_> = table.lines().map(words).collect();
-        let median = rows.iter().position(|row| row.first().is_some_and(|first| first == "median")).unwrap();
-        let number = |text: &String| text.parse::<f64>().unwrap();
-        let (strongest, found) = (number(&rows[median - 1][2]), number(&rows[median][3]));
-        assert_eq!(
-            (found > strongest, rows[median + 1].join(" ") == "beyond the runs"),
-            (is_beyond, is_beyond),
-            "{table}"
-        );
+        assert_eq!(table.contains("beyond the runs"), is_beyond, "{table}");
         assert_eq!(read(&folder, "sweep.svg").contains("beyond the runs: "), is_beyond, "the picture says so, too");
         let json = succeed(folder.path(), "sweep sweep.toml --format json --quiet").0;
         let json: serde_json::Value = serde_json::from_str(&json).unwrap();
         let of_limit = json.as_array().unwrap().iter().find(|curve| curve["median"].is_number()).unwrap();
+        let strongest = of_limit["bins"].as_array().unwrap().last().unwrap()["highest"].as_f64().unwrap();
         assert_eq!(of_limit["median_is_beyond_the_runs"], is_beyond);
+        assert_eq!(of_limit["median"].as_f64().unwrap() > strongest, is_beyond);
     }
-}
-
-/// All that is wrong with the records is said at once; what is right with very many is not said of each.
-#[test]
-fn many_records_are_read_at_once() {
-    let folder = sweep(&SWEEP.replace("'pulse.AT2'", "'*.csv', 'absent.AT2'"));
-    let record =
-        |i: usize| fs::write(folder.path().join(format!("{i:03}.csv")), format!("0,0\n0.5,{i}\n1,0\n")).unwrap();
-    (1..=40).for_each(record);
-    for (name, text) in [("007.csv", "0,0\n0.5,much\n"), ("021.csv", "0,0\n0.5,0\n")] {
-        fs::write(folder.path().join(name), text).unwrap();
-    }
-    let (_, message) = fail(folder.path(), "sweep sweep.toml --quiet");
-    let lines: Vec<_> = message.lines().collect();
-    assert_eq!(lines[0], "error: sweep in sweep.toml: 3 of 41 records cannot be taken:");
-    for (line, start) in lines[1..].iter().zip([
-        "  007.csv, line 2: the acceleration \"much\" is not a number",
-        "  the ground motion \"021.csv\" is at rest throughout",
-        "  records: there is no file absent.AT2",
-    ]) {
-        assert!(line.starts_with(start), "{message}");
-    }
-    assert_eq!(lines.len(), 4, "{message}");
-
-    [7, 21].into_iter().for_each(record);
-    fs::write(folder.path().join("stated.csv"), "t (s),a (g)\n0,0\n0.5,1\n1,0\n").unwrap();
-    let few =
-        "records = ['*.csv']\nscale = [0.01]\n[[structures]]\nname = 'pier'\npreset = 'mcmanus'\nvary.H = [1.5]\n";
-    fs::write(folder.path().join("sweep.toml"), few).unwrap();
-    let (_, said) = succeed(folder.path(), "sweep sweep.toml");
-    assert!(said.contains("\n... and 36 more records\n") && said.lines().count() < 20, "{said}");
-    assert!(!said.contains("stated.csv"), "those whose unit is assumed come first: {said}");
-    let inherited = "pier: from mcmanus: m = 130.1 kg, m0 = 65.4 kg, B = 0.285 m, ";
-    assert!(said.lines().any(|line| line.starts_with(inherited)), "{said}");
 }
 
 #[test]
@@ -614,25 +323,17 @@ fn a_refused_sweep_says_what_to_change() {
     for (from, to, expected) in [
         ("pulse.AT2", "absent*.AT2", "records: there is no file absent*.AT2"),
         ("'pulse.AT2'", "", "records is empty: give one or more"),
-        ("[0.5, 1, 2, 3, 4, 6]", "[]", "scale is empty: give one or more"),
         ("[0.5, 1, 2, 3, 4, 6]", "[0, 1]", "scale = 0 leaves no ground motion: leave it out"),
-        (
-            "[0.5, 1, 2, 3, 4, 6]",
-            "{ from = 1, to = 2, count = 1 }",
-            "scale: count = 1 is out of range: 2 to 10000000 v",
-        ),
         ("[0.5, 1, 2, 3, 4, 6]", "[nan]", "scale = NaN is not a finite number"),
-        ("records", "time_scale = -1\nrecords", "time_scale = -1 is out of range: a finite number greater than 0"),
+        ("records", "time_scale = -1\nrecords", "time_scale = -1.0 and scale = 1.0 leave no ground motion of"),
         ("name = 'wall'", "name = 'pier'", "two populations have the name \"pier\": rename one"),
         ("preset = 'mcmanus'\n", "", "structures \"pier\": give either preset or parameters"),
         ("[4, 6, 8], r", "[4], H = [1], r", "structures \"pier\": H and slenderness cannot both vary"),
         ("r = [0.9, 1]", "q = [1]", "structures \"pier\": \"q\" cannot vary: these can: m, m0, H, B, J0, f_fc"),
         ("r = [0.9, 1]", "r = [0, 1]", "structures \"pier\": r = 0"),
-        ("r = [0.9, 1]", "r = []", "structures \"pier\": r is empty: give one or more\n"),
         ("r = 0.96", "r = 0.96, g = 1.62", "g = 1.62 m/s2 and g = 9.81 m/s2: a sweep has one g"),
         ("\"theta/alpha_cg\"", "drift", "limits: \"drift\" is unknown; these are known: theta, u, delta_t, uplift"),
         ("[0.6]", "[0]", "limits: theta/alpha_cg = 0 is out of range"),
-        ("[0.6]", "[0.6, 0.1, 0.6]", "limits: theta/alpha_cg = 0.6 is there twice: leave one out\n"),
         ("[0.6]", "[]", "limits: theta/alpha_cg is empty: give one or more\n"),
         ("'pulse.AT2'", "'zero.csv'", "the ground motion \"zero.csv\" is at rest throughout: leave it out\n"),
         (
@@ -649,13 +350,6 @@ fn a_refused_sweep_says_what_to_change() {
         ("records", "intensity = 'PGD'\nrecords", "intensity = \"PGD\" is unknown; these are known: PGA, PGV, S_a\n"),
         ("records", "tolerance = 1\nrecords", "tolerance = 1 is out of range: a number between 0 and 1 is needed\n"),
         ("records", "duration = -1\nrecords", "duration = -1 is out of range: a finite number greater than 0"),
-        ("records", "initial = { theta = 1 }\nrecords", "initial: \"theta\" is unknown; these are known: theta_0, "),
-        ("records", "initial = { theta_0 = 2 }\nrecords", "theta_0 = 2 rad is out of range"),
-        (
-            "m = 125.8",
-            "m = 125.8, weight = 1",
-            "structures \"wall\": weight = 1 kN is given beside m: weight determines",
-        ),
         ("[0.5, 1, 2, 3, 4, 6]", "[1, 2, 1]", "scale = 1 is there twice and would count twice: leave one out"),
         (
             "[0.5, 1, 2, 3, 4, 6]",
@@ -668,9 +362,8 @@ fn a_refused_sweep_says_what_to_change() {
             "9 structures x 1 ground motions x 2000000 scale factors: more than 10000000 runs",
         ),
         ("r = [0.9, 1]", "g = [9.81]", "structures \"pier\": g cannot vary: a sweep has one g"),
-        ("name = 'wall'", "name = \"wa\\nll\"", "the name \"wa\\nll\" must be a line of text, for it is written into"),
         ("records", "record", "TOML parse error at line 2, column 1"),
-        ("[0.5, 1, 2, 3, 4, 6]", "'all'", "TOML parse error at line 3, column 9"),
+        ("records", "initial = { theta = 1 }\nrecords", "TOML parse error at line 2, column 13"),
     ] {
         assert!(SWEEP.contains(from));
         let folder = sweep(&SWEEP.replacen(from, to, 1));
@@ -685,7 +378,29 @@ fn a_refused_sweep_says_what_to_change() {
     let folder = sweep(SWEEP);
     let (code, message) = fail(folder.path(), "sweep sweep.toml --threads 0");
     assert!(code == 2 && message.contains("0 is not in 1..=1024"), "{message}");
-    let (code, message) = fail(folder.path(), "sweep sweep.toml --threads 20000");
-    assert!(code == 2 && message.contains("20000 is not in 1..=1024"), "{message}");
-    assert_eq!(fail(folder.path(), "sweep").0, 2);
+}
+
+/// The file of something else, or with a row that nobody can read, is left as it is.
+#[test]
+fn a_damaged_file_is_refused_by_its_line() {
+    let folder = sweep(SWEEP);
+    succeed(folder.path(), "sweep sweep.toml --threads 1");
+    let whole = read(&folder, "sweep.csv");
+    let (headings, rows) = whole.split_once('\n').unwrap();
+    let row = rows.lines().next().unwrap();
+    let not_headings = format!(
+        "line 1 is not the headings of this sweep's rows, in this version of the program: name another file with -o, or \
+         remove this one. These are the headings:\n{headings}\n"
+    );
+    for (content, expected) in [
+        (rows.to_owned(), not_headings.as_str()),
+        ("# rocking-fmu sweep\n".into(), &not_headings),
+        (whole.replacen(row, "1,2", 1), "CSV error: record 1 (line: 2, "),
+        (whole.replacen(&row[..30], "key", 1), "line 2 cannot be read: remove it, to do its run again: "),
+    ] {
+        fs::write(folder.path().join("sweep.csv"), &content).unwrap();
+        let (code, message) = fail(folder.path(), "sweep sweep.toml");
+        assert!(code == 1 && message.starts_with(&format!("error: sweep.csv: {expected}")), "{message}");
+        assert_eq!(read(&folder, "sweep.csv"), content);
+    }
 }

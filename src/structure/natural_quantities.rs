@@ -13,8 +13,8 @@
 use crate::structure::parameters::{PARAMETERS, Parameters};
 use crate::structure::quantity::{OutOfRange, Quantity, with_unit};
 use crate::structure::{DERIVED, Derived};
-use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
-use std::fmt;
+use serde::Deserialize;
+use std::collections::BTreeMap;
 
 /// A derived quantity that may be given in the place of a parameter.
 #[derive(Debug)]
@@ -47,7 +47,8 @@ pub const DEFAULTS: [(&str, f64); 3] = [("J0", 0.0), ("c_ratio", 1.0), ("g", 9.8
 /// Numbers that are given for a structure, by name: parameters and natural quantities.
 ///
 /// As a file: `name = value`; an unknown name is an error.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+#[serde(try_from = "BTreeMap<String, f64>")]
 pub struct Given(Vec<(&'static str, f64)>);
 
 /// Why numbers determine no structure.
@@ -283,38 +284,13 @@ fn missing(&Quantity { name, unit, description, .. }: &Quantity<Parameters>) -> 
     Missing { name, description, ways: ways.collect() }
 }
 
-impl<'de> Deserialize<'de> for Given {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Given, D::Error> {
-        struct OfNames;
+impl TryFrom<BTreeMap<String, f64>> for Given {
+    type Error = GivenError;
 
-        /// A known name; an unknown one is refused where it stands.
-        struct Name(&'static str);
-
-        impl<'de> Deserialize<'de> for Name {
-            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Name, D::Error> {
-                let name = String::deserialize(deserializer)?;
-                let known = names().find(|known| *known == name);
-                known.map(Name).ok_or_else(|| D::Error::custom(GivenError::Unknown { name }))
-            }
-        }
-
-        impl<'de> Visitor<'de> for OfNames {
-            type Value = Given;
-
-            fn expecting(&self, out: &mut fmt::Formatter) -> fmt::Result {
-                out.write_str("parameters, each as name = value")
-            }
-
-            fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<Given, A::Error> {
-                let mut given = Given::default();
-                while let Some(Name(name)) = map.next_key()? {
-                    given.give(name, map.next_value()?).map_err(A::Error::custom)?;
-                }
-                Ok(given)
-            }
-        }
-
-        deserializer.deserialize_map(OfNames)
+    fn try_from(numbers: BTreeMap<String, f64>) -> Result<Given, GivenError> {
+        let mut given = Given::default();
+        numbers.into_iter().try_for_each(|(name, value)| given.give(&name, value))?;
+        Ok(given)
     }
 }
 

@@ -20,6 +20,7 @@
 //!
 //! (K.-Y. Liang, S. L. Zeger, Longitudinal data analysis using generalized linear models, Biometrika 73, 1986.)
 
+use crate::{Refused, ensure};
 use libm::erfc;
 use nalgebra::{Matrix2, RowVector2, Vector2};
 use std::collections::BTreeMap;
@@ -28,6 +29,8 @@ use std::iter;
 
 /// Fewer independent groups than this tell nothing of how sure a curve is.
 pub const FEWEST_GROUPS: usize = 5;
+
+const NOT_GROWING: &str = "exceedances do not grow with the intensity";
 
 /// Runs of one group at one intensity, counted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,39 +65,6 @@ pub struct Certainty {
     half_width: f64,
 }
 
-/// Why there is no curve.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum FitError {
-    /// An intensity has no logarithm.
-    #[error("the intensity {0} must be a finite number greater than 0")]
-    Intensity(f64),
-    /// No run.
-    #[error("no run is counted")]
-    NothingCounted,
-    /// No exceedance.
-    #[error("never exceeded: raise the intensity")]
-    NeverExceeded,
-    /// Nothing but exceedances.
-    #[error("always exceeded: lower the intensity")]
-    AlwaysExceeded,
-    /// Exceedances begin no lower than non-exceedances end: the most likely dispersion is 0.
-    #[error(
-        "runs overlap nowhere: those within it go up to {}, those that exceed it begin at {}: for a dispersion, add \
-         intensities in between, records or structures",
-        six_digits(*highest_without),
-        six_digits(*lowest_with)
-    )]
-    NoOverlap {
-        /// Largest intensity with a run that stays within the limit.
-        highest_without: f64,
-        /// Smallest intensity with a run that exceeds it.
-        lowest_with: f64,
-    },
-    /// Exceedances become fewer as the intensity grows.
-    #[error("exceedances do not grow with the intensity")]
-    NotGrowing,
-}
-
 fn six_digits(intensity: f64) -> f64 {
     format!("{intensity:.5e}").parse().expect("a number in Rust's own notation")
 }
@@ -122,14 +92,14 @@ impl FragilityCurve {
         normal_distribution((intensity / self.median).ln() / self.dispersion)
     }
 
-    /// The curve of greatest likelihood L.
-    pub fn fit(trials: &[Trials]) -> Result<FragilityCurve, FitError> {
-        if let Some(refused) = trials.iter().find(|at| !(at.intensity > 0.0 && at.intensity.is_finite())) {
-            return Err(FitError::Intensity(refused.intensity));
+    /// The curve of greatest likelihood L; refused where the trials have none.
+    pub fn fit(trials: &[Trials]) -> Result<FragilityCurve, Refused> {
+        if let Some(Trials { intensity, .. }) =
+            trials.iter().find(|at| !(at.intensity > 0.0 && at.intensity.is_finite()))
+        {
+            return Err(Refused(format!("the intensity {intensity} must be a finite number greater than 0")));
         }
-        if trials.is_empty() {
-            return Err(FitError::NothingCounted);
-        }
+        ensure(!trials.is_empty(), || "no run is counted".into())?;
         check_overlap(trials)?;
         // Logarithms from their mean, so that a and b stay apart whatever the unit.
         let origin = trials.iter().map(|at| at.intensity.ln()).sum::<f64>() / trials.len() as f64;
@@ -142,7 +112,7 @@ impl FragilityCurve {
                 certainty: Certainty::of(trials, center, Vector2::new(0.0, b)),
             })
         } else {
-            Err(FitError::NotGrowing)
+            Err(Refused(NOT_GROWING.into()))
         }
     }
 
@@ -196,20 +166,23 @@ fn student(degrees: usize) -> f64 {
 }
 
 /// Whether a finite maximum of L exists.
-fn check_overlap(trials: &[Trials]) -> Result<(), FitError> {
+fn check_overlap(trials: &[Trials]) -> Result<(), Refused> {
     let range = |has: fn(&Trials) -> bool| {
         let intensities = || trials.iter().filter(|at| has(at)).map(|at| at.intensity);
         intensities().reduce(f64::min).zip(intensities().reduce(f64::max))
     };
-    let (lowest_with, highest_with) = range(|at| at.exceedances > 0).ok_or(FitError::NeverExceeded)?;
-    let (lowest_without, highest_without) = range(|at| at.exceedances < at.runs).ok_or(FitError::AlwaysExceeded)?;
-    if highest_without <= lowest_with {
-        Err(FitError::NoOverlap { highest_without, lowest_with })
-    } else if highest_with <= lowest_without {
-        Err(FitError::NotGrowing)
-    } else {
-        Ok(())
-    }
+    let refused = |why: &str| Refused(why.into());
+    let with = range(|at| at.exceedances > 0).ok_or_else(|| refused("never exceeded: raise the intensity"))?;
+    let without =
+        range(|at| at.exceedances < at.runs).ok_or_else(|| refused("always exceeded: lower the intensity"))?;
+    ensure(without.1 > with.0, || {
+        let [highest_without, lowest_with] = [without.1, with.0].map(six_digits);
+        format!(
+            "runs overlap nowhere: those within it go up to {highest_without}, those that exceed it begin at {lowest_with}: \
+             for a dispersion, add intensities in between, records or structures"
+        )
+    })?;
+    ensure(with.1 > without.0, || NOT_GROWING.into())
 }
 
 /// (a, b) that maximise ln L for P(x) = Φ(a + b (ln x − origin)): Newton's method with the expected second derivatives,
@@ -313,48 +286,26 @@ mod tests {
         assert_relative_eq!(curve.probability(curve.median * (2.0 * curve.dispersion).exp()), 0.977_249_868_051_820_8);
     }
 
-    /// Symmetric counts about ln x = 0, run by run.
-    #[test]
-    fn symmetric_counts_have_their_median_in_the_middle() {
-        let runs = [(0.25, 0), (0.5, 0), (0.5, 1), (1.0, 0), (1.0, 1), (2.0, 0), (2.0, 1), (4.0, 1)];
-        let curve = FragilityCurve::fit(&runs.map(|(x, z)| Trials { group: 0, intensity: x, runs: 1, exceedances: z }))
-            .unwrap();
-        assert_relative_eq!(curve.median, 1.0, max_relative = 1e-10);
-    }
-
     #[test]
     fn counts_without_a_curve_are_refused_with_the_reason() {
-        let refused = |counts: &[(f64, usize, usize)]| FragilityCurve::fit(&trials(counts)).unwrap_err();
-        assert_eq!(refused(&[]), FitError::NothingCounted);
-        assert_eq!(refused(&[(1.0, 5, 0), (2.0, 5, 0)]), FitError::NeverExceeded);
-        assert_eq!(refused(&[(1.0, 5, 5), (2.0, 5, 5)]), FitError::AlwaysExceeded);
-        let steep = FitError::NoOverlap { highest_without: 2.0, lowest_with: 2.0 };
-        assert_eq!(refused(&[(1.0, 5, 0), (2.0, 5, 3), (3.0, 5, 5)]), steep);
-        assert_eq!(
-            refused(&[(1.0, 5, 0), (2.0, 5, 5)]).to_string(),
-            "runs overlap nowhere: those within it go up to 1, those that exceed it begin at 2: for a dispersion, add \
-             intensities in between, records or structures"
-        );
-        assert_eq!(refused(&[(1.0, 5, 5), (2.0, 5, 3), (3.0, 5, 0)]), FitError::NotGrowing);
-        assert_eq!(refused(&[(1.0, 5, 4), (2.0, 5, 3), (3.0, 5, 2)]), FitError::NotGrowing);
-        assert_eq!(refused(&[(1.0, 5, 4), (0.0, 5, 3)]), FitError::Intensity(0.0));
+        for (counts, reason) in [
+            (&[][..], "no run is counted"),
+            (&[(1.0, 5, 0), (2.0, 5, 0)], "never exceeded: raise the intensity"),
+            (&[(1.0, 5, 5), (2.0, 5, 5)], "always exceeded: lower the intensity"),
+            (&[(1.0, 5, 0), (2.0, 5, 3), (3.0, 5, 5)], "runs overlap nowhere: those within it go up to 2, "),
+            (&[(1.0, 5, 5), (2.0, 5, 3), (3.0, 5, 0)], NOT_GROWING),
+            (&[(1.0, 5, 4), (2.0, 5, 3), (3.0, 5, 2)], NOT_GROWING),
+            (&[(1.0, 5, 4), (0.0, 5, 3)], "the intensity 0 must be a finite number greater than 0"),
+        ] {
+            let refused = FragilityCurve::fit(&trials(counts)).unwrap_err().to_string();
+            assert!(refused.starts_with(reason), "{refused}");
+        }
     }
 
     #[test]
     fn students_points_are_those_of_the_tables() {
         for (degrees, expected) in [(4, 2.7764), (7, 2.3646), (10, 2.2281), (30, 2.0423), (1000, 1.9623)] {
             assert!((student(degrees) - expected).abs() < 1e-3, "{degrees}: {}", student(degrees));
-        }
-    }
-
-    /// Numbers in (0, 1) that look random.
-    fn uniform(seed: u64) -> impl FnMut() -> f64 {
-        let mut state = seed;
-        move || {
-            state = state.wrapping_add(0x9e37_79b9_7f4a_7c15); // splitmix64
-            let z = (state ^ (state >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-            let z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-            ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64 + f64::EPSILON / 4.0
         }
     }
 
@@ -365,8 +316,8 @@ mod tests {
     fn the_band_holds_the_truth_as_often_as_it_says() {
         const SWEEPS: usize = 300;
         for records in [8, 30] {
-            let mut random = uniform(records as u64);
-            let mut normal = || (-2.0 * random().ln()).sqrt() * (TAU * random()).cos();
+            let mut random = fastrand::Rng::with_seed(records as u64);
+            let mut normal = || (-2.0 * (1.0 - random.f64()).ln()).sqrt() * (TAU * random.f64()).cos();
             let (mut counted, mut held, mut held_if_independent) = (0, [0; 2], 0);
             for _ in 0..SWEEPS {
                 let mut runs = Vec::new();
@@ -397,20 +348,15 @@ mod tests {
 
     #[test]
     fn few_records_have_no_band() {
-        let groups = |count: usize| {
-            let trials = |group| {
-                [(0.5, 1), (1.0, 2), (2.0, 4)].map(|(intensity, exceedances)| Trials {
-                    group,
-                    intensity,
-                    runs: 5,
-                    exceedances,
-                })
+        let fit = |groups: usize| {
+            let alike = |group| {
+                trials(&[(0.5, 5, 1), (1.0, 5, 2), (2.0, 5, 4)]).into_iter().map(move |of| Trials { group, ..of })
             };
-            FragilityCurve::fit(&(0..count).flat_map(trials).collect::<Vec<_>>()).unwrap()
+            FragilityCurve::fit(&(0..groups).flat_map(alike).collect::<Vec<_>>()).unwrap()
         };
-        let few = groups(FEWEST_GROUPS - 1);
+        let few = fit(FEWEST_GROUPS - 1);
         assert_eq!((few.band(1.0), few.median_range()), (None, None));
-        assert!(groups(FEWEST_GROUPS).band(1.0).is_some());
+        assert!(fit(FEWEST_GROUPS).band(1.0).is_some());
     }
 
     proptest! {

@@ -17,3 +17,20 @@ pub mod map;
 pub mod outcome;
 pub mod plan;
 pub mod pulse;
+
+/// Why something cannot be run or counted: what is wrong, and what to change.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{0}")]
+pub struct Refused(pub String);
+
+impl Refused {
+    /// What another error says.
+    fn by(error: impl std::error::Error) -> Refused {
+        Refused(error.to_string())
+    }
+}
+
+/// Refuses, with the reason, what is not so.
+fn ensure(is_so: bool, why: impl FnOnce() -> String) -> Result<(), Refused> {
+    if is_so { Ok(()) } else { Err(Refused(why())) }
+}

@@ -5,7 +5,8 @@
 //! in squares between neighbouring points that differ in [`Class`], and from there along the boundary wherever the finer
 //! points show that it goes.
 
-use crate::pulse::{Pulse, PulseError, units_of};
+use crate::pulse::{Pulse, units_of};
+use crate::{Refused, ensure};
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::uplift::least_push;
 use rocking::run::record::Record;
@@ -29,22 +30,31 @@ pub const PERTURBATION: f64 = 1e-12;
 /// Values that a pulse's frequency, or its amplitude, goes through.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Axis {
-    values: Vec<f64>,
-    is_log: bool,
+    /// The values of the grid.
+    pub values: Vec<f64>,
+    /// Whether they are spaced evenly in their logarithms between two of them, where a refinement looks.
+    pub is_log: bool,
 }
 
 /// One structure under one shape of pulse, at every point of which there is such a pulse.
 #[derive(Clone, Debug)]
 pub struct Map {
-    structure: Structure,
+    /// The structure.
+    pub structure: Structure,
     /// But for its frequency and its amplitude.
     pulse: Pulse,
-    frequency: Axis,
-    amplitude: Axis,
-    is_dimensionless: bool,
-    detail: Detail,
-    tolerance: f64,
-    finds_condition: bool,
+    /// Frequencies: in Hz, or, where the map is dimensionless, ω/p_l.
+    pub frequency: Axis,
+    /// Amplitudes: in m/s², or, where the map is dimensionless, a_p/(g tan α_cg).
+    pub amplitude: Axis,
+    /// Whether the axes are in units of the structure.
+    pub is_dimensionless: bool,
+    /// Level of detail.
+    pub detail: Detail,
+    /// Relative tolerance of the results.
+    pub tolerance: f64,
+    /// Whether each point's condition is found.
+    pub finds_condition: bool,
 }
 
 /// Where a point is: counted in 1/256 of the steps of the grid.
@@ -57,7 +67,7 @@ pub struct Place {
 }
 
 /// What becomes of a structure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Fate {
     /// Its base stays down.
     #[serde(rename = "no uplift")]
@@ -76,24 +86,8 @@ pub enum Fate {
     Failed,
 }
 
-/// What tells neighbours apart: the fate, and of what overturns how often its base came down before.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Class {
-    /// [`Fate::NoUplift`].
-    NoUplift,
-    /// [`Fate::Stands`].
-    Stands,
-    /// Overturns without impact.
-    OverturnsAtOnce,
-    /// Overturns after one impact.
-    OverturnsAfterOne,
-    /// Overturns after more.
-    OverturnsAfterMore,
-    /// [`Fate::StillRocking`].
-    StillRocking,
-    /// [`Fate::Failed`].
-    Failed,
-}
+/// What tells neighbours apart: the fate, and of what overturns how often its base came down before, 2 for more than once.
+pub type Class = (Fate, u64);
 
 /// A point that has been run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -115,45 +109,7 @@ pub struct Point {
     pub reason: String,
 }
 
-/// Why there is no map.
-#[derive(Debug, thiserror::Error)]
-pub enum MapError {
-    /// The values of an axis do not rise, or are too few.
-    #[error("{0} needs two or more finite values greater than 0, each larger than the one before")]
-    Axis(&'static str),
-    /// Some pulse is impossible.
-    #[error(transparent)]
-    Pulse(#[from] PulseError),
-    /// More than [`MAX_POINTS`].
-    #[error("{frequencies} frequencies x {amplitudes} amplitudes: more than {MAX_POINTS} points")]
-    TooMany {
-        /// Frequencies.
-        frequencies: usize,
-        /// Amplitudes.
-        amplitudes: usize,
-    },
-    /// It lies between 0 and 1.
-    #[error("tolerance = {0} is out of range: a number between 0 and 1 is needed")]
-    Tolerance(f64),
-}
-
 impl Axis {
-    /// The axis with these values; between two of them, where a refinement looks, they are spaced evenly, or evenly in
-    /// their logarithms.
-    pub fn new(values: Vec<f64>, is_log: bool) -> Axis {
-        Axis { values, is_log }
-    }
-
-    /// The values of the grid.
-    pub fn values(&self) -> &[f64] {
-        &self.values
-    }
-
-    /// Whether they are spaced evenly in their logarithms.
-    pub fn is_log(&self) -> bool {
-        self.is_log
-    }
-
     /// The value at `steps` of the grid from its first, between the first and the last.
     pub fn at(&self, steps: f64) -> f64 {
         let steps = steps.clamp(0.0, (self.values.len() - 1) as f64);
@@ -165,10 +121,12 @@ impl Axis {
         if self.is_log { from * (part * (to / from).ln()).exp() } else { from + part * (to - from) }
     }
 
-    fn check(&self, name: &'static str) -> Result<(), MapError> {
+    fn check(&self, name: &str) -> Result<(), Refused> {
         let rises = self.values.windows(2).all(|pair| pair[0] < pair[1]);
         let is_finite = self.values.iter().all(|value| *value > 0.0 && value.is_finite());
-        if self.values.len() < 2 || !rises || !is_finite { Err(MapError::Axis(name)) } else { Ok(()) }
+        ensure(self.values.len() >= 2 && rises && is_finite, || {
+            format!("{name} needs two or more finite values greater than 0, each larger than the one before")
+        })
     }
 }
 
@@ -187,15 +145,7 @@ impl Place {
 impl Point {
     /// What tells it from its neighbours.
     pub fn class(&self) -> Class {
-        match (self.fate, self.impacts) {
-            (Fate::NoUplift, _) => Class::NoUplift,
-            (Fate::Stands, _) => Class::Stands,
-            (Fate::Overturns, 0) => Class::OverturnsAtOnce,
-            (Fate::Overturns, 1) => Class::OverturnsAfterOne,
-            (Fate::Overturns, _) => Class::OverturnsAfterMore,
-            (Fate::StillRocking, _) => Class::StillRocking,
-            (Fate::Failed, _) => Class::Failed,
-        }
+        (self.fate, if self.fate == Fate::Overturns { self.impacts.min(2) } else { 0 })
     }
 
     fn of(run: &Run) -> Point {
@@ -245,13 +195,13 @@ impl Map {
         pulse: Pulse,
         [frequency, amplitude]: [Axis; 2],
         is_dimensionless: bool,
-    ) -> Result<Map, MapError> {
+    ) -> Result<Map, Refused> {
         frequency.check("frequency")?;
         amplitude.check("amplitude")?;
         let [frequencies, amplitudes] = [&frequency, &amplitude].map(|axis| axis.values.len());
-        if frequencies.saturating_mul(amplitudes) > MAX_POINTS {
-            return Err(MapError::TooMany { frequencies, amplitudes });
-        }
+        ensure(frequencies.saturating_mul(amplitudes) <= MAX_POINTS, || {
+            format!("{frequencies} frequencies x {amplitudes} amplitudes: more than {MAX_POINTS} points")
+        })?;
         let (detail, tolerance) = (Detail::default(), DEFAULT_TOLERANCE);
         let finds_condition = false;
         let map = Map { structure, pulse, frequency, amplitude, is_dimensionless, detail, tolerance, finds_condition };
@@ -261,58 +211,18 @@ impl Map {
         Ok(map)
     }
 
-    /// The same to the relative `tolerance`, at the level `detail`.
-    pub fn computed_by(self, detail: Detail, tolerance: f64) -> Result<Map, MapError> {
-        if tolerance > 0.0 && tolerance < 1.0 {
-            Ok(Map { detail, tolerance, ..self })
-        } else {
-            Err(MapError::Tolerance(tolerance))
-        }
-    }
-
-    /// The same with each point's condition, by a second run, if it `finds_condition`.
-    pub fn with_condition(self, finds_condition: bool) -> Map {
-        Map { finds_condition, ..self }
-    }
-
-    /// The structure.
-    pub fn structure(&self) -> &Structure {
-        &self.structure
+    /// The same to the relative `tolerance`, at the level `detail`, with each point's condition, by a second run, if it
+    /// `finds_condition`.
+    pub fn computed_by(self, detail: Detail, tolerance: f64, finds_condition: bool) -> Result<Map, Refused> {
+        ensure(tolerance > 0.0 && tolerance < 1.0, || {
+            format!("tolerance = {tolerance} is out of range: a number between 0 and 1 is needed")
+        })?;
+        Ok(Map { detail, tolerance, finds_condition, ..self })
     }
 
     /// What the pulses are called.
     pub fn pulse_name(&self) -> String {
         self.pulse.name()
-    }
-
-    /// Frequencies: in Hz, or, where the map is dimensionless, ω/p_l.
-    pub fn frequency(&self) -> &Axis {
-        &self.frequency
-    }
-
-    /// Amplitudes: in m/s², or, where the map is dimensionless, a_p/(g tan α_cg).
-    pub fn amplitude(&self) -> &Axis {
-        &self.amplitude
-    }
-
-    /// Whether the axes are in units of the structure.
-    pub fn is_dimensionless(&self) -> bool {
-        self.is_dimensionless
-    }
-
-    /// Level of detail.
-    pub fn detail(&self) -> Detail {
-        self.detail
-    }
-
-    /// Relative tolerance of the results.
-    pub fn tolerance(&self) -> f64 {
-        self.tolerance
-    }
-
-    /// Whether each point's condition is found.
-    pub fn finds_condition(&self) -> bool {
-        self.finds_condition
     }
 
     /// The pulse at `place`.

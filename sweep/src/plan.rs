@@ -1,13 +1,13 @@
 //! Many runs: every structure of some populations under every ground motion at every scale factor.
 
 use crate::outcome::Outcome;
+use crate::{Refused, ensure};
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::estimates::intensity::{IntensityMeasure, peak_velocity};
 use rocking::estimates::response_spectrum::spectral_acceleration;
-use rocking::mechanics::state::InitialStateError;
 use rocking::run::record::Record;
 use rocking::run::{End, Run};
-use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS, ParameterError};
+use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
 use rocking::structure::quantity::with_unit;
 use rocking::{Detail, Engine, Parameters, Quantity, State, Structure, Watch};
 use serde::Serialize;
@@ -118,85 +118,6 @@ pub struct Case<'a> {
     spectral: &'a OnceLock<f64>,
 }
 
-/// Why there is no plan.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum PlanError {
-    /// Nothing to run.
-    #[error("{0} is empty: give one or more")]
-    Empty(String),
-    /// A value is NaN or infinite.
-    #[error("{name} = {value} is not a finite number")]
-    NotFinite {
-        /// What is listed.
-        name: String,
-        /// The refused value.
-        value: f64,
-    },
-    /// Something would be counted twice.
-    #[error("{0} is there twice and would count twice: leave one out")]
-    Repeated(String),
-    /// Two populations, or two ground motions, cannot be told apart.
-    #[error("two {kind} have the name {name:?}: rename one")]
-    SameName {
-        /// What they are.
-        kind: &'static str,
-        /// What both are called.
-        name: String,
-    },
-    /// Ground motions are the same: all that are, in pairs.
-    #[error(
-        "{}: they are the same and would count twice: leave one out",
-        .0.iter().map(|[one, other]| format!("the ground motions {one:?} and {other:?}")).collect::<Vec<_>>().join(", ")
-    )]
-    SameMotions(Vec<[String; 2]>),
-    /// The runs cannot start.
-    #[error(transparent)]
-    Initial(#[from] InitialStateError),
-    /// A number that all runs have in common is out of range.
-    #[error("{name} = {} is out of range: {needed} is needed", with_unit(*value, "1"))]
-    Condition {
-        /// What it is called.
-        name: &'static str,
-        /// The refused value.
-        value: f64,
-        /// What would be accepted.
-        needed: &'static str,
-    },
-    /// No parameter is called that.
-    #[error("{name:?} cannot vary: these can: {}", AXES.map(|axis| axis.name).join(", "))]
-    Unknown {
-        /// The refused name.
-        name: String,
-    },
-    /// Two axes set one number.
-    #[error("H and slenderness cannot both vary: slenderness sets H")]
-    HeightTwice,
-    /// A scale factor of 0.
-    #[error("scale = 0 leaves no ground motion: leave it out")]
-    NoScale,
-    /// A ground motion without motion has no intensity.
-    #[error("the ground motion {0:?} is at rest throughout: leave it out")]
-    NoMotion(String),
-    /// A structure is impossible.
-    #[error("structures {population:?}: {problem}")]
-    Structure {
-        /// Its population.
-        population: String,
-        /// What is wrong with it.
-        problem: ParameterError,
-    },
-    /// More than [`MAX_RUNS`].
-    #[error("{structures} structures x {motions} ground motions x {scales} scale factors: more than {MAX_RUNS} runs")]
-    TooMany {
-        /// Structures, or more.
-        structures: usize,
-        /// Ground motions.
-        motions: usize,
-        /// Scale factors.
-        scales: usize,
-    },
-}
-
 impl Population {
     /// Of the one structure `base`, until something varies.
     pub fn new(name: impl Into<String>, base: Parameters) -> Population {
@@ -205,18 +126,19 @@ impl Population {
 
     /// Every structure that there is so far with each of `values` of the parameter called `name`, or of `slenderness`,
     /// which is H/B: H = slenderness × B, while B, m, m0, J0 and f_fc stay.
-    pub fn vary(mut self, name: &str, values: Vec<f64>) -> Result<Population, PlanError> {
-        let axis =
-            AXES.iter().position(|axis| axis.name == name).ok_or_else(|| PlanError::Unknown { name: name.into() })?;
+    pub fn vary(mut self, name: &str, values: Vec<f64>) -> Result<Population, Refused> {
+        let known = || AXES.map(|axis| axis.name).join(", ");
+        let axis = AXES.iter().position(|axis| axis.name == name);
+        let axis = axis.ok_or_else(|| Refused(format!("{name:?} cannot vary: these can: {}", known())))?;
         check_list(name, &values)?;
-        match self.varying.binary_search_by_key(&axis, |(axis, _)| *axis) {
-            Ok(_) => return Err(PlanError::Repeated(name.into())),
-            Err(position) => self.varying.insert(position, (axis, values)),
-        }
         let varies = |name| self.varying.iter().any(|(axis, _)| AXES[*axis].name == name);
-        if varies("H") && varies(SLENDERNESS.name) {
-            return Err(PlanError::HeightTwice);
-        }
+        ensure(!varies(name), || is_there_twice(name))?;
+        let sets_H = |name| [SLENDERNESS.name, "H"].contains(&name);
+        ensure(!(sets_H(name) && (varies("H") || varies(SLENDERNESS.name))), || {
+            "H and slenderness cannot both vary: slenderness sets H".into()
+        })?;
+        self.varying.push((axis, values));
+        self.varying.sort_by_key(|(axis, _)| *axis);
         Ok(self)
     }
 
@@ -239,24 +161,20 @@ impl Population {
         })
     }
 
-    fn structure(&self, member: usize) -> Result<Structure, PlanError> {
+    fn structure(&self, member: usize) -> Result<Structure, Refused> {
         let mut parameters = self.base;
         self.values(member).for_each(|(axis, value)| (axis.set)(&mut parameters, value));
-        let named = |problem| PlanError::Structure { population: self.name.clone(), problem };
-        Structure::new(parameters).map_err(named)
+        Structure::new(parameters).map_err(|problem| Refused(format!("structures {:?}: {problem}", self.name)))
     }
 }
 
 impl NamedRecord {
     /// The ground motion `record`, which must not be at rest throughout, with its accelerations times `scale`.
-    pub fn new(name: impl Into<String>, record: Record, scale: f64) -> Result<NamedRecord, PlanError> {
+    pub fn new(name: impl Into<String>, record: Record, scale: f64) -> Result<NamedRecord, Refused> {
         let (name, pga) = (name.into(), record.pga());
-        if pga == 0.0 || scale == 0.0 {
-            return Err(PlanError::NoMotion(name));
-        }
-        if !scale.is_finite() {
-            return Err(PlanError::NotFinite { name: format!("scale of {name:?}"), value: scale });
-        }
+        let is_in_motion = pga != 0.0 && scale != 0.0;
+        ensure(is_in_motion, || format!("the ground motion {name:?} is at rest throughout: leave it out"))?;
+        ensure(scale.is_finite(), || format!("scale of {name:?} = {scale} is not a finite number"))?;
         let pgv = peak_velocity(&record);
         Ok(NamedRecord { name, record, scale, pga, pgv })
     }
@@ -284,44 +202,36 @@ impl NamedRecord {
 }
 
 impl Conditions {
-    fn check(&self, structure: &Structure) -> Result<(), PlanError> {
+    fn check(&self, structure: &Structure) -> Result<(), Refused> {
         let Conditions { initial, detail, tolerance, duration } = *self;
-        let refused = |name, value, needed| Err(PlanError::Condition { name, value, needed });
-        if !(tolerance > 0.0 && tolerance < 1.0) {
-            return refused("tolerance", tolerance, "a number between 0 and 1");
-        }
-        match duration {
-            Some(duration) if !(duration > 0.0 && duration.is_finite()) => {
-                return refused("duration", duration, "a finite number greater than 0");
-            }
-            _ => {}
-        }
-        Engine::with_detail(*structure, initial, 0.0, tolerance, detail)?;
-        Ok(())
+        let check = |is_in_range, name, value, needed| {
+            ensure(is_in_range, || format!("{name} = {} is out of range: {needed} is needed", with_unit(value, "1")))
+        };
+        check(tolerance > 0.0 && tolerance < 1.0, "tolerance", tolerance, "a number between 0 and 1")?;
+        let duration = duration.unwrap_or(1.0);
+        check(duration > 0.0 && duration.is_finite(), "duration", duration, "a finite number greater than 0")?;
+        Engine::with_detail(*structure, initial, 0.0, tolerance, detail).map(|_| ()).map_err(Refused::by)
     }
 }
 
 impl Plan {
     /// Every structure of `populations` under each of `motions` times each of `scales`.
-    pub fn new(populations: Vec<Population>, motions: Vec<NamedRecord>, scales: Vec<f64>) -> Result<Plan, PlanError> {
+    pub fn new(populations: Vec<Population>, motions: Vec<NamedRecord>, scales: Vec<f64>) -> Result<Plan, Refused> {
         check_list("scale", &scales)?;
-        if scales.contains(&0.0) {
-            return Err(PlanError::NoScale);
-        }
-        for (name, is_empty) in [("structures", populations.is_empty()), ("records", motions.is_empty())] {
-            if is_empty {
-                return Err(PlanError::Empty(name.into()));
-            }
-        }
+        ensure(!scales.contains(&0.0), || "scale = 0 leaves no ground motion: leave it out".into())?;
+        ensure(!populations.is_empty(), || is_empty("structures"))?;
+        ensure(!motions.is_empty(), || is_empty("records"))?;
         check_names("populations", populations.iter().map(Population::name))?;
         check_names("ground motions", motions.iter().map(NamedRecord::name))?;
         check_motions(&motions)?;
         let (conditions, spectral) = (Conditions::default(), Vec::new());
         let mut plan = Plan { populations, motions, scales, conditions, spectral };
         let [structures, motions, scales] = plan.size();
-        if structures.saturating_mul(motions).saturating_mul(scales) > MAX_RUNS {
-            return Err(PlanError::TooMany { structures, motions, scales });
-        }
+        ensure(structures.saturating_mul(motions).saturating_mul(scales) <= MAX_RUNS, || {
+            format!(
+                "{structures} structures x {motions} ground motions x {scales} scale factors: more than {MAX_RUNS} runs"
+            )
+        })?;
         for population in &plan.populations {
             (0..population.len()).try_for_each(|member| population.structure(member).map(|_| ()))?;
         }
@@ -330,7 +240,7 @@ impl Plan {
     }
 
     /// The same runs under other `conditions`.
-    pub fn under(self, conditions: Conditions) -> Result<Plan, PlanError> {
+    pub fn under(self, conditions: Conditions) -> Result<Plan, Refused> {
         conditions.check(&self.case(0).structure)?;
         Ok(Plan { conditions, ..self })
     }
@@ -349,11 +259,6 @@ impl Plan {
     /// The ground motions.
     pub fn motions(&self) -> &[NamedRecord] {
         &self.motions
-    }
-
-    /// The scale factors.
-    pub fn scales(&self) -> &[f64] {
-        &self.scales
     }
 
     /// How many runs there are.
@@ -425,39 +330,45 @@ impl Case<'_> {
     }
 }
 
+fn is_empty(name: &str) -> String {
+    format!("{name} is empty: give one or more")
+}
+
+fn is_there_twice(what: &str) -> String {
+    format!("{what} is there twice and would count twice: leave one out")
+}
+
 /// Each name once.
-fn check_names<'a>(kind: &'static str, names: impl Iterator<Item = &'a str>) -> Result<(), PlanError> {
+fn check_names<'a>(kind: &str, names: impl Iterator<Item = &'a str>) -> Result<(), Refused> {
     let mut seen = HashSet::new();
-    match { names }.find(|name| !seen.insert(*name)) {
-        Some(name) => Err(PlanError::SameName { kind, name: name.into() }),
-        None => Ok(()),
-    }
+    let repeated = { names }.find(|name| !seen.insert(*name));
+    ensure(repeated.is_none(), || format!("two {kind} have the name {:?}: rename one", repeated.unwrap_or_default()))
 }
 
 /// Each ground motion once; equal ones have equal peaks.
-fn check_motions(motions: &[NamedRecord]) -> Result<(), PlanError> {
+fn check_motions(motions: &[NamedRecord]) -> Result<(), Refused> {
     let mut by_peaks: HashMap<_, Vec<&NamedRecord>> = HashMap::new();
     let mut same = Vec::new();
     for one in motions {
         let alike = by_peaks.entry([one.pga, one.pgv].map(f64::to_bits)).or_default();
         match alike.iter().find(|other| other.is_same(one)) {
-            Some(other) => same.push([other.name.clone(), one.name.clone()]),
+            Some(other) => same.push(format!("the ground motions {:?} and {:?}", other.name, one.name)),
             None => alike.push(one),
         }
     }
-    if same.is_empty() { Ok(()) } else { Err(PlanError::SameMotions(same)) }
+    ensure(same.is_empty(), || format!("{}: they are the same and would count twice: leave one out", same.join(", ")))
 }
 
 /// Finite numbers, one or more, each of them once.
-fn check_list(name: &str, values: &[f64]) -> Result<(), PlanError> {
-    if let Some(&value) = values.iter().find(|value| !value.is_finite()) {
-        return Err(PlanError::NotFinite { name: name.into(), value });
+fn check_list(name: &str, values: &[f64]) -> Result<(), Refused> {
+    if let Some(value) = values.iter().find(|value| !value.is_finite()) {
+        return Err(Refused(format!("{name} = {value} is not a finite number")));
     }
+    ensure(!values.is_empty(), || is_empty(name))?;
     let mut sorted = values.to_vec();
     sorted.sort_unstable_by(f64::total_cmp);
     match sorted.windows(2).find(|pair| pair[0] == pair[1]) {
-        Some(pair) => Err(PlanError::Repeated(format!("{name} = {}", with_unit(pair[0], "1")))),
-        None if values.is_empty() => Err(PlanError::Empty(name.into())),
+        Some(pair) => Err(Refused(is_there_twice(&format!("{name} = {}", with_unit(pair[0], "1"))))),
         None => Ok(()),
     }
 }
@@ -465,8 +376,7 @@ fn check_list(name: &str, values: &[f64]) -> Result<(), PlanError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::fragility::Trials;
-    use crate::outcome::{Limit, MEASURES, Summary};
+    use crate::outcome::{MEASURES, Summary};
     use rocking::run::{End, Ending};
     use std::f64::consts::TAU;
 
@@ -497,19 +407,6 @@ mod tests {
         let Outcome::Ended(standing) = only(Parameters::MCMANUS, 1.0) else { panic!() };
         assert_eq!(standing.ending, Ending::AtRest);
         assert!(standing.end > 0.5 && standing.transitions > 0);
-    }
-
-    /// A slow structure has hardly begun to vibrate when the record ends.
-    #[test]
-    fn the_vibration_after_a_record_counts() {
-        let slow = Parameters { m0: 0.0, J0: 0.0, f_fc: 0.2, ..Parameters::MCMANUS };
-        let Outcome::Ended(found) = only(slow, 1.0) else { panic!() };
-        let long = Run { end: End::At(20.0), ..Run::new(Structure::new(slow).unwrap(), &pulse().record) }.peaks();
-        let (peaks, _) = long.unwrap();
-        assert_eq!(found.ending, Ending::AtRest);
-        for (name, found, expected) in [("u", found.peaks[1], peaks.u()), ("a_t", found.peaks[4], peaks.a_t())] {
-            assert!((found - expected.magnitude).abs() < 1e-12 * found, "{name}: {found}, {expected:?}");
-        }
     }
 
     #[test]
@@ -591,94 +488,5 @@ mod tests {
         assert_eq!([0, 1, 2, 3, 4, 5].map(|index| plan.case(index).group), [0, 1, 2, 0, 1, 2]);
         let alone = Plan::new(vec![piers()], vec![pulse()], vec![1.0, 2.0]).unwrap();
         assert_eq!([0, 1, 2, 3].map(|index| alone.case(index).group), [0, 0, 1, 1]);
-    }
-
-    #[test]
-    fn trials_are_counted_from_outcomes() {
-        let scales = [0.1, 1.25, 3.0];
-        let piers = Population::new("piers", Parameters::MCMANUS).vary("f_fc", vec![3.0, 4.0, 5.0]).unwrap();
-        let plan = Plan::new(vec![piers], vec![pulse()], scales.into()).unwrap();
-        let overturned =
-            |case: Case| (0, case.intensity(IntensityMeasure::Pga), case.outcome().exceeds(&Limit::Overturning));
-        let trials = Trials::count(plan.cases().map(overturned));
-        let expected = scales.map(|scale| {
-            let ground = pulse().record.multiplied(scale);
-            let overturns = |f_fc: &&f64| {
-                let structure = Structure::new(Parameters { f_fc: **f_fc, ..Parameters::MCMANUS }).unwrap();
-                Run::new(structure, &ground).peaks().unwrap().1.ending == Ending::Overturned
-            };
-            (3, [3.0, 4.0, 5.0].iter().filter(overturns).count())
-        });
-        assert_eq!(trials.iter().map(|at| (at.runs, at.exceedances)).collect::<Vec<_>>(), expected);
-        assert_ne!(expected[0], expected[2]);
-    }
-
-    #[test]
-    fn a_refused_plan_says_what_to_change() {
-        let pier = || Population::new("pier", Parameters::MCMANUS);
-        let plan = |populations, motions, scales| Plan::new(populations, motions, scales).unwrap_err().to_string();
-        let scale = |scales| plan(vec![pier()], vec![pulse()], scales);
-        assert_eq!(scale(vec![]), "scale is empty: give one or more");
-        assert_eq!(scale(vec![1.0, 0.0]), "scale = 0 leaves no ground motion: leave it out");
-        assert_eq!(scale(vec![1.0, f64::NAN]), "scale = NaN is not a finite number");
-        assert_eq!(scale(vec![1.0, 2.0, 1.0]), "scale = 1 is there twice and would count twice: leave one out");
-        assert_eq!(plan(vec![], vec![pulse()], vec![1.0]), "structures is empty: give one or more");
-        assert_eq!(plan(vec![pier()], vec![], vec![1.0]), "records is empty: give one or more");
-        assert_eq!(
-            plan(vec![pier(); 2], vec![pulse()], vec![1.0]),
-            "two populations have the name \"pier\": rename one"
-        );
-        assert_eq!(
-            plan(vec![pier()], vec![pulse(), pulse()], vec![1.0]),
-            "two ground motions have the name \"pulse\": rename one"
-        );
-        let copy = |name: &str| NamedRecord { name: name.into(), ..pulse() };
-        assert_eq!(
-            plan(vec![pier()], vec![pulse(), copy("copy"), copy("again")], vec![1.0]),
-            "the ground motions \"pulse\" and \"copy\", the ground motions \"pulse\" and \"again\": they are the same and \
-             would count twice: leave one out"
-        );
-        let slender = pier().vary("slenderness", vec![1.0, 2000.0]).unwrap();
-        assert!(plan(vec![slender], vec![pulse()], vec![1.0]).starts_with("structures \"pier\": H/B = 2000"));
-
-        let many = || (1..=4000).map(f64::from).collect::<Vec<_>>();
-        let huge = PARAMETERS.iter().fold(pier(), |pier, axis| pier.vary(axis.name, many()).unwrap());
-        assert!(plan(vec![huge], vec![pulse()], vec![1.0]).contains(": more than 10000000 runs"));
-        assert_eq!(
-            plan(vec![pier().vary("H", many()).unwrap()], vec![pulse()], many()),
-            "4000 structures x 1 ground motions x 4000 scale factors: more than 10000000 runs"
-        );
-
-        let vary =
-            |name: &str, values| pier().vary("H", vec![1.0]).unwrap().vary(name, values).unwrap_err().to_string();
-        assert!(vary("q", vec![1.0]).starts_with("\"q\" cannot vary: these can: m, m0, H, B, J0, f_fc"));
-        assert_eq!(vary("slenderness", vec![4.0]), "H and slenderness cannot both vary: slenderness sets H");
-        assert_eq!(vary("H", vec![4.0]), "H is there twice and would count twice: leave one out");
-        assert_eq!(vary("r", vec![]), "r is empty: give one or more");
-        assert_eq!(vary("m0", vec![0.0, -0.0]), "m0 = -0 is there twice and would count twice: leave one out");
-        let refused = |record, scale| NamedRecord::new("rest", record, scale).unwrap_err().to_string();
-        for (record, scale) in [(Record::at_rest(1.0), 1.0), (pulse().record, 0.0)] {
-            assert_eq!(refused(record, scale), "the ground motion \"rest\" is at rest throughout: leave it out");
-        }
-        assert_eq!(refused(pulse().record, f64::NAN), "scale of \"rest\" = NaN is not a finite number");
-
-        let under = |conditions| {
-            let plan = Plan::new(vec![pier()], vec![pulse()], vec![1.0]).unwrap();
-            plan.under(conditions).unwrap_err().to_string()
-        };
-        let usual = Conditions::default();
-        assert_eq!(
-            under(Conditions { tolerance: 1.0, ..usual }),
-            "tolerance = 1 is out of range: a number between 0 and 1 is needed"
-        );
-        assert_eq!(
-            under(Conditions { duration: Some(0.0), ..usual }),
-            "duration = 0 is out of range: a finite number greater than 0 is needed"
-        );
-        let turned = State { theta: 0.1, ..State::default() };
-        assert!(
-            under(Conditions { initial: turned, detail: Detail::FixedBase, ..usual })
-                .starts_with("theta_0 = 0.1 rad contradicts detail = fixed_base")
-        );
     }
 }

@@ -1,10 +1,9 @@
 //! The picture of a structure, true to scale: as it stands, and tilted so far that its weight stands above the edge.
 use crate::picture::{
-    Area, Picture, SMALL, TITLE, axes, chart, colour, dot, line, px, rounded, stroke, titled, words, words_about,
-    words_before,
+    Area, Picture, Plot, SMALL, TITLE, axes, chart, colour, dashed, dot, line, px, rounded, stroke, titled, words,
+    words_about, words_before,
 };
 use crate::significant::significant;
-use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use rocking::structure::parameters::PARAMETERS;
 use rocking::{Parameters, Quantity, Structure, structure::DERIVED, structure::Derived};
@@ -23,8 +22,6 @@ const SLAB: f64 = 0.03;
 
 /// Derived quantities beside the drawing.
 const SHOWN: [&str; 8] = ["period_fc", "weight", "weight0", "width", "alpha_cg", "p_l", "u_cr", "f_u"];
-
-type Plot<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// Draws `structure`.
 pub fn draw(picture: Picture, structure: &Structure) -> anyhow::Result<()> {
@@ -83,18 +80,8 @@ fn draw_structure(plot: &mut Plot, structure: &Structure) -> anyhow::Result<()> 
     // the slenderness: from the edge to the centre of gravity, against the vertical
     let center = H / structure.gamma;
     let radius = center.hypot(B);
-    plot.draw_series(DashedLineSeries::new(
-        [(B, 0.0), (0.0, center)],
-        px(5.0) as u32,
-        px(4.0) as u32,
-        line(colour::BLUE),
-    ))?;
-    plot.draw_series(DashedLineSeries::new(
-        [(B, 0.0), (B, radius)],
-        px(5.0) as u32,
-        px(4.0) as u32,
-        line(colour::BLUE),
-    ))?;
+    dashed(plot, &[(B, 0.0), (0.0, center)], colour::BLUE)?;
+    dashed(plot, &[(B, 0.0), (B, radius)], colour::BLUE)?;
     let arc =
         (0..=20).map(|i| alpha_cg * f64::from(i) / 20.0).map(|a| (B - 0.6 * radius * a.sin(), 0.6 * radius * a.cos()));
     plot.draw_series([PathElement::new(arc.collect::<Vec<_>>(), line(colour::BLUE))])?;

@@ -3,6 +3,7 @@ use crate::picture::{
     Area, Picture, SMALL, TITLE, axes, chart, colour, dot, line, px, range, rounded, stroke, titled, words, words_about,
 };
 use crate::quantities::in_readable_unit;
+use crate::record::picture::spectrum;
 use plotters::prelude::*;
 use rocking::Structure;
 use rocking::estimates::demand::Demand;
@@ -60,9 +61,7 @@ fn draw_spectra(area: &Area, structure: &Structure, record: &Record) -> anyhow::
         ("vibration while rocking", "T_u", TAU / structure.omega_u, structure.zeta_u, colour::BLUE),
     ];
     let (shortest, longest) = (0.2 * of_mode[1].2, 10.0 * of_mode[0].2);
-    let period = |i: u32| shortest * (longest / shortest).powf(f64::from(i) / f64::from(POINTS));
-    let spectra =
-        of_mode.map(|(.., zeta, _)| (0..=POINTS).map(|i| (period(i), S_a(period(i), zeta))).collect::<Vec<_>>());
+    let spectra = of_mode.map(|(.., zeta, _)| spectrum(record, (shortest, longest), zeta, g));
     let highest = range(spectra.iter().flatten().map(|point| point.1));
     let mut chart = chart(area, BELOW).build_cartesian_2d((shortest..longest).log_scale(), highest.clone())?;
     axes(&mut chart, ["period T (s)", "spectral acceleration S_a (g)"], [6, 6])?;

@@ -194,19 +194,3 @@ fn thinned(points: &[(f64, f64)], column: f64) -> Points {
     };
     points.chunk_by(|a, b| (a.0 / column).floor() == (b.0 / column).floor()).flat_map(of_column).collect()
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn thinning_loses_no_peak() {
-        let points: Points =
-            (0..1000).map(|i| (f64::from(i) * 1e-3, (f64::from(i) * 1.7).sin() * f64::from(i % 37))).collect();
-        let thin = thinned(&points, 0.05);
-        assert!(thin.len() <= 4 * 21 && thin.is_sorted_by(|a, b| a.0 <= b.0));
-        let largest = |points: &[(f64, f64)]| points.iter().fold(0.0, |most: f64, point| most.max(point.1.abs()));
-        assert_eq!(largest(&thin), largest(&points));
-        assert_eq!((thin[0], thin[thin.len() - 1]), (points[0], points[999]));
-    }
-}

@@ -18,7 +18,7 @@ const DAMPING: f64 = 0.05;
 const PERIODS: (f64, f64) = (0.02, 10.0);
 
 /// Points of the spectrum.
-const POINTS: u32 = 250;
+const POINTS: u32 = 400;
 
 /// Draws `record`; `g` in m/s².
 pub fn draw(picture: Picture, record: &Record, g: f64) -> anyhow::Result<()> {
@@ -28,12 +28,12 @@ pub fn draw(picture: Picture, record: &Record, g: f64) -> anyhow::Result<()> {
     picture.draw((WIDTH, height + SPECTRUM), |area| {
         let (upper, lower) = titled(area, record.title(), about)?.split_vertically(px(f64::from(histories.height())));
         histories.draw(&upper)?;
-        spectrum(&lower, record, g)
+        draw_spectrum(&lower, record, g)
     })
 }
 
 /// The acceleration of `record` and its integrals over time; `g` in m/s².
-pub fn histories(record: &Record, g: f64) -> Histories {
+fn histories(record: &Record, g: f64) -> Histories {
     let none = Peak::default();
     let samples = || record.times().iter().copied().zip(record.velocities_and_displacements());
     let accelerations = record.times().iter().copied().zip(record.acceleration().iter().copied()).collect();
@@ -46,11 +46,15 @@ pub fn histories(record: &Record, g: f64) -> Histories {
     Histories { panels, marks: Vec::new(), time: record.start()..record.end() }
 }
 
-fn spectrum(area: &Area, record: &Record, g: f64) -> anyhow::Result<()> {
-    let (shortest, longest) = PERIODS;
+/// S_a/g of `record` at this `damping`, over periods (s) evenly in their logarithms; `g` in m/s².
+pub fn spectrum(record: &Record, (shortest, longest): (f64, f64), damping: f64, g: f64) -> Vec<(f64, f64)> {
     let period = |i: u32| shortest * (longest / shortest).powf(f64::from(i) / f64::from(POINTS));
-    let point = |T: f64| (T, spectral_acceleration(record, T, DAMPING) / g);
-    let points: Vec<_> = (0..=POINTS).map(|i| point(period(i))).collect();
+    (0..=POINTS).map(period).map(|T| (T, spectral_acceleration(record, T, damping) / g)).collect()
+}
+
+fn draw_spectrum(area: &Area, record: &Record, g: f64) -> anyhow::Result<()> {
+    let (shortest, longest) = PERIODS;
+    let points = spectrum(record, PERIODS, DAMPING, g);
     let highest = range(points.iter().map(|point| point.1));
     let mut chart = chart(area, BELOW).build_cartesian_2d((shortest..longest).log_scale(), highest)?;
     axes(&mut chart, ["period T (s)", "S_a (g), damping 5 %"], [6, 6])?;

@@ -3,22 +3,22 @@
 use crate::{
     output_files::OutputFiles,
     record_args::{RecordOptions, with_key},
+    scene_args::InitialArgs,
     structure_args::{Preset, left_open},
-    talk::{say, say_few},
+    talk::say_few,
 };
-use anyhow::{Context, anyhow, bail, ensure};
+use anyhow::{Context, bail, ensure};
 use rocking::estimates::intensity::IntensityMeasure;
-use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::record::Record;
 use rocking::structure::natural_quantities::Given;
-use rocking::{Detail, Parameters, State, Structure, engine::DEFAULT_TOLERANCE};
+use rocking::{Detail, Parameters, Structure, engine::DEFAULT_TOLERANCE};
 use rocking_records::{Column, Unit};
 use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map};
 use rocking_sweep::outcome::Limit;
 use rocking_sweep::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population};
 use rocking_sweep::pulse::{Pulse, Shape};
 use serde::Deserialize;
-use std::path::{MAIN_SEPARATOR, Path, PathBuf};
+use std::path::{MAIN_SEPARATOR, Path};
 use std::{collections::BTreeMap, collections::HashMap};
 
 /// A sweep.
@@ -29,7 +29,7 @@ pub struct Sweep {
     pub limits: Vec<Limit>,
     /// By what a run's ground motion is measured.
     pub measure: IntensityMeasure,
-    /// What was read of each record, and what was assumed, in a line: where the unit was assumed first.
+    /// What was read of each record, and what was assumed, in a line.
     pub records: Vec<String>,
     /// What of each structure was not given, in a line.
     pub structures: Vec<String>,
@@ -57,12 +57,11 @@ pub enum Asked {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct SweepFile {
-    records: Vec<Source>,
+    records: Vec<RecordEntry>,
     /// Unit of records that do not state theirs.
     unit: Option<Unit>,
     /// Multiplies the records' times.
-    #[serde(default = "one")]
-    time_scale: f64,
+    time_scale: Option<f64>,
     /// Multiply the records' accelerations.
     scale: Values,
     structures: Vec<StructureGrid>,
@@ -71,9 +70,8 @@ struct SweepFile {
     tolerance: Option<f64>,
     /// From a record's first sample to the end of a run, s.
     duration: Option<f64>,
-    /// By the name of an initial value.
     #[serde(default)]
-    initial: BTreeMap<String, f64>,
+    initial: InitialArgs,
     /// Name of the intensity measure.
     intensity: Option<String>,
     /// By the name of a measure.
@@ -119,18 +117,18 @@ struct PulseGrid {
 /// Records: a path or a pattern such as `records/*.AT2`, from the folder of the file.
 #[derive(Deserialize)]
 #[serde(untagged, expecting = "expected a path or pattern, or { file = ..., scale = ... }")]
-enum Source {
+enum RecordEntry {
     AsTheyAre(String),
     /// With a `file` and its options.
     As(toml::Table),
 }
 
-impl Source {
+impl RecordEntry {
     /// The pattern of the files, and how they are read.
     fn pattern_and_options(&self) -> anyhow::Result<(&str, RecordOptions)> {
         match self {
-            Source::AsTheyAre(pattern) => Ok((pattern, RecordOptions::default())),
-            Source::As(table) => {
+            RecordEntry::AsTheyAre(pattern) => Ok((pattern, RecordOptions::default())),
+            RecordEntry::As(table) => {
                 let pattern = table.get("file").and_then(toml::Value::as_str);
                 let pattern = pattern.context("records: a table without file: expected { file = ..., scale = ... }")?;
                 let mut options = table.clone();
@@ -140,10 +138,6 @@ impl Source {
             }
         }
     }
-}
-
-fn one() -> f64 {
-    1.0
 }
 
 /// Structures that count as one population: each has its own fragility curve.
@@ -174,45 +168,32 @@ enum Values {
 
 /// Reads the sweep in the TOML file at `path`, and its records, each of which is an input of `files`.
 pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
-    let mut read = || {
+    let mut read = || -> anyhow::Result<_> {
         let text = std::fs::read_to_string(path)?;
         let table: toml::Table = toml::from_str(&text)?;
         if table.contains_key("pulses") {
-            let of_records = ["records", "scale"].into_iter().find(|key| table.contains_key(*key));
-            ensure!(
-                of_records.is_none(),
-                "pulses and {} are there: a sweep is of either",
-                of_records.unwrap_or_default()
-            );
             return Ok(Asked::Pulses(toml::from_str::<MapFile>(&text)?.sweep()?));
         }
         let file: SweepFile = toml::from_str(&text)?;
         let (unit, time_scale) = (file.unit, file.time_scale);
-        ensure!(
-            time_scale > 0.0 && time_scale.is_finite(),
-            "time_scale = {time_scale} is out of range: a finite number greater than 0 is needed"
-        );
         let scales = file.scale.list().context("scale")?;
         let limits = file.limits().context("limits")?;
         let measure = file.measure()?;
-        let conditions = file.conditions()?;
         let g = gravity(&file.structures)?;
         let populations = file.structures.iter().map(StructureGrid::population).collect::<Result<_, _>>()?;
-        let (mut said, mut warnings) = (Vec::new(), Vec::new());
+        let (mut records, mut warnings) = (Vec::new(), Vec::new());
         let read = |path: &Path, options: &RecordOptions| {
             files.add_input(path);
-            let (unit, time_scale) = (options.unit.or(unit), options.time_scale.or(Some(time_scale)));
+            let (unit, time_scale) = (options.unit.or(unit), options.time_scale.or(time_scale));
             let options = RecordOptions { unit, time_scale, scale: None, ..options.clone() };
             let understood = options.understand(path, g).map_err(with_key)?;
             warnings.extend(understood.warnings(path));
-            said.push((!understood.unit_is_assumed(), understood.described));
+            records.push(understood.described);
             Ok(understood.record)
         };
         let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read);
         say_few(&warnings, "warnings");
-        let plan = Plan::new(populations, motions?, scales)?.under(conditions)?;
-        said.sort_by_key(|(is_stated, _)| *is_stated);
-        let records = said.into_iter().map(|(_, line)| line).collect();
+        let plan = Plan::new(populations, motions?, scales)?.under(file.conditions())?;
         let structures = left_open_of(&file.structures)?;
         Ok(Asked::Records(Sweep { plan, limits, measure, records, structures }))
     };
@@ -221,15 +202,15 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
 
 impl MapFile {
     fn sweep(&self) -> anyhow::Result<MapSweep> {
-        let &MapFile { refine, condition, .. } = self;
+        let refine = self.refine;
         ensure!(refine <= MAX_REFINEMENTS, "refine = {refine} is out of range: 0 to {MAX_REFINEMENTS} are possible");
         ensure!(!self.structures.is_empty(), "structures is empty: name one or more");
         let mut maps: Vec<(String, Map)> = Vec::new();
         for grid in &self.structures {
-            let name = is_one_line(&grid.name)?;
+            let name = &grid.name;
             ensure!(maps.iter().all(|(other, _)| other != name), "two structures have the name {name:?}: rename one");
             let map = self.map(grid).with_context(|| format!("structures {name:?}"))?;
-            maps.push((name.into(), map.with_condition(condition)));
+            maps.push((name.into(), map));
         }
         Ok(MapSweep { maps, refinements: refine, structures: left_open_of(&self.structures)? })
     }
@@ -241,26 +222,18 @@ impl MapFile {
         let unit = if dimensionless { 1.0 } else { structure.parameters().g };
         let frequency = frequency.axis(1.0).context("frequency")?;
         let amplitude = amplitude.axis(unit).context("amplitude")?;
-        let pulse = Pulse::new(shape, amplitude.values()[0], frequency.values()[0]);
+        let pulse = Pulse::new(shape, amplitude.values[0], frequency.values[0]);
         let (cycles, error) = (cycles.unwrap_or(pulse.cycles), error.unwrap_or(pulse.error));
         let pulse = Pulse { cycles, phase, error, ..pulse };
         let map = Map::new(structure, pulse, [frequency, amplitude], dimensionless).context("pulses")?;
-        Ok(map.computed_by(self.detail, self.tolerance.unwrap_or(DEFAULT_TOLERANCE))?)
+        Ok(map.computed_by(self.detail, self.tolerance.unwrap_or(DEFAULT_TOLERANCE), self.condition)?)
     }
 }
 
 impl SweepFile {
-    fn conditions(&self) -> anyhow::Result<Conditions> {
-        let mut initial = State::default();
-        for (name, value) in &self.initial {
-            let quantity = INITIAL_VALUES.iter().find(|quantity| quantity.name == name);
-            let known = INITIAL_VALUES.each_ref().map(|quantity| quantity.name).join(", ");
-            let quantity =
-                quantity.with_context(|| format!("initial: {name:?} is unknown; these are known: {known}"))?;
-            (quantity.set)(&mut initial, *value);
-        }
+    fn conditions(&self) -> Conditions {
         let tolerance = self.tolerance.unwrap_or(DEFAULT_TOLERANCE);
-        Ok(Conditions { initial, detail: self.detail, tolerance, duration: self.duration })
+        Conditions { initial: self.initial.state(), detail: self.detail, tolerance, duration: self.duration }
     }
 
     fn measure(&self) -> anyhow::Result<IntensityMeasure> {
@@ -275,9 +248,7 @@ impl SweepFile {
         for (name, values) in &self.limits {
             ensure!(!values.is_empty(), "{name} is empty: give one or more");
             for value in values {
-                let limit = Limit::peak(name, *value)?;
-                ensure!(!limits.contains(&limit), "{name} = {value} is there twice: leave one out");
-                limits.push(limit);
+                limits.push(Limit::peak(name, *value)?);
             }
         }
         Ok(limits)
@@ -329,7 +300,7 @@ impl Values {
         let is_log = matches!(self, Values::Even { log: true, .. });
         let values: Vec<_> = self.list()?.into_iter().map(|value| value * unit).collect();
         ensure!(!values.is_empty(), "it is empty: give two or more");
-        Ok(Axis::new(values, is_log))
+        Ok(Axis { values, is_log })
     }
 }
 
@@ -354,20 +325,18 @@ impl StructureGrid {
         let vary = |population: Population, (name, values): (&String, &Values)| -> anyhow::Result<_> {
             Ok(population.vary(name, values.list().context(name.clone())?)?)
         };
-        let name = is_one_line(&self.name)?;
-        let population = || self.vary.iter().try_fold(Population::new(name, self.base()?), vary);
-        population().with_context(|| format!("structures {name:?}"))
+        let population = || self.vary.iter().try_fold(Population::new(&self.name, self.base()?), vary);
+        population().with_context(|| format!("structures {:?}", self.name))
     }
 }
 
 /// The records that `sources` name, each of them once, under their paths from `folder`.
 fn motions(
-    sources: &[Source],
+    sources: &[RecordEntry],
     folder: &Path,
     mut read: impl FnMut(&Path, &RecordOptions) -> anyhow::Result<Record>,
 ) -> anyhow::Result<Vec<NamedRecord>> {
     let (mut motions, mut named) = (Vec::new(), HashMap::new());
-    let (mut named_twice, mut bad): (Vec<PathBuf>, Vec<anyhow::Error>) = (Vec::new(), Vec::new());
     for source in sources {
         let (pattern, options) = source.pattern_and_options()?;
         let scale = options.scale.unwrap_or(1.0);
@@ -377,11 +346,9 @@ fn motions(
             Some(column) => format!(" column {column}"),
         };
         let in_folder = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
-        let mut paths = glob::glob(&in_folder.to_string_lossy()).with_context(|| format!("records {pattern:?}"))?;
-        let mut paths = paths.by_ref().peekable();
-        if paths.peek().is_none() {
-            bad.push(anyhow!("records: there is no file {}", folder.join(pattern).display()));
-        }
+        let paths = glob::glob(&in_folder.to_string_lossy()).with_context(|| format!("records {pattern:?}"))?;
+        let mut paths = paths.peekable();
+        ensure!(paths.peek().is_some(), "records: there is no file {}", folder.join(pattern).display());
         for path in paths {
             let path = path?;
             if let Some(other) = named.insert((path.canonicalize()?, column.clone()), options.clone()) {
@@ -390,39 +357,12 @@ fn motions(
                     "{} is named twice in records, with different options: leave one out",
                     path.display()
                 );
-                named_twice.push(path);
                 continue;
             }
             // The same on every system, so that a sweep can go on on another.
             let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace(MAIN_SEPARATOR, "/");
-            let name = name + &column;
-            let name = is_one_line(&name)?;
-            match read(&path, &options).and_then(|record| Ok(NamedRecord::new(name, record, scale)?)) {
-                Ok(motion) => motions.push(motion),
-                Err(error) => bad.push(error),
-            }
+            motions.push(NamedRecord::new(name + &column, read(&path, &options)?, scale)?);
         }
-    }
-    match bad.len() {
-        0 => {}
-        1 => return Err(bad.remove(0)),
-        count => {
-            let each: String = bad.iter().map(|error| format!("\n  {error:#}")).collect();
-            bail!("{count} of {} records cannot be taken:{each}", count + motions.len());
-        }
-    }
-    if let Some(first) = named_twice.first() {
-        let (first, count) = (first.display(), named_twice.len());
-        say!(
-            "named twice in records and counted once: {first}{}",
-            if count > 1 { format!(" and {} more", count - 1) } else { String::new() }
-        );
     }
     Ok(motions)
-}
-
-/// A name that is written into rows.
-fn is_one_line(name: &str) -> anyhow::Result<&str> {
-    ensure!(!name.contains(char::is_control), "the name {name:?} must be a line of text, for it is written into rows");
-    Ok(name)
 }

@@ -1,23 +1,21 @@
 //! A sweep of pulses: an overturning spectrum of every structure.
-mod lines;
 mod picture;
 mod rows;
 
-use super::{SweepArgs, file::MapSweep, progress_style, row_file::RowFile, say_rate, thread_pool};
+use super::{SweepArgs, file::MapSweep, row_file::Known, row_file::RowFile, say_rate, thread_pool};
 use crate::{
     picture::Picture,
     results::{Format, print, print_rows},
     significant::short,
-    talk::{self, say, say_few},
+    talk::{say, say_few},
 };
 use anyhow::{bail, ensure};
 use picture::Shown;
 use rayon::prelude::*;
 use rocking::run::{LONGEST_REST, validity};
-use rocking_sweep::map::{Class, Map, Place, Point};
-use rows::Rows;
+use rocking_sweep::map::{Class, Fate, Map, Place, Point};
 use serde::Serialize;
-use std::{collections::HashMap, fmt::Write, path::Path, sync::Mutex, time::Instant};
+use std::{collections::HashMap, fmt::Write, path::Path, time::Instant};
 
 /// A map, and what is known of it.
 pub struct Spectrum {
@@ -31,13 +29,13 @@ pub struct Spectrum {
 
 /// What the classes are called, in their order.
 const CLASSES: [(Class, &str); 7] = [
-    (Class::NoUplift, "no uplift"),
-    (Class::Stands, "rocks and stands"),
-    (Class::OverturnsAtOnce, "overturns without impact"),
-    (Class::OverturnsAfterOne, "overturns after one impact"),
-    (Class::OverturnsAfterMore, "overturns after more"),
-    (Class::StillRocking, "still rocking"),
-    (Class::Failed, "failed"),
+    ((Fate::NoUplift, 0), "no uplift"),
+    ((Fate::Stands, 0), "rocks and stands"),
+    ((Fate::Overturns, 0), "overturns without impact"),
+    ((Fate::Overturns, 1), "overturns after one impact"),
+    ((Fate::Overturns, 2), "overturns after more"),
+    ((Fate::StillRocking, 0), "still rocking"),
+    ((Fate::Failed, 0), "failed"),
 ];
 
 /// How many points of a map's grid are of a class.
@@ -52,38 +50,36 @@ struct Count<'a> {
 /// Does the runs that are not in the file at `output` yet, then prints and draws the maps.
 pub fn run(args: &SweepArgs, sweep: MapSweep, output: &Path, picture: Picture) -> anyhow::Result<()> {
     ensure!(!args.validity, "--validity is for records: `simulate` a pulse that `pulse` writes");
-    let (file, mut rows) = Rows::open(output)?;
-    let file = Mutex::new(file);
+    let (file, mut known) = rows::open(output)?;
     let largest = sweep.maps.iter().map(|(_, map)| map.grid().count()).max().unwrap_or(0);
     let pool = thread_pool(args, if sweep.refinements > 0 { usize::MAX } else { largest })?;
     say_few(&sweep.structures, "structures");
     for (name, map) in &sweep.maps {
-        let warnings = validity::of_parameters(map.structure(), map.detail());
+        let warnings = validity::of_parameters(&map.structure, map.detail);
         warnings.iter().for_each(|warning| say!("{name}: {warning}"));
     }
     let clock = Instant::now();
     let (mut done, mut spectra) = (0, Vec::new());
     for (name, map) in sweep.maps {
-        let mut points = HashMap::new();
+        let mut spectrum = Spectrum { name, map, points: HashMap::new() };
         for level in 0..=sweep.refinements {
             loop {
-                let lacking = if level > 0 {
-                    map.refinement(level, &points)
-                } else if points.is_empty() {
-                    map.grid().collect()
-                } else {
-                    Vec::new()
+                let Spectrum { map, points, .. } = &spectrum;
+                let lacking = match level {
+                    0 if points.is_empty() => map.grid().collect(),
+                    0 => Vec::new(),
+                    level => map.refinement(level, points),
                 };
                 if lacking.is_empty() {
                     break;
                 }
-                done += pool.install(|| do_points(&name, &map, level, lacking, &mut points, &mut rows, &file))?;
+                done += pool.install(|| do_points(&mut spectrum, level, lacking, &mut known, &file))?;
             }
         }
-        spectra.push(Spectrum { name, map, points });
+        spectra.push(spectrum);
     }
     say_rate(done, "points", clock, &pool);
-    rows.say_others(output);
+    known.say_others(output, "points that are not in these maps");
     let counts: Vec<_> = spectra.iter().flat_map(count).collect();
     match args.results.format {
         Format::Text => print(&text(&spectra, &counts)?)?,
@@ -94,36 +90,28 @@ pub fn run(args: &SweepArgs, sweep: MapSweep, output: &Path, picture: Picture) -
     report_failures(&spectra)
 }
 
-/// Finds `places` of a map in the file, or runs the structure there and adds the row; returns how many were run.
+/// Finds `places` of a map among the points that are `known`, or runs the structure there and adds the row; returns how
+/// many were run.
 fn do_points(
-    name: &str,
-    map: &Map,
+    spectrum: &mut Spectrum,
     level: u32,
     places: Vec<Place>,
-    points: &mut HashMap<Place, Point>,
-    rows: &mut Rows,
-    file: &Mutex<RowFile>,
+    known: &mut Known<Point>,
+    file: &RowFile,
 ) -> anyhow::Result<usize> {
+    let Spectrum { name, map, points } = spectrum;
     let keys: Vec<_> = places.par_iter().map(|place| rows::key_at(name, map, *place)).collect();
     let mut lacking = Vec::new();
     for (place, key) in places.into_iter().zip(keys) {
-        match rows.take(&key) {
+        match known.take(&key) {
             Some(point) => drop(points.insert(place, point)),
             None => lacking.push((place, key)),
         }
     }
-    let progress = talk::progress(lacking.len()).with_style(progress_style("points")?);
-    let run: anyhow::Result<Vec<_>> = (lacking.par_iter())
-        .map(|(place, key)| {
-            let point = map.run(*place);
-            let row = rows::row(key, name, map, (level, *place), &point)?;
-            file.lock().expect("no thread panics with the file in hand").append(&row)?;
-            progress.inc(1);
-            Ok((*place, point))
-        })
-        .collect();
-    progress.finish_and_clear();
-    points.extend(run?);
+    points.extend(file.do_runs("points", &lacking, |(place, key)| {
+        let point = map.run(*place);
+        Ok((rows::row(key, name, map, (level, *place), &point)?, (*place, point)))
+    })?);
     Ok(lacking.len())
 }
 
@@ -148,7 +136,7 @@ fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
         });
         let [x, y] = picture::axis_names(map);
         let refined = points.len() - map.grid().count();
-        writeln!(out, "{name}: {}; {}", map.pulse_name(), map.detail().name())?;
+        writeln!(out, "{name}: {}; {}", map.pulse_name(), map.detail.name())?;
         writeln!(out, "  {x}: {frequency}\n  {y}: {amplitude}")?;
         for Count { class, points, part, .. } in counts.iter().filter(|count| count.structure == name) {
             writeln!(out, "  {class:<28} {points:>9} {:>7.3} %", 100.0 * part)?;
@@ -156,11 +144,11 @@ fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
         if refined > 0 {
             writeln!(out, "  {:<28} {refined:>9}", "more along the boundaries")?;
         }
-        if map.finds_condition() {
+        if map.finds_condition {
             let changes = points.values().filter(|point| point.condition == Some(f64::INFINITY)).count();
             writeln!(out, "  {:<28} {changes:>9}", "change class under 1e-12")?;
         }
-        if points.values().any(|point| point.class() == Class::StillRocking) {
+        if points.values().any(|point| point.fate == Fate::StillRocking) {
             writeln!(out, "  still rocking: {LONGEST_REST}/p_l after the pulse it is not decided")?;
         }
         writeln!(out)?;
@@ -170,7 +158,7 @@ fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
 
 /// Says how many points failed, and why the first did.
 fn report_failures(spectra: &[Spectrum]) -> anyhow::Result<()> {
-    let failed = || spectra.iter().flat_map(|of| of.points.iter()).filter(|(_, point)| point.class() == Class::Failed);
+    let failed = || spectra.iter().flat_map(|of| of.points.iter()).filter(|(_, point)| point.fate == Fate::Failed);
     match failed().min_by_key(|(place, _)| **place) {
         Some((_, first)) => bail!("{} point(s) failed; one of them: {}", failed().count(), first.reason),
         None => Ok(()),

@@ -2,9 +2,8 @@
 //! both against the intensity of the single run.
 use super::table::{BEYOND_THE_RUNS, is_beyond_the_runs};
 use crate::picture::{
-    Area, Picture, SMALL, TITLE, axes, chart, colour, line, px, rounded, titled, words, words_before,
+    Area, Picture, Plot, SMALL, TITLE, axes, chart, colour, dashed, line, px, rounded, titled, words, words_before,
 };
-use plotters::coord::types::RangedCoordf64;
 use plotters::prelude::*;
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking_sweep::exceedances::{Exceedances, Fragility};
@@ -30,8 +29,6 @@ const LARGEST_DOT: f64 = 5.0;
 
 const COLORS: [RGBColor; 7] =
     [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::PURPLE, colour::ORANGE, colour::SKY, colour::INK];
-
-type Plot<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<RangedCoordf64, RangedCoordf64>>;
 
 /// Draws `populations`, their intensities in `measure`.
 pub fn draw(picture: Picture, populations: &[Exceedances], measure: IntensityMeasure) -> anyhow::Result<()> {
@@ -91,13 +88,7 @@ fn draw_curve(
     let (seen, beyond): (Vec<_>, Vec<_>) = points().partition(|(x, _)| *x <= strongest);
     let joint = seen.last().copied();
     plot.draw_series([PathElement::new(seen, line(colour))])?;
-    plot.draw_series(DashedLineSeries::new(
-        joint.into_iter().chain(beyond),
-        px(5.0) as u32,
-        px(4.0) as u32,
-        line(colour),
-    ))?;
-    Ok(())
+    dashed(plot, &joint.into_iter().chain(beyond).collect::<Vec<_>>(), colour)
 }
 
 fn draw_dots(

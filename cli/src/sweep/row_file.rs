@@ -1,28 +1,37 @@
 //! A file of rows that grows as runs end: headings, and a row for every run that is done.
 //!
-//! A row begins with the run's key, which stands for all that the run depends on. It ends with a checksum. So rows may
-//! stand in any order, and those of other runs among them. Lines may end as the editor has them that has been at the file.
+//! A row begins with the run's key, which stands for all that the run depends on. So rows may stand in any order, and those
+//! of other runs among them.
 //!
 //! A row is written at once and whole when its run ends. Whatever ends the program, the file then holds complete rows,
 //! and at most part of one more at its end, which is cut off when the runs go on.
+use super::progress_style;
+use crate::talk::{self, say};
 use FlexibleRocking::BUILD;
-use anyhow::{Context, anyhow, bail, ensure};
+use anyhow::{Context, bail, ensure};
 use csv::{ReaderBuilder, StringRecord, WriterBuilder};
+use rayon::prelude::*;
 use serde::Serialize;
 use std::{
+    collections::HashMap,
     fs::{File, TryLockError},
     io::{Read, Seek, SeekFrom, Write},
     path::{Path, PathBuf},
+    sync::Mutex,
 };
 use uuid::Uuid;
 
 /// An open file, to which rows can be added.
 pub struct RowFile {
     path: PathBuf,
-    file: File,
-    /// Of what is complete.
-    length: u64,
-    has_failed: bool,
+    /// With the length of what is complete.
+    file: Mutex<(File, u64)>,
+}
+
+/// What the rows say that were there, each a `T`, and that nobody has asked for yet.
+pub struct Known<T> {
+    by_key: HashMap<Uuid, T>,
+    repeated: usize,
 }
 
 /// The key of what depends on the build of the program and on `of`.
@@ -35,67 +44,100 @@ pub fn digest(namespace: &Uuid, of: &impl Serialize) -> Uuid {
     Uuid::new_v5(namespace, &postcard::to_allocvec(of).expect("numbers and slices can be serialized"))
 }
 
-impl RowFile {
-    /// Opens the file at `path` under these `headings`, or begins it, and has its complete rows read.
-    pub fn open<T>(
-        path: &Path,
-        headings: &[String],
-        read: impl FnOnce(&[u8]) -> anyhow::Result<T>,
-    ) -> anyhow::Result<(RowFile, T)> {
-        let named = || path.display().to_string();
-        let mut file =
-            File::options().read(true).write(true).create(true).truncate(false).open(path).with_context(named)?;
-        match file.try_lock() {
-            Ok(()) => {}
-            Err(TryLockError::WouldBlock) => bail!("{}: another sweep is writing to it: wait for its end", named()),
-            Err(TryLockError::Error(error)) => return Err(error).with_context(named),
-        }
-        let mut content = Vec::new();
-        file.read_to_end(&mut content).with_context(named)?;
-        let headings = line(&headings)?;
-        let (found, length) = if headings.starts_with(&content) {
-            file.rewind().and_then(|()| file.write_all(&headings)).with_context(named)?;
-            (read(&[])?, headings.len())
-        } else {
-            let first = content.split(|byte| *byte == b'\n').next().unwrap_or_default();
-            if without_end(first) != without_end(&headings) {
-                return Err(no_headings(without_end(first), &headings)).with_context(named);
-            }
-            let rows = content.get(first.len() + 1..).unwrap_or_default();
-            let complete = rows.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
-            check_rows(&rows[..complete]).with_context(named)?;
-            (read(&rows[..complete]).with_context(named)?, content.len() - rows.len() + complete)
-        };
-        file.set_len(length as u64).with_context(named)?;
-        Ok((RowFile { path: path.into(), file, length: length as u64, has_failed: false }, found))
+impl<T> Known<T> {
+    /// What the row with `key` says, if there is one.
+    pub fn take(&mut self, key: &Uuid) -> Option<T> {
+        self.by_key.remove(key)
     }
 
-    /// Adds a row. After a failure there is none to add.
-    pub fn append(&mut self, Row(row): &Row) -> anyhow::Result<()> {
-        let named = || format!("{} cannot be written", self.path.display());
-        ensure!(!self.has_failed, named());
-        let written = self.file.seek(SeekFrom::Start(self.length)).and_then(|_| self.file.write_all(row));
-        if let Err(error) = written {
-            self.has_failed = true;
-            let cut = self.file.set_len(self.length);
-            return Err(cut.err().unwrap_or(error)).with_context(named);
+    /// Says how many rows of the file at `path` are of other runs or points, `what`, and how many are there again.
+    pub fn say_others(&self, path: &Path, what: &str) {
+        let others = format!("of {what} (other inputs, or another build of the program): kept");
+        for (count, are) in [(self.by_key.len(), others.as_str()), (self.repeated, "there again: counted once")] {
+            if count > 0 {
+                say!("{}: {count} row(s) are {are}", path.display());
+            }
         }
-        self.length += row.len() as u64;
-        Ok(())
     }
 }
 
-/// A row with its checksum, as it is written: whoever has the file in hand has nothing left to compute.
-pub struct Row(Vec<u8>);
+impl RowFile {
+    /// Opens the file at `path` under these `headings`, or begins it, and has its complete rows parsed.
+    pub fn open<T>(
+        path: &Path,
+        headings: &[String],
+        parse: impl Fn(&StringRecord) -> anyhow::Result<T>,
+    ) -> anyhow::Result<(RowFile, Known<T>)> {
+        let open = || {
+            let mut file = File::options().read(true).write(true).create(true).truncate(false).open(path)?;
+            match file.try_lock() {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => bail!("another sweep is writing to it: wait for its end"),
+                Err(TryLockError::Error(error)) => return Err(error.into()),
+            }
+            let mut content = Vec::new();
+            file.read_to_end(&mut content)?;
+            let first = line(&headings)?;
+            let mut known = Known { by_key: HashMap::new(), repeated: 0 };
+            if first.starts_with(&content) {
+                file.rewind()?;
+                file.write_all(&first)?;
+                return Ok((file, first.len(), known));
+            }
+            let length = content.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
+            let mut rows = ReaderBuilder::new().from_reader(&content[..length]);
+            ensure!(
+                rows.headers()? == headings,
+                "line 1 is not the headings of this sweep's rows, in this version of the program: name another file with \
+                 -o, or remove this one. These are the headings:\n{}",
+                String::from_utf8_lossy(&first)
+            );
+            for row in rows.records() {
+                let row = row?;
+                let read = || Ok::<_, anyhow::Error>((Uuid::try_parse(&row[0])?, parse(&row)?));
+                let at = row.position().map_or(0, csv::Position::line);
+                let (key, value) =
+                    read().with_context(|| format!("line {at} cannot be read: remove it, to do its run again"))?;
+                known.repeated += usize::from(known.by_key.insert(key, value).is_some());
+            }
+            Ok((file, length, known))
+        };
+        let (file, length, known) = open().with_context(|| path.display().to_string())?;
+        file.set_len(length as u64)?;
+        Ok((RowFile { path: path.into(), file: Mutex::new((file, length as u64)) }, known))
+    }
 
-impl Row {
-    /// Of these values; numbers read back to the same bits.
-    pub fn new(values: &impl Serialize) -> anyhow::Result<Row> {
-        let mut row = line(values)?;
-        row.pop();
-        let checksum = checksum(&row);
-        row.extend(format!(",{checksum}\n").into_bytes());
-        Ok(Row(row))
+    /// Does many runs, which are called `what`, on all threads, and adds their rows as they end: `run` returns one and what
+    /// it is kept as.
+    pub fn do_runs<T: Sync, R: Send>(
+        &self,
+        what: &str,
+        runs: &[T],
+        run: impl Fn(&T) -> anyhow::Result<(Vec<u8>, R)> + Sync,
+    ) -> anyhow::Result<Vec<R>> {
+        let progress = talk::progress(runs.len()).with_style(progress_style(what)?);
+        let done = runs.par_iter().map(|one| {
+            let (row, result) = run(one)?;
+            self.append(&row)?;
+            progress.inc(1);
+            Ok(result)
+        });
+        let done = done.collect();
+        progress.finish_and_clear();
+        done
+    }
+
+    /// Adds a row, or nothing.
+    fn append(&self, row: &[u8]) -> anyhow::Result<()> {
+        let mut guard = self.file.lock().expect("no thread panics with the file in hand");
+        let (file, length) = &mut *guard;
+        let written = file.seek(SeekFrom::Start(*length)).and_then(|_| file.write_all(row));
+        if written.is_err() {
+            file.set_len(*length)?;
+        }
+        written.with_context(|| format!("{} cannot be written", self.path.display()))?;
+        *length += row.len() as u64;
+        Ok(())
     }
 }
 
@@ -104,67 +146,9 @@ pub fn fixed(headings: &[&str]) -> Vec<String> {
     headings.iter().map(|heading| (*heading).to_owned()).collect()
 }
 
-/// Each of `rows` with its line in the file.
-pub fn records(rows: &[u8]) -> impl Iterator<Item = (u64, csv::Result<StringRecord>)> {
-    (2..).zip(ReaderBuilder::new().has_headers(false).from_reader(rows).into_records())
-}
-
-/// The key that `row` begins with.
-pub fn key_of(row: &StringRecord) -> anyhow::Result<Uuid> {
-    Ok(Uuid::try_parse(row.get(0).context("it is too short")?)?)
-}
-
-/// Why `line` cannot stand where `header` belongs.
-fn no_headings(line: &[u8], header: &[u8]) -> anyhow::Error {
-    let expected = String::from_utf8_lossy(header);
-    if check(line).is_ok() {
-        return anyhow!("line 1 is a row: put the headings back before it:\n{expected}");
-    }
-    let first: String = String::from_utf8_lossy(line).chars().take(120).collect();
-    let advice = "name another file with -o, or remove this one. These are the headings:";
-    if line.starts_with(FIRST_HEADINGS.join(",").as_bytes()) {
-        anyhow!(
-            "the headings in line 1 are those of another kind of sweep (of records, of pulses) or of another version of this \
-             program: {advice}\n{expected}"
-        )
-    } else {
-        anyhow!("line 1, {first:?}, is not the headings of a sweep's rows: {advice}\n{expected}")
-    }
-}
-
-/// The headings that all versions begin with.
-pub const FIRST_HEADINGS: [&str; 2] = ["run", "structures"];
-
-/// A line without what ends it.
-fn without_end(line: &[u8]) -> &[u8] {
-    let line = line.strip_suffix(b"\n").unwrap_or(line);
-    line.strip_suffix(b"\r").unwrap_or(line)
-}
-
-fn line(of: &impl Serialize) -> anyhow::Result<Vec<u8>> {
+/// A line of these values; numbers read back to the same bits.
+pub fn line(of: &impl Serialize) -> anyhow::Result<Vec<u8>> {
     let mut writer = WriterBuilder::new().has_headers(false).from_writer(Vec::new());
     writer.serialize(of)?;
     Ok(writer.into_inner()?)
-}
-
-/// Refuses complete `rows` of which one is not as it was written.
-fn check_rows(rows: &[u8]) -> anyhow::Result<()> {
-    for (line, row) in (2..).zip(rows.split_inclusive(|byte| *byte == b'\n')) {
-        check(without_end(row))
-            .with_context(|| format!("line {line} is not a row as it was written: remove it, to do its run again"))?;
-    }
-    Ok(())
-}
-
-/// Whether `row`, a line without its end, ends with the checksum of what comes before it.
-fn check(row: &[u8]) -> anyhow::Result<()> {
-    let comma = row.iter().rposition(|byte| *byte == b',').context("it has one column")?;
-    let (expected, found) = (checksum(&row[..comma]), String::from_utf8_lossy(&row[comma + 1..]));
-    ensure!(found == expected, "its checksum is {expected} and not {found:?}");
-    Ok(())
-}
-
-fn checksum(row: &[u8]) -> String {
-    let (checksum, _) = Uuid::new_v5(&Uuid::NAMESPACE_OID, row).as_u64_pair();
-    format!("{checksum:016x}")
 }

@@ -86,7 +86,7 @@ pub fn write(out: &mut impl Write, of: &Exceedances, measure: IntensityMeasure) 
 
 /// A fragility curve, for programs.
 #[derive(Serialize)]
-pub struct CurveRow {
+pub struct Fitted {
     structures: String,
     limit: String,
     measure: &'static str,
@@ -103,33 +103,30 @@ pub struct CurveRow {
 
 /// The same with what it is fitted to.
 #[derive(Serialize)]
-pub struct Curve {
+pub struct WithBins {
     /// The curve.
     #[serde(flatten)]
-    pub row: CurveRow,
-    bins: Vec<BinRow>,
+    pub curve: Fitted,
+    bins: Vec<Counted>,
 }
 
 /// Runs of neighbouring intensities.
 #[derive(Serialize)]
-struct BinRow {
-    lowest: f64,
-    mean: f64,
-    highest: f64,
-    runs: usize,
-    /// Of how many it is known whether they exceed the limit, and how many do.
-    known: usize,
-    exceedances: usize,
+struct Counted {
+    #[serde(flatten)]
+    bin: Bin,
+    #[serde(flatten)]
+    tally: Tally,
 }
 
 /// Every curve of `populations`, whose intensities are in `measure`.
-pub fn curves(populations: &[Exceedances], measure: IntensityMeasure) -> Vec<Curve> {
+pub fn curves(populations: &[Exceedances], measure: IntensityMeasure) -> Vec<WithBins> {
     let all = populations.iter().flat_map(|of| of.fragilities.iter().map(move |fragility| (of, fragility)));
     all.map(|(of, fragility)| {
         let Fragility { limit, curve, tallies, .. } = fragility;
         let fitted = curve.as_ref().ok();
         let range = fitted.and_then(FragilityCurve::median_range);
-        let row = CurveRow {
+        let curve = Fitted {
             structures: of.population.clone(),
             limit: limit.to_string(),
             measure: measure.name(),
@@ -141,15 +138,8 @@ pub fn curves(populations: &[Exceedances], measure: IntensityMeasure) -> Vec<Cur
             dispersion: fitted.map(|curve| Number(curve.dispersion)),
             reason: curve.as_ref().err().map(ToString::to_string),
         };
-        let bin = |(&Bin { lowest, mean, highest, runs, .. }, &Tally { known, exceedances }): (&Bin, &Tally)| BinRow {
-            lowest,
-            mean,
-            highest,
-            runs,
-            known,
-            exceedances,
-        };
-        Curve { row, bins: of.bins.iter().zip(tallies).map(bin).collect() }
+        let bins = of.bins.iter().zip(tallies).map(|(&bin, &tally)| Counted { bin, tally });
+        WithBins { curve, bins: bins.collect() }
     })
     .collect()
 }

@@ -1,4 +1,5 @@
 //! The command line, run as a user would: a folder with a ground motion, commands, what they print.
+#![allow(dead_code)] // no file of tests uses all of it
 
 use std::{
     fs,

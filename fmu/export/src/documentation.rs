@@ -3,7 +3,7 @@
 use crate::Version;
 use crate::library::{Library, Platform};
 use crate::model_description::DESCRIPTION;
-use crate::significant::significant;
+use crate::significant::{in_full, significant};
 use FlexibleRocking::logger::Category;
 use FlexibleRocking::resources::Contents;
 use FlexibleRocking::variables::{Causality, DataType, VARIABLES, Value, Variable};
@@ -153,7 +153,7 @@ fn row(variable: &Variable, structure: &Structure, contents: &Contents) -> Row {
         name: variable.name,
         unit,
         value: value(variable, structure, contents),
-        range: range.map_or(String::new(), |(min, max)| format!("{} … {}", short(min), short(max))),
+        range: range.map_or(String::new(), |(min, max)| format!("{} … {}", in_full(min), in_full(max))),
         meaning,
     }
 }
@@ -161,7 +161,7 @@ fn row(variable: &Variable, structure: &Structure, contents: &Contents) -> Row {
 /// What is known of a variable's value before the simulation: its start value, or what follows from the parameters.
 fn value(variable: &Variable, structure: &Structure, contents: &Contents) -> String {
     match variable.start(contents) {
-        Some(Value::Real(start)) => return short(start),
+        Some(Value::Real(start)) => return in_full(start),
         Some(Value::Item(start)) => return start.to_string(),
         Some(Value::Boolean(start)) => return start.to_string(),
         Some(Value::String(start)) => return start,
@@ -169,11 +169,6 @@ fn value(variable: &Variable, structure: &Structure, contents: &Contents) -> Str
     }
     let derived = DERIVED.iter().find(|derived| derived.name == variable.name);
     derived.map_or(String::new(), |derived| significant((derived.value)(structure)))
-}
-
-/// `x` with all its digits, but without long rows of zeros.
-fn short(x: f64) -> String {
-    if x == 0.0 || (1e-3..1e5).contains(&x.abs()) { x.to_string() } else { format!("{x:e}") }
 }
 
 #[cfg(test)]

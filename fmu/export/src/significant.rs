@@ -16,6 +16,11 @@ pub fn short(value: f64) -> String {
     format!("{rounded:?}").trim_end_matches(".0").to_owned()
 }
 
+/// `value` with all its digits, but without long rows of zeros.
+pub fn in_full(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e5).contains(&value.abs()) { value.to_string() } else { format!("{value:e}") }
+}
+
 #[cfg(test)]
 mod tests {
     use super::{short, significant};

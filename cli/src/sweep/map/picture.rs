@@ -1,11 +1,11 @@
-//! The picture of maps: classes as cells, lines of equal rotation, and beside them, where it is known, the condition.
-use super::{Spectrum, lines::lines};
+//! The picture of maps: classes and rotations as cells, and beside them, where it is known, the condition.
+use super::Spectrum;
 use crate::picture::{
     Area, Picture, SMALL, TEXT, TITLE, axes, chart, colour, log_axis, px, shortened, stroke, titled, words,
 };
 use plotters::coord::ranged1d::ValueFormatter;
 use plotters::prelude::*;
-use rocking_sweep::map::{Axis, Class, Map, Place, Point, finest_step, nearest};
+use rocking_sweep::map::{Axis, Fate, Map, Place, Point, finest_step, nearest};
 
 /// Sizes in pixels: of a panel with its axes, of a panel's name, of a line of the legend.
 const PANEL: (u32, u32) = (560, 440);
@@ -25,11 +25,12 @@ const OVERLAP: f64 = 1.0;
 /// A colour, and what it stands for.
 type Swatch = (RGBColor, &'static str);
 
-const CLASSES: [Swatch; 9] = [
+const CLASSES: [Swatch; 10] = [
     (RGBColor(240, 240, 240), "no uplift"),
-    (RGBColor(214, 234, 248), "rocks and stands, less than 10 impacts"),
-    (RGBColor(169, 211, 240), "rocks and stands, 10 to 99 impacts"),
-    (RGBColor(120, 178, 222), "rocks and stands, 100 impacts and more"),
+    (RGBColor(214, 234, 248), "rocks and stands, theta_max less than alpha_cg/4"),
+    (RGBColor(169, 211, 240), "rocks and stands, alpha_cg/4 to alpha_cg/2"),
+    (RGBColor(120, 178, 222), "rocks and stands, alpha_cg/2 to 3 alpha_cg/4"),
+    (RGBColor(70, 140, 196), "rocks and stands, more"),
     (colour::VERMILLION, "overturns without impact"),
     (colour::ORANGE, "overturns after one impact"),
     (colour::PURPLE, "overturns after more"),
@@ -54,29 +55,25 @@ struct Key {
     swatches: &'static [Swatch],
     /// What the picture is of, after the structure's name.
     suffix: &'static str,
-    /// Whether lines of equal rotation are drawn.
-    has_lines: bool,
 }
 
-const OF_CLASS: Key = Key { of: class_of, swatches: &CLASSES, suffix: "", has_lines: true };
-const OF_CONDITION: Key = Key { of: condition_of, swatches: &CONDITIONS, suffix: ": condition", has_lines: false };
+const OF_CLASS: Key = Key { of: class_of, swatches: &CLASSES, suffix: "" };
+const OF_CONDITION: Key = Key { of: condition_of, swatches: &CONDITIONS, suffix: ": condition" };
 
 /// What the axes of a picture of `map` are called.
 pub fn axis_names(map: &Map) -> [&'static str; 2] {
-    if map.is_dimensionless() { ["omega/p_l", "a_p/(g tan alpha_cg)"] } else { ["frequency (Hz)", "amplitude a_p (g)"] }
+    if map.is_dimensionless { ["omega/p_l", "a_p/(g tan alpha_cg)"] } else { ["frequency (Hz)", "amplitude a_p (g)"] }
 }
 
 fn class_of(point: &Point) -> usize {
-    match (point.class(), point.impacts) {
-        (Class::NoUplift, _) => 0,
-        (Class::Stands, ..10) => 1,
-        (Class::Stands, 10..100) => 2,
-        (Class::Stands, _) => 3,
-        (Class::OverturnsAtOnce, _) => 4,
-        (Class::OverturnsAfterOne, _) => 5,
-        (Class::OverturnsAfterMore, _) => 6,
-        (Class::StillRocking, _) => 7,
-        (Class::Failed, _) => 8,
+    match (point.fate, point.impacts) {
+        (Fate::NoUplift, _) => 0,
+        (Fate::Stands, _) => 1 + (4.0 * point.theta).clamp(0.0, 3.0) as usize,
+        (Fate::Overturns, 0) => 5,
+        (Fate::Overturns, 1) => 6,
+        (Fate::Overturns, _) => 7,
+        (Fate::StillRocking, _) => 8,
+        (Fate::Failed, _) => 9,
     }
 }
 
@@ -97,7 +94,7 @@ pub fn draw(picture: Picture, spectra: &[Spectrum], refinements: u32) -> anyhow:
     let (width, height) = (PANEL.0, PANEL.1 + NAME as u32);
     let across = (spectra.len() as f64 * f64::from(height) / f64::from(width)).sqrt().ceil() as usize;
     let (keys, across) =
-        if map.finds_condition() { (&[OF_CLASS, OF_CONDITION][..], 2) } else { (&[OF_CLASS][..], across) };
+        if map.finds_condition { (&[OF_CLASS, OF_CONDITION][..], 2) } else { (&[OF_CLASS][..], across) };
     let panels: Vec<_> = spectra.iter().flat_map(|spectrum| keys.iter().map(move |key| (spectrum, *key))).collect();
     let seen = |key: &Key| {
         let is_there = |i: usize| spectra.iter().flat_map(|one| one.points.values()).any(|point| (key.of)(point) == i);
@@ -108,8 +105,7 @@ pub fn draw(picture: Picture, spectra: &[Spectrum], refinements: u32) -> anyhow:
     let down = panels.len().div_ceil(across) as u32;
     let size = (across as u32 * width, TITLE + down * height + legend as u32);
     let title = format!("Overturning spectrum: {}", map.pulse_name());
-    let about =
-        format!("level of detail {}, tolerance {:e}; lines: theta_max/alpha_cg", map.detail().name(), map.tolerance());
+    let about = format!("level of detail {}, tolerance {:e}", map.detail.name(), map.tolerance);
     picture.draw(size, |area| {
         let mut rest = titled(area, &title, &about)?;
         for panels in panels.chunks(across) {
@@ -151,8 +147,8 @@ pub struct Shown<'a> {
 impl Shown<'_> {
     /// Frequency and amplitude of `map`.
     pub fn axes(map: &Map) -> [Shown<'_>; 2] {
-        let g = if map.is_dimensionless() { 1.0 } else { map.structure().parameters().g };
-        [Shown { axis: map.frequency(), unit: 1.0 }, Shown { axis: map.amplitude(), unit: g }]
+        let g = if map.is_dimensionless { 1.0 } else { map.structure.parameters().g };
+        [Shown { axis: &map.frequency, unit: 1.0 }, Shown { axis: &map.amplitude, unit: g }]
     }
 
     /// The value at `steps` of the grid from its first.
@@ -162,7 +158,7 @@ impl Shown<'_> {
 
     /// How many steps its grid has.
     pub fn steps(&self) -> usize {
-        self.axis.values().len() - 1
+        self.axis.values.len() - 1
     }
 
     /// From its first to its last value.
@@ -181,12 +177,9 @@ fn panel((whole, area): (&Area, &Area), spectrum: &Spectrum, refinements: u32, k
             let mut chart = builder.build_cartesian_2d($x, $y)?;
             axes(&mut chart, axis_names(map), [8, 8])?;
             cells(whole, &chart, [&x, &y], spectrum, refinements, key)?;
-            if key.has_lines {
-                lines(&mut chart, [&x, &y], spectrum, refinements)?;
-            }
         }};
     }
-    match (x.axis.is_log(), y.axis.is_log()) {
+    match (x.axis.is_log, y.axis.is_log) {
         (false, false) => paint!(x.range(), y.range()),
         (true, false) => paint!(log_axis(x.range()), y.range()),
         (false, true) => paint!(x.range(), log_axis(y.range())),
