@@ -29,7 +29,7 @@ impl Fall {
 impl Watch for Fall {
     const SEES_PIECES: bool = true;
 
-    fn piece(&mut self, piece: &mut Piece) {
+    fn piece(&mut self, piece: &Piece) {
         if piece.end.theta.abs() < self.alpha_cg {
             self.instant = None;
         } else if self.instant.is_none() {
@@ -40,21 +40,20 @@ impl Watch for Fall {
 
 impl Fall {
     /// When |θ| passes α_cg in `piece`, at whose end it is beyond, s.
-    fn passing(&self, piece: &mut Piece) -> f64 {
+    fn passing(&self, piece: &Piece) -> f64 {
         let start = piece.before.time;
         if piece.before.state.theta.abs() >= self.alpha_cg {
             return start;
         }
-        loop {
-            let (passed, reach, span) = (piece.passed(), piece.arc().reach, piece.arc().span);
-            let is_before = |sigma: f64| piece.outputs(sigma).theta.abs() < self.alpha_cg;
+        let mut arcs = piece.arcs();
+        while let Some(expansion) = arcs.next() {
+            let (passed, reach, span) = (expansion.from, expansion.arc.reach, expansion.arc.span);
+            let is_before = |sigma: f64| expansion.outputs(sigma).theta.abs() < self.alpha_cg;
             if !is_before(reach) {
                 return start + passed + last_where(0.0, reach, is_before) * span;
             }
-            if !piece.skip() {
-                return start + piece.duration; // by rounding
-            }
         }
+        start + piece.duration // by rounding
     }
 }
 

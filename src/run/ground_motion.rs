@@ -186,10 +186,7 @@ impl GroundMotion<'_> {
             engine.set_time(before.time + start);
             match engine.advance_within(last_step, duration, load.from(start).on_ground(a_g), watch) {
                 Ok(Progress::Complete) => (),
-                Ok(progress @ (Progress::Overturned | Progress::Transition)) => {
-                    engine.done(watch);
-                    return Ok(progress);
-                }
+                Ok(progress @ (Progress::Overturned | Progress::Transition)) => return Ok(progress),
                 Err(mut error) => {
                     engine.set_motion(before);
                     if let AdvanceError::TooLong { until, .. } = &mut error {
@@ -200,7 +197,6 @@ impl GroundMotion<'_> {
             }
         }
         engine.set_time(before.time + interval);
-        engine.done(watch);
         Ok(Progress::Complete)
     }
 

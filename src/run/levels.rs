@@ -170,9 +170,6 @@ impl<Segments: Iterator<Item = Segment>> Trial<'_, Segments> {
     fn go_on(&mut self) -> Result<(), RunError> {
         if self.ending.is_none() {
             self.ending = self.course.go_on(&mut (&mut self.peaks, &mut self.history))?;
-            if self.ending.is_some() {
-                self.course.engine.done(&mut self.peaks);
-            }
         }
         Ok(())
     }
@@ -197,7 +194,7 @@ impl<Segments: Iterator<Item = Segment>> Trial<'_, Segments> {
         let motion = self.course.engine.motion();
         let response = Response {
             detail: self.detail,
-            peaks: *self.peaks.peaks(),
+            peaks: self.peaks.end(),
             ending: self.ending.expect("it has been followed to its end"),
             transitions: motion.transitions,
             work: motion.work,
