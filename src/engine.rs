@@ -155,7 +155,7 @@ impl Engine {
         Engine::with_detail(structure, initial, time, tolerance, Detail::Auto)
     }
 
-    /// The same at the level `detail`.
+    /// Starts at `time` (s) from `initial`, to a relative `tolerance` of the results, at the level of detail `detail`.
     pub fn with_detail(
         structure: Structure,
         initial: State,
@@ -265,7 +265,7 @@ impl Engine {
         }
     }
 
-    /// The same over a long time: in parts, each twice as long as the one before, until all that is left is one leap.
+    /// Advances over a long time: in parts, each twice as long as the one before, until all that is left is one leap.
     #[cold]
     fn advance_far<W: Watch>(
         &mut self,
@@ -305,7 +305,7 @@ impl Engine {
         motion.held() == 0.0 && model.level.leap(&model.structure, motion.phase, &start).is_some()
     }
 
-    /// The same from where a transition is due.
+    /// Advances from where a transition is due.
     #[cold]
     fn advance_past_transition<W: Watch>(
         &mut self,
@@ -426,7 +426,7 @@ impl<L: Level> Hand<'_, L> {
         result
     }
 
-    /// The same over the interval of `begin`, step by step.
+    /// Advances over the interval of `begin`, step by step.
     #[inline(always)]
     fn step<W: Watch>(
         &mut self,

@@ -172,7 +172,7 @@ pub(crate) struct Part<'a> {
     pub piece: &'a Piece<'a>,
     /// Seconds from the piece's start to its own, and the state there.
     pub start: (f64, State),
-    /// The same of its end.
+    /// Seconds from the piece's start to its end, and the state there.
     pub end: (f64, State),
 }
 
@@ -216,7 +216,7 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// Bounds of the same that cost less.
+    /// Bounds of these magnitudes that cost less.
     pub(crate) fn crude_bounds(&self) -> [f64; 4] {
         let Piece { model, before, arc, .. } = self.piece;
         let end = &self.end.1;
@@ -339,9 +339,9 @@ pub(crate) struct Expansion<'a> {
 }
 
 impl Expansion<'_> {
-    /// Its start on the motion's clock, s.
-    pub(crate) fn time(&self) -> f64 {
-        self.piece.before.time + self.from
+    /// The instant of `sigma`, s.
+    pub(crate) fn time(&self, sigma: f64) -> f64 {
+        self.piece.before.time + self.from + sigma * self.arc.span
     }
 
     /// The outputs at `sigma`.

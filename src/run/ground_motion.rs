@@ -135,8 +135,8 @@ impl GroundMotion<'_> {
         self.ramp_from(self.reached(elapsed, |i| self.same_instant(i)), elapsed)
     }
 
-    /// The same for an integrator at `elapsed` that has dealt with all samples up to `dealt_with`: a later one that it has
-    /// just arrived at is still to come, so that the ground acceleration is the one that led there.
+    /// What it is for an integrator at `elapsed` that has dealt with all samples up to `dealt_with`: a later one that it has just
+    /// arrived at is still to come, so that the ground acceleration is the one that led there.
     pub fn since(&self, dealt_with: Elapsed, elapsed: Elapsed) -> Ramp {
         let reached = |at: Elapsed| self.reached(at, |i| self.same_instant(i));
         let here = reached(elapsed);
@@ -287,7 +287,7 @@ impl GroundMotion<'_> {
         Ramp { value: a.1, slope: (b.1 - a.1) / (b.0 - a.0) }
     }
 
-    /// The same as it is given from `elapsed` on.
+    /// The ground acceleration from the last of `reached` samples to the next, as it is given from `elapsed` on.
     fn ramp_from(&self, reached: usize, elapsed: Elapsed) -> Ramp {
         let ramp = self.ramp(reached);
         let Some(last) = reached.checked_sub(1) else { return ramp };

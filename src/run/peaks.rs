@@ -3,7 +3,7 @@
 //! A bound on a piece tells most of the time that it holds nothing larger than what has been seen. Where it does not,
 //! each output is a series in time (`output_series`), which rises or falls throughout between the points where
 //! it is stationary (`extremes`): the largest magnitude is at one of these or at an end. A piece that may hold more than
-//! what has been seen is first kept, since most are soon beaten by the end of another.
+//! what has been seen, unless it is the first, is kept for later, since most are soon beaten by the end of another.
 
 use crate::engine::piece::{Expansion, Part, Piece, Watch};
 use crate::levels::detail::Model;
@@ -100,7 +100,7 @@ impl Peaks {
         Peaks::since(0.0, structure)
     }
 
-    /// The same from `time` (s) on, which is the instant of what stays 0.
+    /// Of `structure` from `time` (s) on, nothing seen yet: it is the instant of what stays 0.
     pub fn since(time: f64, structure: &Structure) -> Peaks {
         let &crate::Parameters { m, H, B, .. } = structure.parameters();
         let none = Peak { magnitude: 0.0, time };
@@ -169,12 +169,12 @@ impl Peaks {
         self.evaluations
     }
 
-    /// Looks for more of them in the pieces of a motion.
+    /// Looks for more of them in the pieces of a motion; they are known once the watch is dropped.
     pub fn watch(&mut self) -> PeakWatch<'_> {
         PeakWatch { peaks: self, kept: Vec::new(), model: None, is_torn: true }
     }
 
-    /// The same for that of θ alone, and with it of the uplift: the others stay as they are.
+    /// Looks for that of θ alone, and with it of the uplift: the others stay as they are.
     pub fn watch_theta(&mut self) -> ThetaWatch<'_> {
         ThetaWatch { peaks: self }
     }
@@ -240,7 +240,7 @@ impl Peaks {
 
     /// Looks at a polynomial wherever `measure` is stationary.
     fn search(&mut self, measure: Measure, expansion: &Expansion) {
-        let (start, span) = (expansion.time(), expansion.arc.span);
+        let (start, span) = (expansion.time(0.0), expansion.arc.span);
         expansion.series(measure, &mut |from, arc, series| {
             let series = arc.used(series);
             if !self.may_change(measure, extremes::bound_by_cubic(series, arc.reach), start + from * span) {
@@ -258,7 +258,7 @@ impl Peaks {
     }
 }
 
-/// Looks for peaks in the pieces of a motion. They are known once it is dropped.
+/// Looks for peaks in the pieces of a motion.
 #[derive(Debug)]
 pub struct PeakWatch<'a> {
     peaks: &'a mut Peaks,
@@ -329,6 +329,10 @@ impl Watch for PeakWatch<'_> {
             |bounds: &[f64; 4], motion: &Motion| peaks.may_change_within(&Measure::ALL, bounds, motion.time);
         if !may_change(&bounds, before) {
             return;
+        }
+        // the step of a host is often one piece: to put it off would gain nothing
+        if is_torn {
+            return self.peaks.look(&Measure::ALL, &piece.whole(), HALVINGS);
         }
         if self.kept.len() == KEPT {
             self.kept.retain(|kept| may_change(&kept.bounds, &kept.before));

@@ -25,7 +25,7 @@ use crate::mechanics::impact;
 use crate::run::reaction_series::{ReactionSeries, accelerations_at_ends, off_chord};
 use crate::series::bisection::last_where;
 use crate::series::extremes;
-use crate::series::taylor::{Arc, Series, evaluate};
+use crate::series::taylor::{Series, evaluate};
 use crate::{Detail, Impulse, Parameters, Phase, Reactions, Side, Structure, Transition, TransitionKind};
 use serde::{Deserialize, Serialize};
 
@@ -295,8 +295,8 @@ impl Validity {
         !is_closed
     }
 
-    /// Whether a leap in full contact may: what changes no faster than its second derivative leaves its chord by no more
-    /// than that over 8/h².
+    /// Whether a leap in full contact may hold such: what changes no faster than its second derivative leaves its chord by no
+    /// more than that over 8/h².
     fn leap_may_matter(&self, piece: &Piece) -> bool {
         let &Parameters { m, m0, H, g, .. } = self.structure.parameters();
         let &Structure { k, c_fc, .. } = &self.structure;
@@ -337,10 +337,10 @@ impl Validity {
         let phase = piece.before.phase;
         // no friction is enough from where R_v is 0, which may be sooner than either end
         if let Some((start, _)) = stretch.above(&[[0.0, -1.0, 0.0, 0.0]]).first() {
-            self.found.see(FRICTION, f64::INFINITY, stretch.time(*start));
+            self.found.see(FRICTION, f64::INFINITY, stretch.of.time(*start));
         }
         for sigma in [0.0, arc.reach] {
-            self.see_instant(stretch.time(sigma), phase, &stretch.reactions(sigma));
+            self.see_instant(stretch.of.time(sigma), phase, &stretch.reactions(sigma));
         }
         for which in [TENSION, EDGE_LOAD, FRICTION] {
             if which == TENSION && phase != Phase::FullContact {
@@ -349,7 +349,7 @@ impl Validity {
             self.search(which, &stretch);
             let beyond = self.worse(which, (ASSUMPTIONS[which].limit)(&self.limits));
             for (start, end) in stretch.above(&beyond) {
-                self.found.see_beyond(which, stretch.time(start), (end - start) * arc.span);
+                self.found.see_beyond(which, stretch.of.time(start), (end - start) * arc.span);
             }
         }
     }
@@ -364,11 +364,11 @@ impl Validity {
             let combinations = self.worse(which, worst);
             for combination in &combinations {
                 let series = stretch.combination(combination);
-                let used = stretch.arc.used(&series);
-                if highest(used, stretch.arc.reach) > ROUNDING * self.weight() {
-                    extremes::stationary_points(used, stretch.arc.reach, |sigma| {
+                let used = stretch.of.arc.used(&series);
+                if highest(used, stretch.of.arc.reach) > ROUNDING * self.weight() {
+                    extremes::stationary_points(used, stretch.of.arc.reach, |sigma| {
                         let value = self.value(which, &stretch.reactions(sigma));
-                        self.found.see(which, value, stretch.time(sigma));
+                        self.found.see(which, value, stretch.of.time(sigma));
                     });
                 }
             }
@@ -452,48 +452,41 @@ impl Watch for Validity {
 
 /// A polynomial of a motion with its reactions.
 struct Stretch<'a> {
-    piece: &'a Piece<'a>,
-    arc: &'a Arc,
-    /// Where the arc starts, s after the start of the piece.
-    from: f64,
+    of: Expansion<'a>,
     series: ReactionSeries,
 }
 
 impl<'a> Stretch<'a> {
-    fn new(Expansion { piece, from, arc }: Expansion<'a>) -> Stretch<'a> {
+    fn new(of: Expansion<'a>) -> Stretch<'a> {
+        let Expansion { piece, from, arc } = of;
         let series = ReactionSeries::of(&piece.model.structure, piece.before.phase, piece.load.from(from), arc);
-        Stretch { piece, arc, from, series }
-    }
-
-    /// The instant of `sigma`, s.
-    fn time(&self, sigma: f64) -> f64 {
-        self.piece.before.time + self.from + sigma * self.arc.span
+        Stretch { of, series }
     }
 
     /// The reactions at `sigma`, from the state there.
     fn reactions(&self, sigma: f64) -> Reactions {
-        let &Piece { model, before, load, .. } = self.piece;
-        let (state, load) = (self.arc.at(sigma), load.at(self.from + sigma * self.arc.span));
+        let Expansion { piece: &Piece { model, before, load, .. }, from, arc } = self.of;
+        let (state, load) = (arc.at(sigma), load.at(from + sigma * arc.span));
         let accelerations = model.level.accelerations(&model.structure, before.phase, &state, load);
         Reactions::of(&model.structure, before.phase, &state, accelerations, load)
     }
 
     /// Whether the series of R_h and R_v end where the state does.
     fn has_converged(&self) -> bool {
-        let Reactions { R_h, R_v, .. } = self.reactions(self.arc.reach);
+        let Reactions { R_h, R_v, .. } = self.reactions(self.of.arc.reach);
         [(&self.series.R_h, R_h), (&self.series.R_v, R_v)].into_iter().all(|(series, expected)| {
-            let used = self.arc.used(series);
-            let terms = used.iter().rev().fold(0.0, |sum, c| sum * self.arc.reach + c.abs());
-            let off = evaluate(used, self.arc.reach) - expected;
+            let used = self.of.arc.used(series);
+            let terms = used.iter().rev().fold(0.0, |sum, c| sum * self.of.arc.reach + c.abs());
+            let off = evaluate(used, self.of.arc.reach) - expected;
             // what is no number is not so for want of terms
-            off.is_nan() || off.abs() <= CONVERGED.max(1e3 * self.piece.model.local_error) * terms
+            off.is_nan() || off.abs() <= CONVERGED.max(1e3 * self.of.piece.model.local_error) * terms
         })
     }
 
     /// h R_h + v R_v + m R_m + n for [h, v, m, n].
     fn combination(&self, [h, v, m, n]: &[f64; 4]) -> Series {
         let ReactionSeries { R_h, R_v, R_m } = &self.series;
-        let mut series = self.arc.series(|k| h * R_h[k] + v * R_v[k] + m * R_m[k]);
+        let mut series = self.of.arc.series(|k| h * R_h[k] + v * R_v[k] + m * R_m[k]);
         series[0] += n;
         series
     }
@@ -503,9 +496,9 @@ impl<'a> Stretch<'a> {
         let mut found: Vec<(f64, f64)> = Vec::new();
         for combination in combinations {
             let series = self.combination(combination);
-            let used = self.arc.used(&series);
-            if highest(used, self.arc.reach) > 0.0 {
-                positive(used, self.arc.reach, &mut found);
+            let used = self.of.arc.used(&series);
+            if highest(used, self.of.arc.reach) > 0.0 {
+                positive(used, self.of.arc.reach, &mut found);
             }
         }
         found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
