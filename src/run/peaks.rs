@@ -3,7 +3,7 @@
 //! A bound on a piece tells most of the time that it holds nothing larger than what has been seen. Where it does not,
 //! each output is a series in time (`output_series`), which rises or falls throughout between the points where
 //! it is stationary (`extremes`): the largest magnitude is at one of these or at an end. A piece that may hold more than
-//! what has been seen, unless it is the first, is kept for later, since most are soon beaten by the end of another.
+//! what has been seen is first kept, since most are soon beaten by the end of another.
 
 use crate::engine::piece::{Expansion, Part, Piece, Watch};
 use crate::levels::detail::Model;
@@ -171,7 +171,8 @@ impl Peaks {
 
     /// Looks for more of them in the pieces of a motion; they are known once the watch is dropped.
     pub fn watch(&mut self) -> PeakWatch<'_> {
-        PeakWatch { peaks: self, kept: Vec::new(), model: None, is_torn: true }
+        let goes_on = self.largest.iter().any(|peak| peak.magnitude > 0.0);
+        PeakWatch { peaks: self, kept: Vec::new(), model: None, is_torn: true, goes_on }
     }
 
     /// Looks for that of θ alone, and with it of the uplift: the others stay as they are.
@@ -268,6 +269,8 @@ pub struct PeakWatch<'a> {
     model: Option<Box<Model>>,
     /// Whether the next piece may begin with other outputs than the last one ended with.
     is_torn: bool,
+    /// Whether the next piece is the first since other peaks: the step of a host is often no more, and not put off.
+    goes_on: bool,
 }
 
 /// A piece that is looked at after others have been shown.
@@ -316,7 +319,7 @@ impl Watch for PeakWatch<'_> {
             self.peaks.ground.see(load.at(tau).a_g, before.time + tau);
         }
         let bounds = piece.whole().crude_bounds();
-        let is_torn = std::mem::take(&mut self.is_torn);
+        let [is_torn, is_first] = [&mut self.is_torn, &mut self.goes_on].map(std::mem::take);
         if !Measure::ALL.iter().any(|measure| self.peaks.may_be_same(*measure, bounds[*measure as usize])) {
             return;
         }
@@ -330,8 +333,7 @@ impl Watch for PeakWatch<'_> {
         if !may_change(&bounds, before) {
             return;
         }
-        // the step of a host is often one piece: to put it off would gain nothing
-        if is_torn {
+        if is_first {
             return self.peaks.look(&Measure::ALL, &piece.whole(), HALVINGS);
         }
         if self.kept.len() == KEPT {
