@@ -15,7 +15,7 @@ pub mod motion;
 pub mod piece;
 pub mod transition;
 
-use crate::levels::detail::{AnyLevel, Detail};
+use crate::levels::detail::{AnyLevel, Detail, Model};
 use crate::levels::level::Level;
 use crate::mechanics::load::{LOADS, LinearLoad, Load};
 use crate::mechanics::reactions::{Impulse, Reactions};
@@ -25,7 +25,7 @@ use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
 use crate::structure::quantity::with_unit;
 use crate::{Outputs, Phase, Side, State, Structure};
 use motion::{Chatter, Event, Motion, Work};
-use piece::{Equations, Part, Piece, Sample, Watch};
+use piece::{Piece, Sample, Watch};
 use std::f64::consts::FRAC_PI_2;
 
 /// The default relative tolerance of the results.
@@ -139,10 +139,7 @@ impl AdvanceError {
 /// A structure in motion.
 #[derive(Debug)]
 pub struct Engine {
-    structure: Structure,
-    level: Box<AnyLevel>,
-    /// Truncation error that a step may have.
-    local_error: f64,
+    model: Box<Model>,
     motion: Motion,
     /// Whether an advance ends where a transition is due.
     stops: bool,
@@ -158,7 +155,7 @@ impl Engine {
         Engine::with_detail(structure, initial, time, tolerance, Detail::Auto)
     }
 
-    /// The same at the level `detail`.
+    /// Starts at `time` (s) from `initial`, to a relative `tolerance` of the results, at the level of detail `detail`.
     pub fn with_detail(
         structure: Structure,
         initial: State,
@@ -168,8 +165,7 @@ impl Engine {
     ) -> Result<Engine, InitialStateError> {
         let phase = initial.initial_phase()?;
         let local_error = (LOCAL_SHARE * tolerance).clamp(f64::EPSILON / 2.0, LARGEST_LOCAL_ERROR);
-        let level = Box::new(detail.level(&structure, local_error));
-        level.get().check_start(&initial)?;
+        detail.check_start(&initial)?;
         let motion = Motion {
             time,
             state: initial,
@@ -181,12 +177,13 @@ impl Engine {
             due: None,
         };
         let far = FAR / structure.omega_fc;
-        Ok(Engine { structure, level, local_error, motion, stops: false, far, arc: Arc::default() })
+        let model = Box::new(Model::new(structure, detail, local_error));
+        Ok(Engine { model, motion, stops: false, far, arc: Arc::default() })
     }
 
     /// The structure.
     pub fn structure(&self) -> &Structure {
-        &self.structure
+        &self.model.structure
     }
 
     /// Where it is now.
@@ -214,7 +211,8 @@ impl Engine {
     pub fn transit<W: Watch>(&mut self, watch: &mut W) {
         if let Some(event) = self.motion.due.take() {
             let transition;
-            (self.motion, transition) = transition::resolve(self.level.get(), &self.structure, self.motion, event);
+            (self.motion, transition) =
+                transition::resolve(&*self.model.level, &self.model.structure, self.motion, event);
             watch.transition(&transition);
         }
     }
@@ -227,29 +225,10 @@ impl Engine {
         load: impl Into<LinearLoad>,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
-        let progress = self.go_on(interval, load, watch)?;
-        self.done(watch);
-        Ok(progress)
-    }
-
-    /// The same as a part of what is asked for, of which [`Engine::done`] tells the end.
-    pub(crate) fn go_on<W: Watch>(
-        &mut self,
-        interval: f64,
-        load: impl Into<LinearLoad>,
-        watch: &mut W,
-    ) -> Result<Progress, AdvanceError> {
         self.advance_within(self.motion.work.steps + MAX_STEPS_PER_ADVANCE, interval, load.into(), watch)
     }
 
-    /// Tells `watch` that it has been shown all that was asked for.
-    pub(crate) fn done<W: Watch>(&mut self, watch: &mut W) {
-        if W::SEES_PIECES {
-            watch.done(&mut Equations { structure: &self.structure, level: self.level.get_mut() });
-        }
-    }
-
-    /// [`Engine::go_on`] until `last_step` steps have been taken since the start.
+    /// Advances until `last_step` steps have been taken since the start.
     #[inline]
     pub(crate) fn advance_within<W: Watch>(
         &mut self,
@@ -265,28 +244,28 @@ impl Engine {
         if interval > self.far {
             return self.advance_far(last_step, interval, load, watch);
         }
-        let &mut Engine { ref structure, ref mut level, local_error, ref mut motion, stops, ref mut arc, .. } = self;
+        let &mut Engine { ref model, ref mut motion, stops, ref mut arc, .. } = self;
         // each level gets a loop of its own, so that nothing stands between the loop and the level's equations
-        match &mut **level {
+        match &model.level {
             AnyLevel::Nonlinear(level) => {
-                Hand { structure, level, arc, local_error, last_step, stops }.advance(motion, interval, load, watch)
+                Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
             }
             AnyLevel::Linear(level) => {
-                Hand { structure, level, arc, local_error, last_step, stops }.advance(motion, interval, load, watch)
+                Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
             }
             AnyLevel::Modal(level) => {
-                Hand { structure, level, arc, local_error, last_step, stops }.advance(motion, interval, load, watch)
+                Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
             }
             AnyLevel::Rigid(level) => {
-                Hand { structure, level, arc, local_error, last_step, stops }.advance(motion, interval, load, watch)
+                Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
             }
             AnyLevel::FixedBase(level) => {
-                Hand { structure, level, arc, local_error, last_step, stops }.advance(motion, interval, load, watch)
+                Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
             }
         }
     }
 
-    /// The same over a long time: in parts, each twice as long as the one before, until all that is left is one leap.
+    /// Advances over a long time: in parts, each twice as long as the one before, until all that is left is one leap.
     #[cold]
     fn advance_far<W: Watch>(
         &mut self,
@@ -320,14 +299,13 @@ impl Engine {
     }
 
     /// Whether `interval` (s) under `load` is one leap.
-    fn can_leap(&mut self, interval: f64, load: LinearLoad) -> bool {
-        let &mut Engine { ref structure, ref mut level, local_error, ref motion, .. } = self;
-        let (a_g, a_top) = (load.on_foundation(), load.on_top(structure));
-        let start = Start { state: motion.state, a_g, a_top, interval, local_error };
-        motion.held() == 0.0 && level.get_mut().leap(structure, motion.phase, &start).is_some()
+    fn can_leap(&self, interval: f64, load: LinearLoad) -> bool {
+        let Engine { model, motion, .. } = self;
+        let start = model.start(motion.state, load, interval);
+        motion.held() == 0.0 && model.level.leap(&model.structure, motion.phase, &start).is_some()
     }
 
-    /// The same from where a transition is due.
+    /// Advances from where a transition is due.
     #[cold]
     fn advance_past_transition<W: Watch>(
         &mut self,
@@ -359,18 +337,19 @@ impl Engine {
 
     /// Whether the structure, in full contact now, stays there while nothing acts on it.
     pub fn stays_down(&self) -> bool {
-        self.motion.phase == Phase::FullContact && self.level.get().stays_down(&self.structure, &self.motion.state)
+        self.motion.phase == Phase::FullContact
+            && self.model.level.stays_down(&self.model.structure, &self.motion.state)
     }
 
     /// The motion now, under `load`.
     pub fn sample(&self, load: Load) -> Sample<'_> {
-        Sample { motion: self.motion, load, structure: &self.structure, level: self.level.get() }
+        Sample { motion: self.motion, load, model: &self.model }
     }
 
     /// The outputs now under `load`; once overturned, those of the instant before.
     pub fn outputs(&self, load: Load) -> Outputs {
         let Motion { phase, state, .. } = &self.motion;
-        self.level.get().outputs(&self.structure, phase.in_motion(), state, load)
+        self.model.outputs(phase.in_motion(), state, load)
     }
 
     /// The reactions now under `load`; once overturned, those of the instant before.
@@ -380,23 +359,22 @@ impl Engine {
 
     /// Time derivatives of the outputs and reactions now under `load`, from the equations of motion; 0 once overturned.
     /// At a transition they are those just after it.
-    pub fn rates(&mut self, load: LinearLoad) -> (Outputs, Reactions) {
+    pub fn rates(&self, load: LinearLoad) -> (Outputs, Reactions) {
         let derivatives = self.derivatives(load);
-        let (structure, Motion { phase, state, .. }) = (&self.structure, &self.motion);
-        let outputs = self.level.get().output_rates(structure, *phase, state, derivatives, load);
-        (outputs, Reactions::rates(structure, *phase, state, derivatives, load))
+        let Motion { phase, state, .. } = &self.motion;
+        let outputs = self.model.output_rates(*phase, state, derivatives, load);
+        (outputs, Reactions::rates(&self.model.structure, *phase, state, derivatives, load))
     }
 
     /// (ü, θ̈) and (u⃛, θ⃛) now under `load`, from the first terms of the series; 0 once overturned.
-    fn derivatives(&mut self, load: LinearLoad) -> [[f64; 2]; 2] {
-        let Motion { phase, state, .. } = self.motion;
+    fn derivatives(&self, load: LinearLoad) -> [[f64; 2]; 2] {
+        let Engine { model, motion: Motion { phase, state, .. }, .. } = self;
         if let Phase::Overturned(_) = phase {
             return [[0.0; 2]; 2];
         }
-        let (a_g, a_top) = (load.on_foundation(), load.on_top(&self.structure));
-        let start = Start { state, a_g, a_top, interval: 1.0, local_error: 1.0 };
-        self.level.get_mut().series(&self.structure, phase, &start, &mut self.arc);
-        let arc = &self.arc;
+        let mut arc = Arc::default();
+        let start = Start { local_error: 1.0, ..model.start(*state, load, 1.0) };
+        model.level.series(&model.structure, *phase, &start, &mut arc);
         let derivative = |k: i32, factor: f64| {
             [arc.u_dot[k as usize], arc.theta_dot[k as usize]].map(|c| factor * c / arc.span.powi(k))
         };
@@ -406,12 +384,11 @@ impl Engine {
 
 /// What an advance has in hand.
 struct Hand<'a, L> {
-    structure: &'a Structure,
-    level: &'a mut L,
+    model: &'a Model,
+    /// Its level.
+    level: &'a L,
     /// The step.
     arc: &'a mut Arc,
-    /// Truncation error that a step may have.
-    local_error: f64,
     /// Steps since the start after which it ends.
     last_step: u64,
     /// Whether it ends where a transition is due.
@@ -427,15 +404,13 @@ impl<L: Level> Hand<'_, L> {
         load: LinearLoad,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
-        let Hand { structure, local_error, .. } = *self;
-        let (a_g, a_top) = (load.on_foundation(), load.on_top(structure));
-        let begin = Start { state: now.state, a_g, a_top, interval, local_error };
+        let begin = self.model.start(now.state, load, interval);
         if let Some(end) = self.leap(now, &begin) {
             if now.work.steps == self.last_step {
                 return Err(AdvanceError::TooLong { time: now.time, until: now.time + interval });
             }
             if W::SEES_PIECES {
-                watch.piece(&mut self.piece(now, interval, load, end, false));
+                watch.piece(&Piece { before: now, duration: interval, load, end, model: self.model, arc: None });
             }
             now.state = end;
             now.time += interval;
@@ -451,7 +426,7 @@ impl<L: Level> Hand<'_, L> {
         result
     }
 
-    /// The same over the interval of `begin`, step by step.
+    /// Advances over the interval of `begin`, step by step.
     #[inline(always)]
     fn step<W: Watch>(
         &mut self,
@@ -492,7 +467,8 @@ impl<L: Level> Hand<'_, L> {
             let state = self.arc.end();
             // what lasts for no time, as contact where uplift is due at once, is no motion
             if W::SEES_PIECES && duration > 0.0 {
-                watch.piece(&mut self.piece(motion, duration, load.from(elapsed), state, true));
+                let (load, arc) = (load.from(elapsed), Some(&*self.arc));
+                watch.piece(&Piece { before: motion, duration, load, end: state, model: self.model, arc });
             }
             motion.state = state;
             motion.chatter.pass(duration);
@@ -504,7 +480,7 @@ impl<L: Level> Hand<'_, L> {
                     return Ok(Progress::Transition);
                 }
                 let transition;
-                (*motion, transition) = transition::resolve(self.level, self.structure, *motion, event);
+                (*motion, transition) = transition::resolve(self.level, &self.model.structure, *motion, event);
                 watch.transition(&transition);
             }
         }
@@ -514,43 +490,19 @@ impl<L: Level> Hand<'_, L> {
         }
     }
 
-    /// What watchers are shown of a stretch of `duration` (s) under `load` from the motion `before` to the state `end`.
-    fn piece<'a>(
-        &'a mut self,
-        before: &'a Motion,
-        duration: f64,
-        load: LinearLoad,
-        end: State,
-        is_expanded: bool,
-    ) -> Piece<'a> {
-        Piece {
-            before,
-            duration,
-            load,
-            end,
-            structure: self.structure,
-            local_error: self.local_error,
-            level: self.level,
-            arc: self.arc,
-            is_expanded,
-            part: Part { start: (0.0, before.state), end: (duration, end) },
-            evaluations: 0,
-        }
-    }
-
     /// The state at the end of `start` where it is known exactly and no transition can happen until then.
     #[inline]
     fn leap(&mut self, now: &Motion, start: &Start) -> Option<State> {
         if now.chatter.held > 0.0 {
             return None;
         }
-        self.level.leap(self.structure, now.phase, start).filter(State::is_finite)
+        self.level.leap(&self.model.structure, now.phase, start).filter(State::is_finite)
     }
 
     /// Whether the step in hand, which goes from `state` to less than what was asked for, is the last that there can be.
     fn is_at_its_end(&self, phase: Phase, state: State, event: Option<Event>) -> bool {
-        let has_stalled = self.arc.duration() <= STALLED / self.structure.omega_u;
-        has_stalled && event.is_none() || self.level.is_singular(self.structure, phase, &state)
+        let has_stalled = self.arc.duration() <= STALLED / self.model.structure.omega_u;
+        has_stalled && event.is_none() || self.level.is_singular(&self.model.structure, phase, &state)
     }
 
     /// Motion in full contact, cut at uplift; none of it for the first `held` seconds.
@@ -559,17 +511,17 @@ impl<L: Level> Hand<'_, L> {
         if is_held {
             start.interval = start.interval.min(held);
         }
-        self.level.series(self.structure, Phase::FullContact, &start, self.arc);
+        self.level.series(&self.model.structure, Phase::FullContact, &start, self.arc);
         if is_held {
             return None;
         }
-        let (crossing, side) = self.level.first_uplift(self.structure, &start, self.arc);
+        let (crossing, side) = self.level.first_uplift(&self.model.structure, &start, self.arc);
         cut(self.arc, crossing, Event::Uplift(side))
     }
 
     /// Rocking about `side`, cut at impact or overturning.
     fn step_while_rocking(&mut self, start: &Start, side: Side) -> Option<Event> {
-        self.level.series(self.structure, Phase::Rocking(side), start, self.arc);
+        self.level.series(&self.model.structure, Phase::Rocking(side), start, self.arc);
         if stays_about(self.arc, side) {
             return None;
         }

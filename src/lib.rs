@@ -32,7 +32,7 @@ pub mod series;
 pub mod structure;
 
 pub use engine::motion::Motion;
-pub use engine::piece::{Equations, Piece, Watch};
+pub use engine::piece::{Piece, Watch};
 pub use engine::transition::{Transition, TransitionKind};
 pub use engine::{Engine, Progress};
 pub use levels::detail::Detail;

@@ -152,8 +152,7 @@ impl<'a> Run<'a> {
 
     /// Follows the motion to the end.
     pub fn follow<W: Watch>(&self, watch: &mut W) -> Result<Finish, RunError> {
-        let (ending, mut engine) = self.course()?.finish(watch)?;
-        engine.done(watch);
+        let (ending, engine) = self.course()?.finish(watch)?;
         Ok(Finish { ending, motion: *engine.motion() })
     }
 
@@ -185,8 +184,7 @@ impl<'a> Run<'a> {
         watch: &mut W,
     ) -> Result<Finish, RunError> {
         let mut samples = Samples::new(times, show);
-        let (ending, mut engine) = self.course()?.finish(&mut (&mut *watch, &mut samples))?;
-        engine.done(watch);
+        let (ending, engine) = self.course()?.finish(&mut (&mut *watch, &mut samples))?;
         samples.end(&engine);
         Ok(Finish { ending, motion: *engine.motion() })
     }
@@ -250,7 +248,7 @@ fn error(engine: &Engine, cause: AdvanceError) -> RunError {
 /// Follows a structure over `segment`.
 #[inline]
 fn over<W: Watch>(engine: &mut Engine, segment: Segment, watch: &mut W) -> Result<Progress, AdvanceError> {
-    let progress = engine.go_on(segment.end - segment.start, segment.a_g, watch)?;
+    let progress = engine.advance(segment.end - segment.start, segment.a_g, watch)?;
     if progress != Progress::Overturned {
         engine.set_time(segment.end);
     }
@@ -270,13 +268,13 @@ fn come_to_rest<W: Watch>(
         return Ok(Some(Ending::AtTime));
     }
     if engine.stays_down() {
-        engine.go_on(TAU / omega_fc, Ramp::default(), watch)?;
+        engine.advance(TAU / omega_fc, Ramp::default(), watch)?;
         return Ok(Some(Ending::AtRest));
     }
     if *rest == 0.0 {
         return Ok(Some(Ending::StillRocking));
     }
     *rest -= 1.0;
-    let progress = engine.go_on(1.0 / p_l, Ramp::default(), watch)?;
+    let progress = engine.advance(1.0 / p_l, Ramp::default(), watch)?;
     Ok((progress == Progress::Overturned).then_some(Ending::Overturned))
 }

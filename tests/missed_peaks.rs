@@ -59,7 +59,7 @@ fn worst(&Parameters { m, m0, B, g, .. }: &Parameters, phase: Phase, r: Reaction
 impl Watch for Dense {
     const SEES_PIECES: bool = true;
 
-    fn piece(&mut self, piece: &mut Piece) {
+    fn piece(&mut self, piece: &Piece) {
         const SAMPLES: u32 = 400;
         self.pieces += 1;
         let (start, duration, phase) = (piece.before.time, piece.duration, piece.before.phase);
@@ -87,13 +87,12 @@ struct There {
 impl Watch for There {
     const SEES_PIECES: bool = true;
 
-    fn piece(&mut self, piece: &mut Piece) {
+    fn piece(&mut self, piece: &Piece) {
         let (start, duration, phase) = (piece.before.time, piece.duration, piece.before.phase);
         // the clock rounds
         let slack = 4.0 * f64::EPSILON * (start.abs() + duration);
         let is_within = |time: f64| duration > 0.0 && time >= start - slack && time <= start + duration + slack;
-        let mut sample = |time: f64| {
-            piece.rewind();
+        let sample = |time: f64| {
             let sample = piece.sample(time.max(start));
             (magnitudes(sample.outputs()), worst(&self.parameters, phase, sample.reactions()))
         };

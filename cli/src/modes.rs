@@ -5,7 +5,7 @@ use crate::{output_files::OutputFiles, picture::PictureFile, structure_args::Str
 use anyhow::{Context, ensure};
 use csv::{Position, StringRecord};
 use rocking::estimates::modal_split::{ModalAccelerations, Modes};
-use rocking::{Outputs, Parameters, Phase, Side, State, Structure};
+use rocking::{Outputs, Parameters, Phase, Side, State};
 use std::path::PathBuf;
 
 /// What to split.

@@ -8,7 +8,7 @@ use crate::{
     results::{Format, FormatArgs, print_beside},
     scene_args::MotionArgs,
     significant::short,
-    summary::{self, Summary, instant},
+    summary::{Summary, instant},
     tables::{self, Table},
     talk,
     validity::{self, LimitArgs},

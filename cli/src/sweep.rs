@@ -15,7 +15,7 @@ use crate::{
     significant::significant,
     talk::{self, say, say_few},
 };
-use anyhow::{Context, bail};
+use anyhow::{Context, bail, ensure};
 use clap::value_parser;
 use file::{Asked, Sweep};
 use indicatif::ProgressStyle;

@@ -4,13 +4,12 @@
 mod command_line;
 
 use FlexibleRocking::variables::{Causality, DataType, VARIABLES, Variable};
-use command_line::{DT, SAMPLES, folder, pulse, succeed};
+use command_line::{DT, SAMPLES, command, fail, folder, pulse, succeed};
 use rocking::engine::piece::Sample;
-use rocking::run::record::Record;
 use rocking::structure::natural_quantities::names;
 use rocking::{Detail, Parameters, Run, Structure, run::End};
 use rocking_records::Reading;
-use std::{collections::BTreeSet, fs, path::Path};
+use std::{collections::BTreeSet, fs, path::Path, process::Output};
 
 /// The headings and lines of a CSV file.
 fn table(path: &Path) -> (Vec<String>, Vec<Vec<String>>) {

@@ -1,7 +1,8 @@
 //! Transitions: their kinds, and what follows from each.
 
 use crate::engine::motion::{Event, Motion};
-use crate::levels::rules::Rules;
+use crate::levels::level::Level;
+use crate::mechanics::impact;
 use crate::mechanics::reactions::Impulse;
 use crate::{Phase, Side, State, Structure};
 
@@ -52,21 +53,22 @@ pub struct Transition {
 /// The `motion` after what `event` leads to, and the transition to be reported.
 #[inline]
 pub(crate) fn resolve(
-    rules: &(impl Rules + ?Sized),
+    level: &(impl Level + ?Sized),
     structure: &Structure,
     mut motion: Motion,
     event: Event,
 ) -> (Motion, Transition) {
     let before = motion.state;
-    let limit = rules.chatter_limit(structure);
+    let limit = level.chatter_limit(structure);
     let (kind, phase, after) = match event {
         Event::Uplift(side) => (TransitionKind::Uplift(side), Phase::Rocking(side), before),
         Event::Overturning(side) => (TransitionKind::Overturning(side), Phase::Overturned(side), before),
         Event::Impact(_) if motion.chatter.is_too_much(limit) => {
             motion.chatter.hold(limit);
-            (TransitionKind::Settling, Phase::FullContact, rules.land(structure, &before))
+            let landed = level.admissible(Phase::FullContact, impact::land(structure, &before));
+            (TransitionKind::Settling, Phase::FullContact, landed)
         }
-        Event::Impact(side) => match rules.after_impact(structure, side, &before) {
+        Event::Impact(side) => match level.after_impact(structure, side, &before) {
             (Phase::Rocking(side), after) => (TransitionKind::Impact(side), Phase::Rocking(side), after),
             (phase, after) => (TransitionKind::Landing, phase, after),
         },

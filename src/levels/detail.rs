@@ -18,15 +18,14 @@ use crate::levels::linear::LinearRocking;
 use crate::levels::modal::ModalRocking;
 use crate::levels::nonlinear::NonlinearRocking;
 use crate::levels::rigid::Rigid;
-use crate::levels::rules::Rules;
-use crate::mechanics::load::Load;
+use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::state::InitialStateError;
 use crate::mechanics::uplift;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, Start};
 use crate::{Phase, Side, State, Structure};
 use serde::{Deserialize, Serialize};
-use std::fmt::Debug;
+use std::ops::Deref;
 
 /// A level of detail.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -66,8 +65,17 @@ impl Detail {
 }
 
 impl Detail {
+    /// Whether a motion may start from `initial` at this level.
+    pub(crate) fn check_start(self, &State { u, u_dot, theta, .. }: &State) -> Result<(), InitialStateError> {
+        match self {
+            Detail::Rigid if (u, u_dot) != (0.0, 0.0) => Err(InitialStateError::DeformedRigid { u, u_dot }),
+            Detail::FixedBase if theta != 0.0 => Err(InitialStateError::TurnedFixedBase(theta)),
+            _ => Ok(()),
+        }
+    }
+
     /// What moves `structure` at this level, in steps of this `local_error`.
-    pub(crate) fn level(self, structure: &Structure, local_error: f64) -> AnyLevel {
+    fn level(self, structure: &Structure, local_error: f64) -> AnyLevel {
         let contact = Some(ExactContact::new(structure));
         match self {
             Detail::Auto => AnyLevel::Nonlinear(Elastic { contact, rocking: NonlinearRocking::default() }),
@@ -80,8 +88,31 @@ impl Detail {
     }
 }
 
+/// A structure with what moves it.
+#[derive(Clone, Debug)]
+pub(crate) struct Model {
+    pub structure: Structure,
+    pub level: AnyLevel,
+    /// Truncation error that a step may have.
+    pub local_error: f64,
+}
+
+impl Model {
+    /// Of `structure` at the level `detail`.
+    pub(crate) fn new(structure: Structure, detail: Detail, local_error: f64) -> Model {
+        Model { structure, level: detail.level(&structure, local_error), local_error }
+    }
+
+    /// The step of `interval` (s) from `state` under `load`.
+    #[inline]
+    pub(crate) fn start(&self, state: State, load: LinearLoad, interval: f64) -> Start {
+        let (a_g, a_top) = (load.on_foundation(), load.on_top(&self.structure));
+        Start { state, a_g, a_top, interval, local_error: self.local_error }
+    }
+}
+
 /// A level of any type.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 #[allow(clippy::large_enum_variant)] // an engine keeps one, behind a pointer
 pub(crate) enum AnyLevel {
     Nonlinear(Elastic<NonlinearRocking>),
@@ -91,18 +122,10 @@ pub(crate) enum AnyLevel {
     FixedBase(FixedBase),
 }
 
-impl AnyLevel {
-    pub(crate) fn get(&self) -> &dyn Level {
-        match self {
-            AnyLevel::Nonlinear(level) => level,
-            AnyLevel::Linear(level) => level,
-            AnyLevel::Modal(level) => level,
-            AnyLevel::Rigid(level) => level,
-            AnyLevel::FixedBase(level) => level,
-        }
-    }
+impl Deref for AnyLevel {
+    type Target = dyn Level;
 
-    pub(crate) fn get_mut(&mut self) -> &mut dyn Level {
+    fn deref(&self) -> &Self::Target {
         match self {
             AnyLevel::Nonlinear(level) => level,
             AnyLevel::Linear(level) => level,
@@ -114,19 +137,17 @@ impl AnyLevel {
 }
 
 /// A level with an elastic strut: by exact flow in full contact where there is one, otherwise by series.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Elastic<Rocking> {
     contact: Option<ExactContact>,
     rocking: Rocking,
 }
 
-impl<Rocking: ElasticRocking> Rules for Elastic<Rocking> {}
-
 impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
     #[inline(always)]
-    fn leap(&mut self, structure: &Structure, phase: Phase, start: &Start) -> Option<State> {
+    fn leap(&self, structure: &Structure, phase: Phase, start: &Start) -> Option<State> {
         match phase {
-            Phase::FullContact => self.contact.as_mut()?.leap(start, structure.u_cr),
+            Phase::FullContact => self.contact.as_ref()?.leap(start, structure.u_cr),
             Phase::Rocking(side) => self.rocking.leap(side, start),
             Phase::Overturned(_) => None,
         }
@@ -141,7 +162,7 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
     }
 
     #[inline(always)]
-    fn series(&mut self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc) {
+    fn series(&self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc) {
         match phase {
             Phase::Rocking(side) => self.rocking.series(structure, side, start, arc),
             Phase::FullContact | Phase::Overturned(_) => full_contact::series(structure, start, arc),
@@ -170,20 +191,14 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
 }
 
 /// Full contact throughout.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct FixedBase {
     contact: ExactContact,
 }
 
-impl Rules for FixedBase {}
-
 impl Level for FixedBase {
-    fn check_start(&self, initial: &State) -> Result<(), InitialStateError> {
-        if initial.theta == 0.0 { Ok(()) } else { Err(InitialStateError::TurnedFixedBase(initial.theta)) }
-    }
-
     #[inline(always)]
-    fn leap(&mut self, _structure: &Structure, _phase: Phase, start: &Start) -> Option<State> {
+    fn leap(&self, _structure: &Structure, _phase: Phase, start: &Start) -> Option<State> {
         self.contact.leap(start, f64::INFINITY)
     }
 
@@ -191,7 +206,7 @@ impl Level for FixedBase {
         self.contact.rates(start)
     }
 
-    fn series(&mut self, structure: &Structure, _phase: Phase, start: &Start, arc: &mut Arc) {
+    fn series(&self, structure: &Structure, _phase: Phase, start: &Start, arc: &mut Arc) {
         full_contact::series(structure, start, arc);
     }
 
@@ -236,8 +251,7 @@ mod tests {
             (Detail::Linear, Phase::Rocking(Side::Right), rocking),
             (Detail::FixedBase, Phase::FullContact, down),
         ] {
-            let mut level = detail.level(&structure, 1e-9);
-            let level = level.get_mut();
+            let level = detail.level(&structure, 1e-9);
             let (mut expected, mut arc) = (state, Arc::default());
             let (mut u_dot, mut theta_dot) = (0.0_f64, 0.0_f64);
             for (k, pair) in noise().map(|x| 20.0 * x).take(1001).collect::<Vec<_>>().windows(2).enumerate() {

@@ -54,7 +54,7 @@ impl ExactContact {
     /// The state after the interval of `start` if |u| certainly stays below `limit` (m) until then: u is no farther than its
     /// whole swing, nor, on the way, from its chord than |ü| h²/8.
     #[inline]
-    pub(crate) fn leap(&mut self, start: &Start, limit: f64) -> Option<State> {
+    pub(crate) fn leap(&self, start: &Start, limit: f64) -> Option<State> {
         let &Start { state: State { u, u_dot, .. }, a_top, interval, .. } = start;
         let flow = self.flows.over(interval, || self.oscillator.flow(interval));
         let end = flow.driven([u, u_dot], a_top.value, a_top.slope);
@@ -119,7 +119,7 @@ mod tests {
     #[test]
     fn the_exact_flow_follows_the_closed_form() {
         let structure = Structure::new(Parameters::EVISON).unwrap();
-        let mut contact = ExactContact::new(&structure);
+        let contact = ExactContact::new(&structure);
         let end = contact.leap(&from(State::default(), RAMP, 0.3), f64::INFINITY).unwrap();
         assert_relative_eq!(end.u, ramp_from_rest(&structure, RAMP, 0.3), max_relative = 1e-13);
     }
@@ -138,7 +138,7 @@ mod tests {
             series(&structure, &from(state, a_g, interval), &mut arc);
             prop_assert_eq!(arc.reach, 1.0);
             let highest = (0..=1000).map(|i| arc.at(i as f64 / 1000.0).u.abs()).fold(0.0, f64::max);
-            let mut contact = ExactContact::new(&structure);
+            let contact = ExactContact::new(&structure);
             if let Some(end) = contact.leap(&from(state, a_g, interval), structure.u_cr) {
                 prop_assert!(highest < structure.u_cr);
                 prop_assert!((end.u - arc.end().u).abs() < 1e-16 + 1e-13 * highest);

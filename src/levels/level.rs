@@ -1,32 +1,24 @@
-//! What a level of detail has to tell: its equations, its condition of uplift, its outputs.
+//! What a level of detail has to tell of the motion: its equations, its condition of uplift, its rule of impact.
 
-use crate::levels::output_series::{self, Turn};
-use crate::levels::rules::Rules;
-use crate::mechanics::load::{LinearLoad, Load};
-use crate::mechanics::state::InitialStateError;
+use crate::levels::rules::{ChatterLimit, MAX_TRANSITIONS_PER_PERIOD};
+use crate::mechanics::impact;
+use crate::mechanics::load::Load;
 use crate::mechanics::uplift::TurningMoment;
-use crate::series::extremes::Bound;
 use crate::series::first_crossing::Crossing;
-use crate::series::taylor::{Arc, Series, Start};
-use crate::{Outputs, Phase, Side, State, Structure};
-use std::fmt::Debug;
+use crate::series::taylor::{Arc, Start};
+use crate::{Phase, Side, State, Structure};
+use std::f64::consts::TAU;
 
-/// Everything that depends on the level of detail. Where nothing else is said it is as at the levels with an elastic
-/// strut.
-pub(crate) trait Level: Rules + Debug + Send {
-    /// Whether a motion may start from `initial`.
-    fn check_start(&self, _initial: &State) -> Result<(), InitialStateError> {
-        Ok(())
-    }
-
+/// What moves a structure. Where nothing else is said it is as at the levels with an elastic strut.
+pub(crate) trait Level {
     /// The state at the end of `start` where it is known exactly and no transition can happen until then.
-    fn leap(&mut self, structure: &Structure, phase: Phase, start: &Start) -> Option<State>;
+    fn leap(&self, structure: &Structure, phase: Phase, start: &Start) -> Option<State>;
 
     /// Bounds of what changes on such a leap from `start` to `end`.
     fn rates(&self, phase: Phase, start: &Start, end: &State) -> Rates;
 
     /// Writes the motion from `start` in `phase` into `arc`; there is none once overturned.
-    fn series(&mut self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc);
+    fn series(&self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc);
 
     /// Whether the equations of rocking are about to have no solution.
     fn is_singular(&self, _structure: &Structure, _phase: Phase, _state: &State) -> bool {
@@ -45,6 +37,16 @@ pub(crate) trait Level: Rules + Debug + Send {
     /// which side that would be: continuous, positive while the base stays down, due where it is not.
     fn uplift_margin(&self, structure: &Structure, state: &State, load: Load) -> (f64, Side);
 
+    /// Phase and state just after an impact that ends rocking about `side` in the state `before`.
+    fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
+        impact::resolve(structure, side, before)
+    }
+
+    /// How many transitions may happen how fast.
+    fn chatter_limit(&self, structure: &Structure) -> ChatterLimit {
+        ChatterLimit { period: TAU / structure.omega_u, transitions: MAX_TRANSITIONS_PER_PERIOD }
+    }
+
     /// `state` with what does not move in `phase` at rest in its place.
     fn admissible(&self, phase: Phase, state: State) -> State {
         match phase {
@@ -55,49 +57,17 @@ pub(crate) trait Level: Rules + Debug + Send {
 
     /// (ü, θ̈) in `phase` under `load`, m/s² and rad/s²; not a number where the equations have no solution.
     fn accelerations(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2];
-
-    /// The outputs in `phase` and `state` under `load`.
-    fn outputs(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> Outputs {
-        Outputs::of(structure, phase, state, load.F_t)
-    }
-
-    /// Time derivatives of the outputs under `load`, given (ü, θ̈) and (u⃛, θ⃛).
-    fn output_rates(
-        &self,
-        structure: &Structure,
-        phase: Phase,
-        state: &State,
-        [accelerations, _]: [[f64; 2]; 2],
-        load: LinearLoad,
-    ) -> Outputs {
-        Outputs::rates_by(structure, phase, state, accelerations, load)
-    }
-
-    /// a_t over `arc` under `load`, which is given from its start on, as a series in σ.
-    fn a_t_series(&self, structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc, turn: &Turn) -> Series {
-        output_series::a_t(structure, phase, load, arc, turn)
-    }
-
-    /// Bounds of |θ|, |u|, |δ_t| and |a_t| that follow from those of |θ|, |u| and |u̇|; `F_t` is that of |F_t|.
-    fn crude_output_bounds(&self, structure: &Structure, phase: Phase, F_t: f64, of_state: [f64; 3]) -> [f64; 4] {
-        output_series::crude_bounds(structure, phase, F_t, of_state)
-    }
-
-    /// Bounds of |θ|, |u|, |δ_t| and |a_t| over `arc` under `load`, which is given from its start on.
-    fn output_bounds(&self, structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc) -> [Bound; 4] {
-        output_series::bounds(structure, phase, load, arc)
-    }
 }
 
 /// Equations of rocking with an elastic strut.
-pub(crate) trait ElasticRocking: Debug + Send {
-    fn leap(&mut self, _side: Side, _start: &Start) -> Option<State> {
+pub(crate) trait ElasticRocking {
+    fn leap(&self, _side: Side, _start: &Start) -> Option<State> {
         None
     }
 
     fn rates(&self, side: Side, start: &Start, end: &State) -> Rates;
 
-    fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc);
+    fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc);
 
     fn is_singular(&self, _structure: &Structure, _side: Side, _state: &State) -> bool {
         false

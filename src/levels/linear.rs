@@ -139,14 +139,14 @@ impl ElasticRocking for LinearRocking {
     /// from its chord than |θ̈| h²/8, and no closer to 0 than the Bernstein coefficients of its cubic but for what it leaves
     /// that.
     #[inline(always)]
-    fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
+    fn leap(&self, side: Side, start: &Start) -> Option<State> {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
         if self.omega * h > LONGEST_LEAP {
             return None;
         }
         let (system, omega, feedback) = (&self.system, self.omega, self.feedback);
         let compute = || (flow(system, omega, h), amplification(feedback, h));
-        let &(ref flow, amplification) = self.flows.over(h, compute);
+        let &(ref flow, amplification) = &*self.flows.over(h, compute);
         let s = side.sign();
         let end = flow * SVector::from([u, u_dot, theta, theta_dot, a_top.value, a_top.slope, s]);
         let swing = self.swing(side, start, amplification);
@@ -165,7 +165,7 @@ impl ElasticRocking for LinearRocking {
         if swing.turning < f64::INFINITY { self.rates_of(start, &swing) } else { Rates::NONE }
     }
 
-    fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
+    fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
         self.system.series(structure, side, start, arc);
     }
 
@@ -254,7 +254,7 @@ mod tests {
             let state = State { u, u_dot, theta, theta_dot };
             let a_g = Ramp { value, slope };
             let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15 };
-            let mut rocking = LinearRocking::new(&structure);
+            let rocking = LinearRocking::new(&structure);
             let mut arc = Arc::default();
             rocking.system.series(&structure, Side::Right, &start, &mut arc);
             prop_assert_eq!(arc.reach, 1.0);

@@ -95,12 +95,12 @@ impl ElasticRocking for ModalRocking {
     /// q_r leaves the line that follows the load by a hyperbolic arc, which is farthest from it at an end and bounds
     /// |q̈_r|; u stays within its amplitude of the line that it follows.
     #[inline(always)]
-    fn leap(&mut self, side: Side, start: &Start) -> Option<State> {
+    fn leap(&self, side: Side, start: &Start) -> Option<State> {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval, .. } = start;
-        let &mut ModalRocking { vibration, p_l, g, tan_alpha_cg, gravity_forcing, .. } = self;
+        let &ModalRocking { vibration, p_l, g, tan_alpha_cg, gravity_forcing, .. } = self;
         let s = side.sign();
         let (flow, Growth { sinh, step, ramp }) =
-            self.flows.over(interval, || (vibration.flow(interval), Growth::over(p_l, interval)));
+            &*self.flows.over(interval, || (vibration.flow(interval), Growth::over(p_l, interval)));
         let shape = p_l * p_l / g;
         let (line, line_slope) = (a_top.value / g + s * tan_alpha_cg, a_top.slope / g);
         let (q_r, q_r_dot) = (theta + shape * u, theta_dot + shape * u_dot);
@@ -146,7 +146,7 @@ impl ElasticRocking for ModalRocking {
         }
     }
 
-    fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
+    fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
         self.system.series(structure, side, start, arc);
     }
 
@@ -195,7 +195,7 @@ mod tests {
             let state = State { u, u_dot, theta, theta_dot };
             let a_g = Ramp { value, slope };
             let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15 };
-            let mut rocking = ModalRocking::new(&structure);
+            let rocking = ModalRocking::new(&structure);
             let mut arc = Arc::default();
             rocking.system.series(&structure, Side::Left, &start, &mut arc);
             prop_assert_eq!(arc.reach, 1.0);

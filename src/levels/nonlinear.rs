@@ -26,6 +26,7 @@ use crate::mechanics::uplift::TurningMoment;
 use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
 use crate::{Side, State, Structure};
 use nalgebra::{Matrix2, Vector2};
+use std::cell::RefCell;
 use wide::f64x2;
 
 /// (ü, θ̈) in m/s² and rad/s² under `load`: Eqs 5 and 6 as they stand, solved for the
@@ -103,13 +104,13 @@ fn products(a: &Factors, b: &Factors, newest_a: &Row, newest_b: &Row, n: usize) 
 /// later coefficients of w contribute to w θ̇ and w² θ̇, to w θ̇² and to the moment of the top mass's weight.
 #[derive(Clone, Debug)]
 pub(crate) struct NonlinearRocking {
-    left: Factors,
-    right: Factors,
+    /// Left and right.
+    factors: RefCell<[Factors; 2]>,
 }
 
 impl Default for NonlinearRocking {
     fn default() -> NonlinearRocking {
-        NonlinearRocking { left: [NO_ROW; MAX_ORDER + 1], right: [NO_ROW; MAX_ORDER + 1] }
+        NonlinearRocking { factors: RefCell::new([[NO_ROW; MAX_ORDER + 1]; 2]) }
     }
 }
 
@@ -133,7 +134,7 @@ impl ElasticRocking for NonlinearRocking {
     }
 
     #[inline(always)]
-    fn series(&mut self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
+    fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
         let &Start { state, a_g, a_top, interval, .. } = start;
         let &crate::Parameters { H, B, g, .. } = structure.parameters();
         let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
@@ -151,7 +152,7 @@ impl ElasticRocking for NonlinearRocking {
         let mut weight_below = g * cos + a_ground * sin; // G₀
         let mut along = g * sin - a * cos; // F
         let mut elastic = damping_u * u_dot + stiffness * u; // κ
-        let (left, right) = (&mut self.left, &mut self.right);
+        let [left, right] = &mut *self.factors.borrow_mut();
         let mut newest_left = row([theta_dot, theta_dot, theta_dot, lever * theta_dot, lever * theta_dot, lever]);
         let mut theta_dot = theta_dot;
 

@@ -10,6 +10,7 @@
 
 use crate::series::taylor::reciprocal;
 use nalgebra::Matrix2;
+use std::cell::{RefCell, RefMut};
 
 /// An oscillator of circular frequency ω (rad/s) and damping ratio ζ.
 #[derive(Clone, Copy, Debug)]
@@ -162,25 +163,27 @@ const KEPT: usize = 16;
 /// on what is.
 #[derive(Clone, Debug)]
 pub(crate) struct Kept<Flow> {
-    flows: [(f64, Flow); KEPT],
+    flows: RefCell<[(f64, Flow); KEPT]>,
 }
 
 impl<Flow: Copy> Kept<Flow> {
     /// Nothing kept yet; `unused` fills the places.
     pub(crate) fn new(unused: Flow) -> Kept<Flow> {
-        Kept { flows: [(f64::NAN, unused); KEPT] }
+        Kept { flows: RefCell::new([(f64::NAN, unused); KEPT]) }
     }
 
     /// The flow over `duration` (s), by `compute` where it is not kept.
     #[inline]
-    pub(crate) fn over(&mut self, duration: f64, compute: impl FnOnce() -> Flow) -> &Flow {
+    pub(crate) fn over(&self, duration: f64, compute: impl FnOnce() -> Flow) -> RefMut<'_, Flow> {
         // the top bits of a multiplicative hash: lengths that differ in their last bits go to different places
         let place = (duration.to_bits().wrapping_mul(0x9E37_79B9_7F4A_7C15) >> 60) as usize;
-        let kept = &mut self.flows[place];
-        if kept.0 != duration {
-            *kept = (duration, compute());
-        }
-        &kept.1
+        RefMut::map(self.flows.borrow_mut(), |flows| {
+            let kept = &mut flows[place];
+            if kept.0 != duration {
+                *kept = (duration, compute());
+            }
+            &mut kept.1
+        })
     }
 }
 

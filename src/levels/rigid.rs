@@ -19,17 +19,14 @@
 //! ½ m g H tan² α_cg, which overturning takes at small angles.
 
 use crate::levels::level::{Level, Rates};
-use crate::levels::output_series::{self, Turn};
-use crate::levels::rules::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD, Rules};
+use crate::levels::output_series::{Turn, delta_t_bound};
+use crate::levels::rules::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD};
 use crate::mechanics::load::{LinearLoad, Load};
-use crate::mechanics::state::InitialStateError;
-use crate::series::extremes::Bound;
+use crate::mechanics::uplift::least_push;
+use crate::series::extremes::{self, Bound};
 use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::series::taylor::{Arc, LONGEST_SPAN, Series, Start, Truncation, ZERO};
-
-use crate::mechanics::uplift::least_push;
-use crate::series::extremes;
-use crate::{Outputs, Phase, Side, State, Structure};
+use crate::{Phase, Side, State, Structure};
 
 /// P and Q at `theta`.
 fn shape(structure: &Structure, side: Side, theta: f64) -> [f64; 2] {
@@ -94,36 +91,14 @@ fn product(a: &Series, b: &Series, k: usize) -> f64 {
 }
 
 /// The rigid limit as a level of detail.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Rigid {
     /// Error ε that a step may have.
     pub local_error: f64,
 }
 
-impl Rules for Rigid {
-    fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
-        let theta_dot = structure.parameters().r * before.theta_dot;
-        if theta_dot.abs() <= self.local_error * structure.p_l * structure.tan_alpha_cg {
-            return (Phase::FullContact, State::default());
-        }
-        (Phase::Rocking(side.opposite()), State { theta_dot, ..State::default() })
-    }
-
-    fn land(&self, _structure: &Structure, _before: &State) -> State {
-        State::default()
-    }
-
-    fn chatter_limit(&self, structure: &Structure) -> ChatterLimit {
-        ChatterLimit { period: 1.0 / structure.p_l, transitions: MAX_RIGID_TRANSITIONS_PER_PERIOD }
-    }
-}
-
 impl Level for Rigid {
-    fn check_start(&self, &State { u, u_dot, .. }: &State) -> Result<(), InitialStateError> {
-        if (u, u_dot) == (0.0, 0.0) { Ok(()) } else { Err(InitialStateError::DeformedRigid { u, u_dot }) }
-    }
-
-    fn leap(&mut self, _structure: &Structure, _phase: Phase, _start: &Start) -> Option<State> {
+    fn leap(&self, _structure: &Structure, _phase: Phase, _start: &Start) -> Option<State> {
         None
     }
 
@@ -132,7 +107,7 @@ impl Level for Rigid {
     }
 
     /// Rest on the ground in full contact.
-    fn series(&mut self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc) {
+    fn series(&self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc) {
         match phase {
             Phase::Rocking(side) => series(structure, side, start, arc),
             Phase::FullContact | Phase::Overturned(_) => {
@@ -151,13 +126,21 @@ impl Level for Rigid {
         if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
     }
 
-    fn stays_down(&self, _structure: &Structure, _state: &State) -> bool {
-        true
-    }
-
     fn uplift_margin(&self, structure: &Structure, _state: &State, load: Load) -> (f64, Side) {
         let push = load.on_top(structure) / least_push(structure);
         (1.0 - push.abs(), Side::of(-push))
+    }
+
+    fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
+        let theta_dot = structure.parameters().r * before.theta_dot;
+        if theta_dot.abs() <= self.local_error * structure.p_l * structure.tan_alpha_cg {
+            return (Phase::FullContact, State::default());
+        }
+        (Phase::Rocking(side.opposite()), State { theta_dot, ..State::default() })
+    }
+
+    fn chatter_limit(&self, structure: &Structure) -> ChatterLimit {
+        ChatterLimit { period: 1.0 / structure.p_l, transitions: MAX_RIGID_TRANSITIONS_PER_PERIOD }
     }
 
     fn admissible(&self, phase: Phase, state: State) -> State {
@@ -170,77 +153,71 @@ impl Level for Rigid {
     fn accelerations(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2] {
         accelerations(structure, phase, state, load)
     }
+}
 
-    /// Here u says nothing of the forces: a_t is that of Eq 27 as it stands, which follows the ground.
-    fn outputs(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> Outputs {
-        let &crate::Parameters { H, B, .. } = structure.parameters();
-        let s = phase.side().sign();
-        let [_, theta_ddot] = accelerations(structure, phase, state, load);
-        let a_t = H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * state.theta.cos();
-        Outputs::of(structure, phase, state, load.F_t).with_a_t(structure, a_t)
-    }
+/// a_t, m/s²: here u says nothing of the forces, so that it is Eq 27 as it stands, which follows the ground.
+pub(crate) fn a_t(structure: &Structure, phase: Phase, state: &State, load: Load) -> f64 {
+    let &crate::Parameters { H, B, .. } = structure.parameters();
+    let s = phase.side().sign();
+    let [_, theta_ddot] = accelerations(structure, phase, state, load);
+    H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * state.theta.cos()
+}
 
-    fn output_rates(
-        &self,
-        structure: &Structure,
-        phase: Phase,
-        state: &State,
-        [accelerations, jerks]: [[f64; 2]; 2],
-        load: LinearLoad,
-    ) -> Outputs {
-        let &crate::Parameters { H, B, .. } = structure.parameters();
-        let &State { theta, theta_dot, .. } = state;
-        let s = phase.side().sign();
-        let a_t = match phase {
-            Phase::Overturned(_) => 0.0,
-            _ => {
-                H * jerks[1] + 2.0 * s * B * theta_dot * accelerations[1] + load.slope.a_g * theta.cos()
-                    - load.value.a_g * theta.sin() * theta_dot
-            }
-        };
-        Outputs::rates_by(structure, phase, state, accelerations, load).with_a_t(structure, a_t)
+/// Its time derivative, m/s³, given θ̈ and θ⃛; 0 once overturned.
+pub(crate) fn a_t_rate(
+    structure: &Structure,
+    phase: Phase,
+    state: &State,
+    [theta_ddot, theta_dddot]: [f64; 2],
+    load: LinearLoad,
+) -> f64 {
+    let &crate::Parameters { H, B, .. } = structure.parameters();
+    let &State { theta, theta_dot, .. } = state;
+    let s = phase.side().sign();
+    match phase {
+        Phase::Overturned(_) => 0.0,
+        _ => {
+            H * theta_dddot + 2.0 * s * B * theta_dot * theta_ddot + load.slope.a_g * theta.cos()
+                - load.value.a_g * theta.sin() * theta_dot
+        }
     }
+}
 
-    fn a_t_series(&self, structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc, turn: &Turn) -> Series {
-        let &crate::Parameters { H, B, .. } = structure.parameters();
-        let offset = phase.side().sign() * B;
-        let (now, slope) = (load.value.a_g, load.slope.a_g * arc.span);
-        arc.series(|k| {
-            let theta_ddot = if k < arc.order { (k + 1) as f64 * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
-            let centripetal: f64 = (0..=k).map(|i| arc.theta_dot[i] * arc.theta_dot[k - i]).sum();
-            let ground = now * turn.cos[k] + if k > 0 { slope * turn.cos[k - 1] } else { 0.0 };
-            H * theta_ddot + offset * centripetal + ground
-        })
-    }
+/// Its series over `arc` under `load`.
+pub(crate) fn a_t_series(structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc, turn: &Turn) -> Series {
+    let &crate::Parameters { H, B, .. } = structure.parameters();
+    let offset = phase.side().sign() * B;
+    let (now, slope) = (load.value.a_g, load.slope.a_g * arc.span);
+    arc.series(|k| {
+        let theta_ddot = if k < arc.order { (k + 1) as f64 * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
+        let centripetal: f64 = (0..=k).map(|i| arc.theta_dot[i] * arc.theta_dot[k - i]).sum();
+        let ground = now * turn.cos[k] + if k > 0 { slope * turn.cos[k - 1] } else { 0.0 };
+        H * theta_ddot + offset * centripetal + ground
+    })
+}
 
-    /// The state does not bound a_t here, nor is there anything crude that does.
-    fn crude_output_bounds(&self, structure: &Structure, phase: Phase, F_t: f64, of_state: [f64; 3]) -> [f64; 4] {
-        let [theta, u, delta_t, _] = output_series::crude_bounds(structure, phase, F_t, of_state);
-        [theta, u, delta_t, f64::INFINITY]
-    }
-
-    /// a_t about H θ̈ + s B θ̇₀² + a_g cos θ₀, θ₀ and θ̇₀ those at the start.
-    fn output_bounds(&self, structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc) -> [Bound; 4] {
-        let &crate::Parameters { H, B, .. } = structure.parameters();
-        let offset = phase.side().sign() * B;
-        let [theta, _, delta_t, _] = output_series::bounds(structure, phase, load, arc);
-        let cos = arc.theta[0].cos();
-        let ground = [load.value.a_g, load.slope.a_g * arc.span];
-        let row = |k: usize| {
-            let theta_ddot = if k < arc.order { (k + 1) as f64 * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
-            let centripetal = if k == 0 { offset * arc.theta_dot[0].powi(2) } else { 0.0 };
-            let ground = if k < 2 { cos * ground[k] } else { 0.0 };
-            [H * theta_ddot + centripetal + ground]
-        };
-        let [a_t] = extremes::bounds(row, arc.order, arc.reach);
-        let change = |of: &Series| arc.used(of)[1..].iter().map(|c| c.abs()).sum::<f64>();
-        let rate = |of: &Series| (1..).zip(&arc.used(of)[1..]).map(|(k, c)| f64::from(k) * c.abs()).sum::<f64>();
-        let (turned, hastened) = (change(&arc.theta), change(&arc.theta_dot));
-        let fastest = arc.theta_dot[0].abs() + hastened;
-        let ground_most = ground[0].abs() + ground[1].abs();
-        let most = B * hastened * (fastest + arc.theta_dot[0].abs()) + turned * ground_most;
-        let ground_rate = rate(&arc.theta) * ground_most + turned * ground[1].abs();
-        let most_rate = 2.0 * B * fastest * rate(&arc.theta_dot) + ground_rate;
-        [theta, Bound::default(), delta_t, a_t.and(most, most_rate)]
-    }
+/// Bounds of |θ|, |u|, |δ_t| and |a_t| over `arc` under `load`: a_t about H θ̈ + s B θ̇₀² + a_g cos θ₀, θ₀ and θ̇₀ those at the
+/// start.
+pub(crate) fn bounds(structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc) -> [Bound; 4] {
+    let &crate::Parameters { H, B, .. } = structure.parameters();
+    let offset = phase.side().sign() * B;
+    let cos = arc.theta[0].cos();
+    let ground = [load.value.a_g, load.slope.a_g * arc.span];
+    let row = |k: usize| {
+        let theta_ddot = if k < arc.order { (k + 1) as f64 * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
+        let centripetal = if k == 0 { offset * arc.theta_dot[0].powi(2) } else { 0.0 };
+        let ground = if k < 2 { cos * ground[k] } else { 0.0 };
+        [arc.theta[k], H * arc.theta[k], H * theta_ddot + centripetal + ground]
+    };
+    let [theta, sway, a_t] = extremes::bounds(row, arc.order, arc.reach);
+    let change = |of: &Series| arc.used(of)[1..].iter().map(|c| c.abs()).sum::<f64>();
+    let rate = |of: &Series| (1..).zip(&arc.used(of)[1..]).map(|(k, c)| f64::from(k) * c.abs()).sum::<f64>();
+    let (turned, hastened) = (change(&arc.theta), change(&arc.theta_dot));
+    let fastest = arc.theta_dot[0].abs() + hastened;
+    let ground_most = ground[0].abs() + ground[1].abs();
+    let most = B * hastened * (fastest + arc.theta_dot[0].abs()) + turned * ground_most;
+    let ground_rate = rate(&arc.theta) * ground_most + turned * ground[1].abs();
+    let most_rate = 2.0 * B * fastest * rate(&arc.theta_dot) + ground_rate;
+    let delta_t = delta_t_bound(structure, theta, Bound::default(), sway);
+    [theta, Bound::default(), delta_t, a_t.and(most, most_rate)]
 }

@@ -1,16 +1,10 @@
-//! What follows from an impact, and how many transitions there may be.
-//!
-//! # Progress
+//! How many transitions there may be.
 //!
 //! Transitions are counted from the first of them on for a vibration period 2π/ω_u, then anew. After
 //! [`MAX_TRANSITIONS_PER_PERIOD`] the next impact is a landing whatever its momentum, and contact is held to the end of
 //! the period ([`Settling`](crate::TransitionKind::Settling)): it sees two more at most. Bounces that fast are the start of infinitely
 //! many in finite time, which end in contact; neither specimen comes near them. The rigid limit, which has no vibration
 //! and does come to rest by ever faster impacts, has [`MAX_RIGID_TRANSITIONS_PER_PERIOD`] for each 1/p_l instead.
-
-use crate::mechanics::impact;
-use crate::{Phase, Side, State, Structure};
-use std::f64::consts::TAU;
 
 /// Transitions within one period of the vibration mode (2π/ω_u) after which contact is held.
 pub const MAX_TRANSITIONS_PER_PERIOD: u32 = 1000;
@@ -24,22 +18,4 @@ pub const MAX_RIGID_TRANSITIONS_PER_PERIOD: u32 = 100_000;
 pub(crate) struct ChatterLimit {
     pub period: f64,
     pub transitions: u32,
-}
-
-/// What follows from transitions. Where nothing else is said it is as with an elastic strut.
-pub(crate) trait Rules {
-    /// Phase and state just after an impact that ends rocking about `side` in the state `before`.
-    fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
-        impact::resolve(structure, side, before)
-    }
-
-    /// The state just after a landing.
-    fn land(&self, structure: &Structure, before: &State) -> State {
-        impact::land(structure, before)
-    }
-
-    /// How many transitions may happen how fast.
-    fn chatter_limit(&self, structure: &Structure) -> ChatterLimit {
-        ChatterLimit { period: TAU / structure.omega_u, transitions: MAX_TRANSITIONS_PER_PERIOD }
-    }
 }

@@ -93,11 +93,11 @@ impl Tracer {
 impl Watch for Tracer {
     const SEES_PIECES: bool = true;
 
-    fn piece(&mut self, piece: &mut Piece) {
+    fn piece(&mut self, piece: &Piece) {
         if self.is_full() {
             return;
         }
-        let [(_, first), (duration, last)] = piece.ends();
+        let [(_, first), (duration, last)] = piece.whole().ends();
         // after its last sample the ground is at rest at once
         let a_g = piece.load.at(0.0).a_g;
         let is_jolted = self.points.last_mut().is_some_and(|last| {
@@ -107,10 +107,11 @@ impl Watch for Tracer {
         if self.is_torn || is_jolted {
             self.see(piece, 0.0, first);
         }
-        loop {
-            let (passed, span) = (piece.passed(), piece.arc().span);
+        let mut arcs = piece.arcs();
+        while let Some(expansion) = arcs.next() {
+            let (passed, span) = (expansion.from, expansion.arc.span);
             let mut between = Vec::new();
-            piece.series(Measure::At, &mut |from, arc, a_t| {
+            expansion.series(Measure::At, &mut |from, arc, a_t| {
                 let [theta, u, a_t] = [&arc.theta, &arc.u, a_t].map(|series| arc.used(series));
                 let part = arc.span / span;
                 divide([theta, u, a_t], self.within, [0.0, arc.reach], DIVISIONS, &mut |sigma| {
@@ -119,14 +120,13 @@ impl Watch for Tracer {
                 between.push(from + arc.reach * part);
             });
             let instants = self.exact.map(|time| (time - piece.before.time - passed) / span);
-            between.extend(instants.iter().filter(|sigma| **sigma > 0.0 && **sigma < piece.arc().reach));
+            between.extend(instants.iter().filter(|sigma| **sigma > 0.0 && **sigma < expansion.arc.reach));
             between.sort_by(f64::total_cmp);
-            for sigma in between {
-                let outputs = piece.outputs(sigma);
-                self.see(piece, passed + sigma * span, outputs);
-            }
             // the last of them is at the end of the arc
-            if !piece.skip() || self.is_full() {
+            for sigma in between {
+                self.see(piece, passed + sigma * span, expansion.outputs(sigma));
+            }
+            if self.is_full() {
                 break;
             }
         }

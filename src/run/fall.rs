@@ -4,6 +4,7 @@
 use super::ground_motion::GroundMotion;
 use super::peaks::{Peak, Peaks};
 use super::{End, Ending, Finish, Run, RunError};
+use crate::engine::piece::Expansion;
 use crate::series::first_crossing::{Crossing, Guard, first_time_closed_from};
 use crate::series::taylor;
 use crate::{Load, Piece, Structure, Watch};
@@ -46,27 +47,24 @@ impl Fall {
 impl Watch for Fall {
     const SEES_PIECES: bool = true;
 
-    fn piece(&mut self, piece: &mut Piece) {
+    fn piece(&mut self, piece: &Piece) {
         if piece.end.theta.abs() < self.alpha_cg {
             self.instant = None;
             return;
         }
-        loop {
-            let start = piece.before.time + piece.passed();
-            self.instant = self.last_passing(piece).or(self.instant).or(Some(start));
-            if !piece.skip() {
-                return;
-            }
+        let mut arcs = piece.arcs();
+        while let Some(expansion) = arcs.next() {
+            let passing = self.last_passing(piece.end.theta.signum(), &expansion);
+            self.instant = passing.or(self.instant).or(Some(expansion.time(0.0)));
         }
     }
 }
 
 impl Fall {
-    /// When |θ| passes α_cg for the last time on the arc of `piece`, at whose end it is beyond, s: the first time going
-    /// back from the end of the arc.
-    fn last_passing(&self, piece: &mut Piece) -> Option<f64> {
-        let (start, side) = (piece.before.time + piece.passed(), piece.end.theta.signum());
-        let arc = piece.arc();
+    /// When |θ| passes α_cg for the last time on a polynomial, at whose end it is beyond on this `side`, s: the first time
+    /// going back from its end.
+    fn last_passing(&self, side: f64, expansion: &Expansion) -> Option<f64> {
+        let arc = expansion.arc;
         let mut theta = arc.theta;
         let back = &mut theta[..=arc.order];
         taylor::stretch(back, arc.reach, -arc.reach);
@@ -76,7 +74,9 @@ impl Fall {
             match first_time_closed_from(beyond, sigma, 1.0) {
                 Crossing::None => return None,
                 Crossing::NoneUntil(until) if until - sigma > f64::EPSILON => sigma = until,
-                Crossing::At(last) | Crossing::NoneUntil(last) => return Some(start + (1.0 - last) * arc.duration()),
+                Crossing::At(last) | Crossing::NoneUntil(last) => {
+                    return Some(expansion.time(0.0) + (1.0 - last) * arc.duration());
+                }
             }
         }
     }

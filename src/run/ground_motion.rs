@@ -135,8 +135,8 @@ impl GroundMotion<'_> {
         self.ramp_from(self.reached(elapsed, |i| self.same_instant(i)), elapsed)
     }
 
-    /// The same for an integrator at `elapsed` that has dealt with all samples up to `dealt_with`: a later one that it has
-    /// just arrived at is still to come, so that the ground acceleration is the one that led there.
+    /// What it is for an integrator at `elapsed` that has dealt with all samples up to `dealt_with`: a later one that it has just
+    /// arrived at is still to come, so that the ground acceleration is the one that led there.
     pub fn since(&self, dealt_with: Elapsed, elapsed: Elapsed) -> Ramp {
         let reached = |at: Elapsed| self.reached(at, |i| self.same_instant(i));
         let here = reached(elapsed);
@@ -186,10 +186,7 @@ impl GroundMotion<'_> {
             engine.set_time(before.time + start);
             match engine.advance_within(last_step, duration, load.from(start).on_ground(a_g), watch) {
                 Ok(Progress::Complete) => (),
-                Ok(progress @ (Progress::Overturned | Progress::Transition)) => {
-                    engine.done(watch);
-                    return Ok(progress);
-                }
+                Ok(progress @ (Progress::Overturned | Progress::Transition)) => return Ok(progress),
                 Err(mut error) => {
                     engine.set_motion(before);
                     if let AdvanceError::TooLong { until, .. } = &mut error {
@@ -200,7 +197,6 @@ impl GroundMotion<'_> {
             }
         }
         engine.set_time(before.time + interval);
-        engine.done(watch);
         Ok(Progress::Complete)
     }
 
@@ -291,7 +287,7 @@ impl GroundMotion<'_> {
         Ramp { value: a.1, slope: (b.1 - a.1) / (b.0 - a.0) }
     }
 
-    /// The same as it is given from `elapsed` on.
+    /// The ground acceleration from the last of `reached` samples to the next, as it is given from `elapsed` on.
     fn ramp_from(&self, reached: usize, elapsed: Elapsed) -> Ramp {
         let ramp = self.ramp(reached);
         let Some(last) = reached.checked_sub(1) else { return ramp };

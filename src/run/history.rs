@@ -91,11 +91,12 @@ impl Stretch {
 impl Watch for History {
     const SEES_PIECES: bool = true;
 
-    fn piece(&mut self, piece: &mut Piece) {
-        loop {
-            let span = piece.arc().span;
-            let (start, transitions) = (piece.before.time + piece.passed(), piece.before.transitions);
-            piece.series(Measure::At, &mut |from, arc, a_t| {
+    fn piece(&mut self, piece: &Piece) {
+        let transitions = piece.before.transitions;
+        let mut arcs = piece.arcs();
+        while let Some(expansion) = arcs.next() {
+            let (start, span) = (expansion.time(0.0), expansion.arc.span);
+            expansion.series(Measure::At, &mut |from, arc, a_t| {
                 let start = start + from * span;
                 let series = [arc.series(|k| arc.theta[k]), arc.series(|k| arc.u[k]), *a_t];
                 self.stretches.push(Stretch {
@@ -106,9 +107,6 @@ impl Watch for History {
                     series,
                 });
             });
-            if !piece.skip() {
-                break;
-            }
         }
     }
 }

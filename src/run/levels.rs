@@ -112,10 +112,9 @@ pub fn compare(run: &Run) -> Result<Comparison, RunError> {
         reference.history.stretches.drain(..done);
         trials.iter_mut().for_each(|trial| trial.compared -= done);
     }
-    let all = *reference.peaks.peaks();
-    let reference = reference.response()?.0;
+    let (reference, all, _) = reference.response()?;
     let verdict = |trial: Trial<_>| {
-        let (response, distance) = trial.response()?;
+        let (response, _, distance) = trial.response()?;
         Ok(Verdict::new(response, distance, &reference, &all))
     };
     let verdicts = trials.into_iter().map(verdict).collect::<Result<_, RunError>>()?;
@@ -175,9 +174,6 @@ impl<Segments: Iterator<Item = Segment>> Trial<'_, Segments> {
     fn go_on(&mut self) -> Result<(), RunError> {
         if self.ending.is_none() {
             self.ending = self.course.go_on(&mut (&mut self.peaks, &mut (&mut self.fall, &mut self.history)))?;
-            if self.ending.is_some() {
-                self.course.engine.done(&mut self.peaks);
-            }
         }
         Ok(())
     }
@@ -197,13 +193,14 @@ impl<Segments: Iterator<Item = Segment>> Trial<'_, Segments> {
         }
     }
 
-    /// What came of it, and how far from the reference it has been.
-    fn response(self) -> Result<(Response, Distance), RunError> {
+    /// What came of it, the peaks of all of it, and how far from the reference it has been.
+    fn response(self) -> Result<(Response, Peaks, Distance), RunError> {
         let motion = self.course.engine.motion();
         let ending = self.ending.expect("it has been followed to its end");
-        let (peaks, _) = self.fall.peaks_before(&self.run, ending, self.peaks.peaks())?;
+        let all = self.peaks.end();
+        let (peaks, _) = self.fall.peaks_before(&self.run, ending, &all)?;
         let (transitions, work) = (motion.transitions, motion.work);
-        Ok((Response { detail: self.run.detail, peaks, ending, transitions, work }, self.distance))
+        Ok((Response { detail: self.run.detail, peaks, ending, transitions, work }, all, self.distance))
     }
 }
 

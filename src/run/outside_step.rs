@@ -10,7 +10,6 @@
 use crate::engine::AdvanceError;
 use crate::engine::motion::Event;
 use crate::engine::piece::{Sample, Watch};
-use crate::engine::transition;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::run::ground_motion::Elapsed;
 use crate::{Engine, GroundMotion, Motion, Phase, Side, State};
@@ -27,7 +26,7 @@ pub const BAND: f64 = 1e-9;
 impl Sample<'_> {
     /// (u̇, ü, θ̇, θ̈) by the equations of the level and the phase; not numbers where these have no solution.
     pub fn state_rates(&self) -> State {
-        let State { u_dot, theta_dot, .. } = self.level.admissible(self.motion.phase, self.motion.state);
+        let State { u_dot, theta_dot, .. } = self.model.level.admissible(self.motion.phase, self.motion.state);
         let [u_ddot, theta_ddot] = self.accelerations();
         match self.motion.phase {
             Phase::Overturned(_) => State::default(),
@@ -44,11 +43,11 @@ impl Sample<'_> {
         match phase {
             Phase::FullContact if self.motion.held() > 0.0 => [1.0; INDICATORS],
             Phase::FullContact => {
-                let (margin, _) = self.level.uplift_margin(self.structure, &state, self.load);
+                let (margin, _) = self.model.level.uplift_margin(&self.model.structure, &state, self.load);
                 [margin + BAND, 1.0]
             }
             Phase::Rocking(side) => {
-                let height = side.sign() * state.theta / self.structure.tan_alpha_cg.atan();
+                let height = side.sign() * state.theta / self.model.structure.tan_alpha_cg.atan();
                 [height + BAND, 1.0 - state.theta.abs() / FRAC_PI_2]
             }
             Phase::Overturned(_) => [1.0; INDICATORS],
@@ -135,28 +134,26 @@ impl Known {
 impl Engine {
     /// Takes `state` from another integrator; what does not move in the present phase stays at rest.
     pub fn set_state(&mut self, state: State) {
-        let Sample { motion, level, .. } = self.sample(Load::default());
-        let state = level.admissible(motion.phase, state);
+        let Sample { motion, model, .. } = self.sample(Load::default());
+        let state = model.level.admissible(motion.phase, state);
         self.set_motion(Motion { state, ..motion });
     }
 
     /// Lifts the base off if that is due at once under `load`: after a landing, at the start, or when a load jumps.
     pub fn lift_off_if_due<W: Watch>(&mut self, load: Load, watch: &mut W) {
         if let Some(side) = self.uplift_due(load) {
-            let Sample { motion, structure, level, .. } = self.sample(load);
-            let (motion, transition) = transition::resolve(level, structure, motion, Event::Uplift(side));
-            self.set_motion(motion);
-            watch.transition(&transition);
+            self.set_motion(Motion { due: Some(Event::Uplift(side)), ..*self.motion() });
+            self.transit(watch);
         }
     }
 
     /// The side about which the base lifts off at once under `load`, if it does.
     pub fn uplift_due(&self, load: Load) -> Option<Side> {
-        let Sample { motion, structure, level, .. } = self.sample(load);
+        let Sample { motion, model, .. } = self.sample(load);
         if motion.phase != Phase::FullContact || motion.held() > 0.0 {
             return None;
         }
-        let (margin, side) = level.uplift_margin(structure, &motion.state, load);
+        let (margin, side) = model.level.uplift_margin(&model.structure, &motion.state, load);
         (margin <= 0.0).then_some(side)
     }
 }

@@ -5,11 +5,13 @@
 //! it is stationary (`extremes`): the largest magnitude is at one of these or at an end. A piece that may hold more than
 //! what has been seen is first kept, since most are soon beaten by the end of another.
 
-use crate::engine::piece::{Equations, KeptPiece, Piece, Watch};
+use crate::engine::piece::{Expansion, Part, Piece, Watch};
+use crate::levels::detail::Model;
+use crate::levels::output_series::crude_bound_of;
 use crate::mechanics::outputs::Measure;
-use crate::series::extremes;
-use crate::series::extremes::Bound;
-use crate::{Motion, Outputs, Structure, Transition};
+use crate::series::extremes::{self, Bound};
+use crate::series::taylor::Arc;
+use crate::{LinearLoad, Motion, Outputs, Phase, State, Structure, Transition};
 use serde::{Deserialize, Serialize};
 
 /// A bound above the largest magnitude by no more than this part of it may be rounding.
@@ -98,7 +100,7 @@ impl Peaks {
         Peaks::since(0.0, structure)
     }
 
-    /// The same from `time` (s) on, which is the instant of what stays 0.
+    /// Of `structure` from `time` (s) on, nothing seen yet: it is the instant of what stays 0.
     pub fn since(time: f64, structure: &Structure) -> Peaks {
         let &crate::Parameters { m, H, B, .. } = structure.parameters();
         let none = Peak { magnitude: 0.0, time };
@@ -167,28 +169,31 @@ impl Peaks {
         self.evaluations
     }
 
-    /// Looks for more of them in the pieces of a motion.
+    /// Looks for more of them in the pieces of a motion; they are known once the watch is dropped.
     pub fn watch(&mut self) -> PeakWatch<'_> {
-        PeakWatch { peaks: self, kept: Vec::new(), is_torn: true }
+        let goes_on = self.largest.iter().any(|peak| peak.magnitude > 0.0);
+        PeakWatch { peaks: self, kept: Vec::new(), model: None, is_torn: true, goes_on }
     }
 
-    /// The same for that of θ alone, and with it of the uplift: the others stay as they are.
+    /// Looks for that of θ alone, and with it of the uplift: the others stay as they are.
     pub fn watch_theta(&mut self) -> ThetaWatch<'_> {
         ThetaWatch { peaks: self }
     }
 
-    /// Looks for those of `measures` at the part of `piece` in hand, where it may hold larger magnitudes; `halvings` are left.
-    fn look(&mut self, measures: &[Measure], piece: &mut Piece, halvings: u32) {
-        let start = piece.before.time + piece.passed();
-        if !self.may_change_within(measures, &piece.crude_bounds(), start) {
+    /// Looks for those of `measures` in `part`, where it may hold larger magnitudes; `halvings` are left.
+    fn look(&mut self, measures: &[Measure], part: &Part, halvings: u32) {
+        let start = part.piece.before.time + part.start.0;
+        if !self.may_change_within(measures, &part.crude_bounds(), start) {
             return;
         }
-        let bounds = piece.bounds();
+        let bounds = part.bounds();
         let mut is_open = false;
         for &measure in measures {
             let bound = &bounds[measure as usize];
             if self.may_change(measure, bound.ends, start) {
-                self.see_ends(measure, piece);
+                for (tau, outputs) in part.ends() {
+                    self.see(measure, part.piece.before.time + tau, &outputs);
+                }
             }
             is_open |= self.is_open(measure, bound, start);
         }
@@ -196,27 +201,21 @@ impl Peaks {
             return;
         }
         if halvings > 0
-            && let Some(halves) = piece.halves()
+            && let Some(halves) = part.halves()
         {
-            for half in halves {
-                piece.part = half;
-                self.look(measures, piece, halvings - 1);
-            }
+            halves.iter().for_each(|half| self.look(measures, half, halvings - 1));
             return;
         }
-        let begin = piece.passed();
-        loop {
-            piece.arc();
+        let mut arcs = part.arcs();
+        while let Some(expansion) = arcs.next() {
             for &measure in measures {
                 if self.is_open(measure, &bounds[measure as usize], start) {
-                    self.search(measure, piece);
+                    self.search(measure, &expansion);
                 }
             }
-            if !piece.skip() {
-                break;
-            }
-            piece.skip_middle(begin);
+            arcs.skip_middle();
         }
+        self.evaluations += arcs.evaluations;
     }
 
     /// Whether magnitudes of `measures` within `bounds` from `time` (s) on may change what has been seen.
@@ -240,24 +239,17 @@ impl Peaks {
         bound.may_turn() && self.may_change(measure, bound.largest(), time)
     }
 
-    /// Looks at both ends of the part in hand.
-    fn see_ends(&mut self, measure: Measure, piece: &Piece) {
-        for (tau, outputs) in piece.ends() {
-            self.see(measure, piece.before.time + tau, &outputs);
-        }
-    }
-
-    /// Looks at the arc wherever `measure` is stationary.
-    fn search(&mut self, measure: Measure, piece: &Piece) {
-        let (start, span) = (piece.before.time + piece.passed(), piece.arc.span);
-        piece.series(measure, &mut |from, arc, series| {
+    /// Looks at a polynomial wherever `measure` is stationary.
+    fn search(&mut self, measure: Measure, expansion: &Expansion) {
+        let (start, span) = (expansion.time(0.0), expansion.arc.span);
+        expansion.series(measure, &mut |from, arc, series| {
             let series = arc.used(series);
             if !self.may_change(measure, extremes::bound_by_cubic(series, arc.reach), start + from * span) {
                 return;
             }
             extremes::stationary_points(series, arc.reach, |sigma| {
                 let sigma = from + sigma * arc.span / span;
-                self.see(measure, start + sigma * span, &piece.outputs(sigma));
+                self.see(measure, start + sigma * span, &expansion.outputs(sigma));
             });
         });
     }
@@ -271,67 +263,91 @@ impl Peaks {
 #[derive(Debug)]
 pub struct PeakWatch<'a> {
     peaks: &'a mut Peaks,
-    /// Pieces that may hold more than what has been seen, and bounds of what they hold.
-    kept: Vec<([f64; 4], KeptPiece)>,
+    /// Pieces that may hold more than what has been seen.
+    kept: Vec<Kept>,
+    /// What moves the structure of these.
+    model: Option<Box<Model>>,
     /// Whether the next piece may begin with other outputs than the last one ended with.
     is_torn: bool,
+    /// Whether the next piece is the first since other peaks: the step of a host is often no more, and not put off.
+    goes_on: bool,
+}
+
+/// A piece that is looked at after others have been shown.
+#[derive(Debug)]
+struct Kept {
+    /// Bounds of what it holds.
+    bounds: [f64; 4],
+    before: Motion,
+    duration: f64,
+    load: LinearLoad,
+    end: State,
+    arc: Option<Arc>,
 }
 
 impl PeakWatch<'_> {
-    /// The peaks so far.
-    pub(super) fn peaks(&self) -> &Peaks {
-        self.peaks
+    /// The peaks.
+    pub(super) fn end(mut self) -> Peaks {
+        self.look_back();
+        *self.peaks
     }
 
     /// Looks at what has been kept, the latest first, which is often the largest.
-    fn look_back(&mut self, equations: &mut Equations) {
-        while let Some((bounds, mut piece)) = self.kept.pop() {
-            if self.peaks.may_change_within(&Measure::ALL, &bounds, piece.before().time) {
-                let mut piece = piece.piece(equations);
-                self.peaks.look(&Measure::ALL, &mut piece, HALVINGS);
-                self.peaks.evaluations += piece.evaluations();
+    fn look_back(&mut self) {
+        let Some(model) = &self.model else { return };
+        while let Some(Kept { bounds, before, duration, load, end, arc }) = self.kept.pop() {
+            if self.peaks.may_change_within(&Measure::ALL, &bounds, before.time) {
+                let piece = Piece { before: &before, duration, load, end, model, arc: arc.as_ref() };
+                self.peaks.look(&Measure::ALL, &piece.whole(), HALVINGS);
             }
         }
+    }
+}
+
+impl Drop for PeakWatch<'_> {
+    fn drop(&mut self) {
+        self.look_back();
     }
 }
 
 impl Watch for PeakWatch<'_> {
     const SEES_PIECES: bool = true;
 
-    fn piece(&mut self, piece: &mut Piece) {
-        for tau in [0.0, piece.duration] {
-            self.peaks.ground.see(piece.load.at(tau).a_g, piece.before.time + tau);
+    fn piece(&mut self, piece: &Piece) {
+        let &Piece { before, duration, load, end, model, arc } = piece;
+        for tau in [0.0, duration] {
+            self.peaks.ground.see(load.at(tau).a_g, before.time + tau);
         }
-        let bounds = piece.crude_bounds();
-        let is_torn = std::mem::take(&mut self.is_torn);
+        let bounds = piece.whole().crude_bounds();
+        let [is_torn, is_first] = [&mut self.is_torn, &mut self.goes_on].map(std::mem::take);
         if !Measure::ALL.iter().any(|measure| self.peaks.may_be_same(*measure, bounds[*measure as usize])) {
             return;
         }
         if is_torn {
-            self.peaks.see_instant(piece.before.time, &piece.first_outputs());
+            self.peaks.see_instant(before.time, &piece.outputs(0.0, &before.state));
         }
-        self.peaks.see_instant(piece.before.time + piece.duration, &piece.last_outputs());
+        self.peaks.see_instant(before.time + duration, &piece.outputs(duration, &end));
         let peaks = &*self.peaks;
         let may_change =
             |bounds: &[f64; 4], motion: &Motion| peaks.may_change_within(&Measure::ALL, bounds, motion.time);
-        if !may_change(&bounds, piece.before) {
+        if !may_change(&bounds, before) {
             return;
         }
-        if self.kept.len() == KEPT {
-            self.kept.retain(|(bounds, piece)| may_change(bounds, piece.before()));
+        if is_first {
+            return self.peaks.look(&Measure::ALL, &piece.whole(), HALVINGS);
         }
         if self.kept.len() == KEPT {
-            self.look_back(&mut piece.equations());
+            self.kept.retain(|kept| may_change(&kept.bounds, &kept.before));
         }
-        self.kept.push((bounds, piece.keep()));
+        if self.kept.len() == KEPT {
+            self.look_back();
+        }
+        self.model.get_or_insert_with(|| Box::new(model.clone()));
+        self.kept.push(Kept { bounds, before: *before, duration, load, end, arc: arc.cloned() });
     }
 
     fn transition(&mut self, _transition: &Transition) {
         self.is_torn = true;
-    }
-
-    fn done(&mut self, equations: &mut Equations) {
-        self.look_back(equations);
     }
 }
 
@@ -345,24 +361,21 @@ impl Watch for ThetaWatch<'_> {
     const SEES_PIECES: bool = true;
 
     #[inline]
-    fn piece(&mut self, piece: &mut Piece) {
-        if !self.peaks.may_be_same(Measure::Theta, piece.crude_bound_of_theta()) {
+    fn piece(&mut self, piece: &Piece) {
+        let (peaks, before) = (&mut *self.peaks, piece.before);
+        if before.phase == Phase::FullContact {
             return;
         }
-        match piece.bound_of_theta() {
-            Some(bound) => {
-                let start = piece.before.time;
-                for (tau, state) in [piece.part.start, piece.part.end] {
-                    self.peaks.largest[Measure::Theta as usize].see(state.theta, start + tau);
-                }
-                if self.peaks.is_open(Measure::Theta, &bound, start) {
-                    self.peaks.search(Measure::Theta, piece);
-                }
-            }
-            None => {
-                self.peaks.look(&[Measure::Theta], piece, HALVINGS);
-                self.peaks.evaluations += piece.evaluations();
-            }
+        let Some(arc) = piece.arc else { return peaks.look(&[Measure::Theta], &piece.whole(), HALVINGS) };
+        if !peaks.may_be_same(Measure::Theta, crude_bound_of(arc, &arc.theta, piece.end.theta)) {
+            return;
+        }
+        for (tau, state) in [(0.0, before.state), (piece.duration, piece.end)] {
+            peaks.largest[Measure::Theta as usize].see(state.theta, before.time + tau);
+        }
+        let [bound] = extremes::bounds(|k| [arc.theta[k]], arc.order, arc.reach);
+        if peaks.is_open(Measure::Theta, &bound, before.time) {
+            peaks.search(Measure::Theta, &Expansion { piece, from: 0.0, arc });
         }
     }
 }

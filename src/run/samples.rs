@@ -27,7 +27,7 @@ impl<Times: Iterator<Item = f64>, Show: FnMut(&Sample)> Samples<Times, Show> {
 impl<Times: Iterator<Item = f64>, Show: FnMut(&Sample)> Watch for Samples<Times, Show> {
     const SEES_PIECES: bool = true;
 
-    fn piece(&mut self, piece: &mut Piece) {
+    fn piece(&mut self, piece: &Piece) {
         let start = piece.before.time;
         self.load = piece.load.at(piece.duration);
         while let Some(time) = self.times.next_if(|time| *time < start + piece.duration) {

@@ -19,13 +19,13 @@
 //! seen so far, until none is positive (Dinkelbach). When, and for how long, a limit is passed is between its roots.
 
 use super::{Finish, Run, RunError};
-use crate::engine::piece::{Piece, Watch};
+use crate::engine::piece::{Expansion, Piece, Watch};
 use crate::levels::level::Rates;
 use crate::mechanics::impact;
 use crate::run::reaction_series::{ReactionSeries, accelerations_at_ends, off_chord};
 use crate::series::bisection::last_where;
 use crate::series::extremes;
-use crate::series::taylor::{Arc, Series, Start, evaluate};
+use crate::series::taylor::{Series, evaluate};
 use crate::{Detail, Impulse, Parameters, Phase, Reactions, Side, Structure, Transition, TransitionKind};
 use serde::{Deserialize, Serialize};
 
@@ -295,8 +295,8 @@ impl Validity {
         !is_closed
     }
 
-    /// The same of a leap in full contact: what changes no faster than its second derivative leaves its chord by no more
-    /// than that over 8/h².
+    /// Whether a leap in full contact may hold such: what changes no faster than its second derivative leaves its chord by no
+    /// more than that over 8/h².
     fn leap_may_matter(&self, piece: &Piece) -> bool {
         let &Parameters { m, m0, H, g, .. } = self.structure.parameters();
         let &Structure { k, c_fc, .. } = &self.structure;
@@ -304,48 +304,43 @@ impl Validity {
             let strut = c_fc * state.u_dot + k * state.u;
             Reactions { R_h: strut - m0 * piece.load.at(tau).a_g, R_v: self.weight(), R_m: H * strut + m * g * state.u }
         });
-        let start = Start {
-            state: piece.before.state,
-            a_g: piece.load.on_foundation(),
-            a_top: piece.load.on_top(&self.structure),
-            interval: piece.duration,
-            local_error: piece.local_error,
-        };
-        let Rates { u_ddot, u_dddot, .. } = piece.level.rates(piece.before.phase, &start, &piece.end);
+        let start = piece.model.start(piece.before.state, piece.load, piece.duration);
+        let Rates { u_ddot, u_dddot, .. } = piece.model.level.rates(piece.before.phase, &start, &piece.end);
         let per_bend = piece.duration * piece.duration / 8.0;
         let strut = per_bend * (c_fc * u_dddot + k * u_ddot);
         self.may_matter(piece.before.phase, &ends, [strut, 0.0, H * strut + per_bend * m * g * u_ddot])
     }
 
-    /// The same of the arc in hand.
-    fn arc_may_matter(&self, piece: &Piece) -> bool {
+    /// Whether the motion over a polynomial may hold something worse than what has been seen, or go beyond a limit.
+    fn arc_may_matter(&self, &Expansion { piece, from, arc }: &Expansion) -> bool {
         let phase = piece.before.phase;
-        let arc = &*piece.arc;
         let [first, last] = accelerations_at_ends(arc);
         let ends = [(0.0, first), (arc.reach, last)].map(|(sigma, accelerations)| {
-            let load = piece.load.at(piece.passed() + sigma * arc.span);
+            let load = piece.load.at(from + sigma * arc.span);
             Reactions::of(&self.structure, phase, &arc.at(sigma), accelerations, load)
         });
         self.may_matter(phase, &ends, off_chord(&self.structure, phase, arc))
     }
 
-    /// Looks at the motion over `arc`, which starts `from` seconds into `piece`; `halvings` are left.
-    fn look(&mut self, piece: &Piece, arc: &Arc, from: f64, halvings: u32) {
-        let stretch = Stretch::new(piece, arc, from);
+    /// Looks at the motion over a polynomial; `halvings` are left.
+    fn look(&mut self, expansion: Expansion, halvings: u32) {
+        let stretch = Stretch::new(expansion);
+        let Expansion { piece, from, arc } = expansion;
         if halvings > 0 && !stretch.has_converged() {
             let middle = 0.5 * arc.reach;
             for [start, end] in [[0.0, middle], [middle, arc.reach]] {
-                self.look(piece, &arc.between(start, end), from + start * arc.span, halvings - 1);
+                let half = &arc.between(start, end);
+                self.look(Expansion { piece, from: from + start * arc.span, arc: half }, halvings - 1);
             }
             return;
         }
         let phase = piece.before.phase;
         // no friction is enough from where R_v is 0, which may be sooner than either end
         if let Some((start, _)) = stretch.above(&[[0.0, -1.0, 0.0, 0.0]]).first() {
-            self.found.see(FRICTION, f64::INFINITY, stretch.time(*start));
+            self.found.see(FRICTION, f64::INFINITY, stretch.of.time(*start));
         }
         for sigma in [0.0, arc.reach] {
-            self.see_instant(stretch.time(sigma), phase, &stretch.reactions(sigma));
+            self.see_instant(stretch.of.time(sigma), phase, &stretch.reactions(sigma));
         }
         for which in [TENSION, EDGE_LOAD, FRICTION] {
             if which == TENSION && phase != Phase::FullContact {
@@ -354,7 +349,7 @@ impl Validity {
             self.search(which, &stretch);
             let beyond = self.worse(which, (ASSUMPTIONS[which].limit)(&self.limits));
             for (start, end) in stretch.above(&beyond) {
-                self.found.see_beyond(which, stretch.time(start), (end - start) * arc.span);
+                self.found.see_beyond(which, stretch.of.time(start), (end - start) * arc.span);
             }
         }
     }
@@ -369,11 +364,11 @@ impl Validity {
             let combinations = self.worse(which, worst);
             for combination in &combinations {
                 let series = stretch.combination(combination);
-                let used = stretch.arc.used(&series);
-                if highest(used, stretch.arc.reach) > ROUNDING * self.weight() {
-                    extremes::stationary_points(used, stretch.arc.reach, |sigma| {
+                let used = stretch.of.arc.used(&series);
+                if highest(used, stretch.of.arc.reach) > ROUNDING * self.weight() {
+                    extremes::stationary_points(used, stretch.of.arc.reach, |sigma| {
                         let value = self.value(which, &stretch.reactions(sigma));
-                        self.found.see(which, value, stretch.time(sigma));
+                        self.found.see(which, value, stretch.of.time(sigma));
                     });
                 }
             }
@@ -408,27 +403,25 @@ impl Validity {
 impl Watch for Validity {
     const SEES_PIECES: bool = true;
 
-    fn piece(&mut self, piece: &mut Piece) {
+    fn piece(&mut self, piece: &Piece) {
         self.found.duration += piece.duration;
         self.found.held += piece.before.chatter.held.min(piece.duration);
-        let is_leap = piece.is_leap() && piece.before.phase == Phase::FullContact;
+        let is_leap = piece.arc.is_none() && piece.before.phase == Phase::FullContact;
         if is_leap && !self.leap_may_matter(piece) {
             return;
         }
-        let (asked_before, begin) = (piece.evaluations(), piece.passed());
-        for arcs in 1.. {
-            piece.arc();
-            if self.arc_may_matter(piece) {
-                self.look(piece, piece.arc, piece.passed(), FINEST_PART);
+        let mut arcs = piece.arcs();
+        let mut count = 0;
+        while let Some(expansion) = arcs.next() {
+            if self.arc_may_matter(&expansion) {
+                self.look(expansion, FINEST_PART);
             }
-            if !piece.skip() {
-                break;
-            }
-            if arcs >= MOST_ARCS {
-                piece.skip_middle(begin);
+            count += 1;
+            if count >= MOST_ARCS {
+                arcs.skip_middle();
             }
         }
-        self.found.evaluations += piece.evaluations() - asked_before;
+        self.found.evaluations += arcs.evaluations;
     }
 
     fn transition(&mut self, transition: &Transition) {
@@ -457,50 +450,43 @@ impl Watch for Validity {
     }
 }
 
-/// A motion over an arc with its reactions.
-struct Stretch<'a, 'p> {
-    piece: &'a Piece<'p>,
-    arc: &'a Arc,
-    /// Where the arc starts, s after the start of the piece.
-    from: f64,
+/// A polynomial of a motion with its reactions.
+struct Stretch<'a> {
+    of: Expansion<'a>,
     series: ReactionSeries,
 }
 
-impl<'a, 'p> Stretch<'a, 'p> {
-    fn new(piece: &'a Piece<'p>, arc: &'a Arc, from: f64) -> Stretch<'a, 'p> {
-        let series = ReactionSeries::of(piece.structure, piece.before.phase, piece.load.from(from), arc);
-        Stretch { piece, arc, from, series }
-    }
-
-    /// The instant of `sigma`, s.
-    fn time(&self, sigma: f64) -> f64 {
-        self.piece.before.time + self.from + sigma * self.arc.span
+impl<'a> Stretch<'a> {
+    fn new(of: Expansion<'a>) -> Stretch<'a> {
+        let Expansion { piece, from, arc } = of;
+        let series = ReactionSeries::of(&piece.model.structure, piece.before.phase, piece.load.from(from), arc);
+        Stretch { of, series }
     }
 
     /// The reactions at `sigma`, from the state there.
     fn reactions(&self, sigma: f64) -> Reactions {
-        let &Piece { structure, before, ref level, load, .. } = self.piece;
-        let (state, load) = (self.arc.at(sigma), load.at(self.from + sigma * self.arc.span));
-        let accelerations = level.accelerations(structure, before.phase, &state, load);
-        Reactions::of(structure, before.phase, &state, accelerations, load)
+        let Expansion { piece: &Piece { model, before, load, .. }, from, arc } = self.of;
+        let (state, load) = (arc.at(sigma), load.at(from + sigma * arc.span));
+        let accelerations = model.level.accelerations(&model.structure, before.phase, &state, load);
+        Reactions::of(&model.structure, before.phase, &state, accelerations, load)
     }
 
     /// Whether the series of R_h and R_v end where the state does.
     fn has_converged(&self) -> bool {
-        let Reactions { R_h, R_v, .. } = self.reactions(self.arc.reach);
+        let Reactions { R_h, R_v, .. } = self.reactions(self.of.arc.reach);
         [(&self.series.R_h, R_h), (&self.series.R_v, R_v)].into_iter().all(|(series, expected)| {
-            let used = self.arc.used(series);
-            let terms = used.iter().rev().fold(0.0, |sum, c| sum * self.arc.reach + c.abs());
-            let off = evaluate(used, self.arc.reach) - expected;
+            let used = self.of.arc.used(series);
+            let terms = used.iter().rev().fold(0.0, |sum, c| sum * self.of.arc.reach + c.abs());
+            let off = evaluate(used, self.of.arc.reach) - expected;
             // what is no number is not so for want of terms
-            off.is_nan() || off.abs() <= CONVERGED.max(1e3 * self.piece.local_error) * terms
+            off.is_nan() || off.abs() <= CONVERGED.max(1e3 * self.of.piece.model.local_error) * terms
         })
     }
 
     /// h R_h + v R_v + m R_m + n for [h, v, m, n].
     fn combination(&self, [h, v, m, n]: &[f64; 4]) -> Series {
         let ReactionSeries { R_h, R_v, R_m } = &self.series;
-        let mut series = self.arc.series(|k| h * R_h[k] + v * R_v[k] + m * R_m[k]);
+        let mut series = self.of.arc.series(|k| h * R_h[k] + v * R_v[k] + m * R_m[k]);
         series[0] += n;
         series
     }
@@ -510,9 +496,9 @@ impl<'a, 'p> Stretch<'a, 'p> {
         let mut found: Vec<(f64, f64)> = Vec::new();
         for combination in combinations {
             let series = self.combination(combination);
-            let used = self.arc.used(&series);
-            if highest(used, self.arc.reach) > 0.0 {
-                positive(used, self.arc.reach, &mut found);
+            let used = self.of.arc.used(&series);
+            if highest(used, self.of.arc.reach) > 0.0 {
+                positive(used, self.of.arc.reach, &mut found);
             }
         }
         found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));

@@ -28,7 +28,7 @@ pub struct Bound {
 }
 
 impl Bound {
-    /// The same where something else, of which `most` and its rate `most_rate` are bounds, is added.
+    /// The bound where something else, of which `most` and its rate `most_rate` are bounds, is added.
     pub fn and(self, most: f64, most_rate: f64) -> Bound {
         let rate = [self.rate[0] - most_rate, self.rate[1] + most_rate];
         Bound { ends: self.ends + most, between: self.between, rate }

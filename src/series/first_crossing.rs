@@ -143,7 +143,7 @@ pub fn first_time_closed_from(guard: Guard, sigma: f64, reach: f64) -> Crossing 
     }
 }
 
-/// The same from `sigma` on, over as much of the way as can be cleared.
+/// The first σ in [`sigma`, `reach`] at which all `guards` are closed at once, over as much of the way as can be cleared.
 fn march_over_parts<const N: usize>(guards: &[Guard; N], mut sigma: f64, reach: f64) -> Crossing {
     let mut end = reach;
     loop {
@@ -155,7 +155,7 @@ fn march_over_parts<const N: usize>(guards: &[Guard; N], mut sigma: f64, reach: 
     }
 }
 
-/// The same from `sigma` on, up to where the guards are known not to close at once.
+/// The first such σ from `sigma` on, up to where the guards are known not to close at once.
 fn march<const N: usize>(guards: &[Guard; N], mut sigma: f64, reach: f64) -> Crossing {
     if sigma > reach {
         return Crossing::None;

@@ -112,7 +112,7 @@ impl Arc {
         (self.u_dot[last] + self.theta_dot[last] + self.reach).is_finite()
     }
 
-    /// The same motion from σ = `from` to σ = `to` alone.
+    /// The motion from σ = `from` to σ = `to` alone.
     pub(crate) fn between(&self, from: f64, to: f64) -> Arc {
         let (mut part, scale) = (self.clone(), to - from);
         for series in [&mut part.u, &mut part.u_dot, &mut part.theta, &mut part.theta_dot] {
