@@ -7,7 +7,7 @@ use crate::{
     structure_args::{Preset, left_open},
     talk::say_few,
 };
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, anyhow, bail, ensure};
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::record::Record;
 use rocking::structure::natural_quantities::Given;
@@ -336,7 +336,7 @@ fn motions(
     folder: &Path,
     mut read: impl FnMut(&Path, &RecordOptions) -> anyhow::Result<Record>,
 ) -> anyhow::Result<Vec<NamedRecord>> {
-    let (mut motions, mut named) = (Vec::new(), HashMap::new());
+    let (mut motions, mut named, mut bad) = (Vec::new(), HashMap::new(), Vec::<anyhow::Error>::new());
     for source in sources {
         let (pattern, options) = source.pattern_and_options()?;
         let scale = options.scale.unwrap_or(1.0);
@@ -348,7 +348,9 @@ fn motions(
         let in_folder = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
         let paths = glob::glob(&in_folder.to_string_lossy()).with_context(|| format!("records {pattern:?}"))?;
         let mut paths = paths.peekable();
-        ensure!(paths.peek().is_some(), "records: there is no file {}", folder.join(pattern).display());
+        if paths.peek().is_none() {
+            bad.push(anyhow!("records: there is no file {}", folder.join(pattern).display()));
+        }
         for path in paths {
             let path = path?;
             if let Some(other) = named.insert((path.canonicalize()?, column.clone()), options.clone()) {
@@ -361,8 +363,18 @@ fn motions(
             }
             // The same on every system, so that a sweep can go on on another.
             let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace(MAIN_SEPARATOR, "/");
-            motions.push(NamedRecord::new(name + &column, read(&path, &options)?, scale)?);
+            match read(&path, &options).and_then(|record| Ok(NamedRecord::new(name + &column, record, scale)?)) {
+                Ok(motion) => motions.push(motion),
+                Err(error) => bad.push(error),
+            }
         }
     }
-    Ok(motions)
+    match bad.len() {
+        0 => Ok(motions),
+        1 => Err(bad.remove(0)),
+        count => {
+            let each: String = bad.iter().map(|error| format!("\n  {error:#}")).collect();
+            bail!("{count} of {} records cannot be taken:{each}", count + motions.len());
+        }
+    }
 }
