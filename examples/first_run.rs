@@ -1,7 +1,6 @@
 //! A record is read and run, the levels of detail are compared on it, and piers of four stiffnesses are swept.
 
 use rocking::estimates::intensity::IntensityMeasure::Pga;
-use rocking::run::record::Record;
 use rocking::run::{levels, peaks::PEAKS};
 use rocking::{Parameters, Run, Structure};
 use rocking_records::Reading;

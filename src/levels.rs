@@ -12,3 +12,4 @@ pub(crate) mod oscillator;
 pub(crate) mod output_series;
 mod rigid;
 pub mod rules;
+mod shown;

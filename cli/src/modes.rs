@@ -24,21 +24,10 @@ pub struct ModesArgs {
     picture: Option<PictureFile>,
 }
 
-/// The columns of a response that the split needs: numbers, the last of which follow from the state and the structure, and
-/// the phase.
-const NUMBERS: [&str; 10] = [
-    "time[s]",
-    "a_g[m/s2]",
-    "theta[rad]",
-    "u[m]",
-    "theta_dot[rad/s]",
-    "u_dot[m/s]",
-    "uplift[m]",
-    "delta_t[m]",
-    "M_t[N.m]",
-    "R_v[N]",
-];
-const SHOWN: [&str; 4] = [NUMBERS[6], NUMBERS[7], NUMBERS[8], NUMBERS[9]];
+/// The columns of a response that the split needs: numbers and the phase.
+const NUMBERS: [&str; 6] = ["time[s]", "a_g[m/s2]", "theta[rad]", "u[m]", "theta_dot[rad/s]", "u_dot[m/s]"];
+/// Columns that follow from the state and the structure: where they are there, they tell whose response it is.
+const SHOWN: [&str; 4] = ["uplift[m]", "delta_t[m]", "M_t[N.m]", "R_v[N]"];
 const PHASE: &str = "phase";
 
 /// Phases that a response has.
@@ -52,6 +41,7 @@ const PHASES: [Phase; 4] = [
 /// Where the columns are.
 struct Columns {
     numbers: [usize; NUMBERS.len()],
+    shown: [Option<usize>; SHOWN.len()],
     phase: usize,
 }
 
@@ -75,8 +65,8 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let mut before = f64::NEG_INFINITY;
     for line in response.records() {
         let line = line.with_context(named)?;
-        let ([time, a_g, theta, u, theta_dot, u_dot, shown @ ..], phase) =
-            columns.read(&line, before).with_context(named)?;
+        let ([time, a_g, theta, u, theta_dot, u_dot], phase) = columns.read(&line, before).with_context(named)?;
+        let shown = columns.shown(&line);
         before = time;
         instants += 1;
         let Phase::Rocking(side) = phase else {
@@ -114,15 +104,20 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
 impl Columns {
     /// Refuses what is no response.
     fn find(headings: &StringRecord) -> anyhow::Result<Columns> {
+        let position = |name: &str| headings.iter().position(|heading| heading == name);
         let find = |name: &str| {
-            let found = headings.iter().position(|heading| heading == name);
-            found.with_context(|| format!("it has no column {name}, as a response of `simulate` has"))
+            position(name).with_context(|| format!("it has no column {name}, as a response of `simulate` has"))
         };
         let mut numbers = [0; NUMBERS.len()];
         for (column, name) in numbers.iter_mut().zip(NUMBERS) {
             *column = find(name)?;
         }
-        Ok(Columns { numbers, phase: find(PHASE)? })
+        Ok(Columns { numbers, shown: SHOWN.map(position), phase: find(PHASE)? })
+    }
+
+    /// What a line has of [`SHOWN`]; not a number where it has none.
+    fn shown(&self, line: &StringRecord) -> [f64; SHOWN.len()] {
+        self.shown.map(|column| column.and_then(|column| line[column].parse().ok()).unwrap_or(f64::NAN))
     }
 
     /// The numbers and the phase of a line that comes after the time `before` (s).
