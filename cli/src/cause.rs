@@ -79,12 +79,12 @@ impl Cause {
         Cause { version: version(), structure: None, ground: Some(ground), run: None }
     }
 
-    /// The same under the `record` that `args` ask for.
+    /// This cause under the `record` that `args` ask for.
     pub fn under(self, args: &RecordArgs, record: &Record) -> Cause {
         Cause { ground: Some(Ground::new(args.record.as_deref(), &args.options, record)), ..self }
     }
 
-    /// The same of a run from `initial`, at one level of detail or at all.
+    /// This cause of a run from `initial`, at one level of detail or at all.
     pub fn computed(self, level: Option<(Detail, f64)>, initial: State) -> Cause {
         let level = level.map(|(detail, tolerance)| Level { detail: detail.name(), tolerance });
         Cause { run: Some(OfRun { level, initial }), ..self }

@@ -43,7 +43,7 @@ pub fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// The same as text.
+/// The text of the file at `path`, or of standard input.
 pub fn text(path: &Path) -> anyhow::Result<String> {
     String::from_utf8(read(path)?).context("it is no text in UTF-8")
 }

@@ -44,7 +44,7 @@ struct OfPulse {
     /// Amplitude a_p of the ground acceleration
     #[arg(long, value_name = "G", value_parser = positive, allow_negative_numbers = true)]
     amplitude: Option<f64>,
-    /// The same in units of g tan(alpha_cg) of the structure
+    /// Amplitude in units of g tan(alpha_cg) of the structure
     #[arg(long, value_name = "RATIO", value_parser = positive, allow_negative_numbers = true)]
     amplitude_ratio: Option<f64>,
     /// Frequency

@@ -55,7 +55,7 @@ impl RecordArgs {
 pub struct Understood {
     /// Scaled, in m/s².
     pub record: Record,
-    /// The same in the unit of its file.
+    /// The record in the unit of its file.
     in_file: Record,
     source: Source,
     /// What it was called, and what was found and assumed, in a line.
@@ -76,7 +76,7 @@ impl RecordOptions {
         Ok(record)
     }
 
-    /// The same before anything is said.
+    /// Reads the record at `path` and says nothing yet; `g` in m/s².
     pub fn understand(&self, path: &Path, g: f64) -> anyhow::Result<Understood> {
         let &RecordOptions { unit, dt, ref column, ignore_npts: ignores_count, .. } = self;
         let [time_scale, scale] = self.factors();

@@ -68,7 +68,7 @@ pub fn print_rows(format: Format, rows: &[impl Serialize]) -> anyhow::Result<()>
     print(&String::from_utf8(csv(rows)?)?)
 }
 
-/// The same with the `cause` of the rows: around them in JSON, behind each of them in CSV.
+/// Prints `rows` with their `cause`: around them in JSON, behind each of them in CSV.
 pub fn print_traced(format: Format, cause: &Cause, rows: &[impl Serialize]) -> anyhow::Result<()> {
     if format == Format::Json {
         return print_json(&Traced { cause, rows });

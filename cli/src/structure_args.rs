@@ -1,5 +1,5 @@
 //! Which structure a command works on: one of the paper's specimens, or parameters from a file, with single numbers in
-//! the place of theirs, or numbers that are all of it. What nobody has given is said.
+//! the place of theirs, or numbers that are all of it. What is assumed is said.
 use crate::{input, significant::in_full, talk::say};
 use anyhow::{Context, anyhow};
 use clap::{Arg, ArgMatches, Command, FromArgMatches, ValueEnum, parser::ValueSource, value_parser};

@@ -135,7 +135,7 @@ impl Summary {
         })
     }
 
-    /// The same in lines for people.
+    /// The summary in lines for people.
     pub fn text(&self, found: &Found) -> Result<String, fmt::Error> {
         let &Found { ground, ref peaks, fall, finish: Finish { ending, motion }, .. } = found;
         let mut out = String::new();

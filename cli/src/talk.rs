@@ -5,7 +5,7 @@ use std::io::{IsTerminal, Write, stderr};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError};
 
-/// Says a line on standard error, unless the user wants quiet; that nobody listens is no failure.
+/// Says a line on standard error, unless the user wants quiet. A closed standard error is no failure.
 macro_rules! say {
     ($($text:tt)*) => {
         if !$crate::talk::is_quiet() {
@@ -41,7 +41,7 @@ pub fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
 }
 
-/// A bar that shows how many of `length` steps are done; none where nobody would see it.
+/// A bar that shows how many of `length` steps are done; none where standard error is no terminal.
 pub fn progress(length: usize) -> ProgressBar {
     if is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(length as u64) }
 }

@@ -49,7 +49,7 @@ pub enum Causality {
     Output,
     /// The model, for whoever looks at it.
     Local,
-    /// Nobody: what all others depend on.
+    /// Time, on which all others depend.
     Independent,
 }
 

@@ -122,12 +122,12 @@ pub fn read(path: &Path, how: &Reading, g: f64) -> Result<(Record, Source), Reco
     Ok(in_m_s2(record, source, g))
 }
 
-/// The same with its accelerations as the file gives them; their unit is the source's.
+/// Reads the record in the file at `path` with its accelerations as the file gives them; their unit is the source's.
 pub fn read_raw(path: &Path, how: &Reading) -> Result<(Record, Source), RecordError> {
     from_bytes(path, &read_file(path)?, how)
 }
 
-/// The same of `bytes`, which are the content of the file at `path`.
+/// The record in `bytes`, the content of the file at `path`, with its accelerations as the file gives them.
 pub fn from_bytes(path: &Path, bytes: &[u8], how: &Reading) -> Result<(Record, Source), RecordError> {
     let malformed =
         |BadLine { line, problem, remedy }| RecordError::Malformed { path: path.into(), line, problem, remedy };

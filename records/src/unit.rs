@@ -234,7 +234,7 @@ impl Stated {
         }
     }
 
-    /// The same of a line of text before accelerations that have no columns.
+    /// What a line of text says of the unit, before accelerations that have no columns.
     pub(super) fn of_line(line: &str) -> Stated {
         match Stated::of(line.trim_start_matches([' ', '\t', '#', '%', '!', '/'])) {
             Stated::Other(other) if !is_like_a_unit(&other) => Stated::Nothing,

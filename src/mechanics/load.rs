@@ -132,7 +132,7 @@ impl LinearLoad {
         LinearLoad { value: self.at(tau), ..self }
     }
 
-    /// The same on ground that has the acceleration `a_g` beside its own.
+    /// This load on ground that accelerates by `a_g` more.
     pub fn on_ground(self, a_g: Ramp) -> LinearLoad {
         LinearLoad {
             value: Load { a_g: self.value.a_g + a_g.value, ..self.value },

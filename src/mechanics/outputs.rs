@@ -97,7 +97,7 @@ impl Outputs {
         }
     }
 
-    /// The same with another a_t (m/s²), or its rate, and the forces that follow from it.
+    /// These outputs with another a_t (m/s²), or its rate, and with the forces that follow from it.
     pub(crate) fn with_a_t(self, structure: &Structure, a_t: f64) -> Outputs {
         let &crate::Parameters { m, H, .. } = structure.parameters();
         Outputs { a_t, V_t: m * a_t, M_t: m * H * a_t, ..self }

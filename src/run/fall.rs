@@ -99,7 +99,7 @@ impl Run<'_> {
         Ok(self.found_and_all(watch)?.0)
     }
 
-    /// The same beside the peaks of all of it, a fall too.
+    /// What the run came to, and the peaks of all of its motion, a fall included.
     pub(super) fn found_and_all(&self, watch: &mut impl Watch) -> Result<(Found, Peaks), RunError> {
         let start = self.ground.start();
         let (mut all, mut fall) = (Peaks::since(start, &self.structure), Fall::new(&self.structure));

@@ -57,7 +57,7 @@ impl Record {
         Record { title: "free vibration".into(), times: vec![0.0, duration], acceleration: vec![0.0, 0.0] }
     }
 
-    /// The same ground motion with every time multiplied by `time_scale`, greater than 0, and every acceleration by
+    /// This ground motion with every time multiplied by `time_scale`, greater than 0, and every acceleration by
     /// `scale`; an error where that leaves no motion whose accelerations and slopes are finite.
     pub fn scaled(mut self, time_scale: f64, scale: f64) -> Result<Record, SamplesError> {
         self.times.iter_mut().for_each(|time| *time *= time_scale);
@@ -70,13 +70,13 @@ impl Record {
         }
     }
 
-    /// The same with every acceleration multiplied by a finite `scale`.
+    /// This ground motion with every acceleration multiplied by a finite `scale`.
     pub fn multiplied(mut self, scale: f64) -> Record {
         self.acceleration.iter_mut().for_each(|acceleration| *acceleration *= scale);
         self
     }
 
-    /// The same under another title.
+    /// This ground motion under another title.
     pub fn titled(self, title: impl Into<String>) -> Record {
         Record { title: title.into(), ..self }
     }

@@ -211,7 +211,7 @@ impl Map {
         Ok(map)
     }
 
-    /// The same to the relative `tolerance`, at the level `detail`, with each point's condition, by a second run, if it
+    /// This map to the relative `tolerance`, at the level `detail`, with each point's condition, by a second run, if it
     /// `finds_condition`.
     pub fn computed_by(self, detail: Detail, tolerance: f64, finds_condition: bool) -> Result<Map, Refused> {
         ensure(tolerance > 0.0 && tolerance < 1.0, || {

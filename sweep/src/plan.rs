@@ -239,7 +239,7 @@ impl Plan {
         Ok(plan)
     }
 
-    /// The same runs under other `conditions`.
+    /// These runs under other `conditions`.
     pub fn under(self, conditions: Conditions) -> Result<Plan, Refused> {
         conditions.check(&self.case(0).structure)?;
         Ok(Plan { conditions, ..self })

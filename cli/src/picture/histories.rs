@@ -14,7 +14,7 @@ const LANE: u32 = 17;
 /// Height of the numbers and the name of the axis of time, pixels.
 const BELOW: u32 = 46;
 
-/// The same of a panel that leaves them to the one below.
+/// Height of the axis of a panel that leaves its numbers to the one below.
 const NO_NUMBERS: f64 = 6.0;
 
 /// Parts of a pixel within which a line is drawn by its first, least, largest and last point.
@@ -87,7 +87,7 @@ impl Panel {
         }
     }
 
-    /// The same with `more` beside its peak.
+    /// This panel with `more` beside its peak.
     pub fn with(mut self, more: String) -> Panel {
         if let Some((_, _, words)) = &mut self.peak {
             *words += &format!(", {more}");

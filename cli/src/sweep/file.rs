@@ -295,7 +295,7 @@ impl Values {
         }
     }
 
-    /// The same as an axis of a map, in `unit`.
+    /// The values as an axis of a map, in `unit`.
     fn axis(&self, unit: f64) -> anyhow::Result<Axis> {
         let is_log = matches!(self, Values::Even { log: true, .. });
         let values: Vec<_> = self.list()?.into_iter().map(|value| value * unit).collect();

@@ -126,7 +126,7 @@ fn count(spectrum: &Spectrum) -> Vec<Count<'_>> {
     CLASSES.into_iter().filter_map(of).collect()
 }
 
-/// The same for people, with what the maps are of.
+/// The counts for people, with what the maps are of.
 fn text(spectra: &[Spectrum], counts: &[Count]) -> anyhow::Result<String> {
     let mut out = String::new();
     for Spectrum { name, map, points } in spectra {

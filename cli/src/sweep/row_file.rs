@@ -28,7 +28,7 @@ pub struct RowFile {
     file: Mutex<(File, u64)>,
 }
 
-/// What the rows say that were there, each a `T`, and that nobody has asked for yet.
+/// What the rows say that were there, each a `T`, that have not been taken yet.
 pub struct Known<T> {
     by_key: HashMap<Uuid, T>,
     repeated: usize,

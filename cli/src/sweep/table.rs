@@ -101,7 +101,7 @@ pub struct Fitted {
     reason: Option<String>,
 }
 
-/// The same with what it is fitted to.
+/// A fragility curve with the bins that it is fitted to.
 #[derive(Serialize)]
 pub struct WithBins {
     /// The curve.
