@@ -27,7 +27,7 @@ pub struct Natural {
     pub max: f64,
     /// The parameter that it stands for.
     pub stands_for: &'static str,
-    /// The parameter that it stands for, in words.
+    /// What messages say that it stands for.
     pub in_place_of: &'static str,
 }
 
