@@ -5,6 +5,7 @@ use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::record::Record;
 use rocking::structure::parameters::PARAMETERS;
 use rocking::{Detail, Parameters, State, Structure};
+use rocking_records::Column;
 use serde::Serialize;
 use std::path::Path;
 
@@ -37,9 +38,15 @@ struct Ground {
     record: String,
     /// Its name, as far as it is text.
     file: Option<String>,
-    /// Unit of the accelerations in the file, where they are looked at alone.
+    /// Unit of the accelerations in the file, where it is asked for or they are looked at alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     record_unit: Option<String>,
+    /// Column of the file, where it is asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    record_column: Option<String>,
+    /// Time between two samples, where it is asked for, s.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    record_dt: Option<f64>,
     time_scale: f64,
     scale: f64,
 }
@@ -62,7 +69,13 @@ impl Ground {
     fn new(path: Option<&Path>, options: &RecordOptions, record: &Record) -> Ground {
         let [time_scale, scale] = options.factors();
         let file = path.map(|path| path.display().to_string());
-        Ground { record: record.title().into(), file, record_unit: None, time_scale, scale }
+        let record_unit = options.unit.map(|unit| unit.to_string());
+        let record_column = options.column.as_ref().map(|column| match column {
+            Column::Heading(heading) => heading.clone(),
+            Column::All | Column::Number(_) => column.to_string(),
+        });
+        let (record, record_dt) = (record.title().into(), options.dt);
+        Ground { record, file, record_unit, record_column, record_dt, time_scale, scale }
     }
 }
 
@@ -97,10 +110,11 @@ impl Cause {
         if let Some(structure) = &self.structure {
             columns.extend(PARAMETERS.iter().map(|of| number(of.name, of.unit, (of.get)(structure))));
         }
-        if let Some(Ground { record, file, record_unit, time_scale, scale }) = &self.ground {
-            let file = file.clone().unwrap_or_default();
-            columns.extend([("record".to_owned(), record.clone()), ("file".to_owned(), file)]);
-            columns.extend(record_unit.iter().map(|unit| ("record_unit".to_owned(), unit.clone())));
+        if let Some(Ground { record, file, record_unit, record_column, record_dt, time_scale, scale }) = &self.ground {
+            let text = |name: &str, of: &Option<String>| (name.to_owned(), of.clone().unwrap_or_default());
+            columns.extend([("record".to_owned(), record.clone()), text("file", file)]);
+            columns.extend([text("record_unit", record_unit), text("record_column", record_column)]);
+            columns.push(text("record_dt[s]", &record_dt.map(|dt| format!("{dt:?}"))));
             columns.extend([number("time_scale", "1", *time_scale), number("scale", "1", *scale)]);
         }
         if let Some(OfRun { level, initial }) = &self.run {

@@ -1,7 +1,9 @@
 //! `modes`: a response split into rocking and vibration mode (Eqs 12, 16, 19).
 mod picture;
 
-use crate::{output_files::OutputFiles, picture::PictureFile, structure_args::StructureArgs, tables::Table, talk::say};
+use crate::{
+    input, output_files::OutputFiles, picture::PictureFile, structure_args::StructureArgs, tables::Table, talk::say,
+};
 use anyhow::{Context, ensure};
 use csv::{Position, StringRecord};
 use rocking::estimates::modal_split::{ModalAccelerations, Modes};
@@ -50,8 +52,9 @@ const HEADINGS: [&str; 6] = ["time[s]", "q_r[rad]", "q_u[rad]", "a_r[m/s2]", "a_
 /// Writes the modes at the instants of the response at which the structure rocks.
 pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
-    let named = || args.response.display().to_string();
-    let mut response = csv::Reader::from_path(&args.response).with_context(named)?;
+    let named = || input::name(&args.response);
+    let response = input::read(&args.response).with_context(named)?;
+    let mut response = csv::Reader::from_reader(response.as_slice());
     let inputs = args.structure.input().into_iter().chain([args.response.as_path()]);
     let mut files = OutputFiles::of_inputs(inputs);
     let headings = response.headers().with_context(named)?.clone();

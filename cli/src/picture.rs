@@ -306,8 +306,11 @@ pub fn mass(kilograms: f64) -> String {
 
 /// A number in a picture: three digits.
 pub fn rounded(value: f64) -> String {
-    let decimals = if value == 0.0 { 0.0 } else { (2.0 - value.abs().log10().floor()).clamp(0.0, 6.0) };
-    format!("{value:.*}", decimals as usize).replace('-', "−")
+    let decimals = if value == 0.0 { 0.0 } else { 2.0 - value.abs().log10().floor() };
+    let is_long = !(-6.0..=9.0).contains(&decimals);
+    let number =
+        if is_long { format!("{value:.2e}") } else { format!("{value:.*}", decimals.clamp(0.0, 6.0) as usize) };
+    number.replace('-', "−")
 }
 
 /// The least and the largest of `values` with room beyond them: about 0 where there are both signs, from 0 on where there

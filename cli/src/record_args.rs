@@ -130,7 +130,7 @@ impl Understood {
 fn described(path: &Path, record: &Record, source: &Source, g: f64) -> String {
     let unit_from = match source.unit_from {
         UnitFrom::File => "as the file states",
-        UnitFrom::User => "as --unit says",
+        UnitFrom::User => "as asked for",
         UnitFrom::Assumed => "assumed, for the file does not state it",
     };
     let remarks: String = source.remarks.iter().map(|remark| format!(", {remark}")).collect();

@@ -38,7 +38,7 @@ pub struct SimulateArgs {
 #[derive(clap::Args)]
 #[command(next_help_heading = "Results")]
 struct ResultArgs {
-    /// Interval of the response [default: the record's samples; 0.001 in free vibration]
+    /// Interval of the response that -o writes [default: the record's samples; 0.001 in free vibration]
     #[arg(long, value_name = "SECONDS", value_parser = positive, requires = "output", allow_negative_numbers = true)]
     interval: Option<f64>,
     /// Response as CSV, `-` for standard output

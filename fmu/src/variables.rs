@@ -260,8 +260,8 @@ pub static VARIABLES: LazyLock<[Variable; COUNT]> = LazyLock::new(|| {
 });
 
 const RECORD: &str = "ground motion record that the ground follows beside a_g: the name of a file in the archive's \
-                      resources, or the path or URI of one on disk; PEER .AT2, ESM, K-NET, COSMOS, CSMIP, or .csv, \
-                      .txt, .dat of s and m/s2 or the unit of the heading; none if empty";
+                      resources, or the path or URI of one on disk; PEER .AT2, ESM, K-NET, COSMOS, CSMIP, or a \
+                      table of text in s and m/s2 or the unit of the heading; none if empty";
 
 fn input(which: usize) -> Variable {
     let quantity = &LOADS[which];

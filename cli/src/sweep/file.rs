@@ -1,6 +1,7 @@
 //! What a sweep runs, from a TOML file: every record at every scale factor on every structure, or pulses of every frequency
 //! and amplitude.
 use crate::{
+    input,
     output_files::OutputFiles,
     record_args::{RecordOptions, with_key},
     scene_args::InitialArgs,
@@ -169,7 +170,7 @@ enum Values {
 /// Reads the sweep in the TOML file at `path`, and its records, each of which is an input of `files`.
 pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
     let mut read = || -> anyhow::Result<_> {
-        let text = std::fs::read_to_string(path)?;
+        let text = input::text(path)?;
         let table: toml::Table = toml::from_str(&text)?;
         if table.contains_key("pulses") {
             return Ok(Asked::Pulses(toml::from_str::<MapFile>(&text)?.sweep()?));
