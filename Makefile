@@ -1,5 +1,5 @@
-# make demo    run the FMU on a real earthquake and draw docs/pacoima_mcmanus.png (2 minutes)
-# make test    every test but those of `heavy` (4 minutes more)
+# make demo    run the FMU on a real earthquake and draw docs/pacoima_mcmanus.png (1 to 2 minutes)
+# make test    every test but those of `heavy` (3 to 4 minutes more)
 # make check   format, clippy and the tests of what differs from the last commit: the loop of whoever changes a line
 # make lint    format and clippy of everything, warnings denied
 # make heavy   what takes longer or needs more, of which each can be made alone:
@@ -61,7 +61,7 @@ install = $(sudo) apt-get -qq update && \
 
 # pip while cargo compiles.
 demo:
-	@echo "Building the FMU and shaking it with a real earthquake: about two minutes the first time, on two cores."
+	@echo "Building the FMU and shaking it with a real earthquake: one to two minutes the first time, on two cores."
 	$(MAKE) --no-print-directory .venv/ready & $(MAKE) --no-print-directory out/mcmanus.fmu out/evison.fmu && wait $$!
 	cp $(RECORDS)/$(PACOIMA) $(RECORDS)/$(EL_CENTRO) out/
 	$(PYTHON) examples/first_run.py out/mcmanus.fmu
