@@ -9,6 +9,7 @@ mod rows;
 mod table;
 
 use crate::{
+    input,
     output_files::OutputFiles,
     picture::{Picture, PictureFile},
     results::{Format, FormatArgs, print, print_json, print_rows},
@@ -62,6 +63,7 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let asked = file::read(&args.file, &mut files)?;
     let output = match &args.output {
         Some(path) => path.clone(),
+        None if input::is_standard(&args.file) => "sweep.csv".into(),
         None => PathBuf::from(args.file.file_stem().unwrap_or_default()).with_extension("csv"),
     };
     let picture = args.picture.clone().unwrap_or(PictureFile::svg(output.with_extension("svg")));
