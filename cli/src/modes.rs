@@ -75,7 +75,7 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
         let Phase::Rocking(side) = phase else {
             if phase == Phase::FullContact {
                 let &Parameters { m, m0, g, .. } = structure.parameters();
-                check.see(&[0.0, 0.0, 0.0, shown[3]], &[0.0, 0.0, 0.0, (m + m0) * g]);
+                check.see(3, shown[3], (m + m0) * g);
             }
             rocks_about = None;
             continue;
@@ -88,7 +88,7 @@ pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
         if (u, u_dot) != (0.0, 0.0) {
             // one without deformation may be of the level `rigid`, whose moment is no strut's
             let Outputs { uplift, delta_t, M_t, .. } = Outputs::of(&structure, phase, &state, 0.0);
-            check.see(&shown[..3], &[uplift, delta_t, M_t]);
+            [uplift, delta_t, M_t].into_iter().enumerate().for_each(|(i, expected)| check.see(i, shown[i], expected));
         }
         let modes @ Modes { q_r, q_u, .. } = Modes::of(&structure, &state);
         let accelerations = ModalAccelerations::of(&structure, side, &state, a_g);
@@ -154,12 +154,10 @@ struct Check {
 }
 
 impl Check {
-    /// Looks at what is `found` in the first columns of [`SHOWN`], and `expected` there.
-    fn see(&mut self, found: &[f64], expected: &[f64]) {
-        for (i, (found, expected)) in found.iter().zip(expected).enumerate() {
-            self.largest[i] = self.largest[i].max(found.abs());
-            self.off[i] = self.off[i].max((found - expected).abs());
-        }
+    /// Looks at what is `found` in column `i` of [`SHOWN`], and `expected` there.
+    fn see(&mut self, i: usize, found: f64, expected: f64) {
+        self.largest[i] = self.largest[i].max(found.abs());
+        self.off[i] = self.off[i].max((found - expected).abs());
     }
 
     fn refuse_another_structure(&self) -> anyhow::Result<()> {

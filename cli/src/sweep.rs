@@ -30,6 +30,7 @@ use rocking_sweep::{
 };
 use rows::Key;
 use std::{
+    collections::HashSet,
     path::{Path, PathBuf},
     time::Instant,
 };
@@ -80,6 +81,10 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
 fn run_records(args: &SweepArgs, sweep: Sweep, output: &Path, picture: Picture) -> anyhow::Result<()> {
     let Sweep { plan, limits, measure, records, structures } = sweep;
     let keys = rows::keys(&plan, args.validity);
+    ensure!(
+        keys.iter().map(|key| key.run).collect::<HashSet<_>>().len() == keys.len(),
+        "two runs are the same: values that vary differ by less than a rounding error"
+    );
     let (rows, mut known) = rows::open(output)?;
     let mut outcomes: Vec<_> = keys.iter().map(|key| known.take(&key.run)).collect();
     ensure!(

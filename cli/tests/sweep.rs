@@ -318,6 +318,15 @@ vary = { slenderness = [4, 5, 6, 8], r = [0.8, 0.9, 1] }
     }
 }
 
+/// Two values of H/B whose products with B are one H.
+#[test]
+fn runs_that_are_the_same_are_refused() {
+    let folder = sweep(&SWEEP.replace("[4, 6, 8], r", "[7.142857142857144, 7.142857142857145], r"));
+    let (code, message) = fail(folder.path(), "sweep sweep.toml --quiet");
+    let expected = "error: two runs are the same: values that vary differ by less than a rounding error\n";
+    assert_eq!((code, message.as_str()), (1, expected));
+}
+
 #[test]
 fn a_refused_sweep_says_what_to_change() {
     for (from, to, expected) in [
