@@ -11,6 +11,9 @@
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels  out/wheels: Python packages for Linux, Windows and macOS with the command line and the archive, and one of the source
 # make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
+# make docs    the site in out/site; fails at a link, an anchor or a picture that is not there (seconds)
+# make pages   write anew what README and the pages print (a minute)
+# make pictures  draw anew those of README and of the model (minutes)
 # make report  regenerate docs/evidence/paper.md, docs/evidence/literature.md and their figures (minutes)
 # make overturning  regenerate docs/evidence/overturning.md and its pictures (minutes)
 # make coupling  regenerate docs/evidence/coupling.md and its figures (minutes)
@@ -57,7 +60,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test check lint tools heavy study hosts browser foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
+.PHONY: demo test check lint tools heavy study hosts browser foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc docs pages pictures report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
 
 # pip while cargo compiles.
 demo:
@@ -186,6 +189,15 @@ zig: .venv/dist
 	for target in $(ZIG); do $(NATIVE_UNTRACED) PATH="$(CURDIR)/.venv/bin:$$PATH" cargo zigbuild --profile dist --locked \
 		--package flexible-rocking-fmu --target $$target || exit; done
 
+docs: .venv/docs
+	$(PYTHON) -m sphinx -W --keep-going -q -b html -c docs -d out/doctrees . out/site
+
+pages: .venv/test exporter records
+	$(PYTHON) docs/pages.py $(TARGET)/release/rocking-fmu
+
+pictures: .venv/test exporter out/mcmanus.fmu
+	PYTHONPATH=examples $(PYTHON) examples/pictures.py out/mcmanus.fmu --exporter $(TARGET)/release/rocking-fmu
+
 report: .venv/test exporter
 	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
 	PYTHONPATH=examples $(PYTHON) -m literature --exporter $(TARGET)/release/rocking-fmu
@@ -252,4 +264,4 @@ out/%.fmu: library
 	$(PIP) $<
 	touch $@
 
-.venv/heavy .venv/dist: .venv/test
+.venv/heavy .venv/dist .venv/docs: .venv/test

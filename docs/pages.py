@@ -44,7 +44,8 @@ def rerun(text: str, exporter: Path, folder: Path) -> str:
 def prepare(folder: Path, exporter: Path) -> Path:
     """Puts what `make demo` leaves, and what the pages name of this repository, into `folder`."""
     (folder / "out").mkdir(parents=True)
-    (folder / "examples").symlink_to(ROOT / "examples")
+    for name in ("docs", "examples"):
+        (folder / name).symlink_to(ROOT / name)
     sys.path.insert(0, str(ROOT / "examples"))
     from first_run import RECORD
 
@@ -105,8 +106,8 @@ def variables(fmu: Path) -> str:
 def main() -> None:
     exporter = Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory() as temporary:
-        for page in PAGES:
-            folder = prepare(Path(temporary) / page.stem, exporter)
+        for number, page in enumerate(PAGES):
+            folder = prepare(Path(temporary) / str(number), exporter)
             page.write_text(rerun(page.read_text(encoding="utf-8"), exporter, folder), encoding="utf-8")
         (ROOT / "docs/reference/command_line.md").write_text(command_line(exporter), encoding="utf-8")
         (ROOT / "docs/reference/variables.md").write_text(variables(folder / "out/mcmanus.fmu"), encoding="utf-8")
