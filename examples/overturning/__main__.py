@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tqdm import tqdm
-from validation.report import table
+from validation.report import table, write_page
 
 FOLDER = Path(__file__).parent
 SCENES = ["rigid", "specimens", "stiffness", "islands"]
@@ -110,7 +110,7 @@ def main() -> None:
                          f"{scene.seconds:.1f} s", f"{len(scene.points) / scene.seconds:.0f}"]
                         for name, scene in scenes.items()]),
     )
-    arguments.output.write_text(page, encoding="utf-8")
+    write_page(arguments.output, page, "make overturning")
     print(f"{arguments.output}, pictures in {figures}")
 
 
