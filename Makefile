@@ -110,7 +110,7 @@ browser: .venv/heavy exporter
 	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
 	$(PYTEST) -m heavy tests/test_view.py
 
-evidence: .venv/test exporter out/mcmanus.fmu out/evison.fmu out/mcmanus3.fmu out/evison3.fmu
+evidence: .venv/test exporter
 	$(PYTEST) -m heavy tests/test_pages.py
 
 # Linux's library for 64-bit ARM runs under qemu; where that cannot be had, its test is skipped and says so.

@@ -62,12 +62,12 @@ def arrow(axis, start, end, text: str = "", at=None, style: str = "<->", color: 
 
 
 def schematic(path: Path) -> None:
-    plt.rcParams.update({"svg.fonttype": "path", "mathtext.fontset": "dejavuserif"})
-    figure, axes = subplots(1, 2, 3.6)
+    figure, axes = subplots(1, 2, 4.0)
+    plt.rcParams.update({"mathtext.fontset": "dejavuserif", "font.size": 13, "axes.titlesize": 12})
     height, half, u, theta = 2.0, 0.5, 0.32, 0.22
     for axis, turned, title in zip(axes, (0.0, theta), ("full contact, $\\theta = 0$", "rocking about the right edge, $\\theta > 0$")):
         draw(axis, turned, u, height, half)
-        axis.set_title(title)
+        axis.set_title(title, y=0.96)
         axis.set(xlim=(-1.35, 1.75), ylim=(-0.62, 2.6))
         arrow(axis, (-1.2, -0.4), (-0.7, -0.4), "$a_g$", style="->")
         dashed = placed(np.array([[0, 0.15], [0, height * 1.12]]), turned, half)

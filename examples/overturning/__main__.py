@@ -32,7 +32,8 @@ class Scene:
         self.seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
         self.counts = list(csv.DictReader(done.stdout.splitlines()))
         with open(rows, newline="", encoding="utf-8") as file:
-            self.points = list(csv.DictReader(file))
+            of = lambda point: (point["structures"], float(point["frequency"]), float(point["amplitude"]))  # noqa: E731
+            self.points = sorted(csv.DictReader(file), key=of)  # rows stand in the order in which runs ended
 
     def structures(self) -> list[str]:
         """Their names."""
