@@ -1,4 +1,4 @@
-"""The site, `make docs`. Its source is the repository: the links of README and of the pages hold on it as they do in the files."""
+"""The site, `make docs`. Its source is the repository: links of README and of the pages hold on it as in the files."""
 
 import latex2mathml.converter
 

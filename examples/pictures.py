@@ -56,7 +56,8 @@ def draw(axis, theta: float, u: float, height: float, half_width: float) -> None
 
 
 def arrow(axis, start, end, text: str = "", at=None, style: str = "<->", color: str = INK, **options) -> None:
-    axis.annotate("", end, start, arrowprops={"arrowstyle": style, "color": color, "shrinkA": 0, "shrinkB": 0, "linewidth": 1})
+    look = {"arrowstyle": style, "color": color, "shrinkA": 0, "shrinkB": 0, "linewidth": 1}
+    axis.annotate("", end, start, arrowprops=look)
     middle = (np.array(start) + end) / 2 if at is None else at
     axis.text(*middle, text, color=color, **({"ha": "center", "va": "bottom"} | options))
 
@@ -65,7 +66,8 @@ def schematic(path: Path) -> None:
     figure, axes = subplots(1, 2, 4.0)
     plt.rcParams.update({"mathtext.fontset": "dejavuserif", "font.size": 13, "axes.titlesize": 12})
     height, half, u, theta = 2.0, 0.5, 0.32, 0.22
-    for axis, turned, title in zip(axes, (0.0, theta), ("full contact, $\\theta = 0$", "rocking about the right edge, $\\theta > 0$")):
+    titles = ("full contact, $\\theta = 0$", "rocking about the right edge, $\\theta > 0$")
+    for axis, turned, title in zip(axes, (0.0, theta), titles):
         draw(axis, turned, u, height, half)
         axis.set_title(title, y=0.96)
         axis.set(xlim=(-1.35, 1.75), ylim=(-0.62, 2.6))
@@ -93,9 +95,10 @@ def schematic(path: Path) -> None:
     right.plot(half, 0, "o", color=FIXED, markersize=4)
     right.text(half + 0.08, 0.12, "edge $s = +1$", color=FIXED, va="center")
     lifted = placed(np.array([[-half, 0]]), theta, half)[0]
-    arrow(right, (lifted[0] - 0.1, 0), (lifted[0] - 0.1, lifted[1]), "uplift", at=(lifted[0] - 0.15, lifted[1] / 2), ha="right", va="center")
+    arrow(right, (lifted[0] - 0.1, 0), (lifted[0] - 0.1, lifted[1]), "uplift", at=(lifted[0] - 0.15, lifted[1] / 2),
+          ha="right", va="center")
     save(figure, path, "The structure with its symbols",
-         "Left: full contact, with top mass m, height H, half-width B, foundation m0 and J0. Right: rocking about the right edge.")
+         "Left: full contact, with top mass m, height H, half-width B, foundation m0 and J0. Right: rocking.")
 
 
 def motion(fmu: str, path: Path) -> None:
@@ -120,7 +123,8 @@ def motion(fmu: str, path: Path) -> None:
         below.set(xlim=(0, SHOWN), ylim=(-10, 10), xlabel="time (s)", ylabel="rotation (°)")
 
     path.parent.mkdir(parents=True, exist_ok=True)
-    FuncAnimation(figure, frame, frames=range(0, len(time), ROWS_PER_FRAME)).save(path, PillowWriter(fps=FRAMES_PER_SECOND), dpi=80)
+    frames = range(0, len(time), ROWS_PER_FRAME)
+    FuncAnimation(figure, frame, frames).save(path, PillowWriter(fps=FRAMES_PER_SECOND), dpi=80)
     plt.close(figure)
 
 
@@ -146,7 +150,8 @@ def headline(path: Path) -> None:
         curve(method, "at step ends", "0.6", "", 0, linestyle="--", marker="")
     axis.text(400, 0.2, "six textbook methods,\ntransitions at ends of steps", color="0.4")
     curve("RK4", "located", "#009e73", "RK4, transitions located", -1)
-    curve("Newmark average acceleration", "located", "#b35900", "Newmark, HHT-α, central\ndifference, the same", -1, (8, -6))
+    curve("Newmark average acceleration", "located", "#b35900", "Newmark, HHT-α, central\ndifference, the same", -1,
+          (8, -6))
     curve("HHT-α", "located", "#b35900", "", 0)
     curve("central difference", "located", "#b35900", "", 0)
     curve("semi-implicit Euler", "located", "#b35900", "Euler, the same", -1, (8, -4))
@@ -160,39 +165,43 @@ def headline(path: Path) -> None:
     good = rows[rows["error_theta"] <= DIGITS].groupby(rows["method"].str.startswith(("this project", "FMU")))
     peers, ours = good["microseconds_per_sample"].min()
     axis.axhline(DIGITS, color="0.6", linewidth=0.6, linestyle=":")
-    axis.set(title=f"To six digits the nearest peer takes {peers / ours:.1f} times as long", ylim=(1e-12, 20), xlim=(0.05, 2e4),
-             xlabel="computing time per sample of the record (µs)", ylabel="largest error of θ over its peak")
-    save(figure, path, axis.get_title(), "Error of θ against computing time per sample: this engine, textbook methods, other libraries.")
+    axis.set(title=f"To six digits the nearest peer takes {peers / ours:.1f} times as long", xlim=(0.05, 2e4),
+             ylim=(1e-12, 20), xlabel="computing time per sample of the record (µs)", ylabel="largest error of θ over its peak")
+    save(figure, path, axis.get_title(), "Error of θ against time: this engine, textbook methods, other libraries.")
 
 
 LEVELS = {"fixed_base": "#d9d9d9", "rigid": "#f0e442", "modal": "#56b4e9", "linear": "#009e73", "auto": "#d55e00"}
 FREQUENCIES = np.geomspace(1, 50, 24)  # Hz
 INTENSITIES = np.geomspace(0.3, 12, 24)  # PGA over g tan α_cg
-ASKED = {"peaks of θ, u, a_t within 5 %": "theta,u,a_t", "histories within 5 %, too": "theta,u,a_t,theta_history,u_history,a_t_history"}
+ASKED = {"peaks of θ, u, a_t within 5 %": "theta,u,a_t",
+         "histories within 5 %, too": "theta,u,a_t,theta_history,u_history,a_t_history"}
 
 
 def levels(exporter: Path, path: Path) -> None:
     """McManus's pier with other frequencies under Pacoima Dam, scaled: the level that `advise` names."""
-    scene = ["--preset", "mcmanus", "--record", PACOIMA_DAM["record"], "--time-scale", str(PACOIMA_DAM["record_time_scale"])]
-    uplifts = 195.5 / 130.1 * B / H / 1.21904  # scale at which PGA is g tan α_cg
+    scene = ["--preset", "mcmanus", "--record", PACOIMA_DAM["record"], "--time-scale", "0.2"]
+    uplifts = (130.1 + 65.4) / 130.1 * B / H / 1.21904  # tan α_cg over the record's PGA in g: the scale of 1
 
     def advised(frequency: float, intensity: float, asked: str) -> int:
-        command = [exporter, "--quiet", "advise", *scene, "--f-fc", f"{frequency:.6g}", "--scale", f"{intensity * uplifts:.6g}",
-                   "--of", asked, "--format", "json"]
+        command = [exporter, "--quiet", "advise", *scene, "--f-fc", f"{frequency:.6g}", "--of", asked,
+                   "--scale", f"{intensity * uplifts:.6g}", "--format", "json"]
         rows = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["rows"]
         return list(LEVELS).index(next(row["level"] for row in rows if row["advised"]))
 
     figure, axes = subplots(1, 2, 3.8, sharey=True)
     for axis, (title, asked) in zip(axes, ASKED.items()):
         found = [[advised(f, i, asked) for f in FREQUENCIES] for i in tqdm(INTENSITIES, desc=title)]
-        axis.pcolormesh(FREQUENCIES, INTENSITIES, found, cmap=ListedColormap(list(LEVELS.values())), vmin=-0.5, vmax=len(LEVELS) - 0.5,
-                        rasterized=True)
+        axis.pcolormesh(FREQUENCIES, INTENSITIES, found, cmap=ListedColormap(list(LEVELS.values())), vmin=-0.5,
+                        vmax=len(LEVELS) - 0.5, rasterized=True)
         full = np.mean(np.array(found) == list(LEVELS).index("auto"))
-        axis.set(xscale="log", yscale="log", title=f"{title}:\n{full:.0%} of the scenes ask for the full equations", xlabel="$f_{fc}$ (Hz)")
+        axis.set(xscale="log", yscale="log", xlabel="$f_{fc}$ (Hz)",
+                 title=f"{title}:\n{full:.0%} of the scenes ask for the full equations")
         axis.grid(False)
     axes[0].set_ylabel(r"PGA / (g tan $\alpha_{cg}$)")
-    figure.legend([plt.Rectangle((0, 0), 1, 1, color=color) for color in LEVELS.values()], LEVELS, ncols=5, loc="outside lower center")
-    save(figure, path, "Which level of detail is enough", "The cheapest level that is good enough, over f_fc and PGA over g tan α_cg.")
+    patches = [plt.Rectangle((0, 0), 1, 1, color=color) for color in LEVELS.values()]
+    figure.legend(patches, LEVELS, ncols=5, loc="outside lower center")
+    save(figure, path, "Which level of detail is enough",
+         "The cheapest level that is good enough, over f_fc and PGA over g tan α_cg.")
 
 
 def main() -> None:

@@ -36,7 +36,7 @@ def subplots(rows: int, columns: int, height: float, **options):
 
 
 def save(figure, path: Path, title: str = "", description: str = "") -> None:
-    """Writes the figure; the same data give the same bytes. An SVG file tells `title` and `description` to who cannot see it."""
+    """Writes the figure; the same data give the same bytes. An SVG file has `title` and `description`."""
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=180, metadata={{".png": "Software", ".svg": "Date"}[path.suffix]: None})
     if path.suffix == ".svg":

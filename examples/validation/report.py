@@ -82,10 +82,11 @@ def summary(sections: list[Section]) -> str:
     lines = [[str(number), *row.cells()] for number, section in enumerate(sections, 1) for row in section.rows
              if not row.agrees]
     headings = ["section", "quantity", "paper or its formula", "computed", "difference", "why"]
-    return (f"{sum(row.agrees for row in printed)} of the {len(printed)} numbers that the paper prints agree to every digit. "
-            f"Beside them stand {len(others)} that the paper does not print for its own scenes: its formulas give them, or they "
-            f"belong to the stand-in for a record that cannot be had, or they were put in; {sum(row.agrees for row in others)} of "
-            f"these agree. All that do not:\n\n{table(headings, lines, texts=(1, 5))}")
+    return (f"{sum(row.agrees for row in printed)} of the {len(printed)} numbers that the paper prints agree to every "
+            f"digit. Beside them stand {len(others)} that the paper does not print for its own scenes: its formulas give "
+            f"them, or they belong to the stand-in for a record that cannot be had, or they were put in; "
+            f"{sum(row.agrees for row in others)} of these agree. All that do not:\n\n"
+            f"{table(headings, lines, texts=(1, 5))}")
 
 
 def markdown(sections: list[Section], figures: str) -> str:
@@ -117,8 +118,8 @@ def filled(block: str) -> str:
 
 INTRODUCTION = """# Validation against the paper
 
-Which of the paper's numbers does the unit reproduce? Every number that the text gives the data for stands beside the one that
-the exported FMU gives. The FMU is exported and driven by fmpy, at a tolerance of 1e-10, and what the library
+Which of the paper's numbers does the unit reproduce? Every number that the text gives the data for stands beside the one
+that the exported FMU gives. The FMU is exported and driven by fmpy, at a tolerance of 1e-10, and what the library
 itself computes (pushover, demands, effective frequency, modes, many runs) is asked of `rocking-fmu`.
 Equation, figure and table numbers are the paper's. Its measured histories are printed as pictures only and are not
 redrawn; of them the values that the text states are compared. Closed forms, and what others publish, are
