@@ -197,7 +197,7 @@ docs: .venv/docs
 	$(PYTHON) -m sphinx -W --keep-going -q -b html -c docs -d out/doctrees . out/site
 
 pages: .venv/test exporter records
-	$(PYTHON) docs/pages.py $(TARGET)/release/rocking-fmu
+	PYTHONPATH=examples $(PYTHON) docs/pages.py $(TARGET)/release/rocking-fmu
 
 pictures: .venv/test exporter out/mcmanus.fmu
 	PYTHONPATH=examples $(PYTHON) examples/pictures.py out/mcmanus.fmu --exporter $(TARGET)/release/rocking-fmu

@@ -14,6 +14,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from first_run import RECORD
 from fmpy import read_model_description
 
 ROOT = Path(__file__).parents[1]
@@ -51,10 +52,7 @@ def prepare(folder: Path, exporter: Path) -> Path:
     (folder / "out").mkdir(parents=True)
     for name in ("docs", "examples"):
         (folder / name).symlink_to(ROOT / name)
-    sys.path.insert(0, str(ROOT / "examples"))
-    from first_run import RECORD
-
-    for record in [RECORD, *RECORD.parents[1].glob("*/RSN6_*ELC180*")]:
+    for record in RECORD, next(RECORD.parents[1].glob("*/RSN6_*ELC180*")):
         shutil.copy(record, folder / "out")
     for preset in ("mcmanus", "evison"):
         command = [exporter, "--quiet", "export", "--preset", preset, "-o", folder / "out" / f"{preset}.fmu"]

@@ -166,7 +166,8 @@ def headline(path: Path) -> None:
     peers, ours = good["microseconds_per_sample"].min()
     axis.axhline(DIGITS, color="0.6", linewidth=0.6, linestyle=":")
     axis.set(title=f"To six digits the nearest peer takes {peers / ours:.1f} times as long", xlim=(0.05, 2e4),
-             ylim=(1e-12, 20), xlabel="computing time per sample of the record (µs)", ylabel="largest error of θ over its peak")
+             xlabel="computing time per sample of the record (µs)", ylim=(1e-12, 20),
+             ylabel="largest error of θ over its peak")
     save(figure, path, axis.get_title(), "Error of θ against time: this engine, textbook methods, other libraries.")
 
 

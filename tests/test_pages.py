@@ -5,11 +5,9 @@ import re
 import subprocess
 import sys
 
+import pages
 import pytest
 from conftest import ROOT
-
-sys.path.insert(0, str(ROOT / "docs"))
-import pages  # noqa: E402
 
 
 def is_long(page):
