@@ -1,4 +1,4 @@
-# make demo    run the FMU on a real earthquake and draw docs/pacoima_mcmanus.png (1 to 2 minutes)
+# make demo    run the FMU on a real earthquake and draw docs/img/pacoima_mcmanus.png (1 to 2 minutes)
 # make test    every test but those of `heavy` (3 to 4 minutes more)
 # make check   format, clippy and the tests of what differs from the last commit: the loop of whoever changes a line
 # make lint    format and clippy of everything, warnings denied
@@ -8,9 +8,13 @@
 # make browser   the page of `view` in Chromium
 # make foreign   the libraries for other machines, built, read and, where that can be, run
 # make packaged  the package of the source, and the wheel for this machine in a fresh environment
+# make evidence  the pages of evidence made anew and compared, and the longer blocks of the others
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels  out/wheels: Python packages for Linux, Windows and macOS with the command line and the archive, and one of the source
 # make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
+# make docs    the site in out/site; fails at a link, an anchor or a picture that is not there (seconds)
+# make pages   write anew what README and the pages print (a minute)
+# make pictures  draw anew those of README and of the model (minutes)
 # make report  regenerate docs/evidence/paper.md, docs/evidence/literature.md and their figures (minutes)
 # make overturning  regenerate docs/evidence/overturning.md and its pictures (minutes)
 # make coupling  regenerate docs/evidence/coupling.md and its figures (minutes)
@@ -57,7 +61,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test check lint tools heavy study hosts browser foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
+.PHONY: demo test check lint tools heavy evidence study hosts browser foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc docs pages pictures report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
 
 # pip while cargo compiles.
 demo:
@@ -92,7 +96,7 @@ tools:
 	@cargo fmt --version >/dev/null 2>&1 || rustup component add rustfmt
 	@cargo clippy --version >/dev/null 2>&1 || rustup component add clippy
 
-heavy: study hosts browser foreign packaged
+heavy: study hosts browser foreign packaged evidence docs
 
 study:
 	cargo test --release --manifest-path study/Cargo.toml
@@ -105,6 +109,9 @@ hosts: .venv/heavy exporter windows host_packages
 browser: .venv/heavy exporter
 	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
 	$(PYTEST) -m heavy tests/test_view.py
+
+evidence: .venv/test exporter
+	$(PYTEST) -m heavy tests/test_pages.py
 
 # Linux's library for 64-bit ARM runs under qemu; where that cannot be had, its test is skipped and says so.
 foreign: .venv/test dist qemu old_glibc
@@ -186,6 +193,15 @@ zig: .venv/dist
 	for target in $(ZIG); do $(NATIVE_UNTRACED) PATH="$(CURDIR)/.venv/bin:$$PATH" cargo zigbuild --profile dist --locked \
 		--package flexible-rocking-fmu --target $$target || exit; done
 
+docs: .venv/docs
+	$(PYTHON) -m sphinx -W --keep-going -q -b html -c docs -d out/doctrees . out/site
+
+pages: .venv/test exporter records
+	PYTHONPATH=examples $(PYTHON) docs/pages.py $(TARGET)/release/rocking-fmu
+
+pictures: .venv/test exporter out/mcmanus.fmu
+	PYTHONPATH=examples $(PYTHON) examples/pictures.py out/mcmanus.fmu --exporter $(TARGET)/release/rocking-fmu
+
 report: .venv/test exporter
 	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
 	PYTHONPATH=examples $(PYTHON) -m literature --exporter $(TARGET)/release/rocking-fmu
@@ -252,4 +268,4 @@ out/%.fmu: library
 	$(PIP) $<
 	touch $@
 
-.venv/heavy .venv/dist: .venv/test
+.venv/heavy .venv/dist .venv/docs: .venv/test
