@@ -1,9 +1,9 @@
 //! This project's engine.
 
 use crate::response::{Failure, Response, Sample};
-use crate::scene::{Input, Scene};
+use crate::scene::Scene;
 use rocking::run::{Ending, Finish};
-use rocking::{Detail, Engine, Watch};
+use rocking::{Detail, Watch};
 
 /// The tolerance of reference responses, two orders below the tightest that is charted.
 pub const REFERENCE_TOLERANCE: f64 = 1e-14;
@@ -23,15 +23,6 @@ pub fn run(scene: &Scene, detail: Detail, tolerance: f64, watch: &mut impl Watch
             Response { samples, evaluations: 0, transitions: 0, failure: Some(failure) }
         }
     }
-}
-
-/// Evaluations of the engine as it is in the FMU, which counts none, on the same communication steps.
-pub fn evaluations(scene: &Scene, tolerance: f64, input: Input, cuts: usize) -> u64 {
-    let mut engine = Engine::new(scene.structure, scene.initial, 0.0, tolerance).expect("the scene can start");
-    for step in scene.steps(input, cuts) {
-        engine.advance(step.end - step.start, step.a_g, &mut ()).expect("the scene has an answer");
-    }
-    engine.motion().work.evaluations
 }
 
 /// The response against which all others are measured.

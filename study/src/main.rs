@@ -43,12 +43,12 @@ fn main() -> Result<()> {
             speed::write(&Scene::mcmanus_el_centro(&records()?)?, precision::FULL, docs, &progress)?;
         }
         Command::Precision => precision::write(&Scene::all(&records()?)?, precision::FULL, docs, &progress)?,
-        Command::Stability => stability::write(stability::FULL, docs, &progress)?,
+        Command::Stability => stability::write(docs)?,
         Command::Validity => validity::write(&records()?, docs, &progress)?,
         Command::Failures => {
             let records = records()?;
             let (pacoima, el_centro) = (Scene::mcmanus_pacoima(&records)?, Scene::mcmanus_el_centro(&records)?);
-            failures::write(&failures::Scenes { pacoima, el_centro }, docs, &progress)?;
+            failures::write(&pacoima, &el_centro, docs)?;
         }
     }
     progress.finish_and_clear();

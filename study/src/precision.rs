@@ -1,7 +1,6 @@
 //! Work-precision diagrams: error against cost, one curve per method.
 
 mod curves;
-mod figures;
 mod page;
 
 use crate::engine;
@@ -41,7 +40,7 @@ pub enum Family {
 pub struct Point {
     pub setting: f64,                    // step in s, or tolerance
     pub cost: f64,                       // time per sample over that of the floor
-    pub evaluations: f64,                // right-hand-side evaluations per sample
+    pub evaluations: f64,                // right-hand-side evaluations per sample; the FMU counts none
     pub transitions: u64,                // uplifts, impacts and landings
     pub errors: Result<Errors, Failure>, // against the reference, or why there are none
 }
@@ -100,16 +99,15 @@ fn sweep(
     limits: Limits,
 ) -> Vec<Point> {
     let mut points = Vec::new();
-    for setting in &method.settings {
-        let (response, time) = timing::fastest(|| (setting.run)());
+    for (setting, run) in &method.settings {
+        let (response, time) = timing::fastest(run);
         let errors = Errors::of(&response, exact);
         let is_exact = errors.as_ref().is_ok_and(|errors| errors.theta <= conditioning);
         let samples = response.samples.len().max(1) as f64;
-        let evaluations = setting.evaluations.as_ref().map_or(response.evaluations, |count| count());
         points.push(Point {
-            setting: setting.value,
+            setting: *setting,
             cost: time / samples / floor,
-            evaluations: evaluations as f64 / samples,
+            evaluations: response.evaluations as f64 / samples,
             transitions: response.transitions,
             errors,
         });
@@ -125,8 +123,5 @@ fn sweep(
 /// Measures all `scenes` and writes `docs/accuracy.md` with its pictures and numbers.
 pub fn write(scenes: &[Scene], limits: Limits, docs: &Path, progress: &ProgressBar) -> Result<()> {
     let diagrams = scenes.iter().map(|scene| measure(scene, limits, progress)).collect::<Result<Vec<_>>>()?;
-    for diagram in &diagrams {
-        figures::save(diagram, docs)?;
-    }
     page::write(&diagrams, docs)
 }
