@@ -171,18 +171,6 @@ fn rigid_lifts_off_when_the_push_exceeds_its_slenderness() {
     assert!(engine.motion().state.theta < 0.0);
 }
 
-/// A fixed base never lifts off, whatever the push, and follows the response spectrum's own oscillator.
-#[test]
-fn a_fixed_base_stays_down() {
-    let structure = mcmanus();
-    let samples = shaking(1, 0.01, 800, 20.0);
-    let mut transitions = Vec::new();
-    let states = run(structure, Detail::FixedBase, 1e-9, 0.01, &samples, &mut transitions);
-    assert!(transitions.is_empty());
-    assert!(largest(&states, |state| state.u) > structure.u_cr);
-    assert_eq!(largest(&states, |state| state.theta), 0.0);
-}
-
 /// Where two levels have the same equations, they give the same transitions: the rules are one.
 #[test]
 fn a_small_shaking_lifts_nothing_at_any_level() {
