@@ -2,8 +2,9 @@
 
 use crate::response::{Failure, Response, Sample};
 use crate::scene::Scene;
+use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::{Ending, Finish};
-use rocking::{Detail, Watch};
+use rocking::{Detail, Engine, Load, Motion, Ramp, Watch};
 
 /// The tolerance of reference responses, two orders below the tightest that is charted.
 pub const REFERENCE_TOLERANCE: f64 = 1e-14;
@@ -23,6 +24,23 @@ pub fn run(scene: &Scene, detail: Detail, tolerance: f64, watch: &mut impl Watch
             Response { samples, evaluations: 0, transitions: 0, failure: Some(failure) }
         }
     }
+}
+
+/// The response of `auto` at the default tolerance where a host holds the ground acceleration over communication steps,
+/// `cuts` to a sample.
+pub fn held(scene: &Scene, cuts: usize) -> Response {
+    let mut engine = Engine::new(scene.structure, scene.initial, 0.0, DEFAULT_TOLERANCE).expect("the scene can start");
+    let h = scene.dt() / cuts as f64;
+    let sample = |k: usize| {
+        for j in 0..cuts {
+            let a_g = Ramp { value: scene.ramp(k).at(j as f64 * h), slope: 0.0 };
+            engine.advance(h, a_g, &mut ()).expect("the scene has an answer");
+        }
+        Sample::of(&engine.outputs(Load::default()))
+    };
+    let samples = (0..scene.intervals()).map(sample).collect();
+    let &Motion { work, transitions, .. } = engine.motion();
+    Response { samples, evaluations: work.evaluations, transitions, failure: None }
 }
 
 /// The response against which all others are measured.

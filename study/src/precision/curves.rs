@@ -3,18 +3,14 @@
 use super::Family;
 use crate::engine;
 use crate::fixed_step::TEXTBOOK;
-use crate::fmu::Fmu;
 use crate::guards::uplift_excess;
 use crate::hybrid::{self, Grid, Integrator, Transitions};
 use crate::libraries::differential_equations::DifferentialEquations;
 use crate::libraries::diffsol::{self, Diffsol};
 use crate::libraries::ode_solvers::{OdeSolvers, Pair};
 use crate::response::Response;
-use crate::scene::{Input, Scene};
-use anyhow::Result;
+use crate::scene::Scene;
 use rocking::Detail;
-use rocking::engine::DEFAULT_TOLERANCE;
-use std::rc::Rc;
 
 /// A run of a whole scene.
 type Runs<'a> = Box<dyn Fn() -> Response + 'a>;
@@ -31,7 +27,7 @@ pub struct Method<'a> {
 const HALVINGS: u32 = 14;
 
 /// Every method on `scene`.
-pub fn methods(scene: &Scene) -> Result<Vec<Method<'_>>> {
+pub fn methods(scene: &Scene) -> Vec<Method<'_>> {
     let ours = Detail::ALL.into_iter().map(|detail| Method {
         name: format!("this project, {}", detail.name()),
         family: if detail == Detail::Auto { Family::Ours } else { Family::Level },
@@ -54,19 +50,13 @@ pub fn methods(scene: &Scene) -> Result<Vec<Method<'_>>> {
         }));
     }
     methods.extend(libraries(scene));
-    let fmu = Rc::new(Fmu::new(scene, DEFAULT_TOLERANCE)?);
-    let inputs =
-        [("input held", Input::Constant), ("input with slope", Input::Linear), ("record inside", Input::Inside)];
-    methods.extend(inputs.map(|(name, input)| Method {
-        name: format!("FMU, {name}"),
-        family: Family::Fmu,
+    methods.push(Method {
+        name: "this project, input held".into(),
+        family: Family::Host,
         setting: "communication step, s",
-        settings: cuts(scene, |cuts| {
-            let fmu = Rc::clone(&fmu);
-            Box::new(move || fmu.run(input, cuts))
-        }),
-    }));
-    Ok(methods)
+        settings: cuts(scene, |cuts| Box::new(move || engine::held(scene, cuts))),
+    });
+    methods
 }
 
 fn hybrid<'a>(scene: &'a Scene, integrator: impl Integrator + 'a, transitions: Transitions) -> Runs<'a> {

@@ -24,7 +24,7 @@ const PANELS: [(&str, &[Family]); 4] = [
     ),
     ("solvers of other libraries", &[Family::Ours, Family::Library]),
     ("this project's levels of detail", &[Family::Ours, Family::Level]),
-    ("the FMU, over its communication steps", &[Family::Ours, Family::Fmu]),
+    ("the record, and its samples held over communication steps", &[Family::Ours, Family::Host]),
 ];
 
 /// How the curve `k` of a family is drawn.
@@ -142,9 +142,8 @@ impl Diagram {
 
     /// The scene's part of the page, and the smallest error at which another method is cheaper than `auto`.
     fn scene(&self) -> Result<(Value, f64)> {
-        let fmu: Vec<_> = self.family(Family::Fmu).collect();
-        let [held, slope, inside] = fmu[..] else { unreachable!("the FMU is fed in three ways") };
-        let error = |point: Option<&Point>| point.and_then(Point::theta).map_or("fails".into(), scientific);
+        let held = self.family(Family::Host).flat_map(|curve| &curve.points).filter_map(Point::theta);
+        let held: Vec<_> = held.map(scientific).collect();
         let undercut = self.undercut()?;
         let least = undercut.iter().map(|(error, _)| *error).fold(f64::INFINITY, f64::min);
         let Errors { theta, u, a_t } = self.conditioning;
@@ -156,9 +155,7 @@ impl Diagram {
             floor => significant(1e9 * self.floor),
             conditioning => [theta, u, a_t].map(scientific).to_vec(),
             rows => self.rows(),
-            held => vec![error(held.points.first()), error(held.points.last())],
-            slope => error(slope.points.first()),
-            inside => error(inside.points.first()),
+            held => [held.first(), held.last()].map(|error| error.cloned()).to_vec(),
             undercut => undercut.into_iter().map(|(_, shown)| shown).collect::<Vec<_>>(),
             failures => self.curves.iter().filter_map(Curve::failure).collect::<Vec<_>>(),
         };
