@@ -2,8 +2,7 @@
 //! holds of all of them.
 #![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
 
-mod co_simulation;
-mod model_exchange;
+mod stages;
 
 use crate::c_abi::{
     self, check_pointer, complete_step, escaped, free_state, functions, keep_state, names_events, read_all, read_state,
@@ -106,8 +105,8 @@ pub unsafe extern "C" fn fmi2Instantiate(
         match arguments() {
             Ok((archive, interface, events)) => {
                 let allowed_in: &Table = match interface {
-                    Interface::ModelExchange => &model_exchange::ALLOWED_IN,
-                    Interface::CoSimulation(_) => &co_simulation::ALLOWED_IN,
+                    Interface::ModelExchange => &stages::MODEL_EXCHANGE,
+                    Interface::CoSimulation(_) => &stages::CO_SIMULATION,
                 };
                 Some((Instance::new(archive, interface, events, logger), allowed_in))
             }

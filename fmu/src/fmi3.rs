@@ -7,8 +7,7 @@
 //! they are held. After the step is computed it can read all variables.
 #![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
 
-mod co_simulation;
-mod model_exchange;
+mod stages;
 
 use crate::c_abi::{
     self, call, call_on, check_count, check_pointer, complete_step, escaped, free_state, functions, instantiate,
@@ -70,7 +69,7 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
         let environment = instanceEnvironment;
         let host =
             intermediateUpdate.map(|update| IntermediateUpdate { update, environment, sets_inputs, gets_outputs });
-        let allowed_in: &Table = &co_simulation::ALLOWED_IN;
+        let allowed_in: &Table = &stages::CO_SIMULATION;
         Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), allowed_in, host))
     };
     let arguments = [instanceName, instantiationToken, resourcePath];
@@ -89,7 +88,7 @@ pub unsafe extern "C" fn fmi3InstantiateModelExchange(
     instanceEnvironment: *mut c_void,
     logMessage: Option<LogMessageCallback>,
 ) -> *mut c_void {
-    let allowed_in: &Table = &model_exchange::ALLOWED_IN;
+    let allowed_in: &Table = &stages::MODEL_EXCHANGE;
     let interface = || Ok((Interface::ModelExchange, allowed_in, None));
     let (arguments, host) = ([instanceName, instantiationToken, resourcePath], (instanceEnvironment, logMessage));
     unsafe { create("fmi3InstantiateModelExchange", arguments, loggingOn, host, interface) }
@@ -515,121 +514,37 @@ functions! {
         write("nContinuousStates", nContinuousStates, COMPONENTS.len())
     }
 
-    // What this unit has none of: never allowed.
-
-    fmi3GetFloat32 = GetFloat32(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut f32, _nValues: size_t,
-    )
-
-    fmi3GetInt8 = GetInt8(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut i8, _nValues: size_t,
-    )
-
-    fmi3GetUInt8 = GetUInt8(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u8, _nValues: size_t,
-    )
-
-    fmi3GetInt16 = GetInt16(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut i16, _nValues: size_t,
-    )
-
-    fmi3GetUInt16 = GetUInt16(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u16, _nValues: size_t,
-    )
-
-    fmi3GetUInt32 = GetUInt32(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u32, _nValues: size_t,
-    )
-
-    fmi3GetUInt64 = GetUInt64(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u64, _nValues: size_t,
-    )
-
-    fmi3GetBinary = GetBinary(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _valueSizes: *mut size_t, _values: *mut *const u8,
-        _nValues: size_t,
-    )
-
-    fmi3GetClock = GetClock(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u8)
-
-    fmi3SetFloat32 = SetFloat32(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const f32, _nValues: size_t,
-    )
-
-    fmi3SetInt8 = SetInt8(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const i8, _nValues: size_t,
-    )
-
-    fmi3SetUInt8 = SetUInt8(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u8, _nValues: size_t,
-    )
-
-    fmi3SetInt16 = SetInt16(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const i16, _nValues: size_t,
-    )
-
-    fmi3SetUInt16 = SetUInt16(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u16, _nValues: size_t,
-    )
-
-    fmi3SetUInt32 = SetUInt32(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u32, _nValues: size_t,
-    )
-
-    fmi3SetUInt64 = SetUInt64(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u64, _nValues: size_t,
-    )
-
-    fmi3SetBinary = SetBinary(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _valueSizes: *const size_t,
-        _values: *const *const u8, _nValues: size_t,
-    )
-
-    fmi3SetClock = SetClock(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u8)
-
-    fmi3GetNumberOfVariableDependencies = GetNumberOfVariableDependencies(
-        _valueReference: c_uint, _nDependencies: *mut size_t,
-    )
-
-    fmi3GetVariableDependencies = GetVariableDependencies(
-        _dependent: c_uint, _elementIndicesOfDependent: *mut size_t, _independents: *mut c_uint,
-        _elementIndicesOfIndependents: *mut size_t, _dependencyKinds: *mut c_int, _nDependencies: size_t,
-    )
-
+    // What this unit has none of: never allowed. Arguments that are not read need not be declared: on the platforms that
+    // there are libraries for, the caller takes them back.
+    fmi3GetFloat32 = GetFloat32()
+    fmi3GetInt8 = GetInt8()
+    fmi3GetUInt8 = GetUInt8()
+    fmi3GetInt16 = GetInt16()
+    fmi3GetUInt16 = GetUInt16()
+    fmi3GetUInt32 = GetUInt32()
+    fmi3GetUInt64 = GetUInt64()
+    fmi3GetBinary = GetBinary()
+    fmi3GetClock = GetClock()
+    fmi3SetFloat32 = SetFloat32()
+    fmi3SetInt8 = SetInt8()
+    fmi3SetUInt8 = SetUInt8()
+    fmi3SetInt16 = SetInt16()
+    fmi3SetUInt16 = SetUInt16()
+    fmi3SetUInt32 = SetUInt32()
+    fmi3SetUInt64 = SetUInt64()
+    fmi3SetBinary = SetBinary()
+    fmi3SetClock = SetClock()
+    fmi3GetNumberOfVariableDependencies = GetNumberOfVariableDependencies()
+    fmi3GetVariableDependencies = GetVariableDependencies()
     fmi3EnterConfigurationMode = EnterConfigurationMode()
-
     fmi3ExitConfigurationMode = ExitConfigurationMode()
-
-    fmi3GetIntervalDecimal = GetIntervalDecimal(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _intervals: *mut f64, _qualifiers: *mut c_int,
-    )
-
-    fmi3GetIntervalFraction = GetIntervalFraction(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *mut u64, _resolutions: *mut u64,
-        _qualifiers: *mut c_int,
-    )
-
-    fmi3GetShiftDecimal = GetShiftDecimal(_valueReferences: *const c_uint, _nValueReferences: size_t, _shifts: *mut f64)
-
-    fmi3GetShiftFraction = GetShiftFraction(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *mut u64, _resolutions: *mut u64,
-    )
-
-    fmi3SetIntervalDecimal = SetIntervalDecimal(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _intervals: *const f64,
-    )
-
-    fmi3SetIntervalFraction = SetIntervalFraction(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *const u64, _resolutions: *const u64,
-    )
-
-    fmi3SetShiftDecimal = SetShiftDecimal(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _shifts: *const f64,
-    )
-
-    fmi3SetShiftFraction = SetShiftFraction(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *const u64, _resolutions: *const u64,
-    )
-
-    fmi3ActivateModelPartition = ActivateModelPartition(_clockReference: c_uint, _activationTime: f64)
+    fmi3GetIntervalDecimal = GetIntervalDecimal()
+    fmi3GetIntervalFraction = GetIntervalFraction()
+    fmi3GetShiftDecimal = GetShiftDecimal()
+    fmi3GetShiftFraction = GetShiftFraction()
+    fmi3SetIntervalDecimal = SetIntervalDecimal()
+    fmi3SetIntervalFraction = SetIntervalFraction()
+    fmi3SetShiftDecimal = SetShiftDecimal()
+    fmi3SetShiftFraction = SetShiftFraction()
+    fmi3ActivateModelPartition = ActivateModelPartition()
 }
