@@ -102,26 +102,6 @@ fn F_t_goes_on_with_the_slope_of_its_last_two_values() {
     }
 }
 
-/// What went before is part of a state: a step repeated, in this instance or another, has the same bits.
-#[test]
-fn a_state_remembers_the_values_before() {
-    let host = started(&["a_g_late", "F_t_extrapolated"], &[("theta_0", 0.02)]);
-    let step = |host: &Host, time: f64, a_g: f64| {
-        assert_eq!((host.set(&[("a_g", a_g), ("F_t", 20.0 * a_g)]), host.step(time, 0.01)), (OK, OK));
-        host.try_get(&SHOWN).unwrap()
-    };
-    step(&host, 0.0, 1.0);
-    assert_eq!(host.set(&[("a_g", 3.0)]), OK); // and nothing more
-    let (state, bytes) = (host.keep(), host.bytes());
-    let first = [step(&host, 0.01, 3.0), step(&host, 0.02, 2.0)];
-    assert_eq!(host.go_back(state), OK);
-    assert_eq!([step(&host, 0.01, 3.0), step(&host, 0.02, 2.0)], first);
-    let other = Host::new();
-    assert_eq!(other.go_back(other.deserialize(&bytes).unwrap()), OK);
-    assert_eq!(other.get("a_g"), 3.0);
-    assert_eq!([step(&other, 0.01, 3.0), step(&other, 0.02, 2.0)], first);
-}
-
 /// A jump over a tiny step has a slope that leads nowhere: the input is held, and the late one where it was.
 #[test]
 fn a_slope_that_leads_out_of_the_range_is_not_followed() {

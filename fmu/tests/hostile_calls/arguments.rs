@@ -3,8 +3,9 @@
 
 use crate::{C, Sequence, host};
 use FlexibleRocking::state_machine::Stage;
-use FlexibleRocking::variables::{DataType, VARIABLES};
+use FlexibleRocking::variables::{DataType, VARIABLES, Value};
 use libc::{c_char, c_int, c_uint};
+use rocking::Parameters;
 use rocking::run::validity::ASSUMPTIONS;
 use std::any::Any;
 use std::ffi::CString;
@@ -197,18 +198,9 @@ impl Sequence<'_> {
             1 => [min, max][self.rng.usize(..2)],
             2 | 3 if min > 0.0 => self.between(min, max),
             2 | 3 => self.sign() * self.between(1e-6, max),
-            _ => match variable.unwrap().name {
-                "m" | "m0" | "J0" => self.between(1.0, 1e4),
-                "H" => self.between(0.5, 20.0),
-                "B" => self.between(0.1, 3.0),
-                "f_fc" => self.between(0.5, 50.0),
-                "zeta_fc" => self.between(1e-3, 0.3),
-                "r" => self.between(0.5, 1.0),
-                "g" => 9.81,
-                "a_g" => self.sign() * self.between(0.1, 50.0),
-                "F_t" => self.sign() * self.between(1.0, 1e4),
-                "record_scale" | "record_time_scale" => self.between(0.1, 3.0),
-                _ => self.sign() * self.between(1e-4, 0.5),
+            _ => match variable.and_then(|variable| variable.start(&Parameters::EVISON.into())) {
+                Some(Value::Real(start)) if start != 0.0 => (start * self.between(0.3, 3.0)).clamp(min, max),
+                _ => self.sign() * self.between(1e-4, 50.0f64.min(max)),
             },
         }
     }

@@ -191,14 +191,17 @@ unsafe extern "C" fn tell(environment: *mut c_void, status: c_int, _: *const c_c
     }
 }
 
-/// Sets the input, and tries what it must not. What is said to it is not said of the step.
-unsafe extern "C" fn update(environment: *mut c_void, _: f64, _: u8, _: u8, _: u8, _: u8, _: *mut u8, _: *mut f64) {
+/// Sets the input or reads a value, as it is asked to, and tries the other and what it must not. What is said to it is not said
+/// of the step.
+unsafe extern "C" fn update(environment: *mut c_void, _: f64, set: u8, get: u8, _: u8, _: u8, _: *mut u8, _: *mut f64) {
     let told = unsafe { &*environment.cast::<Told>() };
     let ((c, a_g), before) = (told.asked.get(), told.messages.take());
     let (called, reference) = (told.call_back.replace(null_mut()), host::reference("a_g"));
     unsafe {
         fmi3FreeInstance(c);
         assert_eq!((fmi3Terminate(c), fmi3Reset(c), fmi3GetFMUState(c, &mut null_mut())), (ERROR, ERROR, ERROR));
+        assert_eq!(fmi3GetFloat64(c, &reference, 1, &mut 0.0, 1) == OK, get == 1);
+        assert!(set == 1 || fmi3SetFloat64(c, &reference, 1, &0.0, 1) == ERROR);
         assert!([OK, ERROR].contains(&fmi3SetFloat64(c, &reference, 1, &a_g, 1)));
     }
     told.messages.replace(before);

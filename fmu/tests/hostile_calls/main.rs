@@ -231,6 +231,8 @@ struct Slot {
     states: Vec<C>,
     /// One that it has handed out and freed.
     freed: C,
+    /// What it was when it was made, as bytes.
+    new: Vec<u8>,
 }
 
 /// A run of calls on two instances.
@@ -262,6 +264,7 @@ impl<'a> Sequence<'a> {
             is_heard: false,
             states: Vec::new(),
             freed: null_mut(),
+            new: Vec::new(),
         });
         let (rng, bytes, before, drawn) = (Rng::with_seed(0), Vec::new(), None, Drawn::default());
         Sequence { rng, version, interface, location, records, slots, bytes, at: 0, before, drawn }
@@ -313,8 +316,10 @@ impl<'a> Sequence<'a> {
         let messages = slot.told.messages.take();
         assert!(messages.len() <= usize::from(c.is_null()), "{messages:?}");
         (slot.c, slot.is_heard) = (c, is_heard);
-        let made = (!c.is_null()).then(|| snapshot::deserialize(&self.version.bytes(c)).unwrap());
-        assert!(made.is_none_or(|made| made.interface == interface), "not of the interface {interface:?}");
+        if !c.is_null() {
+            slot.new = self.version.bytes(c);
+            assert_eq!(snapshot::deserialize(&slot.new).unwrap().interface, interface);
+        }
     }
 
     /// In whatever state, with the FMU states that it has handed out.
@@ -405,7 +410,10 @@ impl<'a> Sequence<'a> {
             "EnterStepMode" => Stage::StepComplete,
             "EnterContinuousTimeMode" => Stage::ContinuousTimeMode,
             "Terminate" => Stage::Terminated,
-            "Reset" => Stage::Instantiated,
+            "Reset" => {
+                assert!(after == slot.new, "it is not what it was when it was made");
+                Stage::Instantiated
+            }
             _ => before.stage,
         };
         assert_eq!(condition.stage, stage, "{name} in {}: {status} {failure:?}", before.stage);
