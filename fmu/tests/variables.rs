@@ -131,21 +131,8 @@ fn a_value_out_of_range_is_refused_with_all_that_come_with_it() {
             0.0,
             "r = 0 is out of range: it must lie between 0.001 and 1 (coefficient of restitution on the angular velocity at impact)",
         ),
-        ("B", -0.285, "B = -0.285 m is out of range: it must lie between 0.001 and 10000 m (half-width of the base)"),
-        ("m", f64::NAN, "m = NaN kg is out of range: it must lie between 1e-6 and 1e12 kg (top mass)"),
-        (
-            "theta_0",
-            1.6,
-            "theta_0 = 1.6 rad is out of range: it must lie between -1.5 and 1.5 rad (initial rotation of the base; 0 is full contact)",
-        ),
-        (
-            "a_g",
-            f64::INFINITY,
-            "a_g = inf m/s2 is out of range: it must lie between -10000 and 10000 m/s2 (horizontal ground acceleration, positive to the right)",
-        ),
         ("theta", 0.1, "theta cannot be set: it is an output, computed by the FMU"),
-        ("phase", 1.0, "phase cannot be set: it is a local variable, computed by the FMU"),
-        ("chi", 0.9, "chi cannot be set: it is a calculated parameter, computed by the FMU"),
+        ("chi", f64::NAN, "chi cannot be set: it is a calculated parameter, computed by the FMU"),
     ] {
         let message = format!("fmi2SetReal: {message}");
         host.assert_refused(|| host.set(&[("H", 2.0), ("a_g", 1.0), ("u_0", 1e-3), (name, value)]), ERROR, &message);

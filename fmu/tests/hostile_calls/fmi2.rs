@@ -1,4 +1,4 @@
-//! FMI 2.0: how its functions are called, when they may be, how instances are made and led on.
+//! FMI 2.0: how its functions are called, when they may be, how instances are made.
 
 use crate::arguments::{SWITCHES, calls};
 use crate::{C, Table, Told, Version, host};
@@ -59,7 +59,6 @@ pub const VERSION: Version = Version {
     },
     slave: SLAVE,
     model: MODEL,
-    leading_on,
     location: |folder| format!("file://{}", folder.display()),
     instantiate,
     free: fmi2FreeInstance,
@@ -111,24 +110,6 @@ const MODEL: Table = Table {
         - - x x - -  SetTime EnterEventMode Terminate
         - - - x - -  CompletedIntegratorStep SetContinuousStates",
 };
-
-fn leading_on(stage: Stage) -> &'static [&'static str] {
-    match stage {
-        Stage::Instantiated => &["SetReal", "SetInteger", "SetString", "SetupExperiment", "EnterInitializationMode"],
-        Stage::InitializationMode => &["SetReal", "GetReal", "ExitInitializationMode", "ExitInitializationMode"],
-        Stage::StepComplete => &["SetReal", "SetRealInputDerivatives", "DoStep", "DoStep", "GetReal"],
-        Stage::EventMode => &["SetReal", "NewDiscreteStates", "EnterContinuousTimeMode", "GetReal"],
-        Stage::ContinuousTimeMode => &[
-            "SetTime",
-            "SetContinuousStates",
-            "GetDerivatives",
-            "CompletedIntegratorStep",
-            "SetReal",
-            "EnterEventMode",
-        ],
-        _ => &["Reset", "SetFMUstate", "GetReal"],
-    }
-}
 
 fn instantiate(
     rng: &mut Rng,

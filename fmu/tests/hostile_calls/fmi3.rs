@@ -1,4 +1,4 @@
-//! FMI 3.0: how its functions are called, when they may be, how instances are made and led on.
+//! FMI 3.0: how its functions are called, when they may be, how instances are made.
 
 use crate::arguments::{SWITCHES, calls};
 use crate::{C, Table, Told, Version, host};
@@ -69,7 +69,6 @@ pub const VERSION: Version = Version {
     },
     slave: SLAVE,
     model: MODEL,
-    leading_on,
     location: |folder| format!("{}/", folder.display()),
     instantiate,
     free: fmi3FreeInstance,
@@ -130,19 +129,6 @@ const MODEL: Table = Table {
         - - x x - -  SetTime Terminate
         - - - x - -  EnterEventMode CompletedIntegratorStep SetContinuousStates",
 };
-
-fn leading_on(stage: Stage) -> &'static [&'static str] {
-    match stage {
-        Stage::Instantiated => &["SetFloat64", "SetInt64", "SetString", "EnterInitializationMode"],
-        Stage::InitializationMode => &["SetFloat64", "GetFloat64", "ExitInitializationMode", "ExitInitializationMode"],
-        Stage::StepComplete => &["SetFloat64", "DoStep", "DoStep", "GetFloat64", "EnterEventMode"],
-        Stage::EventMode => &["SetFloat64", "UpdateDiscreteStates", "EnterContinuousTimeMode", "EnterStepMode"],
-        Stage::ContinuousTimeMode => {
-            &["SetTime", "SetContinuousStates", "CompletedIntegratorStep", "SetFloat64", "EnterEventMode"]
-        }
-        _ => &["Reset", "SetFMUState", "GetFloat64"],
-    }
-}
 
 /// A host of co-simulation may have itself called back in every step for the ground's acceleration.
 /// A host of co-simulation may have itself called back in every step for the ground's acceleration.

@@ -43,6 +43,26 @@ const CALLS_PER_SEQUENCE: usize = 400;
 /// Sequences in which all is made that is made when it is first needed.
 const WARMING_UP: u32 = 20;
 
+/// What leads on, in the stages that it is for.
+const LEADING_ON: [&str; 16] = [
+    "SetupExperiment",
+    "EnterInitializationMode",
+    "ExitInitializationMode",
+    "SetReal",
+    "SetFloat64",
+    "DoStep",
+    "EnterEventMode",
+    "NewDiscreteStates",
+    "UpdateDiscreteStates",
+    "EnterStepMode",
+    "EnterContinuousTimeMode",
+    "SetTime",
+    "SetContinuousStates",
+    "CompletedIntegratorStep",
+    "SetFMUstate",
+    "SetFMUState",
+];
+
 /// An instance.
 type C = *mut c_void;
 
@@ -54,8 +74,6 @@ struct Version {
     calls: &'static [(&'static str, fn(C, &mut Sequence) -> c_int)],
     slave: Table,
     model: Table,
-    /// Functions that lead on from a stage.
-    leading_on: fn(Stage) -> &'static [&'static str],
     /// The folder `resources` as this version names it.
     location: fn(&Path) -> String,
     /// Makes an instance, which tells what it logs, of a name, a token and a location.
@@ -330,15 +348,18 @@ impl<'a> Sequence<'a> {
         slot.states.clear();
     }
 
-    /// Calls any function, or one that leads on, on an instance that is `before`.
+    /// Calls any function, or one that leads on, of an instance that is `before`.
     fn call(&mut self, before: Vec<u8>, tally: &mut Tally) {
         let (calls, stage) = (self.version.calls, self.before.as_ref().map_or(Stage::Error, |before| before.stage));
-        let leading_on = (self.version.leading_on)(stage);
         let mut number = self.rng.usize(..calls.len());
         // few come to an error
-        if self.one_in(if stage == Stage::Error { 8 } else { 2 }) {
-            let name = leading_on[self.rng.usize(..leading_on.len())];
-            number = calls.iter().position(|(called, _)| called[4..] == *name).unwrap();
+        if self.one_in(if stage == Stage::Error { 8 } else { 2 })
+            && let Some(before) = &self.before
+        {
+            let table = self.version.table(before.interface);
+            let is_leading_on = |name: &str| LEADING_ON.contains(&&name[4..]) && table.allowed(name).contains(&stage);
+            let leading_on = (0..calls.len()).filter(|at| is_leading_on(calls[*at].0)).collect::<Vec<_>>();
+            number = self.rng.choice(leading_on).unwrap_or(number);
         }
         let (name, call) = calls[number];
         self.drawn = Drawn::default();
