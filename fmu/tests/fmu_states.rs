@@ -1,5 +1,5 @@
 //! FMU states: kept, restored, serialized.
-#![allow(unsafe_code)]
+#![allow(unsafe_code, non_snake_case)] // the C interface; F_t
 
 mod host;
 
@@ -17,16 +17,18 @@ fn run(host: &Host, time: f64) -> Vec<Vec<f64>> {
     (0..100)
         .map(|i| {
             let t = time + 0.01 * f64::from(i);
-            assert_eq!((host.set(&[("a_g", 6.0 * (9.0 * t).sin())]), host.set_slope("a_g", 1, 2.0)), (OK, OK));
+            let [a_g, F_t] = [6.0 * (9.0 * t).sin(), 40.0 * (7.0 * t).sin()];
+            assert_eq!((host.set(&[("a_g", a_g), ("F_t", F_t)]), host.set_slope("a_g", 1, 2.0)), (OK, OK));
             assert_eq!(host.step(t, 0.01), OK, "{:?}", host.log);
             host.try_get(&OUTPUTS).unwrap()
         })
         .collect()
 }
 
-/// In the middle of rocking, an input with a slope set.
+/// In the middle of rocking, one input with a slope set and one that goes on with that of its last two values.
 fn rocking() -> Host {
-    let host = Host::started(&[("theta_0", 0.02), ("r", 0.9)]);
+    let host = Host::initializing(&[("theta_0", 0.02), ("r", 0.9)]);
+    assert_eq!((host.set_boolean("F_t_extrapolated", 1), host.exit()), (OK, OK));
     run(&host, 0.0);
     assert_eq!((host.set(&[("a_g", 3.0)]), host.set_slope("a_g", 1, -40.0)), (OK, OK));
     host

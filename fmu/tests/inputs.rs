@@ -114,27 +114,3 @@ fn a_slope_that_leads_out_of_the_range_is_not_followed() {
         assert_eq!(host.get("a_ground"), a_g);
     }
 }
-
-/// Held, a force is right to the first order of the step; extrapolated, to the second.
-#[test]
-fn the_error_is_of_second_order() {
-    let at_end = |steps: u32, switches: Option<&[&str]>| {
-        let host = started(switches.unwrap_or_default(), &[("theta_0", 0.1)]);
-        let step = 0.1 / f64::from(steps);
-        let F_t = |k: u32| 1000.0 * (30.0 * step * f64::from(k)).sin();
-        for k in 0..steps {
-            assert_eq!(host.set(&[("F_t", F_t(k))]), OK);
-            if switches.is_none() {
-                assert_eq!(host.set_slope("F_t", 1, (F_t(k + 1) - F_t(k)) / step), OK);
-            }
-            assert_eq!(host.step(step * f64::from(k), step), OK);
-        }
-        host.get("theta")
-    };
-    let exact = at_end(4000, None);
-    for (switches, order) in [(&[][..], 1.0), (&["F_t_extrapolated"], 2.0)] {
-        let [coarse, fine] = [50, 100].map(|steps| (at_end(steps, Some(switches)) - exact).abs());
-        let found = (coarse / fine).log2();
-        assert!((found - order).abs() < 0.2, "order {found} for {order}: {coarse:e}, {fine:e}");
-    }
-}

@@ -80,8 +80,6 @@ fn null_and_misaligned_pointers_are_errors() {
     unsafe {
         assert!(fmi2Instantiate(c"a".as_ptr(), 1, guid.as_ptr(), c"".as_ptr(), null(), 0, 0).is_null());
         assert!(fmi2Instantiate(no_text, 1, guid.as_ptr(), c"".as_ptr(), &functions, 0, 0).is_null());
-        assert!(fmi2Instantiate(c"a".as_ptr(), 1, no_text, c"".as_ptr(), &functions, 0, 0).is_null());
-        assert!(fmi2Instantiate(c"a".as_ptr(), 1, guid.as_ptr(), no_text, &functions, 0, 0).is_null());
         assert!(fmi2Instantiate(c"\xff".as_ptr(), 1, guid.as_ptr(), c"".as_ptr(), &functions, 0, 0).is_null());
     }
     let texts: Vec<_> = log.take().into_iter().map(|message| message.text).collect();
@@ -89,8 +87,6 @@ fn null_and_misaligned_pointers_are_errors() {
         texts,
         [
             "fmi2Instantiate: instanceName must be a valid pointer; it is null or misaligned",
-            "fmi2Instantiate: fmuGUID must be a valid pointer; it is null or misaligned",
-            "fmi2Instantiate: fmuResourceLocation must be a valid pointer; it is null or misaligned",
             "fmi2Instantiate: instanceName is not UTF-8 text of at most 65536 bytes",
         ]
     );

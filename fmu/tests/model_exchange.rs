@@ -9,35 +9,6 @@ use host::*;
 
 const PHASE_IN_CONTACT: i32 = 1;
 
-/// The states of Evison's wall after half a second of free rocking, by steps of `h`, with its transitions.
-fn released(h: f64) -> ([f64; 4], i32) {
-    let host = Host::going_model(&[("theta_0", 0.04), ("u_0", 7.5e-4)]);
-    let steps = (0.5 / h).round() as usize;
-    for i in 0..steps {
-        host.integrate(i as f64 * h, h);
-    }
-    (host.states().unwrap(), host.integer("transitions"))
-}
-
-/// Of the fourth order that the host's method has, through impacts at any instant within its steps.
-#[test]
-fn the_hosts_error_is_that_of_its_own_method() {
-    let slave = Host::started(&[("theta_0", 0.04), ("u_0", 7.5e-4)]);
-    assert_eq!(slave.step(0.0, 0.5), OK);
-    let expected = ["u", "u_dot", "theta", "theta_dot"].map(|name| slave.get(name));
-    let error = |h: f64| {
-        let (states, transitions) = released(h);
-        assert_eq!(transitions, slave.integer("transitions"));
-        states.iter().zip(expected).zip(slave_scale()).map(|((a, b), scale)| (a - b).abs() / scale).fold(0.0, f64::max)
-    };
-    let (coarse, fine) = (error(1e-3), error(2.5e-4));
-    assert!(fine < 5e-6 && fine < coarse / 100.0, "{coarse:e}, then {fine:e}");
-}
-
-fn slave_scale() -> [f64; 4] {
-    Host::new_model().nominals().unwrap()
-}
-
 /// An input that the host changes while it integrates acts at each trial as it is set; one that jumps, from the event on.
 #[test]
 fn inputs_act_as_they_are_set() {
@@ -224,28 +195,6 @@ fn what_no_integrator_should_try_is_sent_back() {
     assert_eq!(host.set_states([0.285, 0.0, 0.1, 0.0]), OK);
     assert_eq!(host.derivatives(), Err(DISCARD));
     assert_eq!((host.set_states([0.0, 0.0, 0.1, 0.0]), host.derivatives().is_ok()), (OK, true));
-}
-
-/// From its bytes an instance goes on to the same bits, also from between a step that needs an event and the event.
-#[test]
-fn an_instance_goes_on_from_bytes() {
-    let host = Host::going_model(&[("theta_0", 0.02)]);
-    let mut time = 0.0;
-    while time < 0.2 {
-        host.integrate(time, 1e-3);
-        time += 1e-3;
-    }
-    assert_eq!((host.set_time(0.35), host.complete()), (OK, Ok((true, false))));
-    let bytes = host.bytes();
-    let other = Host::going_model(&[]);
-    assert_eq!(other.go_back(other.deserialize(&bytes).unwrap()), OK);
-    for host in [&host, &other] {
-        assert_eq!(host.enter_event_mode(), OK);
-        assert_eq!(host.update().unwrap().values_of_continuous_states_changed, 1);
-        assert_eq!(host.go_on(), OK);
-        (0..50).for_each(|i| _ = host.integrate(0.35 + 1e-3 * f64::from(i), 1e-3));
-    }
-    assert_eq!(host.bytes(), other.bytes());
 }
 
 /// Peaks between the host's steps are not the FMU's to see.

@@ -325,10 +325,6 @@ impl Host {
         self.written(fmi2GetEventIndicators)
     }
 
-    pub fn nominals(&self) -> Result<[f64; 4], c_int> {
-        self.written(fmi2GetNominalsOfContinuousStates)
-    }
-
     /// Whether the complete step asks for event mode, and for the end.
     pub fn complete(&self) -> Result<(bool, bool), c_int> {
         let (mut event, mut end) = (c_int::MAX, c_int::MAX);
