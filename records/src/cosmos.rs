@@ -53,7 +53,7 @@ pub(super) fn parse(text: &str, format: Format, how: &Reading) -> Result<Parsed,
         None if how.unit.is_some() => Stated::Nothing,
         None => return Err(bad(announced, "the unit of the accelerations is not stated").remedied_by(Remedy::Unit)),
     };
-    let (unit, unit_from) = decide(&stated, how.unit).map_err(|problem| bad(announced, problem))?;
+    let (unit, unit_from) = decide(&stated, how.unit, announced)?;
     let mut parsed = Parsed::new(format, title(text, format), unit, unit_from, Times::Every(dt));
     if channels.len() > 1 {
         parsed.remark(format!("channel {} of {}", channel + 1, channels.len()));

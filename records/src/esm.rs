@@ -30,7 +30,7 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     }
     let (line, units) = needed("UNITS")?;
     let stated = Unit::named(units).map_or(Stated::Other(units.into()), Stated::Unit);
-    let (unit, unit_from) = decide(&stated, how.unit).map_err(|problem| bad(line, problem))?;
+    let (unit, unit_from) = decide(&stated, how.unit, line)?;
     let (line, step) = needed(STEP)?;
     let dt = number(step).filter(|dt| *dt > 0.0);
     let dt = dt.ok_or_else(|| bad(line, format!("{STEP} = {} must be a number greater than 0", quote(step))))?;

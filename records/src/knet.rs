@@ -34,8 +34,7 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
         bad(line, format!("found {} where the scale factor is stated, such as 3920(gal)/6182761", quote(factor)))
     })?;
     let factor = positive(line, "Scale Factor", gal)? / positive(line, "Scale Factor", counts)?;
-    let (unit, unit_from) =
-        decide(&Stated::Unit(Unit::CentimetrePerSecondSquared), how.unit).map_err(|problem| bad(line, problem))?;
+    let (unit, unit_from) = decide(&Stated::Unit(Unit::CentimetrePerSecondSquared), how.unit, line)?;
     let (line, duration) = find("Duration Time(s)")?;
     let duration = positive(line, "Duration Time(s)", duration)?;
 

@@ -100,13 +100,6 @@ impl Parsed {
             Times::At(times) => times,
             Times::Every(dt) | Times::Asked(dt) => (0..count).map(|i| i as f64 * dt).collect(),
         };
-        if let Some(index) = times.windows(2).position(|pair| pair[1] <= pair[0] || !pair[1].is_finite()) {
-            let (before, after) = (times[index], times[index + 1]);
-            return Err(bad(
-                last_line,
-                format!("the time {after:?} s does not come after the one before it, {before:?} s"),
-            ));
-        }
         let record = Record::from_samples(title, times, acceleration);
         record.map(|record| (record, source)).map_err(|error| bad(last_line, error.to_string()))
     }

@@ -29,24 +29,6 @@ fn every_layout_gives_its_samples_in_its_unit() {
     }
 }
 
-/// In whatever encoding and with whatever ends of lines.
-#[test]
-fn every_layout_is_read_in_every_encoding() {
-    for Layout { path, bytes, how, .. } in all(40) {
-        let text = String::from_utf8(bytes.clone()).unwrap().replace("\r\n", "\n");
-        let expected = rocking_records::from_bytes(&path, &bytes, &how).unwrap();
-        let utf_16: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
-        for bytes in [
-            text.replace('\n', "\r\n").into_bytes(),
-            text.replace('\n', "\r").into_bytes(),
-            [b"\xef\xbb\xbf", text.as_bytes()].concat(),
-            [b"\xff\xfe", utf_16.as_slice()].concat(),
-        ] {
-            assert_eq!(rocking_records::from_bytes(&path, &bytes, &how).unwrap(), expected, "{}", path.display());
-        }
-    }
-}
-
 /// A unit or a step that contradicts the file is refused in every layout that states one.
 #[test]
 fn what_contradicts_a_file_is_refused() {
@@ -135,19 +117,6 @@ fn a_channel_of_csmip_is_chosen_and_its_line_may_end_early() {
     }
     let unknown = read(&text.replace(announced, start), &Reading::default()).unwrap_err();
     assert_eq!(line_of(&unknown).1, Some(Remedy::Unit));
-}
-
-/// 46 g in m/s2 are 451 m/s2.
-#[test]
-fn a_peak_that_no_earthquake_has_is_told() {
-    let path = std::env::temp_dir().join(format!("rocking-peak-{}.csv", std::process::id()));
-    let warnings = |peak: f64| {
-        std::fs::write(&path, format!("t,a\n0,{peak}\n.05,-{peak}\n")).unwrap();
-        rocking_records::read(&path, &Reading::default(), 9.81).unwrap().1.warnings
-    };
-    assert_eq!(warnings(46.0 * 9.81), ["a peak of 46 g: is the unit right?"]);
-    assert!(warnings(4.9 * 9.81).is_empty());
-    std::fs::remove_file(path).unwrap();
 }
 
 /// Where the largest count is the stated maximum there is no offset; a maximum that is neither is told.
