@@ -105,7 +105,6 @@ enum Command {
   rocking-fmu describe --preset evison --f-fc 8 --r 0.9
   rocking-fmu describe --weight 500 --weight0 0 --width 3 --alpha-cg 0.25 --period-fc 0.4 --zeta-fc 0.02 --r 0.95
   rocking-fmu describe --template > pier.toml
-  rocking-fmu describe --preset evison --picture wall.svg
   rocking-fmu describe --parameters pier.toml")]
     Describe(describe::DescribeArgs),
     /// Estimate demands and frequency without a time history (Eqs 14, 21 to 24)
