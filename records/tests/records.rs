@@ -1,16 +1,14 @@
 //! Every layout of a record's file, whole and damaged.
 //!
-//! `FUZZ_RECORDS` says how many mutations of files to read (`make fuzz`: ten million). What a mutation is follows from its
-//! number alone, and a failure names it.
+//! `FUZZ_RECORDS` says how many mutations of files to read (`make fuzz`: ten million).
 
 mod layouts;
 
-use fastrand::Rng;
 use layouts::{DT, Layout, all, cosmos, samples};
+use proptest::prelude::*;
 use rocking_records::{Column, Reading, RecordError, Remedy, Unit, UnitFrom};
+use std::env;
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::{env, thread};
 
 #[test]
 fn every_layout_gives_its_samples_in_its_unit() {
@@ -165,35 +163,6 @@ fn what_is_no_acceleration_is_refused() {
     }
 }
 
-/// Mutations without `FUZZ_RECORDS`.
-const MUTATIONS: u64 = 40_000;
-
-/// No panic; what is read is a record; memory is bounded by the file's size.
-#[test]
-fn no_mutation_does_harm() {
-    let mutations =
-        env::var("FUZZ_RECORDS").map_or(MUTATIONS, |count| count.parse().expect("FUZZ_RECORDS is a number"));
-    let layouts = all(37);
-    let next = AtomicU64::new(0);
-    let work = || {
-        let mut read = 0;
-        loop {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            if number >= mutations {
-                return read;
-            }
-            read += u64::from(survives(&layouts, number));
-        }
-    };
-    let cores = thread::available_parallelism().map_or(1, usize::from);
-    let read: u64 = thread::scope(|scope| {
-        let threads: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
-        threads.into_iter().map(|thread| thread.join().expect("the panic is above")).sum()
-    });
-    println!("{mutations} mutations, {read} of them still records");
-    assert!(read > mutations / 50 && read < mutations, "{read} of {mutations} are records");
-}
-
 /// The memory that the file `bytes` may take.
 fn bound(bytes: &[u8]) -> u64 {
     const LEAST: u64 = 1 << 16;
@@ -201,112 +170,60 @@ fn bound(bytes: &[u8]) -> u64 {
     LEAST + PER_BYTE * bytes.len() as u64
 }
 
-/// Reads the mutation called `number`, and says whether it is a record.
-fn survives(layouts: &[Layout], number: u64) -> bool {
-    let mut rng = Rng::with_seed(number);
-    let layout = rng.choice(layouts).unwrap();
-    let (mut bytes, mut how) = (layout.bytes.clone(), layout.how.clone());
-    for _ in 0..rng.usize(1..6) {
-        mutate(&mut bytes, &mut rng);
-    }
-    if rng.u8(..4) == 0 {
-        how.ignores_count = rng.bool();
-        how.unit = rng.choice(Unit::NAMES).map(|(_, unit)| unit).filter(|_| rng.bool());
-        how.dt = rng.bool().then_some(DT);
-        let column = [Column::All, Column::Number(rng.usize(1..5))];
-        how.column = rng.bool().then(|| rng.choice(column)).flatten();
-    }
-    let path = if rng.u8(..8) == 0 { Path::new("any.csv") } else { &layout.path };
-    let mut result = None;
-    let counted = allocation_counter::measure(|| result = Some(rocking_records::from_bytes(path, &bytes, &how)));
-    assert!(counted.bytes_max <= bound(&bytes), "mutation {number}: {} bytes of memory", counted.bytes_max);
-    let Some(Ok((record, _))) = result else { return false };
-    let (times, acceleration) = (record.times(), record.acceleration());
-    assert!(times.len() >= 2 && times.len() == acceleration.len() && times.len() <= bytes.len(), "mutation {number}");
-    assert!(times.windows(2).all(|pair| pair[1] > pair[0]) && times[times.len() - 1].is_finite(), "mutation {number}");
-    assert!(acceleration.iter().all(|value| value.is_finite()), "mutation {number}");
-    true
+/// What files have in them, and what is meant to hurt, with a bar between each and the next.
+const WORDS: &str = "\n|\r|\r\n|\n\n| |\t|,|;|\"|'|#|(|[g]|(cm/s2)|)|e|E+999|-|nan|inf|1e308|-1e-320|99999999999999999999|1,5|\
+    NPTS= 2, DT= 1e-300 SEC|/s2|_|\u{b2}|\0|\u{2212}|units=| pts acc units=g,(8F0.3)\n|\
+    100 Real-header values follow (1F0.0)\n";
+
+/// What takes the place of some bytes of a file.
+fn inserted() -> impl Strategy<Value = Vec<u8>> {
+    let words: Vec<_> = WORDS.split('|').collect();
+    prop_oneof![
+        4 => prop::sample::select(words.clone()).prop_map(|word| word.as_bytes().to_vec()),
+        1 => (prop::sample::select(words), 1..100_usize).prop_map(|(word, times)| word.repeat(times).into_bytes()),
+        3 => prop::collection::vec(any::<u8>(), 0..3),
+    ]
 }
 
-/// What files have in them, and what is meant to hurt.
-const WORDS: [&[u8]; 36] = [
-    b"\n",
-    b"\r",
-    b"\r\n",
-    b"\n\n",
-    b" ",
-    b"\t",
-    b",",
-    b";",
-    b"\"",
-    b"'",
-    b"#",
-    b"(",
-    b"[g]",
-    b"(cm/s2)",
-    b")",
-    b"e",
-    b"E+999",
-    b"-",
-    b"nan",
-    b"inf",
-    b"1e308",
-    b"-1e-320",
-    b"99999999999999999999",
-    b"0",
-    b".",
-    b"1,5",
-    b"NPTS= 2, DT= 1e-300 SEC",
-    b"/s2",
-    b"_",
-    b"\xc2\xb2",
-    b"\xff",
-    b"\0",
-    b"\xe2\x88\x92",
-    b"units=",
-    b" pts acc units=g,(8F0.3)\n",
-    b"100 Real-header values follow (1F0.0)\n",
-];
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: env::var("FUZZ_RECORDS").map_or(20_000, |count| count.parse().expect("FUZZ_RECORDS is a number")),
+        ..ProptestConfig::default()
+    })]
 
-fn mutate(bytes: &mut Vec<u8>, rng: &mut Rng) {
-    const LARGEST: usize = 1 << 14;
-    if bytes.is_empty() {
-        bytes.extend(b"0,1\n1,2\n");
-    }
-    let at = rng.usize(..bytes.len());
-    let range = |rng: &mut Rng, len: usize| at..len.min(at + 1 + rng.usize(..60));
-    match rng.u8(..9) {
-        0 => bytes[at] = rng.u8(..),
-        1 => bytes[at] ^= 1 << rng.u8(..8),
-        2 => drop(bytes.drain(range(rng, bytes.len()))),
-        3 => bytes.truncate(at),
-        4 => {
-            let part = bytes[range(rng, bytes.len())].to_vec();
-            let to = rng.usize(..bytes.len());
-            bytes.splice(to..to, part);
+    /// No panic; what is read is a record; memory is bounded by the file's size.
+    #[test]
+    fn no_mutation_does_harm(
+        layout in prop::sample::select(all(37)),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), 0..60_usize, inserted()), 1..6),
+        unit in prop::option::weighted(0.1, prop::sample::select(&Unit::NAMES[..])),
+        column in prop::option::weighted(0.1, prop::sample::select(&[Column::All, Column::Number(1), Column::Number(3)][..])),
+        has_step in prop::bool::weighted(0.1),
+        ignores_count in prop::bool::weighted(0.1),
+        is_named in prop::bool::weighted(0.9),
+    ) {
+        let Layout { path, mut bytes, how, .. } = layout;
+        for (at, removed, inserted) in changes {
+            let at = at.index(bytes.len() + 1);
+            bytes.splice(at..bytes.len().min(at + removed), inserted);
         }
-        5 => {
-            let word = rng.choice(WORDS).unwrap();
-            let times = if rng.u8(..20) == 0 { rng.usize(1..100) } else { 1 };
-            bytes.splice(at..at, word.repeat(times));
-        }
-        6 => {
-            let replaced = range(rng, bytes.len());
-            bytes.splice(replaced, rng.choice(WORDS).unwrap().iter().copied());
-        }
-        7 => {
-            let mut lines: Vec<_> = bytes.split(|byte| *byte == b'\n').map(<[u8]>::to_vec).collect();
-            let (one, other) = (rng.usize(..lines.len()), rng.usize(..lines.len()));
-            lines.swap(one, other);
-            *bytes = lines.join(&b'\n');
-        }
-        _ => {
-            if let Some(digit) = bytes[at..].iter_mut().find(|byte| byte.is_ascii_digit()) {
-                *digit = b'0' + rng.u8(..10);
-            }
+        let how = Reading {
+            unit: unit.map(|(_, unit)| unit).or(how.unit),
+            dt: has_step.then_some(DT).or(how.dt),
+            column: column.or(how.column),
+            ignores_count,
+        };
+        let path = if is_named { path } else { "any.csv".into() };
+        let mut result = None;
+        let counted = allocation_counter::measure(|| result = Some(rocking_records::from_bytes(&path, &bytes, &how)));
+        prop_assert!(counted.bytes_max <= bound(&bytes), "{} bytes of memory", counted.bytes_max);
+        if let Some(Ok((record, _))) = result {
+            let (times, acceleration) = (record.times(), record.acceleration());
+            prop_assert!(times.len() >= 2 && times.len() == acceleration.len() && times.len() <= bytes.len());
+            prop_assert!(times.windows(2).all(|pair| pair[1] > pair[0]) && times[times.len() - 1].is_finite());
+            prop_assert!(acceleration.iter().all(|value| value.is_finite()));
         }
     }
-    bytes.truncate(LARGEST);
 }
 
 /// Nothing is read again for each of its parts: memory stays in bounds, and so does time, or this would never end.
@@ -314,8 +231,8 @@ fn mutate(bytes: &mut Vec<u8>, rng: &mut Rng) {
 fn a_large_file_of_anything_stays_in_bounds() {
     const SIZE: usize = 1 << 18;
     for Layout { path, bytes, how, .. } in all(10) {
-        for word in WORDS {
-            let hostile = [&bytes[..bytes.len() * 2 / 3], &word.repeat(SIZE / word.len())].concat();
+        for word in WORDS.split('|') {
+            let hostile = [&bytes[..bytes.len() * 2 / 3], word.repeat(SIZE / word.len()).as_bytes()].concat();
             let counted = allocation_counter::measure(|| drop(rocking_records::from_bytes(&path, &hostile, &how)));
             assert!(counted.bytes_max <= bound(&hostile), "{}, {word:?}: {}", path.display(), counted.bytes_max);
         }

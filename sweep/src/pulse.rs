@@ -15,7 +15,7 @@
 //! its kinks, are corners. Where it begins or ends off 0 there is a jump: at the start and the end of the record itself, and
 //! over 1e-9 T where there is a lead-in or a rest.
 
-use crate::{Refused, ensure};
+use crate::{Refused, ensure, six_digits};
 use rocking::Structure;
 use rocking::run::record::{MAX_SAMPLES, Record};
 use rocking::structure::quantity::{Quantity, quantity};
@@ -303,10 +303,6 @@ impl Pulse {
     }
 }
 
-fn six_digits(value: f64) -> f64 {
-    format!("{value:.5e}").parse().expect("a number in Rust's own notation")
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -370,15 +366,6 @@ mod tests {
         }
     }
 
-    /// The peak of a wavelet is its amplitude, which β = 1.3801 does for the antisymmetric one.
-    #[test]
-    fn wavelets_peak_at_their_amplitude() {
-        assert_abs_diff_eq!(beta(), 1.3801, epsilon = 5e-5);
-        for shape in [Shape::Ricker, Shape::AntisymmetricRicker] {
-            assert_relative_eq!(pulse(shape).record().unwrap().pga(), AMPLITUDE, max_relative = 1e-6);
-        }
-    }
-
     /// Lines stay within the error of the curve at a hundred points each, and are not much better than that: no more of
     /// them than it takes. With the curve's impulse they are off to both sides.
     #[test]
@@ -400,15 +387,6 @@ mod tests {
                 assert!((0.3 * error..=error).contains(&most), "{shape:?}, {error}: {off:?}");
             }
         }
-    }
-
-    /// Steps four times as long are 256 times as far off in what the whole motion does: the impulse is kept.
-    #[test]
-    fn impulses_are_kept_to_fourth_order() {
-        let velocity = |error| end_of(&Pulse { error, ..pulse(Shape::HalfSine) }.record().unwrap())[0];
-        let off = [1.6e-3, 1e-4].map(|error| (velocity(error) * OMEGA / (2.0 * AMPLITUDE) - 1.0).abs());
-        assert!((150.0..400.0).contains(&(off[0] / off[1])), "{off:?}");
-        assert!(off[1] < 1e-8, "{off:?}");
     }
 
     /// What [`Shape::definition`] says of the peak, at the γ and ν of the least one and of the largest.
