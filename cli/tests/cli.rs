@@ -170,23 +170,6 @@ fn a_result_can_be_traced_to_its_cause() {
     }
 }
 
-/// Asked as bash asks: of the last word that has been begun.
-#[test]
-fn bash_completes_options_of_a_command() {
-    let folder = folder();
-    let (script, _) = succeed(folder.path(), "completions bash");
-    fs::write(folder.path().join("completions"), script).unwrap();
-    for (words, expected) in [("sim", "simulate"), ("simulate --re", "--record"), ("simulate --detail mod", "modal")] {
-        let before = words.rsplit_once(' ').map_or("rocking-fmu", |(before, _)| before.rsplit(' ').next().unwrap());
-        let ask = format!(
-            "source completions; COMP_WORDS=(rocking-fmu {words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); \
-             _rocking__fmu rocking-fmu \"${{COMP_WORDS[COMP_CWORD]}}\" {before}; echo \"${{COMPREPLY[*]}}\""
-        );
-        let answer = std::process::Command::new("bash").args(["-c", &ask]).current_dir(folder.path()).output().unwrap();
-        assert_eq!(String::from_utf8(answer.stdout).unwrap(), format!("{expected}\n"), "{words}");
-    }
-}
-
 #[test]
 fn the_template_is_the_structure() {
     let folder = folder();

@@ -183,22 +183,6 @@ fn rows_of_other_inputs_are_kept_and_not_counted() {
     assert_eq!(succeed(folder.path(), "sweep sweep.toml").0, summary);
 }
 
-/// What an editor of another system makes of the file is gone on with; rows that are there twice count once.
-#[test]
-fn lines_may_end_as_they_do_elsewhere_and_be_there_twice() {
-    let folder = sweep(SWEEP);
-    let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
-    let whole = read(&folder, "sweep.csv");
-    let lines: Vec<_> = whole.lines().take(20).chain(whole.lines().skip(1).take(3)).collect();
-    let edited: String = lines.iter().map(|line| format!("{line}\r\n")).collect();
-    fs::write(folder.path().join("sweep.csv"), &edited).unwrap();
-    let (again, said) = succeed(folder.path(), "sweep sweep.toml");
-    assert!(said.starts_with("sweep.csv: 19 of 54 runs done"), "{said}");
-    assert!(said.contains("sweep.csv: 3 row(s) are there again: counted once"), "{said}");
-    assert_eq!(again, summary);
-    assert!(read(&folder, "sweep.csv").starts_with(&edited));
-}
-
 /// Conditions are in the rows and in their keys; the intensity measure is neither.
 #[test]
 fn conditions_of_a_sweep_are_those_of_its_runs() {
@@ -315,39 +299,5 @@ vary = { slenderness = [4, 5, 6, 8], r = [0.8, 0.9, 1] }
         let strongest = of_limit["bins"].as_array().unwrap().last().unwrap()["highest"].as_f64().unwrap();
         assert_eq!(of_limit["median_is_beyond_the_runs"], is_beyond);
         assert_eq!(of_limit["median"].as_f64().unwrap() > strongest, is_beyond);
-    }
-}
-
-/// Two values of H/B whose products with B are one H.
-#[test]
-fn runs_that_are_the_same_are_refused() {
-    let folder = sweep(&SWEEP.replace("[4, 6, 8], r", "[7.142857142857144, 7.142857142857145], r"));
-    let (code, message) = fail(folder.path(), "sweep sweep.toml --quiet");
-    let expected = "error: two runs are the same: values that vary differ by less than a rounding error\n";
-    assert_eq!((code, message.as_str()), (1, expected));
-}
-
-/// The file of something else, or with a row that nobody can read, is left as it is.
-#[test]
-fn a_damaged_file_is_refused_by_its_line() {
-    let folder = sweep(SWEEP);
-    succeed(folder.path(), "sweep sweep.toml --threads 1");
-    let whole = read(&folder, "sweep.csv");
-    let (headings, rows) = whole.split_once('\n').unwrap();
-    let row = rows.lines().next().unwrap();
-    let not_headings = format!(
-        "line 1 is not the headings of this sweep's rows, in this version of the program: name another file with -o, or \
-         remove this one. These are the headings:\n{headings}\n"
-    );
-    for (content, expected) in [
-        (rows.to_owned(), not_headings.as_str()),
-        ("# rocking-fmu sweep\n".into(), &not_headings),
-        (whole.replacen(row, "1,2", 1), "CSV error: record 1 (line: 2, "),
-        (whole.replacen(&row[..30], "key", 1), "line 2 cannot be read: remove it, to do its run again: "),
-    ] {
-        fs::write(folder.path().join("sweep.csv"), &content).unwrap();
-        let (code, message) = fail(folder.path(), "sweep sweep.toml");
-        assert!(code == 1 && message.starts_with(&format!("error: sweep.csv: {expected}")), "{message}");
-        assert_eq!(read(&folder, "sweep.csv"), content);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::parsed::{Parsed, Times};
 use super::sampling::Sampling;
-use super::text::{acceleration, numbered, quote, without_blanks};
+use super::text::{numbered, quote};
 use super::unit::Stated;
 use super::{BadLine, Format, Reading, Unit, bad, source::decide};
 
@@ -30,12 +30,7 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     };
 
     let mut parsed = Parsed::new(Format::At2, title.trim(), unit, unit_from, Times::Every(dt));
-    for line in without_blanks(numbered(text).skip(HEADER_LINES)) {
-        let (line, values) = line?;
-        for value in values.split_whitespace() {
-            parsed.add(acceleration(value), line)?;
-        }
-    }
+    parsed.read(numbered(text).skip(HEADER_LINES), None)?;
     parsed.check_count("NPTS", npts, how)?;
     Ok(parsed)
 }

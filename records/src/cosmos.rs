@@ -4,7 +4,7 @@
 //! many accelerations follow, their unit and their columns; in volume 2 velocities and displacements come after them.
 
 use super::parsed::{Parsed, Times};
-use super::text::{acceleration, columns, number, numbered, quote, without_blanks};
+use super::text::{columns, number, numbered, quote};
 use super::unit::Stated;
 use super::{BadLine, Column, Format, Reading, Remedy, Unit, bad, source::decide};
 
@@ -58,12 +58,7 @@ pub(super) fn parse(text: &str, format: Format, how: &Reading) -> Result<Parsed,
     if channels.len() > 1 {
         parsed.remark(format!("channel {} of {}", channel + 1, channels.len()));
     }
-    for line in without_blanks(numbered(text).skip(announced).take_while(|(_, line)| !ends_data(line))) {
-        let (line, values) = line?;
-        for value in columns(values, width) {
-            parsed.add(acceleration(value), line)?;
-        }
-    }
+    parsed.read(numbered(text).skip(announced).take_while(|(_, line)| !ends_data(line)), width)?;
     parsed.check_count("the line before the data", count, how)?;
     Ok(parsed)
 }

@@ -46,11 +46,10 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     let table = Table::read(text, how)?;
     let Samples { time, index, value } = table.samples(how)?;
     let (unit, unit_from) = decide(&table.stated_unit(value, how)?, how.unit, table.first)?;
-    let times = match (time, table.stated.dt, how.dt) {
-        (Some((time, second)), ..) => Times::At(table.column(time).map(|time| time * second).collect()),
-        (None, Some(dt), _) => Times::Every(dt),
-        (None, None, Some(dt)) => Times::Asked(dt),
-        (None, None, None) => {
+    let times = match (time, table.stated.dt.or(how.dt)) {
+        (Some((time, second)), _) => Times::At(table.column(time).map(|time| time * second).collect()),
+        (None, Some(dt)) => Times::Every(dt),
+        (None, None) => {
             let why = match index {
                 Some(index) => format!(
                     "column {} has whole numbers, which count the samples or are milliseconds, for no heading has a unit, as \
@@ -83,7 +82,7 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     }
     let (first, step) = value.map_or((0, 1), |value| (value, table.count));
     for a in table.numbers.iter().skip(first).step_by(step) {
-        parsed.add(Ok(*a), table.last)?;
+        parsed.add(*a, table.last)?;
     }
     if let Some(npts) = table.stated.npts {
         parsed.check_count("NPTS", npts, how)?;
@@ -230,7 +229,12 @@ impl<'a> Table<'a> {
             headed => headed,
         };
         let time_column = time.as_ref().map(|(column, _)| *column);
-        let left: Vec<_> = (0..count).filter(|column| Some(*column) != time_column).collect();
+        let are_whole = |column| self.column(column).all(|number| number.fract() == 0.0);
+        let is_index = time_column.is_some_and(|time| time > 0)
+            && !self.is_acceleration(0)
+            && are_whole(0)
+            && self.find_step(0, |before, at| at <= before).is_none();
+        let left: Vec<_> = (usize::from(is_index)..count).filter(|column| Some(*column) != time_column).collect();
         let value = match (asked, left.as_slice()) {
             (Some(asked), _) if Some(asked) == time_column => {
                 return Err(refused(format!("column {} has the times, and cannot have the accelerations", asked + 1)));
@@ -258,7 +262,7 @@ impl<'a> Table<'a> {
         let none = Samples { time: None, index: None, value: Some(value) };
         match time {
             None => Ok(none),
-            Some((index, TimeUnit::Unstated)) if self.column(index).all(|number| number.fract() == 0.0) => {
+            Some((index, TimeUnit::Unstated)) if are_whole(index) => {
                 self.check_steps(index)?;
                 Ok(Samples { index: Some(index), ..none })
             }
@@ -454,6 +458,7 @@ mod tests {
             "time (ms),a\n0,0.25\n20,-0.001\n50,3\n",
             "0, 0.25,\n0.02, -0.001,\n0.05, 3.0,\n",
             "% MATLAB\n% t a\n0 0.25\n0.02 -0.001\n0.05 3\n",
+            "n;t (ms);a\n5;0;0.25\n10;20;-0.001\n15;50;3\n",
             "a;t\nm/s2;ms\n0,25;0\n-0,001;20\n3;50\n",
         ] {
             let (record, source) = read(text, &AS_IT_IS).unwrap_or_else(|error| panic!("{text}: {error:?}"));
