@@ -106,9 +106,9 @@ def test_simulate(both):
 
 def test_pictures_and_page(both):
     runs = both("simulate", "--record", "pacoima.csv", "--picture", "response.svg", "-o", "response.csv")
-    both("describe", "--picture", "structure.png")
+    both("pushover", "--picture", "pushover.png")
     both("view", "--record", "pacoima.csv", "-o", "view.html")
-    same_bytes(runs, "response.svg", "structure.png", "view.html")
+    same_bytes(runs, "response.svg", "pushover.png", "view.html")
 
 
 def test_export(there, linux, tmp_path):

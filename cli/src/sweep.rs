@@ -87,11 +87,6 @@ fn run_records(args: &SweepArgs, sweep: Sweep, output: &Path, picture: Picture) 
     );
     let (rows, mut known) = rows::open(output)?;
     let mut outcomes: Vec<_> = keys.iter().map(|key| known.take(&key.run)).collect();
-    ensure!(
-        keys.iter().all(|key| known.take(&key.otherwise).is_none()),
-        "{} has runs of this sweep with --validity, or without it, unlike now: give it as then, or name another file with -o",
-        output.display()
-    );
     let missing: Vec<_> = (0..plan.len()).filter(|index| outcomes[*index].is_none()).collect();
     let done = plan.len() - missing.len();
     let (name, [members, motions, scales]) = (output.display(), plan.size());

@@ -19,8 +19,6 @@ const FAILED: &str = "failed";
 pub struct Key {
     /// Stands for all that the run depends on.
     pub run: Uuid,
-    /// Stands for the same where what it goes beyond is asked for, and was not, or the other way round.
-    pub otherwise: Uuid,
     /// Stands for the samples of its record, whatever its file is called.
     record: Uuid,
 }
@@ -36,8 +34,7 @@ pub fn keys(plan: &Plan, validity: bool) -> Vec<Key> {
         let names = (case.population.name(), case.motion.name());
         let record = digests[&ptr::from_ref(case.motion)];
         let motion = (record.into_bytes(), case.motion.scale(), case.scale);
-        let run = |validity: bool| key(&(names, case.structure.parameters(), motion, case.conditions, validity));
-        Key { run: run(validity), otherwise: run(!validity), record }
+        Key { run: key(&(names, case.structure.parameters(), motion, case.conditions, validity)), record }
     };
     plan.cases().map(of_case).collect()
 }
