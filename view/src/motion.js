@@ -563,7 +563,8 @@ function motionView() {
   };
   chooseSpeed(1);
   showTheme();
-  new ResizeObserver(() => motion && layOut()).observe(document.querySelector("main"));
+  const observer = new ResizeObserver(() => motion && layOut());
+  for (const id of ["stage", "charts"]) observer.observe(at(id));
 
   /** Shows the motion `data`, in place of the one before at the same instant, with the decoded motions `others` beside it. */
   function show(data, others = []) {

@@ -290,7 +290,7 @@
         const swatch = Object.assign(document.createElement("span"), { className: "swatch", style: `--colour: var(${colours[detail]})` });
         const label = document.createElement("label");
         label.append(choice, " ", swatch, detail);
-        const errorsOf = errors.map((error) => `${percent(Number(error))} %`);
+        const errorsOf = errors.map((error) => percent(Number(error)));
         const made = line([label, ...errorsOf, overturns === null ? "not known" : overturns ? "yes" : "no", cost === null ? "–" : short(Number(cost.toPrecision(2)))]);
         made.classList.toggle("advised", detail === advised);
         made.dataset.detail = detail;
@@ -394,7 +394,7 @@
   function drawSpeed() {
     const tolerances = Array.from({ length: 10 }, (_, i) => `1e-${i + 3}`);
     const own = { tolerance: fields.tolerance ?? "1e-9", isOwn: true };
-    const settings = [own, { step: Number(step), isOwn: true }, ...tolerances.map((tolerance) => ({ tolerance })), ...Array.from({ length: 8 }, (_, i) => ({ step: 0.02 / 2 ** i }))];
+    const settings = [own, { step: Number(step), isOwn: true }, ...tolerances.map((tolerance) => ({ tolerance })), ...Array.from({ length: 10 }, (_, i) => ({ step: 0.02 / 2 ** i }))];
     const found = [];
     at("methods").tBodies[0].replaceChildren();
     ask("speed", fields, (part) => {
@@ -463,7 +463,7 @@
       : `fr.Record.read("${file}"${["scale", "time_scale"].filter((name) => name in fields).map((name) => `, ${name}=${fields[name]}`).join("")})`;
     at("python").textContent = [
       "import flexible_rocking as fr", "",
-      `structure = fr.Structure(${named(Object.entries(all))})`,
+      `structure = fr.Structure(${named(tables.parameters.map(({ name }) => [name, all[name]]))})`,
       `record = ${record}`,
       `run = fr.simulate(structure, record, detail="${fields.detail ?? "auto"}", tolerance=${value("tolerance")})`,
     ].join("\n");
@@ -520,7 +520,11 @@
     give("ground", "record");
   }
   function takeLibraries(name, bytes) {
-    trying(() => (at("platforms").textContent = `for ${explorer.take_libraries(name, bytes)}`))();
+    try {
+      at("platforms").textContent = `for ${explorer.take_libraries(name, bytes)}`;
+    } catch (problem) {
+      at("platforms").textContent = problem;
+    }
   }
   at("file").addEventListener("change", ({ target }) => take(target.files[0]));
   at("libraries").addEventListener("change", ({ target }) => take(target.files[0]));

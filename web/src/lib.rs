@@ -7,9 +7,10 @@ mod scene;
 mod synthetic;
 
 use fmu_export::{Library, ModelName, Version};
+use rocking::engine::piece::Sample;
 use rocking::levels::detail::Detail;
-use rocking::run::levels::{REFERENCE_TOLERANCE, compare, relative};
 use rocking::run::levels::{Criterion, Verdict};
+use rocking::run::levels::{REFERENCE_TOLERANCE, compare, relative};
 use rocking::run::validity::{self, ASSUMPTIONS, Limits};
 use rocking::run::{End, RunError, record::Record};
 use rocking::structure::natural_quantities::NATURAL;
@@ -33,9 +34,7 @@ fn says(error: impl std::error::Error) -> String {
 /// What the page's controls are made of: the library's own tables.
 #[wasm_bindgen]
 pub fn tables() -> String {
-    let parameter = |of: &rocking::Quantity<rocking::Parameters>| {
-        json!({ "name": of.name, "unit": of.unit, "description": of.description, "min": of.min, "max": of.max })
-    };
+    let parameter = |of: &rocking::Quantity<rocking::Parameters>| json!({ "name": of.name, "unit": of.unit, "description": of.description, "min": of.min, "max": of.max });
     let natural = |of: &rocking::structure::natural_quantities::Natural| {
         let derived = of.derived();
         json!({
@@ -47,9 +46,7 @@ pub fn tables() -> String {
         let &Number { name, unit, description, default, slider } = of;
         json!({ "name": name, "unit": unit, "description": description, "default": default, "slider": slider })
     };
-    let shape = |of: Shape| {
-        json!({ "name": of.name(), "definition": of.definition(), "cycles": of.cycles(), "has_choice": of.has_choice() })
-    };
+    let shape = |of: Shape| json!({ "name": of.name(), "definition": of.definition(), "cycles": of.cycles(), "has_choice": of.has_choice() });
     let preset = |(name, parameters): &(&str, rocking::Parameters)| json!({ "name": name, "parameters": parameters });
     json!({
         "parameters": PARAMETERS.iter().map(parameter).collect::<Vec<_>>(),
@@ -184,24 +181,27 @@ impl Explorer {
         .to_string())
     }
 
-    /// The engine at the scene's tolerance, or with `step` (s) RK4, over the record: errors of θ and u at its samples over
-    /// their largest, against the equations to 1e-12, and the evaluations.
+    /// The engine at the scene's tolerance, or with `step` (s) RK4: errors of θ and u over their largest, against the
+    /// equations to 1e-12, and the evaluations, until 10/p_l after the ground motion.
     pub fn measure(&mut self, fields: &str, step: Option<f64>) -> Result<String, String> {
         let fields = Fields::read(fields)?;
         let (structure, Ground { record, .. }) = self.load(&fields)?;
-        let own = Run { end: End::At(record.end()), ..fields.run(structure, &record)? };
-        let exact = fields.without(&["tolerance", "detail"]);
-        if self.reference.as_ref().is_none_or(|(of, _)| *of != exact) {
-            let (states, _) = sampled(&Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..own.clone() })?;
-            self.reference = Some((exact, states));
+        let end = record.end() + 10.0 / structure.p_l;
+        let after = (1..).map(|i| record.end() + 0.01 * f64::from(i)).take_while(|time| *time < end);
+        let instants: Vec<f64> = record.times().iter().copied().chain(after).collect();
+        let own = Run { end: End::At(end), ..fields.run(structure, &record)? };
+        let scene = fields.without(&["tolerance", "detail"]);
+        if self.reference.as_ref().is_none_or(|(of, _)| *of != scene) {
+            let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..own.clone() };
+            self.reference = Some((scene, sampled(&exact, &instants)?.0));
         }
         let (_, exact) = self.reference.as_ref().expect("it is there");
         let (states, evaluations) = match step {
             Some(step) => {
-                let response = runge_kutta::run(&structure, &record, own.initial, step)?;
+                let response = runge_kutta::run(&structure, &record, &instants, own.initial, step)?;
                 (response.states, response.evaluations)
             }
-            None => sampled(&Run { detail: Detail::Auto, ..own })?,
+            None => sampled(&Run { detail: Detail::Auto, ..own }, &instants)?,
         };
         let error = |of: fn(&State) -> f64| {
             let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
@@ -239,13 +239,12 @@ impl Explorer {
     }
 }
 
-/// The states of `run` at the samples of its ground motion, and the evaluations.
-fn sampled(run: &Run) -> Result<(Vec<State>, u64), String> {
+/// The states of `run` at `instants` (s) as far as it goes, and its evaluations with its steps.
+fn sampled(run: &Run, instants: &[f64]) -> Result<(Vec<State>, u64), String> {
     let mut states = Vec::new();
-    let times = run.ground.times().iter().copied();
-    let finish = run.sample(times, |sample| states.push(sample.motion.state), &mut ()).map_err(says)?;
-    let work = finish.motion.work;
-    states.truncate(run.ground.times().len());
+    let show = |sample: &Sample| states.push(sample.motion.state);
+    let work = run.sample(instants.iter().copied(), show, &mut ()).map_err(says)?.motion.work;
+    states.pop(); // the end
     Ok((states, work.steps + work.evaluations))
 }
 

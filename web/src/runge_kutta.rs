@@ -12,31 +12,41 @@ const MOST_EVALUATIONS: f64 = 2e7;
 
 /// What the method makes of a ground motion.
 pub struct Response {
-    /// At the samples, as far as it goes.
+    /// At the instants, as far as it goes.
     pub states: Vec<State>,
     pub evaluations: u64,
 }
 
-/// From the state `initial` under `ground` in steps of `h` (s), cut evenly between samples.
-pub fn run(structure: &Structure, ground: &Record, initial: State, h: f64) -> Result<Response, String> {
+/// From the state `initial` under `ground` in steps of `h` (s), cut evenly between `instants` (s): the record's samples, and later
+/// ones at which the ground is at rest.
+pub fn run(
+    structure: &Structure,
+    ground: &Record,
+    instants: &[f64],
+    initial: State,
+    h: f64,
+) -> Result<Response, String> {
     let (times, a) = (ground.times(), ground.acceleration());
-    let parts = |i: usize| ((times[i] - times[i - 1]) / h - 1e-9).ceil().max(1.0);
-    let evaluations = 4.0 * (1..times.len()).map(parts).sum::<f64>();
+    let parts = |i: usize| ((instants[i] - instants[i - 1]) / h - 1e-9).ceil().max(1.0);
+    let evaluations = 4.0 * (1..instants.len()).map(parts).sum::<f64>();
     if !(h > 0.0 && evaluations <= MOST_EVALUATIONS) {
-        return Err(format!("step = {h} s is out of range: more than {MOST_EVALUATIONS:e} evaluations are not waited for"));
+        return Err(format!(
+            "step = {h} s is out of range: it takes {evaluations:.0e} evaluations, and {MOST_EVALUATIONS:e} are possible"
+        ));
     }
     let mut response = Response { states: vec![initial], evaluations: 0 };
     let (mut phase, mut state) = (initial.initial_phase().map_err(|error| error.to_string())?, initial);
-    for i in 1..times.len() {
-        let (dt, parts) = (times[i] - times[i - 1], parts(i));
-        let ramp = Ramp { value: a[i - 1], slope: (a[i] - a[i - 1]) / dt };
+    for i in 1..instants.len() {
+        let (dt, parts) = (instants[i] - instants[i - 1], parts(i));
+        let ramp = match i < times.len() {
+            true => Ramp { value: a[i - 1], slope: (a[i] - a[i - 1]) / dt },
+            false => Ramp::default(),
+        };
         let step = dt / parts;
         for part in 0..parts as u64 {
             state = stepped(structure, phase, &state, |tau| ramp.at(part as f64 * step + tau), step);
             response.evaluations += 4;
-            if let Some(next) = next(structure, phase, &state) {
-                (phase, state) = next;
-            }
+            (phase, state) = next(structure, phase, &state).unwrap_or((phase, state));
             if let Phase::Overturned(_) = phase {
                 return Ok(response);
             }
@@ -51,7 +61,9 @@ fn stepped(structure: &Structure, phase: Phase, from: &State, a_g: impl Fn(f64) 
     let rates = |state: &State, tau: f64| {
         let load = Load::ground(a_g(tau));
         let [u_ddot, theta_ddot] = match phase {
-            Phase::Rocking(side) => nonlinear::accelerations(structure, side, state, load).map_or([f64::NAN; 2], Into::into),
+            Phase::Rocking(side) => {
+                nonlinear::accelerations(structure, side, state, load).map_or([f64::NAN; 2], Into::into)
+            }
             _ => [full_contact::acceleration(structure, state, load), 0.0],
         };
         State { u: state.u_dot, u_dot: u_ddot, theta: state.theta_dot, theta_dot: theta_ddot }

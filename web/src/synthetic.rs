@@ -23,7 +23,10 @@ pub fn record(pga: f64, duration: f64, seed: u64) -> Result<Record, String> {
     let samples = (duration / STEP).ceil() + 1.0;
     if !(3.0..=(MAX_SAMPLES / 100) as f64).contains(&samples) {
         let most = STEP * (MAX_SAMPLES / 100) as f64;
-        return Err(format!("duration = {duration} s is out of range: it must lie between {} and {most} s", 2.0 * STEP));
+        return Err(format!(
+            "duration = {duration} s is out of range: it must lie between {} and {most} s",
+            2.0 * STEP
+        ));
     }
     let mut random = fastrand::Rng::with_seed(seed);
     let filter = |omega: f64, [x, v]: &mut [f64; 2], a: f64| {
