@@ -9,6 +9,7 @@
 # make foreign   the libraries for other machines, built, read and, where that can be, run
 # make packaged  the package of the source, and the wheel for this machine in a fresh environment
 # make explore  out/explore.html: the engine in a browser, one file
+# make docs/explore.png  the picture of that page
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels  out/wheels: Python packages for Linux, Windows and macOS with the command line and the archive, and one of the source
 # make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
@@ -58,7 +59,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test check lint tools heavy study hosts browser explore foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
+.PHONY: docs/explore.png demo test check lint tools heavy study hosts browser explore foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
 
 # pip while cargo compiles.
 demo:
@@ -88,6 +89,7 @@ lint: tools
 	for package in $(OUTSIDE); do cargo fmt --all --check --manifest-path $$package/Cargo.toml || exit; done
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo clippy --workspace --all-targets --manifest-path study/Cargo.toml -- -D warnings
+	cargo clippy --workspace --all-targets --manifest-path web/Cargo.toml -- -D warnings
 
 tools:
 	@cargo fmt --version >/dev/null 2>&1 || rustup component add rustfmt
@@ -106,6 +108,9 @@ hosts: .venv/heavy exporter windows host_packages
 browser: .venv/heavy exporter explore
 	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
 	$(PYTEST) -m heavy tests/test_view.py tests/test_explore.py
+
+docs/explore.png: .venv/heavy explore
+	$(PYTHON) web/picture.py
 
 # The library of this machine rides in the page, for the FMU that it writes.
 WEB := wasm32-unknown-unknown

@@ -38,13 +38,14 @@
 
   // ---- Controls
 
-  const greek = { zeta: "ζ", theta: "θ", alpha: "α", omega: "ω", xi: "ξ", tolerance: "tol", amplitude: "a_p", frequency: "f" };
+  const words = (name) => name.replaceAll("_", " ");
+  const greek = { zeta: "ζ", theta: "θ", alpha: "α", omega: "ω", xi: "ξ", amplitude: "a_p", frequency: "f", step: "RK4 step" };
   /** The field's own way to write a name: ζ with index fc. */
   function symbol(name) {
     const [head, ...index] = (greek[name] ?? name).replace(/^([A-Za-z])(\d+)$/, "$1_$2").split("_");
     const label = document.createElement("span");
-    const isIndex = head.length < 3 || greek[head];
-    label.append(isIndex ? (greek[head] ?? head) : name.replaceAll("_", " "));
+    const isIndex = head.length < 3 || name in greek || head in greek;
+    label.append(isIndex ? (greek[head] ?? head) : words(name));
     if (isIndex && index.length > 0) label.append(Object.assign(document.createElement("sub"), { textContent: index.join(" ") }));
     return label;
   }
@@ -112,7 +113,6 @@
   });
   let derived = {};
 
-  const words = (name) => name.replaceAll("_", " ");
   at("preset").append(...tables.presets.map(({ name }) => new Option(name === "mcmanus" ? "McManus's bridge pier" : "Evison's shear wall", name)));
   at("ground").append(
     ...tables.shapes.map(({ name, definition }) => Object.assign(new Option(`pulse: ${words(name)}`, name), { title: definition })),
@@ -174,6 +174,8 @@
     at("derived").replaceChildren(...about.derived.map(({ name, unit, description, value }) => line([name, `${short(value)}${unit === "1" ? "" : ` ${unit}`}`], description)));
   }
 
+  /** A number as the engine writes it where JSON has none. */
+  const unlimited = (text) => Number(text.replace("inf", "Infinity"));
   const short = (value) => String(Number(value.toPrecision(5))).replace("-", "−");
   const percent = (part) => (part === 0 ? "0" : part < 1e-11 ? "< 10⁻⁹" : Number.isFinite(part) ? `${Number((100 * part).toPrecision(2))}` : "∞");
   /** A row of a table, with its cells' content. */
@@ -271,7 +273,7 @@
       `what the model leaves out here: ${passed === 0 ? "no limit is passed" : `${passed} of ${rows.length} limits are passed`}`;
     at("validity").querySelector("tbody").replaceChildren(
       ...rows.map(({ description, meaning, value, time, limit, part, first_beyond }) => {
-        const made = line([description, short(Number(value)).replace("Infinity", "∞"), `${short(time)} s`, limit, first_beyond === null ? "never" : `${percent(part)} %`], meaning);
+        const made = line([description, short(unlimited(value)).replace("Infinity", "∞"), `${short(time)} s`, limit, first_beyond === null ? "never" : `${percent(part)} %`], meaning);
         made.classList.toggle("beyond", first_beyond !== null);
         return made;
       }),
@@ -290,7 +292,7 @@
         const swatch = Object.assign(document.createElement("span"), { className: "swatch", style: `--colour: var(${colours[detail]})` });
         const label = document.createElement("label");
         label.append(choice, " ", swatch, detail);
-        const errorsOf = errors.map((error) => percent(Number(error)));
+        const errorsOf = errors.map((error) => percent(unlimited(error)));
         const made = line([label, ...errorsOf, overturns === null ? "not known" : overturns ? "yes" : "no", cost === null ? "–" : short(Number(cost.toPrecision(2)))]);
         made.classList.toggle("advised", detail === advised);
         made.dataset.detail = detail;
@@ -398,10 +400,10 @@
     const found = [];
     at("methods").tBodies[0].replaceChildren();
     ask("speed", fields, (part) => {
-      found.push({ ...part, isOwn: found.length < 2 });
+      found.push({ ...part, error: unlimited(part.error), isOwn: found.length < 2 });
       if (found.length <= 2) {
         const name = part.tolerance ? `engine, ${part.tolerance}` : `RK4, ${step} s`;
-        at("methods").tBodies[0].append(line([name, part.error.toExponential(1), part.evaluations, `${short(Number(part.time.toPrecision(2)))} ms`]));
+        at("methods").tBodies[0].append(line([name, unlimited(part.error).toExponential(1), part.evaluations, `${short(Number(part.time.toPrecision(2)))} ms`]));
       }
       drawPrecision(found);
     }, { settings });
@@ -541,7 +543,11 @@
 
   if (at("packed").textContent) takeLibraries("FlexibleRocking.fmu", await unpacked("packed"));
   else at("platforms").textContent = "needs shared libraries: those of an FMU of this version";
-  update(1e-4);
+  const asked = fields;
+  fields = {}; // what is shown where the scene asked for needs a file first
+  update(1e-2);
+  fields = asked;
+  document.querySelector("#readings [data-name=theta] button").click(); // to where it rocks most
   open(tab);
   document.body.dataset.ready = "";
 })();

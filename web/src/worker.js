@@ -12,7 +12,7 @@ const work = {
       explorer.measure(scene, step); // what both need is there
       const start = performance.now();
       const measured = JSON.parse(explorer.measure(scene, step));
-      const going = await answer({ ...measured, error: Number(measured.error), tolerance, step, time: performance.now() - start });
+      const going = await answer({ ...measured, tolerance, step, time: performance.now() - start });
       if (!going) return;
     }
   },
