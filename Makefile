@@ -1,4 +1,4 @@
-# make demo    run the FMU on a real earthquake and draw docs/pacoima_mcmanus.png (1 to 2 minutes)
+# make demo    run the FMU on a real earthquake and draw docs/img/pacoima_mcmanus.png (1 to 2 minutes)
 # make test    every test but those of `heavy` (3 to 4 minutes more)
 # make check   format, clippy and the tests of what differs from the last commit: the loop of whoever changes a line
 # make lint    format and clippy of everything, warnings denied
@@ -8,15 +8,19 @@
 # make browser   the pages of `view` and `explore` in Chromium, and in Firefox
 # make foreign   the libraries for other machines, built, read and, where that can be, run
 # make packaged  the package of the source, and the wheel for this machine in a fresh environment
+# make evidence  the pages of evidence made anew and compared, and the longer blocks of the others
 # make explore  out/explore.html: the engine in a browser, one file
-# make docs/explore.png  the picture of that page
+# make docs/img/explore.png  the picture of that page
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels  out/wheels: Python packages for Linux, Windows and macOS with the command line and the archive, and one of the source
 # make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
-# make report  regenerate docs/validation.md, docs/validation_literature.md and their figures (minutes)
-# make overturning  regenerate docs/overturning.md and its pictures (minutes)
-# make coupling  regenerate docs/coupling.md and its figures (minutes)
-# make exchange  regenerate docs/model_exchange.md and its figure (minutes)
+# make docs    the site in out/site; fails at a link, an anchor or a picture that is not there (seconds)
+# make pages   write anew what README and the pages print (a minute)
+# make pictures  draw anew those of README and of the model (minutes)
+# make report  regenerate docs/evidence/paper.md, docs/evidence/literature.md and their figures (minutes)
+# make overturning  regenerate docs/evidence/overturning.md and its pictures (minutes)
+# make coupling  regenerate docs/evidence/coupling.md and its figures (minutes)
+# make exchange  regenerate docs/evidence/model_exchange.md and its figure (minutes)
 # make bench   criterion benchmark of a whole record, and one step over it through fmpy
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
 # make fuzz    ten million hostile calls of each interface and as many damaged records, a core for each (CI: 100,000 of each and 40,000)
@@ -59,7 +63,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: docs/explore.png demo test check lint tools heavy study hosts browser explore foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
+.PHONY: demo test check lint tools heavy evidence study hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc docs pages pictures report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
 
 # pip while cargo compiles.
 demo:
@@ -95,7 +99,7 @@ tools:
 	@cargo fmt --version >/dev/null 2>&1 || rustup component add rustfmt
 	@cargo clippy --version >/dev/null 2>&1 || rustup component add clippy
 
-heavy: study hosts browser foreign packaged
+heavy: study hosts browser foreign packaged evidence docs
 
 study:
 	cargo test --release --manifest-path study/Cargo.toml
@@ -109,7 +113,7 @@ browser: .venv/heavy exporter explore
 	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
 	$(PYTEST) -m heavy tests/test_view.py tests/test_explore.py
 
-docs/explore.png: .venv/heavy explore
+docs/img/explore.png: .venv/heavy explore
 	$(PYTHON) web/picture.py
 
 # The library of this machine rides in the page, for the FMU that it writes.
@@ -120,6 +124,9 @@ explore: library
 	mkdir -p out
 	cargo run --release --locked --manifest-path web/Cargo.toml --package pack -- \
 		$(or $(CARGO_TARGET_DIR),web/target)/$(WEB)/release/rocking_web.wasm out/explore.html $(TARGET)/release/libFlexibleRocking.so
+
+evidence: .venv/test exporter
+	$(PYTEST) -m heavy tests/test_pages.py
 
 # Linux's library for 64-bit ARM runs under qemu; where that cannot be had, its test is skipped and says so.
 foreign: .venv/test dist qemu old_glibc
@@ -201,6 +208,15 @@ zig: .venv/dist
 	for target in $(ZIG); do $(NATIVE_UNTRACED) PATH="$(CURDIR)/.venv/bin:$$PATH" cargo zigbuild --profile dist --locked \
 		--package flexible-rocking-fmu --target $$target || exit; done
 
+docs: .venv/docs
+	$(PYTHON) -m sphinx -W --keep-going -q -b html -c docs -d out/doctrees . out/site
+
+pages: .venv/test exporter records
+	PYTHONPATH=examples $(PYTHON) docs/pages.py $(TARGET)/release/rocking-fmu
+
+pictures: .venv/test exporter out/mcmanus.fmu
+	PYTHONPATH=examples $(PYTHON) examples/pictures.py out/mcmanus.fmu --exporter $(TARGET)/release/rocking-fmu
+
 report: .venv/test exporter
 	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
 	PYTHONPATH=examples $(PYTHON) -m literature --exporter $(TARGET)/release/rocking-fmu
@@ -233,10 +249,10 @@ fuzz:
 	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release --workspace --test hostile_calls -- --nocapture
 	FUZZ_RECORDS=$${FUZZ_RECORDS:-10000000} cargo test --release --workspace --test records -- --nocapture no_mutation
 
-# What the demo takes: the shared library and what packs it. The packages chosen are all of the workspace, or those they share
-# would be built again, with other features, for the command line and the tests.
+# What the demo takes: what packs the shared library, and that, in the folder `deps`, which it is linked to. The packages chosen
+# are all of the workspace, or those they share would be built again, with other features, for the command line and the tests.
 library:
-	cargo build --release --workspace --lib --bin fmu-export
+	cargo build --release --workspace --bin fmu-export
 
 exporter:
 	cargo build --release --workspace
@@ -250,7 +266,7 @@ host_packages: mingw
 	-@$(HAS_WINE) || { $(call install,wine); }
 	-@{ $(HAS_TBB); } || { $(call install,libtbb12); }
 
-PACK = mkdir -p out && $(TARGET)/release/fmu-export $(TARGET)/release/libFlexibleRocking.so
+PACK = mkdir -p out && $(TARGET)/release/fmu-export $(TARGET)/release/deps/libFlexibleRocking.so
 out/%3.fmu: library
 	$(PACK) $* 3 $@
 
@@ -267,4 +283,4 @@ out/%.fmu: library
 	$(PIP) $<
 	touch $@
 
-.venv/heavy .venv/dist: .venv/test
+.venv/heavy .venv/dist .venv/docs: .venv/test

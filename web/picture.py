@@ -1,4 +1,4 @@
-"""Draws docs/explore.png: the page of `make explore` on the record of Pacoima Dam, where McManus's pier rocks most."""
+"""Draws docs/img/explore.png: the page of `make explore` on the record of Pacoima Dam, where McManus's pier rocks most."""
 
 import shutil
 import sys
@@ -20,4 +20,4 @@ with sync_playwright() as playwright:
     page.wait_for_timeout(1000)
     page.locator("#readings [data-name=theta] button").click()
     page.mouse.move(0, 0)
-    page.screenshot(path=ROOT / "docs" / "explore.png")
+    page.screenshot(path=ROOT / "docs" / "img" / "explore.png")

@@ -1,4 +1,4 @@
-"""Writes docs/coupling.md and its pictures but for those of the three examples: see `make coupling`.
+"""Writes docs/evidence/coupling.md and its pictures but for those of the three examples: see `make coupling`.
 
     PYTHONPATH=examples:tests python -m coupling
 """
@@ -7,6 +7,7 @@ import argparse
 from pathlib import Path
 
 from tqdm import tqdm
+from validation.report import write_page
 
 from . import convergence, early_return, no_slopes, one_system, stability
 from .bridge import PIERS
@@ -21,7 +22,7 @@ def convergence_table(steps, errors) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
-    parser.add_argument("--output", type=Path, default=Path("docs/coupling.md"), help="page to write")
+    parser.add_argument("--output", type=Path, default=Path("docs/evidence/coupling.md"), help="page to write")
     arguments = parser.parse_args()
     figures, fmus = arguments.output.with_suffix(""), tuple(PIERS.values())
 
@@ -48,7 +49,7 @@ def main() -> None:
         transitions=transitions,
         **no_slopes.tables(fmus),
     )
-    arguments.output.write_text(page, encoding="utf-8")
+    write_page(arguments.output, page, "make coupling")
     print(f"{arguments.output}, figures in {figures}")
 
 

@@ -9,7 +9,7 @@ from first_run import G
 from tqdm import tqdm
 from validation.project import Project
 from validation.records import horizontal_records
-from validation.report import filled
+from validation.report import filled, write_page
 from validation.stepper import AUTO
 
 from . import block, ensemble, flexible, limit, overturning, point_reyes
@@ -20,7 +20,7 @@ PAGE = Path(__file__).parent / "page.md"
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
     parser.add_argument("--exporter", type=Path, default=Path("target/release/rocking-fmu"), help="executable")
-    parser.add_argument("--output", type=Path, default=Path("docs/validation_literature.md"), help="page to write")
+    parser.add_argument("--output", type=Path, default=Path("docs/evidence/literature.md"), help="page to write")
     arguments = parser.parse_args()
     figures = arguments.output.with_suffix("")
 
@@ -72,7 +72,7 @@ def main() -> None:
             ensemble=ensemble.rows(runs, found),
             **ensemble.summary(runs, found),
         )
-    arguments.output.write_text("\n\n".join(map(filled, page.strip().split("\n\n"))) + "\n", encoding="utf-8")
+    write_page(arguments.output, "\n\n".join(map(filled, page.split("\n\n"))), "make report")
     print(f"{arguments.output}, figures in {figures}")
 
 

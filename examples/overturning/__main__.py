@@ -1,4 +1,4 @@
-"""Writes docs/overturning.md and its pictures: PYTHONPATH=examples python -m overturning [--exporter PATH]."""
+"""Writes docs/evidence/overturning.md and its pictures: PYTHONPATH=examples python -m overturning [--exporter PATH]."""
 
 import argparse
 import csv
@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tqdm import tqdm
-from validation.report import table
+from validation.report import table, write_page
 
 FOLDER = Path(__file__).parent
 SCENES = ["rigid", "specimens", "stiffness", "islands"]
@@ -32,7 +32,8 @@ class Scene:
         self.seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
         self.counts = list(csv.DictReader(done.stdout.splitlines()))
         with open(rows, newline="", encoding="utf-8") as file:
-            self.points = list(csv.DictReader(file))
+            of = lambda point: (point["structures"], float(point["frequency"]), float(point["amplitude"]))  # noqa: E731
+            self.points = sorted(csv.DictReader(file), key=of)  # rows stand in the order in which runs ended
 
     def structures(self) -> list[str]:
         """Their names."""
@@ -69,7 +70,7 @@ def beyond(exporter: Path, points: list[dict[str, str]], folder: Path) -> list[d
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
     parser.add_argument("--exporter", type=Path, default=Path("target/release/rocking-fmu"), help="executable")
-    parser.add_argument("--output", type=Path, default=Path("docs/overturning.md"), help="page to write")
+    parser.add_argument("--output", type=Path, default=Path("docs/evidence/overturning.md"), help="page to write")
     arguments = parser.parse_args()
     figures = arguments.output.with_suffix("")
     figures.mkdir(exist_ok=True)
@@ -106,11 +107,11 @@ def main() -> None:
         changes=sum(c == float("inf") for c in conditions),
         islands=len(conditions),
         costs=table(["maps", "points", "processor time", "points per processor second"],
-                       [[f"[{name}.toml](../examples/overturning/{name}.toml)", f"{len(scene.points):,}",
+                       [[f"[{name}.toml](../../examples/overturning/{name}.toml)", f"{len(scene.points):,}",
                          f"{scene.seconds:.1f} s", f"{len(scene.points) / scene.seconds:.0f}"]
                         for name, scene in scenes.items()]),
     )
-    arguments.output.write_text(page, encoding="utf-8")
+    write_page(arguments.output, page, "make overturning")
     print(f"{arguments.output}, pictures in {figures}")
 
 
