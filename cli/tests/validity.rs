@@ -57,10 +57,7 @@ fn a_sweep_has_columns_of_it() {
     succeed(path, "sweep sweep.toml");
     let plain = fs::read_to_string(path.join("sweep.csv")).unwrap();
     let (_, message) = fail(path, "sweep sweep.toml --validity");
-    assert!(
-        message.contains("sweep.csv has runs of this sweep with --validity, or without it, unlike now"),
-        "{message}"
-    );
+    assert!(message.contains("sweep.csv has runs of this sweep with validity, or without it, unlike now"), "{message}");
     succeed(path, "sweep sweep.toml --validity -o beyond.csv");
     let beyond = fs::read_to_string(path.join("beyond.csv")).unwrap();
     let headings: Vec<_> = plain.lines().next().unwrap().split(',').collect();
