@@ -3,6 +3,7 @@
 # make check   format, clippy and the tests of what differs from the last commit: the loop of whoever changes a line
 # make lint    format and clippy of everything, warnings denied
 # make heavy   what takes longer or needs more, of which each can be made alone:
+# make python    the Python module, installed into .venv, its types, its page
 # make study     the tests of study/
 # make hosts     hosts that bring much, and Windows' library under wine
 # make browser   the page of `view` in Chromium
@@ -59,7 +60,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test check lint tools heavy study hosts browser foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
+.PHONY: demo test check lint tools heavy study python hosts browser foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
 
 # pip while cargo compiles.
 demo:
@@ -94,10 +95,17 @@ tools:
 	@cargo fmt --version >/dev/null 2>&1 || rustup component add rustfmt
 	@cargo clippy --version >/dev/null 2>&1 || rustup component add clippy
 
-heavy: study hosts browser foreign packaged
+heavy: study python hosts browser foreign packaged
 
 study:
 	cargo test --release --manifest-path study/Cargo.toml
+
+# In .venv the module is that of this folder; the archive in its place has the libraries that are there.
+python: .venv/heavy .venv/dist exporter
+	mkdir -p out/wheel/data/share/flexible-rocking
+	$(TARGET)/release/rocking-fmu export --record examples/pulse.csv -o out/wheel/data/share/flexible-rocking/FlexibleRocking.fmu
+	VIRTUAL_ENV=.venv $(MATURIN) develop --release --locked
+	$(PYTEST) -m heavy tests/test_python.py
 
 # Hosts that bring much, among them Windows' loader; what cannot be had is skipped, with the reason.
 hosts: .venv/heavy exporter windows host_packages
