@@ -12,10 +12,10 @@
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels  out/wheels: Python packages for Linux, Windows and macOS with the command line and the archive, and one of the source
 # make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
-# make report  regenerate docs/validation.md, docs/validation_literature.md and their figures (minutes)
-# make overturning  regenerate docs/overturning.md and its pictures (minutes)
-# make coupling  regenerate docs/coupling.md and its figures (minutes)
-# make exchange  regenerate docs/model_exchange.md and its figure (minutes)
+# make report  regenerate docs/evidence/paper.md, docs/evidence/literature.md and their figures (minutes)
+# make overturning  regenerate docs/evidence/overturning.md and its pictures (minutes)
+# make coupling  regenerate docs/evidence/coupling.md and its figures (minutes)
+# make exchange  regenerate docs/evidence/model_exchange.md and its figure (minutes)
 # make bench   criterion benchmark of a whole record, and one step over it through fmpy
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
 # make fuzz    ten million hostile calls of each interface and as many damaged records, a core for each (CI: 100,000 of each and 40,000)

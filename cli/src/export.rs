@@ -70,9 +70,9 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
         // those of one name are refused under that
         record(&args.options, path, g, &understood.path().join(i.to_string()), &mut files)
     });
-    let records: Vec<_> = packed.collect::<Result<_, _>>()?;
+    let records = packed.collect::<Result<_, _>>()?;
     let file = files.create(&output)?;
-    let (contents, archive) = fmu_export::export(args.fmi, &args.name, &structure, &records, &libraries)?;
+    let (contents, archive) = fmu_export::export(args.fmi, &args.name, &structure, records, &libraries)?;
     file.write(&archive)?;
     say!("{}: {} kB", output.display(), archive.len().div_ceil(1000));
     say!("  GUID       {}", guid(&contents));
@@ -85,26 +85,27 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The file to pack for the record at `path`: itself, or what is understood of it, written to the new `folder`.
+/// The file to pack for the record at `path`, and its content: itself, or what is understood of it, written to the new `folder`.
 fn record(
     options: &RecordOptions,
     path: &Path,
     g: f64,
     folder: &Path,
     files: &mut OutputFiles,
-) -> anyhow::Result<PathBuf> {
+) -> anyhow::Result<(PathBuf, Vec<u8>)> {
     let understood = options.understand(path, g).map_err(with_option)?;
     say!("{}", understood.described);
     understood.warnings(path).for_each(|warning| say!("{warning}"));
     if options.are_none() && !input::is_standard(path) {
-        return Ok(path.into());
+        return Ok((path.into(), rocking_records::read_file(path)?));
     }
     fs::create_dir(folder)?;
     let packed = folder.join(input::stem(path) + ".csv");
     let mut table = Table::create(files, &packed)?;
     understood.write(&mut table)?;
     table.close()?;
-    Ok(packed)
+    let content = fs::read(&packed)?;
+    Ok((packed, content))
 }
 
 /// The shared libraries that were built with `program`, one for each platform that there is one for. Where it is in

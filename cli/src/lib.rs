@@ -25,7 +25,7 @@ mod sweep;
 pub mod tables;
 pub mod talk;
 pub mod validity;
-pub mod view;
+mod view;
 
 use clap::{Parser, Subcommand};
 use fmu_export::{Platform, significant};

@@ -17,9 +17,7 @@ SI units and radians throughout. What is refused raises ValueError with the name
 IPython are needed only by what returns a table, draws, or is shown in a notebook.
 """
 
-import re
 import sys
-import tempfile
 from collections.abc import Iterable
 from importlib.metadata import distribution
 from os import PathLike
@@ -51,22 +49,13 @@ def export(
 ) -> Path:
     """Writes the FMU of a structure to `target` and returns its path.
 
-    record: a Record or a file, or several; the FMU follows the first and has the others inside. name: what hosts call the
+    record: a Record or a file, or several; the FMU follows the first and has the others inside, each Record under its title. name: what hosts call the
     model. fmi: the version of the standard, 2 (2.0) or 3 (3.0). library: an FMU or a shared library to take the code from; by
     default `fmu()`. Raises ValueError with the reason.
     """
     records = [record] if isinstance(record, (Record, str, PathLike)) else list(record)
-    with tempfile.TemporaryDirectory() as folder:
-        files = [_file(each, Path(folder)) if isinstance(each, Record) else Path(each) for each in records]
-        _native.export(target, structure, files, name, fmi, fmu() if library is None else library)
+    _native.export(target, structure, records, name, fmi, fmu() if library is None else library)
     return Path(target).absolute()
-
-
-def _file(record: Record, folder: Path) -> Path:
-    """A file of a record, called after it."""
-    file = folder / (re.sub(r"\W+", "_", record.title) + ".csv")
-    record.write(file)
-    return file
 
 
 def _command_line() -> None:

@@ -9,7 +9,12 @@ mod run;
 mod structure;
 mod sweep;
 
+use arguments::{one_of, refused};
+use fmu_export::{Library, Version};
 use pyo3::prelude::*;
+use std::ffi::OsString;
+use std::fs;
+use std::path::PathBuf;
 
 /// The engine of `flexible_rocking`, which has what is here under its own names.
 #[pymodule]
@@ -31,28 +36,42 @@ mod _native {
 /// What the command line `rocking-fmu` does with `arguments`, the first of which is its name: its exit code. `program` is the
 /// path of the console script, beside whose folder the archive with the libraries is.
 #[pyfunction]
-fn command_line(py: Python<'_>, program: std::path::PathBuf, arguments: Vec<std::ffi::OsString>) -> u8 {
+fn command_line(py: Python<'_>, program: PathBuf, arguments: Vec<OsString>) -> u8 {
     py.detach(|| rocking_cli::main(program, arguments))
 }
 
-/// Writes the FMU to `target`: of `structure`, with the files of `records` inside, of which it follows the first.
+/// A ground motion to pack: a record, under its title, or a file.
+#[derive(FromPyObject)]
+enum Packed {
+    Record(Py<record::Record>),
+    File(PathBuf),
+}
+
+/// Writes the FMU to `target`: of `structure`, with `records` inside, of which it follows the first.
 #[pyfunction]
 fn export(
     py: Python<'_>,
-    target: std::path::PathBuf,
+    target: PathBuf,
     structure: &structure::Structure,
-    records: Vec<std::path::PathBuf>,
+    records: Vec<Packed>,
     name: &str,
     fmi: u32,
-    library: std::path::PathBuf,
+    library: PathBuf,
 ) -> PyResult<()> {
-    use fmu_export::{Library, ModelName, Version};
-    let version = arguments::one_of("fmi", &fmi.to_string(), [("2", Version::Fmi2), ("3", Version::Fmi3)])?;
+    let version = one_of("fmi", &fmi.to_string(), [("2", Version::Fmi2), ("3", Version::Fmi3)])?;
+    let content = |packed: &Packed| match packed {
+        Packed::Record(record) => {
+            let is_plain = |letter: char| letter.is_alphanumeric() || letter == '-';
+            let title = record.get().0.title().replace(|letter| !is_plain(letter), "_");
+            Ok((PathBuf::from(title + ".csv"), record.get().table().into_bytes()))
+        }
+        Packed::File(path) => Ok((path.clone(), rocking_records::read_file(path)?)),
+    };
     let written = py.detach(|| -> anyhow::Result<()> {
-        let libraries = Library::read(&library)?;
-        let name: ModelName = name.parse()?;
-        let (_, archive) = fmu_export::export(version, &name, &structure.0, &records, &libraries)?;
-        Ok(std::fs::write(target, archive)?)
+        let records = records.iter().map(content).collect::<Result<_, rocking_records::RecordError>>()?;
+        let (libraries, name) = (Library::read(&library)?, name.parse()?);
+        let (_, archive) = fmu_export::export(version, &name, &structure.0, records, &libraries)?;
+        Ok(fs::write(target, archive)?)
     });
-    written.map_err(arguments::refused)
+    written.map_err(refused)
 }

@@ -12,7 +12,6 @@ use rocking_cli::record_args::{RecordOptions, with_remedy};
 use rocking_records::{Column, Remedy, Unit};
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
 use std::ffi::CString;
-use std::fmt::Write;
 use std::fs;
 use std::path::PathBuf;
 
@@ -30,6 +29,15 @@ pub struct Record(pub rocking::run::record::Record);
 
 fn unit(name: &str) -> PyResult<Unit> {
     one_of("unit", name, Unit::NAMES)
+}
+
+impl Record {
+    /// As a table that is read without options.
+    pub fn table(&self) -> String {
+        let samples = self.0.times().iter().zip(self.0.acceleration());
+        let lines: String = samples.map(|(time, a_g)| format!("{time:?},{a_g:?}\n")).collect();
+        format!("time[s],a_g[m/s2]\n{lines}")
+    }
 }
 
 #[pymethods]
@@ -155,11 +163,7 @@ impl Record {
 
     /// Writes it to `file` as a table that is read without options: time[s], a_g[m/s2], all digits.
     fn write(&self, file: PathBuf) -> PyResult<()> {
-        let mut text = String::from("time[s],a_g[m/s2]\n");
-        for (time, a_g) in self.0.times().iter().zip(self.0.acceleration()) {
-            writeln!(text, "{time:?},{a_g:?}").map_err(refused)?;
-        }
-        Ok(fs::write(file, text)?)
+        Ok(fs::write(file, self.table())?)
     }
 
     fn __len__(&self) -> usize {

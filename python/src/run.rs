@@ -17,7 +17,7 @@ use rocking::run::{End, Ending};
 use rocking::{State, Watch};
 use rocking_cli::summary::Summary;
 use rocking_cli::tables::{RESPONSE, response_numbers};
-use rocking_cli::{validity, view};
+use rocking_cli::validity;
 use rocking_sweep::plan::Conditions;
 
 /// The largest magnitude of a quantity in a run, exact between all instants: float(peak) is its value.
@@ -297,7 +297,7 @@ impl Run {
 
     /// The page that shows the structure in motion over its histories, HTML for any browser.
     fn page(&self, py: Python<'_>) -> PyResult<String> {
-        py.detach(|| view::page_of(&self.run())).map_err(refused)
+        py.detach(|| rocking_view::page(&self.run())).map_err(refused)
     }
 
     fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
