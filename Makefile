@@ -10,13 +10,13 @@
 # make foreign   the libraries for other machines, built, read and, where that can be, run
 # make packaged  the package of the source, and the wheel for this machine in a fresh environment
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
-# make wheels  out/wheels: Python packages for Linux, Windows and macOS with the command line and the archive, and one of the source
+# make wheels  out/wheels: Python packages for Linux, Windows and macOS with module, command line and archive, and one of the source
 # make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
 # make report  regenerate docs/evidence/paper.md, docs/evidence/literature.md and their figures (minutes)
 # make overturning  regenerate docs/evidence/overturning.md and its pictures (minutes)
 # make coupling  regenerate docs/evidence/coupling.md and its figures (minutes)
 # make exchange  regenerate docs/evidence/model_exchange.md and its figure (minutes)
-# make bench   criterion benchmark of a whole record, and one step over it through fmpy
+# make bench   criterion benchmark of a whole record, one step over it through fmpy, and the Python module
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
 # make fuzz    ten million hostile calls of each interface and as many damaged records, a core for each (CI: 100,000 of each and 40,000)
 # make records the ground motion records alone, for the charts: cargo run --release --manifest-path study/Cargo.toml -- precision
@@ -109,7 +109,7 @@ python: .venv/heavy .venv/dist exporter
 
 # Hosts that bring much, among them Windows' loader; what cannot be had is skipped, with the reason.
 hosts: .venv/heavy exporter windows host_packages
-	$(PYTEST) -m heavy -n auto --dist loadfile tests/test_hosts_*.py tests/test_sweep.py
+	$(PYTEST) -m heavy -n auto --dist loadfile tests/test_hosts_*.py
 
 # The page of `view` in Chromium; where that cannot be had, the tests are skipped and say so.
 browser: .venv/heavy exporter
@@ -143,7 +143,7 @@ dist: exporter windows zig
 packaged: .venv/test wheel
 	$(PYTEST) -m heavy tests/test_wheel.py tests/test_wheels.py
 
-# The program of each wheel is for one machine, the archive in it for all.
+# The module of each wheel is for one machine and every Python from 3.10 on, the archive in it for all machines.
 MATURIN := PATH="$(CURDIR)/.venv/bin:$$PATH" SOURCE_DATE_EPOCH=315532800 maturin
 WHEEL := $(MATURIN) build --profile dist --locked --out out/wheels --target
 wheel: dist
@@ -153,10 +153,8 @@ wheel: dist
 	$(MATURIN) sdist --out out/wheels
 	$(NATIVE_UNTRACED) $(WHEEL) x86_64-unknown-linux-gnu --zig --compatibility manylinux2014
 
-# That for macOS is put together where this machine's own program has its name, and would be written into that.
 wheels: wheel
 	$(WHEEL) aarch64-unknown-linux-gnu --zig --compatibility manylinux2014
-	rm -f $(TARGET)/dist/rocking-fmu
 	$(WHEEL) universal2-apple-darwin --zig
 	$(WHEEL) $(WINDOWS)
 
@@ -214,12 +212,14 @@ exchange: .venv/test out/mcmanus.fmu
 records: .venv/ready
 
 CRITERION := $(or $(CARGO_TARGET_DIR),study/target)/criterion
-bench: .venv/ready library
+bench: .venv/dist library
 	mkdir -p out
-	cargo build --profile dist --package flexible-rocking-fmu
+	cargo build --profile dist --package flexible-rocking-fmu --package rocking-cli
+	VIRTUAL_ENV=.venv $(MATURIN) develop --profile dist --locked
 	$(TARGET)/release/fmu-export $(TARGET)/dist/libFlexibleRocking.so mcmanus 2 out/measured.fmu
 	record="$$(realpath $(RECORDS)/$(EL_CENTRO))" && RECORD="$$record" cargo bench --profile dist --manifest-path benches/Cargo.toml && \
-		$(PYTHON) benches/one_step.py out/measured.fmu "$$record" "$(CRITERION)/record/auto 1e-9/new/sample.json"
+		$(PYTHON) benches/one_step.py out/measured.fmu "$$record" "$(CRITERION)/record/auto 1e-9/new/sample.json" && \
+		$(PYTHON) benches/python.py out/measured.fmu "$$record" $(TARGET)/dist/rocking-fmu $(CRITERION)/peaks/auto/new/sample.json
 
 licenses:
 	WRITE_LICENSES=1 cargo test --release $(PACKAGES) --test licenses

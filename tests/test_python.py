@@ -8,6 +8,7 @@ import multiprocessing
 import os
 import pickle
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -142,19 +143,17 @@ def test_a_file_says_what_would_help(tmp_path):
     (tmp_path / "column.txt").write_text("0.1\n0.2\n-0.1\n")
     with pytest.raises(ValueError, match="give it with dt=SECONDS"):
         fr.Record.read(tmp_path / "column.txt")
-    with pytest.warns(UserWarning, match="a peak of 10 g: is the unit right"):
-        fr.Record.read(tmp_path / "column.txt", dt=0.01, unit="g", scale=1, g=9.81 * 50) and fr.Record.read(
-            tmp_path / "column.txt", dt=0.01, unit="m/s2", g=0.02)
+    with pytest.warns(UserWarning, match="a step of 0.5 s: is the time in another unit"):
+        fr.Record.read(tmp_path / "column.txt", dt=0.5)
 
 
 def test_threads_and_processes_give_the_same_bits(run, ground):
     structures = [run.structure.replace(f_fc=f) for f in (2, 4, 8, 16)]
     expected = [pickle.dumps(fr.simulate(structure, ground).at(ground.time)["theta"]) for structure in structures]
-    history = _history
     with ThreadPoolExecutor() as threads:
-        assert list(threads.map(history, structures, [ground] * 4)) == expected
+        assert list(threads.map(_history, structures, [ground] * 4)) == expected
     with multiprocessing.get_context("spawn").Pool(2) as processes:
-        assert processes.starmap(history, [(structure, ground) for structure in structures]) == expected
+        assert processes.starmap(_history, [(structure, ground) for structure in structures]) == expected
 
 
 def _history(structure, ground):
@@ -210,6 +209,18 @@ def test_the_fragility_is_the_command_lines(exporter, tmp_path):
         assert [found.median, found.dispersion] == pytest.approx([expected["median"], expected["dispersion"]], rel=1e-12)
         assert found.curve.median_range == pytest.approx((expected["median_from"], expected["median_to"]), rel=1e-12)
         assert found.bins.to_dict("records") == [pytest.approx(of, rel=1e-12) for of in expected["bins"]]
+
+
+def test_the_sweep_on_dask_comes_to_the_same(tmp_path):
+    (tmp_path / "out").mkdir()
+    shutil.copy(RECORD, tmp_path / "out")
+    command = [sys.executable, ROOT / "examples" / "fragility_dask.py"]
+    printed = subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True).stdout
+    found = pd.read_csv(tmp_path / "fragility_dask.csv")
+    piers = [fr.Structure(preset="mcmanus", f_fc=f_fc) for f_fc in (2, 4, 8)]
+    expected = fr.sweep({"piers": piers}, {RECORD.name: fr.Record.read(RECORD, time_scale=0.2)}, scale=np.linspace(0.2, 2, 10))
+    pd.testing.assert_frame_equal(found, expected, check_exact=True)
+    assert printed.startswith(f"{sum(expected['ending'] == 'overturned')} of 30 overturned")
 
 
 def test_formats_read_back(tmp_path):
