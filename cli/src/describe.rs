@@ -49,7 +49,8 @@ pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
     print_rows(args.results.format, &lines)
 }
 
-fn text(structure: &Structure) -> Result<String, fmt::Error> {
+/// The parameters and the derived quantities, for people.
+pub fn text(structure: &Structure) -> Result<String, fmt::Error> {
     let mut out = String::new();
     let unit = |unit| if unit == "1" { "-" } else { unit };
     writeln!(out, "Parameters")?;

@@ -52,11 +52,7 @@ fn amplitude(text: &str) -> Result<f64, String> {
 pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let record = args.ground.load(structure.parameters().g)?;
-    let fixed_base = record.as_ref().map_or(Vec::new(), |record| on_fixed_base(&structure, record));
-    let S_a =
-        record.as_ref().map_or(0.0, |record| spectral_acceleration(record, TAU / structure.omega_u, structure.zeta_u));
-    let demand = Demand::new(&structure, S_a, args.amplification)?;
-    let rocking = while_rocking(&structure, S_a, args.amplification, &demand);
+    let Estimate { fixed_base, rocking, .. } = Estimate::new(&structure, record.as_ref(), args.amplification)?;
     if args.results.format == Format::Text {
         return print(&text(args, &structure, record.as_ref(), &fixed_base, &rocking)?);
     }
@@ -110,6 +106,27 @@ fn text(
         writeln!(out, "  {part:>19} {theta:>12} {frequency:>12} {period:>12}")?;
     }
     Ok(out)
+}
+
+/// What a ground motion asks of a structure without a time history.
+pub struct Estimate {
+    /// Of the structure on a fixed base (Eq 4); empty without a ground motion.
+    pub fixed_base: Vec<NamedValue>,
+    /// Of the structure that rocks (Eqs 21 to 24).
+    pub demand: Demand,
+    /// That term by term, with what it comes from.
+    pub rocking: Vec<NamedValue>,
+}
+
+impl Estimate {
+    /// Of `structure` under `record`, or on ground at rest, with the dynamic amplification `C`, 0 to 2.
+    pub fn new(structure: &Structure, record: Option<&Record>, C: f64) -> anyhow::Result<Estimate> {
+        let spectral = |record| spectral_acceleration(record, TAU / structure.omega_u, structure.zeta_u);
+        let S_a = record.map_or(0.0, spectral);
+        let demand = Demand::new(structure, S_a, C)?;
+        let fixed_base = record.map_or(Vec::new(), |record| on_fixed_base(structure, record));
+        Ok(Estimate { fixed_base, rocking: while_rocking(structure, S_a, C, &demand), demand })
+    }
 }
 
 /// The ground motion, and what it asks of the structure on a fixed base.

@@ -7,6 +7,8 @@
 //! | [`exceedances`] | how often limits are exceeded over an intensity |
 //! | [`fragility`] | the curve through these, and how sure it is |
 //! | [`pulse`] | the field's standard pulses as ground motions |
+//! | [`rows`] | a sweep whose rows are in a file, where it goes on |
+//! | [`row_file`] | that file |
 //! | [`map`] | overturning spectra: the fate under a pulse over its amplitude and frequency |
 
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
@@ -17,6 +19,8 @@ pub mod map;
 pub mod outcome;
 pub mod plan;
 pub mod pulse;
+pub mod row_file;
+pub mod rows;
 
 /// Why something cannot be run or counted: what is wrong, and what to change.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
