@@ -234,10 +234,10 @@ fuzz:
 	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release --workspace --test hostile_calls -- --nocapture
 	FUZZ_RECORDS=$${FUZZ_RECORDS:-10000000} cargo test --release --workspace --test records -- --nocapture no_mutation
 
-# What the demo takes: the shared library and what packs it. The packages chosen are all of the workspace, or those they share
-# would be built again, with other features, for the command line and the tests.
+# What the demo takes: what packs the shared library, and that, in the folder `deps`, which it is linked to. The packages chosen
+# are all of the workspace, or those they share would be built again, with other features, for the command line and the tests.
 library:
-	cargo build --release --workspace --lib --bin fmu-export
+	cargo build --release --workspace --bin fmu-export
 
 exporter:
 	cargo build --release --workspace
@@ -251,7 +251,7 @@ host_packages: mingw
 	-@$(HAS_WINE) || { $(call install,wine); }
 	-@{ $(HAS_TBB); } || { $(call install,libtbb12); }
 
-PACK = mkdir -p out && $(TARGET)/release/fmu-export $(TARGET)/release/libFlexibleRocking.so
+PACK = mkdir -p out && $(TARGET)/release/fmu-export $(TARGET)/release/deps/libFlexibleRocking.so
 out/%3.fmu: library
 	$(PACK) $* 3 $@
 
