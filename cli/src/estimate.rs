@@ -1,9 +1,7 @@
 //! `estimate`: demands without a time history (Eqs 21–24) and the effective frequency of rocking (Eq 14).
-mod picture;
 
 use crate::{
     cause::Cause,
-    picture::PictureFile,
     quantities::{NamedValue, write_columns},
     record_args::RecordArgs,
     results::{Format, FormatArgs, print, print_traced},
@@ -41,9 +39,6 @@ pub struct EstimateArgs {
     amplitudes: Vec<f64>,
     #[command(flatten)]
     results: FormatArgs,
-    /// Draw the record's response spectra, the demand and the effective frequency
-    #[arg(long, value_name = "FILE.svg|png")]
-    picture: Option<PictureFile>,
 }
 
 fn amplitude(text: &str) -> Result<f64, String> {
@@ -57,13 +52,7 @@ fn amplitude(text: &str) -> Result<f64, String> {
 pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let record = args.ground.load(structure.parameters().g)?;
-    let inputs = args.structure.input().into_iter().chain(args.ground.record.as_deref());
-    let mut files = args.results.files(inputs);
-    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
-    let Estimate { fixed_base, demand, rocking } = Estimate::new(&structure, record.as_ref(), args.amplification)?;
-    if let Some(picture) = picture {
-        picture::draw(picture, &structure, record.as_ref(), &demand, &args.amplitudes)?;
-    }
+    let Estimate { fixed_base, rocking, .. } = Estimate::new(&structure, record.as_ref(), args.amplification)?;
     if args.results.format == Format::Text {
         return print(&text(args, &structure, record.as_ref(), &fixed_base, &rocking)?);
     }

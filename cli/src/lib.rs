@@ -102,7 +102,6 @@ enum Command {
   rocking-fmu describe --preset evison --f-fc 8 --r 0.9
   rocking-fmu describe --weight 500 --weight0 0 --width 3 --alpha-cg 0.25 --period-fc 0.4 --zeta-fc 0.02 --r 0.95
   rocking-fmu describe --template > pier.toml
-  rocking-fmu describe --preset evison --picture wall.svg
   rocking-fmu describe --parameters pier.toml")]
     Describe(describe::DescribeArgs),
     /// Estimate demands and frequency without a time history (Eqs 14, 21 to 24)
@@ -165,7 +164,7 @@ A file of pulses, spectrum.toml, a map of each structure:
     #[command(after_help = "Examples:
   rocking-fmu pulse sine --amplitude 0.6 --period 0.5
   rocking-fmu pulse cosine --amplitude-ratio 2.5 --frequency-ratio 4 --preset evison -o cosine.csv --picture cosine.svg
-  rocking-fmu pulse mavroeidis_papageorgiou --amplitude 0.4 --period 1.2 --cycles 2.5 --phase 1.5708 --rest 5
+  rocking-fmu pulse mavroeidis_papageorgiou --amplitude 0.4 --period 1.2 --cycles 2.5 --phase 1.5708
   rocking-fmu pulse ricker --amplitude 0.5 --frequency 1 -o ricker.csv && rocking-fmu simulate --record ricker.csv")]
     Pulse(pulse::PulseArgs),
     /// Show what is understood of a record, and write it as a table that is read without options

@@ -10,7 +10,7 @@
 
 Structure and Record are what is shaken and what shakes it; simulate returns a Run. advise says which level of detail is enough,
 estimate what is known without a time history. sweep runs many on all cores, fragility fits a curve to them. export writes an FMU;
-fmu is the path of one. help() of each has units, shapes, equation numbers (those of the paper) and errors; docs/python.md is the
+fmu is the path of one. help() of each has units, shapes, equation numbers (those of the paper) and errors; docs/howto/python.md is the
 page.
 
 SI units and radians throughout. What is refused raises ValueError with the name, the value and the limit. pandas, matplotlib and

@@ -182,27 +182,6 @@ mod tests {
         }
     }
 
-    /// Closed form of u = 0: the weight's moment about the pivot over the height of the top mass.
-    #[test]
-    fn a_rigid_structure_follows_the_rigid_body() {
-        let structure = Structure::new(Parameters { f_fc: 1e4, ..Parameters::EVISON }).unwrap();
-        let &Parameters { m, m0, H, B, g, .. } = structure.parameters();
-        for theta in [0.0, 0.1, 0.3, 0.5] {
-            let (sin, cos) = f64::sin_cos(theta);
-            let expected = g * ((m + m0) * B * cos - m * H * sin) / (H * cos + B * sin);
-            assert_relative_eq!(at_rotation(&structure, theta).unwrap().force, expected, epsilon = 1e-4);
-        }
-    }
-
-    #[test]
-    fn outputs_show_the_same_force_along_u() {
-        let structure = Structure::new(Parameters::MCMANUS).unwrap();
-        let there = at_rotation(&structure, 0.1).unwrap();
-        let state = State { u: there.u, theta: there.theta, ..State::default() };
-        let shear = Outputs::of(&structure, there.phase, &state, 0.0).V_t;
-        assert_relative_eq!(-shear, there.force * 0.1f64.cos(), max_relative = 1e-13);
-    }
-
     #[test]
     fn too_soft_a_strut_and_too_far_a_displacement_have_no_equilibrium() {
         let soft = Structure::new(Parameters { f_fc: 0.05, m0: 5e4, ..Parameters::EVISON }).unwrap();

@@ -153,16 +153,6 @@ mod tests {
         assert_relative_eq!(soft, omega_squared * displacement, max_relative = 1e-5);
     }
 
-    /// The swing after the end of a short pulse counts: the impulse that it gave times ω.
-    #[test]
-    fn the_swing_after_the_record_counts() {
-        let record_end = 1e-4;
-        let load = segments(&[0.0, record_end], &[5.0, 5.0]);
-        let rest = Segment { start: record_end, end: record_end + 1.0, a_g: Ramp::default() };
-        let peak = oscillator(1.0, 0.0).peak(load.into_iter().chain([rest]));
-        assert_relative_eq!(peak, TAU * 5.0 * record_end, max_relative = 1e-6);
-    }
-
     proptest! {
         #![proptest_config(ProptestConfig::with_cases(64))]
 

@@ -320,10 +320,4 @@ mod tests {
         comparison.verdicts.pop();
         assert_eq!(advice(&comparison, 0.001, &all), None);
     }
-
-    #[test]
-    fn nothing_is_not_a_number() {
-        assert_eq!(relative((0.0, 0.0)), 0.0);
-        assert_eq!(relative((0.1, 0.0)), f64::INFINITY);
-    }
 }

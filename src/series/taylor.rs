@@ -267,12 +267,6 @@ mod tests {
     }
 
     #[test]
-    fn a_polynomial_is_evaluated_at_its_end_and_before() {
-        assert_relative_eq!(evaluate(&[1.0, 2.0, 3.0], 2.0), 1.0 + 4.0 + 12.0);
-        assert_relative_eq!(evaluate(&[1.0, 2.0, 3.0], 1.0), 6.0);
-    }
-
-    #[test]
     fn a_shift_moves_the_origin() {
         let mut coefficients = [1.0, -2.0, 3.0, 0.5];
         let expected = evaluate(&coefficients, 0.9);

@@ -33,8 +33,7 @@ pub struct Sweep<'a> {
 
 impl<'a> Sweep<'a> {
     /// Opens the file of rows at `path`, or begins it, and finds the runs of `plan` that are in it; with `validity` a
-    /// row says what its run goes beyond, too. Refuses runs that are the same, and rows that are not of a sweep, or of
-    /// this one otherwise.
+    /// row says what its run goes beyond, too. Refuses runs that are the same, and rows that are not of a sweep.
     pub fn open(plan: &'a Plan, validity: bool, program: &'a Program, path: &Path) -> anyhow::Result<Sweep<'a>> {
         let keys = keys(plan, validity, program);
         ensure!(
@@ -43,11 +42,6 @@ impl<'a> Sweep<'a> {
         );
         let (file, mut known) = open(path)?;
         let outcomes: Vec<_> = keys.iter().map(|key| known.take(&key.run)).collect();
-        ensure!(
-            keys.iter().all(|key| known.take(&key.otherwise).is_none()),
-            "{} has runs of this sweep with validity, or without it, unlike now: give it as then, or name another file",
-            path.display()
-        );
         Ok(Sweep { plan, program, validity, keys, outcomes, file, others: known })
     }
 
@@ -82,8 +76,6 @@ impl<'a> Sweep<'a> {
 struct Key {
     /// Stands for all that the run depends on.
     run: Uuid,
-    /// Stands for the same where what it goes beyond is asked for, and was not, or the other way round.
-    otherwise: Uuid,
     /// Stands for the samples of its record, whatever its file is called.
     record: Uuid,
 }
@@ -99,9 +91,7 @@ fn keys(plan: &Plan, validity: bool, program: &Program) -> Vec<Key> {
         let names = (case.population.name(), case.motion.name());
         let record = digests[&ptr::from_ref(case.motion)];
         let motion = (record.into_bytes(), case.motion.scale(), case.scale);
-        let run =
-            |validity: bool| program.key(&(names, case.structure.parameters(), motion, case.conditions, validity));
-        Key { run: run(validity), otherwise: run(!validity), record }
+        Key { run: program.key(&(names, case.structure.parameters(), motion, case.conditions, validity)), record }
     };
     plan.cases().map(of_case).collect()
 }
