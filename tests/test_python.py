@@ -257,9 +257,9 @@ def test_the_page_prints_what_it_shows(tmp_path, monkeypatch):
         printed = io.StringIO()
         with contextlib.redirect_stdout(printed):
             exec(block[1], names)
-        return f"```python\n{block[1]}```\n\n```text\n{printed.getvalue().rstrip()}\n```\n"
+        return f"```py\n{block[1]}```\n\n```text\n{printed.getvalue().rstrip()}\n```\n"
 
-    shown = re.sub(r"```python\n(.*?)```\n\n```text\n.*?```\n", with_output, text, flags=re.DOTALL)
+    shown = re.sub(r"```py\n(.*?)```\n\n```text\n.*?```\n", with_output, text, flags=re.DOTALL)
     if os.environ.get("WRITE_PAGE"):
         page.write_text(shown, encoding="utf-8")
     assert shown == text
