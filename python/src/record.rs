@@ -213,12 +213,10 @@ fn with_argument(error: anyhow::Error) -> anyhow::Error {
 ///
 /// amplitude a_p in g, frequency in Hz; with a structure both are in its units instead: amplitude in g tan(alpha_cg),
 /// frequency in p_l, of which it is the circular one. cycles: periods of a sine or cosine (1), gamma of
-/// mavroeidis_papageorgiou (2); phase in rad; lead_in and rest, s before and after it; error, how far its straight
-/// lines may be off the curve over the amplitude. g in m/s2. Raises ValueError for a pulse that cannot be.
+/// mavroeidis_papageorgiou (2); phase in rad; error, how far its straight lines may be off the curve over the amplitude.
+/// g in m/s2. Raises ValueError for a pulse that cannot be.
 #[pyfunction]
-#[pyo3(signature = (
-    shape, *, amplitude, frequency, cycles=None, phase=0.0, lead_in=0.0, rest=0.0, error=DEFAULT_ERROR, structure=None, g=9.81
-))]
+#[pyo3(signature = (shape, *, amplitude, frequency, cycles=None, phase=0.0, error=DEFAULT_ERROR, structure=None, g=9.81))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn pulse(
     shape: &str,
@@ -226,8 +224,6 @@ pub fn pulse(
     frequency: f64,
     cycles: Option<f64>,
     phase: f64,
-    lead_in: f64,
-    rest: f64,
     error: f64,
     structure: Option<&Structure>,
     g: f64,
@@ -235,6 +231,6 @@ pub fn pulse(
     let shape = one_of("shape", shape, Shape::ALL.map(|of| (of.name(), of)))?;
     let (of_amplitude, of_frequency) = structure.map_or((g, 1.0), |structure| units_of(&structure.0));
     let pulse = Pulse::new(shape, amplitude * of_amplitude, frequency * of_frequency);
-    let pulse = Pulse { cycles: cycles.unwrap_or(pulse.cycles), phase, lead_in, rest, error, ..pulse };
+    let pulse = Pulse { cycles: cycles.unwrap_or(pulse.cycles), phase, error, ..pulse };
     pulse.record().map(Record).map_err(refused)
 }
