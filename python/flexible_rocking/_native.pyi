@@ -208,8 +208,6 @@ def pulse(
     frequency: float,
     cycles: float | None = None,
     phase: float = 0.0,
-    lead_in: float = 0.0,
-    rest: float = 0.0,
     error: float = 1e-4,
     structure: Structure | None = None,
     g: float = 9.81,

@@ -1,5 +1,5 @@
-//! The Python module: the same crates as the command line's, as Python's objects. What is computed, the library computes; here
-//! arguments are read, and results are given the form that Python has for them.
+//! The Python module: the same crates as the command line's, as Python's objects. What is computed, the library
+//! computes; here arguments are read, and results are given the form that Python has for them.
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
 mod advice;
@@ -33,8 +33,8 @@ mod _native {
     use super::{command_line, export};
 }
 
-/// What the command line `rocking-fmu` does with `arguments`, the first of which is its name: its exit code. `program` is the
-/// path of the console script, beside whose folder the archive with the libraries is.
+/// What the command line `rocking-fmu` does with `arguments`, the first of which is its name: its exit code. `program`
+/// is the path of the console script, beside whose folder the archive with the libraries is.
 #[pyfunction]
 fn command_line(py: Python<'_>, program: PathBuf, arguments: Vec<OsString>) -> u8 {
     py.detach(|| rocking_cli::main(program, arguments))

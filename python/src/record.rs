@@ -21,9 +21,10 @@ use std::path::PathBuf;
 /// Record(dt, a_g): samples every dt seconds from 0 on.
 /// Record.read(file): a file as the archives publish it.
 ///
-/// unit: "m/s2" (default), "g", "cm/s2", "gal", "mm/s2", "in/s2", "ft/s2", "mg", "%g"; g (m/s2) is what a unit of g stands for.
-/// time_scale multiplies the times, scale the accelerations; title is what it is called in tables. The samples are copied once,
-/// into the record. Raises ValueError for other shapes, NaN and infinity, and times that do not increase.
+/// unit: "m/s2" (default), "g", "cm/s2", "gal", "mm/s2", "in/s2", "ft/s2", "mg", "%g"; g (m/s2) is what a unit of g
+/// stands for. time_scale multiplies the times, scale the accelerations; title is what it is called in tables. The
+/// samples are copied once, into the record. Raises ValueError for other shapes, NaN and infinity, and times that do
+/// not increase.
 #[pyclass(frozen, module = "flexible_rocking")]
 pub struct Record(pub rocking::run::record::Record);
 
@@ -69,11 +70,13 @@ impl Record {
         record.multiplied(per_unit).scaled(time_scale, scale).map(Record).map_err(refused)
     }
 
-    /// Reads the record in `file`: PEER .AT2, ESM and ITACA, K-NET, COSMOS, CSMIP, or a table of text, known by its content.
+    /// Reads the record in `file`: PEER .AT2, ESM and ITACA, K-NET, COSMOS, CSMIP, or a table of text, known by its
+    /// content.
     ///
-    /// What the file does not state is said by unit (of its accelerations), dt (s between samples), column (a number from 1, a
-    /// heading, or "all"), ignore_npts (take the samples that are there). time_scale and scale multiply; g (m/s2) is what a
-    /// record's g stands for. What is likely wrong with it is a warning. Raises ValueError with the line and what would help.
+    /// What the file does not state is said by unit (of its accelerations), dt (s between samples), column (a number
+    /// from 1, a heading, or "all"), ignore_npts (take the samples that are there). time_scale and scale multiply; g
+    /// (m/s2) is what a record's g stands for. What is likely wrong with it is a warning. Raises ValueError with the
+    /// line and what would help.
     #[staticmethod]
     #[pyo3(signature = (file, *, unit=None, dt=None, column=None, ignore_npts=false, time_scale=1.0, scale=1.0, g=9.81))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
@@ -144,7 +147,8 @@ impl Record {
         self.0.clone().scaled(time_scale, scale).map(Record).map_err(refused)
     }
 
-    /// Absolute spectral accelerations S_a, m/s2, at `periods` (s), an array (n,), with the damping ratio zeta: an array (n,).
+    /// Absolute spectral accelerations S_a, m/s2, at `periods` (s), an array (n,), with the damping ratio zeta: an
+    /// array (n,).
     #[pyo3(signature = (periods, zeta=0.05))]
     fn spectrum<'py>(
         &self,
@@ -207,12 +211,12 @@ fn with_argument(error: anyhow::Error) -> anyhow::Error {
 /// The pulse of this shape as a Record: "half_sine", "sine", "cosine", "ricker", "antisymmetric_ricker",
 /// "mavroeidis_papageorgiou".
 ///
-/// amplitude a_p in g, frequency in Hz; with a structure both are in its units instead: amplitude in g tan(alpha_cg), frequency in
-/// p_l, of which it is the circular one. cycles: periods of a sine or cosine (1), gamma of mavroeidis_papageorgiou (2); phase in
-/// rad; lead_in and rest, s before and after it; error, how far its straight lines may be off the curve over the amplitude. g in
-/// m/s2. Raises ValueError for a pulse that cannot be.
+/// amplitude a_p in g, frequency in Hz; with a structure both are in its units instead: amplitude in g tan(alpha_cg),
+/// frequency in p_l, of which it is the circular one. cycles: periods of a sine or cosine (1), gamma of
+/// mavroeidis_papageorgiou (2); phase in rad; error, how far its straight lines may be off the curve over the amplitude.
+/// g in m/s2. Raises ValueError for a pulse that cannot be.
 #[pyfunction]
-#[pyo3(signature = (shape, *, amplitude, frequency, cycles=None, phase=0.0, lead_in=0.0, rest=0.0, error=DEFAULT_ERROR, structure=None, g=9.81))]
+#[pyo3(signature = (shape, *, amplitude, frequency, cycles=None, phase=0.0, error=DEFAULT_ERROR, structure=None, g=9.81))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn pulse(
     shape: &str,
@@ -220,8 +224,6 @@ pub fn pulse(
     frequency: f64,
     cycles: Option<f64>,
     phase: f64,
-    lead_in: f64,
-    rest: f64,
     error: f64,
     structure: Option<&Structure>,
     g: f64,
@@ -229,6 +231,6 @@ pub fn pulse(
     let shape = one_of("shape", shape, Shape::ALL.map(|of| (of.name(), of)))?;
     let (of_amplitude, of_frequency) = structure.map_or((g, 1.0), |structure| units_of(&structure.0));
     let pulse = Pulse::new(shape, amplitude * of_amplitude, frequency * of_frequency);
-    let pulse = Pulse { cycles: cycles.unwrap_or(pulse.cycles), phase, lead_in, rest, error, ..pulse };
+    let pulse = Pulse { cycles: cycles.unwrap_or(pulse.cycles), phase, error, ..pulse };
     pulse.record().map(Record).map_err(refused)
 }
