@@ -114,7 +114,7 @@ browser: .venv/heavy exporter explore
 	$(PYTEST) -m heavy tests/test_view.py tests/test_explore.py
 
 docs/img/explore.png: .venv/heavy explore
-	$(PYTHON) web/picture.py
+	$(PYTHON) examples/explore_picture.py
 
 # The library of this machine rides in the page, for the FMU that it writes.
 WEB := wasm32-unknown-unknown

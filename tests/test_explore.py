@@ -116,7 +116,7 @@ def agreement(exporter, folder, evaluate) -> list[float]:
 
 def test_numbers_are_the_command_lines_in_chromium(opened, exporter, tmp_path):
     page = opened()
-    assert min(agreement(exporter, tmp_path, lambda given: page.evaluate(COMPUTED, given))) >= 9
+    assert min(agreement(exporter, tmp_path, lambda given: page.evaluate(COMPUTED, given))) == 17
 
 
 class Firefox:
@@ -186,7 +186,7 @@ def test_numbers_are_the_command_lines_in_firefox(firefox, exporter, tmp_path):
             document.body.append(script);
             return JSON.parse(document.body.dataset.answer);""", COMPUTED, given)
 
-    assert min(agreement(exporter, tmp_path, evaluate)) >= 9
+    assert min(agreement(exporter, tmp_path, evaluate)) == 17
 
 
 def native_time(exporter, folder) -> float:

@@ -10,8 +10,8 @@ use FlexibleRocking::guid;
 use anyhow::{Context, bail};
 use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
-use std::path::{Path, PathBuf};
 use std::fs;
+use std::path::{Path, PathBuf};
 
 /// Where the folder `share` of an installation has the archive with the libraries for every platform.
 const INSTALLED: &str = "flexible-rocking/FlexibleRocking.fmu";

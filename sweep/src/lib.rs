@@ -7,6 +7,7 @@
 //! | [`exceedances`] | how often limits are exceeded over an intensity |
 //! | [`fragility`] | the curve through these, and how sure it is |
 //! | [`pulse`] | the field's standard pulses as ground motions |
+//! | [`synthetic`] | ground motions made of noise |
 //! | [`map`] | overturning spectra: the fate under a pulse over its amplitude and frequency |
 
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
@@ -17,6 +18,7 @@ pub mod map;
 pub mod outcome;
 pub mod plan;
 pub mod pulse;
+pub mod synthetic;
 
 /// Why something cannot be run or counted: what is wrong, and what to change.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
