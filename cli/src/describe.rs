@@ -1,10 +1,8 @@
 //! `describe`: a structure's parameters and what follows from them.
 
-mod picture;
 mod template;
 
 use crate::{
-    picture::PictureFile,
     quantities::NamedValue,
     results::{Format, FormatArgs, print, print_rows},
     significant::{short, significant},
@@ -28,17 +26,11 @@ pub struct DescribeArgs {
     /// Print a commented file for --parameters instead: every parameter of this structure, with unit and range
     #[arg(long, conflicts_with = "format")]
     template: bool,
-    /// Draw the structure to scale
-    #[arg(long, value_name = "FILE.svg|png")]
-    picture: Option<PictureFile>,
 }
 
 /// Prints the parameters as they were given and the derived quantities with the equations that define them.
 pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
-    if let Some(file) = &args.picture {
-        picture::draw(file.create(&mut args.results.files(args.structure.input()))?, &structure)?;
-    }
     if args.template {
         let mut out = String::new();
         template::write(&mut out, &structure)?;
@@ -57,7 +49,8 @@ pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
     print_rows(args.results.format, &lines)
 }
 
-fn text(structure: &Structure) -> Result<String, fmt::Error> {
+/// The parameters and the derived quantities, for people.
+pub fn text(structure: &Structure) -> Result<String, fmt::Error> {
     let mut out = String::new();
     let unit = |unit| if unit == "1" { "-" } else { unit };
     writeln!(out, "Parameters")?;

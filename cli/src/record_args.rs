@@ -14,6 +14,7 @@ pub struct RecordArgs {
     /// Ground motion record, `-` for standard input: PEER .AT2, ESM, K-NET, COSMOS or CSMIP as published, or a table of text
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
+    /// How it is read and scaled.
     #[command(flatten)]
     pub options: RecordOptions,
 }
@@ -179,7 +180,8 @@ pub fn with_key(error: anyhow::Error) -> anyhow::Error {
     })
 }
 
-fn with_remedy(error: anyhow::Error, words: impl Fn(&Remedy) -> &'static str) -> anyhow::Error {
+/// The error with what helps, in the words of whoever asked.
+pub fn with_remedy(error: anyhow::Error, words: impl Fn(&Remedy) -> &'static str) -> anyhow::Error {
     match error.downcast_ref() {
         Some(RecordError::Malformed { remedy: Some(remedy), .. }) => anyhow!("{error}; {}", words(remedy)),
         _ => error,

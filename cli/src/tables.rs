@@ -65,14 +65,19 @@ pub const RESPONSE: [&str; 20] = [
     "transitions",
 ];
 
-/// A line of the response.
-pub fn response_line(sample: &Sample) -> impl Serialize + use<> {
+/// The numbers of a line of the response, in the order of [`RESPONSE`]; phase and transitions follow.
+pub fn response_numbers(sample: &Sample) -> [f64; RESPONSE.len() - 2] {
     let &Sample { motion, load, .. } = sample;
     let Outputs { theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t } = sample.outputs();
     let Reactions { R_h, R_v, R_m } = sample.reactions();
     let Impulse { I_h, I_v, I_m } = motion.impulse;
-    let of_motion = (theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t);
-    (motion.time, load.a_g, of_motion, (R_h, R_v, R_m, I_h, I_v, I_m), motion.phase.name(), motion.transitions)
+    let time = motion.time;
+    [time, load.a_g, theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t, R_h, R_v, R_m, I_h, I_v, I_m]
+}
+
+/// A line of the response.
+pub fn response_line(sample: &Sample) -> impl Serialize + use<> {
+    (response_numbers(sample), sample.motion.phase.name(), sample.motion.transitions)
 }
 
 /// Headings of the transitions.

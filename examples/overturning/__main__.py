@@ -6,6 +6,7 @@ import json
 import random
 import resource
 import subprocess
+from operator import itemgetter
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -32,7 +33,7 @@ class Scene:
         self.seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
         self.counts = list(csv.DictReader(done.stdout.splitlines()))
         with open(rows, newline="", encoding="utf-8") as file:
-            of = lambda point: (point["structures"], float(point["frequency"]), float(point["amplitude"]))  # noqa: E731
+            of = itemgetter("structures", "omega/p_l", "a_p/(g tan alpha_cg)")
             self.points = sorted(csv.DictReader(file), key=of)  # rows stand in the order in which runs ended
 
     def structures(self) -> list[str]:

@@ -48,6 +48,18 @@ impl Criterion {
         Criterion::UHistory,
         Criterion::AtHistory,
     ];
+
+    /// Its name on the command line and in tables.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Criterion::Theta => "theta",
+            Criterion::U => "u",
+            Criterion::At => "a_t",
+            Criterion::ThetaHistory => "theta_history",
+            Criterion::UHistory => "u_history",
+            Criterion::AtHistory => "a_t_history",
+        }
+    }
 }
 
 /// What a level makes of a run.

@@ -58,7 +58,7 @@ mod tests {
             assert!((motion.pga() - 4.0).abs() < 1e-12 && motion.end() == 20.0);
             let [velocity, _] = motion.velocities_and_displacements().last().unwrap();
             let largest = motion.velocities_and_displacements().fold(0.0_f64, |most, [v, _]| most.max(v.abs()));
-            assert!(velocity.abs() < 0.3 * largest, "{seed}: {velocity} m/s of {largest} m/s");
+            assert!(velocity.abs() < 0.5 * largest, "{seed}: {velocity} m/s of {largest} m/s");
             assert_eq!(motion, record(4.0, 20.0, seed).unwrap());
         }
         assert_ne!(record(4.0, 20.0, 1).unwrap(), record(4.0, 20.0, 2).unwrap());

@@ -1,32 +1,87 @@
-//! The rows of a sweep: headings, and what they say of each run.
+//! The rows of a sweep: headings, and what they say of each run; and the sweep that goes on where its rows end.
 //!
 //! A run's key stands for names, parameters, samples, scale factors, conditions, the build of the program.
-use super::row_file::{Known, RowFile, digest, fixed, key, line};
-use crate::cause::{heading, version};
+
+use crate::outcome::{MEASURES, Outcome};
+use crate::plan::{AXES, Case, Conditions, NamedRecord, Plan};
+use crate::row_file::{Known, Program, RowFile, digest, fixed, heading, line};
+use anyhow::ensure;
 use csv::StringRecord;
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::mechanics::state::INITIAL_VALUES;
-use rocking::run::validity::{ASSUMPTIONS, Found as Beyond};
-use rocking_sweep::outcome::{MEASURES, Outcome};
-use rocking_sweep::plan::{AXES, Case, Conditions, NamedRecord, Plan};
-use std::{collections::HashMap, path::Path, ptr};
+use rocking::run::validity::{ASSUMPTIONS, Found as Beyond, Limits, Validity};
+use std::collections::{HashMap, HashSet};
+use std::path::Path;
+use std::ptr;
 use uuid::Uuid;
 
 /// The word for the ending of a run that has none.
 const FAILED: &str = "failed";
 
+/// A plan with the rows of its runs, as far as they are done.
+#[derive(Debug)]
+pub struct Sweep<'a> {
+    plan: &'a Plan,
+    program: &'a Program,
+    validity: bool,
+    keys: Vec<Key>,
+    outcomes: Vec<Option<Outcome>>,
+    file: RowFile,
+    /// Rows of the file that are not of this sweep.
+    pub others: Known<Outcome>,
+}
+
+impl<'a> Sweep<'a> {
+    /// Opens the file of rows at `path`, or begins it, and finds the runs of `plan` that are in it; with `validity` a
+    /// row says what its run goes beyond, too. Refuses runs that are the same, and rows that are not of a sweep.
+    pub fn open(plan: &'a Plan, validity: bool, program: &'a Program, path: &Path) -> anyhow::Result<Sweep<'a>> {
+        let keys = keys(plan, validity, program);
+        ensure!(
+            keys.iter().map(|key| key.run).collect::<HashSet<_>>().len() == keys.len(),
+            "two runs are the same: values that vary differ by less than a rounding error"
+        );
+        let (file, mut known) = open(path)?;
+        let outcomes: Vec<_> = keys.iter().map(|key| known.take(&key.run)).collect();
+        Ok(Sweep { plan, program, validity, keys, outcomes, file, others: known })
+    }
+
+    /// The runs that are not done.
+    pub fn missing(&self) -> Vec<usize> {
+        (0..self.plan.len()).filter(|index| self.outcomes[*index].is_none()).collect()
+    }
+
+    /// Does the runs that are not done, on all threads, and adds their rows as they end; after each `goes_on` is asked.
+    /// The key of every run of the plan, which its row begins with, and what became of it.
+    pub fn finish(mut self, goes_on: impl Fn() -> bool + Sync) -> anyhow::Result<(Vec<Uuid>, Vec<Outcome>)> {
+        let run = |&index: &usize| {
+            let case = self.plan.case(index);
+            let found = Beyond::since(case.motion.record().start());
+            let mut validity = self.validity.then(|| Validity::new(&case.structure, Limits::default(), found));
+            let outcome = match &mut validity {
+                Some(validity) => case.outcome_watched(validity),
+                None => case.outcome(),
+            };
+            let beyond = validity.as_ref().map(Validity::found);
+            Ok((row(&self.keys[index], &case, &outcome, beyond, self.program)?, (index, outcome)))
+        };
+        let done = self.file.do_runs(&self.missing(), run, goes_on)?;
+        done.into_iter().for_each(|(index, outcome)| self.outcomes[index] = Some(outcome));
+        let outcomes = self.outcomes.into_iter().map(|outcome| outcome.expect("every run is done"));
+        Ok((self.keys.into_iter().map(|key| key.run).collect(), outcomes.collect()))
+    }
+}
+
 /// What tells a run and its record from others.
-pub struct Key {
+#[derive(Debug)]
+struct Key {
     /// Stands for all that the run depends on.
-    pub run: Uuid,
-    /// Stands for the same where what it goes beyond is asked for, and was not, or the other way round.
-    pub otherwise: Uuid,
+    run: Uuid,
     /// Stands for the samples of its record, whatever its file is called.
     record: Uuid,
 }
 
 /// The key of each run of `plan`, which is another one where it is asked what a run goes beyond.
-pub fn keys(plan: &Plan, validity: bool) -> Vec<Key> {
+fn keys(plan: &Plan, validity: bool, program: &Program) -> Vec<Key> {
     let of_motion = |of: &NamedRecord| {
         let samples = (of.record().times(), of.record().acceleration());
         (ptr::from_ref(of), digest(&Uuid::NAMESPACE_OID, &samples))
@@ -36,14 +91,13 @@ pub fn keys(plan: &Plan, validity: bool) -> Vec<Key> {
         let names = (case.population.name(), case.motion.name());
         let record = digests[&ptr::from_ref(case.motion)];
         let motion = (record.into_bytes(), case.motion.scale(), case.scale);
-        let run = |validity: bool| key(&(names, case.structure.parameters(), motion, case.conditions, validity));
-        Key { run: run(validity), otherwise: run(!validity), record }
+        Key { run: program.key(&(names, case.structure.parameters(), motion, case.conditions, validity)), record }
     };
     plan.cases().map(of_case).collect()
 }
 
 /// Opens the file at `path`, or begins it, and reads what its rows say.
-pub fn open(path: &Path) -> anyhow::Result<(RowFile, Known<Outcome>)> {
+fn open(path: &Path) -> anyhow::Result<(RowFile, Known<Outcome>)> {
     let headings = headings();
     let at = |heading: &str| headings.iter().position(|found| found == heading).expect("it is one of them");
     let (ending, after, reason) = (at("ending"), at("evaluations") + 1, at("reason"));
@@ -79,9 +133,15 @@ fn headings() -> Vec<String> {
 }
 
 /// The row of a run.
-pub fn row(key: &Key, case: &Case, outcome: &Outcome, beyond: Option<&Beyond>) -> anyhow::Result<Vec<u8>> {
+fn row(
+    key: &Key,
+    case: &Case,
+    outcome: &Outcome,
+    beyond: Option<&Beyond>,
+    program: &Program,
+) -> anyhow::Result<Vec<u8>> {
     let values = AXES.map(|axis| case.value(axis));
-    let structure = (key.run.to_string(), case.population.name(), version(), values);
+    let structure = (key.run.to_string(), case.population.name(), &program.version, values);
     let intensities = IntensityMeasure::ALL.map(|measure| case.intensity(measure));
     let record = (case.motion.name(), format!("{:016x}", key.record.as_u64_pair().0));
     let motion = (record, case.motion.scale(), case.scale, intensities);

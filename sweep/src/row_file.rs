@@ -1,13 +1,11 @@
 //! A file of rows that grows as runs end: headings, and a row for every run that is done.
 //!
-//! A row begins with the run's key, which stands for all that the run depends on. So rows may stand in any order, and those
-//! of other runs among them.
+//! A row begins with the run's key, which stands for all that the run depends on. So rows may stand in any order, and
+//! those of other runs among them.
 //!
 //! A row is written at once and whole when its run ends. Whatever ends the program, the file then holds complete rows,
 //! and at most part of one more at its end, which is cut off when the runs go on.
-use super::progress_style;
-use crate::talk::{self, say};
-use FlexibleRocking::BUILD;
+
 use anyhow::{Context, bail, ensure};
 use csv::{ReaderBuilder, StringRecord, WriterBuilder};
 use rayon::prelude::*;
@@ -22,6 +20,7 @@ use std::{
 use uuid::Uuid;
 
 /// An open file, to which rows can be added.
+#[derive(Debug)]
 pub struct RowFile {
     path: PathBuf,
     /// With the length of what is complete.
@@ -29,14 +28,26 @@ pub struct RowFile {
 }
 
 /// What the rows say that were there, each a `T`, that have not been taken yet.
+#[derive(Debug)]
 pub struct Known<T> {
     by_key: HashMap<Uuid, T>,
     repeated: usize,
 }
 
-/// The key of what depends on the build of the program and on `of`.
-pub fn key(of: &impl Serialize) -> Uuid {
-    digest(&Uuid::try_parse(BUILD).expect("the build script wrote it"), of)
+/// The program that does the runs.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// Stands for all of it that a run depends on.
+    pub build: Uuid,
+    /// What its rows call it.
+    pub version: String,
+}
+
+impl Program {
+    /// The key of what depends on this program and on `of`.
+    pub fn key(&self, of: &impl Serialize) -> Uuid {
+        digest(&self.build, of)
+    }
 }
 
 /// A number that stands for `of` in `namespace`.
@@ -50,14 +61,13 @@ impl<T> Known<T> {
         self.by_key.remove(key)
     }
 
-    /// Says how many rows of the file at `path` are of other runs or points, `what`, and how many are there again.
-    pub fn say_others(&self, path: &Path, what: &str) {
+    /// What there is beside them in the file at `path`, a line each: rows of other runs or points, `what`, and rows
+    /// that are there again.
+    pub fn others(&self, path: &Path, what: &str) -> Vec<String> {
         let others = format!("of {what} (other inputs, or another build of the program): kept");
-        for (count, are) in [(self.by_key.len(), others.as_str()), (self.repeated, "there again: counted once")] {
-            if count > 0 {
-                say!("{}: {count} row(s) are {are}", path.display());
-            }
-        }
+        let counts = [(self.by_key.len(), others.as_str()), (self.repeated, "there again: counted once")];
+        let line = |(count, are)| (count > 0).then(|| format!("{}: {count} row(s) are {are}", path.display()));
+        counts.into_iter().filter_map(line).collect()
     }
 }
 
@@ -88,8 +98,8 @@ impl RowFile {
             let mut rows = ReaderBuilder::new().from_reader(&content[..length]);
             ensure!(
                 rows.headers()? == headings,
-                "line 1 is not the headings of this sweep's rows, in this version of the program: name another file with \
-                 -o, or remove this one. These are the headings:\n{}",
+                "line 1 is not the headings of this sweep's rows, in this version of the program: name another file, or \
+                 remove this one. These are the headings:\n{}",
                 String::from_utf8_lossy(&first)
             );
             for row in rows.records() {
@@ -107,24 +117,21 @@ impl RowFile {
         Ok((RowFile { path: path.into(), file: Mutex::new((file, length as u64)) }, known))
     }
 
-    /// Does many runs, which are called `what`, on all threads, and adds their rows as they end: `run` returns one and what
-    /// it is kept as.
+    /// Does `runs` on all threads, and adds their rows as they end: `run` returns one and what it is kept as. After
+    /// each, `goes_on` is asked; once it says no, the rest is left undone and that is an error.
     pub fn do_runs<T: Sync, R: Send>(
         &self,
-        what: &str,
         runs: &[T],
         run: impl Fn(&T) -> anyhow::Result<(Vec<u8>, R)> + Sync,
+        goes_on: impl Fn() -> bool + Sync,
     ) -> anyhow::Result<Vec<R>> {
-        let progress = talk::progress(runs.len()).with_style(progress_style(what)?);
         let done = runs.par_iter().map(|one| {
             let (row, result) = run(one)?;
             self.append(&row)?;
-            progress.inc(1);
+            ensure!(goes_on(), "stopped: what is done stays in {}", self.path.display());
             Ok(result)
         });
-        let done = done.collect();
-        progress.finish_and_clear();
-        done
+        done.collect()
     }
 
     /// Adds a row, or nothing.
@@ -139,6 +146,11 @@ impl RowFile {
         *length += row.len() as u64;
         Ok(())
     }
+}
+
+/// The heading of a column of numbers.
+pub fn heading(name: &str, unit: &str) -> String {
+    if unit == "1" { name.into() } else { format!("{name}[{unit}]") }
 }
 
 /// The headings of columns that are called the same whatever the sweep is of.
