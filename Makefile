@@ -61,6 +61,7 @@ MINGW := x86_64-w64-mingw32-gcc
 HAS_MINGW := command -v $(MINGW) >/dev/null
 HAS_WINE := command -v wine >/dev/null
 HAS_CHROMIUM := command -v chromium >/dev/null
+HAS_FIREFOX := command -v firefox-esr >/dev/null || command -v firefox >/dev/null
 HAS_TBB := PATH=$$PATH:/sbin ldconfig -p | grep -q 'libtbb\.so\.12'
 sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
@@ -121,10 +122,11 @@ hosts: .venv/heavy exporter windows host_packages
 # The pages of `view` and `explore` in Chromium, and in Firefox; where these cannot be had, the tests are skipped and say so.
 browser: .venv/heavy exporter explore
 	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
+	-@$(HAS_FIREFOX) || { $(call install,firefox-esr); }
 	$(PYTEST) -m heavy tests/test_view.py tests/test_explore.py
 
 docs/img/explore.png: .venv/heavy explore
-	$(PYTHON) web/picture.py
+	$(PYTHON) examples/explore_picture.py
 
 # The library of this machine rides in the page, for the FMU that it writes.
 WEB := wasm32-unknown-unknown
@@ -133,7 +135,7 @@ explore: library
 	cd web && cargo build --release --locked --package rocking-web --target $(WEB)
 	mkdir -p out
 	cargo run --release --locked --manifest-path web/Cargo.toml --package pack -- \
-		$(or $(CARGO_TARGET_DIR),web/target)/$(WEB)/release/rocking_web.wasm out/explore.html $(TARGET)/release/libFlexibleRocking.so
+		$(or $(CARGO_TARGET_DIR),web/target)/$(WEB)/release/rocking_web.wasm out/explore.html $(TARGET)/release/deps/libFlexibleRocking.so
 
 evidence: .venv/test exporter
 	$(PYTEST) -m heavy tests/test_pages.py

@@ -54,7 +54,7 @@ pub fn at_rotation(structure: &Structure, theta: f64) -> Option<Equilibrium> {
     let k = structure.k;
     let side = Side::of(theta);
     let s = side.sign();
-    let (sin, cos) = theta.abs().sin_cos();
+    let (sin, cos) = libm::sincos(theta.abs());
     let (quadratic, linear) = (k * sin, k * (H * cos + B * sin) + m * g);
     let constant = g * B * (m + m0 * cos * cos);
     let discriminant = linear * linear - 4.0 * quadratic * constant;
@@ -89,7 +89,7 @@ pub fn at_displacement(structure: &Structure, delta_t: f64) -> Option<Equilibriu
 pub fn at_overturning(structure: &Structure) -> Option<Equilibrium> {
     let tan_alpha_cg = structure.tan_alpha_cg;
     let restores = |theta| at_rotation(structure, theta).is_some_and(|there| there.force >= 0.0);
-    at_rotation(structure, last_where(0.0, tan_alpha_cg.atan(), restores))
+    at_rotation(structure, last_where(0.0, libm::atan(tan_alpha_cg), restores))
 }
 
 #[cfg(test)]

@@ -30,7 +30,7 @@ pub(crate) trait Level {
 
     /// Whether a structure in full contact in `state` stays there while nothing acts on it.
     fn stays_down(&self, structure: &Structure, state: &State) -> bool {
-        state.u.hypot(state.u_dot / structure.omega_fc) < structure.u_cr
+        libm::hypot(state.u, state.u_dot / structure.omega_fc) < structure.u_cr
     }
 
     /// How far a structure in full contact in `state` under `load` is from uplift, in parts of what uplift takes, and about

@@ -36,7 +36,7 @@ pub fn accelerations(structure: &Structure, side: Side, state: &State, load: Loa
     let &crate::Parameters { m, m0, H, B, J0, g, .. } = structure.parameters();
     let &State { u, u_dot, theta, theta_dot } = state;
     let s = side.sign();
-    let (sin, cos) = theta.sin_cos();
+    let (sin, cos) = libm::sincos(theta);
     let lever = s * B - u;
     let mass = Matrix2::new(m, m * H, m * H, J0 + m * H * H + m * lever * lever + m0 * B * B);
     let force = Vector2::new(
@@ -147,7 +147,7 @@ impl ElasticRocking for NonlinearRocking {
         let [height, offset, lever_start] = [H, weight_offset, lever].map(|factor| factor * per_inertia);
 
         let State { u, u_dot, theta, theta_dot } = state;
-        let (mut sin, mut cos) = theta.sin_cos();
+        let (mut sin, mut cos) = libm::sincos(theta);
         let mut weight = g * cos + a * sin; // G
         let mut weight_below = g * cos + a_ground * sin; // G₀
         let mut along = g * sin - a * cos; // F

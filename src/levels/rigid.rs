@@ -30,7 +30,7 @@ use crate::{Phase, Side, State, Structure};
 
 /// P and Q at `theta`.
 fn shape(structure: &Structure, side: Side, theta: f64) -> [f64; 2] {
-    let (sin, cos) = theta.sin_cos();
+    let (sin, cos) = libm::sincos(theta);
     let slenderness = side.sign() * structure.tan_alpha_cg;
     [sin - slenderness * cos, cos + slenderness * sin]
 }
@@ -160,7 +160,7 @@ pub(crate) fn a_t(structure: &Structure, phase: Phase, state: &State, load: Load
     let &crate::Parameters { H, B, .. } = structure.parameters();
     let s = phase.side().sign();
     let [_, theta_ddot] = accelerations(structure, phase, state, load);
-    H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * state.theta.cos()
+    H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * libm::cos(state.theta)
 }
 
 /// Its time derivative, m/s³, given θ̈ and θ⃛; 0 once overturned.
@@ -177,8 +177,8 @@ pub(crate) fn a_t_rate(
     match phase {
         Phase::Overturned(_) => 0.0,
         _ => {
-            H * theta_dddot + 2.0 * s * B * theta_dot * theta_ddot + load.slope.a_g * theta.cos()
-                - load.value.a_g * theta.sin() * theta_dot
+            H * theta_dddot + 2.0 * s * B * theta_dot * theta_ddot + load.slope.a_g * libm::cos(theta)
+                - load.value.a_g * libm::sin(theta) * theta_dot
         }
     }
 }
@@ -201,7 +201,7 @@ pub(crate) fn a_t_series(structure: &Structure, phase: Phase, load: LinearLoad, 
 pub(crate) fn bounds(structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc) -> [Bound; 4] {
     let &crate::Parameters { H, B, .. } = structure.parameters();
     let offset = phase.side().sign() * B;
-    let cos = arc.theta[0].cos();
+    let cos = libm::cos(arc.theta[0]);
     let ground = [load.value.a_g, load.slope.a_g * arc.span];
     let row = |k: usize| {
         let theta_ddot = if k < arc.order { (k + 1) as f64 * arc.theta_dot[k + 1] / arc.span } else { 0.0 };

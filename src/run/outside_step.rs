@@ -47,7 +47,7 @@ impl Sample<'_> {
                 [margin + BAND, 1.0]
             }
             Phase::Rocking(side) => {
-                let height = side.sign() * state.theta / self.model.structure.tan_alpha_cg.atan();
+                let height = side.sign() * state.theta / libm::atan(self.model.structure.tan_alpha_cg);
                 [height + BAND, 1.0 - state.theta.abs() / FRAC_PI_2]
             }
             Phase::Overturned(_) => [1.0; INDICATORS],

@@ -136,7 +136,7 @@ impl Peaks {
     /// Of the uplift δ_u = 2 B sin|θ|, m (Eq 25): with |θ|, which never exceeds π/2.
     pub fn uplift(&self) -> Peak {
         let theta = self.theta();
-        Peak { magnitude: 2.0 * self.B * theta.magnitude.sin(), ..theta }
+        Peak { magnitude: 2.0 * self.B * libm::sin(theta.magnitude), ..theta }
     }
 
     /// Of the acceleration of the top mass |a_t|, m/s² (Eq 27).

@@ -226,7 +226,7 @@ fn reach(arc: &Arc, truncation: Truncation) -> f64 {
         .into_iter()
         .map(|k| {
             let ratios = [truncation.u_dot / arc.u_dot[k].abs(), truncation.theta_dot / arc.theta_dot[k].abs()];
-            ratios[0].min(ratios[1]).powf(1.0 / k as f64)
+            libm::pow(ratios[0].min(ratios[1]), 1.0 / k as f64)
         })
         .fold(f64::INFINITY, f64::min)
 }

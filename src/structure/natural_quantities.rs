@@ -212,10 +212,12 @@ impl Given {
         let B = || or("B", "width", &|width| width / 2.0);
         let gamma = (m + m0) / m;
         let (H, B) = match (self.get("alpha_cg"), self.get("H")) {
-            (Some(alpha_cg), Some(H)) => (H, parameter_for("alpha_cg", alpha_cg, "B", H * alpha_cg.tan() / gamma)?),
+            (Some(alpha_cg), Some(H)) => {
+                (H, parameter_for("alpha_cg", alpha_cg, "B", H * libm::tan(alpha_cg) / gamma)?)
+            }
             (Some(alpha_cg), None) => {
                 let B = B()?;
-                (parameter_for("alpha_cg", alpha_cg, "H", gamma * B / alpha_cg.tan())?, B)
+                (parameter_for("alpha_cg", alpha_cg, "H", gamma * B / libm::tan(alpha_cg))?, B)
             }
             (None, _) => (own("H"), B()?),
         };
