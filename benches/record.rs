@@ -31,7 +31,7 @@ fn run(ground: &Record, detail: Detail, tolerance: f64) -> Run<'_> {
 /// One 4×6 matrix-vector product per sample, each on the result of the last: what no propagation goes below.
 fn floor(flow: &SMatrix<f64, 4, 6>, segments: &[Segment]) -> Vector4<f64> {
     segments.iter().fold(Vector4::zeros(), |x, segment| {
-        flow * Vector6::new(x[0], x[1], x[2], x[3], segment.a_g.value, segment.a_g.slope)
+        flow * Vector6::new(x[0], x[1], x[2], x[3], segment.ground.value.a_g, segment.ground.slope.a_g)
     })
 }
 

@@ -17,8 +17,9 @@ pub mod transition;
 
 use crate::levels::detail::{AnyLevel, Detail, Model};
 use crate::levels::level::Level;
-use crate::mechanics::load::{LOADS, LinearLoad, Load};
+use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
+use crate::mechanics::restraint::{Dissipators, Restraints};
 use crate::mechanics::state::InitialStateError;
 use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
@@ -96,6 +97,14 @@ pub enum AdvanceError {
         /// The interval, s.
         interval: f64,
     },
+    /// The ground moves vertically, which it was not to ([`Engine::admit_vertical`]).
+    #[error("a_v = {} with slope {slope:?} m/s3: this structure was to be shaken horizontally alone", with_unit(*value, "m/s2"))]
+    Vertical {
+        /// At the start, m/s².
+        value: f64,
+        /// m/s³.
+        slope: f64,
+    },
     /// Too many steps for one call.
     #[error(
         "one advance may take {MAX_STEPS_PER_ADVANCE} steps; they ended at t = {} of {}: advance in shorter intervals",
@@ -131,7 +140,7 @@ impl AdvanceError {
     pub fn time(&self) -> Option<f64> {
         match *self {
             AdvanceError::TooLong { time, .. } | AdvanceError::Singular { time, .. } => Some(time),
-            AdvanceError::NotAhead { .. } | AdvanceError::Load { .. } => None,
+            AdvanceError::NotAhead { .. } | AdvanceError::Load { .. } | AdvanceError::Vertical { .. } => None,
         }
     }
 }
@@ -141,6 +150,8 @@ impl AdvanceError {
 pub struct Engine {
     model: Box<Model>,
     motion: Motion,
+    /// Whether the ground may move vertically.
+    vertical: bool,
     /// Whether an advance ends where a transition is due.
     stops: bool,
     /// An advance over more than this, s, is taken in parts.
@@ -173,12 +184,13 @@ impl Engine {
             transitions: 0,
             work: Work::default(),
             impulse: Impulse::default(),
+            dissipators: Dissipators::default(),
             chatter: Chatter::NONE,
             due: None,
         };
         let far = FAR / structure.omega_fc;
         let model = Box::new(Model::new(structure, detail, local_error));
-        Ok(Engine { model, motion, stops: false, far, arc: Arc::default() })
+        Ok(Engine { model, motion, vertical: false, stops: false, far, arc: Arc::default() })
     }
 
     /// The structure.
@@ -199,6 +211,12 @@ impl Engine {
     /// Sets its clock to `time` (s). Nothing but the times that it tells depends on it.
     pub fn set_time(&mut self, time: f64) {
         self.motion.time = time;
+    }
+
+    /// Admits a vertical ground acceleration from now on, or none again. Unless this is called, there is none.
+    pub fn admit_vertical(&mut self, admitted: bool) -> Result<(), InitialStateError> {
+        self.vertical = admitted;
+        Ok(())
     }
 
     /// Whether an advance ends at the first transition but overturning, before it: [`Engine::transit`] applies it, or the
@@ -329,10 +347,24 @@ impl Engine {
         if !(interval > 0.0 && interval <= f64::MAX) {
             return Err(AdvanceError::NotAhead { from: self.motion.time, interval });
         }
-        if load.value.is_finite() && load.at(interval).is_finite() {
+        if load.is_vertical() {
+            return self.check_vertical(interval, load);
+        }
+        if load.is_finite_over(interval) {
             return Ok(());
         }
         Err(bad_load(interval, load))
+    }
+
+    /// Whether a `load` with a vertical part can.
+    #[cold]
+    fn check_vertical(&self, interval: f64, load: &LinearLoad) -> Result<(), AdvanceError> {
+        let Ramp { value, slope } = load.upwards();
+        if !self.vertical {
+            return Err(AdvanceError::Vertical { value, slope });
+        }
+        let is_finite = load.is_finite_over(interval) && (value + slope * interval).is_finite();
+        if is_finite { Ok(()) } else { Err(bad_load(interval, load)) }
     }
 
     /// Whether the structure, in full contact now, stays there while nothing acts on it.
@@ -355,6 +387,11 @@ impl Engine {
     /// The reactions now under `load`; once overturned, those of the instant before.
     pub fn reactions(&self, load: Load) -> Reactions {
         self.sample(load).reactions()
+    }
+
+    /// The forces of the restraints now.
+    pub fn restraints(&self) -> Restraints {
+        self.sample(Load::default()).restraints()
     }
 
     /// Time derivatives of the outputs and reactions now under `load`, from the equations of motion; 0 once overturned.

@@ -184,7 +184,7 @@ fn any_parameters() -> impl Strategy<Value = Parameters> {
             zeta_fc,
             c_ratio,
             r,
-            g: 9.81,
+            ..Parameters::EVISON
         })
 }
 

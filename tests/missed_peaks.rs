@@ -173,9 +173,9 @@ fn no_peak_is_missed() {
         }
         let mut advances = Vec::new();
         for _ in 0..=r.log(3.0, 60.0) as usize {
-            let target = Load { a_g: amplitude * r.sym(), F_t: force * r.sym() };
+            let target = Load { a_g: amplitude * r.sym(), F_t: force * r.sym(), a_v: 0.0 };
             let h = longest * if r.next() < 0.2 { r.next() + 1e-3 } else { 1.0 };
-            let slope = Load { a_g: (target.a_g - load.a_g) / h, F_t: (target.F_t - load.F_t) / h };
+            let slope = Load { a_g: (target.a_g - load.a_g) / h, F_t: (target.F_t - load.F_t) / h, a_v: 0.0 };
             let watch = &mut (&mut dense, &mut (&mut peaks.watch(), &mut validity));
             advances.push((h, LinearLoad { value: load, slope }));
             let progress = engine.advance(h, LinearLoad { value: load, slope }, watch);

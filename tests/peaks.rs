@@ -38,7 +38,7 @@ fn sampled(run: &Run, step: f64) -> [f64; 7] {
         Engine::with_detail(run.structure, run.initial, run.ground.start(), run.tolerance, run.detail).unwrap();
     let mut largest = [0.0; 7];
     for segment in run.ground.segments_until(run.ground.end()) {
-        let (duration, start) = (segment.end - segment.start, segment.a_g);
+        let (duration, start) = (segment.end - segment.start, segment.ground);
         let parts = (duration / step).ceil();
         for part in 0..=parts as u32 {
             let at = |part: u32| duration * f64::from(part) / parts;
@@ -52,7 +52,7 @@ fn sampled(run: &Run, step: f64) -> [f64; 7] {
                 let before = part - 1;
                 engine.advance(at(part) - at(before), start.from(at(before)), &mut ()).unwrap();
             }
-            look(&engine, start.at(at(part)));
+            look(&engine, start.at(at(part)).a_g);
             if let Phase::Overturned(_) = engine.motion().phase {
                 return largest;
             }

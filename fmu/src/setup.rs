@@ -4,6 +4,7 @@ use crate::ground::GroundRecord;
 use crate::inputs::Between;
 use crate::resources::Contents;
 use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::mechanics::load::LOADS;
 use rocking::run::ground_motion::Placement;
 use rocking::{Detail, GroundMotion, Parameters, State};
 use serde::{Deserialize, Serialize};
@@ -51,10 +52,10 @@ impl Setup {
     }
 
     /// How the inputs act between communication points.
-    pub(crate) fn between(&self) -> [Between; 2] {
+    pub(crate) fn between(&self) -> [Between; LOADS.len()] {
         let a_g = if self.a_g_late { Between::Late } else { Between::Held };
         let F_t = if self.F_t_extrapolated { Between::Extrapolated } else { Between::Held };
-        [a_g, F_t]
+        [a_g, F_t, Between::Held]
     }
 
     /// `record` as it acts.

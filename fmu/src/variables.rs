@@ -234,7 +234,7 @@ fn overturned(motion: &Motion) -> i32 {
 
 /// How many variables there are: their table is no allocation, which would be left behind where the library is
 /// unloaded.
-const COUNT: usize = 86;
+const COUNT: usize = 93;
 
 /// All variables, in the order of the model description.
 pub static VARIABLES: LazyLock<[Variable; COUNT]> = LazyLock::new(|| {

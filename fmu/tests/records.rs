@@ -11,7 +11,7 @@ use host::*;
 use rocking::run::peaks::{PEAKS, Peaks};
 use rocking::run::record::Record;
 use rocking::run::{End, Run};
-use rocking::{Detail, LinearLoad, Load, Parameters, Ramp, Structure};
+use rocking::{Detail, LinearLoad, Load, Parameters, Structure};
 use rocking_records::Reading;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
@@ -120,12 +120,14 @@ fn the_record_inside_is_the_record_through_the_input() {
             let outside: Vec<_> = segments
                 .iter()
                 .flat_map(|segment| {
-                    let Ramp { value, slope } = segment.a_g;
-                    assert_eq!((host.set(&[("a_g", value)]), host.set_slope("a_g", 1, slope)), (OK, OK));
+                    let LinearLoad { value, slope } = segment.ground;
+                    assert_eq!((host.set(&[("a_g", value.a_g)]), host.set_slope("a_g", 1, slope.a_g)), (OK, OK));
                     let mut shown = step_through(&host, [segment.end - segment.start]);
                     // inside, the next sample acts at once
-                    let next =
-                        segments.iter().find(|next| next.start == segment.end).map_or(0.0, |next| next.a_g.value);
+                    let next = segments
+                        .iter()
+                        .find(|next| next.start == segment.end)
+                        .map_or(0.0, |next| next.ground.value.a_g);
                     assert_eq!(host.set(&[("a_g", next)]), OK);
                     shown[0] = host.try_get(&SHOWN).unwrap();
                     shown
@@ -245,7 +247,7 @@ fn the_input_adds_to_the_record() {
     )
     .unwrap();
     for (duration, value, slope) in [(1.0, (1.5, 30.0), (0.75, 8.0)), (0.5, (2.25, 38.0), (-2.25, 8.0))] {
-        let load = |(a_g, F_t)| Load { a_g, F_t };
+        let load = |(a_g, F_t)| Load { a_g, F_t, a_v: 0.0 };
         engine.advance(duration, LinearLoad { value: load(value), slope: load(slope) }, &mut ()).unwrap();
     }
     let state = engine.motion().state;

@@ -2,6 +2,7 @@
 
 use crate::levels::rules::ChatterLimit;
 use crate::mechanics::reactions::Impulse;
+use crate::mechanics::restraint::Dissipators;
 use crate::{Phase, Side, State};
 use serde::{Deserialize, Serialize};
 
@@ -40,6 +41,8 @@ pub struct Motion {
     pub work: Work,
     /// Impulse of the impacts on the ground so far.
     pub impulse: Impulse,
+    /// What the dissipators keep and have taken.
+    pub dissipators: Dissipators,
     pub(crate) chatter: Chatter,
     /// What is due now and has not been applied.
     pub(crate) due: Option<Event>,

@@ -10,6 +10,7 @@ use crate::levels::level::Rates;
 use crate::levels::output_series::{self, Turn};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::{self, Measure};
+use crate::mechanics::restraint::{Chord, Restraints};
 use crate::series::extremes::Bound;
 use crate::series::taylor::{Arc, Series, Start, evaluate};
 use crate::{Outputs, Phase, Reactions, State};
@@ -83,6 +84,13 @@ impl Sample<'_> {
     pub fn reactions(&self) -> Reactions {
         let phase = self.motion.phase.in_motion();
         Reactions::of(&self.model.structure, phase, &self.motion.state, self.accelerations(), self.load)
+    }
+
+    /// The forces of the restraints.
+    pub fn restraints(&self) -> Restraints {
+        let Motion { phase, state, dissipators, .. } = &self.motion;
+        let chord = Chord::of(state.theta, state.theta_dot);
+        Restraints::of(&self.model.structure, phase.side(), state.theta, dissipators, chord)
     }
 
     /// (ü, θ̈), m/s² and rad/s²; once overturned, those of the instant before.

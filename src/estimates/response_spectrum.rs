@@ -38,8 +38,8 @@ impl Oscillator {
         let mut flow_over = (f64::NAN, Matrix2::identity()); // of the last step length, which few records change
         let mut motion = Vector2::zeros(); // (u̇, ü + a_g)
         let mut peak: f64 = 0.0;
-        for Segment { start, end, a_g } in segments {
-            let step = end - start;
+        for Segment { start, end, ground } in segments {
+            let (step, a_g) = (end - start, ground.on_foundation());
             if step != flow_over.0 {
                 flow_over = (step, self.free(step));
             }
@@ -96,7 +96,7 @@ mod tests {
     use crate::levels::full_contact;
     use crate::mechanics::load::Load;
     use crate::series::taylor::{Arc, Start};
-    use crate::{Parameters, Ramp, State, Structure};
+    use crate::{LinearLoad, Parameters, Ramp, State, Structure};
     use approx::assert_relative_eq;
     use proptest::prelude::*;
 
@@ -108,7 +108,7 @@ mod tests {
         let samples = times.windows(2).zip(a_g.windows(2));
         let segment = |(t, a): (&[f64], &[f64])| {
             let a_g = Ramp { value: a[0], slope: (a[1] - a[0]) / (t[1] - t[0]) };
-            Segment { start: t[0], end: t[1], a_g }
+            Segment { start: t[0], end: t[1], ground: a_g.into() }
         };
         samples.map(segment).collect()
     }
@@ -158,7 +158,7 @@ mod tests {
     fn the_swing_after_the_record_counts() {
         let record_end = 1e-4;
         let load = segments(&[0.0, record_end], &[5.0, 5.0]);
-        let rest = Segment { start: record_end, end: record_end + 1.0, a_g: Ramp::default() };
+        let rest = Segment { start: record_end, end: record_end + 1.0, ground: LinearLoad::default() };
         let peak = oscillator(1.0, 0.0).peak(load.into_iter().chain([rest]));
         assert_relative_eq!(peak, TAU * 5.0 * record_end, max_relative = 1e-6);
     }
@@ -189,7 +189,8 @@ mod tests {
                     let (mut now, until) = (at(i), at(i + 1));
                     while now < until {
                         let interval = until - now;
-                        let start = Start { state, a_g: segment.from(now), a_top: segment.from(now), interval, local_error: 1e-15 };
+                        let a_g = segment.from(now).on_foundation();
+                        let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15 };
                         full_contact::series(&structure, &start, &mut arc);
                         state = arc.end();
                         now = if arc.duration() == interval { until } else { now + arc.duration() };

@@ -58,7 +58,7 @@ mod tests {
             let structure = Structure::new(Parameters { zeta_fc: 0.1, ..Parameters::MCMANUS }).unwrap();
             let state = State { u, u_dot, ..State::default() };
             let side = Side::of(u);
-            let theta_ddot = accelerations(&structure, side, &state, Load { a_g, F_t }).unwrap()[1];
+            let theta_ddot = accelerations(&structure, side, &state, Load { a_g, F_t, a_v: 0.0 }).unwrap()[1];
             prop_assume!(theta_ddot.abs() > 1e-6 && (u.abs() - structure.u_cr).abs() > 1e-8);
             let both = u.abs() >= structure.u_cr && side.sign() * theta_ddot > 0.0;
             let expected = if both { (Crossing::At(0.0), side) } else { (Crossing::None, Side::Right) };

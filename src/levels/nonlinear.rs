@@ -32,7 +32,7 @@ use wide::f64x2;
 /// (ü, θ̈) in m/s² and rad/s² under `load`: Eqs 5 and 6 as they stand, solved for the
 /// accelerations. `None` where the mass matrix is singular: m0 = J0 = 0 and u = sB, the top mass above the pivot.
 pub fn accelerations(structure: &Structure, side: Side, state: &State, load: Load) -> Option<Vector2<f64>> {
-    let Load { a_g, F_t } = load;
+    let Load { a_g, F_t, .. } = load;
     let &crate::Parameters { m, m0, H, B, J0, g, .. } = structure.parameters();
     let &State { u, u_dot, theta, theta_dot } = state;
     let s = side.sign();
@@ -221,8 +221,8 @@ mod tests {
             let side = Side::of(theta);
             let state = State { u, u_dot, theta, theta_dot };
             let mut arc = Arc::default();
-            let value = Load { a_g: value, F_t: force };
-            let load = LinearLoad { value, slope: Load { a_g: slope, F_t: force_slope } };
+            let value = Load { a_g: value, F_t: force, a_v: 0.0 };
+            let load = LinearLoad { value, slope: Load { a_g: slope, F_t: force_slope, a_v: 0.0 } };
             let (a_g, a_top) = (load.on_foundation(), load.on_top(&structure));
             let start = Start { state, a_g, a_top, interval: 2e-3, local_error: 1e-16 };
             NonlinearRocking::default().series(&structure, side, &start, &mut arc);
@@ -251,8 +251,8 @@ mod tests {
         let structure = Structure::new(Parameters::EVISON).unwrap();
         let state = State { u: 1e-3, u_dot: 0.02, theta: 0.03, theta_dot: -0.1 };
         let mirrored = State { u: -1e-3, u_dot: -0.02, theta: -0.03, theta_dot: 0.1 };
-        let right = accelerations(&structure, Side::Right, &state, Load { a_g: 1.5, F_t: 200.0 }).unwrap();
-        let left = accelerations(&structure, Side::Left, &mirrored, Load { a_g: -1.5, F_t: -200.0 }).unwrap();
+        let right = accelerations(&structure, Side::Right, &state, Load { a_g: 1.5, F_t: 200.0, a_v: 0.0 }).unwrap();
+        let left = accelerations(&structure, Side::Left, &mirrored, Load { a_g: -1.5, F_t: -200.0, a_v: 0.0 }).unwrap();
         assert_relative_eq!(right, -left, max_relative = 1e-15);
     }
 }

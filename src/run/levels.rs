@@ -165,7 +165,7 @@ fn cut(segment: Segment, longest: f64) -> impl Iterator<Item = Segment> {
     let at = move |part: f64| if part == parts { end } else { start + (end - start) * (part / parts) };
     (0..parts as u64).map(move |part| {
         let (start, end) = (at(part as f64), at((part + 1) as f64));
-        Segment { start, end, a_g: segment.from(start) }
+        Segment { start, end, ground: segment.from(start) }
     })
 }
 

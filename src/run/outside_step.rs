@@ -121,7 +121,11 @@ impl Known {
         }
         let slope =
             |from: f64, to: f64| Some((to - from) / interval).filter(|slope| slope.is_finite()).unwrap_or_default();
-        let slope = Load { a_g: slope(self.load.a_g, load.a_g), F_t: slope(self.load.F_t, load.F_t) };
+        let slope = Load {
+            a_g: slope(self.load.a_g, load.a_g),
+            F_t: slope(self.load.F_t, load.F_t),
+            a_v: slope(self.load.a_v, load.a_v),
+        };
         let load = LinearLoad { value: self.load, slope };
         match ground {
             Some(ground) => ground.advance(engine, self.elapsed, interval, load, watch),

@@ -119,7 +119,11 @@ impl Instance {
         let before = Shown::new(model, setup, Load::default());
         let size = direction.a_g.abs().max(direction.F_t.abs() / m) / (g + before.outputs.a_t.abs());
         let of_size_one = |part: f64| if size > 0.0 { part / size } else { 0.0 };
-        let after = Shown::new(model, setup, Load { a_g: of_size_one(direction.a_g), F_t: of_size_one(direction.F_t) });
+        let after = Shown::new(
+            model,
+            setup,
+            Load { a_g: of_size_one(direction.a_g), F_t: of_size_one(direction.F_t), a_v: 0.0 },
+        );
         let change = |of: &&Variable| after.value(of.source).zip(before.value(of.source)).map_or(0.0, |(a, b)| a - b);
         let mut found: Vec<_> = unknowns.iter().zip(by_states).map(|(of, by)| size * change(of) + by).collect();
         for (reference, seed) in of_setup {
