@@ -11,10 +11,10 @@
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
 # make wheels  out/wheels: Python packages for Linux, Windows and macOS with the command line and the archive, and one of the source
 # make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
-# make report  regenerate docs/validation.md, docs/validation_literature.md and their figures (minutes)
-# make overturning  regenerate docs/overturning.md and its pictures (minutes)
-# make coupling  regenerate docs/coupling.md and its figures (minutes)
-# make exchange  regenerate docs/model_exchange.md and its figure (minutes)
+# make report  regenerate docs/evidence/paper.md, docs/evidence/literature.md and their figures (minutes)
+# make overturning  regenerate docs/evidence/overturning.md and its pictures (minutes)
+# make coupling  regenerate docs/evidence/coupling.md and its figures (minutes)
+# make exchange  regenerate docs/evidence/model_exchange.md and its figure (minutes)
 # make bench   criterion benchmark of a whole record, and one step over it through fmpy
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
 # make fuzz    ten million hostile calls of each interface and as many damaged records, a core for each (CI: 100,000 of each and 40,000)
@@ -218,10 +218,10 @@ fuzz:
 	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release --workspace --test hostile_calls -- --nocapture
 	FUZZ_RECORDS=$${FUZZ_RECORDS:-10000000} cargo test --release --workspace --test records -- --nocapture no_mutation
 
-# What the demo takes: the shared library and what packs it. The packages chosen are all of the workspace, or those they share
-# would be built again, with other features, for the command line and the tests.
+# What the demo takes: what packs the shared library, and that, in the folder `deps`, which it is linked to. The packages chosen
+# are all of the workspace, or those they share would be built again, with other features, for the command line and the tests.
 library:
-	cargo build --release --workspace --lib --bin fmu-export
+	cargo build --release --workspace --bin fmu-export
 
 exporter:
 	cargo build --release --workspace
@@ -235,7 +235,7 @@ host_packages: mingw
 	-@$(HAS_WINE) || { $(call install,wine); }
 	-@{ $(HAS_TBB); } || { $(call install,libtbb12); }
 
-PACK = mkdir -p out && $(TARGET)/release/fmu-export $(TARGET)/release/libFlexibleRocking.so
+PACK = mkdir -p out && $(TARGET)/release/fmu-export $(TARGET)/release/deps/libFlexibleRocking.so
 out/%3.fmu: library
 	$(PACK) $* 3 $@
 

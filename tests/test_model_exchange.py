@@ -1,6 +1,6 @@
 """The FMU under solvers of hosts: never below the floor, and the nearer to co-simulation the tighter they are.
 
-docs/model_exchange.md has three records and all tolerances; these are a few quick ones."""
+docs/evidence/model_exchange.md has three records and all tolerances; these are a few quick ones."""
 
 import numpy as np
 import pytest

@@ -13,7 +13,7 @@ from validation.project import Project
 from validation.records import horizontal_records, single_pulse
 from validation.report import Row, comparison
 
-PAGE = Path(__file__).parents[1] / "docs" / "validation.md"
+PAGE = Path(__file__).parents[1] / "docs" / "evidence" / "paper.md"
 
 
 @pytest.fixture(scope="module")
@@ -37,7 +37,7 @@ def test_equation_14_is_within_a_percent_for_large_amplitudes(sections):
 def test_the_page_holds_these_tables(sections):
     page = PAGE.read_text(encoding="utf-8")
     for module, section in sections.items():
-        assert comparison(section) in page, f"{module.__name__} differs from docs/validation.md: run `make report`"
+        assert comparison(section) in page, f"{module.__name__} differs from docs/evidence/paper.md: run `make report`"
 
 
 def test_a_row_agrees_when_it_rounds_to_what_is_printed():

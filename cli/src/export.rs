@@ -11,7 +11,7 @@ use anyhow::{Context, bail};
 use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
-use std::{env, fs};
+use std::fs;
 
 /// Where the folder `share` of an installation has the archive with the libraries for every platform.
 const INSTALLED: &str = "flexible-rocking/FlexibleRocking.fmu";
@@ -43,11 +43,11 @@ pub struct ExportArgs {
     library: Vec<PathBuf>,
 }
 
-/// Writes the FMU and says what was written.
-pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
+/// Writes the FMU and says what was written; `program` is what the libraries are beside.
+pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let libraries = if args.library.is_empty() {
-        libraries_of(&env::current_exe()?)?
+        libraries_of(program)?
     } else {
         args.library
             .iter()
@@ -70,9 +70,9 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
         // those of one name are refused under that
         record(&args.options, path, g, &understood.path().join(i.to_string()), &mut files)
     });
-    let records: Vec<_> = packed.collect::<Result<_, _>>()?;
+    let records = packed.collect::<Result<_, _>>()?;
     let file = files.create(&output)?;
-    let (contents, archive) = fmu_export::export(args.fmi, &args.name, &structure, &records, &libraries)?;
+    let (contents, archive) = fmu_export::export(args.fmi, &args.name, &structure, records, &libraries)?;
     file.write(&archive)?;
     say!("{}: {} kB", output.display(), archive.len().div_ceil(1000));
     say!("  GUID       {}", guid(&contents));
@@ -85,39 +85,40 @@ pub fn run(args: &ExportArgs) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The file to pack for the record at `path`: itself, or what is understood of it, written to the new `folder`.
+/// The file to pack for the record at `path`, and its content: itself, or what is understood of it, written to the new `folder`.
 fn record(
     options: &RecordOptions,
     path: &Path,
     g: f64,
     folder: &Path,
     files: &mut OutputFiles,
-) -> anyhow::Result<PathBuf> {
+) -> anyhow::Result<(PathBuf, Vec<u8>)> {
     let understood = options.understand(path, g).map_err(with_option)?;
     say!("{}", understood.described);
     understood.warnings(path).for_each(|warning| say!("{warning}"));
     if options.are_none() && !input::is_standard(path) {
-        return Ok(path.into());
+        return Ok((path.into(), rocking_records::read_file(path)?));
     }
     fs::create_dir(folder)?;
     let packed = folder.join(input::stem(path) + ".csv");
     let mut table = Table::create(files, &packed)?;
     understood.write(&mut table)?;
     table.close()?;
-    Ok(packed)
+    let content = fs::read(&packed)?;
+    Ok((packed, content))
 }
 
-/// The shared libraries that were built with `executable`, one for each platform that there is one for. Where it is in
+/// The shared libraries that were built with `program`, one for each platform that there is one for. Where it is in
 /// cargo's target folder, those that `make dist` builds for a named target are beside its profile, and come first: they
 /// need no newer system than they say. Its own platform's is in the folder `deps` beside the program; cargo links it to
 /// where the program is only if the package of the FMU was asked for as well: by `cargo build` and `cargo run` in the
 /// root, but not with `-p rocking-cli`. Once installed, the program is in `bin`, and in `share` beside that is an
 /// archive to take them from; what pip installs for one user of Windows has a folder of Python's version between the two.
-fn libraries_of(executable: &Path) -> anyhow::Result<Vec<Library>> {
+fn libraries_of(program: &Path) -> anyhow::Result<Vec<Library>> {
     let own = format!("{DLL_PREFIX}FlexibleRocking{DLL_SUFFIX}");
-    let beside = executable.with_file_name(&own);
-    let in_deps = executable.with_file_name("deps").join(&own);
-    let folder = executable.parent().unwrap_or(Path::new(""));
+    let beside = program.with_file_name(&own);
+    let in_deps = program.with_file_name("deps").join(&own);
+    let folder = program.parent().unwrap_or(Path::new(""));
     let [installed, for_one_user] = [1, 2].map(|up| {
         let above = folder.ancestors().nth(up).unwrap_or(Path::new(""));
         above.join("share").join(INSTALLED)

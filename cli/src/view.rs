@@ -1,16 +1,5 @@
 //! `view`: a page that shows the structure in motion, one file that needs nothing else.
 use crate::{input, output_files::OutputFiles, scene_args::MotionArgs, talk::say};
-use rocking::run::record::Record;
-use rocking::{
-    Outputs, Run, Structure,
-    run::{
-        Ending, RunError,
-        curve::{Curve, Point},
-        fall::Found,
-        peaks::PEAKS,
-    },
-};
-use serde::Serialize;
 use std::path::{Path, PathBuf};
 
 /// What to show.
@@ -23,46 +12,17 @@ pub struct ViewArgs {
     output: Option<PathBuf>,
 }
 
-/// Parts of a peak by which what is shown may miss the motion: units of the last digit of its numbers. The first is taken
-/// that needs no more than [`MOST_POINTS`].
-const PARTS: [f64; 3] = [1e-4, 1e-3, 1e-2];
-
-/// About 5 MB.
-const MOST_POINTS: usize = 200_000;
-
-/// Part of the largest that a value on the page is rounded to, and the same of time, s.
-const QUANTUM: f64 = 1e-5;
-const QUANTUM_OF_TIME: f64 = 1e-7;
-
 /// Follows the motion and writes the page.
 pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
     let (structure, ground) = args.motion.load()?;
-    let run = args.motion.run(structure, &ground);
     let path = args.output_path();
     let file = OutputFiles::of_inputs(args.motion.inputs()).create(&path)?;
-    let (part, curve) = curve(&run)?;
-    let page = page(&Scene::new(&structure, &ground, part, &curve))?;
+    let page = rocking_view::page(&args.motion.run(structure, &ground))?;
     file.write(page.as_bytes())?;
     if path != Path::new("-") {
         say!("view           {}", path.display());
     }
     Ok(())
-}
-
-/// The run as a curve, and how exact it is.
-fn curve(run: &Run) -> Result<(f64, Curve), RunError> {
-    let [finest, coarser @ ..] = PARTS;
-    let mut found = (finest, run.curve(finest));
-    for part in coarser {
-        let takes_too_many = match &found.1 {
-            Ok(curve) => curve.points.len() > MOST_POINTS,
-            Err(error) => matches!(error, RunError::TooManyPoints { .. }),
-        };
-        if takes_too_many {
-            found = (part, run.curve(part));
-        }
-    }
-    Ok((found.0, found.1?))
 }
 
 impl ViewArgs {
@@ -71,94 +31,6 @@ impl ViewArgs {
             (Some(path), _) => path.clone(),
             (None, Some(record)) => format!("{}_view.html", input::stem(record)).into(),
             (None, None) => "free_vibration_view.html".into(),
-        }
-    }
-}
-
-/// The page with `scene` inside.
-fn page(scene: &Scene) -> anyhow::Result<String> {
-    // in JSON a < stands within strings alone; escaped it cannot end the element that holds the data
-    let data = serde_json::to_string(scene)?.replace('<', "\\u003c");
-    Ok(include_str!("view/view.html")
-        .replacen("/*style*/", include_str!("view/view.css"), 1)
-        .replacen("/*script*/", include_str!("view/view.js"), 1)
-        .replacen("/*data*/", &data, 1))
-}
-
-/// What the page shows.
-#[derive(Serialize)]
-struct Scene<'a> {
-    title: &'a str,
-    parameters: &'a rocking::Parameters,
-    start: f64,
-    ending: Ending,
-    /// Since when it falls: the peaks are those before.
-    fall: Option<f64>,
-    part: f64,
-    time: Column,
-    a_g: Column,
-    theta: Column,
-    u: Column,
-    a_t: Column,
-    /// Index of the first point of each phase, and the phase.
-    phases: Vec<(usize, &'static str)>,
-    /// Quanta of time from the start, and the kind.
-    transitions: Vec<(i64, &'static str)>,
-    /// By name: magnitude in SI units, instant (s).
-    peaks: Vec<(&'static str, f64, f64)>,
-}
-
-/// Whole multiples of a quantum.
-#[derive(Serialize)]
-struct Column {
-    quantum: f64,
-    /// Of time the differences.
-    values: Vec<i64>,
-}
-
-impl Column {
-    fn new(curve: &Curve, value: impl Fn(&Point) -> f64) -> Column {
-        let most = curve.points.iter().map(|at| value(at).abs()).fold(0.0, f64::max);
-        let quantum = if most > 0.0 { QUANTUM * most } else { 1.0 };
-        Column { quantum, values: curve.points.iter().map(|at| (value(at) / quantum).round() as i64).collect() }
-    }
-
-    /// Of the time since `start` (s).
-    fn of_time(curve: &Curve, start: f64) -> Column {
-        let instants = curve.points.iter().map(|at| quanta(at.time - start));
-        let differences = instants.scan(0, |before, instant| Some(instant - std::mem::replace(before, instant)));
-        Column { quantum: QUANTUM_OF_TIME, values: differences.collect() }
-    }
-}
-
-/// A length of time, s.
-fn quanta(duration: f64) -> i64 {
-    (duration / QUANTUM_OF_TIME).round() as i64
-}
-
-impl<'a> Scene<'a> {
-    fn new(structure: &'a Structure, ground: &'a Record, part: f64, curve: &Curve) -> Scene<'a> {
-        let Found { ground: a_g, peaks, fall, start, finish } = curve.found;
-        let column = |value: fn(&Outputs) -> f64| Column::new(curve, move |at| value(&at.outputs));
-        let mut phases: Vec<_> = curve.points.iter().map(|at| at.phase.name()).enumerate().collect();
-        phases.dedup_by_key(|(_, phase)| *phase);
-        let all_peaks = PEAKS.iter().map(|peaking| (peaking.name, (peaking.of)(&peaks)));
-        let all_peaks = [("a_g", a_g)].into_iter().chain(all_peaks);
-        Scene {
-            title: ground.title(),
-            parameters: structure.parameters(),
-            start,
-            ending: finish.ending,
-            fall,
-            part,
-            time: Column::of_time(curve, start),
-            a_g: Column::new(curve, |at| at.a_g),
-            theta: column(|outputs| outputs.theta),
-            u: column(|outputs| outputs.u),
-            a_t: column(|outputs| outputs.a_t),
-            phases,
-            transitions: curve.transitions.iter().map(|at| (quanta(at.time - start), at.kind.name())).collect(),
-            peaks: all_peaks.map(|(name, peak)| (name, peak.magnitude, peak.time)).collect(),
         }
     }
 }

@@ -1,4 +1,4 @@
-"""Writes docs/coupling.md and its pictures but for those of the three examples: see `make coupling`.
+"""Writes docs/evidence/coupling.md and its pictures but for those of the three examples: see `make coupling`.
 
     PYTHONPATH=examples:tests python -m coupling
 """
@@ -21,7 +21,7 @@ def convergence_table(steps, errors) -> str:
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
-    parser.add_argument("--output", type=Path, default=Path("docs/coupling.md"), help="page to write")
+    parser.add_argument("--output", type=Path, default=Path("docs/evidence/coupling.md"), help="page to write")
     arguments = parser.parse_args()
     figures, fmus = arguments.output.with_suffix(""), tuple(PIERS.values())
 

@@ -130,7 +130,7 @@ def main() -> None:
     parser.add_argument("--piers", nargs=2, metavar="FMU", default=list(PIERS.values()), help="of the two piers")
     parser.add_argument("--master", choices=MASTERS, default="iqn-ils", help="how the two sides are stepped")
     parser.add_argument("--steps", type=int, default=1, help="communication steps per sample of the record (2 ms)")
-    parser.add_argument("--figure", type=Path, default=Path("docs/coupling/bridge.png"), help="where to save it")
+    parser.add_argument("--figure", type=Path, default=Path("docs/evidence/coupling/bridge.png"), help="where to save it")
     arguments = parser.parse_args()
 
     time, a_g = pacoima_dam()

@@ -114,7 +114,7 @@ def main() -> None:
     parser.add_argument("--piers", nargs=2, metavar="FMU", default=list(PIERS.values()), help="for the iterated master")
     parser.add_argument("--exporter", type=Path, default=Path("target/release/rocking-fmu"), help="the command line")
     parser.add_argument("--archive", type=Path, default=Path("out/bridge.ssp"), help="SSP archive to write")
-    parser.add_argument("--figure", type=Path, default=Path("docs/coupling/bridge_ssp.png"), help="where to save it")
+    parser.add_argument("--figure", type=Path, default=Path("docs/evidence/coupling/bridge_ssp.png"), help="where to save it")
     arguments = parser.parse_args()
 
     time, a_g = pacoima_dam()

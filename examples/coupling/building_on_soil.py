@@ -92,7 +92,7 @@ def main() -> None:
     parser.add_argument("fmu", nargs="?", default="out/mcmanus.fmu", help="of the structure")
     parser.add_argument("--mass", type=float, default=MASS, help="of the foundation (kg)")
     parser.add_argument("--steps", type=int, default=4, help="communication steps per sample of the record (2 ms)")
-    parser.add_argument("--figure", type=Path, default=Path("docs/coupling/building_on_soil.png"),
+    parser.add_argument("--figure", type=Path, default=Path("docs/evidence/coupling/building_on_soil.png"),
                         help="where to save it")
     arguments = parser.parse_args()
 

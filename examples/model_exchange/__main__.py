@@ -1,4 +1,4 @@
-"""Writes docs/model_exchange.md and its picture: see `make exchange`.
+"""Writes docs/evidence/model_exchange.md and its picture: see `make exchange`.
 
     PYTHONPATH=examples python -m model_exchange --fmu out/mcmanus.fmu
 """
@@ -79,7 +79,7 @@ def plot(path: Path, found) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
     parser.add_argument("--fmu", default="out/mcmanus.fmu", help="archive of McManus's specimen")
-    parser.add_argument("--output", type=Path, default=Path("docs/model_exchange.md"), help="page to write")
+    parser.add_argument("--output", type=Path, default=Path("docs/evidence/model_exchange.md"), help="page to write")
     arguments = parser.parse_args()
 
     runs = [(name, host, setting) for name, (host, *_) in SOLVERS.items() for setting in TOLERANCES]

@@ -1,4 +1,4 @@
-"""Writes docs/overturning.md and its pictures: PYTHONPATH=examples python -m overturning [--exporter PATH]."""
+"""Writes docs/evidence/overturning.md and its pictures: PYTHONPATH=examples python -m overturning [--exporter PATH]."""
 
 import argparse
 import csv
@@ -69,7 +69,7 @@ def beyond(exporter: Path, points: list[dict[str, str]], folder: Path) -> list[d
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
     parser.add_argument("--exporter", type=Path, default=Path("target/release/rocking-fmu"), help="executable")
-    parser.add_argument("--output", type=Path, default=Path("docs/overturning.md"), help="page to write")
+    parser.add_argument("--output", type=Path, default=Path("docs/evidence/overturning.md"), help="page to write")
     arguments = parser.parse_args()
     figures = arguments.output.with_suffix("")
     figures.mkdir(exist_ok=True)
@@ -106,7 +106,7 @@ def main() -> None:
         changes=sum(c == float("inf") for c in conditions),
         islands=len(conditions),
         costs=table(["maps", "points", "processor time", "points per processor second"],
-                       [[f"[{name}.toml](../examples/overturning/{name}.toml)", f"{len(scene.points):,}",
+                       [[f"[{name}.toml](../../examples/overturning/{name}.toml)", f"{len(scene.points):,}",
                          f"{scene.seconds:.1f} s", f"{len(scene.points) / scene.seconds:.0f}"]
                         for name, scene in scenes.items()]),
     )

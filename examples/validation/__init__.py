@@ -1,4 +1,4 @@
-"""The paper's claims, reproduced through the exported FMU: `python -m validation` writes docs/validation.md.
+"""The paper's claims, reproduced through the exported FMU: `python -m validation` writes docs/evidence/paper.md.
 
     project.py                the project's two faces: the FMU driven by fmpy, and the command line
     stepper.py                the FMU stepped at the least cost, for many runs of the literature's page

@@ -18,7 +18,7 @@ WEIGHT = 4  # of one of these in the progress bar; one structure of the last sec
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
     parser.add_argument("--exporter", type=Path, default=Path("target/release/rocking-fmu"), help="executable")
-    parser.add_argument("--output", type=Path, default=Path("docs/validation.md"), help="page to write")
+    parser.add_argument("--output", type=Path, default=Path("docs/evidence/paper.md"), help="page to write")
     arguments = parser.parse_args()
     figures = arguments.output.with_suffix("")
 

@@ -106,6 +106,6 @@ writes this page and its figures: the FMU is exported and driven by fmpy, at a t
 itself computes (pushover, demands, effective frequency, modes, many runs) is asked of `rocking-fmu`.
 Equation, figure and table numbers are the paper's. Its measured histories are printed as pictures only and are not
 redrawn; of them the values that the text states are compared. Closed forms, and what others publish, are
-[the second part](validation_literature.md).
+[the second part](literature.md).
 
 "computed" is ours; "to its digits" says that it rounds to what is printed."""

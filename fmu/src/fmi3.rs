@@ -23,10 +23,10 @@ use crate::logger::{Logger, Sink};
 use crate::present::find;
 use crate::state_machine::{Stage, Table};
 use crate::variables::{Causality, DataType, VARIABLES, Variable};
-use libc::{c_char, c_int, c_uint, c_void, size_t};
 use rocking::Progress;
 use rocking::mechanics::state::COMPONENTS;
 use rocking::run::outside_step::INDICATORS;
+use std::ffi::{c_char, c_int, c_uint, c_void};
 use std::path::PathBuf;
 
 /// `fmi3LogMessageCallback`
@@ -51,7 +51,7 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     eventModeUsed: u8,
     earlyReturnAllowed: u8,
     requiredIntermediateVariables: *const c_uint,
-    nRequiredIntermediateVariables: size_t,
+    nRequiredIntermediateVariables: usize,
     instanceEnvironment: *mut c_void,
     logMessage: Option<LogMessageCallback>,
     intermediateUpdate: Option<IntermediateUpdateCallback>,
@@ -200,8 +200,8 @@ fn boolean(name: &'static str, value: u8) -> Result<bool, Failure> {
 /// The variables, all of which are scalars, that as many values are for.
 unsafe fn references<'a>(
     valueReferences: *const c_uint,
-    nValueReferences: size_t,
-    nValues: size_t,
+    nValueReferences: usize,
+    nValues: usize,
 ) -> Result<&'a [c_uint], Failure> {
     check_count("nValues", nValues, nValueReferences)?;
     unsafe { values("valueReferences", valueReferences, nValueReferences) }
@@ -287,7 +287,7 @@ functions! {
     [fmi3DoStep = DoStep]
 
     fmi3SetDebugLogging = SetDebugLogging(
-        loggingOn: u8, nCategories: size_t, categories: *const *const c_char,
+        loggingOn: u8, nCategories: usize, categories: *const *const c_char,
     ) |instance| {
         let has_events = names_events(nCategories, categories)?;
         let on = boolean("loggingOn", loggingOn)?;
@@ -315,14 +315,14 @@ functions! {
     fmi3Reset = Reset() |instance| { instance.reset() }
 
     fmi3GetFloat64 = GetFloat64(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut f64, nValues: size_t,
+        valueReferences: *const c_uint, nValueReferences: usize, value: *mut f64, nValues: usize,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         instance.get_real(references, room("values", value, nValues)?)
     }
 
     fmi3GetInt32 = GetInt32(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut i32, nValues: size_t,
+        valueReferences: *const c_uint, nValueReferences: usize, value: *mut i32, nValues: usize,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Integer);
@@ -330,7 +330,7 @@ functions! {
     }
 
     fmi3GetInt64 = GetInt64(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut i64, nValues: size_t,
+        valueReferences: *const c_uint, nValueReferences: usize, value: *mut i64, nValues: usize,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Enumeration(_));
@@ -338,21 +338,21 @@ functions! {
     }
 
     fmi3GetBoolean = GetBoolean(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut u8, nValues: size_t,
+        valueReferences: *const c_uint, nValueReferences: usize, value: *mut u8, nValues: usize,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         instance.get_boolean(references, room("values", value, nValues)?)
     }
 
     fmi3GetString = GetString(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut *const c_char, nValues: size_t,
+        valueReferences: *const c_uint, nValueReferences: usize, value: *mut *const c_char, nValues: usize,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         instance.get_string(references, room("values", value, nValues)?)
     }
 
     fmi3SetFloat64 = SetFloat64(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *const f64, nValues: size_t,
+        valueReferences: *const c_uint, nValueReferences: usize, value: *const f64, nValues: usize,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         instance.set_real(references, values("values", value, nValues)?)
@@ -360,27 +360,27 @@ functions! {
 
     /// No integer can be set.
     fmi3SetInt32 = SetInt32(
-        valueReferences: *const c_uint, nValueReferences: size_t, _values: *const i32, nValues: size_t,
+        valueReferences: *const c_uint, nValueReferences: usize, _values: *const i32, nValues: usize,
     ) |instance| {
         instance.set_no_integer(references(valueReferences, nValueReferences, nValues)?)
     }
 
     fmi3SetInt64 = SetInt64(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *const i64, nValues: size_t,
+        valueReferences: *const c_uint, nValueReferences: usize, value: *const i64, nValues: usize,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         instance.set_integer(references, values("values", value, nValues)?)
     }
 
     fmi3SetBoolean = SetBoolean(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *const u8, nValues: size_t,
+        valueReferences: *const c_uint, nValueReferences: usize, value: *const u8, nValues: usize,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         instance.set_boolean(references, values("values", value, nValues)?, boolean)
     }
 
     fmi3SetString = SetString(
-        valueReferences: *const c_uint, nValueReferences: size_t, value: *const *const c_char, nValues: size_t,
+        valueReferences: *const c_uint, nValueReferences: usize, value: *const *const c_char, nValues: usize,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         let given = values("values", value, nValues)?;
@@ -395,25 +395,25 @@ functions! {
     /// Ignored for null.
     fmi3FreeFMUState = FreeFMUState(FMUState: *mut *mut c_void) |instance| { free_state(instance, "FMUState", FMUState) }
 
-    fmi3SerializedFMUStateSize = SerializedFMUStateSize(FMUState: *mut c_void, size: *mut size_t) |instance| {
+    fmi3SerializedFMUStateSize = SerializedFMUStateSize(FMUState: *mut c_void, size: *mut usize) |instance| {
         write_state_size(instance, FMUState, size)
     }
 
     fmi3SerializeFMUState = SerializeFMUState(
-        FMUState: *mut c_void, serializedState: *mut u8, size: size_t,
+        FMUState: *mut c_void, serializedState: *mut u8, size: usize,
     ) |instance| {
         write_state(instance, FMUState, serializedState, size)
     }
 
     fmi3DeserializeFMUState = DeserializeFMUState(
-        serializedState: *const u8, size: size_t, FMUState: *mut *mut c_void,
+        serializedState: *const u8, size: usize, FMUState: *mut *mut c_void,
     ) |instance| {
         read_state(instance, serializedState, size, "FMUState", FMUState)
     }
 
     fmi3GetDirectionalDerivative = GetDirectionalDerivative(
-        unknowns: *const c_uint, nUnknowns: size_t, knowns: *const c_uint, nKnowns: size_t, seed: *const f64,
-        nSeed: size_t, sensitivity: *mut f64, nSensitivity: size_t,
+        unknowns: *const c_uint, nUnknowns: usize, knowns: *const c_uint, nKnowns: usize, seed: *const f64,
+        nSeed: usize, sensitivity: *mut f64, nSensitivity: usize,
     ) |instance| {
         check_count("nSeed", nSeed, nKnowns)?;
         check_count("nSensitivity", nSensitivity, nUnknowns)?;
@@ -423,8 +423,8 @@ functions! {
     }
 
     fmi3GetAdjointDerivative = GetAdjointDerivative(
-        unknowns: *const c_uint, nUnknowns: size_t, knowns: *const c_uint, nKnowns: size_t, seed: *const f64,
-        nSeed: size_t, sensitivity: *mut f64, nSensitivity: size_t,
+        unknowns: *const c_uint, nUnknowns: usize, knowns: *const c_uint, nKnowns: usize, seed: *const f64,
+        nSeed: usize, sensitivity: *mut f64, nSensitivity: usize,
     ) |instance| {
         check_count("nSeed", nSeed, nUnknowns)?;
         check_count("nSensitivity", nSensitivity, nKnowns)?;
@@ -462,8 +462,8 @@ functions! {
     fmi3EnterStepMode = EnterStepMode() |instance| { instance.enter(Stage::StepComplete) }
 
     fmi3GetOutputDerivatives = GetOutputDerivatives(
-        valueReferences: *const c_uint, nValueReferences: size_t, orders: *const i32, value: *mut f64,
-        nValues: size_t,
+        valueReferences: *const c_uint, nValueReferences: usize, orders: *const i32, value: *mut f64,
+        nValues: usize,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         let (orders, rates) = (values("orders", orders, nValueReferences)?, room("values", value, nValues)?);
@@ -481,119 +481,119 @@ functions! {
 
     fmi3SetTime = SetTime(time: f64) |instance| { instance.set_time(time) }
 
-    fmi3SetContinuousStates = SetContinuousStates(continuousStates: *const f64, nContinuousStates: size_t) |instance| {
+    fmi3SetContinuousStates = SetContinuousStates(continuousStates: *const f64, nContinuousStates: usize) |instance| {
         let count = ("nContinuousStates", nContinuousStates);
         instance.set_continuous_states(read_all("continuousStates", continuousStates, count)?)
     }
 
     fmi3GetContinuousStateDerivatives = GetContinuousStateDerivatives(
-        derivatives: *mut f64, nContinuousStates: size_t,
+        derivatives: *mut f64, nContinuousStates: usize,
     ) |instance| {
         write_all("derivatives", derivatives, ("nContinuousStates", nContinuousStates), instance.derivatives()?)
     }
 
-    fmi3GetEventIndicators = GetEventIndicators(eventIndicators: *mut f64, nEventIndicators: size_t) |instance| {
+    fmi3GetEventIndicators = GetEventIndicators(eventIndicators: *mut f64, nEventIndicators: usize) |instance| {
         write_all("eventIndicators", eventIndicators, ("nEventIndicators", nEventIndicators), instance.event_indicators()?)
     }
 
-    fmi3GetContinuousStates = GetContinuousStates(continuousStates: *mut f64, nContinuousStates: size_t) |instance| {
+    fmi3GetContinuousStates = GetContinuousStates(continuousStates: *mut f64, nContinuousStates: usize) |instance| {
         let count = ("nContinuousStates", nContinuousStates);
         write_all("continuousStates", continuousStates, count, instance.continuous_states()?)
     }
 
     fmi3GetNominalsOfContinuousStates = GetNominalsOfContinuousStates(
-        nominals: *mut f64, nContinuousStates: size_t,
+        nominals: *mut f64, nContinuousStates: usize,
     ) |instance| {
         write_all("nominals", nominals, ("nContinuousStates", nContinuousStates), instance.nominals()?)
     }
 
-    fmi3GetNumberOfEventIndicators = GetNumberOfEventIndicators(nEventIndicators: *mut size_t) |_instance| {
+    fmi3GetNumberOfEventIndicators = GetNumberOfEventIndicators(nEventIndicators: *mut usize) |_instance| {
         write("nEventIndicators", nEventIndicators, INDICATORS)
     }
 
-    fmi3GetNumberOfContinuousStates = GetNumberOfContinuousStates(nContinuousStates: *mut size_t) |_instance| {
+    fmi3GetNumberOfContinuousStates = GetNumberOfContinuousStates(nContinuousStates: *mut usize) |_instance| {
         write("nContinuousStates", nContinuousStates, COMPONENTS.len())
     }
 
     // What this unit has none of: never allowed.
 
     fmi3GetFloat32 = GetFloat32(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut f32, _nValues: size_t,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *mut f32, _nValues: usize,
     )
 
     fmi3GetInt8 = GetInt8(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut i8, _nValues: size_t,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *mut i8, _nValues: usize,
     )
 
     fmi3GetUInt8 = GetUInt8(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u8, _nValues: size_t,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *mut u8, _nValues: usize,
     )
 
     fmi3GetInt16 = GetInt16(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut i16, _nValues: size_t,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *mut i16, _nValues: usize,
     )
 
     fmi3GetUInt16 = GetUInt16(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u16, _nValues: size_t,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *mut u16, _nValues: usize,
     )
 
     fmi3GetUInt32 = GetUInt32(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u32, _nValues: size_t,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *mut u32, _nValues: usize,
     )
 
     fmi3GetUInt64 = GetUInt64(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u64, _nValues: size_t,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *mut u64, _nValues: usize,
     )
 
     fmi3GetBinary = GetBinary(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _valueSizes: *mut size_t, _values: *mut *const u8,
-        _nValues: size_t,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _valueSizes: *mut usize, _values: *mut *const u8,
+        _nValues: usize,
     )
 
-    fmi3GetClock = GetClock(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *mut u8)
+    fmi3GetClock = GetClock(_valueReferences: *const c_uint, _nValueReferences: usize, _values: *mut u8)
 
     fmi3SetFloat32 = SetFloat32(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const f32, _nValues: size_t,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *const f32, _nValues: usize,
     )
 
     fmi3SetInt8 = SetInt8(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const i8, _nValues: size_t,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *const i8, _nValues: usize,
     )
 
     fmi3SetUInt8 = SetUInt8(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u8, _nValues: size_t,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *const u8, _nValues: usize,
     )
 
     fmi3SetInt16 = SetInt16(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const i16, _nValues: size_t,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *const i16, _nValues: usize,
     )
 
     fmi3SetUInt16 = SetUInt16(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u16, _nValues: size_t,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *const u16, _nValues: usize,
     )
 
     fmi3SetUInt32 = SetUInt32(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u32, _nValues: size_t,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *const u32, _nValues: usize,
     )
 
     fmi3SetUInt64 = SetUInt64(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u64, _nValues: size_t,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *const u64, _nValues: usize,
     )
 
     fmi3SetBinary = SetBinary(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _valueSizes: *const size_t,
-        _values: *const *const u8, _nValues: size_t,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _valueSizes: *const usize,
+        _values: *const *const u8, _nValues: usize,
     )
 
-    fmi3SetClock = SetClock(_valueReferences: *const c_uint, _nValueReferences: size_t, _values: *const u8)
+    fmi3SetClock = SetClock(_valueReferences: *const c_uint, _nValueReferences: usize, _values: *const u8)
 
     fmi3GetNumberOfVariableDependencies = GetNumberOfVariableDependencies(
-        _valueReference: c_uint, _nDependencies: *mut size_t,
+        _valueReference: c_uint, _nDependencies: *mut usize,
     )
 
     fmi3GetVariableDependencies = GetVariableDependencies(
-        _dependent: c_uint, _elementIndicesOfDependent: *mut size_t, _independents: *mut c_uint,
-        _elementIndicesOfIndependents: *mut size_t, _dependencyKinds: *mut c_int, _nDependencies: size_t,
+        _dependent: c_uint, _elementIndicesOfDependent: *mut usize, _independents: *mut c_uint,
+        _elementIndicesOfIndependents: *mut usize, _dependencyKinds: *mut c_int, _nDependencies: usize,
     )
 
     fmi3EnterConfigurationMode = EnterConfigurationMode()
@@ -601,34 +601,34 @@ functions! {
     fmi3ExitConfigurationMode = ExitConfigurationMode()
 
     fmi3GetIntervalDecimal = GetIntervalDecimal(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _intervals: *mut f64, _qualifiers: *mut c_int,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _intervals: *mut f64, _qualifiers: *mut c_int,
     )
 
     fmi3GetIntervalFraction = GetIntervalFraction(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *mut u64, _resolutions: *mut u64,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _counters: *mut u64, _resolutions: *mut u64,
         _qualifiers: *mut c_int,
     )
 
-    fmi3GetShiftDecimal = GetShiftDecimal(_valueReferences: *const c_uint, _nValueReferences: size_t, _shifts: *mut f64)
+    fmi3GetShiftDecimal = GetShiftDecimal(_valueReferences: *const c_uint, _nValueReferences: usize, _shifts: *mut f64)
 
     fmi3GetShiftFraction = GetShiftFraction(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *mut u64, _resolutions: *mut u64,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _counters: *mut u64, _resolutions: *mut u64,
     )
 
     fmi3SetIntervalDecimal = SetIntervalDecimal(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _intervals: *const f64,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _intervals: *const f64,
     )
 
     fmi3SetIntervalFraction = SetIntervalFraction(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *const u64, _resolutions: *const u64,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _counters: *const u64, _resolutions: *const u64,
     )
 
     fmi3SetShiftDecimal = SetShiftDecimal(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _shifts: *const f64,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _shifts: *const f64,
     )
 
     fmi3SetShiftFraction = SetShiftFraction(
-        _valueReferences: *const c_uint, _nValueReferences: size_t, _counters: *const u64, _resolutions: *const u64,
+        _valueReferences: *const c_uint, _nValueReferences: usize, _counters: *const u64, _resolutions: *const u64,
     )
 
     fmi3ActivateModelPartition = ActivateModelPartition(_clockReference: c_uint, _activationTime: f64)

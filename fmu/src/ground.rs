@@ -56,13 +56,8 @@ pub enum GroundError {
 }
 
 impl GroundRecord {
-    /// Reads it; accelerations whose unit its file does not state are in m/s².
-    pub fn read(path: &Path) -> Result<GroundRecord, RecordError> {
-        GroundRecord::from_bytes(path, &rocking_records::read_file(path)?)
-    }
-
-    /// Reads `bytes`, which are the content of the file at `path`.
-    fn from_bytes(path: &Path, bytes: &[u8]) -> Result<GroundRecord, RecordError> {
+    /// Reads `bytes`, which are the content of the file at `path`; accelerations whose unit that does not state are in m/s².
+    pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<GroundRecord, RecordError> {
         let (record, Source { unit, .. }) = rocking_records::from_bytes(path, bytes, &Reading::default())?;
         let numbers = record.times().iter().chain(record.acceleration());
         let bytes: Vec<_> = numbers.flat_map(|number| number.to_le_bytes()).chain([unit as u8]).collect();
@@ -208,7 +203,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("pulse.csv");
         fs::write(&file, "t/s,a\n0,1\n1,2\n").unwrap();
-        let digest = GroundRecord::read(&file).unwrap().name();
+        let digest = GroundRecord::from_bytes(&file, b"t/s,a\n0,1\n1,2\n").unwrap().name();
         let mut archive = archive(folder.path());
         archive.contents.records.push(PackedRecord { file: "pulse.csv".to_owned(), digest });
         assert!(archive.record("pulse.csv").unwrap().is_some());

@@ -1,8 +1,8 @@
 //! What an instance was made for: model exchange, or co-simulation with or without event mode and calls back.
 
 use crate::state_machine::Stage;
-use libc::c_void;
 use serde::{Deserialize, Serialize};
+use std::ffi::c_void;
 
 /// Who integrates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -11,10 +11,10 @@ use FlexibleRocking::state_machine::Stage;
 use calls::fmi3::Fmi3;
 use calls::{C, Messages, bytes, check};
 use host::{ERROR, OK, STAGES_OF_MODEL, reference, resources};
-use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
 use std::cell::RefCell;
 use std::ffi::{CStr, CString};
+use std::ffi::{c_char, c_int, c_uint, c_void};
 use std::ptr::{null, null_mut};
 use tempfile::TempDir;
 

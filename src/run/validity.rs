@@ -573,7 +573,7 @@ pub fn of_parameters(structure: &Structure, detail: Detail) -> Vec<String> {
             None => "so can any other r".to_owned(),
         };
         warnings.push(format!(
-            "r = {r} can raise the energy at an impact with |u| = u_cr: {range}, see docs/failures.md, section 7"
+            "r = {r} can raise the energy at an impact with |u| = u_cr: {range}, see docs/explain/failures.md, section 7"
         ));
     }
     warnings

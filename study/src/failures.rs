@@ -52,7 +52,7 @@ const EXHIBITS: [Show; 7] = [
     |_| energy_gain::show(),
 ];
 
-/// Writes `docs/failures.md` with its pictures and numbers.
+/// Writes `docs/explain/failures.md` with its pictures and numbers.
 pub fn write(scenes: &Scenes, docs: &Path, progress: &ProgressBar) -> Result<()> {
     progress.inc_length(EXHIBITS.len() as u64);
     let entries = EXHIBITS

@@ -19,36 +19,35 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Error against cost, method by method: docs/accuracy.md
+    /// Error against cost, method by method: docs/evidence/accuracy.md
     Precision,
-    /// Largest stable steps of textbook methods: docs/stability.md
+    /// Largest stable steps of textbook methods: docs/evidence/stability.md
     Stability,
-    /// Failures with their causes and remedies: docs/failures.md
+    /// Failures with their causes and remedies: docs/explain/failures.md
     Failures,
-    /// What the model leaves out, structure by structure: docs/validity.md
+    /// What the model leaves out, structure by structure: docs/explain/validity.md
     Validity,
-    /// The speed table: docs/speed.md
+    /// The speed table: docs/evidence/speed.md
     Speed,
 }
 
 fn main() -> Result<()> {
     let Arguments { command, records } = Arguments::parse();
     let records = || records.map_or_else(default_records, Ok);
-    let docs = Path::new("docs");
-    std::fs::create_dir_all(docs)?;
+    let (evidence, explain) = (Path::new("docs/evidence"), Path::new("docs/explain"));
     let style = ProgressStyle::with_template("{elapsed_precise} {bar:40} {pos}/{len} {msg}")?;
     let progress = ProgressBar::new(0).with_style(style);
     match command {
         Command::Speed => {
-            speed::write(&Scene::mcmanus_el_centro(&records()?)?, precision::FULL, docs, &progress)?;
+            speed::write(&Scene::mcmanus_el_centro(&records()?)?, precision::FULL, evidence, &progress)?;
         }
-        Command::Precision => precision::write(&Scene::all(&records()?)?, precision::FULL, docs, &progress)?,
-        Command::Stability => stability::write(stability::FULL, docs, &progress)?,
-        Command::Validity => validity::write(&records()?, docs, &progress)?,
+        Command::Precision => precision::write(&Scene::all(&records()?)?, precision::FULL, evidence, &progress)?,
+        Command::Stability => stability::write(stability::FULL, evidence, &progress)?,
+        Command::Validity => validity::write(&records()?, explain, &progress)?,
         Command::Failures => {
             let records = records()?;
             let (pacoima, el_centro) = (Scene::mcmanus_pacoima(&records)?, Scene::mcmanus_el_centro(&records)?);
-            failures::write(&failures::Scenes { pacoima, el_centro }, docs, &progress)?;
+            failures::write(&failures::Scenes { pacoima, el_centro }, explain, &progress)?;
         }
     }
     progress.finish_and_clear();

@@ -122,7 +122,7 @@ fn sweep(
     points
 }
 
-/// Measures all `scenes` and writes `docs/accuracy.md` with its pictures and numbers.
+/// Measures all `scenes` and writes `docs/evidence/accuracy.md` with its pictures and numbers.
 pub fn write(scenes: &[Scene], limits: Limits, docs: &Path, progress: &ProgressBar) -> Result<()> {
     let diagrams = scenes.iter().map(|scene| measure(scene, limits, progress)).collect::<Result<Vec<_>>>()?;
     for diagram in &diagrams {

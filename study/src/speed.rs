@@ -74,7 +74,7 @@ fn measure(scene: &Scene, limits: precision::Limits, progress: &ProgressBar) -> 
     Ok(rows)
 }
 
-/// Measures and writes `docs/speed.md`.
+/// Measures and writes `docs/evidence/speed.md`.
 pub fn write(scene: &Scene, limits: precision::Limits, docs: &Path, progress: &ProgressBar) -> Result<()> {
     let rows = measure(scene, limits, progress)?;
     crate::page::write(docs, "speed", include_str!("../pages/speed.md"), context! { rows })

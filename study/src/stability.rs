@@ -112,7 +112,7 @@ fn percent(part: f64) -> String {
     format!("{:.2} %", 100.0 * part)
 }
 
-/// Writes `docs/stability.md` with its pictures and numbers.
+/// Writes `docs/evidence/stability.md` with its pictures and numbers.
 pub fn write(grid: Grid, docs: &Path, progress: &ProgressBar) -> Result<()> {
     let cells = map(grid, progress);
     figures::save(&cells, docs)?;

@@ -160,7 +160,7 @@ fn repair(population: &[Pair]) -> Value {
     }
 }
 
-/// Writes `docs/validity.md` with its pictures and numbers.
+/// Writes `docs/explain/validity.md` with its pictures and numbers.
 pub fn write(records: &Path, docs: &Path, progress: &ProgressBar) -> Result<()> {
     progress.set_message("structures");
     let population = population::all(records)?;

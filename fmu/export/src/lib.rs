@@ -17,7 +17,6 @@ use experiment::Experiment;
 pub use library::{Library, LibraryError, Platform};
 use rocking::Structure;
 use rocking_records::RecordError;
-use std::fs;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -99,14 +98,14 @@ pub enum ExportError {
     Archive(#[from] zip::result::ZipError),
 }
 
-/// The FMU of `structure` under `name` for hosts of `version`, with the shared `libraries` and the `records`, of which the first is what its ground
-/// follows: what it carries, and the bytes of the archive. The same name, structure, libraries and records give the same
-/// bytes.
+/// The FMU of `structure` under `name` for hosts of `version`, with the shared `libraries` and the `records`, paths of files
+/// and their content, of which the first is what its ground follows: what it carries, and the bytes of the archive. The same
+/// name, structure, libraries and records give the same bytes.
 pub fn export(
     version: Version,
     name: &ModelName,
     structure: &Structure,
-    records: &[PathBuf],
+    records: Vec<(PathBuf, Vec<u8>)>,
     libraries: &[Library],
 ) -> Result<(Contents, Vec<u8>), ExportError> {
     let mut libraries: Vec<_> = libraries.iter().collect();
@@ -116,14 +115,14 @@ pub fn export(
     }
     let (mut contents, mut files) = (Contents::from(*structure.parameters()), Vec::new());
     let mut followed = None;
-    for path in records {
-        let record = GroundRecord::read(path)?;
+    for (path, content) in records {
+        let record = GroundRecord::from_bytes(&path, &content)?;
         let name = path.file_name().and_then(|name| name.to_str());
         let file = name.ok_or_else(|| ExportError::RecordName(path.clone()))?.to_owned();
         if contents.records.iter().any(|packed| packed.file.to_lowercase() == file.to_lowercase()) {
             return Err(ExportError::SameName(file));
         }
-        files.push(fs::read(path).map_err(|source| RecordError::Unreadable { path: path.clone(), source })?);
+        files.push(content);
         contents.records.push(PackedRecord { file, digest: record.name() });
         followed.get_or_insert_with(|| record.record.clone());
     }
@@ -192,7 +191,7 @@ mod tests {
     #[test]
     fn two_exports_of_the_same_are_the_same_bytes() {
         let exported = |parameters, platforms: [Platform; 2]| {
-            export(Version::Fmi2, &ModelName::default(), &structure(parameters), &[], &platforms.map(library))
+            export(Version::Fmi2, &ModelName::default(), &structure(parameters), Vec::new(), &platforms.map(library))
                 .unwrap()
                 .1
         };
@@ -205,7 +204,7 @@ mod tests {
     #[test]
     fn one_library_for_each_platform() {
         let two = [Platform::LinuxArm64; 2].map(library);
-        let refusal = export(Version::Fmi2, &ModelName::default(), &structure(Parameters::EVISON), &[], &two)
+        let refusal = export(Version::Fmi2, &ModelName::default(), &structure(Parameters::EVISON), Vec::new(), &two)
             .unwrap_err()
             .to_string();
         assert_eq!(refusal, "two shared libraries are for aarch64-linux: leave one out");
@@ -287,22 +286,17 @@ mod tests {
 
     #[test]
     fn records_are_packed_as_they_are_and_the_first_is_the_default() {
-        let folder = tempfile::tempdir().unwrap();
-        let write = |name: &str, text: &str| {
-            let path = folder.path().join(name);
-            fs::create_dir_all(path.parent().unwrap()).unwrap();
-            fs::write(&path, text).unwrap();
-            path
-        };
-        let [pulse, sine] = [write("pulse 1.csv", "t/s,a\r\n0,1\r\n1,2\r\n"), write("sine.txt", "t/s,a\n0,1\n1,-1\n")];
-        let [same, broken] = [write("other/Sine.TXT", "t/s,a\n0,2\n1,0\n"), write("broken.csv", "0,1\n1,?\n")];
-        let export = |records: &[&PathBuf]| {
-            let records: Vec<_> = records.iter().map(|path| path.to_path_buf()).collect();
+        type Packed = (&'static str, &'static str);
+        let [pulse, sine]: [Packed; 2] =
+            [("pulse 1.csv", "t/s,a\r\n0,1\r\n1,2\r\n"), ("sine.txt", "t/s,a\n0,1\n1,-1\n")];
+        let [same, broken]: [Packed; 2] = [("other/Sine.TXT", "t/s,a\n0,2\n1,0\n"), ("broken.csv", "0,1\n1,?\n")];
+        let export = |records: &[&Packed]| {
+            let records: Vec<_> = records.iter().map(|(path, text)| (path.into(), text.as_bytes().to_vec())).collect();
             super::export(
                 Version::Fmi2,
                 &ModelName::default(),
                 &structure(Parameters::EVISON),
-                &records,
+                records,
                 &[library(Platform::Linux64)],
             )
         };
@@ -318,12 +312,11 @@ mod tests {
         let (swapped, _) = export(&[&sine, &pulse]).unwrap();
         assert_ne!(FlexibleRocking::guid(&swapped), FlexibleRocking::guid(&contents));
 
-        let refusal = |records: &[&PathBuf]| export(records).unwrap_err().to_string();
+        let refusal = |records: &[&Packed]| export(records).unwrap_err().to_string();
         assert_eq!(
             refusal(&[&sine, &same]),
             "two records are called Sine.TXT: rename one of them; capitals and small letters are the same here"
         );
-        let expected = format!("{}, line 2: the acceleration \"?\" is not a number", broken.display());
-        assert_eq!(refusal(&[&sine, &broken]), expected);
+        assert_eq!(refusal(&[&sine, &broken]), "broken.csv, line 2: the acceleration \"?\" is not a number");
     }
 }

@@ -141,8 +141,12 @@ pub enum LibraryError {
 impl Library {
     /// The shared library at `path`, or those of the FMU there.
     pub fn read(path: &Path) -> Result<Vec<Library>, LibraryError> {
-        let unreadable = |error| LibraryError::Unreadable { path: path.to_owned(), error };
-        let content = fs::read(path).map_err(unreadable)?;
+        let content = fs::read(path).map_err(|error| LibraryError::Unreadable { path: path.to_owned(), error })?;
+        Library::from_bytes(path, content)
+    }
+
+    /// The shared library in `content`, that of the file at `path`, or those of the FMU that it is.
+    pub fn from_bytes(path: &Path, content: Vec<u8>) -> Result<Vec<Library>, LibraryError> {
         if !content.starts_with(b"PK") {
             return Ok(vec![Library::new(path, content)?]);
         }
@@ -153,6 +157,7 @@ impl Library {
             let mut file = archive.by_index(at).map_err(broken)?;
             if file.is_file() && file.name().is_ok_and(|name| name.starts_with("binaries/")) {
                 let mut library = Vec::new();
+                let unreadable = |error| LibraryError::Unreadable { path: path.to_owned(), error };
                 file.read_to_end(&mut library).map_err(unreadable)?;
                 libraries.push(Library::new(path, library)?);
             }

@@ -18,7 +18,7 @@ use rocking::{Load, Motion, State, Transition, Watch};
 
 /// The relative tolerance up to which samples of the record are events. A solver of high order that integrates over the
 /// kinks there is not as exact as it believes; below an error of some 1e-5 to start anew at each is the cheaper way
-/// (docs/model_exchange.md).
+/// (docs/evidence/model_exchange.md).
 const KINKS_MATTER: f64 = 1e-8;
 
 /// What came of a complete step.

@@ -8,7 +8,7 @@ use crate::host::{DISCARD, ERROR, OK};
 use FlexibleRocking::c_abi::Function as _;
 use FlexibleRocking::snapshot;
 use FlexibleRocking::state_machine::Stage;
-use libc::{c_char, c_int, c_uint, c_void};
+use std::ffi::{c_char, c_int, c_uint, c_void};
 use std::fmt::Debug;
 use std::ptr::{null, null_mut};
 

@@ -6,10 +6,10 @@ use FlexibleRocking::guid;
 use FlexibleRocking::resources::PARAMETERS_FILE;
 use FlexibleRocking::state_machine::Stage;
 use FlexibleRocking::variables::VARIABLES;
-use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
 use std::cell::RefCell;
 use std::ffi::{CStr, CString};
+use std::ffi::{c_char, c_int, c_uint, c_void};
 use std::ptr;
 use tempfile::TempDir;
 

@@ -7,7 +7,7 @@ use FlexibleRocking::interface::{Interface, Stepping};
 use FlexibleRocking::state_machine::Stage;
 use fastrand::Rng;
 use host::{ERROR, OK};
-use libc::{c_char, c_int, c_void};
+use std::ffi::{c_char, c_int, c_void};
 use std::path::Path;
 use std::ptr::null_mut;
 

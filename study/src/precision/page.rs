@@ -1,4 +1,4 @@
-//! `docs/accuracy.md`: what the curves say, in tables and sentences made from their own numbers.
+//! `docs/evidence/accuracy.md`: what the curves say, in tables and sentences made from their own numbers.
 
 use super::{Curve, Diagram, Family, PERTURBATION, Point};
 use crate::chart::{power_of_ten, scientific};

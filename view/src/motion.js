@@ -1,26 +1,32 @@
 "use strict";
-(() => {
-  const data = JSON.parse(document.getElementById("data").textContent);
+
+/** What shows motions in the elements of motion.html: `show` may be called as often as there is another one. */
+function motionView() {
   const at = (id) => document.getElementById(id);
-  const { m, m0, H, B, f_fc, g } = data.parameters;
-  const { start } = data;
 
   // ---- The motion: points that straight lines join, as the engine found them
 
-  const column = ({ quantum, values }) => Float64Array.from(values, (value) => value * quantum);
-  const time = (() => {
+  /** What the engine wrote, with its columns as numbers. */
+  function decode(data) {
+    const column = ({ quantum, values }) => Float64Array.from(values, (value) => value * quantum);
     let sum = 0;
-    return Float64Array.from(data.time.values, (difference) => start + (sum += difference) * data.time.quantum);
-  })();
-  const end = time.at(-1); // as exact as the instants of the transitions, the last of which may be there
-  const motion = { a_g: column(data.a_g), theta: column(data.theta), u: column(data.u), a_t: column(data.a_t) };
-  const transitions = data.transitions.map(([sum, kind]) => ({ instant: start + sum * data.time.quantum, kind }));
-  const peaks = Object.fromEntries(data.peaks.map(([name, magnitude, instant]) => [name, { magnitude, instant }]));
+    const time = Float64Array.from(data.time.values, (difference) => data.start + (sum += difference) * data.time.quantum);
+    const values = { a_g: column(data.a_g), theta: column(data.theta), u: column(data.u), a_t: column(data.a_t) };
+    const most = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
+    return {
+      ...data,
+      time,
+      end: time.at(-1), // as exact as the instants of the transitions, the last of which may be there
+      values,
+      /** The largest magnitude of each history, that of a fall, too. */
+      largest: Object.fromEntries(Object.entries(values).map(([name, values]) => [name, most(values)])),
+      transitions: data.transitions.map(([sum, kind]) => ({ instant: data.start + sum * data.time.quantum, kind })),
+      peaks: Object.fromEntries(data.peaks.map(([name, magnitude, instant]) => [name, { magnitude, instant }])),
+    };
+  }
 
-  /** The largest magnitude of each history, that of a fall, too. */
-  const largest = Object.fromEntries(
-    Object.entries(motion).map(([name, values]) => [name, values.reduce((most, value) => Math.max(most, Math.abs(value)), 0)]),
-  );
+  let motion; // the one that is shown
+  let beside = []; // those that are drawn beside it, each with its `colour`
 
   /** How many of the rising numbers are at most `value`. */
   function countUpTo(numbers, value, of = (number) => number) {
@@ -35,22 +41,24 @@
 
   /** Everything at the instant `t`; at a transition, just after it. */
   function stateAt(t) {
+    const { time, values, phases, ending, end, parameters } = motion;
     const i = Math.max(0, countUpTo(time, t) - 1);
     const j = Math.min(i + 1, time.length - 1);
     const part = time[j] > time[i] ? (t - time[i]) / (time[j] - time[i]) : 0;
     const value = (values) => values[i] + part * (values[j] - values[i]);
-    const state = Object.fromEntries(Object.entries(motion).map(([name, values]) => [name, value(values)]));
-    const overturned = data.ending === "overturned" && t >= end;
-    const phase = overturned ? "overturned" : data.phases[countUpTo(data.phases, i, ([first]) => first) - 1][1];
+    const state = Object.fromEntries(Object.entries(values).map(([name, values]) => [name, value(values)]));
+    const overturned = ending === "overturned" && t >= end;
+    const phase = overturned ? "overturned" : phases[countUpTo(phases, i, ([first]) => first) - 1][1];
+    const { m, H, B } = parameters;
     return { ...state, phase, uplift: 2 * B * Math.sin(Math.abs(state.theta)), V_t: m * state.a_t, M_t: m * H * state.a_t };
   }
 
   /** The peak of `name` with its sign, which the largest of the points about its `instant` has. */
   function signed(name, instant) {
-    const i = countUpTo(time, instant);
-    const about = [...motion[name].subarray(Math.max(0, i - 3), i + 2)];
+    const i = countUpTo(motion.time, instant);
+    const about = [...motion.values[name].subarray(Math.max(0, i - 3), i + 2)];
     const largest = about.reduce((most, value) => (Math.abs(value) > Math.abs(most) ? value : most), 0);
-    return Math.sign(largest) * peaks[name].magnitude;
+    return Math.sign(largest) * motion.peaks[name].magnitude;
   }
 
   // ---- Numbers
@@ -62,12 +70,11 @@
   };
   const significant = (value) => minus(String(Number(value.toPrecision(3))));
 
-  const mass = (kilograms) => (kilograms < 1e4 ? `${significant(kilograms)} kg` : `${significant(kilograms / 1e3)} t`);
-
   /** How many decimals show `magnitude` with as many digits as the motion is exact to. */
-  const digits = -Math.round(Math.log10(data.part));
-  const decimalsFor = (magnitude) =>
-    magnitude > 0 ? Math.max(0, Math.min(8, digits - 1 - Math.floor(Math.log10(magnitude)))) : digits - 1;
+  function decimalsFor(magnitude) {
+    const digits = -Math.round(Math.log10(motion.part));
+    return magnitude > 0 ? Math.max(0, Math.min(8, digits - 1 - Math.floor(Math.log10(magnitude)))) : digits - 1;
+  }
 
   /** [1, 2 or 5 times a power of ten] not below `step`. */
   function nice(step) {
@@ -83,19 +90,20 @@
     return found.map((value) => ({ value, text: fixed(value, decimals) }));
   }
 
-  /** What is shown in numbers: symbol, meaning, unit and how many SI units that has. */
+  /** What is shown in numbers: symbol, meaning, unit and how many SI units that has; `g` stands for gravity. */
   const quantities = {
-    a_g: { symbol: "a_g", meaning: "ground acceleration", unit: "g", per: g },
+    a_g: { symbol: "a_g", meaning: "ground acceleration", unit: "g" },
     theta: { symbol: "θ", meaning: "rotation", unit: "rad", per: 1 },
     uplift: { symbol: "δ_u", meaning: "uplift", unit: "mm", per: 1e-3 },
     u: { symbol: "u", meaning: "elastic displacement", unit: "mm", per: 1e-3 },
-    a_t: { symbol: "a_t", meaning: "acceleration of the top", unit: "g", per: g },
+    a_t: { symbol: "a_t", meaning: "acceleration of the top", unit: "g" },
     V_t: { symbol: "V_t", meaning: "base shear", unit: "kN", per: 1e3 },
     M_t: { symbol: "M_t", meaning: "overturning moment", unit: "kN m", per: 1e3 },
   };
-  for (const [name, quantity] of Object.entries(quantities)) {
-    const peak = peaks[name].magnitude / quantity.per;
-    quantity.show = (value) => fixed(value / quantity.per, decimalsFor(peak));
+  /** `value` of the quantity `name` in its unit, in as many digits as its peak has. */
+  function inUnit(name, value) {
+    const per = quantities[name].per ?? motion.parameters.g;
+    return fixed(value / per, decimalsFor(motion.peaks[name].magnitude / per));
   }
 
   // ---- Drawing by elements
@@ -111,38 +119,56 @@
 
   // ---- The structure, in metres, the middle of its base at (0, 0), y down as on a screen
 
-  const foundation = 0.11 * H;
-  const block = { width: 0.42 * Math.min(2 * B, H), height: 0.28 * Math.min(2 * B, H) };
-  const largestMotion = Math.max(largest.theta, largest.u / H);
-  const exaggerations = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].filter(
-    (factor) => factor === 1 || (largestMotion > 0 && factor * largestMotion < 0.6),
-  );
-  let exaggeration = exaggerations.filter((factor) => factor === 1 || factor * largestMotion <= 0.25).at(-1);
+  let exaggerations = [1];
+  let exaggeration = 1;
+  let isChosen = false; // by hand; else it follows the motion
 
   /** The strut bent as a cantilever is by a force at its end, which a cubic holds exactly, and the block at its end. */
-  const strut = (u) => `M0 0C0 ${-H / 3} ${u / 2} ${(-2 * H) / 3} ${u} ${-H}`;
   function structure(parent) {
+    const { H, B } = motion.parameters;
+    const foundation = 0.11 * H;
+    const { width, height } = block();
+    parent.replaceChildren();
     const line = element(parent, "path", { class: "strut" });
     element(parent, "rect", { class: "mass", x: -B, y: -foundation, width: 2 * B, height: foundation });
-    const top = element(parent, "rect", {
-      class: "mass", x: -block.width / 2, y: -block.height / 2, width: block.width, height: block.height,
-    });
+    const top = element(parent, "rect", { class: "mass", x: -width / 2, y: -height / 2, width, height });
     return (u) => {
-      set(line, { d: strut(u) });
+      set(line, { d: `M0 0C0 ${-H / 3} ${u / 2} ${(-2 * H) / 3} ${u} ${-H}` });
       set(top, { transform: `translate(${u} ${-H}) rotate(${(Math.atan((1.5 * u) / H) * 180) / Math.PI})` });
     };
   }
-  structure(at("rest"))(0);
-  const bend = structure(at("body"));
+  function block() {
+    const size = Math.min(2 * motion.parameters.B, motion.parameters.H);
+    return { width: 0.42 * size, height: 0.28 * size };
+  }
+  let bend; // draws the structure with its top displaced
+
+  function layOutStructure() {
+    structure(at("rest"))(0);
+    bend = structure(at("body"));
+    const largestMotion = Math.max(motion.largest.theta, motion.largest.u / motion.parameters.H);
+    exaggerations = [1, 2, 5, 10, 20, 50, 100, 200, 500, 1000].filter(
+      (factor) => factor === 1 || (largestMotion > 0 && factor * largestMotion < 0.6),
+    );
+    if (!isChosen || !exaggerations.includes(exaggeration)) {
+      exaggeration = exaggerations.filter((factor) => factor === 1 || factor * largestMotion <= 0.25).at(-1);
+    }
+    const options = at("exaggeration");
+    if (options.length !== exaggerations.length) {
+      options.replaceChildren(...exaggerations.map((factor) => new Option(`${factor} ×`, factor)));
+    }
+    options.value = exaggeration;
+  }
 
   let stage = {};
   function layOutScene() {
     const { width, height } = at("scene").getBoundingClientRect();
+    const { H, B } = motion.parameters;
     set(at("scene"), { viewBox: `0 0 ${width} ${height}` }); // on paper it takes the width of the page
-    const theta = Math.min(Math.PI / 2, exaggeration * largest.theta);
-    const u = exaggeration * largest.u;
-    const reach = B * (1 - Math.cos(theta)) + (H + block.height) * Math.sin(theta) + u + block.width / 2;
-    const tall = Math.hypot(H + block.height, theta > 0.5 ? 2 * B : 0);
+    const theta = Math.min(Math.PI / 2, exaggeration * motion.largest.theta);
+    const u = exaggeration * motion.largest.u;
+    const reach = B * (1 - Math.cos(theta)) + (H + block().height) * Math.sin(theta) + u + block().width / 2;
+    const tall = Math.hypot(H + block().height, theta > 0.5 ? 2 * B : 0);
     const [left, right, top, below] = [64, 40, 64, 58];
     const scale = Math.min((width - left - right) / (2 * Math.max(1.25 * B, reach)), (height - top - below) / tall);
     stage = { x: (width + left - right) / 2, y: height - below, scale, width };
@@ -166,6 +192,7 @@
 
   function drawScene(state) {
     const { x, y, scale, width } = stage;
+    const { B } = motion.parameters;
     const side = state.theta < 0 ? -1 : 1;
     const theta = Math.max(-Math.PI / 2, Math.min(Math.PI / 2, exaggeration * state.theta));
     at("body").setAttribute("transform", `rotate(${(theta * 180) / Math.PI} ${side * B} 0)`);
@@ -176,54 +203,59 @@
     const isSeen = lifts && -edge.y * scale > 2;
     set(at("gap"), { x1: edge.x, x2: edge.x, y1: 0, y2: edge.y, visibility: isSeen ? "visible" : "hidden" });
     const lift = at("lift");
-    lift.textContent = isSeen ? `${quantities.uplift.show(state.uplift)} mm` : "";
+    lift.textContent = isSeen ? `${inUnit("uplift", state.uplift)} mm` : "";
     set(lift, { x: x + scale * edge.x - 8 * side, y: y + (scale * edge.y) / 2 + 4, "text-anchor": side > 0 ? "end" : "start" });
     drawShaking(state.a_g, width);
     const fallen = at("fallen");
-    fallen.textContent = state.phase === "overturned" ? `overturned at ${fixed(end, 3)} s, peaks until ${fixed(data.fall, 3)} s` : "";
+    fallen.textContent = state.phase === "overturned" ? `overturned at ${fixed(motion.end, 3)} s, peaks until ${fixed(motion.fall, 3)} s` : "";
     set(fallen, { x, y: 62, "text-anchor": "middle" });
   }
 
   /** The ground acceleration as an arrow; the largest is a quarter of the width. */
   function drawShaking(a_g, width) {
     const [line, head, text] = at("shaking").children;
-    const length = largest.a_g > 0 ? (0.24 * width * a_g) / largest.a_g : 0;
+    const length = motion.largest.a_g > 0 ? (0.24 * width * a_g) / motion.largest.a_g : 0;
     const [x, y, tip] = [stage.x, stage.y + 6, Math.sign(length) * Math.min(9, Math.abs(length))];
     set(line, { x1: x, x2: x + length - tip, y1: y, y2: y });
     set(head, { d: `M${x + length} ${y}l${-tip} -5v10z` });
-    text.textContent = largest.a_g > 0 ? `a_g = ${quantities.a_g.show(a_g)} g` : "ground at rest";
+    text.textContent = motion.largest.a_g > 0 ? `a_g = ${inUnit("a_g", a_g)} g` : "ground at rest";
     set(text, { x: width - 12, y: stage.y + 32, "text-anchor": "end", class: "muted" });
   }
 
   // ---- Numbers at the cursor
 
-  const now = {};
+  const rows = {};
   {
     const row = at("readings").insertRow();
     row.className = "phase";
     row.innerHTML = '<th scope="row">phase</th><td colspan="3"></td>';
-    now.phase = row.cells[1];
-    for (const [name, { symbol, meaning, unit, show }] of Object.entries(quantities)) {
+    rows.phase = row;
+    for (const [name, { symbol, meaning, unit }] of Object.entries(quantities)) {
       const row = at("readings").insertRow();
       row.innerHTML = '<th scope="row"></th><td></td><td></td><td><button type="button"></button></td>';
       row.cells[0].innerHTML = '<span class="meaning"></span><span></span>';
       row.cells[0].firstChild.textContent = `${meaning} `;
       row.cells[0].lastChild.textContent = `${symbol} (${unit})`;
       row.dataset.name = name;
-      const { magnitude, instant } = peaks[name];
-      row.cells[2].textContent = show(magnitude);
-      const button = row.cells[3].firstChild;
+      row.cells[3].firstChild.addEventListener("click", () => moveTo(motion.peaks[name].instant));
+      rows[name] = row;
+    }
+  }
+
+  function drawPeaks() {
+    for (const [name, { meaning }] of Object.entries(quantities)) {
+      const { magnitude, instant } = motion.peaks[name];
+      rows[name].cells[2].textContent = inUnit(name, magnitude);
+      const button = rows[name].cells[3].firstChild;
       button.textContent = `${fixed(instant, 3)} s`;
       button.setAttribute("aria-label", `To the peak of the ${meaning} at ${fixed(instant, 3)} seconds`);
-      button.addEventListener("click", () => moveTo(instant));
-      now[name] = row.cells[1];
     }
   }
 
   function drawNumbers(state) {
-    now.phase.textContent = state.phase;
-    for (const [name, { show }] of Object.entries(quantities)) now[name].textContent = show(state[name]);
-    at("clock").textContent = `${fixed(t, 3)} of ${fixed(end, 3)} s`;
+    rows.phase.cells[1].textContent = state.phase;
+    for (const name of Object.keys(quantities)) rows[name].cells[1].textContent = inUnit(name, state[name]);
+    at("clock").textContent = `${fixed(t, 3)} of ${fixed(motion.end, 3)} s`;
     const slider = at("time");
     slider.value = t;
     slider.setAttribute("aria-valuetext", `${fixed(t, 3)} seconds, ${state.phase}`);
@@ -231,33 +263,41 @@
 
   // ---- Histories
 
-  const angle = largest.theta < 0.1 ? { unit: "mrad", per: 1e-3 } : { unit: "rad", per: 1 };
-  const panels = [
-    { name: "a_g", meaning: "ground acceleration", title: "a_g (g)", per: g, colour: "--grey" },
-    { name: "theta", meaning: "rotation", title: `θ (${angle.unit})`, per: angle.per, colour: "--blue" },
-    { name: "u", meaning: "elastic displacement", title: "u (mm)", per: 1e-3, colour: "--blue" },
-    {
-      name: "a_t", meaning: "acceleration of the top", title: "a_t (g)", per: g, colour: "--blue",
-      right: { meaning: "base shear", title: "V_t (kN)", factor: (m * g) / 1e3 },
-    },
-  ].filter(({ name }) => ["theta", "a_t"].includes(name) || largest[name] > 0);
+  let panels = [];
+  let lanes = [];
+  function layOutPanels() {
+    const { g, m } = motion.parameters;
+    const all = [motion, ...beside];
+    const most = (name) => Math.max(...all.map(({ largest }) => largest[name]));
+    const angle = most("theta") < 0.1 ? { unit: "mrad", per: 1e-3 } : { unit: "rad", per: 1 };
+    panels = [
+      { name: "a_g", meaning: "ground acceleration", title: "a_g (g)", per: g, colour: "--grey" },
+      { name: "theta", meaning: "rotation", title: `θ (${angle.unit})`, per: angle.per, colour: "--blue" },
+      { name: "u", meaning: "elastic displacement", title: "u (mm)", per: 1e-3, colour: "--blue" },
+      {
+        name: "a_t", meaning: "acceleration of the top", title: "a_t (g)", per: g, colour: "--blue",
+        right: { meaning: "base shear", title: "V_t (kN)", factor: (m * g) / 1e3 },
+      },
+    ].map((panel) => ({ ...panel, largest: most(panel.name) }))
+      .filter(({ name, largest }) => ["theta", "a_t"].includes(name) || largest > 0);
+    lanes = kinds
+      .map((kind) => ({ ...kind, times: motion.transitions.filter((each) => kind.is(each.kind)).map((each) => each.instant) }))
+      .filter((lane) => lane.times.length > 0);
+  }
   const kinds = [
     { name: "uplift", colour: "--green", is: (kind) => kind.startsWith("uplift") },
     { name: "impact", colour: "--orange", is: (kind) => kind.startsWith("impact") },
     { name: "landing", colour: "--ink", is: (kind) => kind === "landing" || kind === "settling" },
     { name: "overturning", colour: "--purple", is: (kind) => kind.startsWith("overturning") },
   ];
-  const lanes = kinds
-    .map((kind) => ({ ...kind, times: transitions.filter((each) => kind.is(each.kind)).map((each) => each.instant) }))
-    .filter((lane) => lane.times.length > 0);
 
-  let shown = [start, end]; // the time that the histories show
+  let shown; // the time that the histories show
   let chart = {};
   const across = (instant) => chart.left + ((instant - shown[0]) / (shown[1] - shown[0])) * chart.width;
   const instantAt = (x) => shown[0] + ((x - chart.left) / chart.width) * (shown[1] - shown[0]);
 
   /** Of the points in each column of pixels the first, the least, the largest and the last. */
-  function path(values, height) {
+  function path(time, values, height) {
     const first = Math.max(0, countUpTo(time, shown[0]) - 1);
     const last = Math.min(time.length - 1, countUpTo(time, shown[1]));
     let drawn = "";
@@ -293,9 +333,9 @@
     const titleOf = ({ meaning, title }) => (isNarrow ? title : `${meaning} ${title}`);
     const times = ticks(shown[0], shown[1], Math.max(3, chart.width / 90));
 
-    data.phases.forEach(([first, phase], k) => {
-      const next = data.phases[k + 1];
-      const [from, to] = [time[first], next ? time[next[0]] : end];
+    motion.phases.forEach(([first, phase], k) => {
+      const next = motion.phases[k + 1];
+      const [from, to] = [motion.time[first], next ? motion.time[next[0]] : motion.end];
       if (!phase.startsWith("rocking") || to < shown[0] || from > shown[1]) return;
       const [x0, x1] = [across(from), across(to)];
       element(inside, "rect", { class: "rocking", x: x0, width: Math.max(0.5, x1 - x0), y: gap, height: height - below - gap });
@@ -304,8 +344,8 @@
     const edge = left + chart.width;
     panels.forEach((panel, k) => {
       const [top, bottom] = [k * high + gap, (k + 1) * high];
-      const { magnitude, instant } = peaks[panel.name];
-      const most = (largest[panel.name] > 0 ? largest[panel.name] / panel.per : 1) * 1.12;
+      const { magnitude, instant } = motion.peaks[panel.name];
+      const most = (panel.largest > 0 ? panel.largest / panel.per : 1) * 1.12;
       const y = (value) => (top + bottom) / 2 - ((value / panel.per / most) * (bottom - top)) / 2;
       panel.y = y;
       for (const { value } of times) element(svg, "line", { class: "grid", x1: across(value), x2: across(value), y1: top, y2: bottom });
@@ -327,7 +367,10 @@
         }
       }
       const g = element(svg, "g", { "clip-path": "url(#inside)" });
-      element(g, "path", { class: "curve", "data-name": panel.name, style: `stroke:var(${panel.colour})`, d: path(motion[panel.name], y) });
+      const curve = ({ time, values }, colour) =>
+        element(g, "path", { class: "curve", "data-name": panel.name, style: `stroke:var(${colour})`, d: path(time, values[panel.name], y) });
+      for (const other of beside) curve(other, other.colour);
+      curve(motion, panel.colour);
       if (magnitude > 0) {
         element(g, "circle", { class: "peak", cx: across(instant), cy: y(signed(panel.name, instant)), r: 3.5 });
       }
@@ -369,7 +412,7 @@
 
   // ---- Time
 
-  let t = start;
+  let t = 0;
   let isPlaying = false;
   let last = 0; // when the last frame was drawn, ms
   const speeds = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10];
@@ -383,16 +426,16 @@
   }
 
   function moveTo(instant) {
-    t = Math.min(end, Math.max(start, instant));
+    t = Math.min(motion.end, Math.max(motion.start, instant));
     const length = shown[1] - shown[0];
     if (t < shown[0] || t > shown[1]) {
-      show(t - 0.1 * length, t + 0.9 * length);
+      showTime(t - 0.1 * length, t + 0.9 * length);
     }
     draw();
   }
 
   function play(yes) {
-    if (yes && t >= end) moveTo(start);
+    if (yes && t >= motion.end) moveTo(motion.start);
     isPlaying = yes;
     const button = at("play");
     button.setAttribute("aria-label", yes ? "Pause" : "Play");
@@ -406,30 +449,32 @@
     const passed = Math.max(0, instant - last) / 1000;
     last = instant;
     moveTo(t + speed * passed);
-    if (t >= end) play(false);
+    if (t >= motion.end) play(false);
     else requestAnimationFrame(frame);
   }
 
   function toTransition(step) {
-    const instants = transitions.map(({ instant }) => instant);
+    const instants = motion.transitions.map(({ instant }) => instant);
     const found = step > 0 ? instants.find((instant) => instant > t + 1e-9) : instants.findLast((instant) => instant < t - 1e-9);
-    moveTo(found ?? (step > 0 ? end : start));
+    moveTo(found ?? (step > 0 ? motion.end : motion.start));
   }
 
   /** Shows the time from `from` to `to`, moved and cut so that it is part of the motion. */
-  function show(from, to) {
+  function showTime(from, to) {
+    const { start, end } = motion;
     const length = Math.min(end - start, Math.max(1e-3 * (end - start), to - from));
     const first = Math.min(end - length, Math.max(start, from));
     shown = [first, first === end - length ? end : first + length];
     drawHistories();
   }
 
-  const zoom = (factor, about) => show(about - factor * (about - shown[0]), about + factor * (shown[1] - about));
+  const zoom = (factor, about) => showTime(about - factor * (about - shown[0]), about + factor * (shown[1] - about));
 
   // ---- Controls
 
   function choose(factor) {
     exaggeration = factor;
+    isChosen = true;
     at("exaggeration").value = factor;
     layOutScene();
     draw();
@@ -439,7 +484,7 @@
     at("speed").value = factor;
   }
   /** The entry `step` further in a list than `present`, if there is one. */
-  const beside = (list, present, step) => list[list.indexOf(present) + step] ?? present;
+  const next = (list, present, step) => list[list.indexOf(present) + step] ?? present;
 
   const prefersDark = matchMedia("(prefers-color-scheme: dark)");
   let theme = null; // chosen by hand
@@ -454,9 +499,7 @@
   }
   prefersDark.addEventListener("change", showTheme);
 
-  for (const factor of exaggerations) at("exaggeration").append(new Option(`${factor} ×`, factor));
   for (const factor of speeds) at("speed").append(new Option(`${factor} ×`, factor));
-  set(at("time"), { min: start, max: end });
   at("exaggeration").addEventListener("change", (event) => choose(Number(event.target.value)));
   at("speed").addEventListener("change", (event) => chooseSpeed(Number(event.target.value)));
   at("time").addEventListener("input", (event) => moveTo(Number(event.target.value)));
@@ -480,30 +523,30 @@
     event.preventDefault();
     zoom(Math.exp(0.0015 * event.deltaY), instantAt(event.offsetX));
   }, { passive: false });
-  histories.addEventListener("dblclick", () => show(start, end));
+  histories.addEventListener("dblclick", () => showTime(motion.start, motion.end));
 
   const step = (part) => moveTo(t + part * (shown[1] - shown[0]));
   const keys = {
     " ": () => play(!isPlaying),
     ArrowLeft: (event) => step(event.shiftKey ? -0.1 : -0.01),
     ArrowRight: (event) => step(event.shiftKey ? 0.1 : 0.01),
-    ArrowUp: () => chooseSpeed(beside(speeds, speed, 1)),
-    ArrowDown: () => chooseSpeed(beside(speeds, speed, -1)),
-    Home: () => moveTo(start),
-    End: () => moveTo(end),
+    ArrowUp: () => chooseSpeed(next(speeds, speed, 1)),
+    ArrowDown: () => chooseSpeed(next(speeds, speed, -1)),
+    Home: () => moveTo(motion.start),
+    End: () => moveTo(motion.end),
     ",": () => toTransition(-1),
     ".": () => toTransition(1),
     "+": () => zoom(0.5, t),
     "=": () => zoom(0.5, t),
     "-": () => zoom(2, t),
-    0: () => show(start, end),
-    e: () => choose(beside(exaggerations, exaggeration, 1)),
-    E: () => choose(beside(exaggerations, exaggeration, -1)),
+    0: () => showTime(motion.start, motion.end),
+    e: () => choose(next(exaggerations, exaggeration, 1)),
+    E: () => choose(next(exaggerations, exaggeration, -1)),
     d: otherTheme,
     "?": () => at("help").showModal(),
   };
   document.addEventListener("keydown", (event) => {
-    const isTaken = event.target.closest("select, dialog") || (event.target.closest("button") && event.key === " ");
+    const isTaken = event.target.closest("select, dialog, textarea, input:not(#time)") || (event.target.closest("button") && event.key === " ");
     if (isTaken || event.ctrlKey || event.metaKey || event.altKey || !Object.hasOwn(keys, event.key)) return;
     event.preventDefault();
     keys[event.key](event);
@@ -513,22 +556,44 @@
     if (event.detail > 0) event.target.closest("button")?.blur();
   });
 
-  document.title = `${data.title}: rocking structure`;
-  at("title").textContent = data.title;
-  const count = transitions.length;
-  at("about").textContent =
-    `masses ${mass(m)} and ${mass(m0)}, H = ${significant(H)} m, 2B = ${significant(2 * B)} m, ` +
-    `${significant(f_fc)} Hz in full contact; ${count} transition${count === 1 ? "" : "s"}` +
-    { "at rest": ", at rest in the end", overturned: ", overturned", "still rocking": ", still rocking in the end", "at time": "" }[data.ending];
-  chooseSpeed(1);
-  showTheme();
-  play(false);
   const layOut = () => {
     layOutScene();
     drawHistories();
     draw();
   };
-  at("exaggeration").value = exaggeration;
-  layOut();
-  new ResizeObserver(layOut).observe(document.querySelector("main"));
-})();
+  chooseSpeed(1);
+  showTheme();
+  new ResizeObserver(() => motion && layOut()).observe(document.querySelector("main"));
+
+  /** Shows the motion `data`, in place of the one before at the same instant, with the decoded motions `others` beside it. */
+  function show(data, others = []) {
+    const before = motion;
+    [motion, beside] = [data, others];
+    const isWhole = !before || (shown[0] === before.start && shown[1] === before.end);
+    const { start, end } = motion;
+    if (isWhole || shown[1] > end || shown[0] < start) shown = [start, end];
+    t = before ? Math.min(end, Math.max(start, t)) : start;
+    set(at("time"), { min: start, max: end });
+    layOutStructure();
+    layOutPanels();
+    describe();
+    drawPeaks();
+    layOut();
+  }
+
+  function describe() {
+    const { title, ending, transitions, parameters } = motion;
+    const { m, m0, H, B, f_fc } = parameters;
+    const mass = (kilograms) => (kilograms < 1e4 ? `${significant(kilograms)} kg` : `${significant(kilograms / 1e3)} t`);
+    const count = transitions.length;
+    document.title = `${title}: rocking structure`;
+    at("title").textContent = title;
+    at("about").textContent =
+      `masses ${mass(m)} and ${mass(m0)}, H = ${significant(H)} m, 2B = ${significant(2 * B)} m, ` +
+      `${significant(f_fc)} Hz in full contact; ${count} transition${count === 1 ? "" : "s"}` +
+      { "at rest": ", at rest in the end", overturned: ", overturned", "still rocking": ", still rocking in the end", "at time": "" }[ending];
+  }
+
+  play(false);
+  return { decode, show };
+}

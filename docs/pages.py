@@ -1,0 +1,116 @@
+"""What README and the pages print, made: `make pages` writes it, tests/test_pages.py compares it.
+
+Commands of `console` blocks ("$ ...") and scripts of `python` blocks are run, page by page in a folder of its own with what
+`make demo` leaves in out/; what they print follows, that of a script in the `text` block after it. "..." stands for anything.
+"""
+
+import doctest
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from fmpy import read_model_description
+
+ROOT = Path(__file__).parents[1]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*/*.md"))]
+COMMAND = re.compile(r"^\$ (?P<shell>.*)\n(?P<told>(?:(?!\$ |```).*\n)*)", re.MULTILINE)
+BLOCK = re.compile(r"^```console\n[^`]*?^```$|^```python\n(?P<python>.*?)^```\n(?:\n```text\n(?P<printed>.*?)^```$)?",
+                   re.MULTILINE | re.DOTALL)
+
+
+def rerun(text: str, exporter: Path, folder: Path) -> str:
+    """The page `text` with what its blocks print when they are run in `folder`."""
+    environment = os.environ | {"PATH": f"{exporter.parent}:{Path(sys.executable).parent}:{os.environ['PATH']}"}
+
+    def output(command: list[str], told: str) -> str:
+        done = subprocess.run(command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        assert done.returncode == 0, (command, done.stdout)
+        printed = "".join(f"{line.rstrip()}\n" for line in done.stdout.splitlines())
+        return told if doctest.OutputChecker().check_output(told, printed, doctest.ELLIPSIS) else printed
+
+    def block(found: re.Match) -> str:
+        if found["python"] is None:
+            return COMMAND.sub(lambda line: f"$ {line['shell']}\n{output(['bash', '-c', line['shell']], line['told'])}", found[0])
+        printed = output([sys.executable, "-c", found["python"]], found["printed"] or "")
+        return f"```python\n{found['python']}```\n" + (f"\n```text\n{printed}```" if found["printed"] is not None else printed)
+
+    return BLOCK.sub(block, text)
+
+
+def prepare(folder: Path, exporter: Path) -> Path:
+    """Puts what `make demo` leaves, and what the pages name of this repository, into `folder`."""
+    (folder / "out").mkdir(parents=True)
+    (folder / "examples").symlink_to(ROOT / "examples")
+    sys.path.insert(0, str(ROOT / "examples"))
+    from first_run import RECORD
+
+    for record in [RECORD, *RECORD.parents[1].glob("*/RSN6_*ELC180*")]:
+        shutil.copy(record, folder / "out")
+    for preset in ("mcmanus", "evison"):
+        subprocess.run([exporter, "--quiet", "export", "--preset", preset, "-o", folder / "out" / f"{preset}.fmu"], check=True)
+    return folder
+
+
+def command_line(exporter: Path) -> str:
+    """docs/reference/command_line.md."""
+    def told(*arguments: str) -> str:
+        printed = subprocess.run([exporter, *arguments, "--help"], check=True, capture_output=True, text=True).stdout
+        return "\n".join(line.rstrip() for line in printed.strip().splitlines())
+
+    help_of_all = told()
+    listed = re.search(r"^Commands:\n(.*?)\n\n", help_of_all, re.MULTILINE | re.DOTALL)[1]
+    commands = [line.split(maxsplit=1) for line in listed.splitlines() if not line.startswith("  help")]
+    rows = "\n".join(f"| [`{name}`](#{name}) | {what} |" for name, what in commands)
+    sections = "\n\n".join(f"## {name}\n\n```text\n{told(name)}\n```" for name, _ in commands)
+    return (f"# Command line\n\nWhich commands and options does `rocking-fmu` have? This is what `--help` prints.\n\n"
+            f"| command | does |\n|---|---|\n{rows}\n\n```text\n{help_of_all}\n```\n\n{sections}\n")
+
+
+KINDS = {
+    "Inputs": lambda v: v.causality == "input",
+    "Outputs": lambda v: v.causality == "output",
+    "Parameters": lambda v: v.causality == "parameter" and not v.name.endswith("_0"),
+    "Initial values": lambda v: v.causality == "parameter" and v.name.endswith("_0"),
+    "Calculated parameters": lambda v: v.causality == "calculatedParameter",
+    "Local variables": lambda v: v.causality == "local",
+}
+
+
+def variables(fmu: Path) -> str:
+    """docs/reference/variables.md."""
+    page = ("# Variables\n\nWhich variables does the FMU have, in which units and ranges? This is the model description of McManus's "
+            "pier,\n`rocking-fmu export --preset mcmanus`. The values are that structure's. Request local variables by name.\n")
+
+    def number(value: str | None) -> str:
+        return "" if value is None else re.sub(r"e([+-])0?", r"e\1", f"{float(value):g}").replace("e+", "e")
+
+    def meaning(variable) -> str:
+        choices = variable.declaredType.items if variable.declaredType else None
+        listed = ": " + ", ".join(f"{item.value} {item.name}" for item in choices) if choices else ""
+        return variable.description.replace("|", "\\|") + listed
+
+    for title, is_one in KINDS.items():
+        page += f"\n## {title}\n\n| name | unit | value | range | meaning |\n|---|---|---|---|---|\n"
+        for v in filter(is_one, read_model_description(fmu).modelVariables):
+            value = number(v.start) if v.type == "Real" else v.start or ""
+            limits = f"{number(v.min)} to {number(v.max)}" if v.min and v.max else ""
+            page += f"| `{v.name}` | {v.unit or ''} | {value} | {limits} | {meaning(v)} |\n"
+    return page
+
+
+def main() -> None:
+    exporter = Path(sys.argv[1]).resolve()
+    with tempfile.TemporaryDirectory() as temporary:
+        for page in PAGES:
+            folder = prepare(Path(temporary) / page.stem, exporter)
+            page.write_text(rerun(page.read_text(encoding="utf-8"), exporter, folder), encoding="utf-8")
+        (ROOT / "docs/reference/command_line.md").write_text(command_line(exporter), encoding="utf-8")
+        (ROOT / "docs/reference/variables.md").write_text(variables(folder / "out/mcmanus.fmu"), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

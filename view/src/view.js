@@ -1,0 +1,4 @@
+{
+  const view = motionView();
+  view.show(view.decode(JSON.parse(document.getElementById("data").textContent)));
+}
