@@ -104,7 +104,7 @@ impl Course {
                 .iter()
                 .all(|count| *count < MAX_COUNT)
             && peaks.evaluations() < MAX_COUNT
-            && record.is_none() == setup.record.is_empty()
+            && record.is_none() == (setup.record.is_empty() && setup.record_v.is_empty())
             && setup.engine().is_ok_and(|engine| peaks.are_of(engine.structure()))
     }
 }
@@ -145,9 +145,12 @@ impl Present {
         if let Some(course) = course {
             let is_the_same = |model: &mut Model| self.setup == *setup && model.digest() == course.record;
             let kept = self.model.take_if(is_the_same);
-            let mut found = kept.map_or_else(|| Model::new(setup, self.archive.record(&setup.record)?), Ok)?;
+            let mut found = kept.map_or_else(|| Model::new(setup, setup.ground(&self.archive)?), Ok)?;
             if found.digest() != course.record {
-                return Err(Failure::OtherRecord(setup.record.to_string()));
+                return Err(Failure::OtherRecord {
+                    record: setup.record.to_string(),
+                    record_v: setup.record_v.to_string(),
+                });
             }
             found.engine.set_motion(course.motion);
             (found.elapsed, found.outside) = (course.elapsed, course.outside);

@@ -4,7 +4,7 @@
 use crate::failure::Failure;
 use crate::ground::{Digest, GroundRecord};
 use crate::setup::Setup;
-use rocking::mechanics::load::LOADS;
+use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::outside_step::Known;
 use rocking::run::peaks::Peaks;
@@ -47,6 +47,7 @@ impl Setup {
     fn check_ground(&self, record: &GroundRecord) -> Result<(), Failure> {
         let ground = self.ground_motion(record);
         LOADS[0].check(ground.pga()).map_err(Failure::StrongRecord)?;
+        LOADS[VERTICAL].check(ground.vertical_peak()).map_err(Failure::StrongRecord)?;
         if ground.duration().is_finite() {
             return Ok(());
         }
@@ -73,14 +74,27 @@ impl Setup {
     }
 }
 
+/// Whether what follows `ground` may move vertically.
+fn may_move_vertically(setup: &Setup, ground: Option<&GroundRecord>) -> bool {
+    setup.vertical || ground.is_some_and(|ground| ground.record.vertical().is_some())
+}
+
 impl Model {
     /// At the start that `setup` describes, on ground that follows `ground`.
     pub fn new(setup: &Setup, ground: Option<Arc<GroundRecord>>) -> Result<Model, Failure> {
-        let engine = setup.engine()?;
+        let mut engine = setup.engine()?;
+        if may_move_vertically(setup, ground.as_deref()) {
+            engine.admit_vertical(true)?;
+        }
         ground.as_deref().map_or(Ok(()), |ground| setup.check_ground(ground))?;
         let peaks = Peaks::since(setup.start_time, engine.structure());
         let validity = Found::since(setup.start_time);
         Ok(Model { engine, ground, elapsed: Elapsed::default(), outside: None, peaks, validity })
+    }
+
+    /// Whether the ground may move vertically.
+    pub fn may_move_vertically(&self, setup: &Setup) -> bool {
+        may_move_vertically(setup, self.ground.as_deref())
     }
 
     /// What acts now: `inputs` and the record.

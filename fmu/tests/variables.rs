@@ -20,20 +20,24 @@ fn the_table_holds_the_variables_in_their_order() {
         of_causality.map(|variable| variable.name).collect::<Vec<_>>().join(" ")
     };
     assert_eq!(VARIABLES[0].name, "a_g");
-    assert_eq!(names(Causality::Input), "a_g F_t");
-    assert_eq!(names(Causality::Output), "theta u a_t V_t M_t uplift delta_t v_t R_h R_v R_m I_h I_v I_m");
+    assert_eq!(names(Causality::Input), "a_g F_t a_v");
+    assert_eq!(
+        names(Causality::Output),
+        "theta u a_t V_t M_t uplift delta_t v_t R_h R_v R_m P_t F_d1 F_d2 I_h I_v I_m"
+    );
     assert_eq!(
         names(Causality::Local),
-        "theta_dot u_dot a_ground phase transitions overturned t_overturned der(u) der(u_dot) der(theta) \
-         der(theta_dot) phase_indicator overturning_indicator theta_max t_theta_max u_max t_u_max \
-         delta_t_max t_delta_t_max uplift_max t_uplift_max a_t_max t_a_t_max V_t_max t_V_t_max M_t_max t_M_t_max \
+        "theta_dot u_dot a_ground a_v_ground e_p1 e_p2 E_viscous E_hysteretic phase transitions overturned t_overturned \
+         der(u) der(u_dot) der(theta) der(theta_dot) phase_indicator overturning_indicator theta_max t_theta_max u_max \
+         t_u_max delta_t_max t_delta_t_max uplift_max t_uplift_max a_t_max t_a_t_max V_t_max t_V_t_max M_t_max t_M_t_max \
+         P_t_max t_P_t_max \
          tension_max t_tension_max R_v_min t_R_v_min mu_required t_mu_required mu_impact t_mu_impact tension_impact \
          t_tension_impact energy_gain_max t_energy_gain_max energy_gains"
     );
     assert_eq!(
         names(Causality::Parameter),
-        "m m0 H B J0 f_fc zeta_fc c_ratio r g detail theta_0 theta_dot_0 u_0 u_dot_0 record record_scale \
-         record_time_scale record_start a_g_late F_t_extrapolated peaks validity"
+        "m m0 H B J0 f_fc zeta_fc c_ratio r g P_0 k_t xi_d c_d k_d F_y detail theta_0 theta_dot_0 u_0 u_dot_0 record \
+         record_v record_scale record_time_scale record_start a_g_late F_t_extrapolated peaks validity"
     );
     assert_eq!(names(Causality::CalculatedParameter), "alpha_cg p_l chi u_cr f_u record_duration");
     assert_eq!(VARIABLES.iter().map(|variable| variable.name).collect::<BTreeSet<_>>().len(), VARIABLES.len());
@@ -205,8 +209,8 @@ fn a_value_out_of_range_is_refused_with_all_that_come_with_it() {
         host.assert_refused(|| host.set(&[("H", 2.0), ("a_g", 1.0), ("u_0", 1e-3), (name, value)]), ERROR, &message);
     }
     let last = VARIABLES.len() - 1;
-    let message = format!("fmi2SetReal: value reference 99 does not exist; they run from 0 to {last}");
-    host.assert_refused(|| host.set_by_reference(&[0, 99], &[1.0, 1.0]), ERROR, &message);
+    let message = format!("fmi2SetReal: value reference 999 does not exist; they run from 0 to {last}");
+    host.assert_refused(|| host.set_by_reference(&[0, 999], &[1.0, 1.0]), ERROR, &message);
     assert_eq!(host.try_get(&["H", "a_g", "u_0"]).unwrap(), [1.05, 0.0, 0.0]);
 }
 

@@ -55,6 +55,9 @@ pub static LOADS: [Quantity<Load>; 3] = [
     quantity!(a_v["m/s2"] - 1e4, 1e4, "vertical ground acceleration, positive upwards"),
 ];
 
+/// The place of a_v in [`LOADS`].
+pub const VERTICAL: usize = 2;
+
 /// What acts at one instant, or its rate; indexed in the order of [`LOADS`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Load {

@@ -70,6 +70,8 @@ pub struct GroundMotion<'a> {
     pub record: &'a Record,
     /// What its accelerations are given in, m/s²: 1, or g.
     pub unit: f64,
+    /// The same of its vertical component.
+    pub vertical_unit: f64,
     /// How it is scaled, and when it comes.
     pub placement: Placement,
 }
@@ -128,6 +130,11 @@ impl GroundMotion<'_> {
     /// Peak ground acceleration, m/s².
     pub fn pga(&self) -> f64 {
         self.record.pga() * self.unit * self.placement.scale.abs()
+    }
+
+    /// Largest vertical ground acceleration, m/s²; 0 where the ground moves horizontally alone.
+    pub fn vertical_peak(&self) -> f64 {
+        (0..self.record.times().len()).fold(0.0, |peak, i| peak.max(self.vertical(i).abs()))
     }
 
     /// The ground accelerations as they are given from `elapsed` on; 0 before the first sample and from the last one on.
@@ -243,7 +250,7 @@ impl GroundMotion<'_> {
 
     /// Vertical acceleration of sample `i`, if there is any, m/s².
     fn vertical(&self, i: usize) -> f64 {
-        self.record.vertical().map_or(0.0, |vertical| vertical[i] * self.unit * self.placement.scale)
+        self.record.vertical().map_or(0.0, |vertical| vertical[i] * self.vertical_unit * self.placement.scale)
     }
 
     /// Whether the ground accelerates at sample `i`.
@@ -315,7 +322,7 @@ impl GroundMotion<'_> {
 
 impl<'a> From<&'a Record> for GroundMotion<'a> {
     fn from(record: &'a Record) -> GroundMotion<'a> {
-        GroundMotion { record, unit: 1.0, placement: Placement::default() }
+        GroundMotion { record, unit: 1.0, vertical_unit: 1.0, placement: Placement::default() }
     }
 }
 

@@ -214,17 +214,18 @@ mod tests {
         let name = |index: &usize| variables[index - 1].name.as_str();
         let names = |unknowns: &[fmi::Unknown]| unknowns.iter().map(|u| name(&u.index).to_owned()).collect::<Vec<_>>();
 
-        let outputs = "theta u a_t V_t M_t uplift delta_t v_t R_h R_v R_m I_h I_v I_m";
+        let outputs = "theta u a_t V_t M_t uplift delta_t v_t R_h R_v R_m P_t F_d1 F_d2 I_h I_v I_m";
         let calculated_parameters = "alpha_cg p_l chi u_cr f_u record_duration";
         let structure = &description.model_structure;
         assert_eq!(names(&structure.outputs.unknowns).join(" "), outputs);
         for unknown in &structure.outputs.unknowns {
             let dependencies = unknown.dependencies.iter().map(name).collect::<Vec<_>>();
             let expected = match name(&unknown.index) {
-                "a_t" | "V_t" | "M_t" | "R_h" | "R_v" | "R_m" => "a_g F_t u u_dot theta theta_dot",
+                "a_t" | "V_t" | "M_t" | "R_h" | "R_v" | "R_m" => "a_g F_t a_v u u_dot theta theta_dot",
                 "v_t" => "u u_dot theta theta_dot",
                 "delta_t" => "u theta",
-                "theta" | "uplift" => "theta",
+                "theta" | "uplift" | "P_t" => "theta",
+                "F_d1" | "F_d2" => "theta theta_dot",
                 "u" => "u",
                 _ => "",
             };
@@ -261,7 +262,7 @@ mod tests {
     #[test]
     fn start_values_are_those_of_the_structure() {
         let record = PackedRecord { file: "pulse & rest.csv".into(), digest: "any".into() };
-        let contents = Contents { parameters: Parameters::EVISON, records: vec![record] };
+        let contents = Contents { parameters: Parameters::EVISON, records: vec![record], vertical: None };
         let xml = described(&contents).to_xml().unwrap();
         for element in [
             r#"name="a_g" valueReference="0" description="horizontal ground acceleration, positive to the right" causality="input" variability="continuous">

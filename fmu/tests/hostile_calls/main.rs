@@ -95,7 +95,7 @@ fn no_call_does_harm<V: Hostile>(interface: fn(&mut Rng) -> Interface) {
     // what sequences share is no leak: the records, held here
     let archive = Archive::open(resources.path().to_owned()).unwrap();
     let texts = records.iter().filter_map(|text| text.to_str().ok());
-    let _held: Vec<_> = texts.filter_map(|text| archive.record(text).ok()).collect();
+    let _held: Vec<_> = texts.filter_map(|text| archive.ground(text, "").ok()).collect();
     let none = vec![false; V::Function::ALL.len()];
     let tally =
         RefCell::new(Tally { done: none.clone(), never: none, met: Default::default(), left: Default::default() });
@@ -333,6 +333,10 @@ impl<'a, V: Hostile> Sequence<'a, V> {
                 "g" => 9.81,
                 "a_g" => self.sign() * self.between(0.1, 50.0),
                 "F_t" => self.sign() * self.between(1.0, 1e4),
+                "a_v" => self.sign() * self.between(0.1, 20.0),
+                "P_0" | "F_y" | "c_d" => self.between(1.0, 1e4),
+                "k_t" | "k_d" => self.between(1e3, 1e7),
+                "xi_d" => self.between(0.05, 3.0),
                 "record_scale" | "record_time_scale" => self.between(0.1, 3.0),
                 _ => self.sign() * self.between(1e-4, 0.5),
             },
@@ -615,7 +619,7 @@ impl<'a, V: Hostile> Sequence<'a, V> {
             // names and paths, or any bytes
             Call::SetStrings(call) => {
                 if self.rng.bool() {
-                    references = vec![host::reference("record")];
+                    references = vec![host::reference(if self.rng.bool() { "record" } else { "record_v" })];
                 }
                 let garbage: Vec<u8> = (0..self.rng.usize(..40)).map(|_| self.rng.u8(1..)).collect();
                 let garbage = CString::new(garbage).unwrap();
