@@ -202,6 +202,7 @@ fn phase_after(kind: TransitionKind) -> Phase {
         TransitionKind::Uplift(side) | TransitionKind::Impact(side) => Phase::Rocking(side),
         TransitionKind::Overturning(side) => Phase::Overturned(side),
         TransitionKind::Landing | TransitionKind::Settling => Phase::FullContact,
+        TransitionKind::Yielding(_) | TransitionKind::Unloading(_) => unreachable!("nothing is restrained"),
     }
 }
 

@@ -68,7 +68,7 @@ impl Watch for Summary {
         let first = match transition.kind {
             TransitionKind::Uplift(_) => &mut self.first_uplift,
             TransitionKind::Impact(_) | TransitionKind::Landing | TransitionKind::Settling => &mut self.first_impact,
-            TransitionKind::Overturning(_) => return,
+            TransitionKind::Overturning(_) | TransitionKind::Yielding(_) | TransitionKind::Unloading(_) => return,
         };
         first.get_or_insert(transition.time);
     }

@@ -127,7 +127,7 @@ impl Model {
     pub fn validity(&self, setup: &Setup, load: Load) -> Found {
         let mut validity = self.watch_validity();
         if self.starts_as_it_stands(load) {
-            validity.see_instant(setup.start_time, self.engine.motion().phase, &self.engine.reactions(load));
+            validity.see_instant(setup.start_time, self.engine.motion().phase, &self.engine.edges(load));
         }
         *validity.found()
     }

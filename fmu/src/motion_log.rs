@@ -32,6 +32,7 @@ fn describe(transition: &Transition) -> String {
         TransitionKind::Impact(pivot) => format!("impact, rocking on about the {} edge", side(pivot)),
         TransitionKind::Landing | TransitionKind::Settling => "landing in full contact".to_owned(),
         TransitionKind::Overturning(pivot) => format!("overturning about the {} edge", side(pivot)),
+        kind @ (TransitionKind::Yielding(_) | TransitionKind::Unloading(_)) => kind.name().to_owned(),
     };
     format!(
         "t = {time} s: {what}; u = {} m, u_dot = {} m/s (before: {}), theta_dot = {} rad/s (before: {})",

@@ -190,7 +190,7 @@ mod tests {
                     while now < until {
                         let interval = until - now;
                         let a_g = segment.from(now).on_foundation();
-                        let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15 };
+                        let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15, ..Start::default() };
                         full_contact::series(&structure, &start, &mut arc);
                         state = arc.end();
                         now = if arc.duration() == interval { until } else { now + arc.duration() };

@@ -41,18 +41,36 @@ pub struct Restraints {
     pub F_d2: f64,
 }
 
-/// 2 sin(θ/2) and its rate: over the lever the elongation of every tie.
+/// How large the rotations are that the equations are for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Angles {
+    Any,
+    Small,
+}
+
+/// 2 sin(θ/2), for small angles θ, and its rate: over the lever the elongation of every tie.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Chord {
     pub length: f64,
     pub rate: f64,
 }
 
-impl Chord {
-    /// At the rotation `theta` (rad) and its rate.
-    pub(crate) fn of(theta: f64, theta_dot: f64) -> Chord {
+impl Angles {
+    /// The chord at the rotation `theta` (rad) and its rate.
+    pub(crate) fn chord(self, theta: f64, theta_dot: f64) -> Chord {
         let (sin, cos) = (theta / 2.0).sin_cos();
-        Chord { length: 2.0 * sin, rate: cos * theta_dot }
+        match self {
+            Angles::Any => Chord { length: 2.0 * sin, rate: cos * theta_dot },
+            Angles::Small => Chord { length: theta, rate: theta_dot },
+        }
+    }
+
+    /// The rotation (rad) that has a chord of this `length`, if one has.
+    pub(crate) fn rotation(self, length: f64) -> Option<f64> {
+        match self {
+            Angles::Any => Some(2.0 * (length / 2.0).asin()).filter(|theta| !theta.is_nan()),
+            Angles::Small => Some(length),
+        }
     }
 }
 
@@ -97,8 +115,7 @@ pub(crate) fn ties(structure: &Structure, side: Side, dissipators: &Dissipators)
     [tendon, dissipator(0), dissipator(1)]
 }
 
-/// What all ties do together: force cos(θ/2) + stiffness sin θ + damping θ̇ cos²(θ/2), for small angles force +
-/// stiffness θ + damping θ̇.
+/// What all ties do together: (force + stiffness chord + damping its rate) cos(θ/2), for small angles without the cosine.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Sum {
     pub force: f64,
@@ -129,9 +146,10 @@ impl Sum {
     }
 
     /// At the rotation `theta` (rad) and its rate.
-    pub(crate) fn at(&self, theta: f64, theta_dot: f64) -> f64 {
-        let half = (theta / 2.0).cos();
-        self.force * half + self.stiffness * theta.sin() + self.damping * half * half * theta_dot
+    pub(crate) fn at(&self, angles: Angles, theta: f64, theta_dot: f64) -> f64 {
+        let Chord { length, rate } = angles.chord(theta, theta_dot);
+        let towards = if angles == Angles::Any { (theta / 2.0).cos() } else { 1.0 };
+        towards * (self.force + self.stiffness * length + self.damping * rate)
     }
 }
 
@@ -145,7 +163,7 @@ impl Restraints {
         chord: Chord,
     ) -> Restraints {
         let [tendon, first, second] = ties(structure, side, dissipators);
-        let P_t = tendon.force_at(Chord::of(theta, 0.0));
+        let P_t = tendon.force_at(Angles::Any.chord(theta, 0.0));
         Restraints { P_t, F_d1: first.force_at(chord), F_d2: second.force_at(chord) }
     }
 }
@@ -154,7 +172,7 @@ impl Restraints {
 pub fn stored_energy(structure: &Structure, side: Side, theta: f64, dissipators: &Dissipators) -> f64 {
     let &crate::Parameters { P_0, k_t, k_d, F_y, .. } = structure.parameters();
     let [tendon, rest @ ..] = ties(structure, side, dissipators);
-    let chord = Chord::of(theta, 0.0);
+    let chord = Angles::Any.chord(theta, 0.0);
     let e = tendon.lever * chord.length;
     let elastic = |tie: &Tie| {
         let force = Tie { damping: 0.0, ..*tie }.force_at(chord);
@@ -163,12 +181,48 @@ pub fn stored_energy(structure: &Structure, side: Side, theta: f64, dissipators:
     e * (P_0 + 0.5 * k_t * e) + rest.iter().map(elastic).sum::<f64>()
 }
 
+/// The displacement u_cr,s (m) towards `side` at which the base lifts off about it, where its turning moment then suffices:
+///
+/// ```text
+/// u_cr,s = { [(m + m0)(g + a_v) + P_0] B + Σ F (B − s ξ) }/(m H ω_fc²)
+/// ```
+///
+/// Where it is not above 0 the weight no longer holds the base. `a_v` in m/s².
+pub fn uplift_displacement(structure: &Structure, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
+    let more = holding_moment(structure, side, a_v, dissipators);
+    structure.u_cr + more / (structure.parameters().H * structure.stiffness)
+}
+
+/// Over m, the moment about the pivot that holds the base down beside that of its weight at rest, m²/s².
+pub(crate) fn holding_moment(structure: &Structure, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
+    let &crate::Parameters { m, B, .. } = structure.parameters();
+    let ties = Sum::of_moments(&ties(structure, side, dissipators));
+    structure.gamma * a_v * B + side.sign() * ties.force / m
+}
+
 impl Dissipators {
+    /// After a transition to rocking about `side` at the rate `theta_dot` (rad/s), or at rest in contact (none): what goes on
+    /// the way it yielded goes on yielding.
+    pub(crate) fn after(mut self, structure: &Structure, rocking: Option<(Side, f64)>) -> Dissipators {
+        for j in 0..2 {
+            let on = |(side, theta_dot)| f64::from(self.yields[j]) * levers(structure, side)[j] * theta_dot > 0.0;
+            if !rocking.is_some_and(on) {
+                self.yields[j] = 0;
+            }
+        }
+        self
+    }
+
     /// Moved slowly from where they are to the rotation `theta` (rad) of `structure` about `side`, without turning back on the
     /// way: plastic elongations and the energy taken.
     pub fn moved(&self, structure: &Structure, side: Side, theta: f64) -> Dissipators {
+        self.moved_by(structure, side, Angles::Any.chord(theta, 0.0))
+    }
+
+    /// [`Dissipators::moved`] to a rotation of this `chord`.
+    pub(crate) fn moved_by(&self, structure: &Structure, side: Side, chord: Chord) -> Dissipators {
         let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
-        let (mut moved, chord) = (Dissipators { yields: [0; 2], ..*self }, Chord::of(theta, 0.0));
+        let mut moved = Dissipators { yields: [0; 2], ..*self };
         for (j, lever) in levers(structure, side).into_iter().enumerate() {
             let force = k_d * (lever * chord.length - moved.plastic[j]);
             if force.abs() > F_y {
