@@ -421,6 +421,17 @@ impl Engine {
         self.sample(Load::default()).restraints()
     }
 
+    /// Rates of the forces of the restraints now under `load`, N/s; 0 once overturned.
+    pub fn restraint_rates(&self, load: Load) -> Restraints {
+        let (structure, Motion { phase, state, dissipators, .. }) = (&self.model.structure, &self.motion);
+        if let Phase::Overturned(_) = phase {
+            return Restraints::default();
+        }
+        let [_, theta_ddot] = self.sample(load).accelerations();
+        let angles = self.model.level.ties().unwrap_or(Angles::Any);
+        Restraints::rates(structure, phase.side(), dissipators, angles, state, theta_ddot)
+    }
+
     /// Time derivatives of the outputs and reactions now under `load`, from the equations of motion; 0 once overturned.
     /// At a transition they are those just after it.
     pub fn rates(&self, load: LinearLoad) -> (Outputs, Reactions) {

@@ -57,7 +57,7 @@ fn amplitude(text: &str) -> Result<f64, String> {
 pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let record = args.ground.load(structure.parameters().g)?;
-    let inputs = args.structure.input().into_iter().chain(args.ground.record.as_deref());
+    let inputs = args.structure.input().into_iter().chain(args.ground.inputs());
     let mut files = args.results.files(inputs);
     let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let fixed_base = record.as_ref().map_or(Vec::new(), |record| on_fixed_base(&structure, record));

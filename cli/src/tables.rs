@@ -2,6 +2,7 @@
 use crate::output_files::{OutputFile, OutputFiles};
 use crate::talk::say;
 use rocking::engine::piece::Sample;
+use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::{Impulse, Outputs, Reactions, State, Transition};
 use serde::Serialize;
 use std::path::Path;
@@ -41,8 +42,8 @@ impl Table {
     }
 }
 
-/// Headings of the response: the ground acceleration, and the outputs of the FMU under their names and units.
-pub const RESPONSE: [&str; 20] = [
+/// Headings of the response: the ground accelerations, and the outputs of the FMU under their names and units.
+pub const RESPONSE: [&str; 28] = [
     "time[s]",
     "a_g[m/s2]",
     "theta[rad]",
@@ -63,6 +64,14 @@ pub const RESPONSE: [&str; 20] = [
     "I_m[N.m.s]",
     "phase",
     "transitions",
+    "a_v[m/s2]",
+    "P_t[N]",
+    "F_d1[N]",
+    "F_d2[N]",
+    "e_p1[m]",
+    "e_p2[m]",
+    "E_viscous[J]",
+    "E_hysteretic[J]",
 ];
 
 /// A line of the response.
@@ -72,7 +81,11 @@ pub fn response_line(sample: &Sample) -> impl Serialize + use<> {
     let Reactions { R_h, R_v, R_m } = sample.reactions();
     let Impulse { I_h, I_v, I_m } = motion.impulse;
     let of_motion = (theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t);
-    (motion.time, load.a_g, of_motion, (R_h, R_v, R_m, I_h, I_v, I_m), motion.phase.name(), motion.transitions)
+    let of_ground = (R_h, R_v, R_m, I_h, I_v, I_m);
+    let Restraints { P_t, F_d1, F_d2 } = sample.restraints();
+    let Dissipators { plastic, viscous, hysteretic, .. } = motion.dissipators;
+    let of_restraints = (load.a_v, P_t, F_d1, F_d2, plastic, viscous, hysteretic);
+    (motion.time, load.a_g, of_motion, of_ground, motion.phase.name(), motion.transitions, of_restraints)
 }
 
 /// Headings of the transitions.

@@ -10,6 +10,7 @@ use crate::present::Present;
 use crate::setup::Setup;
 use crate::state_machine::Stage;
 use crate::variables::{DataType, VARIABLES, Variable};
+use rocking::mechanics::restraint::Dissipators;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::peaks::{PEAKS, Peaks};
 use rocking::run::validity::{Found, Worst};
@@ -95,7 +96,7 @@ impl Course {
                 .iter()
                 .map(|peaking| (peaking.of)(peaks))
                 .all(|peak| peak.magnitude <= BOUND && peak.time.is_finite())
-            && validity.worst.iter().all(|&Worst { value, time, first_beyond, beyond }| {
+            && validity.worst.iter().chain([&validity.weight]).all(|&Worst { value, time, first_beyond, beyond }| {
                 // friction may be infinite
                 value >= -BOUND && [time, first_beyond.unwrap_or(0.0), beyond].iter().all(|x| x.is_finite())
             })
@@ -111,9 +112,12 @@ impl Course {
 
 /// Whether calls can lead to `motion`, with |θ| no more than `farthest` (rad).
 fn is_possible(motion: &Motion, farthest: f64) -> bool {
-    let &Motion { time, state: State { u, u_dot, theta, theta_dot }, impulse, transitions, work, .. } = motion;
+    let &Motion { time, state: State { u, u_dot, theta, theta_dot }, impulse, dissipators, transitions, work, .. } =
+        motion;
+    let Dissipators { plastic, yields, viscous, hysteretic } = dissipators;
     let Impulse { I_h, I_v, I_m } = impulse;
-    [u, u_dot, theta_dot, I_h, I_v, I_m].iter().all(|x| x.abs() <= BOUND)
+    [u, u_dot, theta_dot, I_h, I_v, I_m, plastic[0], plastic[1], viscous, hysteretic].iter().all(|x| x.abs() <= BOUND)
+        && yields.iter().all(|way| (-1..=1).contains(way))
         && theta.abs() <= farthest
         && [transitions, work.steps, work.evaluations].iter().all(|count| *count < MAX_COUNT)
         && time.is_finite()

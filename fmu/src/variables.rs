@@ -414,7 +414,7 @@ fn locals() -> [Variable; 12] {
         kept("e_p1", "m", "plastic elongation of the elastoplastic dissipator at +xi_d", |d| d.plastic[0], PLASTIC),
         kept("e_p2", "m", "the same of the one at -xi_d", |d| d.plastic[1], PLASTIC),
         kept("E_viscous", "J", "energy that the viscous dissipators have taken", |d| d.viscous, &[]),
-        kept("E_hysteretic", "J", "energy that the elastoplastic dissipators have taken", |d| d.hysteretic, PLASTIC),
+        kept("E_hysteretic", "J", "energy that the elastoplastic dissipators have taken", |d| d.hysteretic, &[]),
         counted("phase", PHASES.description, phases, Source::Integer(phase_number), &["theta_0"]),
         counted(
             "transitions",
@@ -471,7 +471,7 @@ fn event_indicators() -> [Variable; INDICATORS] {
     #[rustfmt::skip]
     const PHASE: &[&str] = &[
         "m", "m0", "H", "B", "f_fc", "zeta_fc", "c_ratio", "g", "detail", "theta_0", "u_0", "u_dot_0",
-        "P_0", "xi_d", "k_d", "F_y", "record", "record_v", "record_scale", "record_time_scale", "record_start",
+        "P_0", "record", "record_v", "record_scale", "record_time_scale", "record_start",
     ];
     let indicator = |which, name, description| Variable {
         causality: Causality::Local,
@@ -480,7 +480,7 @@ fn event_indicators() -> [Variable; INDICATORS] {
     [
         Variable {
             feedthrough: LOAD_NAMES,
-            states: &COMPONENTS,
+            states: &["u", "u_dot", "theta"],
             initial_dependencies: PHASE,
             ..indicator(
                 0,
@@ -489,9 +489,13 @@ fn event_indicators() -> [Variable; INDICATORS] {
             )
         },
         Variable {
-            states: &["theta"],
-            initial_dependencies: &["theta_0"],
-            ..indicator(1, "overturning_indicator", "event indicator, positive until the structure has overturned")
+            states: &["theta", "theta_dot"],
+            initial_dependencies: &["B", "theta_0", "theta_dot_0", "xi_d", "k_d", "F_y"],
+            ..indicator(
+                1,
+                "overturning_indicator",
+                "event indicator, positive until the structure has overturned, or a dissipator yields or ceases to",
+            )
         },
     ]
 }
@@ -595,10 +599,10 @@ fn calculated_parameters() -> [Variable; 6] {
             ..output(
                 "record_duration",
                 "s",
-                "from the record's first to its last sample; 0 without a record",
+                "from the first to the last sample of the record, of either component; 0 without a record",
                 Source::RecordDuration,
                 &[],
-                &["record", "record_time_scale"],
+                &["record", "record_v", "record_time_scale"],
             )
         },
     ]

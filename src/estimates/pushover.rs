@@ -96,12 +96,13 @@ pub fn at_displacement(structure: &Structure, delta_t: f64) -> Option<Equilibriu
     at_rotation(structure, theta.copysign(delta_t))
 }
 
-/// The unstable equilibrium without a force, beyond which the structure overturns (to the right). `None` for a strut
-/// too soft to hold the structure on the way there.
+/// The unstable equilibrium without a force, beyond which the structure overturns (to the right); at π/2 of one that its
+/// tendon turns back from everywhere. `None` for a strut too soft to hold the structure on the way there.
 pub fn at_overturning(structure: &Structure) -> Option<Equilibrium> {
-    let tan_alpha_cg = structure.tan_alpha_cg;
+    let alpha_cg = structure.tan_alpha_cg.atan();
+    let farthest = if structure.is_restrained() { FRAC_PI_2 } else { alpha_cg };
     let restores = |theta| at_rotation(structure, theta).is_some_and(|there| there.force >= 0.0);
-    at_rotation(structure, last_where(0.0, tan_alpha_cg.atan(), restores))
+    at_rotation(structure, last_where(0.0, farthest, restores))
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@
 //! The equations for small angles have e = l θ instead. At θ = 0 all e are 0: what an elastoplastic dissipator then pulls
 //! is its residual force − k_d e_p. Impacts leave e_p as it is.
 
-use crate::{Side, Structure};
+use crate::{Side, State, Structure};
 use serde::{Deserialize, Serialize};
 
 /// What the dissipators keep, and what they have taken: the first is at +ξ_d, the second at −ξ_d.
@@ -63,6 +63,16 @@ impl Angles {
             Angles::Any => Chord { length: 2.0 * sin, rate: cos * theta_dot },
             Angles::Small => Chord { length: theta, rate: theta_dot },
         }
+    }
+
+    /// The rate of the chord that has the rate `theta_dot` (rad/s), which changes by `theta_ddot` (rad/s²).
+    fn chord_rate(self, theta: f64, theta_dot: f64, theta_ddot: f64) -> Chord {
+        let (sin, cos) = (theta / 2.0).sin_cos();
+        let rate = match self {
+            Angles::Any => cos * theta_ddot - 0.5 * sin * theta_dot * theta_dot,
+            Angles::Small => theta_ddot,
+        };
+        Chord { length: self.chord(theta, theta_dot).rate, rate }
     }
 
     /// The rotation (rad) that has a chord of this `length`, if one has.
@@ -165,6 +175,22 @@ impl Restraints {
         let [tendon, first, second] = ties(structure, side, dissipators);
         let P_t = tendon.force_at(Angles::Any.chord(theta, 0.0));
         Restraints { P_t, F_d1: first.force_at(chord), F_d2: second.force_at(chord) }
+    }
+
+    /// Their rates, N/s, in `state` while θ̇ changes by `theta_ddot` (rad/s²); the dissipators are elongated as `angles` say.
+    pub(crate) fn rates(
+        structure: &Structure,
+        side: Side,
+        dissipators: &Dissipators,
+        angles: Angles,
+        &State { theta, theta_dot, .. }: &State,
+        theta_ddot: f64,
+    ) -> Restraints {
+        let rate = |tie: Tie, angles: Angles| {
+            Tie { force: 0.0, ..tie }.force_at(angles.chord_rate(theta, theta_dot, theta_ddot))
+        };
+        let [tendon, first, second] = ties(structure, side, dissipators);
+        Restraints { P_t: rate(tendon, Angles::Any), F_d1: rate(first, angles), F_d2: rate(second, angles) }
     }
 }
 

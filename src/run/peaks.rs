@@ -97,6 +97,16 @@ pub const PEAKS: [Peaking; 7] = [
     Peaking { name: "M_t", unit: "N.m", of: |peaks| peaks.M_t() },
 ];
 
+/// The tendon's force.
+static TENDON: Peaking = Peaking { name: "P_t", unit: "N", of: |peaks| peaks.P_t() };
+
+/// The peaks that `structure` has: all of [`PEAKS`], and with a tendon that of its force.
+pub fn of(structure: &Structure) -> impl Iterator<Item = &'static Peaking> + use<> {
+    let &crate::Parameters { P_0, k_t, .. } = structure.parameters();
+    let tendon = (P_0 > 0.0 || k_t > 0.0).then_some(&TENDON);
+    const { &PEAKS }.iter().chain(tendon)
+}
+
 impl Peaks {
     /// Of `structure`, nothing seen yet.
     pub fn new(structure: &Structure) -> Peaks {

@@ -97,6 +97,11 @@ impl Record {
         Ok(Record { times, acceleration, vertical: Some(vertical), ..self })
     }
 
+    /// This ground motion without its vertical component, at the same times.
+    pub fn without_vertical(self) -> Record {
+        Record { vertical: None, ..self }
+    }
+
     /// This ground motion with every time multiplied by `time_scale`, greater than 0, and every acceleration by
     /// `scale`; an error where that leaves no motion whose accelerations and slopes are finite.
     pub fn scaled(mut self, time_scale: f64, scale: f64) -> Result<Record, SamplesError> {

@@ -31,6 +31,7 @@ impl Instance {
             let rate = match variable.source {
                 Source::Output(of) => of(&outputs),
                 Source::Reaction(of) => of(&reactions),
+                Source::Restraint(of) => of(&model.engine.restraint_rates(load.value)),
                 Source::Ground(which) => load.slope[which],
                 _ => return Err(Failure::NoOutput(variable)),
             };

@@ -94,8 +94,9 @@ fn no_call_does_harm<V: Hostile>(interface: fn(&mut Rng) -> Interface) {
     let records = records(resources.path());
     // what sequences share is no leak: the records, held here
     let archive = Archive::open(resources.path().to_owned()).unwrap();
-    let texts = records.iter().filter_map(|text| text.to_str().ok());
-    let _held: Vec<_> = texts.filter_map(|text| archive.ground(text, "").ok()).collect();
+    let texts = || records.iter().filter_map(|text| text.to_str().ok()).chain([""]);
+    let pairs = texts().flat_map(|record| texts().map(move |vertical| (record, vertical)));
+    let _held: Vec<_> = pairs.filter_map(|(record, vertical)| archive.ground(record, vertical).ok()).collect();
     let none = vec![false; V::Function::ALL.len()];
     let tally =
         RefCell::new(Tally { done: none.clone(), never: none, met: Default::default(), left: Default::default() });

@@ -236,7 +236,7 @@ mod tests {
              record_v record_scale record_time_scale record_start time"
         );
         assert_eq!(dependencies(continuous_state_derivatives, "der(u)"), "u_dot");
-        assert_eq!(dependencies(event_indicators, "overturning_indicator"), "theta");
+        assert_eq!(dependencies(event_indicators, "overturning_indicator"), "theta theta_dot B xi_d k_d F_y");
         assert_eq!(dependencies(initial_unknowns, "delta_t"), "H B theta_0 u_0");
     }
 
