@@ -174,9 +174,9 @@ fn those_by_start_values_are_the_closed_forms() {
 /// Of everything by everything, beside differences of the values; together they add up, with the inputs' share.
 #[test]
 fn those_by_start_values_are_the_slopes_of_the_values() {
-    let start =
-        [("theta_0", 0.3), ("theta_dot_0", -0.4), ("u_0", 2e-3), ("u_dot_0", 0.3), ("J0", 2.0), ("c_ratio", 0.7)];
-    let host = Host::initializing(&start);
+    let initial = [("theta_0", 0.3), ("theta_dot_0", -0.4), ("u_0", 2e-3), ("u_dot_0", 0.3)];
+    let restraints = [("P_0", 300.0), ("k_t", 2e4), ("xi_d", 0.2), ("c_d", 150.0), ("k_d", 2e5), ("F_y", 120.0)];
+    let host = Host::initializing(&[&initial[..], &[("J0", 2.0), ("c_ratio", 0.7)], &restraints].concat());
     host.write("pulse.AT2", "-\n-\nACCELERATION IN UNITS OF G\n3, .5 NPTS, DT\n.1 .2 .4\n");
     let placement = [("record_scale", 0.8), ("record_time_scale", 1.25), ("record_start", -0.3)];
     assert_eq!((host.set_record("pulse.AT2"), host.set(&placement)), (OK, OK));
