@@ -9,7 +9,7 @@ use rocking::engine::piece::Sample;
 use rocking::estimates::pushover;
 use rocking::levels::nonlinear;
 use rocking::mechanics::energy::energy;
-use rocking::mechanics::restraint::{stored_energy, uplift_displacement};
+use rocking::mechanics::restraint::{centring_moments, stored_energy, uplift_displacement};
 use rocking::run::record::Record;
 use rocking::run::validity::Limits;
 use rocking::run::{End, Run};
@@ -356,6 +356,7 @@ fn the_edges_carry_what_the_ties_pull_beside_the_reactions() {
     for detail in [Detail::Auto, Detail::Rigid] {
         let run = Run { detail, end: End::At(ground.end()), ..Run::new(structure, &ground) };
         let (mut least, mut friction) = (f64::INFINITY, 0.0_f64);
+        let mut most = [0.0_f64; 4];
         let dense = (0..150_000).map(|i| f64::from(i) * 2e-5);
         let show = |at: &Sample| {
             let (edges, reactions, ties) = (at.edges(), at.reactions(), at.restraints());
@@ -372,9 +373,17 @@ fn the_edges_carry_what_the_ties_pull_beside_the_reactions() {
             }
             least = least.min(edges.R_v / ((m + m0) * g));
             friction = friction.max(edges.R_h.abs() / edges.R_v);
+            let outputs = at.outputs();
+            let shown = [outputs.theta, outputs.a_t, outputs.delta_t, ties.P_t];
+            most.iter_mut().zip(shown).for_each(|(most, value)| *most = most.max(value.abs()));
         };
         run.sample(dense, show, &mut ()).unwrap();
         let (found, finish) = run.validity(Limits::default()).unwrap();
+        let (peaks, _) = run.peaks().unwrap();
+        for (sampled, peak) in most.into_iter().zip([peaks.theta(), peaks.a_t(), peaks.delta_t(), peaks.P_t()]) {
+            let exact = peak.magnitude;
+            assert!(sampled <= exact * (1.0 + 1e-9) && sampled > 0.99 * exact, "{detail:?}: {sampled} {exact}");
+        }
         let [_, edge_load, mu, ..] = found.worst;
         assert!(finish.motion.transitions > 10);
         assert!(edge_load.value <= least && edge_load.value > least - 1e-2, "{} {least}", edge_load.value);
@@ -423,4 +432,20 @@ fn indicators_stay_positive_between_transitions() {
     };
     run.sample(times, show, &mut ()).unwrap();
     assert!(yielding > 100, "{yielding}");
+}
+
+/// Pushed over and let go: where the residual forces outweigh what turns it back it comes to rest turned, otherwise in contact.
+#[test]
+fn what_does_not_centre_itself_stays_turned() {
+    let ground = Record::at_rest(6.0);
+    for (F_y, stays) in [(120.0, false), (1800.0, true)] {
+        let structure = structure(Parameters { F_y, P_0: 0.0, k_t: 0.0, c_d: 2e4, ..RESTRAINED });
+        let [back, residual] = centring_moments(&structure);
+        assert_eq!(residual > back, stays, "{residual} {back}");
+        let initial = State { theta: 0.05, ..State::default() };
+        let run = Run { initial, end: End::At(6.0), ..Run::new(structure, &ground) };
+        let Motion { phase, state, .. } = run.follow(&mut ()).unwrap().motion;
+        assert_eq!(phase == Phase::Rocking(Side::Right) && state.theta > 1e-3, stays, "{phase:?} {state:?}");
+        assert!(!stays || state.theta_dot.abs() < 1e-6, "{state:?}");
+    }
 }

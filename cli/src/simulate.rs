@@ -18,7 +18,7 @@ use anyhow::ensure;
 use rocking::run::record::Record;
 use rocking::{
     Run, Structure, Transition,
-    estimates::restoring::Centring,
+    mechanics::restraint::centring_moments,
     run::{
         End,
         validity::{Found as Beyond, Validity},
@@ -113,10 +113,10 @@ impl SimulateArgs {
 
 /// Whether a `structure` with elastoplastic dissipators centres itself, in a line.
 fn centring(structure: &Structure) -> Option<String> {
-    let centring @ Centring { restoring, residual } = Centring::of(structure);
+    let [restoring, residual] = centring_moments(structure);
     let [turned_back, held] = [restoring, residual].map(|moment| in_readable_unit(moment, "N.m", significant));
     let verdict =
-        if centring.is_certain() { "the structure centres itself" } else { "it may stay open: see theta at the end" };
+        if restoring > residual { "the structure centres itself" } else { "it may stay open: see theta at the end" };
     (residual > 0.0).then(|| {
         format!("weight and tendon turn the base back with {turned_back}, yielded dissipators hold it with up to {held}: {verdict}")
     })

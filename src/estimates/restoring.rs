@@ -1,39 +1,15 @@
 //! The moment that turns a rocking base back, without a time history: what the weight, a tendon and dissipators restore while
-//! the base is turned slowly, and whether the structure centres itself.
+//! the base is turned slowly.
 //!
 //! ```text
 //! M(θ) = (m + m0) g B cos θ − m g H sin θ + P_0 B cos(θ/2) + k_t B² sin θ + Σ_j F_j (sB − ξ_j) cos(θ/2),      s = +1
 //! ```
 //!
 //! Eq 6 at rest, of a strut that is not deformed. From the way there to the way back the elastoplastic dissipators change sign:
-//! the loop is a flag of the height Σ_j 2 F_y |sB − ξ_j| cos(θ/2). With the base down again they push with up to Σ_j F_y |sB −
-//! ξ_j|: the structure centres itself if weight and tendon turn it back with more, [(m + m0) g + P_0] B.
+//! the loop is a flag of the height Σ_j 2 F_y |sB − ξ_j| cos(θ/2).
 
-use crate::mechanics::restraint::{Angles, Dissipators, Sum, levers, ties};
+use crate::mechanics::restraint::{Angles, Dissipators, Sum, ties};
 use crate::{Parameters, Side, Structure};
-
-/// Moments about the pivot with the base down, N·m.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Centring {
-    /// Of weight and tendon: [(m + m0) g + P_0] B.
-    pub restoring: f64,
-    /// Of dissipators that have yielded, at most: Σ F_y |sB − ξ_j|.
-    pub residual: f64,
-}
-
-impl Centring {
-    /// Of `structure`.
-    pub fn of(structure: &Structure) -> Centring {
-        let &Parameters { m, m0, B, g, P_0, F_y, .. } = structure.parameters();
-        let residual = levers(structure, Side::Right).iter().map(|lever| F_y * lever.abs()).sum();
-        Centring { restoring: ((m + m0) * g + P_0) * B, residual }
-    }
-
-    /// Whether the structure comes down by itself whatever its dissipators have been through.
-    pub fn is_certain(&self) -> bool {
-        self.restoring > self.residual
-    }
-}
 
 /// A point of the static loop.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -62,6 +38,7 @@ pub fn flag(structure: &Structure, theta: f64, steps: u32) -> Vec<Point> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mechanics::restraint::centring_moments;
 
     const RESTRAINED: Parameters =
         Parameters { P_0: 500.0, k_t: 2e5, xi_d: 0.2, k_d: 1e6, F_y: 400.0, ..Parameters::MCMANUS };
@@ -89,15 +66,8 @@ mod tests {
         }
         assert_eq!(points[0].moment, elastic(0.0));
         // with the base down what is left is what decides whether it stays so
-        let Centring { restoring, residual } = Centring::of(&structure);
+        let [restoring, residual] = centring_moments(&structure);
         assert!((points[20].moment - (restoring - residual)).abs() < 1e-9 * restoring);
         assert!((residual - F_y * ((B - xi_d) + (B + xi_d))).abs() < 1e-12 * residual);
-    }
-
-    #[test]
-    fn strong_dissipators_keep_the_base_open() {
-        let centring = |F_y| Centring::of(&Structure::new(Parameters { F_y, ..RESTRAINED }).unwrap());
-        assert!(centring(400.0).is_certain() && !centring(2000.0).is_certain());
-        assert!(Centring::of(&Structure::new(Parameters::MCMANUS).unwrap()).is_certain());
     }
 }

@@ -198,7 +198,7 @@ impl<const RESTRAINED: bool> ElasticRocking for NonlinearRocking<RESTRAINED> {
             let y = (along - elastic - centrifugal) * per;
             let mut moment =
                 (height * elastic - offset * weight_below) + (height * centrifugal - per_inertia * weight_moment);
-            if let Some(held) = &mut held {
+            if RESTRAINED && let Some(held) = &mut held {
                 moment -= per_inertia / m * held.next(&arc.theta_dot, before, per);
             }
             theta_dot = moment * per - (lever_start * w_turning + per_inertia * w_w_turning);

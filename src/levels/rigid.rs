@@ -97,8 +97,11 @@ fn series<const RESTRAINED: bool>(structure: &Structure, side: Side, start: &Sta
     let truncation = Truncation { u_dot: 0.0, theta_dot: local_error * theta_dot };
     arc.expand(&State { u: 0.0, u_dot: 0.0, ..state }, span, truncation, |arc, k, per| {
         let shaped = p_now * p[k - 1] + q_now * q[k - 1] + q_slope * q_before + p_slope * p_before;
-        let back = held.as_mut().map_or(0.0, |held| held.next(&arc.theta_dot, k - 1, per) / J_P);
-        let theta_dot = (stiffness * shaped - back) * per;
+        let mut theta_ddot = stiffness * shaped;
+        if RESTRAINED && let Some(held) = &mut held {
+            theta_ddot -= held.next(&arc.theta_dot, k - 1, per) / J_P;
+        }
+        let theta_dot = theta_ddot * per;
         (p_before, q_before) = (p[k - 1], q[k - 1]);
         p[k] = product(&q, &arc.theta_dot, k - 1) * per;
         q[k] = -product(&p, &arc.theta_dot, k - 1) * per;

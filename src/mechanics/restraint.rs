@@ -226,6 +226,14 @@ pub(crate) fn holding_moment(structure: &Structure, side: Side, a_v: f64, dissip
     structure.gamma * a_v * B + side.sign() * ties.force / m
 }
 
+/// Whether a structure centres itself once it has rocked: what turns it back at the ground, [(m + m0) g + P_0] B, and the most that
+/// the residual forces of the dissipators hold against it, Σ F_y |sB − ξ|, N·m. Where the latter is more it may come to rest
+/// turned.
+pub fn centring_moments(structure: &Structure) -> [f64; 2] {
+    let &crate::Parameters { m, m0, B, g, P_0, F_y, .. } = structure.parameters();
+    [((m + m0) * g + P_0) * B, levers(structure, Side::Right).iter().map(|lever| F_y * lever.abs()).sum()]
+}
+
 impl Dissipators {
     /// After a transition to rocking about `side` at the rate `theta_dot` (rad/s), or at rest in contact (none): what goes on
     /// the way it yielded goes on yielding.
