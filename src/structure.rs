@@ -125,6 +125,12 @@ impl Structure {
         })
     }
 
+    /// Whether a tendon or dissipators restrain it.
+    pub fn is_restrained(&self) -> bool {
+        let &Parameters { P_0, k_t, c_d, k_d, .. } = &self.parameters;
+        [P_0, k_t, c_d, k_d].iter().any(|restraint| *restraint > 0.0)
+    }
+
     /// The parameters that this structure was derived from.
     pub fn parameters(&self) -> &Parameters {
         &self.parameters

@@ -38,8 +38,8 @@ impl Oscillator {
         let mut flow_over = (f64::NAN, Matrix2::identity()); // of the last step length, which few records change
         let mut motion = Vector2::zeros(); // (u̇, ü + a_g)
         let mut peak: f64 = 0.0;
-        for Segment { start, end, a_g } in segments {
-            let step = end - start;
+        for Segment { start, end, ground } in segments {
+            let (step, a_g) = (end - start, ground.on_foundation());
             if step != flow_over.0 {
                 flow_over = (step, self.free(step));
             }
@@ -108,7 +108,7 @@ mod tests {
         let samples = times.windows(2).zip(a_g.windows(2));
         let segment = |(t, a): (&[f64], &[f64])| {
             let a_g = Ramp { value: a[0], slope: (a[1] - a[0]) / (t[1] - t[0]) };
-            Segment { start: t[0], end: t[1], a_g }
+            Segment { start: t[0], end: t[1], ground: a_g.into() }
         };
         samples.map(segment).collect()
     }
@@ -179,7 +179,8 @@ mod tests {
                     let (mut now, until) = (at(i), at(i + 1));
                     while now < until {
                         let interval = until - now;
-                        let start = Start { state, a_g: segment.from(now), a_top: segment.from(now), interval, local_error: 1e-15 };
+                        let a_g = segment.from(now).on_foundation();
+                        let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15, ..Start::default() };
                         full_contact::series(&structure, &start, &mut arc);
                         state = arc.end();
                         now = if arc.duration() == interval { until } else { now + arc.duration() };

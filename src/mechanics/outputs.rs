@@ -154,12 +154,12 @@ mod tests {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
         let &Parameters { H, B, .. } = structure.parameters();
         let state = State { u: 3e-3, u_dot: -0.2, theta: -0.08, theta_dot: 0.6 };
-        let load = Load { a_g: 7.0, F_t: 300.0 };
+        let load = Load { a_g: 7.0, F_t: 300.0, a_v: 0.0 };
         let accelerations = nonlinear::accelerations(&structure, Side::Left, &state, load).unwrap();
         let expected = accelerations[0]
             + H * accelerations[1]
             + state.theta_dot.powi(2) * (-B - state.u)
-            + load.a_g * state.theta.cos();
+            + load.a_g * libm::cos(state.theta);
         let outputs = Outputs::of(&structure, Phase::Rocking(Side::Left), &state, load.F_t);
         assert_relative_eq!(outputs.a_t, expected, max_relative = 1e-12);
 
@@ -189,7 +189,10 @@ mod tests {
             (Detail::FixedBase, down),
         ];
         for (detail, initial) in scenes {
-            let start = LinearLoad { value: Load { a_g: 1.2, F_t: 90.0 }, slope: Load { a_g: 40.0, F_t: -700.0 } };
+            let start = LinearLoad {
+                value: Load { a_g: 1.2, F_t: 90.0, a_v: 0.0 },
+                slope: Load { a_g: 40.0, F_t: -700.0, a_v: 0.0 },
+            };
             let h = 1e-5;
             let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-11, detail).unwrap();
             let mut show = |until: f64| {

@@ -115,7 +115,7 @@ impl Run<'_> {
         let next = times.partition_point(|time| *time <= until);
         let cut = (next < times.len()).then(|| {
             let from = times[next - 1];
-            (until, GroundMotion::from(self.ground).ramp(next).at(until - from))
+            (until, GroundMotion::from(self.ground).ramp(next).at(until - from).a_g)
         });
         let samples = times[..next].iter().copied().zip(acceleration[..next].iter().copied());
         let most = |most: Peak, (time, a_g): (f64, f64)| {

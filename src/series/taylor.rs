@@ -8,6 +8,7 @@
 
 use crate::State;
 use crate::mechanics::load::Ramp;
+use crate::mechanics::restraint::Dissipators;
 
 /// Highest order of an expansion. At a local error of 1e-16 it carries ω·h of more than 3 rad per step.
 pub const MAX_ORDER: usize = 28;
@@ -140,7 +141,7 @@ impl Arc {
 }
 
 /// What a step starts from and what is asked of it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Start {
     /// The state there.
     pub state: State,
@@ -148,6 +149,10 @@ pub struct Start {
     pub a_g: Ramp,
     /// The ground acceleration that the top mass feels from there on.
     pub a_top: Ramp,
+    /// Vertical ground acceleration from there on.
+    pub a_v: Ramp,
+    /// The dissipators there.
+    pub dissipators: Dissipators,
     /// How far it may go at most, s.
     pub interval: f64,
     /// Truncation error over the largest velocities that the step can bring.

@@ -225,7 +225,7 @@ impl Explorer {
             _ if fields.text("ground") == Some("free") => Vec::new(),
             _ => vec![(PathBuf::from("ground.csv"), csv(&ground.record).into_bytes())],
         };
-        let exported = fmu_export::export(version, &ModelName::default(), &structure, record, &self.libraries);
+        let exported = fmu_export::export(version, &ModelName::default(), &structure, record, None, &self.libraries);
         Ok(exported.map_err(says)?.1)
     }
 }
