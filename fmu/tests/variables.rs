@@ -20,7 +20,7 @@ fn the_table_holds_the_variables_in_their_order() {
         of_causality.map(|variable| variable.name).collect::<Vec<_>>().join(" ")
     };
     assert_eq!(VARIABLES[0].name, "a_g");
-    assert_eq!(names(Causality::Input), "a_g F_t");
+    assert_eq!(names(Causality::Input), "a_g F_t a_v");
     assert_eq!(names(Causality::Output), "theta u a_t V_t M_t uplift delta_t v_t R_h R_v R_m I_h I_v I_m");
     assert_eq!(
         names(Causality::Local),
@@ -32,8 +32,8 @@ fn the_table_holds_the_variables_in_their_order() {
     );
     assert_eq!(
         names(Causality::Parameter),
-        "m m0 H B J0 f_fc zeta_fc c_ratio r g detail theta_0 theta_dot_0 u_0 u_dot_0 record record_scale \
-         record_time_scale record_start a_g_late F_t_extrapolated peaks validity"
+        "m m0 H B J0 f_fc zeta_fc c_ratio r g P_0 k_t xi_d c_d k_d F_y detail theta_0 theta_dot_0 u_0 u_dot_0 record \
+         record_scale record_time_scale record_start a_g_late F_t_extrapolated peaks validity"
     );
     assert_eq!(names(Causality::CalculatedParameter), "alpha_cg p_l chi u_cr f_u record_duration");
     assert_eq!(VARIABLES.iter().map(|variable| variable.name).collect::<BTreeSet<_>>().len(), VARIABLES.len());
