@@ -12,6 +12,7 @@
 # make wheels  out/wheels: Python packages for Linux, Windows and macOS with the command line and the archive, and one of the source
 # make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
 # make report  regenerate docs/evidence/paper.md, docs/evidence/literature.md and their figures (minutes)
+# make restrained  regenerate docs/evidence/restrained.md and its pictures (minutes)
 # make overturning  regenerate docs/evidence/overturning.md and its pictures (minutes)
 # make coupling  regenerate docs/evidence/coupling.md and its figures (minutes)
 # make exchange  regenerate docs/evidence/model_exchange.md and its figure (minutes)
@@ -57,7 +58,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test check lint tools heavy study hosts browser foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
+.PHONY: demo test check lint tools heavy study hosts browser foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc report overturning restrained coupling exchange bench licenses fuzz records library exporter mingw host_packages
 
 # pip while cargo compiles.
 demo:
@@ -189,6 +190,9 @@ zig: .venv/dist
 report: .venv/test exporter
 	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
 	PYTHONPATH=examples $(PYTHON) -m literature --exporter $(TARGET)/release/rocking-fmu
+
+restrained: .venv/test exporter
+	PYTHONPATH=examples $(PYTHON) -m restrained --exporter $(TARGET)/release/rocking-fmu
 
 overturning: .venv/test exporter
 	PYTHONPATH=examples $(PYTHON) -m overturning --exporter $(TARGET)/release/rocking-fmu
