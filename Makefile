@@ -19,6 +19,7 @@
 # make pages   write anew what README and the pages print (a minute)
 # make pictures  draw anew those of README and of the model (minutes)
 # make report  regenerate docs/evidence/paper.md, docs/evidence/literature.md and their figures (minutes)
+# make restrained  regenerate docs/evidence/restrained.md and its pictures (minutes)
 # make overturning  regenerate docs/evidence/overturning.md and its pictures (minutes)
 # make coupling  regenerate docs/evidence/coupling.md and its figures (minutes)
 # make exchange  regenerate docs/evidence/model_exchange.md and its figure (minutes)
@@ -67,7 +68,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test check lint tools heavy evidence study python hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc docs pages pictures report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
+.PHONY: demo test check lint tools heavy evidence study python hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc docs pages pictures report restrained overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
 
 # pip while cargo compiles.
 demo:
@@ -230,6 +231,9 @@ pictures: .venv/test exporter out/mcmanus.fmu
 report: .venv/test exporter
 	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
 	PYTHONPATH=examples $(PYTHON) -m literature --exporter $(TARGET)/release/rocking-fmu
+
+restrained: .venv/test exporter
+	PYTHONPATH=examples $(PYTHON) -m restrained --exporter $(TARGET)/release/rocking-fmu
 
 overturning: .venv/test exporter
 	PYTHONPATH=examples $(PYTHON) -m overturning --exporter $(TARGET)/release/rocking-fmu

@@ -147,6 +147,8 @@ class Motion:
             touch = reference._first_touch(self.s, step.part(slice(0, 4)), self.zeros_at_start)
             if touch:
                 x, _, (normal, constant) = touch
+                # what has yielded at theta = 0 is at its yield force there again: the impact comes first
+                found = [one for one in found if one[0] < x - 1e-9]
                 guard = np.concatenate([normal, [0.0, 0.0]]), constant
                 what = ("impact",) if constant == 0 else ("overturned",)
                 found.append((x, what, step.refine(x, guard, self.rtol, self.atol)))

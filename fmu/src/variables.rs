@@ -490,7 +490,7 @@ fn event_indicators() -> [Variable; INDICATORS] {
         },
         Variable {
             states: &["theta", "theta_dot"],
-            initial_dependencies: &["B", "theta_0", "theta_dot_0", "xi_d", "k_d", "F_y"],
+            initial_dependencies: &["B", "theta_0", "xi_d", "k_d", "F_y"],
             ..indicator(
                 1,
                 "overturning_indicator",

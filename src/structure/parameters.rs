@@ -60,7 +60,7 @@ pub const PARAMETERS: [Quantity<Parameters>; 16] = [
     quantity!(g ["m/s2"] 1e-3, 1e3, "acceleration of gravity"),
     quantity!(P_0 ["N"] 0.0, 1e15, "prestress of the tendon with the base down"),
     quantity!(k_t ["N/m"] 0.0, 1e15, "stiffness of the tendon"),
-    quantity!(xi_d ["m"] 0.0, 1e4, "distance of both dissipators from the middle of the base"),
+    quantity!(xi_d ["m"] 0.0, 1e4, "distance of each dissipator from the middle of the base"),
     quantity!(c_d ["N.s/m"] 0.0, 1e15, "damping of each viscous dissipator"),
     quantity!(k_d ["N/m"] 0.0, 1e15, "elastic stiffness of each elastoplastic dissipator"),
     quantity!(F_y ["N"] 0.0, 1e15, "force at which an elastoplastic dissipator yields"),
