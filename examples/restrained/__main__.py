@@ -94,8 +94,9 @@ def alpha_cg(s: dict[str, float]) -> float:
 def vertical(exporter: Path, folder: Path, population, picture: Path) -> dict:
     """What the vertical component changes."""
     ups = {str(up) for _, up in pairs()}
-    records = [entry for path, up in pairs() for entry in (f"{{ file = '{path}' }}", f"{{ file = '{path}', vertical = '{up}' }}")]
-    rows = sweep(exporter, folder, "vertical", records, SCALES, population)
+    flat, both = [f"{{ file = '{path}' }}" for path, _ in pairs()], [f"{{ file = '{path}', vertical = '{up}' }}" for path, up in pairs()]
+    rows = [row for name, records in (("horizontal", flat), ("both", both))
+            for row in sweep(exporter, folder, name, records, SCALES, population)]
     found: dict = {}
     for row in rows:
         name, _, up = row["record"].partition(" with ")
