@@ -160,9 +160,12 @@ impl<const RESTRAINED: bool> Level for Rigid<RESTRAINED> {
         let limit = least_push(structure);
         let push = [start.a_top.value, start.a_top.slope * arc.span];
         let first = |side: Side| {
-            let more = |a_v| Self::more_push(structure, side, a_v, &start.dissipators);
-            let held = [more(start.a_v.value), more(start.a_v.at(arc.span))];
-            let push = [push[0] + side.sign() * held[0], push[1] + side.sign() * (held[1] - held[0])];
+            let mut push = push;
+            if RESTRAINED {
+                let more = |a_v| side.sign() * Self::more_push(structure, side, a_v, &start.dissipators);
+                let held = more(start.a_v.value);
+                push = [push[0] + held, push[1] + (more(start.a_v.at(arc.span)) - held)];
+            }
             first_time_all_closed([Guard::new(&push, side.sign(), limit)], 1.0)
         };
         let (right, left) = (first(Side::Right), first(Side::Left));
