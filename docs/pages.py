@@ -1,7 +1,8 @@
 """What README and the pages print, made: `make pages` writes it, tests/test_pages.py compares it.
 
-Commands of `console` blocks ("$ ...") and scripts of `python` blocks are run, page by page in a folder of its own with what
-`make demo` leaves in out/; what they print follows, that of a script in the `text` block after it. "..." stands for anything.
+Commands of `console` blocks ("$ ...") and scripts of `python` blocks are run, page by page in a folder of its own with
+what `make demo` leaves in out/; what they print follows, that of a script in the `text` block after it. "..." stands for
+anything.
 """
 
 import doctest
@@ -13,6 +14,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from first_run import RECORD
 from fmpy import read_model_description
 
 ROOT = Path(__file__).parents[1]
@@ -27,16 +29,20 @@ def rerun(text: str, exporter: Path, folder: Path) -> str:
     environment = os.environ | {"PATH": f"{exporter.parent}:{Path(sys.executable).parent}:{os.environ['PATH']}"}
 
     def output(command: list[str], told: str) -> str:
-        done = subprocess.run(command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+        done = subprocess.run(command, cwd=folder, env=environment, text=True, stdout=subprocess.PIPE,
+                              stderr=subprocess.STDOUT)
         assert done.returncode == 0, (command, done.stdout)
         printed = "".join(f"{line.rstrip()}\n" for line in done.stdout.splitlines())
         return told if doctest.OutputChecker().check_output(told, printed, doctest.ELLIPSIS) else printed
 
+    def line(found: re.Match) -> str:
+        return f"$ {found['shell']}\n{output(['bash', '-c', found['shell']], found['told'])}"
+
     def block(found: re.Match) -> str:
         if found["python"] is None:
-            return COMMAND.sub(lambda line: f"$ {line['shell']}\n{output(['bash', '-c', line['shell']], line['told'])}", found[0])
+            return COMMAND.sub(line, found[0])
         printed = output([sys.executable, "-c", found["python"]], found["printed"] or "")
-        return f"```python\n{found['python']}```\n" + (f"\n```text\n{printed}```" if found["printed"] is not None else printed)
+        return f"```python\n{found['python']}```\n" + (printed if found["printed"] is None else f"\n```text\n{printed}```")
 
     return BLOCK.sub(block, text)
 
@@ -44,14 +50,13 @@ def rerun(text: str, exporter: Path, folder: Path) -> str:
 def prepare(folder: Path, exporter: Path) -> Path:
     """Puts what `make demo` leaves, and what the pages name of this repository, into `folder`."""
     (folder / "out").mkdir(parents=True)
-    (folder / "examples").symlink_to(ROOT / "examples")
-    sys.path.insert(0, str(ROOT / "examples"))
-    from first_run import RECORD
-
-    for record in [RECORD, *RECORD.parents[1].glob("*/RSN6_*ELC180*")]:
+    for name in ("docs", "examples"):
+        (folder / name).symlink_to(ROOT / name)
+    for record in RECORD, next(RECORD.parents[1].glob("*/RSN6_*ELC180*")):
         shutil.copy(record, folder / "out")
     for preset in ("mcmanus", "evison"):
-        subprocess.run([exporter, "--quiet", "export", "--preset", preset, "-o", folder / "out" / f"{preset}.fmu"], check=True)
+        command = [exporter, "--quiet", "export", "--preset", preset, "-o", folder / "out" / f"{preset}.fmu"]
+        subprocess.run(command, check=True)
     return folder
 
 
@@ -83,8 +88,9 @@ KINDS = {
 
 def variables(fmu: Path) -> str:
     """docs/reference/variables.md."""
-    page = ("# Variables\n\nWhich variables does the FMU have, in which units and ranges? This is the model description of McManus's "
-            "pier,\n`rocking-fmu export --preset mcmanus`. The values are that structure's. Request local variables by name.\n")
+    page = ("# Variables\n\nWhich variables does the FMU have, in which units and ranges? This is the model description of "
+            "McManus's pier,\n`rocking-fmu export --preset mcmanus`. The values are that structure's. Request local variables "
+            "by name.\n")
 
     def number(value: str | None) -> str:
         return "" if value is None else re.sub(r"e([+-])0?", r"e\1", f"{float(value):g}").replace("e+", "e")
@@ -106,8 +112,8 @@ def variables(fmu: Path) -> str:
 def main() -> None:
     exporter = Path(sys.argv[1]).resolve()
     with tempfile.TemporaryDirectory() as temporary:
-        for page in PAGES:
-            folder = prepare(Path(temporary) / page.stem, exporter)
+        for number, page in enumerate(PAGES):
+            folder = prepare(Path(temporary) / str(number), exporter)
             page.write_text(rerun(page.read_text(encoding="utf-8"), exporter, folder), encoding="utf-8")
         (ROOT / "docs/reference/command_line.md").write_text(command_line(exporter), encoding="utf-8")
         (ROOT / "docs/reference/variables.md").write_text(variables(folder / "out/mcmanus.fmu"), encoding="utf-8")

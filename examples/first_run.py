@@ -52,7 +52,7 @@ def plot(path: Path, result: np.ndarray, fixed: np.ndarray) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
     parser.add_argument("fmu", nargs="?", default="out/mcmanus.fmu", help="of the McManus specimen")
-    parser.add_argument("--figure", type=Path, default=Path("docs/pacoima_mcmanus.png"), help="where to save it")
+    parser.add_argument("--figure", type=Path, default=Path("docs/img/pacoima_mcmanus.png"), help="where to save it")
     arguments = parser.parse_args()
 
     def simulate(**start_values) -> np.ndarray:

@@ -25,6 +25,7 @@ use peaks::Peaks;
 use samples::Samples;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
+use std::fmt;
 
 /// For how long a structure may rock on after its record, in units of 1/p_l: amplitudes change by e^±1 in each.
 pub const LONGEST_REST: f64 = 100.0;
@@ -71,6 +72,13 @@ pub enum Ending {
     /// It still rocked [`LONGEST_REST`] after the record: what becomes of it is not known.
     #[serde(rename = "still rocking")]
     StillRocking,
+}
+
+impl fmt::Display for Ending {
+    /// As it is called in files.
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        self.serialize(out)
+    }
 }
 
 /// Where a run has come to.

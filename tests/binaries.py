@@ -42,11 +42,11 @@ def for_linux(file, machine: str):
     return binary
 
 
-def for_windows(file):
-    """The binary in `file`, for any Windows since version 10 on x86-64."""
+def for_windows(file, beside=frozenset()):
+    """The binary in `file`, for any Windows since version 10 on x86-64 with these libraries beside it."""
     binary = lief.PE.parse(file)
     assert binary.header.machine.name == "AMD64"
-    assert {imported.name.lower() for imported in binary.imports} <= WINDOWS_RUN_TIME
+    assert {imported.name.lower() for imported in binary.imports} <= WINDOWS_RUN_TIME | beside
     assert binary.header.time_date_stamps == 0, "it tells when it was built"
     return binary
 

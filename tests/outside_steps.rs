@@ -1,7 +1,6 @@
 //! An integrator of its own, however bad, on the equations of the library: never below the floor, and nearer to the engine
 //! the smaller its steps.
 
-use approx::assert_relative_eq;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::outside_step::{BAND, Checked, Known};
 use rocking::run::record::Record;
@@ -194,9 +193,8 @@ fn a_step_that_ends_below_the_floor_without_reason_is_put_right() {
     }
 }
 
-/// The rates are those that the engine's series begin with, and the indicators vanish where the engine sees transitions.
 #[test]
-fn rates_and_indicators_are_the_engines() {
+fn indicators_vanish_where_the_engine_sees_transitions() {
     let record = burst();
     let structure = Structure::new(Parameters::MCMANUS).unwrap();
     for detail in [Detail::Auto, Detail::Linear, Detail::Modal, Detail::Rigid] {
@@ -213,12 +211,6 @@ fn rates_and_indicators_are_the_engines() {
                 elapsed = elapsed.and(before);
             }
             let load = LinearLoad::default().on_ground(ground.at(elapsed));
-            let rates = engine.sample(load.value).state_rates();
-            let (outputs, _) = engine.rates(load);
-            let expected = [outputs.u, outputs.u_dot, outputs.theta, outputs.theta_dot];
-            for (rate, expected) in rates.components().into_iter().zip(expected) {
-                assert_relative_eq!(rate, expected, max_relative = 1e-9, epsilon = 1e-9);
-            }
             let indicators = engine.sample(load.value).event_indicators();
             assert!(
                 (0.0..2e-3).contains(&indicators[0]) && indicators[1] > 0.0,

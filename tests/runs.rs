@@ -1,4 +1,4 @@
-//! Runs from outside: levels compared on fine records, samples read from long leaps, ends, start times.
+//! Runs from outside: levels compared on fine records, ends, start times.
 
 use rocking::run::record::Record;
 use rocking::run::{End, Run, RunError, levels};
@@ -44,17 +44,6 @@ fn comparing_levels_takes_no_more_memory_for_more_of_them() {
         let long = most(dt, samples);
         assert!(long < 10_000_000.max(2 * short), "{dt} s, {samples} samples: {long} bytes beside {short}");
     }
-}
-
-/// One leap over ten seconds of a slow ramp, which the structure follows: a_t = a_g.
-#[test]
-fn samples_are_read_from_within_long_leaps() {
-    let structure = Structure::new(Parameters { f_fc: 28.0, zeta_fc: 1.0, ..Parameters::MCMANUS }).unwrap();
-    let ground = Record::from_samples("slow", vec![0.0, 10.0, 20.0], vec![0.0, 0.0, 1.0]).unwrap();
-    let run = Run { detail: Detail::FixedBase, end: End::At(20.0), ..Run::new(structure, &ground) };
-    let mut a_t = Vec::new();
-    run.sample([12.5, 15.0], |sample| a_t.push(sample.outputs().a_t), &mut ()).unwrap();
-    assert!((a_t[0] - 0.25).abs() < 2e-3 && (a_t[1] - 0.5).abs() < 2e-3, "{a_t:?}");
 }
 
 #[test]

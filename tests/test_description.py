@@ -1,6 +1,7 @@
 """What the FMU says of itself."""
 
 import contextlib
+import subprocess
 import zipfile
 from pathlib import PurePosixPath
 
@@ -70,3 +71,13 @@ def test_two_exports_in_one_process(export, pacoima_record, tmp_path):
 
     together, alone = histories(*fmus), [histories(fmu)[0] for fmu in fmus]
     assert (together == alone).all() and np.abs(together[:, :, 0]).max(axis=1).min() > 1e-3
+
+
+@pytest.mark.parametrize("preset, version", [("mcmanus", "2"), ("evison", "3")])
+def test_the_demo_has_the_fmu_of_the_command_line(exporter, tmp_path, preset, version):
+    library = exporter.with_name("deps") / "libFlexibleRocking.so"
+    program, demo = tmp_path / "program.fmu", tmp_path / "demo.fmu"
+    command = [exporter, "export", "--preset", preset, "--fmi", version, "--library", library, "-o", program]
+    subprocess.run(command, check=True)
+    subprocess.run([exporter.with_name("fmu-export"), library, preset, version, demo], check=True)
+    assert demo.read_bytes() == program.read_bytes()

@@ -1,7 +1,6 @@
 """`rocking-fmu sweep` against the FMU driven from outside; the same sweep on Dask."""
 
 import subprocess
-import sys
 from importlib import resources
 from pathlib import Path
 
@@ -64,23 +63,3 @@ def test_peaks_are_those_of_the_fmu_in_small_steps(exporter, mcmanus, tmp_path):
             assert row[f"peak_{heading}"] >= expected * (1 - 1e-8), "an exact peak is not below a sample"
         assert row["peak_theta/alpha_cg"] == pytest.approx(np.max(np.abs(response["theta"])) / alpha_cg, rel=3e-4)
         assert row["ending"] == "at rest"
-
-
-@pytest.mark.heavy
-def test_the_sweep_on_dask_comes_to_the_same(exporter, mcmanus, tmp_path):
-    toml = write_sweep(tmp_path, "[0.3, 0.5, 0.8, 1.2]", "{ from = 4, to = 8, count = 3 }")
-    output = tmp_path / "dask.csv"
-    script = ROOT / "examples" / "fragility_dask.py"
-    command = [sys.executable, script, toml, "--fmu", mcmanus.path, "--workers", "2", "-o", output]
-    printed = subprocess.run(command, check=True, capture_output=True, text=True).stdout
-    expected, found = rows(sweep(exporter, toml, "runs.csv")), rows(output)
-    assert len(found) == len(expected) == 16
-    for column in ("structures", "H[m]", "record", "scale"):
-        assert list(found[column]) == list(expected[column])
-    overturned = expected["ending"] == "overturned"
-    assert list(overturned) == list(found["overturned_at[s]"].notna())
-    for peak, column in (("theta_max", "peak_theta[rad]"), ("u_max", "peak_u[m]"), ("a_t_max", "peak_a_t[m/s2]")):
-        stands = ~overturned  # the FMU's own peaks have the fall in them
-        assert np.allclose(found[peak][stands], expected[column][stands], rtol=1e-9, atol=0)
-    assert 0 < overturned.sum() < 16
-    assert f"{overturned.sum()} of 16 overturned" in printed and "on each of 2 workers" in printed

@@ -1,6 +1,7 @@
 """The wheel for this machine, which `make wheels` builds, as somebody has it who has no Rust; or the package that the pattern
 PACKAGE names, that of the source, which takes minutes and needs Rust to be installed."""
 
+import json
 import os
 import re
 import subprocess
@@ -37,11 +38,10 @@ def installed(tmp_path_factory):
     return run
 
 
-def test_readme(installed):
-    script = re.search(r"```python\n(.*?)```", (ROOT / "README.md").read_text(), re.DOTALL)[1]
-    assert "flexible_rocking.fmu()" in script
-    printed, expected = installed("python", "-c", script), re.search(r"prints `(.*?)`", (ROOT / "README.md").read_text())
-    assert printed.strip() == expected[1]
+def test_the_script_of_the_page_prints_what_the_page_says(installed):
+    page = (ROOT / "docs/howto/install.md").read_text(encoding="utf-8")
+    script, printed = re.search(r"```py\n(.*?)```\n\n```text\n(.*?)```", page, re.DOTALL).groups()
+    assert installed("python", "-c", script) == printed
 
 
 def test_the_fmu_is_the_one_of_dist(installed):
@@ -54,7 +54,7 @@ def test_an_own_structure_with_its_record(installed, exporter, tmp_path):
     """The same bytes as the exporter writes that was built here, with the same libraries."""
     write_record(installed.folder / "pacoima.csv")
     pier = dict(m=1000, m0=300, H=4, B=0.6, f_fc=3, zeta_fc=0.02, r=0.95)
-    script = f"import flexible_rocking; flexible_rocking.export('pier.fmu', parameters={pier}, record='pacoima.csv', name='Pier1')"
+    script = f"import flexible_rocking as fr; fr.export('pier.fmu', fr.Structure(**{pier}), record='pacoima.csv', name='Pier1')"
     installed("python", "-c", script)
     parameters = tmp_path / "pier.toml"
     parameters.write_text("".join(f"{key} = {value}\n" for key, value in pier.items()))
@@ -69,17 +69,25 @@ def test_an_own_structure_with_its_record(installed, exporter, tmp_path):
 
 
 @pytest.mark.parametrize("arguments, reason", [
-    ("parameters={'m': 1000, 'm0': 300, 'H': 4, 'B': 0.6, 'f_fc': 3, 'zeta_fc': 0.02, 'r': 2}", r"parameters: r = 2.* out of range"),
-    ("parameters={'m': 1000}", r"parameters: m0 \(foundation mass\) is missing"),
-    ("parameters={'m': '1 t'}", "m = '1 t': it is no number"),
     ("record='none.csv'", r"the record none\.csv cannot be read: No such file"),
-    ("name='a b'", "invalid value 'a b' for '--name"),
+    ("name='a b'", 'the name "a b" must be of letters'),
+    ("fmi=1", 'fmi = "1" is unknown; these are known: 2, 3'),
 ])
 def test_what_is_refused(installed, arguments, reason):
     with pytest.raises(subprocess.CalledProcessError) as failed:
-        installed("python", "-c", f"import flexible_rocking; flexible_rocking.export('refused.fmu', {arguments})")
+        installed("python", "-c", "import flexible_rocking as fr; "
+                                  f"fr.export('refused.fmu', fr.Structure(preset='mcmanus'), {arguments})")
     assert re.search(rf"^ValueError: {reason}", failed.value.stderr, re.MULTILINE), failed.value.stderr
     assert not (installed.folder / "refused.fmu").exists()
+
+
+def test_a_run_needs_numpy_alone_and_is_the_command_lines(installed):
+    write_record(installed.folder / "pacoima.csv")
+    script = ("import flexible_rocking as fr; run = fr.simulate(fr.Structure(preset='evison'), fr.Record.read('pacoima.csv'))\n"
+              "print(run.peaks['theta'].value, run.at(run.record.time)['a_t'].size)")
+    peak, samples = installed("python", "-c", script).split()
+    printed = json.loads(installed("rocking-fmu", "simulate", "--preset", "evison", "--record", "pacoima.csv", "--format", "json"))
+    assert float(peak) == next(of["peak"] for of in printed["peaks"] if of["name"] == "theta") and int(samples) > 1000
 
 
 def test_version(installed, exporter):

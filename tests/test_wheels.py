@@ -1,7 +1,6 @@
-"""The packages in out/wheels: which machines each is for, what is in it, and what its program needs."""
+"""The packages in out/wheels: which machines each is for, what is in it, and what its module needs."""
 
 import re
-import stat
 import tarfile
 import tomllib
 import zipfile
@@ -14,11 +13,12 @@ from packages import package
 pytestmark = pytest.mark.heavy
 
 TAGS = {
-    "linux-x86": "py3-none-manylinux2014_x86_64.manylinux_2_17_x86_64",
-    "linux-arm": "py3-none-manylinux2014_aarch64.manylinux_2_17_aarch64",
-    "windows": "py3-none-win_amd64",
-    "macos": "py3-none-macosx_11_0_arm64.macosx_11_0_universal2.macosx_11_0_x86_64",
+    "linux-x86": "cp310-abi3-manylinux2014_x86_64.manylinux_2_17_x86_64",
+    "linux-arm": "cp310-abi3-manylinux2014_aarch64.manylinux_2_17_aarch64",
+    "windows": "cp310-abi3-win_amd64",
+    "macos": "cp310-abi3-macosx_11_0_arm64.macosx_11_0_universal2.macosx_11_0_x86_64",
 }
+MODULES = dict.fromkeys(TAGS, "_native.abi3.so") | {"windows": "_native.pyd"}
 VERSION = tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]["version"]
 NAME = f"flexible_rocking-{VERSION}"
 
@@ -37,17 +37,18 @@ def test_there_are_no_others():
 
 def test_files(wheel):
     machine, content = wheel
-    program = "rocking-fmu.exe" if machine == "windows" else "rocking-fmu"
-    own = {"flexible_rocking/__init__.py", f"{NAME}.data/scripts/{program}", f"{NAME}.data/data/share/flexible-rocking/FlexibleRocking.fmu"}
-    about = {f"{NAME}.dist-info/{file}" for file in ("METADATA", "WHEEL", "RECORD", "licenses/LICENSE-MIT", "licenses/LICENSE-APACHE")}
+    module = {f"flexible_rocking/{name}" for name in ("__init__.py", "_native.pyi", "_results.py", "_sweep.py", "formats.py", "py.typed",
+                                                      MODULES[machine])}
+    own = module | {f"{NAME}.data/data/share/flexible-rocking/FlexibleRocking.fmu"}
+    about = {f"{NAME}.dist-info/{file}" for file in ("METADATA", "WHEEL", "RECORD", "entry_points.txt", "licenses/LICENSE-MIT",
+                                                     "licenses/LICENSE-APACHE")}
     assert set(content.namelist()) == own | about
     assert all(binaries.tells_no_place(content.read(name)) for name in content.namelist())
     tags = [line.partition(": ")[2] for line in content.read(f"{NAME}.dist-info/WHEEL").decode().splitlines() if line.startswith("Tag: ")]
     python, abi, platforms = TAGS[machine].split("-")
     assert set(tags) == {f"{python}-{abi}-{platform}" for platform in platforms.split(".")}
     assert {entry.date_time[:3] for entry in content.infolist()} == {(1980, 1, 1)}, "it tells when it was built"
-    executable = content.getinfo(f"{NAME}.data/scripts/{program}").external_attr >> 16
-    assert stat.S_IMODE(executable) & 0o111 == 0o111
+    assert "rocking-fmu=flexible_rocking:_command_line" in content.read(f"{NAME}.dist-info/entry_points.txt").decode().replace(" ", "")
 
 
 def test_the_archive_is_the_one_of_dist(wheel):
@@ -56,25 +57,25 @@ def test_the_archive_is_the_one_of_dist(wheel):
     assert content.read(inside) == (ROOT / "out" / "FlexibleRocking.fmu").read_bytes()
 
 
-def test_program(wheel, tmp_path):
+def test_module(wheel, tmp_path):
     machine, content = wheel
-    (name,) = (name for name in content.namelist() if "/scripts/" in name)
-    program = content.extract(name, tmp_path)
+    module = content.extract(f"flexible_rocking/{MODULES[machine]}", tmp_path)
     match machine:
         case "linux-x86":
-            binaries.for_linux(program, "X86_64")
+            binary = binaries.for_linux(module, "X86_64")
         case "linux-arm":
-            binaries.for_linux(program, "AARCH64")
+            binary = binaries.for_linux(module, "AARCH64")
         case "windows":
-            binaries.for_windows(program)
+            binary = binaries.for_windows(module, {"python3.dll"})
         case "macos":
-            binaries.for_macos(program, {"X86_64", "ARM64"})
+            (binary, _) = binaries.for_macos(module, {"X86_64", "ARM64"})
+    assert any(function.name.strip("_") == "PyInit__native" for function in binary.exported_functions)
 
 
 def test_source():
     """The package of the source has every file that is compiled, and what these include."""
     path = package(f"{NAME}.tar.gz")
-    compiled = [file for folder in ("src", "modelDescription/src", "fmu/src", "fmu/build", "fmu/export", "cli/src")
+    compiled = [file for folder in ("src", "modelDescription/src", "fmu/src", "fmu/build", "fmu/export", "view/src", "cli/src", "sweep/src", "python/src")
                 for file in (ROOT / folder).rglob("*") if file.is_file()]
     compiled += [(file.parent / included).resolve() for file in compiled if file.suffix == ".rs"
                  for included in re.findall(r'include_(?:str|bytes)!\("(.*?)"\)', file.read_text())]

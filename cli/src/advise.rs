@@ -1,10 +1,7 @@
 //! `advise`: every level of detail on the user's own scene, its errors and its cost, and the cheapest that will do.
 
-mod picture;
-
 use crate::{
     cause::Cause,
-    picture::PictureFile,
     quantities::in_readable_unit,
     record_args::one_of,
     results::{Format, FormatArgs, Number, print, print_traced},
@@ -25,6 +22,7 @@ use rocking::{
     run::{
         LONGEST_REST, Run,
         levels::{self, Comparison, Criterion, REFERENCE_TOLERANCE, Response, Verdict},
+        validity::Limits,
     },
 };
 use serde::Serialize;
@@ -46,9 +44,6 @@ pub struct AdviseArgs {
     limits: LimitArgs,
     #[command(flatten)]
     results: FormatArgs,
-    /// Draw the errors of every level
-    #[arg(long, value_name = "FILE.svg|png", help_heading = "Results")]
-    picture: Option<PictureFile>,
 }
 
 #[derive(clap::Args)]
@@ -58,24 +53,23 @@ struct AllowedArgs {
     #[arg(long, value_name = "ERROR", default_value = "5%", value_parser = relative_error)]
     within: f64,
     /// What must stay within it; overturning must always be predicted right
-    #[arg(long, value_name = "LIST", value_parser = criteria(), num_args = 1.., value_delimiter = ',', default_values = CRITERIA.map(|of| of.0))]
+    #[arg(long, value_name = "LIST", value_parser = criteria(), num_args = 1.., value_delimiter = ',', default_values = Criterion::ALL.map(Criterion::name))]
     of: Vec<Criterion>,
 }
 
-/// What a level's error is measured by: what it is called, and what that means.
-const CRITERIA: [(&str, &str, Criterion); 6] = [
-    ("theta", "Peak rotation", Criterion::Theta),
-    ("u", "Peak elastic displacement", Criterion::U),
-    ("a_t", "Peak acceleration of the top mass, and with it V_t = m a_t and M_t = m H a_t", Criterion::At),
-    ("theta_history", "Rotation over time: largest difference over the largest rotation", Criterion::ThetaHistory),
-    ("u_history", "Elastic displacement over time, likewise", Criterion::UHistory),
-    ("a_t_history", "Acceleration of the top mass over time, likewise", Criterion::AtHistory),
-];
-
 fn criteria() -> impl TypedValueParser<Value = Criterion> {
-    one_of(CRITERIA.map(|(name, help, of)| {
-        let aliases: &[&str] = if of == Criterion::At { &["V_t", "M_t"] } else { &[] };
-        (PossibleValue::new(name).help(help).aliases(aliases), of)
+    one_of(Criterion::ALL.map(|of| {
+        let (help, aliases): (_, &[&str]) = match of {
+            Criterion::Theta => ("Peak rotation", &[]),
+            Criterion::U => ("Peak elastic displacement", &[]),
+            Criterion::At => {
+                ("Peak acceleration of the top mass, and with it V_t = m a_t and M_t = m H a_t", &["V_t", "M_t"])
+            }
+            Criterion::ThetaHistory => ("Rotation over time: largest difference over the largest rotation", &[]),
+            Criterion::UHistory => ("Elastic displacement over time, likewise", &[]),
+            Criterion::AtHistory => ("Acceleration of the top mass over time, likewise", &[]),
+        };
+        (PossibleValue::new(of.name()).help(help).aliases(aliases), of)
     }))
 }
 
@@ -94,9 +88,6 @@ fn relative_error(text: &str) -> Result<f64, String> {
 pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let ground = args.ground.load(structure.parameters().g)?;
-    let inputs = args.structure.input().into_iter().chain(args.ground.record.inputs());
-    let mut files = args.results.files(inputs);
-    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
     let (initial, end) = (args.initial.state(), args.ground.end(&ground));
     let run = Run { initial, end, ..Run::new(structure, &ground) };
     let comparison = levels::compare(&run).context("detail = nonlinear")?;
@@ -104,33 +95,36 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let (within, criteria) = (args.allowed.within, &args.allowed.of);
     let advised = comparison.recommended(within, criteria);
     if args.results.format == Format::Text {
-        print(&text(args, &run, &comparison, advised)?)?;
-    } else {
-        let cause = Cause::new(&structure).under(&args.ground.record, &ground).computed(None, initial);
-        print_traced(args.results.format, &cause, &rows(&comparison, advised))?;
+        let (title, limits) = (args.ground.title(&ground), args.limits.limits());
+        return print(&text(&title, &run, &comparison, (within, criteria), limits)?);
     }
-    match picture {
-        Some(picture) => picture::draw(picture, &comparison, (within, criteria), advised, ground.title()),
-        None => Ok(()),
-    }
+    let cause = Cause::new(&structure).under(&args.ground.record, &ground).computed(None, initial);
+    print_traced(args.results.format, &cause, &rows(&comparison, advised))
 }
 
-/// The table and the advice, for people.
-fn text(args: &AdviseArgs, run: &Run, comparison: &Comparison, advised: Option<&Verdict>) -> anyhow::Result<String> {
+/// The table and the advice on `run` under the ground motion that `title` names, for people: what is `allowed` is an error and
+/// the criteria that it holds for.
+pub fn text(
+    title: &str,
+    run: &Run,
+    comparison: &Comparison,
+    allowed: (f64, &[Criterion]),
+    limits: Limits,
+) -> anyhow::Result<String> {
     let (structure, ground) = (&run.structure, run.ground);
+    let advised = comparison.recommended(allowed.0, allowed.1);
     let mut out = String::new();
-    writeln!(out, "Ground motion: {}", args.ground.title(ground))?;
+    writeln!(out, "Ground motion: {title}")?;
     print_reference(&mut out, structure, comparison)?;
     print_levels(&mut out, comparison, advised)?;
     print_estimate(&mut out, structure, ground, comparison)?;
     for (detail, error) in &comparison.refused {
         writeln!(out, "  {:<10} not possible here: {error:#}", detail.name())?;
     }
-    print_advice(&mut out, comparison, advised, &args.allowed)?;
+    print_advice(&mut out, comparison, advised, allowed)?;
     if let Some(level) = &comparison.without_vertical {
-        print_vertical(&mut out, level, &args.allowed)?;
+        print_vertical(&mut out, level, allowed)?;
     }
-    let limits = args.limits.limits();
     let (found, _) = run.validity(limits)?;
     writeln!(out)?;
     for line in validity::section(structure, run.detail, &found, &limits) {
@@ -289,10 +283,10 @@ fn print_advice(
     out: &mut impl Write,
     comparison: &Comparison,
     advised: Option<&Verdict>,
-    allowed: &AllowedArgs,
+    (within, criteria): (f64, &[Criterion]),
 ) -> fmt::Result {
-    let names: Vec<_> = allowed.of.iter().map(|of| CRITERIA[*of as usize].0).collect();
-    let limit = format!("within {} % in {}", shortest_percent(allowed.within), names.join(", "));
+    let names: Vec<_> = criteria.iter().map(|of| of.name()).collect();
+    let limit = format!("within {} % in {}", shortest_percent(within), names.join(", "));
     let Some(Verdict { response, .. }) = advised else {
         return writeln!(
             out,
@@ -309,17 +303,14 @@ fn print_advice(
 }
 
 /// What the vertical component changes: by how much the motion on `level` ground differs.
-fn print_vertical(out: &mut impl Write, level: &Verdict, allowed: &AllowedArgs) -> fmt::Result {
-    let changes: Vec<_> = allowed
-        .of
-        .iter()
-        .map(|of| format!("{} by {} %", CRITERIA[*of as usize].0, percent(level.errors[*of as usize])))
-        .collect();
+fn print_vertical(out: &mut impl Write, level: &Verdict, (within, criteria): (f64, &[Criterion])) -> fmt::Result {
+    let changes: Vec<_> =
+        criteria.iter().map(|of| format!("{} by {} %", of.name(), percent(level.errors[*of as usize]))).collect();
     let overturning = match level.is_right_about_overturning {
         Some(false) => ", and whether it overturns",
         _ => "",
     };
-    let advice = if level.is_within(allowed.within, &allowed.of) { "leave it out" } else { "keep it" };
+    let advice = if level.is_within(within, criteria) { "leave it out" } else { "keep it" };
     writeln!(out, "the vertical component changes {}{overturning}: {advice}", changes.join(", "))
 }
 

@@ -6,17 +6,19 @@ use rocking::run::record::Record;
 use rocking::structure::parameters::PARAMETERS;
 use rocking::{Detail, Parameters, State, Structure};
 use rocking_records::Column;
+use rocking_sweep::row_file::{Program, heading};
 use serde::Serialize;
 use std::path::Path;
+use uuid::Uuid;
 
 /// Version of the program, and the first digits of its build.
 pub fn version() -> String {
     format!("{}+{}", env!("CARGO_PKG_VERSION"), &BUILD[1..9])
 }
 
-/// The heading of a column of numbers.
-pub fn heading(name: &str, unit: &str) -> String {
-    if unit == "1" { name.into() } else { format!("{name}[{unit}]") }
+/// The program, as the rows of a sweep name it.
+pub fn program() -> Program {
+    Program { build: Uuid::try_parse(BUILD).expect("the build script wrote it"), version: version() }
 }
 
 /// What a result comes from; what has no part in it is left out.

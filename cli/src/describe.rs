@@ -1,10 +1,8 @@
 //! `describe`: a structure's parameters and what follows from them.
 
-mod picture;
 mod template;
 
 use crate::{
-    picture::PictureFile,
     quantities::NamedValue,
     results::{Format, FormatArgs, print, print_rows},
     significant::{short, significant},
@@ -34,9 +32,6 @@ pub struct DescribeArgs {
     /// Print the moment that turns the base back instead, while it is turned slowly to this rotation and back
     #[arg(long, value_name = "RAD", value_parser = rotation, conflicts_with = "template")]
     restoring: Option<f64>,
-    /// Draw the structure to scale
-    #[arg(long, value_name = "FILE.svg|png")]
-    picture: Option<PictureFile>,
 }
 
 /// Steps of each way of the loop.
@@ -57,9 +52,6 @@ fn rotation(text: &str) -> Result<f64, String> {
 /// Prints the parameters as they were given and the derived quantities with the equations that define them.
 pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
-    if let Some(file) = &args.picture {
-        picture::draw(file.create(&mut args.results.files(args.structure.input()))?, &structure)?;
-    }
     if args.template {
         let mut out = String::new();
         template::write(&mut out, &structure)?;
@@ -99,7 +91,8 @@ fn print_loop(format: Format, structure: &Structure, theta: f64) -> anyhow::Resu
     print(&out)
 }
 
-fn text(structure: &Structure) -> Result<String, fmt::Error> {
+/// The parameters and the derived quantities, for people.
+pub fn text(structure: &Structure) -> Result<String, fmt::Error> {
     let mut out = String::new();
     let unit = |unit| if unit == "1" { "-" } else { unit };
     writeln!(out, "Parameters")?;

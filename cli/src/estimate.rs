@@ -1,9 +1,7 @@
 //! `estimate`: demands without a time history (Eqs 21–24) and the effective frequency of rocking (Eq 14).
-mod picture;
 
 use crate::{
     cause::Cause,
-    picture::PictureFile,
     quantities::{NamedValue, write_columns},
     record_args::RecordArgs,
     results::{Format, FormatArgs, print, print_traced},
@@ -41,9 +39,6 @@ pub struct EstimateArgs {
     amplitudes: Vec<f64>,
     #[command(flatten)]
     results: FormatArgs,
-    /// Draw the record's response spectra, the demand and the effective frequency
-    #[arg(long, value_name = "FILE.svg|png")]
-    picture: Option<PictureFile>,
 }
 
 fn amplitude(text: &str) -> Result<f64, String> {
@@ -57,17 +52,7 @@ fn amplitude(text: &str) -> Result<f64, String> {
 pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let record = args.ground.load(structure.parameters().g)?;
-    let inputs = args.structure.input().into_iter().chain(args.ground.inputs());
-    let mut files = args.results.files(inputs);
-    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
-    let fixed_base = record.as_ref().map_or(Vec::new(), |record| on_fixed_base(&structure, record));
-    let S_a =
-        record.as_ref().map_or(0.0, |record| spectral_acceleration(record, TAU / structure.omega_u, structure.zeta_u));
-    let demand = Demand::new(&structure, S_a, args.amplification)?;
-    let rocking = while_rocking(&structure, S_a, args.amplification, &demand);
-    if let Some(picture) = picture {
-        picture::draw(picture, &structure, record.as_ref(), &demand, &args.amplitudes)?;
-    }
+    let Estimate { fixed_base, rocking, .. } = Estimate::new(&structure, record.as_ref(), args.amplification)?;
     if args.results.format == Format::Text {
         return print(&text(args, &structure, record.as_ref(), &fixed_base, &rocking)?);
     }
@@ -121,6 +106,27 @@ fn text(
         writeln!(out, "  {part:>19} {theta:>12} {frequency:>12} {period:>12}")?;
     }
     Ok(out)
+}
+
+/// What a ground motion asks of a structure without a time history.
+pub struct Estimate {
+    /// Of the structure on a fixed base (Eq 4); empty without a ground motion.
+    pub fixed_base: Vec<NamedValue>,
+    /// Of the structure that rocks (Eqs 21 to 24).
+    pub demand: Demand,
+    /// That term by term, with what it comes from.
+    pub rocking: Vec<NamedValue>,
+}
+
+impl Estimate {
+    /// Of `structure` under `record`, or on ground at rest, with the dynamic amplification `C`, 0 to 2.
+    pub fn new(structure: &Structure, record: Option<&Record>, C: f64) -> anyhow::Result<Estimate> {
+        let spectral = |record| spectral_acceleration(record, TAU / structure.omega_u, structure.zeta_u);
+        let S_a = record.map_or(0.0, spectral);
+        let demand = Demand::new(structure, S_a, C)?;
+        let fixed_base = record.map_or(Vec::new(), |record| on_fixed_base(structure, record));
+        Ok(Estimate { fixed_base, rocking: while_rocking(structure, S_a, C, &demand), demand })
+    }
 }
 
 /// The ground motion, and what it asks of the structure on a fixed base.

@@ -1,41 +1,36 @@
 //! The command line: write the FMU, simulate a record without a host, show what follows from a structure's parameters.
 #![allow(non_snake_case)] // H, B, V_t: the paper's own letters
 
-mod advise;
-mod cause;
-mod describe;
-mod estimate;
+pub mod advise;
+pub mod cause;
+pub mod describe;
+pub mod estimate;
 mod export;
 mod input;
 mod modes;
-mod output_files;
+pub mod output_files;
 mod picture;
 mod pulse;
 mod pushover;
-mod quantities;
+pub mod quantities;
 mod record;
-mod record_args;
-mod results;
+pub mod record_args;
+pub mod results;
 mod scene_args;
 mod shell;
 mod simulate;
-mod structure_args;
-mod summary;
+pub mod structure_args;
+pub mod summary;
 mod sweep;
-mod tables;
-mod talk;
-mod validity;
+pub mod tables;
+pub mod talk;
+pub mod validity;
 mod view;
 
 use clap::{Parser, Subcommand};
 use fmu_export::{Platform, significant};
 use std::env::consts::{ARCH, OS};
-use std::{
-    ffi::OsString,
-    io,
-    path::PathBuf,
-    process::{self, ExitCode},
-};
+use std::{ffi::OsString, io, path::PathBuf, process};
 
 /// Exit code of a command that the user stops: a shell's for SIGINT.
 const STOPPED: i32 = 130;
@@ -107,7 +102,6 @@ enum Command {
   rocking-fmu describe --preset evison --f-fc 8 --r 0.9
   rocking-fmu describe --weight 500 --weight0 0 --width 3 --alpha-cg 0.25 --period-fc 0.4 --zeta-fc 0.02 --r 0.95
   rocking-fmu describe --template > pier.toml
-  rocking-fmu describe --preset evison --picture wall.svg
   rocking-fmu describe --parameters pier.toml")]
     Describe(describe::DescribeArgs),
     /// Estimate demands and frequency without a time history (Eqs 14, 21 to 24)
@@ -170,7 +164,7 @@ A file of pulses, spectrum.toml, a map of each structure:
     #[command(after_help = "Examples:
   rocking-fmu pulse sine --amplitude 0.6 --period 0.5
   rocking-fmu pulse cosine --amplitude-ratio 2.5 --frequency-ratio 4 --preset evison -o cosine.csv --picture cosine.svg
-  rocking-fmu pulse mavroeidis_papageorgiou --amplitude 0.4 --period 1.2 --cycles 2.5 --phase 1.5708 --rest 5
+  rocking-fmu pulse mavroeidis_papageorgiou --amplitude 0.4 --period 1.2 --cycles 2.5 --phase 1.5708
   rocking-fmu pulse ricker --amplitude 0.5 --frequency 1 -o ricker.csv && rocking-fmu simulate --record ricker.csv")]
     Pulse(pulse::PulseArgs),
     /// Show what is understood of a record, and write it as a table that is read without options
@@ -205,8 +199,8 @@ fn long_version() -> String {
 /// Does what the `arguments` ask for, of which the first is the name of the program, and says what fails. `program` is the
 /// path of the program: beside it are the libraries that `export` packs.
 ///
-/// Does not return where the arguments cannot be read, or the user stops the command.
-pub fn main(program: PathBuf, arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+/// Returns the exit code; does not return where the arguments cannot be read, or the user stops the command.
+pub fn main(program: PathBuf, arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let CommandLine { command, quiet } = CommandLine::parse_from(arguments);
     if quiet {
         talk::be_quiet();
@@ -234,9 +228,9 @@ pub fn main(program: PathBuf, arguments: impl IntoIterator<Item = OsString>) -> 
     match result {
         Err(error) if !is_closed_pipe(&error) => {
             talk::say_error(&error);
-            ExitCode::FAILURE
+            1
         }
-        _ => ExitCode::SUCCESS,
+        _ => 0,
     }
 }
 

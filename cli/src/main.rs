@@ -4,5 +4,5 @@ use std::env;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    rocking_cli::main(env::current_exe().unwrap_or_default(), env::args_os())
+    ExitCode::from(rocking_cli::main(env::current_exe().unwrap_or_default(), env::args_os()))
 }

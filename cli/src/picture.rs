@@ -177,11 +177,6 @@ pub fn words_before(size: f64, colour: RGBColor) -> TextStyle<'static> {
     words(size, colour).pos(Pos::new(HPos::Right, VPos::Center))
 }
 
-/// Words whose middle is where they are put.
-pub fn words_about(size: f64, colour: RGBColor) -> TextStyle<'static> {
-    words(size, colour).pos(Pos::new(HPos::Center, VPos::Center))
-}
-
 /// A dot of this radius in pixels.
 pub fn dot<T>(at: T, radius: f64, colour: RGBColor) -> Circle<T, i32> {
     Circle::new(at, px(radius), colour.filled())

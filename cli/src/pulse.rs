@@ -62,12 +62,6 @@ struct OfPulse {
     /// Phase of a sine or cosine; nu of mavroeidis_papageorgiou
     #[arg(long, value_name = "RAD", default_value_t = 0.0, allow_negative_numbers = true)]
     phase: f64,
-    /// Time at rest before the pulse
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true)]
-    lead_in: f64,
-    /// Time at rest after it
-    #[arg(long, value_name = "SECONDS", default_value_t = 0.0, allow_negative_numbers = true)]
-    rest: f64,
     /// How far the straight lines between samples may be off the curve, in parts of the amplitude
     #[arg(long, value_name = "PART", default_value_t = DEFAULT_ERROR, value_parser = positive, allow_negative_numbers = true)]
     error: f64,
@@ -76,14 +70,14 @@ struct OfPulse {
 impl OfPulse {
     /// The pulse, in the units of `structure` where it is asked for in these.
     fn pulse(&self, structure: &Structure) -> Pulse {
-        let &OfPulse { shape, phase, lead_in, rest, error, .. } = self;
+        let &OfPulse { shape, phase, error, .. } = self;
         let (of_amplitude, of_frequency) = units_of(structure);
         let ratio = |ratio: Option<f64>, unit| ratio.map(|ratio| ratio * unit);
         let amplitude = ratio(self.amplitude, structure.parameters().g).or(ratio(self.amplitude_ratio, of_amplitude));
         let frequency = self.frequency.or(self.period.map(f64::recip)).or(ratio(self.frequency_ratio, of_frequency));
         let asked = "clap asks for one of them";
         let pulse = Pulse::new(shape, amplitude.expect(asked), frequency.expect(asked));
-        Pulse { cycles: self.cycles.unwrap_or(pulse.cycles), phase, lead_in, rest, error, ..pulse }
+        Pulse { cycles: self.cycles.unwrap_or(pulse.cycles), phase, error, ..pulse }
     }
 }
 

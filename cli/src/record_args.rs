@@ -17,6 +17,7 @@ pub struct RecordArgs {
     /// Vertical component of the record, positive upwards, in a file of its own: read and scaled by the same options
     #[arg(long, value_name = "FILE", requires = "record")]
     pub record_v: Option<PathBuf>,
+    /// How it is read and scaled.
     #[command(flatten)]
     pub options: RecordOptions,
 }
@@ -189,7 +190,8 @@ pub fn with_key(error: anyhow::Error) -> anyhow::Error {
     })
 }
 
-fn with_remedy(error: anyhow::Error, words: impl Fn(&Remedy) -> &'static str) -> anyhow::Error {
+/// The error with what helps, in the words of whoever asked.
+pub fn with_remedy(error: anyhow::Error, words: impl Fn(&Remedy) -> &'static str) -> anyhow::Error {
     match error.downcast_ref() {
         Some(RecordError::Malformed { remedy: Some(remedy), .. }) => anyhow!("{error}; {}", words(remedy)),
         _ => error,

@@ -4,11 +4,10 @@
 mod file;
 mod map;
 mod picture;
-mod row_file;
-mod rows;
 mod table;
 
 use crate::{
+    cause::program,
     input,
     output_files::OutputFiles,
     picture::{Picture, PictureFile},
@@ -16,24 +15,23 @@ use crate::{
     significant::significant,
     talk::{self, say, say_few},
 };
-use anyhow::{Context, bail, ensure};
+use anyhow::{Context, bail};
 use clap::value_parser;
-use file::{Asked, Sweep};
-use indicatif::ProgressStyle;
+use file::{Asked, RecordSweep};
+use indicatif::{ProgressBar, ProgressStyle};
 use rayon::{ThreadPool, ThreadPoolBuilder};
-use rocking::run::validity::{Found, Limits, Validity};
 use rocking::structure::quantity::with_unit;
 use rocking_sweep::{
     exceedances,
     outcome::Outcome,
     plan::{Case, Plan},
+    rows::Sweep,
 };
-use rows::Key;
 use std::{
-    collections::HashSet,
     path::{Path, PathBuf},
     time::Instant,
 };
+use uuid::Uuid;
 
 /// What to run.
 #[derive(clap::Args)]
@@ -78,21 +76,11 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
 }
 
 /// Every record at every scale factor on every structure.
-fn run_records(args: &SweepArgs, sweep: Sweep, output: &Path, picture: Picture) -> anyhow::Result<()> {
-    let Sweep { plan, limits, measure, records, structures } = sweep;
-    let keys = rows::keys(&plan, args.validity);
-    ensure!(
-        keys.iter().map(|key| key.run).collect::<HashSet<_>>().len() == keys.len(),
-        "two runs are the same: values that vary differ by less than a rounding error"
-    );
-    let (rows, mut known) = rows::open(output)?;
-    let mut outcomes: Vec<_> = keys.iter().map(|key| known.take(&key.run)).collect();
-    ensure!(
-        keys.iter().all(|key| known.take(&key.otherwise).is_none()),
-        "{} has runs of this sweep with --validity, or without it, unlike now: give it as then, or name another file with -o",
-        output.display()
-    );
-    let missing: Vec<_> = (0..plan.len()).filter(|index| outcomes[*index].is_none()).collect();
+fn run_records(args: &SweepArgs, sweep: RecordSweep, output: &Path, picture: Picture) -> anyhow::Result<()> {
+    let RecordSweep { plan, limits, measure, records, structures } = sweep;
+    let program = program();
+    let runs = Sweep::open(&plan, args.validity, &program, output)?;
+    let missing = runs.missing();
     let done = plan.len() - missing.len();
     let (name, [members, motions, scales]) = (output.display(), plan.size());
     say!(
@@ -101,26 +89,15 @@ fn run_records(args: &SweepArgs, sweep: Sweep, output: &Path, picture: Picture) 
     );
     say_few(&structures, "structures");
     say_few(&records, "records");
-    known.say_others(output, "runs that are not in this sweep");
+    runs.others.others(output, "runs that are not in this sweep").iter().for_each(|line| say!("{line}"));
 
     let pool = thread_pool(args, missing.len())?;
     let clock = Instant::now();
-    let done = pool.install(|| {
-        rows.do_runs("runs", &missing, |&index| {
-            let case = plan.case(index);
-            let found = Found::since(case.motion.record().start());
-            let mut validity = args.validity.then(|| Validity::new(&case.structure, Limits::default(), found));
-            let outcome = match &mut validity {
-                Some(validity) => case.outcome_watched(validity),
-                None => case.outcome(),
-            };
-            Ok((rows::row(&keys[index], &case, &outcome, validity.as_ref().map(Validity::found))?, (index, outcome)))
-        })
-    })?;
-    done.into_iter().for_each(|(index, outcome)| outcomes[index] = Some(outcome));
+    let (bar, goes_on) = progress(missing.len(), "runs")?;
+    let (keys, outcomes) = pool.install(|| runs.finish(goes_on))?;
+    bar.finish_and_clear();
     say_rate(missing.len(), "runs", clock, &pool);
 
-    let outcomes: Vec<_> = outcomes.into_iter().map(|outcome| outcome.expect("every run is done")).collect();
     let populations = exceedances::count(&plan, measure, &limits, &outcomes);
     match args.results.format {
         Format::Text => {
@@ -155,17 +132,22 @@ fn say_rate(done: usize, what: &str, clock: Instant, pool: &ThreadPool) {
     }
 }
 
-/// How the progress of many runs, which are called `what`, is shown.
-fn progress_style(what: &str) -> anyhow::Result<ProgressStyle> {
+/// A bar for the progress of many runs, which are called `what`, and what moves it after each.
+fn progress(runs: usize, what: &str) -> anyhow::Result<(ProgressBar, impl Fn() -> bool + Sync)> {
     let template = format!("{{elapsed_precise}} {{bar:40}} {{pos}}/{{len}} {what}, {{per_sec}}, {{eta}} left");
-    Ok(ProgressStyle::with_template(&template)?)
+    let bar = talk::progress(runs).with_style(ProgressStyle::with_template(&template)?);
+    let moved = bar.clone();
+    Ok((bar, move || {
+        moved.inc(1);
+        true
+    }))
 }
 
 /// Says how many runs failed, and which the first is.
-fn report_failures(plan: &Plan, keys: &[Key], outcomes: &[Outcome]) -> anyhow::Result<()> {
+fn report_failures(plan: &Plan, keys: &[Uuid], outcomes: &[Outcome]) -> anyhow::Result<()> {
     let failed = || (0..plan.len()).filter(|index| matches!(outcomes[*index], Outcome::Failed { .. }));
     let Some(first) = failed().next() else { return Ok(()) };
     let (count, Case { population, motion, scale, .. }) = (failed().count(), plan.case(first));
-    let (name, motion, scale, key) = (population.name(), motion.name(), with_unit(scale, "1"), keys[first].run);
+    let (name, motion, scale, key) = (population.name(), motion.name(), with_unit(scale, "1"), keys[first]);
     bail!("{count} of {} runs failed; the first: {name}, {motion}, scale {scale}, see row {key}", plan.len())
 }

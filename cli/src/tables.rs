@@ -74,18 +74,24 @@ pub const RESPONSE: [&str; 28] = [
     "E_hysteretic[J]",
 ];
 
-/// A line of the response.
-pub fn response_line(sample: &Sample) -> impl Serialize + use<> {
+/// The numbers of a line of the response, in the order of [`RESPONSE`]; phase and transitions follow.
+pub fn response_numbers(sample: &Sample) -> [f64; RESPONSE.len() - 2] {
     let &Sample { motion, load, .. } = sample;
     let Outputs { theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t } = sample.outputs();
     let Reactions { R_h, R_v, R_m } = sample.reactions();
     let Impulse { I_h, I_v, I_m } = motion.impulse;
-    let of_motion = (theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t);
-    let of_ground = (R_h, R_v, R_m, I_h, I_v, I_m);
     let Restraints { P_t, F_d1, F_d2 } = sample.restraints();
-    let Dissipators { plastic, viscous, hysteretic, .. } = motion.dissipators;
-    let of_restraints = (load.a_v, P_t, F_d1, F_d2, plastic, viscous, hysteretic);
-    (motion.time, load.a_g, of_motion, of_ground, motion.phase.name(), motion.transitions, of_restraints)
+    let Dissipators { plastic: [e_p1, e_p2], viscous, hysteretic, .. } = motion.dissipators;
+    let of_motion = [motion.time, load.a_g, theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t];
+    let of_ground = [R_h, R_v, R_m, I_h, I_v, I_m];
+    let of_restraints = [load.a_v, P_t, F_d1, F_d2, e_p1, e_p2, viscous, hysteretic];
+    let mut numbers = [of_motion.as_slice(), &of_ground, &of_restraints].into_iter().flatten();
+    std::array::from_fn(|_| *numbers.next().expect("as many as there are headings"))
+}
+
+/// A line of the response.
+pub fn response_line(sample: &Sample) -> impl Serialize + use<> {
+    (response_numbers(sample), sample.motion.phase.name(), sample.motion.transitions)
 }
 
 /// Headings of the transitions.

@@ -57,8 +57,13 @@ pub fn say_stopped() {
     say!("{line}stopped{}", IF_STOPPED.lock().unwrap_or_else(PoisonError::into_inner));
 }
 
-/// Says why a command failed, quiet or not: each cause once, though some repeat what caused them.
+/// Says why a command failed, quiet or not.
 pub fn say_error(error: &anyhow::Error) {
+    let _ = writeln!(stderr(), "error: {}", message(error));
+}
+
+/// Why something failed: each cause once, though some repeat what caused them.
+pub fn message(error: &anyhow::Error) -> String {
     let mut message = String::new();
     for cause in error.chain().map(ToString::to_string) {
         if message.is_empty() {
@@ -67,5 +72,5 @@ pub fn say_error(error: &anyhow::Error) {
             message = format!("{message}: {cause}");
         }
     }
-    let _ = writeln!(stderr(), "error: {message}");
+    message
 }

@@ -56,7 +56,9 @@ const LABELS: [&str; ASSUMPTIONS.len()] = [
 /// One of [`ASSUMPTIONS`], for programs.
 #[derive(Serialize)]
 pub struct Beyond {
+    /// Its name.
     pub name: &'static str,
+    /// The worst of it.
     pub value: Number,
     /// Its instant, s.
     pub time: f64,

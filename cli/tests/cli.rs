@@ -4,7 +4,7 @@
 mod command_line;
 
 use FlexibleRocking::variables::{Causality, DataType, VARIABLES, Variable};
-use command_line::{DT, SAMPLES, command, fail, folder, pulse, succeed};
+use command_line::{SAMPLES, command, folder, pulse, succeed};
 use rocking::engine::piece::Sample;
 use rocking::structure::natural_quantities::names;
 use rocking::{Detail, Parameters, Run, Structure, run::End};
@@ -79,7 +79,7 @@ fn output_times_are_the_samples_or_multiples_of_the_interval_and_always_the_end(
         ("--duration 2", &[1.0, 1.25, 2.0, 2.75, 3.0]),
         ("--interval 0.5", &[1.0, 1.5, 2.0, 2.2]),
         ("--interval 0.5 --duration 1.125", &[1.0, 1.5, 2.0, 2.125]),
-        ("--interval 8", &[1.0, 2.2]),
+        ("--interval 1e7", &[1.0, 2.2]),
     ] {
         succeed(folder.path(), &format!("simulate --record three.csv -o out.csv --events events.csv {options}"));
         assert_eq!(column(&folder.path().join("out.csv"), "time[s]"), expected, "{options}");
@@ -97,48 +97,6 @@ fn output_times_are_the_samples_or_multiples_of_the_interval_and_always_the_end(
     assert!(a_g.iter().zip(expected).all(|(a_g, expected)| (a_g - expected).abs() < 1e-14), "{a_g:?}");
 }
 
-/// The peaks of a fall are those before it begins, and the ground's is the record's, though the run ends before it.
-#[test]
-fn the_peaks_of_a_fall_are_those_before() {
-    let folder = folder();
-    let alpha_cg = Structure::new(Parameters::MCMANUS).unwrap().tan_alpha_cg.atan();
-    // the pulse, and a stronger one long after it
-    let samples: Vec<_> = (0..=1200)
-        .map(|i| {
-            format!(
-                "{},{}\n",
-                f64::from(i) * DT,
-                1.5 * pulse(i as usize) - 2.0 * pulse((i as usize + 10).abs_diff(1000))
-            )
-        })
-        .collect();
-    fs::write(folder.path().join("two.csv"), format!("t (s),a (g)\n{}", samples.concat())).unwrap();
-    let run = "simulate --preset mcmanus --record two.csv";
-    let (json, _) = succeed(folder.path(), &format!("{run} --format json -o out.csv --interval 0.001"));
-    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
-    assert_eq!(json["ending"], "overturned");
-    let fall = json["fall"].as_f64().unwrap();
-    let out = folder.path().join("out.csv");
-    let time = column(&out, "time[s]");
-    let last = column(&out, "theta[rad]").iter().rposition(|theta| theta.abs() < alpha_cg).unwrap();
-    assert!(time[last] <= fall && fall <= time[last + 1], "{fall}");
-    for (i, heading) in ["a_g[m/s2]", "theta[rad]", "u[m]", "delta_t[m]", "uplift[m]", "a_t[m/s2]"].iter().enumerate() {
-        let peak = |of: &str| json["peaks"][i][of].as_f64().unwrap();
-        let values = column(&out, heading);
-        let most = values[..=last].iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        if i == 0 {
-            assert!(
-                peak("time") > *time.last().unwrap() && peak("peak") > 1.1 * most,
-                "the second pulse is the stronger"
-            );
-        } else {
-            assert!(peak("time") <= fall && most <= peak("peak") && peak("peak") < 1.1 * most, "{heading}: {most}");
-        }
-    }
-    let (text, _) = succeed(folder.path(), run);
-    assert!(text.contains("\nfall           from "), "{text}");
-}
-
 #[test]
 fn the_peak_of_the_ground_is_that_of_the_record_as_it_is_followed() {
     let folder = folder();
@@ -148,16 +106,6 @@ fn the_peak_of_the_ground_is_that_of_the_record_as_it_is_followed() {
     let expected = 9.81 * 0.5 * (pulse(5) + pulse(6));
     assert!((peak["peak"].as_f64().unwrap() / expected - 1.0).abs() < 1e-12, "{peak}");
     assert_eq!((&peak["name"], &peak["time"]), (&"a_g".into(), &0.055.into()));
-}
-
-#[test]
-fn a_response_has_its_first_and_its_last_row_whatever_the_interval() {
-    let folder = folder();
-    for interval in ["0.4", "1e7"] {
-        succeed(folder.path(), &format!("simulate --free 0.5 --theta-0 0.01 -o out.csv --interval {interval}"));
-        let times = column(&folder.path().join("out.csv"), "time[s]");
-        assert_eq!((times[0], times[times.len() - 1]), (0.0, 0.5), "{interval}");
-    }
 }
 
 /// As far as it is text.
@@ -174,14 +122,6 @@ fn a_file_whose_name_is_no_text_is_named_in_results() {
         assert!(status.success(), "{}", String::from_utf8_lossy(&stderr));
         assert!(String::from_utf8(stdout).unwrap().contains("puls\u{fffd}.AT2"));
     }
-}
-
-#[test]
-fn help_does_not_offer_what_is_refused() {
-    let folder = folder();
-    let (code, _) = fail(folder.path(), "describe --preset evison --parameters wall.toml");
-    let (help, _) = succeed(folder.path(), "describe --help");
-    assert!(code == 2 && !help.contains("both"), "{help}");
 }
 
 /// What a result comes from stands beside it, in both formats.
@@ -232,25 +172,6 @@ fn a_result_can_be_traced_to_its_cause() {
     }
 }
 
-/// Asked as bash asks: of the last word that has been begun.
-#[test]
-fn bash_completes_options_of_a_command() {
-    let folder = folder();
-    let (script, _) = succeed(folder.path(), "completions bash");
-    fs::write(folder.path().join("completions"), script).unwrap();
-    for (words, expected) in
-        [("sim", "simulate"), ("simulate --re", "--record --record-v"), ("simulate --detail mod", "modal")]
-    {
-        let before = words.rsplit_once(' ').map_or("rocking-fmu", |(before, _)| before.rsplit(' ').next().unwrap());
-        let ask = format!(
-            "source completions; COMP_WORDS=(rocking-fmu {words}); COMP_CWORD=$((${{#COMP_WORDS[@]}} - 1)); \
-             _rocking__fmu rocking-fmu \"${{COMP_WORDS[COMP_CWORD]}}\" {before}; echo \"${{COMPREPLY[*]}}\""
-        );
-        let answer = std::process::Command::new("bash").args(["-c", &ask]).current_dir(folder.path()).output().unwrap();
-        assert_eq!(String::from_utf8(answer.stdout).unwrap(), format!("{expected}\n"), "{words}");
-    }
-}
-
 #[test]
 fn the_template_is_the_structure() {
     let folder = folder();
@@ -265,25 +186,5 @@ fn the_template_is_the_structure() {
                 template.lines().any(|line| line.trim_start_matches("# ").starts_with(&format!("{name} = ")));
             assert!(has_line, "{name}\n{template}");
         }
-    }
-}
-
-/// The dimensions' ends are dots: their distances are those of the structure, in proportion.
-#[test]
-fn the_drawing_is_to_scale() {
-    let folder = folder();
-    for (H, width) in [(1.84, 0.57), (5.0, 4.0), (1.0, 8.0)] {
-        succeed(folder.path(), &format!("describe --preset mcmanus --H {H} --width {width} --picture pier.svg"));
-        let svg = fs::read_to_string(folder.path().join("pier.svg")).unwrap();
-        let of = |circle: &str, name: &str| {
-            let (_, rest) = circle.split_once(&format!("{name}=\"")).unwrap();
-            rest.split_once('"').unwrap().0.parse::<f64>().unwrap()
-        };
-        let dots: Vec<_> = svg.lines().filter(|line| line.contains("<circle") && line.contains("#D55E00")).collect();
-        assert_eq!(dots.len(), 4, "{svg}");
-        let across = of(dots[1], "cx") - of(dots[0], "cx");
-        let upwards = of(dots[2], "cy") - of(dots[3], "cy");
-        assert!((across / upwards / (width / H) - 1.0).abs() < 5e-3, "{across} {upwards} {width} {H}");
-        assert_eq!((of(dots[0], "cy"), of(dots[2], "cx")), (of(dots[1], "cy"), of(dots[3], "cx")));
     }
 }

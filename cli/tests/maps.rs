@@ -2,7 +2,7 @@
 
 mod command_line;
 
-use command_line::{fail, succeed};
+use command_line::succeed;
 use rocking_sweep::pulse::DEFAULT_ERROR;
 use std::{
     fs,
@@ -120,32 +120,4 @@ fn a_point_is_a_simulation_of_its_pulse() {
     let ratio: f64 = cell("theta_max/alpha_cg").parse().unwrap();
     assert!((theta / alpha / ratio - 1.0).abs() < 1e-9, "{theta} {ratio}");
     assert_eq!(printed["transitions"].to_string(), cell("transitions"));
-}
-
-#[test]
-fn a_refused_map_says_what_to_change() {
-    let refusal = |from: &str, to: &str| {
-        assert!(MAP.contains(from), "{from}");
-        let folder = map(&MAP.replace(from, to));
-        let (code, said) = fail(folder.path(), "sweep map.toml");
-        assert_eq!(code, 1);
-        said
-    };
-    for (from, to, said) in [
-        ("refine = 1", "refine = 9", "refine = 9 is out of range: 0 to 8 are possible"),
-        ("'sine'", "'sinus'", "unknown variant `sinus`"),
-        ("preset = 'mcmanus'", "preset = 'mcmanus'\nvary.r = [0.9, 1]", "nothing can vary: a map is of one structure"),
-        ("from = 1,", "from = 10,", "frequency needs two or more finite values greater than 0"),
-        ("error = 1e-3", "error = 0.5", "error = 0.5 is out of range: it must lie between"),
-        ("from = 0.5,", "from = 0,", "from = 0 to = 9 have no logarithms"),
-        ("[pulses]", "scale = [1]\n[pulses]", "unknown field `scale`"),
-        ("preset = 'mcmanus'", "", "structures \"McManus\": give either preset or parameters"),
-        ("shape = 'sine'", "shape = 'half_sine'\ncycles = 3", "cycles = 3 is not possible: half_sine has 0.5"),
-    ] {
-        let found = refusal(from, to);
-        assert!(found.contains(said), "{to}: {found}");
-    }
-    let folder = map(MAP);
-    let (_, said) = fail(folder.path(), "sweep map.toml --validity");
-    assert!(said.contains("--validity is for records"), "{said}");
 }

@@ -184,22 +184,6 @@ fn rows_of_other_inputs_are_kept_and_not_counted() {
     assert_eq!(succeed(folder.path(), "sweep sweep.toml").0, summary);
 }
 
-/// What an editor of another system makes of the file is gone on with; rows that are there twice count once.
-#[test]
-fn lines_may_end_as_they_do_elsewhere_and_be_there_twice() {
-    let folder = sweep(SWEEP);
-    let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
-    let whole = read(&folder, "sweep.csv");
-    let lines: Vec<_> = whole.lines().take(20).chain(whole.lines().skip(1).take(3)).collect();
-    let edited: String = lines.iter().map(|line| format!("{line}\r\n")).collect();
-    fs::write(folder.path().join("sweep.csv"), &edited).unwrap();
-    let (again, said) = succeed(folder.path(), "sweep sweep.toml");
-    assert!(said.starts_with("sweep.csv: 19 of 54 runs done"), "{said}");
-    assert!(said.contains("sweep.csv: 3 row(s) are there again: counted once"), "{said}");
-    assert_eq!(again, summary);
-    assert!(read(&folder, "sweep.csv").starts_with(&edited));
-}
-
 /// Conditions are in the rows and in their keys; the intensity measure is neither.
 #[test]
 fn conditions_of_a_sweep_are_those_of_its_runs() {
@@ -316,101 +300,5 @@ vary = { slenderness = [4, 5, 6, 8], r = [0.8, 0.9, 1] }
         let strongest = of_limit["bins"].as_array().unwrap().last().unwrap()["highest"].as_f64().unwrap();
         assert_eq!(of_limit["median_is_beyond_the_runs"], is_beyond);
         assert_eq!(of_limit["median"].as_f64().unwrap() > strongest, is_beyond);
-    }
-}
-
-/// Two values of H/B whose products with B are one H.
-#[test]
-fn runs_that_are_the_same_are_refused() {
-    let folder = sweep(&SWEEP.replace("[4, 6, 8], r", "[7.142857142857144, 7.142857142857145], r"));
-    let (code, message) = fail(folder.path(), "sweep sweep.toml --quiet");
-    let expected = "error: two runs are the same: values that vary differ by less than a rounding error\n";
-    assert_eq!((code, message.as_str()), (1, expected));
-}
-
-#[test]
-fn a_refused_sweep_says_what_to_change() {
-    for (from, to, expected) in [
-        ("pulse.AT2", "absent*.AT2", "records: there is no file absent*.AT2"),
-        ("'pulse.AT2'", "", "records is empty: give one or more"),
-        ("[0.5, 1, 2, 3, 4, 6]", "[0, 1]", "scale = 0 leaves no ground motion: leave it out"),
-        ("[0.5, 1, 2, 3, 4, 6]", "[nan]", "scale = NaN is not a finite number"),
-        ("records", "time_scale = -1\nrecords", "time_scale = -1.0 and scale = 1.0 leave no ground motion of"),
-        ("name = 'wall'", "name = 'pier'", "two populations have the name \"pier\": rename one"),
-        ("preset = 'mcmanus'\n", "", "structures \"pier\": give either preset or parameters"),
-        ("[4, 6, 8], r", "[4], H = [1], r", "structures \"pier\": H and slenderness cannot both vary"),
-        ("r = [0.9, 1]", "q = [1]", "structures \"pier\": \"q\" cannot vary: these can: m, m0, H, B, J0, f_fc"),
-        ("r = [0.9, 1]", "r = [0, 1]", "structures \"pier\": r = 0"),
-        ("r = 0.96", "r = 0.96, g = 1.62", "g = 1.62 m/s2 and g = 9.81 m/s2: a sweep has one g"),
-        ("\"theta/alpha_cg\"", "drift", "limits: \"drift\" is unknown; these are known: theta, u, delta_t, uplift"),
-        ("[0.6]", "[0]", "limits: theta/alpha_cg = 0 is out of range"),
-        ("[0.6]", "[]", "limits: theta/alpha_cg is empty: give one or more\n"),
-        ("'pulse.AT2'", "'zero.csv'", "the ground motion \"zero.csv\" is at rest throughout: leave it out\n"),
-        (
-            "'pulse.AT2'",
-            "'pulse.AT2', { file = 'p*.AT2', scale = 2 }",
-            "pulse.AT2 is named twice in records, with different options: leave one out\n",
-        ),
-        ("'pulse.AT2'", "{ file = 'pulse.AT2', scale = 0 }", "the ground motion \"pulse.AT2\" is at rest throughout"),
-        (
-            "'pulse.AT2'",
-            "'pulse.AT2', 'copy/pulse.AT2'",
-            "the ground motions \"pulse.AT2\" and \"copy/pulse.AT2\": they are the same and would count twice: leave one out\n",
-        ),
-        ("records", "intensity = 'PGD'\nrecords", "intensity = \"PGD\" is unknown; these are known: PGA, PGV, S_a\n"),
-        ("records", "tolerance = 1\nrecords", "tolerance = 1 is out of range: a number between 0 and 1 is needed\n"),
-        ("records", "duration = -1\nrecords", "duration = -1 is out of range: a finite number greater than 0"),
-        ("[0.5, 1, 2, 3, 4, 6]", "[1, 2, 1]", "scale = 1 is there twice and would count twice: leave one out"),
-        (
-            "[0.5, 1, 2, 3, 4, 6]",
-            "{ from = 1, to = 2, count = 100000000000 }",
-            "scale: count = 100000000000 is out of range: 2 to 10000000 values are possible from 1 to 2",
-        ),
-        (
-            "[0.5, 1, 2, 3, 4, 6]",
-            "{ from = 1, to = 2, count = 2000000 }",
-            "9 structures x 1 ground motions x 2000000 scale factors: more than 10000000 runs",
-        ),
-        ("r = [0.9, 1]", "g = [9.81]", "structures \"pier\": g cannot vary: a sweep has one g"),
-        ("records", "record", "TOML parse error at line 2, column 1"),
-        ("records", "initial = { theta = 1 }\nrecords", "TOML parse error at line 2, column 13"),
-    ] {
-        assert!(SWEEP.contains(from));
-        let folder = sweep(&SWEEP.replacen(from, to, 1));
-        fs::write(folder.path().join("zero.csv"), "0,0\n.05,0\n").unwrap();
-        fs::create_dir(folder.path().join("copy")).unwrap();
-        fs::copy(folder.path().join("pulse.AT2"), folder.path().join("copy/pulse.AT2")).unwrap();
-        let (code, message) = fail(folder.path(), "sweep sweep.toml");
-        assert_eq!(code, 1);
-        assert!(message.starts_with(&format!("error: sweep in sweep.toml: {expected}")), "{message}");
-        assert!(!folder.path().join("sweep.csv").exists(), "nothing is written");
-    }
-    let folder = sweep(SWEEP);
-    let (code, message) = fail(folder.path(), "sweep sweep.toml --threads 0");
-    assert!(code == 2 && message.contains("0 is not in 1..=1024"), "{message}");
-}
-
-/// The file of something else, or with a row that nobody can read, is left as it is.
-#[test]
-fn a_damaged_file_is_refused_by_its_line() {
-    let folder = sweep(SWEEP);
-    succeed(folder.path(), "sweep sweep.toml --threads 1");
-    let whole = read(&folder, "sweep.csv");
-    let (headings, rows) = whole.split_once('\n').unwrap();
-    let row = rows.lines().next().unwrap();
-    let not_headings = format!(
-        "line 1 is not the headings of this sweep's rows, in this version of the program: name another file with -o, or \
-         remove this one. These are the headings:\n{headings}\n"
-    );
-    for (content, expected) in [
-        (rows.to_owned(), not_headings.as_str()),
-        ("# rocking-fmu sweep\n".into(), &not_headings),
-        (whole.replacen(row, "1,2", 1), "CSV error: record 1 (line: 2, "),
-        (whole.replacen(&row[..30], "key", 1), "line 2 cannot be read: remove it, to do its run again: "),
-    ] {
-        fs::write(folder.path().join("sweep.csv"), &content).unwrap();
-        let (code, message) = fail(folder.path(), "sweep sweep.toml");
-        assert!(code == 1 && message.starts_with(&format!("error: sweep.csv: {expected}")), "{message}");
-        assert_eq!(read(&folder, "sweep.csv"), content);
     }
 }

@@ -7,6 +7,7 @@ import argparse
 from pathlib import Path
 
 from tqdm import tqdm
+from validation.report import write_page
 
 from . import convergence, early_return, no_slopes, one_system, stability
 from .bridge import PIERS
@@ -48,7 +49,7 @@ def main() -> None:
         transitions=transitions,
         **no_slopes.tables(fmus),
     )
-    arguments.output.write_text(page, encoding="utf-8")
+    write_page(arguments.output, page, "make coupling")
     print(f"{arguments.output}, figures in {figures}")
 
 

@@ -174,6 +174,7 @@ def plot_weak(path: Path, found: dict[str, np.ndarray]) -> None:
                         label="limit in theory, " + ("rocking" if rocking else "bases down"))
         axis.set_title(name)
     finish(axes, [0.03, 0.1, 0.3, 1, 3, 10, 30])
+    figure.suptitle("Values that are held blow up at short steps, extrapolated ones near the limit in theory")
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     bar = figure.colorbar(colors, ax=axes, extend="both", shrink=0.8)
     bar.set_label("largest error of the deck's displacement, over its peak; grey: blown up")
@@ -188,12 +189,14 @@ def plot_iterated(path: Path, found: dict[str, np.ndarray]) -> None:
         colors = mesh(axis, found[name], norm, "viridis_r")
         for (i, ratio), (j, h) in itertools.product(enumerate(RATIOS), enumerate(STEPS)):
             if i % 3 == 1 and j % 3 == 0 and np.isfinite(found[name][i, j]):
-                axis.text(ratio, 1e3 * h, f"{found[name][i, j]:.1f}", ha="center", va="center", fontsize=6)
+                axis.text(ratio, 1e3 * h, f"{found[name][i, j]:.1f}", ha="center", va="center", fontsize=6,
+                          color="white" if found[name][i, j] > 12 else "black")
         if name == "fixed point":
             limits = [first_unstable(lambda h: contraction(ratio, h, True) > 1) for ratio in RATIOS]
             axis.loglog(RATIOS, 1e3 * np.array(limits), "--", color="black", label="diverges beyond, in theory")
         axis.set_title(name)
     finish(axes.reshape(1, -1), [0.1, 1, 10])
+    figure.suptitle("The fixed point diverges; IQN-ILS needs the fewest sweeps")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center")
     bar = figure.colorbar(colors, ax=axes, shrink=0.9)
     bar.set_label("sweeps per step; grey: diverged")

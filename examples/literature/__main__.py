@@ -9,7 +9,7 @@ from first_run import G
 from tqdm import tqdm
 from validation.project import Project
 from validation.records import horizontal_records
-from validation.report import filled
+from validation.report import filled, write_page
 from validation.stepper import AUTO
 
 from . import block, ensemble, flexible, limit, overturning, point_reyes
@@ -72,7 +72,7 @@ def main() -> None:
             ensemble=ensemble.rows(runs, found),
             **ensemble.summary(runs, found),
         )
-    arguments.output.write_text("\n\n".join(map(filled, page.strip().split("\n\n"))) + "\n", encoding="utf-8")
+    write_page(arguments.output, "\n\n".join(map(filled, page.split("\n\n"))), "make report")
     print(f"{arguments.output}, figures in {figures}")
 
 

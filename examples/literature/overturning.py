@@ -140,4 +140,5 @@ def draw(cases: list[Case], path: Path) -> None:
     axes[0].plot([], [], "o", color="black", markersize=3, label="FMU, slender limit")
     axes[0].plot([], [], "o", color="black", markersize=4, fillstyle="none", label=f"FMU, $\\tan\\alpha$ = {STOCKY:g}")
     axes[0].legend(loc="upper left")
-    figures.save(figure, path)
+    figures.save(figure, path, "Amplitudes that overturn a block",
+                 "Closed form for the slender block as lines, the FMU as dots, over the frequency of the pulse.")

@@ -10,6 +10,7 @@ from coupling.tables import markdown
 from first_run import PACOIMA_DAM, RECORD
 from tqdm import tqdm
 from validation.figures import FIXED, QUIET, ROCKING, SMOOTH, save, subplots
+from validation.report import write_page
 
 from .hosts import SAMPLES_ARE_EVENTS, Scene, co_simulation, dop853, fmpy_cvode, fmpy_euler, sundae, sundae_told
 
@@ -68,10 +69,11 @@ def plot(path: Path, found) -> None:
             axis.loglog(TOLERANCES, [results[name, tolerance].error(exact) for tolerance in TOLERANCES], style, color=color,
                         markersize=3.5, label=name)
         axis.loglog(TOLERANCES, [tolerance * floor / 1e-12 for tolerance in TOLERANCES], ":", color=QUIET,
-                    label="the tolerance times what the scene makes of a change of its input")
+                    label="change of the answer when the input changes by the tolerance")
         axis.set(title=f"{scene.name}\n{exact.transitions} transitions", xlabel="relative tolerance")
         axis.invert_xaxis()
     axes[0].set(ylabel="largest error over the peak", ylim=(1e-12, 10))
+    figure.suptitle("Every solver converges; the scene decides how many digits a tolerance is worth")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     save(figure, path)
 
@@ -99,7 +101,7 @@ def main() -> None:
         kinks=kinks_table(found),
         tables="\n\n".join(tables),
     )
-    arguments.output.write_text(page, encoding="utf-8")
+    write_page(arguments.output, page, "make exchange")
     print(arguments.output)
 
 

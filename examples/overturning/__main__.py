@@ -6,11 +6,12 @@ import json
 import random
 import resource
 import subprocess
+from operator import itemgetter
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tqdm import tqdm
-from validation.report import table
+from validation.report import table, write_page
 
 FOLDER = Path(__file__).parent
 SCENES = ["rigid", "specimens", "stiffness", "islands"]
@@ -32,7 +33,8 @@ class Scene:
         self.seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
         self.counts = list(csv.DictReader(done.stdout.splitlines()))
         with open(rows, newline="", encoding="utf-8") as file:
-            self.points = list(csv.DictReader(file))
+            of = itemgetter("structures", "omega/p_l", "a_p/(g tan alpha_cg)")
+            self.points = sorted(csv.DictReader(file), key=of)  # rows stand in the order in which runs ended
 
     def structures(self) -> list[str]:
         """Their names."""
@@ -110,7 +112,7 @@ def main() -> None:
                          f"{scene.seconds:.1f} s", f"{len(scene.points) / scene.seconds:.0f}"]
                         for name, scene in scenes.items()]),
     )
-    arguments.output.write_text(page, encoding="utf-8")
+    write_page(arguments.output, page, "make overturning")
     print(f"{arguments.output}, pictures in {figures}")
 
 

@@ -9,7 +9,7 @@ from tqdm import tqdm
 from . import demand_bound, derived_quantities, free_vibration, isolation, modal_components, rocking_frequency
 from . import static_pushover
 from .project import Project
-from .report import markdown
+from .report import markdown, write_page
 
 SECTIONS = [static_pushover, derived_quantities, free_vibration, modal_components, rocking_frequency, isolation]
 WEIGHT = 4  # of one of these in the progress bar; one structure of the last section counts 1
@@ -32,7 +32,7 @@ def main() -> None:
             progress.update(WEIGHT)
         progress.set_description("demand_bound")
         sections.append(demand_bound.section(project, figures, progress.update))
-    arguments.output.write_text(markdown(sections, figures.name), encoding="utf-8")
+    write_page(arguments.output, markdown(sections, figures.name), "make report")
     print(f"{arguments.output}, figures in {figures}")
 
 

@@ -1,5 +1,6 @@
 """How the report's figures look."""
 
+from html import escape
 from pathlib import Path
 
 import matplotlib
@@ -34,8 +35,11 @@ def subplots(rows: int, columns: int, height: float, **options):
     return plt.subplots(rows, columns, figsize=(7.2, height), layout="constrained", **options)
 
 
-def save(figure, path: Path) -> None:
-    """Writes the figure; the same data give the same bytes."""
+def save(figure, path: Path, title: str = "", description: str = "") -> None:
+    """Writes the figure; the same data give the same bytes. An SVG file has `title` and `description`."""
     path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path, dpi=180, metadata={{".png": "Software", ".svg": "Date"}[path.suffix]: None})
+    if path.suffix == ".svg":
+        told = f"<title>{escape(title)}</title>\n <desc>{escape(description)}</desc>\n <metadata>"
+        path.write_text(path.read_text(encoding="utf-8").replace("<metadata>", told, 1), encoding="utf-8")
     plt.close(figure)

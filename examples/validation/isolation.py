@@ -94,12 +94,14 @@ def rows(dam: Test, pulse: Test) -> list[Row]:
         Row("Pacoima Dam: Eq 22, C = 2", "0.76", e["a_t"] / G, ".3f", "g",
             f"{chi_of_ground * dam.pga + second:.2f} g with the printed first term"),
         Row("Bucharest stand-in: peak a_t on a fixed base", "1.1", pulse.fixed_peak, ".3f", "g",
-            "put in, not reproduced: the stand-in is fitted to it"),
-        Row("Bucharest stand-in: peak a_t, rocking", "0.5", pulse.peak("a_t") / G, ".3f", "g", "stand-in"),
-        Row("Bucharest stand-in: peak a_t, rocking, measured", "0.55", pulse.peak("a_t") / G, ".3f", "g", "stand-in"),
+            "put in, not reproduced: the stand-in is fitted to it", is_printed=False),
+        Row("Bucharest stand-in: peak a_t, rocking", "0.5", pulse.peak("a_t") / G, ".3f", "g", "stand-in",
+            is_printed=False),
+        Row("Bucharest stand-in: peak a_t, rocking, measured", "0.55", pulse.peak("a_t") / G, ".3f", "g", "stand-in",
+            is_printed=False),
         Row("Bucharest stand-in: Eq 22, first term (1−χ) S_a(T_u, ζ_u)", "0.02", p["(1-chi) S_a"] / G, ".3f", "g",
-            "stand-in; (1−χ) PGA is 0.02 g by its definition"),
-        Row("Bucharest stand-in: Eq 22, C = 2", "0.68", p["a_t"] / G, ".3f", "g", "stand-in"),
+            "stand-in; (1−χ) PGA is 0.02 g by its definition", is_printed=False),
+        Row("Bucharest stand-in: Eq 22, C = 2", "0.68", p["a_t"] / G, ".3f", "g", "stand-in", is_printed=False),
     ]
 
 

@@ -2,7 +2,10 @@
 
 import re
 import textwrap
+import tomllib
 from dataclasses import dataclass, field
+from datetime import date
+from pathlib import Path
 
 
 @dataclass(frozen=True)
@@ -15,6 +18,7 @@ class Row:
     form: str = ".3f"  # how to print ours
     unit: str = ""
     remark: str = ""
+    is_printed: bool = True  # false for what a formula gives here, or what was put in
 
     @property
     def difference(self) -> float | None:
@@ -72,12 +76,17 @@ def comparison(section: Section) -> str:
 
 def summary(sections: list[Section]) -> str:
     """How many numbers agree, and the table of those that do not."""
-    compared = [row for section in sections for row in section.rows if row.paper is not None]
+    compared = [(row, section.source == "paper" and row.is_printed) for section in sections for row in section.rows
+                if row.paper is not None]
+    printed, others = ([row for row, is_printed in compared if is_printed == which] for which in (True, False))
     lines = [[str(number), *row.cells()] for number, section in enumerate(sections, 1) for row in section.rows
              if not row.agrees]
     headings = ["section", "quantity", "paper or its formula", "computed", "difference", "why"]
-    return (f"{sum(row.agrees for row in compared)} of the {len(compared)} numbers compared below agree to every digit "
-            f"that the paper prints (or that its formula gives). The others:\n\n{table(headings, lines, texts=(1, 5))}")
+    return (f"{sum(row.agrees for row in printed)} of the {len(printed)} numbers that the paper prints agree to every "
+            f"digit. Beside them stand {len(others)} that the paper does not print for its own scenes: its formulas give "
+            f"them, or they belong to the stand-in for a record that cannot be had, or they were put in; "
+            f"{sum(row.agrees for row in others)} of these agree. All that do not:\n\n"
+            f"{table(headings, lines, texts=(1, 5))}")
 
 
 def markdown(sections: list[Section], figures: str) -> str:
@@ -88,6 +97,14 @@ def markdown(sections: list[Section], figures: str) -> str:
         parts += [f"## {number}. {section.title}", section.introduction, comparison(section), *figure, *section.findings]
     blocks = "\n\n".join(parts).split("\n\n")
     return "\n\n".join(map(filled, blocks)) + "\n"
+
+
+def write_page(path: Path, text: str, command: str) -> None:
+    """Writes a page with what it was made by, when, and on which processor."""
+    version = tomllib.loads(Path("Cargo.toml").read_text(encoding="utf-8"))["workspace"]["package"]["version"]
+    processor = re.search("model name.*: (.*)", Path("/proc/cpuinfo").read_text(encoding="utf-8"))[1]
+    made = f"*Made by `{command}`, {date.today()}, version {version}, on one machine with {processor}.*"
+    path.write_text(f"{text.rstrip()}\n\n{made}\n", encoding="utf-8")
 
 
 def filled(block: str) -> str:
@@ -101,8 +118,8 @@ def filled(block: str) -> str:
 
 INTRODUCTION = """# Validation against the paper
 
-Every number of the paper that its text gives the data for, beside the one that the exported FMU gives. `make report`
-writes this page and its figures: the FMU is exported and driven by fmpy, at a tolerance of 1e-10, and what the library
+Which of the paper's numbers does the unit reproduce? Every number that the text gives the data for stands beside the one
+that the exported FMU gives. The FMU is exported and driven by fmpy, at a tolerance of 1e-10, and what the library
 itself computes (pushover, demands, effective frequency, modes, many runs) is asked of `rocking-fmu`.
 Equation, figure and table numbers are the paper's. Its measured histories are printed as pictures only and are not
 redrawn; of them the values that the text states are compared. Closed forms, and what others publish, are

@@ -79,7 +79,8 @@ def rows(of: Frequencies) -> list[Row]:
         Row("amplitude at which Eq 14 gives f_fc, over u_cr", None, crossing / of.u_cr, ".2f", "",
             "below it Eq 14 grows beyond all bounds, the structure stays at f_fc"),
         Row("time from the release of section 3 to the first impact (Eq 14)", f"{of.estimated_time_to_impact:.4f}",
-            of.time_to_impact, ".4f", "s", "formula; Eq 14 starts from θ alone, not from q_r = θ + (p_l²/g) u"),
+            of.time_to_impact, ".4f", "s", "formula; Eq 14 starts from θ alone, not from q_r = θ + (p_l²/g) u",
+            is_printed=False),
     ]
 
 

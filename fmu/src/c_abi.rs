@@ -20,10 +20,10 @@ use crate::instance::Instance;
 use crate::instance::model_exchange::Completed;
 use crate::logger::{Category, Status};
 use crate::state_machine::{Stage, Stages, Table, names};
+use libc::{c_char, c_int, c_void, size_t};
 use std::any::Any;
 use std::cell::{Cell, UnsafeCell};
 use std::ffi::CString;
-use std::ffi::{c_char, c_int, c_void};
 use std::marker::PhantomData;
 use std::mem::MaybeUninit;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -181,7 +181,7 @@ fn panic_message(panic: &(dyn Any + Send)) -> &str {
 }
 
 /// The `length` values at `pointer`.
-pub(crate) unsafe fn values<'a, T>(name: &'static str, pointer: *const T, length: usize) -> Result<&'a [T], Failure> {
+pub(crate) unsafe fn values<'a, T>(name: &'static str, pointer: *const T, length: size_t) -> Result<&'a [T], Failure> {
     check_length(length)?;
     if length == 0 {
         return Ok(&[]);
@@ -194,7 +194,7 @@ pub(crate) unsafe fn values<'a, T>(name: &'static str, pointer: *const T, length
 pub(crate) unsafe fn room<'a, T>(
     name: &'static str,
     pointer: *mut T,
-    length: usize,
+    length: size_t,
 ) -> Result<&'a mut [MaybeUninit<T>], Failure> {
     check_length(length)?;
     if length == 0 {
@@ -208,7 +208,7 @@ pub(crate) unsafe fn room<'a, T>(
 pub(crate) unsafe fn read_all<const N: usize>(
     name: &'static str,
     pointer: *const f64,
-    (of, count): (&'static str, usize),
+    (of, count): (&'static str, size_t),
 ) -> Result<[f64; N], Failure> {
     check_count(of, count, N)?;
     check_pointer(name, pointer)?;
@@ -219,7 +219,7 @@ pub(crate) unsafe fn read_all<const N: usize>(
 pub(crate) unsafe fn write_all<const N: usize>(
     name: &'static str,
     pointer: *mut f64,
-    (of, count): (&'static str, usize),
+    (of, count): (&'static str, size_t),
     numbers: [f64; N],
 ) -> Result<(), Failure> {
     check_count(of, count, N)?;
@@ -229,7 +229,7 @@ pub(crate) unsafe fn write_all<const N: usize>(
 }
 
 /// Refuses a number of values, given as `name`, that is not the right one.
-pub(crate) fn check_count(name: &'static str, given: usize, needed: usize) -> Result<(), Failure> {
+pub(crate) fn check_count(name: &'static str, given: size_t, needed: size_t) -> Result<(), Failure> {
     if given == needed { Ok(()) } else { Err(Failure::WrongCount { name, given, needed }) }
 }
 
@@ -246,7 +246,7 @@ pub(crate) unsafe fn write<T>(name: &'static str, pointer: *mut T, value: T) -> 
     Ok(())
 }
 
-fn check_length(length: usize) -> Result<(), Failure> {
+fn check_length(length: size_t) -> Result<(), Failure> {
     if length > MAX_LENGTH { Err(Failure::TooLong { length, limit: MAX_LENGTH }) } else { Ok(()) }
 }
 
@@ -257,7 +257,7 @@ pub(crate) fn check_pointer<T>(name: &'static str, pointer: *const T) -> Result<
 /// The text at `pointer`.
 pub(crate) unsafe fn text<'a>(name: &'static str, pointer: *const c_char) -> Result<&'a str, Failure> {
     check_pointer(name, pointer)?;
-    let length = (0..=MAX_TEXT).find(|at| unsafe { *pointer.add(*at) } == 0).unwrap_or(MAX_TEXT + 1);
+    let length = unsafe { libc::strnlen(pointer, MAX_TEXT + 1) };
     let bytes = unsafe { slice::from_raw_parts(pointer.cast::<u8>(), length) };
     match str::from_utf8(bytes) {
         Ok(text) if length <= MAX_TEXT => Ok(text),
@@ -266,7 +266,7 @@ pub(crate) unsafe fn text<'a>(name: &'static str, pointer: *const c_char) -> Res
 }
 
 /// Whether events are among the `length` log categories named at `pointer`; without any, all are meant.
-pub(crate) unsafe fn names_events(length: usize, pointer: *const *const c_char) -> Result<bool, Failure> {
+pub(crate) unsafe fn names_events(length: size_t, pointer: *const *const c_char) -> Result<bool, Failure> {
     let mut has_events = length == 0;
     for name in unsafe { values("categories", pointer, length) }? {
         let name = unsafe { text("category", *name) }?;
@@ -307,7 +307,7 @@ pub(crate) unsafe fn free_state(
 pub(crate) unsafe fn write_state_size(
     instance: &Instance,
     state: *mut c_void,
-    size: *mut usize,
+    size: *mut size_t,
 ) -> Result<(), Failure> {
     let bytes = instance.serialize_fmu_state(state.addr())?;
     unsafe { write("size", size, bytes.len()) }
@@ -318,7 +318,7 @@ pub(crate) unsafe fn write_state(
     instance: &Instance,
     state: *mut c_void,
     serialized: *mut u8,
-    size: usize,
+    size: size_t,
 ) -> Result<(), Failure> {
     let bytes = instance.serialize_fmu_state(state.addr())?;
     if size != bytes.len() {
@@ -333,7 +333,7 @@ pub(crate) unsafe fn write_state(
 pub(crate) unsafe fn read_state(
     instance: &mut Instance,
     serialized: *const u8,
-    size: usize,
+    size: size_t,
     name: &'static str,
     pointer: *mut *mut c_void,
 ) -> Result<(), Failure> {

@@ -2,8 +2,7 @@
 //! holds of all of them.
 #![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
 
-mod co_simulation;
-mod model_exchange;
+mod stages;
 
 use crate::c_abi::{
     self, check_pointer, complete_step, escaped, free_state, functions, keep_state, names_events, read_all, read_state,
@@ -16,9 +15,9 @@ use crate::logger::{Logger, Sink};
 use crate::resources;
 use crate::state_machine::{Stage, Table};
 use crate::variables::{DataType, Variable};
+use libc::{c_char, c_double, c_int, c_uint, c_void, size_t};
 use rocking::Progress;
 use std::ffi::CString;
-use std::ffi::{c_char, c_double, c_int, c_uint, c_void};
 
 /// `fmi2CallbackLogger`
 pub type CallbackLogger = unsafe extern "C" fn(*mut c_void, *const c_char, c_int, *const c_char, *const c_char, ...);
@@ -106,8 +105,8 @@ pub unsafe extern "C" fn fmi2Instantiate(
         match arguments() {
             Ok((archive, interface, events)) => {
                 let allowed_in: &Table = match interface {
-                    Interface::ModelExchange => &model_exchange::ALLOWED_IN,
-                    Interface::CoSimulation(_) => &co_simulation::ALLOWED_IN,
+                    Interface::ModelExchange => &stages::MODEL_EXCHANGE,
+                    Interface::CoSimulation(_) => &stages::CO_SIMULATION,
                 };
                 Some((Instance::new(archive, interface, events, logger), allowed_in))
             }
@@ -182,7 +181,7 @@ fn remedy(failure: &Failure) -> &'static str {
 
 functions! {
     fmi2SetDebugLogging = SetDebugLogging(
-        loggingOn: c_int, nCategories: usize, categories: *const *const c_char,
+        loggingOn: c_int, nCategories: size_t, categories: *const *const c_char,
     ) |instance| {
         let has_events = names_events(nCategories, categories)?;
         instance.log_events(boolean("loggingOn", loggingOn)? && has_events);
@@ -205,37 +204,37 @@ functions! {
 
     fmi2Reset = Reset() |instance| { instance.reset() }
 
-    fmi2GetReal = GetReal(vr: *const c_uint, nvr: usize, value: *mut c_double) |instance| {
+    fmi2GetReal = GetReal(vr: *const c_uint, nvr: size_t, value: *mut c_double) |instance| {
         instance.get_real(values("vr", vr, nvr)?, room("value", value, nvr)?)
     }
 
-    fmi2GetInteger = GetInteger(vr: *const c_uint, nvr: usize, value: *mut c_int) |instance| {
+    fmi2GetInteger = GetInteger(vr: *const c_uint, nvr: size_t, value: *mut c_int) |instance| {
         instance.get_numbers(values("vr", vr, nvr)?, room("value", value, nvr)?, |data_type| {
             matches!(data_type, DataType::Integer | DataType::Enumeration(_))
         })
     }
 
-    fmi2GetBoolean = GetBoolean(vr: *const c_uint, nvr: usize, value: *mut c_int) |instance| {
+    fmi2GetBoolean = GetBoolean(vr: *const c_uint, nvr: size_t, value: *mut c_int) |instance| {
         instance.get_boolean(values("vr", vr, nvr)?, room("value", value, nvr)?)
     }
 
-    fmi2GetString = GetString(vr: *const c_uint, nvr: usize, value: *mut *const c_char) |instance| {
+    fmi2GetString = GetString(vr: *const c_uint, nvr: size_t, value: *mut *const c_char) |instance| {
         instance.get_string(values("vr", vr, nvr)?, room("value", value, nvr)?)
     }
 
-    fmi2SetReal = SetReal(vr: *const c_uint, nvr: usize, value: *const c_double) |instance| {
+    fmi2SetReal = SetReal(vr: *const c_uint, nvr: size_t, value: *const c_double) |instance| {
         instance.set_real(values("vr", vr, nvr)?, values("value", value, nvr)?)
     }
 
-    fmi2SetInteger = SetInteger(vr: *const c_uint, nvr: usize, value: *const c_int) |instance| {
+    fmi2SetInteger = SetInteger(vr: *const c_uint, nvr: size_t, value: *const c_int) |instance| {
         instance.set_integer(values("vr", vr, nvr)?, values("value", value, nvr)?)
     }
 
-    fmi2SetBoolean = SetBoolean(vr: *const c_uint, nvr: usize, value: *const c_int) |instance| {
+    fmi2SetBoolean = SetBoolean(vr: *const c_uint, nvr: size_t, value: *const c_int) |instance| {
         instance.set_boolean(values("vr", vr, nvr)?, values("value", value, nvr)?, boolean)
     }
 
-    fmi2SetString = SetString(vr: *const c_uint, nvr: usize, value: *const *const c_char) |instance| {
+    fmi2SetString = SetString(vr: *const c_uint, nvr: size_t, value: *const *const c_char) |instance| {
         let texts = values("value", value, nvr)?.iter().map(|value| text("value", *value)).collect::<Result<Vec<_>, _>>()?;
         instance.set_string(values("vr", vr, nvr)?, &texts)
     }
@@ -247,24 +246,24 @@ functions! {
     /// Ignored for null.
     fmi2FreeFMUstate = FreeFMUstate(FMUstate: *mut *mut c_void) |instance| { free_state(instance, "FMUstate", FMUstate) }
 
-    fmi2SerializedFMUstateSize = SerializedFMUstateSize(FMUstate: *mut c_void, size: *mut usize) |instance| {
+    fmi2SerializedFMUstateSize = SerializedFMUstateSize(FMUstate: *mut c_void, size: *mut size_t) |instance| {
         write_state_size(instance, FMUstate, size)
     }
 
     fmi2SerializeFMUstate = SerializeFMUstate(
-        FMUstate: *mut c_void, serializedState: *mut u8, size: usize,
+        FMUstate: *mut c_void, serializedState: *mut u8, size: size_t,
     ) |instance| {
         write_state(instance, FMUstate, serializedState, size)
     }
 
     fmi2DeSerializeFMUstate = DeSerializeFMUstate(
-        serializedState: *const u8, size: usize, FMUstate: *mut *mut c_void,
+        serializedState: *const u8, size: size_t, FMUstate: *mut *mut c_void,
     ) |instance| {
         read_state(instance, serializedState, size, "FMUstate", FMUstate)
     }
 
     fmi2GetDirectionalDerivative = GetDirectionalDerivative(
-        vUnknown_ref: *const c_uint, nUnknown: usize, vKnown_ref: *const c_uint, nKnown: usize,
+        vUnknown_ref: *const c_uint, nUnknown: size_t, vKnown_ref: *const c_uint, nKnown: size_t,
         dvKnown: *const c_double, dvUnknown: *mut c_double,
     ) |instance| {
         let unknowns = values("vUnknown_ref", vUnknown_ref, nUnknown)?;
@@ -273,14 +272,14 @@ functions! {
     }
 
     fmi2SetRealInputDerivatives = SetRealInputDerivatives(
-        vr: *const c_uint, nvr: usize, order: *const c_int, value: *const c_double,
+        vr: *const c_uint, nvr: size_t, order: *const c_int, value: *const c_double,
     ) |instance| {
         let (orders, slopes) = (values("order", order, nvr)?, values("value", value, nvr)?);
         instance.set_real_input_derivatives(values("vr", vr, nvr)?, orders, slopes)
     }
 
     fmi2GetRealOutputDerivatives = GetRealOutputDerivatives(
-        vr: *const c_uint, nvr: usize, order: *const c_int, value: *mut c_double,
+        vr: *const c_uint, nvr: size_t, order: *const c_int, value: *mut c_double,
     ) |instance| {
         let (orders, rates) = (values("order", order, nvr)?, room("value", value, nvr)?);
         instance.get_real_output_derivatives(values("vr", vr, nvr)?, orders, rates)
@@ -349,24 +348,24 @@ functions! {
 
     fmi2SetTime = SetTime(time: c_double) |instance| { instance.set_time(time) }
 
-    fmi2SetContinuousStates = SetContinuousStates(x: *const c_double, nx: usize) |instance| {
+    fmi2SetContinuousStates = SetContinuousStates(x: *const c_double, nx: size_t) |instance| {
         instance.set_continuous_states(read_all("x", x, ("nx", nx))?)
     }
 
-    fmi2GetDerivatives = GetDerivatives(derivatives: *mut c_double, nx: usize) |instance| {
+    fmi2GetDerivatives = GetDerivatives(derivatives: *mut c_double, nx: size_t) |instance| {
         write_all("derivatives", derivatives, ("nx", nx), instance.derivatives()?)
     }
 
-    fmi2GetEventIndicators = GetEventIndicators(eventIndicators: *mut c_double, ni: usize) |instance| {
+    fmi2GetEventIndicators = GetEventIndicators(eventIndicators: *mut c_double, ni: size_t) |instance| {
         write_all("eventIndicators", eventIndicators, ("ni", ni), instance.event_indicators()?)
     }
 
-    fmi2GetContinuousStates = GetContinuousStates(x: *mut c_double, nx: usize) |instance| {
+    fmi2GetContinuousStates = GetContinuousStates(x: *mut c_double, nx: size_t) |instance| {
         write_all("x", x, ("nx", nx), instance.continuous_states()?)
     }
 
     fmi2GetNominalsOfContinuousStates = GetNominalsOfContinuousStates(
-        x_nominal: *mut c_double, nx: usize,
+        x_nominal: *mut c_double, nx: size_t,
     ) |instance| {
         write_all("x_nominal", x_nominal, ("nx", nx), instance.nominals()?)
     }

@@ -7,8 +7,7 @@
 //! they are held. After the step is computed it can read all variables.
 #![allow(unsafe_code, clippy::missing_safety_doc)] // as in `c_abi`
 
-mod co_simulation;
-mod model_exchange;
+mod stages;
 
 use crate::c_abi::{
     self, call, call_on, check_count, check_pointer, complete_step, escaped, free_state, functions, instantiate,
@@ -23,10 +22,10 @@ use crate::logger::{Logger, Sink};
 use crate::present::find;
 use crate::state_machine::{Stage, Table};
 use crate::variables::{Causality, DataType, VARIABLES, Variable};
+use libc::{c_char, c_int, c_uint, c_void, size_t};
 use rocking::Progress;
 use rocking::mechanics::state::COMPONENTS;
 use rocking::run::outside_step::INDICATORS;
-use std::ffi::{c_char, c_int, c_uint, c_void};
 use std::path::PathBuf;
 
 /// `fmi3LogMessageCallback`
@@ -51,7 +50,7 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
     eventModeUsed: u8,
     earlyReturnAllowed: u8,
     requiredIntermediateVariables: *const c_uint,
-    nRequiredIntermediateVariables: usize,
+    nRequiredIntermediateVariables: size_t,
     instanceEnvironment: *mut c_void,
     logMessage: Option<LogMessageCallback>,
     intermediateUpdate: Option<IntermediateUpdateCallback>,
@@ -70,7 +69,7 @@ pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
         let environment = instanceEnvironment;
         let host =
             intermediateUpdate.map(|update| IntermediateUpdate { update, environment, sets_inputs, gets_outputs });
-        let allowed_in: &Table = &co_simulation::ALLOWED_IN;
+        let allowed_in: &Table = &stages::CO_SIMULATION;
         Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), allowed_in, host))
     };
     let arguments = [instanceName, instantiationToken, resourcePath];
@@ -89,7 +88,7 @@ pub unsafe extern "C" fn fmi3InstantiateModelExchange(
     instanceEnvironment: *mut c_void,
     logMessage: Option<LogMessageCallback>,
 ) -> *mut c_void {
-    let allowed_in: &Table = &model_exchange::ALLOWED_IN;
+    let allowed_in: &Table = &stages::MODEL_EXCHANGE;
     let interface = || Ok((Interface::ModelExchange, allowed_in, None));
     let (arguments, host) = ([instanceName, instantiationToken, resourcePath], (instanceEnvironment, logMessage));
     unsafe { create("fmi3InstantiateModelExchange", arguments, loggingOn, host, interface) }
@@ -200,8 +199,8 @@ fn boolean(name: &'static str, value: u8) -> Result<bool, Failure> {
 /// The variables, all of which are scalars, that as many values are for.
 unsafe fn references<'a>(
     valueReferences: *const c_uint,
-    nValueReferences: usize,
-    nValues: usize,
+    nValueReferences: size_t,
+    nValues: size_t,
 ) -> Result<&'a [c_uint], Failure> {
     check_count("nValues", nValues, nValueReferences)?;
     unsafe { values("valueReferences", valueReferences, nValueReferences) }
@@ -287,7 +286,7 @@ functions! {
     [fmi3DoStep = DoStep]
 
     fmi3SetDebugLogging = SetDebugLogging(
-        loggingOn: u8, nCategories: usize, categories: *const *const c_char,
+        loggingOn: u8, nCategories: size_t, categories: *const *const c_char,
     ) |instance| {
         let has_events = names_events(nCategories, categories)?;
         let on = boolean("loggingOn", loggingOn)?;
@@ -315,14 +314,14 @@ functions! {
     fmi3Reset = Reset() |instance| { instance.reset() }
 
     fmi3GetFloat64 = GetFloat64(
-        valueReferences: *const c_uint, nValueReferences: usize, value: *mut f64, nValues: usize,
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut f64, nValues: size_t,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         instance.get_real(references, room("values", value, nValues)?)
     }
 
     fmi3GetInt32 = GetInt32(
-        valueReferences: *const c_uint, nValueReferences: usize, value: *mut i32, nValues: usize,
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut i32, nValues: size_t,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Integer);
@@ -330,7 +329,7 @@ functions! {
     }
 
     fmi3GetInt64 = GetInt64(
-        valueReferences: *const c_uint, nValueReferences: usize, value: *mut i64, nValues: usize,
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut i64, nValues: size_t,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         let is_of_type = |data_type: &DataType| matches!(data_type, DataType::Enumeration(_));
@@ -338,21 +337,21 @@ functions! {
     }
 
     fmi3GetBoolean = GetBoolean(
-        valueReferences: *const c_uint, nValueReferences: usize, value: *mut u8, nValues: usize,
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut u8, nValues: size_t,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         instance.get_boolean(references, room("values", value, nValues)?)
     }
 
     fmi3GetString = GetString(
-        valueReferences: *const c_uint, nValueReferences: usize, value: *mut *const c_char, nValues: usize,
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *mut *const c_char, nValues: size_t,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         instance.get_string(references, room("values", value, nValues)?)
     }
 
     fmi3SetFloat64 = SetFloat64(
-        valueReferences: *const c_uint, nValueReferences: usize, value: *const f64, nValues: usize,
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *const f64, nValues: size_t,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         instance.set_real(references, values("values", value, nValues)?)
@@ -360,27 +359,27 @@ functions! {
 
     /// No integer can be set.
     fmi3SetInt32 = SetInt32(
-        valueReferences: *const c_uint, nValueReferences: usize, _values: *const i32, nValues: usize,
+        valueReferences: *const c_uint, nValueReferences: size_t, _values: *const i32, nValues: size_t,
     ) |instance| {
         instance.set_no_integer(references(valueReferences, nValueReferences, nValues)?)
     }
 
     fmi3SetInt64 = SetInt64(
-        valueReferences: *const c_uint, nValueReferences: usize, value: *const i64, nValues: usize,
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *const i64, nValues: size_t,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         instance.set_integer(references, values("values", value, nValues)?)
     }
 
     fmi3SetBoolean = SetBoolean(
-        valueReferences: *const c_uint, nValueReferences: usize, value: *const u8, nValues: usize,
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *const u8, nValues: size_t,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         instance.set_boolean(references, values("values", value, nValues)?, boolean)
     }
 
     fmi3SetString = SetString(
-        valueReferences: *const c_uint, nValueReferences: usize, value: *const *const c_char, nValues: usize,
+        valueReferences: *const c_uint, nValueReferences: size_t, value: *const *const c_char, nValues: size_t,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         let given = values("values", value, nValues)?;
@@ -395,25 +394,25 @@ functions! {
     /// Ignored for null.
     fmi3FreeFMUState = FreeFMUState(FMUState: *mut *mut c_void) |instance| { free_state(instance, "FMUState", FMUState) }
 
-    fmi3SerializedFMUStateSize = SerializedFMUStateSize(FMUState: *mut c_void, size: *mut usize) |instance| {
+    fmi3SerializedFMUStateSize = SerializedFMUStateSize(FMUState: *mut c_void, size: *mut size_t) |instance| {
         write_state_size(instance, FMUState, size)
     }
 
     fmi3SerializeFMUState = SerializeFMUState(
-        FMUState: *mut c_void, serializedState: *mut u8, size: usize,
+        FMUState: *mut c_void, serializedState: *mut u8, size: size_t,
     ) |instance| {
         write_state(instance, FMUState, serializedState, size)
     }
 
     fmi3DeserializeFMUState = DeserializeFMUState(
-        serializedState: *const u8, size: usize, FMUState: *mut *mut c_void,
+        serializedState: *const u8, size: size_t, FMUState: *mut *mut c_void,
     ) |instance| {
         read_state(instance, serializedState, size, "FMUState", FMUState)
     }
 
     fmi3GetDirectionalDerivative = GetDirectionalDerivative(
-        unknowns: *const c_uint, nUnknowns: usize, knowns: *const c_uint, nKnowns: usize, seed: *const f64,
-        nSeed: usize, sensitivity: *mut f64, nSensitivity: usize,
+        unknowns: *const c_uint, nUnknowns: size_t, knowns: *const c_uint, nKnowns: size_t, seed: *const f64,
+        nSeed: size_t, sensitivity: *mut f64, nSensitivity: size_t,
     ) |instance| {
         check_count("nSeed", nSeed, nKnowns)?;
         check_count("nSensitivity", nSensitivity, nUnknowns)?;
@@ -423,8 +422,8 @@ functions! {
     }
 
     fmi3GetAdjointDerivative = GetAdjointDerivative(
-        unknowns: *const c_uint, nUnknowns: usize, knowns: *const c_uint, nKnowns: usize, seed: *const f64,
-        nSeed: usize, sensitivity: *mut f64, nSensitivity: usize,
+        unknowns: *const c_uint, nUnknowns: size_t, knowns: *const c_uint, nKnowns: size_t, seed: *const f64,
+        nSeed: size_t, sensitivity: *mut f64, nSensitivity: size_t,
     ) |instance| {
         check_count("nSeed", nSeed, nUnknowns)?;
         check_count("nSensitivity", nSensitivity, nKnowns)?;
@@ -462,8 +461,8 @@ functions! {
     fmi3EnterStepMode = EnterStepMode() |instance| { instance.enter(Stage::StepComplete) }
 
     fmi3GetOutputDerivatives = GetOutputDerivatives(
-        valueReferences: *const c_uint, nValueReferences: usize, orders: *const i32, value: *mut f64,
-        nValues: usize,
+        valueReferences: *const c_uint, nValueReferences: size_t, orders: *const i32, value: *mut f64,
+        nValues: size_t,
     ) |instance| {
         let references = references(valueReferences, nValueReferences, nValues)?;
         let (orders, rates) = (values("orders", orders, nValueReferences)?, room("values", value, nValues)?);
@@ -481,155 +480,71 @@ functions! {
 
     fmi3SetTime = SetTime(time: f64) |instance| { instance.set_time(time) }
 
-    fmi3SetContinuousStates = SetContinuousStates(continuousStates: *const f64, nContinuousStates: usize) |instance| {
+    fmi3SetContinuousStates = SetContinuousStates(continuousStates: *const f64, nContinuousStates: size_t) |instance| {
         let count = ("nContinuousStates", nContinuousStates);
         instance.set_continuous_states(read_all("continuousStates", continuousStates, count)?)
     }
 
     fmi3GetContinuousStateDerivatives = GetContinuousStateDerivatives(
-        derivatives: *mut f64, nContinuousStates: usize,
+        derivatives: *mut f64, nContinuousStates: size_t,
     ) |instance| {
         write_all("derivatives", derivatives, ("nContinuousStates", nContinuousStates), instance.derivatives()?)
     }
 
-    fmi3GetEventIndicators = GetEventIndicators(eventIndicators: *mut f64, nEventIndicators: usize) |instance| {
+    fmi3GetEventIndicators = GetEventIndicators(eventIndicators: *mut f64, nEventIndicators: size_t) |instance| {
         write_all("eventIndicators", eventIndicators, ("nEventIndicators", nEventIndicators), instance.event_indicators()?)
     }
 
-    fmi3GetContinuousStates = GetContinuousStates(continuousStates: *mut f64, nContinuousStates: usize) |instance| {
+    fmi3GetContinuousStates = GetContinuousStates(continuousStates: *mut f64, nContinuousStates: size_t) |instance| {
         let count = ("nContinuousStates", nContinuousStates);
         write_all("continuousStates", continuousStates, count, instance.continuous_states()?)
     }
 
     fmi3GetNominalsOfContinuousStates = GetNominalsOfContinuousStates(
-        nominals: *mut f64, nContinuousStates: usize,
+        nominals: *mut f64, nContinuousStates: size_t,
     ) |instance| {
         write_all("nominals", nominals, ("nContinuousStates", nContinuousStates), instance.nominals()?)
     }
 
-    fmi3GetNumberOfEventIndicators = GetNumberOfEventIndicators(nEventIndicators: *mut usize) |_instance| {
+    fmi3GetNumberOfEventIndicators = GetNumberOfEventIndicators(nEventIndicators: *mut size_t) |_instance| {
         write("nEventIndicators", nEventIndicators, INDICATORS)
     }
 
-    fmi3GetNumberOfContinuousStates = GetNumberOfContinuousStates(nContinuousStates: *mut usize) |_instance| {
+    fmi3GetNumberOfContinuousStates = GetNumberOfContinuousStates(nContinuousStates: *mut size_t) |_instance| {
         write("nContinuousStates", nContinuousStates, COMPONENTS.len())
     }
 
-    // What this unit has none of: never allowed.
-
-    fmi3GetFloat32 = GetFloat32(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *mut f32, _nValues: usize,
-    )
-
-    fmi3GetInt8 = GetInt8(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *mut i8, _nValues: usize,
-    )
-
-    fmi3GetUInt8 = GetUInt8(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *mut u8, _nValues: usize,
-    )
-
-    fmi3GetInt16 = GetInt16(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *mut i16, _nValues: usize,
-    )
-
-    fmi3GetUInt16 = GetUInt16(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *mut u16, _nValues: usize,
-    )
-
-    fmi3GetUInt32 = GetUInt32(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *mut u32, _nValues: usize,
-    )
-
-    fmi3GetUInt64 = GetUInt64(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *mut u64, _nValues: usize,
-    )
-
-    fmi3GetBinary = GetBinary(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _valueSizes: *mut usize, _values: *mut *const u8,
-        _nValues: usize,
-    )
-
-    fmi3GetClock = GetClock(_valueReferences: *const c_uint, _nValueReferences: usize, _values: *mut u8)
-
-    fmi3SetFloat32 = SetFloat32(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *const f32, _nValues: usize,
-    )
-
-    fmi3SetInt8 = SetInt8(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *const i8, _nValues: usize,
-    )
-
-    fmi3SetUInt8 = SetUInt8(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *const u8, _nValues: usize,
-    )
-
-    fmi3SetInt16 = SetInt16(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *const i16, _nValues: usize,
-    )
-
-    fmi3SetUInt16 = SetUInt16(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *const u16, _nValues: usize,
-    )
-
-    fmi3SetUInt32 = SetUInt32(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *const u32, _nValues: usize,
-    )
-
-    fmi3SetUInt64 = SetUInt64(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _values: *const u64, _nValues: usize,
-    )
-
-    fmi3SetBinary = SetBinary(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _valueSizes: *const usize,
-        _values: *const *const u8, _nValues: usize,
-    )
-
-    fmi3SetClock = SetClock(_valueReferences: *const c_uint, _nValueReferences: usize, _values: *const u8)
-
-    fmi3GetNumberOfVariableDependencies = GetNumberOfVariableDependencies(
-        _valueReference: c_uint, _nDependencies: *mut usize,
-    )
-
-    fmi3GetVariableDependencies = GetVariableDependencies(
-        _dependent: c_uint, _elementIndicesOfDependent: *mut usize, _independents: *mut c_uint,
-        _elementIndicesOfIndependents: *mut usize, _dependencyKinds: *mut c_int, _nDependencies: usize,
-    )
-
+    // What this unit has none of: never allowed. Arguments that are not read need not be declared: on the platforms that
+    // there are libraries for, the caller takes them back.
+    fmi3GetFloat32 = GetFloat32()
+    fmi3GetInt8 = GetInt8()
+    fmi3GetUInt8 = GetUInt8()
+    fmi3GetInt16 = GetInt16()
+    fmi3GetUInt16 = GetUInt16()
+    fmi3GetUInt32 = GetUInt32()
+    fmi3GetUInt64 = GetUInt64()
+    fmi3GetBinary = GetBinary()
+    fmi3GetClock = GetClock()
+    fmi3SetFloat32 = SetFloat32()
+    fmi3SetInt8 = SetInt8()
+    fmi3SetUInt8 = SetUInt8()
+    fmi3SetInt16 = SetInt16()
+    fmi3SetUInt16 = SetUInt16()
+    fmi3SetUInt32 = SetUInt32()
+    fmi3SetUInt64 = SetUInt64()
+    fmi3SetBinary = SetBinary()
+    fmi3SetClock = SetClock()
+    fmi3GetNumberOfVariableDependencies = GetNumberOfVariableDependencies()
+    fmi3GetVariableDependencies = GetVariableDependencies()
     fmi3EnterConfigurationMode = EnterConfigurationMode()
-
     fmi3ExitConfigurationMode = ExitConfigurationMode()
-
-    fmi3GetIntervalDecimal = GetIntervalDecimal(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _intervals: *mut f64, _qualifiers: *mut c_int,
-    )
-
-    fmi3GetIntervalFraction = GetIntervalFraction(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _counters: *mut u64, _resolutions: *mut u64,
-        _qualifiers: *mut c_int,
-    )
-
-    fmi3GetShiftDecimal = GetShiftDecimal(_valueReferences: *const c_uint, _nValueReferences: usize, _shifts: *mut f64)
-
-    fmi3GetShiftFraction = GetShiftFraction(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _counters: *mut u64, _resolutions: *mut u64,
-    )
-
-    fmi3SetIntervalDecimal = SetIntervalDecimal(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _intervals: *const f64,
-    )
-
-    fmi3SetIntervalFraction = SetIntervalFraction(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _counters: *const u64, _resolutions: *const u64,
-    )
-
-    fmi3SetShiftDecimal = SetShiftDecimal(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _shifts: *const f64,
-    )
-
-    fmi3SetShiftFraction = SetShiftFraction(
-        _valueReferences: *const c_uint, _nValueReferences: usize, _counters: *const u64, _resolutions: *const u64,
-    )
-
-    fmi3ActivateModelPartition = ActivateModelPartition(_clockReference: c_uint, _activationTime: f64)
+    fmi3GetIntervalDecimal = GetIntervalDecimal()
+    fmi3GetIntervalFraction = GetIntervalFraction()
+    fmi3GetShiftDecimal = GetShiftDecimal()
+    fmi3GetShiftFraction = GetShiftFraction()
+    fmi3SetIntervalDecimal = SetIntervalDecimal()
+    fmi3SetIntervalFraction = SetIntervalFraction()
+    fmi3SetShiftDecimal = SetShiftDecimal()
+    fmi3SetShiftFraction = SetShiftFraction()
+    fmi3ActivateModelPartition = ActivateModelPartition()
 }

@@ -20,14 +20,18 @@
 //! | [`ground`], [`resources`] | records; what the archive carries |
 //! | [`logger`], [`state_machine`] | messages to the host; the stages, and tables of them |
 //!
-//! The physics is [`rocking`]'s.
+//! The physics is [`rocking`]'s. In a browser no host calls C functions: the table of variables alone is used there.
+#![cfg_attr(target_family = "wasm", allow(dead_code))]
 #![allow(non_snake_case)] // the shared library's name, and the standard's names of arguments
 
 mod advance;
+#[cfg(not(target_family = "wasm"))]
 pub mod c_abi;
 pub mod condition;
 mod failure;
+#[cfg(not(target_family = "wasm"))]
 pub mod fmi2;
+#[cfg(not(target_family = "wasm"))]
 pub mod fmi3;
 pub mod ground;
 mod inputs;

@@ -93,26 +93,39 @@ pub(crate) fn names(stages: Stages) -> String {
     if names.is_empty() { "none".to_owned() } else { names.join(", ") }
 }
 
-/// A table of an interface: the stages that it knows, and a row for every function of the version's `Function` that may
-/// be called in one, with x where it may and - where not. The others may be called nowhere.
-macro_rules! table {
-    ([$($stage:ident),* $(,)?] $($function:ident [$($mark:tt)+])*) => {
-        /// The stages that each function may be called in.
-        pub(crate) static ALLOWED_IN: Table = {
-            let stages = [$(Stage::$stage),*];
+/// The tables of a version's two interfaces: the stages, and a row for every function of the version's `Function` that may
+/// be called in one. x is for both interfaces, s for a slave in co-simulation, m for a model, - for neither. The others may
+/// be called nowhere.
+#[cfg(not(target_family = "wasm"))]
+macro_rules! tables {
+    ([$($of:tt $stage:ident),*] $($function:ident [$($mark:tt)+])*) => {
+        /// The stages that each function of a slave may be called in.
+        pub(crate) static CO_SIMULATION: $crate::state_machine::Table = table("s");
+
+        /// The stages that each function of a model may be called in.
+        pub(crate) static MODEL_EXCHANGE: $crate::state_machine::Table = table("m");
+
+        const fn table(interface: &str) -> $crate::state_machine::Table {
+            use $crate::state_machine::{Stage, Table, is_for};
+            let stages = [$((Stage::$stage, is_for(stringify!($of), interface))),*];
             let mut table: Table = [0; 128];
             $({
-                let marks = [$($crate::state_machine::table!(@ $mark)),+];
+                let marks = [$(is_for(stringify!($mark), interface)),+];
                 let mut at = 0;
                 while at < stages.len() {
-                    table[Function::$function as usize] |= if marks[at] { stages[at].bit() } else { 0 };
+                    let (stage, is_known) = stages[at];
+                    table[Function::$function as usize] |= if is_known && marks[at] { stage.bit() } else { 0 };
                     at += 1;
                 }
             })*
             table
-        };
+        }
     };
-    (@ x) => { true };
-    (@ -) => { false };
 }
-pub(crate) use table;
+#[cfg(not(target_family = "wasm"))]
+pub(crate) use tables;
+
+/// Whether `mark` is for `interface`, s or m.
+pub(crate) const fn is_for(mark: &str, interface: &str) -> bool {
+    mark.as_bytes()[0] == b'x' || mark.as_bytes()[0] == interface.as_bytes()[0]
+}

@@ -102,26 +102,6 @@ fn F_t_goes_on_with_the_slope_of_its_last_two_values() {
     }
 }
 
-/// What went before is part of a state: a step repeated, in this instance or another, has the same bits.
-#[test]
-fn a_state_remembers_the_values_before() {
-    let host = started(&["a_g_late", "F_t_extrapolated"], &[("theta_0", 0.02)]);
-    let step = |host: &Host, time: f64, a_g: f64| {
-        assert_eq!((host.set(&[("a_g", a_g), ("F_t", 20.0 * a_g)]), host.step(time, 0.01)), (OK, OK));
-        host.try_get(&SHOWN).unwrap()
-    };
-    step(&host, 0.0, 1.0);
-    assert_eq!(host.set(&[("a_g", 3.0)]), OK); // and nothing more
-    let (state, bytes) = (host.keep(), host.bytes());
-    let first = [step(&host, 0.01, 3.0), step(&host, 0.02, 2.0)];
-    assert_eq!(host.go_back(state), OK);
-    assert_eq!([step(&host, 0.01, 3.0), step(&host, 0.02, 2.0)], first);
-    let other = Host::new();
-    assert_eq!(other.go_back(other.deserialize(&bytes).unwrap()), OK);
-    assert_eq!(other.get("a_g"), 3.0);
-    assert_eq!([step(&other, 0.01, 3.0), step(&other, 0.02, 2.0)], first);
-}
-
 /// A jump over a tiny step has a slope that leads nowhere: the input is held, and the late one where it was.
 #[test]
 fn a_slope_that_leads_out_of_the_range_is_not_followed() {
@@ -132,29 +112,5 @@ fn a_slope_that_leads_out_of_the_range_is_not_followed() {
     for a_g in [1e4, -1e4, 1e4] {
         assert_eq!((host.set(&[("a_g", a_g), ("F_t", 0.0)]), host.step(host.last_successful_time(), 1e-6)), (OK, OK));
         assert_eq!(host.get("a_ground"), a_g);
-    }
-}
-
-/// Held, a force is right to the first order of the step; extrapolated, to the second.
-#[test]
-fn the_error_is_of_second_order() {
-    let at_end = |steps: u32, switches: Option<&[&str]>| {
-        let host = started(switches.unwrap_or_default(), &[("theta_0", 0.1)]);
-        let step = 0.1 / f64::from(steps);
-        let F_t = |k: u32| 1000.0 * (30.0 * step * f64::from(k)).sin();
-        for k in 0..steps {
-            assert_eq!(host.set(&[("F_t", F_t(k))]), OK);
-            if switches.is_none() {
-                assert_eq!(host.set_slope("F_t", 1, (F_t(k + 1) - F_t(k)) / step), OK);
-            }
-            assert_eq!(host.step(step * f64::from(k), step), OK);
-        }
-        host.get("theta")
-    };
-    let exact = at_end(4000, None);
-    for (switches, order) in [(&[][..], 1.0), (&["F_t_extrapolated"], 2.0)] {
-        let [coarse, fine] = [50, 100].map(|steps| (at_end(steps, Some(switches)) - exact).abs());
-        let found = (coarse / fine).log2();
-        assert!((found - order).abs() < 0.2, "order {found} for {order}: {coarse:e}, {fine:e}");
     }
 }

@@ -24,28 +24,18 @@ fn every_transition_is_told_as_the_engine_shows_it() {
     let structure = Structure::new(Parameters { r: 0.85, ..Parameters::EVISON }).unwrap();
     let mut engine = Engine::new(structure, State { theta: 0.01, ..State::default() }, 0.0, 1e-9).unwrap();
     let mut expected = Vec::new();
-    engine
-        .advance(0.5, Ramp::default(), &mut |transition: &Transition| {
-            let what = match transition.kind {
-                TransitionKind::Uplift(side) => format!("uplift, rocking about the {side:?} edge"),
-                TransitionKind::Impact(side) => format!("impact, rocking on about the {side:?} edge"),
-                TransitionKind::Landing => "landing in full contact".to_owned(),
-                kind => panic!("{kind:?}"),
-            };
-            let (before, after) = (transition.before, transition.after);
-            expected.push(format!(
-                "t = {} s: {}; u = {} m, u_dot = {} m/s (before: {}), theta_dot = {} rad/s (before: {})",
-                transition.time,
-                what.to_lowercase(),
-                after.u,
-                after.u_dot,
-                before.u_dot,
-                after.theta_dot,
-                before.theta_dot
-            ));
-        })
-        .unwrap();
-
+    let mut tell = |&Transition { kind, time, before, after }: &Transition| {
+        let what = match kind {
+            TransitionKind::Uplift(side) => format!("uplift, rocking about the {side:?} edge"),
+            TransitionKind::Impact(side) => format!("impact, rocking on about the {side:?} edge"),
+            TransitionKind::Landing => "landing in full contact".to_owned(),
+            kind => panic!("{kind:?}"),
+        };
+        let u = format!("u = {} m, u_dot = {} m/s (before: {})", after.u, after.u_dot, before.u_dot);
+        let theta_dot = format!("theta_dot = {} rad/s (before: {})", after.theta_dot, before.theta_dot);
+        expected.push(format!("t = {time} s: {}; {u}, {theta_dot}", what.to_lowercase()));
+    };
+    engine.advance(0.5, Ramp::default(), &mut tell).unwrap();
     let host = released(1);
     assert_eq!(host.step(0.0, 0.5), OK);
     let log = host.log.take();

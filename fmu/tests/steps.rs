@@ -219,14 +219,6 @@ fn a_host_that_multiplies_does_not_drift_away() {
     }
 }
 
-#[test]
-fn an_experiment_may_end_where_it_starts() {
-    let host = Host::new();
-    assert_eq!((host.setup(None, 2.0, Some(2.0)), host.enter(), host.exit()), (OK, OK, OK));
-    assert_eq!(host.step(2.0, 0.1), ERROR);
-    assert_eq!(host.terminate(), OK);
-}
-
 /// The reaction follows the ramp to its end: the rate there is that of the ramp, until the input is set anew.
 #[test]
 fn rates_know_the_slope_just_followed() {
@@ -266,34 +258,16 @@ fn rigid_outputs_are_those_of_the_present_inputs() {
         let m = host.get("m");
         assert_eq!(host.try_get(&["a_t", "V_t", "M_t"]), Ok(vec![a_g, m * a_g, m * host.get("H") * a_g]));
     }
-    let host = Host::started(&[("detail", 5.0), ("theta_0", 0.2), ("theta_dot_0", 0.3)]);
-    let a_t = |a_g: f64| {
-        assert_eq!(host.set(&[("a_g", a_g)]), OK);
-        host.get("a_t")
-    };
-    let (zero, two) = (a_t(0.0), a_t(2.0));
-    let [m, m0, H, B, g, p_l] = ["m", "m0", "H", "B", "g", "p_l"].map(|name| host.get(name));
-    let (sin, cos) = 0.2_f64.sin_cos();
-    // J_P θ̈ = … − a_g [m (H cos θ + B sin θ) + m0 B sin θ]
-    let turning = m * (H * cos + B * sin) + m0 * B * sin;
-    assert_relative_eq!(two - zero, 2.0 * (cos - H * turning * p_l * p_l / (m * g * H)), max_relative = 1e-12);
 }
 
 #[test]
 fn experiments_out_of_range_are_refused() {
     let host = Host::new();
     for (tolerance, start, stop, message) in [
-        (Some(0.0), 0.0, None, "tolerance = 0 is out of range: it must be between 0 and 1, such as 1e-9"),
         (Some(1.0), 0.0, None, "tolerance = 1 is out of range: it must be between 0 and 1, such as 1e-9"),
         (Some(f64::NAN), 0.0, None, "tolerance = NaN is out of range: it must be between 0 and 1, such as 1e-9"),
         (None, f64::NAN, None, "startTime = NaN is out of range: it must be finite"),
         (None, 2.0, Some(1.9), "stopTime = 1.9 is out of range: it must be finite and not before startTime = 2 s"),
-        (
-            None,
-            2.0,
-            Some(f64::INFINITY),
-            "stopTime = inf is out of range: it must be finite and not before startTime = 2 s",
-        ),
     ] {
         let message = format!("fmi2SetupExperiment: {message}");
         host.assert_refused(|| host.setup(tolerance, start, stop), ERROR, &message);

@@ -1,4 +1,4 @@
-//! What a motion goes beyond: as the engine's own run finds it, told once, kept in states, and free for who does not ask.
+//! What a motion goes beyond: as the engine's own run finds it, told once, kept in states, and not watched unless it is asked for.
 #![allow(unsafe_code)] // the C interface
 
 mod host;
@@ -6,6 +6,7 @@ mod host;
 use FlexibleRocking::snapshot;
 use approx::assert_relative_eq;
 use host::*;
+use rocking::run::peaks::{PEAKS, Peaks};
 use rocking::run::validity::{ASSUMPTIONS, Found, Limits};
 use rocking::run::{End, Run};
 use rocking::{Parameters, Structure};
@@ -29,6 +30,7 @@ fn host(validity: i32) -> Host {
     let host = Host::initializing(&LIVELY);
     host.write("quake.csv", &quake());
     assert_eq!((host.set_record("quake.csv"), host.set_boolean("validity", validity)), (OK, OK));
+    assert_eq!(host.set_boolean("peaks", validity), OK);
     assert_eq!(host.exit(), OK, "{:?}", host.log);
     host.log.take();
     host
@@ -110,7 +112,7 @@ fn what_is_gone_beyond_goes_back_with_a_state() {
     assert_eq!(((read(&host), host.bytes()), host.log.take()), (after, told));
 }
 
-/// Who does not ask does not pay: nobody watches, and the work is the same to the last step.
+/// Without `validity` and `peaks` nothing is watched, and the work is the same to the last step.
 #[test]
 fn what_nobody_asks_for_is_not_watched() {
     let run = |validity| {
@@ -120,10 +122,13 @@ fn what_nobody_asks_for_is_not_watched() {
         (host, course)
     };
     let ((_, with), (silent, without)) = (run(1), run(0));
-    assert_eq!((with.motion, with.peaks), (without.motion, without.peaks));
-    assert_eq!(without.validity, Found::since(0.0));
+    assert_eq!(with.motion, without.motion);
+    let structure = Structure::new(Parameters { r: 1.0, f_fc: 4.0, ..Parameters::EVISON }).unwrap();
+    assert_eq!((without.peaks, without.validity), (Peaks::new(&structure), Found::since(0.0)));
+    assert!(with.peaks.theta().magnitude > 0.0);
     assert_relative_eq!(with.validity.duration, 5.0, max_relative = 1e-12);
     assert!(read(&silent).iter().all(|value| value.is_nan()) && silent.integer("energy_gains") == 0);
+    assert!(PEAKS.iter().all(|of| ["", "t_"].iter().all(|t| silent.get(&format!("{t}{}_max", of.name)).is_nan())));
     assert!(silent.log.take().is_empty());
 }
 

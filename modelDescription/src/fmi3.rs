@@ -1,22 +1,14 @@
 //! Types of FMI 3.0, where they are not those of FMI 2.0.
 
 use crate::{
-    Causality, DefaultExperiment, DependenciesKind, Initial, LogCategories, SeError, UnitDefinitions, Variability,
-    VariableNamingConvention, document, shortest,
+    Attributes, Boolean, DefaultExperiment, Enumeration, Integer, Item, LogCategories, Real, SeError, UnitDefinitions,
+    document,
 };
 use serde::Serialize;
 
 mod terminals;
 
-pub use terminals::{FmiTerminalsAndIcons, MatchingRule, Terminal, TerminalMemberVariable, Terminals, VariableKind};
-
-/// Version of the standard that a description follows.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub enum FmiVersion {
-    /// FMI 3.0 and its maintenance releases.
-    #[serde(rename = "3.0")]
-    V3_0,
-}
+pub use terminals::{BUS, FmiTerminalsAndIcons, SIGNAL, Terminal, TerminalMemberVariable, Terminals};
 
 /// Root of `modelDescription.xml`.
 #[derive(Clone, Debug, Serialize)]
@@ -24,7 +16,7 @@ pub enum FmiVersion {
 pub struct FmiModelDescription {
     /// Version of the standard.
     #[serde(rename = "@fmiVersion")]
-    pub fmi_version: FmiVersion,
+    pub fmi_version: &'static str,
     /// Name of the model.
     #[serde(rename = "@modelName")]
     pub model_name: String,
@@ -45,7 +37,7 @@ pub struct FmiModelDescription {
     pub generation_tool: String,
     /// How variable names are to be read.
     #[serde(rename = "@variableNamingConvention")]
-    pub variable_naming_convention: VariableNamingConvention,
+    pub variable_naming_convention: &'static str,
     /// Capabilities of the model exchange interface.
     #[serde(rename = "ModelExchange")]
     pub model_exchange: ModelExchange,
@@ -79,9 +71,9 @@ impl FmiModelDescription {
     }
 }
 
-/// Capabilities of the model exchange interface.
+/// What both interfaces can do.
 #[derive(Clone, Debug, Serialize)]
-pub struct ModelExchange {
+pub struct Capabilities {
     /// File name of the library, without extension.
     #[serde(rename = "@modelIdentifier")]
     pub model_identifier: String,
@@ -94,12 +86,20 @@ pub struct ModelExchange {
     /// The state can be turned into bytes and back.
     #[serde(rename = "@canSerializeFMUState")]
     pub can_serialize_fmu_state: bool,
-    /// Derivatives of outputs and derivatives by inputs and states can be asked for, in a direction.
+    /// Derivatives by inputs, in model exchange by states, too, can be asked for, in a direction.
     #[serde(rename = "@providesDirectionalDerivatives")]
     pub provides_directional_derivatives: bool,
     /// The same, weighted over what is derived.
     #[serde(rename = "@providesAdjointDerivatives")]
     pub provides_adjoint_derivatives: bool,
+}
+
+/// Capabilities of the model exchange interface.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModelExchange {
+    /// What it can do as the other interface.
+    #[serde(flatten)]
+    pub capabilities: Capabilities,
     /// `fmi3CompletedIntegratorStep` has to be called.
     #[serde(rename = "@needsCompletedIntegratorStep")]
     pub needs_completed_integrator_step: bool,
@@ -108,24 +108,9 @@ pub struct ModelExchange {
 /// Capabilities of the co-simulation interface.
 #[derive(Clone, Debug, Serialize)]
 pub struct CoSimulation {
-    /// File name of the library, without extension.
-    #[serde(rename = "@modelIdentifier")]
-    pub model_identifier: String,
-    /// Only one instance may live in a process.
-    #[serde(rename = "@canBeInstantiatedOnlyOncePerProcess")]
-    pub can_be_instantiated_only_once_per_process: bool,
-    /// The state can be taken out and put back.
-    #[serde(rename = "@canGetAndSetFMUState")]
-    pub can_get_and_set_fmu_state: bool,
-    /// The state can be turned into bytes and back.
-    #[serde(rename = "@canSerializeFMUState")]
-    pub can_serialize_fmu_state: bool,
-    /// Derivatives of outputs by inputs can be asked for, in a direction.
-    #[serde(rename = "@providesDirectionalDerivatives")]
-    pub provides_directional_derivatives: bool,
-    /// The same, weighted over the outputs.
-    #[serde(rename = "@providesAdjointDerivatives")]
-    pub provides_adjoint_derivatives: bool,
+    /// What it can do as the other interface.
+    #[serde(flatten)]
+    pub capabilities: Capabilities,
     /// Communication steps may differ in size.
     #[serde(rename = "@canHandleVariableCommunicationStepSize")]
     pub can_handle_variable_communication_step_size: bool,
@@ -165,7 +150,7 @@ pub struct EnumerationType {
     pub description: String,
     /// The literals.
     #[serde(rename = "Item")]
-    pub items: Vec<crate::Item>,
+    pub items: Vec<Item>,
 }
 
 /// All variables.
@@ -180,103 +165,34 @@ pub struct ModelVariables {
 #[derive(Clone, Debug, Serialize)]
 pub enum Variable {
     /// A real number.
-    Float64(Float64),
+    Float64(Of<Real>),
     /// An integer.
-    Int32(Int32),
+    Int32(Of<Integer>),
     /// True or false.
-    Boolean(Boolean),
+    Boolean(Of<Boolean>),
     /// Text.
-    String(Text),
+    String(Of<Text>),
     /// A literal of a declared enumeration.
-    Enumeration(Enumeration),
+    Enumeration(Of<Enumeration>),
 }
 
-/// What all variables have.
+/// A variable of a type.
 #[derive(Clone, Debug, Serialize)]
-pub struct Common {
-    /// Unique name.
-    #[serde(rename = "@name")]
-    pub name: String,
-    /// Handle by which the interface's functions know it.
-    #[serde(rename = "@valueReference")]
-    pub value_reference: u32,
-    /// What it is, in one line.
-    #[serde(rename = "@description")]
-    pub description: String,
-    /// Who sets it.
-    #[serde(rename = "@causality")]
-    pub causality: Causality,
-    /// When it changes.
-    #[serde(rename = "@variability")]
-    pub variability: Variability,
-    /// How it gets its first value; none for an input.
-    #[serde(rename = "@initial", skip_serializing_if = "Option::is_none")]
-    pub initial: Option<Initial>,
-}
-
-/// A real variable.
-#[derive(Clone, Debug, Serialize)]
-pub struct Float64 {
+pub struct Of<T> {
     /// What all variables have.
     #[serde(flatten)]
-    pub common: Common,
+    pub attributes: Attributes,
     /// Whether the host may give it within a step; left out where it may not.
     #[serde(rename = "@intermediateUpdate", skip_serializing_if = "Option::is_none")]
     pub intermediate_update: Option<bool>,
-    /// Name of its unit; none for a ratio.
-    #[serde(rename = "@unit", skip_serializing_if = "Option::is_none")]
-    pub unit: Option<String>,
-    /// Name of the unit that it is best shown in, where that is another.
-    #[serde(rename = "@displayUnit", skip_serializing_if = "Option::is_none")]
-    pub display_unit: Option<String>,
-    /// Smallest value.
-    #[serde(rename = "@min", skip_serializing_if = "Option::is_none", serialize_with = "shortest")]
-    pub min: Option<f64>,
-    /// Largest value.
-    #[serde(rename = "@max", skip_serializing_if = "Option::is_none", serialize_with = "shortest")]
-    pub max: Option<f64>,
-    /// Magnitude that is usual for it.
-    #[serde(rename = "@nominal", skip_serializing_if = "Option::is_none", serialize_with = "shortest")]
-    pub nominal: Option<f64>,
-    /// Value unless the environment sets another.
-    #[serde(rename = "@start", skip_serializing_if = "Option::is_none", serialize_with = "shortest")]
-    pub start: Option<f64>,
-    /// The variable that it is the derivative of, by value reference.
-    #[serde(rename = "@derivative", skip_serializing_if = "Option::is_none")]
-    pub derivative: Option<u32>,
-    /// Whether the unit may set it anew at an event, of a continuous state.
-    #[serde(rename = "@reinit", skip_serializing_if = "Option::is_none")]
-    pub reinit: Option<bool>,
-}
-
-/// An integer variable.
-#[derive(Clone, Debug, Serialize)]
-pub struct Int32 {
-    /// What all variables have.
+    /// What those of its type have.
     #[serde(flatten)]
-    pub common: Common,
-    /// Smallest value.
-    #[serde(rename = "@min", skip_serializing_if = "Option::is_none")]
-    pub min: Option<i32>,
+    pub own: T,
 }
 
-/// A Boolean variable.
-#[derive(Clone, Debug, Serialize)]
-pub struct Boolean {
-    /// What all variables have.
-    #[serde(flatten)]
-    pub common: Common,
-    /// Value unless the environment sets another.
-    #[serde(rename = "@start", skip_serializing_if = "Option::is_none")]
-    pub start: Option<bool>,
-}
-
-/// A string variable.
+/// What a string variable has.
 #[derive(Clone, Debug, Serialize)]
 pub struct Text {
-    /// What all variables have.
-    #[serde(flatten)]
-    pub common: Common,
     /// Value unless the environment sets another.
     #[serde(rename = "Start", skip_serializing_if = "Option::is_none")]
     pub start: Option<Start>,
@@ -288,20 +204,6 @@ pub struct Start {
     /// The text.
     #[serde(rename = "@value")]
     pub value: String,
-}
-
-/// An enumeration variable.
-#[derive(Clone, Debug, Serialize)]
-pub struct Enumeration {
-    /// What all variables have.
-    #[serde(flatten)]
-    pub common: Common,
-    /// Name of the type that lists its literals.
-    #[serde(rename = "@declaredType")]
-    pub declared_type: String,
-    /// Number of the literal that it has unless the environment sets another.
-    #[serde(rename = "@start", skip_serializing_if = "Option::is_none")]
-    pub start: Option<i32>,
 }
 
 /// What depends on what.
@@ -332,8 +234,5 @@ pub struct Unknown {
     pub dependencies: Vec<u32>,
     /// How it depends on each of them.
     #[serde(rename = "@dependenciesKind")]
-    pub dependencies_kind: Vec<DependenciesKind>,
+    pub dependencies_kind: Vec<&'static str>,
 }
-
-#[cfg(test)]
-mod tests;

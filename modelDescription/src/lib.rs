@@ -6,20 +6,21 @@
 pub mod fmi3;
 mod model_structure;
 mod model_variables;
-mod type_definitions;
 mod unit_definitions;
 
-pub use model_structure::{DependenciesKind, Derivatives, InitialUnknowns, ModelStructure, Outputs, Unknown};
+pub use model_structure::{DEPENDENT, ModelStructure, Unknown, Unknowns};
 pub use model_variables::{
-    Boolean, Causality, Enumeration, Initial, Integer, ModelVariables, Real, ScalarVariable, Text, Variability,
-    VariableType,
+    Attributes, Boolean, Causality, Enumeration, Initial, Integer, ModelVariables, Real, ScalarVariable, Text,
+    Variability, VariableType,
 };
 pub use quick_xml::SeError;
-pub use type_definitions::{EnumerationType, Item, SimpleType, TypeAttributes, TypeDefinitions};
 pub use unit_definitions::{BaseUnit, DisplayUnit, Unit, UnitDefinitions};
 
 use quick_xml::se::Serializer as XmlSerializer;
 use serde::{Serialize, Serializer};
+
+/// How variable names are to be read: as plain strings.
+pub const FLAT: &str = "flat";
 
 /// Root of `modelDescription.xml`.
 #[derive(Clone, Debug, Serialize)]
@@ -27,7 +28,7 @@ use serde::{Serialize, Serializer};
 pub struct FmiModelDescription {
     /// Version of the standard.
     #[serde(rename = "@fmiVersion")]
-    pub fmi_version: FmiVersion,
+    pub fmi_version: &'static str,
     /// Name of the model.
     #[serde(rename = "@modelName")]
     pub model_name: String,
@@ -48,7 +49,7 @@ pub struct FmiModelDescription {
     pub generation_tool: String,
     /// How variable names are to be read.
     #[serde(rename = "@variableNamingConvention")]
-    pub variable_naming_convention: VariableNamingConvention,
+    pub variable_naming_convention: &'static str,
     /// How many event indicators model exchange has.
     #[serde(rename = "@numberOfEventIndicators")]
     pub number_of_event_indicators: usize,
@@ -95,31 +96,9 @@ fn document(root: &impl Serialize) -> Result<String, SeError> {
     Ok(xml)
 }
 
-/// Version of the standard that a description follows.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub enum FmiVersion {
-    /// FMI 2.0 and its maintenance releases.
-    #[serde(rename = "2.0")]
-    V2_0,
-}
-
-/// How variable names are to be read.
-#[derive(Clone, Copy, Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub enum VariableNamingConvention {
-    /// A list of plain strings.
-    Flat,
-}
-
-/// Capabilities of the model exchange interface.
+/// What both interfaces can do.
 #[derive(Clone, Debug, Serialize)]
-pub struct ModelExchange {
-    /// File name of the library, without extension.
-    #[serde(rename = "@modelIdentifier")]
-    pub model_identifier: String,
-    /// `fmi2CompletedIntegratorStep` need not be called.
-    #[serde(rename = "@completedIntegratorStepNotNeeded")]
-    pub completed_integrator_step_not_needed: bool,
+pub struct Capabilities {
     /// Only one instance may live in a process.
     #[serde(rename = "@canBeInstantiatedOnlyOncePerProcess")]
     pub can_be_instantiated_only_once_per_process: bool,
@@ -132,9 +111,23 @@ pub struct ModelExchange {
     /// The state can be turned into bytes and back.
     #[serde(rename = "@canSerializeFMUstate")]
     pub can_serialize_fmu_state: bool,
-    /// Derivatives by inputs and states can be asked for.
+    /// Derivatives by inputs, in model exchange by states, too, can be asked for.
     #[serde(rename = "@providesDirectionalDerivative")]
     pub provides_directional_derivative: bool,
+}
+
+/// Capabilities of the model exchange interface.
+#[derive(Clone, Debug, Serialize)]
+pub struct ModelExchange {
+    /// File name of the library, without extension.
+    #[serde(rename = "@modelIdentifier")]
+    pub model_identifier: String,
+    /// `fmi2CompletedIntegratorStep` need not be called.
+    #[serde(rename = "@completedIntegratorStepNotNeeded")]
+    pub completed_integrator_step_not_needed: bool,
+    /// What it can do as the other interface.
+    #[serde(flatten)]
+    pub capabilities: Capabilities,
 }
 
 /// Capabilities of the co-simulation interface.
@@ -152,21 +145,50 @@ pub struct CoSimulation {
     /// Highest order that `fmi2GetRealOutputDerivatives` gives.
     #[serde(rename = "@maxOutputDerivativeOrder")]
     pub max_output_derivative_order: u32,
-    /// Only one instance may live in a process.
-    #[serde(rename = "@canBeInstantiatedOnlyOncePerProcess")]
-    pub can_be_instantiated_only_once_per_process: bool,
-    /// The host's memory callbacks are not used.
-    #[serde(rename = "@canNotUseMemoryManagementFunctions")]
-    pub can_not_use_memory_management_functions: bool,
-    /// The state can be taken out and put back.
-    #[serde(rename = "@canGetAndSetFMUstate")]
-    pub can_get_and_set_fmu_state: bool,
-    /// The state can be turned into bytes and back.
-    #[serde(rename = "@canSerializeFMUstate")]
-    pub can_serialize_fmu_state: bool,
-    /// Derivatives of outputs by inputs can be asked for.
-    #[serde(rename = "@providesDirectionalDerivative")]
-    pub provides_directional_derivative: bool,
+    /// What it can do as the other interface.
+    #[serde(flatten)]
+    pub capabilities: Capabilities,
+}
+
+/// Types that variables declare.
+#[derive(Clone, Debug, Serialize)]
+pub struct TypeDefinitions {
+    /// The types.
+    #[serde(rename = "SimpleType")]
+    pub simple_types: Vec<SimpleType>,
+}
+
+/// An enumeration that variables declare.
+#[derive(Clone, Debug, Serialize)]
+pub struct SimpleType {
+    /// Name by which variables refer to it; no variable may have the same.
+    #[serde(rename = "@name")]
+    pub name: String,
+    /// What it is.
+    #[serde(rename = "@description")]
+    pub description: String,
+    /// Its literals.
+    #[serde(rename = "Enumeration")]
+    pub enumeration: Items,
+}
+
+/// The literals of an enumeration.
+#[derive(Clone, Debug, Serialize)]
+pub struct Items {
+    /// The literals.
+    #[serde(rename = "Item")]
+    pub items: Vec<Item>,
+}
+
+/// A literal of an enumeration.
+#[derive(Clone, Debug, Serialize)]
+pub struct Item {
+    /// Its name.
+    #[serde(rename = "@name")]
+    pub name: String,
+    /// The integer that stands for it.
+    #[serde(rename = "@value")]
+    pub value: i32,
 }
 
 /// Log categories that can be switched on.
@@ -212,6 +234,3 @@ fn shortest<S: Serializer>(number: &(impl Copy + Into<Option<f64>>), serializer:
         None => serializer.serialize_none(),
     }
 }
-
-#[cfg(test)]
-mod tests;

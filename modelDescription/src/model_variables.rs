@@ -12,10 +12,21 @@ pub struct ModelVariables {
 /// A variable.
 #[derive(Clone, Debug, Serialize)]
 pub struct ScalarVariable {
+    /// What all variables have.
+    #[serde(flatten)]
+    pub attributes: Attributes,
+    /// Its type.
+    #[serde(rename = "$value")]
+    pub variable_type: VariableType,
+}
+
+/// What all variables have.
+#[derive(Clone, Debug, Serialize)]
+pub struct Attributes {
     /// Unique name.
     #[serde(rename = "@name")]
     pub name: String,
-    /// Handle by which the interface's functions know it; unique within its type.
+    /// Handle by which the interface's functions know it.
     #[serde(rename = "@valueReference")]
     pub value_reference: u32,
     /// What it is, in one line.
@@ -30,9 +41,6 @@ pub struct ScalarVariable {
     /// How it gets its first value; none for an input.
     #[serde(rename = "@initial", skip_serializing_if = "Option::is_none")]
     pub initial: Option<Initial>,
-    /// Its type.
-    #[serde(rename = "$value")]
-    pub variable_type: VariableType,
 }
 
 /// Who sets a variable.
@@ -111,9 +119,9 @@ pub struct Real {
     /// Value unless the environment sets another.
     #[serde(rename = "@start", skip_serializing_if = "Option::is_none", serialize_with = "shortest")]
     pub start: Option<f64>,
-    /// Index of the state whose derivative it is.
+    /// The state whose derivative it is: its index, in FMI 3.0 its value reference.
     #[serde(rename = "@derivative", skip_serializing_if = "Option::is_none")]
-    pub derivative: Option<usize>,
+    pub derivative: Option<u32>,
     /// Whether an event may change it, of a continuous state.
     #[serde(rename = "@reinit", skip_serializing_if = "Option::is_none")]
     pub reinit: Option<bool>,

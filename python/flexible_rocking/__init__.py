@@ -1,65 +1,63 @@
-"""FlexibleRocking: the FMU of a structure that rocks on its foundation, ready for fmpy, and those of your own structures."""
+"""FlexibleRocking: structures that rock on their foundation under earthquake ground motion.
 
-import subprocess
-import tempfile
-from collections.abc import Iterable, Mapping
+    import flexible_rocking as fr
+
+    pier = fr.Structure(m=4e5, m0=1e5, H=9, B=1.5, J0=1e5, f_fc=2.5, zeta_fc=0.03, r=0.95)
+    ground = fr.Record.read("RSN77.AT2", scale=1.45)          # or fr.Record(time, a_g), fr.Record(dt, a_g), fr.pulse(...)
+    run = fr.simulate(pier, ground)
+    run.peaks["theta"], run.overturned, run.transitions
+    run.at([0.5, 1.0]).to_pandas()
+
+Structure and Record are what is shaken and what shakes it; simulate returns a Run. advise says which level of detail is enough,
+estimate what is known without a time history. sweep runs many on all cores, fragility fits a curve to them. export writes an FMU;
+fmu is the path of one. help() of each has units, shapes, equation numbers (those of the paper) and errors; docs/howto/python.md is the
+page.
+
+SI units and radians throughout. What is refused raises ValueError with the name, the value and the limit. pandas, matplotlib and
+IPython are needed only by what returns a table, draws, or is shown in a notebook.
+"""
+
+import sys
+from collections.abc import Iterable
 from importlib.metadata import distribution
 from os import PathLike
 from pathlib import Path
 
-__all__ = ["export", "fmu"]
+from . import _native
+from ._native import Advice, Curve, Peak, Record, Run, Structure, Transition, Worst, advise, estimate, pulse, simulate
+from ._results import Estimate, Response
+from ._sweep import Fragility, fragility, sweep
 
-
-def _installed(name: str) -> Path:
-    """The file of this package that is called so, wherever the installation has put it."""
-    files = distribution("flexible-rocking").files or []
-    return next(Path(file.locate()).resolve() for file in files if file.name in (name, f"{name}.exe"))
+__all__ = ["Advice", "Curve", "Estimate", "Fragility", "Peak", "Record", "Response", "Run", "Structure", "Transition", "Worst",
+           "advise", "estimate", "export", "fmu", "fragility", "pulse", "simulate", "sweep"]
 
 
 def fmu() -> Path:
     """The FMU of McManus's bridge pier, for every platform, with a pulse as its ground motion until `record` names another."""
-    return _installed("FlexibleRocking.fmu")
+    files = distribution("flexible-rocking").files or []
+    return next(Path(str(file.locate())).resolve() for file in files if file.name == "FlexibleRocking.fmu")
 
 
 def export(
-    target: str | PathLike,
+    target: str | PathLike[str],
+    structure: Structure,
     *,
-    parameters: Mapping[str, float] | None = None,
-    preset: str | None = None,
-    record: str | PathLike | Iterable[str | PathLike] = (),
-    name: str | None = None,
+    record: Record | str | PathLike[str] | Iterable[Record | str | PathLike[str]] = (),
+    name: str = "FlexibleRocking",
     fmi: int = 2,
+    library: str | PathLike[str] | None = None,
 ) -> Path:
     """Writes the FMU of a structure to `target` and returns its path.
 
-    `parameters` are m, m0, H, B, f_fc, zeta_fc, r and, where they differ from 0, 1 and 9.81, J0, c_ratio, g, in SI units;
-    without them it is a specimen, `preset` ("mcmanus", "evison"). It follows the first `record`, and has the others inside.
-    `name` is what hosts call the model, `fmi` the version of the standard, 2 (2.0) or 3 (3.0). What is refused raises ValueError
-    with the reason.
+    record: a Record or a file, or several; the FMU follows the first and has the others inside, each Record under its title.
+    name: what hosts call the model. fmi: the version of the standard, 2 (2.0) or 3 (3.0). library: an FMU or a shared library
+    to take the code from; by default `fmu()`. Raises ValueError with the reason.
     """
-    target = Path(target).absolute()
-    records = [record] if isinstance(record, (str, PathLike)) else list(record)
-    arguments = [_installed("rocking-fmu"), "--quiet", "export", "--library", fmu(), "--output", target, "--fmi", str(fmi)]
-    if preset is not None:
-        arguments += ["--preset", preset]
-    if name is not None:
-        arguments += ["--name", name]
-    if records:
-        arguments += ["--record", *records]
-    with tempfile.TemporaryDirectory() as folder:
-        file = Path(folder) / "parameters.toml"
-        if parameters is not None:
-            lines = (f"{key} = {_number(key, value)!r}\n" for key, value in parameters.items())
-            file.write_text("".join(lines), encoding="utf-8")
-            arguments += ["--parameters", file]
-        done = subprocess.run(arguments, capture_output=True, text=True, encoding="utf-8")
-    if done.returncode != 0:
-        raise ValueError(done.stderr.strip().removeprefix("error: ").replace(f"parameters in {file}", "parameters"))
-    return target
+    records = [record] if isinstance(record, (Record, str, PathLike)) else list(record)
+    _native.export(target, structure, records, name, fmi, fmu() if library is None else library)
+    return Path(target).absolute()
 
 
-def _number(name: str, value: float) -> float:
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise ValueError(f"{name} = {value!r}: it is no number") from None
+def _command_line() -> None:
+    """The console script rocking-fmu."""
+    sys.exit(_native.command_line(Path(sys.argv[0]).resolve(), sys.argv))

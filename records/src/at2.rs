@@ -2,7 +2,7 @@
 
 use super::parsed::{Parsed, Times};
 use super::sampling::Sampling;
-use super::text::{acceleration, numbered, quote, without_blanks};
+use super::text::{numbered, quote};
 use super::unit::Stated;
 use super::{BadLine, Format, Reading, Unit, bad, source::decide};
 
@@ -23,19 +23,14 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
         return Err(bad(header.len().max(1), "the file ends within the four header lines of an AT2 file"));
     };
     check_unit(unit).map_err(|problem| bad(3, problem))?;
-    let (unit, unit_from) = decide(&Stated::Unit(Unit::G), how.unit).map_err(|problem| bad(3, problem))?;
+    let (unit, unit_from) = decide(&Stated::Unit(Unit::G), how.unit, 3)?;
     let Sampling { npts: Some(npts), dt: Some(dt) } = Sampling::of(4, counts)? else {
         let expected = "`NPTS= 4172, DT= .0100 SEC` or `4172 0.0100 NPTS, DT`";
         return Err(bad(4, format!("found {} where an AT2 file states {expected}", quote(counts))));
     };
 
     let mut parsed = Parsed::new(Format::At2, title.trim(), unit, unit_from, Times::Every(dt));
-    for line in without_blanks(numbered(text).skip(HEADER_LINES)) {
-        let (line, values) = line?;
-        for value in values.split_whitespace() {
-            parsed.add(acceleration(value), line)?;
-        }
-    }
+    parsed.read(numbered(text).skip(HEADER_LINES), None)?;
     parsed.check_count("NPTS", npts, how)?;
     Ok(parsed)
 }
@@ -54,7 +49,7 @@ fn check_unit(line: &str) -> Result<(), String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Column, Record, Remedy};
+    use crate::Record;
     use proptest::prelude::*;
 
     const PACOIMA: &str = "PEER NGA STRONG MOTION DATABASE RECORD\n\
@@ -122,15 +117,6 @@ mod tests {
         ] {
             assert!(check_unit(refused).is_err(), "{refused}");
         }
-        let velocity = "a\nb\nVELOCITY TIME SERIES IN UNITS OF CM/S\nNPTS= 2, DT= .01 SEC\n1 2\n";
-        assert_eq!(
-            read(velocity, &Reading::default()),
-            Err(bad(
-                3,
-                "found \"VELOCITY TIME SERIES IN UNITS OF CM/S\" where an AT2 file states \
-                 ACCELERATION ... IN UNITS OF G"
-            ))
-        );
     }
 
     #[test]
@@ -167,66 +153,7 @@ mod tests {
         );
     }
 
-    /// With both numbers, and with a way out.
-    #[test]
-    fn the_samples_that_are_there_can_be_taken() {
-        let how = Reading { ignores_count: true, ..Reading::default() };
-        for (values, found) in [(".1 .2", 2), (".1 .2 .3 .4", 4)] {
-            let text = format!("{PACOIMA}NPTS= 3, DT= .01 SEC\n{values}\n");
-            assert_eq!(parse(&text, &Reading::default()).unwrap_err().remedy, Some(Remedy::IgnoreCount));
-            let parsed = parse(&text, &how).unwrap();
-            assert_eq!(parsed.source.remarks, [format!("NPTS states 3 samples, and the file has {found}")]);
-            assert_eq!(parsed.record(&how).unwrap().0.times().len(), found);
-        }
-    }
-
-    #[test]
-    fn what_contradicts_the_file_is_refused() {
-        let text = format!("{PACOIMA}NPTS= 3, DT= .01 SEC\n.1 .2 .3\n");
-        let problem = |how: &Reading| read(&text, how).unwrap_err().problem;
-        let si = Reading { unit: Some(Unit::MetrePerSecondSquared), ..Reading::default() };
-        assert_eq!(problem(&si), "the file states accelerations in g, and m/s2 is asked for");
-        let other_step = Reading { dt: Some(0.02), ..Reading::default() };
-        assert_eq!(problem(&other_step), "the file states a sample every 0.01 s, and 0.02 s is asked for");
-        let column = Reading { column: Some(Column::Number(2)), ..Reading::default() };
-        assert_eq!(problem(&column), "column 2 is asked for, and a file of PEER AT2 has none");
-        let same = Reading { unit: Some(Unit::G), dt: Some(0.01), ..Reading::default() };
-        assert!(read(&text, &same).is_ok());
-        let gap = format!("{PACOIMA}NPTS= 3, DT= .01 SEC\n.1 .2\n\n.3\n");
-        assert_eq!(read(&gap, &same).unwrap_err().line, 6);
-    }
-
-    /// Any finite value as AT2 files write them: 1.5E-3, -.15D-2, fixed point.
-    fn written(value: f64, style: usize) -> String {
-        match style {
-            0 => format!("{value:e}"),
-            1 => format!("{value:E}").replace('E', "D"),
-            _ => format!("{value}").replacen("0.", ".", usize::from(value.abs() < 1.0)),
-        }
-    }
-
     proptest! {
-        #[test]
-        fn at2_reads_what_was_written(
-            values in prop::collection::vec((-1e3..1e3_f64, 0..3_usize), 2..40),
-            columns in 1..9_usize,
-            dt in 1e-4..1.0_f64,
-            variant in 0..3_usize,
-        ) {
-            let npts = values.len();
-            let counts = match variant {
-                0 => format!("NPTS= {npts:6}, DT= {dt} SEC,"),
-                1 => format!("{npts}    {dt}    NPTS, DT"),
-                _ => format!("npts={npts}, dt={dt:e} sec"),
-            };
-            let words: Vec<_> = values.iter().map(|&(value, style)| written(value, style)).collect();
-            let lines: Vec<_> = words.chunks(columns).map(|line| line.join("  ")).collect();
-            let text = format!("{PACOIMA}{counts}\n{}\n", lines.join("\n"));
-            let record = read(&text, &Reading::default()).unwrap();
-            prop_assert_eq!(record.times(), (0..npts).map(|i| i as f64 * dt).collect::<Vec<_>>());
-            prop_assert_eq!(record.acceleration(), values.iter().map(|&(value, _)| value).collect::<Vec<_>>());
-        }
-
         /// A file cut short is refused, unless all that is lost is from its last number on.
         #[test]
         fn a_file_cut_anywhere_is_refused(values in prop::collection::vec(-1.0..1.0_f64, 2..12), cut in 0.0..1.0_f64) {

@@ -4,7 +4,7 @@
 //! many accelerations follow, their unit and their columns; in volume 2 velocities and displacements come after them.
 
 use super::parsed::{Parsed, Times};
-use super::text::{acceleration, columns, number, numbered, quote, without_blanks};
+use super::text::{columns, number, numbered, quote};
 use super::unit::Stated;
 use super::{BadLine, Column, Format, Reading, Remedy, Unit, bad, source::decide};
 
@@ -53,17 +53,12 @@ pub(super) fn parse(text: &str, format: Format, how: &Reading) -> Result<Parsed,
         None if how.unit.is_some() => Stated::Nothing,
         None => return Err(bad(announced, "the unit of the accelerations is not stated").remedied_by(Remedy::Unit)),
     };
-    let (unit, unit_from) = decide(&stated, how.unit).map_err(|problem| bad(announced, problem))?;
+    let (unit, unit_from) = decide(&stated, how.unit, announced)?;
     let mut parsed = Parsed::new(format, title(text, format), unit, unit_from, Times::Every(dt));
     if channels.len() > 1 {
         parsed.remark(format!("channel {} of {}", channel + 1, channels.len()));
     }
-    for line in without_blanks(numbered(text).skip(announced).take_while(|(_, line)| !ends_data(line))) {
-        let (line, values) = line?;
-        for value in columns(values, width) {
-            parsed.add(acceleration(value), line)?;
-        }
-    }
+    parsed.read(numbered(text).skip(announced).take_while(|(_, line)| !ends_data(line)), width)?;
     parsed.check_count("the line before the data", count, how)?;
     Ok(parsed)
 }

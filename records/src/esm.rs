@@ -2,7 +2,7 @@
 //! line.
 
 use super::parsed::{Parsed, Times};
-use super::text::{acceleration, number, numbered, quote, without_blanks};
+use super::text::{number, numbered, quote};
 use super::unit::Stated;
 use super::{BadLine, Format, Reading, Unit, bad, source::decide};
 
@@ -30,7 +30,7 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     }
     let (line, units) = needed("UNITS")?;
     let stated = Unit::named(units).map_or(Stated::Other(units.into()), Stated::Unit);
-    let (unit, unit_from) = decide(&stated, how.unit).map_err(|problem| bad(line, problem))?;
+    let (unit, unit_from) = decide(&stated, how.unit, line)?;
     let (line, step) = needed(STEP)?;
     let dt = number(step).filter(|dt| *dt > 0.0);
     let dt = dt.ok_or_else(|| bad(line, format!("{STEP} = {} must be a number greater than 0", quote(step))))?;
@@ -41,12 +41,7 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     let title = title.into_iter().flatten().map(|(_, value)| value).filter(|value| !value.is_empty());
     let title = title.collect::<Vec<_>>().join(", ");
     let mut parsed = Parsed::new(Format::Esm, title, unit, unit_from, Times::Every(dt));
-    for line in without_blanks(numbered(text).skip(header.len())) {
-        let (line, values) = line?;
-        for value in values.split_whitespace() {
-            parsed.add(acceleration(value), line)?;
-        }
-    }
+    parsed.read(numbered(text).skip(header.len()), None)?;
     parsed.check_count("NDATA", count, how)?;
     Ok(parsed)
 }

@@ -73,43 +73,44 @@ fn not_blank<'a>(cells: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
 }
 
 impl Layout {
-    /// That of lines of numbers. A semicolon separates wherever there is one, and so does a comma, unless each is between
-    /// digits and blanks separate, or there is no more than one on a line that has no point.
+    /// That of lines of numbers. A semicolon separates wherever there is one. So does a comma, unless blanks separate and
+    /// each comma is between digits. Whole numbers with commas may be columns or decimals: a heading of two columns or the
+    /// option says so, else they are refused.
     pub fn of<'a, L: Iterator<Item = &'a str>>(
         lines: impl Fn() -> L,
         before: &[&str],
         how: &Reading,
     ) -> Result<Layout, String> {
         let has = |letter: char| lines().any(|line| line.contains(letter));
-        let separated = |separator| Layout { separator: Some(separator), decimal_comma: false };
         if has(';') {
-            return Ok(Layout { decimal_comma: has(','), ..separated(';') });
+            return Ok(Layout { separator: Some(';'), decimal_comma: has(',') });
         }
-        let commas = |line: &str| split(line, |letter| letter == ',').len() - 1;
-        if lines().all(|line| commas(line) == 0) {
-            // a comma that stands in quotes alone is one before decimals
+        let fields = |line: &'a str| line.trim().split(',');
+        let is_decimal = |line: &'a str| {
+            let fields: Vec<_> = fields(line).collect();
+            fields.windows(2).all(|pair| pair[0].ends_with(is_digit) && pair[1].starts_with(is_digit))
+        };
+        let (has_blanks, are_decimal) =
+            (lines().any(|line| line.trim().contains(char::is_whitespace)), lines().all(is_decimal));
+        if !has(',') || has_blanks && are_decimal {
             return Ok(Layout { separator: None, decimal_comma: has(',') });
         }
-        let is_part = |field: &str| field.len() > 1 && field.starts_with('0') && field.parse::<u64>().is_ok();
-        let has_parts = |line: &str| commas(line) > 1 && line.split(',').any(|field| is_part(field.trim()));
-        if !has('.') && lines().any(has_parts) && !lines().any(|line| line.trim().contains(char::is_whitespace)) {
-            return Err("commas stand between numbers and before decimals: write a semicolon between columns".into());
-        }
-        let is_decimal = |pair: &[&str]| {
-            pair[0].ends_with(|letter: char| letter.is_ascii_digit())
-                && pair[1].starts_with(|letter: char| letter.is_ascii_digit())
+        let is_part =
+            |field: &str| field == "-0" || field.len() > 1 && field.starts_with('0') && field.parse::<u64>().is_ok();
+        let has_quantity = |cell: &str| TimeUnit::of(cell).is_some() || matches!(Stated::of(cell), Stated::Unit(_));
+        let is_said = || {
+            matches!(how.column, Some(Column::Number(2..)))
+                || before.iter().filter_map(|line| headings(line, 2)).flatten().any(has_quantity)
         };
-        if !lines().all(|line| split(line, |letter| letter == ',').windows(2).all(is_decimal)) {
-            return Ok(Layout { decimal_comma: has('"') && lines().any(has_comma_in_quotes), ..separated(',') });
+        let is_unclear = || are_decimal && lines().all(|line| fields(line).count() < 3) && !is_said();
+        if !has('.') && !has_blanks && (lines().any(|line| fields(line).any(is_part)) || is_unclear()) {
+            return Err(format!(
+                "the commas of {} may stand between numbers or before decimals: write a point before decimals, or a \
+                 semicolon between columns",
+                quote(lines().next().unwrap_or_default())
+            ));
         }
-        if lines().any(|line| line.trim().contains(char::is_whitespace)) {
-            return Ok(Layout { separator: None, decimal_comma: true });
-        }
-        if has('.') || lines().any(|line| line.contains('"')) {
-            return Ok(Layout { decimal_comma: lines().any(has_comma_in_quotes), ..separated(',') });
-        }
-        let is_one_column = lines().all(|line| commas(line) < 2) && is_one_column(&lines, before, how)?;
-        Ok(if is_one_column { Layout { separator: None, decimal_comma: true } } else { separated(',') })
+        Ok(Layout { separator: Some(','), decimal_comma: false })
     }
 
     pub fn fields<'a>(&self, line: &'a str) -> Vec<&'a str> {
@@ -132,34 +133,8 @@ impl Layout {
     }
 }
 
-fn has_comma_in_quotes(line: &str) -> bool {
-    split(line, |letter| letter == ',').iter().any(|field| field.contains(','))
-}
-
-/// Whether lines with a comma each, between digits and without a point, are one column with decimal commas, and not two of
-/// whole numbers. A heading or the option says so, or a field that is no whole number, as `-0` and `05`; else an error.
-fn is_one_column<'a, L: Iterator<Item = &'a str>>(
-    lines: impl Fn() -> L,
-    before: &[&str],
-    how: &Reading,
-) -> Result<bool, String> {
-    let has_quantity = |cell: &str| TimeUnit::of(cell).is_some() || matches!(Stated::of(cell), Stated::Unit(_));
-    let has_two = before.iter().filter_map(|line| headings(line, 2)).flatten().any(has_quantity);
-    if has_two || matches!(how.column, Some(Column::Number(2..))) {
-        return Ok(false);
-    }
-    let is_no_pair = |line: &str| match line.trim().split_once(',') {
-        Some((before, after)) => before == "-0" || (after.len() > 1 && after.starts_with('0')),
-        None => true,
-    };
-    if lines().any(is_no_pair) {
-        return Ok(true);
-    }
-    Err(format!(
-        "{} may be two whole numbers or one with a decimal comma: write a point before decimals, or a semicolon between \
-         columns",
-        quote(lines().next().unwrap_or_default())
-    ))
+fn is_digit(letter: char) -> bool {
+    letter.is_ascii_digit()
 }
 
 impl std::fmt::Display for Layout {

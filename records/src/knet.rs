@@ -1,7 +1,7 @@
 //! ASCII of K-NET and KiK-net: seventeen lines of header, then counts of the recorder, eight a line.
 
 use super::parsed::{Parsed, Times};
-use super::text::{acceleration, columns, number, numbered, quote, without_blanks};
+use super::text::{number, numbered, quote};
 use super::unit::Stated;
 use super::{BadLine, Format, Reading, Unit, bad, source::decide};
 
@@ -34,20 +34,14 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
         bad(line, format!("found {} where the scale factor is stated, such as 3920(gal)/6182761", quote(factor)))
     })?;
     let factor = positive(line, "Scale Factor", gal)? / positive(line, "Scale Factor", counts)?;
-    let (unit, unit_from) =
-        decide(&Stated::Unit(Unit::CentimetrePerSecondSquared), how.unit).map_err(|problem| bad(line, problem))?;
+    let (unit, unit_from) = decide(&Stated::Unit(Unit::CentimetrePerSecondSquared), how.unit, line)?;
     let (line, duration) = find("Duration Time(s)")?;
     let duration = positive(line, "Duration Time(s)", duration)?;
 
     let parts = ["Origin Time", "Station Code", "Dir."].map(|key| find(key).map_or("", |(_, value)| value));
     let title = parts.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join(", ");
     let mut parsed = Parsed::new(Format::KNet, title, unit, unit_from, Times::Every(1.0 / frequency));
-    for line in without_blanks(numbered(text).skip(HEADER_LINES)) {
-        let (line, values) = line?;
-        for value in columns(values, Some(WIDTH)) {
-            parsed.add(acceleration(value), line)?;
-        }
-    }
+    parsed.read(numbered(text).skip(HEADER_LINES), Some(WIDTH))?;
     parsed.check_count("Duration Time(s) x Sampling Freq(Hz)", (duration * frequency).round() as usize, how)?;
     parsed.values.iter_mut().for_each(|count| *count *= factor);
     let maximum = find("Max. Acc. (gal)").or(find("Max Acc. (gal)")).ok().and_then(|(_, maximum)| number(maximum));

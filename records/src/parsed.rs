@@ -1,6 +1,6 @@
 //! What the parsers of all layouts make: samples as the file gives them.
 
-use super::text::nine_digits;
+use super::text::{columns, nine_digits, number, quote, without_blanks};
 use super::{BadLine, Format, MAX_SAMPLES, Reading, Record, Remedy, Source, Unit, UnitFrom, bad};
 
 /// Steps that differ by no more than this part are the same.
@@ -22,17 +22,15 @@ pub(super) struct Parsed {
 /// When the samples are.
 #[derive(Debug)]
 pub(super) enum Times {
-    /// Every so many seconds, as the file states.
+    /// Every so many seconds.
     Every(f64),
-    /// Every so many seconds, as the user says.
-    Asked(f64),
     /// At these times, s.
     At(Vec<f64>),
 }
 
 impl Times {
-    /// The step that the file has (s), and whether it is `dt` (s): times as they are written may be rounded, and after the
-    /// last step be off by a tenth of one. None if the user alone says the step.
+    /// The step (s), and whether it is `dt` (s): times as they are written may be rounded, and after the last step be off by
+    /// a tenth of one. None of a single time.
     pub fn have_step(&self, dt: f64) -> Option<(f64, bool)> {
         match self {
             Times::Every(step) => Some((*step, (step - dt).abs() <= SAME_STEP * dt)),
@@ -40,7 +38,7 @@ impl Times {
                 let (steps, duration) = ((times.len() - 1) as f64, times[times.len() - 1] - times[0]);
                 Some((nine_digits(duration / steps), (duration - steps * dt).abs() < ROUNDING * dt))
             }
-            Times::At(_) | Times::Asked(_) => None,
+            Times::At(_) => None,
         }
     }
 }
@@ -52,12 +50,28 @@ impl Parsed {
         Parsed { title: title.into(), times, values: Vec::new(), source, last_line: 1 }
     }
 
+    /// Adds the accelerations on `lines`, in columns of `width` letters, or with blanks between them.
+    pub fn read<'a>(
+        &mut self,
+        lines: impl Iterator<Item = (usize, &'a str)>,
+        width: Option<usize>,
+    ) -> Result<(), BadLine> {
+        for line in without_blanks(lines) {
+            let (line, values) = line?;
+            for word in columns(values, width) {
+                let no_number = || bad(line, format!("the acceleration {} is not a number", quote(word)));
+                self.add(number(word).ok_or_else(no_number)?, line)?;
+            }
+        }
+        Ok(())
+    }
+
     /// Adds the acceleration that stands on `line`.
-    pub fn add(&mut self, acceleration: Result<f64, String>, line: usize) -> Result<(), BadLine> {
+    pub fn add(&mut self, acceleration: f64, line: usize) -> Result<(), BadLine> {
         if self.values.len() == MAX_SAMPLES {
             return Err(bad(line, format!("more than {MAX_SAMPLES} samples")));
         }
-        self.values.push(acceleration.map_err(|problem| bad(line, problem))?);
+        self.values.push(acceleration);
         self.last_line = line;
         Ok(())
     }
@@ -98,15 +112,8 @@ impl Parsed {
         }
         let times: Vec<f64> = match times {
             Times::At(times) => times,
-            Times::Every(dt) | Times::Asked(dt) => (0..count).map(|i| i as f64 * dt).collect(),
+            Times::Every(dt) => (0..count).map(|i| i as f64 * dt).collect(),
         };
-        if let Some(index) = times.windows(2).position(|pair| pair[1] <= pair[0] || !pair[1].is_finite()) {
-            let (before, after) = (times[index], times[index + 1]);
-            return Err(bad(
-                last_line,
-                format!("the time {after:?} s does not come after the one before it, {before:?} s"),
-            ));
-        }
         let record = Record::from_samples(title, times, acceleration);
         record.map(|record| (record, source)).map_err(|error| bad(last_line, error.to_string()))
     }

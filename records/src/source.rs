@@ -1,8 +1,8 @@
 //! How a record's file is read, and what was found in it or assumed of it.
 
-use super::Unit;
 use super::text::quote;
 use super::unit::{Stated, is_like_a_unit};
+use super::{BadLine, Remedy, Unit, bad};
 use serde::{Deserialize, Deserializer, de::Error};
 use std::fmt;
 
@@ -118,24 +118,22 @@ impl fmt::Display for Format {
     }
 }
 
-/// Who is right about the unit: the file, which must not be contradicted, else the user, else it is m/s².
-pub(super) fn decide(stated: &Stated, asked: Option<Unit>) -> Result<(Unit, UnitFrom), String> {
+/// Who is right about the unit, which `line` states: the file, which must not be contradicted, else the user, else it is m/s².
+pub(super) fn decide(stated: &Stated, asked: Option<Unit>, line: usize) -> Result<(Unit, UnitFrom), BadLine> {
+    let contradicted = |stated: &dyn fmt::Display, asked: Unit| {
+        Err(bad(line, format!("the file states accelerations in {stated}, and {asked} is asked for")))
+    };
     match (stated, asked) {
-        (Stated::Unit(unit), Some(asked)) if *unit != asked => {
-            Err(format!("the file states accelerations in {unit}, and {asked} is asked for"))
-        }
+        (Stated::Unit(unit), Some(asked)) if *unit != asked => contradicted(unit, asked),
         (Stated::Unit(unit), _) => Ok((*unit, UnitFrom::File)),
-        (Stated::Other(other), Some(asked)) if is_like_a_unit(other) => {
-            Err(format!("the file states accelerations in {}, and {asked} is asked for", quote(other)))
-        }
+        (Stated::Other(other), Some(asked)) if is_like_a_unit(other) => contradicted(&quote(other), asked),
         (_, Some(asked)) => Ok((asked, UnitFrom::User)),
         (Stated::Nothing, None) => Ok((Unit::MetrePerSecondSquared, UnitFrom::Assumed)),
         (Stated::Other(other), None) => {
             let known = Unit::NAMES.map(|(name, _)| name).join(", ");
-            Err(format!("the accelerations are in {}, which is none of {known}", quote(other)))
-        }
-        (Stated::Mentioned(line), None) => {
-            Err(format!("{} has a unit, and no heading says that it is that of the accelerations", quote(line)))
+            let remedy = (!is_like_a_unit(other)).then_some(Remedy::Unit);
+            let problem = format!("the accelerations are in {}, which is none of {known}", quote(other));
+            Err(BadLine { remedy, ..bad(line, problem) })
         }
     }
 }

@@ -71,11 +71,6 @@ pub(super) fn nine_digits(value: f64) -> f64 {
     format!("{value:.8e}").parse().unwrap_or(value)
 }
 
-/// The acceleration that `word` gives.
-pub(super) fn acceleration(word: &str) -> Result<f64, String> {
-    number(word).ok_or_else(|| format!("the acceleration {} is not a number", quote(word)))
-}
-
 /// The words of lines of a fixed width: columns of `width` letters, where a number that fills its column leaves no blank
 /// before it.
 pub(super) fn columns(line: &str, width: Option<usize>) -> Vec<&str> {

@@ -1,6 +1,5 @@
 //! Units of acceleration, and how files write them.
 
-use super::Remedy;
 use super::text::{number, quote};
 use serde::Deserialize;
 use std::fmt;
@@ -195,8 +194,6 @@ pub(super) enum Stated {
     Unit(Unit),
     /// A unit of something else, or one that is not known here.
     Other(String),
-    /// No heading states one, but a line before the data, which is this, has one.
-    Mentioned(String),
 }
 
 impl Stated {
@@ -241,16 +238,6 @@ impl Stated {
             stated => stated,
         }
     }
-
-    /// What the user can say where it is not known whether this is the unit.
-    pub(super) fn remedy(&self) -> Option<Remedy> {
-        let is_unclear = match self {
-            Stated::Other(other) => !is_like_a_unit(other),
-            Stated::Mentioned(_) => true,
-            _ => false,
-        };
-        is_unclear.then_some(Remedy::Unit)
-    }
 }
 
 #[cfg(test)]
@@ -261,34 +248,27 @@ mod tests {
     fn a_heading_decides_its_unit() {
         let [g, m, cm, mm] =
             [Unit::G, Unit::MetrePerSecondSquared, Unit::CentimetrePerSecondSquared, Unit::MillimetrePerSecondSquared];
-        for (heading, unit) in [
-            ("a_g[g]", g),
-            ("acc (G)", g),
-            ("acceleration g", g),
-            ("acc_g", g),
-            ("Acceleration, g", g),
-            ("a_g[m/s2]", m),
-            ("ACC (m/s^2)", m),
-            ("a [m s\u{207b}\u{b2}]", m),
-            ("a (m/sec/sec)", m),
-            ("acc_m_s2", m),
-            ("acc (cm/s2)", cm),
-            ("gal", cm),
-            ("N-S(gal)", cm),
-            ("acc, cm/sec^2", cm),
-            ("acc_cms2", cm),
-            ("{cm/s\u{b2}}", cm),
-            ("a (filtered) [mm/s2]", mm),
-            ("a mm/s/s", mm),
-            ("a/g", g),
-            ("Acc. / (m/s\u{b2})", m),
-            ("a_ms2", m),
-            ("a [in/sec^2]", Unit::InchPerSecondSquared),
-            ("acc_ft/s2", Unit::FootPerSecondSquared),
-            ("ACC (mg)", Unit::MilliG),
-            ("acc, %g", Unit::PercentG),
+        for (headings, unit) in [
+            (&["a_g[g]", "acc (G)", "acceleration g", "acc_g", "Acceleration, g", "a/g"][..], g),
+            (
+                &[
+                    "a_g[m/s2]",
+                    "ACC (m/s^2)",
+                    "a [m s\u{207b}\u{b2}]",
+                    "a (m/sec/sec)",
+                    "acc_m_s2",
+                    "Acc. / (m/s\u{b2})",
+                ],
+                m,
+            ),
+            (&["acc (cm/s2)", "gal", "N-S(gal)", "acc, cm/sec^2", "acc_cms2", "{cm/s\u{b2}}"], cm),
+            (&["a (filtered) [mm/s2]", "a mm/s/s"], mm),
+            (&["a [in/sec^2]"], Unit::InchPerSecondSquared),
+            (&["acc_ft/s2"], Unit::FootPerSecondSquared),
+            (&["ACC (mg)"], Unit::MilliG),
+            (&["acc, %g"], Unit::PercentG),
         ] {
-            assert_eq!(Stated::of(heading), Stated::Unit(unit), "{heading}");
+            headings.iter().for_each(|heading| assert_eq!(Stated::of(heading), Stated::Unit(unit), "{heading}"));
         }
         for nothing in ["a_g", "acc", "acceleration", "ground motion", "", "a_G", "ag", "EW", "peak 0.3 g", "in g: 0.3"]
         {
@@ -312,20 +292,14 @@ mod tests {
 
     #[test]
     fn a_heading_of_times_states_their_unit() {
-        for (heading, unit) in [
-            ("t", TimeUnit::Unstated),
-            ("Time", TimeUnit::Unstated),
-            ("t/s", TimeUnit::Second),
-            ("Zeit [s]", TimeUnit::Second),
-            ("time, sec", TimeUnit::Second),
-            ("t/ms", TimeUnit::Millisecond),
-            ("time_ms", TimeUnit::Millisecond),
-            ("(ms)", TimeUnit::Millisecond),
-            ("time in ms", TimeUnit::Millisecond),
-            ("t (h)", TimeUnit::Other("h".into())),
-            ("time min", TimeUnit::Other("min".into())),
+        for (headings, unit) in [
+            (&["t", "Time"][..], TimeUnit::Unstated),
+            (&["t/s", "Zeit [s]", "time, sec"], TimeUnit::Second),
+            (&["t/ms", "time_ms", "(ms)", "time in ms"], TimeUnit::Millisecond),
+            (&["t (h)"], TimeUnit::Other("h".into())),
+            (&["time min"], TimeUnit::Other("min".into())),
         ] {
-            assert_eq!(TimeUnit::of(heading), Some(unit), "{heading}");
+            headings.iter().for_each(|heading| assert_eq!(TimeUnit::of(heading).as_ref(), Some(&unit), "{heading}"));
         }
         for other in ["time history", "trigger", "theta", "a (m/s2)", "acc", "", "T1"] {
             assert_eq!(TimeUnit::of(other), None, "{other}");

@@ -1,16 +1,14 @@
 //! Every layout of a record's file, whole and damaged.
 //!
-//! `FUZZ_RECORDS` says how many mutations of files to read (`make fuzz`: ten million). What a mutation is follows from its
-//! number alone, and a failure names it.
+//! `FUZZ_RECORDS` says how many mutations of files to read (`make fuzz`: ten million).
 
 mod layouts;
 
-use fastrand::Rng;
 use layouts::{DT, Layout, all, cosmos, samples};
+use proptest::prelude::*;
 use rocking_records::{Column, Reading, RecordError, Remedy, Unit, UnitFrom};
+use std::env;
 use std::path::Path;
-use std::sync::atomic::{AtomicU64, Ordering};
-use std::{env, thread};
 
 #[test]
 fn every_layout_gives_its_samples_in_its_unit() {
@@ -29,24 +27,6 @@ fn every_layout_gives_its_samples_in_its_unit() {
     }
 }
 
-/// In whatever encoding and with whatever ends of lines.
-#[test]
-fn every_layout_is_read_in_every_encoding() {
-    for Layout { path, bytes, how, .. } in all(40) {
-        let text = String::from_utf8(bytes.clone()).unwrap().replace("\r\n", "\n");
-        let expected = rocking_records::from_bytes(&path, &bytes, &how).unwrap();
-        let utf_16: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
-        for bytes in [
-            text.replace('\n', "\r\n").into_bytes(),
-            text.replace('\n', "\r").into_bytes(),
-            [b"\xef\xbb\xbf", text.as_bytes()].concat(),
-            [b"\xff\xfe", utf_16.as_slice()].concat(),
-        ] {
-            assert_eq!(rocking_records::from_bytes(&path, &bytes, &how).unwrap(), expected, "{}", path.display());
-        }
-    }
-}
-
 /// A unit or a step that contradicts the file is refused in every layout that states one.
 #[test]
 fn what_contradicts_a_file_is_refused() {
@@ -56,6 +36,13 @@ fn what_contradicts_a_file_is_refused() {
         let refused = read(&Reading { unit: Some(Unit::MillimetrePerSecondSquared), ..how.clone() }).unwrap_err();
         let expected = format!("the file states accelerations in {unit}, and mm/s2 is asked for");
         assert!(refused.to_string().ends_with(&expected), "{refused}");
+        if how.dt.is_none() {
+            let refused = read(&Reading { dt: Some(2.0 * DT), ..how.clone() }).unwrap_err();
+            assert!(
+                refused.to_string().ends_with(&format!("a sample every {DT} s, and {} s is asked for", 2.0 * DT)),
+                "{refused}"
+            );
+        }
     }
 }
 
@@ -137,19 +124,6 @@ fn a_channel_of_csmip_is_chosen_and_its_line_may_end_early() {
     assert_eq!(line_of(&unknown).1, Some(Remedy::Unit));
 }
 
-/// 46 g in m/s2 are 451 m/s2.
-#[test]
-fn a_peak_that_no_earthquake_has_is_told() {
-    let path = std::env::temp_dir().join(format!("rocking-peak-{}.csv", std::process::id()));
-    let warnings = |peak: f64| {
-        std::fs::write(&path, format!("t,a\n0,{peak}\n.05,-{peak}\n")).unwrap();
-        rocking_records::read(&path, &Reading::default(), 9.81).unwrap().1.warnings
-    };
-    assert_eq!(warnings(46.0 * 9.81), ["a peak of 46 g: is the unit right?"]);
-    assert!(warnings(4.9 * 9.81).is_empty());
-    std::fs::remove_file(path).unwrap();
-}
-
 /// Where the largest count is the stated maximum there is no offset; a maximum that is neither is told.
 #[test]
 fn the_stated_maximum_tells_whether_there_is_an_offset() {
@@ -196,35 +170,6 @@ fn what_is_no_acceleration_is_refused() {
     }
 }
 
-/// Mutations without `FUZZ_RECORDS`.
-const MUTATIONS: u64 = 40_000;
-
-/// No panic; what is read is a record; memory is bounded by the file's size.
-#[test]
-fn no_mutation_does_harm() {
-    let mutations =
-        env::var("FUZZ_RECORDS").map_or(MUTATIONS, |count| count.parse().expect("FUZZ_RECORDS is a number"));
-    let layouts = all(37);
-    let next = AtomicU64::new(0);
-    let work = || {
-        let mut read = 0;
-        loop {
-            let number = next.fetch_add(1, Ordering::Relaxed);
-            if number >= mutations {
-                return read;
-            }
-            read += u64::from(survives(&layouts, number));
-        }
-    };
-    let cores = thread::available_parallelism().map_or(1, usize::from);
-    let read: u64 = thread::scope(|scope| {
-        let threads: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
-        threads.into_iter().map(|thread| thread.join().expect("the panic is above")).sum()
-    });
-    println!("{mutations} mutations, {read} of them still records");
-    assert!(read > mutations / 50 && read < mutations, "{read} of {mutations} are records");
-}
-
 /// The memory that the file `bytes` may take.
 fn bound(bytes: &[u8]) -> u64 {
     const LEAST: u64 = 1 << 16;
@@ -232,112 +177,60 @@ fn bound(bytes: &[u8]) -> u64 {
     LEAST + PER_BYTE * bytes.len() as u64
 }
 
-/// Reads the mutation called `number`, and says whether it is a record.
-fn survives(layouts: &[Layout], number: u64) -> bool {
-    let mut rng = Rng::with_seed(number);
-    let layout = rng.choice(layouts).unwrap();
-    let (mut bytes, mut how) = (layout.bytes.clone(), layout.how.clone());
-    for _ in 0..rng.usize(1..6) {
-        mutate(&mut bytes, &mut rng);
-    }
-    if rng.u8(..4) == 0 {
-        how.ignores_count = rng.bool();
-        how.unit = rng.choice(Unit::NAMES).map(|(_, unit)| unit).filter(|_| rng.bool());
-        how.dt = rng.bool().then_some(DT);
-        let column = [Column::All, Column::Number(rng.usize(1..5))];
-        how.column = rng.bool().then(|| rng.choice(column)).flatten();
-    }
-    let path = if rng.u8(..8) == 0 { Path::new("any.csv") } else { &layout.path };
-    let mut result = None;
-    let counted = allocation_counter::measure(|| result = Some(rocking_records::from_bytes(path, &bytes, &how)));
-    assert!(counted.bytes_max <= bound(&bytes), "mutation {number}: {} bytes of memory", counted.bytes_max);
-    let Some(Ok((record, _))) = result else { return false };
-    let (times, acceleration) = (record.times(), record.acceleration());
-    assert!(times.len() >= 2 && times.len() == acceleration.len() && times.len() <= bytes.len(), "mutation {number}");
-    assert!(times.windows(2).all(|pair| pair[1] > pair[0]) && times[times.len() - 1].is_finite(), "mutation {number}");
-    assert!(acceleration.iter().all(|value| value.is_finite()), "mutation {number}");
-    true
+/// What files have in them, and what is meant to hurt, with a bar between each and the next.
+const WORDS: &str = "\n|\r|\r\n|\n\n| |\t|,|;|\"|'|#|(|[g]|(cm/s2)|)|e|E+999|-|nan|inf|1e308|-1e-320|99999999999999999999|1,5|\
+    NPTS= 2, DT= 1e-300 SEC|/s2|_|\u{b2}|\0|\u{2212}|units=| pts acc units=g,(8F0.3)\n|\
+    100 Real-header values follow (1F0.0)\n";
+
+/// What takes the place of some bytes of a file.
+fn inserted() -> impl Strategy<Value = Vec<u8>> {
+    let words: Vec<_> = WORDS.split('|').collect();
+    prop_oneof![
+        4 => prop::sample::select(words.clone()).prop_map(|word| word.as_bytes().to_vec()),
+        1 => (prop::sample::select(words), 1..100_usize).prop_map(|(word, times)| word.repeat(times).into_bytes()),
+        3 => prop::collection::vec(any::<u8>(), 0..3),
+    ]
 }
 
-/// What files have in them, and what is meant to hurt.
-const WORDS: [&[u8]; 36] = [
-    b"\n",
-    b"\r",
-    b"\r\n",
-    b"\n\n",
-    b" ",
-    b"\t",
-    b",",
-    b";",
-    b"\"",
-    b"'",
-    b"#",
-    b"(",
-    b"[g]",
-    b"(cm/s2)",
-    b")",
-    b"e",
-    b"E+999",
-    b"-",
-    b"nan",
-    b"inf",
-    b"1e308",
-    b"-1e-320",
-    b"99999999999999999999",
-    b"0",
-    b".",
-    b"1,5",
-    b"NPTS= 2, DT= 1e-300 SEC",
-    b"/s2",
-    b"_",
-    b"\xc2\xb2",
-    b"\xff",
-    b"\0",
-    b"\xe2\x88\x92",
-    b"units=",
-    b" pts acc units=g,(8F0.3)\n",
-    b"100 Real-header values follow (1F0.0)\n",
-];
+proptest! {
+    #![proptest_config(ProptestConfig {
+        cases: env::var("FUZZ_RECORDS").map_or(20_000, |count| count.parse().expect("FUZZ_RECORDS is a number")),
+        ..ProptestConfig::default()
+    })]
 
-fn mutate(bytes: &mut Vec<u8>, rng: &mut Rng) {
-    const LARGEST: usize = 1 << 14;
-    if bytes.is_empty() {
-        bytes.extend(b"0,1\n1,2\n");
-    }
-    let at = rng.usize(..bytes.len());
-    let range = |rng: &mut Rng, len: usize| at..len.min(at + 1 + rng.usize(..60));
-    match rng.u8(..9) {
-        0 => bytes[at] = rng.u8(..),
-        1 => bytes[at] ^= 1 << rng.u8(..8),
-        2 => drop(bytes.drain(range(rng, bytes.len()))),
-        3 => bytes.truncate(at),
-        4 => {
-            let part = bytes[range(rng, bytes.len())].to_vec();
-            let to = rng.usize(..bytes.len());
-            bytes.splice(to..to, part);
+    /// No panic; what is read is a record; memory is bounded by the file's size.
+    #[test]
+    fn no_mutation_does_harm(
+        layout in prop::sample::select(all(37)),
+        changes in prop::collection::vec((any::<prop::sample::Index>(), 0..60_usize, inserted()), 1..6),
+        unit in prop::option::weighted(0.1, prop::sample::select(&Unit::NAMES[..])),
+        column in prop::option::weighted(0.1, prop::sample::select(&[Column::All, Column::Number(1), Column::Number(3)][..])),
+        has_step in prop::bool::weighted(0.1),
+        ignores_count in prop::bool::weighted(0.1),
+        is_named in prop::bool::weighted(0.9),
+    ) {
+        let Layout { path, mut bytes, how, .. } = layout;
+        for (at, removed, inserted) in changes {
+            let at = at.index(bytes.len() + 1);
+            bytes.splice(at..bytes.len().min(at + removed), inserted);
         }
-        5 => {
-            let word = rng.choice(WORDS).unwrap();
-            let times = if rng.u8(..20) == 0 { rng.usize(1..100) } else { 1 };
-            bytes.splice(at..at, word.repeat(times));
-        }
-        6 => {
-            let replaced = range(rng, bytes.len());
-            bytes.splice(replaced, rng.choice(WORDS).unwrap().iter().copied());
-        }
-        7 => {
-            let mut lines: Vec<_> = bytes.split(|byte| *byte == b'\n').map(<[u8]>::to_vec).collect();
-            let (one, other) = (rng.usize(..lines.len()), rng.usize(..lines.len()));
-            lines.swap(one, other);
-            *bytes = lines.join(&b'\n');
-        }
-        _ => {
-            if let Some(digit) = bytes[at..].iter_mut().find(|byte| byte.is_ascii_digit()) {
-                *digit = b'0' + rng.u8(..10);
-            }
+        let how = Reading {
+            unit: unit.map(|(_, unit)| unit).or(how.unit),
+            dt: has_step.then_some(DT).or(how.dt),
+            column: column.or(how.column),
+            ignores_count,
+        };
+        let path = if is_named { path } else { "any.csv".into() };
+        let mut result = None;
+        let counted = allocation_counter::measure(|| result = Some(rocking_records::from_bytes(&path, &bytes, &how)));
+        prop_assert!(counted.bytes_max <= bound(&bytes), "{} bytes of memory", counted.bytes_max);
+        if let Some(Ok((record, _))) = result {
+            let (times, acceleration) = (record.times(), record.acceleration());
+            prop_assert!(times.len() >= 2 && times.len() == acceleration.len() && times.len() <= bytes.len());
+            prop_assert!(times.windows(2).all(|pair| pair[1] > pair[0]) && times[times.len() - 1].is_finite());
+            prop_assert!(acceleration.iter().all(|value| value.is_finite()));
         }
     }
-    bytes.truncate(LARGEST);
 }
 
 /// Nothing is read again for each of its parts: memory stays in bounds, and so does time, or this would never end.
@@ -345,8 +238,8 @@ fn mutate(bytes: &mut Vec<u8>, rng: &mut Rng) {
 fn a_large_file_of_anything_stays_in_bounds() {
     const SIZE: usize = 1 << 18;
     for Layout { path, bytes, how, .. } in all(10) {
-        for word in WORDS {
-            let hostile = [&bytes[..bytes.len() * 2 / 3], &word.repeat(SIZE / word.len())].concat();
+        for word in WORDS.split('|') {
+            let hostile = [&bytes[..bytes.len() * 2 / 3], word.repeat(SIZE / word.len()).as_bytes()].concat();
             let counted = allocation_counter::measure(|| drop(rocking_records::from_bytes(&path, &hostile, &how)));
             assert!(counted.bytes_max <= bound(&hostile), "{}, {word:?}: {}", path.display(), counted.bytes_max);
         }

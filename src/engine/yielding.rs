@@ -62,7 +62,7 @@ pub(crate) fn margin(
     let of = |(j, lever): (usize, f64)| match f64::from(dissipators.yields[j]) {
         _ if F_y == 0.0 => 1.0,
         0.0 => 1.0 - k_d * (lever * chord - dissipators.plastic[j]).abs() / F_y,
-        way => way * lever.signum() * state.theta_dot / (structure.p_l * structure.tan_alpha_cg.atan()),
+        way => way * lever.signum() * state.theta_dot / (structure.p_l * libm::atan(structure.tan_alpha_cg)),
     };
     levers(structure, side).into_iter().enumerate().map(of).fold(1.0, f64::min)
 }

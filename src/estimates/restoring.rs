@@ -29,7 +29,7 @@ pub fn flag(structure: &Structure, theta: f64, steps: u32) -> Vec<Point> {
     let at = |theta: f64| {
         dissipators = dissipators.moved(structure, Side::Right, theta);
         let of_ties = Sum::of_moments(&ties(structure, Side::Right, &dissipators)).at(Angles::Any, theta, 0.0);
-        let (sin, cos) = theta.sin_cos();
+        let (sin, cos) = libm::sincos(theta);
         Point { theta, moment: (m + m0) * g * B * cos - m * g * H * sin + of_ties }
     };
     there.clone().chain(there.rev().skip(1)).map(at).collect()

@@ -45,7 +45,7 @@ struct Growth {
 impl Growth {
     fn over(p_l: f64, h: f64) -> Growth {
         let x = p_l * h;
-        let sinh = x.sinh();
+        let sinh = libm::sinh(x);
         // sinh x − x loses its digits where x is small: x³/3! + x⁵/5! + …
         let excess = if x < 1.0 {
             let next = |sum: f64, k: usize| (1.0 + sum) * x * x * reciprocal(2 * k) * reciprocal(2 * k + 1);
@@ -53,7 +53,7 @@ impl Growth {
         } else {
             sinh - x
         };
-        Growth { sinh, step: 2.0 * (0.5 * x).sinh().powi(2), ramp: excess / p_l }
+        Growth { sinh, step: 2.0 * libm::sinh(0.5 * x).powi(2), ramp: excess / p_l }
     }
 }
 

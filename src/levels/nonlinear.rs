@@ -47,7 +47,7 @@ fn solved(structure: &Structure, side: Side, state: &State, load: Load, back: f6
     let g = g + a_v;
     let &State { u, u_dot, theta, theta_dot } = state;
     let s = side.sign();
-    let (sin, cos) = theta.sin_cos();
+    let (sin, cos) = libm::sincos(theta);
     let lever = s * B - u;
     let mass = Matrix2::new(m, m * H, m * H, J0 + m * H * H + m * lever * lever + m0 * B * B);
     let force = Vector2::new(
@@ -178,7 +178,7 @@ impl<const RESTRAINED: bool> ElasticRocking for NonlinearRocking<RESTRAINED> {
         let [height, offset, lever_start] = [H, weight_offset, lever].map(|factor| factor * per_inertia);
 
         let State { u, u_dot, theta, theta_dot } = state;
-        let (mut sin, mut cos) = theta.sin_cos();
+        let (mut sin, mut cos) = libm::sincos(theta);
         let mut weight = g * cos + a * sin; // G
         let mut weight_below = g * cos + a_ground * sin; // G₀
         let mut along = g * sin - a * cos; // F

@@ -32,7 +32,7 @@ use crate::{Phase, Side, State, Structure};
 
 /// P and Q at `theta`.
 fn shape(structure: &Structure, side: Side, theta: f64) -> [f64; 2] {
-    let (sin, cos) = theta.sin_cos();
+    let (sin, cos) = libm::sincos(theta);
     let slenderness = side.sign() * structure.tan_alpha_cg;
     [sin - slenderness * cos, cos + slenderness * sin]
 }
@@ -231,7 +231,8 @@ impl<const RESTRAINED: bool> Level for Rigid<RESTRAINED> {
 pub(crate) fn a_t(structure: &Structure, phase: Phase, state: &State, theta_ddot: f64, load: Load) -> f64 {
     let &crate::Parameters { H, B, .. } = structure.parameters();
     let s = phase.side().sign();
-    H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * state.theta.cos() - load.a_v * state.theta.sin()
+    H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * libm::cos(state.theta)
+        - load.a_v * libm::sin(state.theta)
 }
 
 /// Its time derivative, m/s³, given θ̈ and θ⃛; 0 once overturned.
@@ -248,10 +249,10 @@ pub(crate) fn a_t_rate(
     match phase {
         Phase::Overturned(_) => 0.0,
         _ => {
-            H * theta_dddot + 2.0 * s * B * theta_dot * theta_ddot + load.slope.a_g * theta.cos()
-                - load.value.a_g * theta.sin() * theta_dot
-                - load.slope.a_v * theta.sin()
-                - load.value.a_v * theta.cos() * theta_dot
+            H * theta_dddot + 2.0 * s * B * theta_dot * theta_ddot + load.slope.a_g * libm::cos(theta)
+                - load.value.a_g * libm::sin(theta) * theta_dot
+                - load.slope.a_v * libm::sin(theta)
+                - load.value.a_v * libm::cos(theta) * theta_dot
         }
     }
 }
@@ -276,7 +277,7 @@ pub(crate) fn a_t_series(structure: &Structure, phase: Phase, load: LinearLoad, 
 pub(crate) fn bounds(structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc) -> [Bound; 4] {
     let &crate::Parameters { H, B, .. } = structure.parameters();
     let offset = phase.side().sign() * B;
-    let (sin, cos) = arc.theta[0].sin_cos();
+    let (sin, cos) = libm::sincos(arc.theta[0]);
     let ground = [load.value.a_g, load.slope.a_g * arc.span];
     let up = [load.value.a_v, load.slope.a_v * arc.span];
     let row = |k: usize| {

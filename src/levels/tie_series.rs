@@ -27,7 +27,7 @@ impl TieSeries {
     /// Of `sum` from the rotation `theta` (rad) on.
     pub(crate) fn new(sum: Sum, angles: Angles, theta: f64) -> TieSeries {
         let [mut cos, mut sin, mut chord] = [ZERO; 3];
-        (sin[0], cos[0]) = if angles == Angles::Any { (theta / 2.0).sin_cos() } else { (0.0, 1.0) };
+        (sin[0], cos[0]) = if angles == Angles::Any { libm::sincos(theta / 2.0) } else { (0.0, 1.0) };
         chord[0] = angles.chord(theta, 0.0).length;
         TieSeries { sum, cos, sin, chord, rate: ZERO, force: ZERO, angles }
     }

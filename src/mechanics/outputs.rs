@@ -80,7 +80,7 @@ impl Outputs {
         let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
         let &State { u, u_dot, theta, theta_dot } = state;
         let (s, damping) = (phase.side().sign(), damping(structure, phase));
-        let (sin, cos) = theta.sin_cos();
+        let (sin, cos) = libm::sincos(theta);
         let a_t = g * sin + (F_t * cos - damping * u_dot - structure.k * u) / m;
         let one_minus_cos = sin * sin / (1.0 + cos); // without cancellation: cos θ ≥ 0
         Outputs {
@@ -118,7 +118,7 @@ impl Outputs {
         let (u_dot, theta_dot) = (moves * state.u_dot, moves * state.theta_dot);
         let [u_ddot, theta_ddot] = accelerations;
         let (s, damping) = (phase.side().sign(), damping(structure, phase));
-        let (sin, cos) = state.theta.sin_cos();
+        let (sin, cos) = libm::sincos(state.theta);
         let force_rate = moves * (load.slope.F_t * cos - load.value.F_t * sin * theta_dot);
         let a_t = g * cos * theta_dot - (damping * u_ddot + structure.k * u_dot) / m + force_rate / m;
         let lever = s * B - u;
@@ -159,7 +159,7 @@ mod tests {
         let expected = accelerations[0]
             + H * accelerations[1]
             + state.theta_dot.powi(2) * (-B - state.u)
-            + load.a_g * state.theta.cos();
+            + load.a_g * libm::cos(state.theta);
         let outputs = Outputs::of(&structure, Phase::Rocking(Side::Left), &state, load.F_t);
         assert_relative_eq!(outputs.a_t, expected, max_relative = 1e-12);
 

@@ -116,7 +116,7 @@ impl Reactions {
         ties: &[Tie; 3],
     ) -> Self {
         let chord = angles.chord(state.theta, state.theta_dot);
-        let (sin, cos) = if angles == Angles::Any { (state.theta / 2.0).sin_cos() } else { (0.0, 1.0) };
+        let (sin, cos) = if angles == Angles::Any { libm::sincos(state.theta / 2.0) } else { (0.0, 1.0) };
         let middle = side.sign() * structure.parameters().B;
         ties.iter().fold(self, |edges, tie| {
             let force = tie.force_at(chord);

@@ -58,7 +58,7 @@ pub(crate) struct Chord {
 impl Angles {
     /// The chord at the rotation `theta` (rad) and its rate.
     pub(crate) fn chord(self, theta: f64, theta_dot: f64) -> Chord {
-        let (sin, cos) = (theta / 2.0).sin_cos();
+        let (sin, cos) = libm::sincos(theta / 2.0);
         match self {
             Angles::Any => Chord { length: 2.0 * sin, rate: cos * theta_dot },
             Angles::Small => Chord { length: theta, rate: theta_dot },
@@ -67,7 +67,7 @@ impl Angles {
 
     /// The rate of the chord that has the rate `theta_dot` (rad/s), which changes by `theta_ddot` (rad/s²).
     fn chord_rate(self, theta: f64, theta_dot: f64, theta_ddot: f64) -> Chord {
-        let (sin, cos) = (theta / 2.0).sin_cos();
+        let (sin, cos) = libm::sincos(theta / 2.0);
         let rate = match self {
             Angles::Any => cos * theta_ddot - 0.5 * sin * theta_dot * theta_dot,
             Angles::Small => theta_ddot,
@@ -78,7 +78,7 @@ impl Angles {
     /// The rotation (rad) that has a chord of this `length`, if one has.
     pub(crate) fn rotation(self, length: f64) -> Option<f64> {
         match self {
-            Angles::Any => Some(2.0 * (length / 2.0).asin()).filter(|theta| !theta.is_nan()),
+            Angles::Any => Some(2.0 * libm::asin(length / 2.0)).filter(|theta| !theta.is_nan()),
             Angles::Small => Some(length),
         }
     }
@@ -158,7 +158,7 @@ impl Sum {
     /// At the rotation `theta` (rad) and its rate.
     pub(crate) fn at(&self, angles: Angles, theta: f64, theta_dot: f64) -> f64 {
         let Chord { length, rate } = angles.chord(theta, theta_dot);
-        let towards = if angles == Angles::Any { (theta / 2.0).cos() } else { 1.0 };
+        let towards = if angles == Angles::Any { libm::cos(theta / 2.0) } else { 1.0 };
         towards * (self.force + self.stiffness * length + self.damping * rate)
     }
 }

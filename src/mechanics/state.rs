@@ -144,7 +144,7 @@ impl State {
     /// Magnitudes that are usual in a motion of `structure`: those of a rotation α_cg, at which it is about to fall, and of u_cr,
     /// at which its base lifts off.
     pub fn usual(structure: &Structure) -> State {
-        let (u, theta) = (structure.u_cr, structure.tan_alpha_cg.atan());
+        let (u, theta) = (structure.u_cr, libm::atan(structure.tan_alpha_cg));
         State { u, u_dot: structure.omega_fc * u, theta, theta_dot: structure.p_l * theta }
     }
 

@@ -57,7 +57,7 @@ pub fn margin(structure: &Structure, turning: &TurningMoment, state: &State) -> 
 
 /// How far |u| gets in free vibration in full contact at most, m.
 pub(crate) fn farthest(structure: &Structure, state: &State) -> f64 {
-    state.u.hypot(state.u_dot / structure.omega_fc)
+    libm::hypot(state.u, state.u_dot / structure.omega_fc)
 }
 
 /// The least displacement (m), on either side, that uplift takes over `interval` (s) of a vertical acceleration `a_v`.

@@ -35,7 +35,7 @@ pub struct Fall {
 impl Fall {
     /// Of `structure`, nothing seen yet.
     pub fn new(structure: &Structure) -> Fall {
-        Fall { alpha_cg: structure.tan_alpha_cg.atan(), instant: None }
+        Fall { alpha_cg: libm::atan(structure.tan_alpha_cg), instant: None }
     }
 
     /// Since when |θ| ≥ α_cg (s); none if it is not.

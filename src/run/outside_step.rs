@@ -50,7 +50,7 @@ impl Sample<'_> {
                 [margin + BAND, 1.0]
             }
             Phase::Rocking(side) => {
-                let height = side.sign() * state.theta / self.model.structure.tan_alpha_cg.atan();
+                let height = side.sign() * state.theta / libm::atan(self.model.structure.tan_alpha_cg);
                 let fall = 1.0 - state.theta.abs() / FRAC_PI_2;
                 let Model { structure, level, .. } = self.model;
                 let goes_on = |angles| yielding::margin(structure, side, angles, &dissipators, &state) + BAND;

@@ -149,13 +149,13 @@ impl Peaks {
     /// Of the uplift δ_u = 2 B sin|θ|, m (Eq 25): with |θ|, which never exceeds π/2.
     pub fn uplift(&self) -> Peak {
         let theta = self.theta();
-        Peak { magnitude: 2.0 * self.B * theta.magnitude.sin(), ..theta }
+        Peak { magnitude: 2.0 * self.B * libm::sin(theta.magnitude), ..theta }
     }
 
     /// Of the tendon's force P_t = P_0 + 2 k_t B sin(|θ|/2), N: with |θ|, too.
     pub fn P_t(&self) -> Peak {
         let theta = self.theta();
-        Peak { magnitude: self.P_0 + 2.0 * self.k_t * self.B * (0.5 * theta.magnitude).sin(), ..theta }
+        Peak { magnitude: self.P_0 + 2.0 * self.k_t * self.B * libm::sin(0.5 * theta.magnitude), ..theta }
     }
 
     /// Of the acceleration of the top mass |a_t|, m/s² (Eq 27).

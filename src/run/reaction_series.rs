@@ -173,7 +173,7 @@ pub(crate) fn off_chord(structure: &Structure, phase: Phase, arc: &Arc) -> [f64;
         return [m * u_ddot, 0.0, H * m * u_ddot + m * g * u];
     }
     let pivot = phase.side().sign() * B;
-    let (sin, cos) = arc.theta[0].sin_cos();
+    let (sin, cos) = libm::sincos(arc.theta[0]);
     let lever = m0 * pivot - m * (arc.u[0] - pivot);
     let along = arc.series(|k| m * (u_ddot[k] + H * theta_ddot[k]));
     let horizontal = arc.series(|k| cos * along[k] + sin * lever * theta_ddot[k]);

@@ -223,15 +223,6 @@ fn check_samples(times: &[f64], acceleration: &[f64]) -> Result<(), String> {
 mod tests {
     use super::*;
 
-    #[test]
-    fn samples_in_memory_are_a_record() {
-        let record = Record::from_samples("pulse", vec![-1.0, 0.0, 0.5], vec![2.0, -3.0, 0.0]).unwrap();
-        assert_eq!(record.title(), "pulse");
-        assert_eq!((record.times(), record.acceleration()), (&[-1.0, 0.0, 0.5][..], &[2.0, -3.0, 0.0][..]));
-        assert_eq!((record.start(), record.end(), record.pga()), (-1.0, 0.5, 3.0));
-        assert_eq!(Record::at_rest(2.0).pga(), 0.0);
-    }
-
     /// Of a_g = 6 t over 1 s: t² · 3 and t³; then of 6 - 12 (t - 1), by hand.
     #[test]
     fn integrals_are_exact() {

@@ -1,7 +1,7 @@
 //! The number at which a condition ends, to rounding.
 
 /// The last number of [`low`, `high`] at which `holds`, which is true from `low` up to some number and false beyond it.
-pub(crate) fn last_where(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+pub fn last_where(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
     loop {
         let middle = low + 0.5 * (high - low);
         if middle <= low || middle >= high {

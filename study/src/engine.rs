@@ -1,9 +1,10 @@
 //! This project's engine.
 
 use crate::response::{Failure, Response, Sample};
-use crate::scene::{Input, Scene};
+use crate::scene::Scene;
+use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::{Ending, Finish};
-use rocking::{Detail, Engine, Watch};
+use rocking::{Detail, Engine, Load, Motion, Ramp, Watch};
 
 /// The tolerance of reference responses, two orders below the tightest that is charted.
 pub const REFERENCE_TOLERANCE: f64 = 1e-14;
@@ -25,13 +26,21 @@ pub fn run(scene: &Scene, detail: Detail, tolerance: f64, watch: &mut impl Watch
     }
 }
 
-/// Evaluations of the engine as it is in the FMU, which counts none, on the same communication steps.
-pub fn evaluations(scene: &Scene, tolerance: f64, input: Input, cuts: usize) -> u64 {
-    let mut engine = Engine::new(scene.structure, scene.initial, 0.0, tolerance).expect("the scene can start");
-    for step in scene.steps(input, cuts) {
-        engine.advance(step.end - step.start, step.a_g, &mut ()).expect("the scene has an answer");
-    }
-    engine.motion().work.evaluations
+/// The response of `auto` at the default tolerance where a host holds the ground acceleration over communication steps,
+/// `cuts` to a sample.
+pub fn held(scene: &Scene, cuts: usize) -> Response {
+    let mut engine = Engine::new(scene.structure, scene.initial, 0.0, DEFAULT_TOLERANCE).expect("the scene can start");
+    let h = scene.dt() / cuts as f64;
+    let sample = |k: usize| {
+        for j in 0..cuts {
+            let a_g = Ramp { value: scene.ramp(k).at(j as f64 * h), slope: 0.0 };
+            engine.advance(h, a_g, &mut ()).expect("the scene has an answer");
+        }
+        Sample::of(&engine.outputs(Load::default()))
+    };
+    let samples = (0..scene.intervals()).map(sample).collect();
+    let &Motion { work, transitions, .. } = engine.motion();
+    Response { samples, evaluations: work.evaluations, transitions, failure: None }
 }
 
 /// The response against which all others are measured.

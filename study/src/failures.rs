@@ -9,10 +9,9 @@ pub mod history;
 pub mod overturning;
 pub mod zeno;
 
-use crate::chart::{Entry, Figure, Panel, Style, colour};
+use crate::chart::{Figure, Panel, Style, colour};
 use crate::scene::Scene;
 use anyhow::Result;
-use indicatif::ProgressBar;
 use minijinja::Value;
 use rayon::prelude::*;
 use std::path::Path;
@@ -23,49 +22,34 @@ const RIGHT: Style = Style::line(colour::BLACK, 3);
 /// What is wrong is drawn so.
 const WRONG: Style = Style::line(colour::VERMILLION, 2);
 
+/// What leads the eye is drawn so.
+const GUIDE: Style = Style::dashed(colour::GREY, 1);
+
 /// One failure.
 pub struct Exhibit {
     pub key: &'static str, // name in file names
-    pub title: &'static str,
-    pub values: Value, // of the page's words
-    pub panels: Vec<Panel>,
-    pub legend_columns: usize,
-    pub legend: Vec<Entry>,
+    pub values: Value,     // of the page's words
+    pub panel: Panel,
 }
 
-/// The failures, each as a function of the scenes under Pacoima Dam and El Centro.
-type Show = fn(&Scenes) -> Result<Exhibit>;
-
-/// The scenes in which some of the failures happen.
-pub struct Scenes {
-    pub pacoima: Scene,
-    pub el_centro: Scene,
-}
-
-const EXHIBITS: [Show; 7] = [
-    |scenes| fall::show(&scenes.pacoima),
-    |_| double_crossing::show(),
-    |scenes| chatter::show(&scenes.el_centro),
-    |_| zeno::show(),
-    |_| grazing::show(),
-    |_| overturning::show(),
-    |_| energy_gain::show(),
-];
-
-/// Writes `docs/explain/failures.md` with its pictures and numbers.
-pub fn write(scenes: &Scenes, docs: &Path, progress: &ProgressBar) -> Result<()> {
-    progress.inc_length(EXHIBITS.len() as u64);
-    let entries = EXHIBITS
-        .par_iter()
-        .map(|show| {
-            let Exhibit { key, title, values, panels, legend_columns, legend } = show(scenes)?;
-            progress.set_message(title);
-            let figure = Figure { title: title.into(), panel: (600, 380), columns: 2, panels, legend_columns, legend };
-            figure.save(&docs.join(format!("failure-{key}.svg")))?;
-            figure.save_numbers(&docs.join(format!("failure-{key}.csv")))?;
-            progress.inc(1);
-            Ok((key.replace('-', "_"), values))
-        })
-        .collect::<Result<Vec<_>>>()?;
+/// Writes `docs/explain/failures.md` with its pictures and numbers; some failures happen under Pacoima Dam and El Centro.
+pub fn write(pacoima: &Scene, el_centro: &Scene, docs: &Path) -> Result<()> {
+    let exhibits: [&(dyn Fn() -> Result<Exhibit> + Sync); 7] = [
+        &|| fall::show(pacoima),
+        &double_crossing::show,
+        &|| chatter::show(el_centro),
+        &zeno::show,
+        &grazing::show,
+        &overturning::show,
+        &energy_gain::show,
+    ];
+    let entries = exhibits.into_par_iter().map(|show| {
+        let Exhibit { key, values, mut panel } = show()?;
+        let figure = Figure { title: std::mem::take(&mut panel.title), columns: 1, panels: vec![panel] };
+        figure.save(&docs.join(format!("failure-{key}.svg")))?;
+        figure.save_numbers(&docs.join(format!("failure-{key}.csv")))?;
+        Ok((key.replace('-', "_"), values))
+    });
+    let entries = entries.collect::<Result<Vec<_>>>()?;
     crate::page::write(docs, "failures", include_str!("../pages/failures.md"), Value::from_pairs(entries))
 }

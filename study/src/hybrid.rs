@@ -1,9 +1,8 @@
 //! From phase to phase: any integrator of smooth motion, made to obey the model's transitions.
 
 use crate::equations::{Equations, PhaseEquations};
-use crate::fixed_step::{OneStep, Point};
+use crate::fixed_step::{Method, Point};
 use crate::guards::{PhaseEnd, UpliftRule};
-use crate::locate::first_root;
 use crate::response::{Failure, Response, Sample};
 use crate::scene::Scene;
 use rocking::{Outputs, Phase};
@@ -48,15 +47,15 @@ pub trait Integrator {
 
 /// A textbook method on a grid of steps of `h` s from the start of each interval; a step that a transition cut is
 /// followed by one to the next point of the grid.
-pub struct Grid<'a> {
-    pub method: &'a dyn OneStep,
+pub struct Grid {
+    pub method: Method,
     pub h: f64, // the step, s
 }
 
 /// A remainder of a step below this part of it is no step of its own.
 const SLIVER: f64 = 1e-9;
 
-impl Integrator for Grid<'_> {
+impl Integrator for Grid {
     fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String> {
         let &Span { equations, tau, ref from, until } = span;
         let next = ((tau / self.h + SLIVER).floor() + 1.0) * self.h;
@@ -179,13 +178,16 @@ impl<'a> Motion<'a> {
     }
 }
 
-/// Instant (s into the interval) and point at which the guard that is closed at the end of `stretch` closes.
+/// Instant (s into the interval) and point at which the guard that is closed at the end of `stretch` closes: secants
+/// within a bracket.
 fn locate(
     equations: &PhaseEquations,
     integrator: &dyn Integrator,
     end: &PhaseEnd,
     stretch: &Stretch,
 ) -> Result<(f64, Point), String> {
+    const CONVERGED: f64 = 1e-12; // the last move, as a part of the stretch: what is left is smaller by orders of magnitude
+    const MAX_ITERATIONS: usize = 100; // halvings that reach rounding from anywhere
     let from = stretch.from.state();
     let just_begun = from.theta == 0.0;
     // Where rocking has just begun, the zero at the start is divided out of s θ.
@@ -203,9 +205,29 @@ fn locate(
     if open <= 0.0 {
         return Ok((stretch.start, stretch.from));
     }
-    let (h, point) = first_root(open, stretch.end - stretch.start, |h| {
+    let guard = |h: f64| {
         let point = integrator.flow(equations, stretch.start, &stretch.from, h)?;
         Ok::<_, String>((end.guard(&point.state()) / h.powi(zeros), point))
-    })?;
+    };
+    let length = stretch.end - stretch.start;
+    let (mut low, mut high) = (0.0, length);
+    let (mut last, mut last_value) = (0.0, open);
+    let (mut h, (mut value, mut point)) = (length, guard(length)?);
+    for _ in 0..MAX_ITERATIONS {
+        if value == 0.0 {
+            break;
+        }
+        let mut next = h - value * (h - last) / (value - last_value);
+        if !(next > low && next < high) {
+            next = low + 0.5 * (high - low);
+        }
+        (last, last_value) = (h, value);
+        h = next;
+        (value, point) = guard(h)?;
+        if (h - last).abs() <= CONVERGED * length {
+            break;
+        }
+        *(if value > 0.0 { &mut low } else { &mut high }) = h;
+    }
     Ok((stretch.start + h, point))
 }

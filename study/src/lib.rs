@@ -3,7 +3,7 @@
 //! | read | for |
 //! |---|---|
 //! | [`scene`] | structures, initial states, ground motions |
-//! | [`equations`], [`guards`], [`hybrid`], [`locate`] | the model as a step-by-step code sees it |
+//! | [`equations`], [`guards`], [`hybrid`] | the model as a step-by-step code sees it |
 //! | [`fixed_step`] | textbook methods |
 //! | [`libraries`] | other crates' solvers |
 //! | [`engine`], [`fmu`] | this project's engine, alone and through the FMU's C interface |
@@ -21,7 +21,6 @@ pub mod fmu;
 pub mod guards;
 pub mod hybrid;
 pub mod libraries;
-pub mod locate;
 mod page;
 pub mod precision;
 pub mod response;

@@ -42,12 +42,12 @@ fn main() -> Result<()> {
             speed::write(&Scene::mcmanus_el_centro(&records()?)?, precision::FULL, evidence, &progress)?;
         }
         Command::Precision => precision::write(&Scene::all(&records()?)?, precision::FULL, evidence, &progress)?,
-        Command::Stability => stability::write(stability::FULL, evidence, &progress)?,
+        Command::Stability => stability::write(evidence)?,
         Command::Validity => validity::write(&records()?, explain, &progress)?,
         Command::Failures => {
             let records = records()?;
             let (pacoima, el_centro) = (Scene::mcmanus_pacoima(&records)?, Scene::mcmanus_el_centro(&records)?);
-            failures::write(&failures::Scenes { pacoima, el_centro }, explain, &progress)?;
+            failures::write(&pacoima, &el_centro, explain)?;
         }
     }
     progress.finish_and_clear();

@@ -1,7 +1,6 @@
 //! Work-precision diagrams: error against cost, one curve per method.
 
 mod curves;
-mod figures;
 mod page;
 
 use crate::engine;
@@ -33,7 +32,7 @@ pub enum Family {
     Located,    // textbook method, transitions located
     AtStepEnds, // textbook method, transitions at step ends
     Library,
-    Fmu,
+    Host, // this project, with an input that its host holds
 }
 
 /// One run.
@@ -75,7 +74,7 @@ pub fn measure(scene: &Scene, limits: Limits, progress: &ProgressBar) -> Result<
     let moved = engine::reference(&scene.scaled(1.0 + PERTURBATION));
     let conditioning = Errors::of(&moved, &exact)?;
     let floor = timing::floor(scene);
-    let methods = curves::methods(scene)?;
+    let methods = curves::methods(scene);
     progress.inc_length(methods.len() as u64);
     let curves = methods
         .into_iter()
@@ -100,16 +99,15 @@ fn sweep(
     limits: Limits,
 ) -> Vec<Point> {
     let mut points = Vec::new();
-    for setting in &method.settings {
-        let (response, time) = timing::fastest(|| (setting.run)());
+    for (setting, run) in &method.settings {
+        let (response, time) = timing::fastest(run);
         let errors = Errors::of(&response, exact);
         let is_exact = errors.as_ref().is_ok_and(|errors| errors.theta <= conditioning);
         let samples = response.samples.len().max(1) as f64;
-        let evaluations = setting.evaluations.as_ref().map_or(response.evaluations, |count| count());
         points.push(Point {
-            setting: setting.value,
+            setting: *setting,
             cost: time / samples / floor,
-            evaluations: evaluations as f64 / samples,
+            evaluations: response.evaluations as f64 / samples,
             transitions: response.transitions,
             errors,
         });
@@ -125,8 +123,5 @@ fn sweep(
 /// Measures all `scenes` and writes `docs/evidence/accuracy.md` with its pictures and numbers.
 pub fn write(scenes: &[Scene], limits: Limits, docs: &Path, progress: &ProgressBar) -> Result<()> {
     let diagrams = scenes.iter().map(|scene| measure(scene, limits, progress)).collect::<Result<Vec<_>>>()?;
-    for diagram in &diagrams {
-        figures::save(diagram, docs)?;
-    }
     page::write(&diagrams, docs)
 }

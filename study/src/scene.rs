@@ -17,23 +17,6 @@ pub struct Scene {
     pub ground: Record,
 }
 
-/// How a host gives the ground acceleration over a communication step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Input {
-    Constant, // its value at the start
-    Linear,   // its value at the start and its slope
-    Inside,   // not at all: the FMU has the record
-}
-
-/// One communication step.
-#[derive(Clone, Copy, Debug)]
-pub struct Step {
-    pub start: f64,          // s
-    pub end: f64,            // s
-    pub a_g: Ramp,           // what the ground is said to do, from the start on
-    pub ends_interval: bool, // whether there is a sample at its end
-}
-
 /// Time of one shaking-table second: McManus's specimen is tested with time divided by 5.
 const PACOIMA_TIME_SCALE: f64 = 1.0 / 5.0;
 
@@ -123,23 +106,12 @@ impl Scene {
         Ramp { value: a_g[k], slope: (a_g[k + 1] - a_g[k]) / self.dt() }
     }
 
-    /// The scene cut into communication steps, `cuts` to an interval.
-    pub fn steps(&self, input: Input, cuts: usize) -> impl Iterator<Item = Step> {
-        let h = self.dt() / cuts as f64;
-        (0..self.intervals() * cuts).map(move |j| {
-            let exact = self.ramp(j / cuts);
-            let value = exact.at((j % cuts) as f64 * h);
-            let slope = if input == Input::Constant { 0.0 } else { exact.slope };
-            let ends_interval = (j + 1) % cuts == 0;
-            Step { start: j as f64 * h, end: (j + 1) as f64 * h, a_g: Ramp { value, slope }, ends_interval }
-        })
-    }
-
     /// The same scene with results at `cuts` instants between two samples.
     pub fn resampled(&self, cuts: usize) -> Scene {
+        let h = self.dt() / cuts as f64;
+        let a_g = |j: usize| self.ramp(j / cuts).at((j % cuts) as f64 * h);
         let last = self.ground.acceleration()[self.intervals()];
-        let a_g = self.steps(Input::Linear, cuts).map(|step| step.a_g.value).chain([last]).collect();
-        Scene { ground: ground(self.dt() / cuts as f64, a_g), ..self.clone() }
+        Scene { ground: ground(h, (0..self.intervals() * cuts).map(a_g).chain([last]).collect()), ..self.clone() }
     }
 }
 

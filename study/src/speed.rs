@@ -4,7 +4,7 @@ use crate::engine;
 use crate::fmu::Fmu;
 use crate::precision::{self, Family};
 use crate::response::Errors;
-use crate::scene::{Input, Scene};
+use crate::scene::Scene;
 use crate::timing;
 use anyhow::Result;
 use indicatif::ProgressBar;
@@ -51,8 +51,9 @@ fn measure(scene: &Scene, limits: precision::Limits, progress: &ProgressBar) -> 
         in_floors(format!("`auto` at error {error:.0e} (tolerance {tolerance:.0e})"), target, time);
         ours.push((error, time / floor));
     }
-    let fmu = Fmu::new(scene, DEFAULT_TOLERANCE)?;
-    let (_, with_fmi) = timing::fastest(|| fmu.run(Input::Linear, 1));
+    let fmu = Fmu::new(scene)?;
+    let (done, with_fmi) = timing::fastest(|| fmu.run());
+    done?;
     let (_, without) = timing::fastest(|| engine::run(scene, Detail::Auto, DEFAULT_TOLERANCE, &mut ()));
     in_floors("what the FMI layer adds to a step".into(), 10.0, (with_fmi - without) / scene.intervals() as f64);
 

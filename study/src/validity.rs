@@ -1,7 +1,6 @@
 //! Where the model itself ends: how often and how far structures go beyond what it takes for granted, which of the
 //! paper's scenes do, and what changes when uplift is repaired.
 
-mod maps;
 pub mod population;
 
 use crate::scene::{PACOIMA, Scene, read_record};
@@ -16,6 +15,9 @@ use rocking::run::validity::{
 };
 use rocking::{Detail, Parameters};
 use std::path::Path;
+
+/// Frequencies in full contact, Hz, by which structures are told apart.
+const BANDS: [(f64, f64); 3] = [(0.3, 1.5), (1.5, 6.0), (6.0, 30.0)];
 
 /// How much the repaired rule of uplift changes the peaks, over those of the model.
 #[derive(Clone, Copy, Debug)]
@@ -101,6 +103,12 @@ fn median(mut values: Vec<f64>) -> f64 {
 fn rows(population: &[Pair]) -> Vec<Value> {
     let row = |(which, assumption): (usize, &rocking::run::validity::Assumption)| {
         let of = |pair: &Pair| pair.model.found.worst[which].value;
+        let is_beyond = |pair: &Pair| pair.model.found.worst[which].first_beyond.is_some();
+        let share = |(low, high): (f64, f64)| {
+            let of_band = population.iter().filter(|pair| (low..high).contains(&pair.structure.parameters().f_fc));
+            let beyond: Vec<_> = of_band.map(is_beyond).collect();
+            format!("{:.0} %", 100.0 * beyond.iter().filter(|is| **is).count() as f64 / beyond.len() as f64)
+        };
         let values: Vec<_> = population
             .iter()
             .filter(|pair| !assumption.is_of_impacts || pair.model.found.impacts > 0)
@@ -114,7 +122,8 @@ fn rows(population: &[Pair]) -> Vec<Value> {
         context! {
             name => assumption.name,
             limit => (assumption.limit)(&rocking::run::validity::Limits::default()),
-            beyond => population.iter().filter(|pair| pair.model.found.worst[which].first_beyond.is_some()).count(),
+            beyond => population.iter().filter(|pair| is_beyond(pair)).count(),
+            by_frequency => BANDS.map(share).to_vec(),
             median => number(median(values)),
             worst => number(worst),
         }
@@ -168,13 +177,6 @@ pub fn write(records: &Path, docs: &Path, progress: &ProgressBar) -> Result<()> 
         .into_iter()
         .map(|(name, scene)| Ok((name, both(&scene.run(Detail::Auto, DEFAULT_TOLERANCE))?)))
         .collect::<Result<Vec<_>>>()?;
-    // the scenes of Figs 5 and 9
-    let specimens = [("Evison", scenes[0].1.clone()), ("McManus", scenes[1].1.clone())];
-    for (key, figure) in
-        [("map", maps::assumed(&population, &specimens)), ("repair", maps::repaired(&population, &specimens))]
-    {
-        figure.save(&docs.join(format!("validity-{key}.svg")))?;
-    }
     save_numbers(&population, &docs.join("validity.csv"))?;
     let slow = &scenes[4].1;
     let count = |of: &dyn Fn(&Pair) -> bool| population.iter().filter(|pair| of(pair)).count();

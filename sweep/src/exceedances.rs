@@ -70,8 +70,8 @@ impl Tally {
     }
 }
 
-/// A run's group, its intensity, and what it came to.
-type Counted<'a> = (usize, f64, &'a Outcome);
+/// A run's group, its intensity, and what it came to: an outcome, or whether a limit was exceeded, if that is known.
+type Counted<T> = (usize, f64, T);
 
 /// Counts the `outcomes` of all runs of `plan`, in their order, population by population: against intensities in
 /// `measure`, how many overturn and how many exceed each of `limits`.
@@ -86,7 +86,7 @@ pub fn count(plan: &Plan, measure: IntensityMeasure, limits: &[Limit], outcomes:
     plan.populations().iter().map(of).collect()
 }
 
-fn of_population(name: &str, limits: &[Limit], runs: &[Counted]) -> Exceedances {
+fn of_population(name: &str, limits: &[Limit], runs: &[Counted<&Outcome>]) -> Exceedances {
     let still_rocking =
         |outcome: &Outcome| matches!(outcome, Outcome::Ended(summary) if summary.ending == Ending::StillRocking);
     let number = |is: &dyn Fn(&Outcome) -> bool| runs.iter().filter(|(_, _, outcome)| is(outcome)).count();
@@ -101,23 +101,35 @@ fn of_population(name: &str, limits: &[Limit], runs: &[Counted]) -> Exceedances 
     }
 }
 
-fn fragility(limit: Limit, bins: &[Vec<Counted>]) -> Fragility {
-    let exceeds = |&(group, intensity, outcome): &Counted| (group, intensity, outcome.exceeds(&limit));
-    let tally = |runs: &Vec<Counted>| {
-        runs.iter().filter_map(|run| exceeds(run).2).fold(Tally::default(), |Tally { known, exceedances }, exceeds| {
-            Tally { known: known + 1, exceedances: exceedances + usize::from(exceeds) }
+fn fragility(limit: Limit, bins: &[Vec<Counted<&Outcome>>]) -> Fragility {
+    let exceeds = |&(group, intensity, outcome): &Counted<&Outcome>| (group, intensity, outcome.exceeds(&limit));
+    let bins: Vec<Vec<_>> = bins.iter().map(|runs| runs.iter().map(exceeds).collect()).collect();
+    let (tallies, curve) = fit(&bins);
+    Fragility { limit, tallies, curve }
+}
+
+/// What the runs in `bins` say of a limit: how often it is exceeded in each, and the curve through the single runs.
+fn fit(bins: &[Vec<Counted<Option<bool>>>]) -> (Vec<Tally>, Result<FragilityCurve, Refused>) {
+    let tally = |runs: &Vec<Counted<Option<bool>>>| {
+        runs.iter().filter_map(|run| run.2).fold(Tally::default(), |Tally { known, exceedances }, exceeds| Tally {
+            known: known + 1,
+            exceedances: exceedances + usize::from(exceeds),
         })
     };
-    Fragility {
-        limit,
-        tallies: bins.iter().map(tally).collect(),
-        curve: FragilityCurve::fit(&Trials::count(bins.iter().flatten().map(exceeds))),
-    }
+    (bins.iter().map(tally).collect(), FragilityCurve::fit(&Trials::count(bins.iter().flatten().copied())))
+}
+
+/// The curve of `runs`, each with its group, its intensity and whether the limit was exceeded, if that is known, and how often
+/// it is in runs of about the same intensity.
+pub fn of_runs(runs: Vec<(usize, f64, Option<bool>)>) -> Result<(FragilityCurve, Vec<(Bin, Tally)>), Refused> {
+    let bins = bins(runs);
+    let (tallies, curve) = fit(&bins);
+    Ok((curve?, bins.iter().map(|runs| Bin::of(runs)).zip(tallies).collect()))
 }
 
 /// `runs` in bins of about the same number, by intensity: √n of them, at most [`MOST_BINS`]. Runs of the same intensity
 /// are in the same bin; where there are few intensities with many runs each, each has a bin of its own.
-fn bins(mut runs: Vec<Counted>) -> Vec<Vec<Counted>> {
+fn bins<T: Copy>(mut runs: Vec<Counted<T>>) -> Vec<Vec<Counted<T>>> {
     let all = runs.len();
     runs.sort_by(|a, b| a.1.total_cmp(&b.1));
     let of_one_intensity: Vec<_> = runs.chunk_by(|a, b| a.1 == b.1).collect();
@@ -137,7 +149,7 @@ fn bins(mut runs: Vec<Counted>) -> Vec<Vec<Counted>> {
 
 impl Bin {
     /// Of `runs`, one or more, by intensity.
-    fn of(runs: &[Counted]) -> Bin {
+    fn of<T>(runs: &[Counted<T>]) -> Bin {
         let logarithms: f64 = runs.iter().map(|(_, intensity, _)| intensity.ln()).sum();
         let [lowest, highest] = [runs[0].1, runs[runs.len() - 1].1];
         let mean = (logarithms / runs.len() as f64).exp();

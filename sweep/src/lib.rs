@@ -7,6 +7,9 @@
 //! | [`exceedances`] | how often limits are exceeded over an intensity |
 //! | [`fragility`] | the curve through these, and how sure it is |
 //! | [`pulse`] | the field's standard pulses as ground motions |
+//! | [`synthetic`] | ground motions made of noise |
+//! | [`rows`] | a sweep whose rows are in a file, where it goes on |
+//! | [`row_file`] | that file |
 //! | [`map`] | overturning spectra: the fate under a pulse over its amplitude and frequency |
 
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
@@ -17,6 +20,9 @@ pub mod map;
 pub mod outcome;
 pub mod plan;
 pub mod pulse;
+pub mod row_file;
+pub mod rows;
+pub mod synthetic;
 
 /// Why something cannot be run or counted: what is wrong, and what to change.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -33,4 +39,9 @@ impl Refused {
 /// Refuses, with the reason, what is not so.
 fn ensure(is_so: bool, why: impl FnOnce() -> String) -> Result<(), Refused> {
     if is_so { Ok(()) } else { Err(Refused(why())) }
+}
+
+/// `value` as messages and names show it.
+fn six_digits(value: f64) -> f64 {
+    format!("{value:.5e}").parse().expect("a number in Rust's own notation")
 }

@@ -7,6 +7,7 @@ use rocking::run::peaks::PEAKS;
 use rocking::run::{Ending, Run};
 use serde::{Deserialize, Serialize};
 use std::fmt;
+use std::str::FromStr;
 
 /// What a run came to.
 #[derive(Clone, Debug, PartialEq)]
@@ -74,7 +75,7 @@ impl Outcome {
                 return Outcome::Failed { time, reason: error.to_string() };
             }
         };
-        let mut magnitudes = [peaks.theta().magnitude / run.structure.tan_alpha_cg.atan(); MEASURES.len()];
+        let mut magnitudes = [peaks.theta().magnitude / libm::atan(run.structure.tan_alpha_cg); MEASURES.len()];
         for (magnitude, peaking) in magnitudes.iter_mut().zip(&PEAKS) {
             *magnitude = (peaking.of)(&peaks).magnitude;
         }
@@ -113,6 +114,25 @@ impl Limit {
     }
 }
 
+impl FromStr for Limit {
+    type Err = Refused;
+
+    /// `overturned`, or a measure and a value such as `theta/alpha_cg >= 0.5`, as a limit is shown.
+    fn from_str(text: &str) -> Result<Limit, Refused> {
+        if text == Limit::Overturning.to_string() {
+            return Ok(Limit::Overturning);
+        }
+        let (name, value) = text.split_once(" >= ").unwrap_or((text, ""));
+        let unit = MEASURES.iter().find(|(measure, _)| *measure == name).map_or("1", |(_, unit)| unit);
+        let value = value.strip_suffix(unit).filter(|_| unit != "1").unwrap_or(value).trim();
+        let value = value.parse().map_err(|_| {
+            let known = MEASURES.map(|(name, _)| name).join(", ");
+            Refused(format!("limit = {text:?}: overturned or MEASURE >= VALUE is needed, with a measure of {known}"))
+        })?;
+        Limit::peak(name, value)
+    }
+}
+
 impl fmt::Display for Limit {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         match *self {
@@ -128,6 +148,20 @@ impl fmt::Display for Limit {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_limit_is_read_as_it_is_shown() {
+        for limit in
+            [Limit::Overturning, Limit::peak("theta/alpha_cg", 0.5).unwrap(), Limit::peak("uplift", 2e-3).unwrap()]
+        {
+            assert_eq!(limit.to_string().parse(), Ok(limit));
+        }
+        assert_eq!("a_t >= 3".parse(), Limit::peak("a_t", 3.0));
+        let refused = |text: &str| text.parse::<Limit>().unwrap_err().to_string();
+        assert!(refused("fallen").starts_with("limit = \"fallen\": overturned or MEASURE >= VALUE is needed"));
+        assert!(refused("a_t >= 3 g").starts_with("limit = \"a_t >= 3 g\""));
+        assert!(refused("phi >= 3").starts_with("\"phi\" is unknown; these are known: theta, "));
+    }
 
     #[test]
     fn what_is_not_known_is_neither_exceeded_nor_not() {

@@ -40,11 +40,12 @@ pub const AXES: [&Quantity<Parameters>; PARAMETERS.len() + 1] = {
     axes
 };
 
-/// Structures that count together: one in which some numbers vary, in every combination.
+/// Structures that count together: one in which some numbers vary, in every combination, or several.
 #[derive(Clone, Debug)]
 pub struct Population {
     name: String,
-    base: Parameters,
+    /// One or more.
+    bases: Vec<Parameters>,
     /// Positions in [`AXES`], increasing, and the values there.
     varying: Vec<(usize, Vec<f64>)>,
 }
@@ -121,7 +122,14 @@ pub struct Case<'a> {
 impl Population {
     /// Of the one structure `base`, until something varies.
     pub fn new(name: impl Into<String>, base: Parameters) -> Population {
-        Population { name: name.into(), base, varying: Vec::new() }
+        Population { name: name.into(), bases: vec![base], varying: Vec::new() }
+    }
+
+    /// Of each of the structures `bases`, of which there is one at least.
+    pub fn of(name: impl Into<String>, bases: Vec<Parameters>) -> Result<Population, Refused> {
+        let name = name.into();
+        ensure(!bases.is_empty(), || is_empty(&format!("structures {name:?}")))?;
+        Ok(Population { name, bases, varying: Vec::new() })
     }
 
     /// Every structure that there is so far with each of `values` of the parameter called `name`, or of `slenderness`,
@@ -149,12 +157,12 @@ impl Population {
 
     /// How many structures there are, or [`usize::MAX`] if there are more.
     fn len(&self) -> usize {
-        self.varying.iter().fold(1, |len, (_, values)| len.saturating_mul(values.len()))
+        self.varying.iter().fold(self.bases.len(), |len, (_, values)| len.saturating_mul(values.len()))
     }
 
     /// What varies, and its value in structure `member`: the last axis changes first.
     fn values(&self, member: usize) -> impl Iterator<Item = (&'static Quantity<Parameters>, f64)> {
-        let mut stride = self.len();
+        let mut stride = self.len() / self.bases.len();
         self.varying.iter().map(move |(axis, values)| {
             stride /= values.len();
             (AXES[*axis], values[member / stride % values.len()])
@@ -162,7 +170,7 @@ impl Population {
     }
 
     fn structure(&self, member: usize) -> Result<Structure, Refused> {
-        let mut parameters = self.base;
+        let mut parameters = self.bases[member / (self.len() / self.bases.len())];
         self.values(member).for_each(|(axis, value)| (axis.set)(&mut parameters, value));
         Structure::new(parameters).map_err(|problem| Refused(format!("structures {:?}: {problem}", self.name)))
     }
@@ -203,7 +211,15 @@ impl NamedRecord {
 }
 
 impl Conditions {
-    fn check(&self, structure: &Structure) -> Result<(), Refused> {
+    /// The run of `structure` under `ground`.
+    pub fn run<'a>(&self, structure: Structure, ground: &'a Record) -> Run<'a> {
+        let &Conditions { initial, detail, tolerance, duration } = self;
+        let end = duration.map_or(End::AtRest, |duration| End::At(ground.start() + duration));
+        Run { initial, detail, tolerance, end, ..Run::new(structure, ground) }
+    }
+
+    /// Refuses, with the reason, what no run of `structure` can have.
+    pub fn check(&self, structure: &Structure) -> Result<(), Refused> {
         let Conditions { initial, detail, tolerance, duration } = *self;
         let check = |is_in_range, name, value, needed| {
             ensure(is_in_range, || format!("{name} = {} is out of range: {needed} is needed", with_unit(value, "1")))
@@ -300,9 +316,7 @@ impl Case<'_> {
     /// Does it while `watch` sees it go by.
     pub fn outcome_watched(&self, watch: &mut impl Watch) -> Outcome {
         let ground = self.motion.record.clone().multiplied(self.factor());
-        let &Conditions { initial, detail, tolerance, duration } = self.conditions;
-        let end = duration.map_or(End::AtRest, |duration| End::At(ground.start() + duration));
-        Outcome::of(&Run { initial, detail, tolerance, end, ..Run::new(self.structure, &ground) }, watch)
+        Outcome::of(&self.conditions.run(self.structure, &ground), watch)
     }
 
     /// How strong the ground motion is, in the unit of `measure`.
@@ -438,6 +452,11 @@ mod tests {
         assert_eq!(column(|case, [B, _]| case.value(B), 4), [0.3, 0.3, 0.2, 0.2, 0.1, 0.1, 0.285]);
         assert_eq!(column(|case, [_, slenderness]| case.value(slenderness), 4)[..3], [4.0, 6.3, 4.0]);
         assert_eq!(column(|case, _| case.structure.parameters().H, 4)[1], 6.3 * 0.3);
+        let both = Population::of("both", vec![Parameters::EVISON, Parameters::MCMANUS]).unwrap();
+        let both = Plan::new(vec![both.vary("r", vec![0.9, 0.8]).unwrap()], vec![pulse()], vec![1.0]).unwrap();
+        let numbers = both.cases().map(|case| (case.structure.parameters().m, case.structure.parameters().r));
+        assert_eq!(numbers.collect::<Vec<_>>(), [(125.8, 0.9), (125.8, 0.8), (130.1, 0.9), (130.1, 0.8)]);
+        assert!(Population::of("none", Vec::new()).unwrap_err().0.starts_with("structures \"none\" is empty"));
         let pga = 0.6 * (TAU * 0.12 / 0.5).sin();
         for (intensity, expected) in
             column(|case, _| case.intensity(IntensityMeasure::Pga), 1).into_iter().zip([pga, 2.0 * pga, 0.5 * pga])

@@ -191,9 +191,13 @@ function motionView() {
     options.value = exaggeration;
   }
 
+  let sizes; // of both drawings: to ask for them at each change would lay out the page twice
+  const measure = () => (sizes = { scene: at("scene").getBoundingClientRect(), histories: at("histories").getBoundingClientRect() });
+  measure();
+
   let stage = {};
   function layOutScene() {
-    const { width, height } = at("scene").getBoundingClientRect();
+    const { width, height } = sizes.scene;
     const { H, B } = motion.parameters;
     set(at("scene"), { viewBox: `0 0 ${width} ${height}` }); // on paper it takes the width of the page
     const theta = Math.min(Math.PI / 2, exaggeration * motion.largest.theta);
@@ -330,12 +334,14 @@ function motionView() {
   const across = (instant) => chart.left + ((instant - shown[0]) / (shown[1] - shown[0])) * chart.width;
   const instantAt = (x) => shown[0] + ((x - chart.left) / chart.width) * (shown[1] - shown[0]);
 
+  const tenth = (pixels) => Math.round(10 * pixels) / 10;
+
   /** Of the points in each column of pixels the first, the least, the largest and the last. */
   function path(time, values, height) {
     const first = Math.max(0, countUpTo(time, shown[0]) - 1);
     const last = Math.min(time.length - 1, countUpTo(time, shown[1]));
     let drawn = "";
-    const add = (i) => (drawn += `${drawn ? "L" : "M"}${across(time[i]).toFixed(2)} ${height(values[i]).toFixed(2)}`);
+    const add = (i) => (drawn += `${drawn ? "L" : "M"}${tenth(across(time[i]))} ${tenth(height(values[i]))}`);
     for (let i = first; i <= last; ) {
       const x = Math.floor(2 * across(time[i]));
       let [least, most, next] = [i, i, i + 1];
@@ -343,7 +349,11 @@ function motionView() {
         if (values[next] < values[least]) least = next;
         if (values[next] > values[most]) most = next;
       }
-      [...new Set([i, least, most, next - 1])].sort((a, b) => a - b).forEach(add);
+      const [earlier, later] = least < most ? [least, most] : [most, least];
+      add(i);
+      if (earlier > i) add(earlier);
+      if (later > earlier) add(later);
+      if (next - 1 > later) add(next - 1);
       i = next;
     }
     return drawn;
@@ -351,7 +361,7 @@ function motionView() {
 
   function drawHistories() {
     const svg = at("histories");
-    const { width, height } = svg.getBoundingClientRect();
+    const { width, height } = sizes.histories;
     set(svg, { viewBox: `0 0 ${width} ${height}` });
     const isNarrow = width < 560;
     const [left, right, gap] = [isNarrow ? 46 : 58, isNarrow ? 56 : 76, 26];
@@ -383,7 +393,7 @@ function motionView() {
       const y = (value) => (top + bottom) / 2 - ((value / panel.per / most) * (bottom - top)) / 2;
       panel.y = y;
       for (const { value } of times) element(svg, "line", { class: "grid", x1: across(value), x2: across(value), y1: top, y2: bottom });
-      for (const { value, text } of ticks(-most, most, Math.max(2, (bottom - top) / 24))) {
+      for (const { value, text } of ticks(-most, most, Math.max(3, (bottom - top) / 24))) {
         const line = y(value * panel.per);
         element(svg, "line", { class: "grid", x1: left, x2: left + chart.width, y1: line, y2: line });
         element(svg, "text", { x: left - 6, y: line + 4, "text-anchor": "end" }, text);
@@ -394,7 +404,7 @@ function motionView() {
         const { factor } = panel.right;
         element(svg, "line", { class: "axis", x1: edge, x2: edge, y1: top, y2: bottom });
         element(svg, "text", { x: edge, y: top - 8, "text-anchor": "end" }, titleOf(panel.right));
-        for (const { value, text } of ticks(-most * factor, most * factor, Math.max(2, (bottom - top) / 24))) {
+        for (const { value, text } of ticks(-most * factor, most * factor, Math.max(3, (bottom - top) / 24))) {
           const line = y((value / factor) * panel.per);
           element(svg, "line", { class: "axis", x1: edge, x2: edge + 4, y1: line, y2: line });
           element(svg, "text", { x: edge + 7, y: line + 4 }, text);
@@ -597,7 +607,11 @@ function motionView() {
   };
   chooseSpeed(1);
   showTheme();
-  new ResizeObserver(() => motion && layOut()).observe(document.querySelector("main"));
+  const observer = new ResizeObserver(() => {
+    measure();
+    if (motion) layOut();
+  });
+  for (const id of ["stage", "charts"]) observer.observe(at(id));
 
   /** Shows the motion `data`, in place of the one before at the same instant, with the decoded motions `others` beside it. */
   function show(data, others = []) {

@@ -46,15 +46,12 @@ fn histories(record: &Record, g: f64) -> Histories {
     Histories { panels, marks: Vec::new(), time: record.start()..record.end() }
 }
 
-/// S_a/g of `record` at this `damping`, over periods (s) evenly in their logarithms; `g` in m/s².
-pub fn spectrum(record: &Record, (shortest, longest): (f64, f64), damping: f64, g: f64) -> Vec<(f64, f64)> {
-    let period = |i: u32| shortest * (longest / shortest).powf(f64::from(i) / f64::from(POINTS));
-    (0..=POINTS).map(period).map(|T| (T, spectral_acceleration(record, T, damping) / g)).collect()
-}
-
+/// S_a/g over periods evenly in their logarithms.
 fn draw_spectrum(area: &Area, record: &Record, g: f64) -> anyhow::Result<()> {
     let (shortest, longest) = PERIODS;
-    let points = spectrum(record, PERIODS, DAMPING, g);
+    let period = |i: u32| shortest * (longest / shortest).powf(f64::from(i) / f64::from(POINTS));
+    let of_period = |T| (T, spectral_acceleration(record, T, DAMPING) / g);
+    let points: Vec<_> = (0..=POINTS).map(period).map(of_period).collect();
     let highest = range(points.iter().map(|point| point.1));
     let mut chart = chart(area, BELOW).build_cartesian_2d((shortest..longest).log_scale(), highest)?;
     axes(&mut chart, ["period T (s)", "S_a (g), damping 5 %"], [6, 6])?;

@@ -22,8 +22,8 @@ use serde::Deserialize;
 use std::path::{MAIN_SEPARATOR, Path};
 use std::{collections::BTreeMap, collections::HashMap};
 
-/// A sweep.
-pub struct Sweep {
+/// Records on structures.
+pub struct RecordSweep {
     /// What to run.
     pub plan: Plan,
     /// What is counted beside overturning.
@@ -49,7 +49,7 @@ pub struct MapSweep {
 /// What a file asks for.
 pub enum Asked {
     /// Records on structures.
-    Records(Sweep),
+    Records(RecordSweep),
     /// Pulses on structures.
     Pulses(MapSweep),
 }
@@ -205,7 +205,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         say_few(&warnings, "warnings");
         let plan = Plan::new(populations, motions?, scales)?.under(file.conditions())?;
         let structures = left_open_of(&file.structures)?;
-        Ok(Asked::Records(Sweep { plan, limits, measure, records, structures }))
+        Ok(Asked::Records(RecordSweep { plan, limits, measure, records, structures }))
     };
     read().with_context(|| format!("sweep in {}", path.display()))
 }

@@ -2,7 +2,7 @@
 mod picture;
 mod rows;
 
-use super::{SweepArgs, file::MapSweep, row_file::Known, row_file::RowFile, say_rate, thread_pool};
+use super::{SweepArgs, file::MapSweep, progress, say_rate, thread_pool};
 use crate::{
     picture::Picture,
     results::{Format, print, print_rows},
@@ -13,9 +13,11 @@ use anyhow::{bail, ensure};
 use picture::Shown;
 use rayon::prelude::*;
 use rocking::run::{LONGEST_REST, validity};
-use rocking_sweep::map::{Class, Fate, Map, Place, Point};
+use rocking_sweep::map::{CLASSES, Class, Fate, Map, Place, Point};
+use rocking_sweep::row_file::{Known, RowFile};
 use serde::Serialize;
 use std::{collections::HashMap, fmt::Write, path::Path, time::Instant};
+use uuid::Uuid;
 
 /// A map, and what is known of it.
 pub struct Spectrum {
@@ -26,17 +28,6 @@ pub struct Spectrum {
     /// Every point that has been run.
     pub points: HashMap<Place, Point>,
 }
-
-/// What the classes are called, in their order.
-const CLASSES: [(Class, &str); 7] = [
-    ((Fate::NoUplift, 0), "no uplift"),
-    ((Fate::Stands, 0), "rocks and stands"),
-    ((Fate::Overturns, 0), "overturns without impact"),
-    ((Fate::Overturns, 1), "overturns after one impact"),
-    ((Fate::Overturns, 2), "overturns after more"),
-    ((Fate::StillRocking, 0), "still rocking"),
-    ((Fate::Failed, 0), "failed"),
-];
 
 /// How many points of a map's grid are of a class.
 #[derive(Serialize)]
@@ -79,7 +70,7 @@ pub fn run(args: &SweepArgs, sweep: MapSweep, output: &Path, picture: Picture) -
         spectra.push(spectrum);
     }
     say_rate(done, "points", clock, &pool);
-    known.say_others(output, "points that are not in these maps");
+    known.others(output, "points that are not in these maps").iter().for_each(|line| say!("{line}"));
     let counts: Vec<_> = spectra.iter().flat_map(count).collect();
     match args.results.format {
         Format::Text => print(&text(&spectra, &counts)?)?,
@@ -108,10 +99,13 @@ fn do_points(
             None => lacking.push((place, key)),
         }
     }
-    points.extend(file.do_runs("points", &lacking, |(place, key)| {
+    let run = |(place, key): &(Place, Uuid)| {
         let point = map.run(*place);
         Ok((rows::row(key, name, map, (level, *place), &point)?, (*place, point)))
-    })?);
+    };
+    let (bar, goes_on) = progress(lacking.len(), "points")?;
+    points.extend(file.do_runs(&lacking, run, goes_on)?);
+    bar.finish_and_clear();
     Ok(lacking.len())
 }
 

@@ -7,8 +7,7 @@ use crate::significant::{in_full, significant};
 use FlexibleRocking::logger::Category;
 use FlexibleRocking::resources::Contents;
 use FlexibleRocking::variables::{Causality, DataType, VARIABLES, Value, Variable};
-use minijinja::value::Serde;
-use minijinja::{Environment, UndefinedBehavior};
+use minijinja::{Environment, UndefinedBehavior, Value as Filling, context};
 use rocking::Structure;
 use rocking::engine::{DEFAULT_TOLERANCE, MAX_STEPS_PER_ADVANCE};
 use rocking::levels::rules::MAX_TRANSITIONS_PER_PERIOD;
@@ -16,62 +15,9 @@ use rocking::run::record::MAX_SAMPLES;
 use rocking::structure::DERIVED;
 use rocking::structure::parameters::MAX_SLENDERNESS;
 use rocking_records::MAX_FILE;
-use serde::Serialize;
 
 const TEMPLATE: &str = include_str!("../resources/index.html");
 const ICON: &str = include_str!("../resources/model.svg");
-
-/// What the template fills in.
-#[derive(Serialize)]
-struct Page<'a> {
-    model_name: &'a str,
-    platforms: Vec<PlatformRow>,
-    /// Version of the standard.
-    fmi: u32,
-    record: &'a str,
-    description: &'a str,
-    version: &'a str,
-    guid: String,
-    icon: &'a str,
-    groups: Vec<Group>,
-    tolerance: String,
-    log_categories: Vec<LogCategory>,
-    max_slenderness: String,
-    max_transitions: u32,
-    max_steps: u64,
-    max_samples: usize,
-    max_file: u64,
-}
-
-/// A platform as the page shows it.
-#[derive(Serialize)]
-struct PlatformRow {
-    folder: &'static str,
-    name: &'static str,
-}
-
-/// The variables of one kind.
-#[derive(Serialize)]
-struct Group {
-    title: &'static str,
-    rows: Vec<Row>,
-}
-
-/// A variable as the page shows it.
-#[derive(Serialize)]
-struct Row {
-    name: &'static str,
-    unit: &'static str,
-    value: String,
-    range: String,
-    meaning: String,
-}
-
-#[derive(Serialize)]
-struct LogCategory {
-    name: String,
-    description: &'static str,
-}
 
 /// The page of the FMU `name` of `structure` with these `contents` and `libraries`.
 pub fn documentation(
@@ -81,39 +27,43 @@ pub fn documentation(
     contents: &Contents,
     libraries: &[&Library],
 ) -> Result<String, minijinja::Error> {
-    let page = Page {
-        model_name: name,
-        platforms: libraries.iter().map(|library| platform(version, library.platform)).collect(),
-        fmi: if version == Version::Fmi2 { 2 } else { 3 },
-        record: contents.default_record(),
-        description: DESCRIPTION,
-        version: env!("CARGO_PKG_VERSION"),
-        guid: FlexibleRocking::guid(contents),
-        icon: ICON,
-        groups: [
-            ("Inputs", Causality::Input),
-            ("Outputs", Causality::Output),
-            ("Local variables", Causality::Local),
-            ("Parameters and initial values", Causality::Parameter),
-            ("Calculated parameters", Causality::CalculatedParameter),
-        ]
-        .map(|(title, causality)| group(title, causality, structure, contents))
-        .into(),
-        tolerance: format!("{DEFAULT_TOLERANCE:e}"),
-        log_categories: Category::ALL.map(log_category).into(),
-        max_slenderness: MAX_SLENDERNESS.to_string(),
-        max_transitions: MAX_TRANSITIONS_PER_PERIOD,
-        max_steps: MAX_STEPS_PER_ADVANCE,
-        max_samples: MAX_SAMPLES,
-        max_file: MAX_FILE >> 20,
+    let groups = [
+        ("Inputs", Causality::Input),
+        ("Outputs", Causality::Output),
+        ("Local variables", Causality::Local),
+        ("Parameters and initial values", Causality::Parameter),
+        ("Calculated parameters", Causality::CalculatedParameter),
+    ];
+    let group = |(title, causality)| {
+        let variables = VARIABLES.iter().filter(|variable| variable.causality == causality);
+        let rows = variables.map(|variable| row(variable, structure, contents)).collect::<Vec<_>>();
+        context! { title, rows }
+    };
+    let page = context! {
+        model_name => name,
+        platforms => libraries.iter().map(|library| platform(version, library.platform)).collect::<Vec<_>>(),
+        fmi => if version == Version::Fmi2 { 2 } else { 3 }, // version of the standard
+        record => contents.default_record(),
+        description => DESCRIPTION,
+        version => env!("CARGO_PKG_VERSION"),
+        guid => FlexibleRocking::guid(contents),
+        icon => ICON,
+        groups => groups.map(group).to_vec(),
+        tolerance => format!("{DEFAULT_TOLERANCE:e}"),
+        log_categories => Category::ALL.map(log_category).to_vec(),
+        max_slenderness => MAX_SLENDERNESS.to_string(),
+        max_transitions => MAX_TRANSITIONS_PER_PERIOD,
+        max_steps => MAX_STEPS_PER_ADVANCE,
+        max_samples => MAX_SAMPLES as u64,
+        max_file => MAX_FILE >> 20,
     };
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
     let name = "index.html"; // the extension switches HTML escaping on
-    environment.render_named_str(name, TEMPLATE, Serde(page))
+    environment.render_named_str(name, TEMPLATE, page)
 }
 
-fn platform(version: Version, platform: Platform) -> PlatformRow {
+fn platform(version: Version, platform: Platform) -> Filling {
     let name = match platform {
         Platform::Linux64 => "Linux on x86-64",
         Platform::LinuxArm64 => "Linux on 64-bit ARM",
@@ -121,19 +71,14 @@ fn platform(version: Version, platform: Platform) -> PlatformRow {
         Platform::Darwin64 => "macOS on x86-64 and Apple silicon",
         Platform::DarwinArm64 => "macOS on Apple silicon, for hosts that look for its FMI 3.0 name",
     };
-    PlatformRow { folder: platform.folder(version), name }
+    context! { folder => platform.folder(version), name }
 }
 
-fn group(title: &'static str, causality: Causality, structure: &Structure, contents: &Contents) -> Group {
-    let variables = VARIABLES.iter().filter(|variable| variable.causality == causality);
-    Group { title, rows: variables.map(|variable| row(variable, structure, contents)).collect() }
+fn log_category(category: Category) -> Filling {
+    context! { name => category.name().to_string_lossy().into_owned(), description => category.description() }
 }
 
-fn log_category(category: Category) -> LogCategory {
-    LogCategory { name: category.name().to_string_lossy().into_owned(), description: category.description() }
-}
-
-fn row(variable: &Variable, structure: &Structure, contents: &Contents) -> Row {
+fn row(variable: &Variable, structure: &Structure, contents: &Contents) -> Filling {
     let (unit, range) = match variable.data_type {
         DataType::Real { unit, range } => (if unit == "1" { "–" } else { unit }, range),
         _ => ("", None),
@@ -149,11 +94,11 @@ fn row(variable: &Variable, structure: &Structure, contents: &Contents) -> Row {
             format!("{}: {}", variable.description, literals.join(", "))
         }
     };
-    Row {
-        name: variable.name,
+    context! {
+        name => variable.name,
         unit,
-        value: value(variable, structure, contents),
-        range: range.map_or(String::new(), |(min, max)| format!("{} … {}", in_full(min), in_full(max))),
+        value => value(variable, structure, contents),
+        range => range.map_or(String::new(), |(min, max)| format!("{} … {}", in_full(min), in_full(max))),
         meaning,
     }
 }

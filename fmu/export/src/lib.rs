@@ -253,60 +253,29 @@ mod tests {
         let libraries: Vec<_> = libraries.iter().collect();
         let (structure, contents) = (structure(Parameters::EVISON), Contents::from(Parameters::EVISON));
         let experiment = Experiment::new(&structure, None);
-        let entries =
-            entries(Version::Fmi2, "Pier", &structure, &contents, experiment, Vec::new(), &libraries).unwrap();
-        let paths: Vec<_> = entries.iter().map(|entry| entry.path.as_str()).collect();
-        let expected = [
-            "modelDescription.xml",
-            "model.png",
-            "documentation/index.html",
-            "documentation/licenses/license.txt",
-            "resources/parameters.toml",
-            "binaries/linux64/Pier.so",
-            "binaries/aarch64-linux/Pier.so",
-            "binaries/win64/Pier.dll",
-            "binaries/darwin64/Pier.dylib",
-            "binaries/aarch64-darwin/Pier.dylib",
-        ];
-        assert_eq!(paths, expected);
-        assert_eq!(entries[1].content[..8], *b"\x89PNG\r\n\x1a\n");
-        let parameters: Parameters = toml::from_slice(&entries[4].content).unwrap();
-        assert_eq!(parameters, Parameters::EVISON);
-        let libraries: Vec<_> = entries[5..].iter().map(|entry| str::from_utf8(&entry.content).unwrap()).collect();
-        assert_eq!(libraries, Platform::ALL.map(Platform::target));
-    }
-
-    #[test]
-    fn fmi_3_has_folders_and_terminals_of_its_own() {
-        let libraries = Platform::ALL.map(library);
-        let libraries: Vec<_> = libraries.iter().collect();
-        let (structure, contents) = (structure(Parameters::EVISON), Contents::from(Parameters::EVISON));
-        let experiment = Experiment::new(&structure, None);
-        let entries = |version| entries(version, "Pier", &structure, &contents, experiment, Vec::new(), &libraries);
-        let [two, three] = [Version::Fmi2, Version::Fmi3].map(|version| entries(version).unwrap());
-        let paths: Vec<_> = three.iter().map(|entry| entry.path.as_str()).collect();
-        let expected = [
-            "modelDescription.xml",
-            "terminalsAndIcons/terminalsAndIcons.xml",
-            "terminalsAndIcons/icon.png",
-            "documentation/index.html",
-            "documentation/licenses/license.txt",
-            "resources/parameters.toml",
-            "binaries/x86_64-linux/Pier.so",
-            "binaries/aarch64-linux/Pier.so",
-            "binaries/x86_64-windows/Pier.dll",
-            "binaries/x86_64-darwin/Pier.dylib",
-            "binaries/aarch64-darwin/Pier.dylib",
-        ];
-        assert_eq!(paths, expected);
-        let libraries = |entries: &[Entry]| -> Vec<_> {
-            entries
-                .iter()
-                .filter(|entry| entry.path.starts_with("binaries"))
-                .map(|entry| entry.content.clone())
-                .collect()
-        };
-        assert_eq!(libraries(&three), libraries(&two));
+        let of_2 = (
+            ["model.png"].as_slice(),
+            ["linux64/Pier.so", "aarch64-linux/Pier.so", "win64/Pier.dll", "darwin64/Pier.dylib"],
+        );
+        let of_3 = (
+            ["terminalsAndIcons/terminalsAndIcons.xml", "terminalsAndIcons/icon.png"].as_slice(),
+            ["x86_64-linux/Pier.so", "aarch64-linux/Pier.so", "x86_64-windows/Pier.dll", "x86_64-darwin/Pier.dylib"],
+        );
+        for (version, (own, binaries)) in [(Version::Fmi2, of_2), (Version::Fmi3, of_3)] {
+            let entries = entries(version, "Pier", &structure, &contents, experiment, Vec::new(), &libraries).unwrap();
+            let (binary, other): (Vec<_>, Vec<_>) =
+                entries.iter().partition(|entry| entry.path.starts_with("binaries/"));
+            let paths = |entries: &[&Entry]| entries.iter().map(|entry| entry.path.clone()).collect::<Vec<_>>();
+            let common =
+                ["documentation/index.html", "documentation/licenses/license.txt", "resources/parameters.toml"];
+            assert_eq!(paths(&other), [&["modelDescription.xml"], own, &common].concat());
+            let expected = [&binaries[..], &["aarch64-darwin/Pier.dylib"]].concat();
+            assert_eq!(paths(&binary), expected.iter().map(|path| format!("binaries/{path}")).collect::<Vec<_>>());
+            let libraries: Vec<_> = binary.iter().map(|entry| str::from_utf8(&entry.content).unwrap()).collect();
+            assert_eq!(libraries, Platform::ALL.map(Platform::target));
+            let parameters: Parameters = toml::from_slice(&other.last().unwrap().content).unwrap();
+            assert_eq!(parameters, Parameters::EVISON);
+        }
     }
 
     #[test]

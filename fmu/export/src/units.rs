@@ -86,22 +86,3 @@ pub fn nominal(variable: &Variable, structure: &Structure) -> Option<f64> {
     };
     magnitude.map(|magnitude| format!("{magnitude:.2e}").parse().expect("a number in Rust's own notation"))
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use FlexibleRocking::variables::VARIABLES;
-    use std::collections::BTreeSet;
-
-    #[test]
-    fn the_units_defined_are_the_units_used() {
-        let used: BTreeSet<_> = VARIABLES
-            .iter()
-            .filter_map(|variable| match variable.data_type {
-                DataType::Real { unit, .. } if unit != "1" => Some(unit),
-                _ => None,
-            })
-            .collect();
-        assert_eq!(used, UNITS.iter().map(|(name, _)| *name).collect());
-    }
-}

@@ -6,10 +6,10 @@ use FlexibleRocking::guid;
 use FlexibleRocking::resources::PARAMETERS_FILE;
 use FlexibleRocking::state_machine::Stage;
 use FlexibleRocking::variables::VARIABLES;
+use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
 use std::cell::RefCell;
 use std::ffi::{CStr, CString};
-use std::ffi::{c_char, c_int, c_uint, c_void};
 use std::ptr;
 use tempfile::TempDir;
 
@@ -112,6 +112,11 @@ pub fn reference(name: &str) -> c_uint {
 
 fn references(names: &[&str]) -> Vec<c_uint> {
     names.iter().map(|name| reference(name)).collect()
+}
+
+/// `value` if a call was done, else its status.
+fn done<T>(status: c_int, value: T) -> Result<T, c_int> {
+    if status == OK { Ok(value) } else { Err(status) }
 }
 
 impl Host {
@@ -266,47 +271,30 @@ impl Host {
 
     /// Values, or the status.
     pub fn try_get(&self, names: &[&str]) -> Result<Vec<f64>, c_int> {
-        let mut values = vec![f64::MAX; names.len()];
-        let references = references(names);
-        match unsafe { fmi2GetReal(self.component, references.as_ptr(), names.len(), values.as_mut_ptr()) } {
-            OK => Ok(values),
-            status => {
-                assert!(values.iter().all(|value| *value == f64::MAX), "a refused call wrote {values:?}");
-                Err(status)
-            }
-        }
+        let (references, mut values) = (references(names), vec![f64::MAX; names.len()]);
+        let status = unsafe { fmi2GetReal(self.component, references.as_ptr(), names.len(), values.as_mut_ptr()) };
+        assert!(status == OK || values.iter().all(|value| *value == f64::MAX), "a refused call wrote {values:?}");
+        done(status, values)
     }
 
     pub fn get(&self, name: &str) -> f64 {
         self.try_get(&[name]).unwrap_or_else(|_| panic!("{:?}", self.log))[0]
     }
 
-    pub fn try_integer(&self, name: &str) -> Result<c_int, c_int> {
-        let mut value = c_int::MAX;
-        match unsafe { fmi2GetInteger(self.component, &reference(name), 1, &mut value) } {
-            OK => Ok(value),
-            status => Err(status),
-        }
-    }
-
     pub fn integer(&self, name: &str) -> c_int {
-        self.try_integer(name).unwrap_or_else(|_| panic!("{:?}", self.log))
+        let mut value = c_int::MAX;
+        assert_eq!(unsafe { fmi2GetInteger(self.component, &reference(name), 1, &mut value) }, OK, "{:?}", self.log);
+        value
     }
 
     pub fn try_boolean(&self, name: &str) -> Result<c_int, c_int> {
         let mut value = c_int::MAX;
-        match unsafe { fmi2GetBoolean(self.component, &reference(name), 1, &mut value) } {
-            OK => Ok(value),
-            status => Err(status),
-        }
+        done(unsafe { fmi2GetBoolean(self.component, &reference(name), 1, &mut value) }, value)
     }
 
     pub fn rate(&self, name: &str, order: c_int) -> Result<f64, c_int> {
         let mut value = f64::MAX;
-        match unsafe { fmi2GetRealOutputDerivatives(self.component, &reference(name), 1, &order, &mut value) } {
-            OK => Ok(value),
-            status => Err(status),
-        }
+        done(unsafe { fmi2GetRealOutputDerivatives(self.component, &reference(name), 1, &order, &mut value) }, value)
     }
 
     pub fn step(&self, time: f64, step: f64) -> c_int {
@@ -327,13 +315,7 @@ impl Host {
         get: unsafe extern "C" fn(*mut c_void, *mut f64, usize) -> c_int,
     ) -> Result<[f64; N], c_int> {
         let mut values = [f64::MAX; N];
-        match unsafe { get(self.component, values.as_mut_ptr(), N) } {
-            OK => Ok(values),
-            status => {
-                assert_eq!(values, [f64::MAX; N], "a refused call wrote");
-                Err(status)
-            }
-        }
+        done(unsafe { get(self.component, values.as_mut_ptr(), N) }, values)
     }
 
     pub fn states(&self) -> Result<[f64; 4], c_int> {
@@ -348,17 +330,11 @@ impl Host {
         self.written(fmi2GetEventIndicators)
     }
 
-    pub fn nominals(&self) -> Result<[f64; 4], c_int> {
-        self.written(fmi2GetNominalsOfContinuousStates)
-    }
-
     /// Whether the complete step asks for event mode, and for the end.
     pub fn complete(&self) -> Result<(bool, bool), c_int> {
         let (mut event, mut end) = (c_int::MAX, c_int::MAX);
-        match unsafe { fmi2CompletedIntegratorStep(self.component, 1, &mut event, &mut end) } {
-            OK => Ok((event == 1, end == 1)),
-            status => Err(status),
-        }
+        let status = unsafe { fmi2CompletedIntegratorStep(self.component, 1, &mut event, &mut end) };
+        done(status, (event == 1, end == 1))
     }
 
     pub fn enter_event_mode(&self) -> c_int {
@@ -366,21 +342,10 @@ impl Host {
     }
 
     pub fn update(&self) -> Result<EventInfo, c_int> {
-        let mut info = EventInfo {
-            new_discrete_states_needed: c_int::MAX,
-            terminate_simulation: c_int::MAX,
-            nominals_of_continuous_states_changed: c_int::MAX,
-            values_of_continuous_states_changed: c_int::MAX,
-            next_event_time_defined: c_int::MAX,
-            next_event_time: f64::MAX,
-        };
-        match unsafe { fmi2NewDiscreteStates(self.component, &mut info) } {
-            OK => {
-                assert_eq!((info.new_discrete_states_needed, info.nominals_of_continuous_states_changed), (0, 0));
-                Ok(info)
-            }
-            status => Err(status),
-        }
+        let mut info: EventInfo = unsafe { std::mem::zeroed() };
+        let status = unsafe { fmi2NewDiscreteStates(self.component, &mut info) };
+        assert_eq!((info.new_discrete_states_needed, info.nominals_of_continuous_states_changed), (0, 0));
+        done(status, info)
     }
 
     /// On to continuous-time mode.
@@ -420,15 +385,12 @@ impl Host {
     pub fn is_terminated(&self) -> bool {
         let mut terminated = c_int::MAX;
         assert_eq!(unsafe { fmi2GetBooleanStatus(self.component, 3, &mut terminated) }, OK);
-        [0, 1].iter().position(|value| *value == terminated).unwrap() == 1
+        terminated == 1
     }
 
     /// Keeps the present state: into `state`, or a new one for null.
     pub fn try_keep(&self, mut state: *mut c_void) -> Result<*mut c_void, c_int> {
-        match unsafe { fmi2GetFMUstate(self.component, &mut state) } {
-            OK => Ok(state),
-            status => Err(status),
-        }
+        done(unsafe { fmi2GetFMUstate(self.component, &mut state) }, state)
     }
 
     pub fn keep(&self) -> *mut c_void {
@@ -447,26 +409,17 @@ impl Host {
 
     pub fn size(&self, state: *mut c_void) -> Result<usize, c_int> {
         let mut size = usize::MAX;
-        match unsafe { fmi2SerializedFMUstateSize(self.component, state, &mut size) } {
-            OK => Ok(size),
-            status => Err(status),
-        }
+        done(unsafe { fmi2SerializedFMUstateSize(self.component, state, &mut size) }, size)
     }
 
     pub fn serialize(&self, state: *mut c_void, size: usize) -> Result<Vec<u8>, c_int> {
         let mut bytes = vec![0; size];
-        match unsafe { fmi2SerializeFMUstate(self.component, state, bytes.as_mut_ptr(), size) } {
-            OK => Ok(bytes),
-            status => Err(status),
-        }
+        done(unsafe { fmi2SerializeFMUstate(self.component, state, bytes.as_mut_ptr(), size) }, bytes)
     }
 
     pub fn deserialize(&self, bytes: &[u8]) -> Result<*mut c_void, c_int> {
         let mut state = ptr::null_mut();
-        match unsafe { fmi2DeSerializeFMUstate(self.component, bytes.as_ptr(), bytes.len(), &mut state) } {
-            OK => Ok(state),
-            status => Err(status),
-        }
+        done(unsafe { fmi2DeSerializeFMUstate(self.component, bytes.as_ptr(), bytes.len(), &mut state) }, state)
     }
 
     /// All that the instance's future depends on, as bytes.

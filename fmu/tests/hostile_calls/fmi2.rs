@@ -1,69 +1,131 @@
-//! How hostile calls of FMI 2.0 make instances and lead on.
+//! FMI 2.0: how its functions are called, when they may be, how instances are made.
 
-use crate::calls::{C, fmi2::Fmi2};
-use crate::{Hostile, Told, host};
+use crate::arguments::{SWITCHES, calls};
+use crate::{C, Table, Told, Version, host};
+use FlexibleRocking::c_abi::Function as _;
 use FlexibleRocking::fmi2::*;
 use FlexibleRocking::interface::Interface;
 use FlexibleRocking::state_machine::Stage;
 use fastrand::Rng;
-use host::ERROR;
-use std::ffi::{c_char, c_int, c_void};
-use std::path::Path;
-use std::ptr::null;
+use host::{ERROR, STAGES_OF_MODEL};
+use libc::{c_char, c_int, c_void};
+use std::ptr::{null, null_mut};
 
-impl Hostile for Fmi2 {
-    fn leading_on(stage: Stage) -> &'static [Function] {
-        use Function::*;
-        match stage {
-            Stage::Instantiated => {
-                &[SetReal, SetReal, SetInteger, SetBoolean, SetString, SetupExperiment, EnterInitializationMode]
-            }
-            Stage::InitializationMode => &[SetReal, GetReal, ExitInitializationMode, ExitInitializationMode],
-            Stage::StepComplete => {
-                &[SetReal, SetRealInputDerivatives, DoStep, DoStep, GetReal, GetRealOutputDerivatives]
-            }
-            Stage::EventMode => &[SetReal, NewDiscreteStates, NewDiscreteStates, EnterContinuousTimeMode, GetReal],
-            Stage::ContinuousTimeMode => &[
-                SetTime,
-                SetTime,
-                SetContinuousStates,
-                GetDerivatives,
-                CompletedIntegratorStep,
-                CompletedIntegratorStep,
-                SetReal,
-                EnterEventMode,
-            ],
-            Stage::IntermediateUpdateMode
-            | Stage::IntermediateOutputs
-            | Stage::StepFailed
-            | Stage::Terminated
-            | Stage::Error => &[Reset, SetFMUstate, GetReal],
-        }
-    }
+pub const VERSION: Version = Version {
+    functions: || Function::ALL.iter().map(|function| function.name()).collect(),
+    calls: calls! { call:
+        fmi2SetDebugLogging(call.flag(), call.few(), call.categories())
+        fmi2SetupExperiment(call.flag(), call.tolerance(), call.start(), call.flag(), call.stop())
+        fmi2EnterInitializationMode()
+        fmi2ExitInitializationMode()
+        fmi2Terminate()
+        fmi2Reset()
+        fmi2GetReal(call.references(&[]), call.count(), call.reals())
+        fmi2GetInteger(call.references(&["phase"]), call.count(), call.values())
+        fmi2GetBoolean(call.references(&["peaks"]), call.count(), call.values())
+        fmi2GetString(call.references(&["record"]), call.count(), call.values())
+        fmi2SetReal(call.references_to_set(), call.count(), call.reals_to_set())
+        fmi2SetInteger(call.references(&["detail"]), call.count(), call.integers())
+        fmi2SetBoolean(call.references(&SWITCHES), call.count(), call.flags())
+        fmi2SetString(call.references(&["record"]), call.count(), call.texts())
+        fmi2GetFMUstate(call.place_of_state())
+        fmi2SetFMUstate(call.state())
+        fmi2FreeFMUstate(call.place_of_state())
+        fmi2SerializedFMUstateSize(call.state(), call.room(1))
+        fmi2SerializeFMUstate(call.state(), call.buffer(), call.count())
+        fmi2DeSerializeFMUstate(call.serialized(), call.count(), call.place_of_state())
+        fmi2GetDirectionalDerivative(
+            call.unknowns(), call.count(), call.knowns(), call.count(), call.seed(), call.derivatives()
+        )
+        fmi2SetRealInputDerivatives(call.references_to_set(), call.count(), call.orders(), call.reals_to_set())
+        fmi2GetRealOutputDerivatives(call.references(&["R_h"]), call.count(), call.orders(), call.reals())
+        fmi2DoStep(call.point(), call.step(), call.flag())
+        fmi2CancelStep()
+        fmi2GetStatus(call.item(), call.room(1))
+        fmi2GetRealStatus(call.item(), call.real())
+        fmi2GetIntegerStatus(call.item(), call.room(1))
+        fmi2GetBooleanStatus(call.item(), call.room(1))
+        fmi2GetStringStatus(call.item(), call.room(1))
+        fmi2EnterEventMode()
+        fmi2NewDiscreteStates(call.room(1))
+        fmi2EnterContinuousTimeMode()
+        fmi2CompletedIntegratorStep(call.flag(), call.room(1), call.room(1))
+        fmi2SetTime(call.time())
+        fmi2SetContinuousStates(call.states(), call.count())
+        fmi2GetDerivatives(call.reals_of(4), call.count())
+        fmi2GetEventIndicators(call.reals_of(2), call.count())
+        fmi2GetContinuousStates(call.reals_of(4), call.count())
+        fmi2GetNominalsOfContinuousStates(call.reals_of(4), call.count())
+    },
+    slave: SLAVE,
+    model: MODEL,
+    location: |folder| format!("file://{}", folder.display()),
+    instantiate,
+    free: fmi2FreeInstance,
+    get_state: fmi2GetFMUstate,
+    free_state: fmi2FreeFMUstate,
+    size: fmi2SerializedFMUstateSize,
+    serialize: fmi2SerializeFMUstate,
+    event_indicators: fmi2GetEventIndicators,
+};
 
-    fn location(folder: &Path) -> String {
-        format!("file://{}", folder.display())
-    }
+/// The table of FMI 2.0.4, section 4.2.4, without the columns of a step in progress or canceled, which a slave with
+/// synchronous steps never sees. Some functions are for some variables only, or their values good for debugging only.
+const SLAVE: Table = Table {
+    stages: &[
+        Stage::Instantiated,
+        Stage::InitializationMode,
+        Stage::StepComplete,
+        Stage::StepFailed,
+        Stage::Terminated,
+        Stage::Error,
+    ],
+    rows: "\
+        x x x x x x  SetDebugLogging Reset GetFMUstate SetFMUstate FreeFMUstate
+        x x x x x x  SerializedFMUstateSize SerializeFMUstate DeSerializeFMUstate
+        x - - - - -  SetupExperiment EnterInitializationMode
+        - x - - - -  ExitInitializationMode
+        x x x - - -  SetReal SetInteger SetBoolean SetString SetRealInputDerivatives
+        - x x x x x  GetReal GetInteger GetBoolean GetString GetDirectionalDerivative
+        - - x x x x  GetRealOutputDerivatives
+        - - x - - -  DoStep
+        - - x x x -  GetStatus GetRealStatus GetIntegerStatus GetBooleanStatus GetStringStatus
+        - - x x - -  Terminate",
+};
 
-    fn instantiate(
-        rng: &mut Rng,
-        interface: Interface,
-        [name, guid, location]: [*const c_char; 3],
-        told: Option<&Told>,
-    ) -> C {
-        let mut functions =
-            host::callbacks(told.map_or(std::ptr::null_mut(), |told| (&raw const *told).cast_mut().cast()));
-        let logger: unsafe extern "C" fn(_, _, _, _, _) = tell;
-        functions.logger = told.map(|_| unsafe { std::mem::transmute(logger as *const ()) });
-        let functions = if rng.u8(..20) == 0 { null() } else { &raw const functions };
-        let kind = match interface {
-            Interface::ModelExchange => host::MODEL_EXCHANGE,
-            Interface::CoSimulation(_) => host::CO_SIMULATION,
-        };
-        let kind = if rng.u8(..40) == 0 { rng.i32(2..) } else { kind };
-        let logging_on = if rng.u8(..20) == 0 { rng.i32(..) } else { rng.i32(0..2) };
-        unsafe { fmi2Instantiate(name, kind, guid, location, functions, 0, logging_on) }
-    }
+/// The table of FMI 2.0.4, section 3.2.3. Since 2.0.1 time is set at an event of models without continuous states alone,
+/// before of all.
+const MODEL: Table = Table {
+    stages: &STAGES_OF_MODEL,
+    rows: "\
+        x x x x x x  SetDebugLogging Reset GetFMUstate SetFMUstate FreeFMUstate GetNominalsOfContinuousStates
+        x x x x x x  SerializedFMUstateSize SerializeFMUstate DeSerializeFMUstate
+        x - - - - -  SetupExperiment EnterInitializationMode
+        - x - - - -  ExitInitializationMode
+        x x x x - -  SetReal
+        x x x - - -  SetInteger SetBoolean SetString
+        - x x x x x  GetReal GetInteger GetBoolean GetString GetDirectionalDerivative
+        - x x x x x  GetDerivatives GetEventIndicators GetContinuousStates
+        - - x - - -  NewDiscreteStates EnterContinuousTimeMode
+        - - x x - -  SetTime EnterEventMode Terminate
+        - - - x - -  CompletedIntegratorStep SetContinuousStates",
+};
+
+fn instantiate(
+    rng: &mut Rng,
+    interface: Interface,
+    [name, guid, location]: [*const c_char; 3],
+    told: Option<&Told>,
+) -> C {
+    let mut functions = host::callbacks(told.map_or(null_mut(), |told| (&raw const *told).cast_mut().cast()));
+    let logger: unsafe extern "C" fn(_, _, _, _, _) = tell;
+    functions.logger = told.map(|_| unsafe { std::mem::transmute(logger as *const ()) });
+    let functions = if rng.u8(..20) == 0 { null() } else { &raw const functions };
+    let is_model = interface == Interface::ModelExchange;
+    let kind = if is_model { host::MODEL_EXCHANGE } else { host::CO_SIMULATION };
+    let kind = if rng.u8(..40) == 0 { rng.i32(2..) } else { kind };
+    let logging_on = if rng.u8(..20) == 0 { rng.i32(..) } else { rng.i32(0..2) };
+    unsafe { fmi2Instantiate(name, kind, guid, location, functions, 0, logging_on) }
 }
 
 unsafe extern "C" fn tell(

@@ -1,4 +1,3 @@
-use crate::fmi3::FmiVersion;
 use crate::{SeError, document};
 use serde::Serialize;
 
@@ -8,7 +7,7 @@ use serde::Serialize;
 pub struct FmiTerminalsAndIcons {
     /// Version of the standard.
     #[serde(rename = "@fmiVersion")]
-    pub fmi_version: FmiVersion,
+    pub fmi_version: &'static str,
     /// The terminals.
     #[serde(rename = "Terminals")]
     pub terminals: Terminals,
@@ -37,7 +36,7 @@ pub struct Terminal {
     pub name: String,
     /// Which variables of two terminals are connected.
     #[serde(rename = "@matchingRule")]
-    pub matching_rule: MatchingRule,
+    pub matching_rule: &'static str,
     /// What it is.
     #[serde(rename = "@description")]
     pub description: String,
@@ -46,13 +45,8 @@ pub struct Terminal {
     pub members: Vec<TerminalMemberVariable>,
 }
 
-/// Which variables of two terminals are connected.
-#[derive(Clone, Copy, Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub enum MatchingRule {
-    /// Those of one name; each side may have others.
-    Bus,
-}
+/// Variables of one name are connected; each side may have others.
+pub const BUS: &str = "bus";
 
 /// A variable of a terminal.
 #[derive(Clone, Debug, Serialize)]
@@ -65,13 +59,8 @@ pub struct TerminalMemberVariable {
     pub member_name: String,
     /// What a connection of it means.
     #[serde(rename = "@variableKind")]
-    pub variable_kind: VariableKind,
+    pub variable_kind: &'static str,
 }
 
-/// What a connection of a variable means.
-#[derive(Clone, Copy, Debug, Serialize)]
-#[serde(rename_all = "camelCase")]
-pub enum VariableKind {
-    /// From output to input.
-    Signal,
-}
+/// A connection is from output to input.
+pub const SIGNAL: &str = "signal";

@@ -8,6 +8,7 @@ use std::path::PathBuf;
 pub const DT: f64 = 0.005;
 
 /// A file, and what it holds.
+#[derive(Clone, Debug)]
 pub struct Layout {
     /// What the file is called.
     pub path: PathBuf,

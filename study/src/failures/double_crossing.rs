@@ -1,102 +1,58 @@
 //! Two crossings within one step.
 
-use super::history::{at_rest, every, exact, window};
-use super::{Exhibit, RIGHT, WRONG};
-use crate::chart::{Axis, Entry, Marker, Panel, Style, colour};
+use super::history::{at_rest, every, exact, milli};
+use super::{Exhibit, GUIDE, RIGHT, WRONG};
+use crate::chart::{Axis, Marker, Panel, Style, colour};
 use crate::equations::PhaseEquations;
-use crate::fixed_step::runge_kutta_4::RungeKutta4;
-use crate::fixed_step::{OneStep, Point};
-use crate::guards::{PhaseEnd, uplift_excess};
-use crate::hybrid::{self, Integrator, Span, Stretch, Transitions};
+use crate::fixed_step::{Method, Point};
 use anyhow::{Context, Result};
 use minijinja::context;
-use rocking::{Detail, Parameters, State};
-use std::cell::RefCell;
+use rocking::{Detail, Parameters, Phase, Ramp, Side, State};
+use std::cell::Cell;
 
 /// A state from which θ dips below 0 for some milliseconds.
 const START: State = State { theta: 0.6e-3, theta_dot: -0.043, u: -6.5e-3, u_dot: 0.98 };
 
-/// How long it is followed, s.
-const DURATION: f64 = 1.6;
-
-/// Integrates as exactly as one likes, but looks at guards only at the end of steps of this length, s.
+/// A solver looks at its guards at the end of steps of this length, s.
 const LOOK: f64 = 0.02;
 
-/// Inner steps of [`LOOK`].
-const INNER: usize = 50;
-
-/// The solver that looks too rarely, and the path it takes.
-#[derive(Default)]
-struct Blind {
-    path: RefCell<Vec<(f64, f64)>>,
-}
-
-impl Integrator for Blind {
-    fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String> {
-        let &Span { equations, tau, ref from, until } = span;
-        let next = (((tau / LOOK + 1e-9).floor() + 1.0) * LOOK).min(until);
-        let h = (next - tau) / INNER as f64;
-        let mut to = *from;
-        let mut path = Vec::new();
-        for k in 0..INNER {
-            to = RungeKutta4.step(equations, tau + k as f64 * h, &to, h);
-            path.push((tau + (k + 1) as f64 * h, to.position[1]));
-        }
-        let is_over = end.is_some_and(|end| end.is_over(&to.state()));
-        if is_over {
-            // What follows the crossing that is noticed is taken back.
-            let stays = path.iter().rposition(|(_, theta)| theta * to.position[1] <= 0.0).map_or(0, |last| last + 1);
-            path.truncate(stays);
-        }
-        self.path.borrow_mut().extend(path);
-        Ok(Stretch { start: tau, end: next, from: *from, to, is_over })
-    }
-
-    fn flow(&self, equations: &PhaseEquations, tau: f64, from: &Point, h: f64) -> Result<Point, String> {
-        let inner = h / INNER as f64;
-        Ok((0..INNER).fold(*from, |to, k| RungeKutta4.step(equations, tau + k as f64 * inner, &to, inner)))
-    }
-}
+/// Time between points of its path, s.
+const CLOSE: f64 = LOOK / 50.0;
 
 /// A dip that begins and ends between two looks.
 pub fn show() -> Result<Exhibit> {
-    let scene = at_rest(Parameters::MCMANUS, START, DURATION);
-    let right = exact(&scene, Detail::Nonlinear, every(1e-3))?;
+    let scene = at_rest(Parameters::MCMANUS, START, 1.5 * LOOK);
+    let right = exact(&scene, Detail::Nonlinear, every(CLOSE))?;
     let first = right.transitions.first().context("the exact response has transitions")?.time;
-    let blind = Blind::default();
-    hybrid::run(&scene, &blind, Transitions::Located, uplift_excess, &mut |_, _| ());
-    let path = blind.path.take();
-    let dip: Vec<f64> = path.iter().filter(|(t, theta)| *t < LOOK && *theta < 0.0).map(|(t, _)| *t).collect();
-    let (begins, ends) = (dip[0], dip[dip.len() - 1]);
-    let looks: Vec<_> = path.iter().filter(|(t, _)| ((t / LOOK).round() * LOOK - t).abs() < 1e-9).copied().collect();
-
-    let look = Style { width: 0, ..Style::marked(colour::VERMILLION, 0, Marker::Circle) };
-    let floor = Style::dashed(colour::GREY, 1);
-    let units = (0.0, 1e-3, 1e-3);
-    let panel = |title: &str, duration: f64, (low, high): (f64, f64)| {
-        let x = Axis::linear("time, ms", 0.0, 1e3 * duration);
-        Panel::new(title, x, Axis::linear("θ, mrad", low, high))
-            .with("floor", [(0.0, 0.0), (1e3 * duration, 0.0)], floor)
-            .with("sign looked at every 20 ms", window(&path, (0.0, duration), units), WRONG)
-            .with("this project", window(&right.theta(), (0.0, duration), units), RIGHT)
+    let equations = PhaseEquations {
+        structure: &scene.structure,
+        phase: Phase::Rocking(Side::Right),
+        a_g: Ramp::default(),
+        evaluations: &Cell::new(0),
     };
-    let close = panel("the crossings", 0.03, (-2.0, 6.0)).with("looks", window(&looks, (0.0, 0.03), units), look);
-    let whole = panel("what becomes of it", DURATION, (-90.0, 110.0));
+    let path = every(CLOSE).take(75).scan(Point::start(&START), |point, t| {
+        *point = Method::RungeKutta4.step(&equations, t - CLOSE, point, CLOSE);
+        Some((t, point.position[1]))
+    });
+    let path: Vec<_> = path.collect();
+    let mut dip = path.iter().filter(|(_, theta)| *theta < 0.0).map(|(t, _)| 1e3 * t);
+    let (begins, ends) = (dip.next(), dip.next_back());
+    let (begins, ends) = begins.zip(ends).context("there is a dip")?;
+    let look = path.iter().find(|(t, _)| *t >= LOOK - 0.5 * CLOSE).map(|(t, theta)| (1e3 * t, 1e3 * theta));
+    let looks = [Some((0.0, 1e3 * START.theta)), look].into_iter().flatten();
+    let x = Axis::linear("time, ms", 0.0, 1.5e3 * LOOK);
+    let panel = Panel::new("Two crossings within one step", x, Axis::linear("θ, mrad", -2.0, 6.0))
+        .with("where it looks", looks, Style::marked(colour::VERMILLION, 0, Marker::Circle))
+        .with("this project", milli(&right.theta(), 0.0), RIGHT)
+        .with("exact integration, sign looked at every 20 ms", milli(&path, 0.0), WRONG)
+        .with("floor", [(0.0, 0.0), (1.5e3 * LOOK, 0.0)], GUIDE);
     Ok(Exhibit {
         key: "double-crossing",
-        title: "Two crossings within one step",
         values: context! {
             first => format!("{:.1}", 1e3 * first),
-            begins => format!("{:.1}", 1e3 * begins),
-            ends => format!("{:.1}", 1e3 * ends),
+            begins => format!("{begins:.1}"),
+            ends => format!("{ends:.1}"),
         },
-        panels: vec![close, whole],
-        legend_columns: 2,
-        legend: vec![
-            Entry::new("this project", RIGHT),
-            Entry::new("floor", floor),
-            Entry::new("exact integration, sign looked at every 20 ms", WRONG),
-            Entry::new("where it looks", look),
-        ],
+        panel,
     })
 }

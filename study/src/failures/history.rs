@@ -44,15 +44,9 @@ pub fn exact(scene: &Scene, detail: Detail, times: impl IntoIterator<Item = f64>
     Ok(History { motions, transitions })
 }
 
-/// What is visible of `points` between two instants, with the axes' units: x − `origin` in units of `x_unit`, y in
-/// units of `y_unit`.
-pub fn window(
-    points: &[(f64, f64)],
-    (from, to): (f64, f64),
-    (origin, x_unit, y_unit): (f64, f64, f64),
-) -> Vec<(f64, f64)> {
-    let visible = points.iter().filter(|(t, _)| (from..=to).contains(t));
-    visible.map(|(t, y)| ((t - origin) / x_unit, y / y_unit)).collect()
+/// `points` with x in milliseconds from `origin` and y in thousandths.
+pub fn milli(points: &[(f64, f64)], origin: f64) -> impl Iterator<Item = (f64, f64)> {
+    points.iter().map(move |(t, y)| (1e3 * (t - origin), 1e3 * y))
 }
 
 /// Whether a transition is an impact with which rocking goes on.

@@ -1,8 +1,8 @@
 //! Zeno at rest in the rigid limit.
 
 use super::Exhibit;
-use super::history::{at_rest, every, exact, is_impact};
-use crate::chart::{Axis, Entry, Marker, Panel, Style, colour};
+use super::history::{at_rest, exact, is_impact};
+use crate::chart::{Axis, Marker, Panel, Style, colour};
 use crate::scene::structure;
 use anyhow::Result;
 use minijinja::context;
@@ -11,17 +11,13 @@ use rocking::{Detail, Parameters, State, Transition};
 /// Evison's specimen with a coefficient of restitution low enough to come to rest soon.
 pub const STRUCTURE: Parameters = Parameters { r: 0.9, ..Parameters::EVISON };
 
-/// Natural frequencies, Hz.
-const FREQUENCIES: [f64; 4] = [11.0, 50.0, 200.0, 1000.0];
-
-const STYLES: [Style; 4] = [
-    Style::marked(colour::ORANGE, 0, Marker::Circle),
-    Style::marked(colour::GREEN, 0, Marker::Square),
-    Style::marked(colour::BLUE, 0, Marker::Triangle),
-    Style::marked(colour::PURPLE, 0, Marker::Diamond),
+/// Natural frequencies, Hz, and how they are drawn.
+const FREQUENCIES: [(f64, Style); 4] = [
+    (11.0, Style::marked(colour::ORANGE, 0, Marker::Circle)),
+    (50.0, Style::marked(colour::GREEN, 0, Marker::Square)),
+    (200.0, Style::marked(colour::BLUE, 0, Marker::Triangle)),
+    (1000.0, Style::marked(colour::PURPLE, 0, Marker::Diamond)),
 ];
-
-const RIGID: Style = Style::line(colour::BLACK, 2);
 
 /// Times (s) between successive impacts before the first landing, by number.
 pub fn intervals(transitions: &[Transition]) -> Vec<(f64, f64)> {
@@ -31,41 +27,26 @@ pub fn intervals(transitions: &[Transition]) -> Vec<(f64, f64)> {
 
 /// A rigid block that comes to rest, and flexible structures ever stiffer.
 pub fn show() -> Result<Exhibit> {
-    let released = |parameters: Parameters| {
-        at_rest(parameters, State { theta: 0.04, u: structure(parameters).u_cr, ..State::default() }, 4.0)
+    let released = |parameters: Parameters, detail| {
+        let initial = State { theta: 0.04, u: structure(parameters).u_cr, ..State::default() };
+        Ok::<_, anyhow::Error>(exact(&at_rest(parameters, initial, 4.0), detail, [])?.transitions)
     };
-    let rigid = exact(&released(STRUCTURE), Detail::Rigid, every(2e-3))?;
-    let last = rigid.transitions.iter().rfind(|transition| is_impact(transition)).map_or(0.0, |impact| impact.time);
-    let number = rigid.transitions.iter().filter(|transition| is_impact(transition)).count();
-    let theta: Vec<_> = rigid.theta().iter().map(|(t, theta)| (*t, 1e3 * theta)).collect();
-    let history = Panel::new(
-        "a rigid block comes to rest",
-        Axis::linear("time, s", 0.0, 4.0),
-        Axis::linear("θ, mrad", -40.0, 40.0),
-    )
-    .with("rigid", theta, RIGID)
-    .note((last, 25.0), format!("last impact: {last:.3} s"), colour::BLACK);
-    let mut times = Panel::new(
-        "time between impacts",
-        Axis::linear("impact", 0.0, number as f64 + 10.0),
-        Axis::logarithmic("time to the next, s", 1e-12, 1.0),
-    );
-    let mut legend = vec![Entry::new("rigid", RIGID)];
+    let rigid = released(STRUCTURE, Detail::Rigid)?;
+    let impacts: Vec<_> = rigid.iter().filter(|transition| is_impact(transition)).collect();
+    let (number, last) = (impacts.len(), impacts.last().map_or(0.0, |impact| impact.time));
+    let x = Axis::linear("impact", 0.0, number as f64 + 10.0);
+    let y = Axis::logarithmic("time to the next impact, s", 1e-12, 1.0);
+    let mut panel = Panel::new("Zeno at rest in the rigid limit", x, y);
     let mut counts = Vec::new();
-    times = times.with("rigid", intervals(&rigid.transitions), RIGID);
-    for (f_fc, style) in FREQUENCIES.into_iter().zip(STYLES) {
-        let flexible = exact(&released(Parameters { f_fc, ..STRUCTURE }), Detail::Nonlinear, [])?;
-        let gaps = intervals(&flexible.transitions);
+    for (f_fc, style) in FREQUENCIES {
+        let gaps = intervals(&released(Parameters { f_fc, ..STRUCTURE }, Detail::Nonlinear)?);
         counts.push(format!("{} at {f_fc} Hz", gaps.len() + 1));
-        times = times.with(format!("{f_fc} Hz"), gaps.last().copied(), style);
-        legend.push(Entry::new(format!("{f_fc} Hz: lands here"), style));
+        panel = panel.with(format!("{f_fc} Hz: lands here"), gaps.last().copied(), style);
     }
+    let panel = panel.with("rigid", intervals(&rigid), Style::line(colour::BLACK, 2));
     Ok(Exhibit {
         key: "zeno",
-        title: "Zeno at rest in the rigid limit",
         values: context! { number, last => format!("{last:.3}"), counts => counts.join(", ") },
-        panels: vec![history, times],
-        legend_columns: 5,
-        legend,
+        panel,
     })
 }

@@ -1,22 +1,40 @@
-//! `docs/evidence/accuracy.md`: what the curves say, in tables and sentences made from their own numbers.
+//! `docs/evidence/accuracy.md`: the curves as pictures, as numbers, and in sentences made from these.
 
 use super::{Curve, Diagram, Family, PERTURBATION, Point};
-use crate::chart::{power_of_ten, scientific};
+use crate::chart::colour::{BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION};
+use crate::chart::{Axis, Figure, Marker, Panel, Style, power_of_ten, scientific};
 use crate::response::Errors;
 use anyhow::{Context, Result};
 use minijinja::{Value, context};
+use plotters::style::RGBColor;
 use std::path::Path;
 
 /// Errors in θ at which costs are compared.
 const ERRORS: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
 
-/// Steps per sample at which the two ways to take transitions are compared.
-const COMPARED_STEPS: f64 = 64.0;
+/// Errors beyond this have no meaning and are drawn here; failed runs are drawn above, below the end of the axis.
+const MEANINGLESS: f64 = 10.0;
+const FAILED: f64 = 20.0;
+const TOP: f64 = 40.0;
 
-/// A method that is cheaper than `auto`.
-struct Undercut {
-    error: f64, // the smallest error in θ at which it is
-    shown: Value,
+const PANELS: [(&str, &[Family]); 4] = [
+    (
+        "textbook methods, fixed step; dashed: transitions at step ends",
+        &[Family::Ours, Family::Located, Family::AtStepEnds],
+    ),
+    ("solvers of other libraries", &[Family::Ours, Family::Library]),
+    ("this project's levels of detail", &[Family::Ours, Family::Level]),
+    ("the record, and its samples held over communication steps", &[Family::Ours, Family::Host]),
+];
+
+/// How the curve `k` of a family is drawn.
+fn style(family: Family, k: usize) -> Style {
+    const COLOURS: [RGBColor; 6] = [ORANGE, SKY, GREEN, BLUE, VERMILLION, PURPLE];
+    const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Square, Marker::Triangle, Marker::Diamond];
+    match family {
+        Family::Ours => Style::marked(BLACK, 3, Marker::Circle),
+        _ => Style { dashed: family == Family::AtStepEnds, ..Style::marked(COLOURS[k % 6], 2, MARKERS[k % 4]) },
+    }
 }
 
 impl Point {
@@ -26,15 +44,6 @@ impl Point {
 }
 
 impl Curve {
-    /// Its name, with what tells it from another of the same name.
-    fn full_name(&self) -> String {
-        match self.family {
-            Family::Located => format!("{}, transitions located", self.name),
-            Family::AtStepEnds => format!("{}, transitions at step ends", self.name),
-            _ => self.name.clone(),
-        }
-    }
-
     /// Its cheapest point with an error in θ of at most `error`.
     fn cheapest(&self, error: f64) -> Option<&Point> {
         let good = self.points.iter().filter(|point| point.theta().is_some_and(|theta| theta <= error));
@@ -46,6 +55,13 @@ impl Curve {
             "tolerance" => decade(point.setting),
             _ => format!("{} ms", significant(1e3 * point.setting)),
         }
+    }
+
+    /// At how many settings it fails, and why at the last of them.
+    fn failure(&self) -> Option<String> {
+        let failed: Vec<_> = self.points.iter().filter_map(|point| point.errors.as_ref().err()).collect();
+        let reason = failed.last()?;
+        Some(format!("{} ({} of {} settings): {reason}", self.name, failed.len(), self.points.len()))
     }
 }
 
@@ -61,14 +77,40 @@ fn significant(value: f64) -> String {
 }
 
 impl Diagram {
-    fn curve(&self, family: Family, name: &str) -> Option<&Curve> {
-        self.curves.iter().find(|curve| curve.family == family && curve.name == name)
-    }
-
     fn family(&self, family: Family) -> impl Iterator<Item = &Curve> {
         self.curves.iter().filter(move |curve| curve.family == family)
     }
 
+    /// Error over cost for some families of curves.
+    fn panel(&self, title: &str, families: &[Family]) -> Panel {
+        let points = || self.curves.iter().flat_map(|curve| &curve.points);
+        let decade = |value: f64| 10f64.powf(value.log10().floor());
+        let conditioning = self.conditioning.theta;
+        let errors = points().filter_map(Point::theta).filter(|error| *error > 0.0);
+        let bottom = decade(errors.fold(conditioning, f64::min).max(conditioning / 100.0));
+        let least = decade(points().map(|point| point.cost).fold(f64::INFINITY, f64::min));
+        let most = 10.0 * decade(points().map(|point| point.cost).fold(0.0, f64::max));
+        let x = Axis::logarithmic("time per sample / floor", least, most);
+        let y = Axis::logarithmic("max|Δθ| / max|θ|", bottom, TOP);
+        let mut panel = Panel::new(title, x, y)
+            .area((least, bottom), (most, conditioning))
+            .area((least, MEANINGLESS), (most, TOP))
+            .note((least, FAILED), "fails", BLACK)
+            .note((least, (conditioning * bottom).sqrt()), "below the conditioning floor", GREY);
+        for family in families {
+            for (k, curve) in self.family(*family).enumerate() {
+                let style = style(*family, k);
+                let good = curve.points.iter().filter_map(|point| Some((point.cost, point.theta()?)));
+                panel = panel.with(&curve.name, good.map(|(x, error)| (x, error.clamp(bottom, MEANINGLESS))), style);
+                let failed =
+                    curve.points.iter().filter(|point| point.errors.is_err()).map(|point| (point.cost, FAILED));
+                panel = panel.with("", failed, Style::marked(style.colour, 0, Marker::Cross));
+            }
+        }
+        panel
+    }
+
+    /// A row for each curve: what the errors cost.
     fn rows(&self) -> Vec<Value> {
         let cost = |curve: &Curve, error: f64| match curve.cheapest(error) {
             Some(point) => format!("{} ({})", significant(point.cost), curve.setting(point)),
@@ -76,29 +118,14 @@ impl Diagram {
         };
         let row = |curve: &Curve| {
             let costs: Vec<_> = ERRORS.iter().map(|error| cost(curve, *error)).collect();
-            context! { method => curve.full_name(), costs, is_ours => curve.family == Family::Ours }
+            context! { method => curve.name.clone(), costs, is_ours => curve.family == Family::Ours }
         };
         self.curves.iter().map(row).collect()
     }
 
-    fn step_ends(&self) -> Vec<Value> {
-        let error = |curve: &Curve| {
-            let h = self.dt / COMPARED_STEPS;
-            let point = curve.points.iter().find(|point| (point.setting / h - 1.0).abs() < 1e-6)?;
-            Some(point.theta().map_or("fails".into(), scientific))
-        };
-        let pair = |located: &Curve| {
-            let at_step_ends = self.curve(Family::AtStepEnds, &located.name)?;
-            let (at_step_ends, method) = (error(at_step_ends)?, located.name.clone());
-            Some(context! { method, located => error(located)?, at_step_ends })
-        };
-        self.family(Family::Located).filter_map(pair).collect()
-    }
-
-    /// The methods that are cheaper than `auto` at an error below 1.
-    fn undercut(&self) -> Result<Vec<Undercut>> {
+    /// The methods that are cheaper than `auto` at an error below 1, each with the smallest such error.
+    fn undercut(&self) -> Result<Vec<(f64, Value)>> {
         let auto = self.family(Family::Ours).next().context("auto is measured")?;
-        let others = [Family::Located, Family::AtStepEnds, Family::Library];
         let of_method = |curve: &Curve| {
             let cheaper = curve.points.iter().filter_map(|point| {
                 let error = point.theta()?;
@@ -106,45 +133,19 @@ impl Diagram {
                 (error < 1.0 && point.cost < ours).then_some((error, point.cost, ours))
             });
             let (error, cost, ours) = cheaper.min_by(|a, b| a.0.total_cmp(&b.0))?;
-            let (method, shown, cost, ours) =
-                (curve.full_name(), scientific(error), significant(cost), significant(ours));
-            Some(Undercut { error, shown: context! { method, shown, cost, ours } })
+            let (shown, cost, ours) = (scientific(error), significant(cost), significant(ours));
+            Some((error, context! { method => curve.name.clone(), shown, cost, ours }))
         };
-        Ok(others
-            .into_iter()
-            .flat_map(|family| self.family(family).filter_map(of_method).collect::<Vec<_>>())
-            .collect())
-    }
-
-    /// Every method that fails, at which settings and why.
-    fn failures(&self) -> Vec<String> {
-        let of_method = |curve: &Curve| {
-            let failed: Vec<_> = curve.points.iter().filter(|point| point.errors.is_err()).collect();
-            let (first, last) = (failed.first()?, failed.last()?);
-            let reason = last.errors.as_ref().err()?;
-            let settings = match failed.len() {
-                1 => curve.setting(first),
-                _ => format!(
-                    "{} of {} settings, {} to {}",
-                    failed.len(),
-                    curve.points.len(),
-                    curve.setting(first),
-                    curve.setting(last)
-                ),
-            };
-            Some(format!("{} ({settings}): {reason}", curve.full_name()))
-        };
-        self.curves.iter().filter_map(of_method).collect()
+        let others = [Family::Located, Family::AtStepEnds, Family::Library];
+        Ok(self.curves.iter().filter(|curve| others.contains(&curve.family)).filter_map(of_method).collect())
     }
 
     /// The scene's part of the page, and the smallest error at which another method is cheaper than `auto`.
     fn scene(&self) -> Result<(Value, f64)> {
-        let fmu = |name: &str| self.curve(Family::Fmu, name).context("the FMU is measured");
-        let [held, slope, inside] =
-            [fmu("FMU, input held")?, fmu("FMU, input with slope")?, fmu("FMU, record inside")?];
-        let error = |point: Option<&Point>| point.and_then(Point::theta).map_or("fails".into(), scientific);
+        let held = self.family(Family::Host).flat_map(|curve| &curve.points).filter_map(Point::theta);
+        let held: Vec<_> = held.map(scientific).collect();
         let undercut = self.undercut()?;
-        let least = undercut.iter().map(|undercut| undercut.error).fold(f64::INFINITY, f64::min);
+        let least = undercut.iter().map(|(error, _)| *error).fold(f64::INFINITY, f64::min);
         let Errors { theta, u, a_t } = self.conditioning;
         let scene = context! {
             key => self.key,
@@ -154,19 +155,58 @@ impl Diagram {
             floor => significant(1e9 * self.floor),
             conditioning => [theta, u, a_t].map(scientific).to_vec(),
             rows => self.rows(),
-            step_ends => self.step_ends(),
-            held => vec![error(held.points.first()), error(held.points.last())],
-            slope => error(slope.points.first()),
-            inside => error(inside.points.first()),
-            undercut => undercut.into_iter().map(|undercut| undercut.shown).collect::<Vec<_>>(),
-            failures => self.failures(),
+            held => [held.first(), held.last()].map(|error| error.cloned()).to_vec(),
+            undercut => undercut.into_iter().map(|(_, shown)| shown).collect::<Vec<_>>(),
+            failures => self.curves.iter().filter_map(Curve::failure).collect::<Vec<_>>(),
         };
         Ok((scene, least))
     }
+
+    fn save_numbers(&self, path: &Path) -> Result<()> {
+        let mut csv = csv::Writer::from_path(path)?;
+        csv.write_record([
+            "method",
+            "setting",
+            "value",
+            "cost_over_floor",
+            "microseconds_per_sample",
+            "evaluations_per_sample",
+            "transitions",
+            "error_theta",
+            "error_u",
+            "error_a_t",
+            "failure",
+        ])?;
+        for (curve, point) in self.curves.iter().flat_map(|curve| curve.points.iter().map(move |point| (curve, point)))
+        {
+            let error =
+                |get: fn(&Errors) -> f64| point.errors.as_ref().map_or(String::new(), |e| format!("{:.3e}", get(e)));
+            csv.write_record([
+                curve.name.clone(),
+                curve.setting.into(),
+                format!("{:.6e}", point.setting),
+                format!("{:.2}", point.cost),
+                format!("{:.4}", 1e6 * point.cost * self.floor),
+                format!("{:.3}", point.evaluations),
+                point.transitions.to_string(),
+                error(|e| e.theta),
+                error(|e| e.u),
+                error(|e| e.a_t),
+                point.errors.as_ref().err().map_or(String::new(), ToString::to_string),
+            ])?;
+        }
+        Ok(csv.flush()?)
+    }
 }
 
-/// Writes the page.
+/// Writes the page with its pictures and numbers.
 pub fn write(diagrams: &[Diagram], docs: &Path) -> Result<()> {
+    for diagram in diagrams {
+        let panels = PANELS.map(|(title, families)| diagram.panel(title, families)).into();
+        let figure = Figure { title: diagram.title.into(), columns: 2, panels };
+        figure.save(&docs.join(format!("accuracy-{}.svg", diagram.key)))?;
+        diagram.save_numbers(&docs.join(format!("accuracy-{}.csv", diagram.key)))?;
+    }
     let (scenes, least): (Vec<_>, Vec<_>) =
         diagrams.iter().map(Diagram::scene).collect::<Result<Vec<_>>>()?.into_iter().unzip();
     let least = least.into_iter().fold(f64::INFINITY, f64::min);

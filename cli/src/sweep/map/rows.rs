@@ -2,12 +2,12 @@
 //!
 //! A point's key stands for the structure and its name, the pulse, the level of detail, the tolerance, whether its condition is found, and
 //! the build of the program: not for its place, so that another grid through the same point has it.
-use crate::cause::{heading, version};
-use crate::sweep::row_file::{Known, RowFile, fixed, key, line};
+use crate::cause::{program, version};
 use csv::StringRecord;
 use rocking_sweep::map::{Map, Place, Point};
 use rocking_sweep::plan::AXES;
 use rocking_sweep::pulse::units_of;
+use rocking_sweep::row_file::{Known, RowFile, fixed, heading, line};
 use std::path::Path;
 use uuid::Uuid;
 
@@ -21,7 +21,7 @@ pub fn open(path: &Path) -> anyhow::Result<(RowFile, Known<Point>)> {
 /// The key of a point of the map of the structure called `name`.
 pub fn key_at(name: &str, map: &Map, place: Place) -> Uuid {
     let of_map = (map.detail, map.tolerance, map.finds_condition);
-    key(&(name, map.structure.parameters(), map.pulse(place), of_map.0, of_map.1, of_map.2))
+    program().key(&(name, map.structure.parameters(), map.pulse(place), of_map.0, of_map.1, of_map.2))
 }
 
 fn headings() -> Vec<String> {

@@ -1,15 +1,15 @@
 //! The description in FMI 3.0.
 
-use super::{DESCRIPTION, causality, index, initial, is_initial_unknown, items, log_category, variability};
+use super::{DESCRIPTION, attributes, index, is_initial_unknown, items, log_category, variable_type};
 use crate::experiment::Experiment;
 use crate::units;
 use FlexibleRocking::logger;
 use FlexibleRocking::resources::Contents;
-use FlexibleRocking::variables::{Causality, DETAILS, DataType, Enumeration, PHASES, VARIABLES, Value, Variable};
+use FlexibleRocking::variables::{Causality, DETAILS, Enumeration, PHASES, VARIABLES, Variable};
 use model_description as fmi;
 use model_description::fmi3;
 use rocking::Structure;
-use rocking::mechanics::state::{COMPONENTS, INITIAL_VALUES};
+use rocking::mechanics::state::INITIAL_VALUES;
 
 /// The description of the FMU `name` of `structure` with these `contents`.
 pub fn model_description(
@@ -19,30 +19,17 @@ pub fn model_description(
     experiment: Experiment,
 ) -> fmi3::FmiModelDescription {
     fmi3::FmiModelDescription {
-        fmi_version: fmi3::FmiVersion::V3_0,
+        fmi_version: "3.0",
         model_name: name.into(),
         instantiation_token: FlexibleRocking::guid(contents),
         description: DESCRIPTION.into(),
         version: env!("CARGO_PKG_VERSION").into(),
         license: env!("CARGO_PKG_LICENSE").into(),
         generation_tool: concat!("rocking-fmu ", env!("CARGO_PKG_VERSION")).into(),
-        variable_naming_convention: fmi::VariableNamingConvention::Flat,
-        model_exchange: fmi3::ModelExchange {
-            model_identifier: name.into(),
-            can_be_instantiated_only_once_per_process: false,
-            can_get_and_set_fmu_state: true,
-            can_serialize_fmu_state: true,
-            provides_directional_derivatives: true,
-            provides_adjoint_derivatives: true,
-            needs_completed_integrator_step: true,
-        },
+        variable_naming_convention: fmi::FLAT,
+        model_exchange: fmi3::ModelExchange { capabilities: capabilities(name), needs_completed_integrator_step: true },
         co_simulation: fmi3::CoSimulation {
-            model_identifier: name.into(),
-            can_be_instantiated_only_once_per_process: false,
-            can_get_and_set_fmu_state: true,
-            can_serialize_fmu_state: true,
-            provides_directional_derivatives: true,
-            provides_adjoint_derivatives: true,
+            capabilities: capabilities(name),
             can_handle_variable_communication_step_size: true,
             max_output_derivative_order: 1,
             provides_intermediate_update: true,
@@ -72,48 +59,32 @@ fn enumeration_type(enumeration: &Enumeration) -> fmi3::EnumerationType {
     }
 }
 
+fn capabilities(name: &str) -> fmi3::Capabilities {
+    fmi3::Capabilities {
+        model_identifier: name.into(),
+        can_be_instantiated_only_once_per_process: false,
+        can_get_and_set_fmu_state: true,
+        can_serialize_fmu_state: true,
+        provides_directional_derivatives: true,
+        provides_adjoint_derivatives: true,
+    }
+}
+
 /// The variable at position `at` of the table, which is its value reference.
 fn of_type(at: u32, variable: &Variable, structure: &Structure, contents: &Contents) -> fmi3::Variable {
-    let start = variable.start(contents);
-    let common = fmi3::Common {
-        name: variable.name.into(),
-        value_reference: at,
-        description: variable.description.into(),
-        causality: causality(variable),
-        variability: variability(variable),
-        initial: initial(variable),
-    };
-    match variable.data_type {
-        DataType::Real { unit, range } => fmi3::Variable::Float64(fmi3::Float64 {
-            common,
-            intermediate_update: (variable.is_continuous() && variable.causality != Causality::Independent)
-                .then_some(true),
-            unit: (unit != "1").then(|| unit.into()),
-            display_unit: units::display_unit(variable, structure).map(Into::into),
-            min: range.map(|(min, _)| min),
-            max: range.map(|(_, max)| max),
-            nominal: units::nominal(variable, structure),
-            start: start.and_then(|value| if let Value::Real(value) = value { Some(value) } else { None }),
-            derivative: variable.as_state_rate().map(|which| reference(COMPONENTS[which])),
-            reinit: variable.as_state().map(|_| true),
-        }),
-        DataType::Integer => fmi3::Variable::Int32(fmi3::Int32 { common, min: Some(0) }),
-        DataType::Boolean => fmi3::Variable::Boolean(fmi3::Boolean {
-            common,
-            start: start.and_then(|value| if let Value::Boolean(value) = value { Some(value) } else { None }),
-        }),
-        DataType::String => fmi3::Variable::String(fmi3::Text {
-            common,
-            start: start.and_then(|value| match value {
-                Value::String(value) => Some(fmi3::Start { value }),
-                _ => None,
-            }),
-        }),
-        DataType::Enumeration(enumeration) => fmi3::Variable::Enumeration(fmi3::Enumeration {
-            common,
-            declared_type: enumeration.name.into(),
-            start: start.and_then(|value| if let Value::Item(value) = value { Some(value) } else { None }),
-        }),
+    let is_given_within_steps = variable.is_continuous() && variable.causality != Causality::Independent;
+    let (attributes, intermediate_update) = (attributes(at, variable), is_given_within_steps.then_some(true));
+    match variable_type(variable, structure, contents, reference) {
+        fmi::VariableType::Real(own) => fmi3::Variable::Float64(fmi3::Of { attributes, intermediate_update, own }),
+        fmi::VariableType::Integer(own) => fmi3::Variable::Int32(fmi3::Of { attributes, intermediate_update, own }),
+        fmi::VariableType::Boolean(own) => fmi3::Variable::Boolean(fmi3::Of { attributes, intermediate_update, own }),
+        fmi::VariableType::String(text) => {
+            let own = fmi3::Text { start: text.start.map(|value| fmi3::Start { value }) };
+            fmi3::Variable::String(fmi3::Of { attributes, intermediate_update, own })
+        }
+        fmi::VariableType::Enumeration(own) => {
+            fmi3::Variable::Enumeration(fmi3::Of { attributes, intermediate_update, own })
+        }
     }
 }
 
@@ -142,13 +113,13 @@ fn model_structure() -> fmi3::ModelStructure {
 }
 
 fn unknown(value_reference: u32, dependencies: Vec<u32>) -> fmi3::Unknown {
-    let dependencies_kind = vec![fmi::DependenciesKind::Dependent; dependencies.len()];
+    let dependencies_kind = vec![fmi::DEPENDENT; dependencies.len()];
     fmi3::Unknown { value_reference, dependencies, dependencies_kind }
 }
 
 /// The value reference of the variable called `name`, its position in the table.
 fn reference(name: &str) -> u32 {
-    u32::try_from(index(name) - 1).expect("the table is short")
+    index(name) - 1
 }
 
 #[cfg(test)]
@@ -156,105 +127,35 @@ mod tests {
     use super::*;
     use rocking::Parameters;
 
-    /// Both versions say the same of every variable, but for time.
-    #[test]
-    fn both_versions_describe_one_table() {
-        let contents = Contents::from(Parameters::MCMANUS);
-        let structure = Structure::new(Parameters::MCMANUS).unwrap();
-        let experiment = Experiment { stop_time: 4.0, step_size: 0.005 };
-        let three = model_description("Pier", &structure, &contents, experiment);
-        let two = super::super::model_description("Pier", &structure, &contents, experiment);
-        let common = three.model_variables.variables.iter().map(|variable| match variable {
-            fmi3::Variable::Float64(of) => &of.common,
-            fmi3::Variable::Int32(of) => &of.common,
-            fmi3::Variable::Boolean(of) => &of.common,
-            fmi3::Variable::String(of) => &of.common,
-            fmi3::Variable::Enumeration(of) => &of.common,
-        });
-        let (time, common): (Vec<_>, Vec<_>) = common.partition(|of| of.causality == fmi::Causality::Independent);
-        assert_eq!(time.iter().map(|of| of.name.as_str()).collect::<Vec<_>>(), ["time"]);
-        let told = |(name, reference, description, causality, variability, initial)| {
-            format!("{name} {reference} {description} {causality:?} {variability:?} {initial:?}")
-        };
-        let of_three = common.iter().map(|of| {
-            (of.name.clone(), of.value_reference, of.description.clone(), of.causality, of.variability, of.initial)
-        });
-        let of_two = two.model_variables.scalar_variables.iter().map(|of| {
-            (of.name.clone(), of.value_reference, of.description.clone(), of.causality, of.variability, of.initial)
-        });
-        assert_eq!(of_three.map(told).collect::<Vec<_>>(), of_two.map(told).collect::<Vec<_>>());
-        assert_eq!(three.instantiation_token, two.guid);
-        let outputs = three.model_structure.outputs.iter().map(|unknown| unknown.value_reference as usize + 1);
-        assert!(outputs.eq(two.model_structure.outputs.unknowns.iter().map(|unknown| unknown.index)));
-    }
-
     /// Knowns at any time are inputs, states, parameters, though not those that the states began from, and time.
     #[test]
-    fn the_structure_points_at_states_and_indicators_in_their_order() {
+    fn the_structure_points_at_what_the_table_names() {
         let contents = Contents::from(Parameters::MCMANUS);
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
         let experiment = Experiment { stop_time: 4.0, step_size: 0.005 };
         let description = model_description("Pier", &structure, &contents, experiment);
-        let float = |reference: u32| match &description.model_variables.variables[reference as usize] {
-            fmi3::Variable::Float64(float) => float,
-            other => panic!("{other:?}"),
-        };
-        let name = |reference: u32| float(reference).common.name.as_str();
         let fmi3::ModelStructure { outputs, continuous_state_derivatives, initial_unknowns, event_indicators } =
             &description.model_structure;
-        let states = continuous_state_derivatives.iter().map(|rate| float(rate.value_reference).derivative.unwrap());
-        let states: Vec<_> = states.collect();
-        assert_eq!(states.iter().map(|state| name(*state)).collect::<Vec<_>>(), COMPONENTS);
-        assert!(states.iter().all(|state| float(*state).reinit == Some(true)));
-        let of = |unknowns: &[fmi3::Unknown]| unknowns.iter().map(|of| of.value_reference).collect::<Vec<_>>();
-        let indicators = of(event_indicators);
-        assert_eq!(
-            indicators.iter().map(|of| name(*of)).collect::<Vec<_>>(),
-            ["phase_indicator", "overturning_indicator"]
-        );
-        let initial = of(initial_unknowns);
-        assert!(states.iter().chain(&of(continuous_state_derivatives)).all(|state| initial.contains(state)));
-        assert!(!indicators.iter().any(|indicator| initial.contains(indicator)));
-
         let dependencies = |unknowns: &[fmi3::Unknown], of: &str| {
-            let unknown = unknowns.iter().find(|unknown| name(unknown.value_reference) == of).unwrap();
-            let names =
-                unknown.dependencies.iter().map(|at| match &description.model_variables.variables[*at as usize] {
-                    fmi3::Variable::Float64(of) => &of.common.name,
-                    fmi3::Variable::String(of) => &of.common.name,
-                    fmi3::Variable::Enumeration(of) => &of.common.name,
-                    other => panic!("{other:?}"),
-                });
-            names.map(String::as_str).collect::<Vec<_>>().join(" ")
+            let unknown = unknowns.iter().find(|unknown| unknown.value_reference == reference(of)).unwrap();
+            let names = unknown.dependencies.iter().map(|at| VARIABLES[*at as usize].name);
+            names.collect::<Vec<_>>().join(" ")
         };
-        assert_eq!(dependencies(outputs, "theta"), "theta");
         assert_eq!(dependencies(outputs, "delta_t"), "u theta H B");
-        assert_eq!(dependencies(outputs, "I_v"), "");
         assert_eq!(
             dependencies(continuous_state_derivatives, "der(u_dot)"),
             "a_g F_t a_v u u_dot theta theta_dot m m0 H B J0 f_fc zeta_fc c_ratio g detail P_0 k_t xi_d c_d k_d F_y record \
              record_v record_scale record_time_scale record_start time"
         );
-        assert_eq!(dependencies(continuous_state_derivatives, "der(u)"), "u_dot");
         assert_eq!(dependencies(event_indicators, "overturning_indicator"), "theta theta_dot B xi_d k_d F_y");
         assert_eq!(dependencies(initial_unknowns, "delta_t"), "H B theta_0 u_0");
-    }
-
-    #[test]
-    fn start_values_are_those_of_the_structure() {
-        let contents = Contents::from(Parameters::EVISON);
-        let structure = Structure::new(Parameters::EVISON).unwrap();
-        let experiment = Experiment { stop_time: 4.0, step_size: 0.005 };
-        let xml = model_description("Pier", &structure, &contents, experiment).to_xml().unwrap();
+        let xml = description.to_xml().unwrap();
         for element in [
-            r#"causality="input" variability="continuous" intermediateUpdate="true" unit="m/s2" displayUnit="g" min="-10000.0" max="10000.0" nominal="3.59" start="0.0"/>"#,
-            r#"causality="output" variability="continuous" initial="calculated" intermediateUpdate="true" unit="rad""#,
+            r#"causality="input" variability="continuous" intermediateUpdate="true" unit="m/s2" displayUnit="g" min="-10000.0" max="10000.0""#,
             r#"causality="output" variability="discrete" initial="calculated" unit="N.s""#,
-            r#"causality="parameter" variability="fixed" initial="exact" unit="Hz" min="0.001" max="10000.0" start="11.0"/>"#,
-            r#"description="what holds of the base" causality="local" variability="discrete" initial="calculated" declaredType="Phase"/>"#,
             r#"causality="parameter" variability="fixed" initial="exact" declaredType="Detail" start="1"/>"#,
             r#"      <Start value=""/>"#,
-            r#"name="time" "#,
+            r#"derivative="3"/>"#,
         ] {
             assert!(xml.contains(element), "{element}\n{xml}");
         }

@@ -1,0 +1,221 @@
+"""Draws the pictures of README and of the model, docs/img: `make pictures`.
+
+    schematic.svg  the structure with its symbols
+    motion.gif     McManus's pier under a pulse
+    headline.svg   error against cost, of the numbers that the study has left in docs/evidence
+    levels.svg     which level of detail is enough, over frequency and intensity
+"""
+
+import argparse
+import json
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from fmpy import simulate_fmu
+from first_run import PACOIMA_DAM
+from matplotlib.animation import FuncAnimation, PillowWriter
+from matplotlib.colors import ListedColormap
+from matplotlib.patches import Arc, Circle
+from tqdm import tqdm
+from validation.figures import FIXED, ROCKING, plt, save, subplots
+
+INK, LIGHT = "#263238", "0.82"
+H, B = 1.84, 0.285  # m, McManus's pier
+BEND = 10  # u is drawn this many times as large in the animation
+SHOWN, FRAMES_PER_SECOND, ROWS_PER_FRAME = 6.0, 16, 8  # s
+
+
+def placed(points: np.ndarray, theta: float, half_width: float) -> np.ndarray:
+    """Points of the frame that turns with the base, in that of the ground: turned about the edge that is down."""
+    pivot = np.array([np.sign(theta) * half_width, 0.0])
+    turn = np.array([[np.cos(theta), np.sin(theta)], [-np.sin(theta), np.cos(theta)]])
+    return pivot + (points - pivot) @ turn.T
+
+
+def parts(theta: float, u: float, height: float, half_width: float) -> dict[str, np.ndarray]:
+    """Outlines of the structure."""
+    along = np.linspace(0, 1, 40)
+    bent = u * along**2 * (3 - along) / 2  # a cantilever with a force at its end
+    base = half_width * np.array([[-1, 0], [1, 0], [1, 0.3], [-1, 0.3], [-1, 0]])
+    foot = 0.3 * half_width / height
+    strut = np.column_stack([bent, height * along])[along >= foot]
+    return {name: placed(points, theta, half_width) for name, points in
+            {"base": base, "strut": strut, "top": np.array([[u, height]])}.items()}
+
+
+def draw(axis, theta: float, u: float, height: float, half_width: float) -> None:
+    shape = parts(theta, u, height, half_width)
+    axis.axhspan(-0.3 * half_width, 0, color=LIGHT, linewidth=0)
+    axis.fill(*shape["base"].T, color=INK, linewidth=0)
+    axis.plot(*shape["strut"].T, color=INK, linewidth=2.5)
+    axis.add_patch(Circle(shape["top"][0], 0.45 * half_width, color=ROCKING, linewidth=0))
+    axis.set(aspect="equal")
+    axis.axis("off")
+
+
+def arrow(axis, start, end, text: str = "", at=None, style: str = "<->", color: str = INK, **options) -> None:
+    look = {"arrowstyle": style, "color": color, "shrinkA": 0, "shrinkB": 0, "linewidth": 1}
+    axis.annotate("", end, start, arrowprops=look)
+    middle = (np.array(start) + end) / 2 if at is None else at
+    axis.text(*middle, text, color=color, **({"ha": "center", "va": "bottom"} | options))
+
+
+def schematic(path: Path) -> None:
+    figure, axes = subplots(1, 2, 4.0)
+    plt.rcParams.update({"mathtext.fontset": "dejavuserif", "font.size": 13, "axes.titlesize": 12})
+    height, half, u, theta = 2.0, 0.5, 0.32, 0.22
+    titles = ("full contact, $\\theta = 0$", "rocking about the right edge, $\\theta > 0$")
+    for axis, turned, title in zip(axes, (0.0, theta), titles):
+        draw(axis, turned, u, height, half)
+        axis.set_title(title, y=0.96)
+        axis.set(xlim=(-1.35, 1.75), ylim=(-0.62, 2.6))
+        arrow(axis, (-1.2, -0.4), (-0.7, -0.4), "$a_g$", style="->")
+        dashed = placed(np.array([[0, 0.15], [0, height * 1.12]]), turned, half)
+        axis.plot(*dashed.T, color="0.5", linewidth=0.8, linestyle="--")
+        top = placed(np.array([[u, height]]), turned, half)[0]
+        axis.text(*top, "$m$", color="white", ha="center", va="center")
+        ends = placed(np.array([[0, height * 1.12], [u, height * 1.12]]), turned, half)
+        arrow(axis, *ends, "$u$", style="->", color=FIXED)
+    left, right = axes
+    for x, text in ((-half, "$B$"), (half, "$B$")):
+        arrow(left, (0, -0.22), (x, -0.22), text, at=(x / 2, -0.25), va="top")
+    arrow(left, (-0.85, 0), (-0.85, height), "$H$", at=(-0.9, height / 2), ha="right", va="center")
+    left.plot([-0.9, u], [height, height], color="0.5", linewidth=0.6)
+    left.text(half + 0.08, 0.1, "$m_0,\\ J_0$", va="center")
+    left.text(0.28, 0.95, "$k,\\ c$", va="center")
+    arrow(left, (u + 0.28, height), (u + 0.85, height), "$F_t$", style="->")
+    top = placed(np.array([[u, height]]), theta, half)[0]
+    right.plot([0, 0], [0, height * 1.1], color="0.5", linewidth=0.6, linestyle=":")
+    arrow(right, (0, 1.75), (top[0], 1.75), "$\\delta_t$", at=(0.17, 1.78), style="->")
+    right.plot([top[0], top[0]], [1.75, top[1]], color="0.5", linewidth=0.6)
+    right.add_patch(Arc((half, 0), 1.3, 1.3, theta1=180 - np.degrees(theta), theta2=180, color=FIXED))
+    right.text(half - 0.73, 0.07, "$\\theta$", color=FIXED, ha="right", va="center")
+    right.plot(half, 0, "o", color=FIXED, markersize=4)
+    right.text(half + 0.08, 0.12, "edge $s = +1$", color=FIXED, va="center")
+    lifted = placed(np.array([[-half, 0]]), theta, half)[0]
+    arrow(right, (lifted[0] - 0.1, 0), (lifted[0] - 0.1, lifted[1]), "uplift", at=(lifted[0] - 0.15, lifted[1] / 2),
+          ha="right", va="center")
+    save(figure, path, "The structure with its symbols",
+         "Left: full contact, with top mass m, height H, half-width B, foundation m0 and J0. Right: rocking.")
+
+
+def motion(fmu: str, path: Path) -> None:
+    """The pier's rotation true to scale, its bend exaggerated."""
+    result = simulate_fmu(fmu, stop_time=SHOWN, output_interval=1 / (FRAMES_PER_SECOND * ROWS_PER_FRAME),
+                          output=["theta", "u", "a_ground"],
+                          start_values={"record": str(Path(__file__).with_name("pulse.csv").resolve())})
+    time, degrees = result["time"], np.degrees(result["theta"])
+    figure, (axis, below) = plt.subplots(2, 1, figsize=(4.6, 5.2), height_ratios=[3, 1], layout="constrained")
+
+    def frame(i: int) -> None:
+        axis.clear()
+        draw(axis, result["theta"][i], BEND * result["u"][i], H, B)
+        axis.set(xlim=(-1.1, 1.1), ylim=(-0.12, 2.15))
+        if result["a_ground"][i]:
+            arrow(axis, (0, -0.06), (0.08 * result["a_ground"][i], -0.06), style="->", color=FIXED)
+        axis.text(-1.1, 2.0, f"{time[i]:.1f} s", color=INK)
+        below.clear()
+        below.plot(time[: i + 1], degrees[: i + 1], color=ROCKING)
+        below.plot(time[i], degrees[i], "o", color=ROCKING)
+        below.axhline(0, color="0.6", linewidth=0.6)
+        below.set(xlim=(0, SHOWN), ylim=(-10, 10), xlabel="time (s)", ylabel="rotation (°)")
+
+    path.parent.mkdir(parents=True, exist_ok=True)
+    frames = range(0, len(time), ROWS_PER_FRAME)
+    FuncAnimation(figure, frame, frames).save(path, PillowWriter(fps=FRAMES_PER_SECOND), dpi=80)
+    plt.close(figure)
+
+
+DIGITS = 1e-6  # error in θ at which the headline compares
+
+
+def headline(path: Path) -> None:
+    """McManus's pier under El Centro: what accuracy costs, method by method."""
+    rows = pd.read_csv("docs/evidence/accuracy-mcmanus-el-centro.csv").dropna(subset="error_theta")
+    rows = rows[rows["error_theta"] > 0]
+    figure, axis = subplots(1, 1, 4.6)
+
+    def curve(method: str, taken: str | None, color: str, text: str, at: int, beside=(6, 0), **options) -> None:
+        of = rows[(rows["method"] == method) & ((rows["transitions_taken"] == taken) if taken else True)]
+        of = of.sort_values("value", ascending=False)
+        x, y = of["microseconds_per_sample"].to_numpy(), of["error_theta"].to_numpy()
+        axis.loglog(x, y, color=color, **({"marker": "o", "markersize": 3} | options))
+        if text:
+            axis.annotate(text, (x[at], y[at]), xytext=beside, textcoords="offset points", color=color, va="center")
+
+    textbook = rows[rows["transitions_taken"] == "at step ends"]["method"].unique()
+    for method in textbook:
+        curve(method, "at step ends", "0.6", "", 0, linestyle="--", marker="")
+    axis.text(400, 0.2, "six textbook methods,\ntransitions at ends of steps", color="0.4")
+    curve("RK4", "located", "#009e73", "RK4, transitions located", -1)
+    curve("Newmark average acceleration", "located", "#b35900", "Newmark, HHT-α, central\ndifference, the same", -1,
+          (8, -6))
+    curve("HHT-α", "located", "#b35900", "", 0)
+    curve("central difference", "located", "#b35900", "", 0)
+    curve("semi-implicit Euler", "located", "#b35900", "Euler, the same", -1, (8, -4))
+    curve("explicit Euler", "located", "#b35900", "", 0)
+    curve("ode_solvers Dop853", None, FIXED, "", 0)
+    curve("differential-equations DOP853", None, FIXED, "DOP853, two libraries", -1, (8, -1))
+    curve("ode_solvers Dopri5", None, "#8e44ad", "Dopri5", -1)
+    curve("diffsol BDF, its root finding", None, ROCKING, "BDF of diffsol", -1)
+    curve("diffsol ESDIRK34, its root finding", None, ROCKING, "", 0)
+    curve("this project, auto", None, "black", "this project", 0, (-14, -12), markersize=7, linewidth=0)
+    good = rows[rows["error_theta"] <= DIGITS].groupby(rows["method"].str.startswith(("this project", "FMU")))
+    peers, ours = good["microseconds_per_sample"].min()
+    axis.axhline(DIGITS, color="0.6", linewidth=0.6, linestyle=":")
+    axis.set(title=f"To six digits the nearest peer takes {peers / ours:.1f} times as long", xlim=(0.05, 2e4),
+             xlabel="computing time per sample of the record (µs)", ylim=(1e-12, 20),
+             ylabel="largest error of θ over its peak")
+    save(figure, path, axis.get_title(), "Error of θ against time: this engine, textbook methods, other libraries.")
+
+
+LEVELS = {"fixed_base": "#d9d9d9", "rigid": "#f0e442", "modal": "#56b4e9", "linear": "#009e73", "auto": "#d55e00"}
+FREQUENCIES = np.geomspace(1, 50, 24)  # Hz
+INTENSITIES = np.geomspace(0.3, 12, 24)  # PGA over g tan α_cg
+ASKED = {"peaks of θ, u, a_t within 5 %": "theta,u,a_t",
+         "histories within 5 %, too": "theta,u,a_t,theta_history,u_history,a_t_history"}
+
+
+def levels(exporter: Path, path: Path) -> None:
+    """McManus's pier with other frequencies under Pacoima Dam, scaled: the level that `advise` names."""
+    scene = ["--preset", "mcmanus", "--record", PACOIMA_DAM["record"], "--time-scale", "0.2"]
+    uplifts = (130.1 + 65.4) / 130.1 * B / H / 1.21904  # tan α_cg over the record's PGA in g: the scale of 1
+
+    def advised(frequency: float, intensity: float, asked: str) -> int:
+        command = [exporter, "--quiet", "advise", *scene, "--f-fc", f"{frequency:.6g}", "--of", asked,
+                   "--scale", f"{intensity * uplifts:.6g}", "--format", "json"]
+        rows = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["rows"]
+        return list(LEVELS).index(next(row["level"] for row in rows if row["advised"]))
+
+    figure, axes = subplots(1, 2, 3.8, sharey=True)
+    for axis, (title, asked) in zip(axes, ASKED.items()):
+        found = [[advised(f, i, asked) for f in FREQUENCIES] for i in tqdm(INTENSITIES, desc=title)]
+        axis.pcolormesh(FREQUENCIES, INTENSITIES, found, cmap=ListedColormap(list(LEVELS.values())), vmin=-0.5,
+                        vmax=len(LEVELS) - 0.5, rasterized=True)
+        full = np.mean(np.array(found) == list(LEVELS).index("auto"))
+        axis.set(xscale="log", yscale="log", xlabel="$f_{fc}$ (Hz)",
+                 title=f"{title}:\n{full:.0%} of the scenes ask for the full equations")
+        axis.grid(False)
+    axes[0].set_ylabel(r"PGA / (g tan $\alpha_{cg}$)")
+    patches = [plt.Rectangle((0, 0), 1, 1, color=color) for color in LEVELS.values()]
+    figure.legend(patches, LEVELS, ncols=5, loc="outside lower center")
+    save(figure, path, "Which level of detail is enough",
+         "The cheapest level that is good enough, over f_fc and PGA over g tan α_cg.")
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("fmu", nargs="?", default="out/mcmanus.fmu", help="of McManus's pier")
+    parser.add_argument("--exporter", type=Path, default=Path("target/release/rocking-fmu"), help="executable")
+    parser.add_argument("--folder", type=Path, default=Path("docs/img"), help="where to save them")
+    arguments = parser.parse_args()
+    schematic(arguments.folder / "schematic.svg")
+    motion(arguments.fmu, arguments.folder / "motion.gif")
+    headline(arguments.folder / "headline.svg")
+    levels(arguments.exporter, arguments.folder / "levels.svg")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,59 @@
+//! Which function may be called when: FMI 3.0, section 2.3, 4.2.1 for a slave, 3.2.1 for a model. Beside the standard's
+//! states stand "step failed", to which overturning leads, after which there is nothing to step to, and "error", in which
+//! the solver could not go on.
+
+use super::Function;
+use crate::state_machine::tables;
+
+#[rustfmt::skip]
+tables! {
+    [                             x Instantiated,
+                                    x InitializationMode,
+                                      s StepComplete,
+                                        s IntermediateUpdateMode,
+                                          s IntermediateOutputs,
+                                            s StepFailed,
+                                              x EventMode,
+                                                m ContinuousTimeMode,
+                                                  x Terminated,
+                                                    x Error]
+    SetDebugLogging               [x x x x x x x x x x]
+    EnterInitializationMode       [x - - - - - - - - -]
+    ExitInitializationMode        [- x - - - - - - - -]
+    EnterEventMode                [- - x - - - - x - -]
+    Terminate                     [- - x - - x x x - -]
+    Reset                         [x x x - - x x x x x]
+    GetFloat64                    [x x x - x x x x x x]
+    GetInt32                      [x x x - x x x x x x]
+    GetInt64                      [x x x - x x x x x x]
+    GetBoolean                    [x x x - x x x x x x]
+    GetString                     [x x x - x x x x x x]
+    SetFloat64                    [x x x x - - x x - -]
+    SetInt32                      [x x x - - - x - - -]
+    SetInt64                      [x x x - - - x - - -]
+    SetBoolean                    [x x x - - - x - - -]
+    SetString                     [x x x - - - x - - -]
+    GetFMUState                   [x x x - - x x x x x]
+    SetFMUState                   [x x x - - x x x x x]
+    FreeFMUState                  [x x x - - x x x x x]
+    SerializedFMUStateSize        [x x x - - x x x x x]
+    SerializeFMUState             [x x x - - x x x x x]
+    DeserializeFMUState           [x x x - - x x x x x]
+    GetDirectionalDerivative      [- x x - - x x x x x]
+    GetAdjointDerivative          [- x x - - x x x x x]
+    EvaluateDiscreteStates        [- - - - - - x - - -]
+    UpdateDiscreteStates          [- - - - - - x - - -]
+    EnterStepMode                 [- - - - - - s - - -]
+    GetOutputDerivatives          [- - x - x x - - s s]
+    DoStep                        [- - x - - - - - - -]
+    GetNumberOfEventIndicators    [x x x x x x x x x x]
+    GetNumberOfContinuousStates   [x x x x x x x x x x]
+    EnterContinuousTimeMode       [- - - - - - m - - -]
+    CompletedIntegratorStep       [- - - - - - - x - -]
+    SetTime                       [- - - - - - m x - -]
+    SetContinuousStates           [- - - - - - - x - -]
+    GetContinuousStateDerivatives [- m - - - - m x m m]
+    GetEventIndicators            [- m - - - - m x m m]
+    GetContinuousStates           [- m - - - - m x m m]
+    GetNominalsOfContinuousStates [- m - - - - m x m m]
+}

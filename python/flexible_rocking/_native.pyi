@@ -1,0 +1,240 @@
+from collections.abc import Callable, Sequence
+from os import PathLike
+from pathlib import Path
+from typing import Any, Literal, TypedDict, final
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from typing_extensions import Unpack
+
+from ._results import Estimate, Response
+
+_Array = NDArray[np.float64]
+_Path = str | PathLike[str]
+_Detail = Literal["auto", "nonlinear", "linear", "modal", "rigid", "fixed_base"]
+_Unit = Literal["g", "m/s2", "cm/s2", "gal", "mm/s2", "in/s2", "ft/s2", "mg", "%g"]
+_Shape = Literal["half_sine", "sine", "cosine", "ricker", "antisymmetric_ricker", "mavroeidis_papageorgiou"]
+_Criterion = Literal["theta", "u", "a_t", "theta_history", "u_history", "a_t_history"]
+
+class _Numbers(TypedDict, total=False):
+    m: float
+    m0: float
+    H: float
+    B: float
+    J0: float
+    f_fc: float
+    zeta_fc: float
+    c_ratio: float
+    r: float
+    g: float
+    period_fc: float
+    weight: float
+    weight0: float
+    width: float
+    alpha_cg: float
+    p_l: float
+
+class _InitialValues(TypedDict, total=False):
+    theta_0: float
+    theta_dot_0: float
+    u_0: float
+    u_dot_0: float
+
+@final
+class Structure:
+    def __new__(cls, *, preset: Literal["mcmanus", "evison"] | None = None, **numbers: Unpack[_Numbers]) -> Structure: ...
+    def replace(self, **numbers: Unpack[_Numbers]) -> Structure: ...
+    @property
+    def parameters(self) -> dict[str, float]: ...
+    @property
+    def derived(self) -> dict[str, float]: ...
+    def effective_frequency(self, theta: float) -> float: ...
+    def __getattr__(self, name: str) -> float: ...
+    def __hash__(self) -> int: ...
+    def __eq__(self, other: object) -> bool: ...
+
+@final
+class Record:
+    def __new__(
+        cls,
+        time: ArrayLike,
+        a_g: ArrayLike,
+        a_v: ArrayLike | None = None,
+        *,
+        unit: _Unit = "m/s2",
+        g: float = 9.81,
+        time_scale: float = 1.0,
+        scale: float = 1.0,
+        title: str = "record",
+    ) -> Record: ...
+    @staticmethod
+    def read(
+        file: _Path,
+        *,
+        vertical: _Path | None = None,
+        unit: _Unit | None = None,
+        dt: float | None = None,
+        column: int | str | None = None,
+        ignore_npts: bool = False,
+        time_scale: float = 1.0,
+        scale: float = 1.0,
+        g: float = 9.81,
+    ) -> Record: ...
+    @property
+    def time(self) -> _Array: ...
+    @property
+    def a_g(self) -> _Array: ...
+    @property
+    def a_v(self) -> _Array | None: ...
+    @property
+    def title(self) -> str: ...
+    @property
+    def pga(self) -> float: ...
+    @property
+    def pgv(self) -> float: ...
+    @property
+    def duration(self) -> float: ...
+    def scaled(self, scale: float = 1.0, *, time_scale: float = 1.0) -> Record: ...
+    def spectrum(self, periods: ArrayLike, zeta: float = 0.05) -> _Array: ...
+    def write(self, file: _Path) -> None: ...
+    def __len__(self) -> int: ...
+    def __eq__(self, other: object) -> bool: ...
+
+@final
+class Peak:
+    @property
+    def value(self) -> float: ...
+    @property
+    def time(self) -> float: ...
+    @property
+    def unit(self) -> str: ...
+    def __float__(self) -> float: ...
+
+@final
+class Transition:
+    @property
+    def time(self) -> float: ...
+    @property
+    def kind(self) -> str: ...
+    @property
+    def before(self) -> dict[str, float]: ...
+    @property
+    def after(self) -> dict[str, float]: ...
+
+@final
+class Worst:
+    @property
+    def value(self) -> float: ...
+    @property
+    def time(self) -> float: ...
+    @property
+    def limit(self) -> float: ...
+    @property
+    def first_beyond(self) -> float | None: ...
+    @property
+    def beyond(self) -> float: ...
+
+@final
+class Run:
+    @property
+    def structure(self) -> Structure: ...
+    @property
+    def record(self) -> Record: ...
+    @property
+    def detail(self) -> str: ...
+    @property
+    def tolerance(self) -> float: ...
+    @property
+    def peaks(self) -> dict[str, Peak]: ...
+    @property
+    def overturned(self) -> bool | None: ...
+    @property
+    def ending(self) -> str: ...
+    @property
+    def start(self) -> float: ...
+    @property
+    def end(self) -> float: ...
+    @property
+    def fall(self) -> float | None: ...
+    @property
+    def transitions(self) -> list[Transition]: ...
+    @property
+    def steps(self) -> int: ...
+    @property
+    def evaluations(self) -> int: ...
+    @property
+    def validity(self) -> dict[str, Worst]: ...
+    def at(self, times: ArrayLike) -> Response: ...
+    def plot(self) -> Any: ...
+    def page(self) -> str: ...
+
+@final
+class Advice:
+    @property
+    def detail(self) -> str | None: ...
+    @property
+    def levels(self) -> list[dict[str, Any]]: ...
+
+@final
+class Curve:
+    @property
+    def median(self) -> float: ...
+    @property
+    def dispersion(self) -> float: ...
+    @property
+    def median_range(self) -> tuple[float, float] | None: ...
+    def probability(self, intensities: ArrayLike) -> _Array: ...
+    def band(self, intensities: ArrayLike) -> _Array | None: ...
+
+def simulate(
+    structure: Structure,
+    record: Record | None = None,
+    *,
+    duration: float | None = None,
+    detail: _Detail = "auto",
+    tolerance: float = 1e-9,
+    **initial: Unpack[_InitialValues],
+) -> Run: ...
+def advise(
+    structure: Structure,
+    record: Record,
+    *,
+    within: float = 0.05,
+    of: Sequence[_Criterion] | None = None,
+    duration: float | None = None,
+    **initial: Unpack[_InitialValues],
+) -> Advice: ...
+def estimate(structure: Structure, record: Record | None = None, *, amplification: float = 2.0) -> Estimate: ...
+def pulse(
+    shape: _Shape,
+    *,
+    amplitude: float,
+    frequency: float,
+    cycles: float | None = None,
+    phase: float = 0.0,
+    error: float = 1e-4,
+    structure: Structure | None = None,
+    g: float = 9.81,
+) -> Record: ...
+def sweep(
+    structures: list[tuple[str, list[Structure]]],
+    records: list[tuple[str, Record]],
+    scale: ArrayLike,
+    path: Path,
+    detail: str,
+    tolerance: float,
+    duration: float | None,
+    initial: dict[str, float],
+    validity: bool,
+    threads: int,
+    progress: Callable[[int, int], None] | None,
+) -> list[str]: ...
+def fragility(
+    groups: list[int], intensities: list[float], endings: list[str], peaks: list[float], limit: str
+) -> tuple[Curve, list[tuple[float, float, float, int, int, int]]]: ...
+def measure_of(limit: str) -> str | None: ...
+def intensity_measures() -> dict[str, str]: ...
+def export(
+    target: _Path, structure: Structure, records: Sequence[Record | _Path], name: str, fmi: int, library: _Path
+) -> None: ...
+def command_line(program: Path, arguments: list[str]) -> int: ...

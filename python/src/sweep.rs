@@ -1,0 +1,181 @@
+//! `sweep` and `fragility`: many runs on all cores, and what they say together.
+
+use crate::arguments::{conditions, number, numbers, refused};
+use crate::record::Record;
+use crate::structure::Structure;
+use numpy::{PyArray1, PyArray2};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rayon::ThreadPoolBuilder;
+use rocking::estimates::intensity::IntensityMeasure;
+use rocking::run::Ending;
+use rocking_cli::cause;
+use rocking_sweep::exceedances::{self, Bin, Tally};
+use rocking_sweep::fragility::FragilityCurve;
+use rocking_sweep::outcome::{Limit, MEASURES, Outcome, Summary};
+use rocking_sweep::plan::{NamedRecord, Plan, Population};
+use rocking_sweep::row_file::heading;
+use rocking_sweep::rows::Sweep;
+use serde::Deserialize;
+use serde::de::IntoDeserializer;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
+
+/// How long a signal, such as Ctrl-C, may have to wait.
+const MOMENT: Duration = Duration::from_millis(50);
+
+/// Does every run that is not in the file at `path` yet: every one of the populations of structures under every record
+/// at every scale. Returns the keys of all runs, in that order. `progress` is told how many runs of how many are done.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub fn sweep(
+    py: Python<'_>,
+    structures: Vec<(String, Vec<Py<Structure>>)>,
+    records: Vec<(String, Py<Record>)>,
+    scale: &Bound<'_, PyAny>,
+    path: PathBuf,
+    detail: &str,
+    tolerance: f64,
+    duration: Option<f64>,
+    initial: &Bound<'_, PyDict>,
+    validity: bool,
+    threads: usize,
+    progress: Option<Bound<'_, PyAny>>,
+) -> PyResult<Vec<String>> {
+    let scales = match number("scale", scale) {
+        Ok(scale) => vec![scale],
+        Err(_) => numbers("scale", scale)?,
+    };
+    let population = |(name, of): &(String, Vec<Py<Structure>>)| {
+        Population::of(name, of.iter().map(|structure| *structure.get().0.parameters()).collect())
+    };
+    let populations = structures.iter().map(population).collect::<Result<_, _>>().map_err(refused)?;
+    let motion = |(name, record): &(String, Py<Record>)| NamedRecord::new(name, record.get().0.clone(), 1.0);
+    let motions = records.iter().map(motion).collect::<Result<_, _>>().map_err(refused)?;
+    let conditions = conditions(detail, tolerance, duration, Some(initial))?;
+    let plan = py.detach(|| Plan::new(populations, motions, scales)?.under(conditions)).map_err(refused)?;
+
+    let (program, done, stopped) = (cause::program(), AtomicUsize::new(0), AtomicBool::new(false));
+    let sweep = py.detach(|| Sweep::open(&plan, validity, &program, &path)).map_err(refused)?;
+    let all = sweep.missing().len();
+    let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(refused)?;
+    let progress = progress.map(Bound::unbind);
+    let say = |py: Python<'_>| match &progress {
+        Some(progress) => progress.call1(py, (done.load(Ordering::Relaxed), all)).map(drop),
+        None => Ok(()),
+    };
+    let finished = py.detach(|| {
+        thread::scope(|scope| {
+            let (over, is_over) = mpsc::channel::<()>();
+            let runs = scope.spawn(|| {
+                let _over = over; // when it is dropped
+                pool.install(|| {
+                    sweep.finish(|| {
+                        done.fetch_add(1, Ordering::Relaxed);
+                        !stopped.load(Ordering::Relaxed)
+                    })
+                })
+            });
+            let mut interruption = Ok(());
+            while is_over.recv_timeout(MOMENT) == Err(RecvTimeoutError::Timeout) {
+                if interruption.is_ok() {
+                    interruption = Python::attach(|py| py.check_signals().and_then(|()| say(py)));
+                    stopped.store(interruption.is_err(), Ordering::Relaxed);
+                }
+            }
+            interruption.and(runs.join().expect("a run returns its errors").map_err(refused))
+        })
+    });
+    let (keys, _) = finished?;
+    say(py)?;
+    Ok(keys.iter().map(ToString::to_string).collect())
+}
+
+/// Names and units of the measures by which a ground motion's intensity is told.
+#[pyfunction]
+pub fn intensity_measures(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+    let measures = PyDict::new(py);
+    IntensityMeasure::ALL.iter().try_for_each(|measure| measures.set_item(measure.name(), measure.unit()))?;
+    Ok(measures)
+}
+
+/// A lognormal fragility curve, and how sure it is.
+#[pyclass(frozen, module = "flexible_rocking")]
+pub struct Curve(FragilityCurve);
+
+#[pymethods]
+impl Curve {
+    /// Intensity at which the limit is exceeded with the probability 1/2.
+    #[getter]
+    fn median(&self) -> f64 {
+        self.0.median
+    }
+
+    /// Standard deviation of the intensity's logarithm.
+    #[getter]
+    fn dispersion(&self) -> f64 {
+        self.0.dispersion
+    }
+
+    /// Between which intensities the median lies with a probability of 95 %; None where fewer than 5 records, or of one
+    /// record structures, tell nothing of that.
+    #[getter]
+    fn median_range(&self) -> Option<(f64, f64)> {
+        self.0.median_range()
+    }
+
+    /// The probability that the limit is exceeded at each of `intensities`, an array (n,): an array (n,).
+    fn probability<'py>(&self, intensities: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let probabilities = numbers("intensities", intensities)?.into_iter().map(|at| self.0.probability(at));
+        Ok(PyArray1::from_vec(intensities.py(), probabilities.collect()))
+    }
+
+    /// Between which probabilities that lies with a probability of 95 %: an array (n, 2); None where median_range is.
+    fn band<'py>(&self, intensities: &Bound<'py, PyAny>) -> PyResult<Option<Bound<'py, PyArray2<f64>>>> {
+        let at = numbers("intensities", intensities)?;
+        let band: Option<Vec<_>> = at.into_iter().map(|at| Some(<[f64; 2]>::from(self.0.band(at)?).to_vec())).collect();
+        band.map(|band| PyArray2::from_vec2(intensities.py(), &band).map_err(refused)).transpose()
+    }
+}
+
+/// Runs of about the same intensity: the lowest, mean and highest of these, how many there are, of how many the answer is
+/// known, and how many exceed the limit.
+type Counted = (f64, f64, f64, usize, usize, usize);
+
+/// The curve of runs, and the counted runs that are drawn beside it. Of each run: its group, its intensity, how it ended, and
+/// the peak that the limit is of.
+#[pyfunction]
+pub fn fragility(
+    py: Python<'_>,
+    groups: Vec<usize>,
+    intensities: Vec<f64>,
+    endings: Vec<String>,
+    peaks: Vec<f64>,
+    limit: &str,
+) -> PyResult<(Curve, Vec<Counted>)> {
+    let limit: Limit = limit.parse().map_err(refused)?;
+    let exceeds = |ending: &String, peak: f64| -> PyResult<Option<bool>> {
+        let ending: Result<_, serde::de::value::Error> = Ending::deserialize(ending.as_str().into_deserializer());
+        let (ending, peaks) = (ending.map_err(refused)?, [peak; MEASURES.len()]);
+        let summary = Summary { ending, end: 0.0, peaks, transitions: 0, steps: 0, evaluations: 0 };
+        Ok(Outcome::Ended(summary).exceeds(&limit))
+    };
+    let runs = groups.into_iter().zip(intensities).zip(endings.iter().zip(peaks));
+    let runs = runs.map(|((group, intensity), (ending, peak))| Ok((group, intensity, exceeds(ending, peak)?)));
+    let runs = runs.collect::<PyResult<Vec<_>>>()?;
+    let (curve, bins) = py.detach(|| exceedances::of_runs(runs)).map_err(refused)?;
+    let counts = |(of, tally): (Bin, Tally)| (of.lowest, of.mean, of.highest, of.runs, tally.known, tally.exceedances);
+    Ok((Curve(curve), bins.into_iter().map(counts).collect()))
+}
+
+/// The column of a sweep's table that `limit` is of; None where it is of overturning.
+#[pyfunction]
+pub fn measure_of(limit: &str) -> PyResult<Option<String>> {
+    Ok(match limit.parse().map_err(refused)? {
+        Limit::Overturning => None,
+        Limit::Peak { measure, .. } => Some(heading(&format!("peak_{}", MEASURES[measure].0), MEASURES[measure].1)),
+    })
+}

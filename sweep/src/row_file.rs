@@ -1,0 +1,166 @@
+//! A file of rows that grows as runs end: headings, and a row for every run that is done.
+//!
+//! A row begins with the run's key, which stands for all that the run depends on. So rows may stand in any order, and
+//! those of other runs among them.
+//!
+//! A row is written at once and whole when its run ends. Whatever ends the program, the file then holds complete rows,
+//! and at most part of one more at its end, which is cut off when the runs go on.
+
+use anyhow::{Context, bail, ensure};
+use csv::{ReaderBuilder, StringRecord, WriterBuilder};
+use rayon::prelude::*;
+use serde::Serialize;
+use std::{
+    collections::HashMap,
+    fs::{File, TryLockError},
+    io::{Read, Seek, SeekFrom, Write},
+    path::{Path, PathBuf},
+    sync::Mutex,
+};
+use uuid::Uuid;
+
+/// An open file, to which rows can be added.
+#[derive(Debug)]
+pub struct RowFile {
+    path: PathBuf,
+    /// With the length of what is complete.
+    file: Mutex<(File, u64)>,
+}
+
+/// What the rows say that were there, each a `T`, that have not been taken yet.
+#[derive(Debug)]
+pub struct Known<T> {
+    by_key: HashMap<Uuid, T>,
+    repeated: usize,
+}
+
+/// The program that does the runs.
+#[derive(Clone, Debug)]
+pub struct Program {
+    /// Stands for all of it that a run depends on.
+    pub build: Uuid,
+    /// What its rows call it.
+    pub version: String,
+}
+
+impl Program {
+    /// The key of what depends on this program and on `of`.
+    pub fn key(&self, of: &impl Serialize) -> Uuid {
+        digest(&self.build, of)
+    }
+}
+
+/// A number that stands for `of` in `namespace`.
+pub fn digest(namespace: &Uuid, of: &impl Serialize) -> Uuid {
+    Uuid::new_v5(namespace, &postcard::to_allocvec(of).expect("numbers and slices can be serialized"))
+}
+
+impl<T> Known<T> {
+    /// What the row with `key` says, if there is one.
+    pub fn take(&mut self, key: &Uuid) -> Option<T> {
+        self.by_key.remove(key)
+    }
+
+    /// What there is beside them in the file at `path`, a line each: rows of other runs or points, `what`, and rows
+    /// that are there again.
+    pub fn others(&self, path: &Path, what: &str) -> Vec<String> {
+        let others = format!("of {what} (other inputs, or another build of the program): kept");
+        let counts = [(self.by_key.len(), others.as_str()), (self.repeated, "there again: counted once")];
+        let line = |(count, are)| (count > 0).then(|| format!("{}: {count} row(s) are {are}", path.display()));
+        counts.into_iter().filter_map(line).collect()
+    }
+}
+
+impl RowFile {
+    /// Opens the file at `path` under these `headings`, or begins it, and has its complete rows parsed.
+    pub fn open<T>(
+        path: &Path,
+        headings: &[String],
+        parse: impl Fn(&StringRecord) -> anyhow::Result<T>,
+    ) -> anyhow::Result<(RowFile, Known<T>)> {
+        let open = || {
+            let mut file = File::options().read(true).write(true).create(true).truncate(false).open(path)?;
+            match file.try_lock() {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => bail!("another sweep is writing to it: wait for its end"),
+                Err(TryLockError::Error(error)) => return Err(error.into()),
+            }
+            let mut content = Vec::new();
+            file.read_to_end(&mut content)?;
+            let first = line(&headings)?;
+            let mut known = Known { by_key: HashMap::new(), repeated: 0 };
+            if first.starts_with(&content) {
+                file.rewind()?;
+                file.write_all(&first)?;
+                return Ok((file, first.len(), known));
+            }
+            let length = content.iter().rposition(|byte| *byte == b'\n').map_or(0, |last| last + 1);
+            let mut rows = ReaderBuilder::new().from_reader(&content[..length]);
+            ensure!(
+                rows.headers()? == headings,
+                "line 1 is not the headings of this sweep's rows, in this version of the program: name another file, or \
+                 remove this one. These are the headings:\n{}",
+                String::from_utf8_lossy(&first)
+            );
+            for row in rows.records() {
+                let row = row?;
+                let read = || Ok::<_, anyhow::Error>((Uuid::try_parse(&row[0])?, parse(&row)?));
+                let at = row.position().map_or(0, csv::Position::line);
+                let (key, value) =
+                    read().with_context(|| format!("line {at} cannot be read: remove it, to do its run again"))?;
+                known.repeated += usize::from(known.by_key.insert(key, value).is_some());
+            }
+            Ok((file, length, known))
+        };
+        let (file, length, known) = open().with_context(|| path.display().to_string())?;
+        file.set_len(length as u64)?;
+        Ok((RowFile { path: path.into(), file: Mutex::new((file, length as u64)) }, known))
+    }
+
+    /// Does `runs` on all threads, and adds their rows as they end: `run` returns one and what it is kept as. After
+    /// each, `goes_on` is asked; once it says no, the rest is left undone and that is an error.
+    pub fn do_runs<T: Sync, R: Send>(
+        &self,
+        runs: &[T],
+        run: impl Fn(&T) -> anyhow::Result<(Vec<u8>, R)> + Sync,
+        goes_on: impl Fn() -> bool + Sync,
+    ) -> anyhow::Result<Vec<R>> {
+        let done = runs.par_iter().map(|one| {
+            let (row, result) = run(one)?;
+            self.append(&row)?;
+            ensure!(goes_on(), "stopped: what is done stays in {}", self.path.display());
+            Ok(result)
+        });
+        done.collect()
+    }
+
+    /// Adds a row, or nothing.
+    fn append(&self, row: &[u8]) -> anyhow::Result<()> {
+        let mut guard = self.file.lock().expect("no thread panics with the file in hand");
+        let (file, length) = &mut *guard;
+        let written = file.seek(SeekFrom::Start(*length)).and_then(|_| file.write_all(row));
+        if written.is_err() {
+            file.set_len(*length)?;
+        }
+        written.with_context(|| format!("{} cannot be written", self.path.display()))?;
+        *length += row.len() as u64;
+        Ok(())
+    }
+}
+
+/// The heading of a column of numbers.
+pub fn heading(name: &str, unit: &str) -> String {
+    if unit == "1" { name.into() } else { format!("{name}[{unit}]") }
+}
+
+/// The headings of columns that are called the same whatever the sweep is of.
+pub fn fixed(headings: &[&str]) -> Vec<String> {
+    headings.iter().map(|heading| (*heading).to_owned()).collect()
+}
+
+/// A line of these values; numbers read back to the same bits.
+pub fn line(of: &impl Serialize) -> anyhow::Result<Vec<u8>> {
+    let mut writer = WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+    writer.serialize(of)?;
+    Ok(writer.into_inner()?)
+}

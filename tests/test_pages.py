@@ -1,0 +1,60 @@
+"""README and the pages print what the program prints today."""
+
+import os
+import re
+import subprocess
+import sys
+
+import pages
+import pytest
+from conftest import ROOT
+
+
+def is_long(page):
+    return "<!-- heavy -->" in page.read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("page", [
+    pytest.param(page, id=str(page.relative_to(ROOT)), marks=[pytest.mark.heavy] * is_long(page))
+    for page in pages.PAGES if pages.BLOCK.search(page.read_text(encoding="utf-8"))])
+def test_what_a_page_prints_is_what_its_commands_print(page, exporter, tmp_path):
+    text = page.read_text(encoding="utf-8")
+    assert pages.rerun(text, exporter, pages.prepare(tmp_path / "page", exporter)) == text, "run `make pages`"
+
+
+def test_the_command_line_is_described_by_its_own_help(exporter):
+    page = (ROOT / "docs/reference/command_line.md").read_text(encoding="utf-8")
+    assert pages.command_line(exporter) == page, "run `make pages`"
+
+
+def test_the_variables_are_those_of_the_model_description(mcmanus):
+    page = (ROOT / "docs/reference/variables.md").read_text(encoding="utf-8")
+    assert pages.variables(mcmanus.path) == page, "run `make pages`"
+
+
+def test_readme_finds_what_the_page_of_findings_prints():
+    page = (ROOT / "docs/evidence/findings.md").read_text(encoding="utf-8")
+    found = re.search(r"```text\n(.*?)```", page, re.DOTALL)[1]
+    assert found and found in (ROOT / "README.md").read_text(encoding="utf-8")
+
+
+NUMBER = r"\d[\d,]*\.?\d*(?:e[+−-]?\d+)?"
+
+
+def split(page):
+    """Words and numbers, without measured times and the line that says when they were measured."""
+    text = re.sub(r" [\d.]+ s \| \d+ \|$|^\*Made by .*", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    numbers = [float(number.replace(",", "").replace("−", "-")) for number in re.findall(NUMBER, text)]
+    return re.sub(NUMBER, "#", text), numbers
+
+
+@pytest.mark.heavy
+@pytest.mark.parametrize("page, module", [
+    ("paper", "validation"), ("literature", "literature"), ("overturning", "overturning")])
+def test_a_page_of_evidence_is_what_its_command_writes(page, module, exporter, tmp_path):
+    """To a per cent: another C library has other last digits. Solvers of hosts amplify these: test_model_exchange.py and
+    test_coupling.py hold what their pages say."""
+    command = [sys.executable, "-m", module, "--output", tmp_path / f"{page}.md", "--exporter", exporter]
+    subprocess.run(command, cwd=ROOT, env=os.environ | {"PYTHONPATH": "examples"}, check=True)
+    (words, numbers), (as_told, told) = split(tmp_path / f"{page}.md"), split(ROOT / "docs/evidence" / f"{page}.md")
+    assert words == as_told and numbers == pytest.approx(told, rel=0.01, abs=1e-9)

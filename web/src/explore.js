@@ -1,0 +1,576 @@
+(async () => {
+  const at = (id) => document.getElementById(id);
+  const { decode, show } = motionView();
+
+  /** The bytes that an element of the page has, compressed. */
+  async function unpacked(id) {
+    const bytes = Uint8Array.from(atob(at(id).textContent), (letter) => letter.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+    return new Uint8Array(await new Response(stream).arrayBuffer());
+  }
+
+  const module = await WebAssembly.compile(await unpacked("engine"));
+  await wasm_bindgen({ module_or_path: module });
+  const tables = JSON.parse(wasm_bindgen.tables());
+  tables.numbers = tables.numbers.map(([name, unit, description, usual, slider]) => ({ name, unit, description, usual, slider }));
+  const explorer = new wasm_bindgen.Explorer();
+
+  // ---- The scene: what differs from the defaults, as the text that was given
+
+  let fields = Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
+  let tab = fields.tab ?? "play";
+  let step = fields.step ?? "0.001"; // of RK4, s
+  delete fields.tab;
+  delete fields.step;
+  const text = () => JSON.stringify(fields);
+  const ground = () => fields.ground ?? "sine";
+  const preset = () => tables.presets.find(({ name }) => name === (fields.preset ?? "mcmanus")) ?? tables.presets[0];
+  const isFile = () => ground() === "record";
+
+  function give(name, value) {
+    if (value === "") delete fields[name];
+    else fields[name] = value;
+    const { stands_for } = tables.natural.find((of) => of.name === name) ?? {};
+    delete fields[stands_for]; // what is given last counts
+    for (const natural of tables.natural) if (natural.stands_for === name) delete fields[natural.name];
+    change();
+  }
+
+  // ---- Controls
+
+  const words = (name) => name.replaceAll("_", " ");
+  const greek = { zeta: "ζ", theta: "θ", alpha: "α", omega: "ω", xi: "ξ", amplitude: "a_p", frequency: "f", step: "RK4 step" };
+  /** The field's own way to write a name: ζ with index fc. */
+  function symbol(name) {
+    const [head, ...index] = (greek[name] ?? name).replace(/^([A-Za-z])(\d+)$/, "$1_$2").split("_");
+    const label = document.createElement("span");
+    const isIndex = head.length < 3 || name in greek || head in greek;
+    label.append(isIndex ? (greek[head] ?? head) : words(name));
+    if (isIndex && index.length > 0) label.append(Object.assign(document.createElement("sub"), { textContent: index.join(" ") }));
+    return label;
+  }
+
+  /** A position, 0 to 1, on the way `from` `to`: in logarithms where both are greater than 0, else more finely about 0. */
+  function scale([from, to]) {
+    if (from > 0 && to / from > 4) {
+      return { value: (part) => from * (to / from) ** part, part: (value) => Math.log(value / from) / Math.log(to / from) };
+    }
+    if (from === 0) return { value: (part) => to * part ** 2, part: (value) => Math.sqrt(value / to) };
+    return { value: (part) => from + (to - from) * part, part: (value) => (value - from) / (to - from) };
+  }
+
+  /** What a slider of a parameter goes from and to: about that of the specimen, or of what its unit is in its masses and lengths. */
+  function reach({ name, unit, min, max }) {
+    const { m, H, g } = preset().parameters;
+    const usual = preset().parameters[name] ?? 0;
+    const own = { kg: m, m: H, s: Math.sqrt(H / g), N: m * g };
+    const of = (units) =>
+      [...units.matchAll(/([A-Za-z]+)(\d*)/g)].reduce((all, [, one, power]) => all * (own[one] ?? 1) ** (power || 1), 1);
+    const [above, below = ""] = unit.split("/");
+    if (min > 0 && usual > 0) return usual * 2 > max ? [min, max] : [Math.max(min, usual / 8), Math.min(max, usual * 8)];
+    return [min, Math.min(max, Math.max(4 * usual, of(above) / of(below)))];
+  }
+
+  let about; // what the engine says of the scene
+  let motion;
+  let derived; // what follows from the structure, by name
+  const rows = {};
+  function row(parent, { name, unit, description, slider }, given) {
+    const made = document.createElement("div");
+    made.className = "row";
+    made.dataset.name = name;
+    made.innerHTML =
+      '<label></label><input type="range" min="0" max="1" step="any"><input type="text" spellcheck="false"><small></small>';
+    const [label, range, number, small] = made.children;
+    label.append(symbol(name));
+    label.title = description;
+    label.htmlFor = number.id = `field-${name}`;
+    range.setAttribute("aria-label", description);
+    small.textContent = unit === "1" ? "" : unit.replace(".", " ").replace(/(\d)/g, (digit) => "⁰¹²³⁴"[digit] ?? digit);
+    range.addEventListener("input", () => {
+      const value = scale(slider()).value(Number(range.value));
+      number.value = String(name === "seed" ? Math.round(value) : Number(value.toPrecision(3)));
+      given(number.value);
+    });
+    number.addEventListener("input", () => given(number.value.trim()));
+    at(parent).append(made);
+    rows[name] = (value, isGiven = true) => {
+      const isFinite = Number.isFinite(value);
+      if (document.activeElement !== number) number.value = isFinite ? String(Number(value.toPrecision(6))) : fields[name];
+      if (document.activeElement !== range && isFinite) range.value = scale(slider()).part(value);
+      made.classList.toggle("given", isGiven);
+    };
+    rows[name].element = made;
+  }
+
+  for (const of of tables.parameters) row("structure", { ...of, slider: () => reach(of) }, (value) => give(of.name, value));
+  for (const of of tables.natural) {
+    let middle; // the slider stays where it was taken hold of
+    const slider = () => {
+      const isHeld = document.activeElement === rows[of.name].element.children[1];
+      if (!isHeld) middle = derived[of.name];
+      return [Math.max(of.min, middle / 8), Math.min(of.max, middle * 8)];
+    };
+    row("structure", { ...of, slider }, (value) => give(of.name, value));
+  }
+  for (const of of tables.numbers) {
+    row(of.name === "tolerance" ? "computed" : "motion", { ...of, slider: () => of.slider }, (value) => give(of.name, value));
+  }
+  row("step", { name: "step", unit: "s", description: "step of RK4", slider: () => [1e-5, 0.02] }, (value) => {
+    step = value;
+    later();
+  });
+
+  at("preset").append(...tables.presets.map(({ name }) => new Option(name === "mcmanus" ? "McManus's bridge pier" : "Evison's shear wall", name)));
+  at("ground").append(
+    ...tables.shapes.map(({ name, definition }) => Object.assign(new Option(`pulse: ${words(name)}`, name), { title: definition })),
+    ...tables.grounds.map(([name]) => new Option({ record: "a record's file", free: "free vibration" }[name] ?? `${name} record`, name)),
+  );
+  at("unit").append(new Option("unit: as stated", ""), ...tables.units.map((name) => new Option(name, name)));
+  at("detail").append(...tables.details.map((name) => new Option(name, name)));
+
+  /** The numbers that the ground motion has. */
+  function numbersOf(name) {
+    const shape = tables.shapes.find((of) => of.name === name);
+    if (shape) return ["amplitude", "frequency", ...(shape.has_choice ? ["cycles", "phase"] : [])];
+    return tables.grounds.find(([of]) => of === name)?.[1] ?? [];
+  }
+
+  at("preset").addEventListener("change", ({ target }) => {
+    for (const { name } of [...tables.parameters, ...tables.natural]) delete fields[name];
+    give("preset", target.value);
+  });
+  at("ground").addEventListener("change", ({ target }) => {
+    const kept = ["tolerance", ...numbersOf(target.value)];
+    for (const { name } of tables.numbers) if (!kept.includes(name)) delete fields[name];
+    if (target.value === "free") fields.theta_0 ??= "0.05";
+    give("ground", target.value);
+  });
+  for (const id of ["detail", "unit"]) at(id).addEventListener("change", ({ target }) => give(id, target.value));
+  for (const id of ["dt", "column"]) at(id).addEventListener("input", ({ target }) => give(id, target.value.trim()));
+  at("natural").addEventListener("change", change);
+  at("reset").addEventListener("click", () => {
+    fields = {};
+    change();
+  });
+
+  function showControls() {
+    derived = Object.fromEntries(about.derived.map(({ name, value }) => [name, value]));
+    at("preset").value = preset().name;
+    at("ground").value = ground();
+    at("detail").value = fields.detail ?? "auto";
+    for (const id of ["unit", "dt", "column"]) if (document.activeElement !== at(id)) at(id).value = fields[id] ?? "";
+    const isNatural = at("natural").checked;
+    const stand_in = (name) => tables.natural.some((of) => of.stands_for === name);
+    for (const { name } of tables.parameters) {
+      rows[name](about.parameters[name], name in fields);
+      rows[name].element.hidden = isNatural && stand_in(name);
+    }
+    for (const { name } of tables.natural) {
+      rows[name](derived[name], name in fields);
+      rows[name].element.hidden = !isNatural;
+    }
+    const own = [...numbersOf(ground()), "tolerance"];
+    const cycles = tables.shapes.find(({ name }) => name === ground())?.cycles;
+    for (const { name, usual } of tables.numbers) {
+      rows[name](Number(fields[name] ?? (name === "cycles" ? cycles : usual)), name in fields);
+      rows[name].element.hidden = !own.includes(name);
+    }
+    rows.step(Number(step), false);
+    at("reading").hidden = !isFile();
+    at("remarks").textContent = [`${about.samples} samples, peak ${short(about.pga)} g`, ...about.remarks, ...about.warnings].join("; ");
+    const derivedLine = ({ name, unit, description, value }) =>
+      line([name, `${short(value)}${unit === "1" ? "" : ` ${unit}`}`], description);
+    at("derived").replaceChildren(...about.derived.map(derivedLine));
+  }
+
+  /** A number as the engine writes it where JSON has none. */
+  const unlimited = (text) => Number(text.replace("inf", "Infinity"));
+  const short = (value) => String(Number(value.toPrecision(5))).replace("-", "−").replace("Infinity", "∞");
+  const percent = (part) => (part === 0 ? "0" : part < 1e-11 ? "< 10⁻⁹" : Number.isFinite(part) ? `${Number((100 * part).toPrecision(2))}` : "∞");
+  /** A row of a table, with its cells' content. */
+  function line(cells, title = "") {
+    const made = document.createElement("tr");
+    made.title = title;
+    cells.forEach((cell, i) => {
+      const td = document.createElement(i === 0 ? "th" : "td");
+      td.append(cell);
+      made.append(td);
+    });
+    return made;
+  }
+
+  // ---- What is shown: at once to a hundredth of a peak, and exactly when the hand rests
+
+  let pinned;
+  const beside = new Set(["fixed_base"]);
+  const colours = { fixed_base: "--orange", rigid: "--grey", modal: "--purple", linear: "--green", nonlinear: "--ink", auto: "--blue" };
+
+  function update(part) {
+    try {
+      about = JSON.parse(explorer.about(text()));
+      motion = decode(JSON.parse(explorer.show(text(), part)));
+      const others = [];
+      if (tab === "compare") {
+        for (const detail of beside) {
+          if (detail === (fields.detail ?? "auto")) continue;
+          others.push({ ...decode(JSON.parse(explorer.show(JSON.stringify({ ...fields, detail }), part))), colour: colours[detail] });
+        }
+        if (pinned) others.push({ ...pinned, colour: "--pinned" });
+      }
+      showControls();
+      show(motion, others);
+      tell();
+    } catch (problem) {
+      tell(problem);
+    }
+  }
+
+  /** Says what is wrong; what is drawn is then of the scene before. */
+  function tell(problem) {
+    at("problem").hidden = problem === undefined;
+    at("problem").textContent = problem ?? "";
+    document.body.classList.toggle("stale", problem !== undefined);
+  }
+
+  let waits = false;
+  let timer;
+  function change() {
+    if (!waits) {
+      waits = true;
+      requestAnimationFrame(() => {
+        waits = false;
+        update(1e-2);
+      });
+    }
+    later();
+  }
+  function later() {
+    clearTimeout(timer);
+    timer = setTimeout(settle, 150);
+  }
+
+  function settle() {
+    const scene = new URLSearchParams({ ...fields, ...(tab === "play" ? {} : { tab }), ...(tab === "speed" ? { step } : {}) });
+    history.replaceState(null, "", `#${scene}`);
+    update(1e-4);
+    if (at("problem").hidden) panels[tab]();
+  }
+
+  // ---- A worker for what takes longer
+
+  const worker = new Worker(URL.createObjectURL(new Blob([at("glue").textContent, at("worker").textContent])));
+  worker.postMessage({ module });
+  let job = 0;
+  let onPart;
+  function ask(kind, scene, part, more = {}) {
+    onPart = part;
+    worker.postMessage({ ...more, kind, fields: JSON.stringify(scene), job: ++job });
+  }
+  worker.onmessage = ({ data }) => {
+    if (data.job !== job) return;
+    if (data.problem) tell(data.problem);
+    else onPart(data.part);
+  };
+
+  // ---- Panels
+
+  function drawValidity() {
+    const rows = JSON.parse(explorer.validity(text()));
+    const passed = rows.filter((of) => of.first_beyond !== null).length;
+    at("validity").querySelector("summary").textContent =
+      `what the model leaves out here: ${passed === 0 ? "no limit is passed" : `${passed} of ${rows.length} limits are passed`}`;
+    at("validity").querySelector("tbody").replaceChildren(
+      ...rows.map(({ description, meaning, value, time, limit, part, first_beyond }) => {
+        const beyond = first_beyond === null ? "never" : `${percent(part)} %`;
+        const made = line([description, short(unlimited(value)), `${short(time)} s`, limit, beyond], meaning);
+        made.classList.toggle("beyond", first_beyond !== null);
+        return made;
+      }),
+    );
+  }
+
+  function drawLevels({ levels, advised, refused }) {
+    const body = at("levels").tBodies[0];
+    body.replaceChildren(
+      ...levels.map(({ detail, errors, overturns, cost }) => {
+        const choice = Object.assign(document.createElement("input"), { type: "checkbox", checked: beside.has(detail), name: detail });
+        choice.addEventListener("change", () => {
+          beside[choice.checked ? "add" : "delete"](detail);
+          update(1e-4);
+        });
+        const swatch = Object.assign(document.createElement("span"), { className: "swatch", style: `--colour: var(${colours[detail]})` });
+        const label = document.createElement("label");
+        label.append(choice, " ", swatch, detail);
+        const errorsOf = errors.map((error) => percent(unlimited(error)));
+        const falls = { true: "yes", false: "no", null: "not known" }[overturns];
+        const made = line([label, ...errorsOf, falls, cost === null ? "–" : short(Number(cost.toPrecision(2)))]);
+        made.classList.toggle("advised", detail === advised);
+        made.dataset.detail = detail;
+        return made;
+      }),
+      ...refused.map(([detail, why]) => line([detail, why])),
+    );
+    at("advice").textContent = advised ? `Use ${advised}: the cheapest within 5 % in all peaks and histories.` : "No level is within 5 %.";
+  }
+  at("pin").addEventListener("click", () => {
+    pinned = pinned ? undefined : motion;
+    at("pin").textContent = pinned ? "Unpin" : "Pin this scene";
+    at("pinned").innerHTML = pinned ? '<span class="swatch" style="--colour: var(--pinned)"></span>pinned: θ of <b></b> rad at most' : "";
+    if (pinned) at("pinned").lastElementChild.textContent = short(pinned.peaks.theta.magnitude);
+    update(1e-4);
+  });
+
+  const svg = (parent, name, attributes, text = "") => {
+    const made = document.createElementNS("http://www.w3.org/2000/svg", name);
+    for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+    made.textContent = text;
+    parent.append(made);
+  };
+
+  // The map: 32 steps along each axis, of which the finest is an eighth.
+  const [steps, finest] = [32, 8];
+  const spectrum = { points: [], axes: undefined, of: "" };
+  const shapeOfMap = () => (tables.shapes.some(({ name }) => name === ground()) ? ground() : "sine");
+  tables.classes.forEach((name, k) => {
+    const key = document.createElement("span");
+    key.innerHTML = `<span class="swatch" style="--colour: var(--class-${k})"></span>`;
+    key.append(name);
+    at("classes").append(key);
+  });
+  const swatches = [...at("classes").querySelectorAll(".swatch")];
+
+  function drawMap() {
+    const { amplitude, frequency, ...kept } = fields;
+    for (const name of ["scale", "time_scale", "duration", "seed", "theta_0", "u_0"]) delete kept[name];
+    const scene = { ...kept, ground: shapeOfMap() };
+    drawAxes();
+    if (spectrum.of === JSON.stringify(scene)) return;
+    Object.assign(spectrum, { points: [], axes: undefined, of: JSON.stringify(scene) });
+    const canvas = at("spectrum");
+    canvas.width = canvas.height = steps * finest;
+    ask("map", scene, ({ axes, points }) => {
+      if (axes) {
+        spectrum.axes = axes;
+        drawAxes();
+      } else {
+        spectrum.points.push(points);
+        paint(points);
+      }
+    });
+  }
+
+  function paint(points) {
+    const context = at("spectrum").getContext("2d");
+    const colours = swatches.map((swatch) => getComputedStyle(swatch).backgroundColor);
+    for (let i = 0; i < points.length; i += 5) {
+      const [x, y, size, of] = points.subarray(i, i + 4);
+      context.fillStyle = colours[of];
+      context.fillRect(finest * x, finest * (steps - y - size), finest * size, finest * size);
+    }
+  }
+  at("theme").addEventListener("click", () => spectrum.points.forEach(paint));
+
+  /** The axes in the units of the structure, with those of the ground beside them; where the scene is, a ring. */
+  function drawAxes() {
+    const axes = at("axes");
+    axes.replaceChildren();
+    if (!spectrum.axes) return;
+    const { left, top, width, height } = { left: 54, top: 6, width: at("spectrum").clientWidth, height: at("spectrum").clientHeight };
+    const { frequency, amplitude, of_frequency, of_amplitude } = spectrum.axes;
+    const x = (value) => left + (Math.log(value / frequency[0]) / Math.log(frequency[1] / frequency[0])) * width;
+    const y = (value) => top + height - (Math.log(value / amplitude[0]) / Math.log(amplitude[1] / amplitude[0])) * height;
+    for (const value of [0.5, 1, 2, 4, 8, 16]) {
+      svg(axes, "text", { x: x(value), y: top + height + 14, "text-anchor": "middle" }, `${value}`);
+      if (value >= 1) svg(axes, "text", { x: left - 6, y: y(value) + 4, "text-anchor": "end" }, `${value}`);
+    }
+    const g = motion.parameters.g;
+    const [middle, below] = [{ class: "muted", "text-anchor": "middle" }, top + height + 31];
+    const [ofFrequency, ofAmplitude] = [`1 is ${short(of_frequency)} Hz`, `1 is ${short(of_amplitude / g)} g`];
+    svg(axes, "text", { ...middle, x: left + width / 2, y: below }, `ω/p_l of a ${words(shapeOfMap())}: ${ofFrequency}`);
+    const upright = `translate(14 ${top + height / 2}) rotate(-90)`;
+    svg(axes, "text", { ...middle, transform: upright }, `a_p/(g tan α_cg): ${ofAmplitude}`);
+    const usual = (name) => Number(fields[name] ?? tables.numbers.find((of) => of.name === name).usual);
+    const here = [usual("frequency") / of_frequency, (usual("amplitude") * g) / of_amplitude];
+    if (ground() === shapeOfMap()) svg(axes, "circle", { class: "here", cx: x(here[0]), cy: y(here[1]), r: 6 });
+  }
+
+  at("spectrum").addEventListener("click", ({ offsetX, offsetY, target }) => {
+    if (!spectrum.axes) return;
+    const { frequency, amplitude, of_frequency, of_amplitude } = spectrum.axes;
+    const along = ([from, to], part) => from * (to / from) ** part;
+    const place = (part) => Math.floor(part * steps * finest) / (steps * finest); // the point that stands for it
+    const eight = (value) => String(Number(value.toPrecision(8)));
+    fields.frequency = eight(of_frequency * along(frequency, place(offsetX / target.clientWidth)));
+    const ratio = along(amplitude, place(1 - offsetY / target.clientHeight));
+    fields.amplitude = eight((ratio * of_amplitude) / motion.parameters.g);
+    const shape = shapeOfMap();
+    for (const name of ["scale", "time_scale"]) delete fields[name];
+    give("ground", shape);
+  });
+
+  function drawSpeed() {
+    const tolerances = Array.from({ length: 10 }, (_, i) => `1e-${i + 3}`);
+    const steps = Array.from({ length: 10 }, (_, i) => 0.02 / 2 ** i);
+    const all = [...tolerances.map((tolerance) => ({ tolerance })), ...steps.map((step) => ({ step }))];
+    const settings = [{ tolerance: fields.tolerance ?? "1e-9" }, { step: Number(step) }, ...all];
+    const found = [];
+    at("methods").tBodies[0].replaceChildren();
+    ask("speed", fields, (part) => {
+      found.push({ ...part, error: unlimited(part.error), isOwn: found.length < 2 });
+      if (found.length <= 2) {
+        const name = part.tolerance ? `engine, ${part.tolerance}` : `RK4, ${step} s`;
+        const time = `${short(Number(part.time.toPrecision(2)))} ms`;
+        at("methods").tBodies[0].append(line([name, unlimited(part.error).toExponential(1), part.evaluations, time]));
+      }
+      drawPrecision(found);
+    }, { settings });
+  }
+
+  function drawPrecision(found) {
+    const chart = at("precision");
+    const { width, height } = chart.getBoundingClientRect();
+    chart.setAttribute("viewBox", `0 0 ${width} ${height}`);
+    chart.replaceChildren();
+    const [left, right, top, bottom] = [52, width - 14, 22, height - 34];
+    const x = (evaluations) => left + (Math.log10(evaluations / 1e3) / 4) * (right - left);
+    const y = (error) => top + ((-Math.log10(Math.min(10, Math.max(1e-14, error))) + 1) / 15) * (bottom - top);
+    const power = (exponent) => `10${[...String(exponent)].map((digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit] ?? "⁻").join("")}`;
+    for (const exponent of [3, 4, 5, 6, 7]) {
+      svg(chart, "line", { class: "grid", x1: x(10 ** exponent), x2: x(10 ** exponent), y1: top, y2: bottom });
+      svg(chart, "text", { x: x(10 ** exponent), y: bottom + 15, "text-anchor": "middle" }, power(exponent));
+    }
+    for (const exponent of [0, -3, -6, -9, -12]) {
+      svg(chart, "line", { class: "grid", x1: left, x2: right, y1: y(10 ** exponent), y2: y(10 ** exponent) });
+      svg(chart, "text", { x: left - 6, y: y(10 ** exponent) + 4, "text-anchor": "end" }, power(exponent));
+    }
+    svg(chart, "text", { x: left, y: 13 }, "error of θ and u over their largest");
+    svg(chart, "text", { class: "muted", x: right, y: bottom + 30, "text-anchor": "end" }, "evaluations and steps");
+    const isEngine = ({ tolerance }) => tolerance !== undefined;
+    for (const [name, colour, of] of [["engine", "--blue", isEngine], ["RK4", "--orange", (part) => !isEngine(part)]]) {
+      const points = found.filter(of).sort((a, b) => a.evaluations - b.evaluations);
+      const d = points.map(({ evaluations, error }, i) => `${i ? "L" : "M"}${x(evaluations)} ${y(error)}`).join("");
+      svg(chart, "path", { class: "curve", style: `stroke:var(${colour})`, d });
+      const style = `fill:var(${colour})`;
+      for (const { evaluations, error, isOwn } of points) {
+        svg(chart, "circle", { class: isOwn ? "chosen" : "", cx: x(evaluations), cy: y(error), r: isOwn ? 6 : 3, style });
+      }
+      const last = points.at(-1);
+      if (!last) continue;
+      svg(chart, "text", { x: x(last.evaluations) - 8, y: y(last.error) - 10, "text-anchor": "end", style }, name);
+    }
+  }
+
+  function drawTake() {
+    const option = (name) => `--${name.replaceAll("_", "-")} ${fields[name]}`;
+    const options = (names) => names.filter((name) => name in fields).map(option);
+    const structure = [...tables.parameters, ...tables.natural].map(({ name }) => name);
+    const shape = tables.shapes.some(({ name }) => name === ground());
+    const isFree = ground() === "free";
+    const value = (name) => fields[name] ?? tables.numbers.find((number) => number.name === name).usual;
+    const ofPulse = numbersOf(ground()).filter((name) => name in fields || ["amplitude", "frequency"].includes(name));
+    const file = isFile() ? fileName : "ground.csv";
+    const quoted = /^[\w.-]+$/.test(file) ? file : `'${file}'`;
+
+    const record = isFree ? [`--free ${value("duration")}`] : [`--record ${quoted}`];
+    const isChanged = structure.some((name) => name in fields);
+    const preset = options(["preset"]).concat(isChanged && !("preset" in fields) ? "--preset mcmanus" : []);
+    const others = options([...structure, "unit", "dt", "column", "scale", "time_scale", "theta_0", "u_0", "detail", "tolerance"]);
+    const pulse = ["rocking-fmu pulse", ground(), ...ofPulse.map((name) => `--${name} ${value(name)}`), ...options(["g"]), "-o ground.csv"];
+    const commands = [...(shape ? [pulse] : []), ["rocking-fmu simulate", ...preset, ...record, ...others]];
+    at("command").textContent = commands.map((words) => words.join(" ")).join("\n");
+    at("link").textContent = location.href;
+
+    const named = (pairs) => pairs.map(([name, number]) => `${name}=${number}`).join(", ");
+    const given = (names) => named(names.filter((name) => name in fields).map((name) => [name, fields[name]]));
+    const read = [`"${file}"`, given(["dt", "scale", "time_scale"])].filter(Boolean).join(", ");
+    const python = shape ? `fr.pulse("${ground()}", ${named(ofPulse.map((name) => [name, value(name)]))})` : `fr.Record.read(${read})`;
+    const initial = isFree ? `duration=${value("duration")}, ${given(["theta_0", "u_0"])}` : "record";
+    at("python").textContent = [
+      "import flexible_rocking as fr", "",
+      `structure = fr.Structure(${named(tables.parameters.map(({ name }) => [name, about.parameters[name]]))})`,
+      ...(isFree ? [] : [`record = ${python}`]),
+      `run = fr.simulate(structure, ${initial}, detail="${fields.detail ?? "auto"}", tolerance=${value("tolerance")})`,
+    ].join("\n");
+    at("csv").parentElement.hidden = isFree;
+  }
+
+  function save(name, content) {
+    const link = Object.assign(document.createElement("a"), { href: URL.createObjectURL(new Blob([content])), download: name });
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  }
+  const trying = (what) => () => {
+    try {
+      what();
+      tell();
+    } catch (problem) {
+      tell(problem);
+    }
+  };
+  at("csv").addEventListener("click", trying(() => save("ground.csv", explorer.record_file(text()))));
+  at("fmu").addEventListener("click", trying(() => save("FlexibleRocking.fmu", explorer.export(text(), Number(at("fmi").value)))));
+  for (const button of document.querySelectorAll("[data-copy]")) {
+    button.addEventListener("click", () => navigator.clipboard.writeText(at(button.dataset.copy).textContent));
+  }
+
+  const panels = {
+    play: drawValidity,
+    compare: () => ask("compare", fields, drawLevels),
+    map: drawMap,
+    speed: drawSpeed,
+    take: drawTake,
+  };
+  function open(name) {
+    tab = name in panels ? name : "play";
+    job++; // whatever was under way is no longer wanted
+    spectrum.of = "";
+    for (const button of at("tabs").children) button.setAttribute("aria-selected", button.dataset.tab === tab);
+    for (const panel of document.querySelectorAll("[data-panel]")) panel.hidden = panel.dataset.panel !== tab;
+    settle();
+  }
+  at("tabs").addEventListener("click", ({ target }) => target.dataset.tab && open(target.dataset.tab));
+
+  // ---- Files
+
+  let fileName;
+  async function take(file) {
+    if (!file) return;
+    const bytes = new Uint8Array(await file.arrayBuffer());
+    if (/\.(fmu|so|dll|dylib)$/i.test(file.name)) return takeLibraries(file.name, bytes);
+    explorer.take_record(file.name, bytes);
+    worker.postMessage({ record: { name: file.name, bytes } });
+    fileName = file.name;
+    for (const name of ["unit", "dt", "column", "amplitude", "frequency", "cycles", "phase", "duration", "seed", "theta_0", "u_0"]) delete fields[name];
+    give("ground", "record");
+  }
+  function takeLibraries(name, bytes) {
+    try {
+      at("platforms").textContent = `for ${explorer.take_libraries(name, bytes)}`;
+    } catch (problem) {
+      at("platforms").textContent = problem;
+    }
+  }
+  at("file").addEventListener("change", ({ target }) => take(target.files[0]));
+  at("libraries").addEventListener("change", ({ target }) => take(target.files[0]));
+  addEventListener("dragover", (event) => {
+    event.preventDefault();
+    document.body.classList.add("dropping");
+  });
+  addEventListener("dragleave", () => document.body.classList.remove("dropping"));
+  addEventListener("drop", (event) => {
+    event.preventDefault();
+    document.body.classList.remove("dropping");
+    take(event.dataTransfer.files[0]);
+  });
+
+  if (at("packed").textContent) takeLibraries("FlexibleRocking.fmu", await unpacked("packed"));
+  else at("platforms").textContent = "needs shared libraries: those of an FMU of this version";
+  const asked = fields;
+  fields = {}; // what is shown where the scene asked for needs a file first
+  update(1e-2);
+  fields = asked;
+  document.querySelector("#readings [data-name=theta] button").click(); // to where it rocks most
+  open(tab);
+  document.body.dataset.ready = "";
+})();

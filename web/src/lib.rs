@@ -1,0 +1,246 @@
+//! The model in a browser: what the page calls, each with the scene as JSON of its fields, and an answer in JSON.
+#![allow(non_snake_case)] // H, B: the paper's own letters
+
+mod map;
+mod runge_kutta;
+mod scene;
+
+use fmu_export::{Library, ModelName, Version};
+use rocking::engine::piece::Sample;
+use rocking::levels::detail::Detail;
+use rocking::run::levels::{Criterion, REFERENCE_TOLERANCE, Verdict, compare, relative};
+use rocking::run::validity::{self, ASSUMPTIONS, Limits};
+use rocking::run::{End, RunError, record::Record};
+use rocking::structure::natural_quantities::NATURAL;
+use rocking::structure::{DERIVED, parameters::PARAMETERS};
+use rocking::{Run, State, Structure};
+use rocking_records::Unit;
+use rocking_sweep::{map::CLASSES, pulse::Shape};
+use rocking_view::Scene;
+use scene::{Fields, File, GROUNDS, Ground, NUMBERS, PRESETS};
+use serde_json::{Value, json};
+use std::path::{Path, PathBuf};
+use wasm_bindgen::prelude::wasm_bindgen;
+
+/// Error of a level that its use is advised within, as `advise` has it.
+const WITHIN: f64 = 0.05;
+
+fn says(error: impl std::error::Error) -> String {
+    error.to_string()
+}
+
+/// What the page's controls are made of: the library's own tables.
+#[wasm_bindgen]
+pub fn tables() -> String {
+    let parameter = |of: &rocking::Quantity<rocking::Parameters>| json!({ "name": of.name, "unit": of.unit, "description": of.description, "min": of.min, "max": of.max });
+    let natural = |of: &rocking::structure::natural_quantities::Natural| {
+        let derived = of.derived();
+        json!({
+            "name": of.name, "unit": derived.unit, "description": derived.description, "min": of.min, "max": of.max,
+            "stands_for": of.stands_for,
+        })
+    };
+    let shape = |of: Shape| json!({ "name": of.name(), "definition": of.definition(), "cycles": of.cycles(), "has_choice": of.has_choice() });
+    let preset = |(name, parameters): &(&str, rocking::Parameters)| json!({ "name": name, "parameters": parameters });
+    json!({
+        "parameters": PARAMETERS.iter().map(parameter).collect::<Vec<_>>(),
+        "natural": NATURAL.iter().map(natural).collect::<Vec<_>>(),
+        "presets": PRESETS.iter().map(preset).collect::<Vec<_>>(),
+        "shapes": Shape::ALL.map(shape),
+        "numbers": NUMBERS,
+        "grounds": GROUNDS,
+        "details": Detail::ALL.map(Detail::name),
+        "units": Unit::NAMES.map(|(name, _)| name),
+        "classes": CLASSES.map(|(_, name)| name),
+    })
+    .to_string()
+}
+
+/// What the page works on, beside the scene: the record's file and the shared libraries for an FMU.
+#[wasm_bindgen]
+#[derive(Default)]
+pub struct Explorer {
+    file: Option<File>,
+    libraries: Vec<Library>,
+    /// The motion that methods are compared with, and of what it is.
+    reference: Option<(Fields, Vec<State>)>,
+}
+
+#[wasm_bindgen]
+impl Explorer {
+    /// Nothing dropped yet.
+    #[wasm_bindgen(constructor)]
+    pub fn new() -> Explorer {
+        Explorer::default()
+    }
+
+    /// The record's file from now on.
+    pub fn take_record(&mut self, name: &str, bytes: Vec<u8>) {
+        self.file = Some(File::new(name, bytes));
+        self.reference = None;
+    }
+
+    /// The libraries of the FMU, or the library, in `bytes` from now on; their platforms.
+    pub fn take_libraries(&mut self, name: &str, bytes: Vec<u8>) -> Result<String, String> {
+        self.libraries = Library::from_bytes(Path::new(name), bytes).map_err(says)?;
+        Ok(self.libraries.iter().map(|library| library.platform.tuple()).collect::<Vec<_>>().join(", "))
+    }
+
+    fn load(&mut self, fields: &Fields) -> Result<(Structure, Ground), String> {
+        let structure = fields.structure()?;
+        let ground = fields.ground(self.file.as_mut(), structure.parameters().g)?;
+        Ok((structure, ground))
+    }
+
+    /// The run as the script of `view` shows it, to this `part` of its peaks.
+    pub fn show(&mut self, fields: &str, part: f64) -> Result<String, String> {
+        let fields = Fields::read(fields)?;
+        let (structure, ground) = self.load(&fields)?;
+        let run = fields.run(structure, &ground.record)?;
+        let curve = run.curve(part).map_err(says)?;
+        Ok(Scene::new(&run, part, &curve).json())
+    }
+
+    /// The exact peaks alone, by name in SI units: what `show` has, without a curve.
+    pub fn peaks(&mut self, fields: &str) -> Result<String, String> {
+        let fields = Fields::read(fields)?;
+        let (structure, ground) = self.load(&fields)?;
+        let found = fields.run(structure, &ground.record)?.found(&mut ()).map_err(says)?;
+        let peaks = rocking::run::peaks::PEAKS.iter().map(|peaking| (peaking.name, (peaking.of)(&found.peaks)));
+        let peaks = peaks.map(|(name, peak)| json!([name, peak.magnitude, peak.time]));
+        let motion = &found.finish.motion;
+        Ok(json!({
+            "peaks": peaks.collect::<Vec<_>>(), "transitions": motion.transitions, "end": motion.time,
+            "steps": motion.work.steps, "evaluations": motion.work.evaluations,
+        })
+        .to_string())
+    }
+
+    /// What follows from the structure, what was found in the record's file, what of the parameters the model leaves out.
+    pub fn about(&mut self, fields: &str) -> Result<String, String> {
+        let fields = Fields::read(fields)?;
+        let (structure, Ground { record, remarks }) = self.load(&fields)?;
+        let detail = fields.run(structure, &record)?.detail;
+        let derived = DERIVED.iter().map(|of| {
+            json!({ "name": of.name, "unit": of.unit, "description": of.description, "value": (of.value)(&structure) })
+        });
+        Ok(json!({
+            "parameters": structure.parameters(),
+            "derived": derived.collect::<Vec<_>>(),
+            "warnings": validity::of_parameters(&structure, detail),
+            "samples": record.times().len(),
+            "pga": record.pga() / structure.parameters().g,
+            "remarks": remarks,
+        })
+        .to_string())
+    }
+
+    /// What the model takes for granted on this run, the worst of each.
+    pub fn validity(&mut self, fields: &str) -> Result<String, String> {
+        let fields = Fields::read(fields)?;
+        let (structure, ground) = self.load(&fields)?;
+        let limits = Limits::default();
+        let (found, _) = fields.run(structure, &ground.record)?.validity(limits).map_err(says)?;
+        let row = |(assumption, worst): (&validity::Assumption, &validity::Worst)| {
+            let of = if assumption.is_of_impacts { found.impacts as f64 } else { found.duration };
+            json!({
+                "name": assumption.name, "description": assumption.description, "meaning": assumption.meaning,
+                "limit": (assumption.limit)(&limits), "value": worst.value.to_string(), "time": worst.time,
+                "first_beyond": worst.first_beyond, "part": relative((worst.beyond, of)),
+            })
+        };
+        Ok(Value::from_iter(ASSUMPTIONS.iter().zip(&found.worst).map(row)).to_string())
+    }
+
+    /// The levels of detail on this scene, as `advise` compares them.
+    pub fn compare(&mut self, fields: &str) -> Result<String, String> {
+        let fields = Fields::read(fields)?;
+        let (structure, ground) = self.load(&fields)?;
+        let compared = compare(&fields.run(structure, &ground.record)?).map_err(says)?;
+        let advised = compared.recommended(WITHIN, &Criterion::ALL).map(|verdict| verdict.response.detail.name());
+        let cost_of_auto = compared.cost_of_auto();
+        let row = |Verdict { response, errors, .. }: &Verdict| {
+            json!({
+                "detail": response.detail.name(), "errors": errors.map(|error| error.to_string()),
+                "overturns": response.overturns(), "transitions": response.transitions,
+                "cost": cost_of_auto.map(|auto| response.cost() as f64 / auto),
+            })
+        };
+        let refused = |(detail, error): &(Detail, RunError)| json!([detail.name(), error.to_string()]);
+        Ok(json!({
+            "advised": advised,
+            "levels": compared.verdicts.iter().map(row).collect::<Vec<_>>(),
+            "refused": compared.refused.iter().map(refused).collect::<Vec<_>>(),
+        })
+        .to_string())
+    }
+
+    /// The engine at the scene's tolerance, or with `step` (s) RK4: errors of θ and u over their largest, against the
+    /// equations to 1e-12, and the evaluations, until 10/p_l after the ground motion.
+    pub fn measure(&mut self, fields: &str, step: Option<f64>) -> Result<String, String> {
+        let fields = Fields::read(fields)?;
+        let (structure, Ground { record, .. }) = self.load(&fields)?;
+        let end = record.end() + 10.0 / structure.p_l;
+        let after = (1..).map(|i| record.end() + 0.01 * f64::from(i)).take_while(|time| *time < end);
+        let instants: Vec<f64> = record.times().iter().copied().chain(after).collect();
+        let own = Run { end: End::At(end), ..fields.run(structure, &record)? };
+        let scene = fields.without(&["tolerance", "detail"]);
+        if self.reference.as_ref().is_none_or(|(of, _)| *of != scene) {
+            let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..own.clone() };
+            self.reference = Some((scene, sampled(&exact, &instants)?.0));
+        }
+        let (_, exact) = self.reference.as_ref().expect("it is there");
+        let (states, evaluations) = match step {
+            Some(step) => runge_kutta::run(&structure, &record, &instants, own.initial, step)?,
+            None => sampled(&Run { detail: Detail::Auto, ..own }, &instants)?,
+        };
+        let error = |of: fn(&State) -> f64| {
+            let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
+            let difference = largest(&mut states.iter().zip(exact).map(|(a, b)| of(a) - of(b)));
+            // one of them lies where the other stands
+            let has_gone = states.len() != exact.len() || states.iter().any(|state| !of(state).is_finite());
+            if has_gone { f64::INFINITY } else { relative((difference, largest(&mut exact.iter().map(of)))) }
+        };
+        let error = error(|state| state.theta).max(error(|state| state.u));
+        Ok(json!({ "error": error.to_string(), "evaluations": evaluations }).to_string())
+    }
+
+    /// The ground motion before it is scaled, as a CSV file that every command reads.
+    pub fn record_file(&mut self, fields: &str) -> Result<String, String> {
+        let fields = Fields::read(fields)?;
+        let g = fields.structure()?.parameters().g;
+        Ok(csv(&fields.unscaled(self.file.as_mut(), g)?.record))
+    }
+
+    /// The FMU of this structure under this ground motion, for hosts of FMI 2.0 or 3.0.
+    pub fn export(&mut self, fields: &str, fmi: u32) -> Result<Vec<u8>, String> {
+        let fields = Fields::read(fields)?;
+        let version = if fmi == 3 { Version::Fmi3 } else { Version::Fmi2 };
+        let (structure, ground) = self.load(&fields)?;
+        let is_as_read = fields.scales()? == [1.0; 2] && fields.reading()? == Default::default();
+        let record = match &self.file {
+            Some(file) if fields.text("ground") == Some("record") && is_as_read => {
+                vec![(file.path.clone(), file.bytes.clone())]
+            }
+            _ if fields.text("ground") == Some("free") => Vec::new(),
+            _ => vec![(PathBuf::from("ground.csv"), csv(&ground.record).into_bytes())],
+        };
+        let exported = fmu_export::export(version, &ModelName::default(), &structure, record, None, &self.libraries);
+        Ok(exported.map_err(says)?.1)
+    }
+}
+
+/// The states of `run` at `instants` (s) as far as it goes, and its evaluations with its steps.
+fn sampled(run: &Run, instants: &[f64]) -> Result<(Vec<State>, u64), String> {
+    let mut states = Vec::new();
+    let show = |sample: &Sample| states.push(sample.motion.state);
+    let work = run.sample(instants.iter().copied(), show, &mut ()).map_err(says)?.motion.work;
+    states.pop(); // the end
+    Ok((states, work.steps + work.evaluations))
+}
+
+/// `record` as a table; its numbers read back to the same bits.
+fn csv(record: &Record) -> String {
+    let lines = record.times().iter().zip(record.acceleration()).map(|(time, a_g)| format!("{time:?},{a_g:?}\n"));
+    format!("time[s],a_g[m/s2]\n{}", lines.collect::<String>())
+}

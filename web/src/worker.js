@@ -1,0 +1,50 @@
+// What takes longer than a frame. A newer job ends the one before.
+let explorer;
+let current = 0;
+
+const work = {
+  compare: (fields, answer) => answer(JSON.parse(explorer.compare(fields))),
+
+  async speed(fields, answer, { settings }) {
+    for (const { tolerance, step } of settings) {
+      const scene = tolerance ? JSON.stringify({ ...JSON.parse(fields), tolerance }) : fields;
+      explorer.measure(scene, step); // what both need is there
+      const start = performance.now();
+      const measured = JSON.parse(explorer.measure(scene, step));
+      const going = await answer({ ...measured, tolerance, step, time: performance.now() - start });
+      if (!going) return;
+    }
+  },
+
+  async map(fields, answer) {
+    const spectrum = new wasm_bindgen.Spectrum(fields);
+    let going = await answer({ axes: JSON.parse(spectrum.axes()) });
+    while (going) {
+      const points = spectrum.next(24);
+      going = (await answer({ points })) && points.length > 0;
+    }
+    spectrum.free();
+  },
+};
+
+onmessage = async ({ data }) => {
+  if (data.module) {
+    wasm_bindgen.initSync({ module: data.module });
+    explorer = new wasm_bindgen.Explorer();
+  } else if (data.record) {
+    explorer.take_record(data.record.name, data.record.bytes);
+  } else {
+    current = data.job;
+    /** Sends a part of the answer; whether the rest is still wanted. */
+    const answer = async (part) => {
+      postMessage({ job: data.job, part });
+      await new Promise((next) => setTimeout(next));
+      return current === data.job;
+    };
+    try {
+      await work[data.kind](data.fields, answer, data);
+    } catch (problem) {
+      postMessage({ job: data.job, problem: String(problem) });
+    }
+  }
+};
