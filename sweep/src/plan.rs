@@ -205,7 +205,8 @@ impl NamedRecord {
     /// Whether `other` is the same motion under whatever name.
     fn is_same(&self, other: &NamedRecord) -> bool {
         let (one, two) = (&self.record, &other.record);
-        self.scale == other.scale && one.acceleration() == two.acceleration() && one.times() == two.times()
+        let are_same = one.times() == two.times() && one.acceleration() == two.acceleration();
+        self.scale == other.scale && are_same && one.vertical() == two.vertical()
     }
 }
 
