@@ -339,7 +339,9 @@ fn the_vertical_record_inside_is_the_one_through_the_input() {
                 assert_eq!(host.step(segment.start, segment.end - segment.start), OK);
             }
             let [a, b] = [&inside, &outside].map(|host| host.try_get(&SEEN).unwrap());
-            for k in 0..SEEN.len() - 1 {
+            // where the shorter component falls to 0, a rounding of the time is a difference of the load
+            let falls = segment.end - segment.start < 1e-6;
+            for k in (0..SEEN.len() - 1).filter(|_| !falls) {
                 (most[k], off[k]) = (most[k].max(a[k].abs()), off[k].max((a[k] - b[k]).abs()));
             }
             for name in ["P_t", "F_d1", "F_d2"].into_iter().filter(|_| i % 20 == 7) {
