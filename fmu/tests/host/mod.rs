@@ -431,13 +431,13 @@ impl Host {
         unsafe { fmi2SetDebugLogging(self.component, on.into(), pointers.len(), pointers.as_ptr()) }
     }
 
-    /// Asserts that `call` is refused with `message` and changes nothing.
+    /// Asserts that `call` is refused with a message that has `message` in it, and changes nothing.
     pub fn assert_refused<T: std::fmt::Debug + PartialEq>(&self, call: impl FnOnce() -> T, refused: T, message: &str) {
         let before = self.bytes();
         self.log.borrow_mut().clear();
         assert_eq!(call(), refused, "{:?}", self.log);
         let log = self.log.take();
-        assert_eq!(log.iter().map(|message| message.text.as_str()).collect::<Vec<_>>(), [message]);
+        assert!(log.len() == 1 && log[0].text.contains(message), "{log:?} instead of {message}");
         assert_eq!((log[0].status, log[0].category.as_str()), (ERROR, "logStatusError"));
         assert_eq!(self.bytes(), before, "the refused call changed something");
     }
