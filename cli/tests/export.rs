@@ -5,18 +5,6 @@ use std::fs;
 use std::path::Path;
 use std::process::{Command, Output};
 
-#[test]
-fn the_library_of_the_same_build_is_found_and_packed() {
-    let folder = tempfile::tempdir().unwrap();
-    let mut export = Command::new(env!("CARGO_BIN_EXE_rocking-fmu"));
-    let output = export.current_dir(folder.path()).args(["export", "--preset", "evison"]).output().unwrap();
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert!(output.status.success(), "{said}");
-    let size = folder.path().join("FlexibleRocking.fmu").metadata().unwrap().len();
-    let start = format!("FlexibleRocking.fmu: {} kB\n  GUID       {{", size.div_ceil(1000));
-    assert!(said.contains(&start) && said.contains("  structure  m = 125.8 kg, "), "{said}");
-}
-
 /// The libraries are looked for where cargo makes them, beside the program, and in an archive where an installation has it;
 /// a name goes into the archive and is its file's.
 #[test]
@@ -84,26 +72,4 @@ fn libraries_are_found_where_they_are_built_and_where_they_are_installed() {
     assert!(stderr.contains(&left_out), "{stderr}");
     let stale = refusal(&["--library", stale.to_str().unwrap()]);
     assert!(stale.contains(" is of another build: the name of this one, {"), "{stale}");
-}
-
-/// `--record` packs files that are records, and says which.
-#[test]
-fn records_are_packed_and_named() {
-    let folder = tempfile::tempdir().unwrap();
-    let export = |arguments: &[&str]| {
-        let mut export = Command::new(env!("CARGO_BIN_EXE_rocking-fmu"));
-        export.current_dir(folder.path()).arg("export").args(arguments).output().unwrap()
-    };
-    for (name, text) in [("pulse.csv", "0,.1\n.5,.2\n"), ("sine.txt", "0,.1\n.5,.2\n"), ("broken.csv", "0,1\n1,?\n")] {
-        std::fs::write(folder.path().join(name), text).unwrap();
-    }
-    let output = export(&["--record", "pulse.csv", "sine.txt", "-o", "quakes.fmu"]);
-    let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.ends_with("\n  record     pulse.csv\n  record     sine.txt\n"), "{said}");
-    let assumed = "sine.txt: table, separated by commas, column 2; m/s2 assumed, for the file does not state it";
-    assert!(said.contains(assumed), "{said}");
-    let output = export(&["--record", "broken.csv", "-o", "broken.fmu"]);
-    let stderr = String::from_utf8(output.stderr).unwrap();
-    assert!(stderr.ends_with("\nerror: broken.csv, line 2: the acceleration \"?\" is not a number\n"), "{stderr}");
-    assert!(!output.status.success() && !folder.path().join("broken.fmu").exists());
 }

@@ -9,7 +9,6 @@ use host::*;
 use libc::{c_int, c_void};
 use rocking::Parameters;
 use std::cell::RefCell;
-use std::f64::{INFINITY, NAN};
 use std::ffi::CString;
 use std::ptr::{null, null_mut, without_provenance_mut};
 
@@ -18,8 +17,8 @@ type Refused = (&'static str, fn(&Host) -> c_int);
 
 const INSTANTIATED: &[Refused] = &[
     ("tolerance = 1 is out of range: it must be between 0 and 1, such as 1e-9", |h| h.setup(Some(1.0), 0.0, None)),
-    ("tolerance = NaN is out of range", |h| h.setup(Some(NAN), 0.0, None)),
-    ("startTime = NaN is out of range: it must be finite", |h| h.setup(None, NAN, None)),
+    ("tolerance = NaN is out of range", |h| h.setup(Some(f64::NAN), 0.0, None)),
+    ("startTime = NaN is out of range: it must be finite", |h| h.setup(None, f64::NAN, None)),
     ("stopTime = 1.9 is out of range: it must be finite and not before startTime = 2 s", |h| {
         h.setup(None, 2.0, Some(1.9))
     }),
@@ -33,7 +32,7 @@ const INSTANTIATED: &[Refused] = &[
 const INITIALIZING: &[Refused] = &[
     ("r = 0 is out of range: it must lie between 0.001 and 1 (", |h| h.set(&[("H", 2.0), ("a_g", 1.0), ("r", 0.0)])),
     ("theta cannot be set: it is an output, computed by the FMU", |h| h.set(&[("u_0", 1e-3), ("theta", 0.1)])),
-    ("chi cannot be set: it is a calculated parameter, computed by the FMU", |h| h.set(&[("chi", NAN)])),
+    ("chi cannot be set: it is a calculated parameter, computed by the FMU", |h| h.set(&[("chi", f64::NAN)])),
     ("phase cannot be set: it is a local variable, computed by the FMU", |h| h.set_integer("phase", 1)),
     ("peaks = 2 is not one of 0 (fmi2False), 1 (fmi2True)", |h| h.set_boolean("peaks", 2)),
     ("record is a string: call fmi2GetString or fmi2SetString instead", |h| h.set(&[("record", 1.0)])),
@@ -65,7 +64,7 @@ const STEPPING: &[Refused] = &[
     ("detail is fixed once the simulation has started", |h| h.set_integer("detail", 2)),
     ("order = 2 for a_g is out of range: only derivatives of order 1 exist", |h| h.set_slope("a_g", 2, 1.0)),
     ("order = 0 for a_g is out of range: only derivatives of order 1 exist", |h| h.set_slope("a_g", 0, 1.0)),
-    ("the derivative of a_g, NaN, is out of range: it must be finite", |h| h.set_slope("a_g", 1, NAN)),
+    ("the derivative of a_g, NaN, is out of range: it must be finite", |h| h.set_slope("a_g", 1, f64::NAN)),
     ("theta has no derivative that can be set: only the inputs have", |h| h.set_slope("theta", 1, 1.0)),
     ("order = 2 for theta is out of range: only derivatives of order 1 exist", |h| h.rate("theta", 2).unwrap_err()),
     ("phase has no derivative: only continuous real outputs have", |h| h.rate("phase", 1).unwrap_err()),
@@ -79,13 +78,13 @@ const STEPPING: &[Refused] = &[
         h.step(10.0, 0.5)
     }),
     ("currentCommunicationPoint = 10.5001 s is not where the FMU is", |h| h.step(10.5001, 0.5)),
-    ("currentCommunicationPoint = NaN s is not where the FMU is", |h| h.step(NAN, 0.5)),
+    ("currentCommunicationPoint = NaN s is not where the FMU is", |h| h.step(f64::NAN, 0.5)),
     ("communicationStepSize = 0 s is out of range: it must be positive, finite, and large enough to move t = ", |h| {
         h.step(10.5, 0.0)
     }),
     ("communicationStepSize = -0.1 s is out of range", |h| h.step(10.5, -0.1)),
-    ("communicationStepSize = NaN s is out of range", |h| h.step(10.5, NAN)),
-    ("communicationStepSize = inf s is out of range", |h| h.step(10.5, INFINITY)),
+    ("communicationStepSize = NaN s is out of range", |h| h.step(10.5, f64::NAN)),
+    ("communicationStepSize = inf s is out of range", |h| h.step(10.5, f64::INFINITY)),
     ("communicationStepSize = 0.0000000000000001 s is out of range", |h| h.step(10.5, 1e-16)),
     ("the step would end at t = 12.1 s, past stopTime = 12 s given to fmi2SetupExperiment: shorten it", |h| {
         h.step(10.5, 1.6)
