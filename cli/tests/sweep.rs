@@ -1,11 +1,11 @@
-//! `sweep` driven from outside: rows of other inputs, conditions, probabilities. How its rows are written, the tour shows.
+//! `sweep` driven from outside: its probabilities. What becomes of its rows, the tour shows.
 
 mod command_line;
 
 use command_line::{folder, succeed};
 use rocking_sweep::fragility::FragilityCurve;
 use rocking_sweep::fragility::Trials;
-use std::{collections::HashSet, fs};
+use std::fs;
 use tempfile::TempDir;
 
 /// 9 structures at 6 scale factors: some stay in contact, some rock, some overturn.
@@ -47,77 +47,6 @@ fn column<'a>(text: &'a str, heading: &str) -> Vec<&'a str> {
         a[population].cmp(b[population]).then(numbers(a).partial_cmp(&numbers(b)).unwrap())
     });
     rows.into_iter().map(|row| row[position(heading)]).collect()
-}
-
-/// What changes brings rows of its own, and those that are there stay; they are not counted.
-#[test]
-fn rows_of_other_inputs_are_kept_and_not_counted() {
-    let folder = sweep(SWEEP);
-    let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
-    let original = read(&folder, "sweep.csv");
-    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
-    let pulse = read(&folder, "pulse.AT2");
-    for (changed, record, done, others) in [
-        (SWEEP.replace("0.5, 1, 2", "0.5, 1, 2, 2.5"), &pulse, 54, 0),
-        (SWEEP.replace("0.5, 1, 2", "0.5, 1, 2.5"), &pulse, 45, 9),
-        (SWEEP.replace("zeta_fc = 0.015", "zeta_fc = 0.0150001"), &pulse, 36, 18),
-        (SWEEP.replace("name = 'wall'", "name = 'shear wall'"), &pulse, 36, 18),
-        (SWEEP.replace("records", "time_scale = 0.5\nrecords"), &pulse, 0, 54),
-        (SWEEP.into(), &pulse.replacen("0e0", "1e-9", 1), 0, 54),
-        // a record that two patterns name counts once
-        (SWEEP.replace("'pulse.AT2'", "'pulse.AT2', '*.AT2'"), &pulse, 54, 0),
-        // What leaves the runs as they are may change: limits, patterns, comments.
-        (format!("# ...\n{}", SWEEP.replace("[0.6]", "[0.1, 1.0]").replace("pulse.AT2", "p*.AT2")), &pulse, 54, 0),
-    ] {
-        write("sweep.toml", &changed);
-        write("pulse.AT2", record);
-        write("sweep.csv", &original);
-        let (_, progress) = succeed(folder.path(), "sweep sweep.toml");
-        assert!(progress.starts_with(&format!("sweep.csv: {done} of ")), "{changed}: {progress}");
-        let said = format!("{others} row(s) are of runs that are not in this sweep (other inputs, or another build");
-        assert_eq!(progress.contains(&said), others > 0, "{progress}");
-        // which of two runs under one name is of which samples can be read
-        let text = read(&folder, "sweep.csv");
-        let digests: HashSet<_> = column(&text, "record_digest").into_iter().collect();
-        assert_eq!(digests.len(), if done == 0 { 2 } else { 1 }, "{changed}");
-        assert!(text.starts_with(&original));
-    }
-    write("sweep.toml", SWEEP);
-    write("pulse.AT2", &pulse);
-    assert_eq!(succeed(folder.path(), "sweep sweep.toml").0, summary);
-}
-
-/// Conditions are in the rows and in their keys; the intensity measure is neither.
-#[test]
-fn conditions_of_a_sweep_are_those_of_its_runs() {
-    let folder = sweep(SWEEP);
-    let (usual, _) = succeed(folder.path(), "sweep sweep.toml");
-    let write = |text: &str| fs::write(folder.path().join("sweep.toml"), text).unwrap();
-    for (line, heading, value) in [
-        ("detail = 'linear'", "detail", "linear"),
-        ("tolerance = 1e-6", "tolerance", "1e-6"),
-        ("duration = 3", "duration[s]", "3.0"),
-        ("initial = { theta_0 = 0.01, u_0 = 1e-3 }", "theta_0[rad]", "0.01"),
-    ] {
-        write(&format!("{line}\n{SWEEP}"));
-        let (_, progress) = succeed(folder.path(), "sweep sweep.toml -o other.csv");
-        assert!(progress.contains(": 0 of 54 runs done"), "{line}: {progress}");
-        let text = read(&folder, "other.csv");
-        assert!(column(&text, heading).iter().all(|found| *found == value), "{line}");
-        if line.starts_with("duration") {
-            let end = |(ending, end): (&&str, &str)| *ending == "overturned" || (*ending == "at time" && end == "3.0");
-            assert!(column(&text, "ending").iter().zip(column(&text, "end[s]")).all(end));
-        }
-        fs::remove_file(folder.path().join("other.csv")).unwrap();
-    }
-    for (measure, unit) in [("PGV", "m/s"), ("S_a", "g")] {
-        write(&format!("intensity = '{measure}'\n{SWEEP}"));
-        let (table, progress) = succeed(folder.path(), "sweep sweep.toml");
-        assert!(progress.starts_with("sweep.csv: 54 of 54 runs done"), "{progress}");
-        assert!(table.contains(&format!("{measure}: from ")) && table.contains(&format!(" to ({unit}) ")), "{table}");
-        assert_ne!(table, usual);
-        assert!(read(&folder, "sweep.svg").contains(&format!("({unit})")));
-    }
 }
 
 /// The printed probabilities are those counted in the rows, and the curve is the fit to them.
