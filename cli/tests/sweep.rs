@@ -6,7 +6,6 @@ use command_line::{folder, succeed};
 use rocking_sweep::fragility::FragilityCurve;
 use rocking_sweep::fragility::Trials;
 use std::fs;
-use tempfile::TempDir;
 
 /// 9 structures at 6 scale factors: some stay in contact, some rock, some overturn.
 const SWEEP: &str = "
@@ -23,17 +22,6 @@ vary.B = { from = 0.2, to = 0.3, count = 3 }
 [limits]
 \"theta/alpha_cg\" = [0.6]
 ";
-
-/// A folder with the pulse and `sweep.toml`.
-fn sweep(toml: &str) -> TempDir {
-    let folder = folder();
-    fs::write(folder.path().join("sweep.toml"), toml).unwrap();
-    folder
-}
-
-fn read(folder: &TempDir, name: &str) -> String {
-    fs::read_to_string(folder.path().join(name)).unwrap()
-}
 
 /// The values in the column `heading`, in the order of the runs.
 fn column<'a>(text: &'a str, heading: &str) -> Vec<&'a str> {
@@ -52,9 +40,11 @@ fn column<'a>(text: &'a str, heading: &str) -> Vec<&'a str> {
 /// The printed probabilities are those counted in the rows, and the curve is the fit to them.
 #[test]
 fn probabilities_and_curve_are_those_of_the_rows() {
-    let folder = sweep(SWEEP);
-    let (summary, _) = succeed(folder.path(), "sweep sweep.toml");
-    let text = read(&folder, "sweep.csv");
+    let folder = folder();
+    let folder = folder.path();
+    fs::write(folder.join("sweep.toml"), SWEEP).unwrap();
+    let (summary, _) = succeed(folder, "sweep sweep.toml");
+    let text = fs::read_to_string(folder.join("sweep.csv")).unwrap();
     let ending = column(&text, "ending");
     let relative: Vec<f64> = column(&text, "peak_theta/alpha_cg").iter().map(|value| value.parse().unwrap()).collect();
     let pga: Vec<f64> = column(&text, "PGA[g]").iter().map(|value| value.parse().unwrap()).collect();
@@ -91,7 +81,7 @@ fn probabilities_and_curve_are_those_of_the_rows() {
 
     assert!(summary.contains("\na run that overturns exceeds every limit\n"), "{summary}");
 
-    let picture = read(&folder, "sweep.svg");
+    let picture = fs::read_to_string(folder.join("sweep.svg")).unwrap();
     for text in ["peak ground acceleration PGA (g)", "pier: overturned", "wall: theta/alpha_cg &gt;= 0.6"] {
         assert!(picture.contains(text), "{text}");
     }
