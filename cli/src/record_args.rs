@@ -14,6 +14,9 @@ pub struct RecordArgs {
     /// Ground motion record, `-` for standard input: PEER .AT2, ESM, K-NET, COSMOS or CSMIP as published, or a table of text
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
+    /// Vertical component of the record, positive upwards, in a file of its own: read and scaled by the same options
+    #[arg(long, value_name = "FILE", requires = "record")]
+    pub record_v: Option<PathBuf>,
     /// How it is read and scaled.
     #[command(flatten)]
     pub options: RecordOptions,
@@ -48,7 +51,14 @@ impl RecordArgs {
     /// The record, scaled; `g` (m/s²) is what a record's g stands for. Says what was read, and what was assumed.
     pub fn load(&self, g: f64) -> anyhow::Result<Option<Record>> {
         let Some(path) = &self.record else { return Ok(None) };
-        self.options.load(path, g).map(Some)
+        let record = self.options.load("record", path, g)?;
+        let Some(vertical) = &self.record_v else { return Ok(Some(record)) };
+        Ok(Some(record.with_vertical(&self.options.load("record_v", vertical, g)?)?))
+    }
+
+    /// The files that are read.
+    pub fn inputs(&self) -> impl Iterator<Item = &Path> {
+        self.record.iter().chain(&self.record_v).map(PathBuf::as_path)
     }
 }
 
@@ -64,11 +74,11 @@ pub struct Understood {
 }
 
 impl RecordOptions {
-    /// The record in the file at `path`, scaled, in m/s²; `g` (m/s²) is what a record's g stands for. Says what was read,
-    /// and what was assumed.
-    pub fn load(&self, path: &Path, g: f64) -> anyhow::Result<Record> {
+    /// The record in the file at `path`, scaled, in m/s²; `g` (m/s²) is what a record's g stands for. Says what was read as
+    /// `what`, and what was assumed.
+    fn load(&self, what: &str, path: &Path, g: f64) -> anyhow::Result<Record> {
         let understood = self.understand(path, g).map_err(with_option)?;
-        say!("record         {}", understood.described);
+        say!("{what:<14} {}", understood.described);
         understood.warnings(path).for_each(|warning| say!("{warning}"));
         let record = understood.record;
         if self.time_scale.is_some() || self.scale.is_some() {

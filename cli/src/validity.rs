@@ -90,6 +90,7 @@ pub fn section(structure: &Structure, detail: Detail, found: &Found, limits: &Li
     let of_parameters = validity::of_parameters(structure, detail);
     let mut lines = vec!["what the model leaves out here".to_owned()];
     lines.extend(of_parameters.into_iter().map(|warning| format!("  {warning}")));
+    lines.extend(found.warning_of_flight().map(|warning| format!("  {warning}")));
     lines.extend((0..ASSUMPTIONS.len()).map(|which| line(which, found, limits)));
     lines.push(format!("  {:<34} {}", "energy gained at", of_impacts(found.gains, found.impacts)));
     let held = match found.settlings {

@@ -61,6 +61,7 @@ class Record:
         cls,
         time: ArrayLike,
         a_g: ArrayLike,
+        a_v: ArrayLike | None = None,
         *,
         unit: _Unit = "m/s2",
         g: float = 9.81,
@@ -72,6 +73,7 @@ class Record:
     def read(
         file: _Path,
         *,
+        vertical: _Path | None = None,
         unit: _Unit | None = None,
         dt: float | None = None,
         column: int | str | None = None,
@@ -84,6 +86,8 @@ class Record:
     def time(self) -> _Array: ...
     @property
     def a_g(self) -> _Array: ...
+    @property
+    def a_v(self) -> _Array | None: ...
     @property
     def title(self) -> str: ...
     @property

@@ -84,7 +84,11 @@ struct Key {
 fn keys(plan: &Plan, validity: bool, program: &Program) -> Vec<Key> {
     let of_motion = |of: &NamedRecord| {
         let samples = (of.record().times(), of.record().acceleration());
-        (ptr::from_ref(of), digest(&Uuid::NAMESPACE_OID, &samples))
+        let digest = match of.record().vertical() {
+            None => digest(&Uuid::NAMESPACE_OID, &samples),
+            Some(vertical) => digest(&Uuid::NAMESPACE_OID, &(samples, vertical)),
+        };
+        (ptr::from_ref(of), digest)
     };
     let digests: HashMap<_, _> = plan.motions().iter().map(of_motion).collect();
     let of_case = |case: Case| {
