@@ -3,7 +3,7 @@
 import argparse
 from pathlib import Path
 
-import numpy as np
+import flexible_rocking as fr
 from first_run import G
 from tqdm import tqdm
 from validation.records import horizontal_records
@@ -56,8 +56,8 @@ def main() -> None:
             impacts=flexible.impacts(),
             flexibility=flexibility,
             base_shear=flexible.base_shear(),
-            records="\n".join(f"- {record.name}: {len(record.a_g)} samples, {record.dt:g} s, "
-                              f"{np.max(np.abs(record.a_g)) / G:.3f} g" for record in horizontal_records()),
+            records="\n".join(f"- {name}: {len(record)} samples, {record.time[1]:g} s, {record.pga / G:.3f} g"
+                              for name, path in horizontal_records().items() for record in [fr.Record.read(path)]),
             time_scales=", ".join(f"{scale:g}" for scale in ensemble.TIME_SCALES),
             pgas=f"{len(ensemble.PGAS)} peak accelerations from {ensemble.PGAS[0]:g} to {ensemble.PGAS[-1]:g} g",
             run_count=len(runs) // len(ensemble.STRUCTURES),

@@ -34,7 +34,7 @@ SEED = 1963
 
 def records(time_scale: float = 1.0) -> dict[str, fr.Record]:
     """The records, each with a peak of 1 g."""
-    found = {str(record.path): fr.Record.read(record.path, time_scale=time_scale) for record in horizontal_records()}
+    found = {str(path): fr.Record.read(path, time_scale=time_scale) for path in horizontal_records().values()}
     return {name: record.scaled(G / record.pga) for name, record in found.items()}
 
 

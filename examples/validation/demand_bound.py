@@ -43,7 +43,7 @@ def population(count: int) -> list[fr.Structure]:
 
 def compute(structures: list[fr.Structure]) -> pd.DataFrame:
     """A row for every structure under every record; accelerations over g."""
-    records = {record.path.name: fr.Record.read(record.path) for record in horizontal_records()}
+    records = {name: fr.Record.read(path) for name, path in horizontal_records().items()}
     named = {str(number): structure for number, structure in enumerate(structures)}
     runs = fr.sweep(named, records)
     rows = []
