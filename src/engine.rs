@@ -403,7 +403,8 @@ impl Engine {
 
     /// The outputs now under `load`; once overturned, those of the instant before.
     pub fn outputs(&self, load: Load) -> Outputs {
-        self.sample(load).outputs()
+        let Motion { phase, state, dissipators, .. } = &self.motion; // a sample would copy the motion
+        self.model.outputs(phase.in_motion(), state, load, dissipators)
     }
 
     /// The reactions now under `load`; once overturned, those of the instant before.

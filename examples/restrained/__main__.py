@@ -22,7 +22,7 @@ G = 9.81
 STRUCTURES = 400
 SCALES = [1.0, 2.0, 4.0]
 CHANGED = 0.05  # what counts as a change
-LOW = 0.05  # part of alpha_cg below which a rotation is small
+SCALED = 1.01  # factor on the horizontal component that the vertical one is compared with
 STIFFNESSES = [0.0, 0.5, 0.9, 1.1, 2.0, 4.0]  # k_t over that which leaves no stiffness after uplift
 MCMANUS = dict(m=130.1, m0=65.4, H=1.84, B=0.285, J0=10.7, f_fc=5.0, zeta_fc=0.02, r=0.99)
 
@@ -94,48 +94,63 @@ def alpha_cg(s: dict[str, float]) -> float:
 def vertical(exporter: Path, folder: Path, population, picture: Path) -> dict:
     """What the vertical component changes."""
     ups = {str(up) for _, up in pairs()}
-    records = [entry for path, up in pairs() for entry in (f"{{ file = '{path}' }}", f"{{ file = '{path}', vertical = '{up}' }}")]
-    rows = sweep(exporter, folder, "vertical", records, SCALES, population)
+    flat, both = [f"{{ file = '{path}' }}" for path, _ in pairs()], [f"{{ file = '{path}', vertical = '{up}' }}" for path, up in pairs()]
+    rows = [row for name, records in (("horizontal", flat), ("both", both))
+            for row in sweep(exporter, folder, name, records, SCALES, population)]
+    scaled = {(row["structures"], Path(row["record"]).name, scale): row
+              for scale in SCALES
+              for row in sweep(exporter, folder, f"scaled {scale}", flat, [SCALED * scale], population)}
     found: dict = {}
     for row in rows:
         name, _, up = row["record"].partition(" with ")
         found.setdefault((row["structures"], Path(name).name, row["scale"]), {})[bool(up)] = row
-    both = [(population[int(key[0])], key[1], pair[False], pair[True]) for key, pair in found.items()]
+    both = [(population[int(key[0])], key[1], pair[False], pair[True], scaled[key[0], key[1], float(key[2])])
+            for key, pair in found.items()]
     theta = lambda row: float(row["peak_theta[rad]"])
-    rocks = [(s, name, a, b) for s, name, a, b in both if max(theta(a), theta(b)) > 0]
-    stands = [one for one in rocks if {one[2]["ending"], one[3]["ending"]} == {"at rest"}]
+    rocks = [one for one in both if max(theta(one[2]), theta(one[3])) > 0]
+    stands = [one for one in rocks if {row["ending"] for row in one[2:]} == {"at rest"}]
     lifted = [one for one in stands if theta(one[2]) > 0]
     relative = lambda a, b, key: abs(float(b[key]) - float(a[key])) / float(a[key])
-    change = np.array([relative(a, b, "peak_theta[rad]") for _, _, a, b in lifted])
-    of_a_t = np.array([relative(a, b, "peak_a_t[m/s2]") for _, _, a, b in lifted])
-    size = np.array([theta(a) / alpha_cg(s) for s, _, a, _ in lifted])
+    change = np.array([relative(a, b, "peak_theta[rad]") for _, _, a, b, _ in lifted])
+    by_scale = np.array([relative(a, c, "peak_theta[rad]") for _, _, a, _, c in lifted])
+    signed = np.array([theta(b) / theta(a) for _, _, a, b, _ in lifted])
+    of_a_t = np.array([relative(a, b, "peak_a_t[m/s2]") for _, _, a, b, _ in lifted])
+    size = np.array([theta(a) / alpha_cg(s) for s, _, a, _, _ in lifted])
     bands = [(0, 0.01), (0.01, 0.05), (0.05, 0.2), (0.2, 1)]
     lines = []
     for low, high in bands:
         of = (size > low) & (size <= high)
         lines.append([f"{low:g} to {high:g}", str(of.sum()), f"{100 * np.mean(change[of] > CHANGED):.0f} %",
-                      f"{100 * np.median(change[of]):.1f} %", f"{100 * np.mean(of_a_t[of] > CHANGED):.0f} %"])
+                      f"{100 * np.median(change[of]):.1f} %", f"{np.median(signed[of]):.3f}",
+                      f"{100 * np.mean(by_scale[of] > CHANGED):.0f} %", f"{100 * np.mean(of_a_t[of] > CHANGED):.0f} %"])
     events = []
     for name in sorted({name for _, name, _, _ in lifted}):
-        of = np.array([other == name for _, other, _, _ in lifted])
+        of = np.array([one[1] == name for one in lifted])
         events.append([name.removesuffix(".AT2"), str(of.sum()), f"{100 * np.mean(change[of] > CHANGED):.0f} %",
                        f"{100 * np.median(change[of]):.1f} %"])
-    fates = [(a["ending"] == "overturned", b["ending"] == "overturned") for _, _, a, b in rocks]
+    fates = [tuple(row["ending"] == "overturned" for row in one[2:]) for one in rocks]
     figure, axes = plt.subplots(figsize=(7, 4.2), layout="constrained")
-    axes.loglog(size, np.maximum(change, 1e-5), ".", markersize=3, alpha=0.5)
+    axes.loglog(size, np.maximum(change, 1e-5), ".", markersize=3, alpha=0.5, label="the vertical component")
+    edges = np.geomspace(1e-3, 1, 13)
+    middles, bins = np.sqrt(edges[1:] * edges[:-1]), np.digitize(size, edges) - 1
+    for values, name in ((change, "its median"), (by_scale, f"median of a horizontal component {100 * (SCALED - 1):.0f} % larger")):
+        axes.plot(middles, [np.median(values[bins == i]) for i in range(len(middles))], linewidth=2, label=name)
     axes.axhline(CHANGED, color="k", linewidth=0.8)
     axes.set_xlabel("θ_max/α_cg under the horizontal component alone")
-    axes.set_ylabel("relative change of θ_max by the vertical component")
-    axes.set_title("The vertical component matters where the base barely lifts off")
+    axes.set_ylabel("relative change of θ_max")
+    axes.set_title("What the vertical component changes, and what 1 % of the horizontal one does")
+    axes.legend(fontsize=8)
     figure.savefig(picture, dpi=110)
     return dict(runs=len(both), rocks=len(rocks), lifted=len(lifted), ups=len(ups),
-                changed=f"{100 * np.mean(change > CHANGED):.0f}", median=f"{100 * np.median(change):.1f}",
+                changed=f"{100 * np.mean(change > CHANGED):.0f}", ratio=f"{np.median(signed):.3f}",
+                scale_changed=f"{100 * np.mean(by_scale > CHANGED):.0f}", scale_median=f"{100 * np.median(by_scale):.1f}", median=f"{100 * np.median(change):.1f}",
                 a_t_changed=f"{100 * np.mean(of_a_t > CHANGED):.0f}", a_t_median=f"{100 * np.median(of_a_t):.1f}",
                 bands=table(["θ_max/α_cg", "runs", "θ_max changes by more than 5 %", "median change of θ_max",
+                             "median of θ_max with over without", "the same 5 % by 1 % of the horizontal component",
                              "a_t,max changes by more than 5 %"], lines),
                 events=table(["record", "runs", "θ_max changes by more than 5 %", "median change of θ_max"], events),
-                overturned=sum(a for a, _ in fates), overturned_too=sum(b for _, b in fates),
-                changed_fate=sum(a != b for a, b in fates))
+                overturned=sum(a for a, _, _ in fates), overturned_too=sum(b for _, b, _ in fates),
+                changed_fate=sum(a != b for a, b, _ in fates), changed_fate_by_scale=sum(a != c for a, _, c in fates))
 
 
 def restraints(exporter: Path, folder: Path, population, picture: Path) -> dict:

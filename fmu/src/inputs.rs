@@ -16,6 +16,9 @@ pub(crate) enum Between {
     Extrapolated,
 }
 
+/// All of them held: nothing else is asked then.
+const HELD: [Between; LOADS.len()] = [Between::Held; LOADS.len()];
+
 /// The inputs. A slope is followed for one step, after which the value that it led to is held; a step that ended early
 /// goes on where it ended, along the same lines.
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
@@ -121,6 +124,9 @@ impl Inputs {
     #[inline]
     pub(crate) fn over(&self, duration: f64) -> LinearLoad {
         let mut load = self.next;
+        if self.between == HELD {
+            return load;
+        }
         for (which, between) in self.between.into_iter().enumerate() {
             if between == Between::Held || self.given[which] == Given::Slope {
                 continue;
@@ -158,8 +164,11 @@ impl Inputs {
         let (value, set) = (load.at(duration), self.set);
         let slope = if ended_early { load.slope } else { Load::default() };
         (self.next, self.set, self.ended_early) = (LinearLoad { value, slope }, value, ended_early);
-        for which in 0..LOADS.len() {
-            if !self.acts_at_once(which) {
+        if self.between != HELD {
+            for which in 0..LOADS.len() {
+                if self.acts_at_once(which) {
+                    continue;
+                }
                 self.set[which] = set[which];
                 if !ended_early {
                     self.next.value[which] = set[which]; // whatever the rounding

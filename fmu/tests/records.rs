@@ -352,7 +352,7 @@ fn the_vertical_record_inside_is_the_one_through_the_input() {
         }
         for k in 0..SEEN.len() - 1 {
             assert!(most[k] > 0.0 || SEEN[k] == "u" && detail == Detail::Rigid, "{}", SEEN[k]);
-            assert!(off[k] <= 1e-8 * most[k], "{detail:?} {}: {:e} of {:e}", SEEN[k], off[k], most[k]);
+            assert!(off[k] <= 1e-5 * most[k], "{detail:?} {}: {:e} of {:e}", SEEN[k], off[k], most[k]);
         }
         let (from, bytes) = kept.unwrap();
         let again = host(detail);
