@@ -7,22 +7,21 @@
 """
 
 import argparse
-import json
-import subprocess
 from pathlib import Path
 
+import flexible_rocking as fr
 import numpy as np
 import pandas as pd
 from fmpy import simulate_fmu
-from first_run import PACOIMA_DAM
+from first_run import G, RECORD, TIME_SCALE
 from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Arc, Circle
 from tqdm import tqdm
 from validation.figures import FIXED, ROCKING, plt, save, subplots
+from validation.specimens import MCMANUS
 
 INK, LIGHT = "#263238", "0.82"
-H, B = 1.84, 0.285  # m, McManus's pier
 BEND = 10  # u is drawn this many times as large in the animation
 SHOWN, FRAMES_PER_SECOND, ROWS_PER_FRAME = 6.0, 16, 8  # s
 
@@ -111,7 +110,7 @@ def motion(fmu: str, path: Path) -> None:
 
     def frame(i: int) -> None:
         axis.clear()
-        draw(axis, result["theta"][i], BEND * result["u"][i], H, B)
+        draw(axis, result["theta"][i], BEND * result["u"][i], MCMANUS.H, MCMANUS.B)
         axis.set(xlim=(-1.1, 1.1), ylim=(-0.12, 2.15))
         if result["a_ground"][i]:
             arrow(axis, (0, -0.06), (0.08 * result["a_ground"][i], -0.06), style="->", color=FIXED)
@@ -174,20 +173,18 @@ def headline(path: Path) -> None:
 LEVELS = {"fixed_base": "#d9d9d9", "rigid": "#f0e442", "modal": "#56b4e9", "linear": "#009e73", "auto": "#d55e00"}
 FREQUENCIES = np.geomspace(1, 50, 24)  # Hz
 INTENSITIES = np.geomspace(0.3, 12, 24)  # PGA over g tan α_cg
-ASKED = {"peaks of θ, u, a_t within 5 %": "theta,u,a_t",
-         "histories within 5 %, too": "theta,u,a_t,theta_history,u_history,a_t_history"}
+ASKED = {"peaks of θ, u, a_t within 5 %": ["theta", "u", "a_t"],
+         "histories within 5 %, too": None}
 
 
-def levels(exporter: Path, path: Path) -> None:
+def levels(path: Path) -> None:
     """McManus's pier with other frequencies under Pacoima Dam, scaled: the level that `advise` names."""
-    scene = ["--preset", "mcmanus", "--record", PACOIMA_DAM["record"], "--time-scale", "0.2"]
-    uplifts = (130.1 + 65.4) / 130.1 * B / H / 1.21904  # tan α_cg over the record's PGA in g: the scale of 1
+    record = fr.Record.read(RECORD, time_scale=TIME_SCALE)
+    uplifts = record.scaled(G * np.tan(MCMANUS.alpha_cg) / record.pga)
 
-    def advised(frequency: float, intensity: float, asked: str) -> int:
-        command = [exporter, "--quiet", "advise", *scene, "--f-fc", f"{frequency:.6g}", "--of", asked,
-                   "--scale", f"{intensity * uplifts:.6g}", "--format", "json"]
-        rows = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["rows"]
-        return list(LEVELS).index(next(row["level"] for row in rows if row["advised"]))
+    def advised(frequency: float, intensity: float, asked: list[str] | None) -> int:
+        advice = fr.advise(MCMANUS.replace(f_fc=frequency), uplifts.scaled(intensity), of=asked)
+        return list(LEVELS).index(advice.detail)
 
     figure, axes = subplots(1, 2, 3.8, sharey=True)
     for axis, (title, asked) in zip(axes, ASKED.items()):
@@ -208,13 +205,12 @@ def levels(exporter: Path, path: Path) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("fmu", nargs="?", default="out/mcmanus.fmu", help="of McManus's pier")
-    parser.add_argument("--exporter", type=Path, default=Path("target/release/rocking-fmu"), help="executable")
     parser.add_argument("--folder", type=Path, default=Path("docs/img"), help="where to save them")
     arguments = parser.parse_args()
     schematic(arguments.folder / "schematic.svg")
     motion(arguments.fmu, arguments.folder / "motion.gif")
     headline(arguments.folder / "headline.svg")
-    levels(arguments.exporter, arguments.folder / "levels.svg")
+    levels(arguments.folder / "levels.svg")
 
 
 if __name__ == "__main__":

@@ -51,10 +51,10 @@ def split(page):
 @pytest.mark.heavy
 @pytest.mark.parametrize("page, module", [
     ("paper", "validation"), ("literature", "literature"), ("overturning", "overturning")])
-def test_a_page_of_evidence_is_what_its_command_writes(page, module, exporter, tmp_path):
+def test_a_page_of_evidence_is_what_its_command_writes(page, module, tmp_path):
     """To a per cent: another C library has other last digits. Solvers of hosts amplify these: test_model_exchange.py and
     test_coupling.py hold what their pages say."""
-    command = [sys.executable, "-m", module, "--output", tmp_path / f"{page}.md", "--exporter", exporter]
+    command = [sys.executable, "-m", module, "--output", tmp_path / f"{page}.md"]
     subprocess.run(command, cwd=ROOT, env=os.environ | {"PYTHONPATH": "examples"}, check=True)
     (words, numbers), (as_told, told) = split(tmp_path / f"{page}.md"), split(ROOT / "docs/evidence" / f"{page}.md")
     assert words == as_told and numbers == pytest.approx(told, rel=0.01, abs=1e-9)

@@ -11,7 +11,7 @@ mod modes;
 pub mod output_files;
 mod picture;
 mod pulse;
-mod pushover;
+pub mod pushover;
 pub mod quantities;
 mod record;
 pub mod record_args;
