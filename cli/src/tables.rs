@@ -62,8 +62,6 @@ pub const RESPONSE: [&str; 28] = [
     "I_h[N.s]",
     "I_v[N.s]",
     "I_m[N.m.s]",
-    "phase",
-    "transitions",
     "a_v[m/s2]",
     "P_t[N]",
     "F_d1[N]",
@@ -72,6 +70,8 @@ pub const RESPONSE: [&str; 28] = [
     "e_p2[m]",
     "E_viscous[J]",
     "E_hysteretic[J]",
+    "phase",
+    "transitions",
 ];
 
 /// The numbers of a line of the response, in the order of [`RESPONSE`]; phase and transitions follow.

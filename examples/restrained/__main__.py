@@ -124,7 +124,7 @@ def vertical(exporter: Path, folder: Path, population, picture: Path) -> dict:
                       f"{100 * np.median(change[of]):.1f} %", f"{np.median(signed[of]):.3f}",
                       f"{100 * np.mean(by_scale[of] > CHANGED):.0f} %", f"{100 * np.mean(of_a_t[of] > CHANGED):.0f} %"])
     events = []
-    for name in sorted({name for _, name, _, _ in lifted}):
+    for name in sorted({one[1] for one in lifted}):
         of = np.array([one[1] == name for one in lifted])
         events.append([name.removesuffix(".AT2"), str(of.sum()), f"{100 * np.mean(change[of] > CHANGED):.0f} %",
                        f"{100 * np.median(change[of]):.1f} %"])
