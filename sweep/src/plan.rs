@@ -443,7 +443,8 @@ mod tests {
         let halved = NamedRecord::new("half", pulse().record, 0.5).unwrap();
         let plan = Plan::new(vec![piers, wall], vec![pulse(), halved], vec![1.0, -2.0]).unwrap();
         assert_eq!((plan.size(), plan.len()), ([7, 2, 2], 28));
-        let [axis_B, slenderness] = [AXES[3], AXES[10]];
+        let [axis_B, slenderness] =
+            ["B", "slenderness"].map(|name| *AXES.iter().find(|axis| axis.name == name).unwrap());
         let cases: Vec<_> = plan.cases().collect();
         let column = |of: fn(&Case, [&Quantity<Parameters>; 2]) -> f64, step| {
             cases.iter().step_by(step).map(|case| of(case, [axis_B, slenderness])).collect::<Vec<_>>()
