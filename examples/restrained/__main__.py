@@ -138,7 +138,7 @@ def vertical(exporter: Path, folder: Path, population, picture: Path) -> dict:
     axes.axhline(CHANGED, color="k", linewidth=0.8)
     axes.set_xlabel("θ_max/α_cg under the horizontal component alone")
     axes.set_ylabel("relative change of θ_max")
-    axes.set_title("What the vertical component changes, and what 1 % of the horizontal one does")
+    axes.set_title("The vertical component changes single runs by a tenth")
     axes.legend(fontsize=8)
     figure.savefig(picture, dpi=110)
     return dict(runs=len(both), rocks=len(rocks), lifted=len(lifted), ups=len(ups),
