@@ -7,7 +7,7 @@ from dataclasses import asdict
 import numpy as np
 import pytest
 import restrained_reference as oracle
-from host import G, ground_motion
+from host import G, ground_motion, simulate
 from reference import MCMANUS
 from restrained_reference import Ties
 
@@ -106,3 +106,24 @@ def test_modal_refuses_vertical_motion_and_says_why(mcmanus):
         with pytest.raises(Exception):
             instance.set(a_v=1.0)
         assert "detail = modal has no modes of a structure that is restrained or shaken vertically" in instance.errors[-1]
+
+
+def test_model_exchange_has_the_motion_of_co_simulation(mcmanus, tmp_path):
+    """Under both components, with all restraints: by CVode, which is told of yielding and of its end by the indicators."""
+    time, a_g, a_v = pair("sanFernando_pacoidaDam_1971", "pul164", SAMPLES, scale=5 * 0.29, time_scale=5)
+    for name, samples in (("along", a_g), ("up", a_v)):
+        np.savetxt(tmp_path / f"{name}.csv", np.column_stack([time, samples]), "%.17g", delimiter=",", header="time,a", comments="")
+    ties = Ties(0.3 * WEIGHT, 2e5, 0.35, 500.0, 1e6, 0.1 * WEIGHT)
+    values = start_values(MCMANUS, ties) | {name: str(tmp_path / f"{file}.csv")
+                                            for name, file in (("record", "along"), ("record_v", "up"))}
+    names, results = ("theta", "u", "F_d1", "e_p2"), {}
+    for fmi_type in ("CoSimulation", "ModelExchange"):
+        solver = dict(relative_tolerance=1e-9) if fmi_type == "ModelExchange" else {}
+        rows, events = simulate(mcmanus, fmi_type=fmi_type, start_values=values, stop_time=time[-1], output_interval=2e-3,
+                                output=names, **solver)
+        results[fmi_type] = (np.array([np.interp(np.arange(0, time[-1], 2e-3), rows["time"], rows[name]) for name in names]),
+                             {event.kind for event in events})
+    (expected, kinds), (found, found_kinds) = results["CoSimulation"], results["ModelExchange"]
+    assert {"yielding", "unloading"} <= kinds == found_kinds
+    for name, a, b in zip(names, found, expected):
+        assert np.abs(a - b).max() <= 1e-3 * np.abs(b).max(), name

@@ -124,7 +124,7 @@ def vertical(exporter: Path, folder: Path, population, picture: Path) -> dict:
                       f"{100 * np.median(change[of]):.1f} %", f"{np.median(signed[of]):.3f}",
                       f"{100 * np.mean(by_scale[of] > CHANGED):.0f} %", f"{100 * np.mean(of_a_t[of] > CHANGED):.0f} %"])
     events = []
-    for name in sorted({name for _, name, _, _ in lifted}):
+    for name in sorted({one[1] for one in lifted}):
         of = np.array([one[1] == name for one in lifted])
         events.append([name.removesuffix(".AT2"), str(of.sum()), f"{100 * np.mean(change[of] > CHANGED):.0f} %",
                        f"{100 * np.median(change[of]):.1f} %"])
@@ -138,7 +138,7 @@ def vertical(exporter: Path, folder: Path, population, picture: Path) -> dict:
     axes.axhline(CHANGED, color="k", linewidth=0.8)
     axes.set_xlabel("θ_max/α_cg under the horizontal component alone")
     axes.set_ylabel("relative change of θ_max")
-    axes.set_title("What the vertical component changes, and what 1 % of the horizontal one does")
+    axes.set_title("The vertical component changes single runs by a tenth")
     axes.legend(fontsize=8)
     figure.savefig(picture, dpi=110)
     return dict(runs=len(both), rocks=len(rocks), lifted=len(lifted), ups=len(ups),
