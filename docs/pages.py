@@ -18,7 +18,8 @@ from first_run import RECORD
 from fmpy import read_model_description
 
 ROOT = Path(__file__).parents[1]
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*/*.md"))]
+# That of the Python module has a test of its own: its blocks continue each other.
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted({*(ROOT / "docs").glob("*/*.md")} - {ROOT / "docs/howto/python.md"})]
 COMMAND = re.compile(r"^\$ (?P<shell>.*)\n(?P<told>(?:(?!\$ |```).*\n)*)", re.MULTILINE)
 BLOCK = re.compile(r"^```console\n[^`]*?^```$|^```python\n(?P<python>.*?)^```\n(?:\n```text\n(?P<printed>.*?)^```$)?",
                    re.MULTILINE | re.DOTALL)
