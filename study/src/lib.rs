@@ -8,7 +8,7 @@
 //! | [`libraries`] | other crates' solvers |
 //! | [`engine`], [`fmu`] | this project's engine, alone and through the FMU's C interface |
 //! | [`response`], [`timing`] | errors, failures, cost |
-//! | [`precision`], [`stability`], [`failures`], [`validity`], [`speed`] | the commands |
+//! | [`precision`], [`stability`], [`failures`], [`validity`] | the commands |
 //! | [`chart`] | pictures |
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
@@ -25,7 +25,6 @@ mod page;
 pub mod precision;
 pub mod response;
 pub mod scene;
-pub mod speed;
 pub mod stability;
 pub mod timing;
 pub mod validity;

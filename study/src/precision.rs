@@ -4,15 +4,18 @@ mod curves;
 mod page;
 
 use crate::engine;
+use crate::fmu::Fmu;
 use crate::response::{Errors, Failure, Response};
 use crate::scene::Scene;
 use crate::timing;
 use anyhow::Result;
 use curves::Method;
 use indicatif::ProgressBar;
+use rocking::Detail;
+use rocking::engine::DEFAULT_TOLERANCE;
 use std::path::Path;
 
-/// The input is scaled by 1 + this for the conditioning floor.
+/// The input is scaled by 1 + this to find how well the scene is conditioned.
 pub const PERTURBATION: f64 = 1e-12;
 
 /// One method over its settings.
@@ -39,7 +42,7 @@ pub enum Family {
 #[derive(Debug)]
 pub struct Point {
     pub setting: f64,                    // step in s, or tolerance
-    pub cost: f64,                       // time per sample over that of the floor
+    pub cost: f64,                       // time per sample, s
     pub evaluations: f64,                // right-hand-side evaluations per sample
     pub transitions: u64,                // uplifts, impacts and landings
     pub errors: Result<Errors, Failure>, // against the reference, or why there are none
@@ -50,11 +53,11 @@ pub struct Point {
 pub struct Diagram {
     pub key: &'static str,
     pub title: &'static str,
-    pub floor: f64, // time per sample of the floor, s
     /// How far the response moves when the input is scaled by 1 + [`PERTURBATION`].
     pub conditioning: Errors,
     pub transitions: u64, // transitions of the reference
     pub dt: f64,          // time between samples, s
+    pub fmi: f64,         // what the FMU's interface adds to a step of one sample, s
     pub curves: Vec<Curve>,
 }
 
@@ -73,31 +76,32 @@ pub fn measure(scene: &Scene, limits: Limits, progress: &ProgressBar) -> Result<
     let exact = engine::reference(scene);
     let moved = engine::reference(&scene.scaled(1.0 + PERTURBATION));
     let conditioning = Errors::of(&moved, &exact)?;
-    let floor = timing::floor(scene);
     let methods = curves::methods(scene);
     progress.inc_length(methods.len() as u64);
     let curves = methods
         .into_iter()
         .map(|method| {
             progress.set_message(format!("{}: {}", scene.title, method.name));
-            let points = sweep(&method, scene, &exact, floor, conditioning.theta, limits);
+            let points = sweep(&method, scene, &exact, conditioning.theta, limits);
             progress.inc(1);
             Curve { name: method.name, family: method.family, setting: method.setting, points }
         })
         .collect();
     let (&Scene { key, title, .. }, dt) = (scene, scene.dt());
-    Ok(Diagram { key, title, floor, conditioning, transitions: exact.transitions, dt, curves })
+    Ok(Diagram { key, title, conditioning, transitions: exact.transitions, dt, fmi: fmi(scene)?, curves })
 }
 
-/// One method from coarse to fine, until its error in θ is below what conditioning allows or a run takes too long.
-fn sweep(
-    method: &Method,
-    scene: &Scene,
-    exact: &Response,
-    floor: f64,
-    conditioning: f64,
-    limits: Limits,
-) -> Vec<Point> {
+/// What the FMU's interface adds to a step of one sample, s.
+fn fmi(scene: &Scene) -> Result<f64> {
+    let fmu = Fmu::new(scene)?;
+    let (done, with) = timing::fastest(|| fmu.run());
+    done?;
+    let (_, without) = timing::fastest(|| engine::run(scene, Detail::Auto, DEFAULT_TOLERANCE, &mut ()));
+    Ok((with - without) / scene.intervals() as f64)
+}
+
+/// One method from coarse to fine, until its error in θ is as small as the conditioning or a run takes too long.
+fn sweep(method: &Method, scene: &Scene, exact: &Response, conditioning: f64, limits: Limits) -> Vec<Point> {
     let mut points = Vec::new();
     for (setting, run) in &method.settings {
         let (response, time) = timing::fastest(run);
@@ -106,7 +110,7 @@ fn sweep(
         let samples = response.samples.len().max(1) as f64;
         points.push(Point {
             setting: *setting,
-            cost: time / samples / floor,
+            cost: time / samples,
             evaluations: response.evaluations as f64 / samples,
             transitions: response.transitions,
             errors,
@@ -120,7 +124,7 @@ fn sweep(
     points
 }
 
-/// Measures all `scenes` and writes `docs/evidence/accuracy.md` with its pictures and numbers.
+/// Measures all `scenes` and writes `accuracy.md`, with its pictures and numbers, and `speed.md` into `docs`.
 pub fn write(scenes: &[Scene], limits: Limits, docs: &Path, progress: &ProgressBar) -> Result<()> {
     let diagrams = scenes.iter().map(|scene| measure(scene, limits, progress)).collect::<Result<Vec<_>>>()?;
     page::write(&diagrams, docs)
