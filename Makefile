@@ -19,6 +19,7 @@
 # make pages   write anew what README and the pages print (a minute)
 # make pictures  draw anew those of README and of the model (minutes)
 # make report  regenerate docs/evidence/paper.md, docs/evidence/literature.md and their figures (minutes)
+# make restrained  regenerate docs/evidence/restrained.md and its pictures (minutes)
 # make overturning  regenerate docs/evidence/overturning.md and its pictures (minutes)
 # make coupling  regenerate docs/evidence/coupling.md and its figures (minutes)
 # make exchange  regenerate docs/evidence/model_exchange.md and its figure (minutes)
@@ -61,12 +62,13 @@ MINGW := x86_64-w64-mingw32-gcc
 HAS_MINGW := command -v $(MINGW) >/dev/null
 HAS_WINE := command -v wine >/dev/null
 HAS_CHROMIUM := command -v chromium >/dev/null
+HAS_FIREFOX := command -v firefox-esr >/dev/null || command -v firefox >/dev/null
 HAS_TBB := PATH=$$PATH:/sbin ldconfig -p | grep -q 'libtbb\.so\.12'
 sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test check lint tools heavy evidence study python hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc docs pages pictures report overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
+.PHONY: demo test check lint tools heavy evidence study python hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc docs pages pictures report restrained overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
 
 # pip while cargo compiles.
 demo:
@@ -121,10 +123,11 @@ hosts: .venv/heavy exporter windows host_packages
 # The pages of `view` and `explore` in Chromium, and in Firefox; where these cannot be had, the tests are skipped and say so.
 browser: .venv/heavy exporter explore
 	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
+	-@$(HAS_FIREFOX) || { $(call install,firefox-esr); }
 	$(PYTEST) -m heavy tests/test_view.py tests/test_explore.py
 
 docs/img/explore.png: .venv/heavy explore
-	$(PYTHON) web/picture.py
+	$(PYTHON) examples/explore_picture.py
 
 # The library of this machine rides in the page, for the FMU that it writes.
 WEB := wasm32-unknown-unknown
@@ -133,7 +136,7 @@ explore: library
 	cd web && cargo build --release --locked --package rocking-web --target $(WEB)
 	mkdir -p out
 	cargo run --release --locked --manifest-path web/Cargo.toml --package pack -- \
-		$(or $(CARGO_TARGET_DIR),web/target)/$(WEB)/release/rocking_web.wasm out/explore.html $(TARGET)/release/libFlexibleRocking.so
+		$(or $(CARGO_TARGET_DIR),web/target)/$(WEB)/release/rocking_web.wasm out/explore.html $(TARGET)/release/deps/libFlexibleRocking.so
 
 evidence: .venv/test exporter
 	$(PYTEST) -m heavy tests/test_pages.py
@@ -228,6 +231,9 @@ pictures: .venv/test exporter out/mcmanus.fmu
 report: .venv/test exporter
 	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
 	PYTHONPATH=examples $(PYTHON) -m literature --exporter $(TARGET)/release/rocking-fmu
+
+restrained: .venv/test exporter
+	PYTHONPATH=examples $(PYTHON) -m restrained --exporter $(TARGET)/release/rocking-fmu
 
 overturning: .venv/test exporter
 	PYTHONPATH=examples $(PYTHON) -m overturning --exporter $(TARGET)/release/rocking-fmu

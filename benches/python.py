@@ -51,7 +51,8 @@ def main() -> None:
     last = fmpy.simulate_fmu(folder, **options)[-1]
     peaks = fr.simulate(pier, ground, duration=DURATION).peaks
     off = max(abs(last[name] / peaks[name.removesuffix("_max")].value - 1) for name in outputs)
-    print(f"fmpy.simulate_fmu, a step a sample: {1e3 * by_fmpy:.1f} ms, {by_fmpy / module:.1f} times the module's; peaks differ by {off:.0e}")
+    print(f"fmpy.simulate_fmu, a step a sample: {1e3 * by_fmpy:.1f} ms, {by_fmpy / module:.1f} times the module's; "
+          f"peaks differ by {off:.0e}")
 
     with tempfile.TemporaryDirectory() as rows:
         plan = f"records = [{arguments.record!r}]\nscale = {{ from = 0.1, to = 2, count = {SCALES} }}\n" \

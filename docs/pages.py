@@ -18,8 +18,7 @@ from first_run import RECORD
 from fmpy import read_model_description
 
 ROOT = Path(__file__).parents[1]
-# That of the Python module has a test of its own: its blocks continue each other.
-PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted({*(ROOT / "docs").glob("*/*.md")} - {ROOT / "docs/howto/python.md"})]
+PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "docs").glob("*/*.md"))]
 COMMAND = re.compile(r"^\$ (?P<shell>.*)\n(?P<told>(?:(?!\$ |```).*\n)*)", re.MULTILINE)
 BLOCK = re.compile(r"^```console\n[^`]*?^```$|^```python\n(?P<python>.*?)^```\n(?:\n```text\n(?P<printed>.*?)^```$)?",
                    re.MULTILINE | re.DOTALL)
@@ -76,11 +75,12 @@ def command_line(exporter: Path) -> str:
             f"| command | does |\n|---|---|\n{rows}\n\n```text\n{help_of_all}\n```\n\n{sections}\n")
 
 
+INITIAL_VALUES = ("theta_0", "theta_dot_0", "u_0", "u_dot_0")
 KINDS = {
     "Inputs": lambda v: v.causality == "input",
     "Outputs": lambda v: v.causality == "output",
-    "Parameters": lambda v: v.causality == "parameter" and not v.name.endswith("_0"),
-    "Initial values": lambda v: v.causality == "parameter" and v.name.endswith("_0"),
+    "Parameters": lambda v: v.causality == "parameter" and v.name not in INITIAL_VALUES,
+    "Initial values": lambda v: v.causality == "parameter" and v.name in INITIAL_VALUES,
     "Calculated parameters": lambda v: v.causality == "calculatedParameter",
     "Local variables": lambda v: v.causality == "local",
 }

@@ -6,7 +6,8 @@
 //! neither is a return within microseconds missed nor the start taken for one.
 //!
 //! Steps are bounded as transitions are ([`crate::levels::rules`]): an advance takes at most one for itself, two for each
-//! transition, and one for each 1/Ω of time, Ω the largest of ω_u, 2 ζ_u ω_u, 2 ζ_fc ω_fc and p_l. Only what is thrown
+//! transition, and one for each 1/Ω of time, Ω the largest of ω_u, 2 ζ_u ω_u, 2 ζ_fc ω_fc and p_l, and of what restraints
+//! add to these. Only what is thrown
 //! about takes more, up to four for each 1/Ω with |θ̇|, |u̇|/ρ and √(|ü|/ρ) among them, ρ² = (J0 + m0 B²)/m + (sB − u)².
 //! One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps. What is left of a long one once the base is down for good takes
 //! no more of them where full contact has an exact flow.
@@ -14,11 +15,13 @@
 pub mod motion;
 pub mod piece;
 pub mod transition;
+pub(crate) mod yielding;
 
 use crate::levels::detail::{AnyLevel, Detail, Model};
 use crate::levels::level::Level;
-use crate::mechanics::load::{LOADS, LinearLoad, Load};
+use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
+use crate::mechanics::restraint::{Angles, Dissipators, Restraints};
 use crate::mechanics::state::InitialStateError;
 use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
@@ -96,6 +99,14 @@ pub enum AdvanceError {
         /// The interval, s.
         interval: f64,
     },
+    /// The ground moves vertically, which it was not to ([`Engine::admit_vertical`]).
+    #[error("a_v = {} with slope {slope:?} m/s3: this structure was to be shaken horizontally alone", with_unit(*value, "m/s2"))]
+    Vertical {
+        /// At the start, m/s².
+        value: f64,
+        /// m/s³.
+        slope: f64,
+    },
     /// Too many steps for one call.
     #[error(
         "one advance may take {MAX_STEPS_PER_ADVANCE} steps; they ended at t = {} of {}: advance in shorter intervals",
@@ -131,7 +142,7 @@ impl AdvanceError {
     pub fn time(&self) -> Option<f64> {
         match *self {
             AdvanceError::TooLong { time, .. } | AdvanceError::Singular { time, .. } => Some(time),
-            AdvanceError::NotAhead { .. } | AdvanceError::Load { .. } => None,
+            AdvanceError::NotAhead { .. } | AdvanceError::Load { .. } | AdvanceError::Vertical { .. } => None,
         }
     }
 }
@@ -140,7 +151,10 @@ impl AdvanceError {
 #[derive(Debug)]
 pub struct Engine {
     model: Box<Model>,
+    detail: Detail,
     motion: Motion,
+    /// Whether the ground may move vertically.
+    vertical: bool,
     /// Whether an advance ends where a transition is due.
     stops: bool,
     /// An advance over more than this, s, is taken in parts.
@@ -155,7 +169,8 @@ impl Engine {
         Engine::with_detail(structure, initial, time, tolerance, Detail::Auto)
     }
 
-    /// Starts at `time` (s) from `initial`, to a relative `tolerance` of the results, at the level of detail `detail`.
+    /// Starts at `time` (s) from `initial`, to a relative `tolerance` of the results, at the level of detail `detail`. The
+    /// dissipators of a structure that starts turned have been moved there slowly from rest; what that took is not counted.
     pub fn with_detail(
         structure: Structure,
         initial: State,
@@ -166,6 +181,11 @@ impl Engine {
         let phase = initial.initial_phase()?;
         let local_error = (LOCAL_SHARE * tolerance).clamp(f64::EPSILON / 2.0, LARGEST_LOCAL_ERROR);
         detail.check_start(&initial)?;
+        let restrained = structure.is_restrained();
+        detail.check_restrained(restrained)?;
+        let model = Box::new(Model::new(structure, detail, local_error, restrained));
+        let chord = model.level.ties().unwrap_or(Angles::Any).chord(initial.theta, 0.0);
+        let moved = Dissipators::default().moved_by(&structure, phase.side(), chord);
         let motion = Motion {
             time,
             state: initial,
@@ -173,12 +193,12 @@ impl Engine {
             transitions: 0,
             work: Work::default(),
             impulse: Impulse::default(),
+            dissipators: Dissipators { hysteretic: 0.0, ..moved },
             chatter: Chatter::NONE,
             due: None,
         };
         let far = FAR / structure.omega_fc;
-        let model = Box::new(Model::new(structure, detail, local_error));
-        Ok(Engine { model, motion, stops: false, far, arc: Arc::default() })
+        Ok(Engine { model, detail, motion, vertical: false, stops: false, far, arc: Arc::default() })
     }
 
     /// The structure.
@@ -199,6 +219,18 @@ impl Engine {
     /// Sets its clock to `time` (s). Nothing but the times that it tells depends on it.
     pub fn set_time(&mut self, time: f64) {
         self.motion.time = time;
+    }
+
+    /// Admits a vertical ground acceleration from now on, or none again. Unless this is called, there is none.
+    pub fn admit_vertical(&mut self, admitted: bool) -> Result<(), InitialStateError> {
+        let Model { structure, local_error, .. } = *self.model;
+        let restrained = structure.is_restrained() || admitted;
+        self.detail.check_restrained(restrained)?;
+        if admitted != self.vertical {
+            *self.model = Model::new(structure, self.detail, local_error, restrained);
+            self.vertical = admitted;
+        }
+        Ok(())
     }
 
     /// Whether an advance ends at the first transition but overturning, before it: [`Engine::transit`] applies it, or the
@@ -262,6 +294,15 @@ impl Engine {
             AnyLevel::FixedBase(level) => {
                 Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
             }
+            AnyLevel::RestrainedNonlinear(level) => {
+                Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
+            }
+            AnyLevel::RestrainedLinear(level) => {
+                Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
+            }
+            AnyLevel::RestrainedRigid(level) => {
+                Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
+            }
         }
     }
 
@@ -301,7 +342,7 @@ impl Engine {
     /// Whether `interval` (s) under `load` is one leap.
     fn can_leap(&self, interval: f64, load: LinearLoad) -> bool {
         let Engine { model, motion, .. } = self;
-        let start = model.start(motion.state, load, interval);
+        let start = model.start(motion.state, motion.dissipators, load, interval);
         motion.held() == 0.0 && model.level.leap(&model.structure, motion.phase, &start).is_some()
     }
 
@@ -329,16 +370,30 @@ impl Engine {
         if !(interval > 0.0 && interval <= f64::MAX) {
             return Err(AdvanceError::NotAhead { from: self.motion.time, interval });
         }
-        if load.value.is_finite() && load.at(interval).is_finite() {
+        if load.is_vertical() {
+            return self.check_vertical(interval, load);
+        }
+        if load.is_finite_over(interval) {
             return Ok(());
         }
         Err(bad_load(interval, load))
     }
 
+    /// Whether a `load` with a vertical part can.
+    #[cold]
+    fn check_vertical(&self, interval: f64, load: &LinearLoad) -> Result<(), AdvanceError> {
+        let Ramp { value, slope } = load.upwards();
+        if !self.vertical {
+            return Err(AdvanceError::Vertical { value, slope });
+        }
+        let is_finite = load.is_finite_over(interval) && (value + slope * interval).is_finite();
+        if is_finite { Ok(()) } else { Err(bad_load(interval, load)) }
+    }
+
     /// Whether the structure, in full contact now, stays there while nothing acts on it.
     pub fn stays_down(&self) -> bool {
         self.motion.phase == Phase::FullContact
-            && self.model.level.stays_down(&self.model.structure, &self.motion.state)
+            && self.model.level.stays_down(&self.model.structure, &self.motion.state, &self.motion.dissipators)
     }
 
     /// The motion now, under `load`.
@@ -348,13 +403,33 @@ impl Engine {
 
     /// The outputs now under `load`; once overturned, those of the instant before.
     pub fn outputs(&self, load: Load) -> Outputs {
-        let Motion { phase, state, .. } = &self.motion;
-        self.model.outputs(phase.in_motion(), state, load)
+        self.sample(load).outputs()
     }
 
     /// The reactions now under `load`; once overturned, those of the instant before.
     pub fn reactions(&self, load: Load) -> Reactions {
         self.sample(load).reactions()
+    }
+
+    /// What the edges of the base carry of the reactions now under `load`.
+    pub fn edges(&self, load: Load) -> Reactions {
+        self.sample(load).edges()
+    }
+
+    /// The forces of the restraints now.
+    pub fn restraints(&self) -> Restraints {
+        self.sample(Load::default()).restraints()
+    }
+
+    /// Rates of the forces of the restraints now under `load`, N/s; 0 once overturned.
+    pub fn restraint_rates(&self, load: Load) -> Restraints {
+        let (structure, Motion { phase, state, dissipators, .. }) = (&self.model.structure, &self.motion);
+        if let Phase::Overturned(_) = phase {
+            return Restraints::default();
+        }
+        let [_, theta_ddot] = self.sample(load).accelerations();
+        let angles = self.model.level.ties().unwrap_or(Angles::Any);
+        Restraints::rates(structure, phase.side(), dissipators, angles, state, theta_ddot)
     }
 
     /// Time derivatives of the outputs and reactions now under `load`, from the equations of motion; 0 once overturned.
@@ -368,12 +443,12 @@ impl Engine {
 
     /// (ü, θ̈) and (u⃛, θ⃛) now under `load`, from the first terms of the series; 0 once overturned.
     fn derivatives(&self, load: LinearLoad) -> [[f64; 2]; 2] {
-        let Engine { model, motion: Motion { phase, state, .. }, .. } = self;
+        let Engine { model, motion: Motion { phase, state, dissipators, .. }, .. } = self;
         if let Phase::Overturned(_) = phase {
             return [[0.0; 2]; 2];
         }
         let mut arc = Arc::default();
-        let start = Start { local_error: 1.0, ..model.start(*state, load, 1.0) };
+        let start = Start { local_error: 1.0, ..model.start(*state, *dissipators, load, 1.0) };
         model.level.series(&model.structure, *phase, &start, &mut arc);
         let derivative = |k: i32, factor: f64| {
             [arc.u_dot[k as usize], arc.theta_dot[k as usize]].map(|c| factor * c / arc.span.powi(k))
@@ -404,7 +479,7 @@ impl<L: Level> Hand<'_, L> {
         load: LinearLoad,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
-        let begin = self.model.start(now.state, load, interval);
+        let begin = self.model.start(now.state, now.dissipators, load, interval);
         if let Some(end) = self.leap(now, &begin) {
             if now.work.steps == self.last_step {
                 return Err(AdvanceError::TooLong { time: now.time, until: now.time + interval });
@@ -435,7 +510,7 @@ impl<L: Level> Hand<'_, L> {
         load: LinearLoad,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
-        let &Start { a_g, a_top, interval, local_error, .. } = begin;
+        let &Start { a_g, a_top, a_v, interval, local_error, .. } = begin;
         let start = motion.time;
         let until = start + interval;
         // Time runs from the start of the interval: transitions are then as sharp at t = 1000 s as at 0.
@@ -446,6 +521,8 @@ impl<L: Level> Hand<'_, L> {
                 state: motion.state,
                 a_g: a_g.from(elapsed),
                 a_top: a_top.from(elapsed),
+                a_v: a_v.from(elapsed),
+                dissipators: motion.dissipators,
                 interval: left,
                 local_error,
             };
@@ -469,6 +546,11 @@ impl<L: Level> Hand<'_, L> {
             if W::SEES_PIECES && duration > 0.0 {
                 let (load, arc) = (load.from(elapsed), Some(&*self.arc));
                 watch.piece(&Piece { before: motion, duration, load, end: state, model: self.model, arc });
+            }
+            if let (Some(angles), Phase::Rocking(side)) = (self.level.ties(), motion.phase) {
+                let moved =
+                    yielding::moved(&self.model.structure, side, angles, &motion.dissipators, self.arc, self.arc.reach);
+                motion.dissipators = moved;
             }
             motion.state = state;
             motion.chatter.pass(duration);
@@ -522,11 +604,18 @@ impl<L: Level> Hand<'_, L> {
     /// Rocking about `side`, cut at impact or overturning.
     fn step_while_rocking(&mut self, start: &Start, side: Side) -> Option<Event> {
         self.level.series(&self.model.structure, Phase::Rocking(side), start, self.arc);
-        if stays_about(self.arc, side) {
-            return None;
+        let mut end = None;
+        if let Some(angles) = self.level.ties() {
+            let (crossing, event) = yielding::first(&self.model.structure, side, angles, &start.dissipators, self.arc);
+            end = cut(self.arc, crossing, event);
         }
-        let overturning = first_overturning(self.arc, side);
-        let end = cut(self.arc, overturning, Event::Overturning(side));
+        if stays_about(self.arc, side) {
+            return end;
+        }
+        match first_overturning(self.arc, side) {
+            Crossing::None => (),
+            crossing => end = cut(self.arc, crossing, Event::Overturning(side)),
+        }
         match first_return(self.arc, side) {
             Crossing::None => end,
             crossing => cut(self.arc, crossing, Event::Impact(side)),

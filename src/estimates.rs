@@ -6,3 +6,4 @@ pub mod intensity;
 pub mod modal_split;
 pub mod pushover;
 pub mod response_spectrum;
+pub mod restoring;

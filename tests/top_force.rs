@@ -20,7 +20,7 @@ fn follow(
     for k in 0..steps {
         let [from, to] = [k, k + 1].map(|k| k as f64 * 0.01);
         let (value, next) = (load(from), load(to));
-        let slope = Load { a_g: (next.a_g - value.a_g) / 0.01, F_t: (next.F_t - value.F_t) / 0.01 };
+        let slope = Load { a_g: (next.a_g - value.a_g) / 0.01, F_t: (next.F_t - value.F_t) / 0.01, a_v: 0.0 };
         let mut last = None;
         engine
             .advance(to - engine.motion().time, LinearLoad { value, slope }, &mut |transition: &Transition| {
@@ -42,7 +42,7 @@ fn without_a_foundation_mass_it_is_as_good_as_ground_motion() {
         follow(&mut shaken, 300, |t| Load::ground(a_g(t)), |engine, _| states.push(engine.motion().state));
         let size = states.iter().fold(0.0, |most: f64, state| most.max(state.theta.abs()).max(state.u.abs()));
         let mut expected = states.iter();
-        let force = |t: f64| Load { a_g: 0.0, F_t: -parameters.m * a_g(t) };
+        let force = |t: f64| Load { a_g: 0.0, F_t: -parameters.m * a_g(t), a_v: 0.0 };
         follow(&mut pushed, 300, force, |engine, _| {
             let (found, expected) = (engine.motion().state, expected.next().unwrap());
             assert_relative_eq!(found.theta, expected.theta, epsilon = 1e-8 * size);
@@ -64,19 +64,19 @@ fn energy_grows_by_its_work() {
         let total = |engine: &Engine| {
             let motion = engine.motion();
             energy(engine.structure(), motion.phase, &motion.state)
-                - F_t * engine.outputs(Load { a_g: 0.0, F_t }).delta_t
+                - F_t * engine.outputs(Load { a_g: 0.0, F_t, a_v: 0.0 }).delta_t
         };
         let (mut before, mut pieces, mut moved) = (total(&engine), 0, 0.0_f64);
         follow(
             &mut engine,
             400,
-            |_| Load { a_g: 0.0, F_t },
+            |_| Load { a_g: 0.0, F_t, a_v: 0.0 },
             |engine, transition| {
                 let now = total(engine);
                 if transition.is_none() {
                     assert_relative_eq!(now, before, max_relative = 1e-10);
                     pieces += 1;
-                    moved = moved.max(engine.outputs(Load { a_g: 0.0, F_t }).delta_t.abs());
+                    moved = moved.max(engine.outputs(Load { a_g: 0.0, F_t, a_v: 0.0 }).delta_t.abs());
                 }
                 before = now;
             },

@@ -122,6 +122,9 @@ pub fn text(
         writeln!(out, "  {:<10} not possible here: {error:#}", detail.name())?;
     }
     print_advice(&mut out, comparison, advised, allowed)?;
+    if let Some(level) = &comparison.without_vertical {
+        print_vertical(&mut out, level, allowed)?;
+    }
     let (found, _) = run.validity(limits)?;
     writeln!(out)?;
     for line in validity::section(structure, run.detail, &found, &limits) {
@@ -151,6 +154,9 @@ fn print_reference(out: &mut impl Write, structure: &Structure, comparison: &Com
     }
     if theta == 0.0 {
         return writeln!(out, "  the base never lifts off; the estimate is that of a base that does\n");
+    }
+    if structure.is_restrained() {
+        return writeln!(out);
     }
     let f_r = significant(effective_frequency(structure, theta));
     writeln!(out, "  effective frequency of rocking at that theta: {f_r} Hz (Eq 14)\n")
@@ -248,7 +254,11 @@ fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Level> {
         let is_advised = advised.is_some_and(|advised| advised.response.detail == response.detail);
         row(response.detail.name(), response, *errors, *is_right_about_overturning, is_advised)
     });
-    [row("reference", reference, [0.0; 6], is_known, false)].into_iter().chain(levels).collect()
+    let without_vertical = comparison.without_vertical.iter().map(|verdict| {
+        let Verdict { response, errors, is_right_about_overturning } = verdict;
+        row("auto without a_v", response, *errors, *is_right_about_overturning, false)
+    });
+    [row("reference", reference, [0.0; 6], is_known, false)].into_iter().chain(levels).chain(without_vertical).collect()
 }
 
 /// The demand of the whole record without a time history (Eqs 21 to 24) as one more row.
@@ -259,7 +269,10 @@ fn print_estimate(
     comparison: &Comparison,
 ) -> anyhow::Result<()> {
     let S_a = spectral_acceleration(ground, TAU / structure.omega_u, structure.zeta_u);
-    let demand = Demand::new(structure, S_a, INSTANT_TRANSITION)?;
+    let demand = match Demand::new(structure, S_a, INSTANT_TRANSITION) {
+        Ok(demand) => demand,
+        Err(error) => return Ok(writeln!(out, "  {:<10} not possible here: {error}", "estimate")?),
+    };
     let a_t = comparison.reference.peaks.a_t().magnitude;
     let error = percent(levels::relative(((demand.a_t - a_t).abs(), a_t)));
     writeln!(out, "  {:<10} {:>8} {:>8} {error:>13}", "estimate", "-", "-")?;
@@ -287,6 +300,18 @@ fn print_advice(
         }
         _ => writeln!(out),
     }
+}
+
+/// What the vertical component changes: by how much the motion on `level` ground differs.
+fn print_vertical(out: &mut impl Write, level: &Verdict, (within, criteria): (f64, &[Criterion])) -> fmt::Result {
+    let changes: Vec<_> =
+        criteria.iter().map(|of| format!("{} by {} %", of.name(), percent(level.errors[*of as usize]))).collect();
+    let overturning = match level.is_right_about_overturning {
+        Some(false) => ", and whether it overturns",
+        _ => "",
+    };
+    let advice = if level.is_within(within, criteria) { "leave it out" } else { "keep it" };
+    writeln!(out, "the vertical component changes {}{overturning}: {advice}", changes.join(", "))
 }
 
 /// A ratio in percent, as it was most likely written.

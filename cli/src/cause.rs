@@ -40,6 +40,9 @@ struct Ground {
     record: String,
     /// Its name, as far as it is text.
     file: Option<String>,
+    /// That of the vertical component, if there is one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file_v: Option<String>,
     /// Unit of the accelerations in the file, where it is asked for or they are looked at alone.
     #[serde(skip_serializing_if = "Option::is_none")]
     record_unit: Option<String>,
@@ -68,16 +71,16 @@ struct Level {
 }
 
 impl Ground {
-    fn new(path: Option<&Path>, options: &RecordOptions, record: &Record) -> Ground {
+    fn new([path, vertical]: [Option<&Path>; 2], options: &RecordOptions, record: &Record) -> Ground {
         let [time_scale, scale] = options.factors();
-        let file = path.map(|path| path.display().to_string());
+        let [file, file_v] = [path, vertical].map(|path| path.map(|path| path.display().to_string()));
         let record_unit = options.unit.map(|unit| unit.to_string());
         let record_column = options.column.as_ref().map(|column| match column {
             Column::Heading(heading) => heading.clone(),
             Column::All | Column::Number(_) => column.to_string(),
         });
         let (record, record_dt) = (record.title().into(), options.dt);
-        Ground { record, file, record_unit, record_column, record_dt, time_scale, scale }
+        Ground { record, file, file_v, record_unit, record_column, record_dt, time_scale, scale }
     }
 }
 
@@ -90,13 +93,14 @@ impl Cause {
     /// Of what follows from the record in the file at `path` alone, which is understood as `options` say.
     pub fn of_record(path: &Path, options: &RecordOptions, understood: &Understood) -> Cause {
         let record_unit = Some(understood.unit().to_string());
-        let ground = Ground { record_unit, ..Ground::new(Some(path), options, &understood.record) };
+        let ground = Ground { record_unit, ..Ground::new([Some(path), None], options, &understood.record) };
         Cause { version: version(), structure: None, ground: Some(ground), run: None }
     }
 
     /// This cause under the `record` that `args` ask for.
     pub fn under(self, args: &RecordArgs, record: &Record) -> Cause {
-        Cause { ground: Some(Ground::new(args.record.as_deref(), &args.options, record)), ..self }
+        let files = [&args.record, &args.record_v].map(Option::as_deref);
+        Cause { ground: Some(Ground::new(files, &args.options, record)), ..self }
     }
 
     /// This cause of a run from `initial`, at one level of detail or at all.
@@ -112,9 +116,12 @@ impl Cause {
         if let Some(structure) = &self.structure {
             columns.extend(PARAMETERS.iter().map(|of| number(of.name, of.unit, (of.get)(structure))));
         }
-        if let Some(Ground { record, file, record_unit, record_column, record_dt, time_scale, scale }) = &self.ground {
+        if let Some(Ground { record, file, file_v, record_unit, record_column, record_dt, time_scale, scale }) =
+            &self.ground
+        {
             let text = |name: &str, of: &Option<String>| (name.to_owned(), of.clone().unwrap_or_default());
             columns.extend([("record".to_owned(), record.clone()), text("file", file)]);
+            columns.extend(file_v.iter().map(|file_v| ("file_v".to_owned(), file_v.clone())));
             columns.extend([text("record_unit", record_unit), text("record_column", record_column)]);
             columns.push(text("record_dt[s]", &record_dt.map(|dt| format!("{dt:?}"))));
             columns.extend([number("time_scale", "1", *time_scale), number("scale", "1", *scale)]);

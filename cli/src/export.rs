@@ -22,10 +22,13 @@ pub struct ExportArgs {
     #[command(flatten)]
     structure: StructureArgs,
     /// Ground motion records to pack: PEER .AT2, ESM, K-NET, COSMOS or CSMIP as published, or tables of text; the FMU
-    /// follows the first, and the others by their names. Those that are read with options, or from standard input, `-`,
-    /// are packed as they are understood, in a CSV file
+    /// follows the first, and each other one by its name. A record read with options, or from standard input, `-`, is
+    /// packed as a CSV file
     #[arg(long, value_name = "FILE", num_args = 1.., help_heading = "Ground motion")]
     record: Vec<PathBuf>,
+    /// Vertical component to the first record, which the FMU follows beside it; packed likewise
+    #[arg(long, value_name = "FILE", help_heading = "Ground motion")]
+    record_v: Option<PathBuf>,
     #[command(flatten, next_help_heading = "Ground motion")]
     options: RecordOptions,
     /// Version of FMI, for co-simulation and model exchange: 2 (2.0), 3 (3.0)
@@ -34,13 +37,20 @@ pub struct ExportArgs {
     /// Name of the model and of its libraries' files, for hosts that hold several exports
     #[arg(long, value_name = "NAME", default_value = "FlexibleRocking")]
     name: ModelName,
-    /// Archive to write, `-` for standard output; one that is there is replaced [default: NAME.fmu]
+    /// Archive to write, `-` for standard output; an existing file is replaced [default: NAME.fmu]
     #[arg(short, long, value_name = "FILE.fmu")]
     output: Option<PathBuf>,
-    /// Shared libraries to pack, or an FMU of this build to take them from [default: those that were built with this
+    /// Shared libraries to pack, or an FMU of this build to take them from [default: those built with this
     /// program]
     #[arg(long, value_name = "PATH", num_args = 1..)]
     library: Vec<PathBuf>,
+}
+
+impl ExportArgs {
+    /// The files of the records, the vertical component last.
+    fn records(&self) -> impl Iterator<Item = &PathBuf> {
+        self.record.iter().chain(&self.record_v)
+    }
 }
 
 /// Writes the FMU and says what was written; `program` is what the libraries are beside.
@@ -58,21 +68,21 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
             .collect()
     };
     let output = args.output.clone().unwrap_or_else(|| format!("{}.fmu", args.name.as_str()).into());
-    let inputs =
-        args.structure.input().into_iter().chain(args.record.iter().chain(&args.library).map(PathBuf::as_path));
+    let inputs = args.structure.input().into_iter().chain(args.records().chain(&args.library).map(PathBuf::as_path));
     if output.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("fmu")) && output != Path::new("-") {
         say!("{}: hosts know an FMU by the ending .fmu", output.display());
     }
     let g = structure.parameters().g;
     let understood = tempfile::tempdir()?;
     let mut files = OutputFiles::of_inputs(inputs);
-    let packed = args.record.iter().enumerate().map(|(i, path)| {
+    let packed = args.records().enumerate().map(|(i, path)| {
         // those of one name are refused under that
         record(&args.options, path, g, &understood.path().join(i.to_string()), &mut files)
     });
-    let records = packed.collect::<Result<_, _>>()?;
+    let mut records = packed.collect::<Result<Vec<_>, _>>()?;
+    let vertical = args.record_v.as_ref().and_then(|_| records.pop());
     let file = files.create(&output)?;
-    let (contents, archive) = fmu_export::export(args.fmi, &args.name, &structure, records, &libraries)?;
+    let (contents, archive) = fmu_export::export(args.fmi, &args.name, &structure, records, vertical, &libraries)?;
     file.write(&archive)?;
     say!("{}: {} kB", output.display(), archive.len().div_ceil(1000));
     say!("  GUID       {}", guid(&contents));
@@ -81,6 +91,9 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
     say!("  platforms  {}", platforms.join(", "));
     for packed in &contents.records {
         say!("  record     {}", packed.file);
+    }
+    if let Some(packed) = &contents.vertical {
+        say!("  record_v   {}", packed.file);
     }
     Ok(())
 }

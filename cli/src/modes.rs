@@ -52,6 +52,10 @@ const HEADINGS: [&str; 6] = ["time[s]", "q_r[rad]", "q_u[rad]", "a_r[m/s2]", "a_
 /// Writes the modes at the instants of the response at which the structure rocks.
 pub fn run(args: &ModesArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
+    ensure!(
+        !structure.is_restrained(),
+        "P_0, k_t, c_d, k_d: Eqs 11 and 18 split the motion of a structure that its weight alone turns back"
+    );
     let named = || input::name(&args.response);
     let response = input::read(&args.response).with_context(named)?;
     let mut response = csv::Reader::from_reader(response.as_slice());

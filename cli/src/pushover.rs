@@ -12,7 +12,8 @@ use crate::{
 };
 use anyhow::Context;
 use rocking::estimates::pushover::{Equilibrium, at_displacement, at_overturning, at_rotation, in_full_contact};
-use rocking::{Phase, Structure};
+use rocking::mechanics::restraint::{Dissipators, uplift_displacement};
+use rocking::{Phase, Side, Structure};
 use serde::Serialize;
 use std::path::PathBuf;
 
@@ -57,7 +58,7 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
         table.finish("curve")?;
     }
     let corners = [
-        ("uplift", in_full_contact(&structure, structure.u_cr)),
+        ("uplift", in_full_contact(&structure, u_cr(&structure))),
         ("start of rocking", at_rotation(&structure, 0.0).context(too_soft)?),
         ("overturning", end),
     ];
@@ -75,6 +76,11 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
         Some(picture) => picture::draw(picture, &structure, &curve, corners.map(|corner| corner.1)),
         None => Ok(()),
     }
+}
+
+/// The displacement (m) at which the base lifts off, with what a tendon adds.
+fn u_cr(structure: &Structure) -> f64 {
+    uplift_displacement(structure, Side::Right, 0.0, &Dissipators::default())
 }
 
 /// A corner of the curve, in SI units.
@@ -104,7 +110,8 @@ fn displacements(structure: &Structure, end: f64, points: u32) -> impl Iterator<
         (0..points)
             .map(move |i| if i == points - 1 { to } else { from + (to - from) * f64::from(i) / f64::from(points - 1) })
     };
-    evenly(0.0, structure.u_cr).chain(evenly(structure.u_cr.next_up(), end))
+    let u_cr = u_cr(structure);
+    evenly(0.0, u_cr).chain(evenly(u_cr.next_up(), end))
 }
 
 fn line(at: &Equilibrium) -> impl Serialize + use<> {

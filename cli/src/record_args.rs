@@ -14,6 +14,9 @@ pub struct RecordArgs {
     /// Ground motion record, `-` for standard input: PEER .AT2, ESM, K-NET, COSMOS or CSMIP as published, or a table of text
     #[arg(long, value_name = "FILE")]
     pub record: Option<PathBuf>,
+    /// Vertical component of the record, positive upwards, in a file of its own: read and scaled by the same options
+    #[arg(long, value_name = "FILE", requires = "record")]
+    pub record_v: Option<PathBuf>,
     /// How it is read and scaled.
     #[command(flatten)]
     pub options: RecordOptions,
@@ -23,17 +26,17 @@ pub struct RecordArgs {
 #[derive(clap::Args, Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RecordOptions {
-    /// Unit of accelerations whose file does not state it [default: m/s2]
+    /// Unit of accelerations, if the file does not state it [default: m/s2]
     #[arg(long, value_parser = one_of(Unit::NAMES), requires = "record")]
     pub unit: Option<Unit>,
-    /// Time between the samples of a record without times; times that are there must not contradict it
+    /// Time between the samples of a record without times; a record's own times must agree with it
     #[arg(long, value_name = "SECONDS", value_parser = positive, requires = "record", allow_negative_numbers = true)]
     pub dt: Option<f64>,
-    /// Column that has the accelerations, by number or heading, or `all` where every number is one, as many on a line as
-    /// there are; or channel of a COSMOS or CSMIP file, by number
+    /// Column of the accelerations, by number or heading, or `all` if every number on every line is one; or channel of a
+    /// COSMOS or CSMIP file, by number
     #[arg(long, value_name = "COLUMN", value_parser = column, requires = "record")]
     pub column: Option<Column>,
-    /// Take the samples that are there where the file states another number of them
+    /// Read all samples, even if the file states another number of them
     #[arg(long, requires = "record")]
     pub ignore_npts: bool,
     /// Multiplies the record's times [default: 1]
@@ -48,7 +51,14 @@ impl RecordArgs {
     /// The record, scaled; `g` (m/s²) is what a record's g stands for. Says what was read, and what was assumed.
     pub fn load(&self, g: f64) -> anyhow::Result<Option<Record>> {
         let Some(path) = &self.record else { return Ok(None) };
-        self.options.load(path, g).map(Some)
+        let record = self.options.load("record", path, g)?;
+        let Some(vertical) = &self.record_v else { return Ok(Some(record)) };
+        Ok(Some(record.with_vertical(&self.options.load("record_v", vertical, g)?)?))
+    }
+
+    /// The files that are read.
+    pub fn inputs(&self) -> impl Iterator<Item = &Path> {
+        self.record.iter().chain(&self.record_v).map(PathBuf::as_path)
     }
 }
 
@@ -64,11 +74,11 @@ pub struct Understood {
 }
 
 impl RecordOptions {
-    /// The record in the file at `path`, scaled, in m/s²; `g` (m/s²) is what a record's g stands for. Says what was read,
-    /// and what was assumed.
-    pub fn load(&self, path: &Path, g: f64) -> anyhow::Result<Record> {
+    /// The record in the file at `path`, scaled, in m/s²; `g` (m/s²) is what a record's g stands for. Says what was read as
+    /// `what`, and what was assumed.
+    fn load(&self, what: &str, path: &Path, g: f64) -> anyhow::Result<Record> {
         let understood = self.understand(path, g).map_err(with_option)?;
-        say!("record         {}", understood.described);
+        say!("{what:<14} {}", understood.described);
         understood.warnings(path).for_each(|warning| say!("{warning}"));
         let record = understood.record;
         if self.time_scale.is_some() || self.scale.is_some() {

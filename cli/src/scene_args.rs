@@ -39,7 +39,7 @@ impl MotionArgs {
 
     /// The files that are read.
     pub fn inputs(&self) -> impl Iterator<Item = &Path> {
-        self.structure.input().into_iter().chain(self.ground.record.record.as_deref())
+        self.structure.input().into_iter().chain(self.ground.record.inputs())
     }
 }
 
@@ -59,7 +59,7 @@ pub struct GroundArgs {
         value_name = "SECONDS",
         value_parser = positive,
         allow_negative_numbers = true,
-        conflicts_with_all = ["unit", "dt", "column", "ignore_npts", "time_scale", "scale", "duration"]
+        conflicts_with_all = ["record_v", "unit", "dt", "column", "ignore_npts", "time_scale", "scale", "duration"]
     )]
     free: Option<f64>,
 }

@@ -4,19 +4,21 @@ mod picture;
 use crate::{
     cause::Cause,
     picture::PictureFile,
+    quantities::in_readable_unit,
     record_args::positive,
     results::{Format, FormatArgs, print_beside},
     scene_args::MotionArgs,
-    significant::short,
+    significant::{short, significant},
     summary::{Summary, instant},
     tables::{self, Table},
-    talk,
+    talk::{self, say},
     validity::{self, LimitArgs},
 };
 use anyhow::ensure;
 use rocking::run::record::Record;
 use rocking::{
-    Run, Transition,
+    Run, Structure, Transition,
+    mechanics::restraint::centring_moments,
     run::{
         End,
         validity::{Found as Beyond, Validity},
@@ -109,10 +111,24 @@ impl SimulateArgs {
     }
 }
 
+/// Whether a `structure` with elastoplastic dissipators centres itself, in a line.
+fn centring(structure: &Structure) -> Option<String> {
+    let [restoring, residual] = centring_moments(structure);
+    let [turned_back, held] = [restoring, residual].map(|moment| in_readable_unit(moment, "N.m", significant));
+    let verdict =
+        if restoring > residual { "the structure centres itself" } else { "it may stay open: see theta at the end" };
+    (residual > 0.0).then(|| {
+        format!("weight and tendon turn the base back with {turned_back}, yielded dissipators hold it with up to {held}: {verdict}")
+    })
+}
+
 /// Prints the summary of the response, and writes what is asked for.
 pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let (structure, ground) = args.motion.load()?;
     let run = args.motion.run(structure, &ground);
+    if let Some(line) = centring(&structure) {
+        say!("centring       {line}");
+    }
 
     let output = args.results.output.as_deref();
     if let (Some(_), End::At(end)) = (output, run.end) {

@@ -4,12 +4,13 @@ use crate::quantities::readable;
 use crate::results::{Format, print_json, print_traced};
 use crate::validity;
 use fmu_export::significant::significant;
+use rocking::mechanics::restraint::Dissipators;
 use rocking::run::{
     Ending, Finish, LONGEST_REST,
     fall::Found,
-    peaks::{PEAKS, Peak},
+    peaks::{self, Peak},
 };
-use rocking::{Parameters, Phase, Side, Structure, Transition, TransitionKind, Watch};
+use rocking::{Motion, Parameters, Phase, Side, Structure, Transition, TransitionKind, Watch};
 use serde::Serialize;
 use std::fmt::{self, Write};
 
@@ -53,12 +54,26 @@ struct Whole<'a> {
     /// Since when it falls: the peaks are those before.
     fall: Option<f64>,
     peaks: Vec<NamedPeak>,
+    /// Of a structure with dissipators.
+    #[serde(flatten)]
+    taken: Option<Taken>,
     first_uplift: Option<f64>,
     first_impact: Option<f64>,
     transitions: u64,
     steps: u64,
     evaluations: u64,
     validity: Vec<validity::Beyond>,
+}
+
+/// What dissipators have done by the end of a run.
+#[derive(Clone, Copy, Serialize)]
+struct Taken {
+    /// Energy, J.
+    E_viscous: f64,
+    /// J.
+    E_hysteretic: f64,
+    /// Rotation that is left, rad.
+    theta_end: f64,
 }
 
 impl Watch for Summary {
@@ -68,7 +83,7 @@ impl Watch for Summary {
         let first = match transition.kind {
             TransitionKind::Uplift(_) => &mut self.first_uplift,
             TransitionKind::Impact(_) | TransitionKind::Landing | TransitionKind::Settling => &mut self.first_impact,
-            TransitionKind::Overturning(_) => return,
+            TransitionKind::Overturning(_) | TransitionKind::Yielding(_) | TransitionKind::Unloading(_) => return,
         };
         first.get_or_insert(transition.time);
     }
@@ -90,10 +105,10 @@ impl Summary {
     ) -> anyhow::Result<()> {
         let &Found { ground, ref peaks, fall, start, finish: Finish { ending, motion } } = found;
         let row = |name, unit, Peak { magnitude: peak, time }| NamedPeak { name, peak, unit, time };
-        let of_structure = PEAKS.iter().map(|peak| row(peak.name, peak.unit, (peak.of)(peaks)));
+        let of_structure = peaks::of(&self.structure).map(|peak| row(peak.name, peak.unit, (peak.of)(peaks)));
         let rows: Vec<_> = [row("a_g", "m/s2", ground)].into_iter().chain(of_structure).collect();
         let &Summary { first_uplift, first_impact, .. } = self;
-        let (work, transitions) = (motion.work, motion.transitions);
+        let (work, transitions, taken) = (motion.work, motion.transitions, self.taken(motion));
         if format == Format::Csv {
             let line = |name, value, unit, time| TableLine { name, value, unit, time };
             let (none, count) = (serde_json::Value::Null, |name, count: u64| line(name, count.into(), "1", None));
@@ -105,6 +120,16 @@ impl Summary {
                 line("fall", none.clone(), "", fall),
                 line("first_uplift", none.clone(), "", first_uplift),
                 line("first_impact", none, "", first_impact),
+            ]);
+            if let Some(Taken { E_viscous, E_hysteretic, theta_end }) = taken {
+                let rows = [
+                    ("E_viscous", E_viscous, "J"),
+                    ("E_hysteretic", E_hysteretic, "J"),
+                    ("theta_end", theta_end, "rad"),
+                ];
+                lines.extend(rows.map(|(name, value, unit)| line(name, value.into(), unit, None)));
+            }
+            lines.extend([
                 count("transitions", transitions),
                 count("steps", work.steps),
                 count("evaluations", work.evaluations),
@@ -126,6 +151,7 @@ impl Summary {
             overturned,
             fall,
             peaks: rows,
+            taken,
             first_uplift,
             first_impact,
             transitions,
@@ -135,12 +161,19 @@ impl Summary {
         })
     }
 
+    /// What dissipators have done by the end, in `motion`; none without them.
+    fn taken(&self, motion: Motion) -> Option<Taken> {
+        let &Parameters { c_d, k_d, .. } = self.structure.parameters();
+        let Dissipators { viscous: E_viscous, hysteretic: E_hysteretic, .. } = motion.dissipators;
+        (c_d > 0.0 || k_d > 0.0).then_some(Taken { E_viscous, E_hysteretic, theta_end: motion.state.theta })
+    }
+
     /// The summary in lines for people.
     pub fn text(&self, found: &Found) -> Result<String, fmt::Error> {
         let &Found { ground, ref peaks, fall, finish: Finish { ending, motion }, .. } = found;
         let mut out = String::new();
         let &Parameters { g, .. } = self.structure.parameters();
-        let of_structure = PEAKS.iter().map(|of| (of.name, (of.of)(peaks), of.unit));
+        let of_structure = peaks::of(&self.structure).map(|of| (of.name, (of.of)(peaks), of.unit));
         for (name, peak, unit) in [("a_g", ground, "m/s2")].into_iter().chain(of_structure) {
             let (per_unit, unit) = match unit {
                 "m" => (1e-3, "mm"),
@@ -152,6 +185,11 @@ impl Summary {
         }
         if let Some(fall) = fall {
             writeln!(out, "fall           from {} s on, beyond alpha_cg: the peaks are those before", instant(fall))?;
+        }
+        if let Some(Taken { E_viscous, E_hysteretic, theta_end }) = self.taken(motion) {
+            let [E_viscous, E_hysteretic, theta_end] = [E_viscous, E_hysteretic, theta_end].map(significant);
+            writeln!(out, "dissipated     {E_viscous} J viscous, {E_hysteretic} J elastoplastic")?;
+            writeln!(out, "left at end    theta = {theta_end} rad")?;
         }
         let first = |time: Option<f64>| time.map_or("none".into(), |time| format!("at {} s", instant(time)));
         writeln!(out, "first uplift   {}", first(self.first_uplift))?;

@@ -2,6 +2,7 @@
 use crate::output_files::{OutputFile, OutputFiles};
 use crate::talk::say;
 use rocking::engine::piece::Sample;
+use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::{Impulse, Outputs, Reactions, State, Transition};
 use serde::Serialize;
 use std::path::Path;
@@ -41,8 +42,8 @@ impl Table {
     }
 }
 
-/// Headings of the response: the ground acceleration, and the outputs of the FMU under their names and units.
-pub const RESPONSE: [&str; 20] = [
+/// Headings of the response: the ground accelerations, and the outputs of the FMU under their names and units.
+pub const RESPONSE: [&str; 28] = [
     "time[s]",
     "a_g[m/s2]",
     "theta[rad]",
@@ -63,6 +64,14 @@ pub const RESPONSE: [&str; 20] = [
     "I_m[N.m.s]",
     "phase",
     "transitions",
+    "a_v[m/s2]",
+    "P_t[N]",
+    "F_d1[N]",
+    "F_d2[N]",
+    "e_p1[m]",
+    "e_p2[m]",
+    "E_viscous[J]",
+    "E_hysteretic[J]",
 ];
 
 /// The numbers of a line of the response, in the order of [`RESPONSE`]; phase and transitions follow.
@@ -71,8 +80,13 @@ pub fn response_numbers(sample: &Sample) -> [f64; RESPONSE.len() - 2] {
     let Outputs { theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t } = sample.outputs();
     let Reactions { R_h, R_v, R_m } = sample.reactions();
     let Impulse { I_h, I_v, I_m } = motion.impulse;
-    let time = motion.time;
-    [time, load.a_g, theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t, R_h, R_v, R_m, I_h, I_v, I_m]
+    let Restraints { P_t, F_d1, F_d2 } = sample.restraints();
+    let Dissipators { plastic: [e_p1, e_p2], viscous, hysteretic, .. } = motion.dissipators;
+    let of_motion = [motion.time, load.a_g, theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t];
+    let of_ground = [R_h, R_v, R_m, I_h, I_v, I_m];
+    let of_restraints = [load.a_v, P_t, F_d1, F_d2, e_p1, e_p2, viscous, hysteretic];
+    let mut numbers = [of_motion.as_slice(), &of_ground, &of_restraints].into_iter().flatten();
+    std::array::from_fn(|_| *numbers.next().expect("as many as there are headings"))
 }
 
 /// A line of the response.

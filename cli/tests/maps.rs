@@ -91,7 +91,7 @@ fn a_stopped_map_leaves_its_rows_alone() {
     let end = sweep.wait_with_output().unwrap();
     let said = String::from_utf8(end.stderr).unwrap();
     assert_eq!(end.status.code(), Some(130), "{said}");
-    assert!(said.ends_with("stopped: what is done stays in map.csv; the same command goes on from there\n"), "{said}");
+    assert!(said.ends_with("stopped: finished runs are in map.csv; the same command continues from there\n"), "{said}");
     let mut names: Vec<_> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name()).collect();
     names.sort_unstable();
     assert_eq!(names, ["map.csv", "map.toml"]);

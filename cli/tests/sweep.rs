@@ -70,7 +70,8 @@ fn every_run_has_a_row_whatever_the_threads() {
     }
     succeed(folder.path(), "sweep sweep.toml");
     let one = read(&folder, "one.csv");
-    let headings = "run,structures,version,m[kg],m0[kg],H[m],B[m],J0[kg.m2],f_fc[Hz],zeta_fc,c_ratio,r,g[m/s2],slenderness,\
+    let headings = "run,structures,version,m[kg],m0[kg],H[m],B[m],J0[kg.m2],f_fc[Hz],zeta_fc,c_ratio,r,g[m/s2],P_0[N],k_t[N/m],\
+                    xi_d[m],c_d[N.s/m],k_d[N/m],F_y[N],slenderness,\
                     record,record_digest,record_scale,scale,PGA[g],PGV[m/s],S_a[g],detail,tolerance,duration[s],theta_0[rad],\
                     theta_dot_0[rad/s],u_0[m],u_dot_0[m/s],\
                     ending,end[s],peak_theta[rad],peak_u[m],peak_delta_t[m],peak_uplift[m],\

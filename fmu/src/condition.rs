@@ -10,6 +10,7 @@ use crate::present::Present;
 use crate::setup::Setup;
 use crate::state_machine::Stage;
 use crate::variables::{DataType, VARIABLES, Variable};
+use rocking::mechanics::restraint::Dissipators;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::peaks::{PEAKS, Peaks};
 use rocking::run::validity::{Found, Worst};
@@ -95,7 +96,7 @@ impl Course {
                 .iter()
                 .map(|peaking| (peaking.of)(peaks))
                 .all(|peak| peak.magnitude <= BOUND && peak.time.is_finite())
-            && validity.worst.iter().all(|&Worst { value, time, first_beyond, beyond }| {
+            && validity.worst.iter().chain([&validity.weight]).all(|&Worst { value, time, first_beyond, beyond }| {
                 // friction may be infinite
                 value >= -BOUND && [time, first_beyond.unwrap_or(0.0), beyond].iter().all(|x| x.is_finite())
             })
@@ -104,16 +105,19 @@ impl Course {
                 .iter()
                 .all(|count| *count < MAX_COUNT)
             && peaks.evaluations() < MAX_COUNT
-            && record.is_none() == setup.record.is_empty()
+            && record.is_none() == (setup.record.is_empty() && setup.record_v.is_empty())
             && setup.engine().is_ok_and(|engine| peaks.are_of(engine.structure()))
     }
 }
 
 /// Whether calls can lead to `motion`, with |θ| no more than `farthest` (rad).
 fn is_possible(motion: &Motion, farthest: f64) -> bool {
-    let &Motion { time, state: State { u, u_dot, theta, theta_dot }, impulse, transitions, work, .. } = motion;
+    let &Motion { time, state: State { u, u_dot, theta, theta_dot }, impulse, dissipators, transitions, work, .. } =
+        motion;
+    let Dissipators { plastic, yields, viscous, hysteretic } = dissipators;
     let Impulse { I_h, I_v, I_m } = impulse;
-    [u, u_dot, theta_dot, I_h, I_v, I_m].iter().all(|x| x.abs() <= BOUND)
+    [u, u_dot, theta_dot, I_h, I_v, I_m, plastic[0], plastic[1], viscous, hysteretic].iter().all(|x| x.abs() <= BOUND)
+        && yields.iter().all(|way| (-1..=1).contains(way))
         && theta.abs() <= farthest
         && [transitions, work.steps, work.evaluations].iter().all(|count| *count < MAX_COUNT)
         && time.is_finite()
@@ -145,9 +149,12 @@ impl Present {
         if let Some(course) = course {
             let is_the_same = |model: &mut Model| self.setup == *setup && model.digest() == course.record;
             let kept = self.model.take_if(is_the_same);
-            let mut found = kept.map_or_else(|| Model::new(setup, self.archive.record(&setup.record)?), Ok)?;
+            let mut found = kept.map_or_else(|| Model::new(setup, setup.ground(&self.archive)?), Ok)?;
             if found.digest() != course.record {
-                return Err(Failure::OtherRecord(setup.record.to_string()));
+                return Err(Failure::OtherRecord {
+                    record: setup.record.to_string(),
+                    record_v: setup.record_v.to_string(),
+                });
             }
             found.engine.set_motion(course.motion);
             (found.elapsed, found.outside) = (course.elapsed, course.outside);

@@ -70,9 +70,10 @@ pub enum Failure {
     StrongRecord(OutOfRange),
     /// The record has changed since a state was kept.
     #[error(
-        "the FMU state was kept under another record = {0:?}: its samples are not those of the file that is there now"
+        "the FMU state was kept under another record = {record:?}{}: its samples are not those of the file that is there now",
+        if record_v.is_empty() { String::new() } else { format!(" or record_v = {record_v:?}") }
     )]
-    OtherRecord(String),
+    OtherRecord { record: String, record_v: String },
     /// A fixed parameter, too late.
     #[error("{} is fixed once the simulation has started", .0.name)]
     Fixed(&'static Variable),

@@ -21,13 +21,13 @@ pub(crate) enum Between {
 #[derive(Clone, Copy, Debug, Default, Serialize, Deserialize)]
 pub struct Inputs {
     /// How they act, in the order of [`LOADS`].
-    between: [Between; 2],
+    between: [Between; LOADS.len()],
     /// What acts now, and the slopes of the next step, but for those that are late.
     next: LinearLoad,
     /// The values that the host has set, or that the last step led to.
     set: Load,
     /// What has been set of each since the last step, in the same order.
-    given: [Given; 2],
+    given: [Given; LOADS.len()],
     /// Where the last step led, and the slopes that it followed.
     followed: LinearLoad,
     /// What acted at the last communication point that a step began at, and how long ago that was, s; 0 before the
@@ -61,7 +61,7 @@ impl Inputs {
     }
 
     /// Makes the inputs act as `between` says. Until then, and where no steps are made, they act at once.
-    pub(crate) fn start(&mut self, between: [Between; 2]) {
+    pub(crate) fn start(&mut self, between: [Between; LOADS.len()]) {
         self.between = between;
     }
 
@@ -167,7 +167,7 @@ impl Inputs {
             }
         }
         self.followed = LinearLoad { value: self.next.value, slope: load.slope };
-        self.given = [Given::Nothing; 2];
+        self.given = [Given::Nothing; LOADS.len()];
     }
 
     /// Whether calls can lead here.

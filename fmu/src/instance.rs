@@ -29,8 +29,8 @@ pub struct Instance {
     events_at_start: bool,
     now: Present,
     snapshots: Snapshots,
-    /// The text that the host was given last, which it may read until the next call.
-    shown: CString,
+    /// The texts that the host was given last, which it may read until the next call.
+    shown: Vec<CString>,
     /// The host that is called back within steps, if there is one.
     host: Option<IntermediateUpdate>,
     /// While the host is asked for inputs: the duration of the step, s.

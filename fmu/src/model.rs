@@ -4,7 +4,7 @@
 use crate::failure::Failure;
 use crate::ground::{Digest, GroundRecord};
 use crate::setup::Setup;
-use rocking::mechanics::load::LOADS;
+use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::outside_step::Known;
 use rocking::run::peaks::Peaks;
@@ -46,8 +46,8 @@ impl Setup {
     /// Refuses a `record` that cannot act as it is scaled.
     fn check_ground(&self, record: &GroundRecord) -> Result<(), Failure> {
         let ground = self.ground_motion(record);
-        let [a_g, _] = &LOADS;
-        a_g.check(ground.pga()).map_err(Failure::StrongRecord)?;
+        LOADS[0].check(ground.pga()).map_err(Failure::StrongRecord)?;
+        LOADS[VERTICAL].check(ground.vertical_peak()).map_err(Failure::StrongRecord)?;
         if ground.duration().is_finite() {
             return Ok(());
         }
@@ -74,14 +74,27 @@ impl Setup {
     }
 }
 
+/// Whether what follows `ground` may move vertically.
+fn may_move_vertically(setup: &Setup, ground: Option<&GroundRecord>) -> bool {
+    setup.vertical || ground.is_some_and(|ground| ground.record.vertical().is_some())
+}
+
 impl Model {
     /// At the start that `setup` describes, on ground that follows `ground`.
     pub fn new(setup: &Setup, ground: Option<Arc<GroundRecord>>) -> Result<Model, Failure> {
-        let engine = setup.engine()?;
+        let mut engine = setup.engine()?;
+        if may_move_vertically(setup, ground.as_deref()) {
+            engine.admit_vertical(true)?;
+        }
         ground.as_deref().map_or(Ok(()), |ground| setup.check_ground(ground))?;
         let peaks = Peaks::since(setup.start_time, engine.structure());
         let validity = Found::since(setup.start_time);
         Ok(Model { engine, ground, elapsed: Elapsed::default(), outside: None, peaks, validity })
+    }
+
+    /// Whether the ground may move vertically.
+    pub fn may_move_vertically(&self, setup: &Setup) -> bool {
+        may_move_vertically(setup, self.ground.as_deref())
     }
 
     /// What acts now: `inputs` and the record.
@@ -114,7 +127,7 @@ impl Model {
     pub fn validity(&self, setup: &Setup, load: Load) -> Found {
         let mut validity = self.watch_validity();
         if self.starts_as_it_stands(load) {
-            validity.see_instant(setup.start_time, self.engine.motion().phase, &self.engine.reactions(load));
+            validity.see_instant(setup.start_time, self.engine.motion().phase, &self.engine.edges(load));
         }
         *validity.found()
     }

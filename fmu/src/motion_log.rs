@@ -10,6 +10,7 @@ pub(crate) fn warn(logger: &Logger, known: &Found, found: &Found) {
     (0..ASSUMPTIONS.len())
         .filter(is_new)
         .filter_map(|which| found.warning(which, &Limits::default()))
+        .chain(found.warning_of_flight().filter(|_| known.weight.first_beyond.is_none()))
         .for_each(|warning| logger.warning(&warning));
 }
 
@@ -32,6 +33,7 @@ fn describe(transition: &Transition) -> String {
         TransitionKind::Impact(pivot) => format!("impact, rocking on about the {} edge", side(pivot)),
         TransitionKind::Landing | TransitionKind::Settling => "landing in full contact".to_owned(),
         TransitionKind::Overturning(pivot) => format!("overturning about the {} edge", side(pivot)),
+        kind @ (TransitionKind::Yielding(_) | TransitionKind::Unloading(_)) => kind.name().to_owned(),
     };
     format!(
         "t = {time} s: {what}; u = {} m, u_dot = {} m/s (before: {}), theta_dot = {} rad/s (before: {})",

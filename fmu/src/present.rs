@@ -73,7 +73,7 @@ impl Present {
 
     #[cold]
     fn build(&mut self) -> Result<(), Failure> {
-        self.record = self.archive.record(&self.setup.record)?;
+        self.record = self.setup.ground(&self.archive)?;
         self.model = Some(Model::new(&self.setup, self.record.clone())?);
         Ok(())
     }

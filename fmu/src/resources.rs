@@ -31,6 +31,8 @@ pub struct Contents {
     pub parameters: Parameters,
     /// The first is the one that the ground follows unless the host sets another.
     pub records: Vec<PackedRecord>,
+    /// The one that it follows vertically, likewise.
+    pub vertical: Option<PackedRecord>,
 }
 
 /// A record of an archive.
@@ -48,7 +50,10 @@ pub struct PackedRecord {
 #[serde(deny_unknown_fields)]
 pub struct Records {
     /// The records, the default first.
+    #[serde(default)]
     pub record: Vec<PackedRecord>,
+    /// The default of the vertical component.
+    pub vertical: Option<PackedRecord>,
 }
 
 impl Contents {
@@ -56,12 +61,22 @@ impl Contents {
     pub fn default_record(&self) -> &str {
         self.records.first().map_or("", |packed| &packed.file)
     }
+
+    /// The vertical component that it follows unless the host sets another; none if empty.
+    pub fn default_vertical(&self) -> &str {
+        self.vertical.as_ref().map_or("", |packed| &packed.file)
+    }
+
+    /// All that are packed.
+    pub fn packed(&self) -> impl Iterator<Item = &PackedRecord> {
+        self.records.iter().chain(&self.vertical)
+    }
 }
 
 /// Without records.
 impl From<Parameters> for Contents {
     fn from(parameters: Parameters) -> Contents {
-        Contents { parameters, records: Vec::new() }
+        Contents { parameters, records: Vec::new(), vertical: None }
     }
 }
 
@@ -106,8 +121,8 @@ impl Archive {
             return Err(ResourceError::Refused { file, error });
         }
         let list = folder.join(RECORDS_FILE);
-        let Records { record: records } = if list.exists() { read(&list)? } else { Records::default() };
-        Ok(Archive { folder, contents: Contents { parameters, records } })
+        let Records { record: records, vertical } = if list.exists() { read(&list)? } else { Records::default() };
+        Ok(Archive { folder, contents: Contents { parameters, records, vertical } })
     }
 }
 

@@ -135,6 +135,9 @@ fn scale(known: &Variable, x: f64, &Parameters { m, H, B, g, .. }: &Parameters) 
         "m/s" => B * (g / H).sqrt(),
         "rad/s" => (g / H).sqrt(),
         "s" => (H / g).sqrt(),
+        "N" => m * g,
+        "N/m" => m * g / B,
+        "N.s/m" => m * (g / H).sqrt(),
         "rad" | "1" => 1.0,
         _ => 0.0,
     };

@@ -1,9 +1,10 @@
 //! What is set before a simulation starts.
 
-use crate::ground::GroundRecord;
+use crate::ground::{GroundError, GroundRecord};
 use crate::inputs::Between;
-use crate::resources::Contents;
+use crate::resources::{Archive, Contents};
 use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::mechanics::load::LOADS;
 use rocking::run::ground_motion::Placement;
 use rocking::{Detail, GroundMotion, Parameters, State};
 use serde::{Deserialize, Serialize};
@@ -20,8 +21,12 @@ pub struct Setup {
     pub(crate) stop_time: Option<f64>,
     /// Which record the ground follows; none if empty.
     pub(crate) record: Arc<str>,
+    /// Which record it follows vertically; none if empty.
+    pub(crate) record_v: Arc<str>,
     pub(crate) placement: Placement,
-    /// Whether a_g is followed one step late.
+    /// Whether a_v has been set: until then the ground moves vertically by record_v alone.
+    pub(crate) vertical: bool,
+    /// Whether a_g and a_v are followed one step late.
     pub(crate) a_g_late: bool,
     /// Whether F_t goes on with the slope of its last two values.
     pub(crate) F_t_extrapolated: bool,
@@ -42,7 +47,9 @@ impl Setup {
             start_time: 0.0,
             stop_time: None,
             record: contents.default_record().into(),
+            record_v: contents.default_vertical().into(),
             placement: Placement::default(),
+            vertical: false,
             a_g_late: false,
             F_t_extrapolated: false,
             peaks: false,
@@ -51,15 +58,20 @@ impl Setup {
     }
 
     /// How the inputs act between communication points.
-    pub(crate) fn between(&self) -> [Between; 2] {
-        let a_g = if self.a_g_late { Between::Late } else { Between::Held };
+    pub(crate) fn between(&self) -> [Between; LOADS.len()] {
+        let of_ground = if self.a_g_late { Between::Late } else { Between::Held };
         let F_t = if self.F_t_extrapolated { Between::Extrapolated } else { Between::Held };
-        [a_g, F_t]
+        [of_ground, F_t, of_ground]
+    }
+
+    /// The ground motion that it asks for, of `archive` or on disk.
+    pub(crate) fn ground(&self, archive: &Archive) -> Result<Option<Arc<GroundRecord>>, GroundError> {
+        archive.ground(&self.record, &self.record_v)
     }
 
     /// `record` as it acts.
     pub(crate) fn ground_motion<'a>(&self, record: &'a GroundRecord) -> GroundMotion<'a> {
-        let unit = record.unit.in_m_s2(self.parameters.g);
-        GroundMotion { record: &record.record, unit, placement: self.placement }
+        let [unit, vertical_unit] = record.units.map(|unit| unit.in_m_s2(self.parameters.g));
+        GroundMotion { record: &record.record, unit, vertical_unit, placement: self.placement }
     }
 }

@@ -96,6 +96,7 @@ pub(crate) fn names(stages: Stages) -> String {
 /// The tables of a version's two interfaces: the stages, and a row for every function of the version's `Function` that may
 /// be called in one. x is for both interfaces, s for a slave in co-simulation, m for a model, - for neither. The others may
 /// be called nowhere.
+#[cfg(not(target_family = "wasm"))]
 macro_rules! tables {
     ([$($of:tt $stage:ident),*] $($function:ident [$($mark:tt)+])*) => {
         /// The stages that each function of a slave may be called in.
@@ -121,6 +122,7 @@ macro_rules! tables {
         }
     };
 }
+#[cfg(not(target_family = "wasm"))]
 pub(crate) use tables;
 
 /// Whether `mark` is for `interface`, s or m.

@@ -5,7 +5,8 @@
 use crate::resources::Contents;
 use crate::setup::Setup;
 use rocking::Motion;
-use rocking::mechanics::load::LOADS;
+use rocking::mechanics::load::{LOADS, VERTICAL};
+use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::mechanics::state::{COMPONENTS, INITIAL_VALUES};
 use rocking::run::ground_motion::{PLACEMENT, Placement};
 use rocking::run::outside_step::INDICATORS;
@@ -115,14 +116,16 @@ pub(crate) enum Source {
     /// One of the event indicators, by its place.
     Indicator(usize),
     Impulse(fn(&Impulse) -> f64),
+    Restraint(fn(&Restraints) -> f64),
+    Dissipator(fn(&Dissipators) -> f64),
     Integer(OfMotion),
     Boolean(OfMotion),
     Parameter(&'static Quantity<Parameters>),
     InitialValue(&'static Quantity<State>),
     Derived(&'static Derived),
     Detail,
-    /// The ground's acceleration: the input and the record.
-    Ground,
+    /// One of the ground's accelerations, the input and the record, by its place in [`LOADS`].
+    Ground(usize),
     Peak(fn(&Peaks) -> f64),
     /// The worst value of one of [`ASSUMPTIONS`].
     Worst(usize),
@@ -132,12 +135,18 @@ pub(crate) enum Source {
     Gains,
     /// The instant of overturning.
     Overturning,
-    /// Which record.
-    Record,
+    Text(&'static Text),
     RecordDuration,
     Time,
     Placement(&'static Quantity<Placement>),
     Switch(&'static Switch),
+}
+
+/// A parameter that is text: which record.
+#[derive(Debug)]
+pub(crate) struct Text {
+    pub get: fn(&Setup) -> &str,
+    pub set: fn(&mut Setup, &str),
 }
 
 /// A Boolean parameter.
@@ -234,7 +243,7 @@ fn overturned(motion: &Motion) -> i32 {
 
 /// How many variables there are: their table is no allocation, which would be left behind where the library is
 /// unloaded.
-const COUNT: usize = 86;
+const COUNT: usize = 104;
 
 /// All variables, in the order of the model description.
 pub static VARIABLES: LazyLock<[Variable; COUNT]> = LazyLock::new(|| {
@@ -249,7 +258,7 @@ pub static VARIABLES: LazyLock<[Variable; COUNT]> = LazyLock::new(|| {
         .chain(const { &PARAMETERS }.iter().map(|quantity| fixed(quantity, Source::Parameter(quantity))))
         .chain([parameter("detail", DETAILS.description, DataType::Enumeration(&DETAILS), Source::Detail)])
         .chain(const { &INITIAL_VALUES }.iter().map(|quantity| fixed(quantity, Source::InitialValue(quantity))))
-        .chain([parameter("record", RECORD, DataType::String, Source::Record)])
+        .chain(records())
         .chain(const { &PLACEMENT }.iter().map(|quantity| fixed(quantity, Source::Placement(quantity))))
         .chain(switches())
         .chain(calculated_parameters())
@@ -259,9 +268,19 @@ pub static VARIABLES: LazyLock<[Variable; COUNT]> = LazyLock::new(|| {
         .unwrap_or_else(|found: Vec<_>| panic!("{} variables, not {COUNT}", found.len()))
 });
 
-const RECORD: &str = "ground motion record that the ground follows beside a_g: the name of a file in the archive's \
-                      resources, or the path or URI of one on disk; PEER .AT2, ESM, K-NET, COSMOS, CSMIP, or a \
-                      table of text in s and m/s2 or the unit of the heading; none if empty";
+fn records() -> [Variable; 2] {
+    static HORIZONTAL: Text = Text { get: |setup| &setup.record, set: |setup, text| setup.record = text.into() };
+    static VERTICAL: Text = Text { get: |setup| &setup.record_v, set: |setup, text| setup.record_v = text.into() };
+    let horizontal = "ground motion record that the ground follows beside a_g: the name of a file in the archive's \
+                      resources, or the path or URI of one on disk; PEER .AT2, ESM, K-NET, COSMOS, CSMIP, or a table \
+                      of text in s and m/s2 or the unit of the heading; none if empty";
+    let vertical = "record that the ground follows vertically beside a_v, as record, with the same start and scales; none if \
+                    empty";
+    [
+        parameter("record", horizontal, DataType::String, Source::Text(&HORIZONTAL)),
+        parameter("record_v", vertical, DataType::String, Source::Text(&VERTICAL)),
+    ]
+}
 
 fn input(which: usize) -> Variable {
     let quantity = &LOADS[which];
@@ -277,12 +296,15 @@ fn input(which: usize) -> Variable {
     }
 }
 
+/// The inputs.
+const LOAD_NAMES: &[&str] = &["a_g", "F_t", "a_v"];
+
 /// What accelerations depend on: the masses, the geometry and theta_dot_0 by the rigid level, the others by the elastic
 /// ones.
 #[rustfmt::skip]
 const ACCELERATIONS: &[&str] = &[
     "m", "m0", "H", "B", "J0", "f_fc", "zeta_fc", "c_ratio", "g", "detail", "theta_0", "theta_dot_0", "u_0", "u_dot_0",
-    "record", "record_scale", "record_time_scale", "record_start",
+    "P_0", "k_t", "xi_d", "c_d", "k_d", "F_y", "record", "record_v", "record_scale", "record_time_scale", "record_start",
 ];
 
 fn outputs() -> Vec<Variable> {
@@ -294,15 +316,20 @@ fn outputs() -> Vec<Variable> {
     };
     let force = |name, unit, description, of| Variable {
         states: &COMPONENTS,
-        ..output(name, unit, description, Source::Output(of), &["a_g", "F_t"], ACCELERATIONS)
+        ..output(name, unit, description, Source::Output(of), LOAD_NAMES, ACCELERATIONS)
     };
     let reaction = |name, unit, description, of| Variable {
         states: &COMPONENTS,
-        ..output(name, unit, description, Source::Reaction(of), &["a_g", "F_t"], ACCELERATIONS)
+        ..output(name, unit, description, Source::Reaction(of), LOAD_NAMES, ACCELERATIONS)
     };
     let impulse = |name, unit, description, of| {
         discrete(name, description, DataType::Real { unit, range: None }, Source::Impulse(of), &[])
     };
+    let tie = |name, description, of, states, initial_dependencies| Variable {
+        states,
+        ..output(name, "N", description, Source::Restraint(of), &[], initial_dependencies)
+    };
+    const OF_DISSIPATOR: &[&str] = &["B", "theta_0", "theta_dot_0", "xi_d", "c_d", "k_d", "F_y"];
     let elastic = "elastic displacement of the top mass in the frame that turns with the base";
     vec![
         of_state(
@@ -339,6 +366,15 @@ fn outputs() -> Vec<Variable> {
         reaction("R_h", "N", "horizontal force on the ground, positive to the right", |r| r.R_h),
         reaction("R_v", "N", "vertical force on the ground, positive downwards", |r| r.R_v),
         reaction("R_m", "N.m", "moment on the ground about the middle of the base, positive as theta", |r| r.R_m),
+        tie("P_t", "force of the tendon", |r| r.P_t, &["theta"], &["B", "theta_0", "P_0", "k_t"]),
+        tie(
+            "F_d1",
+            "force of the dissipators at +xi_d, viscous and elastoplastic together; pulled is positive",
+            |r| r.F_d1,
+            &["theta", "theta_dot"],
+            OF_DISSIPATOR,
+        ),
+        tie("F_d2", "the same of those at -xi_d", |r| r.F_d2, &["theta", "theta_dot"], OF_DISSIPATOR),
         impulse("I_h", "N.s", "horizontal impulse of the impacts on the ground so far", |i| i.I_h),
         impulse("I_v", "N.s", "vertical impulse of the impacts on the ground so far, downwards", |i| i.I_v),
         impulse("I_m", "N.m.s", "moment impulse of the impacts on the ground so far, positive as theta", |i| i.I_m),
@@ -346,8 +382,10 @@ fn outputs() -> Vec<Variable> {
 }
 
 /// Variables for whoever looks on: no other model needs them.
-fn locals() -> [Variable; 7] {
+fn locals() -> [Variable; 12] {
     const GROUND: &[&str] = &["g", "record", "record_scale", "record_time_scale", "record_start"];
+    const GROUND_V: &[&str] = &["g", "record_v", "record_scale", "record_time_scale", "record_start"];
+    const PLASTIC: &[&str] = &["B", "theta_0", "xi_d", "k_d", "F_y"];
     let local = |name, unit, description, source, feedthrough, initial_dependencies| Variable {
         causality: Causality::Local,
         ..output(name, unit, description, source, feedthrough, initial_dependencies)
@@ -356,12 +394,27 @@ fn locals() -> [Variable; 7] {
         causality: Causality::Local,
         ..discrete(name, description, data_type, source, initial_dependencies)
     };
+    let kept = |name, unit, description, of, initial_dependencies| {
+        local(name, unit, description, Source::Dissipator(of), &[], initial_dependencies)
+    };
     let (turning, swaying) = (Source::Output(|o| o.theta_dot), Source::Output(|o| o.u_dot));
     let phases = DataType::Enumeration(&PHASES);
     [
         local("theta_dot", "rad/s", "angular velocity of the base", turning, &[], &["theta_dot_0"]),
         local("u_dot", "m/s", "elastic velocity of the top mass", swaying, &[], &["u_dot_0"]),
-        local("a_ground", "m/s2", "ground acceleration: a_g and the record", Source::Ground, &["a_g"], GROUND),
+        local("a_ground", "m/s2", "ground acceleration: a_g and the record", Source::Ground(0), &["a_g"], GROUND),
+        local(
+            "a_v_ground",
+            "m/s2",
+            "vertical ground acceleration: a_v and record_v",
+            Source::Ground(VERTICAL),
+            &["a_v"],
+            GROUND_V,
+        ),
+        kept("e_p1", "m", "plastic elongation of the elastoplastic dissipator at +xi_d", |d| d.plastic[0], PLASTIC),
+        kept("e_p2", "m", "the same of the one at -xi_d", |d| d.plastic[1], PLASTIC),
+        kept("E_viscous", "J", "energy that the viscous dissipators have taken", |d| d.viscous, &[]),
+        kept("E_hysteretic", "J", "energy that the elastoplastic dissipators have taken", |d| d.hysteretic, &[]),
         counted("phase", PHASES.description, phases, Source::Integer(phase_number), &["theta_0"]),
         counted(
             "transitions",
@@ -400,7 +453,7 @@ fn state_rates() -> [Variable; 4] {
     };
     let acceleration = |which, name, unit, description| Variable {
         states: &COMPONENTS,
-        feedthrough: &["a_g", "F_t"],
+        feedthrough: LOAD_NAMES,
         initial_dependencies: ACCELERATIONS,
         ..rate(which, name, unit, description)
     };
@@ -418,7 +471,7 @@ fn event_indicators() -> [Variable; INDICATORS] {
     #[rustfmt::skip]
     const PHASE: &[&str] = &[
         "m", "m0", "H", "B", "f_fc", "zeta_fc", "c_ratio", "g", "detail", "theta_0", "u_0", "u_dot_0",
-        "record", "record_scale", "record_time_scale", "record_start",
+        "P_0", "record", "record_v", "record_scale", "record_time_scale", "record_start",
     ];
     let indicator = |which, name, description| Variable {
         causality: Causality::Local,
@@ -426,7 +479,7 @@ fn event_indicators() -> [Variable; INDICATORS] {
     };
     [
         Variable {
-            feedthrough: &["a_g", "F_t"],
+            feedthrough: LOAD_NAMES,
             states: &["u", "u_dot", "theta"],
             initial_dependencies: PHASE,
             ..indicator(
@@ -436,9 +489,13 @@ fn event_indicators() -> [Variable; INDICATORS] {
             )
         },
         Variable {
-            states: &["theta"],
-            initial_dependencies: &["theta_0"],
-            ..indicator(1, "overturning_indicator", "event indicator, positive until the structure has overturned")
+            states: &["theta", "theta_dot"],
+            initial_dependencies: &["B", "theta_0", "xi_d", "k_d", "F_y"],
+            ..indicator(
+                1,
+                "overturning_indicator",
+                "event indicator, positive until the structure has overturned, or a dissipator yields or ceases to",
+            )
         },
     ]
 }
@@ -471,7 +528,7 @@ fn peaks() -> Vec<Variable> {
             )*]
         };
     }
-    peaks!(theta "rad" u "m" delta_t "m" uplift "m" a_t "m/s2" V_t "N" M_t "N.m")
+    peaks!(theta "rad" u "m" delta_t "m" uplift "m" a_t "m/s2" V_t "N" M_t "N.m" P_t "N")
 }
 
 /// What the motion goes beyond.
@@ -505,8 +562,8 @@ fn switches() -> [Variable; 4] {
     static VALIDITY: Switch = Switch { get: |setup| setup.validity, set: |setup, on| setup.validity = on };
     let validity =
         "whether it is watched what the motion goes beyond: tension, edges that pull, friction, energy gained";
-    let late = "whether a_g, set without its derivative, is followed one communication step late, in a straight line from \
-                each value to the next, and is not held";
+    let late = "whether a_g and a_v, set without their derivatives, are followed one communication step late, in a straight \
+                line from each value to the next, and are not held";
     let extrapolated = "whether F_t, set without its derivative, goes on with the slope of its values at the last two \
                         communication points, and is not held; where it is not set before a step it is held over that";
     [
@@ -542,10 +599,10 @@ fn calculated_parameters() -> [Variable; 6] {
             ..output(
                 "record_duration",
                 "s",
-                "from the record's first to its last sample; 0 without a record",
+                "from the first to the last sample of the record, of either component; 0 without a record",
                 Source::RecordDuration,
                 &[],
-                &["record", "record_time_scale"],
+                &["record", "record_v", "record_time_scale"],
             )
         },
     ]
@@ -620,7 +677,8 @@ impl Variable {
         match self.source {
             Source::Input(_) | Source::Output(_) | Source::Reaction(_) => true,
             Source::StateRate(_) | Source::Indicator(_) => true,
-            Source::Ground | Source::Peak(_) | Source::Time => true,
+            Source::Restraint(_) | Source::Dissipator(_) => true,
+            Source::Ground(_) | Source::Peak(_) | Source::Time => true,
             Source::Worst(which) | Source::WorstInstant(which) => !ASSUMPTIONS[which].is_of_impacts,
             _ => false,
         }
@@ -647,7 +705,7 @@ impl Variable {
         match self.source {
             Source::Input(which) => Some(Value::Real((LOADS[which].get)(&Load::default()))),
             Source::Detail => Some(Value::Item(detail_number(setup.detail))),
-            Source::Record => Some(Value::String(setup.record.to_string())),
+            Source::Text(text) => Some(Value::String((text.get)(&setup).to_owned())),
             Source::Switch(switch) => Some(Value::Boolean((switch.get)(&setup))),
             _ => self.source.setting(&setup).map(Value::Real),
         }

@@ -45,6 +45,8 @@ fn they_are_linear_in_the_direction() {
     let (by_ground, by_force) = (by(&[("a_g", 1.0)]), by(&[("F_t", 1.0)]));
     let both = by(&[("a_g", -2.0), ("F_t", 10.0), ("F_t", 20.0)]);
     let [tiny, huge] = [1e-200, 1e100].map(|size| by(&[("F_t", size)]));
+    let upwards = derivatives(&host, &["R_v", "der(theta_dot)"], &[("a_v", 1.0)]).unwrap();
+    assert!(upwards.iter().all(|by| *by != 0.0), "{upwards:?}, of an input that has not been set");
     for (i, name) in OUTPUTS.into_iter().enumerate() {
         assert!(by_force[i] != 0.0, "{name}");
         assert_relative_eq!(both[i], -2.0 * by_ground[i] + 30.0 * by_force[i], max_relative = 1e-12, epsilon = 1e-12);
@@ -165,11 +167,12 @@ fn those_by_start_values_are_the_closed_forms() {
 fn those_by_start_values_are_the_slopes_of_the_values() {
     let start =
         [("theta_0", 0.3), ("theta_dot_0", -0.4), ("u_0", 2e-3), ("u_dot_0", 0.3), ("J0", 2.0), ("c_ratio", 0.7)];
-    let host = Host::initializing(&start);
+    let restraints = [("P_0", 300.0), ("k_t", 2e4), ("xi_d", 0.1), ("c_d", 50.0), ("k_d", 1e6), ("F_y", 1e6)];
+    let host = Host::initializing(&[&start[..], &restraints].concat());
     host.write("pulse.AT2", "-\n-\nACCELERATION IN UNITS OF G\n3, .5 NPTS, DT\n.1 .2 .4\n");
     let placement = [("record_scale", 0.8), ("record_time_scale", 1.25), ("record_start", -0.3)];
     assert_eq!((host.set_record("pulse.AT2"), host.set(&placement)), (OK, OK));
-    assert_eq!(host.set(&[("a_g", 3.0), ("F_t", -50.0)]), OK);
+    assert_eq!(host.set(&[("a_g", 3.0), ("F_t", -50.0), ("a_v", 2.0)]), OK);
     let is_real = |variable: &&Variable| matches!(variable.data_type, DataType::Real { .. });
     let named = |causality: &[Causality]| {
         let of = VARIABLES.iter().filter(is_real).filter(|variable| causality.contains(&variable.causality));

@@ -16,7 +16,19 @@ use std::ptr::null;
 fn the_stated_dependencies_are_the_true_ones() {
     let u_cr = 7.52467e-4;
     let rigid = 5.0;
-    let bases: [&[(&str, f64)]; 8] = [
+    let restrained = |yields_at| {
+        [
+            ("theta_0", 0.3),
+            ("theta_dot_0", -0.4),
+            ("P_0", 300.0),
+            ("k_t", 2e4),
+            ("xi_d", 0.1),
+            ("c_d", 50.0),
+            ("k_d", 1e6),
+            ("F_y", yields_at),
+        ]
+    };
+    let bases: [&[(&str, f64)]; 13] = [
         &[("theta_0", 0.3), ("u_0", 2e-3), ("record_scale", 2.0), ("record_start", -0.25)],
         &[("detail", rigid), ("theta_0", 0.3), ("record_scale", 2.0), ("record_start", -0.25)],
         &[("detail", rigid), ("theta_0", 0.3), ("theta_dot_0", -0.4), ("J0", 2.0)],
@@ -25,13 +37,20 @@ fn the_stated_dependencies_are_the_true_ones() {
         &[("theta_0", 0.3), ("theta_dot_0", -0.4), ("u_0", 2e-3), ("u_dot_0", 0.3), ("c_ratio", 0.7), ("J0", 2.0)],
         &[("u_0", u_cr * (1.0 - 1e-4)), ("u_dot_0", 0.01)],
         &[("u_0", u_cr * (1.0 + 1e-4)), ("u_dot_0", -0.01)],
+        &[("u_0", 3e-4), ("u_dot_0", 0.2), ("P_0", 300.0)],
+        &[&restrained(2e5)[..], &[("u_0", 2e-3)]].concat(),
+        &[&restrained(200.0)[..], &[("u_0", 2e-3)]].concat(), // which yields
+        &[&restrained(2e5)[..], &[("detail", rigid)]].concat(),
+        &[&restrained(200.0)[..], &[("detail", rigid)]].concat(),
     ];
-    // in g; the ground follows it where the base says when
+    // in g; the ground follows them where the base says when
     let pulse = "-\n-\nACCELERATION IN UNITS OF G\n3, .5 NPTS, DT\n.1 .2 .4\n";
-    let show = |values: &[(&str, f64)], record: &str| {
+    let up = "-\n-\nACCELERATION IN UNITS OF G\n4, .4 NPTS, DT\n.1 -.3 .2 .1\n";
+    let show = |values: &[(&str, f64)], [record, record_v]: [&str; 2]| {
         let host = Host::initializing(values);
         host.write("pulse.AT2", pulse);
-        assert_eq!(host.set_record(record), OK);
+        host.write("up.AT2", up);
+        assert_eq!((host.set_text("record", record), host.set_text("record_v", record_v)), (OK, OK));
         let show = |name: &&str| match VARIABLES[reference(name) as usize].data_type {
             DataType::Real { .. } => host.get(name),
             DataType::Boolean => host.try_boolean(name).unwrap().into(),
@@ -52,8 +71,14 @@ fn the_stated_dependencies_are_the_true_ones() {
     let mut found: BTreeSet<(&str, &str)> = BTreeSet::new();
     for base in bases {
         let host = Host::initializing(base);
-        let record = if base.iter().any(|(name, _)| *name == "record_start") { "pulse.AT2" } else { "" };
-        let before = show(base, record);
+        let has_record = base.iter().any(|(name, _)| *name == "record_start");
+        // either may be the longer one
+        let records = match (has_record, f64::from(host.integer("detail")) == rigid) {
+            (true, true) => ["up.AT2", "pulse.AT2"],
+            (true, false) => ["pulse.AT2", "up.AT2"],
+            (false, _) => [""; 2],
+        };
+        let before = show(base, records);
         for known in VARIABLES.iter().filter(|variable| variable.causality == Causality::Parameter) {
             // In full contact the base does not turn, and what is rigid is not deformed.
             let is_rigid = f64::from(host.integer("detail")) == rigid;
@@ -63,7 +88,16 @@ fn the_stated_dependencies_are_the_true_ones() {
             if let DataType::Boolean = known.data_type {
                 continue;
             }
-            let other_record = if known.name == "record" { "" } else { record };
+            // the one goes with the other
+            if ["k_d", "F_y"].contains(&known.name) && host.get(known.name) == 0.0 {
+                continue;
+            }
+            let [record, record_v] = records;
+            let other_records = match known.name {
+                "record" => ["", record_v],
+                "record_v" => [record, ""],
+                _ => records,
+            };
             let value = match known.data_type {
                 DataType::Enumeration(_) | DataType::String => rigid,
                 _ => host.get(known.name),
@@ -80,10 +114,10 @@ fn the_stated_dependencies_are_the_true_ones() {
             };
             let mut values = base.to_vec();
             values.retain(|(name, _)| *name != known.name);
-            if known.name != "record" {
+            if known.data_type != DataType::String {
                 values.push((known.name, changed));
             }
-            for ((name, before), (_, after)) in before.iter().zip(show(&values, other_record)) {
+            for ((name, before), (_, after)) in before.iter().zip(show(&values, other_records)) {
                 if (after - before).abs() > 1e-9 * before.abs() {
                     found.insert((name, known.name));
                 }
@@ -138,8 +172,8 @@ fn a_value_out_of_range_is_refused_with_all_that_come_with_it() {
         host.assert_refused(|| host.set(&[("H", 2.0), ("a_g", 1.0), ("u_0", 1e-3), (name, value)]), ERROR, &message);
     }
     let last = VARIABLES.len() - 1;
-    let message = format!("fmi2SetReal: value reference 99 does not exist; they run from 0 to {last}");
-    host.assert_refused(|| host.set_by_reference(&[0, 99], &[1.0, 1.0]), ERROR, &message);
+    let message = format!("fmi2SetReal: value reference 999 does not exist; they run from 0 to {last}");
+    host.assert_refused(|| host.set_by_reference(&[0, 999], &[1.0, 1.0]), ERROR, &message);
     assert_eq!(host.try_get(&["H", "a_g", "u_0"]).unwrap(), [1.05, 0.0, 0.0]);
 }
 

@@ -49,9 +49,9 @@ def export(
 ) -> Path:
     """Writes the FMU of a structure to `target` and returns its path.
 
-    record: a Record or a file, or several; the FMU follows the first and has the others inside, each Record under its title. name: what hosts call the
-    model. fmi: the version of the standard, 2 (2.0) or 3 (3.0). library: an FMU or a shared library to take the code from; by
-    default `fmu()`. Raises ValueError with the reason.
+    record: a Record or a file, or several; the FMU follows the first and has the others inside, each Record under its title.
+    name: what hosts call the model. fmi: the version of the standard, 2 (2.0) or 3 (3.0). library: an FMU or a shared library
+    to take the code from; by default `fmu()`. Raises ValueError with the reason.
     """
     records = [record] if isinstance(record, (Record, str, PathLike)) else list(record)
     _native.export(target, structure, records, name, fmi, fmu() if library is None else library)

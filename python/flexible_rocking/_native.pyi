@@ -59,6 +59,7 @@ class Record:
         cls,
         time: ArrayLike,
         a_g: ArrayLike,
+        a_v: ArrayLike | None = None,
         *,
         unit: _Unit = "m/s2",
         g: float = 9.81,
@@ -70,6 +71,7 @@ class Record:
     def read(
         file: _Path,
         *,
+        vertical: _Path | None = None,
         unit: _Unit | None = None,
         dt: float | None = None,
         column: int | str | None = None,
@@ -82,6 +84,8 @@ class Record:
     def time(self) -> _Array: ...
     @property
     def a_g(self) -> _Array: ...
+    @property
+    def a_v(self) -> _Array | None: ...
     @property
     def title(self) -> str: ...
     @property
@@ -208,8 +212,6 @@ def pulse(
     frequency: float,
     cycles: float | None = None,
     phase: float = 0.0,
-    lead_in: float = 0.0,
-    rest: float = 0.0,
     error: float = 1e-4,
     structure: Structure | None = None,
     g: float = 9.81,

@@ -57,13 +57,11 @@ def sweep(
         raise ValueError(f"intensity = {intensity!r} is unknown; these are known: {', '.join(units)}")
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder, "sweep.csv") if path is None else Path(path)
-        before = set(_rows(file)["run"]) if path is not None and file.exists() else set()
         try:
             keys = _native.sweep(populations, motions, scale, file, detail, tolerance, duration, initial, validity, threads,
                                  _say if progress else None)
         except KeyboardInterrupt as stopped:
-            rows = _rows(file)
-            stopped.table = rows[~rows["run"].isin(before)]  # type: ignore[attr-defined]
+            stopped.table = _rows(file)  # type: ignore[attr-defined]
             raise
         finally:
             if progress:
@@ -90,8 +88,8 @@ def _say(done: int, of: int) -> None:
 class Fragility:
     """A lognormal fragility curve through the runs of a sweep: what `fragility` returns.
 
-    limit, intensity: of what, over what. curve: median, dispersion, median_range, probability(x), band(x). bins: a DataFrame of runs of
-    about the same intensity, lowest, mean, highest, runs, known, exceedances.
+    limit, intensity: of what, over what. curve: median, dispersion, median_range, probability(x), band(x). bins: a DataFrame
+    of runs of about the same intensity: lowest, mean, highest, runs, known, exceedances.
     """
 
     def __init__(self, limit: str, intensity: str, curve: "Curve", bins: "pd.DataFrame"):
@@ -134,9 +132,9 @@ class Fragility:
 def fragility(table: "pd.DataFrame", limit: str = "overturned", *, intensity: str | None = None) -> Fragility:
     """Fits the lognormal curve of greatest likelihood to the runs of a sweep's table, or to some of its rows.
 
-    limit: "overturned", or a peak such as "theta/alpha_cg >= 0.5", "uplift >= 0.01 m"; a run that overturned has exceeded every one.
-    intensity: "PGA", "PGV", "S_a"; by default that of the sweep. Runs that failed are not counted. How sure the curve is follows from
-    the records, whose runs do not depend on each other; where there is one record, from the structures.
+    limit: "overturned", or a peak such as "theta/alpha_cg >= 0.5", "uplift >= 0.01 m"; a run that overturned has exceeded
+    every one. intensity: "PGA", "PGV", "S_a"; by default that of the sweep. Runs that failed are not counted. How sure the
+    curve is follows from the records, whose runs do not depend on each other; where there is one record, from the structures.
     Raises ValueError with the reason where there is no curve: never exceeded, always exceeded, no overlap.
     """
     import pandas

@@ -12,7 +12,8 @@ use rocking::run::validity::Limits;
 use rocking_cli::quantities::{NamedValue, write_columns};
 use rocking_cli::{advise as advice, estimate as estimates};
 
-/// Every level of detail on one scene, and which is the cheapest that will do: what `advise` returns. print(advice) shows it.
+/// Every level of detail on one scene, and which is the cheapest that will do: what `advise` returns. print(advice)
+/// shows it.
 #[pyclass(frozen, module = "flexible_rocking")]
 pub struct Advice {
     text: String,
@@ -48,11 +49,12 @@ impl Advice {
     }
 }
 
-/// Runs every level of detail and says which is the cheapest whose errors stay `within` a part of the reference, `nonlinear` at
-/// the tolerance 1e-12.
+/// Runs every level of detail and says which is the cheapest whose errors stay `within` a part of the reference,
+/// `nonlinear` at the tolerance 1e-12.
 ///
-/// of: what must stay within it, of "theta", "u", "a_t" (peaks) and "theta_history", "u_history", "a_t_history"; without it all of them.
-/// duration and initial values as in `simulate`. Raises ValueError where the reference cannot be run.
+/// of: what must stay within it, of "theta", "u", "a_t" (peaks) and "theta_history", "u_history", "a_t_history";
+/// without it all of them. duration and initial values as in `simulate`. Raises ValueError where the reference cannot
+/// be run.
 #[pyfunction]
 #[pyo3(signature = (structure, record, *, within=0.05, of=None, duration=None, **initial))]
 pub fn advise(
@@ -85,10 +87,11 @@ pub fn advise(
     advised.map_err(refused)
 }
 
-/// The demands without a time history (Eqs 4, 21 to 24), a dict of numbers by name in SI units; printed, with units and equations.
+/// The demands without a time history (Eqs 4, 21 to 24), a dict of numbers by name in SI units; printed, with units and
+/// equations.
 ///
-/// record: what shakes it; without one the ground is at rest. amplification: C, 0 to 2, 2 for an instant change of sides (Eq 21).
-/// Raises ValueError where C is out of range.
+/// record: what shakes it; without one the ground is at rest. amplification: C, 0 to 2, 2 for an instant change of
+/// sides (Eq 21). Raises ValueError where C is out of range.
 #[pyfunction]
 #[pyo3(signature = (structure, record=None, *, amplification=INSTANT_TRANSITION))]
 pub fn estimate<'py>(

@@ -1,5 +1,5 @@
-//! The Python module: the same crates as the command line's, as Python's objects. What is computed, the library computes; here
-//! arguments are read, and results are given the form that Python has for them.
+//! The Python module: the same crates as the command line's, as Python's objects. What is computed, the library
+//! computes; here arguments are read, and results are given the form that Python has for them.
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
 mod advice;
@@ -11,6 +11,7 @@ mod sweep;
 
 use arguments::{one_of, refused};
 use fmu_export::{Library, Version};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use std::ffi::OsString;
 use std::fs;
@@ -33,8 +34,8 @@ mod _native {
     use super::{command_line, export};
 }
 
-/// What the command line `rocking-fmu` does with `arguments`, the first of which is its name: its exit code. `program` is the
-/// path of the console script, beside whose folder the archive with the libraries is.
+/// What the command line `rocking-fmu` does with `arguments`, the first of which is its name: its exit code. `program`
+/// is the path of the console script, beside whose folder the archive with the libraries is.
 #[pyfunction]
 fn command_line(py: Python<'_>, program: PathBuf, arguments: Vec<OsString>) -> u8 {
     py.detach(|| rocking_cli::main(program, arguments))
@@ -47,7 +48,7 @@ enum Packed {
     File(PathBuf),
 }
 
-/// Writes the FMU to `target`: of `structure`, with `records` inside, of which it follows the first.
+/// Writes the FMU to `target`: of `structure`, with `records` inside, of which it follows the first, with its vertical component.
 #[pyfunction]
 fn export(
     py: Python<'_>,
@@ -59,18 +60,29 @@ fn export(
     library: PathBuf,
 ) -> PyResult<()> {
     let version = one_of("fmi", &fmi.to_string(), [("2", Version::Fmi2), ("3", Version::Fmi3)])?;
+    let name_of = |record: &record::Record, ending: &str| {
+        let is_plain = |letter: char| letter.is_alphanumeric() || letter == '-';
+        PathBuf::from(record.0.title().replace(|letter| !is_plain(letter), "_") + ending)
+    };
     let content = |packed: &Packed| match packed {
-        Packed::Record(record) => {
-            let is_plain = |letter: char| letter.is_alphanumeric() || letter == '-';
-            let title = record.get().0.title().replace(|letter| !is_plain(letter), "_");
-            Ok((PathBuf::from(title + ".csv"), record.get().table().into_bytes()))
-        }
+        Packed::Record(record) => Ok((name_of(record.get(), ".csv"), record.get().table().into_bytes())),
         Packed::File(path) => Ok((path.clone(), rocking_records::read_file(path)?)),
     };
+    let vertical = |packed: &Packed| match packed {
+        Packed::Record(record) => {
+            record.get().vertical_table().map(|table| (name_of(record.get(), "_v.csv"), table.into_bytes()))
+        }
+        Packed::File(_) => None,
+    };
+    if let Some(other) = records.iter().skip(1).position(|record| vertical(record).is_some()) {
+        let needed = "the FMU follows the first alone, and no other may have a vertical component";
+        return Err(PyValueError::new_err(format!("record {}: {needed}", other + 2)));
+    }
     let written = py.detach(|| -> anyhow::Result<()> {
+        let vertical = records.first().and_then(vertical);
         let records = records.iter().map(content).collect::<Result<_, rocking_records::RecordError>>()?;
         let (libraries, name) = (Library::read(&library)?, name.parse()?);
-        let (_, archive) = fmu_export::export(version, &name, &structure.0, records, &libraries)?;
+        let (_, archive) = fmu_export::export(version, &name, &structure.0, records, vertical, &libraries)?;
         Ok(fs::write(target, archive)?)
     });
     written.map_err(refused)

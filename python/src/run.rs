@@ -110,9 +110,9 @@ impl Worst {
 
 /// A structure that has been followed through a ground motion: what `simulate` returns.
 ///
-/// print(run) shows all of it; in a notebook a run is its animated view. It keeps what it was asked for and what was found, and
-/// not the motion: what `at`, `plot`, `page` and `validity` show is computed again, to the same bits, in about a
-/// millisecond. So does a pickle: it carries the structure and the record.
+/// print(run) shows all of it; in a notebook a run is its animated view. It keeps what it was asked for and what was
+/// found, and not the motion: what `at`, `plot`, `page` and `validity` show is computed again, to the same bits, in
+/// about a millisecond. So does a pickle: it carries the structure and the record.
 #[pyclass(frozen, module = "flexible_rocking")]
 pub struct Run {
     structure: Py<Structure>,
@@ -185,8 +185,9 @@ impl Run {
         self.conditions.tolerance
     }
 
-    /// The exact largest magnitudes by name, each a Peak: a_g (m/s2), theta (rad), u (m), delta_t (m, Eq 26), uplift (m, Eq 25), a_t
-    /// (m/s2, Eq 27), V_t (N, Eqs 2, 23), M_t (N.m, Eqs 3, 24). Of a structure that overturns those before it falls.
+    /// The exact largest magnitudes by name, each a Peak: a_g (m/s2), theta (rad), u (m), delta_t (m, Eq 26), uplift
+    /// (m, Eq 25), a_t (m/s2, Eq 27), V_t (N, Eqs 2, 23), M_t (N.m, Eqs 3, 24). Of a structure that overturns those
+    /// before it falls.
     #[getter]
     fn peaks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let named = PyDict::new(py);
@@ -198,7 +199,8 @@ impl Run {
         Ok(named)
     }
 
-    /// Whether it overturned, |theta| = pi/2; None where that is not known, for it still rocks 100/p_l after the record.
+    /// Whether it overturned, |theta| = pi/2; None where that is not known, for it still rocks 100/p_l after the
+    /// record.
     #[getter]
     fn overturned(&self) -> Option<bool> {
         match self.found.finish.ending {
@@ -249,8 +251,8 @@ impl Run {
         self.found.finish.motion.work.evaluations
     }
 
-    /// What the model leaves out on this run, exact, each a Worst: tension_max, R_v_min, mu_required, mu_impact, tension_impact,
-    /// energy_gain_max, against the limits that the command line has by default.
+    /// What the model leaves out on this run, exact, each a Worst: tension_max, R_v_min, mu_required, mu_impact,
+    /// tension_impact, energy_gain_max, against the limits that the command line has by default.
     #[getter]
     fn validity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let limits = Limits::default();
@@ -264,12 +266,12 @@ impl Run {
         Ok(named)
     }
 
-    /// The motion at `times` (s), an array (n,) in any order: a Response, a dict of arrays (n,) by the names of the FMU's
-    /// outputs (time, a_g, theta, u, a_t, V_t, M_t, ..., phase, transitions), with to_pandas().
+    /// The motion at `times` (s), an array (n,) in any order: a Response, a dict of arrays (n,) by the names of the
+    /// FMU's outputs (time, a_g, theta, u, a_t, V_t, M_t, ..., phase, transitions), with to_pandas().
     ///
-    /// Exact: the engine's own polynomials and flows are evaluated, nothing is interpolated. At a transition the values are those just
-    /// after it. After the end of the run the motion goes on over ground at rest; once overturned there is none, and it is NaN.
-    /// Raises ValueError for times before the start of the run, and NaN.
+    /// Exact: the engine's own polynomials and flows are evaluated, nothing is interpolated. At a transition the values
+    /// are those just after it. After the end of the run the motion goes on over ground at rest; once overturned there
+    /// is none, and it is NaN. Raises ValueError for times before the start of the run, and NaN.
     fn at<'py>(&self, py: Python<'py>, times: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let times = numbers("times", times)?;
         let start = self.found.start;
@@ -373,14 +375,14 @@ impl Run {
 
 /// Follows a structure through a ground motion, or in free vibration, exactly, and returns the Run.
 ///
-/// record: a Record; without one the ground is at rest for `duration`. The structure starts at rest in full contact unless
-/// initial values are given: theta_0 (rad), theta_dot_0 (rad/s), u_0 (m), u_dot_0 (m/s).
-/// duration (s): when it ends; without one, when the structure stands and will, or overturns, or still rocks 100/p_l after the
-/// record. detail: "auto", "nonlinear" (Eqs 1, 5, 6), "linear" (Eqs 1, 7, 8), "modal" (Eqs 1, 11, 18), "rigid" (Eq 6 with u = 0),
-/// "fixed_base" (Eq 1). tolerance: relative, of the results.
+/// record: a Record; without one the ground is at rest for `duration`. The structure starts at rest in full contact
+/// unless initial values are given: theta_0 (rad), theta_dot_0 (rad/s), u_0 (m), u_dot_0 (m/s). duration (s): when it
+/// ends; without one, when the structure stands and will, or overturns, or still rocks 100/p_l after the record.
+/// detail: "auto", "nonlinear" (Eqs 1, 5, 6), "linear" (Eqs 1, 7, 8), "modal" (Eqs 1, 11, 18), "rigid" (Eq 6 with u =
+/// 0), "fixed_base" (Eq 1). tolerance: relative, of the results.
 ///
-/// Overturning is a result, not an error. Raises ValueError where the run cannot begin, or not go on. Other threads of Python go on
-/// meanwhile; the same inputs give the same bits.
+/// Overturning is a result, not an error. Raises ValueError where the run cannot begin, or not go on. Other threads of
+/// Python go on meanwhile; the same inputs give the same bits.
 #[pyfunction]
 #[pyo3(signature = (structure, record=None, *, duration=None, detail="auto", tolerance=DEFAULT_TOLERANCE, **initial))]
 pub fn simulate(

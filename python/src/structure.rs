@@ -16,14 +16,15 @@ use rocking_cli::describe;
 /// Structure(m=4e5, m0=1e5, H=9, B=1.5, J0=1e5, f_fc=2.5, zeta_fc=0.03, r=0.95)
 /// Structure(preset="mcmanus", f_fc=8)
 ///
-/// Every number is a keyword, and an attribute; SI units. Parameters: m, m0 (kg), H, B (m), J0 (kg.m2, 0), f_fc (Hz), zeta_fc,
-/// c_ratio (1), r, g (m/s2, 9.81); the values in brackets are what they are if they are left out. In the place of a parameter:
-/// period_fc (s) for f_fc, weight and weight0 (kN) for m and m0, width (m) for B, alpha_cg (rad) for H, or for B where H is
-/// given, p_l (rad/s) for J0. With preset, "mcmanus" or "evison", the specimen of the paper with these numbers in the place of
-/// its own.
+/// Every number is a keyword, and an attribute; SI units. Parameters: m, m0 (kg), H, B (m), J0 (kg.m2, 0), f_fc (Hz),
+/// zeta_fc, c_ratio (1), r, g (m/s2, 9.81); the values in brackets are what they are if they are left out. In the place
+/// of a parameter: period_fc (s) for f_fc, weight and weight0 (kN) for m and m0, width (m) for B, alpha_cg (rad) for H,
+/// or for B where H is given, p_l (rad/s) for J0. With preset, "mcmanus" or "evison", the specimen of the paper with
+/// these numbers in the place of its own.
 ///
-/// What follows from them is an attribute, too: alpha_cg, p_l, chi, u_cr, f_u, ...; `parameters` and `derived` have all of them,
-/// print(structure) shows them with units and equation numbers. A structure cannot be changed; `replace` makes another.
+/// What follows from them is an attribute, too: alpha_cg, p_l, chi, u_cr, f_u, ...; `parameters` and `derived` have all
+/// of them, print(structure) shows them with units and equation numbers. A structure cannot be changed; `replace` makes
+/// another.
 ///
 /// Raises ValueError where a number is unknown, missing, given twice in different ways or out of its range.
 #[pyclass(frozen, module = "flexible_rocking")]
@@ -79,8 +80,8 @@ impl Structure {
         Ok(all)
     }
 
-    /// What follows from the parameters, by name: gamma, omega_fc (rad/s), k (N/m), u_cr (m), J_P (kg.m2), p_l (rad/s), alpha_cg
-    /// (rad), chi, f_u (Hz), weight (kN), ...
+    /// What follows from the parameters, by name: gamma, omega_fc (rad/s), k (N/m), u_cr (m), J_P (kg.m2), p_l (rad/s),
+    /// alpha_cg (rad), chi, f_u (Hz), weight (kN), ...
     #[getter]
     fn derived<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);

@@ -27,8 +27,8 @@ use std::time::Duration;
 /// How long a signal, such as Ctrl-C, may have to wait.
 const MOMENT: Duration = Duration::from_millis(50);
 
-/// Does every run that is not in the file at `path` yet: every one of the populations of structures under every record at every
-/// scale. Returns the keys of all runs, in that order. `progress` is told how many runs of how many are done.
+/// Does every run that is not in the file at `path` yet: every one of the populations of structures under every record
+/// at every scale. Returns the keys of all runs, in that order. `progress` is told how many runs of how many are done.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn sweep(
@@ -120,8 +120,8 @@ impl Curve {
         self.0.dispersion
     }
 
-    /// Between which intensities the median lies with a probability of 95 %; None where fewer than 5 records, or of one record
-    /// structures, tell nothing of that.
+    /// Between which intensities the median lies with a probability of 95 %; None where fewer than 5 records, or of one
+    /// record structures, tell nothing of that.
     #[getter]
     fn median_range(&self) -> Option<(f64, f64)> {
         self.0.median_range()
@@ -141,11 +141,11 @@ impl Curve {
     }
 }
 
-/// Runs of about the same intensity, counted.
-type Counted = (Bin, Tally);
+/// Runs of about the same intensity: the lowest, mean and highest of these, how many there are, of how many the answer is
+/// known, and how many exceed the limit.
+type Counted = (f64, f64, f64, usize, usize, usize);
 
-/// The curve of runs, and for each bin of runs of about the same intensity: the lowest, mean and highest of these, how many runs it has,
-/// of how many the answer is known, and how many exceed the limit. Of each run: its group, its intensity, how it ended, and
+/// The curve of runs, and the counted runs that are drawn beside it. Of each run: its group, its intensity, how it ended, and
 /// the peak that the limit is of.
 #[pyfunction]
 pub fn fragility(
@@ -155,7 +155,7 @@ pub fn fragility(
     endings: Vec<String>,
     peaks: Vec<f64>,
     limit: &str,
-) -> PyResult<(Curve, Vec<(f64, f64, f64, usize, usize, usize)>)> {
+) -> PyResult<(Curve, Vec<Counted>)> {
     let limit: Limit = limit.parse().map_err(refused)?;
     let exceeds = |ending: &String, peak: f64| -> PyResult<Option<bool>> {
         let ending: Result<_, serde::de::value::Error> = Ending::deserialize(ending.as_str().into_deserializer());
@@ -167,7 +167,7 @@ pub fn fragility(
     let runs = runs.map(|((group, intensity), (ending, peak))| Ok((group, intensity, exceeds(ending, peak)?)));
     let runs = runs.collect::<PyResult<Vec<_>>>()?;
     let (curve, bins) = py.detach(|| exceedances::of_runs(runs)).map_err(refused)?;
-    let counts = |(of, tally): Counted| (of.lowest, of.mean, of.highest, of.runs, tally.known, tally.exceedances);
+    let counts = |(of, tally): (Bin, Tally)| (of.lowest, of.mean, of.highest, of.runs, tally.known, tally.exceedances);
     Ok((Curve(curve), bins.into_iter().map(counts).collect()))
 }
 

@@ -2,6 +2,7 @@
 
 use crate::levels::rules::ChatterLimit;
 use crate::mechanics::reactions::Impulse;
+use crate::mechanics::restraint::Dissipators;
 use crate::{Phase, Side, State};
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +24,10 @@ pub(crate) enum Event {
     Impact(Side),
     /// |θ| is π/2 on this side.
     Overturning(Side),
+    /// This dissipator begins to yield: pulled, +1, or pressed, −1.
+    Yielding(usize, i8),
+    /// This dissipator ceases to yield.
+    Unloading(usize),
 }
 
 /// Everything about a structure that changes with time.
@@ -40,6 +45,8 @@ pub struct Motion {
     pub work: Work,
     /// Impulse of the impacts on the ground so far.
     pub impulse: Impulse,
+    /// What the dissipators keep and have taken.
+    pub dissipators: Dissipators,
     pub(crate) chatter: Chatter,
     /// What is due now and has not been applied.
     pub(crate) due: Option<Event>,
@@ -58,6 +65,9 @@ impl Motion {
             Some(Event::Uplift(_)) => self.phase == Phase::FullContact,
             Some(Event::Impact(side)) => self.phase == Phase::Rocking(side),
             Some(Event::Overturning(_)) => false, // it is never left to be applied
+            Some(Event::Yielding(which, _) | Event::Unloading(which)) => {
+                which < 2 && matches!(self.phase, Phase::Rocking(_))
+            }
         }
     }
 }

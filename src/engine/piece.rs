@@ -5,11 +5,13 @@
 
 use crate::engine::motion::Motion;
 use crate::engine::transition::Transition;
+use crate::engine::yielding;
 use crate::levels::detail::Model;
 use crate::levels::level::Rates;
 use crate::levels::output_series::{self, Turn};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::{self, Measure};
+use crate::mechanics::restraint::{Angles, Dissipators, Restraints, ties};
 use crate::series::extremes::Bound;
 use crate::series::taylor::{Arc, Series, Start, evaluate};
 use crate::{Outputs, Phase, Reactions, State};
@@ -76,7 +78,8 @@ pub struct Sample<'a> {
 impl Sample<'_> {
     /// The outputs; once overturned, those of the instant before.
     pub fn outputs(&self) -> Outputs {
-        self.model.outputs(self.motion.phase.in_motion(), &self.motion.state, self.load)
+        let Motion { phase, state, dissipators, .. } = &self.motion;
+        self.model.outputs(phase.in_motion(), state, self.load, dissipators)
     }
 
     /// The reactions; once overturned, those of the instant before.
@@ -85,10 +88,26 @@ impl Sample<'_> {
         Reactions::of(&self.model.structure, phase, &self.motion.state, self.accelerations(), self.load)
     }
 
+    /// What of the reactions the edges of the base carry: all of them, unless the structure is restrained.
+    pub fn edges(&self) -> Reactions {
+        let Sample { motion: Motion { phase, state, dissipators, .. }, model, .. } = self;
+        let (structure, side) = (&model.structure, phase.side());
+        let ties = || ties(structure, side, dissipators);
+        let reactions = self.reactions();
+        model.level.ties().map_or(reactions, |angles| reactions.of_edges(structure, side, angles, state, &ties()))
+    }
+
+    /// The forces of the restraints.
+    pub fn restraints(&self) -> Restraints {
+        let Motion { phase, state, dissipators, .. } = &self.motion;
+        let chord = self.model.level.ties().unwrap_or(Angles::Any).chord(state.theta, state.theta_dot);
+        Restraints::of(&self.model.structure, phase.side(), state.theta, dissipators, chord)
+    }
+
     /// (ü, θ̈), m/s² and rad/s²; once overturned, those of the instant before.
     pub(crate) fn accelerations(&self) -> [f64; 2] {
-        let Sample { motion: Motion { phase, state, .. }, load, model } = self;
-        model.level.accelerations(&model.structure, phase.in_motion(), state, *load)
+        let Sample { motion: Motion { phase, state, dissipators, .. }, load, model } = self;
+        model.level.accelerations(&model.structure, phase.in_motion(), state, *load, dissipators)
     }
 }
 
@@ -128,7 +147,7 @@ impl Piece<'_> {
 
     /// The outputs in `state`, `tau` seconds into it.
     pub(crate) fn outputs(&self, tau: f64, state: &State) -> Outputs {
-        self.model.outputs(self.before.phase, state, self.load.at(tau))
+        self.model.outputs(self.before.phase, state, self.load.at(tau), &self.before.dissipators)
     }
 
     /// The state `tau` seconds into it.
@@ -155,13 +174,24 @@ impl Piece<'_> {
         self.end
     }
 
+    /// The dissipators `tau` seconds into it.
+    fn dissipators_at(&self, tau: f64) -> Dissipators {
+        let Motion { phase, dissipators, .. } = self.before;
+        match (self.model.level.ties(), phase, self.arc) {
+            (Some(angles), Phase::Rocking(side), Some(arc)) => {
+                yielding::moved(&self.model.structure, *side, angles, dissipators, arc, tau / arc.span)
+            }
+            _ => *dissipators,
+        }
+    }
+
     /// The motion at `time` (s), within it.
     pub fn sample(&self, time: f64) -> Sample<'_> {
         let end = self.before.time + self.duration;
         // an instant that misses the end by the clock's rounding is the end
         let is_before = time < end - 2.0 * f64::EPSILON * end.abs();
         let tau = if is_before { time - self.before.time } else { self.duration };
-        let motion = Motion { time, state: self.state_at(tau), ..*self.before };
+        let motion = Motion { time, state: self.state_at(tau), dissipators: self.dissipators_at(tau), ..*self.before };
         Sample { motion, load: self.load.at(tau), model: self.model }
     }
 }
@@ -181,7 +211,7 @@ impl<'a> Part<'a> {
     #[inline]
     fn step(&self) -> Start {
         let Part { piece, start: (passed, state), end: (until, _) } = *self;
-        piece.model.start(state, piece.load.from(passed), until - passed)
+        piece.model.start(state, piece.before.dissipators, piece.load.from(passed), until - passed)
     }
 
     /// Its halves, where the state between them is known without expanding the motion.
@@ -265,7 +295,7 @@ impl<'a> Part<'a> {
 
         let [(from, first), (_, last)] = self.ends();
         let load = LinearLoad { value: load.at(from), ..load };
-        let accelerations = level.accelerations(structure, phase, &step.state, load.value);
+        let accelerations = level.accelerations(structure, phase, &step.state, load.value, &step.dissipators);
         let rates = Outputs::rates_by(structure, phase, &step.state, accelerations, load);
         std::array::from_fn(|i| {
             let of = |outputs: &Outputs| Measure::ALL[i].of(outputs).abs();

@@ -19,6 +19,10 @@ pub enum TransitionKind {
     Settling,
     /// |θ| reached π/2 on this side.
     Overturning(Side),
+    /// This dissipator, the first (0) at +ξ_d, begins to yield.
+    Yielding(usize),
+    /// It ceases to yield.
+    Unloading(usize),
 }
 
 impl TransitionKind {
@@ -33,6 +37,10 @@ impl TransitionKind {
             TransitionKind::Settling => "settling",
             TransitionKind::Overturning(Side::Left) => "overturning left",
             TransitionKind::Overturning(Side::Right) => "overturning right",
+            TransitionKind::Yielding(0) => "yielding of the first dissipator",
+            TransitionKind::Yielding(_) => "yielding of the second dissipator",
+            TransitionKind::Unloading(0) => "unloading of the first dissipator",
+            TransitionKind::Unloading(_) => "unloading of the second dissipator",
         }
     }
 }
@@ -59,6 +67,18 @@ pub(crate) fn resolve(
     event: Event,
 ) -> (Motion, Transition) {
     let before = motion.state;
+    let yields = match event {
+        Event::Yielding(which, way) => Some((TransitionKind::Yielding(which), which, way)),
+        Event::Unloading(which) => Some((TransitionKind::Unloading(which), which, 0)),
+        _ => None,
+    };
+    if let Some((kind, which, way)) = yields {
+        motion.transitions += 1;
+        motion.dissipators.yields[which] = way;
+        // it ceases to where the elongation turns round
+        motion.state.theta_dot = if way == 0 { 0.0 } else { before.theta_dot };
+        return (motion, Transition { time: motion.time, kind, before, after: motion.state });
+    }
     let limit = level.chatter_limit(structure);
     let (kind, phase, after) = match event {
         Event::Uplift(side) => (TransitionKind::Uplift(side), Phase::Rocking(side), before),
@@ -72,11 +92,16 @@ pub(crate) fn resolve(
             (Phase::Rocking(side), after) => (TransitionKind::Impact(side), Phase::Rocking(side), after),
             (phase, after) => (TransitionKind::Landing, phase, after),
         },
+        Event::Yielding(..) | Event::Unloading(_) => unreachable!("they change no phase"),
     };
     motion.chatter.count(limit);
     motion.transitions += 1;
     motion.impulse = motion.impulse.and(Impulse::of(structure, (motion.phase, &before), (phase, &after)));
     motion.phase = phase;
     motion.state = after;
+    if level.ties().is_some() {
+        let rocking = if let Phase::Rocking(side) = phase { Some((side, after.theta_dot)) } else { None };
+        motion.dissipators = motion.dissipators.after(structure, rocking);
+    }
     (motion, Transition { time: motion.time, kind, before, after })
 }

@@ -10,12 +10,36 @@
 //! S_a is the absolute acceleration spectrum of the ground motion at the vibration mode while rocking
 //! ([`crate::estimates::response_spectrum`]). C is the dynamic amplification of the weight's change of sides at an impact: 2 for
 //! an instant change that meets a quiet structure, down to 0 for a slow one.
+//!
+//! They are of a structure that its weight alone turns back, and are refused for one with a tendon or dissipators.
 
 use crate::Structure;
 use crate::structure::quantity::OutOfRange;
 
 /// The amplification C of an instant transition, and its largest value.
 pub const INSTANT_TRANSITION: f64 = 2.0;
+
+/// Why there is no estimate.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum DemandError {
+    /// The amplification is out of range.
+    #[error(transparent)]
+    OutOfRange(#[from] OutOfRange),
+    /// More than the weight turns the structure back.
+    #[error(
+        "Eqs 14 and 21 to 24 are of a structure that its weight alone turns back, not with P_0 = {P_0:?} N, k_t = {k_t:?} N/m,          c_d = {c_d:?} N.s/m, k_d = {k_d:?} N/m: follow the motion instead"
+    )]
+    Restrained {
+        /// Prestress of the tendon, N.
+        P_0: f64,
+        /// Its stiffness, N/m.
+        k_t: f64,
+        /// Damping of a viscous dissipator, N·s/m.
+        c_d: f64,
+        /// Stiffness of an elastoplastic one, N/m.
+        k_d: f64,
+    },
+}
 
 /// The demands on a rocking structure, term by term.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -38,12 +62,16 @@ pub struct Demand {
 
 impl Demand {
     /// The demand from the spectral acceleration `S_a` = S_a(T_u, ζ_u) (m/s²) and the amplification `C`, 0 to 2.
-    pub fn new(structure: &Structure, S_a: f64, C: f64) -> Result<Demand, OutOfRange> {
+    pub fn new(structure: &Structure, S_a: f64, C: f64) -> Result<Demand, DemandError> {
         if !(0.0..=INSTANT_TRANSITION).contains(&C) {
             let description = "dynamic amplification at a transition between rocking phases; 2 for an instant one";
-            return Err(OutOfRange { name: "C", value: C, unit: "1", min: 0.0, max: INSTANT_TRANSITION, description });
+            let max = INSTANT_TRANSITION;
+            return Err(OutOfRange { name: "C", value: C, unit: "1", min: 0.0, max, description }.into());
         }
-        let &crate::Parameters { m, H, g, .. } = structure.parameters();
+        let &crate::Parameters { m, H, g, P_0, k_t, c_d, k_d, .. } = structure.parameters();
+        if structure.is_restrained() {
+            return Err(DemandError::Restrained { P_0, k_t, c_d, k_d });
+        }
         let ground = structure.one_minus_chi * S_a;
         let rocking = structure.chi * g * structure.tan_alpha_cg;
         let impact = C * rocking;

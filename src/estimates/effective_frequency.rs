@@ -18,7 +18,7 @@ pub fn time_to_impact(structure: &Structure, theta: f64) -> f64 {
         return f64::INFINITY;
     }
     let x = part / (1.0 - part); // acosh(1 + x), with every digit of a small x
-    (x + (x * (x + 2.0)).sqrt()).ln_1p() / structure.p_l
+    libm::log1p(x + (x * (x + 2.0)).sqrt()) / structure.p_l
 }
 
 /// Effective rocking frequency f_r of the amplitude `theta` (rad), Hz (Eq 14).

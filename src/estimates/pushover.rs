@@ -14,11 +14,15 @@
 //! k sin θ u² − [k (H cos θ + B sin θ) + m g] u + g B (m + m0 cos² θ) = 0
 //! ```
 //!
+//! Ties ([`restraint`](crate::mechanics::restraint)) add their moment Σ F s l cos(θ/2) to the right side of (6), and cos θ times
+//! that to the last term of the quadratic.
+//!
 //! The bracket of P is the height of the top mass, so (6) is the moment about the pivot: P's, and what the weight has
 //! left to restore. At θ → 0 the quadratic gives u_cr/(1 + g/(ω_fc² H)): u_cr leaves out the moment m g u of the top
 //! mass, and the force drops by that part (2e-3 for Evison, 5e-3 for McManus) as the base lifts off.
 
 use crate::mechanics::outputs::Outputs;
+use crate::mechanics::restraint::{Angles, Dissipators, Sum, ties, uplift_displacement};
 use crate::series::bisection::last_where;
 use crate::{Phase, Side, State, Structure};
 use std::f64::consts::FRAC_PI_2;
@@ -48,15 +52,22 @@ pub fn in_full_contact(structure: &Structure, u: f64) -> Equilibrium {
 }
 
 /// Rocking at the rotation `theta` (rad), |θ| < π/2; 0 is the start of rocking to the right. `None` for a strut too
-/// soft to hold the structure there.
+/// soft to hold the structure there. The dissipators have been moved there from rest.
 pub fn at_rotation(structure: &Structure, theta: f64) -> Option<Equilibrium> {
+    let dissipators = Dissipators::default().moved(structure, Side::of(theta), theta);
+    with_dissipators(structure, theta, &dissipators)
+}
+
+/// [`at_rotation`] with the `dissipators` as they are there, [`Dissipators::moved`] to it.
+pub fn with_dissipators(structure: &Structure, theta: f64, dissipators: &Dissipators) -> Option<Equilibrium> {
     let &crate::Parameters { m, m0, H, B, g, .. } = structure.parameters();
     let k = structure.k;
     let side = Side::of(theta);
     let s = side.sign();
-    let (sin, cos) = theta.abs().sin_cos();
+    let (sin, cos) = libm::sincos(theta.abs());
     let (quadratic, linear) = (k * sin, k * (H * cos + B * sin) + m * g);
-    let constant = g * B * (m + m0 * cos * cos);
+    let held = s * Sum::of_moments(&ties(structure, side, dissipators)).at(Angles::Any, theta, 0.0);
+    let constant = g * B * (m + m0 * cos * cos) + held * cos;
     let discriminant = linear * linear - 4.0 * quadratic * constant;
     if discriminant < 0.0 {
         return None;
@@ -73,7 +84,8 @@ pub fn at_rotation(structure: &Structure, theta: f64) -> Option<Equilibrium> {
 /// The pushover at the lateral displacement `delta_t` (m) of the top mass: full contact up to u_cr, rocking beyond.
 /// `None` where rocking does not reach, B + H at most.
 pub fn at_displacement(structure: &Structure, delta_t: f64) -> Option<Equilibrium> {
-    if delta_t.abs() <= structure.u_cr {
+    let u_cr = uplift_displacement(structure, Side::of(delta_t), 0.0, &Dissipators::default());
+    if delta_t.abs() <= u_cr {
         return Some(in_full_contact(structure, delta_t));
     }
     let reaches = |theta| at_rotation(structure, theta).is_some_and(|there| there.delta_t >= delta_t.abs());
@@ -84,12 +96,13 @@ pub fn at_displacement(structure: &Structure, delta_t: f64) -> Option<Equilibriu
     at_rotation(structure, theta.copysign(delta_t))
 }
 
-/// The unstable equilibrium without a force, beyond which the structure overturns (to the right). `None` for a strut
-/// too soft to hold the structure on the way there.
+/// The unstable equilibrium without a force, beyond which the structure overturns (to the right); at π/2 of one that its
+/// tendon turns back from everywhere. `None` for a strut too soft to hold the structure on the way there.
 pub fn at_overturning(structure: &Structure) -> Option<Equilibrium> {
-    let tan_alpha_cg = structure.tan_alpha_cg;
+    let alpha_cg = libm::atan(structure.tan_alpha_cg);
+    let farthest = if structure.is_restrained() { FRAC_PI_2 } else { alpha_cg };
     let restores = |theta| at_rotation(structure, theta).is_some_and(|there| there.force >= 0.0);
-    at_rotation(structure, last_where(0.0, tan_alpha_cg.atan(), restores))
+    at_rotation(structure, last_where(0.0, farthest, restores))
 }
 
 #[cfg(test)]
@@ -172,8 +185,8 @@ mod tests {
             let end = at_overturning(&structure).unwrap();
             let weight = structure.gamma * structure.parameters().m * structure.parameters().g;
             assert!(end.force >= 0.0 && end.force < 1e-13 * weight);
-            assert_relative_eq!(end.theta, structure.tan_alpha_cg.atan(), max_relative = 6e-3);
-            assert!(end.theta < structure.tan_alpha_cg.atan());
+            assert_relative_eq!(end.theta, libm::atan(structure.tan_alpha_cg), max_relative = 6e-3);
+            assert!(end.theta < libm::atan(structure.tan_alpha_cg));
             let forces: Vec<_> = (0..=50)
                 .map(|i| at_rotation(&structure, f64::from(i) / 50.0 * end.theta).unwrap())
                 .map(|there| (there.force, there.moment))

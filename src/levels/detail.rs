@@ -10,15 +10,19 @@
 //! | `modal` | 1, 11, 18 | closed forms of two modes, likewise |
 //! | `rigid` | 6 with u = 0 | series |
 //! | `fixed_base` | 1, no uplift | exact flow |
+//!
+//! A structure that is restrained or shaken vertically has levels of its own, with the same equations and more terms: by
+//! series while rocking. There are no modes then.
 
 use crate::levels::first_uplift;
 use crate::levels::full_contact::{self, ExactContact};
 use crate::levels::level::{ElasticRocking, Level, Rates};
-use crate::levels::linear::LinearRocking;
+use crate::levels::linear::{LinearRocking, RestrainedLinear};
 use crate::levels::modal::ModalRocking;
 use crate::levels::nonlinear::NonlinearRocking;
 use crate::levels::rigid::Rigid;
-use crate::mechanics::load::{LinearLoad, Load};
+use crate::mechanics::load::{LinearLoad, Load, Ramp};
+use crate::mechanics::restraint::{Angles, Dissipators};
 use crate::mechanics::state::InitialStateError;
 use crate::mechanics::uplift;
 use crate::series::first_crossing::Crossing;
@@ -74,10 +78,21 @@ impl Detail {
         }
     }
 
-    /// What moves `structure` at this level, in steps of this `local_error`.
-    fn level(self, structure: &Structure, local_error: f64) -> AnyLevel {
+    /// Whether this level has a motion of what is `restrained`, or shaken vertically.
+    pub(crate) fn check_restrained(self, restrained: bool) -> Result<(), InitialStateError> {
+        if self == Detail::Modal && restrained { Err(InitialStateError::RestrainedModal) } else { Ok(()) }
+    }
+
+    /// What moves `structure` at this level, in steps of this `local_error`, if it is `restrained` or shaken vertically too.
+    fn level(self, structure: &Structure, local_error: f64, restrained: bool) -> AnyLevel {
         let contact = Some(ExactContact::new(structure));
+        let restrained_nonlinear =
+            |contact| AnyLevel::RestrainedNonlinear(Elastic { contact, rocking: NonlinearRocking::default() });
         match self {
+            Detail::Auto if restrained => restrained_nonlinear(contact),
+            Detail::Nonlinear if restrained => restrained_nonlinear(None),
+            Detail::Linear if restrained => AnyLevel::RestrainedLinear(Elastic { contact, rocking: RestrainedLinear }),
+            Detail::Rigid if restrained => AnyLevel::RestrainedRigid(Rigid { local_error }),
             Detail::Auto => AnyLevel::Nonlinear(Elastic { contact, rocking: NonlinearRocking::default() }),
             Detail::Nonlinear => AnyLevel::Nonlinear(Elastic { contact: None, rocking: NonlinearRocking::default() }),
             Detail::Linear => AnyLevel::Linear(Elastic { contact, rocking: LinearRocking::new(structure) }),
@@ -98,16 +113,16 @@ pub(crate) struct Model {
 }
 
 impl Model {
-    /// Of `structure` at the level `detail`.
-    pub(crate) fn new(structure: Structure, detail: Detail, local_error: f64) -> Model {
-        Model { structure, level: detail.level(&structure, local_error), local_error }
+    /// Of `structure` at the level `detail`, `restrained` or shaken vertically.
+    pub(crate) fn new(structure: Structure, detail: Detail, local_error: f64, restrained: bool) -> Model {
+        Model { structure, level: detail.level(&structure, local_error, restrained), local_error }
     }
 
     /// The step of `interval` (s) from `state` under `load`.
     #[inline]
-    pub(crate) fn start(&self, state: State, load: LinearLoad, interval: f64) -> Start {
-        let (a_g, a_top) = (load.on_foundation(), load.on_top(&self.structure));
-        Start { state, a_g, a_top, interval, local_error: self.local_error }
+    pub(crate) fn start(&self, state: State, dissipators: Dissipators, load: LinearLoad, interval: f64) -> Start {
+        let (a_g, a_top, a_v) = (load.on_foundation(), load.on_top(&self.structure), load.upwards());
+        Start { state, a_g, a_top, a_v, dissipators, interval, local_error: self.local_error }
     }
 }
 
@@ -115,11 +130,14 @@ impl Model {
 #[derive(Clone, Debug)]
 #[allow(clippy::large_enum_variant)] // an engine keeps one, behind a pointer
 pub(crate) enum AnyLevel {
-    Nonlinear(Elastic<NonlinearRocking>),
+    Nonlinear(Elastic<NonlinearRocking<false>>),
     Linear(Elastic<LinearRocking>),
     Modal(Elastic<ModalRocking>),
-    Rigid(Rigid),
+    Rigid(Rigid<false>),
     FixedBase(FixedBase),
+    RestrainedNonlinear(Elastic<NonlinearRocking<true>>),
+    RestrainedLinear(Elastic<RestrainedLinear>),
+    RestrainedRigid(Rigid<true>),
 }
 
 impl Deref for AnyLevel {
@@ -132,6 +150,9 @@ impl Deref for AnyLevel {
             AnyLevel::Modal(level) => level,
             AnyLevel::Rigid(level) => level,
             AnyLevel::FixedBase(level) => level,
+            AnyLevel::RestrainedNonlinear(level) => level,
+            AnyLevel::RestrainedLinear(level) => level,
+            AnyLevel::RestrainedRigid(level) => level,
         }
     }
 }
@@ -147,7 +168,11 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
     #[inline(always)]
     fn leap(&self, structure: &Structure, phase: Phase, start: &Start) -> Option<State> {
         match phase {
-            Phase::FullContact => self.contact.as_ref()?.leap(start, structure.u_cr),
+            Phase::FullContact if self.rocking.ties().is_none() => self.contact.as_ref()?.leap(start, structure.u_cr),
+            Phase::FullContact => {
+                let limit = uplift::least_displacement(structure, start.a_v, start.interval, &start.dissipators);
+                self.contact.as_ref()?.leap(start, limit)
+            }
             Phase::Rocking(side) => self.rocking.leap(side, start),
             Phase::Overturned(_) => None,
         }
@@ -173,18 +198,51 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
         matches!(phase, Phase::Rocking(side) if self.rocking.is_singular(structure, side, state))
     }
 
-    fn first_uplift(&self, structure: &Structure, _start: &Start, arc: &Arc) -> (Crossing, Side) {
-        first_uplift::first_on(structure, &self.rocking.turning_moment(structure), arc)
+    fn ties(&self) -> Option<Angles> {
+        self.rocking.ties()
     }
 
-    fn uplift_margin(&self, structure: &Structure, state: &State, _load: Load) -> (f64, Side) {
-        uplift::margin(structure, &self.rocking.turning_moment(structure), state)
+    fn first_uplift(&self, structure: &Structure, start: &Start, arc: &Arc) -> (Crossing, Side) {
+        let turning = self.rocking.turning_moment(structure);
+        match self.rocking.ties() {
+            None => first_uplift::first_on(structure, &turning, arc),
+            Some(_) => first_uplift::first_of_restrained(structure, &turning, start, arc),
+        }
     }
 
-    fn accelerations(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2] {
+    fn stays_down(&self, structure: &Structure, state: &State, dissipators: &Dissipators) -> bool {
+        let limit = match self.rocking.ties() {
+            None => structure.u_cr,
+            Some(_) => uplift::least_displacement(structure, Ramp::default(), 0.0, dissipators),
+        };
+        uplift::farthest(structure, state) < limit
+    }
+
+    fn uplift_margin(
+        &self,
+        structure: &Structure,
+        state: &State,
+        load: Load,
+        dissipators: &Dissipators,
+    ) -> (f64, Side) {
+        let turning = self.rocking.turning_moment(structure);
+        match self.rocking.ties() {
+            None => uplift::margin(structure, &turning, state),
+            Some(_) => uplift::margin_of_restrained(structure, &turning, state, load.a_v, dissipators),
+        }
+    }
+
+    fn accelerations(
+        &self,
+        structure: &Structure,
+        phase: Phase,
+        state: &State,
+        load: Load,
+        dissipators: &Dissipators,
+    ) -> [f64; 2] {
         match phase {
             Phase::FullContact => [full_contact::acceleration(structure, state, load), 0.0],
-            Phase::Rocking(side) => self.rocking.accelerations(structure, side, state, load),
+            Phase::Rocking(side) => self.rocking.accelerations(structure, side, state, load, dissipators),
             Phase::Overturned(_) => [0.0; 2],
         }
     }
@@ -214,15 +272,22 @@ impl Level for FixedBase {
         (Crossing::None, Side::Right)
     }
 
-    fn stays_down(&self, _structure: &Structure, _state: &State) -> bool {
+    fn stays_down(&self, _structure: &Structure, _state: &State, _dissipators: &Dissipators) -> bool {
         true
     }
 
-    fn uplift_margin(&self, _structure: &Structure, _state: &State, _load: Load) -> (f64, Side) {
+    fn uplift_margin(&self, _: &Structure, _: &State, _: Load, _: &Dissipators) -> (f64, Side) {
         (1.0, Side::Right)
     }
 
-    fn accelerations(&self, structure: &Structure, _phase: Phase, state: &State, load: Load) -> [f64; 2] {
+    fn accelerations(
+        &self,
+        structure: &Structure,
+        _phase: Phase,
+        state: &State,
+        load: Load,
+        _dissipators: &Dissipators,
+    ) -> [f64; 2] {
         [full_contact::acceleration(structure, state, load), 0.0]
     }
 }
@@ -230,7 +295,7 @@ impl Level for FixedBase {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Parameters, Ramp};
+    use crate::Parameters;
 
     /// Numbers between −1 and 1: a linear congruential generator.
     fn noise() -> impl Iterator<Item = f64> {
@@ -251,12 +316,13 @@ mod tests {
             (Detail::Linear, Phase::Rocking(Side::Right), rocking),
             (Detail::FixedBase, Phase::FullContact, down),
         ] {
-            let level = detail.level(&structure, 1e-9);
+            let level = detail.level(&structure, 1e-9, false);
             let (mut expected, mut arc) = (state, Arc::default());
             let (mut u_dot, mut theta_dot) = (0.0_f64, 0.0_f64);
             for (k, pair) in noise().map(|x| 20.0 * x).take(1001).collect::<Vec<_>>().windows(2).enumerate() {
                 let a_g = Ramp { value: pair[0], slope: (pair[1] - pair[0]) / 2.1e-4 };
-                let start = |state| Start { state, a_g, a_top: a_g, interval: 2.1e-4, local_error: 1e-17 };
+                let start =
+                    |state| Start { state, a_g, a_top: a_g, interval: 2.1e-4, local_error: 1e-17, ..Start::default() };
                 state = level.leap(&structure, phase, &start(state)).unwrap_or_else(|| panic!("{detail:?} at {k}"));
                 level.series(&structure, phase, &start(expected), &mut arc);
                 expected = arc.end();

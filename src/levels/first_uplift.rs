@@ -1,8 +1,9 @@
 //! The first instant of a motion in full contact at which [uplift](crate::mechanics::uplift) is due.
 
+use crate::mechanics::restraint::{holding_moment, uplift_displacement};
 use crate::mechanics::uplift::{LEAST_EXCESS, TurningMoment};
 use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
-use crate::series::taylor::{Arc, Series};
+use crate::series::taylor::{Arc, Series, Start, evaluate};
 use crate::{Side, Structure};
 
 /// The first instant of `arc`, a motion in full contact, at which uplift is due, and the side about which it rocks
@@ -28,13 +29,49 @@ fn first_about(structure: &Structure, turning: &TurningMoment, arc: &Arc, side: 
     first_time_all_closed([displacement, moment], arc.reach)
 }
 
+/// [`first_on`] of a restrained structure, or one shaken vertically, from `start`.
+pub(crate) fn first_of_restrained(
+    structure: &Structure,
+    turning: &TurningMoment,
+    start: &Start,
+    arc: &Arc,
+) -> (Crossing, Side) {
+    let a_v = |k: usize| start.a_v.coefficient(k, arc.span);
+    let about = |side: Side| {
+        let of = |a_v: f64| {
+            let held = turning.weight + holding_moment(structure, side, a_v, &start.dissipators);
+            (uplift_displacement(structure, side, a_v, &start.dissipators), held)
+        };
+        let (now, at_end) = (of(a_v(0)), of(a_v(0) + a_v(1)));
+        let line = |now: f64, end: f64, k: usize| [now, end - now].get(k).copied().unwrap_or(0.0);
+        let s = side.sign();
+        let limit = arc.series(|k| line(now.0, at_end.0, k));
+        let displacement = arc.series(|k| limit[k] - s * arc.u[k]);
+        let moment = arc.series(|k| {
+            let lifted = a_v(0) * arc.u[k] + if k > 0 { a_v(1) * arc.u[k - 1] } else { 0.0 };
+            line(now.1, at_end.1, k) - s * (turning.u * arc.u[k] + turning.u_dot * arc.u_dot[k] + lifted)
+        });
+        let turns = || Guard::new(arc.used(&moment), 1.0, LEAST_EXCESS * turning.weight);
+        let first = |of: &Series| first_time_all_closed([Guard::new(arc.used(of), 1.0, 0.0), turns()], arc.reach);
+        let (far, loose) = (first(&displacement), first(&limit));
+        (if far.sigma() <= loose.sigma() { far } else { loose }, moment)
+    };
+    let [right, left] = [Side::Right, Side::Left].map(about);
+    let sigma = right.0.sigma();
+    let turns = |(_, moment): &(Crossing, Series)| evaluate(arc.used(moment), sigma);
+    let is_right = match sigma == left.0.sigma() && sigma < f64::INFINITY {
+        true => turns(&right) <= turns(&left),
+        false => sigma <= left.0.sigma(),
+    };
+    if is_right { (right.0, Side::Right) } else { (left.0, Side::Left) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::levels::full_contact;
     use crate::levels::nonlinear::accelerations;
     use crate::mechanics::load::{Load, Ramp};
-    use crate::series::taylor::Start;
     use crate::{Parameters, State};
     use proptest::prelude::*;
 
@@ -43,7 +80,7 @@ mod tests {
         let a_g = Ramp::default();
         full_contact::series(
             structure,
-            &Start { state, a_g, a_top: a_g, interval: 1e-9, local_error: 1e-13 },
+            &Start { state, a_g, a_top: a_g, interval: 1e-9, local_error: 1e-13, ..Start::default() },
             &mut arc,
         );
         first_on(structure, &TurningMoment::new(structure), &arc)
@@ -58,7 +95,7 @@ mod tests {
             let structure = Structure::new(Parameters { zeta_fc: 0.1, ..Parameters::MCMANUS }).unwrap();
             let state = State { u, u_dot, ..State::default() };
             let side = Side::of(u);
-            let theta_ddot = accelerations(&structure, side, &state, Load { a_g, F_t }).unwrap()[1];
+            let theta_ddot = accelerations(&structure, side, &state, Load { a_g, F_t, a_v: 0.0 }).unwrap()[1];
             prop_assume!(theta_ddot.abs() > 1e-6 && (u.abs() - structure.u_cr).abs() > 1e-8);
             let both = u.abs() >= structure.u_cr && side.sign() * theta_ddot > 0.0;
             let expected = if both { (Crossing::At(0.0), side) } else { (Crossing::None, Side::Right) };
@@ -85,7 +122,7 @@ mod tests {
         let mut arc = Arc::default();
         full_contact::series(
             &structure,
-            &Start { state, a_g: push, a_top: push, interval: 2e-3, local_error: 1e-15 },
+            &Start { state, a_g: push, a_top: push, interval: 2e-3, local_error: 1e-15, ..Start::default() },
             &mut arc,
         );
         let (Crossing::At(sigma), Side::Right) = first_on(&structure, &TurningMoment::new(&structure), &arc) else {

@@ -96,7 +96,7 @@ mod tests {
     }
 
     fn from(state: State, a_g: Ramp, interval: f64) -> Start {
-        Start { state, a_g, a_top: a_g, interval, local_error: 1e-15 }
+        Start { state, a_g, a_top: a_g, interval, local_error: 1e-15, ..Start::default() }
     }
 
     const RAMP: Ramp = Ramp { value: 0.7, slope: -30.0 };

@@ -3,7 +3,8 @@
 use crate::levels::rules::{ChatterLimit, MAX_TRANSITIONS_PER_PERIOD};
 use crate::mechanics::impact;
 use crate::mechanics::load::Load;
-use crate::mechanics::uplift::TurningMoment;
+use crate::mechanics::restraint::{Angles, Dissipators};
+use crate::mechanics::uplift::{self, TurningMoment};
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, Start};
 use crate::{Phase, Side, State, Structure};
@@ -25,17 +26,23 @@ pub(crate) trait Level {
         false
     }
 
+    /// How the ties of a restrained structure elongate; none where nothing restrains it.
+    fn ties(&self) -> Option<Angles> {
+        None
+    }
+
     /// The first instant of `arc`, a motion in full contact from `start`, at which uplift is due, and about which side.
     fn first_uplift(&self, structure: &Structure, start: &Start, arc: &Arc) -> (Crossing, Side);
 
     /// Whether a structure in full contact in `state` stays there while nothing acts on it.
-    fn stays_down(&self, structure: &Structure, state: &State) -> bool {
-        state.u.hypot(state.u_dot / structure.omega_fc) < structure.u_cr
+    fn stays_down(&self, structure: &Structure, state: &State, _dissipators: &Dissipators) -> bool {
+        uplift::farthest(structure, state) < structure.u_cr
     }
 
     /// How far a structure in full contact in `state` under `load` is from uplift, in parts of what uplift takes, and about
     /// which side that would be: continuous, positive while the base stays down, due where it is not.
-    fn uplift_margin(&self, structure: &Structure, state: &State, load: Load) -> (f64, Side);
+    fn uplift_margin(&self, structure: &Structure, state: &State, load: Load, dissipators: &Dissipators)
+    -> (f64, Side);
 
     /// Phase and state just after an impact that ends rocking about `side` in the state `before`.
     fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
@@ -56,7 +63,14 @@ pub(crate) trait Level {
     }
 
     /// (ü, θ̈) in `phase` under `load`, m/s² and rad/s²; not a number where the equations have no solution.
-    fn accelerations(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2];
+    fn accelerations(
+        &self,
+        structure: &Structure,
+        phase: Phase,
+        state: &State,
+        load: Load,
+        dissipators: &Dissipators,
+    ) -> [f64; 2];
 }
 
 /// Equations of rocking with an elastic strut.
@@ -65,7 +79,9 @@ pub(crate) trait ElasticRocking {
         None
     }
 
-    fn rates(&self, side: Side, start: &Start, end: &State) -> Rates;
+    fn rates(&self, _side: Side, _start: &Start, _end: &State) -> Rates {
+        Rates::NONE
+    }
 
     fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc);
 
@@ -73,10 +89,22 @@ pub(crate) trait ElasticRocking {
         false
     }
 
+    /// As [`Level::ties`].
+    fn ties(&self) -> Option<Angles> {
+        None
+    }
+
     /// What decides the sign of θ̈ at the start of rocking.
     fn turning_moment(&self, structure: &Structure) -> TurningMoment;
 
-    fn accelerations(&self, structure: &Structure, side: Side, state: &State, load: Load) -> [f64; 2];
+    fn accelerations(
+        &self,
+        structure: &Structure,
+        side: Side,
+        state: &State,
+        load: Load,
+        dissipators: &Dissipators,
+    ) -> [f64; 2];
 }
 
 /// Bounds of |u|, |θ| and their derivatives over an exact leap.

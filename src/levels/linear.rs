@@ -16,10 +16,13 @@
 
 use crate::levels::level::{ElasticRocking, Rates};
 use crate::levels::linear_system::{LinearSystem, Row};
+use crate::levels::nonlinear::{longest_restrained_span, truncation};
 use crate::levels::oscillator::Kept;
+use crate::levels::tie_series::TieSeries;
 use crate::mechanics::load::Load;
+use crate::mechanics::restraint::{Angles, Dissipators, Sum, ties};
 use crate::mechanics::uplift::TurningMoment;
-use crate::series::taylor::{Arc, Start};
+use crate::series::taylor::{Arc, Series, Start};
 use crate::{Side, State, Structure};
 use nalgebra::{SMatrix, SVector};
 use std::f64::consts::FRAC_PI_2;
@@ -173,8 +176,71 @@ impl ElasticRocking for LinearRocking {
         self.system.turning_moment()
     }
 
-    fn accelerations(&self, structure: &Structure, side: Side, state: &State, load: Load) -> [f64; 2] {
+    fn accelerations(
+        &self,
+        structure: &Structure,
+        side: Side,
+        state: &State,
+        load: Load,
+        _dissipators: &Dissipators,
+    ) -> [f64; 2] {
         self.system.accelerations(side, state, load.on_top(structure))
+    }
+}
+
+/// Series by Eqs 7 and 8 of a structure that is restrained or shaken vertically: g is g + a_v, linear in time, and the ties
+/// take their moment from Eq 8,
+///
+/// ```text
+/// θ̈ = [H κ + (g + a_v) u − s γ (g + a_v) B − Σ F l/m]/i,      ü = −a_g + (g + a_v) θ − κ − H θ̈
+/// ```
+#[derive(Clone, Debug)]
+pub(crate) struct RestrainedLinear;
+
+impl ElasticRocking for RestrainedLinear {
+    fn ties(&self) -> Option<Angles> {
+        Some(Angles::Small)
+    }
+
+    fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
+        let &Start { state, a_top, a_v, interval, ref dissipators, .. } = start;
+        let span = interval.min(longest_restrained_span(structure));
+        let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
+        let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
+        let (inertia, offset) = (foundation + B * B, side.sign() * gamma * B);
+        let gravity = [g + a_v.value, a_v.slope * span];
+        let mut held = TieSeries::new(Sum::of_moments(&ties(structure, side, dissipators)), Angles::Small, state.theta);
+        arc.expand(&state, span, truncation(structure, start, span), |arc, k, per| {
+            let n = k - 1;
+            let weighted = |of: &Series| gravity[0] * of[n] + if n > 0 { gravity[1] * of[n - 1] } else { 0.0 };
+            let elastic = damping_u * arc.u_dot[n] + stiffness * arc.u[n];
+            let down = gravity.get(n).map_or(0.0, |weight| offset * weight);
+            let back = held.next(&arc.theta_dot, n, per) / m;
+            let theta_ddot = (H * elastic + weighted(&arc.u) - down - back) / inertia;
+            let u_ddot = weighted(&arc.theta) - a_top.coefficient(n, span) - elastic - H * theta_ddot;
+            (u_ddot * per, theta_ddot * per)
+        });
+    }
+
+    fn turning_moment(&self, structure: &Structure) -> TurningMoment {
+        TurningMoment::new(structure)
+    }
+
+    fn accelerations(
+        &self,
+        structure: &Structure,
+        side: Side,
+        state: &State,
+        load: Load,
+        dissipators: &Dissipators,
+    ) -> [f64; 2] {
+        let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
+        let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
+        let &State { u, u_dot, theta, theta_dot } = state;
+        let (g, elastic) = (g + load.a_v, damping_u * u_dot + stiffness * u);
+        let back = Sum::of_moments(&ties(structure, side, dissipators)).at(Angles::Small, theta, theta_dot) / m;
+        let theta_ddot = (H * elastic + g * (u - side.sign() * gamma * B) - back) / (foundation + B * B);
+        [g * theta - load.on_top(structure) - elastic - H * theta_ddot, theta_ddot]
     }
 }
 
@@ -253,7 +319,7 @@ mod tests {
             let structure = Structure::new(Parameters { zeta_fc, ..Parameters::MCMANUS }).unwrap();
             let state = State { u, u_dot, theta, theta_dot };
             let a_g = Ramp { value, slope };
-            let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15 };
+            let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15, ..Start::default() };
             let rocking = LinearRocking::new(&structure);
             let mut arc = Arc::default();
             rocking.system.series(&structure, Side::Right, &start, &mut arc);

@@ -13,6 +13,7 @@ use crate::levels::level::{ElasticRocking, Rates};
 use crate::levels::linear_system::{LinearSystem, Row};
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
 use crate::mechanics::load::Load;
+use crate::mechanics::restraint::Dissipators;
 use crate::mechanics::uplift::TurningMoment;
 use crate::series::taylor::{Arc, Start, reciprocal};
 use crate::{Side, State, Structure};
@@ -44,7 +45,7 @@ struct Growth {
 impl Growth {
     fn over(p_l: f64, h: f64) -> Growth {
         let x = p_l * h;
-        let sinh = x.sinh();
+        let sinh = libm::sinh(x);
         // sinh x − x loses its digits where x is small: x³/3! + x⁵/5! + …
         let excess = if x < 1.0 {
             let next = |sum: f64, k: usize| (1.0 + sum) * x * x * reciprocal(2 * k) * reciprocal(2 * k + 1);
@@ -52,7 +53,7 @@ impl Growth {
         } else {
             sinh - x
         };
-        Growth { sinh, step: 2.0 * (0.5 * x).sinh().powi(2), ramp: excess / p_l }
+        Growth { sinh, step: 2.0 * libm::sinh(0.5 * x).powi(2), ramp: excess / p_l }
     }
 }
 
@@ -154,7 +155,14 @@ impl ElasticRocking for ModalRocking {
         self.system.turning_moment()
     }
 
-    fn accelerations(&self, structure: &Structure, side: Side, state: &State, load: Load) -> [f64; 2] {
+    fn accelerations(
+        &self,
+        structure: &Structure,
+        side: Side,
+        state: &State,
+        load: Load,
+        _dissipators: &Dissipators,
+    ) -> [f64; 2] {
         self.system.accelerations(side, state, load.on_top(structure))
     }
 }
@@ -194,7 +202,7 @@ mod tests {
             let structure = Structure::new(Parameters::MCMANUS).unwrap();
             let state = State { u, u_dot, theta, theta_dot };
             let a_g = Ramp { value, slope };
-            let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15 };
+            let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15, ..Start::default() };
             let rocking = ModalRocking::new(&structure);
             let mut arc = Arc::default();
             rocking.system.series(&structure, Side::Left, &start, &mut arc);

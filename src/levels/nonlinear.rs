@@ -19,9 +19,14 @@
 //! ẏ = F − κ − w θ̇²
 //! L̇ = H (κ + w θ̇²) − w G − s(γ−1)B G₀
 //! ```
+//!
+//! Of a restrained structure, or one shaken vertically, g is g + a_v, linear in time, and the moment of the ties
+//! ([`restraint`](crate::mechanics::restraint)) over m is taken from L̇.
 
-use crate::levels::level::{ElasticRocking, Rates};
+use crate::levels::level::ElasticRocking;
+use crate::levels::tie_series::TieSeries;
 use crate::mechanics::load::Load;
+use crate::mechanics::restraint::{Angles, Dissipators, Sum, ties};
 use crate::mechanics::uplift::TurningMoment;
 use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
 use crate::{Side, State, Structure};
@@ -32,11 +37,17 @@ use wide::f64x2;
 /// (ü, θ̈) in m/s² and rad/s² under `load`: Eqs 5 and 6 as they stand, solved for the
 /// accelerations. `None` where the mass matrix is singular: m0 = J0 = 0 and u = sB, the top mass above the pivot.
 pub fn accelerations(structure: &Structure, side: Side, state: &State, load: Load) -> Option<Vector2<f64>> {
-    let Load { a_g, F_t } = load;
+    solved(structure, side, state, load, 0.0)
+}
+
+/// (ü, θ̈) where restraints turn the structure back by a moment `back` (N·m).
+fn solved(structure: &Structure, side: Side, state: &State, load: Load, back: f64) -> Option<Vector2<f64>> {
+    let Load { a_g, F_t, a_v } = load;
     let &crate::Parameters { m, m0, H, B, J0, g, .. } = structure.parameters();
+    let g = g + a_v;
     let &State { u, u_dot, theta, theta_dot } = state;
     let s = side.sign();
-    let (sin, cos) = theta.sin_cos();
+    let (sin, cos) = libm::sincos(theta);
     let lever = s * B - u;
     let mass = Matrix2::new(m, m * H, m * H, J0 + m * H * H + m * lever * lever + m0 * B * B);
     let force = Vector2::new(
@@ -46,7 +57,8 @@ pub fn accelerations(structure: &Structure, side: Side, state: &State, load: Loa
         2.0 * m * lever * u_dot * theta_dot + m * g * H * sin + m * g * u * cos
             - s * (m + m0) * g * B * cos
             - a_g * (m * H * cos + (s * (m + m0) * B - m * u) * sin)
-            + F_t * (H * cos + lever * sin),
+            + F_t * (H * cos + lever * sin)
+            - back,
     );
     Some(mass.try_inverse()? * force)
 }
@@ -103,20 +115,20 @@ fn products(a: &Factors, b: &Factors, newest_a: &Row, newest_b: &Row, n: usize) 
 /// of order i ("next": of order i + 1). Column by column they multiply to the rates of sin θ and −cos θ, to what the
 /// later coefficients of w contribute to w θ̇ and w² θ̇, to w θ̇² and to the moment of the top mass's weight.
 #[derive(Clone, Debug)]
-pub(crate) struct NonlinearRocking {
+pub(crate) struct NonlinearRocking<const RESTRAINED: bool> {
     /// Left and right.
     factors: RefCell<[Factors; 2]>,
 }
 
-impl Default for NonlinearRocking {
-    fn default() -> NonlinearRocking {
+impl<const RESTRAINED: bool> Default for NonlinearRocking<RESTRAINED> {
+    fn default() -> Self {
         NonlinearRocking { factors: RefCell::new([[NO_ROW; MAX_ORDER + 1]; 2]) }
     }
 }
 
-impl ElasticRocking for NonlinearRocking {
-    fn rates(&self, _side: Side, _start: &Start, _end: &State) -> Rates {
-        Rates::NONE
+impl<const RESTRAINED: bool> ElasticRocking for NonlinearRocking<RESTRAINED> {
+    fn ties(&self) -> Option<Angles> {
+        RESTRAINED.then_some(Angles::Any)
     }
 
     fn is_singular(&self, structure: &Structure, side: Side, state: &State) -> bool {
@@ -129,16 +141,35 @@ impl ElasticRocking for NonlinearRocking {
         TurningMoment::new(structure)
     }
 
-    fn accelerations(&self, structure: &Structure, side: Side, state: &State, load: Load) -> [f64; 2] {
-        accelerations(structure, side, state, load).map_or([f64::NAN; 2], Into::into)
+    fn accelerations(
+        &self,
+        structure: &Structure,
+        side: Side,
+        state: &State,
+        load: Load,
+        dissipators: &Dissipators,
+    ) -> [f64; 2] {
+        let back = if RESTRAINED {
+            Sum::of_moments(&ties(structure, side, dissipators)).at(Angles::Any, state.theta, state.theta_dot)
+        } else {
+            0.0
+        };
+        solved(structure, side, state, load, back).map_or([f64::NAN; 2], Into::into)
     }
 
     #[inline(always)]
     fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
         let &Start { state, a_g, a_top, interval, .. } = start;
-        let &crate::Parameters { H, B, g, .. } = structure.parameters();
+        let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
         let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
-        let span = interval.min(longest_span(structure));
+        let longest = if RESTRAINED { longest_restrained_span(structure) } else { longest_span(structure) };
+        let span = interval.min(longest);
+        // g + a_v now, and what it gains over the span
+        let (g, lift) = if RESTRAINED { (g + start.a_v.value, start.a_v.slope * span) } else { (g, 0.0) };
+        let mut held = RESTRAINED.then(|| {
+            let sum = Sum::of_moments(&ties(structure, side, &start.dissipators));
+            TieSeries::new(sum, Angles::Any, state.theta)
+        });
         let [(a, slope), (a_ground, slope_ground)] = [a_top, a_g].map(|a| (a.value, a.slope * span));
         let weight_offset = side.sign() * (gamma - 1.0) * B; // s(γ−1)B
         let lever = side.sign() * B - state.u; // w at the start
@@ -147,7 +178,7 @@ impl ElasticRocking for NonlinearRocking {
         let [height, offset, lever_start] = [H, weight_offset, lever].map(|factor| factor * per_inertia);
 
         let State { u, u_dot, theta, theta_dot } = state;
-        let (mut sin, mut cos) = theta.sin_cos();
+        let (mut sin, mut cos) = libm::sincos(theta);
         let mut weight = g * cos + a * sin; // G
         let mut weight_below = g * cos + a_ground * sin; // G₀
         let mut along = g * sin - a * cos; // F
@@ -165,8 +196,11 @@ impl ElasticRocking for NonlinearRocking {
             let [sin_rate, minus_cos_rate, w_turning, w_w_turning, centrifugal, weight_moment] =
                 products(left, right, &newest_left, &newest_right, before);
             let y = (along - elastic - centrifugal) * per;
-            let moment =
+            let mut moment =
                 (height * elastic - offset * weight_below) + (height * centrifugal - per_inertia * weight_moment);
+            if RESTRAINED && let Some(held) = &mut held {
+                moment -= per_inertia / m * held.next(&arc.theta_dot, before, per);
+            }
             theta_dot = moment * per - (lever_start * w_turning + per_inertia * w_w_turning);
             let u_dot = y - H * theta_dot;
 
@@ -176,6 +210,11 @@ impl ElasticRocking for NonlinearRocking {
             weight = g * cos + a * sin + slope * sin_before;
             weight_below = g * cos + a_ground * sin + slope_ground * sin_before;
             along = g * sin - a * cos - slope * cos_before;
+            if RESTRAINED {
+                weight += lift * cos_before;
+                weight_below += lift * cos_before;
+                along += lift * sin_before;
+            }
             elastic = damping_u * u_dot + stiffness * arc.u[k];
             newest_left = row([theta_dot, theta_dot, theta_dot, lever_turning, lever_turning, -arc.u[k]]);
             (u_dot, theta_dot)
@@ -186,6 +225,15 @@ impl ElasticRocking for NonlinearRocking {
 /// The longest span (s) that a series is tried over while rocking.
 pub(crate) fn longest_span(structure: &Structure) -> f64 {
     LONGEST_SPAN / structure.omega_u.max(structure.p_l)
+}
+
+/// That of a structure with restraints, which make it stiffer and may damp it faster than it vibrates.
+pub(crate) fn longest_restrained_span(structure: &Structure) -> f64 {
+    let &crate::Parameters { m, B, k_t, xi_d, c_d, k_d, .. } = structure.parameters();
+    let &Structure { omega_u, p_l, foundation, .. } = structure;
+    let (inertia, pair) = (m * (foundation + B * B), 2.0 * (B * B + xi_d * xi_d));
+    let stiffness = k_t * B * B + k_d * pair;
+    LONGEST_SPAN / (omega_u * omega_u + stiffness / inertia).sqrt().max(p_l).max(c_d * pair / inertia)
 }
 
 /// The truncation that `start` asks for over a step of `span` s while rocking.
@@ -221,11 +269,11 @@ mod tests {
             let side = Side::of(theta);
             let state = State { u, u_dot, theta, theta_dot };
             let mut arc = Arc::default();
-            let value = Load { a_g: value, F_t: force };
-            let load = LinearLoad { value, slope: Load { a_g: slope, F_t: force_slope } };
+            let value = Load { a_g: value, F_t: force, a_v: 0.0 };
+            let load = LinearLoad { value, slope: Load { a_g: slope, F_t: force_slope, a_v: 0.0 } };
             let (a_g, a_top) = (load.on_foundation(), load.on_top(&structure));
-            let start = Start { state, a_g, a_top, interval: 2e-3, local_error: 1e-16 };
-            NonlinearRocking::default().series(&structure, side, &start, &mut arc);
+            let start = Start { state, a_g, a_top, interval: 2e-3, local_error: 1e-16, ..Start::default() };
+            NonlinearRocking::<false>::default().series(&structure, side, &start, &mut arc);
             for sigma in [0.0, 0.2, 0.55, 1.0] {
                 let load = load.at(sigma * arc.span);
                 let expected = accelerations(&structure, side, &arc.at(sigma), load).unwrap();
@@ -251,8 +299,8 @@ mod tests {
         let structure = Structure::new(Parameters::EVISON).unwrap();
         let state = State { u: 1e-3, u_dot: 0.02, theta: 0.03, theta_dot: -0.1 };
         let mirrored = State { u: -1e-3, u_dot: -0.02, theta: -0.03, theta_dot: 0.1 };
-        let right = accelerations(&structure, Side::Right, &state, Load { a_g: 1.5, F_t: 200.0 }).unwrap();
-        let left = accelerations(&structure, Side::Left, &mirrored, Load { a_g: -1.5, F_t: -200.0 }).unwrap();
+        let right = accelerations(&structure, Side::Right, &state, Load { a_g: 1.5, F_t: 200.0, a_v: 0.0 }).unwrap();
+        let left = accelerations(&structure, Side::Left, &mirrored, Load { a_g: -1.5, F_t: -200.0, a_v: 0.0 }).unwrap();
         assert_relative_eq!(right, -left, max_relative = 1e-15);
     }
 }

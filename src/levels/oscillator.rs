@@ -50,13 +50,13 @@ impl Oscillator {
         let &Oscillator { omega, zeta } = self;
         let d = self.d();
         let (C, S) = if zeta < 1.0 {
-            let (sin, cos) = (d * tau).sin_cos();
-            let decay = (-zeta * omega * tau).exp();
+            let (sin, cos) = libm::sincos(d * tau);
+            let decay = libm::exp(-zeta * omega * tau);
             (decay * cos, decay * sin / d)
         } else {
             // e^{(d − ζω)τ} alone is not small; the other exponential is e^{−2dτ} of it
-            let slow = (-omega / (zeta + d / omega) * tau).exp();
-            let lost = -(-2.0 * d * tau).exp_m1();
+            let slow = libm::exp(-omega / (zeta + d / omega) * tau);
+            let lost = -libm::expm1(-2.0 * d * tau);
             (slow * (1.0 - 0.5 * lost), slow * if d > 0.0 { 0.5 * lost / d } else { tau })
         };
         let damping = zeta * omega * S;
@@ -88,7 +88,7 @@ impl Oscillator {
     fn slow_response(&self, tau: f64) -> [f64; 2] {
         let d = self.d();
         let fast = self.zeta * self.omega + d;
-        let held = |x: f64| -(-x).exp_m1() / x;
+        let held = |x: f64| -libm::expm1(-x) / x;
         // (x − 1 + e^{−x})/x² = 1/2! − x/3! + x²/4! − …
         let ramped = |x: f64| {
             if x < 1.0 {

@@ -17,7 +17,7 @@ impl Turn {
     /// Of `arc`, to its order: [`Piece::series`](crate::engine::piece::Piece::series) looks at what that leaves out.
     pub(crate) fn of(arc: &Arc) -> Turn {
         let mut turn = Turn { sin: ZERO, cos: ZERO };
-        (turn.sin[0], turn.cos[0]) = arc.theta[0].sin_cos();
+        (turn.sin[0], turn.cos[0]) = libm::sincos(arc.theta[0]);
         for k in 1..=arc.order {
             let (mut sin, mut cos) = (0.0, 0.0);
             for j in 1..=k.min(arc.order) {

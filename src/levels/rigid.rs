@@ -21,7 +21,9 @@
 use crate::levels::level::{Level, Rates};
 use crate::levels::output_series::{Turn, delta_t_bound};
 use crate::levels::rules::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD};
+use crate::levels::tie_series::TieSeries;
 use crate::mechanics::load::{LinearLoad, Load};
+use crate::mechanics::restraint::{Angles, Dissipators, Sum, holding_moment, ties};
 use crate::mechanics::uplift::least_push;
 use crate::series::extremes::{self, Bound};
 use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
@@ -30,7 +32,7 @@ use crate::{Phase, Side, State, Structure};
 
 /// P and Q at `theta`.
 fn shape(structure: &Structure, side: Side, theta: f64) -> [f64; 2] {
-    let (sin, cos) = theta.sin_cos();
+    let (sin, cos) = libm::sincos(theta);
     let slenderness = side.sign() * structure.tan_alpha_cg;
     [sin - slenderness * cos, cos + slenderness * sin]
 }
@@ -43,31 +45,49 @@ fn force_by_shape(structure: &Structure, side: Side) -> [f64; 2] {
 }
 
 /// (ü, θ̈) = (0, θ̈) in m/s² and rad/s² in `phase`; nothing moves relative to the ground in full contact.
-fn accelerations(structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2] {
+fn accelerations(
+    structure: &Structure,
+    phase: Phase,
+    state: &State,
+    load: Load,
+    restrained_by: Option<&Dissipators>,
+) -> [f64; 2] {
     let &crate::Parameters { m, g, .. } = structure.parameters();
     match phase {
         Phase::Rocking(side) => {
             let [p, q] = shape(structure, side, state.theta);
             let [of_p, of_q] = force_by_shape(structure, side);
-            [0.0, structure.p_l.powi(2) * (p - load.a_g / g * q + load.F_t / (m * g) * (of_p * p + of_q * q))]
+            let free = structure.p_l.powi(2) * (p - load.a_g / g * q + load.F_t / (m * g) * (of_p * p + of_q * q));
+            let back = restrained_by.map_or(0.0, |dissipators| {
+                let ties = Sum::of_moments(&ties(structure, side, dissipators));
+                ties.at(Angles::Any, state.theta, state.theta_dot) / structure.J_P
+                    - structure.p_l.powi(2) * load.a_v / g * p
+            });
+            [0.0, free - back]
         }
         Phase::FullContact | Phase::Overturned(_) => [0.0; 2],
     }
 }
 
 /// Writes the motion from `start` about `side` into `arc`.
-fn series(structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
-    let &Start { state, a_g, a_top, interval, local_error } = start;
-    let &Structure { p_l, tan_alpha_cg, .. } = structure;
+fn series<const RESTRAINED: bool>(structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
+    let &Start { state, a_g, a_top, a_v, interval, local_error, ref dissipators } = start;
+    let &Structure { p_l, tan_alpha_cg, J_P, .. } = structure;
     let g = structure.parameters().g;
-    let span = interval.min(LONGEST_SPAN / p_l.max(state.theta_dot.abs()));
+    let sum = Sum::of_moments(&ties(structure, side, dissipators));
+    let mut held = RESTRAINED.then(|| TieSeries::new(sum, Angles::Any, state.theta));
+    let fastest = if RESTRAINED { (p_l * p_l + sum.stiffness / J_P).sqrt().max(sum.damping / J_P) } else { p_l };
+    let span = interval.min(LONGEST_SPAN / fastest.max(state.theta_dot.abs()));
     let stiffness = p_l * p_l;
     let (push, push_slope) = (a_g.value / g, a_g.slope * span / g);
     let (pull, pull_slope) = ((a_g.value - a_top.value) / g, (a_g.slope - a_top.slope) * span / g);
     let [of_p, of_q] = force_by_shape(structure, side);
     // θ̈ is p_l² of these times P, Q and, for the slopes, times what P and Q were one order before
-    let (p_now, q_now) = (1.0 + pull * of_p, pull * of_q - push);
-    let (p_slope, q_slope) = (pull_slope * of_p, pull_slope * of_q - push_slope);
+    let (mut p_now, q_now) = (1.0 + pull * of_p, pull * of_q - push);
+    let (mut p_slope, q_slope) = (pull_slope * of_p, pull_slope * of_q - push_slope);
+    if RESTRAINED {
+        (p_now, p_slope) = (p_now + a_v.value / g, p_slope + a_v.slope * span / g);
+    }
     let loads = [push, push_slope, pull, pull_slope].map(f64::abs).iter().sum::<f64>();
     let forcing = stiffness * (tan_alpha_cg + loads + state.theta.abs());
     let theta_dot = state.theta_dot.abs() + span.min(1.0 / p_l) * forcing;
@@ -77,7 +97,11 @@ fn series(structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
     let truncation = Truncation { u_dot: 0.0, theta_dot: local_error * theta_dot };
     arc.expand(&State { u: 0.0, u_dot: 0.0, ..state }, span, truncation, |arc, k, per| {
         let shaped = p_now * p[k - 1] + q_now * q[k - 1] + q_slope * q_before + p_slope * p_before;
-        let theta_dot = stiffness * shaped * per;
+        let mut theta_ddot = stiffness * shaped;
+        if RESTRAINED && let Some(held) = &mut held {
+            theta_ddot -= held.next(&arc.theta_dot, k - 1, per) / J_P;
+        }
+        let theta_dot = theta_ddot * per;
         (p_before, q_before) = (p[k - 1], q[k - 1]);
         p[k] = product(&q, &arc.theta_dot, k - 1) * per;
         q[k] = -product(&p, &arc.theta_dot, k - 1) * per;
@@ -92,12 +116,26 @@ fn product(a: &Series, b: &Series, k: usize) -> f64 {
 
 /// The rigid limit as a level of detail.
 #[derive(Clone, Debug)]
-pub(crate) struct Rigid {
+pub(crate) struct Rigid<const RESTRAINED: bool> {
     /// Error ε that a step may have.
     pub local_error: f64,
 }
 
-impl Level for Rigid {
+impl<const RESTRAINED: bool> Rigid<RESTRAINED> {
+    /// By how much (m/s²) the push that lifts the base off about `side` is more than that of the weight alone.
+    fn more_push(structure: &Structure, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
+        if !RESTRAINED {
+            return 0.0;
+        }
+        holding_moment(structure, side, a_v, dissipators) / structure.parameters().H
+    }
+}
+
+impl<const RESTRAINED: bool> Level for Rigid<RESTRAINED> {
+    fn ties(&self) -> Option<Angles> {
+        RESTRAINED.then_some(Angles::Any)
+    }
+
     fn leap(&self, _structure: &Structure, _phase: Phase, _start: &Start) -> Option<State> {
         None
     }
@@ -109,7 +147,7 @@ impl Level for Rigid {
     /// Rest on the ground in full contact.
     fn series(&self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc) {
         match phase {
-            Phase::Rocking(side) => series(structure, side, start, arc),
+            Phase::Rocking(side) => series::<RESTRAINED>(structure, side, start, arc),
             Phase::FullContact | Phase::Overturned(_) => {
                 let nothing = Truncation { u_dot: 0.0, theta_dot: 0.0 };
                 arc.expand(&State::default(), start.interval, nothing, |_, _, _| (0.0, 0.0));
@@ -117,18 +155,44 @@ impl Level for Rigid {
         }
     }
 
-    /// |a_top|, a_top = a_g − F_t/m, exceeds g tan α_cg.
+    /// |a_top|, a_top = a_g − F_t/m, exceeds g tan α_cg; of a restrained structure −s a_top exceeds what holds side s.
     fn first_uplift(&self, structure: &Structure, start: &Start, arc: &Arc) -> (Crossing, Side) {
         let limit = least_push(structure);
         let push = [start.a_top.value, start.a_top.slope * arc.span];
-        let first = |side: Side| first_time_all_closed([Guard::new(&push, side.sign(), limit)], 1.0);
+        let first = |side: Side| {
+            let mut push = push;
+            if RESTRAINED {
+                let more = |a_v| side.sign() * Self::more_push(structure, side, a_v, &start.dissipators);
+                let held = more(start.a_v.value);
+                push = [push[0] + held, push[1] + (more(start.a_v.at(arc.span)) - held)];
+            }
+            first_time_all_closed([Guard::new(&push, side.sign(), limit)], 1.0)
+        };
         let (right, left) = (first(Side::Right), first(Side::Left));
+        if RESTRAINED && right.sigma() == left.sigma() && right.sigma() < f64::INFINITY {
+            let at = right.sigma() * arc.span;
+            let load = Load { a_g: start.a_top.at(at), F_t: 0.0, a_v: start.a_v.at(at) };
+            let (_, side) = self.uplift_margin(structure, &start.state, load, &start.dissipators);
+            return (right, side);
+        }
         if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
     }
 
-    fn uplift_margin(&self, structure: &Structure, _state: &State, load: Load) -> (f64, Side) {
+    fn stays_down(&self, structure: &Structure, _state: &State, dissipators: &Dissipators) -> bool {
+        self.uplift_margin(structure, &State::default(), Load::default(), dissipators).0 > 0.0
+    }
+
+    fn uplift_margin(
+        &self,
+        structure: &Structure,
+        _state: &State,
+        load: Load,
+        dissipators: &Dissipators,
+    ) -> (f64, Side) {
         let push = load.on_top(structure) / least_push(structure);
-        (1.0 - push.abs(), Side::of(-push))
+        let more = |side| Self::more_push(structure, side, load.a_v, dissipators) / least_push(structure);
+        let (right, left) = (1.0 + push + more(Side::Right), 1.0 - push + more(Side::Left));
+        if right <= left { (right, Side::Right) } else { (left, Side::Left) }
     }
 
     fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
@@ -150,17 +214,25 @@ impl Level for Rigid {
         }
     }
 
-    fn accelerations(&self, structure: &Structure, phase: Phase, state: &State, load: Load) -> [f64; 2] {
-        accelerations(structure, phase, state, load)
+    fn accelerations(
+        &self,
+        structure: &Structure,
+        phase: Phase,
+        state: &State,
+        load: Load,
+        dissipators: &Dissipators,
+    ) -> [f64; 2] {
+        accelerations(structure, phase, state, load, RESTRAINED.then_some(dissipators))
     }
 }
 
-/// a_t, m/s²: here u says nothing of the forces, so that it is Eq 27 as it stands, which follows the ground.
-pub(crate) fn a_t(structure: &Structure, phase: Phase, state: &State, load: Load) -> f64 {
+/// a_t, m/s², given θ̈: here u says nothing of the forces, so that it is Eq 27 as it stands, which follows the ground; of a_v it
+/// has −a_v sin θ.
+pub(crate) fn a_t(structure: &Structure, phase: Phase, state: &State, theta_ddot: f64, load: Load) -> f64 {
     let &crate::Parameters { H, B, .. } = structure.parameters();
     let s = phase.side().sign();
-    let [_, theta_ddot] = accelerations(structure, phase, state, load);
-    H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * state.theta.cos()
+    H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * libm::cos(state.theta)
+        - load.a_v * libm::sin(state.theta)
 }
 
 /// Its time derivative, m/s³, given θ̈ and θ⃛; 0 once overturned.
@@ -177,8 +249,10 @@ pub(crate) fn a_t_rate(
     match phase {
         Phase::Overturned(_) => 0.0,
         _ => {
-            H * theta_dddot + 2.0 * s * B * theta_dot * theta_ddot + load.slope.a_g * theta.cos()
-                - load.value.a_g * theta.sin() * theta_dot
+            H * theta_dddot + 2.0 * s * B * theta_dot * theta_ddot + load.slope.a_g * libm::cos(theta)
+                - load.value.a_g * libm::sin(theta) * theta_dot
+                - load.slope.a_v * libm::sin(theta)
+                - load.value.a_v * libm::cos(theta) * theta_dot
         }
     }
 }
@@ -188,25 +262,28 @@ pub(crate) fn a_t_series(structure: &Structure, phase: Phase, load: LinearLoad, 
     let &crate::Parameters { H, B, .. } = structure.parameters();
     let offset = phase.side().sign() * B;
     let (now, slope) = (load.value.a_g, load.slope.a_g * arc.span);
+    let (up, up_slope) = (load.value.a_v, load.slope.a_v * arc.span);
     arc.series(|k| {
         let theta_ddot = if k < arc.order { (k + 1) as f64 * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
         let centripetal: f64 = (0..=k).map(|i| arc.theta_dot[i] * arc.theta_dot[k - i]).sum();
         let ground = now * turn.cos[k] + if k > 0 { slope * turn.cos[k - 1] } else { 0.0 };
-        H * theta_ddot + offset * centripetal + ground
+        let lifted = up * turn.sin[k] + if k > 0 { up_slope * turn.sin[k - 1] } else { 0.0 };
+        H * theta_ddot + offset * centripetal + ground - lifted
     })
 }
 
-/// Bounds of |θ|, |u|, |δ_t| and |a_t| over `arc` under `load`: a_t about H θ̈ + s B θ̇₀² + a_g cos θ₀, θ₀ and θ̇₀ those at the
-/// start.
+/// Bounds of |θ|, |u|, |δ_t| and |a_t| over `arc` under `load`: a_t about H θ̈ + s B θ̇₀² + a_g cos θ₀ − a_v sin θ₀, θ₀ and θ̇₀
+/// those at the start.
 pub(crate) fn bounds(structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc) -> [Bound; 4] {
     let &crate::Parameters { H, B, .. } = structure.parameters();
     let offset = phase.side().sign() * B;
-    let cos = arc.theta[0].cos();
+    let (sin, cos) = libm::sincos(arc.theta[0]);
     let ground = [load.value.a_g, load.slope.a_g * arc.span];
+    let up = [load.value.a_v, load.slope.a_v * arc.span];
     let row = |k: usize| {
         let theta_ddot = if k < arc.order { (k + 1) as f64 * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
         let centripetal = if k == 0 { offset * arc.theta_dot[0].powi(2) } else { 0.0 };
-        let ground = if k < 2 { cos * ground[k] } else { 0.0 };
+        let ground = if k < 2 { cos * ground[k] - sin * up[k] } else { 0.0 };
         [arc.theta[k], H * arc.theta[k], H * theta_ddot + centripetal + ground]
     };
     let [theta, sway, a_t] = extremes::bounds(row, arc.order, arc.reach);
@@ -214,9 +291,9 @@ pub(crate) fn bounds(structure: &Structure, phase: Phase, load: LinearLoad, arc:
     let rate = |of: &Series| (1..).zip(&arc.used(of)[1..]).map(|(k, c)| f64::from(k) * c.abs()).sum::<f64>();
     let (turned, hastened) = (change(&arc.theta), change(&arc.theta_dot));
     let fastest = arc.theta_dot[0].abs() + hastened;
-    let ground_most = ground[0].abs() + ground[1].abs();
+    let ground_most = [ground, up].as_flattened().iter().map(|a| a.abs()).sum::<f64>();
     let most = B * hastened * (fastest + arc.theta_dot[0].abs()) + turned * ground_most;
-    let ground_rate = rate(&arc.theta) * ground_most + turned * ground[1].abs();
+    let ground_rate = rate(&arc.theta) * ground_most + turned * (ground[1].abs() + up[1].abs());
     let most_rate = 2.0 * B * fastest * rate(&arc.theta_dot) + ground_rate;
     let delta_t = delta_t_bound(structure, theta, Bound::default(), sway);
     [theta, Bound::default(), delta_t, a_t.and(most, most_rate)]

@@ -8,20 +8,22 @@ use crate::levels::output_series::{Turn, delta_t_bound};
 use crate::levels::rigid;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::damping;
+use crate::mechanics::restraint::Dissipators;
 use crate::series::extremes::{self, Bound};
 use crate::series::taylor::{Arc, Series};
 use crate::{Outputs, Phase, State};
 
 impl Model {
     fn is_rigid(&self) -> bool {
-        matches!(self.level, AnyLevel::Rigid(_))
+        matches!(self.level, AnyLevel::Rigid(_) | AnyLevel::RestrainedRigid(_))
     }
 
     /// The outputs in `phase` and `state` under `load`.
-    pub(crate) fn outputs(&self, phase: Phase, state: &State, load: Load) -> Outputs {
+    pub(crate) fn outputs(&self, phase: Phase, state: &State, load: Load, dissipators: &Dissipators) -> Outputs {
         let outputs = Outputs::of(&self.structure, phase, state, load.F_t);
         if self.is_rigid() {
-            return outputs.with_a_t(&self.structure, rigid::a_t(&self.structure, phase, state, load));
+            let [_, theta_ddot] = self.level.accelerations(&self.structure, phase, state, load, dissipators);
+            return outputs.with_a_t(&self.structure, rigid::a_t(&self.structure, phase, state, theta_ddot, load));
         }
         outputs
     }

@@ -13,7 +13,7 @@ pub fn energy(structure: &Structure, phase: Phase, state: &State) -> f64 {
     let &crate::Parameters { m, m0, H, B, J0, g, .. } = structure.parameters();
     let &State { u, u_dot, theta, theta_dot } = state;
     let s = phase.side().sign();
-    let (sin, cos) = theta.sin_cos();
+    let (sin, cos) = libm::sincos(theta);
     let lever = s * B - u;
     let kinetic = 0.5 * m * ((u_dot + H * theta_dot).powi(2) + (lever * theta_dot).powi(2))
         + 0.5 * (J0 + m0 * B * B) * theta_dot * theta_dot;

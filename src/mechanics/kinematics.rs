@@ -42,7 +42,7 @@ pub(crate) fn points(
 #[inline]
 fn point(pivot: f64, q: Complex<f64>, [v, a, j]: [f64; 3], turning: [f64; 4]) -> Point {
     let [theta, w, dw, ddw] = turning;
-    let (sin, cos) = theta.sin_cos();
+    let (sin, cos) = libm::sincos(theta);
     let towards = Complex::new(cos, -sin);
     let i = Complex::i();
     Point {

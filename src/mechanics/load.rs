@@ -1,4 +1,4 @@
-//! What acts on a structure: the ground's acceleration and a force on its top mass.
+//! What acts on a structure: the ground's accelerations and a force on its top mass.
 //!
 //! The force F_t does the work F_t δx on the top mass, x = sB (1 − cos θ) + u cos θ + H sin θ. On the right it adds to
 //!
@@ -9,6 +9,8 @@
 //! which is what −a_g does there, times m, but for the foundation's share in Eq 6. So the top mass feels the ground
 //! acceleration a_g − F_t/m, the foundation a_g alone, and with F_t = 0 every equation is what it was, to the last bit.
 //! Uplift asks for s u ≥ u_cr and s θ̈ > 0, which neither of them enters; impacts are too short for both.
+//!
+//! The vertical ground acceleration a_v makes g + a_v of g wherever that is a weight.
 
 use crate::Structure;
 use crate::structure::quantity::{OutOfRange, Quantity, quantity};
@@ -47,10 +49,14 @@ impl Ramp {
 }
 
 /// What may act, with units and ranges.
-pub static LOADS: [Quantity<Load>; 2] = [
+pub static LOADS: [Quantity<Load>; 3] = [
     quantity!(a_g["m/s2"] - 1e4, 1e4, "horizontal ground acceleration, positive to the right"),
     quantity!(F_t["N"] - 1e15, 1e15, "external horizontal force on the top mass, positive to the right"),
+    quantity!(a_v["m/s2"] - 1e4, 1e4, "vertical ground acceleration, positive upwards"),
 ];
+
+/// The place of a_v in [`LOADS`].
+pub const VERTICAL: usize = 2;
 
 /// What acts at one instant, or its rate; indexed in the order of [`LOADS`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -59,26 +65,29 @@ pub struct Load {
     pub a_g: f64,
     /// External force on the top mass, N, horizontal in the ground's frame, positive to the right.
     pub F_t: f64,
+    /// Vertical ground acceleration, m/s², positive upwards.
+    pub a_v: f64,
 }
 
 impl Load {
     /// The ground acceleration `a_g` (m/s²) alone.
     pub fn ground(a_g: f64) -> Load {
-        Load { a_g, F_t: 0.0 }
+        Load { a_g, ..Load::default() }
     }
 
-    /// Whether both are numbers.
+    /// Whether all are numbers.
     #[inline]
     pub fn is_finite(&self) -> bool {
         // a comparison is one instruction where f64::is_finite takes a dozen, and each sample asks
-        self.a_g.abs() <= f64::MAX && self.F_t.abs() <= f64::MAX
+        self.a_g.abs() <= f64::MAX && self.F_t.abs() <= f64::MAX && self.a_v.abs() <= f64::MAX
     }
 
     /// Accepts what lies within the ranges of [`LOADS`].
     #[inline]
     pub fn check(&self) -> Result<(), OutOfRange> {
         LOADS[0].check(self.a_g)?;
-        LOADS[1].check(self.F_t)
+        LOADS[1].check(self.F_t)?;
+        LOADS[2].check(self.a_v)
     }
 
     /// a_g − F_t/m, the ground acceleration that the top mass feels, m/s².
@@ -96,6 +105,7 @@ impl Index<usize> for Load {
         match which {
             0 => &self.a_g,
             1 => &self.F_t,
+            2 => &self.a_v,
             _ => panic!("there is no load {which}"),
         }
     }
@@ -107,6 +117,7 @@ impl IndexMut<usize> for Load {
         match which {
             0 => &mut self.a_g,
             1 => &mut self.F_t,
+            2 => &mut self.a_v,
             _ => panic!("there is no load {which}"),
         }
     }
@@ -123,8 +134,13 @@ pub struct LinearLoad {
 
 impl LinearLoad {
     /// Its value `tau` seconds into the interval.
+    #[inline]
     pub fn at(self, tau: f64) -> Load {
-        Load { a_g: self.value.a_g + self.slope.a_g * tau, F_t: self.value.F_t + self.slope.F_t * tau }
+        Load {
+            a_g: self.value.a_g + self.slope.a_g * tau,
+            F_t: self.value.F_t + self.slope.F_t * tau,
+            a_v: self.value.a_v + self.slope.a_v * tau,
+        }
     }
 
     /// The same, its interval started `tau` seconds later.
@@ -132,15 +148,36 @@ impl LinearLoad {
         LinearLoad { value: self.at(tau), ..self }
     }
 
-    /// This load on ground that accelerates by `a_g` more.
-    pub fn on_ground(self, a_g: Ramp) -> LinearLoad {
-        LinearLoad {
-            value: Load { a_g: self.value.a_g + a_g.value, ..self.value },
-            slope: Load { a_g: self.slope.a_g + a_g.slope, ..self.slope },
-        }
+    /// This load on ground that accelerates by that of `ground` more.
+    pub fn on_ground(self, ground: LinearLoad) -> LinearLoad {
+        let and = |own: Load, ground: Load| Load { a_g: own.a_g + ground.a_g, a_v: own.a_v + ground.a_v, ..own };
+        LinearLoad { value: and(self.value, ground.value), slope: and(self.slope, ground.slope) }
     }
 
-    /// Its ground acceleration.
+    /// The same with the vertical ground acceleration `a_v`.
+    pub(crate) fn and_upwards(self, a_v: Ramp) -> LinearLoad {
+        LinearLoad { value: Load { a_v: a_v.value, ..self.value }, slope: Load { a_v: a_v.slope, ..self.slope } }
+    }
+
+    /// Whether a_g and F_t are numbers over an interval (s).
+    #[inline]
+    pub(crate) fn is_finite_over(&self, interval: f64) -> bool {
+        let is_finite = |load: Load| Load { a_v: 0.0, ..load }.is_finite();
+        is_finite(self.value) && is_finite(self.at(interval))
+    }
+
+    /// Whether the ground moves upwards or downwards.
+    #[inline]
+    pub(crate) fn is_vertical(&self) -> bool {
+        self.value.a_v != 0.0 || self.slope.a_v != 0.0
+    }
+
+    /// Its vertical ground acceleration.
+    pub(crate) fn upwards(self) -> Ramp {
+        Ramp { value: self.value.a_v, slope: self.slope.a_v }
+    }
+
+    /// Its horizontal ground acceleration.
     pub(crate) fn on_foundation(self) -> Ramp {
         Ramp { value: self.value.a_g, slope: self.slope.a_g }
     }

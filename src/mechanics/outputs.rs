@@ -80,7 +80,7 @@ impl Outputs {
         let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
         let &State { u, u_dot, theta, theta_dot } = state;
         let (s, damping) = (phase.side().sign(), damping(structure, phase));
-        let (sin, cos) = theta.sin_cos();
+        let (sin, cos) = libm::sincos(theta);
         let a_t = g * sin + (F_t * cos - damping * u_dot - structure.k * u) / m;
         let one_minus_cos = sin * sin / (1.0 + cos); // without cancellation: cos θ ≥ 0
         Outputs {
@@ -118,7 +118,7 @@ impl Outputs {
         let (u_dot, theta_dot) = (moves * state.u_dot, moves * state.theta_dot);
         let [u_ddot, theta_ddot] = accelerations;
         let (s, damping) = (phase.side().sign(), damping(structure, phase));
-        let (sin, cos) = state.theta.sin_cos();
+        let (sin, cos) = libm::sincos(state.theta);
         let force_rate = moves * (load.slope.F_t * cos - load.value.F_t * sin * theta_dot);
         let a_t = g * cos * theta_dot - (damping * u_ddot + structure.k * u_dot) / m + force_rate / m;
         let lever = s * B - u;
@@ -154,12 +154,12 @@ mod tests {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
         let &Parameters { H, B, .. } = structure.parameters();
         let state = State { u: 3e-3, u_dot: -0.2, theta: -0.08, theta_dot: 0.6 };
-        let load = Load { a_g: 7.0, F_t: 300.0 };
+        let load = Load { a_g: 7.0, F_t: 300.0, a_v: 0.0 };
         let accelerations = nonlinear::accelerations(&structure, Side::Left, &state, load).unwrap();
         let expected = accelerations[0]
             + H * accelerations[1]
             + state.theta_dot.powi(2) * (-B - state.u)
-            + load.a_g * state.theta.cos();
+            + load.a_g * libm::cos(state.theta);
         let outputs = Outputs::of(&structure, Phase::Rocking(Side::Left), &state, load.F_t);
         assert_relative_eq!(outputs.a_t, expected, max_relative = 1e-12);
 
@@ -189,7 +189,10 @@ mod tests {
             (Detail::FixedBase, down),
         ];
         for (detail, initial) in scenes {
-            let start = LinearLoad { value: Load { a_g: 1.2, F_t: 90.0 }, slope: Load { a_g: 40.0, F_t: -700.0 } };
+            let start = LinearLoad {
+                value: Load { a_g: 1.2, F_t: 90.0, a_v: 0.0 },
+                slope: Load { a_g: 40.0, F_t: -700.0, a_v: 0.0 },
+            };
             let h = 1e-5;
             let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-11, detail).unwrap();
             let mut show = |until: f64| {

@@ -13,7 +13,9 @@
 //! R_h = c_fc u̇ + k u − m0 a_g, R_v = (m + m0) g and R_m = H (c_fc u̇ + k u) + m g u. While rocking the pivot is the
 //! only contact: by Eqs 5 and 6 R_m = sB R_v; the levels with linear equations miss that by what they leave out.
 //!
-//! The edge that the model rocks about stays on the ground: R_v < 0 tells where it would jump in truth.
+//! The edge that the model rocks about stays on the ground: R_v < 0 tells where it would jump in truth. A vertical ground
+//! acceleration makes g + a_v of g. Restraints change none of this: the reactions are all that the ground feels, by the edges
+//! and by the ties, which pull upwards.
 //!
 //! Impacts are not in them. Each leaves an impulse, the opposite of what it changes of the structure's momentum:
 //!
@@ -23,7 +25,8 @@
 
 use crate::mechanics::kinematics::points;
 use crate::mechanics::load::{LinearLoad, Load};
-use crate::{Phase, State, Structure};
+use crate::mechanics::restraint::{Angles, Tie};
+use crate::{Phase, Side, State, Structure};
 use nalgebra::Complex;
 use serde::{Deserialize, Serialize};
 
@@ -67,7 +70,7 @@ impl Reactions {
         let points = points(structure, phase.side(), state, accelerations, [0.0; 2]);
         let mut reactions = Reactions { R_h: 0.0, R_v: 0.0, R_m: -J0 * accelerations[1] };
         for (point, mass, push) in [(points[0], m, load.F_t), (points[1], m0, 0.0)] {
-            let force = -mass * (point.acceleration + Complex::new(load.a_g, g)) + push;
+            let force = -mass * (point.acceleration + Complex::new(load.a_g, g + load.a_v)) + push;
             reactions.R_h += force.re;
             reactions.R_v -= force.im;
             reactions.R_m += moment(point.position, force);
@@ -91,13 +94,38 @@ impl Reactions {
         let LinearLoad { value, slope } = load;
         let mut rates = Reactions { R_h: 0.0, R_v: 0.0, R_m: -J0 * jerks[1] };
         for (point, mass, push, push_rate) in [(points[0], m, value.F_t, slope.F_t), (points[1], m0, 0.0, 0.0)] {
-            let force = -mass * (point.acceleration + Complex::new(value.a_g, g)) + push;
-            let rate = -mass * (point.jerk + slope.a_g) + push_rate;
+            let force = -mass * (point.acceleration + Complex::new(value.a_g, g + value.a_v)) + push;
+            let rate = -mass * (point.jerk + Complex::new(slope.a_g, slope.a_v)) + push_rate;
             rates.R_h += rate.re;
             rates.R_v -= rate.im;
             rates.R_m += moment(point.velocity, force) + moment(point.position, rate);
         }
         rates
+    }
+}
+
+impl Reactions {
+    /// What the edges of the base carry of these: the `ties` pull upwards, and to the right where the base is turned, so that the
+    /// edges press down by as much more. `angles` is how they elongate, and the moment is that of full contact.
+    pub(crate) fn of_edges(
+        self,
+        structure: &Structure,
+        side: Side,
+        angles: Angles,
+        state: &State,
+        ties: &[Tie; 3],
+    ) -> Self {
+        let chord = angles.chord(state.theta, state.theta_dot);
+        let (sin, cos) = if angles == Angles::Any { libm::sincos(state.theta / 2.0) } else { (0.0, 1.0) };
+        let middle = side.sign() * structure.parameters().B;
+        ties.iter().fold(self, |edges, tie| {
+            let force = tie.force_at(chord);
+            Reactions {
+                R_h: edges.R_h - force * sin,
+                R_v: edges.R_v + force * cos,
+                R_m: edges.R_m + force * cos * (middle - tie.lever),
+            }
+        })
     }
 }
 

@@ -114,6 +114,12 @@ pub enum InitialStateError {
     /// The base is turned although it is fixed.
     #[error("theta_0 = {0:?} rad contradicts detail = fixed_base, where the base cannot turn: set theta_0 to 0")]
     TurnedFixedBase(f64),
+    /// There are no modes of a restrained structure.
+    #[error(
+        "detail = modal has no modes of a structure that is restrained or shaken vertically, whose equations change with \
+         time and with what yields: choose linear, or set P_0, k_t, c_d, k_d and a_v to 0"
+    )]
+    RestrainedModal,
     /// The structure is deformed although it is rigid.
     #[error("u_0 = {u:?} m, u_dot_0 = {u_dot:?} m/s contradict detail = rigid, where u is always 0: set both to 0")]
     DeformedRigid {
@@ -138,7 +144,7 @@ impl State {
     /// Magnitudes that are usual in a motion of `structure`: those of a rotation α_cg, at which it is about to fall, and of u_cr,
     /// at which its base lifts off.
     pub fn usual(structure: &Structure) -> State {
-        let (u, theta) = (structure.u_cr, structure.tan_alpha_cg.atan());
+        let (u, theta) = (structure.u_cr, libm::atan(structure.tan_alpha_cg));
         State { u, u_dot: structure.omega_fc * u, theta, theta_dot: structure.p_l * theta }
     }
 

@@ -9,9 +9,12 @@
 //! There the equations leave [(J0 + m0 B²)/m + (sB − u)²] θ̈ = H (c_u u̇ + k u)/m + g u − sγ g B, whatever a_g and F_t
 //! are: the second condition is that the moment which turns the structure about the pivot exceeds that of its weight.
 //! While |u| grows through u_cr it always does; after a landing with |u| > u_cr it may not, and leaving it out makes
-//! contact open and shut without end. "> 0" is taken as more than 1e-12 of the weight's moment, far above rounding.
+//! contact open and shut without end. Of a restrained structure, or one shaken vertically, u_cr is
+//! [`uplift_displacement`], another on each side; where that is not above 0 the second condition decides alone, and where
+//! it is met on both sides the one that turns faster lifts off. "> 0" is taken as more than 1e-12 of the weight's moment, far above rounding.
 
-use crate::{Side, State, Structure};
+use crate::mechanics::restraint::{Dissipators, holding_moment, uplift_displacement};
+use crate::{Ramp, Side, State, Structure};
 
 /// Smallest excess of the turning moment over the weight's, as a part of the latter: far above rounding, so that what
 /// has lifted off moves away from the ground.
@@ -50,4 +53,38 @@ pub fn margin(structure: &Structure, turning: &TurningMoment, state: &State) -> 
     let about = |side: Side| (1.0 - side.sign() * displacement).max(1.0 + LEAST_EXCESS - side.sign() * moment);
     let (right, left) = (about(Side::Right), about(Side::Left));
     if right <= left { (right, Side::Right) } else { (left, Side::Left) }
+}
+
+/// How far |u| gets in free vibration in full contact at most, m.
+pub(crate) fn farthest(structure: &Structure, state: &State) -> f64 {
+    libm::hypot(state.u, state.u_dot / structure.omega_fc)
+}
+
+/// The least displacement (m), on either side, that uplift takes over `interval` (s) of a vertical acceleration `a_v`.
+pub(crate) fn least_displacement(structure: &Structure, a_v: Ramp, interval: f64, dissipators: &Dissipators) -> f64 {
+    let least = a_v.value.min(a_v.at(interval));
+    let about = |side| uplift_displacement(structure, side, least, dissipators);
+    about(Side::Right).min(about(Side::Left))
+}
+
+/// [`margin`] of a restrained structure, or one under the vertical ground acceleration `a_v` (m/s²).
+pub(crate) fn margin_of_restrained(
+    structure: &Structure,
+    turning: &TurningMoment,
+    state: &State,
+    a_v: f64,
+    dissipators: &Dissipators,
+) -> (f64, Side) {
+    let about = |side: Side| {
+        let (s, displacement) = (side.sign(), uplift_displacement(structure, side, a_v, dissipators));
+        let lacks = (displacement - s * state.u).min(displacement) / structure.u_cr;
+        let held = turning.weight + holding_moment(structure, side, a_v, dissipators);
+        let turns = s * ((turning.u + a_v) * state.u + turning.u_dot * state.u_dot);
+        let moment = LEAST_EXCESS + (held - turns) / turning.weight;
+        (lacks.max(moment), moment)
+    };
+    let (right, left) = (about(Side::Right), about(Side::Left));
+    // of two that are due the one that turns faster
+    let is_right = if right.0 <= 0.0 && left.0 <= 0.0 { right.1 <= left.1 } else { right.0 <= left.0 };
+    if is_right { (right.0, Side::Right) } else { (left.0, Side::Left) }
 }

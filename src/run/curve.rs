@@ -8,6 +8,7 @@ use super::fall::Found;
 use super::{Run, RunError};
 use crate::engine::piece::{Piece, Watch};
 use crate::mechanics::outputs::Measure;
+use crate::mechanics::restraint::Restraints;
 use crate::series::{extremes, taylor};
 use crate::{Outputs, Phase, Transition};
 
@@ -34,6 +35,8 @@ pub struct Point {
     pub a_g: f64,
     /// What the structure shows.
     pub outputs: Outputs,
+    /// Forces of its tendon and dissipators.
+    pub restraints: Restraints,
 }
 
 /// A run as it is drawn.
@@ -55,7 +58,8 @@ impl Run<'_> {
         let within = [peaks.theta(), peaks.u(), peaks.a_t()].map(|peak| part * peak.magnitude);
         let exact = [peaks.a_g(), peaks.theta(), peaks.u(), peaks.a_t()].map(|peak| peak.time);
         let pga = peaks.a_g().magnitude;
-        let mut tracer = Tracer { within, exact, pga, points: Vec::new(), transitions: Vec::new(), is_torn: true };
+        let (points, transitions, is_restrained) = (Vec::new(), Vec::new(), self.structure.is_restrained());
+        let mut tracer = Tracer { within, exact, pga, is_restrained, points, transitions, is_torn: true };
         self.follow(&mut tracer)?;
         let Tracer { points, transitions, .. } = tracer;
         if points.len() > MOST_POINTS {
@@ -73,6 +77,7 @@ struct Tracer {
     exact: [f64; 4],
     /// Peak of |a_g|, m/s².
     pga: f64,
+    is_restrained: bool,
     points: Vec<Point>,
     transitions: Vec<Transition>,
     /// Whether the next piece begins with a point of its own.
@@ -86,7 +91,8 @@ impl Tracer {
 
     fn see(&mut self, piece: &Piece, tau: f64, outputs: Outputs) {
         let (time, phase) = (piece.before.time + tau, piece.before.phase);
-        self.points.push(Point { time, phase, a_g: piece.load.at(tau).a_g, outputs });
+        let restraints = if self.is_restrained { piece.sample(time).restraints() } else { Restraints::default() };
+        self.points.push(Point { time, phase, a_g: piece.load.at(tau).a_g, outputs, restraints });
     }
 }
 

@@ -35,7 +35,7 @@ pub struct Fall {
 impl Fall {
     /// Of `structure`, nothing seen yet.
     pub fn new(structure: &Structure) -> Fall {
-        Fall { alpha_cg: structure.tan_alpha_cg.atan(), instant: None }
+        Fall { alpha_cg: libm::atan(structure.tan_alpha_cg), instant: None }
     }
 
     /// Since when |θ| ≥ α_cg (s); none if it is not.
@@ -115,7 +115,7 @@ impl Run<'_> {
         let next = times.partition_point(|time| *time <= until);
         let cut = (next < times.len()).then(|| {
             let from = times[next - 1];
-            (until, GroundMotion::from(self.ground).ramp(next).at(until - from))
+            (until, GroundMotion::from(self.ground).ramp(next).at(until - from).a_g)
         });
         let samples = times[..next].iter().copied().zip(acceleration[..next].iter().copied());
         let most = |most: Peak, (time, a_g): (f64, f64)| {

@@ -70,6 +70,8 @@ pub struct GroundMotion<'a> {
     pub record: &'a Record,
     /// What its accelerations are given in, m/s²: 1, or g.
     pub unit: f64,
+    /// The same of its vertical component.
+    pub vertical_unit: f64,
     /// How it is scaled, and when it comes.
     pub placement: Placement,
 }
@@ -81,18 +83,18 @@ pub struct Segment {
     pub start: f64,
     /// Last instant, s.
     pub end: f64,
-    /// Ground acceleration from `start` on.
-    pub a_g: Ramp,
+    /// Ground accelerations from `start` on.
+    pub ground: LinearLoad,
 }
 
-/// A part of an interval over which the ground's acceleration is linear.
+/// A part of an interval over which the ground's accelerations are linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Stretch {
     /// From the start of the interval, s.
     start: f64,
     duration: f64,
     /// From the start of the stretch on.
-    a_g: Ramp,
+    ground: LinearLoad,
 }
 
 impl Record {
@@ -102,9 +104,9 @@ impl Record {
         let linear = (1..self.times().len()).map(move |next| Segment {
             start: self.times()[next - 1],
             end: self.times()[next],
-            a_g: ground.ramp(next),
+            ground: ground.ramp(next),
         });
-        let at_rest = Segment { start: self.end(), end: f64::INFINITY, a_g: Ramp::default() };
+        let at_rest = Segment { start: self.end(), end: f64::INFINITY, ground: LinearLoad::default() };
         linear
             .chain([at_rest])
             .take_while(move |segment| segment.start < end)
@@ -113,9 +115,9 @@ impl Record {
 }
 
 impl Segment {
-    /// The ground acceleration as it is given from `time` (s) on.
-    pub fn from(&self, time: f64) -> Ramp {
-        self.a_g.from(time - self.start)
+    /// The ground accelerations as they are given from `time` (s) on.
+    pub fn from(&self, time: f64) -> LinearLoad {
+        self.ground.from(time - self.start)
     }
 }
 
@@ -130,14 +132,19 @@ impl GroundMotion<'_> {
         self.record.pga() * self.unit * self.placement.scale.abs()
     }
 
-    /// The ground acceleration as it is given from `elapsed` on; 0 before the first sample and from the last one on.
-    pub fn at(&self, elapsed: Elapsed) -> Ramp {
+    /// Largest vertical ground acceleration, m/s²; 0 where the ground moves horizontally alone.
+    pub fn vertical_peak(&self) -> f64 {
+        (0..self.record.times().len()).fold(0.0, |peak, i| peak.max(self.vertical(i).abs()))
+    }
+
+    /// The ground accelerations as they are given from `elapsed` on; 0 before the first sample and from the last one on.
+    pub fn at(&self, elapsed: Elapsed) -> LinearLoad {
         self.ramp_from(self.reached(elapsed, |i| self.same_instant(i)), elapsed)
     }
 
     /// What it is for an integrator at `elapsed` that has dealt with all samples up to `dealt_with`: a later one that it has just
     /// arrived at is still to come, so that the ground acceleration is the one that led there.
-    pub fn since(&self, dealt_with: Elapsed, elapsed: Elapsed) -> Ramp {
+    pub fn since(&self, dealt_with: Elapsed, elapsed: Elapsed) -> LinearLoad {
         let reached = |at: Elapsed| self.reached(at, |i| self.same_instant(i));
         let here = reached(elapsed);
         let passed = (0..here).rfind(|i| self.ahead(*i, elapsed) < -self.same_instant(*i)).map_or(0, |last| last + 1);
@@ -155,7 +162,7 @@ impl GroundMotion<'_> {
     /// Seconds from `elapsed` to the next instant at which the ground acceleration jumps, by a first or last sample that is
     /// not 0.
     pub fn next_jump(&self, elapsed: Elapsed) -> Option<f64> {
-        let ends = [0, self.record.times().len() - 1].into_iter().filter(|i| self.acceleration(*i) != 0.0);
+        let ends = [0, self.record.times().len() - 1].into_iter().filter(|i| self.is_moved(*i));
         self.first_ahead(ends, elapsed)
     }
 
@@ -182,9 +189,9 @@ impl GroundMotion<'_> {
         engine.check(interval, &load)?;
         let before = *engine.motion();
         let last_step = before.work.steps + MAX_STEPS_PER_ADVANCE;
-        for Stretch { start, duration, a_g } in self.stretches(elapsed, interval) {
+        for Stretch { start, duration, ground } in self.stretches(elapsed, interval) {
             engine.set_time(before.time + start);
-            match engine.advance_within(last_step, duration, load.from(start).on_ground(a_g), watch) {
+            match engine.advance_within(last_step, duration, load.from(start).on_ground(ground), watch) {
                 Ok(Progress::Complete) => (),
                 Ok(progress @ (Progress::Overturned | Progress::Transition)) => return Ok(progress),
                 Err(mut error) => {
@@ -204,7 +211,7 @@ impl GroundMotion<'_> {
     fn stretches(&self, elapsed: Elapsed, interval: f64) -> impl Iterator<Item = Stretch> {
         let (this, samples) = (*self, self.record.times().len());
         let mut next = this.reached(elapsed, |i| this.uncut(i, elapsed));
-        let mut a_g = this.ramp_from(next, elapsed);
+        let mut ground = this.ramp_from(next, elapsed);
         let (mut start, mut is_first) = (0.0, true);
         std::iter::from_fn(move || {
             if start >= interval {
@@ -214,7 +221,7 @@ impl GroundMotion<'_> {
             let mut end = ahead(next);
             while end <= start {
                 next += 1; // times that are the same once they are scaled
-                (end, a_g) = (ahead(next), this.ramp(next));
+                (end, ground) = (ahead(next), this.ramp(next));
             }
             let is_last = end >= interval || end >= interval - this.uncut(next, elapsed);
             let duration = if is_last {
@@ -224,10 +231,10 @@ impl GroundMotion<'_> {
             } else {
                 this.time(next) - this.time(next - 1)
             };
-            let stretch = Stretch { start, duration, a_g };
+            let stretch = Stretch { start, duration, ground };
             start = if is_last { interval } else { end };
             next += usize::from(!is_last);
-            (a_g, is_first) = (this.ramp(next), false);
+            (ground, is_first) = (this.ramp(next), false);
             Some(stretch)
         })
     }
@@ -239,6 +246,16 @@ impl GroundMotion<'_> {
 
     fn acceleration(&self, i: usize) -> f64 {
         self.record.acceleration()[i] * self.unit * self.placement.scale
+    }
+
+    /// Vertical acceleration of sample `i`, if there is any, m/s².
+    fn vertical(&self, i: usize) -> f64 {
+        self.record.vertical().map_or(0.0, |vertical| vertical[i] * self.vertical_unit * self.placement.scale)
+    }
+
+    /// Whether the ground accelerates at sample `i`.
+    fn is_moved(&self, i: usize) -> bool {
+        self.acceleration(i) != 0.0 || self.vertical(i) != 0.0
     }
 
     /// Seconds from `elapsed` to sample `i`.
@@ -256,7 +273,7 @@ impl GroundMotion<'_> {
     /// rounding. Where the ground jumps the latter alone counts.
     fn uncut(&self, i: usize, elapsed: Elapsed) -> f64 {
         let samples = self.record.times().len();
-        let beyond = |end: usize| if self.acceleration(end) == 0.0 { f64::INFINITY } else { 0.0 };
+        let beyond = |end: usize| if self.is_moved(end) { 0.0 } else { f64::INFINITY };
         let before = if i == 0 { beyond(0) } else { self.time(i) - self.time(i - 1) };
         let after = if i + 1 == samples { beyond(i) } else { self.time(i + 1) - self.time(i) };
         (SAME_INSTANT * before.min(after)).max(self.rounding(i, elapsed))
@@ -278,17 +295,24 @@ impl GroundMotion<'_> {
         reached + usize::from(is_next_here)
     }
 
-    /// The ground acceleration from the last of `reached` samples to the next.
-    pub(super) fn ramp(&self, reached: usize) -> Ramp {
+    /// The ground accelerations from the last of `reached` samples to the next.
+    #[inline]
+    pub(super) fn ramp(&self, reached: usize) -> LinearLoad {
         if reached == 0 || reached >= self.record.times().len() {
-            return Ramp::default();
+            return LinearLoad::default();
         }
-        let [a, b] = [reached - 1, reached].map(|i| (self.time(i), self.acceleration(i)));
-        Ramp { value: a.1, slope: (b.1 - a.1) / (b.0 - a.0) }
+        let last = reached - 1;
+        let step = self.time(reached) - self.time(last);
+        let line = |from: f64, to: f64| Ramp { value: from, slope: (to - from) / step };
+        let ground: LinearLoad = line(self.acceleration(last), self.acceleration(reached)).into();
+        if self.record.vertical().is_none() {
+            return ground;
+        }
+        ground.and_upwards(line(self.vertical(last), self.vertical(reached)))
     }
 
-    /// The ground acceleration from the last of `reached` samples to the next, as it is given from `elapsed` on.
-    fn ramp_from(&self, reached: usize, elapsed: Elapsed) -> Ramp {
+    /// The ground accelerations from the last of `reached` samples to the next, as they are given from `elapsed` on.
+    fn ramp_from(&self, reached: usize, elapsed: Elapsed) -> LinearLoad {
         let ramp = self.ramp(reached);
         let Some(last) = reached.checked_sub(1) else { return ramp };
         let passed = -self.ahead(last, elapsed);
@@ -298,7 +322,7 @@ impl GroundMotion<'_> {
 
 impl<'a> From<&'a Record> for GroundMotion<'a> {
     fn from(record: &'a Record) -> GroundMotion<'a> {
-        GroundMotion { record, unit: 1.0, placement: Placement::default() }
+        GroundMotion { record, unit: 1.0, vertical_unit: 1.0, placement: Placement::default() }
     }
 }
 
@@ -329,7 +353,10 @@ mod tests {
             let ground = GroundMotion { placement, unit: 10.0, ..GroundMotion::from(&record) };
             ground.stretches(after([from]), interval).collect::<Vec<_>>()
         };
-        let stretch = |start, duration, value, slope| Stretch { start, duration, a_g: Ramp { value, slope } };
+        let stretch = |start, duration, value, slope| {
+            let ground = Ramp { value, slope }.into();
+            Stretch { start, duration, ground }
+        };
         let as_it_is = Placement::default();
         let all = [stretch(0.0, 0.5, 20.0, 40.0), stretch(0.5, 1.0, 40.0, -80.0), stretch(1.5, 0.5, 0.0, 0.0)];
         assert_eq!(stretches(as_it_is, 0.0, 2.0), all);
@@ -352,9 +379,9 @@ mod tests {
         let placement = Placement { time_scale: 0.25, ..Placement::default() };
         let ground = GroundMotion { placement, ..GroundMotion::from(&record) };
         let stretches: Vec<_> = ground.stretches(Elapsed::default(), 1.0).collect();
-        let a_g = Ramp { value: 3.0, slope: 4.0 };
-        let rest = Stretch { start: 0.25, duration: 0.75, a_g: Ramp::default() };
-        assert_eq!(stretches, [Stretch { start: 0.0, duration: 0.25, a_g }, rest]);
+        let ground = Ramp { value: 3.0, slope: 4.0 }.into();
+        let rest = Stretch { start: 0.25, duration: 0.75, ground: LinearLoad::default() };
+        assert_eq!(stretches, [Stretch { start: 0.0, duration: 0.25, ground }, rest]);
     }
 
     /// A host's steps add up to the record's times but for rounding: each is then one stretch, whatever the start.
@@ -368,11 +395,13 @@ mod tests {
             let mut elapsed = Elapsed::default().and(start);
             for i in 0..4999 {
                 let stretches: Vec<_> = ground.stretches(elapsed, 0.01).collect();
-                let [Stretch { start: 0.0, duration: 0.01, a_g }] = stretches[..] else { panic!("{i}: {stretches:?}") };
-                assert_eq!(a_g, ground.ramp(i + 1), "sample {i} from {start} s");
+                let [Stretch { start: 0.0, duration: 0.01, ground: here }] = stretches[..] else {
+                    panic!("{i}: {stretches:?}")
+                };
+                assert_eq!(here, ground.ramp(i + 1), "sample {i} from {start} s");
                 elapsed = elapsed.and(0.01);
             }
-            assert_eq!(ground.at(elapsed), Ramp::default());
+            assert_eq!(ground.at(elapsed), LinearLoad::default());
         }
     }
 
@@ -437,13 +466,13 @@ mod tests {
         let record =
             Record::from_samples("", vec![1.0, 2.0, 4.0], vec![2.0, 4.0, 0.0]).unwrap().scaled(0.5, 10.0).unwrap();
         assert_eq!(record.times(), [0.5, 1.0, 2.0]);
-        let segment = |start, end, value, slope| Segment { start, end, a_g: Ramp { value, slope } };
+        let segment = |start, end, value, slope| Segment { start, end, ground: Ramp { value, slope }.into() };
         let first = segment(0.5, 1.0, 20.0, 40.0);
         let until = |end| record.segments_until(end).collect::<Vec<_>>();
         assert_eq!(until(0.5), []);
         assert_eq!(until(1.0), [first]);
         assert_eq!(until(1.5), [first, segment(1.0, 1.5, 40.0, -40.0)]);
         assert_eq!(until(3.0), [first, segment(1.0, 2.0, 40.0, -40.0), segment(2.0, 3.0, 0.0, 0.0)]);
-        assert_eq!(first.from(0.75), Ramp { value: 30.0, slope: 40.0 });
+        assert_eq!(first.from(0.75), Ramp { value: 30.0, slope: 40.0 }.into());
     }
 }

@@ -95,6 +95,8 @@ pub struct Comparison {
     pub reference: Response,
     /// In the order of [`SIMPLEST_FIRST`], each to the tolerance of the run.
     pub verdicts: Vec<Verdict>,
+    /// The level `auto` on ground that moves horizontally alone, if the run's moves vertically, too.
+    pub without_vertical: Option<Verdict>,
     /// Levels that cannot do the run, and why.
     pub refused: Vec<(Detail, RunError)>,
 }
@@ -102,7 +104,8 @@ pub struct Comparison {
 /// Does `run` at every level.
 pub fn compare(run: &Run) -> Result<Comparison, RunError> {
     let none = Peaks::new(&run.structure);
-    let (mut exact_peaks, mut peaks) = (none, SIMPLEST_FIRST.map(|_| none));
+    let (mut exact_peaks, mut peaks, mut level_peaks) = (none, SIMPLEST_FIRST.map(|_| none), none);
+    let level_ground = run.ground.clone().without_vertical();
     let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..run.clone() };
     let mut reference = start(&exact, &mut exact_peaks)?;
     let (mut trials, mut refused) = (Vec::new(), Vec::new());
@@ -111,6 +114,10 @@ pub fn compare(run: &Run) -> Result<Comparison, RunError> {
             Ok(trial) => trials.push(trial),
             Err(error) => refused.push((detail, error)),
         }
+    }
+    if run.ground.vertical().is_some() {
+        let run = Run { detail: Detail::Auto, ground: &level_ground, ..run.clone() };
+        trials.push(Trial { is_level: true, ..start(&run, &mut level_peaks)? });
     }
     while reference.ending.is_none() || trials.iter().any(|trial| trial.ending.is_none()) {
         reference.go_on()?;
@@ -125,18 +132,26 @@ pub fn compare(run: &Run) -> Result<Comparison, RunError> {
         trials.iter_mut().for_each(|trial| trial.compared -= done);
     }
     let (reference, all, _) = reference.response()?;
-    let verdict = |trial: Trial<_>| {
+    let (mut verdicts, mut without_vertical) = (Vec::new(), None);
+    for trial in trials {
+        let is_level = trial.is_level;
         let (response, _, distance) = trial.response()?;
-        Ok(Verdict::new(response, distance, &reference, &all))
-    };
-    let verdicts = trials.into_iter().map(verdict).collect::<Result<_, RunError>>()?;
+        let verdict = Verdict::new(response, distance, &reference, &all);
+        if is_level {
+            without_vertical = Some(verdict);
+        } else {
+            verdicts.push(verdict);
+        }
+    }
     refused.sort_by_key(|(detail, _)| SIMPLEST_FIRST.iter().position(|of_all| of_all == detail));
-    Ok(Comparison { verdicts, reference, refused })
+    Ok(Comparison { verdicts, reference, without_vertical, refused })
 }
 
 /// A level on its way.
 struct Trial<'a, Segments> {
     run: Run<'a>,
+    /// Whether its ground moves horizontally alone and the reference's does not.
+    is_level: bool,
     course: Course<Segments>,
     peaks: PeakWatch<'a>,
     fall: Fall,
@@ -160,6 +175,7 @@ fn start<'a>(
     let segments = segments.flat_map(move |segment| cut(segment, LONGEST_STRETCH / omega_u));
     Ok(Trial {
         run: run.clone(),
+        is_level: false,
         course: Course { engine, segments, end, rest },
         peaks: peaks.watch(),
         fall: Fall::new(&run.structure),
@@ -177,7 +193,7 @@ fn cut(segment: Segment, longest: f64) -> impl Iterator<Item = Segment> {
     let at = move |part: f64| if part == parts { end } else { start + (end - start) * (part / parts) };
     (0..parts as u64).map(move |part| {
         let (start, end) = (at(part as f64), at((part + 1) as f64));
-        Segment { start, end, a_g: segment.from(start) }
+        Segment { start, end, ground: segment.from(start) }
     })
 }
 
@@ -302,6 +318,7 @@ mod tests {
                 verdict(Detail::Linear, [0.02, 0.01, 0.01, 0.03, 0.01, 0.03], 20),
                 verdict(Detail::Auto, [0.0; 6], 80),
             ],
+            without_vertical: None,
             refused: Vec::new(),
         };
         let all = Criterion::ALL;

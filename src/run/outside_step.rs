@@ -10,6 +10,8 @@
 use crate::engine::AdvanceError;
 use crate::engine::motion::Event;
 use crate::engine::piece::{Sample, Watch};
+use crate::engine::yielding;
+use crate::levels::detail::Model;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::run::ground_motion::Elapsed;
 use crate::{Engine, GroundMotion, Motion, Phase, Side, State};
@@ -36,19 +38,23 @@ impl Sample<'_> {
         }
     }
 
-    /// Of the end of contact at a pivot (in full contact uplift, while rocking impact) and of overturning: continuous, of
-    /// order one, positive while the phase lasts.
+    /// Of the end of contact at a pivot (in full contact uplift, while rocking impact) and of overturning, or of what yields or
+    /// ceases to: continuous, of order one, positive while the phase lasts.
     pub fn event_indicators(&self) -> [f64; INDICATORS] {
-        let &Motion { phase, state, .. } = &self.motion;
+        let &Motion { phase, state, dissipators, .. } = &self.motion;
         match phase {
             Phase::FullContact if self.motion.held() > 0.0 => [1.0; INDICATORS],
             Phase::FullContact => {
-                let (margin, _) = self.model.level.uplift_margin(&self.model.structure, &state, self.load);
+                let (margin, _) =
+                    self.model.level.uplift_margin(&self.model.structure, &state, self.load, &dissipators);
                 [margin + BAND, 1.0]
             }
             Phase::Rocking(side) => {
-                let height = side.sign() * state.theta / self.model.structure.tan_alpha_cg.atan();
-                [height + BAND, 1.0 - state.theta.abs() / FRAC_PI_2]
+                let height = side.sign() * state.theta / libm::atan(self.model.structure.tan_alpha_cg);
+                let fall = 1.0 - state.theta.abs() / FRAC_PI_2;
+                let Model { structure, level, .. } = self.model;
+                let goes_on = |angles| yielding::margin(structure, side, angles, &dissipators, &state) + BAND;
+                [height + BAND, level.ties().map_or(fall, |angles| fall.min(goes_on(angles)))]
             }
             Phase::Overturned(_) => [1.0; INDICATORS],
         }
@@ -121,7 +127,11 @@ impl Known {
         }
         let slope =
             |from: f64, to: f64| Some((to - from) / interval).filter(|slope| slope.is_finite()).unwrap_or_default();
-        let slope = Load { a_g: slope(self.load.a_g, load.a_g), F_t: slope(self.load.F_t, load.F_t) };
+        let slope = Load {
+            a_g: slope(self.load.a_g, load.a_g),
+            F_t: slope(self.load.F_t, load.F_t),
+            a_v: slope(self.load.a_v, load.a_v),
+        };
         let load = LinearLoad { value: self.load, slope };
         match ground {
             Some(ground) => ground.advance(engine, self.elapsed, interval, load, watch),
@@ -153,7 +163,7 @@ impl Engine {
         if motion.phase != Phase::FullContact || motion.held() > 0.0 {
             return None;
         }
-        let (margin, side) = model.level.uplift_margin(&model.structure, &motion.state, load);
+        let (margin, side) = model.level.uplift_margin(&model.structure, &motion.state, load, &motion.dissipators);
         (margin <= 0.0).then_some(side)
     }
 }

@@ -64,10 +64,13 @@ pub struct Peaks {
     /// In the order of [`Measure::ALL`].
     largest: [Peak; 4],
     ground: Peak,
-    /// Of the structure: m, H and B.
+    /// Of the structure: m, H, B.
     m: f64,
     H: f64,
     B: f64,
+    /// Prestress and stiffness of its tendon.
+    P_0: f64,
+    k_t: f64,
     /// Right-hand-side evaluations that it took to find them.
     evaluations: u64,
 }
@@ -94,6 +97,16 @@ pub const PEAKS: [Peaking; 7] = [
     Peaking { name: "M_t", unit: "N.m", of: |peaks| peaks.M_t() },
 ];
 
+/// The tendon's force.
+static TENDON: Peaking = Peaking { name: "P_t", unit: "N", of: |peaks| peaks.P_t() };
+
+/// The peaks that `structure` has: all of [`PEAKS`], and with a tendon that of its force.
+pub fn of(structure: &Structure) -> impl Iterator<Item = &'static Peaking> + use<> {
+    let &crate::Parameters { P_0, k_t, .. } = structure.parameters();
+    let tendon = (P_0 > 0.0 || k_t > 0.0).then_some(&TENDON);
+    const { &PEAKS }.iter().chain(tendon)
+}
+
 impl Peaks {
     /// Of `structure`, nothing seen yet.
     pub fn new(structure: &Structure) -> Peaks {
@@ -102,15 +115,15 @@ impl Peaks {
 
     /// Of `structure` from `time` (s) on, nothing seen yet: it is the instant of what stays 0.
     pub fn since(time: f64, structure: &Structure) -> Peaks {
-        let &crate::Parameters { m, H, B, .. } = structure.parameters();
+        let &crate::Parameters { m, H, B, P_0, k_t, .. } = structure.parameters();
         let none = Peak { magnitude: 0.0, time };
-        Peaks { largest: [none; 4], ground: none, m, H, B, evaluations: 0 }
+        Peaks { largest: [none; 4], ground: none, m, H, B, P_0, k_t, evaluations: 0 }
     }
 
-    /// Whether they are those of a structure with these masses and lengths.
+    /// Whether they are those of a structure with these masses, lengths and tendon.
     pub fn are_of(&self, structure: &Structure) -> bool {
-        let &crate::Parameters { m, H, B, .. } = structure.parameters();
-        (self.m, self.H, self.B) == (m, H, B)
+        let &crate::Parameters { m, H, B, P_0, k_t, .. } = structure.parameters();
+        (self.m, self.H, self.B, self.P_0, self.k_t) == (m, H, B, P_0, k_t)
     }
 
     /// The `outputs` at `time` (s), which need not be in a piece.
@@ -136,7 +149,13 @@ impl Peaks {
     /// Of the uplift δ_u = 2 B sin|θ|, m (Eq 25): with |θ|, which never exceeds π/2.
     pub fn uplift(&self) -> Peak {
         let theta = self.theta();
-        Peak { magnitude: 2.0 * self.B * theta.magnitude.sin(), ..theta }
+        Peak { magnitude: 2.0 * self.B * libm::sin(theta.magnitude), ..theta }
+    }
+
+    /// Of the tendon's force P_t = P_0 + 2 k_t B sin(|θ|/2), N: with |θ|, too.
+    pub fn P_t(&self) -> Peak {
+        let theta = self.theta();
+        Peak { magnitude: self.P_0 + 2.0 * self.k_t * self.B * libm::sin(0.5 * theta.magnitude), ..theta }
     }
 
     /// Of the acceleration of the top mass |a_t|, m/s² (Eq 27).

@@ -9,7 +9,7 @@
 //! the forces of [`reactions`](crate::mechanics::reactions) are
 //!
 //! ```text
-//! R_h = F_t − (m + m0) a_g − P cos θ − Q sin θ,      R_v = (m + m0) g + Q cos θ − P sin θ
+//! R_h = F_t − (m + m0) a_g − P cos θ − Q sin θ,      R_v = (m + m0) (g + a_v) + Q cos θ − P sin θ
 //! ```
 //!
 //! ü and θ̈ are the slopes of u̇ and θ̇: so this holds at every level. The series tell *where* a reaction is largest; what
@@ -17,10 +17,12 @@
 //! chords between their ends.
 
 use crate::levels::output_series::Turn;
+use crate::levels::tie_series::TieSeries;
 use crate::mechanics::load::LinearLoad;
+use crate::mechanics::restraint::{Angles, Sum, Tie};
 use crate::series::extremes;
 use crate::series::taylor::{Arc, Series, ZERO};
-use crate::{Phase, Structure};
+use crate::{Phase, Side, Structure};
 
 /// Reactions over an arc. The moment is that of full contact; while rocking it is sB R_v and left out.
 #[derive(Clone, Debug)]
@@ -37,6 +39,27 @@ impl ReactionSeries {
             Phase::FullContact => in_full_contact(structure, load, arc),
             Phase::Rocking(_) | Phase::Overturned(_) => while_rocking(structure, phase, load, arc),
         }
+    }
+
+    /// What of these the edges of the base carry where `ties` pull, as
+    /// [`Reactions::of_edges`](crate::Reactions::of_edges).
+    pub(crate) fn of_edges(
+        mut self,
+        structure: &Structure,
+        side: Side,
+        angles: Angles,
+        ties: &[Tie; 3],
+        arc: &Arc,
+    ) -> Self {
+        let [up, right] = TieSeries::over(Sum::of_pulls(ties), angles, arc).pulls(arc);
+        for k in 0..=arc.order {
+            self.R_v[k] += up[k];
+            self.R_h[k] -= right[k];
+        }
+        // in full contact they are what they are
+        let middle = side.sign() * structure.parameters().B;
+        self.R_m[0] += ties.iter().map(|tie| tie.force * (middle - tie.lever)).sum::<f64>();
+        self
     }
 }
 
@@ -63,12 +86,14 @@ fn in_full_contact(structure: &Structure, load: LinearLoad, arc: &Arc) -> Reacti
     let u_ddot = slope(&arc.u_dot, arc);
     let LinearLoad { value, slope } = load;
     let strut = arc.series(|k| linear(value.F_t - m * value.a_g, slope.F_t - m * slope.a_g, arc, k) - m * u_ddot[k]);
-    let mut R_v = ZERO;
-    R_v[0] = (m + m0) * g;
+    let weight = |mass: f64, k: usize| linear(mass * (g + value.a_v), mass * slope.a_v, arc, k);
     ReactionSeries {
         R_h: arc.series(|k| strut[k] - m0 * linear(value.a_g, slope.a_g, arc, k)),
-        R_v,
-        R_m: arc.series(|k| H * strut[k] + m * g * arc.u[k]),
+        R_v: arc.series(|k| weight(m + m0, k)),
+        R_m: arc.series(|k| {
+            let before = if k > 0 { weight(m, 1) * arc.u[k - 1] } else { 0.0 };
+            H * strut[k] + weight(m, 0) * arc.u[k] + before
+        }),
     }
 }
 
@@ -89,9 +114,10 @@ fn while_rocking(structure: &Structure, phase: Phase, load: LinearLoad, arc: &Ar
     let [across_cos, across_sin] = [&cos, &sin].map(|turn| product(&across, turn, arc));
     let LinearLoad { value, slope } = load;
     let pushed = |k| linear(value.F_t - (m + m0) * value.a_g, slope.F_t - (m + m0) * slope.a_g, arc, k);
+    let weight = |k| linear((m + m0) * (g + value.a_v), (m + m0) * slope.a_v, arc, k);
     ReactionSeries {
         R_h: arc.series(|k| pushed(k) - along_cos[k] - across_sin[k]),
-        R_v: arc.series(|k| linear((m + m0) * g, 0.0, arc, k) + across_cos[k] - along_sin[k]),
+        R_v: arc.series(|k| weight(k) + across_cos[k] - along_sin[k]),
         R_m: ZERO,
     }
 }
@@ -147,7 +173,7 @@ pub(crate) fn off_chord(structure: &Structure, phase: Phase, arc: &Arc) -> [f64;
         return [m * u_ddot, 0.0, H * m * u_ddot + m * g * u];
     }
     let pivot = phase.side().sign() * B;
-    let (sin, cos) = arc.theta[0].sin_cos();
+    let (sin, cos) = libm::sincos(arc.theta[0]);
     let lever = m0 * pivot - m * (arc.u[0] - pivot);
     let along = arc.series(|k| m * (u_ddot[k] + H * theta_ddot[k]));
     let horizontal = arc.series(|k| cos * along[k] + sin * lever * theta_ddot[k]);

@@ -1,4 +1,4 @@
-//! A ground motion record: its samples, between which the ground acceleration is linear.
+//! A ground motion record: its samples, between which the ground accelerations are linear.
 
 /// Most samples that a record has.
 pub const MAX_SAMPLES: usize = 10_000_000;
@@ -9,7 +9,12 @@ pub struct Record {
     title: String,
     times: Vec<f64>,
     acceleration: Vec<f64>,
+    /// At the same times; none where the ground moves horizontally alone.
+    vertical: Option<Vec<f64>>,
 }
+
+/// Part of its last step over which a component that ends before the other falls to 0.
+const FALL: f64 = 1e-9;
 
 /// Why samples, or their scales, are refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -35,6 +40,21 @@ pub enum SamplesError {
         /// What was found, at which index, counted from 0.
         problem: String,
     },
+    /// The components of a ground motion do not begin together.
+    #[error(
+        "the vertical component {vertical:?} begins at {begins:?} s and {title:?} at {start:?} s: shift the times of one \
+         of them"
+    )]
+    Apart {
+        /// What the record is called.
+        title: String,
+        /// Its first sample, s.
+        start: f64,
+        /// What the vertical component is called.
+        vertical: String,
+        /// Its first sample, s.
+        begins: f64,
+    },
 }
 
 impl Record {
@@ -47,14 +67,39 @@ impl Record {
     ) -> Result<Record, SamplesError> {
         let title = title.into();
         match check_samples(&times, &acceleration) {
-            Ok(()) => Ok(Record { title, times, acceleration }),
+            Ok(()) => Ok(Record { title, times, acceleration, vertical: None }),
             Err(problem) => Err(SamplesError::BadSamples { title, problem }),
         }
     }
 
     /// Ground at rest for `duration` (s), greater than 0: free vibration.
     pub fn at_rest(duration: f64) -> Record {
-        Record { title: "free vibration".into(), times: vec![0.0, duration], acceleration: vec![0.0, 0.0] }
+        let [times, acceleration] = [vec![0.0, duration], vec![0.0, 0.0]];
+        Record { title: "free vibration".into(), times, acceleration, vertical: None }
+    }
+
+    /// This ground motion with the vertical component `vertical`, positive upwards, whose first sample comes with its own. The
+    /// samples are then at the times of both. After the last sample of the shorter component the ground rests in that
+    /// direction: it comes to rest within 1e-9 of the last step, where it has not.
+    pub fn with_vertical(self, vertical: &Record) -> Result<Record, SamplesError> {
+        if self.start() != vertical.start() {
+            let (start, begins) = (self.start(), vertical.start());
+            return Err(SamplesError::Apart { title: self.title, start, vertical: vertical.title.clone(), begins });
+        }
+        let end = self.end().max(vertical.end());
+        let [own, other] = [(&self.times, &self.acceleration), (&vertical.times, &vertical.acceleration)]
+            .map(|(times, acceleration)| until(end, times.clone(), acceleration.clone()));
+        let mut times = [&own.0[..], &other.0].concat();
+        times.sort_by(f64::total_cmp);
+        times.dedup();
+        let [acceleration, vertical] =
+            [own, other].map(|(samples, of)| times.iter().map(|time| at(&samples, &of, *time)).collect::<Vec<_>>());
+        Ok(Record { times, acceleration, vertical: Some(vertical), ..self })
+    }
+
+    /// This ground motion without its vertical component, at the same times.
+    pub fn without_vertical(self) -> Record {
+        Record { vertical: None, ..self }
     }
 
     /// This ground motion with every time multiplied by `time_scale`, greater than 0, and every acceleration by
@@ -62,9 +107,10 @@ impl Record {
     pub fn scaled(mut self, time_scale: f64, scale: f64) -> Result<Record, SamplesError> {
         self.times.iter_mut().for_each(|time| *time *= time_scale);
         let record = self.multiplied(scale);
-        let samples = record.times.windows(2).zip(record.acceleration.windows(2));
         let is_motion = |(t, a): (&[f64], &[f64])| t[1] > t[0] && ((a[1] - a[0]) / (t[1] - t[0])).is_finite();
-        match samples.into_iter().all(is_motion) && record.end().is_finite() {
+        let is_record = |of: &Vec<f64>| record.times.windows(2).zip(of.windows(2)).all(is_motion);
+        let is_whole = is_record(&record.acceleration) && record.vertical.iter().all(is_record);
+        match is_whole && record.end().is_finite() {
             true => Ok(record),
             false => Err(SamplesError::BadScales { title: record.title, time_scale, scale }),
         }
@@ -72,7 +118,8 @@ impl Record {
 
     /// This ground motion with every acceleration multiplied by a finite `scale`.
     pub fn multiplied(mut self, scale: f64) -> Record {
-        self.acceleration.iter_mut().for_each(|acceleration| *acceleration *= scale);
+        let vertical = self.vertical.iter_mut().flatten();
+        self.acceleration.iter_mut().chain(vertical).for_each(|acceleration| *acceleration *= scale);
         self
     }
 
@@ -94,6 +141,11 @@ impl Record {
     /// Ground accelerations of the samples, m/s².
     pub fn acceleration(&self) -> &[f64] {
         &self.acceleration
+    }
+
+    /// Vertical ground accelerations of the samples, m/s², positive upwards, if there are any.
+    pub fn vertical(&self) -> Option<&[f64]> {
+        self.vertical.as_deref()
     }
 
     /// Instant of the first sample, s.
@@ -123,6 +175,27 @@ impl Record {
         };
         [[0.0; 2]].into_iter().chain(steps.scan([0.0; 2], after))
     }
+}
+
+/// These samples with those that bring them to rest until `end` (s), where they end before.
+fn until(end: f64, mut times: Vec<f64>, mut acceleration: Vec<f64>) -> (Vec<f64>, Vec<f64>) {
+    let [before, last] = [times[times.len() - 2], times[times.len() - 1]];
+    let at_rest = (last + FALL * (last - before)).max(last.next_up());
+    for time in [at_rest, end].into_iter().filter(|time| last < end && *time <= end) {
+        times.push(time);
+        acceleration.push(0.0);
+    }
+    (times, acceleration)
+}
+
+/// The acceleration at `time` (s), which is not after the last of `times`.
+fn at(times: &[f64], acceleration: &[f64], time: f64) -> f64 {
+    let next = times.partition_point(|of| *of < time);
+    if times[next] == time {
+        return acceleration[next];
+    }
+    let part = (time - times[next - 1]) / (times[next] - times[next - 1]);
+    acceleration[next - 1] + part * (acceleration[next] - acceleration[next - 1])
 }
 
 fn check_samples(times: &[f64], acceleration: &[f64]) -> Result<(), String> {
@@ -156,6 +229,27 @@ mod tests {
         let record = Record::from_samples("", vec![2.0, 3.0, 4.0], vec![0.0, 6.0, -6.0]).unwrap();
         let integrals: Vec<_> = record.velocities_and_displacements().collect();
         assert_eq!(integrals, [[0.0, 0.0], [3.0, 1.0], [3.0, 5.0]]);
+    }
+
+    /// By hand: two steps, 1 s and 0.5 s, the horizontal component ends first and has not come to rest.
+    #[test]
+    fn components_with_other_steps_are_samples_at_the_times_of_both() {
+        let own = Record::from_samples("own", vec![0.0, 1.0], vec![2.0, 4.0]).unwrap();
+        let vertical = Record::from_samples("up", vec![0.0, 0.5, 1.0, 1.5], vec![0.0, -8.0, 1.0, 3.0]).unwrap();
+        let both = own.clone().with_vertical(&vertical).unwrap();
+        assert_eq!(both.times(), [0.0, 0.5, 1.0, 1.0 + FALL, 1.5]);
+        assert_eq!(both.acceleration(), [2.0, 3.0, 4.0, 0.0, 0.0]);
+        let up = both.vertical().unwrap();
+        assert_eq!(up[..3], [0.0, -8.0, 1.0]);
+        assert!((up[3] - 1.0 - 4.0 * FALL).abs() < 1e-15 && up[4] == 3.0);
+        let scaled = both.scaled(0.5, 10.0).unwrap();
+        assert_eq!((scaled.end(), scaled.acceleration()[1], scaled.vertical().unwrap()[1]), (0.75, 30.0, -80.0));
+        let late = Record::from_samples("late", vec![0.1, 1.0], vec![0.0, 1.0]).unwrap();
+        let refused = own.with_vertical(&late).unwrap_err().to_string();
+        assert!(
+            refused.starts_with("the vertical component \"late\" begins at 0.1 s and \"own\" at 0.0 s"),
+            "{refused}"
+        );
     }
 
     #[test]

@@ -14,19 +14,23 @@
 //! energy_gain_max  largest (T₊ − T₋)/T₋ of an impact              above 0 energy comes out of nothing
 //! ```
 //!
+//! Of a restrained structure the reactions are those that the edges of the base carry. Where a vertical ground acceleration
+//! brings g + a_v to 0, the base would fly: told by its first instant, while the motion goes on by the model's equations.
+//!
 //! The reactions are series in time (`reaction_series`). A value worse than λ is a point where a combination of them is
 //! positive, as ±R_h − λ R_v for friction: it is looked for at that combination's stationary points, with λ the worst
 //! seen so far, until none is positive (Dinkelbach). When, and for how long, a limit is passed is between its roots.
 
 use super::{Finish, Run, RunError};
-use crate::engine::piece::{Expansion, Piece, Watch};
+use crate::engine::piece::{Expansion, Piece, Sample, Watch};
 use crate::levels::level::Rates;
 use crate::mechanics::impact;
+use crate::mechanics::restraint::ties;
 use crate::run::reaction_series::{ReactionSeries, accelerations_at_ends, off_chord};
 use crate::series::bisection::last_where;
 use crate::series::extremes;
 use crate::series::taylor::{Series, evaluate};
-use crate::{Detail, Impulse, Parameters, Phase, Reactions, Side, Structure, Transition, TransitionKind};
+use crate::{Detail, Impulse, Motion, Parameters, Phase, Ramp, Reactions, Side, Structure, Transition, TransitionKind};
 use serde::{Deserialize, Serialize};
 
 /// Something worse by no more than this part may be rounding.
@@ -164,6 +168,8 @@ pub const ASSUMPTIONS: [Assumption; 6] = [
 pub struct Found {
     /// In the order of [`ASSUMPTIONS`].
     pub worst: [Worst; ASSUMPTIONS.len()],
+    /// Of (g + a_v)/g, whose least is the worst; beyond its limit the base would fly.
+    pub weight: Worst,
     /// Impacts that raise the energy, however little.
     pub gains: u64,
     /// Impacts and landings.
@@ -184,7 +190,7 @@ impl Found {
         let none = |value| Worst { value, time, first_beyond: None, beyond: 0.0 };
         // of each the least bad that there can be
         let worst = [-1.0, f64::INFINITY, 0.0, 0.0, -1.0, 0.0].map(none);
-        Found { worst, gains: 0, impacts: 0, settlings: 0, held: 0.0, duration: 0.0, evaluations: 0 }
+        Found { worst, weight: none(1.0), gains: 0, impacts: 0, settlings: 0, held: 0.0, duration: 0.0, evaluations: 0 }
     }
 
     /// Sees `value` of assumption `which` at `time` (s). Of values that are the same but for rounding the first counts.
@@ -208,6 +214,35 @@ impl Found {
         let worst = &mut self.worst[which];
         worst.first_beyond.get_or_insert(time);
         worst.beyond += amount;
+    }
+
+    /// Sees a `ramp` of the vertical ground acceleration that lasts from `time` (s) on for `duration`, where gravity is `g`.
+    fn see_vertical(&mut self, g: f64, ramp: Ramp, time: f64, duration: f64) {
+        let ends = [0.0, duration].map(|tau| (time + tau, 1.0 + ramp.at(tau) / g));
+        for (time, value) in ends {
+            if value < self.weight.value {
+                (self.weight.value, self.weight.time) = (value, time);
+            }
+        }
+        let root = (-(g + ramp.value) / ramp.slope).clamp(0.0, duration);
+        let (from, to) = match ends.map(|(_, value)| value <= 0.0) {
+            [false, false] => return,
+            [true, true] => (0.0, duration),
+            [true, false] => (0.0, root),
+            [false, true] => (root, duration),
+        };
+        self.weight.first_beyond.get_or_insert(time + from);
+        self.weight.beyond += to - from;
+    }
+
+    /// What there is to say once the base would have flown: when, for how long, what it means.
+    pub fn warning_of_flight(&self) -> Option<String> {
+        let Worst { value, time, first_beyond, beyond } = self.weight;
+        let first = first_beyond?;
+        Some(format!(
+            "t = {first} s: g + a_v is not above 0, for {beyond} s so far: nothing holds the base down, in truth it flies; so far \
+             the least (g + a_v)/g = {value} at t = {time} s"
+        ))
     }
 
     /// What assumption `which` of [`ASSUMPTIONS`] says once its limit has been passed: what, when, how much, what it
@@ -304,7 +339,7 @@ impl Validity {
             let strut = c_fc * state.u_dot + k * state.u;
             Reactions { R_h: strut - m0 * piece.load.at(tau).a_g, R_v: self.weight(), R_m: H * strut + m * g * state.u }
         });
-        let start = piece.model.start(piece.before.state, piece.load, piece.duration);
+        let start = piece.model.start(piece.before.state, piece.before.dissipators, piece.load, piece.duration);
         let Rates { u_ddot, u_dddot, .. } = piece.model.level.rates(piece.before.phase, &start, &piece.end);
         let per_bend = piece.duration * piece.duration / 8.0;
         let strut = per_bend * (c_fc * u_dddot + k * u_ddot);
@@ -406,14 +441,19 @@ impl Watch for Validity {
     fn piece(&mut self, piece: &Piece) {
         self.found.duration += piece.duration;
         self.found.held += piece.before.chatter.held.min(piece.duration);
+        if piece.load.is_vertical() {
+            let g = self.structure.parameters().g;
+            self.found.see_vertical(g, piece.load.upwards(), piece.before.time, piece.duration);
+        }
         let is_leap = piece.arc.is_none() && piece.before.phase == Phase::FullContact;
-        if is_leap && !self.leap_may_matter(piece) {
+        let is_restrained = piece.model.level.ties().is_some();
+        if is_leap && !is_restrained && !self.leap_may_matter(piece) {
             return;
         }
         let mut arcs = piece.arcs();
         let mut count = 0;
         while let Some(expansion) = arcs.next() {
-            if self.arc_may_matter(&expansion) {
+            if is_restrained || self.arc_may_matter(&expansion) {
                 self.look(expansion, FINEST_PART);
             }
             count += 1;
@@ -431,7 +471,10 @@ impl Watch for Validity {
             TransitionKind::Impact(side) => (side.opposite(), Phase::Rocking(side)),
             // s θ falls to 0
             TransitionKind::Landing | TransitionKind::Settling => (Side::of(-before.theta_dot), Phase::FullContact),
-            TransitionKind::Uplift(_) | TransitionKind::Overturning(_) => return,
+            TransitionKind::Uplift(_)
+            | TransitionKind::Overturning(_)
+            | TransitionKind::Yielding(_)
+            | TransitionKind::Unloading(_) => return,
         };
         self.found.settlings += u64::from(kind == TransitionKind::Settling);
         if phase == Phase::FullContact && after != impact::land(structure, &before) {
@@ -459,16 +502,20 @@ struct Stretch<'a> {
 impl<'a> Stretch<'a> {
     fn new(of: Expansion<'a>) -> Stretch<'a> {
         let Expansion { piece, from, arc } = of;
-        let series = ReactionSeries::of(&piece.model.structure, piece.before.phase, piece.load.from(from), arc);
+        let (structure, phase) = (&piece.model.structure, piece.before.phase);
+        let mut series = ReactionSeries::of(structure, phase, piece.load.from(from), arc);
+        if let Some(angles) = piece.model.level.ties() {
+            let ties = ties(structure, phase.side(), &piece.before.dissipators);
+            series = series.of_edges(structure, phase.side(), angles, &ties, arc);
+        }
         Stretch { of, series }
     }
 
     /// The reactions at `sigma`, from the state there.
     fn reactions(&self, sigma: f64) -> Reactions {
         let Expansion { piece: &Piece { model, before, load, .. }, from, arc } = self.of;
-        let (state, load) = (arc.at(sigma), load.at(from + sigma * arc.span));
-        let accelerations = model.level.accelerations(&model.structure, before.phase, &state, load);
-        Reactions::of(&model.structure, before.phase, &state, accelerations, load)
+        let motion = Motion { state: arc.at(sigma), ..*before };
+        Sample { motion, load: load.at(from + sigma * arc.span), model }.edges()
     }
 
     /// Whether the series of R_h and R_v end where the state does.

@@ -8,6 +8,7 @@
 
 use crate::State;
 use crate::mechanics::load::Ramp;
+use crate::mechanics::restraint::Dissipators;
 
 /// Highest order of an expansion. At a local error of 1e-16 it carries ω·h of more than 3 rad per step.
 pub const MAX_ORDER: usize = 28;
@@ -140,7 +141,7 @@ impl Arc {
 }
 
 /// What a step starts from and what is asked of it.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Start {
     /// The state there.
     pub state: State,
@@ -148,6 +149,10 @@ pub struct Start {
     pub a_g: Ramp,
     /// The ground acceleration that the top mass feels from there on.
     pub a_top: Ramp,
+    /// Vertical ground acceleration from there on.
+    pub a_v: Ramp,
+    /// The dissipators there.
+    pub dissipators: Dissipators,
     /// How far it may go at most, s.
     pub interval: f64,
     /// Truncation error over the largest velocities that the step can bring.
@@ -226,7 +231,7 @@ fn reach(arc: &Arc, truncation: Truncation) -> f64 {
         .into_iter()
         .map(|k| {
             let ratios = [truncation.u_dot / arc.u_dot[k].abs(), truncation.theta_dot / arc.theta_dot[k].abs()];
-            ratios[0].min(ratios[1]).powf(1.0 / k as f64)
+            libm::pow(ratios[0].min(ratios[1]), 1.0 / k as f64)
         })
         .fold(f64::INFINITY, f64::min)
 }

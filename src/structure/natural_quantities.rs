@@ -42,7 +42,17 @@ pub const NATURAL: [Natural; 6] = [
 ];
 
 /// What a parameter is that may be left out, in its unit.
-pub const DEFAULTS: [(&str, f64); 3] = [("J0", 0.0), ("c_ratio", 1.0), ("g", 9.81)];
+pub const DEFAULTS: [(&str, f64); 9] = [
+    ("J0", 0.0),
+    ("c_ratio", 1.0),
+    ("g", 9.81),
+    ("P_0", 0.0),
+    ("k_t", 0.0),
+    ("xi_d", 0.0),
+    ("c_d", 0.0),
+    ("k_d", 0.0),
+    ("F_y", 0.0),
+];
 
 /// Numbers that are given for a structure, by name: parameters and natural quantities.
 ///
@@ -212,10 +222,12 @@ impl Given {
         let B = || or("B", "width", &|width| width / 2.0);
         let gamma = (m + m0) / m;
         let (H, B) = match (self.get("alpha_cg"), self.get("H")) {
-            (Some(alpha_cg), Some(H)) => (H, parameter_for("alpha_cg", alpha_cg, "B", H * alpha_cg.tan() / gamma)?),
+            (Some(alpha_cg), Some(H)) => {
+                (H, parameter_for("alpha_cg", alpha_cg, "B", H * libm::tan(alpha_cg) / gamma)?)
+            }
             (Some(alpha_cg), None) => {
                 let B = B()?;
-                (parameter_for("alpha_cg", alpha_cg, "H", gamma * B / alpha_cg.tan())?, B)
+                (parameter_for("alpha_cg", alpha_cg, "H", gamma * B / libm::tan(alpha_cg))?, B)
             }
             (None, _) => (own("H"), B()?),
         };
@@ -223,7 +235,9 @@ impl Given {
             Some(p_l) => inertia(p_l, m * g * H, m * H * H + (m + m0) * B * B)?,
             None => own("J0"),
         };
-        Ok(Parameters { m, m0, H, B, J0, f_fc, zeta_fc: own("zeta_fc"), c_ratio: own("c_ratio"), r: own("r"), g })
+        let (zeta_fc, c_ratio, r) = (own("zeta_fc"), own("c_ratio"), own("r"));
+        let [P_0, k_t, xi_d, c_d, k_d, F_y] = ["P_0", "k_t", "xi_d", "c_d", "k_d", "F_y"].map(own);
+        Ok(Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, r, g, P_0, k_t, xi_d, c_d, k_d, F_y })
     }
 
     /// Whether every natural quantity is in its range, and nothing that it determines is given as well.

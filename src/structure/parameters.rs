@@ -26,10 +26,28 @@ pub struct Parameters {
     pub r: f64,
     /// Acceleration of gravity, m/s².
     pub g: f64,
+    /// Prestress of the tendon with the base down, N.
+    #[serde(default)]
+    pub P_0: f64,
+    /// Stiffness of the tendon, N/m.
+    #[serde(default)]
+    pub k_t: f64,
+    /// Distance of both dissipators from the middle of the base, m.
+    #[serde(default)]
+    pub xi_d: f64,
+    /// Damping of each viscous dissipator, N·s/m.
+    #[serde(default)]
+    pub c_d: f64,
+    /// Elastic stiffness of each elastoplastic dissipator, N/m.
+    #[serde(default)]
+    pub k_d: f64,
+    /// Force at which it yields, N.
+    #[serde(default)]
+    pub F_y: f64,
 }
 
 /// Every parameter with its unit and range, in the order of the file and of the FMU.
-pub const PARAMETERS: [Quantity<Parameters>; 10] = [
+pub const PARAMETERS: [Quantity<Parameters>; 16] = [
     quantity!(m ["kg"] 1e-6, 1e12, "top mass"),
     quantity!(m0 ["kg"] 0.0, 1e12, "foundation mass"),
     quantity!(H ["m"] 1e-3, 1e4, "height of the top mass above the base"),
@@ -40,6 +58,12 @@ pub const PARAMETERS: [Quantity<Parameters>; 10] = [
     quantity!(c_ratio ["1"] 0.0, 100.0, "viscous damping while rocking over viscous damping in full contact, c_u/c_fc"),
     quantity!(r ["1"] 1e-3, 1.0, "coefficient of restitution on the angular velocity at impact"),
     quantity!(g ["m/s2"] 1e-3, 1e3, "acceleration of gravity"),
+    quantity!(P_0 ["N"] 0.0, 1e15, "prestress of the tendon with the base down"),
+    quantity!(k_t ["N/m"] 0.0, 1e15, "stiffness of the tendon"),
+    quantity!(xi_d ["m"] 0.0, 1e4, "distance of each dissipator from the middle of the base"),
+    quantity!(c_d ["N.s/m"] 0.0, 1e15, "damping of each viscous dissipator"),
+    quantity!(k_d ["N/m"] 0.0, 1e15, "elastic stiffness of each elastoplastic dissipator"),
+    quantity!(F_y ["N"] 0.0, 1e15, "force at which an elastoplastic dissipator yields"),
 ];
 
 /// The slenderest structure accepted: H/B beyond it leaves 1 − χ (after Eq 13) without significant digits.
@@ -54,6 +78,14 @@ pub enum ParameterError {
     /// Height and half-width do not fit together.
     #[error("H/B = {0} is out of range: H must not exceed {MAX_SLENDERNESS} B; lower H or raise B")]
     TooSlender(f64),
+    /// An elastoplastic dissipator takes both a stiffness and a force at which it yields.
+    #[error("k_d = {k_d:?} N/m and F_y = {F_y:?} N are no dissipator: set both above 0, or both to 0")]
+    HalfDissipator {
+        /// Its stiffness, N/m.
+        k_d: f64,
+        /// Its yield force, N.
+        F_y: f64,
+    },
 }
 
 impl Parameters {
@@ -69,6 +101,12 @@ impl Parameters {
         c_ratio: 1.0,
         r: 0.96,
         g: 9.81,
+        P_0: 0.0,
+        k_t: 0.0,
+        xi_d: 0.0,
+        c_d: 0.0,
+        k_d: 0.0,
+        F_y: 0.0,
     };
 
     /// McManus's bridge pier specimen (Table 2).
@@ -82,7 +120,7 @@ impl Parameters {
         zeta_fc: 0.02,
         c_ratio: 1.0,
         r: 0.99,
-        g: 9.81,
+        ..Parameters::EVISON // as free to rock, under the same g
     };
 
     /// Checks every parameter against [`PARAMETERS`] and the slenderness against [`MAX_SLENDERNESS`].
@@ -93,6 +131,10 @@ impl Parameters {
         let slenderness = self.H / self.B;
         if slenderness > MAX_SLENDERNESS {
             return Err(ParameterError::TooSlender(slenderness));
+        }
+        let &Parameters { k_d, F_y, .. } = self;
+        if (k_d > 0.0) != (F_y > 0.0) {
+            return Err(ParameterError::HalfDissipator { k_d, F_y });
         }
         Ok(())
     }
@@ -114,6 +156,7 @@ mod tests {
         assert!(refused(|p| p.m = f64::NAN).starts_with("m = NaN kg"));
         assert!(refused(|p| p.H = f64::INFINITY).starts_with("H = inf m"));
         assert!(refused(|p| p.H = 300.0).starts_with("H/B = 1052.6"));
+        assert!(refused(|p| p.k_d = 2e6).starts_with("k_d = 2000000.0 N/m and F_y = 0.0 N are no dissipator"));
     }
 
     #[test]

@@ -7,6 +7,7 @@
 //! | [`exceedances`] | how often limits are exceeded over an intensity |
 //! | [`fragility`] | the curve through these, and how sure it is |
 //! | [`pulse`] | the field's standard pulses as ground motions |
+//! | [`synthetic`] | ground motions made of noise |
 //! | [`rows`] | a sweep whose rows are in a file, where it goes on |
 //! | [`row_file`] | that file |
 //! | [`map`] | overturning spectra: the fate under a pulse over its amplitude and frequency |
@@ -21,6 +22,7 @@ pub mod plan;
 pub mod pulse;
 pub mod row_file;
 pub mod rows;
+pub mod synthetic;
 
 /// Why something cannot be run or counted: what is wrong, and what to change.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -95,6 +95,17 @@ pub enum Fate {
 /// What tells neighbours apart: the fate, and of what overturns how often its base came down before, 2 for more than once.
 pub type Class = (Fate, u64);
 
+/// What the classes are called, in their order.
+pub const CLASSES: [(Class, &str); 7] = [
+    ((Fate::NoUplift, 0), "no uplift"),
+    ((Fate::Stands, 0), "rocks and stands"),
+    ((Fate::Overturns, 0), "overturns without impact"),
+    ((Fate::Overturns, 1), "overturns after one impact"),
+    ((Fate::Overturns, 2), "overturns after more"),
+    ((Fate::StillRocking, 0), "still rocking"),
+    ((Fate::Failed, 0), "failed"),
+];
+
 /// A point that has been run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
@@ -124,7 +135,7 @@ impl Axis {
             return from;
         }
         let to = self.values[steps as usize + 1];
-        if self.is_log { from * (part * (to / from).ln()).exp() } else { from + part * (to - from) }
+        if self.is_log { from * libm::exp(part * libm::log(to / from)) } else { from + part * (to - from) }
     }
 
     fn check(&self, name: &str) -> Result<(), Refused> {
@@ -165,7 +176,7 @@ impl Point {
             impacts += u64::from(comes_down);
         };
         let finish = run.follow(&mut (&mut peaks.watch_theta(), &mut count));
-        let theta = peaks.theta().magnitude / run.structure.tan_alpha_cg.atan();
+        let theta = peaks.theta().magnitude / libm::atan(run.structure.tan_alpha_cg);
         let (fate, transitions, end, reason) = match finish {
             Ok(finish) => {
                 let fate = match finish.ending {

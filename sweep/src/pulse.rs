@@ -77,7 +77,7 @@ const RICKER_END: f64 = 7.5;
 /// The largest magnitude of (x³ − 3x) e^(−x²/2), at x² = 3 − √6.
 fn beta() -> f64 {
     let x2 = 3.0 - 6.0_f64.sqrt();
-    6.0_f64.sqrt() * x2.sqrt() * (-0.5 * x2).exp()
+    6.0_f64.sqrt() * x2.sqrt() * libm::exp(-0.5 * x2)
 }
 
 impl Shape {
@@ -241,7 +241,7 @@ impl Pulse {
         let &Pulse { shape, amplitude, frequency, cycles, phase, .. } = self;
         let omega = TAU * frequency;
         let sine = |phase: f64| {
-            let a_g = amplitude * (omega * time + phase).sin();
+            let a_g = amplitude * libm::sin(omega * time + phase);
             [a_g, -omega * omega * a_g]
         };
         let middle = time - 0.5 * self.duration();
@@ -250,12 +250,12 @@ impl Pulse {
             Shape::Cosine => sine(phase + FRAC_PI_2),
             Shape::Ricker => {
                 let x = omega * middle / SQRT_2;
-                let (x2, bell) = (x * x, amplitude * (-0.5 * x * x).exp());
+                let (x2, bell) = (x * x, amplitude * libm::exp(-0.5 * x * x));
                 [(1.0 - x2) * bell, -0.5 * omega * omega * ((x2 - 6.0) * x2 + 3.0) * bell]
             }
             Shape::AntisymmetricRicker => {
                 let x = omega * middle / 3.0_f64.sqrt();
-                let (x2, bell) = (x * x, amplitude / beta() * (-0.5 * x * x).exp());
+                let (x2, bell) = (x * x, amplitude / beta() * libm::exp(-0.5 * x * x));
                 [(x2 - 3.0) * x * bell, omega * omega / 3.0 * ((x2 - 10.0) * x2 + 15.0) * x * bell]
             }
             Shape::MavroeidisPapageorgiou => {
@@ -263,7 +263,7 @@ impl Pulse {
                 let mut sum = [0.0; 2];
                 for (part, of_omega) in [(0.5, 1.0), (0.25, 1.0 + 1.0 / cycles), (0.25, 1.0 - 1.0 / cycles)] {
                     let omega_k = of_omega * omega;
-                    let a_g = -amplitude * part * of_omega * (omega_k * middle + phase).sin();
+                    let a_g = -amplitude * part * of_omega * libm::sin(omega_k * middle + phase);
                     sum = [sum[0] + a_g, sum[1] - omega_k * omega_k * a_g];
                 }
                 sum

@@ -1,7 +1,7 @@
 //! A file of rows that grows as runs end: headings, and a row for every run that is done.
 //!
-//! A row begins with the run's key, which stands for all that the run depends on. So rows may stand in any order, and those
-//! of other runs among them.
+//! A row begins with the run's key, which stands for all that the run depends on. So rows may stand in any order, and
+//! those of other runs among them.
 //!
 //! A row is written at once and whole when its run ends. Whatever ends the program, the file then holds complete rows,
 //! and at most part of one more at its end, which is cut off when the runs go on.
@@ -61,8 +61,8 @@ impl<T> Known<T> {
         self.by_key.remove(key)
     }
 
-    /// What there is beside them in the file at `path`, a line each: rows of other runs or points, `what`, and rows that are
-    /// there again.
+    /// What there is beside them in the file at `path`, a line each: rows of other runs or points, `what`, and rows
+    /// that are there again.
     pub fn others(&self, path: &Path, what: &str) -> Vec<String> {
         let others = format!("of {what} (other inputs, or another build of the program): kept");
         let counts = [(self.by_key.len(), others.as_str()), (self.repeated, "there again: counted once")];
@@ -117,8 +117,8 @@ impl RowFile {
         Ok((RowFile { path: path.into(), file: Mutex::new((file, length as u64)) }, known))
     }
 
-    /// Does `runs` on all threads, and adds their rows as they end: `run` returns one and what it is kept as. After each,
-    /// `goes_on` is asked; once it says no, the rest is left undone and that is an error.
+    /// Does `runs` on all threads, and adds their rows as they end: `run` returns one and what it is kept as. After
+    /// each, `goes_on` is asked; once it says no, the rest is left undone and that is an error.
     pub fn do_runs<T: Sync, R: Send>(
         &self,
         runs: &[T],
@@ -128,7 +128,7 @@ impl RowFile {
         let done = runs.par_iter().map(|one| {
             let (row, result) = run(one)?;
             self.append(&row)?;
-            ensure!(goes_on(), "stopped: what is done stays in {}", self.path.display());
+            ensure!(goes_on(), "stopped: finished runs are in {}", self.path.display());
             Ok(result)
         });
         done.collect()

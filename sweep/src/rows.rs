@@ -32,8 +32,8 @@ pub struct Sweep<'a> {
 }
 
 impl<'a> Sweep<'a> {
-    /// Opens the file of rows at `path`, or begins it, and finds the runs of `plan` that are in it; with `validity` a row says
-    /// what its run goes beyond, too. Refuses runs that are the same, and rows that are not of a sweep.
+    /// Opens the file of rows at `path`, or begins it, and finds the runs of `plan` that are in it; with `validity` a
+    /// row says what its run goes beyond, too. Refuses runs that are the same, and rows that are not of a sweep.
     pub fn open(plan: &'a Plan, validity: bool, program: &'a Program, path: &Path) -> anyhow::Result<Sweep<'a>> {
         let keys = keys(plan, validity, program);
         ensure!(
@@ -50,8 +50,8 @@ impl<'a> Sweep<'a> {
         (0..self.plan.len()).filter(|index| self.outcomes[*index].is_none()).collect()
     }
 
-    /// Does the runs that are not done, on all threads, and adds their rows as they end; after each `goes_on` is asked. The
-    /// key of every run of the plan, which its row begins with, and what became of it.
+    /// Does the runs that are not done, on all threads, and adds their rows as they end; after each `goes_on` is asked.
+    /// The key of every run of the plan, which its row begins with, and what became of it.
     pub fn finish(mut self, goes_on: impl Fn() -> bool + Sync) -> anyhow::Result<(Vec<Uuid>, Vec<Outcome>)> {
         let run = |&index: &usize| {
             let case = self.plan.case(index);
@@ -84,7 +84,11 @@ struct Key {
 fn keys(plan: &Plan, validity: bool, program: &Program) -> Vec<Key> {
     let of_motion = |of: &NamedRecord| {
         let samples = (of.record().times(), of.record().acceleration());
-        (ptr::from_ref(of), digest(&Uuid::NAMESPACE_OID, &samples))
+        let digest = match of.record().vertical() {
+            None => digest(&Uuid::NAMESPACE_OID, &samples),
+            Some(vertical) => digest(&Uuid::NAMESPACE_OID, &(samples, vertical)),
+        };
+        (ptr::from_ref(of), digest)
     };
     let digests: HashMap<_, _> = plan.motions().iter().map(of_motion).collect();
     let of_case = |case: Case| {

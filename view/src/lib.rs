@@ -1,7 +1,9 @@
 //! A run as a page that shows the structure in motion, one file that needs nothing else, and as what such a page draws.
+#![allow(non_snake_case)] // P_t, F_d1
 
+use rocking::mechanics::restraint::Restraints;
 use rocking::run::curve::{Curve, Point};
-use rocking::run::{Ending, RunError, fall::Found, peaks::PEAKS};
+use rocking::run::{Ending, RunError, fall::Found, peaks};
 use rocking::{Outputs, Parameters, Run};
 use serde::Serialize;
 
@@ -69,12 +71,23 @@ pub struct Scene<'a> {
     theta: Column,
     u: Column,
     a_t: Column,
+    /// Forces of the tendon and of the dissipators, of a restrained structure.
+    #[serde(flatten)]
+    ties: Option<Ties>,
     /// Index of the first point of each phase, and the phase.
     phases: Vec<(usize, &'static str)>,
     /// Quanta of time from the start, and the kind.
     transitions: Vec<(i64, &'static str)>,
     /// By name: magnitude in SI units, instant (s).
     peaks: Vec<(&'static str, f64, f64)>,
+}
+
+/// Forces, N.
+#[derive(Serialize)]
+struct Ties {
+    P_t: Column,
+    F_d1: Column,
+    F_d2: Column,
 }
 
 /// Whole multiples of a quantum.
@@ -108,11 +121,13 @@ fn quanta(duration: f64) -> i64 {
 impl<'a> Scene<'a> {
     /// Of a `run` whose `curve` leaves the motion by at most this `part` of its peaks.
     pub fn new(run: &'a Run, part: f64, curve: &Curve) -> Scene<'a> {
-        let Found { ground: a_g, peaks, fall, start, finish } = curve.found;
+        let Found { ground: a_g, peaks: found, fall, start, finish } = curve.found;
         let column = |value: fn(&Outputs) -> f64| Column::new(curve, move |at| value(&at.outputs));
         let mut phases: Vec<_> = curve.points.iter().map(|at| at.phase.name()).enumerate().collect();
         phases.dedup_by_key(|(_, phase)| *phase);
-        let all_peaks = PEAKS.iter().map(|peaking| (peaking.name, (peaking.of)(&peaks)));
+        let tie = |force: fn(&Restraints) -> f64| Column::new(curve, move |at| force(&at.restraints));
+        let ties = || Ties { P_t: tie(|of| of.P_t), F_d1: tie(|of| of.F_d1), F_d2: tie(|of| of.F_d2) };
+        let all_peaks = peaks::of(&run.structure).map(|peaking| (peaking.name, (peaking.of)(&found)));
         let all_peaks = [("a_g", a_g)].into_iter().chain(all_peaks);
         Scene {
             title: run.ground.title(),
@@ -126,6 +141,7 @@ impl<'a> Scene<'a> {
             theta: column(|outputs| outputs.theta),
             u: column(|outputs| outputs.u),
             a_t: column(|outputs| outputs.a_t),
+            ties: run.structure.is_restrained().then(ties),
             phases,
             transitions: curve.transitions.iter().map(|at| (quanta(at.time - start), at.kind.name())).collect(),
             peaks: all_peaks.map(|(name, peak)| (name, peak.magnitude, peak.time)).collect(),

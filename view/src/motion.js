@@ -12,6 +12,7 @@ function motionView() {
     let sum = 0;
     const time = Float64Array.from(data.time.values, (difference) => data.start + (sum += difference) * data.time.quantum);
     const values = { a_g: column(data.a_g), theta: column(data.theta), u: column(data.u), a_t: column(data.a_t) };
+    for (const name of ["P_t", "F_d1", "F_d2"]) if (name in data) values[name] = column(data[name]);
     const most = (values) => values.reduce((most, value) => Math.max(most, Math.abs(value)), 0);
     return {
       ...data,
@@ -130,13 +131,43 @@ function motionView() {
     const { width, height } = block();
     parent.replaceChildren();
     const line = element(parent, "path", { class: "strut" });
+    const tendon = ties().some(({ name }) => name === "P_t") ? element(parent, "path", { class: "tendon" }) : null;
     element(parent, "rect", { class: "mass", x: -B, y: -foundation, width: 2 * B, height: foundation });
     const top = element(parent, "rect", { class: "mass", x: -width / 2, y: -height / 2, width, height });
     return (u) => {
-      set(line, { d: `M0 0C0 ${-H / 3} ${u / 2} ${(-2 * H) / 3} ${u} ${-H}` });
+      const bent = `M0 0C0 ${-H / 3} ${u / 2} ${(-2 * H) / 3} ${u} ${-H}`;
+      set(line, { d: bent });
+      if (tendon) set(tendon, { d: bent });
       set(top, { transform: `translate(${u} ${-H}) rotate(${(Math.atan((1.5 * u) / H) * 180) / Math.PI})` });
     };
   }
+  /** What ties the base to the ground: the name of its force, and where along the base it is. */
+  function ties() {
+    const { P_0, k_t, xi_d, c_d, k_d } = motion.parameters;
+    return [
+      ...(P_0 > 0 || k_t > 0 ? [{ name: "P_t", kind: "tendon", along: 0 }] : []),
+      ...(c_d > 0 || k_d > 0
+        ? [{ name: "F_d1", kind: "dissipator", along: xi_d }, { name: "F_d2", kind: "dissipator", along: -xi_d }]
+        : []),
+    ];
+  }
+
+  /** The ties as lines from the ground to the base, each with its force below it. */
+  function drawTies(state, side, theta) {
+    const { x, y, scale } = stage;
+    const { B } = motion.parameters;
+    const [lines, texts] = [at("ties"), at("pulls")];
+    lines.replaceChildren();
+    texts.replaceChildren();
+    for (const { name, kind, along } of ties()) {
+      const lever = along - side * B;
+      const top = { x: side * B + lever * Math.cos(theta), y: lever * Math.sin(theta) };
+      element(lines, "line", { class: kind, x1: along, y1: 0, x2: top.x, y2: top.y });
+      const force = `${significant(state[name] / 1e3)} kN`;
+      element(texts, "text", { x: x + scale * along, y: y + 56, "text-anchor": "middle", "data-name": name }, `${name} ${force}`);
+    }
+  }
+
   function block() {
     const size = Math.min(2 * motion.parameters.B, motion.parameters.H);
     return { width: 0.42 * size, height: 0.28 * size };
@@ -173,7 +204,7 @@ function motionView() {
     const u = exaggeration * motion.largest.u;
     const reach = B * (1 - Math.cos(theta)) + (H + block().height) * Math.sin(theta) + u + block().width / 2;
     const tall = Math.hypot(H + block().height, theta > 0.5 ? 2 * B : 0);
-    const [left, right, top, below] = [64, 40, 64, 58];
+    const [left, right, top, below] = [64, 40, 64, ties().length > 0 ? 74 : 58];
     const scale = Math.min((width - left - right) / (2 * Math.max(1.25 * B, reach)), (height - top - below) / tall);
     stage = { x: (width + left - right) / 2, y: height - below, scale, width };
     const { x, y } = stage;
@@ -209,6 +240,7 @@ function motionView() {
     const lift = at("lift");
     lift.textContent = isSeen ? `${inUnit("uplift", state.uplift)} mm` : "";
     set(lift, { x: x + scale * edge.x - 8 * side, y: y + (scale * edge.y) / 2 + 4, "text-anchor": side > 0 ? "end" : "start" });
+    drawTies(state, side, theta);
     drawShaking(state.a_g, width);
     const fallen = at("fallen");
     fallen.textContent = state.phase === "overturned" ? `overturned at ${fixed(motion.end, 3)} s, peaks until ${fixed(motion.fall, 3)} s` : "";
@@ -293,6 +325,8 @@ function motionView() {
     { name: "impact", colour: "--orange", is: (kind) => kind.startsWith("impact") },
     { name: "landing", colour: "--ink", is: (kind) => kind === "landing" || kind === "settling" },
     { name: "overturning", colour: "--purple", is: (kind) => kind.startsWith("overturning") },
+    { name: "yielding", colour: "--orange", is: (kind) => kind.startsWith("yielding") },
+    { name: "unloading", colour: "--green", is: (kind) => kind.startsWith("unloading") },
   ];
 
   let shown; // the time that the histories show

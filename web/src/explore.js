@@ -12,8 +12,8 @@
   const module = await WebAssembly.compile(await unpacked("engine"));
   await wasm_bindgen({ module_or_path: module });
   const tables = JSON.parse(wasm_bindgen.tables());
+  tables.numbers = tables.numbers.map(([name, unit, description, usual, slider]) => ({ name, unit, description, usual, slider }));
   const explorer = new wasm_bindgen.Explorer();
-  const parameters = Object.fromEntries(tables.parameters.map((of) => [of.name, of]));
 
   // ---- The scene: what differs from the defaults, as the text that was given
 
@@ -63,19 +63,24 @@
   function reach({ name, unit, min, max }) {
     const { m, H, g } = preset().parameters;
     const usual = preset().parameters[name] ?? 0;
-    const units = { kg: m, m: H, s: Math.sqrt(H / g), N: m * g };
-    const of = (units_) => [...units_.matchAll(/([A-Za-z]+)(\d*)/g)].reduce((all, [, one, power]) => all * (units[one] ?? 1) ** (power || 1), 1);
+    const own = { kg: m, m: H, s: Math.sqrt(H / g), N: m * g };
+    const of = (units) =>
+      [...units.matchAll(/([A-Za-z]+)(\d*)/g)].reduce((all, [, one, power]) => all * (own[one] ?? 1) ** (power || 1), 1);
     const [above, below = ""] = unit.split("/");
     if (min > 0 && usual > 0) return usual * 2 > max ? [min, max] : [Math.max(min, usual / 8), Math.min(max, usual * 8)];
     return [min, Math.min(max, Math.max(4 * usual, of(above) / of(below)))];
   }
 
+  let about; // what the engine says of the scene
+  let motion;
+  let derived; // what follows from the structure, by name
   const rows = {};
   function row(parent, { name, unit, description, slider }, given) {
     const made = document.createElement("div");
     made.className = "row";
     made.dataset.name = name;
-    made.innerHTML = '<label></label><input type="range" min="0" max="1" step="any"><input type="text" spellcheck="false" autocomplete="off"><small></small>';
+    made.innerHTML =
+      '<label></label><input type="range" min="0" max="1" step="any"><input type="text" spellcheck="false"><small></small>';
     const [label, range, number, small] = made.children;
     label.append(symbol(name));
     label.title = description;
@@ -90,8 +95,9 @@
     number.addEventListener("input", () => given(number.value.trim()));
     at(parent).append(made);
     rows[name] = (value, isGiven = true) => {
-      if (document.activeElement !== number) number.value = Number.isFinite(value) ? String(Number(value.toPrecision(6))) : (fields[name] ?? "");
-      if (document.activeElement !== range && Number.isFinite(value)) range.value = scale(slider()).part(value);
+      const isFinite = Number.isFinite(value);
+      if (document.activeElement !== number) number.value = isFinite ? String(Number(value.toPrecision(6))) : fields[name];
+      if (document.activeElement !== range && isFinite) range.value = scale(slider()).part(value);
       made.classList.toggle("given", isGiven);
     };
     rows[name].element = made;
@@ -99,9 +105,12 @@
 
   for (const of of tables.parameters) row("structure", { ...of, slider: () => reach(of) }, (value) => give(of.name, value));
   for (const of of tables.natural) {
-    const usual = () => derived[of.name] ?? 1;
     let middle; // the slider stays where it was taken hold of
-    const slider = () => (middle = document.activeElement === rows[of.name].element.children[1] ? middle : usual()) && [Math.max(of.min, middle / 8), Math.min(of.max, middle * 8)];
+    const slider = () => {
+      const isHeld = document.activeElement === rows[of.name].element.children[1];
+      if (!isHeld) middle = derived[of.name];
+      return [Math.max(of.min, middle / 8), Math.min(of.max, middle * 8)];
+    };
     row("structure", { ...of, slider }, (value) => give(of.name, value));
   }
   for (const of of tables.numbers) {
@@ -111,7 +120,6 @@
     step = value;
     later();
   });
-  let derived = {};
 
   at("preset").append(...tables.presets.map(({ name }) => new Option(name === "mcmanus" ? "McManus's bridge pier" : "Evison's shear wall", name)));
   at("ground").append(
@@ -146,7 +154,7 @@
     change();
   });
 
-  function showControls(about) {
+  function showControls() {
     derived = Object.fromEntries(about.derived.map(({ name, value }) => [name, value]));
     at("preset").value = preset().name;
     at("ground").value = ground();
@@ -164,19 +172,21 @@
     }
     const own = [...numbersOf(ground()), "tolerance"];
     const cycles = tables.shapes.find(({ name }) => name === ground())?.cycles;
-    for (const { name, default: usual } of tables.numbers) {
+    for (const { name, usual } of tables.numbers) {
       rows[name](Number(fields[name] ?? (name === "cycles" ? cycles : usual)), name in fields);
       rows[name].element.hidden = !own.includes(name);
     }
     rows.step(Number(step), false);
     at("reading").hidden = !isFile();
     at("remarks").textContent = [`${about.samples} samples, peak ${short(about.pga)} g`, ...about.remarks, ...about.warnings].join("; ");
-    at("derived").replaceChildren(...about.derived.map(({ name, unit, description, value }) => line([name, `${short(value)}${unit === "1" ? "" : ` ${unit}`}`], description)));
+    const derivedLine = ({ name, unit, description, value }) =>
+      line([name, `${short(value)}${unit === "1" ? "" : ` ${unit}`}`], description);
+    at("derived").replaceChildren(...about.derived.map(derivedLine));
   }
 
   /** A number as the engine writes it where JSON has none. */
   const unlimited = (text) => Number(text.replace("inf", "Infinity"));
-  const short = (value) => String(Number(value.toPrecision(5))).replace("-", "−");
+  const short = (value) => String(Number(value.toPrecision(5))).replace("-", "−").replace("Infinity", "∞");
   const percent = (part) => (part === 0 ? "0" : part < 1e-11 ? "< 10⁻⁹" : Number.isFinite(part) ? `${Number((100 * part).toPrecision(2))}` : "∞");
   /** A row of a table, with its cells' content. */
   function line(cells, title = "") {
@@ -192,14 +202,13 @@
 
   // ---- What is shown: at once to a hundredth of a peak, and exactly when the hand rests
 
-  let motion;
   let pinned;
   const beside = new Set(["fixed_base"]);
   const colours = { fixed_base: "--orange", rigid: "--grey", modal: "--purple", linear: "--green", nonlinear: "--ink", auto: "--blue" };
 
   function update(part) {
     try {
-      const about = JSON.parse(explorer.about(text()));
+      about = JSON.parse(explorer.about(text()));
       motion = decode(JSON.parse(explorer.show(text(), part)));
       const others = [];
       if (tab === "compare") {
@@ -209,7 +218,7 @@
         }
         if (pinned) others.push({ ...pinned, colour: "--pinned" });
       }
-      showControls(about);
+      showControls();
       show(motion, others);
       tell();
     } catch (problem) {
@@ -273,7 +282,8 @@
       `what the model leaves out here: ${passed === 0 ? "no limit is passed" : `${passed} of ${rows.length} limits are passed`}`;
     at("validity").querySelector("tbody").replaceChildren(
       ...rows.map(({ description, meaning, value, time, limit, part, first_beyond }) => {
-        const made = line([description, short(unlimited(value)).replace("Infinity", "∞"), `${short(time)} s`, limit, first_beyond === null ? "never" : `${percent(part)} %`], meaning);
+        const beyond = first_beyond === null ? "never" : `${percent(part)} %`;
+        const made = line([description, short(unlimited(value)), `${short(time)} s`, limit, beyond], meaning);
         made.classList.toggle("beyond", first_beyond !== null);
         return made;
       }),
@@ -293,7 +303,8 @@
         const label = document.createElement("label");
         label.append(choice, " ", swatch, detail);
         const errorsOf = errors.map((error) => percent(unlimited(error)));
-        const made = line([label, ...errorsOf, overturns === null ? "not known" : overturns ? "yes" : "no", cost === null ? "–" : short(Number(cost.toPrecision(2)))]);
+        const falls = { true: "yes", false: "no", null: "not known" }[overturns];
+        const made = line([label, ...errorsOf, falls, cost === null ? "–" : short(Number(cost.toPrecision(2)))]);
         made.classList.toggle("advised", detail === advised);
         made.dataset.detail = detail;
         return made;
@@ -374,9 +385,12 @@
       if (value >= 1) svg(axes, "text", { x: left - 6, y: y(value) + 4, "text-anchor": "end" }, `${value}`);
     }
     const g = motion.parameters.g;
-    svg(axes, "text", { class: "muted", x: left + width / 2, y: top + height + 31, "text-anchor": "middle" }, `ω/p_l of a ${words(shapeOfMap())}: 1 is ${short(of_frequency)} Hz`);
-    svg(axes, "text", { class: "muted", transform: `translate(14 ${top + height / 2}) rotate(-90)`, "text-anchor": "middle" }, `a_p/(g tan α_cg): 1 is ${short(of_amplitude / g)} g`);
-    const usual = (name) => Number(fields[name] ?? tables.numbers.find((of) => of.name === name).default);
+    const [middle, below] = [{ class: "muted", "text-anchor": "middle" }, top + height + 31];
+    const [ofFrequency, ofAmplitude] = [`1 is ${short(of_frequency)} Hz`, `1 is ${short(of_amplitude / g)} g`];
+    svg(axes, "text", { ...middle, x: left + width / 2, y: below }, `ω/p_l of a ${words(shapeOfMap())}: ${ofFrequency}`);
+    const upright = `translate(14 ${top + height / 2}) rotate(-90)`;
+    svg(axes, "text", { ...middle, transform: upright }, `a_p/(g tan α_cg): ${ofAmplitude}`);
+    const usual = (name) => Number(fields[name] ?? tables.numbers.find((of) => of.name === name).usual);
     const here = [usual("frequency") / of_frequency, (usual("amplitude") * g) / of_amplitude];
     if (ground() === shapeOfMap()) svg(axes, "circle", { class: "here", cx: x(here[0]), cy: y(here[1]), r: 6 });
   }
@@ -386,8 +400,10 @@
     const { frequency, amplitude, of_frequency, of_amplitude } = spectrum.axes;
     const along = ([from, to], part) => from * (to / from) ** part;
     const place = (part) => Math.floor(part * steps * finest) / (steps * finest); // the point that stands for it
-    fields.frequency = String(Number((of_frequency * along(frequency, place(offsetX / target.clientWidth))).toPrecision(8)));
-    fields.amplitude = String(Number(((of_amplitude / motion.parameters.g) * along(amplitude, place(1 - offsetY / target.clientHeight))).toPrecision(8)));
+    const eight = (value) => String(Number(value.toPrecision(8)));
+    fields.frequency = eight(of_frequency * along(frequency, place(offsetX / target.clientWidth)));
+    const ratio = along(amplitude, place(1 - offsetY / target.clientHeight));
+    fields.amplitude = eight((ratio * of_amplitude) / motion.parameters.g);
     const shape = shapeOfMap();
     for (const name of ["scale", "time_scale"]) delete fields[name];
     give("ground", shape);
@@ -395,15 +411,17 @@
 
   function drawSpeed() {
     const tolerances = Array.from({ length: 10 }, (_, i) => `1e-${i + 3}`);
-    const own = { tolerance: fields.tolerance ?? "1e-9", isOwn: true };
-    const settings = [own, { step: Number(step), isOwn: true }, ...tolerances.map((tolerance) => ({ tolerance })), ...Array.from({ length: 10 }, (_, i) => ({ step: 0.02 / 2 ** i }))];
+    const steps = Array.from({ length: 10 }, (_, i) => 0.02 / 2 ** i);
+    const all = [...tolerances.map((tolerance) => ({ tolerance })), ...steps.map((step) => ({ step }))];
+    const settings = [{ tolerance: fields.tolerance ?? "1e-9" }, { step: Number(step) }, ...all];
     const found = [];
     at("methods").tBodies[0].replaceChildren();
     ask("speed", fields, (part) => {
       found.push({ ...part, error: unlimited(part.error), isOwn: found.length < 2 });
       if (found.length <= 2) {
         const name = part.tolerance ? `engine, ${part.tolerance}` : `RK4, ${step} s`;
-        at("methods").tBodies[0].append(line([name, unlimited(part.error).toExponential(1), part.evaluations, `${short(Number(part.time.toPrecision(2)))} ms`]));
+        const time = `${short(Number(part.time.toPrecision(2)))} ms`;
+        at("methods").tBodies[0].append(line([name, unlimited(part.error).toExponential(1), part.evaluations, time]));
       }
       drawPrecision(found);
     }, { settings });
@@ -428,48 +446,53 @@
     }
     svg(chart, "text", { x: left, y: 13 }, "error of θ and u over their largest");
     svg(chart, "text", { class: "muted", x: right, y: bottom + 30, "text-anchor": "end" }, "evaluations and steps");
-    for (const [name, colour, of] of [["engine", "--blue", ({ tolerance }) => tolerance], ["RK4", "--orange", ({ tolerance }) => !tolerance]]) {
+    const isEngine = ({ tolerance }) => tolerance !== undefined;
+    for (const [name, colour, of] of [["engine", "--blue", isEngine], ["RK4", "--orange", (part) => !isEngine(part)]]) {
       const points = found.filter(of).sort((a, b) => a.evaluations - b.evaluations);
-      svg(chart, "path", { class: "curve", style: `stroke:var(${colour})`, d: points.map(({ evaluations, error }, i) => `${i ? "L" : "M"}${x(evaluations)} ${y(error)}`).join("") });
+      const d = points.map(({ evaluations, error }, i) => `${i ? "L" : "M"}${x(evaluations)} ${y(error)}`).join("");
+      svg(chart, "path", { class: "curve", style: `stroke:var(${colour})`, d });
+      const style = `fill:var(${colour})`;
       for (const { evaluations, error, isOwn } of points) {
-        svg(chart, "circle", { class: isOwn ? "chosen" : "", cx: x(evaluations), cy: y(error), r: isOwn ? 6 : 3, style: `fill:var(${colour})` });
+        svg(chart, "circle", { class: isOwn ? "chosen" : "", cx: x(evaluations), cy: y(error), r: isOwn ? 6 : 3, style });
       }
       const last = points.at(-1);
-      if (last) svg(chart, "text", { x: x(last.evaluations) - 8, y: y(last.error) - 10, "text-anchor": "end", style: `fill:var(${colour})` }, name);
+      if (!last) continue;
+      svg(chart, "text", { x: x(last.evaluations) - 8, y: y(last.error) - 10, "text-anchor": "end", style }, name);
     }
   }
 
-  // Take along
-
   function drawTake() {
     const option = (name) => `--${name.replaceAll("_", "-")} ${fields[name]}`;
-    const of = (names) => names.filter((name) => name in fields).map(option);
-    const structure = ["preset", ...tables.parameters.map(({ name }) => name), ...tables.natural.map(({ name }) => name)];
-    const shape = tables.shapes.find(({ name }) => name === ground());
-    const [pulse, others] = [numbersOf(ground()), ["scale", "time_scale", "unit", "dt", "column"]];
-    const value = (name) => fields[name] ?? tables.numbers.find((number) => number.name === name).default;
-    const file = isFile() ? fileName ?? "FILE" : "ground.csv";
-    const commands = [];
-    if (shape) {
-      const numbers = pulse.filter((name) => name in fields || ["amplitude", "frequency"].includes(name)).map((name) => `--${name} ${value(name)}`);
-      commands.push(["rocking-fmu pulse", ground(), ...numbers, ...of(["g"]), "-o ground.csv"].join(" "));
-    }
-    const motion = ground() === "free" ? [`--free ${value("duration")}`, ...of(["theta_0", "u_0"])] : [`--record ${/^[\w.-]+$/.test(file) ? file : `'${file}'`}`, ...of(others)];
-    commands.push(["rocking-fmu simulate", ...(structure.some((name) => name in fields) && !("preset" in fields) ? ["--preset mcmanus"] : []), ...of(structure), ...motion, ...of(["detail", "tolerance"])].join(" "));
-    at("command").textContent = commands.join("\n");
+    const options = (names) => names.filter((name) => name in fields).map(option);
+    const structure = [...tables.parameters, ...tables.natural].map(({ name }) => name);
+    const shape = tables.shapes.some(({ name }) => name === ground());
+    const isFree = ground() === "free";
+    const value = (name) => fields[name] ?? tables.numbers.find((number) => number.name === name).usual;
+    const ofPulse = numbersOf(ground()).filter((name) => name in fields || ["amplitude", "frequency"].includes(name));
+    const file = isFile() ? fileName : "ground.csv";
+    const quoted = /^[\w.-]+$/.test(file) ? file : `'${file}'`;
+
+    const record = isFree ? [`--free ${value("duration")}`] : [`--record ${quoted}`];
+    const isChanged = structure.some((name) => name in fields);
+    const preset = options(["preset"]).concat(isChanged && !("preset" in fields) ? "--preset mcmanus" : []);
+    const others = options([...structure, "unit", "dt", "column", "scale", "time_scale", "theta_0", "u_0", "detail", "tolerance"]);
+    const pulse = ["rocking-fmu pulse", ground(), ...ofPulse.map((name) => `--${name} ${value(name)}`), ...options(["g"]), "-o ground.csv"];
+    const commands = [...(shape ? [pulse] : []), ["rocking-fmu simulate", ...preset, ...record, ...others]];
+    at("command").textContent = commands.map((words) => words.join(" ")).join("\n");
     at("link").textContent = location.href;
-    const all = JSON.parse(explorer.about(text())).parameters;
+
     const named = (pairs) => pairs.map(([name, number]) => `${name}=${number}`).join(", ");
-    const record = shape
-      ? `fr.pulse("${ground()}", ${named(pulse.filter((name) => name in fields || name === "amplitude" || name === "frequency").map((name) => [name, value(name)]))})`
-      : `fr.Record.read("${file}"${["scale", "time_scale"].filter((name) => name in fields).map((name) => `, ${name}=${fields[name]}`).join("")})`;
+    const given = (names) => named(names.filter((name) => name in fields).map((name) => [name, fields[name]]));
+    const read = [`"${file}"`, given(["dt", "scale", "time_scale"])].filter(Boolean).join(", ");
+    const python = shape ? `fr.pulse("${ground()}", ${named(ofPulse.map((name) => [name, value(name)]))})` : `fr.Record.read(${read})`;
+    const initial = isFree ? `duration=${value("duration")}, ${given(["theta_0", "u_0"])}` : "record";
     at("python").textContent = [
       "import flexible_rocking as fr", "",
-      `structure = fr.Structure(${named(tables.parameters.map(({ name }) => [name, all[name]]))})`,
-      `record = ${record}`,
-      `run = fr.simulate(structure, record, detail="${fields.detail ?? "auto"}", tolerance=${value("tolerance")})`,
+      `structure = fr.Structure(${named(tables.parameters.map(({ name }) => [name, about.parameters[name]]))})`,
+      ...(isFree ? [] : [`record = ${python}`]),
+      `run = fr.simulate(structure, ${initial}, detail="${fields.detail ?? "auto"}", tolerance=${value("tolerance")})`,
     ].join("\n");
-    at("csv").parentElement.hidden = ground() === "free";
+    at("csv").parentElement.hidden = isFree;
   }
 
   function save(name, content) {

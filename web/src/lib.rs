@@ -1,29 +1,23 @@
 //! The model in a browser: what the page calls, each with the scene as JSON of its fields, and an answer in JSON.
-//!
-//! The engine is the command line's. What differs is the last bit of sin, cos, exp, sinh and the like: there the system's
-//! library computes them, here Rust's port of musl's. Over the twenty scenes of `tests/test_explore.py` thirteen have the same
-//! bits and the others 15 digits; all have the same transitions.
 #![allow(non_snake_case)] // H, B: the paper's own letters
 
 mod map;
 mod runge_kutta;
 mod scene;
-mod synthetic;
 
 use fmu_export::{Library, ModelName, Version};
 use rocking::engine::piece::Sample;
 use rocking::levels::detail::Detail;
-use rocking::run::levels::{Criterion, Verdict};
-use rocking::run::levels::{REFERENCE_TOLERANCE, compare, relative};
+use rocking::run::levels::{Criterion, REFERENCE_TOLERANCE, Verdict, compare, relative};
 use rocking::run::validity::{self, ASSUMPTIONS, Limits};
 use rocking::run::{End, RunError, record::Record};
 use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::{DERIVED, parameters::PARAMETERS};
 use rocking::{Run, State, Structure};
 use rocking_records::Unit;
-use rocking_sweep::pulse::Shape;
+use rocking_sweep::{map::CLASSES, pulse::Shape};
 use rocking_view::Scene;
-use scene::{Fields, File, GROUNDS, Ground, NUMBERS, Number, PRESETS};
+use scene::{Fields, File, GROUNDS, Ground, NUMBERS, PRESETS};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -46,10 +40,6 @@ pub fn tables() -> String {
             "stands_for": of.stands_for,
         })
     };
-    let number = |of: &Number| {
-        let &Number { name, unit, description, default, slider } = of;
-        json!({ "name": name, "unit": unit, "description": description, "default": default, "slider": slider })
-    };
     let shape = |of: Shape| json!({ "name": of.name(), "definition": of.definition(), "cycles": of.cycles(), "has_choice": of.has_choice() });
     let preset = |(name, parameters): &(&str, rocking::Parameters)| json!({ "name": name, "parameters": parameters });
     json!({
@@ -57,11 +47,11 @@ pub fn tables() -> String {
         "natural": NATURAL.iter().map(natural).collect::<Vec<_>>(),
         "presets": PRESETS.iter().map(preset).collect::<Vec<_>>(),
         "shapes": Shape::ALL.map(shape),
-        "numbers": NUMBERS.iter().map(number).collect::<Vec<_>>(),
+        "numbers": NUMBERS,
         "grounds": GROUNDS,
         "details": Detail::ALL.map(Detail::name),
         "units": Unit::NAMES.map(|(name, _)| name),
-        "classes": map::CLASSES.map(|(_, name)| name),
+        "classes": CLASSES.map(|(_, name)| name),
     })
     .to_string()
 }
@@ -201,10 +191,7 @@ impl Explorer {
         }
         let (_, exact) = self.reference.as_ref().expect("it is there");
         let (states, evaluations) = match step {
-            Some(step) => {
-                let response = runge_kutta::run(&structure, &record, &instants, own.initial, step)?;
-                (response.states, response.evaluations)
-            }
+            Some(step) => runge_kutta::run(&structure, &record, &instants, own.initial, step)?,
             None => sampled(&Run { detail: Detail::Auto, ..own }, &instants)?,
         };
         let error = |of: fn(&State) -> f64| {
@@ -238,7 +225,7 @@ impl Explorer {
             _ if fields.text("ground") == Some("free") => Vec::new(),
             _ => vec![(PathBuf::from("ground.csv"), csv(&ground.record).into_bytes())],
         };
-        let exported = fmu_export::export(version, &ModelName::default(), &structure, record, &self.libraries);
+        let exported = fmu_export::export(version, &ModelName::default(), &structure, record, None, &self.libraries);
         Ok(exported.map_err(says)?.1)
     }
 }

@@ -1,22 +1,11 @@
 //! An overturning spectrum that fills in while it is computed, from coarse to fine.
 
 use crate::scene::Fields;
-use rocking_sweep::map::{Axis, Class, Fate, Map, Place, Point};
+use rocking_sweep::map::{Axis, CLASSES, Map, Place, Point};
 use rocking_sweep::pulse::units_of;
 use serde_json::json;
 use std::collections::{HashMap, VecDeque};
 use wasm_bindgen::prelude::wasm_bindgen;
-
-/// What becomes of a structure, as the map's key calls it.
-pub const CLASSES: [(Class, &str); 7] = [
-    ((Fate::NoUplift, 0), "no uplift"),
-    ((Fate::Stands, 0), "rocks and stands"),
-    ((Fate::Overturns, 0), "overturns without impact"),
-    ((Fate::Overturns, 1), "overturns after one impact"),
-    ((Fate::Overturns, 2), "overturns after more"),
-    ((Fate::StillRocking, 0), "still rocking"),
-    ((Fate::Failed, 0), "failed"),
-];
 
 /// Steps of the grid along each axis, a power of 2, and how often it is refined.
 const STEPS: usize = 32;

@@ -10,31 +10,24 @@ use std::f64::consts::FRAC_PI_2;
 /// More evaluations than these are not waited for.
 const MOST_EVALUATIONS: f64 = 2e7;
 
-/// What the method makes of a ground motion.
-pub struct Response {
-    /// At the instants, as far as it goes.
-    pub states: Vec<State>,
-    pub evaluations: u64,
-}
-
 /// From the state `initial` under `ground` in steps of `h` (s), cut evenly between `instants` (s): the record's samples, and later
-/// ones at which the ground is at rest.
+/// ones at which the ground is at rest. The states at the instants, as far as it goes, and the evaluations.
 pub fn run(
     structure: &Structure,
     ground: &Record,
     instants: &[f64],
     initial: State,
     h: f64,
-) -> Result<Response, String> {
+) -> Result<(Vec<State>, u64), String> {
     let (times, a) = (ground.times(), ground.acceleration());
     let parts = |i: usize| ((instants[i] - instants[i - 1]) / h - 1e-9).ceil().max(1.0);
-    let evaluations = 4.0 * (1..instants.len()).map(parts).sum::<f64>();
-    if !(h > 0.0 && evaluations <= MOST_EVALUATIONS) {
+    let needed = 4.0 * (1..instants.len()).map(parts).sum::<f64>();
+    if !(h > 0.0 && needed <= MOST_EVALUATIONS) {
         return Err(format!(
-            "step = {h} s is out of range: it takes {evaluations:.0e} evaluations, and {MOST_EVALUATIONS:e} are possible"
+            "step = {h} s is out of range: it takes {needed:.0e} evaluations, and {MOST_EVALUATIONS:e} are possible"
         ));
     }
-    let mut response = Response { states: vec![initial], evaluations: 0 };
+    let (mut states, mut evaluations) = (vec![initial], 0);
     let (mut phase, mut state) = (initial.initial_phase().map_err(|error| error.to_string())?, initial);
     for i in 1..instants.len() {
         let (dt, parts) = (instants[i] - instants[i - 1], parts(i));
@@ -45,15 +38,15 @@ pub fn run(
         let step = dt / parts;
         for part in 0..parts as u64 {
             state = stepped(structure, phase, &state, |tau| ramp.at(part as f64 * step + tau), step);
-            response.evaluations += 4;
+            evaluations += 4;
             (phase, state) = next(structure, phase, &state).unwrap_or((phase, state));
             if let Phase::Overturned(_) = phase {
-                return Ok(response);
+                return Ok((states, evaluations));
             }
         }
-        response.states.push(state);
+        states.push(state);
     }
-    Ok(response)
+    Ok((states, evaluations))
 }
 
 /// One step over `h` (s): k₁ … k₄ in the textbook's order.

@@ -1,12 +1,13 @@
 //! A scene as the page has it: fields of text, as they stand in the link, read by the parser that reads a command line's.
 
-use crate::synthetic;
+use crate::says;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::{End, record::Record};
 use rocking::structure::natural_quantities::{Given, names};
 use rocking::{Detail, Parameters, Run, State, Structure};
 use rocking_records::{Column, Reading, Source, Unit};
 use rocking_sweep::pulse::{Pulse, Shape};
+use rocking_sweep::synthetic;
 use serde::Deserialize;
 use serde::de::value::{Error, StrDeserializer};
 use std::collections::BTreeMap;
@@ -15,41 +16,24 @@ use std::path::{Path, PathBuf};
 /// The specimens of the paper.
 pub const PRESETS: [(&str, Parameters); 2] = [("mcmanus", Parameters::MCMANUS), ("evison", Parameters::EVISON)];
 
-/// A number of the ground motion, or of how the motion is computed.
-pub struct Number {
-    pub name: &'static str,
-    pub unit: &'static str,
-    pub description: &'static str,
-    /// What it is unless something else is asked for.
-    pub default: f64,
-    /// What the page's slider goes from and to; a field may have any number.
-    pub slider: [f64; 2],
-}
+/// Name, unit and meaning of a number of the ground motion or of how the motion is computed, what it is unless something else
+/// is asked for, and what the page's slider goes from and to; a field may have any number.
+pub type Number = (&'static str, &'static str, &'static str, f64, [f64; 2]);
 
 /// All of them.
 pub const NUMBERS: [Number; 11] = [
-    number("amplitude", "g", "peak ground acceleration", 0.6, [0.02, 4.0]),
-    number("frequency", "Hz", "frequency of the pulse", 2.0, [0.1, 20.0]),
-    number("cycles", "1", "periods of the pulse", f64::NAN, [0.25, 10.0]),
-    number("phase", "rad", "phase of the pulse", 0.0, [-3.2, 3.2]),
-    number("duration", "s", "duration of the ground motion", 10.0, [1.0, 60.0]),
-    number("seed", "1", "what the noise begins with", 1.0, [1.0, 100.0]),
-    number("theta_0", "rad", "rotation at the start", 0.0, [-0.3, 0.3]),
-    number("u_0", "m", "elastic displacement at the start", 0.0, [-0.05, 0.05]),
-    number("scale", "1", "multiplies the record's accelerations", 1.0, [0.1, 10.0]),
-    number("time_scale", "1", "multiplies the record's times", 1.0, [0.1, 10.0]),
-    number("tolerance", "1", "relative tolerance of the results", DEFAULT_TOLERANCE, [1e-12, 1e-3]),
+    ("amplitude", "g", "peak ground acceleration", 0.6, [0.02, 4.0]),
+    ("frequency", "Hz", "frequency of the pulse", 2.0, [0.1, 20.0]),
+    ("cycles", "1", "periods of the pulse", f64::NAN, [0.25, 10.0]),
+    ("phase", "rad", "phase of the pulse", 0.0, [-3.2, 3.2]),
+    ("duration", "s", "duration of the ground motion", 10.0, [1.0, 60.0]),
+    ("seed", "1", "what the noise begins with", 1.0, [1.0, 100.0]),
+    ("theta_0", "rad", "rotation at the start", 0.0, [-0.3, 0.3]),
+    ("u_0", "m", "elastic displacement at the start", 0.0, [-0.05, 0.05]),
+    ("scale", "1", "multiplies the record's accelerations", 1.0, [0.1, 10.0]),
+    ("time_scale", "1", "multiplies the record's times", 1.0, [0.1, 10.0]),
+    ("tolerance", "1", "relative tolerance of the results", DEFAULT_TOLERANCE, [1e-12, 1e-3]),
 ];
-
-const fn number(
-    name: &'static str,
-    unit: &'static str,
-    description: &'static str,
-    default: f64,
-    slider: [f64; 2],
-) -> Number {
-    Number { name, unit, description, default, slider }
-}
 
 /// Ground motions that are no pulses, with the names of their numbers.
 pub const GROUNDS: [(&str, &[&str]); 3] = [
@@ -76,10 +60,6 @@ pub struct Ground {
     pub remarks: Vec<String>,
 }
 
-fn says(error: impl std::error::Error) -> String {
-    error.to_string()
-}
-
 impl Fields {
     /// Reads the page's JSON.
     pub fn read(json: &str) -> Result<Fields, String> {
@@ -102,7 +82,7 @@ impl Fields {
 
     /// One of [`NUMBERS`].
     fn number(&self, name: &str) -> Result<f64, String> {
-        let default = || NUMBERS.iter().find(|number| number.name == name).expect("it is one of them").default;
+        let default = || NUMBERS.iter().find(|number| number.0 == name).expect("it is one of them").3;
         self.given(name).unwrap_or_else(|| Ok(default()))
     }
 
@@ -133,7 +113,7 @@ impl Fields {
             "free" => Ok(alone(Record::at_rest(self.number("duration")?))),
             "synthetic" => {
                 let pga = g * self.number("amplitude")?;
-                synthetic::record(pga, self.number("duration")?, self.number("seed")? as u64).map(alone)
+                synthetic::record(pga, self.number("duration")?, self.number("seed")? as u64).map(alone).map_err(says)
             }
             _ => {
                 let record = self.pulse(g)?.record().map_err(says)?;

@@ -5,7 +5,6 @@ let current = 0;
 const work = {
   compare: (fields, answer) => answer(JSON.parse(explorer.compare(fields))),
 
-  /** Error, evaluations and time of one method at a time. */
   async speed(fields, answer, { settings }) {
     for (const { tolerance, step } of settings) {
       const scene = tolerance ? JSON.stringify({ ...JSON.parse(fields), tolerance }) : fields;

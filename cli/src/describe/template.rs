@@ -10,9 +10,9 @@ pub fn write(out: &mut impl Write, structure: &Structure) -> fmt::Result {
     writeln!(out, "# A structure, for rocking-fmu ... --parameters FILE.toml. SI units; # begins a comment.")?;
     writeln!(
         out,
-        "# A line that begins with # may take the place of the one above it. J0, c_ratio and g may be left out:"
+        "# A line that begins with # may take the place of the one above it. J0, c_ratio, g and what restrains may be left"
     )?;
-    writeln!(out, "# they are 0, 1 and 9.81 m/s2 then.")?;
+    writeln!(out, "# out: they are 0, 1, 9.81 m/s2 and 0 then.")?;
     for &Quantity { name, unit, description, min, max, get, .. } in &PARAMETERS {
         let of = if unit == "1" { String::new() } else { format!(" {unit},") };
         writeln!(out, "\n# {description},{of} {} to {}", in_full(min), in_full(max))?;

@@ -125,17 +125,21 @@ enum RecordEntry {
 }
 
 impl RecordEntry {
-    /// The pattern of the files, and how they are read.
-    fn pattern_and_options(&self) -> anyhow::Result<(&str, RecordOptions)> {
+    /// The pattern of the files, the vertical component that goes with the one file, if any, and how they are read.
+    fn pattern_and_options(&self) -> anyhow::Result<(&str, Option<&str>, RecordOptions)> {
         match self {
-            RecordEntry::AsTheyAre(pattern) => Ok((pattern, RecordOptions::default())),
+            RecordEntry::AsTheyAre(pattern) => Ok((pattern, None, RecordOptions::default())),
             RecordEntry::As(table) => {
                 let pattern = table.get("file").and_then(toml::Value::as_str);
                 let pattern = pattern.context("records: a table without file: expected { file = ..., scale = ... }")?;
                 let mut options = table.clone();
                 options.remove("file");
+                options.remove("vertical");
+                let vertical = table.get("vertical").map(|vertical| {
+                    vertical.as_str().with_context(|| format!("records {pattern:?}: vertical is the path of one file"))
+                });
                 let options = RecordOptions::deserialize(options).with_context(|| format!("records {pattern:?}"))?;
-                Ok((pattern, options))
+                Ok((pattern, vertical.transpose()?, options))
             }
         }
     }
@@ -183,14 +187,19 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         let g = gravity(&file.structures)?;
         let populations = file.structures.iter().map(StructureGrid::population).collect::<Result<_, _>>()?;
         let (mut records, mut warnings) = (Vec::new(), Vec::new());
-        let read = |path: &Path, options: &RecordOptions| {
+        let mut read_one = |path: &Path, options: &RecordOptions| {
             files.add_input(path);
             let (unit, time_scale) = (options.unit.or(unit), options.time_scale.or(time_scale));
             let options = RecordOptions { unit, time_scale, scale: None, ..options.clone() };
             let understood = options.understand(path, g).map_err(with_key)?;
             warnings.extend(understood.warnings(path));
             records.push(understood.described);
-            Ok(understood.record)
+            Ok::<_, anyhow::Error>(understood.record)
+        };
+        let read = |path: &Path, vertical: Option<&Path>, options: &RecordOptions| {
+            let record = read_one(path, options)?;
+            let Some(vertical) = vertical else { return Ok(record) };
+            Ok(record.with_vertical(&read_one(vertical, options)?)?)
         };
         let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read);
         say_few(&warnings, "warnings");
@@ -335,26 +344,32 @@ impl StructureGrid {
 fn motions(
     sources: &[RecordEntry],
     folder: &Path,
-    mut read: impl FnMut(&Path, &RecordOptions) -> anyhow::Result<Record>,
+    mut read: impl FnMut(&Path, Option<&Path>, &RecordOptions) -> anyhow::Result<Record>,
 ) -> anyhow::Result<Vec<NamedRecord>> {
     let (mut motions, mut named, mut bad) = (Vec::new(), HashMap::new(), Vec::<anyhow::Error>::new());
     for source in sources {
-        let (pattern, options) = source.pattern_and_options()?;
+        let (pattern, vertical, options) = source.pattern_and_options()?;
         let scale = options.scale.unwrap_or(1.0);
         let column = match &options.column {
             None => String::new(),
             Some(Column::Heading(heading)) => format!(" column {heading}"),
             Some(column) => format!(" column {column}"),
         };
+        let with = column + &vertical.map_or(String::new(), |vertical| format!(" with {vertical}"));
+        let vertical = vertical.map(|vertical| folder.join(vertical));
         let in_folder = Path::new(&glob::Pattern::escape(&folder.to_string_lossy())).join(pattern);
         let paths = glob::glob(&in_folder.to_string_lossy()).with_context(|| format!("records {pattern:?}"))?;
         let mut paths = paths.peekable();
         if paths.peek().is_none() {
             bad.push(anyhow!("records: there is no file {}", folder.join(pattern).display()));
         }
-        for path in paths {
+        for (i, path) in paths.enumerate() {
             let path = path?;
-            if let Some(other) = named.insert((path.canonicalize()?, column.clone()), options.clone()) {
+            ensure!(
+                i == 0 || vertical.is_none(),
+                "records {pattern:?}: vertical goes with one file, and there are more"
+            );
+            if let Some(other) = named.insert((path.canonicalize()?, with.clone()), options.clone()) {
                 ensure!(
                     other == options,
                     "{} is named twice in records, with different options: leave one out",
@@ -364,7 +379,8 @@ fn motions(
             }
             // The same on every system, so that a sweep can go on on another.
             let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace(MAIN_SEPARATOR, "/");
-            match read(&path, &options).and_then(|record| Ok(NamedRecord::new(name + &column, record, scale)?)) {
+            let record = read(&path, vertical.as_deref(), &options);
+            match record.and_then(|record| Ok(NamedRecord::new(name + &with, record, scale)?)) {
                 Ok(motion) => motions.push(motion),
                 Err(error) => bad.push(error),
             }

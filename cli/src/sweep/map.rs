@@ -13,7 +13,7 @@ use anyhow::{bail, ensure};
 use picture::Shown;
 use rayon::prelude::*;
 use rocking::run::{LONGEST_REST, validity};
-use rocking_sweep::map::{Class, Fate, Map, Place, Point};
+use rocking_sweep::map::{CLASSES, Class, Fate, Map, Place, Point};
 use rocking_sweep::row_file::{Known, RowFile};
 use serde::Serialize;
 use std::{collections::HashMap, fmt::Write, path::Path, time::Instant};
@@ -28,17 +28,6 @@ pub struct Spectrum {
     /// Every point that has been run.
     pub points: HashMap<Place, Point>,
 }
-
-/// What the classes are called, in their order.
-const CLASSES: [(Class, &str); 7] = [
-    ((Fate::NoUplift, 0), "no uplift"),
-    ((Fate::Stands, 0), "rocks and stands"),
-    ((Fate::Overturns, 0), "overturns without impact"),
-    ((Fate::Overturns, 1), "overturns after one impact"),
-    ((Fate::Overturns, 2), "overturns after more"),
-    ((Fate::StillRocking, 0), "still rocking"),
-    ((Fate::Failed, 0), "failed"),
-];
 
 /// How many points of a map's grid are of a class.
 #[derive(Serialize)]

@@ -16,6 +16,7 @@ use archive::Entry;
 use experiment::Experiment;
 pub use library::{Library, LibraryError, Platform};
 use rocking::Structure;
+use rocking::run::record::{Record, SamplesError};
 use rocking_records::RecordError;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -75,6 +76,9 @@ pub enum ExportError {
     /// Two libraries for one platform.
     #[error("two shared libraries are for {}: leave one out", .0.tuple())]
     SamePlatform(Platform),
+    /// The vertical component does not belong to the record.
+    #[error(transparent)]
+    NoPair(#[from] SamplesError),
     /// A file that is no record.
     #[error(transparent)]
     NoRecord(#[from] RecordError),
@@ -98,14 +102,18 @@ pub enum ExportError {
     Archive(#[from] zip::result::ZipError),
 }
 
-/// The FMU of `structure` under `name` for hosts of `version`, with the shared `libraries` and the `records`, paths of files
-/// and their content, of which the first is what its ground follows: what it carries, and the bytes of the archive. The same
-/// name, structure, libraries and records give the same bytes.
+/// The path of a file, and its content.
+pub type RecordFile = (PathBuf, Vec<u8>);
+
+/// The FMU of `structure` under `name` for hosts of `version`, with the shared `libraries` and the `records`, of which the
+/// first is what its ground follows, and the `vertical` component to that: what it carries, and the bytes of the archive. The
+/// same name, structure, libraries and records give the same bytes.
 pub fn export(
     version: Version,
     name: &ModelName,
     structure: &Structure,
-    records: Vec<(PathBuf, Vec<u8>)>,
+    records: Vec<RecordFile>,
+    vertical: Option<RecordFile>,
     libraries: &[Library],
 ) -> Result<(Contents, Vec<u8>), ExportError> {
     let mut libraries: Vec<_> = libraries.iter().collect();
@@ -115,16 +123,25 @@ pub fn export(
     }
     let (mut contents, mut files) = (Contents::from(*structure.parameters()), Vec::new());
     let mut followed = None;
-    for (path, content) in records {
+    let mut pack = |contents: &Contents, (path, content): RecordFile| {
         let record = GroundRecord::from_bytes(&path, &content)?;
         let name = path.file_name().and_then(|name| name.to_str());
         let file = name.ok_or_else(|| ExportError::RecordName(path.clone()))?.to_owned();
-        if contents.records.iter().any(|packed| packed.file.to_lowercase() == file.to_lowercase()) {
+        if contents.packed().any(|packed| packed.file.to_lowercase() == file.to_lowercase()) {
             return Err(ExportError::SameName(file));
         }
         files.push(content);
-        contents.records.push(PackedRecord { file, digest: record.name() });
         followed.get_or_insert_with(|| record.record.clone());
+        Ok((PackedRecord { file, digest: record.name() }, record))
+    };
+    for record in records {
+        let (packed, _) = pack(&contents, record)?;
+        contents.records.push(packed);
+    }
+    if let Some(vertical) = vertical {
+        let (packed, record) = pack(&contents, vertical)?;
+        contents.vertical = Some(packed);
+        followed.clone().map_or(Ok(()), |followed: Record| followed.with_vertical(&record.record).map(drop))?;
     }
     let experiment = Experiment::new(structure, followed.as_ref());
     let archive =
@@ -163,11 +180,11 @@ fn entries(
         entry("documentation/licenses/license.txt", LICENSES.into()),
         entry(&format!("resources/{PARAMETERS_FILE}"), toml::to_string(&contents.parameters)?.into()),
     ]);
-    if !contents.records.is_empty() {
-        let names = Records { record: contents.records.clone() };
+    if !records.is_empty() {
+        let names = Records { record: contents.records.clone(), vertical: contents.vertical.clone() };
         entries.push(entry(&format!("resources/{RECORDS_FILE}"), toml::to_string(&names)?.into()));
     }
-    let packed = contents.records.iter().zip(records);
+    let packed = contents.packed().zip(records);
     entries.extend(packed.map(|(packed, file)| entry(&format!("resources/{}", packed.file), file)));
     entries
         .extend(libraries.iter().map(|library| entry(&library.platform.path(version, name), library.content.clone())));
@@ -191,9 +208,16 @@ mod tests {
     #[test]
     fn two_exports_of_the_same_are_the_same_bytes() {
         let exported = |parameters, platforms: [Platform; 2]| {
-            export(Version::Fmi2, &ModelName::default(), &structure(parameters), Vec::new(), &platforms.map(library))
-                .unwrap()
-                .1
+            export(
+                Version::Fmi2,
+                &ModelName::default(),
+                &structure(parameters),
+                Vec::new(),
+                None,
+                &platforms.map(library),
+            )
+            .unwrap()
+            .1
         };
         let [linux, windows] = [Platform::Linux64, Platform::Windows64];
         let first = exported(Parameters::EVISON, [linux, windows]);
@@ -204,9 +228,10 @@ mod tests {
     #[test]
     fn one_library_for_each_platform() {
         let two = [Platform::LinuxArm64; 2].map(library);
-        let refusal = export(Version::Fmi2, &ModelName::default(), &structure(Parameters::EVISON), Vec::new(), &two)
-            .unwrap_err()
-            .to_string();
+        let refusal =
+            export(Version::Fmi2, &ModelName::default(), &structure(Parameters::EVISON), Vec::new(), None, &two)
+                .unwrap_err()
+                .to_string();
         assert_eq!(refusal, "two shared libraries are for aarch64-linux: leave one out");
     }
 
@@ -259,16 +284,18 @@ mod tests {
         let [pulse, sine]: [Packed; 2] =
             [("pulse 1.csv", "t/s,a\r\n0,1\r\n1,2\r\n"), ("sine.txt", "t/s,a\n0,1\n1,-1\n")];
         let [same, broken]: [Packed; 2] = [("other/Sine.TXT", "t/s,a\n0,2\n1,0\n"), ("broken.csv", "0,1\n1,?\n")];
-        let export = |records: &[&Packed]| {
-            let records: Vec<_> = records.iter().map(|(path, text)| (path.into(), text.as_bytes().to_vec())).collect();
+        let file = |(path, text): &Packed| (path.into(), text.as_bytes().to_vec());
+        let with_vertical = |records: &[&Packed], vertical: Option<&Packed>| {
             super::export(
                 Version::Fmi2,
                 &ModelName::default(),
                 &structure(Parameters::EVISON),
-                records,
+                records.iter().map(|packed| file(packed)).collect(),
+                vertical.map(file),
                 &[library(Platform::Linux64)],
             )
         };
+        let export = |records: &[&Packed]| with_vertical(records, None);
         let (contents, bytes) = export(&[&pulse, &sine]).unwrap();
         assert_eq!(contents.default_record(), "pulse 1.csv");
         let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
@@ -281,6 +308,17 @@ mod tests {
         let (swapped, _) = export(&[&sine, &pulse]).unwrap();
         assert_ne!(FlexibleRocking::guid(&swapped), FlexibleRocking::guid(&contents));
 
+        let (pair, bytes) = with_vertical(&[&pulse], Some(&sine)).unwrap();
+        assert_eq!((pair.default_record(), pair.default_vertical()), ("pulse 1.csv", "sine.txt"));
+        let mut archive = zip::ZipArchive::new(std::io::Cursor::new(bytes)).unwrap();
+        let names: Records =
+            toml::from_str(&std::io::read_to_string(archive.by_name("resources/records.toml").unwrap()).unwrap())
+                .unwrap();
+        assert_eq!((names.record, names.vertical), (pair.records, pair.vertical));
+
+        let late: Packed = ("late.txt", "t/s,a\n1,1\n2,-1\n");
+        let refused = with_vertical(&[&pulse], Some(&late)).unwrap_err().to_string();
+        assert!(refused.starts_with("the vertical component \"late\" begins at 1.0 s and"), "{refused}");
         let refusal = |records: &[&Packed]| export(records).unwrap_err().to_string();
         assert_eq!(
             refusal(&[&sine, &same]),

@@ -23,6 +23,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         _ => return Err(format!("the version of FMI is 2 or 3, not {version}").into()),
     };
     let libraries = Library::read(Path::new(library))?;
-    let (_, archive) = export(version, &ModelName::default(), &Structure::new(parameters)?, Vec::new(), &libraries)?;
+    let (_, archive) =
+        export(version, &ModelName::default(), &Structure::new(parameters)?, Vec::new(), None, &libraries)?;
     Ok(fs::write(output, archive)?)
 }

@@ -220,7 +220,7 @@ mod tests {
             let unknown = unknowns.unknowns.iter().find(|unknown| name(&unknown.index) == of).unwrap();
             unknown.dependencies.iter().map(name).collect::<Vec<_>>().join(" ")
         };
-        assert_eq!(dependencies(outputs, "a_t"), "a_g F_t u u_dot theta theta_dot");
+        assert_eq!(dependencies(outputs, "a_t"), "a_g F_t a_v u u_dot theta theta_dot");
         assert_eq!(dependencies(outputs, "delta_t"), "u theta");
         assert_eq!(dependencies(outputs, "I_v"), "");
         assert_eq!(dependencies(derivatives, "der(u)"), "u_dot");
@@ -235,7 +235,7 @@ mod tests {
     #[test]
     fn start_values_are_those_of_the_structure() {
         let record = PackedRecord { file: "pulse & rest.csv".into(), digest: "any".into() };
-        let contents = Contents { parameters: Parameters::EVISON, records: vec![record] };
+        let contents = Contents { parameters: Parameters::EVISON, records: vec![record], vertical: None };
         let xml = described(&contents).to_xml().unwrap();
         for element in [
             r#"name="a_g" valueReference="0" description="horizontal ground acceleration, positive to the right" causality="input" variability="continuous">

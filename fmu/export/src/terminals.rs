@@ -6,8 +6,8 @@ use model_description::fmi3::{BUS, FmiTerminalsAndIcons, SIGNAL, Terminal, Termi
 const TERMINALS: [(&str, &str, &[&str]); 2] = [
     (
         "base",
-        "what the ground does and what it feels: acceleration, forces, moment, impulses of the impacts",
-        &["a_g", "R_h", "R_v", "R_m", "I_h", "I_v", "I_m"],
+        "what the ground does and what it feels: accelerations, forces, moment, impulses of the impacts",
+        &["a_g", "a_v", "R_h", "R_v", "R_m", "I_h", "I_v", "I_m"],
     ),
     ("top", "a force on the top mass, and how this moves", &["F_t", "delta_t", "v_t"]),
 ];

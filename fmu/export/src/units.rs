@@ -6,7 +6,7 @@ use rocking::structure::parameters::PARAMETERS;
 use rocking::{State, Structure};
 
 /// The units of the variables, as exponents of kg, m, s, rad.
-pub const UNITS: [(&str, [i32; 4]); 14] = [
+pub const UNITS: [(&str, [i32; 4]); 17] = [
     ("kg", [1, 0, 0, 0]),
     ("m", [0, 1, 0, 0]),
     ("s", [0, 0, 1, 0]),
@@ -17,7 +17,10 @@ pub const UNITS: [(&str, [i32; 4]); 14] = [
     ("m/s", [0, 1, -1, 0]),
     ("m/s2", [0, 1, -2, 0]),
     ("N", [1, 1, -2, 0]),
+    ("N/m", [1, 0, -2, 0]),
+    ("N.s/m", [1, 0, -1, 0]),
     ("N.m", [1, 2, -2, 0]),
+    ("J", [1, 2, -2, 0]),
     ("N.s", [1, 1, -1, 0]),
     ("N.m.s", [1, 2, -1, 0]),
     ("kg.m2", [1, 2, 0, 0]),
@@ -74,11 +77,11 @@ pub fn nominal(variable: &Variable, structure: &Structure) -> Option<f64> {
         "uplift" => Some(2.0 * parameters.B * alpha.sin()),
         "delta_t" => Some(height * alpha.sin()),
         "v_t" => Some(height * usual.theta_dot),
-        "a_g" | "a_ground" | "a_t" | "der(u_dot)" => Some(acceleration),
+        "a_g" | "a_ground" | "a_v" | "a_v_ground" | "a_t" | "der(u_dot)" => Some(acceleration),
         "der(theta_dot)" => Some(structure.p_l * usual.theta_dot),
         "F_t" | "V_t" | "R_h" => Some(m * acceleration),
         "M_t" | "R_m" => Some(m * height * acceleration),
-        "R_v" => Some((m + parameters.m0) * parameters.g),
+        "R_v" | "P_t" | "F_d1" | "F_d2" => Some((m + parameters.m0) * parameters.g),
         _ => None, // impulses add up over a motion
     };
     magnitude.map(|magnitude| format!("{magnitude:.2e}").parse().expect("a number in Rust's own notation"))

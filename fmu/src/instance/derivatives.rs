@@ -2,7 +2,6 @@
 
 use super::Instance;
 use crate::failure::Failure;
-use crate::model::Model;
 use crate::present::find;
 use crate::sensitivity::{by_state, sensitivities};
 use crate::shown::Shown;
@@ -32,7 +31,8 @@ impl Instance {
             let rate = match variable.source {
                 Source::Output(of) => of(&outputs),
                 Source::Reaction(of) => of(&reactions),
-                Source::Ground => load.slope.a_g,
+                Source::Restraint(of) => of(&model.engine.restraint_rates(load.value)),
+                Source::Ground(which) => load.slope[which],
                 _ => return Err(Failure::NoOutput(variable)),
             };
             if order != 1 {
@@ -94,7 +94,8 @@ impl Instance {
         let unknown = |reference: &u32| {
             let variable = find(variables, *reference)?;
             match variable.source {
-                Source::Output(_) | Source::Reaction(_) | Source::StateRate(_) | Source::Ground => Ok(variable),
+                Source::Output(_) | Source::Reaction(_) | Source::StateRate(_) | Source::Ground(_) => Ok(variable),
+                Source::Restraint(_) => Ok(variable),
                 Source::Impulse(_) => Ok(variable), // which events alone change
                 Source::Derived(_) | Source::RecordDuration if is_initializing => Ok(variable),
                 _ => Err(Failure::NoOutput(variable)),
@@ -109,21 +110,32 @@ impl Instance {
             let by = by_state(model, setup, inputs, &unknowns, which)?;
             by_states.iter_mut().zip(by).for_each(|(sum, by)| *sum += seed * by);
         }
-        let model = &*model;
-        let Model { engine, ground, .. } = model;
         if of_time != 0.0 {
-            direction.a_g += of_time * model.load(setup, LinearLoad::default()).slope.a_g;
+            let Load { a_g, a_v, .. } = model.load(setup, LinearLoad::default()).slope;
+            (direction.a_g, direction.a_v) = (direction.a_g + of_time * a_g, direction.a_v + of_time * a_v);
         }
-        let time = engine.motion().time;
-        let &Parameters { m, g, .. } = engine.structure().parameters();
+        let is_admitted_for_this = direction.a_v != 0.0 && !model.may_move_vertically(setup);
+        if is_admitted_for_this {
+            model.engine.admit_vertical(true)?;
+        }
+        let time = model.engine.motion().time;
+        let &Parameters { m, g, .. } = model.engine.structure().parameters();
         let before = Shown::new(model, setup, Load::default());
-        let size = direction.a_g.abs().max(direction.F_t.abs() / m) / (g + before.outputs.a_t.abs());
+        let acceleration = direction.a_g.abs().max(direction.F_t.abs() / m).max(direction.a_v.abs());
+        let size = acceleration / (g + before.outputs.a_t.abs());
         let of_size_one = |part: f64| if size > 0.0 { part / size } else { 0.0 };
-        let after = Shown::new(model, setup, Load { a_g: of_size_one(direction.a_g), F_t: of_size_one(direction.F_t) });
+        let after = Shown::new(
+            model,
+            setup,
+            Load { a_g: of_size_one(direction.a_g), F_t: of_size_one(direction.F_t), a_v: of_size_one(direction.a_v) },
+        );
         let change = |of: &&Variable| after.value(of.source).zip(before.value(of.source)).map_or(0.0, |(a, b)| a - b);
         let mut found: Vec<_> = unknowns.iter().zip(by_states).map(|(of, by)| size * change(of) + by).collect();
+        if is_admitted_for_this {
+            model.engine.admit_vertical(false)?;
+        }
         for (reference, seed) in of_setup {
-            let by = sensitivities(setup, ground, inputs, &unknowns, find(variables, reference)?)?;
+            let by = sensitivities(setup, &model.ground, inputs, &unknowns, find(variables, reference)?)?;
             found.iter_mut().zip(by).for_each(|(sum, by)| *sum += seed * by);
         }
         if let Some(at) = found.iter().position(|derivative| !derivative.is_finite()) {

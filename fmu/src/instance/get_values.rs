@@ -6,7 +6,7 @@ use crate::inputs::Inputs;
 use crate::present::find;
 use crate::setup::Setup;
 use crate::shown::Shown;
-use crate::variables::{self, DataType, Source, Variable};
+use crate::variables::{self, DataType, Source, Text, Variable};
 use std::ffi::{CString, c_char};
 use std::mem::MaybeUninit;
 
@@ -103,16 +103,19 @@ impl Instance {
 
     /// Reads texts, which the host may use until the next call.
     pub fn get_string(&mut self, references: &[u32], values: &mut [MaybeUninit<*const c_char>]) -> Result<(), Failure> {
-        references.iter().try_for_each(|reference| check_is_text(find(self.now.variables, *reference)?))?;
-        self.shown = CString::new(self.now.setup.record.as_bytes()).unwrap_or_default(); // it came without NUL
-        values.iter_mut().for_each(|value| _ = value.write(self.shown.as_ptr()));
+        let shown = |reference: &u32| {
+            let text = (text(find(self.now.variables, *reference)?)?.get)(&self.now.setup);
+            Ok(CString::new(text).unwrap_or_default()) // it came without NUL
+        };
+        self.shown = references.iter().map(shown).collect::<Result<_, Failure>>()?;
+        values.iter_mut().zip(&self.shown).for_each(|(value, text)| _ = value.write(text.as_ptr()));
         Ok(())
     }
 }
 
-/// Refuses what is no String.
-pub(super) fn check_is_text(variable: &'static Variable) -> Result<(), Failure> {
-    if let Source::Record = variable.source { Ok(()) } else { Err(Failure::WrongType(variable)) }
+/// The text that `variable` is.
+pub(super) fn text(variable: &'static Variable) -> Result<&'static Text, Failure> {
+    if let Source::Text(text) = variable.source { Ok(text) } else { Err(Failure::WrongType(variable)) }
 }
 
 /// Cannot be read as a Real: the variable is of another type, or does not exist.
@@ -129,7 +132,7 @@ fn needs(variable: &Variable) -> u8 {
     match variable.source {
         Source::Input(_) | Source::Parameter(_) | Source::InitialValue(_) | Source::Placement(_) => 0,
         Source::Integer(_) | Source::Gains | Source::Boolean(_) => NO_REAL,
-        Source::Detail | Source::Record | Source::Switch(_) => NO_REAL,
+        Source::Detail | Source::Text(_) | Source::Switch(_) => NO_REAL,
         Source::Reaction(_) | Source::StateRate(_) => MODEL | SOLUTION,
         _ => MODEL,
     }

@@ -1,25 +1,31 @@
 //! How values are set.
 
 use super::Instance;
-use super::get_values::check_is_text;
+use super::get_values::text;
 use super::model_exchange::check_state;
 use crate::failure::Failure;
 use crate::present::find;
-use crate::setup::Setup;
 use crate::state_machine::Stage;
 use crate::variables::{self, Causality, Source, Variable};
-use rocking::mechanics::load::LOADS;
+use rocking::mechanics::load::{LOADS, VERTICAL};
 
 impl Instance {
     /// Sets Reals: all of them, or none if one is refused. While the host integrates it can set the states, too.
     #[inline(always)]
     pub fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
+        let mut is_vertical = false;
         for (reference, &value) in references.iter().zip(values) {
             let variable = find(self.now.variables, *reference)?;
             match variable.source {
-                Source::Input(which) => LOADS[which].check(value)?,
+                Source::Input(which) => {
+                    LOADS[which].check(value)?;
+                    is_vertical |= which == VERTICAL && value != 0.0;
+                }
                 _ => self.check_no_input(variable, value)?,
             }
+        }
+        if is_vertical {
+            self.admit_vertical()?;
         }
         for (reference, &value) in references.iter().zip(values) {
             let variable = &self.now.variables[*reference as usize];
@@ -29,6 +35,16 @@ impl Instance {
                 _ => self.set_no_input(variable, value)?,
             }
         }
+        Ok(())
+    }
+
+    /// Lets the ground move vertically from now on.
+    #[cold]
+    fn admit_vertical(&mut self) -> Result<(), Failure> {
+        if let Some(model) = &mut self.now.model {
+            model.engine.admit_vertical(true)?;
+        }
+        self.now.setup.vertical = true;
         Ok(())
     }
 
@@ -98,14 +114,14 @@ impl Instance {
 
     /// Sets texts: all of them, or none if one is refused. A record is looked for when it is needed.
     pub fn set_string(&mut self, references: &[u32], values: &[&str]) -> Result<(), Failure> {
-        for reference in references {
+        let mut setup = self.now.setup.clone();
+        for (reference, value) in references.iter().zip(values) {
             let variable = find(self.now.variables, *reference)?;
-            check_is_text(variable)?;
+            let text = text(variable)?;
             self.check_not_fixed(variable)?;
+            (text.set)(&mut setup, value);
         }
-        if let Some(&record) = values.last() {
-            self.now.set_up(Setup { record: record.into(), ..self.now.setup.clone() });
-        }
+        self.now.set_up(setup);
         Ok(())
     }
 
@@ -117,15 +133,20 @@ impl Instance {
         orders: &[i32],
         values: &[f64],
     ) -> Result<(), Failure> {
+        let mut is_vertical = false;
         for ((reference, &order), &value) in references.iter().zip(orders).zip(values) {
             let variable = find(self.now.variables, *reference)?;
-            let Source::Input(_) = variable.source else { return Err(Failure::NoInput(variable)) };
+            let Source::Input(which) = variable.source else { return Err(Failure::NoInput(variable)) };
             if order != 1 {
                 return Err(Failure::WrongOrder { variable, order });
             }
             if !value.is_finite() {
                 return Err(Failure::BadSlope { variable, value });
             }
+            is_vertical |= which == VERTICAL && value != 0.0;
+        }
+        if is_vertical {
+            self.admit_vertical()?;
         }
         for (reference, &slope) in references.iter().zip(values) {
             if let Source::Input(which) = self.now.variables[*reference as usize].source {

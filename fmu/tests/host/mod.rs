@@ -244,8 +244,13 @@ impl Host {
 
     /// Sets the record.
     pub fn set_record(&self, record: &str) -> c_int {
-        let record = CString::new(record).unwrap();
-        unsafe { fmi2SetString(self.component, &reference("record"), 1, &record.as_ptr()) }
+        self.set_text("record", record)
+    }
+
+    /// Sets the text `name`.
+    pub fn set_text(&self, name: &str, value: &str) -> c_int {
+        let value = CString::new(value).unwrap();
+        unsafe { fmi2SetString(self.component, &reference(name), 1, &value.as_ptr()) }
     }
 
     /// The record.

@@ -175,7 +175,7 @@ impl Sequence<'_> {
         }
         let is_continuous = self.before.as_ref().is_some_and(|of| of.stage == Stage::ContinuousTimeMode);
         let states = ["u", "u_dot", "theta", "theta_dot"];
-        if is_continuous && self.one_in(4) { self.references(&states) } else { self.references(&["a_g", "F_t"]) }
+        if is_continuous && self.one_in(4) { self.references(&states) } else { self.references(&["a_g", "F_t", "a_v"]) }
     }
 
     /// Values for them.
@@ -200,6 +200,7 @@ impl Sequence<'_> {
             2 | 3 => self.sign() * self.between(1e-6, max),
             _ => match variable.and_then(|variable| variable.start(&Parameters::EVISON.into())) {
                 Some(Value::Real(start)) if start != 0.0 => (start * self.between(0.3, 3.0)).clamp(min, max),
+                _ if min == 0.0 => self.between(1e-2, 1e6f64.min(max)),
                 _ => self.sign() * self.between(1e-4, 50.0f64.min(max)),
             },
         }
@@ -418,7 +419,7 @@ impl Sequence<'_> {
     }
 
     pub fn knowns(&mut self) -> *const c_uint {
-        self.references(&["a_g", "F_t"])
+        self.references(&["a_g", "F_t", "a_v"])
     }
 
     /// How many values there are for the unknowns: as many, or another number.

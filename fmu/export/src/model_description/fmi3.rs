@@ -144,10 +144,10 @@ mod tests {
         assert_eq!(dependencies(outputs, "delta_t"), "u theta H B");
         assert_eq!(
             dependencies(continuous_state_derivatives, "der(u_dot)"),
-            "a_g F_t u u_dot theta theta_dot m m0 H B J0 f_fc zeta_fc c_ratio g detail record record_scale \
-             record_time_scale record_start time"
+            "a_g F_t a_v u u_dot theta theta_dot m m0 H B J0 f_fc zeta_fc c_ratio g detail P_0 k_t xi_d c_d k_d F_y record \
+             record_v record_scale record_time_scale record_start time"
         );
-        assert_eq!(dependencies(event_indicators, "overturning_indicator"), "theta");
+        assert_eq!(dependencies(event_indicators, "overturning_indicator"), "theta theta_dot B xi_d k_d F_y");
         assert_eq!(dependencies(initial_unknowns, "delta_t"), "H B theta_0 u_0");
         let xml = description.to_xml().unwrap();
         for element in [

@@ -1,14 +1,12 @@
 """Draws docs/img/explore.png: the page of `make explore` on the record of Pacoima Dam, where McManus's pier rocks most."""
 
 import shutil
-import sys
 from pathlib import Path
 
+from first_run import RECORD, SCALE, TIME_SCALE
 from playwright.sync_api import sync_playwright
 
 ROOT = Path(__file__).parents[1]
-sys.path.append(str(ROOT / "examples"))
-from first_run import RECORD, SCALE, TIME_SCALE  # noqa: E402
 
 with sync_playwright() as playwright:
     browser = playwright.chromium.launch(executable_path=shutil.which("chromium"))

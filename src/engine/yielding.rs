@@ -1,0 +1,106 @@
+//! Elastoplastic dissipators while the base rocks: when they begin to yield and cease to, and what they have taken.
+//!
+//! One that is elastic reaches ±F_y where θ has a value that follows from its e_p; one that yields ceases to where its
+//! elongation turns round, which is where θ̇ does. Right after it has turned its force is still F_y: it yields again only once
+//! it moves that way, so that the zeros of θ̇ at the start are divided out as those of θ are at an uplift.
+
+use crate::engine::motion::Event;
+use crate::levels::tie_series::TieSeries;
+use crate::mechanics::restraint::{Angles, Dissipators, Sum, levers};
+use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
+use crate::series::taylor::{Arc, ZERO};
+use crate::{Side, State, Structure};
+
+/// The first instant of `arc`, rocking about `side`, at which one of the `dissipators` begins to yield or ceases to, and which.
+pub(crate) fn first(
+    structure: &Structure,
+    side: Side,
+    angles: Angles,
+    dissipators: &Dissipators,
+    arc: &Arc,
+) -> (Crossing, Event) {
+    let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
+    let mut found = (Crossing::None, Event::Unloading(0));
+    let theta_dot = arc.used(&arc.theta_dot);
+    let Some(zeros) = theta_dot.iter().position(|c| c.is_normal()).filter(|_| F_y > 0.0) else { return found };
+    let mut see = |crossing: Crossing, event| {
+        if crossing.sigma() < found.0.sigma() {
+            found = (crossing, event);
+        }
+    };
+    for (j, lever) in levers(structure, side).into_iter().enumerate() {
+        // positive while it moves that way
+        let moves = |way: f64| Guard::new(&theta_dot[zeros..], (way * lever).signum(), 0.0);
+        match dissipators.yields[j] {
+            0 => {
+                for way in [1_i8, -1] {
+                    let elongation = dissipators.plastic[j] + f64::from(way) * F_y / k_d;
+                    let Some(theta) = angles.rotation(elongation / lever) else { continue };
+                    let towards = (f64::from(way) * lever).signum();
+                    let is_less = Guard::new(arc.used(&arc.theta), -towards, towards * theta);
+                    let moves_back = moves(-f64::from(way));
+                    see(first_time_all_closed([is_less, moves_back], arc.reach), Event::Yielding(j, way));
+                }
+            }
+            way => see(first_time_all_closed([moves(f64::from(way))], arc.reach), Event::Unloading(j)),
+        }
+    }
+    found
+}
+
+/// How far the `dissipators` of a structure that rocks about `side` in `state` are from beginning to yield, in parts of F_y, or from
+/// ceasing to, in parts of p_l α_cg, whichever is less.
+pub(crate) fn margin(
+    structure: &Structure,
+    side: Side,
+    angles: Angles,
+    dissipators: &Dissipators,
+    state: &State,
+) -> f64 {
+    let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
+    let chord = angles.chord(state.theta, 0.0).length;
+    let of = |(j, lever): (usize, f64)| match f64::from(dissipators.yields[j]) {
+        _ if F_y == 0.0 => 1.0,
+        0.0 => 1.0 - k_d * (lever * chord - dissipators.plastic[j]).abs() / F_y,
+        way => way * lever.signum() * state.theta_dot / (structure.p_l * libm::atan(structure.tan_alpha_cg)),
+    };
+    levers(structure, side).into_iter().enumerate().map(of).fold(1.0, f64::min)
+}
+
+/// The `dissipators` at σ = `reach` of `arc`, rocking about `side`.
+pub(crate) fn moved(
+    structure: &Structure,
+    side: Side,
+    angles: Angles,
+    dissipators: &Dissipators,
+    arc: &Arc,
+    reach: f64,
+) -> Dissipators {
+    let &crate::Parameters { B, xi_d, c_d, k_d, F_y, .. } = structure.parameters();
+    let (mut moved, theta) = (*dissipators, arc.at(reach).theta);
+    for (j, lever) in levers(structure, side).into_iter().enumerate() {
+        let way = f64::from(dissipators.yields[j]);
+        if way != 0.0 {
+            let plastic = lever * angles.chord(theta, 0.0).length - way * F_y / k_d;
+            moved.hysteretic += way * F_y * (plastic - moved.plastic[j]);
+            moved.plastic[j] = plastic;
+        }
+    }
+    if c_d > 0.0 {
+        let rate = TieSeries::over(Sum::default(), angles, arc).rate;
+        let squared = square_integral(arc.used(&rate), reach) * arc.span;
+        moved.viscous += 2.0 * c_d * (B * B + xi_d * xi_d) * squared;
+    }
+    moved
+}
+
+/// ∫ (Σ c_k σᵏ)² dσ from 0 to `reach`.
+fn square_integral(coefficients: &[f64], reach: f64) -> f64 {
+    let mut terms = ZERO;
+    terms.iter_mut().zip(coefficients).fold(1.0, |power, (term, c)| {
+        *term = c * power;
+        power * reach
+    });
+    let with = |(i, a): (usize, &f64)| terms.iter().enumerate().map(|(j, b)| a * b / (i + j + 1) as f64).sum::<f64>();
+    terms.iter().enumerate().map(with).sum::<f64>() * reach
+}

@@ -1,0 +1,73 @@
+//! The moment that turns a rocking base back, without a time history: what the weight, a tendon and dissipators restore while
+//! the base is turned slowly.
+//!
+//! ```text
+//! M(θ) = (m + m0) g B cos θ − m g H sin θ + P_0 B cos(θ/2) + k_t B² sin θ + Σ_j F_j (sB − ξ_j) cos(θ/2),      s = +1
+//! ```
+//!
+//! Eq 6 at rest, of a strut that is not deformed. From the way there to the way back the elastoplastic dissipators change sign:
+//! the loop is a flag of the height Σ_j 2 F_y |sB − ξ_j| cos(θ/2).
+
+use crate::mechanics::restraint::{Angles, Dissipators, Sum, ties};
+use crate::{Parameters, Side, Structure};
+
+/// A point of the static loop.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// Rotation θ, rad.
+    pub theta: f64,
+    /// Moment that turns the base back, N·m.
+    pub moment: f64,
+}
+
+/// The base of `structure` turned slowly from rest to the rotation `theta` (rad, 0 to π/2) and back to 0, each way in as many
+/// equal steps: the moment at the start and after each of them.
+pub fn flag(structure: &Structure, theta: f64, steps: u32) -> Vec<Point> {
+    let &Parameters { m, m0, H, B, g, .. } = structure.parameters();
+    let there = (0..=steps).map(|i| theta * f64::from(i) / f64::from(steps));
+    let mut dissipators = Dissipators::default();
+    let at = |theta: f64| {
+        dissipators = dissipators.moved(structure, Side::Right, theta);
+        let of_ties = Sum::of_moments(&ties(structure, Side::Right, &dissipators)).at(Angles::Any, theta, 0.0);
+        let (sin, cos) = libm::sincos(theta);
+        Point { theta, moment: (m + m0) * g * B * cos - m * g * H * sin + of_ties }
+    };
+    there.clone().chain(there.rev().skip(1)).map(at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::restraint::centring_moments;
+
+    const RESTRAINED: Parameters =
+        Parameters { P_0: 500.0, k_t: 2e5, xi_d: 0.2, k_d: 1e6, F_y: 400.0, ..Parameters::MCMANUS };
+
+    /// Both dissipators yield on the way there and on the way back: of a flag by hand every corner.
+    #[test]
+    fn the_flag_is_that_of_the_calculation_by_hand() {
+        let structure = Structure::new(RESTRAINED).unwrap();
+        let Parameters { m, m0, H, B, g, P_0, k_t, xi_d, F_y, .. } = RESTRAINED;
+        let points = flag(&structure, 0.05, 10);
+        assert_eq!(points.len(), 21);
+        let elastic = |theta: f64| {
+            let by_weight = (m + m0) * g * B * theta.cos() - m * g * H * theta.sin();
+            by_weight + P_0 * B * (theta / 2.0).cos() + k_t * B * B * theta.sin()
+        };
+        let yielding = |theta: f64| 2.0 * B * F_y * (theta / 2.0).cos(); // the levers B − ξ and B + ξ
+        for i in 1..=10 {
+            let Point { theta, moment } = points[i];
+            let expected = elastic(theta) + yielding(theta);
+            assert!((moment - expected).abs() <= 1e-12 * expected, "{theta}: {moment}, {expected}");
+        }
+        for Point { theta, moment } in &points[12..] {
+            let expected = elastic(*theta) - yielding(*theta);
+            assert!((moment - expected).abs() <= 1e-12 * expected.abs(), "{theta}: {moment}, {expected}");
+        }
+        assert_eq!(points[0].moment, elastic(0.0));
+        // with the base down what is left is what decides whether it stays so
+        let [restoring, residual] = centring_moments(&structure);
+        assert!((points[20].moment - (restoring - residual)).abs() < 1e-9 * restoring);
+        assert!((residual - F_y * ((B - xi_d) + (B + xi_d))).abs() < 1e-12 * residual);
+    }
+}

