@@ -4,15 +4,12 @@ mod curves;
 mod page;
 
 use crate::engine;
-use crate::fmu::Fmu;
 use crate::response::{Errors, Failure, Response};
 use crate::scene::Scene;
 use crate::timing;
 use anyhow::Result;
 use curves::Method;
 use indicatif::ProgressBar;
-use rocking::Detail;
-use rocking::engine::DEFAULT_TOLERANCE;
 use std::path::Path;
 
 /// The input is scaled by 1 + this to find how well the scene is conditioned.
@@ -57,7 +54,6 @@ pub struct Diagram {
     pub conditioning: Errors,
     pub transitions: u64, // transitions of the reference
     pub dt: f64,          // time between samples, s
-    pub fmi: f64,         // what the FMU's interface adds to a step of one sample, s
     pub curves: Vec<Curve>,
 }
 
@@ -88,16 +84,7 @@ pub fn measure(scene: &Scene, limits: Limits, progress: &ProgressBar) -> Result<
         })
         .collect();
     let (&Scene { key, title, .. }, dt) = (scene, scene.dt());
-    Ok(Diagram { key, title, conditioning, transitions: exact.transitions, dt, fmi: fmi(scene)?, curves })
-}
-
-/// What the FMU's interface adds to a step of one sample, s.
-fn fmi(scene: &Scene) -> Result<f64> {
-    let fmu = Fmu::new(scene)?;
-    let (done, with) = timing::fastest(|| fmu.run());
-    done?;
-    let (_, without) = timing::fastest(|| engine::run(scene, Detail::Auto, DEFAULT_TOLERANCE, &mut ()));
-    Ok((with - without) / scene.intervals() as f64)
+    Ok(Diagram { key, title, conditioning, transitions: exact.transitions, dt, curves })
 }
 
 /// One method from coarse to fine, until its error in θ is as small as the conditioning or a run takes too long.

@@ -263,7 +263,6 @@ fn speed(diagrams: &[Diagram]) -> Result<Value> {
         rows => shown.collect::<Vec<_>>(),
         ratios => range(rows.iter().map(|(.., (_, _, ratio))| *ratio), |ratio| format!("{ratio:.1}")),
         times => range(rows.iter().map(|(_, auto, ..)| *auto), microseconds),
-        fmi => range(diagrams.iter().map(|diagram| diagram.fmi), |time| format!("{:.0}", 1e9 * time)),
     })
 }
 
