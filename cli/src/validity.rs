@@ -17,7 +17,7 @@ pub struct LimitArgs {
     /// Tension at the base that is tolerated without a warning, over the weight; at an impact, over its impulse
     #[arg(long, value_name = "PART", default_value_t = Limits::default().tension, value_parser = part)]
     tension: f64,
-    /// Load of the edge that the structure rocks about below which there is a warning, over the weight
+    /// Least load of the edge in contact that is tolerated without a warning, over the weight
     #[arg(long, value_name = "PART", default_value_t = Limits::default().edge_load, value_parser = part)]
     edge_load: f64,
     /// Energy gained at an impact that is tolerated without a warning, over the kinetic energy before it
