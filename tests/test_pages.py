@@ -38,6 +38,14 @@ def test_readme_finds_what_the_page_of_findings_prints():
     assert found and found in (ROOT / "README.md").read_text(encoding="utf-8")
 
 
+def test_both_readmes_have_the_first_run_of_the_page_of_python():
+    page = (ROOT / "docs/howto/python.md").read_text(encoding="utf-8")
+    first = re.search(r"```py\n.*?```\n\n```text\n.*?```", page, re.DOTALL)[0]
+    package = (ROOT / "python/README.md").read_text(encoding="utf-8")
+    assert first in (ROOT / "README.md").read_text(encoding="utf-8") and first in package
+    assert "](" not in package, "the package's page has no files to link to"
+
+
 NUMBER = r"\d[\d,]*\.?\d*(?:e[+−-]?\d+)?"
 
 
