@@ -3,7 +3,7 @@
 # make check   format, clippy and the tests of what differs from the last commit: the loop of whoever changes a line
 # make lint    format and clippy of everything, warnings denied
 # make heavy   what takes longer or needs more, of which each can be made alone:
-# make python    the Python module, installed into .venv, its types, its page
+# make python    the Python module, installed into .venv, its types, its page, what is computed with it
 # make study     the tests of study/
 # make hosts     hosts that bring much, and Windows' library under wine
 # make browser   the pages of `view` and `explore` in Chromium, and in Firefox
@@ -68,7 +68,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test check lint tools heavy evidence study python hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc docs pages pictures report restrained overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
+.PHONY: demo test check lint tools heavy evidence study python module hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc docs pages pictures report restrained overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
 
 # pip while cargo compiles.
 demo:
@@ -109,12 +109,14 @@ heavy: study python hosts browser foreign packaged evidence docs
 study:
 	cargo test --release --manifest-path study/Cargo.toml
 
+python: .venv/heavy module
+	$(PYTEST) -m heavy tests/test_python.py tests/test_validation.py tests/test_literature.py
+
 # In .venv the module is that of this folder; the archive in its place has the libraries that are there.
-python: .venv/heavy .venv/dist exporter
+module: .venv/dist exporter
 	mkdir -p out/wheel/data/share/flexible-rocking
 	$(TARGET)/release/rocking-fmu export --record examples/pulse.csv -o out/wheel/data/share/flexible-rocking/FlexibleRocking.fmu
 	VIRTUAL_ENV=.venv $(MATURIN) develop --release --locked
-	$(PYTEST) -m heavy tests/test_python.py
 
 # Hosts that bring much, among them Windows' loader; what cannot be had is skipped, with the reason.
 hosts: .venv/heavy exporter windows host_packages
@@ -138,7 +140,7 @@ explore: library
 	cargo run --release --locked --manifest-path web/Cargo.toml --package pack -- \
 		$(or $(CARGO_TARGET_DIR),web/target)/$(WEB)/release/rocking_web.wasm out/explore.html $(TARGET)/release/deps/libFlexibleRocking.so
 
-evidence: .venv/test exporter
+evidence: module
 	$(PYTEST) -m heavy tests/test_pages.py
 
 # Linux's library for 64-bit ARM runs under qemu; where that cannot be had, its test is skipped and says so.
@@ -187,7 +189,7 @@ wheels: wheel
 # packages; the one of the source is built and installed here alone, for it takes minutes.
 VERSION = $(shell sed -n 's/^version = "\(.*\)"$$/\1/p' Cargo.toml)
 release: releasable
-	$(MAKE) wheels qemu old_glibc host_packages .venv/heavy
+	$(MAKE) wheels qemu old_glibc host_packages .venv/heavy module
 	$(MAKE) test
 	$(PYTEST) -m heavy -n auto --dist loadfile
 	PACKAGE='*.tar.gz' $(PYTEST) -m heavy tests/test_wheel.py
@@ -225,18 +227,18 @@ docs: .venv/docs
 pages: .venv/test exporter records
 	PYTHONPATH=examples $(PYTHON) docs/pages.py $(TARGET)/release/rocking-fmu
 
-pictures: .venv/test exporter out/mcmanus.fmu
-	PYTHONPATH=examples $(PYTHON) examples/pictures.py out/mcmanus.fmu --exporter $(TARGET)/release/rocking-fmu
+pictures: module out/mcmanus.fmu
+	PYTHONPATH=examples $(PYTHON) examples/pictures.py out/mcmanus.fmu
 
-report: .venv/test exporter
-	PYTHONPATH=examples $(PYTHON) -m validation --exporter $(TARGET)/release/rocking-fmu
-	PYTHONPATH=examples $(PYTHON) -m literature --exporter $(TARGET)/release/rocking-fmu
+report: module
+	PYTHONPATH=examples $(PYTHON) -m validation
+	PYTHONPATH=examples $(PYTHON) -m literature
 
 restrained: .venv/test exporter
 	PYTHONPATH=examples $(PYTHON) -m restrained --exporter $(TARGET)/release/rocking-fmu
 
-overturning: .venv/test exporter
-	PYTHONPATH=examples $(PYTHON) -m overturning --exporter $(TARGET)/release/rocking-fmu
+overturning: module
+	PYTHONPATH=examples $(PYTHON) -m overturning
 
 coupling: .venv/test exporter out/mcmanus.fmu out/evison.fmu out/mcmanus3.fmu out/evison3.fmu
 	for example in bridge building_on_soil 'bridge_ssp --exporter $(TARGET)/release/rocking-fmu'; do \

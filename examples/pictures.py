@@ -7,22 +7,21 @@
 """
 
 import argparse
-import json
-import subprocess
 from pathlib import Path
 
+import flexible_rocking as fr
 import numpy as np
 import pandas as pd
 from fmpy import simulate_fmu
-from first_run import PACOIMA_DAM
+from first_run import G, RECORD, TIME_SCALE
 from matplotlib.animation import FuncAnimation, PillowWriter
 from matplotlib.colors import ListedColormap
 from matplotlib.patches import Arc, Circle
 from tqdm import tqdm
 from validation.figures import FIXED, ROCKING, plt, save, subplots
+from validation.specimens import MCMANUS
 
 INK, LIGHT = "#263238", "0.82"
-H, B = 1.84, 0.285  # m, McManus's pier
 BEND = 10  # u is drawn this many times as large in the animation
 SHOWN, FRAMES_PER_SECOND, ROWS_PER_FRAME = 6.0, 16, 8  # s
 
@@ -111,7 +110,7 @@ def motion(fmu: str, path: Path) -> None:
 
     def frame(i: int) -> None:
         axis.clear()
-        draw(axis, result["theta"][i], BEND * result["u"][i], H, B)
+        draw(axis, result["theta"][i], BEND * result["u"][i], MCMANUS.H, MCMANUS.B)
         axis.set(xlim=(-1.1, 1.1), ylim=(-0.12, 2.15))
         if result["a_ground"][i]:
             arrow(axis, (0, -0.06), (0.08 * result["a_ground"][i], -0.06), style="->", color=FIXED)
@@ -137,32 +136,30 @@ def headline(path: Path) -> None:
     rows = rows[rows["error_theta"] > 0]
     figure, axis = subplots(1, 1, 4.6)
 
-    def curve(method: str, taken: str | None, color: str, text: str, at: int, beside=(6, 0), **options) -> None:
-        of = rows[(rows["method"] == method) & ((rows["transitions_taken"] == taken) if taken else True)]
-        of = of.sort_values("value", ascending=False)
+    def curve(method: str, color: str, text: str, at: int, beside=(6, 0), **options) -> None:
+        of = rows[rows["method"] == method].sort_values("value", ascending=False)
         x, y = of["microseconds_per_sample"].to_numpy(), of["error_theta"].to_numpy()
         axis.loglog(x, y, color=color, **({"marker": "o", "markersize": 3} | options))
         if text:
             axis.annotate(text, (x[at], y[at]), xytext=beside, textcoords="offset points", color=color, va="center")
 
-    textbook = rows[rows["transitions_taken"] == "at step ends"]["method"].unique()
-    for method in textbook:
-        curve(method, "at step ends", "0.6", "", 0, linestyle="--", marker="")
+    for method in rows[rows["method"].str.endswith(", transitions at step ends")]["method"].unique():
+        curve(method, "0.6", "", 0, linestyle="--", marker="")
     axis.text(400, 0.2, "six textbook methods,\ntransitions at ends of steps", color="0.4")
-    curve("RK4", "located", "#009e73", "RK4, transitions located", -1)
-    curve("Newmark average acceleration", "located", "#b35900", "Newmark, HHT-α, central\ndifference, the same", -1,
+    curve("RK4", "#009e73", "RK4, transitions located", -1)
+    curve("Newmark average acceleration", "#b35900", "Newmark, HHT-α, central\ndifference, the same", -1,
           (8, -6))
-    curve("HHT-α", "located", "#b35900", "", 0)
-    curve("central difference", "located", "#b35900", "", 0)
-    curve("semi-implicit Euler", "located", "#b35900", "Euler, the same", -1, (8, -4))
-    curve("explicit Euler", "located", "#b35900", "", 0)
-    curve("ode_solvers Dop853", None, FIXED, "", 0)
-    curve("differential-equations DOP853", None, FIXED, "DOP853, two libraries", -1, (8, -1))
-    curve("ode_solvers Dopri5", None, "#8e44ad", "Dopri5", -1)
-    curve("diffsol BDF, its root finding", None, ROCKING, "BDF of diffsol", -1)
-    curve("diffsol ESDIRK34, its root finding", None, ROCKING, "", 0)
-    curve("this project, auto", None, "black", "this project", 0, (-14, -12), markersize=7, linewidth=0)
-    good = rows[rows["error_theta"] <= DIGITS].groupby(rows["method"].str.startswith(("this project", "FMU")))
+    curve("HHT-α", "#b35900", "", 0)
+    curve("central difference", "#b35900", "", 0)
+    curve("semi-implicit Euler", "#b35900", "Euler, the same", -1, (8, -4))
+    curve("explicit Euler", "#b35900", "", 0)
+    curve("ode_solvers Dop853", FIXED, "", 0)
+    curve("differential-equations DOP853", FIXED, "DOP853, two libraries", -1, (8, -1))
+    curve("ode_solvers Dopri5", "#8e44ad", "Dopri5", -1)
+    curve("diffsol BDF, its root finding", ROCKING, "BDF of diffsol", -1)
+    curve("diffsol ESDIRK34, its root finding", ROCKING, "", 0)
+    curve("this project, auto", "black", "this project", 0, (-14, -12), markersize=7, linewidth=0)
+    good = rows[rows["error_theta"] <= DIGITS].groupby(rows["method"].str.startswith("this project"))
     peers, ours = good["microseconds_per_sample"].min()
     axis.axhline(DIGITS, color="0.6", linewidth=0.6, linestyle=":")
     axis.set(title=f"To six digits the nearest peer takes {peers / ours:.1f} times as long", xlim=(0.05, 2e4),
@@ -174,20 +171,18 @@ def headline(path: Path) -> None:
 LEVELS = {"fixed_base": "#d9d9d9", "rigid": "#f0e442", "modal": "#56b4e9", "linear": "#009e73", "auto": "#d55e00"}
 FREQUENCIES = np.geomspace(1, 50, 24)  # Hz
 INTENSITIES = np.geomspace(0.3, 12, 24)  # PGA over g tan α_cg
-ASKED = {"peaks of θ, u, a_t within 5 %": "theta,u,a_t",
-         "histories within 5 %, too": "theta,u,a_t,theta_history,u_history,a_t_history"}
+ASKED = {"peaks of θ, u, a_t within 5 %": ["theta", "u", "a_t"],
+         "histories within 5 %, too": None}
 
 
-def levels(exporter: Path, path: Path) -> None:
+def levels(path: Path) -> None:
     """McManus's pier with other frequencies under Pacoima Dam, scaled: the level that `advise` names."""
-    scene = ["--preset", "mcmanus", "--record", PACOIMA_DAM["record"], "--time-scale", "0.2"]
-    uplifts = (130.1 + 65.4) / 130.1 * B / H / 1.21904  # tan α_cg over the record's PGA in g: the scale of 1
+    record = fr.Record.read(RECORD, time_scale=TIME_SCALE)
+    uplifts = record.scaled(G * np.tan(MCMANUS.alpha_cg) / record.pga)
 
-    def advised(frequency: float, intensity: float, asked: str) -> int:
-        command = [exporter, "--quiet", "advise", *scene, "--f-fc", f"{frequency:.6g}", "--of", asked,
-                   "--scale", f"{intensity * uplifts:.6g}", "--format", "json"]
-        rows = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)["rows"]
-        return list(LEVELS).index(next(row["level"] for row in rows if row["advised"]))
+    def advised(frequency: float, intensity: float, asked: list[str] | None) -> int:
+        advice = fr.advise(MCMANUS.replace(f_fc=frequency), uplifts.scaled(intensity), of=asked)
+        return list(LEVELS).index(advice.detail)
 
     figure, axes = subplots(1, 2, 3.8, sharey=True)
     for axis, (title, asked) in zip(axes, ASKED.items()):
@@ -208,13 +203,12 @@ def levels(exporter: Path, path: Path) -> None:
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("fmu", nargs="?", default="out/mcmanus.fmu", help="of McManus's pier")
-    parser.add_argument("--exporter", type=Path, default=Path("target/release/rocking-fmu"), help="executable")
     parser.add_argument("--folder", type=Path, default=Path("docs/img"), help="where to save them")
     arguments = parser.parse_args()
     schematic(arguments.folder / "schematic.svg")
     motion(arguments.fmu, arguments.folder / "motion.gif")
     headline(arguments.folder / "headline.svg")
-    levels(arguments.exporter, arguments.folder / "levels.svg")
+    levels(arguments.folder / "levels.svg")
 
 
 if __name__ == "__main__":

@@ -23,11 +23,11 @@ def exporter() -> Path:
 def export(exporter, tmp_path_factory):
     """Exports the FMU of a preset, with a record inside if there is one, to a new file and returns its path."""
 
-    def run(preset: str, record: Path | None = None, name: str | None = None) -> Path:
+    def run(preset: str, record: Path | None = None, name: str | None = None, fmi: int = 2) -> Path:
         path = tmp_path_factory.mktemp("export") / f"{name or preset}.fmu"
         inside = ["--record", record] if record else []
         named = ["--name", name] if name else []
-        subprocess.run([exporter, "export", "--preset", preset, *inside, *named, "-o", path], check=True)
+        subprocess.run([exporter, "export", "--fmi", str(fmi), "--preset", preset, *inside, *named, "-o", path], check=True)
         return path
 
     return run

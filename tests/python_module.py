@@ -23,7 +23,7 @@ def use_all(folder: Path) -> None:
     pier = fr.Structure(weight=4000, m0=1e5, alpha_cg=0.2, B=1.5, period_fc=0.4, zeta_fc=0.03, r=0.95)
     wall = fr.Structure(preset="evison").replace(f_fc=8.0)
     assert pier.H > pier.B and pier.derived["chi"] < 1 and wall.parameters["f_fc"] == 8.0
-    assert wall.effective_frequency(0.04) > 0
+    assert wall.effective_frequency(0.04) > 0 and wall.pushover(points=3)["P"].shape == (6,)
 
     run = fr.simulate(wall, ground, detail="auto", tolerance=1e-9, theta_0=0.01)
     theta: fr.Peak = run.peaks["theta"]
@@ -32,7 +32,7 @@ def use_all(folder: Path) -> None:
     assert first.kind and first.time > 0 and first.before["theta"] != 1 and first.after["theta"] != 1
     response = run.at(np.linspace(0, 4, 401))
     frame: pd.DataFrame = response.to_pandas()
-    assert response.units["theta"] == "rad" and len(frame) == 401
+    assert response.units["theta"] == "rad" and len(frame) == 401 and wall.modes(response)["q_r"].shape == (401,)
     assert run.validity["mu_required"].limit == 0.5 and run.ending and run.fall is None and run.steps and run.evaluations
     assert "<html" in run.page() and run.detail == "auto" and run.tolerance == 1e-9 and run.start < run.end
     assert pickle.loads(pickle.dumps(run)).structure == run.structure == wall and run.record == ground

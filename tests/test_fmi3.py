@@ -2,7 +2,6 @@
 
 import itertools
 import re
-import subprocess
 import zipfile
 from xml.etree import ElementTree
 
@@ -27,25 +26,13 @@ RATES = [f"der({name})" for name in STATES]
 
 
 @pytest.fixture(scope="module")
-def export3(exporter, tmp_path_factory):
-    """Exports the FMU of a preset in FMI 3.0, with a record inside if there is one."""
-    def run(preset, record=None):
-        path = tmp_path_factory.mktemp("export3") / f"{preset}.fmu"
-        inside = ["--record", record] if record else []
-        subprocess.run([exporter, "export", "--fmi", "3", "--preset", preset, *inside, "-o", path], check=True)
-        return str(path)
-
-    return run
+def mcmanus3(export):
+    return str(export("mcmanus", fmi=3))
 
 
 @pytest.fixture(scope="module")
-def mcmanus3(export3):
-    return export3("mcmanus")
-
-
-@pytest.fixture(scope="module")
-def shaken3(export3, pacoima_record):
-    return {preset: export3(preset, pacoima_record) for preset in ("mcmanus", "evison")}
+def shaken3(export, pacoima_record):
+    return {preset: str(export(preset, pacoima_record, fmi=3)) for preset in ("mcmanus", "evison")}
 
 
 def simulate3(path, **arguments):
@@ -354,11 +341,11 @@ def test_overturning_ends_the_simulation(mcmanus3, slave, handles_events):
         assert result["t_overturned"][-1] == pytest.approx(instant, rel=1e-14)
 
 
-def test_a_master_needs_one_further_step_for_a_transition(export3):
+def test_a_master_needs_one_further_step_for_a_transition(export):
     """Two piers under a deck, against the three integrated as one system."""
     time, a_g = TIME[:700], A_G[:700]
     deck, master = bridge.deck(), EndedAtTransitions()
-    system = EventBridge([Pier(export3(preset)) for preset in ("mcmanus", "evison")], deck, bridge.linear(time, a_g))
+    system = EventBridge([Pier(str(export(preset, fmi=3))) for preset in ("mcmanus", "evison")], deck, bridge.linear(time, a_g))
 
     def row():
         return [deck.x, *(value for pier in system.piers for value in pier.read("theta", "u"))]

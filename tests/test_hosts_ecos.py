@@ -1,7 +1,5 @@
 """Ecos, over Pacoima Dam: a fixed step, with the record inside, in both versions of FMI, and with a_g held over each."""
 
-import subprocess
-
 import numpy as np
 import pytest
 from host import need_libtbb
@@ -17,19 +15,6 @@ pytestmark = pytest.mark.heavy
 EcosLib.set_log_level("off")
 
 
-@pytest.fixture(scope="module")
-def path_of(exporter, pacoima_record, tmp_path_factory):
-    """The FMU with that record inside, in a version of FMI."""
-
-    def export(version: int) -> str:
-        path = tmp_path_factory.mktemp("ecos") / "mcmanus.fmu"
-        inside = ["--fmi", str(version), "--preset", "mcmanus", "--record", pacoima_record]
-        subprocess.run([exporter, "export", *inside, "-o", path], check=True)
-        return str(path)
-
-    return export
-
-
 def simulation(path: str, step: float, **start_values) -> EcosSimulation:
     """The FMU alone in a simulation, initialized."""
     structure = EcosSimulationStructure()
@@ -42,8 +27,8 @@ def simulation(path: str, step: float, **start_values) -> EcosSimulation:
 
 @pytest.mark.parametrize("version", [2, 3])
 @pytest.mark.parametrize("step", STEPS)
-def test_the_record_inside(path_of, exact, step, version):
-    with simulation(path_of(version), step) as pier:
+def test_the_record_inside(export, pacoima_record, exact, step, version):
+    with simulation(str(export("mcmanus", pacoima_record, fmi=version)), step) as pier:
         get = lambda: [pier.get_real(f"pier::{name}") for name in OUTPUTS]
         samples = [get()]
         for _ in instants(step)[1:]:

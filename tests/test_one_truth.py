@@ -73,11 +73,3 @@ def test_watching_for_peaks_asks_for_few_evaluations(exporter, tmp_path):
     summary = run(exporter, tmp_path, "simulate", "--record", RECORDS["elcentro"], "--duration", "15", "-o", "out.csv")
     own, added = map(int, re.search(r"(\d+) evaluations; (\d+) more for peaks", summary).groups())
     assert own > 20_000 and added <= 0.15 * own
-
-
-@pytest.mark.parametrize("preset, version", [("mcmanus", "2"), ("evison", "3")])
-def test_the_demo_has_the_fmu_of_the_command_line(exporter, tmp_path, preset, version):
-    library = exporter.with_name("deps") / "libFlexibleRocking.so"
-    run(exporter, tmp_path, "export", "--preset", preset, "--fmi", version, "--library", library, "-o", "program.fmu")
-    run(exporter.with_name("fmu-export"), tmp_path, library, preset, version, "demo.fmu")
-    assert (tmp_path / "demo.fmu").read_bytes() == (tmp_path / "program.fmu").read_bytes()

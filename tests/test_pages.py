@@ -38,6 +38,14 @@ def test_readme_finds_what_the_page_of_findings_prints():
     assert found and found in (ROOT / "README.md").read_text(encoding="utf-8")
 
 
+def test_both_readmes_have_the_first_run_of_the_page_of_python():
+    page = (ROOT / "docs/howto/python.md").read_text(encoding="utf-8")
+    first = re.search(r"```py\n.*?```\n\n```text\n.*?```", page, re.DOTALL)[0]
+    package = (ROOT / "python/README.md").read_text(encoding="utf-8")
+    assert first in (ROOT / "README.md").read_text(encoding="utf-8") and first in package
+    assert "](" not in package, "the package's page has no files to link to"
+
+
 NUMBER = r"\d[\d,]*\.?\d*(?:e[+−-]?\d+)?"
 
 
@@ -51,10 +59,10 @@ def split(page):
 @pytest.mark.heavy
 @pytest.mark.parametrize("page, module", [
     ("paper", "validation"), ("literature", "literature"), ("overturning", "overturning")])
-def test_a_page_of_evidence_is_what_its_command_writes(page, module, exporter, tmp_path):
+def test_a_page_of_evidence_is_what_its_command_writes(page, module, tmp_path):
     """To a per cent: another C library has other last digits. Solvers of hosts amplify these: test_model_exchange.py and
     test_coupling.py hold what their pages say."""
-    command = [sys.executable, "-m", module, "--output", tmp_path / f"{page}.md", "--exporter", exporter]
+    command = [sys.executable, "-m", module, "--output", tmp_path / f"{page}.md"]
     subprocess.run(command, cwd=ROOT, env=os.environ | {"PYTHONPATH": "examples"}, check=True)
     (words, numbers), (as_told, told) = split(tmp_path / f"{page}.md"), split(ROOT / "docs/evidence" / f"{page}.md")
     assert words == as_told and numbers == pytest.approx(told, rel=0.01, abs=1e-9)

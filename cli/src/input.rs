@@ -39,11 +39,11 @@ pub fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
     ensure!(!IS_READ.swap(true, Ordering::Relaxed), "{NAME} is read already: only one file can be `-`");
     let mut bytes = Vec::new();
     stdin().lock().take(MAX_FILE + 1).read_to_end(&mut bytes).context(NAME)?;
-    ensure!(bytes.len() as u64 <= MAX_FILE, "{NAME} has more than {MAX_FILE} bytes, which no record has");
+    ensure!(bytes.len() as u64 <= MAX_FILE, "{NAME} has more than {MAX_FILE} bytes, more than any record");
     Ok(bytes)
 }
 
 /// The text of the file at `path`, or of standard input.
 pub fn text(path: &Path) -> anyhow::Result<String> {
-    String::from_utf8(read(path)?).context("it is no text in UTF-8")
+    String::from_utf8(read(path)?).context("it is not text in UTF-8")
 }

@@ -11,7 +11,7 @@ mod modes;
 pub mod output_files;
 mod picture;
 mod pulse;
-mod pushover;
+pub mod pushover;
 pub mod quantities;
 mod record;
 pub mod record_args;
@@ -37,19 +37,19 @@ const STOPPED: i32 = 130;
 
 /// A flexible structure that rocks on its foundation: FMU exporter and simulator.
 ///
-/// A structure is a specimen of the paper (--preset), a file (--parameters), or numbers that determine all of it;
-/// beside either of --preset and --parameters single numbers such as --f-fc 8 take the place of theirs. Where nothing of it is
-/// given, it is the McManus specimen. SI units throughout, angles in rad.
+/// A structure is a specimen of the paper (--preset), a file (--parameters), or numbers that determine all of it.
+/// Single numbers such as --f-fc 8 replace those of --preset or --parameters. Without any of these the structure is the
+/// McManus specimen. Units are SI, angles in rad.
 ///
-/// Results go to standard output, all else that is said to standard error. With --format json a number that is infinite
-/// is the text "inf". Exit codes: 0 the command did what was asked, or whoever reads its output has seen enough; 1 it
-/// failed, for the reason on standard error; 2 it was called wrongly; 130 it was stopped.
+/// Results go to standard output, messages to standard error. With --format json an infinite number is the text "inf".
+/// Exit codes: 0 success, also if the reader of the output stops early; 1 failure, with the reason on standard error;
+/// 2 wrong use of options; 130 stopped by the user.
 #[derive(Parser)]
 #[command(name = "rocking-fmu", version, long_version = long_version())]
 struct CommandLine {
     #[command(subcommand)]
     command: Command,
-    /// Say nothing on standard error but errors
+    /// Print only errors on standard error
     #[arg(long, global = true, display_order = 1000)]
     quiet: bool,
 }

@@ -76,13 +76,13 @@ impl OutputFiles {
             let is_target = |input: &&PathBuf| input.is_file() && is_same_file(input, target).is_ok_and(|same| same);
             if let Some(input) = self.inputs.iter().find(is_target) {
                 let (path, input) = (path.display(), input.display());
-                bail!("{path}: it would overwrite {input}, which is read; name another file");
+                bail!("{path}: this would overwrite the input {input}; name another file");
             }
         }
         if let Some((other, _)) = self.outputs.iter().find(|(_, other)| *other == place && place != Place::Through) {
             let (path, other) = (name(path), name(other));
             let other = if other == path { "something else".into() } else { other };
-            bail!("{path}: {other} is written there, too; name another file");
+            bail!("{path}: {other} is written there as well; name another file");
         }
         self.outputs.push((path.into(), place.clone()));
         Ok(place)

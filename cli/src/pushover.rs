@@ -43,12 +43,7 @@ const HEADINGS: [&str; 6] = ["phase", "theta[rad]", "u[m]", "delta_t[m]", "P[N]"
 /// Writes the curve from 0 to overturning, to the right, and prints its corners.
 pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
-    let too_soft = "the strut is too soft to hold the structure all the way to overturning: raise f_fc or lower m0";
-    let end = at_overturning(&structure).context(too_soft)?;
-    let curve: Option<Vec<_>> = displacements(&structure, end.delta_t, args.points)
-        .map(|delta_t| at_displacement(&structure, delta_t))
-        .collect();
-    let curve = curve.context(too_soft)?;
+    let curve = curve(&structure, args.points)?;
     let mut files = args.results.files(args.structure.input());
     let table = args.output.as_deref().map(|path| Table::create(&mut files, path)).transpose()?;
     let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
@@ -59,8 +54,8 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     }
     let corners = [
         ("uplift", in_full_contact(&structure, u_cr(&structure))),
-        ("start of rocking", at_rotation(&structure, 0.0).context(too_soft)?),
-        ("overturning", end),
+        ("start of rocking", at_rotation(&structure, 0.0).context(TOO_SOFT)?),
+        ("overturning", at_overturning(&structure).context(TOO_SOFT)?),
     ];
     let mut rows = Vec::new();
     for (name, corner) in corners {
@@ -102,6 +97,16 @@ impl Corner {
         );
         format!("{name:<16} delta_t {delta_t:>8} mm, theta {theta:>8} rad, P {force:>10}, M {moment:>12}\n")
     }
+}
+
+const TOO_SOFT: &str = "the strut is too soft to hold the structure all the way to overturning: raise f_fc or lower m0";
+
+/// The pushover from 0 to overturning, to the right, at as many `points` on each branch: full contact, then rocking. Refuses a
+/// strut that is too soft.
+pub fn curve(structure: &Structure, points: u32) -> anyhow::Result<Vec<Equilibrium>> {
+    let end = at_overturning(structure).context(TOO_SOFT)?;
+    let at = |delta_t| at_displacement(structure, delta_t).context(TOO_SOFT);
+    displacements(structure, end.delta_t, points).map(at).collect()
 }
 
 /// Displacements (m) evenly on each branch: 0 to u_cr, and from just beyond to `end`.

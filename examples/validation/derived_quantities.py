@@ -2,13 +2,13 @@
 
 from pathlib import Path
 
-from .project import Project
 from .report import Row, Section
+from .specimens import EVISON, MCMANUS
 
-PRESETS = {"evison": "Evison, Table 1", "mcmanus": "McManus, Table 2"}
+SPECIMENS = {"Evison, Table 1": EVISON, "McManus, Table 2": MCMANUS}
 PRINTED = {
-    "evison": {"J_P": "152.5", "p_l": "2.92", "alpha_cg": "0.35", "chi": "0.92", "f_u": "39", "u_cr": None},
-    "mcmanus": {"J_P": "467", "p_l": "2.24", "alpha_cg": "0.23", "chi": "0.94", "f_u": None, "u_cr": None},
+    EVISON: {"J_P": "152.5", "p_l": "2.92", "alpha_cg": "0.35", "chi": "0.92", "f_u": "39", "u_cr": None},
+    MCMANUS: {"J_P": "467", "p_l": "2.24", "alpha_cg": "0.23", "chi": "0.94", "f_u": None, "u_cr": None},
 }
 SYMBOLS = {
     "J_P": ("J_P = J0 + m (H² + B²) + m0 B² (after Eq 8)", 1, ".2f", "kg·m²"),
@@ -20,41 +20,30 @@ SYMBOLS = {
 }
 
 
-def compute(project: Project) -> dict[str, dict[str, float]]:
-    """The derived quantities of both specimens: the FMU's calculated parameters, J_P of the library."""
-    return {preset: {"J_P": project.values("describe", "--preset", preset)["J_P"]} | project.calculated(preset)
-            for preset in PRESETS}
-
-
-def rows(derived: dict[str, dict[str, float]], H: float, g: float) -> list[Row]:
-    """The tables' derived quantities, and the frequency that the text derives; `H` and `g` as in Table 1."""
-    table_chi = H * float(PRINTED["evison"]["p_l"]) ** 2 / g
+def rows() -> list[Row]:
+    """The tables' derived quantities, and the frequency that the text derives."""
+    table_chi = EVISON.H * float(PRINTED[EVISON]["p_l"]) ** 2 / EVISON.g
     remarks = {
-        ("evison", "chi"): f"the table's own p_l and H give {H:g}·2.92²/9.81 = {table_chi:.3f}: 0.91 to two digits",
-        ("evison", "f_u"): "follows from the printed χ: 11/√(1−0.92) = 38.9; measured 35 (section 4)",
+        (EVISON, "chi"): f"the table's own p_l and H give {EVISON.H:g}·2.92²/9.81 = {table_chi:.3f}: 0.91 to two digits",
+        (EVISON, "f_u"): "follows from the printed χ: 11/√(1−0.92) = 38.9; measured 35 (section 4)",
     }
     result = []
-    for preset, name in PRESETS.items():
+    for name, structure in SPECIMENS.items():
         for symbol, (formula, factor, form, unit) in SYMBOLS.items():
-            result.append(Row(f"{name}: {formula}", PRINTED[preset][symbol], factor * derived[preset][symbol], form,
-                              unit, remarks.get((preset, symbol), "")))
+            result.append(Row(f"{name}: {formula}", PRINTED[structure][symbol], factor * structure.derived[symbol], form,
+                              unit, remarks.get((structure, symbol), "")))
     return result
 
 
-def section(project: Project, _folder: Path) -> Section:
+def section(_folder: Path) -> Section:
     """The section, which has no figure."""
-    derived = compute(project)
-    parameters = {preset: project.parameters(preset) for preset in PRESETS}
-    evison = parameters["evison"]
-    exact = derived["evison"]["chi"]
     return Section(
         title="Derived quantities (Tables 1 and 2)",
         introduction="""The tables' parameters go in as they are printed (B, H, m, m0, J0, f_fc, ζ_fc, r); what the
-tables derive from them is compared. J_P is `rocking-fmu describe`'s, all others are calculated parameters of the
-FMU.""",
-        rows=rows(derived, evison["H"], evison["g"]),
+tables derive from them is compared.""",
+        rows=rows(),
         findings=[f"""Everything follows from the parameters but Evison's χ, printed 0.92 where the same table's
-p_l, H and g give {exact:.2f}. It matters more than it looks: 1−χ is {1 - exact:.3f} instead of 0.08, so that the
-vibration frequency while rocking is {derived['evison']['f_u']:.1f} Hz instead of the 39 Hz of the text, and nearer
+p_l, H and g give {EVISON.chi:.2f}. It matters more than it looks: 1−χ is {1 - EVISON.chi:.3f} instead of 0.08, so that the
+vibration frequency while rocking is {EVISON.f_u:.1f} Hz instead of the 39 Hz of the text, and nearer
 to the measured 35 Hz."""],
     )

@@ -4,19 +4,22 @@ from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
+import flexible_rocking as fr
 import numpy as np
 from first_run import G
 
 from . import figures
 from .half_cycles import HalfCycles, half_cycles
-from .project import Project
 from .report import Row, Section, table
+from .specimens import EVISON, free_vibration
 
 THETA_0 = 0.04  # rad
 OTHER_THETA_0 = [0.03, 0.035, 0.045, 0.05]  # rad
 DURATION = 4.0  # s
 INTERVAL = 5e-5  # s
 SHOWN = 10  # half cycles in the table
+TANGENT = np.tan(EVISON.alpha_cg)
+STEP = EVISON.chi * TANGENT  # the rocking mode's acceleration at small rotation, χ tan α_cg, g (Eq 13)
 FIRST = 5  # half cycles: the first three rocking cycles, less what precedes the first impact
 
 
@@ -24,21 +27,9 @@ FIRST = 5  # half cycles: the first three rocking cycles, less what precedes the
 class Release:
     """The response to the release, and its half cycles between the zero crossings of δ_t."""
 
-    response: np.ndarray
+    response: fr.Response
     cycles: HalfCycles
-    derived: dict[str, float]
-    r: float
     other_peaks: list[float]  # largest |a_t| of the first cycles from other rotations, g
-
-    @property
-    def tangent(self) -> float:
-        """tan α_cg."""
-        return np.tan(self.derived["alpha_cg"])
-
-    @property
-    def step(self) -> float:
-        """The rocking mode's acceleration at small rotation, χ tan α_cg, g (Eq 13)."""
-        return self.derived["chi"] * self.tangent
 
     def peak(self, name: str, cycle: int) -> float:
         """Largest magnitude of an output within a half cycle after the first crossing (0, 1, ...)."""
@@ -55,22 +46,21 @@ class Release:
 
 
 @cache
-def release(project: Project) -> Release:
+def release() -> Release:
     """Released at rest with u = u_cr, as the paper assumes."""
-    others = [_release(project, theta, 2.0, []).first_peak for theta in OTHER_THETA_0]
-    return _release(project, THETA_0, DURATION, others)
+    others = [_release(theta, 2.0, []).first_peak for theta in OTHER_THETA_0]
+    return _release(THETA_0, DURATION, others)
 
 
-def _release(project: Project, theta: float, duration: float, other_peaks: list[float]) -> Release:
-    derived = project.calculated("evison")
-    response = project.free_vibration("evison", duration, INTERVAL, theta_0=theta, u_0=derived["u_cr"])
+def _release(theta: float, duration: float, other_peaks: list[float]) -> Release:
+    response = free_vibration(EVISON, duration, INTERVAL, theta_0=theta, u_0=EVISON.u_cr)
     cycles = half_cycles(response["time"], response["delta_t"])
-    return Release(response, cycles, derived, project.parameters("evison")["r"], other_peaks)
+    return Release(response, cycles, other_peaks)
 
 
-def rigid_rotation(theta: float, tangent: float, r: float) -> float:
+def rigid_rotation(theta: float) -> float:
     """Peak rotation of a rigid structure one impact after `theta` (Housner): r² of the energy is kept."""
-    return tangent * (1 - np.sqrt(1 - r**2 * (1 - (1 - theta / tangent) ** 2)))
+    return TANGENT * (1 - np.sqrt(1 - EVISON.r**2 * (1 - (1 - theta / TANGENT) ** 2)))
 
 
 def rows(of: Release) -> list[Row]:
@@ -81,7 +71,7 @@ def rows(of: Release) -> list[Row]:
         Row("peak a_t of the whole decay", None, np.max(np.abs(of.response["a_t"])) / G, ".3f", "g",
             "later impacts meet vibrations that have not died out"),
         Row("peak a_t before the first impact", None, np.max(np.abs(of.before_impact("a_t"))) / G, ".3f", "g",
-            f"χ tan α_cg is {of.step:.3f} g: no vibrations before the first impact, as the paper observes"),
+            f"χ tan α_cg is {STEP:.3f} g: no vibrations before the first impact, as the paper observes"),
         Row("uplift at release", None, 1e3 * of.response["uplift"][0], ".1f", "mm", "Eq 25"),
     ]
 
@@ -92,7 +82,7 @@ def decay(of: Release) -> str:
     before = THETA_0
     for i in range(SHOWN):
         theta = of.peak("theta", i)
-        lines.append([f"{i + 1}", f"{1e3 * theta:.2f}", f"{1e3 * rigid_rotation(before, of.tangent, of.r):.2f}",
+        lines.append([f"{i + 1}", f"{1e3 * theta:.2f}", f"{1e3 * rigid_rotation(before):.2f}",
                       f"{1e3 * of.peak('uplift', i):.2f}", f"{1e3 * of.peak('delta_t', i):.2f}",
                       f"{of.cycles.frequency[i]:.3f}", f"{of.peak('a_t', i) / G:.3f}"])
         before = theta
@@ -119,13 +109,13 @@ def draw(of: Release, path: Path) -> None:
     figures.save(figure, path)
 
 
-def section(project: Project, folder: Path) -> Section:
+def section(folder: Path) -> Section:
     """The section with its figure."""
-    of = release(project)
+    of = release()
     draw(of, folder / "free_vibration.png")
     theta = [THETA_0, *(of.peak("theta", i) for i in range(SHOWN))]
     kept = [after / before for before, after in zip(theta, theta[1:])]
-    rigid = [rigid_rotation(before, of.tangent, of.r) / before for before in theta[:-1]]
+    rigid = [rigid_rotation(before) / before for before in theta[:-1]]
     return Section(
         title="Free vibration of Evison's specimen (Fig 5)",
         introduction=f"""Released at rest with u = u_cr, as the paper's simulation. The paper took the rotation from
@@ -137,8 +127,8 @@ between {min(OTHER_THETA_0)} and {max(OTHER_THETA_0)} rad the largest of the fir
         caption="Uplift, lateral acceleration and lateral displacement after the release, in the layout of Fig 5.",
         findings=["Decay of the amplitude, half cycle by half cycle:", decay(of),
                   f"""Each impact keeps {100 * min(kept):.0f} to {100 * max(kept):.0f} % of the rotation. A rigid
-structure, which keeps r² = {100 * of.r**2:.0f} % of its energy, would keep {100 * np.mean(rigid):.0f} % (third
+structure, which keeps r² = {100 * EVISON.r**2:.0f} % of its energy, would keep {100 * np.mean(rigid):.0f} % (third
 column); the rest goes into the vibrations that each impact excites, and with them into the damper. The acceleration
-alternates between ±{of.step:.2f} g, with a vibration on top that starts at each impact and dies out towards the
+alternates between ±{STEP:.2f} g, with a vibration on top that starts at each impact and dies out towards the
 next: the trace that the paper describes."""],
     )

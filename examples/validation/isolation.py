@@ -3,18 +3,18 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+import flexible_rocking as fr
 import numpy as np
 from first_run import G
 from scipy.optimize import brentq
 
 from . import figures
-from .free_vibration import release
-from .project import FIXED_BASE, Project
-from .records import pacoima_dam, single_pulse, write_csv
+from .free_vibration import STEP, release
+from .records import pacoima_dam
 from .report import Row, Section
+from .specimens import MCMANUS, TOLERANCE
 
-PER_SAMPLE = 16  # communication steps of Pacoima Dam
-PULSE_PER_SAMPLE = 4
+DRAWN = 32001  # instants
 FREE = 3.0  # s of free vibration after the pulse
 FIRST_TERM_BUCHAREST = 0.02  # g
 FIXED_BASE_BUCHAREST = 1.1  # g
@@ -22,57 +22,55 @@ FIXED_BASE_BUCHAREST = 1.1  # g
 
 @dataclass(frozen=True)
 class Test:
-    """One ground motion with the responses to it, and the estimates without a history."""
+    """One ground motion with the runs under it, and the estimates without a history."""
 
-    time: np.ndarray  # s
-    a_g: np.ndarray  # m/s2
-    rocking: np.ndarray
-    fixed: np.ndarray
-    estimate: dict[str, float]
+    ground: fr.Record
+    rocking: fr.Run
+    fixed: fr.Run
+    estimate: fr.Estimate
 
     def peak(self, name: str) -> float:
         """Largest magnitude of an output while rocking."""
-        return np.max(np.abs(self.rocking[name]))
+        return self.rocking.peaks[name].value
 
     @property
     def fixed_peak(self) -> float:
         """Largest acceleration on a fixed base, g."""
-        return np.max(np.abs(self.fixed["a_t"])) / G
+        return self.fixed.peaks["a_t"].value / G
 
     @property
     def pga(self) -> float:
         """Largest ground acceleration, g."""
-        return np.max(np.abs(self.a_g)) / G
+        return self.ground.pga / G
 
 
-def pacoima(project: Project) -> Test:
-    """The right column of Fig 9."""
-    return _test(project, *pacoima_dam(), PER_SAMPLE)
+def single_pulse(T_p: float, peak: float) -> fr.Record:
+    """A Mavroeidis-Papageorgiou velocity pulse of one cycle (gamma = 1, nu = 0) with the peak acceleration `peak` (m/s2).
+
+    v = A/2 (1 + cos wt) cos wt, so that a is proportional to sin wt (1 + 2 cos wt), over one period T_p = 2 pi/w.
+    """
+    time = np.linspace(0, T_p, 401)
+    phase = 2 * np.pi * (time / T_p - 0.5)
+    shape = np.sin(phase) * (1 + 2 * np.cos(phase))
+    return fr.Record(time, peak * shape / np.max(np.abs(shape)))
 
 
-def stand_in(project: Project) -> tuple[Test, float]:
+def stand_in() -> tuple[fr.Record, float]:
     """A pulse with the peak and the fixed-base response that the text gives for Bucharest, and its period (s)."""
-    chi = project.calculated("mcmanus")["chi"]
-    peak = FIRST_TERM_BUCHAREST / (1 - chi) * G
+    peak = FIRST_TERM_BUCHAREST / (1 - MCMANUS.chi) * G
 
     def excess(T_p: float) -> float:
-        return _estimate(project, *single_pulse(T_p, peak))["S_a(T_fc, zeta_fc)"] - FIXED_BASE_BUCHAREST * G
+        return fr.estimate(MCMANUS, single_pulse(T_p, peak))["S_a(T_fc, zeta_fc)"] - FIXED_BASE_BUCHAREST * G
 
     T_p = brentq(excess, 0.40, 0.50, xtol=1e-5)
-    time, a_g = single_pulse(T_p, peak)
-    rest = np.arange(1, int(FREE / time[1])) * time[1]
-    return _test(project, np.append(time, time[-1] + rest), np.append(a_g, 0 * rest), PULSE_PER_SAMPLE), T_p
+    return single_pulse(T_p, peak), T_p
 
 
-def _estimate(project: Project, time: np.ndarray, a_g: np.ndarray) -> dict[str, float]:
-    record = project.folder / "record.csv"
-    write_csv(record, time, a_g)
-    return project.values("estimate", "--preset", "mcmanus", "--record", record)
-
-
-def _test(project: Project, time: np.ndarray, a_g: np.ndarray, per_sample: int) -> Test:
-    return Test(time, a_g, project.earthquake("mcmanus", time, a_g, per_sample),
-                project.earthquake("mcmanus", time, a_g, per_sample, **FIXED_BASE), _estimate(project, time, a_g))
+def _test(ground: fr.Record, free: float = 0.0) -> Test:
+    """With so many seconds of free vibration after it."""
+    rocking, fixed = (fr.simulate(MCMANUS, ground, duration=ground.duration + free, detail=detail, tolerance=TOLERANCE)
+                      for detail in ("auto", "fixed_base"))
+    return Test(ground, rocking, fixed, fr.estimate(MCMANUS, ground))
 
 
 def rows(dam: Test, pulse: Test) -> list[Row]:
@@ -111,19 +109,21 @@ def draw(dam: Test, pulse: Test, path: Path) -> None:
     titles = ["stand-in for Bucharest (pulse)", "Pacoima Dam 1971, 164"]
     for column, (test, title) in enumerate(zip((pulse, dam), titles)):
         ground, uplift, rocking, fixed = axes[:, column]
-        ground.plot(test.time, test.a_g / G, color=figures.QUIET)
-        uplift.plot(test.rocking["time"], 1e3 * test.rocking["uplift"], color=figures.ROCKING)
-        rocking.plot(test.rocking["time"], test.rocking["a_t"] / G, color=figures.ROCKING, linewidth=0.8)
-        fixed.plot(test.fixed["time"], test.fixed["a_t"] / G, color=figures.FIXED, linewidth=0.8)
+        time = np.linspace(0, test.rocking.end, DRAWN)
+        response = test.rocking.at(time)
+        ground.plot(time, response["a_g"] / G, color=figures.QUIET)
+        uplift.plot(time, 1e3 * response["uplift"], color=figures.ROCKING)
+        rocking.plot(time, response["a_t"] / G, color=figures.ROCKING, linewidth=0.8)
+        fixed.plot(time, test.fixed.at(time)["a_t"] / G, color=figures.FIXED, linewidth=0.8)
         demand = test.estimate["a_t"] / G
         for level in (demand, -demand):
             rocking.axhline(level, color=figures.SMOOTH, linestyle="--", linewidth=0.9)
-        rocking.text(test.time[-1], demand, f"Eq 22: {demand:.2f} g", color=figures.SMOOTH, ha="right", va="bottom",
+        rocking.text(time[-1], demand, f"Eq 22: {demand:.2f} g", color=figures.SMOOTH, ha="right", va="bottom",
                      fontsize=8)
         for axis, peak in ((ground, test.pga), (rocking, test.peak("a_t") / G), (fixed, test.fixed_peak)):
             axis.text(0.98, 0.05, f"peak {peak:.2f} g", transform=axis.transAxes, ha="right", fontsize=8)
         ground.set(title=title)
-        fixed.set(xlabel="time (s)", xlim=(0, test.time[-1]))
+        fixed.set(xlabel="time (s)", xlim=(0, time[-1]))
     axes[0, 0].set_ylabel("ground\nacceleration (g)")
     axes[1, 0].set_ylabel("uplift (mm)")
     axes[1, 0].set_ylim(0, None)
@@ -134,11 +134,12 @@ def draw(dam: Test, pulse: Test, path: Path) -> None:
     figures.save(figure, path)
 
 
-def section(project: Project, folder: Path) -> Section:
+def section(folder: Path) -> Section:
     """The section with its figure."""
-    dam = pacoima(project)
-    pulse, T_p = stand_in(project)
-    evison, mcmanus_step = release(project), dam.estimate["chi g tan"] / G
+    dam = _test(fr.Record(*pacoima_dam()))
+    bucharest, T_p = stand_in()
+    pulse = _test(bucharest, FREE)
+    mcmanus_step = dam.estimate["chi g tan"] / G
     draw(dam, pulse, folder / "isolation.png")
     return Section(
         title="Isolation on the shake table (Fig 9)",
@@ -156,8 +157,8 @@ which is (1−χ) PGA, see below), and a fixed-base response of {FIXED_BASE_BUCH
         findings=[f"""The isolation is as the paper shows it: {dam.fixed_peak:.1f} g on a fixed base,
 {dam.peak('a_t') / G:.2f} g rocking, between the paper's simulation (0.5 g) and its measurement (0.55 g), and below
 Eq 22. The paper puts Evison's larger acceleration, 0.85 g to 0.55 g measured, a ratio of 1.5, down to slenderness:
-the second terms of Eq 22 are in the ratio {evison.step / mcmanus_step:.2f}, the computed peaks in the ratio
-{evison.first_peak / dam.peak('a_t') * G:.2f}.""",
+the second terms of Eq 22 are in the ratio {STEP / mcmanus_step:.2f}, the computed peaks in the ratio
+{release().first_peak / dam.peak('a_t') * G:.2f}.""",
                   f"""The first term of Eq 22 is where the paper's number does not follow from its equation. 0.10 g
 is (1−χ) × {dam.pga:.2f} g, the peak ground acceleration, as if the vibration mode were rigid; 0.02 g for Bucharest
 fits the same reading. S_a at T_u = {dam.estimate['T_u']:.4f} s and ζ_u = {100 * dam.estimate['zeta_u']:.0f} % is

@@ -8,13 +8,12 @@ from first_run import G
 from PyEMD import EMD
 
 from . import figures
-from .free_vibration import Release, release
-from .project import Project
+from .free_vibration import STEP, Release, release
 from .report import Row, Section
+from .specimens import EVISON, free_vibration
 
 SAMPLING = 20  # of the release's instants, one goes to the decomposition: 1 kHz
 SPECTRUM_LENGTH = 2**20  # the half cycle, padded with zeros
-B = 0.285  # m
 
 
 @dataclass(frozen=True)
@@ -31,22 +30,22 @@ class Components:
     a_t: np.ndarray  # m/s2
     a_r: np.ndarray  # m/s2
     a_u: np.ndarray  # m/s2
-    f_full_contact: float  # of the FMU set swinging in full contact, Hz
+    f_full_contact: float  # of a swing in full contact, Hz
 
 
-def compute(project: Project) -> Components:
+def compute() -> Components:
     """Splits the half cycle between the first and the second impact of the release."""
-    of = release(project)
+    of = release()
     turned = np.flatnonzero(np.diff(np.sign(of.response["theta"])))
-    half_cycle = of.response[turned[0] + 1:turned[1] + 1]
-    modes = project.modes("evison", half_cycle)
+    half_cycle = {name: column[turned[0] + 1:turned[1] + 1] for name, column in of.response.items()}
+    modes = EVISON.modes(half_cycle)
     side = np.sign(half_cycle["theta"])
-    sampled = half_cycle[::SAMPLING]
-    smooth, oscillation = decompose(sampled["time"], sampled["uplift"])
+    sampled, uplift = half_cycle["time"][::SAMPLING], half_cycle["uplift"][::SAMPLING]
+    smooth, oscillation = decompose(sampled, uplift)
     return Components(
-        half_cycle["time"], half_cycle["uplift"], 2 * B * np.sin(side * modes["q_r"]),
-        2 * B * np.sin(side * modes["q_u"]), sampled["time"], smooth, oscillation, half_cycle["a_t"], modes["a_r"],
-        modes["a_u"], _swing_in_full_contact(project, of.derived["u_cr"]))
+        half_cycle["time"], half_cycle["uplift"], 2 * EVISON.B * np.sin(side * modes["q_r"]),
+        2 * EVISON.B * np.sin(side * modes["q_u"]), sampled, smooth, oscillation, half_cycle["a_t"], modes["a_r"],
+        modes["a_u"], _swing_in_full_contact())
 
 
 def decompose(time: np.ndarray, signal: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -64,9 +63,9 @@ def dominant_frequency(time: np.ndarray, signal: np.ndarray) -> float:
     return np.fft.rfftfreq(SPECTRUM_LENGTH, time[1] - time[0])[np.argmax(spectrum)]
 
 
-def _swing_in_full_contact(project: Project, u_cr: float) -> float:
-    """The frequency at which the FMU swings in full contact, Hz."""
-    response = project.free_vibration("evison", 1.0, 1e-4, u_0=0.9 * u_cr)
+def _swing_in_full_contact() -> float:
+    """The frequency at which Evison's specimen swings in full contact, Hz."""
+    response = free_vibration(EVISON, 1.0, 1e-4, u_0=0.9 * EVISON.u_cr)
     return dominant_frequency(response["time"], response["u"])
 
 
@@ -74,11 +73,11 @@ def rows(of: Release, c: Components) -> list[Row]:
     """What the text says of Fig 6."""
     second_cycle = of.peak("a_t", 0) / G
     return [
-        Row("step of the rocking mode, χ tan α_cg (Eq 13)", "0.34", of.step, ".4f", "g",
+        Row("step of the rocking mode, χ tan α_cg (Eq 13)", "0.34", STEP, ".4f", "g",
             "0.337 with the printed χ = 0.92 (section 2)"),
         Row("mean of the rocking mode's a_r over the half cycle (Eq 12)", None, np.mean(np.abs(c.a_r)) / G, ".3f", "g",
             f"from {np.min(np.abs(c.a_r)) / G:.3f} to {np.max(np.abs(c.a_r)) / G:.3f} g: “near-constant”"),
-        Row("vibration frequency while rocking, f_fc/√(1−χ) (Eq 18)", "39", of.derived["f_u"], ".2f", "Hz",
+        Row("vibration frequency while rocking, f_fc/√(1−χ) (Eq 18)", "39", EVISON.f_u, ".2f", "Hz",
             "38.9 with the printed χ = 0.92; measured 35"),
         Row("frequency in the spectrum of a_t", "35", dominant_frequency(c.time, c.a_t), ".1f", "Hz",
             "measured; a half cycle of 0.32 s resolves 3 Hz"),
@@ -87,11 +86,11 @@ def rows(of: Release, c: Components) -> list[Row]:
         Row("vibration frequency in full contact", "11", c.f_full_contact, ".2f", "Hz", "measured; set in the model",
             is_printed=False),
         Row("peak acceleration of the vibration after the first impact, a_t less the step", "0.48",
-            second_cycle - of.step, ".3f", "g", "measured; the transition takes time in the test, none in the model"),
+            second_cycle - STEP, ".3f", "g", "measured; the transition takes time in the test, none in the model"),
         Row("C from the first vibration cycle after the impact, a_t/(χ tan α_cg) − 1", "1.4",
-            second_cycle / of.step - 1, ".2f", "",
+            second_cycle / STEP - 1, ".2f", "",
             "measured; half a vibration cycle at ζ_u = 5 % leaves 2 exp(−π ζ_u) = 1.71 of 2"),
-        Row("C at the instant of the impact, a_u/(χ tan α_cg)", "2", abs(c.a_u[0]) / G / of.step, ".2f", "",
+        Row("C at the instant of the impact, a_u/(χ tan α_cg)", "2", abs(c.a_u[0]) / G / STEP, ".2f", "",
             "an instant transition (Eq 21)"),
     ]
 
@@ -111,10 +110,11 @@ def draw(of: Release, c: Components, path: Path) -> None:
     oscillation.set(ylabel=r"oscillatory part (mm)", xlabel="time (s)", ylim=(-0.8, 1.2))
     oscillation.legend(loc="upper center", ncols=2)
 
-    shown = of.response[of.response["time"] <= c.time[-1]]
-    acceleration.plot(shown["time"], shown["a_t"] / G, color=figures.ROCKING, label=r"$a_t$")
-    step = np.where(shown["theta"] > 0, -of.step, of.step)
-    acceleration.plot(shown["time"], step, color=figures.SMOOTH, label=r"rocking mode, $\chi\,\tan\alpha_{cg}$")
+    shown = of.response["time"] <= c.time[-1]
+    time = of.response["time"][shown]
+    acceleration.plot(time, of.response["a_t"][shown] / G, color=figures.ROCKING, label=r"$a_t$")
+    step = np.where(of.response["theta"][shown] > 0, -STEP, STEP)
+    acceleration.plot(time, step, color=figures.SMOOTH, label=r"rocking mode, $\chi\,\tan\alpha_{cg}$")
     acceleration.set(ylabel=r"acceleration (g)", title="release to second impact")
     acceleration.legend(loc="lower right")
     vibration.plot(c.time, c.a_u / G, color=figures.SMOOTH, label=r"vibration mode, $a_u$")
@@ -123,20 +123,19 @@ def draw(of: Release, c: Components, path: Path) -> None:
     figures.save(figure, path)
 
 
-def section(project: Project, folder: Path) -> Section:
+def section(folder: Path) -> Section:
     """The section with its figure."""
-    of, c = release(project), compute(project)
+    of, c = release(), compute()
     draw(of, c, folder / "modal_components.png")
     model = c.vibration_uplift[::SAMPLING]
     inside = slice(len(model) // 4, 3 * len(model) // 4)
-    zeta_u = project.values("describe", "--preset", "evison")["zeta_u"]
     decrement = np.log(2 / 1.4)
     zeta_for_1_4 = decrement / np.hypot(np.pi, decrement)
     likeness = np.corrcoef(model[inside], c.emd_oscillation[inside])[0, 1]
     return Section(
         title="Modal components (Fig 6)",
         introduction="""The half cycle between the first and the second impact, split twice: with the model's own
-modes, θ = q_r + q_u and q_u = −(p_l²/g) u (Eq 16; accelerations by Eqs 12 and 19), by `rocking-fmu modes`; and as
+modes, θ = q_r + q_u and q_u = −(p_l²/g) u (Eq 16; accelerations by Eqs 12 and 19); and as
 the paper did it, by empirical mode decomposition of the uplift alone, which knows nothing of the model.""",
         rows=rows(of, c),
         figure="modal_components.png",
@@ -145,10 +144,10 @@ second impact with the rocking mode's step, and the vibration mode's part after 
         findings=[f"""The decomposition of the signal alone finds the model's two modes: one smooth part, one
 oscillation, whose correlation with the model's vibration mode over the middle half of the half cycle is
 {likeness:.3f}; at the ends the decomposition has no neighbours to lean on. Both oscillate at f_u,
-{of.derived['f_u']:.1f} Hz, not at the 11 Hz of full contact. Of the three frequencies, the measured 35 Hz lies
+{EVISON.f_u:.1f} Hz, not at the 11 Hz of full contact. Of the three frequencies, the measured 35 Hz lies
 nearer to the model's than to the printed 39 Hz, which follows from the printed χ = 0.92.""",
                   f"""C is where model and test part. In the model the weight changes sides at once, C = 2, and
 damping takes it to 1.7 by the first peak; the test had 1.4. The paper concludes that the transition in the test was
-gradual. In the model the same peak would need ζ_u = {100 * zeta_for_1_4:.0f} % instead of {100 * zeta_u:.0f} %,
+gradual. In the model the same peak would need ζ_u = {100 * zeta_for_1_4:.0f} % instead of {100 * EVISON.zeta_u:.0f} %,
 while the paper suspects its damping while rocking of being too high (of McManus's tests)."""],
     )

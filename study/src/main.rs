@@ -5,7 +5,7 @@ use clap::{Parser, Subcommand};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::path::{Path, PathBuf};
 use study::scene::{Scene, default_records};
-use study::{failures, precision, speed, stability, validity};
+use study::{failures, precision, stability, validity};
 
 /// Speed against accuracy, limits of stability and a gallery of failures: writes the pages, pictures and numbers in docs/.
 #[derive(Parser)]
@@ -19,7 +19,7 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
-    /// Error against cost, method by method: docs/evidence/accuracy.md
+    /// Error against cost, method by method: docs/evidence/accuracy.md and docs/evidence/speed.md
     Precision,
     /// Largest stable steps of textbook methods: docs/evidence/stability.md
     Stability,
@@ -27,8 +27,6 @@ enum Command {
     Failures,
     /// What the model leaves out, structure by structure: docs/explain/validity.md
     Validity,
-    /// The speed table: docs/evidence/speed.md
-    Speed,
 }
 
 fn main() -> Result<()> {
@@ -38,9 +36,6 @@ fn main() -> Result<()> {
     let style = ProgressStyle::with_template("{elapsed_precise} {bar:40} {pos}/{len} {msg}")?;
     let progress = ProgressBar::new(0).with_style(style);
     match command {
-        Command::Speed => {
-            speed::write(&Scene::mcmanus_el_centro(&records()?)?, precision::FULL, evidence, &progress)?;
-        }
         Command::Precision => precision::write(&Scene::all(&records()?)?, precision::FULL, evidence, &progress)?,
         Command::Stability => stability::write(evidence)?,
         Command::Validity => validity::write(&records()?, explain, &progress)?,

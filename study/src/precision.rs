@@ -12,7 +12,7 @@ use curves::Method;
 use indicatif::ProgressBar;
 use std::path::Path;
 
-/// The input is scaled by 1 + this for the conditioning floor.
+/// The input is scaled by 1 + this to find how well the scene is conditioned.
 pub const PERTURBATION: f64 = 1e-12;
 
 /// One method over its settings.
@@ -39,7 +39,7 @@ pub enum Family {
 #[derive(Debug)]
 pub struct Point {
     pub setting: f64,                    // step in s, or tolerance
-    pub cost: f64,                       // time per sample over that of the floor
+    pub cost: f64,                       // time per sample, s
     pub evaluations: f64,                // right-hand-side evaluations per sample
     pub transitions: u64,                // uplifts, impacts and landings
     pub errors: Result<Errors, Failure>, // against the reference, or why there are none
@@ -50,7 +50,6 @@ pub struct Point {
 pub struct Diagram {
     pub key: &'static str,
     pub title: &'static str,
-    pub floor: f64, // time per sample of the floor, s
     /// How far the response moves when the input is scaled by 1 + [`PERTURBATION`].
     pub conditioning: Errors,
     pub transitions: u64, // transitions of the reference
@@ -73,31 +72,23 @@ pub fn measure(scene: &Scene, limits: Limits, progress: &ProgressBar) -> Result<
     let exact = engine::reference(scene);
     let moved = engine::reference(&scene.scaled(1.0 + PERTURBATION));
     let conditioning = Errors::of(&moved, &exact)?;
-    let floor = timing::floor(scene);
     let methods = curves::methods(scene);
     progress.inc_length(methods.len() as u64);
     let curves = methods
         .into_iter()
         .map(|method| {
             progress.set_message(format!("{}: {}", scene.title, method.name));
-            let points = sweep(&method, scene, &exact, floor, conditioning.theta, limits);
+            let points = sweep(&method, scene, &exact, conditioning.theta, limits);
             progress.inc(1);
             Curve { name: method.name, family: method.family, setting: method.setting, points }
         })
         .collect();
     let (&Scene { key, title, .. }, dt) = (scene, scene.dt());
-    Ok(Diagram { key, title, floor, conditioning, transitions: exact.transitions, dt, curves })
+    Ok(Diagram { key, title, conditioning, transitions: exact.transitions, dt, curves })
 }
 
-/// One method from coarse to fine, until its error in θ is below what conditioning allows or a run takes too long.
-fn sweep(
-    method: &Method,
-    scene: &Scene,
-    exact: &Response,
-    floor: f64,
-    conditioning: f64,
-    limits: Limits,
-) -> Vec<Point> {
+/// One method from coarse to fine, until its error in θ is as small as the conditioning or a run takes too long.
+fn sweep(method: &Method, scene: &Scene, exact: &Response, conditioning: f64, limits: Limits) -> Vec<Point> {
     let mut points = Vec::new();
     for (setting, run) in &method.settings {
         let (response, time) = timing::fastest(run);
@@ -106,7 +97,7 @@ fn sweep(
         let samples = response.samples.len().max(1) as f64;
         points.push(Point {
             setting: *setting,
-            cost: time / samples / floor,
+            cost: time / samples,
             evaluations: response.evaluations as f64 / samples,
             transitions: response.transitions,
             errors,
@@ -120,7 +111,7 @@ fn sweep(
     points
 }
 
-/// Measures all `scenes` and writes `docs/evidence/accuracy.md` with its pictures and numbers.
+/// Measures all `scenes` and writes `accuracy.md`, with its pictures and numbers, and `speed.md` into `docs`.
 pub fn write(scenes: &[Scene], limits: Limits, docs: &Path, progress: &ProgressBar) -> Result<()> {
     let diagrams = scenes.iter().map(|scene| measure(scene, limits, progress)).collect::<Result<Vec<_>>>()?;
     page::write(&diagrams, docs)

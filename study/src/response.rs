@@ -32,7 +32,7 @@ pub enum Failure {
     #[error("diverges at t = {time:.3} s")]
     Diverged { time: f64 },
     /// θ went on beyond 0, to the wrong side of its pivot.
-    #[error("falls through the floor at t = {time:.3} s")]
+    #[error("falls through the ground at t = {time:.3} s")]
     ThroughTheFloor { time: f64 },
     /// |θ| reached π/2, where the exact response does not.
     #[error("overturns at t = {time:.3} s")]

@@ -63,5 +63,5 @@ pub fn write(docs: &Path) -> Result<()> {
         rows => rows.collect::<Vec<Value>>(),
         trap,
     };
-    crate::page::write(docs, "stability", include_str!("../pages/stability.md"), values)
+    crate::page::write(docs, "stability", include_str!("../pages/stability.md"), &values, "stability")
 }

@@ -199,7 +199,7 @@ pub fn write(records: &Path, docs: &Path, progress: &ProgressBar) -> Result<()> 
         repair => repair(&population),
         scenes => scenes.iter().map(|(name, pair)| scene_row(name.clone(), pair)).collect::<Vec<_>>(),
     };
-    crate::page::write(docs, "validity", include_str!("../pages/validity.md"), values)
+    crate::page::write(docs, "validity", include_str!("../pages/validity.md"), &values, "validity")
 }
 
 /// A row for every structure: what it is, what it goes beyond, what the repaired rule changes.

@@ -21,7 +21,7 @@ fn a_dip_between_two_looks_is_missed_and_the_engine_sees_it() {
     let lowest = |name| series(&exhibit, name).iter().map(|(_, theta)| *theta).fold(0.0, f64::min);
     assert!(
         lowest("exact integration, sign looked at every 20 ms") < -1.0,
-        "it goes below the floor by more than 1 mrad"
+        "it goes below the ground by more than 1 mrad"
     );
     assert!(lowest("this project") >= -1e-9);
     assert!(series(&exhibit, "where it looks").iter().all(|(_, theta)| *theta > 0.0));

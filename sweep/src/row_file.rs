@@ -128,7 +128,7 @@ impl RowFile {
         let done = runs.par_iter().map(|one| {
             let (row, result) = run(one)?;
             self.append(&row)?;
-            ensure!(goes_on(), "stopped: what is done stays in {}", self.path.display());
+            ensure!(goes_on(), "stopped: finished runs are in {}", self.path.display());
             Ok(result)
         });
         done.collect()

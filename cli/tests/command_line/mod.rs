@@ -27,27 +27,12 @@ pub fn folder() -> TempDir {
     folder
 }
 
-pub fn command(folder: &Path, arguments: &str) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_rocking-fmu"));
-    command.current_dir(folder).args(arguments.split_whitespace());
-    command
-}
-
-fn run(folder: &Path, arguments: &str) -> Output {
-    command(folder, arguments).output().unwrap()
-}
-
 /// Runs a command that succeeds, and returns its standard output and standard error.
 pub fn succeed(folder: &Path, arguments: &str) -> (String, String) {
-    let Output { status, stdout, stderr } = run(folder, arguments);
+    let mut command = Command::new(env!("CARGO_BIN_EXE_rocking-fmu"));
+    let Output { status, stdout, stderr } =
+        command.current_dir(folder).args(arguments.split_whitespace()).output().unwrap();
     let (stdout, stderr) = (String::from_utf8(stdout).unwrap(), String::from_utf8(stderr).unwrap());
     assert!(status.success(), "{arguments}: {stderr}");
     (stdout, stderr)
-}
-
-/// Runs a command that fails, and returns its exit code and standard error.
-pub fn fail(folder: &Path, arguments: &str) -> (i32, String) {
-    let Output { status, stdout, stderr } = run(folder, arguments);
-    assert_eq!(String::from_utf8(stdout).unwrap(), "");
-    (status.code().unwrap(), String::from_utf8(stderr).unwrap())
 }

@@ -353,27 +353,19 @@ impl Host {
         unsafe { fmi2EnterContinuousTimeMode(self.component) }
     }
 
-    /// One step of the classic Runge-Kutta method from `time` (s), with the event that it asks for.
-    pub fn integrate(&self, time: f64, step: f64) -> Option<EventInfo> {
-        let at = |time: f64, states: [f64; 4]| {
-            assert_eq!((self.set_time(time), self.set_states(states)), (OK, OK));
-            self.derivatives().unwrap()
-        };
-        let ahead = |x: [f64; 4], k: [f64; 4], h: f64| -> [f64; 4] { std::array::from_fn(|i| x[i] + h * k[i]) };
-        let x = self.states().unwrap();
-        let k1 = at(time, x);
-        let k2 = at(time + step / 2.0, ahead(x, k1, step / 2.0));
-        let k3 = at(time + step / 2.0, ahead(x, k2, step / 2.0));
-        let k4 = at(time + step, ahead(x, k3, step));
-        let end = ahead(x, std::array::from_fn(|i| (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]) / 6.0), step);
+    /// One step of the semi-implicit Euler method from `time` (s), with the event that it asks for.
+    pub fn integrate(&self, time: f64, step: f64) {
+        assert_eq!(self.set_time(time), OK);
+        let ([u, u_dot, theta, theta_dot], [_, u_ddot, _, theta_ddot]) =
+            (self.states().unwrap(), self.derivatives().unwrap());
+        let (u_dot, theta_dot) = (u_dot + step * u_ddot, theta_dot + step * theta_ddot);
+        let end = [u + step * u_dot, u_dot, theta + step * theta_dot, theta_dot];
         assert_eq!((self.set_time(time + step), self.set_states(end)), (OK, OK));
-        let (has_event, _) = self.complete().unwrap();
-        has_event.then(|| {
+        if self.complete().unwrap().0 {
             assert_eq!(self.enter_event_mode(), OK);
-            let info = self.update().unwrap();
+            assert!(self.update().is_ok());
             assert_eq!(self.go_on(), OK);
-            info
-        })
+        }
     }
 
     pub fn last_successful_time(&self) -> f64 {
@@ -436,13 +428,13 @@ impl Host {
         unsafe { fmi2SetDebugLogging(self.component, on.into(), pointers.len(), pointers.as_ptr()) }
     }
 
-    /// Asserts that `call` is refused with `message` and changes nothing.
+    /// Asserts that `call` is refused with a message that has `message` in it, and changes nothing.
     pub fn assert_refused<T: std::fmt::Debug + PartialEq>(&self, call: impl FnOnce() -> T, refused: T, message: &str) {
         let before = self.bytes();
         self.log.borrow_mut().clear();
         assert_eq!(call(), refused, "{:?}", self.log);
         let log = self.log.take();
-        assert_eq!(log.iter().map(|message| message.text.as_str()).collect::<Vec<_>>(), [message]);
+        assert!(log.len() == 1 && log[0].text.contains(message), "{log:?} instead of {message}");
         assert_eq!((log[0].status, log[0].category.as_str()), (ERROR, "logStatusError"));
         assert_eq!(self.bytes(), before, "the refused call changed something");
     }

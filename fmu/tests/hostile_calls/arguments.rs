@@ -208,22 +208,9 @@ impl Sequence<'_> {
 
     /// A number from anywhere.
     pub fn number(&mut self) -> f64 {
-        const SPECIAL: [f64; 12] = [
-            f64::NAN,
-            f64::INFINITY,
-            f64::NEG_INFINITY,
-            0.0,
-            -0.0,
-            5e-324,
-            f64::MIN_POSITIVE,
-            -1e-300,
-            f64::EPSILON,
-            1.0,
-            f64::MAX,
-            f64::MIN,
-        ];
+        const SPECIAL: &str = "nan inf -inf 0 -0 5e-324 3e-308 -1e-300 2e-16 1 1.7e308 -1.7e308";
         match self.rng.u8(..8) {
-            0 | 1 => SPECIAL[self.rng.usize(..SPECIAL.len())],
+            0 | 1 => self.rng.choice(SPECIAL.split(' ').collect::<Vec<_>>()).unwrap().parse().unwrap(),
             2 => f64::from_bits(self.rng.u64(..)),
             3 | 4 => 2.0 * self.rng.f64() - 1.0,
             _ => self.sign() * self.between(1e-12, 1e12),

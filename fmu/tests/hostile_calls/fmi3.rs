@@ -131,7 +131,6 @@ const MODEL: Table = Table {
 };
 
 /// A host of co-simulation may have itself called back in every step for the ground's acceleration.
-/// A host of co-simulation may have itself called back in every step for the ground's acceleration.
 fn instantiate(
     rng: &mut Rng,
     interface: Interface,

@@ -2,7 +2,7 @@
 
 use super::history::exact;
 use super::{Exhibit, RIGHT, WRONG};
-use crate::chart::{Axis, Panel, colour};
+use crate::chart::{Axis, Panel};
 use crate::fixed_step::Method;
 use crate::guards::displacement_excess;
 use crate::hybrid::{self, Grid, Transitions};
@@ -35,12 +35,14 @@ pub fn show(scene: &Scene) -> Result<Exhibit> {
     let all: Vec<_> = right.iter().map(|transition| transition.time).collect();
     let duration = scene.ground.end();
     let (x, y) = (Axis::linear("time, s", 0.0, duration), Axis::logarithmic("transitions so far", 1.0, 2000.0));
-    let panel = Panel::new("Chatter after a landing with |u| > u_cr", x, y)
+    let panel = Panel::new("Uplift by |u| ≥ u_cr alone never ends", x, y)
         .with("this project: both conditions", count(&all), RIGHT)
+        .named((0.3 * duration, 10.0))
         .with("|u| ≥ u_cr alone", count(&times), WRONG)
-        .note((0.65 * stuck, 1500.0), format!("no end at t = {stuck:.3} s"), colour::VERMILLION);
+        .named((0.55 * stuck, 600.0));
     Ok(Exhibit {
         key: "chatter",
+        shows: "Transitions so far over time: by both conditions they go on, by one they pile up at an instant.",
         values: context! {
             all => all.len(),
             before,

@@ -36,9 +36,10 @@ pub fn show() -> Result<Exhibit> {
     let highest = path.iter().map(|(_, energy)| *energy).fold(0.0, f64::max);
     let x = Axis::linear("time, s", 0.0, DURATION);
     let y = Axis::linear("energy over that at rest, J", 0.0, 1.25 * highest);
-    let panel = Panel::new("Energy gained at impact", x, y)
+    let panel = Panel::new(format!("An impact with r = 0.5 adds {gain:.1} J"), x, y)
         .with("McManus's geometry, 2 Hz, r = 0.5", path, WRONG)
-        .note((time, 0.42 * highest), format!("impact: +{gain:.2} J"), colour::VERMILLION);
+        .named((0.2, highest))
+        .note((time, 0.42 * highest), format!("this impact: +{gain:.2} J"), colour::VERMILLION);
     let lossless = |parameters, part: f64| {
         let structure = structure(parameters);
         impact::lossless_restitution(&structure, part * structure.u_cr)
@@ -49,6 +50,7 @@ pub fn show() -> Result<Exhibit> {
     let limit = |parameters| format!("{:.3}", lossless(parameters, 0.0).map_or(0.0, |[least, _]| least));
     Ok(Exhibit {
         key: "energy-gain",
+        shows: "Energy over time: it falls at the first impact, rises at the second, and falls at the third.",
         values: context! {
             evison => limit(Parameters::EVISON),
             mcmanus => limit(Parameters::MCMANUS),

@@ -1,4 +1,4 @@
-//! Falling through the floor.
+//! Falling through the ground.
 
 use super::history::{every, exact, milli};
 use super::{Exhibit, GUIDE, RIGHT, WRONG};
@@ -38,12 +38,15 @@ pub fn show(scene: &Scene) -> Result<Exhibit> {
     let fall = fall.filter(|(t, _)| (t - start).abs() < 8e-3);
     let right = exact(scene, Detail::Nonlinear, every(CLOSE).map(|t| start - 4e-3 + t).take(600))?;
     let x = Axis::linear("time from the impact, ms", -4.0, 8.0);
-    let panel = Panel::new("Falling through the floor", x, Axis::linear("θ, mrad", -1.2, 0.4))
+    let panel = Panel::new("A return right after an impact is missed", x, Axis::linear("θ, mrad", -1.2, 0.4))
         .with("this project", milli(&right.theta(), start), RIGHT)
+        .named((1.0, 0.1))
         .with("diffsol ESDIRK34, its root finding", milli(&fall.collect::<Vec<_>>(), start), WRONG)
-        .with("floor", [(-4.0, 0.0), (8.0, 0.0)], GUIDE);
+        .named((-1.5, -0.8))
+        .with("", [(-4.0, 0.0), (8.0, 0.0)], GUIDE);
     Ok(Exhibit {
         key: "fall",
+        shows: "θ over time: the exact response lands, that of the library goes on below 0.",
         values: context! {
             failure => failure.to_string(),
             length => format!("{:.0}", 1e6 * length(&hop)),

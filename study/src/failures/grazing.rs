@@ -24,6 +24,7 @@ pub struct Family {
     theta_dot: f64,
     bracket: (f64, f64), // between these the first transition becomes another
     towards: f64,        // +1 or −1: to which side u̇ is changed
+    named: (f64, f64),   // where its name begins in the picture
     style: Style,
 }
 
@@ -34,6 +35,7 @@ pub const FAMILIES: [Family; 3] = [
         theta_dot: -0.2,
         bracket: (0.38, 0.40),
         towards: 1.0,
+        named: (1e-11, 0.05),
         style: Style::marked(colour::VERMILLION, 2, Marker::Circle),
     },
     Family {
@@ -41,6 +43,7 @@ pub const FAMILIES: [Family; 3] = [
         theta_dot: -0.1,
         bracket: (0.24, 0.26),
         towards: -1.0,
+        named: (2e-12, 1e-7),
         style: Style::marked(colour::BLUE, 2, Marker::Square),
     },
     Family {
@@ -48,6 +51,7 @@ pub const FAMILIES: [Family; 3] = [
         theta_dot: -0.1,
         bracket: (0.1, 0.1),
         towards: 1.0,
+        named: (1e-8, 3e-10),
         style: Style::marked(colour::GREEN, 2, Marker::Triangle),
     },
 ];
@@ -85,10 +89,11 @@ pub fn show() -> Result<Exhibit> {
         Axis::logarithmic("relative change of the start", 1e-13, 0.1),
         Axis::logarithmic("max|Δθ| / max|θ|", 1e-14, 1.0),
     );
-    let mut panel = Panel::new("Grazes that decide differently under a change of 10⁻¹²", x, y);
+    let mut panel = Panel::new("At a graze 10⁻¹² in the start decides the answer", x, y);
     let at_1e_12 = FAMILIES.map(|family| {
         let points = family.sensitivity(&changes);
-        panel.series.push(Series { name: family.name.into(), points, style: family.style });
+        let named = Some(family.named);
+        panel.series.push(Series { name: family.name.into(), points, named, style: family.style });
         family.sensitivity(&[1e-12])[0].1
     });
     let [jump, touch, clear] = at_1e_12;
@@ -96,6 +101,7 @@ pub fn show() -> Result<Exhibit> {
     let impact = released(momentum.theta_dot, momentum.critical()).transitions[0];
     Ok(Exhibit {
         key: "grazing",
+        shows: "Change of the answer over change of the start: constant, as its root, and in proportion.",
         values: context! {
             impact => format!("{:.2}", 1e3 * impact.time),
             jump => format!("{:.0}", 100.0 * jump),

@@ -45,12 +45,15 @@ pub fn show() -> Result<Exhibit> {
     let theory = difference.iter().map(|(t, _)| (*t, start.1 * (rate * (t - start.0)).exp()));
     let x = Axis::linear("time, s", 0.0, DURATION);
     let panel =
-        Panel::new("Near-overturning: two releases 2·10⁻¹² apart", x, Axis::logarithmic("|Δθ|, rad", 1e-13, 10.0))
+        Panel::new("Near balance a difference grows as e^(p t)", x, Axis::logarithmic("|Δθ|, rad", 1e-13, 10.0))
             .with("e^(p t)", theory, Style::dashed(colour::BLUE, 2))
-            .with("their difference", difference, RIGHT);
+            .named((5.0, 3e-10))
+            .with("two releases, 2·10⁻¹² apart", difference, RIGHT)
+            .named((1.0, 1e-4));
     let doubling = 1e3 * 2f64.ln() / rate;
     Ok(Exhibit {
         key: "near-overturning",
+        shows: "Difference of two releases over time: it grows by twelve decades in as many seconds.",
         values: context! { rate => format!("{rate:.3}"), doubling => format!("{doubling:.0}") },
         panel,
     })

@@ -1,4 +1,4 @@
-//! `docs/evidence/accuracy.md`: the curves as pictures, as numbers, and in sentences made from these.
+//! `docs/evidence/accuracy.md` and `speed.md`: the curves as pictures, as numbers, and in sentences made from these.
 
 use super::{Curve, Diagram, Family, PERTURBATION, Point};
 use crate::chart::colour::{BLACK, BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILLION};
@@ -7,10 +7,17 @@ use crate::response::Errors;
 use anyhow::{Context, Result};
 use minijinja::{Value, context};
 use plotters::style::RGBColor;
+use rocking::Detail;
 use std::path::Path;
 
 /// Errors in θ at which costs are compared.
 const ERRORS: [f64; 4] = [1e-2, 1e-4, 1e-6, 1e-8];
+
+/// Error in θ at which engine and peers are compared.
+const SIX_DIGITS: f64 = 1e-6;
+
+/// Methods that are not this project's.
+const PEERS: [Family; 3] = [Family::Located, Family::AtStepEnds, Family::Library];
 
 /// Errors beyond this have no meaning and are drawn here; failed runs are drawn above, below the end of the axis.
 const MEANINGLESS: f64 = 10.0;
@@ -18,13 +25,10 @@ const FAILED: f64 = 20.0;
 const TOP: f64 = 40.0;
 
 const PANELS: [(&str, &[Family]); 4] = [
-    (
-        "textbook methods, fixed step; dashed: transitions at step ends",
-        &[Family::Ours, Family::Located, Family::AtStepEnds],
-    ),
-    ("solvers of other libraries", &[Family::Ours, Family::Library]),
-    ("this project's levels of detail", &[Family::Ours, Family::Level]),
-    ("the record, and its samples held over communication steps", &[Family::Ours, Family::Host]),
+    ("textbook methods, transitions at the ends of steps", &[Family::AtStepEnds]),
+    ("textbook methods, transitions located", &[Family::Located]),
+    ("solvers of other libraries", &[Family::Library]),
+    ("this engine's other levels, and its input held", &[Family::Level, Family::Host]),
 ];
 
 /// How the curve `k` of a family is drawn.
@@ -32,8 +36,9 @@ fn style(family: Family, k: usize) -> Style {
     const COLOURS: [RGBColor; 6] = [ORANGE, SKY, GREEN, BLUE, VERMILLION, PURPLE];
     const MARKERS: [Marker; 4] = [Marker::Circle, Marker::Square, Marker::Triangle, Marker::Diamond];
     match family {
-        Family::Ours => Style::marked(BLACK, 3, Marker::Circle),
-        _ => Style { dashed: family == Family::AtStepEnds, ..Style::marked(COLOURS[k % 6], 2, MARKERS[k % 4]) },
+        Family::Ours => Style::marked(BLACK, 0, Marker::Circle),
+        Family::Host => Style::marked(GREY, 2, Marker::Circle),
+        _ => Style::marked(COLOURS[k % 6], 2, MARKERS[k % 4]),
     }
 }
 
@@ -44,6 +49,25 @@ impl Point {
 }
 
 impl Curve {
+    /// Its name in a panel, whose title says the rest.
+    fn label(&self) -> &str {
+        match self.family {
+            Family::Ours => "this engine",
+            _ => self.name.trim_start_matches("this project, ").trim_end_matches(", transitions at step ends"),
+        }
+    }
+
+    /// Cost in µs and error of its runs; neighbours that are the same run are one, at the least cost.
+    fn distinct(&self) -> Vec<(f64, f64)> {
+        let mut points: Vec<_> = self.points.iter().filter_map(|p| Some((1e6 * p.cost, p.theta()?))).collect();
+        points.dedup_by(|next, kept| {
+            let is_same = next.1 == kept.1;
+            kept.0 = if is_same { kept.0.min(next.0) } else { kept.0 };
+            is_same
+        });
+        points
+    }
+
     /// Its cheapest point with an error in θ of at most `error`.
     fn cheapest(&self, error: f64) -> Option<&Point> {
         let good = self.points.iter().filter(|point| point.theta().is_some_and(|theta| theta <= error));
@@ -81,39 +105,58 @@ impl Diagram {
         self.curves.iter().filter(move |curve| curve.family == family)
     }
 
-    /// Error over cost for some families of curves.
+    /// The cheapest peer with an error in θ of at most `error`, its cost in s, and how many times that of `auto` it is.
+    fn nearest(&self, error: f64) -> Result<(&str, f64, f64)> {
+        let of_peers = self.curves.iter().filter(|curve| PEERS.contains(&curve.family));
+        let good = of_peers.filter_map(|curve| Some((curve.name.as_str(), curve.cheapest(error)?.cost)));
+        let (name, cost) = good.min_by(|a, b| a.1.total_cmp(&b.1)).context("a peer is exact enough")?;
+        Ok((name, cost, cost / self.ours(Detail::Auto, error).context("the engine is exact enough")?))
+    }
+
+    /// Time per sample, s, of the engine at `detail`, with an error in θ of at most `error`; None if it has no such run.
+    fn ours(&self, detail: Detail, error: f64) -> Option<f64> {
+        let name = format!("this project, {}", detail.name());
+        Some(self.curves.iter().find(|curve| curve.name == name)?.cheapest(error)?.cost)
+    }
+
+    /// Error over cost for some families of curves, and of the engine.
     fn panel(&self, title: &str, families: &[Family]) -> Panel {
         let points = || self.curves.iter().flat_map(|curve| &curve.points);
         let decade = |value: f64| 10f64.powf(value.log10().floor());
         let conditioning = self.conditioning.theta;
         let errors = points().filter_map(Point::theta).filter(|error| *error > 0.0);
-        let bottom = decade(errors.fold(conditioning, f64::min).max(conditioning / 100.0));
-        let least = decade(points().map(|point| point.cost).fold(f64::INFINITY, f64::min));
-        let most = 10.0 * decade(points().map(|point| point.cost).fold(0.0, f64::max));
-        let x = Axis::logarithmic("time per sample / floor", least, most);
-        let y = Axis::logarithmic("max|Δθ| / max|θ|", bottom, TOP);
+        let bottom = 0.1 * decade(errors.fold(conditioning, f64::min).max(conditioning / 100.0)); // a decade for names
+        let least = decade(1e6 * points().map(|point| point.cost).fold(f64::INFINITY, f64::min));
+        let most = 10.0 * decade(1e6 * points().map(|point| point.cost).fold(0.0, f64::max));
+        let x = Axis::logarithmic("computing time per sample of the record, µs", least, most);
+        let y = Axis::logarithmic("largest error of θ over its peak", bottom, TOP);
         let mut panel = Panel::new(title, x, y)
             .area((least, bottom), (most, conditioning))
             .area((least, MEANINGLESS), (most, TOP))
-            .note((least, FAILED), "fails", BLACK)
-            .note((least, (conditioning * bottom).sqrt()), "below the conditioning floor", GREY);
-        for family in families {
-            for (k, curve) in self.family(*family).enumerate() {
-                let style = style(*family, k);
-                let good = curve.points.iter().filter_map(|point| Some((point.cost, point.theta()?)));
-                panel = panel.with(&curve.name, good.map(|(x, error)| (x, error.clamp(bottom, MEANINGLESS))), style);
+            .note((least, FAILED), "fails", BLACK);
+        for family in [&[Family::Ours], families].concat() {
+            for (k, curve) in self.family(family).enumerate() {
+                let style = style(family, k);
+                let good = curve.distinct().into_iter().map(|(x, error)| (x, error.clamp(bottom, MEANINGLESS)));
+                panel = panel.with(curve.label(), good, style);
                 let failed =
-                    curve.points.iter().filter(|point| point.errors.is_err()).map(|point| (point.cost, FAILED));
+                    curve.points.iter().filter(|point| point.errors.is_err()).map(|point| (1e6 * point.cost, FAILED));
                 panel = panel.with("", failed, Style::marked(style.colour, 0, Marker::Cross));
             }
         }
         panel
     }
 
+    /// What the picture finds.
+    fn finding(&self) -> Result<String> {
+        let (name, _, ratio) = self.nearest(SIX_DIGITS)?;
+        Ok(format!("{}: to six digits the nearest method, {name}, takes {ratio:.1} times as long", self.title))
+    }
+
     /// A row for each curve: what the errors cost.
     fn rows(&self) -> Vec<Value> {
         let cost = |curve: &Curve, error: f64| match curve.cheapest(error) {
-            Some(point) => format!("{} ({})", significant(point.cost), curve.setting(point)),
+            Some(point) => format!("{} ({})", significant(1e6 * point.cost), curve.setting(point)),
             None => "–".into(),
         };
         let row = |curve: &Curve| {
@@ -133,11 +176,10 @@ impl Diagram {
                 (error < 1.0 && point.cost < ours).then_some((error, point.cost, ours))
             });
             let (error, cost, ours) = cheaper.min_by(|a, b| a.0.total_cmp(&b.0))?;
-            let (shown, cost, ours) = (scientific(error), significant(cost), significant(ours));
+            let (shown, cost, ours) = (scientific(error), significant(1e6 * cost), significant(1e6 * ours));
             Some((error, context! { method => curve.name.clone(), shown, cost, ours }))
         };
-        let others = [Family::Located, Family::AtStepEnds, Family::Library];
-        Ok(self.curves.iter().filter(|curve| others.contains(&curve.family)).filter_map(of_method).collect())
+        Ok(self.curves.iter().filter(|curve| PEERS.contains(&curve.family)).filter_map(of_method).collect())
     }
 
     /// The scene's part of the page, and the smallest error at which another method is cheaper than `auto`.
@@ -150,9 +192,9 @@ impl Diagram {
         let scene = context! {
             key => self.key,
             title => self.title,
+            finding => self.finding()?,
             dt => significant(1e3 * self.dt),
             transitions => self.transitions,
-            floor => significant(1e9 * self.floor),
             conditioning => [theta, u, a_t].map(scientific).to_vec(),
             rows => self.rows(),
             held => [held.first(), held.last()].map(|error| error.cloned()).to_vec(),
@@ -168,7 +210,6 @@ impl Diagram {
             "method",
             "setting",
             "value",
-            "cost_over_floor",
             "microseconds_per_sample",
             "evaluations_per_sample",
             "transitions",
@@ -185,8 +226,7 @@ impl Diagram {
                 curve.name.clone(),
                 curve.setting.into(),
                 format!("{:.6e}", point.setting),
-                format!("{:.2}", point.cost),
-                format!("{:.4}", 1e6 * point.cost * self.floor),
+                format!("{:.4}", 1e6 * point.cost),
                 format!("{:.3}", point.evaluations),
                 point.transitions.to_string(),
                 error(|e| e.theta),
@@ -199,22 +239,53 @@ impl Diagram {
     }
 }
 
+/// The least and the largest of `values`, as they are shown.
+fn range(values: impl Iterator<Item = f64>, show: impl Fn(f64) -> String) -> String {
+    let values: Vec<_> = values.collect();
+    let [least, most] = [f64::min, f64::max].map(|choose: fn(f64, f64) -> f64| values.iter().copied().reduce(choose));
+    [least, most].into_iter().flatten().map(show).collect::<Vec<_>>().join(" to ")
+}
+
+/// What six digits cost the engine and the nearest method, scene by scene.
+fn speed(diagrams: &[Diagram]) -> Result<Value> {
+    let microseconds = |time: f64| significant(1e6 * time);
+    let rows = diagrams.iter().map(|diagram| {
+        let (name, cost, ratio) = diagram.nearest(SIX_DIGITS)?;
+        Ok((diagram, cost / ratio, (name, cost, ratio)))
+    });
+    let rows = rows.collect::<Result<Vec<_>>>()?;
+    let shown = rows.iter().map(|(diagram, auto, (name, cost, ratio))| {
+        let [auto, cost] = [auto, cost].map(|time| microseconds(*time));
+        let linear = diagram.ours(Detail::Linear, f64::INFINITY).map_or("overturns".into(), microseconds);
+        context! { title => diagram.title, name => *name, ratio => format!("{ratio:.1}"), auto, linear, cost }
+    });
+    Ok(context! {
+        rows => shown.collect::<Vec<_>>(),
+        ratios => range(rows.iter().map(|(.., (_, _, ratio))| *ratio), |ratio| format!("{ratio:.1}")),
+        times => range(rows.iter().map(|(_, auto, ..)| *auto), microseconds),
+    })
+}
+
 /// Writes the page with its pictures and numbers.
 pub fn write(diagrams: &[Diagram], docs: &Path) -> Result<()> {
     for diagram in diagrams {
         let panels = PANELS.map(|(title, families)| diagram.panel(title, families)).into();
-        let figure = Figure { title: diagram.title.into(), columns: 2, panels };
+        let description = "Error of θ against computing time per sample, one curve a method, one mark a run.".into();
+        let figure = Figure { title: diagram.finding()?, description, columns: 2, panels };
         figure.save(&docs.join(format!("accuracy-{}.svg", diagram.key)))?;
         diagram.save_numbers(&docs.join(format!("accuracy-{}.csv", diagram.key)))?;
     }
     let (scenes, least): (Vec<_>, Vec<_>) =
         diagrams.iter().map(Diagram::scene).collect::<Result<Vec<_>>>()?.into_iter().unzip();
     let least = least.into_iter().fold(f64::INFINITY, f64::min);
+    let speed = speed(diagrams)?;
     let values = context! {
+        speed => speed.clone(),
         perturbation => decade(PERTURBATION),
         errors => ERRORS.map(decade).to_vec(),
         undercut => least.is_finite().then(|| scientific(least)),
         scenes,
     };
-    crate::page::write(docs, "accuracy", include_str!("../../pages/accuracy.md"), values)
+    crate::page::write(docs, "speed", include_str!("../../pages/speed.md"), &speed, "precision")?;
+    crate::page::write(docs, "accuracy", include_str!("../../pages/accuracy.md"), &values, "precision")
 }

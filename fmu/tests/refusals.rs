@@ -1,0 +1,190 @@
+//! Refused calls: each says why and changes nothing.
+#![allow(unsafe_code)] // the C interface
+
+mod host;
+
+use FlexibleRocking::fmi2::*;
+use FlexibleRocking::{BUILD, guid};
+use host::*;
+use libc::{c_int, c_void};
+use rocking::Parameters;
+use std::cell::RefCell;
+use std::ffi::CString;
+use std::ptr::{null, null_mut, without_provenance_mut};
+
+/// What the log says, and the call.
+type Refused = (&'static str, fn(&Host) -> c_int);
+
+const INSTANTIATED: &[Refused] = &[
+    ("tolerance = 1 is out of range: it must be between 0 and 1, such as 1e-9", |h| h.setup(Some(1.0), 0.0, None)),
+    ("tolerance = NaN is out of range", |h| h.setup(Some(f64::NAN), 0.0, None)),
+    ("startTime = NaN is out of range: it must be finite", |h| h.setup(None, f64::NAN, None)),
+    ("stopTime = 1.9 is out of range: it must be finite and not before startTime = 2 s", |h| {
+        h.setup(None, 2.0, Some(1.9))
+    }),
+    ("loggingOn = -1 is not one of 0 (fmi2False), 1 (fmi2True)", |h| unsafe {
+        fmi2SetDebugLogging(h.component, -1, 0, null())
+    }),
+    ("category must be a valid pointer", |h| unsafe { fmi2SetDebugLogging(h.component, 1, 1, &null()) }),
+];
+
+/// None of the values of a call is taken over; the first that is wrong is told.
+const INITIALIZING: &[Refused] = &[
+    ("r = 0 is out of range: it must lie between 0.001 and 1 (", |h| h.set(&[("H", 2.0), ("a_g", 1.0), ("r", 0.0)])),
+    ("theta cannot be set: it is an output, computed by the FMU", |h| h.set(&[("u_0", 1e-3), ("theta", 0.1)])),
+    ("chi cannot be set: it is a calculated parameter, computed by the FMU", |h| h.set(&[("chi", f64::NAN)])),
+    ("phase cannot be set: it is a local variable, computed by the FMU", |h| h.set_integer("phase", 1)),
+    ("peaks = 2 is not one of 0 (fmi2False), 1 (fmi2True)", |h| h.set_boolean("peaks", 2)),
+    ("record is a string: call fmi2GetString or fmi2SetString instead", |h| h.set(&[("record", 1.0)])),
+    ("phase is an enumeration: call fmi2GetInteger or fmi2SetInteger instead", |h| get(h, &["phase"])),
+    ("overturned is a Boolean: call fmi2GetBoolean or fmi2SetBoolean instead", |h| get(h, &["theta", "overturned"])),
+    ("m is a real number: call fmi2GetReal or fmi2SetReal instead", |h| h.set_integer("m", 1)),
+    ("transitions is an integer: call fmi2GetInteger instead", |h| h.try_boolean("transitions").unwrap_err()),
+    ("value reference 4000000000 does not exist; they run from 0 to ", |h| {
+        h.set_by_reference(&[4_000_000_000, reference("phase")], &[1.0; 2])
+    }),
+    ("value must be a valid pointer; it is null or misaligned", |h| unsafe {
+        fmi2SetString(h.component, &reference("record"), 1, &null())
+    }),
+    ("value must be a valid pointer; it is null or misaligned", |h| unsafe {
+        fmi2GetReal(h.component, &1, 1, without_provenance_mut(9))
+    }),
+    ("18446744073709551615 values are too many for one call: at most 16777216", |h| unsafe {
+        fmi2GetReal(h.component, &1, usize::MAX, &mut 0.0)
+    }),
+];
+
+/// Under a = 1 m/s² that grows by 1e5 m/s³, from 10 s to 12 s, at 10.5 s.
+const STEPPING: &[Refused] = &[
+    ("m is fixed once the simulation has started: set it before fmi2ExitInitializationMode, or call fmi2Reset", |h| {
+        h.set(&[("a_g", 1.0), ("m", 0.5)])
+    }),
+    ("record is fixed once the simulation has started", |h| h.set_record("b.csv")),
+    ("peaks is fixed once the simulation has started", |h| h.set_boolean("peaks", 0)),
+    ("detail is fixed once the simulation has started", |h| h.set_integer("detail", 2)),
+    ("order = 2 for a_g is out of range: only derivatives of order 1 exist", |h| h.set_slope("a_g", 2, 1.0)),
+    ("order = 0 for a_g is out of range: only derivatives of order 1 exist", |h| h.set_slope("a_g", 0, 1.0)),
+    ("the derivative of a_g, NaN, is out of range: it must be finite", |h| h.set_slope("a_g", 1, f64::NAN)),
+    ("theta has no derivative that can be set: only the inputs have", |h| h.set_slope("theta", 1, 1.0)),
+    ("order = 2 for theta is out of range: only derivatives of order 1 exist", |h| h.rate("theta", 2).unwrap_err()),
+    ("phase has no derivative: only continuous real outputs have", |h| h.rate("phase", 1).unwrap_err()),
+    ("a_g has no derivative: only continuous real outputs have", |h| h.rate("a_g", 1).unwrap_err()),
+    ("chi has no derivative: only continuous real outputs have", |h| h.rate("chi", 1).unwrap_err()),
+    ("I_v has no derivative: only continuous real outputs have", |h| h.rate("I_v", 1).unwrap_err()),
+    ("at the end of the step, a_g = 20001 m/s2 is out of range: it must lie between -10000 and 10000 m/s2 (", |h| {
+        h.step(10.5, 0.2)
+    }),
+    ("currentCommunicationPoint = 10 s is not where the FMU is, t = 10.5 s: step from there, or go back with ", |h| {
+        h.step(10.0, 0.5)
+    }),
+    ("currentCommunicationPoint = 10.5001 s is not where the FMU is", |h| h.step(10.5001, 0.5)),
+    ("currentCommunicationPoint = NaN s is not where the FMU is", |h| h.step(f64::NAN, 0.5)),
+    ("communicationStepSize = 0 s is out of range: it must be positive, finite, and large enough to move t = ", |h| {
+        h.step(10.5, 0.0)
+    }),
+    ("communicationStepSize = -0.1 s is out of range", |h| h.step(10.5, -0.1)),
+    ("communicationStepSize = NaN s is out of range", |h| h.step(10.5, f64::NAN)),
+    ("communicationStepSize = inf s is out of range", |h| h.step(10.5, f64::INFINITY)),
+    ("communicationStepSize = 0.0000000000000001 s is out of range", |h| h.step(10.5, 1e-16)),
+    ("the step would end at t = 12.1 s, past stopTime = 12 s given to fmi2SetupExperiment: shorten it", |h| {
+        h.step(10.5, 1.6)
+    }),
+    ("fmi2StatusKind = 4 is not one of 0 (fmi2DoStepStatus), 1 (fmi2PendingStatus), 2 (fmi2Last", |h| unsafe {
+        fmi2GetStatus(h.component, 4, null_mut())
+    }),
+];
+
+fn get(host: &Host, names: &[&str]) -> c_int {
+    host.try_get(names).unwrap_err()
+}
+
+#[test]
+fn a_refused_call_says_why_and_changes_nothing() {
+    let stepping = Host::new();
+    assert_eq!((stepping.setup(None, 10.0, Some(12.0)), stepping.enter(), stepping.exit()), (OK, OK, OK));
+    assert_eq!(stepping.step(10.0, 0.5), OK);
+    assert_eq!((stepping.set(&[("a_g", 1.0)]), stepping.set_slope("a_g", 1, 1e5)), (OK, OK));
+    for (host, calls) in [(Host::new(), INSTANTIATED), (Host::initializing(&[]), INITIALIZING), (stepping, STEPPING)] {
+        calls.iter().for_each(|(message, call)| host.assert_refused(|| call(&host), ERROR, message));
+    }
+}
+
+#[test]
+fn a_status_that_is_never_there_is_discarded() {
+    let host = Host::started(&[]);
+    assert_eq!(unsafe { fmi2GetStringStatus(host.component, 1, &mut null()) }, DISCARD);
+    let text = "fmi2GetStringStatus: fmi2PendingStatus has no answer here: fmi2DoStep never returns fmi2Pending, \
+                fmi2GetRealStatus knows fmi2LastSuccessfulTime, fmi2GetBooleanStatus knows fmi2Terminated";
+    assert_eq!(host.log.take()[0].text, text);
+}
+
+#[test]
+fn contradictions_are_refused_when_initialization_ends_and_can_be_put_right() {
+    let host = Host::initializing(&[("theta_dot_0", 0.5)]);
+    let message = "theta_dot_0 = 0.5 rad/s contradicts theta_0 = 0 (full contact, where theta and theta_dot are both 0): \
+                   set theta_dot_0 to 0, or theta_0 to an angle with the sign of the pivot that the structure rocks about";
+    host.assert_refused(|| host.exit(), ERROR, message);
+    host.assert_refused(|| get(&host, &["m", "theta"]), ERROR, message);
+    assert_eq!(host.get("theta_dot_0"), 0.5);
+    assert_eq!(host.set(&[("theta_0", 0.02), ("H", 1000.0), ("B", 0.5)]), OK);
+    let message = "H/B = 2000 is out of range: H must not exceed 1000 B; lower H or raise B";
+    host.assert_refused(|| host.exit(), ERROR, message);
+    assert_eq!((host.set(&[("B", 500.0)]), host.exit()), (OK, OK));
+    assert_eq!(host.try_get(&["theta", "theta_dot", "H"]).unwrap(), [0.02, 0.5, 1000.0]);
+}
+
+/// What a host asks for when it makes an instance, and the one message that it gets instead.
+#[test]
+fn an_instance_that_cannot_be_made_is_null_and_the_log_says_why() {
+    let with = Instantiate::default;
+    let (other, location) = (guid(&Parameters::MCMANUS.into()), |text: &str| Some(text.to_owned()));
+    let wrong = |guid: &str| format!("fmuGUID = \"{guid}\" is not {}: modelDescription.xml, the library ", with().guid);
+    for (arguments, message) in [
+        (Instantiate { guid: BUILD.to_owned(), ..with() }, wrong(BUILD).as_str()),
+        (Instantiate { guid: other.clone(), ..with() }, &wrong(&other)),
+        (Instantiate { name: "", ..with() }, "instanceName must not be empty"),
+        (
+            Instantiate { fmu_type: 2, ..with() },
+            "fmuType = 2 is not one of 0 (fmi2ModelExchange), 1 (fmi2CoSimulation)",
+        ),
+        (Instantiate { logging_on: 2, ..with() }, "loggingOn = 2 is not one of 0 (fmi2False), 1 (fmi2True)"),
+        (
+            Instantiate { location: location("file:///nowhere/100%25"), ..with() },
+            "/nowhere/100%%/parameters.toml: No such file or directory (os error 2); unpack the whole archive and pass ",
+        ),
+        (
+            Instantiate { location: location("/nowhere"), ..with() },
+            "fmuResourceLocation = \"/nowhere\" is not a file URI of this machine, such as file:///tmp/fmu/resources",
+        ),
+    ] {
+        let Err(log) = Host::instantiate(arguments) else { panic!("instantiated") };
+        assert_eq!((log.len(), log[0].status, log[0].category.as_str()), (1, ERROR, "logStatusError"), "{log:?}");
+        assert!(log[0].text.starts_with(&format!("fmi2Instantiate: {message}")), "{}", log[0].text);
+    }
+}
+
+#[test]
+fn an_instance_of_bad_pointers_is_null() {
+    let guid = CString::new(guid(&Parameters::EVISON.into())).unwrap();
+    let log = RefCell::new(Vec::<Message>::new());
+    let functions = callbacks((&raw const log).cast_mut().cast());
+    for (name, functions) in [(c"a".as_ptr(), null()), (null(), &raw const functions), (c"\xff".as_ptr(), &functions)] {
+        let (guid, location) = (guid.as_ptr(), c"".as_ptr());
+        assert!(unsafe { fmi2Instantiate(name, CO_SIMULATION, guid, location, functions, 0, 0) }.is_null());
+    }
+    let texts: Vec<_> = log.take().into_iter().map(|message| message.text).collect();
+    let expected = ["must be a valid pointer; it is null or misaligned", "is not UTF-8 text of at most 65536 bytes"];
+    assert_eq!(texts, expected.map(|text| format!("fmi2Instantiate: instanceName {text}")));
+}
+
+#[test]
+fn what_is_no_component_is_an_error_and_freeing_it_does_nothing() {
+    let memory = [0_u64; 64];
+    let other = (&raw const memory).cast_mut().cast::<c_void>();
+    for c in [null_mut(), other, other.wrapping_byte_add(4)] {
+        unsafe {
+            assert_eq!((fmi2DoStep(c, 0.0, 1.0, 0), fmi2GetReal(c, &1, 1, &mut 0.0)), (ERROR, ERROR));
+            fmi2FreeInstance(c);
+        }
+    }
+}
