@@ -178,10 +178,11 @@ def restraints(exporter: Path, folder: Path, population, picture: Path) -> dict:
         axes.plot(np.maximum(finite, 1e-4), 1 - np.arange(len(finite)) / len(sizes), label=name)
     axes.set_xscale("log")
     axes.set_yscale("log")
-    axes.set_xlim(1e-3, 3)
+    axes.set_xlim(1e-2, 3)
+    axes.set_ylim(3e-3, 1.1)
     axes.set_xlabel("θ_max/α_cg")
     axes.set_ylabel("part of the runs that rotate farther or overturn")
-    axes.set_title("A tendon keeps the base down and the structure up; dissipators shorten the tail")
+    axes.set_title("A tendon keeps structures up; dissipators shorten the tail")
     axes.legend(fontsize=8)
     figure.savefig(picture, dpi=110)
     return dict(restrained_runs=len(bare), restraints=table(
