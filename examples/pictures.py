@@ -154,7 +154,7 @@ def headline(path: Path) -> None:
     curve("semi-implicit Euler", "#b35900", "Euler, the same", -1, (8, -4))
     curve("explicit Euler", "#b35900", "", 0)
     curve("ode_solvers Dop853", FIXED, "", 0)
-    curve("differential-equations DOP853", FIXED, "DOP853, two libraries", -1, (8, -1))
+    curve("differential-equations DOP853", FIXED, "DOP853, two libraries", -1, (6, -11))
     curve("ode_solvers Dopri5", "#8e44ad", "Dopri5", -1)
     curve("diffsol BDF, its root finding", ROCKING, "BDF of diffsol", -1)
     curve("diffsol ESDIRK34, its root finding", ROCKING, "", 0)

@@ -68,7 +68,7 @@ fn grazes_have_their_exponents() {
 #[test]
 fn errors_near_overturning_grow_at_the_rate_of_the_unstable_equilibrium() {
     let exhibit = overturning::show().unwrap();
-    let difference = series(&exhibit, "their difference");
+    let difference = series(&exhibit, "two releases, 2·10⁻¹² apart");
     let at = |time: f64| difference.iter().find(|(t, _)| *t >= time).unwrap();
     let ((t0, d0), (t1, d1)) = (at(3.0), at(9.0));
     assert_relative_eq!((d1 / d0).ln() / (t1 - t0), overturning::growth(), max_relative = 0.01);
