@@ -55,8 +55,7 @@ mod tests {
             by_weight + P_0 * B * (theta / 2.0).cos() + k_t * B * B * theta.sin()
         };
         let yielding = |theta: f64| 2.0 * B * F_y * (theta / 2.0).cos(); // the levers B − ξ and B + ξ
-        for i in 1..=10 {
-            let Point { theta, moment } = points[i];
+        for Point { theta, moment } in points[1..=10].iter().copied() {
             let expected = elastic(theta) + yielding(theta);
             assert!((moment - expected).abs() <= 1e-12 * expected, "{theta}: {moment}, {expected}");
         }
