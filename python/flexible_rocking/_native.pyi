@@ -27,6 +27,12 @@ class _Numbers(TypedDict, total=False):
     c_ratio: float
     r: float
     g: float
+    P_0: float
+    k_t: float
+    xi_d: float
+    c_d: float
+    k_d: float
+    F_y: float
     period_fc: float
     weight: float
     weight0: float
