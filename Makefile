@@ -104,7 +104,7 @@ tools:
 	@cargo fmt --version >/dev/null 2>&1 || rustup component add rustfmt
 	@cargo clippy --version >/dev/null 2>&1 || rustup component add clippy
 
-heavy: study python hosts browser foreign packaged evidence docs
+heavy: study python hosts browser foreign packaged docs
 
 study:
 	cargo test --release --manifest-path study/Cargo.toml

@@ -292,7 +292,7 @@ def test_what_is_refused_is_said_as_everywhere_and_the_page_stays_alive(opened, 
 def test_natural_quantities_take_the_place_of_parameters(opened):
     page = opened()
     page.locator("#natural").check()
-    assert not page.locator(".row[data-name=B]").is_visible()
+    page.locator(".row[data-name=B]").wait_for(state="hidden")
     page.locator("#field-width").fill("0.8")
     settled(page)
     page.locator("#natural").uncheck()
