@@ -480,12 +480,12 @@
     const commands = [...(shape ? [pulse] : []), ["rocking-fmu simulate", ...preset, ...record, ...others]];
     at("command").textContent = commands.map((words) => words.join(" ")).join("\n");
     at("link").textContent = location.href;
-
     const named = (pairs) => pairs.map(([name, number]) => `${name}=${number}`).join(", ");
     const given = (names) => named(names.filter((name) => name in fields).map((name) => [name, fields[name]]));
-    const read = [`"${file}"`, given(["dt", "scale", "time_scale"])].filter(Boolean).join(", ");
+    const text = (name) => (name in fields ? `${name}="${fields[name]}"` : "");
+    const read = [`"${file}"`, text("unit"), text("column"), given(["dt", "scale", "time_scale"])].filter(Boolean).join(", ");
     const python = shape ? `fr.pulse("${ground()}", ${named(ofPulse.map((name) => [name, value(name)]))})` : `fr.Record.read(${read})`;
-    const initial = isFree ? `duration=${value("duration")}, ${given(["theta_0", "u_0"])}` : "record";
+    const initial = [isFree ? `duration=${value("duration")}` : "record", given(["theta_0", "u_0"])].filter(Boolean).join(", ");
     at("python").textContent = [
       "import flexible_rocking as fr", "",
       `structure = fr.Structure(${named(tables.parameters.map(({ name }) => [name, about.parameters[name]]))})`,
