@@ -5,6 +5,7 @@
 mod shaking;
 
 use approx::assert_abs_diff_eq;
+use rocking::levels::rules::MAX_RIGID_TRANSITIONS_PER_PERIOD;
 use rocking::{Detail, Engine, Parameters, Phase, Progress, Ramp, Side, State, Structure, Transition, TransitionKind};
 use shaking::shaking;
 
@@ -58,6 +59,25 @@ fn rigid_comes_to_rest_with_less_energy_than_the_tolerance() {
         let enough = ((left * structure.p_l * structure.tan_alpha_cg / first.abs()).ln() / 0.9f64.ln()).ceil();
         assert_eq!(transitions.len() as f64, enough);
     }
+}
+
+/// More impacts than a period may see end in contact, which is held to the end of the period whatever pushes.
+#[test]
+fn too_many_impacts_end_in_contact() {
+    let structure = Structure::new(Parameters { r: 0.9999, ..Parameters::MCMANUS }).unwrap();
+    let period = 1.0 / structure.p_l;
+    let released = State { theta: 1e-11, ..State::default() };
+    let mut engine = Engine::with_detail(structure, released, 0.0, 1e-9, Detail::Rigid).unwrap();
+    let mut transitions = Vec::new();
+    let mut advance = |interval, a_g| {
+        engine.advance(interval, a_g, &mut |transition: &Transition| transitions.push(*transition)).unwrap();
+    };
+    advance(0.9 * period, STILL);
+    advance(0.2 * period, Ramp { value: 9.0, slope: 0.0 });
+    let [settling, uplift] = transitions[transitions.len() - 2..] else { unreachable!() };
+    assert_eq!(transitions.len(), MAX_RIGID_TRANSITIONS_PER_PERIOD as usize + 2);
+    assert_eq!((settling.kind, uplift.kind), (TransitionKind::Settling, TransitionKind::Uplift(Side::Left)));
+    assert_abs_diff_eq!(uplift.time, transitions[0].time + period, epsilon = 1e-12);
 }
 
 /// Uplift of the rigid structure is at |a_g| = g tan α_cg.
