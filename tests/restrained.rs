@@ -6,7 +6,7 @@ mod shaking;
 use approx::assert_relative_eq;
 use rocking::engine::piece::Sample;
 use rocking::mechanics::energy::energy;
-use rocking::mechanics::restraint::{centring_moments, stored_energy, uplift_displacement};
+use rocking::mechanics::restraint::{Restraints, centring_moments, stored_energy, uplift_displacement};
 use rocking::run::record::Record;
 use rocking::run::validity::Limits;
 use rocking::run::{End, Run};
@@ -126,6 +126,23 @@ fn energy_goes_where_the_dissipators_take_it() {
             let is_taken = parameters.c_d > 0.0 || (0.0..1e9).contains(&parameters.F_y) && parameters.k_d > 0.0;
             assert_eq!(last.0 > 1e-3 * scale.abs(), is_taken, "{parameters:?}: {} of {scale} J", last.0);
         }
+    }
+}
+
+#[test]
+fn the_rates_of_the_forces_are_their_slopes() {
+    let initial = State { theta: 0.3, theta_dot: -2.0, ..State::default() };
+    let mut engine = Engine::new(structure(RESTRAINED), initial, 0.0, 1e-12).unwrap();
+    let h = 1e-5;
+    engine.advance(1e-3, Load::default(), &mut ()).unwrap();
+    let before = engine.restraints();
+    engine.advance(h, Load::default(), &mut ()).unwrap();
+    let rates = engine.restraint_rates(Load::default());
+    engine.advance(h, Load::default(), &mut ()).unwrap();
+    let after = engine.restraints();
+    let [before, rates, after] = [before, rates, after].map(|Restraints { P_t, F_d1, F_d2 }| [P_t, F_d1, F_d2]);
+    for i in 0..3 {
+        assert_relative_eq!(rates[i], (after[i] - before[i]) / (2.0 * h), max_relative = 1e-6);
     }
 }
 
@@ -269,17 +286,21 @@ fn shaken_restrained_structures_keep_their_tolerance() {
 
 /// Another integrator's steps: what the host is told of yielding is what the engine finds.
 #[test]
-fn indicators_stay_positive_between_transitions() {
+fn indicators_stay_positive_between_transitions_and_vanish_there() {
     let ground = with_vertical(&shaking(9, 0.01, 300, 8.0), |t| 3.0 * (20.0 * t).sin());
     let run = Run { end: End::At(ground.end()), ..Run::new(structure(RESTRAINED), &ground) };
-    let mut yielding = 0;
+    let (mut yielding, mut least) = (0, 1.0_f64);
     let times = (0..60_000).map(|i| f64::from(i) * 5e-5);
     let show = |at: &Sample| {
-        yielding += u32::from(at.motion.dissipators.yields != [0; 2]);
-        assert!(at.event_indicators().iter().all(|indicator| *indicator > -1e-9), "{:?}", at.motion);
+        let indicators = at.event_indicators();
+        assert!(indicators.iter().all(|indicator| *indicator > -1e-9), "{:?}", at.motion);
+        match at.motion.dissipators.yields {
+            [0, 0] => least = least.min(indicators[1]),
+            _ => yielding += 1,
+        }
     };
     run.sample(times, show, &mut ()).unwrap();
-    assert!(yielding > 100, "{yielding}");
+    assert!(yielding > 100 && least < 0.01, "{yielding} {least}");
 }
 
 /// Pushed over and let go: where the residual forces outweigh what turns it back it comes to rest turned, otherwise in contact.
