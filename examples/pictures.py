@@ -158,7 +158,7 @@ def headline(path: Path) -> None:
     curve("this project, auto", "black", "this project", 0, (-14, -12), markersize=7, linewidth=0)
     good = rows[rows["error_theta"] <= DIGITS].groupby(rows["method"].str.startswith("this project"))
     peers, ours = good["microseconds_per_sample"].min()
-    axis.axhline(DIGITS, color="0.6", linewidth=0.6, linestyle=":")
+    axis.axhline(DIGITS, color="0.5", linewidth=0.6, linestyle=":")
     axis.set(title=f"To six digits the nearest peer takes {peers / ours:.1f} times as long", xlim=(0.05, 2e4),
              xlabel="computing time per sample of the record (µs)", ylim=(1e-12, 20),
              ylabel="largest error of θ over its peak")
