@@ -150,6 +150,10 @@ fn a_hop_within_one_step_is_found() {
     let checked = known.check(&mut engine, None, Elapsed::default(), Load::default(), &mut watch).unwrap();
     assert_eq!(checked, Checked { motion: *alone.motion(), is_corrected: true, was_hidden: true });
     assert_eq!((seen, engine.motion().state), (alone.motion().transitions, initial));
+
+    engine.set_state(State { theta: -1e-3, ..initial }); // or one that fell through the floor
+    let checked = known.check(&mut engine, None, Elapsed::default(), Load::default(), &mut ()).unwrap();
+    assert_eq!(checked, Checked { motion: *alone.motion(), is_corrected: true, was_hidden: false });
 }
 
 /// A step's end that is beyond a guard which the engine does not reach is put back to where the engine is.

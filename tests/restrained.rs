@@ -182,6 +182,47 @@ fn uplift_is_due_where_the_vertical_acceleration_and_the_prestress_put_it() {
     assert_relative_eq!(time, due, max_relative = 1e-11);
 }
 
+/// Beyond u_cr on its way back, which the ground turns round: the base lifts off where what turns it outweighs what holds it.
+#[test]
+fn uplift_waits_for_the_moment() {
+    let parameters = Parameters { zeta_fc: 0.5, P_0: 200.0, ..Parameters::MCMANUS };
+    let structure = structure(parameters);
+    let Parameters { m, m0, H, B, g, P_0, .. } = parameters;
+    let u_cr = uplift_displacement(&structure, Side::Right, 0.0, &Dissipators::default());
+    let initial = State { u: 1.2 * u_cr, u_dot: -0.1, ..State::default() };
+    let slope = Load { a_v: -2000.0, ..Load::default() };
+    let load = LinearLoad { value: Load { a_g: -60.0, F_t: 0.0, a_v: 2.0 }, slope };
+    let mut engine = Engine::new(structure, initial, 0.0, 1e-12).unwrap();
+    engine.admit_vertical(true).unwrap();
+    let mut seen = None;
+    engine.advance(0.1, load, &mut |at: &Transition| _ = seen.get_or_insert(*at)).unwrap();
+    let Transition { time, kind, before: State { u, u_dot, .. }, .. } = seen.unwrap();
+    assert!(kind == TransitionKind::Uplift(Side::Right) && time > 1e-4, "{kind:?} {time}");
+    let weight = g + load.at(time).a_v;
+    let turning = H * (structure.k * u + structure.c_u * u_dot) + m * weight * u;
+    assert_relative_eq!(turning, ((m + m0) * weight + P_0) * B, max_relative = 1e-10);
+}
+
+/// A load that changes in a straight line is the same in one step and in two.
+#[test]
+fn a_vertical_slope_is_followed_within_a_step() {
+    let load = LinearLoad { slope: Load { a_v: 200.0, ..Load::default() }, ..LinearLoad::default() };
+    for detail in LEVELS {
+        let start = || {
+            let initial = State { theta: 0.03, ..State::default() };
+            let mut engine = Engine::with_detail(structure(RESTRAINED), initial, 0.0, 1e-12, detail).unwrap();
+            engine.admit_vertical(true).unwrap();
+            engine
+        };
+        let (mut at_once, mut cut) = (start(), start());
+        at_once.advance(2e-3, load, &mut ()).unwrap();
+        cut.advance(1e-3, load, &mut ()).unwrap();
+        cut.advance(1e-3, LinearLoad { value: load.at(1e-3), ..load }, &mut ()).unwrap();
+        let off = apart(&[at_once.motion().state], &[cut.motion().state]);
+        assert!(off < 1e-11, "{detail:?}: {off:e}");
+    }
+}
+
 /// The ground falls faster than g: uplift at once where g + a_v passes 0, and validity tells of the instant.
 #[test]
 fn a_free_fall_lifts_the_base_off_and_is_told() {
