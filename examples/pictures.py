@@ -118,7 +118,7 @@ def motion(fmu: str, path: Path) -> None:
         below.clear()
         below.plot(time[: i + 1], degrees[: i + 1], color=ROCKING)
         below.plot(time[i], degrees[i], "o", color=ROCKING)
-        below.axhline(0, color="0.6", linewidth=0.6)
+        below.axhline(0, color="0.5", linewidth=0.6)
         below.set(xlim=(0, SHOWN), ylim=(-10, 10), xlabel="time (s)", ylabel="rotation (°)")
 
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -145,13 +145,16 @@ def headline(path: Path) -> None:
 
     for method in rows[rows["method"].str.endswith(", transitions at step ends")]["method"].unique():
         curve(method, "0.5", "", 0, linestyle="--", marker="")
-    axis.text(400, 0.2, "five textbook methods,\ntransitions at ends of steps", color="0.4")
+    axis.text(400, 0.2, "six textbook methods,\ntransitions at ends of steps", color="0.4")
     curve("RK4", "#009e73", "RK4, transitions located", -1)
-    curve("Newmark average acceleration", "#b35900", "Newmark, central\ndifference, the same", -1, (8, -6))
+    curve("Newmark average acceleration", "#b35900", "Newmark, HHT-α, central\ndifference, the same", -1,
+          (8, -6))
+    curve("HHT-α", "#b35900", "", 0)
     curve("central difference", "#b35900", "", 0)
     curve("semi-implicit Euler", "#b35900", "Euler, the same", -1, (8, -4))
     curve("explicit Euler", "#b35900", "", 0)
-    curve("ode_solvers Dop853", FIXED, "DOP853", -1, (6, -11))
+    curve("ode_solvers Dop853", FIXED, "", 0)
+    curve("differential-equations DOP853", FIXED, "DOP853, two libraries", -1, (6, -11))
     curve("ode_solvers Dopri5", "#8e44ad", "Dopri5", -1)
     curve("diffsol BDF, its root finding", ROCKING, "BDF of diffsol", -1)
     curve("diffsol ESDIRK34, its root finding", ROCKING, "", 0)

@@ -6,7 +6,13 @@ use rocking::levels::nonlinear;
 use rocking::{Load, Phase, Ramp, State, Structure};
 use std::cell::Cell;
 
-/// Two second-order equations for the positions (u, θ), of one phase over one interval: Eq 1 in full contact, Eqs 5 and 6 while rocking.
+/// Two second-order equations for the positions (u, θ).
+pub trait Equations {
+    /// (ü, θ̈) at `tau` s after the start of the interval.
+    fn acceleration(&self, tau: f64, position: Vector2<f64>, velocity: Vector2<f64>) -> Vector2<f64>;
+}
+
+/// The equations of one phase over one interval: Eq 1 in full contact, Eqs 5 and 6 while rocking.
 pub struct PhaseEquations<'a> {
     pub structure: &'a Structure,
     pub phase: Phase,
@@ -14,9 +20,8 @@ pub struct PhaseEquations<'a> {
     pub evaluations: &'a Cell<u64>,
 }
 
-impl PhaseEquations<'_> {
-    /// (ü, θ̈) at `tau` s after the start of the interval.
-    pub fn acceleration(&self, tau: f64, position: Vector2<f64>, velocity: Vector2<f64>) -> Vector2<f64> {
+impl Equations for PhaseEquations<'_> {
+    fn acceleration(&self, tau: f64, position: Vector2<f64>, velocity: Vector2<f64>) -> Vector2<f64> {
         self.evaluations.set(self.evaluations.get() + 1);
         let state = state(position, velocity);
         match self.phase {

@@ -2,8 +2,11 @@
 
 pub mod chatter;
 pub mod double_crossing;
+pub mod energy_gain;
 pub mod fall;
+pub mod grazing;
 pub mod history;
+pub mod overturning;
 pub mod zeno;
 
 use crate::chart::{Figure, Panel, Style, colour};
@@ -32,8 +35,15 @@ pub struct Exhibit {
 
 /// Writes `docs/explain/failures.md` with its pictures and numbers; some failures happen under Pacoima Dam and El Centro.
 pub fn write(pacoima: &Scene, el_centro: &Scene, docs: &Path) -> Result<()> {
-    let exhibits: [&(dyn Fn() -> Result<Exhibit> + Sync); 4] =
-        [&|| fall::show(pacoima), &double_crossing::show, &|| chatter::show(el_centro), &zeno::show];
+    let exhibits: [&(dyn Fn() -> Result<Exhibit> + Sync); 7] = [
+        &|| fall::show(pacoima),
+        &double_crossing::show,
+        &|| chatter::show(el_centro),
+        &zeno::show,
+        &grazing::show,
+        &overturning::show,
+        &energy_gain::show,
+    ];
     let entries = exhibits.into_par_iter().map(|show| {
         let Exhibit { key, values, shows, mut panel } = show()?;
         let title = std::mem::take(&mut panel.title);

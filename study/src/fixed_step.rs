@@ -8,22 +8,25 @@
 //!                           y₁ = y₀ + h (k₁ + 2 k₂ + 2 k₃ + k₄)/6
 //!
 //! Newmark's family          x₁ = x₀ + h v₀ + h² [(1/2 − β) a₀ + β a₁]
-//!                           v₁ = v₀ + h (a₀ + a₁)/2               a₁ = a(t₁, x₁, v₁)
-//!   central difference      β = 0
-//!   average acceleration    β = 1/4 (the trapezoidal rule)
+//!                           v₁ = v₀ + h [(1 − γ) a₀ + γ a₁]      a₁ = (1 + α) a(t₁, x₁, v₁) − α a(t₀, x₀, v₀)
+//!   central difference      α = 0, β = 0, γ = 1/2
+//!   average acceleration    α = 0, β = 1/4, γ = 1/2 (the trapezoidal rule)
+//!   HHT-α                   β = (1 − α)²/4, γ = 1/2 − α (Hilber, Hughes, Taylor); numerical damping: α = 0 none, −1/3 most
 //! ```
 //!
-//! The central difference takes x_{n+1} from the past alone; its velocity is implicit where forces depend on it.
+//! The central difference takes x_{n+1} from the past alone; its velocity is implicit where forces depend on it. With α the
+//! method's own a is not that of the equations: it is carried from step to step and starts anew after a transition.
 
-use crate::equations::{PhaseEquations, state};
+use crate::equations::{Equations, state};
 use nalgebra::{Matrix2, Vector2};
 use rocking::State;
 
-/// Positions (u, θ), velocities, and the acceleration where the step before has computed it.
+/// Positions (u, θ), velocities, and what a method carries over from step to step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Point {
     pub position: Vector2<f64>, // (u, θ), m and rad
     pub velocity: Vector2<f64>, // (u̇, θ̇), m/s and rad/s
+    /// The method's own acceleration; none after a transition.
     pub acceleration: Option<Vector2<f64>>,
 }
 
@@ -54,7 +57,7 @@ pub enum Method {
     ExplicitEuler,
     SemiImplicitEuler,
     RungeKutta4,
-    Newmark { beta: f64 },
+    Newmark { alpha: f64, beta: f64, gamma: f64 },
 }
 
 /// A method as the study knows it.
@@ -64,21 +67,30 @@ pub struct Textbook {
     pub method: Method,
 }
 
+/// The α of HHT-α.
+const ALPHA: f64 = -0.1;
+
 /// All of them.
-pub static TEXTBOOK: [Textbook; 5] = [
+pub static TEXTBOOK: [Textbook; 6] = [
     Textbook { name: "explicit Euler", order: 1, method: Method::ExplicitEuler },
     Textbook { name: "semi-implicit Euler", order: 1, method: Method::SemiImplicitEuler },
-    Textbook { name: "central difference", order: 2, method: Method::CENTRAL_DIFFERENCE },
+    Textbook { name: "central difference", order: 2, method: Method::Newmark { alpha: 0.0, beta: 0.0, gamma: 0.5 } },
     Textbook { name: "RK4", order: 4, method: Method::RungeKutta4 },
-    Textbook { name: "Newmark average acceleration", order: 2, method: Method::AVERAGE_ACCELERATION },
+    Textbook {
+        name: "Newmark average acceleration",
+        order: 2,
+        method: Method::Newmark { alpha: 0.0, beta: 0.25, gamma: 0.5 },
+    },
+    Textbook {
+        name: "HHT-α",
+        order: 2,
+        method: Method::Newmark { alpha: ALPHA, beta: (1.0 - ALPHA) * (1.0 - ALPHA) / 4.0, gamma: 0.5 - ALPHA },
+    },
 ];
 
 impl Method {
-    pub const CENTRAL_DIFFERENCE: Method = Method::Newmark { beta: 0.0 };
-    pub const AVERAGE_ACCELERATION: Method = Method::Newmark { beta: 0.25 };
-
     /// From `from`, `tau` s into the interval, over `h` s.
-    pub fn step(self, equations: &PhaseEquations, tau: f64, from: &Point, h: f64) -> Point {
+    pub fn step(self, equations: &dyn Equations, tau: f64, from: &Point, h: f64) -> Point {
         let Point { position: x, velocity: v, acceleration } = *from;
         let a = |tau, x, v| equations.acceleration(tau, x, v);
         match self {
@@ -102,11 +114,13 @@ impl Method {
                     acceleration: None,
                 }
             }
-            Method::Newmark { beta } => {
-                let start = acceleration.unwrap_or_else(|| a(tau, x, v));
+            Method::Newmark { alpha, beta, gamma } => {
+                // What is carried over is the equations' own without α.
+                let there = acceleration.filter(|_| alpha == 0.0).unwrap_or_else(|| a(tau, x, v));
+                let start = acceleration.unwrap_or(there);
                 let position = |end| x + h * v + h * h * ((0.5 - beta) * start + beta * end);
-                let velocity = |end| v + 0.5 * h * (start + end);
-                let end = solve(start, |end| a(tau + h, position(end), velocity(end)));
+                let velocity = |end| v + h * ((1.0 - gamma) * start + gamma * end);
+                let end = solve(start, |end| (1.0 + alpha) * a(tau + h, position(end), velocity(end)) - alpha * there);
                 Point { position: position(end), velocity: velocity(end), acceleration: Some(end) }
             }
         }

@@ -1,6 +1,6 @@
 //! From phase to phase: any integrator of smooth motion, made to obey the model's transitions.
 
-use crate::equations::PhaseEquations;
+use crate::equations::{Equations, PhaseEquations};
 use crate::fixed_step::{Method, Point};
 use crate::guards::{PhaseEnd, UpliftRule};
 use crate::response::{Failure, Response, Sample};

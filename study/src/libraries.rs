@@ -1,9 +1,10 @@
 //! Other libraries' solvers, restarted at each sample of the ground motion and at each transition.
 
+pub mod differential_equations;
 pub mod diffsol;
 pub mod ode_solvers;
 
-use crate::equations::{PhaseEquations, state};
+use crate::equations::{Equations, PhaseEquations, state};
 use crate::fixed_step::Point;
 use nalgebra::Vector2;
 

@@ -1,27 +1,21 @@
-//! Stability of fixed steps: one that is stable while the base is down goes unstable at the instant of uplift.
+//! Stability of the textbook methods: measured limits of the step, with both pivots down and while rocking, and what
+//! happens when a structure that was down lifts off.
 
-use crate::chart::{Axis, Figure, Panel, Style, colour};
-use crate::engine;
-use crate::fixed_step::Method;
-use crate::guards::uplift_excess;
-use crate::hybrid::{self, Grid, Transitions};
-use crate::response::Response;
-use crate::scene::{Scene, ground, structure};
-use anyhow::{Context, Result};
+pub mod limits;
+pub mod uplift_trap;
+pub mod vibration;
+
+use crate::fixed_step::TEXTBOOK;
+use anyhow::Result;
+use limits::{Limit, measure};
 use minijinja::{Value, context};
-use rocking::{Detail, Parameters, State, Transition};
+use rocking::{Parameters, Structure};
 use std::f64::consts::TAU;
 use std::path::Path;
+use vibration::Vibration;
 
-/// The step, s: for Evison's specimen ω_fc h = 0.83 and ω_u h = 2.76.
-pub const STEP: f64 = 0.012;
-
-/// How long the ground shakes, s.
-const DURATION: f64 = 4.2;
-
-/// Growth of its amplitude, in g per second, and its frequency, Hz.
-const RAMP: f64 = 0.15;
-const FREQUENCY: f64 = 1.5;
+/// Damping ratios ζ_u of the table of limits.
+const DAMPING: [f64; 4] = [0.0, 0.05, 0.2, 1.0];
 
 /// The structures in the table of steps.
 const SPECIMENS: [(&str, Parameters); 3] = [
@@ -30,68 +24,44 @@ const SPECIMENS: [(&str, Parameters); 3] = [
     ("McManus, 30 Hz", Parameters { f_fc: 30.0, ..Parameters::MCMANUS }),
 ];
 
-/// Evison's specimen from rest, on ground that sways more and more.
-pub fn scene() -> Scene {
-    let samples = (DURATION / STEP) as usize;
-    let a_g = (0..=samples).map(|k| k as f64 * STEP).map(|t| RAMP * t * 9.81 * (TAU * FREQUENCY * t).sin());
-    Scene {
-        key: "uplift-trap",
-        title: "Evison's specimen, ground that sways more and more",
-        structure: structure(Parameters::EVISON),
-        initial: State::default(),
-        ground: ground(STEP, a_g.collect()),
+/// `limit` times `unit`, with three digits behind the point.
+fn in_units(limit: Limit, unit: f64) -> String {
+    match limit {
+        Limit::Never => "0".into(),
+        Limit::At(limit) => format!("{:.3}", limit * unit),
+        Limit::Unbounded => "any".into(),
     }
-}
-
-/// The response by `method` with the step [`STEP`].
-pub fn response(scene: &Scene, method: Method) -> Response {
-    let grid = Grid { method, h: STEP };
-    hybrid::run(scene, &grid, Transitions::Located, uplift_excess, &mut |_, _| ())
-}
-
-/// A row of the table of steps; the limit of the central difference is ω h = 2.
-fn specimen((name, parameters): (&str, Parameters)) -> Value {
-    let structure = structure(parameters);
-    let (f_u, f_fc) = (structure.omega_u / TAU, parameters.f_fc);
-    let [ratio, f_fc, f_u] = [f_u / f_fc, f_fc, f_u].map(|value| format!("{value:.1}"));
-    let [down, up] = [structure.omega_fc, structure.omega_u].map(|omega| format!("{:.2}", 1e3 * 2.0 / omega));
-    context! { name, f_fc, f_u, ratio, down, up }
 }
 
 /// Writes `docs/evidence/stability.md` with its picture.
 pub fn write(docs: &Path) -> Result<()> {
-    let scene = scene();
-    let mut transitions = Vec::new();
-    let exact = engine::run(&scene, Detail::Nonlinear, 1e-12, &mut |t: &Transition| transitions.push(*t));
-    let uplift = transitions.first().context("the structure lifts off")?.time;
-    let unstable = response(&scene, Method::CENTRAL_DIFFERENCE);
-    let failure = unstable.failure.clone().context("the central difference gets through")?;
-    let u = |response: &Response| -> Vec<_> {
-        let samples = response.samples.iter().enumerate();
-        samples.map(|(k, sample)| ((k + 1) as f64 * STEP, 1e3 * sample.u)).collect()
-    };
-    let stable = u(&response(&scene, Method::AVERAGE_ACCELERATION));
-    let panel = Panel::new("", Axis::linear("time, s", 0.0, DURATION), Axis::linear("u, mm", -2.0, 2.0))
-        .with("central difference, 12 ms", u(&unstable), Style::line(colour::VERMILLION, 2))
-        .named((1.5, -1.3))
-        .with("exact", u(&exact), Style::line(colour::BLACK, 3))
-        .named((3.6, -1.2))
-        .with("Newmark average acceleration, 12 ms", stable, Style::dashed(colour::BLUE, 2))
-        .named((0.4, 1.2))
-        .with("", [(uplift, -2.0), (uplift, 2.0)], Style::dashed(colour::GREY, 1))
-        .note((1.85, 1.75), "first uplift", colour::GREY);
-    let title = "Stable with the base down, unstable from uplift on".into();
-    let description = "u over time with steps of 12 ms: the central difference diverges after the first uplift.".into();
-    let figure = Figure { title, description, columns: 1, panels: vec![panel] };
-    figure.save(&docs.join("stability-uplift.svg"))?;
-    figure.save_numbers(&docs.join("stability-uplift.csv"))?;
+    let trap = uplift_trap::save(docs)?;
+    let structures = SPECIMENS.map(|(_, parameters)| Structure::new(parameters));
+    let structures = structures.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let specimens = SPECIMENS.iter().zip(&structures).map(|((name, parameters), structure)| {
+        let (f_u, f_fc) = (structure.omega_u / TAU, parameters.f_fc);
+        let [ratio, f_fc, f_u] = [f_u / f_fc, f_fc, f_u].map(|value| format!("{value:.1}"));
+        context! { name => *name, f_fc, f_u, ratio }
+    });
+    let rows = TEXTBOOK.iter().map(|textbook| {
+        let limit = |chi, zeta_fc| measure(textbook.method, &Vibration { chi, zeta_fc });
+        let steps = structures.iter().map(|structure| {
+            let zeta_fc = structure.parameters().zeta_fc;
+            let down = in_units(limit(0.0, zeta_fc), 1e3 / structure.omega_fc);
+            let up = in_units(limit(structure.chi, zeta_fc), 1e3 / structure.omega_u);
+            format!("{down} → {up}")
+        });
+        context! {
+            method => textbook.name,
+            limits => DAMPING.map(|zeta| in_units(limit(0.0, zeta), 1.0)).to_vec(),
+            steps => steps.collect::<Vec<_>>(),
+        }
+    });
     let values = context! {
-        specimens => SPECIMENS.map(specimen).to_vec(),
-        step => format!("{:.0}", 1e3 * STEP),
-        down => format!("{:.2}", scene.structure.omega_fc * STEP),
-        up => format!("{:.2}", scene.structure.omega_u * STEP),
-        uplift => format!("{uplift:.2}"),
-        failure => failure.to_string(),
+        damping => DAMPING.to_vec(),
+        specimens => specimens.collect::<Vec<Value>>(),
+        rows => rows.collect::<Vec<Value>>(),
+        trap,
     };
     crate::page::write(docs, "stability", include_str!("../pages/stability.md"), &values, "stability")
 }

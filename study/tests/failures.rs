@@ -5,7 +5,7 @@ mod synthetic;
 
 use approx::assert_relative_eq;
 use rocking::{Detail, State};
-use study::failures::{Exhibit, double_crossing, history, zeno};
+use study::failures::{Exhibit, double_crossing, grazing, history, overturning, zeno};
 use study::fixed_step::Method;
 use study::guards::{displacement_excess, uplift_excess};
 use study::hybrid::{Grid, Transitions, run};
@@ -53,4 +53,23 @@ fn a_rigid_block_comes_to_rest_like_zeno() {
     }
     let flexible = zeno::intervals(&history::exact(&released, Detail::Nonlinear, []).unwrap().transitions);
     assert!(flexible.len() < 20);
+}
+
+/// Slopes of the answer's change over the start's: 0 where L passes through 0, 1/2 where θ touches 0, 1 elsewhere.
+#[test]
+fn grazes_have_their_exponents() {
+    for (family, exponent) in grazing::FAMILIES.iter().zip([0.0, 0.5, 1.0]) {
+        let changes = family.sensitivity(&[1e-10, 1e-6]);
+        let observed = (changes[1].1 / changes[0].1).log10() / 4.0;
+        assert!((observed - exponent).abs() < 0.02, "{observed} instead of {exponent}");
+    }
+}
+
+#[test]
+fn errors_near_overturning_grow_at_the_rate_of_the_unstable_equilibrium() {
+    let exhibit = overturning::show().unwrap();
+    let difference = series(&exhibit, "two releases, 2·10⁻¹² apart");
+    let at = |time: f64| difference.iter().find(|(t, _)| *t >= time).unwrap();
+    let ((t0, d0), (t1, d1)) = (at(3.0), at(9.0));
+    assert_relative_eq!((d1 / d0).ln() / (t1 - t0), overturning::growth(), max_relative = 0.01);
 }

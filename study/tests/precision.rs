@@ -5,7 +5,7 @@ mod synthetic;
 use indicatif::ProgressBar;
 use study::engine;
 use study::precision::{Curve, Limits, measure, write};
-use study::response::Errors;
+use study::response::{Errors, Failure};
 
 /// Five points to each curve, whatever a run takes.
 const SMALL: Limits = Limits { run: 0.0, points: 5 };
@@ -18,8 +18,8 @@ fn errors(curve: &Curve) -> Vec<f64> {
 fn the_curves_are_what_the_methods_are_known_for() {
     let diagram = measure(&synthetic::scene(), SMALL, &ProgressBar::hidden()).unwrap();
     let curve = |name| diagram.curves.iter().find(|curve| curve.name == name).unwrap();
-    // 6 levels, 5 textbook methods twice, 4 solvers of libraries, this project with the input held
-    assert_eq!(diagram.curves.len(), 21);
+    // 6 levels, 6 textbook methods twice, 6 solvers of libraries, this project with the input held
+    assert_eq!(diagram.curves.len(), 25);
     assert!(diagram.curves.iter().all(|curve| curve.points.len() == 5));
     assert!((1e-13..1e-10).contains(&diagram.conditioning.theta), "{:?}", diagram.conditioning);
 
@@ -34,9 +34,12 @@ fn the_curves_are_what_the_methods_are_known_for() {
 
     assert!(errors(curve("this project, input held")).iter().all(|error| *error > 1e-4));
 
-    for name in ["ode_solvers Dopri5", "ode_solvers Dop853"] {
+    for name in ["ode_solvers Dopri5", "ode_solvers Dop853", "differential-equations DOP853"] {
         assert!(errors(curve(name))[4] < 1e-2, "{name}");
     }
+    let own_events = curve("differential-equations DOP853, its events");
+    let falls = own_events.points.iter().filter(|point| matches!(point.errors, Err(Failure::ThroughTheFloor { .. })));
+    assert!(falls.count() >= 3, "{own_events:?}");
 }
 
 #[test]
@@ -46,7 +49,7 @@ fn the_command_writes_what_it_has_measured() {
     write(std::slice::from_ref(&scene), SMALL, docs.path(), &ProgressBar::hidden()).unwrap();
     let mut csv = csv::Reader::from_path(docs.path().join("accuracy-synthetic.csv")).unwrap();
     let rows: Vec<_> = csv.records().map(Result::unwrap).collect();
-    assert_eq!(rows.len(), 21 * 5);
+    assert_eq!(rows.len(), 25 * 5);
     let row = rows.iter().find(|row| &row[0] == "this project, auto" && row[2].starts_with("1.000000e-3")).unwrap();
     let response = engine::run(&scene, rocking::Detail::Auto, 1e-3, &mut ());
     let errors = Errors::of(&response, &engine::reference(&scene)).unwrap();
@@ -54,5 +57,5 @@ fn the_command_writes_what_it_has_measured() {
     assert_eq!(row[5], response.transitions.to_string());
     assert_eq!(row[4], format!("{:.3}", response.evaluations as f64 / scene.intervals() as f64));
     let page = std::fs::read_to_string(docs.path().join("accuracy.md")).unwrap();
-    assert!(page.contains("- explicit Euler (3 of 5 settings): overturns at t = "), "{page}");
+    assert!(page.contains("falls through the ground"), "{page}");
 }

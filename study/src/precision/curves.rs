@@ -5,6 +5,7 @@ use crate::engine;
 use crate::fixed_step::TEXTBOOK;
 use crate::guards::uplift_excess;
 use crate::hybrid::{self, Grid, Integrator, Transitions};
+use crate::libraries::differential_equations::DifferentialEquations;
 use crate::libraries::diffsol::{self, Diffsol};
 use crate::libraries::ode_solvers::{OdeSolvers, Pair};
 use crate::response::Response;
@@ -72,16 +73,21 @@ fn cuts<'a>(scene: &Scene, run: impl Fn(usize) -> Runs<'a>) -> Vec<(f64, Runs<'a
     (0..HALVINGS).map(|k| 1 << k).map(|cuts| (scene.dt() / cuts as f64, run(cuts))).collect()
 }
 
-fn libraries(scene: &Scene) -> [Method<'_>; 4] {
+fn libraries(scene: &Scene) -> [Method<'_>; 6] {
     use Transitions::{AtStepEnds, Located};
     let method =
         |name: &str, settings| Method { name: name.into(), family: Family::Library, setting: "tolerance", settings };
     let pair = |pair| tolerances(move |tolerance| hybrid(scene, OdeSolvers { pair, tolerance }, Located));
     let diffsol = |method| tolerances(move |tolerance| hybrid(scene, Diffsol { method, tolerance }, AtStepEnds));
+    let with_events = |own_events, transitions| {
+        tolerances(move |tolerance| hybrid(scene, DifferentialEquations { tolerance, own_events }, transitions))
+    };
     [
         method("ode_solvers Dopri5", pair(Pair::Dopri5)),
         method("ode_solvers Dop853", pair(Pair::Dop853)),
         method("diffsol BDF, its root finding", diffsol(diffsol::Method::Bdf)),
         method("diffsol ESDIRK34, its root finding", diffsol(diffsol::Method::Esdirk34)),
+        method("differential-equations DOP853, its events", with_events(true, AtStepEnds)),
+        method("differential-equations DOP853", with_events(false, Located)),
     ]
 }

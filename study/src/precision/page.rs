@@ -105,13 +105,10 @@ impl Diagram {
         self.curves.iter().filter(move |curve| curve.family == family)
     }
 
-    fn peers(&self) -> impl Iterator<Item = &Curve> {
-        self.curves.iter().filter(|curve| PEERS.contains(&curve.family))
-    }
-
     /// The cheapest peer with an error in θ of at most `error`, its cost in s, and how many times that of `auto` it is.
     fn nearest(&self, error: f64) -> Result<(&str, f64, f64)> {
-        let good = self.peers().filter_map(|curve| Some((curve.name.as_str(), curve.cheapest(error)?.cost)));
+        let of_peers = self.curves.iter().filter(|curve| PEERS.contains(&curve.family));
+        let good = of_peers.filter_map(|curve| Some((curve.name.as_str(), curve.cheapest(error)?.cost)));
         let (name, cost) = good.min_by(|a, b| a.1.total_cmp(&b.1)).context("a peer is exact enough")?;
         Ok((name, cost, cost / self.ours(Detail::Auto, error).context("the engine is exact enough")?))
     }
@@ -169,20 +166,30 @@ impl Diagram {
         self.curves.iter().map(row).collect()
     }
 
-    /// The smallest error in θ at which a peer is cheaper than `auto`.
-    fn undercut(&self) -> f64 {
-        let is_cheaper = |error, cost| self.ours(Detail::Auto, error).is_some_and(|ours| cost < ours);
-        let points = self.peers().flat_map(|curve| &curve.points);
-        let errors = points.filter_map(|point| point.theta().filter(|error| is_cheaper(*error, point.cost)));
-        errors.fold(f64::INFINITY, f64::min)
+    /// The methods that are cheaper than `auto` at an error below 1, each with the smallest such error.
+    fn undercut(&self) -> Result<Vec<(f64, Value)>> {
+        let auto = self.family(Family::Ours).next().context("auto is measured")?;
+        let of_method = |curve: &Curve| {
+            let cheaper = curve.points.iter().filter_map(|point| {
+                let error = point.theta()?;
+                let ours = auto.cheapest(error)?.cost;
+                (error < 1.0 && point.cost < ours).then_some((error, point.cost, ours))
+            });
+            let (error, cost, ours) = cheaper.min_by(|a, b| a.0.total_cmp(&b.0))?;
+            let (shown, cost, ours) = (scientific(error), significant(1e6 * cost), significant(1e6 * ours));
+            Some((error, context! { method => curve.name.clone(), shown, cost, ours }))
+        };
+        Ok(self.curves.iter().filter(|curve| PEERS.contains(&curve.family)).filter_map(of_method).collect())
     }
 
-    /// The scene's part of the page.
-    fn scene(&self) -> Result<Value> {
+    /// The scene's part of the page, and the smallest error at which another method is cheaper than `auto`.
+    fn scene(&self) -> Result<(Value, f64)> {
         let held = self.family(Family::Host).flat_map(|curve| &curve.points).filter_map(Point::theta);
         let held: Vec<_> = held.map(scientific).collect();
+        let undercut = self.undercut()?;
+        let least = undercut.iter().map(|(error, _)| *error).fold(f64::INFINITY, f64::min);
         let Errors { theta, u, a_t } = self.conditioning;
-        Ok(context! {
+        let scene = context! {
             key => self.key,
             title => self.title,
             finding => self.finding()?,
@@ -191,8 +198,10 @@ impl Diagram {
             conditioning => [theta, u, a_t].map(scientific).to_vec(),
             rows => self.rows(),
             held => [held.first(), held.last()].map(|error| error.cloned()).to_vec(),
+            undercut => undercut.into_iter().map(|(_, shown)| shown).collect::<Vec<_>>(),
             failures => self.curves.iter().filter_map(Curve::failure).collect::<Vec<_>>(),
-        })
+        };
+        Ok((scene, least))
     }
 
     fn save_numbers(&self, path: &Path) -> Result<()> {
@@ -266,13 +275,16 @@ pub fn write(diagrams: &[Diagram], docs: &Path) -> Result<()> {
         figure.save(&docs.join(format!("accuracy-{}.svg", diagram.key)))?;
         diagram.save_numbers(&docs.join(format!("accuracy-{}.csv", diagram.key)))?;
     }
+    let (scenes, least): (Vec<_>, Vec<_>) =
+        diagrams.iter().map(Diagram::scene).collect::<Result<Vec<_>>>()?.into_iter().unzip();
+    let least = least.into_iter().fold(f64::INFINITY, f64::min);
     let speed = speed(diagrams)?;
     let values = context! {
         speed => speed.clone(),
         perturbation => decade(PERTURBATION),
         errors => ERRORS.map(decade).to_vec(),
-        undercut => scientific(diagrams.iter().map(Diagram::undercut).fold(f64::INFINITY, f64::min)),
-        scenes => diagrams.iter().map(Diagram::scene).collect::<Result<Vec<_>>>()?,
+        undercut => least.is_finite().then(|| scientific(least)),
+        scenes,
     };
     crate::page::write(docs, "speed", include_str!("../../pages/speed.md"), &speed, "precision")?;
     crate::page::write(docs, "accuracy", include_str!("../../pages/accuracy.md"), &values, "precision")

@@ -1,0 +1,62 @@
+//! Energy gained at impact: [`impact::energy_gained`] tells how much, [`impact::lossless_restitution`] with which r none is.
+
+use super::history::{at_rest, every, exact, is_impact};
+use super::{Exhibit, WRONG};
+use crate::chart::{Axis, Panel, colour};
+use crate::scene::structure;
+use anyhow::{Context, Result};
+use minijinja::context;
+use rocking::mechanics::energy::energy;
+use rocking::mechanics::impact;
+use rocking::{Detail, Parameters, Phase, Side, State};
+
+/// A structure that gains: McManus's specimen, softer, with little restitution.
+const GAINER: Parameters = Parameters { r: 0.5, f_fc: 2.0, ..Parameters::MCMANUS };
+
+/// Where it is released, at rest.
+const RELEASE: f64 = 0.02;
+
+/// How long it is followed, s.
+const DURATION: f64 = 0.5;
+
+/// The energy of an example over time, on ground at rest.
+pub fn show() -> Result<Exhibit> {
+    let scene = at_rest(GAINER, State { theta: RELEASE, ..State::default() }, DURATION);
+    let rest = energy(&scene.structure, Phase::FullContact, &State::default());
+    let history = exact(&scene, Detail::Auto, every(1e-3 * DURATION))?;
+    let over_rest =
+        |motion: &rocking::Motion| (motion.time, energy(&scene.structure, motion.phase, &motion.state) - rest);
+    let path: Vec<_> = history.motions.iter().map(over_rest).collect();
+    let gained = |impact: &rocking::Transition| {
+        let side = Side::of(-impact.before.theta_dot); // s θ falls to 0
+        (impact.time, impact::energy_gained(&scene.structure, side, &impact.before))
+    };
+    let mut gains = history.transitions.iter().filter(|transition| is_impact(transition)).map(gained);
+    let (time, gain) = gains.find(|(_, gain)| *gain > 0.0).context("the example gains energy")?;
+    let highest = path.iter().map(|(_, energy)| *energy).fold(0.0, f64::max);
+    let x = Axis::linear("time, s", 0.0, DURATION);
+    let y = Axis::linear("energy over that at rest, J", 0.0, 1.25 * highest);
+    let panel = Panel::new(format!("An impact with r = 0.5 adds {gain:.1} J"), x, y)
+        .with("McManus's geometry, 2 Hz, r = 0.5", path, WRONG)
+        .named((0.2, highest))
+        .note((time, 0.42 * highest), format!("this impact: +{gain:.2} J"), colour::VERMILLION);
+    let lossless = |parameters, part: f64| {
+        let structure = structure(parameters);
+        impact::lossless_restitution(&structure, part * structure.u_cr)
+    };
+    let range = |parameters| {
+        lossless(parameters, 1.0).map_or("no r".into(), |[least, most]| format!("{least:.3} ≤ r ≤ {most:.4}"))
+    };
+    let limit = |parameters| format!("{:.3}", lossless(parameters, 0.0).map_or(0.0, |[least, _]| least));
+    Ok(Exhibit {
+        key: "energy-gain",
+        shows: "Energy over time: it falls at the first impact, rises at the second, and falls at the third.",
+        values: context! {
+            evison => limit(Parameters::EVISON),
+            mcmanus => limit(Parameters::MCMANUS),
+            evison_at_u_cr => range(Parameters::EVISON),
+            mcmanus_at_u_cr => range(Parameters::MCMANUS),
+        },
+        panel,
+    })
+}

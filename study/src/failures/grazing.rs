@@ -1,0 +1,113 @@
+//! Grazes that decide differently under a change of 1e-12.
+
+use super::Exhibit;
+use super::history::{History, at_rest, every, exact};
+use crate::chart::{Axis, Marker, Panel, Series, Style, colour, scientific};
+use anyhow::Result;
+use minijinja::context;
+use rocking::series::bisection::last_where;
+use rocking::{Detail, Parameters, State};
+
+/// How long the structure is followed, s.
+const DURATION: f64 = 1.0;
+
+/// McManus's specimen shortly before an impact; what is varied is how fast it vibrates.
+fn released(theta_dot: f64, u_dot: f64) -> History {
+    let initial = State { theta: 0.002, theta_dot, u_dot, ..State::default() };
+    let scene = at_rest(Parameters::MCMANUS, initial, DURATION);
+    exact(&scene, Detail::Nonlinear, every(1e-3)).expect("a release has an answer")
+}
+
+/// A family of releases: θ̇ at the start, rad/s, and what is examined, u̇ in m/s.
+pub struct Family {
+    name: &'static str,
+    theta_dot: f64,
+    bracket: (f64, f64), // between these the first transition becomes another
+    towards: f64,        // +1 or −1: to which side u̇ is changed
+    named: (f64, f64),   // where its name begins in the picture
+    style: Style,
+}
+
+/// L passes through 0 at an impact; θ touches 0 and turns; neither.
+pub const FAMILIES: [Family; 3] = [
+    Family {
+        name: "L passes through 0 at an impact",
+        theta_dot: -0.2,
+        bracket: (0.38, 0.40),
+        towards: 1.0,
+        named: (1e-11, 0.05),
+        style: Style::marked(colour::VERMILLION, 2, Marker::Circle),
+    },
+    Family {
+        name: "θ touches 0 and turns",
+        theta_dot: -0.1,
+        bracket: (0.24, 0.26),
+        towards: -1.0,
+        named: (2e-12, 1e-7),
+        style: Style::marked(colour::BLUE, 2, Marker::Square),
+    },
+    Family {
+        name: "neither",
+        theta_dot: -0.1,
+        bracket: (0.1, 0.1),
+        towards: 1.0,
+        named: (1e-8, 3e-10),
+        style: Style::marked(colour::GREEN, 2, Marker::Triangle),
+    },
+];
+
+impl Family {
+    /// The last u̇ at which the first transition is still that of the bracket's lower end.
+    fn critical(&self) -> f64 {
+        let first = |u_dot| released(self.theta_dot, u_dot).transitions[0];
+        let (low, high) = self.bracket;
+        let expected = first(low);
+        last_where(low, high, |u_dot| {
+            let found = first(u_dot);
+            found.kind == expected.kind && (found.time - expected.time).abs() < 0.01
+        })
+    }
+
+    /// How far the answer moves, relative to its largest value, when u̇ is changed by the fractions `changes`.
+    pub fn sensitivity(&self, changes: &[f64]) -> Vec<(f64, f64)> {
+        let critical = self.critical();
+        let base = released(self.theta_dot, critical).theta();
+        let largest = base.iter().map(|(_, theta)| theta.abs()).fold(0.0, f64::max);
+        let moved = |change: &f64| {
+            let moved = released(self.theta_dot, critical * (1.0 + self.towards * change)).theta();
+            let differences = base.iter().zip(moved).map(|((_, a), (_, b))| (a - b).abs());
+            (*change, differences.fold(0.0, f64::max) / largest)
+        };
+        changes.iter().map(moved).collect()
+    }
+}
+
+/// How the distance of two responses depends on that of their starts.
+pub fn show() -> Result<Exhibit> {
+    let changes: Vec<f64> = (3..=26).map(|k| 10f64.powf(-0.5 * f64::from(k))).collect();
+    let (x, y) = (
+        Axis::logarithmic("relative change of the start", 1e-13, 0.1),
+        Axis::logarithmic("max|Δθ| / max|θ|", 1e-14, 1.0),
+    );
+    let mut panel = Panel::new("At a graze 10⁻¹² in the start decides the answer", x, y);
+    let at_1e_12 = FAMILIES.map(|family| {
+        let points = family.sensitivity(&changes);
+        let named = Some(family.named);
+        panel.series.push(Series { name: family.name.into(), points, named, style: family.style });
+        family.sensitivity(&[1e-12])[0].1
+    });
+    let [jump, touch, clear] = at_1e_12;
+    let [momentum, ..] = FAMILIES;
+    let impact = released(momentum.theta_dot, momentum.critical()).transitions[0];
+    Ok(Exhibit {
+        key: "grazing",
+        shows: "Change of the answer over change of the start: constant, as its root, and in proportion.",
+        values: context! {
+            impact => format!("{:.2}", 1e3 * impact.time),
+            jump => format!("{:.0}", 100.0 * jump),
+            touch => scientific(touch),
+            clear => scientific(clear),
+        },
+        panel,
+    })
+}

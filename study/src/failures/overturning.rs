@@ -1,0 +1,60 @@
+//! Near-overturning: errors grow like e^{p t}.
+
+use super::history::{History, at_rest, every, exact};
+use super::{Exhibit, RIGHT};
+use crate::chart::{Axis, Panel, Style, colour};
+use crate::scene::structure;
+use anyhow::Result;
+use minijinja::context;
+use rocking::series::bisection::last_where;
+use rocking::{Detail, Parameters, State, TransitionKind};
+
+/// How long the structure is followed, s.
+const DURATION: f64 = 14.0;
+
+/// Time between results, s.
+const SAMPLE: f64 = 0.02;
+
+/// Relative distance of the two release angles from the one that balances.
+const CHANGE: f64 = 1e-12;
+
+/// McManus's specimen released at rest, to where it overturns.
+fn released(theta: f64) -> History {
+    let scene = at_rest(Parameters::MCMANUS, State { theta, ..State::default() }, DURATION);
+    exact(&scene, Detail::Auto, every(SAMPLE)).expect("a release has an answer")
+}
+
+fn falls_back(theta: f64) -> bool {
+    !released(theta).transitions.iter().any(|one| matches!(one.kind, TransitionKind::Overturning(_)))
+}
+
+/// The rate at which a small error grows at the unstable equilibrium, 1/s: Eq 6 linearised at θ = α_cg.
+pub fn growth() -> f64 {
+    let structure = structure(Parameters::MCMANUS);
+    structure.p_l / structure.tan_alpha_cg.atan().cos().sqrt()
+}
+
+/// Two releases on either side of the angle that balances.
+pub fn show() -> Result<Exhibit> {
+    let alpha_cg = structure(Parameters::MCMANUS).tan_alpha_cg.atan();
+    let balance = last_where(0.5 * alpha_cg, 1.5 * alpha_cg, falls_back);
+    let [inside, outside] = [1.0 - CHANGE, 1.0 + CHANGE].map(|factor| released(balance * factor).theta());
+    let difference: Vec<_> = inside.iter().zip(&outside).map(|((t, a), (_, b))| (*t, (a - b).abs())).collect();
+    let rate = growth();
+    let start = difference[(2.0 / SAMPLE) as usize];
+    let theory = difference.iter().map(|(t, _)| (*t, start.1 * (rate * (t - start.0)).exp()));
+    let x = Axis::linear("time, s", 0.0, DURATION);
+    let panel =
+        Panel::new("Near balance a difference grows as e^(p t)", x, Axis::logarithmic("|Δθ|, rad", 1e-13, 10.0))
+            .with("e^(p t)", theory, Style::dashed(colour::BLUE, 2))
+            .named((5.0, 3e-10))
+            .with("two releases, 2·10⁻¹² apart", difference, RIGHT)
+            .named((1.0, 1e-4));
+    let doubling = 1e3 * 2f64.ln() / rate;
+    Ok(Exhibit {
+        key: "near-overturning",
+        shows: "Difference of two releases over time: it grows by twelve decades in as many seconds.",
+        values: context! { rate => format!("{rate:.3}"), doubling => format!("{doubling:.0}") },
+        panel,
+    })
+}

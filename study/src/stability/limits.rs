@@ -1,0 +1,58 @@
+//! The largest stable step, measured.
+
+use super::vibration::Vibration;
+use crate::fixed_step::Method;
+
+/// Steps of one trial.
+const STEPS: usize = 8192;
+
+/// Growth of the energy from one quarter of a trial to the next but one that counts as such; a stable method's energy
+/// swings, but its maximum over a quarter of the trial stays.
+const GROWTH: f64 = 1e-3;
+
+/// Steps tried, as ω_u h: a method stable at the largest is taken to be so at all; one unstable at the smallest, never.
+const RANGE: (f64, f64) = (3e-3, 1e3);
+
+/// Relative width at which the bisection ends.
+const RESOLUTION: f64 = 1e-4;
+
+/// What a measurement says of a method.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Limit {
+    Never,
+    At(f64), // the largest stable ω_u h
+    Unbounded,
+}
+
+/// Whether the energy grows over a trial with the step `h`, in units of 1/ω_u.
+fn grows(method: Method, vibration: &Vibration, h: f64) -> bool {
+    const QUARTER: usize = STEPS / 4;
+    let mut point = vibration.start();
+    let start = vibration.energy(&point);
+    let mut largest = [0.0f64; 4];
+    for step in 0..STEPS {
+        point = method.step(vibration, 0.0, &point, h);
+        let energy = vibration.energy(&point);
+        if energy.is_nan() || energy > 1e12 * start {
+            return true;
+        }
+        largest[step / QUARTER] = largest[step / QUARTER].max(energy);
+    }
+    largest[3] > (1.0 + GROWTH) * largest[1] && largest[1] > f64::MIN_POSITIVE
+}
+
+/// The largest stable ω_u h, by bisection.
+pub fn measure(method: Method, vibration: &Vibration) -> Limit {
+    let (mut low, mut high) = RANGE;
+    if !grows(method, vibration, high) {
+        return Limit::Unbounded;
+    }
+    if grows(method, vibration, low) {
+        return Limit::Never;
+    }
+    while high > (1.0 + RESOLUTION) * low {
+        let middle = (low * high).sqrt();
+        *(if grows(method, vibration, middle) { &mut high } else { &mut low }) = middle;
+    }
+    Limit::At(low)
+}
