@@ -6,7 +6,7 @@
 # make python    the Python module, installed into .venv, its types, its page, what is computed with it
 # make study     the tests of study/
 # make hosts     hosts that bring much, and Windows' library under wine
-# make browser   the pages of `view` and `explore` in Chromium
+# make browser   the pages of `view` and `explore` in Chromium, and in Firefox
 # make foreign   the libraries for other machines, built, read and, where that can be, run
 # make packaged  the package of the source, and the wheel for this machine in a fresh environment
 # make evidence  the pages of evidence made anew and compared, and the longer blocks of the others
@@ -62,6 +62,7 @@ MINGW := x86_64-w64-mingw32-gcc
 HAS_MINGW := command -v $(MINGW) >/dev/null
 HAS_WINE := command -v wine >/dev/null
 HAS_CHROMIUM := command -v chromium >/dev/null
+HAS_FIREFOX := command -v firefox-esr >/dev/null || command -v firefox >/dev/null
 HAS_TBB := PATH=$$PATH:/sbin ldconfig -p | grep -q 'libtbb\.so\.12'
 sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
@@ -121,9 +122,10 @@ module: .venv/dist exporter
 hosts: .venv/heavy exporter windows host_packages
 	$(PYTEST) -m heavy -n auto --dist loadfile tests/test_hosts_*.py
 
-# The pages of `view` and `explore` in Chromium; where that cannot be had, the tests are skipped and say so.
+# The pages of `view` and `explore` in Chromium, and in Firefox; where these cannot be had, the tests are skipped and say so.
 browser: .venv/heavy exporter explore
 	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
+	-@$(HAS_FIREFOX) || { $(call install,firefox-esr); }
 	$(PYTEST) -m heavy tests/test_view.py tests/test_explore.py
 
 docs/img/explore.png: .venv/heavy explore

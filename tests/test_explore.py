@@ -1,7 +1,11 @@
-"""The page of `make explore`: its numbers beside the command line's in Chromium, its controls, its messages."""
+"""The page of `make explore`: its numbers beside the command line's in Chromium and Firefox, its controls, its messages."""
 
 import json
+import os
+import shutil
+import socket
 import subprocess
+import time
 import zipfile
 from pathlib import Path
 from urllib.parse import urlencode
@@ -73,15 +77,91 @@ def by_command_line(exporter, folder, fields: dict, record: str) -> dict:
     return json.loads(done.stdout)
 
 
-def test_numbers_are_the_command_lines(opened, exporter, tmp_path):
-    page = opened()
+def agree(exporter, folder, evaluate):
+    """Every digit of every scene is the command line's."""
     for fields in SCENES:
-        answer, record = page.evaluate(COMPUTED, [fields, RECORD.read_text()])
-        ours, theirs = json.loads(answer), by_command_line(exporter, tmp_path, fields, record)
+        answer, record = evaluate([fields, RECORD.read_text()])
+        ours, theirs = json.loads(answer), by_command_line(exporter, folder, fields, record)
         rows = {row["name"]: row for row in theirs["peaks"]}
         for name, peak, instant in ours["peaks"]:
             assert (peak, instant) == (rows[name]["peak"], rows[name]["time"]), (fields, name)
         assert (ours["transitions"], ours["end"]) == (theirs["transitions"], theirs["end"]), fields
+
+
+def test_numbers_are_the_command_lines_in_chromium(opened, exporter, tmp_path):
+    page = opened()
+    agree(exporter, tmp_path, lambda given: page.evaluate(COMPUTED, given))
+    assert PAGE.stat().st_size <= 2.5e6
+
+
+class Firefox:
+    """Firefox as its own remote protocol, Marionette, drives it: messages of JSON behind their length."""
+
+    def __init__(self, program: str, profile: Path):
+        with socket.socket() as free:
+            free.bind(("127.0.0.1", 0))
+            port = free.getsockname()[1]
+        (profile / "user.js").write_text(f'user_pref("marionette.port", {port});\n')
+        environment = os.environ | {"MOZ_HEADLESS": "1", "HOME": str(profile)}
+        self.process = subprocess.Popen([program, "--marionette", "--profile", profile], env=environment,
+                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        for _ in range(300):
+            try:
+                self.socket = socket.create_connection(("127.0.0.1", port), timeout=120)
+                break
+            except ConnectionRefusedError:
+                time.sleep(0.1)
+        self.stream = self.socket.makefile("rb")
+        self.read()
+        self.command("WebDriver:NewSession", {})
+
+    def read(self):
+        length = b""
+        while not length.endswith(b":"):
+            length += self.stream.read(1)
+        return json.loads(self.stream.read(int(length[:-1])))
+
+    def command(self, name: str, parameters: dict):
+        message = json.dumps([0, 1, name, parameters])
+        self.socket.sendall(f"{len(message)}:{message}".encode())
+        _, _, error, result = self.read()
+        assert error is None, error
+        return result
+
+    def evaluate(self, script: str, *arguments):
+        return self.command("WebDriver:ExecuteScript", {"script": script, "args": arguments, "sandbox": None})["value"]
+
+
+@pytest.fixture
+def firefox(tmp_path_factory):
+    program = shutil.which("firefox-esr") or shutil.which("firefox")
+    if not program:
+        pytest.skip("Firefox is not there: make browser")
+    firefox = Firefox(program, tmp_path_factory.mktemp("firefox"))
+    yield firefox
+    firefox.stream.close()
+    firefox.socket.close()
+    firefox.process.terminate()
+    firefox.process.wait()
+
+
+def test_numbers_are_the_command_lines_in_firefox(firefox, exporter, tmp_path):
+    firefox.command("WebDriver:Navigate", {"url": PAGE.as_uri()})
+    for _ in range(300):
+        if firefox.evaluate("return document.body.dataset.ready !== undefined"):
+            break
+        time.sleep(0.1)
+    shown = firefox.evaluate('return document.querySelector("#histories path.curve").getAttribute("d").length')
+    assert shown > 100
+
+    def evaluate(given):  # by a script of the page itself: Marionette's do not see what the page declares
+        return firefox.evaluate("""
+            const script = document.createElement("script");
+            script.textContent = `document.body.dataset.answer = JSON.stringify((${arguments[0]})(${JSON.stringify(arguments[1])}))`;
+            document.body.append(script);
+            return JSON.parse(document.body.dataset.answer);""", COMPUTED, given)
+
+    agree(exporter, tmp_path, evaluate)
 
 
 def drop(page, name: str, content: bytes) -> None:
