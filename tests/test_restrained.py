@@ -1,6 +1,7 @@
 """Vertical ground motion, tendon and dissipators through the FMU: against an independent integration on records with their real
 vertical components, and against what is known by hand."""
 
+import json
 import subprocess
 from dataclasses import asdict
 
@@ -89,9 +90,9 @@ def test_the_static_loop_is_a_flag(exporter):
     """Its height is what both dissipators turn back by on the way there less on the way back, by hand."""
     options = {"P-0": 500, "k-t": 2e5, "xi-d": 0.2, "k-d": 1e7, "F-y": 300}
     arguments = [text for name, value in options.items() for text in (f"--{name}", str(value))]
-    printed = subprocess.run([exporter, "describe", "--preset", "mcmanus", *arguments, "--restoring", "0.04", "--format", "csv"],
+    printed = subprocess.run([exporter, "describe", "--preset", "mcmanus", *arguments, "--restoring", "0.04", "--format", "json"],
                              check=True, capture_output=True, text=True).stdout
-    theta, moment = np.loadtxt(printed.splitlines(), delimiter=",", skiprows=1).T
+    theta, moment = np.array([(row["theta"], row["moment"]) for row in json.loads(printed)]).T
     steps = len(theta) // 2
     there, back = moment[1:steps], moment[:steps:-1][1:]  # at the same rotations, but for 0 and the farthest
     levers = (MCMANUS.B - 0.2, MCMANUS.B + 0.2)

@@ -2,9 +2,10 @@
 
 use crate::{
     cause::Cause,
+    estimate::Estimate,
     quantities::in_readable_unit,
     record_args::one_of,
-    results::{Format, FormatArgs, Number, print, print_traced},
+    results::{FormatArgs, Number, Traced},
     scene_args::{GroundArgs, InitialArgs},
     structure_args::StructureArgs,
     validity::{self, LimitArgs},
@@ -12,9 +13,8 @@ use crate::{
 use anyhow::Context;
 use clap::builder::{PossibleValue, TypedValueParser};
 use fmu_export::significant::significant;
-use rocking::estimates::demand::{Demand, INSTANT_TRANSITION};
+use rocking::estimates::demand::INSTANT_TRANSITION;
 use rocking::estimates::effective_frequency::effective_frequency;
-use rocking::estimates::response_spectrum::spectral_acceleration;
 use rocking::run::record::Record;
 use rocking::{
     Detail, Structure,
@@ -25,8 +25,8 @@ use rocking::{
         validity::Limits,
     },
 };
+use rocking_sweep::plan::Conditions;
 use serde::Serialize;
-use std::f64::consts::TAU;
 use std::fmt::{self, Write};
 
 /// What to compare, and what is allowed.
@@ -87,19 +87,19 @@ fn relative_error(text: &str) -> Result<f64, String> {
 /// Runs the levels and prints the table and the advice.
 pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
+    let (initial, duration) = (args.initial.state(), args.ground.duration());
+    let conditions = Conditions { initial, duration, ..Conditions::default() };
+    conditions.check(&structure)?;
     let ground = args.ground.load(structure.parameters().g)?;
-    let (initial, end) = (args.initial.state(), args.ground.end(&ground));
-    let run = Run { initial, end, ..Run::new(structure, &ground) };
+    let run = conditions.run(structure, &ground);
     let comparison = levels::compare(&run).context("detail = nonlinear")?;
 
     let (within, criteria) = (args.allowed.within, &args.allowed.of);
     let advised = comparison.recommended(within, criteria);
-    if args.results.format == Format::Text {
-        let (title, limits) = (args.ground.title(&ground), args.limits.limits());
-        return print(&text(&title, &run, &comparison, (within, criteria), limits)?);
-    }
-    let cause = Cause::new(&structure).under(&args.ground.record, &ground).computed(None, initial);
-    print_traced(args.results.format, &cause, &rows(&comparison, advised))
+    let (title, limits) = (args.ground.title(&ground), args.limits.limits());
+    let text = || text(&title, &run, &comparison, (within, criteria), limits);
+    let cause = &Cause::new(&structure).under(&args.ground.record, &ground).computed(None, initial);
+    args.results.print(text, &Traced { cause, rows: &rows(&comparison, advised) })
 }
 
 /// The table and the advice on `run` under the ground motion that `title` names, for people: what is `allowed` is an error and
@@ -268,9 +268,8 @@ fn print_estimate(
     ground: &Record,
     comparison: &Comparison,
 ) -> anyhow::Result<()> {
-    let S_a = spectral_acceleration(ground, TAU / structure.omega_u, structure.zeta_u);
-    let demand = match Demand::new(structure, S_a, INSTANT_TRANSITION) {
-        Ok(demand) => demand,
+    let demand = match Estimate::new(structure, Some(ground), INSTANT_TRANSITION) {
+        Ok(estimate) => estimate.demand,
         Err(error) => return Ok(writeln!(out, "  {:<10} not possible here: {error}", "estimate")?),
     };
     let a_t = comparison.reference.peaks.a_t().magnitude;

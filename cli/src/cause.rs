@@ -1,12 +1,10 @@
 //! What a result comes from, so that it can be traced: program, structure, ground motion, and how it was computed.
 use crate::record_args::{RecordArgs, RecordOptions, Understood};
 use FlexibleRocking::BUILD;
-use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::record::Record;
-use rocking::structure::parameters::PARAMETERS;
 use rocking::{Detail, Parameters, State, Structure};
 use rocking_records::Column;
-use rocking_sweep::row_file::{Program, heading};
+use rocking_sweep::row_file::Program;
 use serde::Serialize;
 use std::path::Path;
 use uuid::Uuid;
@@ -107,31 +105,5 @@ impl Cause {
     pub fn computed(self, level: Option<(Detail, f64)>, initial: State) -> Cause {
         let level = level.map(|(detail, tolerance)| Level { detail: detail.name(), tolerance });
         Cause { run: Some(OfRun { level, initial }), ..self }
-    }
-
-    /// As columns of a table: headings and values.
-    pub fn columns(&self) -> Vec<(String, String)> {
-        let mut columns = vec![("version".to_owned(), self.version.clone())];
-        let number = |name: &str, unit, value: f64| (heading(name, unit), format!("{value:?}"));
-        if let Some(structure) = &self.structure {
-            columns.extend(PARAMETERS.iter().map(|of| number(of.name, of.unit, (of.get)(structure))));
-        }
-        if let Some(Ground { record, file, file_v, record_unit, record_column, record_dt, time_scale, scale }) =
-            &self.ground
-        {
-            let text = |name: &str, of: &Option<String>| (name.to_owned(), of.clone().unwrap_or_default());
-            columns.extend([("record".to_owned(), record.clone()), text("file", file)]);
-            columns.extend(file_v.iter().map(|file_v| ("file_v".to_owned(), file_v.clone())));
-            columns.extend([text("record_unit", record_unit), text("record_column", record_column)]);
-            columns.push(text("record_dt[s]", &record_dt.map(|dt| format!("{dt:?}"))));
-            columns.extend([number("time_scale", "1", *time_scale), number("scale", "1", *scale)]);
-        }
-        if let Some(OfRun { level, initial }) = &self.run {
-            if let Some(Level { detail, tolerance }) = level {
-                columns.extend([("detail".to_owned(), (*detail).to_owned()), number("tolerance", "1", *tolerance)]);
-            }
-            columns.extend(INITIAL_VALUES.iter().map(|of| number(of.name, of.unit, (of.get)(initial))));
-        }
-        columns
     }
 }
