@@ -138,8 +138,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
         let section = validity::section(&structure, run.detail, validity.found(), &limits).join("\n");
         Ok(format!("{}, {start} to {end} s\n{}{section}\n", ground.title(), summary.text(&found)?))
     };
-    let cause = Cause::new(&structure).under(&args.motion.ground.record, &ground);
-    let cause = cause.computed(Some((run.detail, run.tolerance)), run.initial);
+    let cause = Cause::new(&structure).under(&args.motion.ground.record, &ground).computed(&conditions);
     let whole = summary.whole(&cause, &found, validity::rows(validity.found(), &limits));
     args.results.format.print_beside(output, text, &whole)?;
     match picture {

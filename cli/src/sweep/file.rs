@@ -13,8 +13,8 @@ use rocking_sweep::outcome::Limit;
 use rocking_sweep::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population};
 use rocking_sweep::pulse::{Pulse, Shape};
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::path::{MAIN_SEPARATOR, Path};
-use std::{collections::BTreeMap, collections::HashMap};
 
 /// Records on structures.
 pub struct RecordSweep {
@@ -318,13 +318,13 @@ impl StructureGrid {
     }
 }
 
-/// The records that `sources` name, each of them once, under their paths from `folder`.
+/// The records that `sources` name, under their paths from `folder`.
 fn motions(
     sources: &[RecordEntry],
     folder: &Path,
     mut read: impl FnMut(&Path, Option<&Path>, &RecordOptions) -> anyhow::Result<Record>,
 ) -> anyhow::Result<Vec<NamedRecord>> {
-    let (mut motions, mut named, mut bad) = (Vec::new(), HashMap::new(), Vec::<anyhow::Error>::new());
+    let (mut motions, mut bad) = (Vec::new(), Vec::<anyhow::Error>::new());
     for source in sources {
         let (pattern, vertical, options) = source.pattern_and_options()?;
         let scale = options.scale.unwrap_or(1.0);
@@ -347,14 +347,6 @@ fn motions(
                 i == 0 || vertical.is_none(),
                 "records {pattern:?}: vertical goes with one file, and there are more"
             );
-            if let Some(other) = named.insert((path.canonicalize()?, with.clone()), options.clone()) {
-                ensure!(
-                    other == options,
-                    "{} is named twice in records, with different options: leave one out",
-                    path.display()
-                );
-                continue;
-            }
             // The same on every system, so that a sweep can go on on another.
             let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace(MAIN_SEPARATOR, "/");
             let record = read(&path, vertical.as_deref(), &options);
