@@ -227,7 +227,7 @@ where
 pub fn log_axis(range: Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
     let decades = range.start.log10().floor() as i32..=range.end.log10().ceil() as i32;
     let numbers = decades.flat_map(|decade| [1.0, 2.0, 5.0].map(|step| step * 10.0_f64.powi(decade)));
-    let inside = numbers.filter(|number| range.contains(number)).collect();
+    let inside = numbers.filter(|number| (range.start..=range.end).contains(number)).collect();
     range.log_scale().with_key_points(inside)
 }
 

@@ -69,12 +69,7 @@ impl StructureArgs {
 fn with_options(error: GivenError) -> anyhow::Error {
     let GivenError::Missing(missing) = &error else { return error.into() };
     let advice = missing.iter().map(|missing| missing.advice(|name| format!("--{}", option_name(name))));
-    let presets = PRESETS.iter().map(|(name, _)| format!("--preset {name}"));
-    anyhow!(
-        "{}; or take what is missing from a specimen of the paper: {}",
-        advice.collect::<Vec<_>>().join("; "),
-        presets.collect::<Vec<_>>().join(" or ")
-    )
+    anyhow!(advice.collect::<Vec<_>>().join("; "))
 }
 
 /// The option of the number called `name`: `--f-fc` of f_fc.

@@ -302,7 +302,9 @@ impl StructureGrid {
         match (&self.preset, &self.parameters) {
             (Some(preset), None) => {
                 let found = PRESETS.iter().find(|(name, _)| name == preset);
-                found.map(|(_, parameters)| *parameters).with_context(|| format!("preset = {preset:?} is unknown"))
+                found
+                    .map(|(_, parameters)| *parameters)
+                    .with_context(|| format!("preset = {preset:?}: mcmanus and evison are known"))
             }
             (None, Some(given)) => Ok(given.parameters()?),
             _ => bail!("give either preset or parameters"),
