@@ -170,7 +170,7 @@ def test_what_is_refused_is_named(ground, refused, text):
 
 def test_a_file_says_what_would_help(tmp_path):
     (tmp_path / "column.txt").write_text("0.1\n0.2\n-0.1\n")
-    with pytest.raises(ValueError, match="give it with dt=SECONDS"):
+    with pytest.raises(ValueError, match="give it in seconds as dt"):
         fr.Record.read(tmp_path / "column.txt")
     with pytest.warns(UserWarning, match="a step of 0.5 s: is the time in another unit"):
         fr.Record.read(tmp_path / "column.txt", dt=0.5)

@@ -106,7 +106,7 @@ enum Command {
     #[command(after_help = "Examples:
   rocking-fmu estimate --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45
   rocking-fmu estimate --preset evison --amplification 1.4 --amplitudes 0.1,0.2,0.3
-  rocking-fmu estimate --parameters pier.toml --record table.csv --unit g --format csv")]
+  rocking-fmu estimate --parameters pier.toml --record table.csv --unit g --format json")]
     Estimate(estimate::EstimateArgs),
     /// Push the structure over slowly: force and moment against displacement, to overturning
     #[command(after_help = "Examples:
