@@ -163,14 +163,8 @@ pub fn with_option(error: anyhow::Error) -> anyhow::Error {
     with_remedy(error, |remedy| match remedy {
         Remedy::IgnoreCount => "--ignore-npts takes those",
         Remedy::Step => "give it with --dt SECONDS",
-        Remedy::Column => "choose with --column, by number or heading",
-        Remedy::ColumnOrAll => {
-            "choose one with --column NUMBER, or say that every number is a sample, with --column all or a line NPTS= ..., \
-             DT= ... before them"
-        }
-        Remedy::Channel => "choose with --column, by number",
+        Remedy::Column => "choose with --column NUMBER, HEADING or all",
         Remedy::Unit => "say with --unit what they are",
-        Remedy::Comment => "begin a line that is no sample with #",
     })
 }
 
@@ -179,14 +173,8 @@ pub fn with_key(error: anyhow::Error) -> anyhow::Error {
     with_remedy(error, |remedy| match remedy {
         Remedy::IgnoreCount => "{ file = ..., ignore_npts = true } takes those",
         Remedy::Step => "give it, { file = ..., dt = SECONDS }",
-        Remedy::Column => "choose by number or heading, { file = ..., column = ... }",
-        Remedy::ColumnOrAll => {
-            "choose one, { file = ..., column = NUMBER }, or say that every number is a sample, { file = ..., column = 'all' } \
-             or a line NPTS= ..., DT= ... before them"
-        }
-        Remedy::Channel => "choose by number, { file = ..., column = ... }",
+        Remedy::Column => "choose { file = ..., column = NUMBER, HEADING or 'all' }",
         Remedy::Unit => "say what they are, { file = ..., unit = ... }",
-        Remedy::Comment => "begin a line that is no sample with #",
     })
 }
 

@@ -227,13 +227,8 @@ fn with_argument(error: anyhow::Error) -> anyhow::Error {
     with_remedy(error, |remedy| match remedy {
         Remedy::IgnoreCount => "ignore_npts=True takes those",
         Remedy::Step => "give it with dt=SECONDS",
-        Remedy::Column => "choose with column=, by number or heading",
-        Remedy::ColumnOrAll => {
-            "choose one with column=NUMBER, or say that every number is a sample, with column=\"all\""
-        }
-        Remedy::Channel => "choose with column=, by number",
+        Remedy::Column => "choose with column=, a number, a heading or \"all\"",
         Remedy::Unit => "say with unit= what they are",
-        Remedy::Comment => "begin a line that is no sample with #",
     })
 }
 

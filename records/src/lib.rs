@@ -40,9 +40,6 @@ const USUAL_STEPS: std::ops::RangeInclusive<f64> = 1e-4..=0.1;
 /// Most usual steps between two samples.
 const LONGEST_GAP: f64 = 5.0;
 
-/// Longest duration of a record, s: an hour.
-const LONGEST_USUAL: f64 = 3600.0;
-
 /// Why a file is refused.
 #[derive(Debug, thiserror::Error)]
 pub enum RecordError {
@@ -89,16 +86,10 @@ pub enum Remedy {
     IgnoreCount,
     /// The time between samples.
     Step,
-    /// The column.
+    /// The column, the channel, or that every number is a sample.
     Column,
-    /// The column, or that every number is a sample.
-    ColumnOrAll,
-    /// The channel, which has no name but its number.
-    Channel,
     /// The unit.
     Unit,
-    /// Nothing: the line itself must begin with `#`, if it is one of text.
-    Comment,
 }
 
 /// A line that is not what the format asks for, before the file's name is known.
@@ -163,8 +154,6 @@ fn doubts(record: &Record, g: f64) -> Vec<String> {
         (!is_usual).then(|| format!("a step of {step} s: is the time in another unit?")),
         (longest > LONGEST_GAP * step)
             .then(|| format!("a step of {longest} s, where most are {step} s: is something missing?")),
-        (duration > LONGEST_USUAL)
-            .then(|| format!("a duration of {:.1} hours: is the time in another unit?", duration / 3600.0)),
         is_drift.then(|| {
             format!(
                 "a mean acceleration of {mean:.2} g, after which the ground moves on at {velocity:.0} m/s: is it \
@@ -276,7 +265,6 @@ mod tests {
         assert!(doubts(4000, 0.01, 0.0, 3.0).is_empty());
         assert_eq!(doubts(4000, 0.5, 0.0, 3.0), ["a step of 0.5 s: is the time in another unit?"]);
         assert_eq!(doubts(4000, 5e-5, 0.0, 3.0), ["a step of 0.00005 s: is the time in another unit?"]);
-        assert_eq!(doubts(40_000, 0.1, 0.0, 3.0), ["a duration of 1.1 hours: is the time in another unit?"]);
         assert_eq!(doubts(4000, 0.01, 0.0, 59.0), ["a peak of 6 g: is the unit right?"]);
         let gap = Record::from_samples("", vec![0.0, 0.01, 0.02, 0.03, 0.24, 0.25], vec![0.0; 6])
             .map(|record| super::doubts(&record, 9.81))

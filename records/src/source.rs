@@ -1,8 +1,8 @@
 //! How a record's file is read, and what was found in it or assumed of it.
 
 use super::text::quote;
-use super::unit::{Stated, is_like_a_unit};
-use super::{BadLine, Remedy, Unit, bad};
+use super::unit::Stated;
+use super::{BadLine, Unit, bad};
 use serde::{Deserialize, Deserializer, de::Error};
 use std::fmt;
 
@@ -126,14 +126,12 @@ pub(super) fn decide(stated: &Stated, asked: Option<Unit>, line: usize) -> Resul
     match (stated, asked) {
         (Stated::Unit(unit), Some(asked)) if *unit != asked => contradicted(unit, asked),
         (Stated::Unit(unit), _) => Ok((*unit, UnitFrom::File)),
-        (Stated::Other(other), Some(asked)) if is_like_a_unit(other) => contradicted(&quote(other), asked),
-        (_, Some(asked)) => Ok((asked, UnitFrom::User)),
+        (Stated::Other(other), Some(asked)) => contradicted(&quote(other), asked),
+        (Stated::Nothing, Some(asked)) => Ok((asked, UnitFrom::User)),
         (Stated::Nothing, None) => Ok((Unit::MetrePerSecondSquared, UnitFrom::Assumed)),
         (Stated::Other(other), None) => {
             let known = Unit::NAMES.map(|(name, _)| name).join(", ");
-            let remedy = (!is_like_a_unit(other)).then_some(Remedy::Unit);
-            let problem = format!("the accelerations are in {}, which is none of {known}", quote(other));
-            Err(BadLine { remedy, ..bad(line, problem) })
+            Err(bad(line, format!("the accelerations are in {}, which is none of {known}", quote(other))))
         }
     }
 }
