@@ -339,15 +339,6 @@ def test_the_map_fills_in_and_a_click_shows_the_run(opened):
         assert page.locator("#about").text_content().endswith(ends)
 
 
-def test_speed_is_shown_against_accuracy(opened):
-    page = opened({"tab": "speed", "step": "0.0005"})
-    chart = page.locator("#precision circle")
-    wait(page, lambda: chart.count() == 22)
-    rows = page.locator("#methods tbody tr")
-    engine, rk4 = (float(rows.nth(i).locator("td").first.text_content()) for i in (0, 1))
-    assert engine < 1e-9 < 1e-6 < rk4
-
-
 def test_what_is_taken_along_is_what_the_command_line_makes(opened, exporter, tmp_path):
     page = opened({"tab": "take", "m": "150"})
     drop(page, "record.csv", b"time[s],a_g[g]\n0,0\n0.2,0.6\n0.4,-0.6\n0.6,0\n")

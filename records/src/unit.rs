@@ -185,8 +185,8 @@ impl Stated {
         if let Some(unit) = starts().filter(is_free).find_map(named) {
             return Stated::Unit(unit);
         }
-        let words = heading.split([' ', '\t', ',', '(', '[', '{', ')', ']', '}']);
-        let other = words.filter(|word| is_like_a_unit(word)).last();
+        let mut words = heading.rsplit([' ', '\t', ',', '(', '[', '{', ')', ']', '}']);
+        let other = words.find(|word| is_like_a_unit(word));
         other.map_or(Stated::Nothing, |other| Stated::Other(other.to_owned()))
     }
 }

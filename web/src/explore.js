@@ -19,9 +19,7 @@
 
   let fields = Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
   let tab = fields.tab ?? "play";
-  let step = fields.step ?? "0.001"; // of RK4, s
   delete fields.tab;
-  delete fields.step;
   const text = () => JSON.stringify(fields);
   const ground = () => fields.ground ?? "sine";
   const preset = () => tables.presets.find(({ name }) => name === (fields.preset ?? "mcmanus")) ?? tables.presets[0];
@@ -39,7 +37,7 @@
   // ---- Controls
 
   const words = (name) => name.replaceAll("_", " ");
-  const greek = { zeta: "ζ", theta: "θ", alpha: "α", omega: "ω", xi: "ξ", amplitude: "a_p", frequency: "f", step: "RK4 step" };
+  const greek = { zeta: "ζ", theta: "θ", alpha: "α", omega: "ω", xi: "ξ", amplitude: "a_p", frequency: "f" };
   /** The field's own way to write a name: ζ with index fc. */
   function symbol(name) {
     const [head, ...index] = (greek[name] ?? name).replace(/^([A-Za-z])(\d+)$/, "$1_$2").split("_");
@@ -94,7 +92,7 @@
     });
     number.addEventListener("input", () => given(number.value.trim()));
     at(parent).append(made);
-    rows[name] = (value, isGiven = true) => {
+    rows[name] = (value, isGiven) => {
       const isFinite = Number.isFinite(value);
       if (document.activeElement !== number) number.value = isFinite ? String(Number(value.toPrecision(6))) : fields[name];
       if (document.activeElement !== range && isFinite) range.value = scale(slider()).part(value);
@@ -116,10 +114,6 @@
   for (const of of tables.numbers) {
     row(of.name === "tolerance" ? "computed" : "motion", { ...of, slider: () => of.slider }, (value) => give(of.name, value));
   }
-  row("step", { name: "step", unit: "s", description: "step of RK4", slider: () => [1e-5, 0.02] }, (value) => {
-    step = value;
-    later();
-  });
 
   at("preset").append(...tables.presets.map(({ name }) => new Option(name === "mcmanus" ? "McManus's bridge pier" : "Evison's shear wall", name)));
   at("ground").append(
@@ -176,7 +170,6 @@
       rows[name](Number(fields[name] ?? (name === "cycles" ? cycles : usual)), name in fields);
       rows[name].element.hidden = !own.includes(name);
     }
-    rows.step(Number(step), false);
     at("reading").hidden = !isFile();
     at("remarks").textContent = [`${about.samples} samples, peak ${short(about.pga)} g`, ...about.remarks, ...about.warnings].join("; ");
     const derivedLine = ({ name, unit, description, value }) =>
@@ -243,15 +236,12 @@
         update(1e-2);
       });
     }
-    later();
-  }
-  function later() {
     clearTimeout(timer);
     timer = setTimeout(settle, 150);
   }
 
   function settle() {
-    const scene = new URLSearchParams({ ...fields, ...(tab === "play" ? {} : { tab }), ...(tab === "speed" ? { step } : {}) });
+    const scene = new URLSearchParams({ ...fields, ...(tab === "play" ? {} : { tab }) });
     history.replaceState(null, "", `#${scene}`);
     update(1e-4);
     if (at("problem").hidden) panels[tab]();
@@ -263,9 +253,9 @@
   worker.postMessage({ module });
   let job = 0;
   let onPart;
-  function ask(kind, scene, part, more = {}) {
+  function ask(kind, scene, part) {
     onPart = part;
-    worker.postMessage({ ...more, kind, fields: JSON.stringify(scene), job: ++job });
+    worker.postMessage({ kind, fields: JSON.stringify(scene), job: ++job });
   }
   worker.onmessage = ({ data }) => {
     if (data.job !== job) return;
@@ -409,58 +399,6 @@
     give("ground", shape);
   });
 
-  function drawSpeed() {
-    const tolerances = Array.from({ length: 10 }, (_, i) => `1e-${i + 3}`);
-    const steps = Array.from({ length: 10 }, (_, i) => 0.02 / 2 ** i);
-    const all = [...tolerances.map((tolerance) => ({ tolerance })), ...steps.map((step) => ({ step }))];
-    const settings = [{ tolerance: fields.tolerance ?? "1e-9" }, { step: Number(step) }, ...all];
-    const found = [];
-    at("methods").tBodies[0].replaceChildren();
-    ask("speed", fields, (part) => {
-      found.push({ ...part, error: unlimited(part.error), isOwn: found.length < 2 });
-      if (found.length <= 2) {
-        const name = part.tolerance ? `engine, ${part.tolerance}` : `RK4, ${step} s`;
-        const time = `${short(Number(part.time.toPrecision(2)))} ms`;
-        at("methods").tBodies[0].append(line([name, unlimited(part.error).toExponential(1), part.evaluations, time]));
-      }
-      drawPrecision(found);
-    }, { settings });
-  }
-
-  function drawPrecision(found) {
-    const chart = at("precision");
-    const { width, height } = chart.getBoundingClientRect();
-    chart.setAttribute("viewBox", `0 0 ${width} ${height}`);
-    chart.replaceChildren();
-    const [left, right, top, bottom] = [52, width - 14, 22, height - 34];
-    const x = (evaluations) => left + (Math.log10(evaluations / 1e3) / 4) * (right - left);
-    const y = (error) => top + ((-Math.log10(Math.min(10, Math.max(1e-14, error))) + 1) / 15) * (bottom - top);
-    const power = (exponent) => `10${[...String(exponent)].map((digit) => "⁰¹²³⁴⁵⁶⁷⁸⁹"[digit] ?? "⁻").join("")}`;
-    for (const exponent of [3, 4, 5, 6, 7]) {
-      svg(chart, "line", { class: "grid", x1: x(10 ** exponent), x2: x(10 ** exponent), y1: top, y2: bottom });
-      svg(chart, "text", { x: x(10 ** exponent), y: bottom + 15, "text-anchor": "middle" }, power(exponent));
-    }
-    for (const exponent of [0, -3, -6, -9, -12]) {
-      svg(chart, "line", { class: "grid", x1: left, x2: right, y1: y(10 ** exponent), y2: y(10 ** exponent) });
-      svg(chart, "text", { x: left - 6, y: y(10 ** exponent) + 4, "text-anchor": "end" }, power(exponent));
-    }
-    svg(chart, "text", { x: left, y: 13 }, "error of θ and u over their largest");
-    svg(chart, "text", { class: "muted", x: right, y: bottom + 30, "text-anchor": "end" }, "evaluations and steps");
-    const isEngine = ({ tolerance }) => tolerance !== undefined;
-    for (const [name, colour, of] of [["engine", "--blue", isEngine], ["RK4", "--orange", (part) => !isEngine(part)]]) {
-      const points = found.filter(of).sort((a, b) => a.evaluations - b.evaluations);
-      const d = points.map(({ evaluations, error }, i) => `${i ? "L" : "M"}${x(evaluations)} ${y(error)}`).join("");
-      svg(chart, "path", { class: "curve", style: `stroke:var(${colour})`, d });
-      const style = `fill:var(${colour})`;
-      for (const { evaluations, error, isOwn } of points) {
-        svg(chart, "circle", { class: isOwn ? "chosen" : "", cx: x(evaluations), cy: y(error), r: isOwn ? 6 : 3, style });
-      }
-      const last = points.at(-1);
-      if (!last) continue;
-      svg(chart, "text", { x: x(last.evaluations) - 8, y: y(last.error) - 10, "text-anchor": "end", style }, name);
-    }
-  }
-
   function drawTake() {
     const option = (name) => `--${name.replaceAll("_", "-")} ${fields[name]}`;
     const options = (names) => names.filter((name) => name in fields).map(option);
@@ -518,7 +456,6 @@
     play: drawValidity,
     compare: () => ask("compare", fields, drawLevels),
     map: drawMap,
-    speed: drawSpeed,
     take: drawTake,
   };
   function open(name) {

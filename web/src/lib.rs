@@ -2,18 +2,16 @@
 #![allow(non_snake_case)] // H, B: the paper's own letters
 
 mod map;
-mod runge_kutta;
 mod scene;
 
 use fmu_export::{Library, ModelName, Version};
-use rocking::engine::piece::Sample;
+use rocking::Structure;
 use rocking::levels::detail::Detail;
-use rocking::run::levels::{Criterion, REFERENCE_TOLERANCE, Verdict, compare, relative};
+use rocking::run::levels::{Criterion, Verdict, compare, relative};
 use rocking::run::validity::{self, ASSUMPTIONS, Limits};
-use rocking::run::{End, RunError, record::Record};
+use rocking::run::{RunError, record::Record};
 use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::{DERIVED, parameters::PARAMETERS};
-use rocking::{Run, State, Structure};
 use rocking_records::Unit;
 use rocking_sweep::{map::CLASSES, pulse::Shape};
 use rocking_view::Scene;
@@ -62,8 +60,6 @@ pub fn tables() -> String {
 pub struct Explorer {
     file: Option<File>,
     libraries: Vec<Library>,
-    /// The motion that methods are compared with, and of what it is.
-    reference: Option<(Fields, Vec<State>)>,
 }
 
 #[wasm_bindgen]
@@ -77,7 +73,6 @@ impl Explorer {
     /// The record's file from now on.
     pub fn take_record(&mut self, name: &str, bytes: Vec<u8>) {
         self.file = Some(File::new(name, bytes));
-        self.reference = None;
     }
 
     /// The libraries of the FMU, or the library, in `bytes` from now on; their platforms.
@@ -175,36 +170,6 @@ impl Explorer {
         .to_string())
     }
 
-    /// The engine at the scene's tolerance, or with `step` (s) RK4: errors of θ and u over their largest, against the
-    /// equations to 1e-12, and the evaluations, until 10/p_l after the ground motion.
-    pub fn measure(&mut self, fields: &str, step: Option<f64>) -> Result<String, String> {
-        let fields = Fields::read(fields)?;
-        let (structure, Ground { record, .. }) = self.load(&fields)?;
-        let end = record.end() + 10.0 / structure.p_l;
-        let after = (1..).map(|i| record.end() + 0.01 * f64::from(i)).take_while(|time| *time < end);
-        let instants: Vec<f64> = record.times().iter().copied().chain(after).collect();
-        let own = Run { end: End::At(end), ..fields.run(structure, &record)? };
-        let scene = fields.without(&["tolerance", "detail"]);
-        if self.reference.as_ref().is_none_or(|(of, _)| *of != scene) {
-            let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..own.clone() };
-            self.reference = Some((scene, sampled(&exact, &instants)?.0));
-        }
-        let (_, exact) = self.reference.as_ref().expect("it is there");
-        let (states, evaluations) = match step {
-            Some(step) => runge_kutta::run(&structure, &record, &instants, own.initial, step)?,
-            None => sampled(&Run { detail: Detail::Auto, ..own }, &instants)?,
-        };
-        let error = |of: fn(&State) -> f64| {
-            let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
-            let difference = largest(&mut states.iter().zip(exact).map(|(a, b)| of(a) - of(b)));
-            // one of them lies where the other stands
-            let has_gone = states.len() != exact.len() || states.iter().any(|state| !of(state).is_finite());
-            if has_gone { f64::INFINITY } else { relative((difference, largest(&mut exact.iter().map(of)))) }
-        };
-        let error = error(|state| state.theta).max(error(|state| state.u));
-        Ok(json!({ "error": error.to_string(), "evaluations": evaluations }).to_string())
-    }
-
     /// The ground motion before it is scaled, as a CSV file that every command reads.
     pub fn record_file(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
@@ -228,15 +193,6 @@ impl Explorer {
         let exported = fmu_export::export(version, &ModelName::default(), &structure, record, None, &self.libraries);
         Ok(exported.map_err(says)?.1)
     }
-}
-
-/// The states of `run` at `instants` (s) as far as it goes, and its evaluations with its steps.
-fn sampled(run: &Run, instants: &[f64]) -> Result<(Vec<State>, u64), String> {
-    let mut states = Vec::new();
-    let show = |sample: &Sample| states.push(sample.motion.state);
-    let work = run.sample(instants.iter().copied(), show, &mut ()).map_err(says)?.motion.work;
-    states.pop(); // the end
-    Ok((states, work.steps + work.evaluations))
 }
 
 /// `record` as a table; its numbers read back to the same bits.

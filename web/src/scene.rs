@@ -43,7 +43,7 @@ pub const GROUNDS: [(&str, &[&str]); 3] = [
 ];
 
 /// What is asked for, by name: parameters and natural quantities, the ground motion, how the motion is computed.
-#[derive(Clone, PartialEq, Deserialize)]
+#[derive(Deserialize)]
 #[serde(transparent)]
 pub struct Fields(BTreeMap<String, String>);
 
@@ -64,12 +64,6 @@ impl Fields {
     /// Reads the page's JSON.
     pub fn read(json: &str) -> Result<Fields, String> {
         serde_json::from_str(json).map_err(says)
-    }
-
-    /// These without those called `names`.
-    pub fn without(&self, names: &[&str]) -> Fields {
-        let kept = self.0.iter().filter(|(name, _)| !names.contains(&name.as_str()));
-        Fields(kept.map(|(name, text)| (name.clone(), text.clone())).collect())
     }
 
     pub fn text(&self, name: &str) -> Option<&str> {
