@@ -50,7 +50,6 @@ fn check_unit(line: &str) -> Result<(), String> {
 mod tests {
     use super::*;
     use crate::Record;
-    use proptest::prelude::*;
 
     const PACOIMA: &str = "PEER NGA STRONG MOTION DATABASE RECORD\n\
         San Fernando, 2/9/1971, Pacoima Dam (upper left abut), 164\n\
@@ -131,17 +130,5 @@ mod tests {
             at2_problem(THREE, &"9".repeat(400)),
             format!("5: the acceleration \"{}\"... is not a number", "9".repeat(40))
         );
-    }
-
-    proptest! {
-        /// A file cut short is refused, unless all that is lost is from its last number on.
-        #[test]
-        fn a_file_cut_anywhere_is_refused(values in prop::collection::vec(-1.0..1.0_f64, 2..12), cut in 0.0..1.0_f64) {
-            let words: Vec<_> = values.iter().map(|value| format!("{value:14.7e}")).collect();
-            let text = format!("{PACOIMA}NPTS= {}, DT= .01 SEC\n{}\n", words.len(), words.join("\n"));
-            let cut = (cut * text.len() as f64) as usize;
-            let record = read(&text[..cut], &Reading::default());
-            prop_assert!(record.is_err() || cut > text.trim_end().rfind('\n').unwrap());
-        }
     }
 }

@@ -75,12 +75,10 @@ pub enum UnitFrom {
     Assumed,
 }
 
-impl Column {
-    const ALL: &str = "all";
-}
+const ALL: &str = "all";
 
 fn all<'de, D: Deserializer<'de>>(word: D) -> Result<(), D::Error> {
-    let is_all = String::deserialize(word)? == Column::ALL;
+    let is_all = String::deserialize(word)? == ALL;
     is_all.then_some(()).ok_or_else(|| D::Error::custom("another column"))
 }
 
@@ -89,7 +87,7 @@ impl From<&str> for Column {
     fn from(text: &str) -> Column {
         match text.parse() {
             Ok(number) => Column::Number(number),
-            Err(_) if text == Column::ALL => Column::All,
+            Err(_) if text == ALL => Column::All,
             Err(_) => Column::Heading(text.into()),
         }
     }
@@ -98,7 +96,7 @@ impl From<&str> for Column {
 impl fmt::Display for Column {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Column::All => out.write_str(Column::ALL),
+            Column::All => out.write_str(ALL),
             Column::Number(number) => write!(out, "{number}"),
             Column::Heading(heading) => out.write_str(&quote(heading)),
         }

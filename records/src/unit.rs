@@ -172,7 +172,7 @@ impl Stated {
     pub(super) fn of(heading: &str) -> Stated {
         const DIVIDERS: &[char] = &[' ', '\t', ',', ':', '=', '/', '_', '(', '[', '{'];
         const LONGEST: usize = 200;
-        if heading.len() > LONGEST || heading.eq_ignore_ascii_case("a_g") {
+        if heading.len() > LONGEST {
             return Stated::Nothing;
         }
         let starts = || iter::once(0).chain(heading.match_indices(DIVIDERS).map(|(index, _)| index + 1));
@@ -181,7 +181,8 @@ impl Stated {
             let before = heading[..*start].trim_end_matches(DIVIDERS);
             !is_number(before.rsplit(DIVIDERS).next().unwrap_or_default())
         };
-        let named = |start| Unit::named(to_bracket(start));
+        let is_a_g = |start: usize| heading[..start].to_lowercase().ends_with("a_");
+        let named = |start| Unit::named(to_bracket(start)).filter(|unit| *unit != Unit::G || !is_a_g(start));
         if let Some(unit) = starts().filter(is_free).find_map(named) {
             return Stated::Unit(unit);
         }
@@ -221,7 +222,8 @@ mod tests {
         ] {
             headings.iter().for_each(|heading| assert_eq!(Stated::of(heading), Stated::Unit(unit), "{heading}"));
         }
-        for nothing in ["a_g", "acc", "acceleration", "ground motion", "", "a_G", "ag", "EW", "peak 0.3 g", "in g: 0.3"]
+        for nothing in
+            ["a_g", "acc", "acceleration", "ground motion", "", "a_G", "ag", "EW", "peak 0.3 g", "in g: 0.3", "# a_g"]
         {
             assert_eq!(Stated::of(nothing), Stated::Nothing, "{nothing}");
         }
