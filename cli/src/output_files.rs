@@ -3,8 +3,8 @@
 use crate::{input, talk::say};
 use anyhow::{Context, bail, ensure};
 use std::{
-    fs,
-    io::{Write, stdout},
+    fs::{self, File},
+    io::{self, Write, stdout},
     path::{Path, PathBuf},
 };
 
@@ -61,7 +61,11 @@ impl OutputFile {
             let written = stdout().write_all(content).and_then(|()| stdout().flush());
             return written.context("standard output cannot be written");
         }
-        fs::write(&self.path, content).with_context(|| format!("{} cannot be written", self.path.display()))
+        let written = match fs::metadata(&self.path) {
+            Ok(there) if !there.is_file() => fs::write(&self.path, content), // a device or a pipe
+            _ => replace(&self.path, content),
+        };
+        written.with_context(|| format!("{} cannot be written", self.path.display()))
     }
 
     /// Writes all of it, and says where, as `what`.
@@ -72,5 +76,42 @@ impl OutputFile {
             say!("{what:<14} {}", path.display());
         }
         Ok(())
+    }
+}
+
+/// What is there stays until a file beside it is whole, with its permissions, and takes its place: a full disk loses nothing.
+fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
+    let target = path.canonicalize().unwrap_or_else(|_| path.into());
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)] // on Windows the folder decides
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    let mut file = builder.prefix(".rocking-fmu-").tempfile_in(folder)?;
+    match File::options().write(true).open(&target) {
+        Ok(there) => file.as_file().set_permissions(there.metadata()?.permissions())?,
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {}
+        Err(error) => return Err(error),
+    }
+    file.write_all(content)?;
+    file.persist(target)?;
+    Ok(())
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use std::os::unix::fs::PermissionsExt;
+
+    #[test]
+    fn what_was_there_stays_until_the_file_is_complete() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("out.csv");
+        fs::write(&path, "before").unwrap();
+        fs::set_permissions(&path, PermissionsExt::from_mode(0o640)).unwrap();
+        let before = fs::hard_link(&path, folder.path().join("before")).map(|()| folder.path().join("before")).unwrap();
+        OutputFiles::default().create(&path).unwrap().write(b"after").unwrap();
+        assert_eq!((fs::read(&path).unwrap(), fs::read(before).unwrap()), (b"after".into(), b"before".into()));
+        assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o640);
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
     }
 }

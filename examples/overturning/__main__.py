@@ -63,7 +63,7 @@ def beyond(point: dict[str, str]) -> dict[str, fr.Worst]:
     """What the model leaves out at a point of McManus's map: by the names of assumptions."""
     pulse = fr.pulse(point["shape"], amplitude=float(point["a_p/(g tan alpha_cg)"]), frequency=float(point["omega/p_l"]),
                      structure=MCMANUS)
-    return fr.simulate(MCMANUS, pulse).validity
+    return fr.simulate(MCMANUS, pulse).validity()
 
 
 def main() -> None:
