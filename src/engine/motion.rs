@@ -25,9 +25,9 @@ pub(crate) enum Event {
     /// |θ| is π/2 on this side.
     Overturning(Side),
     /// This dissipator begins to yield: pulled, +1, or pressed, −1.
-    Yielding(usize, i8),
+    Yielding(u8, i8),
     /// This dissipator ceases to yield.
-    Unloading(usize),
+    Unloading(u8),
 }
 
 /// Everything about a structure that changes with time.

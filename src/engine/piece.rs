@@ -209,9 +209,9 @@ pub(crate) struct Part<'a> {
 impl<'a> Part<'a> {
     /// The part as a step.
     #[inline]
-    fn step(&self) -> Start {
+    fn step(&self) -> Start<'a> {
         let Part { piece, start: (passed, state), end: (until, _) } = *self;
-        piece.model.start(state, piece.before.dissipators, piece.load.from(passed), until - passed)
+        piece.model.start(state, &piece.before.dissipators, piece.load.from(passed), until - passed)
     }
 
     /// Its halves, where the state between them is known without expanding the motion.
@@ -295,7 +295,7 @@ impl<'a> Part<'a> {
 
         let [(from, first), (_, last)] = self.ends();
         let load = LinearLoad { value: load.at(from), ..load };
-        let accelerations = level.accelerations(structure, phase, &step.state, load.value, &step.dissipators);
+        let accelerations = level.accelerations(structure, phase, &step.state, load.value, step.dissipators);
         let rates = Outputs::rates_by(structure, phase, &step.state, accelerations, load);
         std::array::from_fn(|i| {
             let of = |outputs: &Outputs| Measure::ALL[i].of(outputs).abs();

@@ -20,8 +20,8 @@
 //! that rate's own slope, which have a closed form, the rate passes 0 once at most.
 
 use crate::levels::oscillator::Oscillator;
-use crate::run::ground_motion::Segment;
 use crate::run::record::Record;
+use crate::run::record::Segment;
 use crate::series::bisection::last_where;
 use nalgebra::{Matrix2, Vector2};
 use std::f64::consts::{PI, TAU};

@@ -107,6 +107,7 @@ impl Detail {
 #[derive(Clone, Debug)]
 pub(crate) struct Model {
     pub structure: Structure,
+    pub detail: Detail,
     pub level: AnyLevel,
     /// Truncation error that a step may have.
     pub local_error: f64,
@@ -115,12 +116,18 @@ pub(crate) struct Model {
 impl Model {
     /// Of `structure` at the level `detail`, `restrained` or shaken vertically.
     pub(crate) fn new(structure: Structure, detail: Detail, local_error: f64, restrained: bool) -> Model {
-        Model { structure, level: detail.level(&structure, local_error, restrained), local_error }
+        Model { structure, detail, level: detail.level(&structure, local_error, restrained), local_error }
     }
 
     /// The step of `interval` (s) from `state` under `load`.
     #[inline]
-    pub(crate) fn start(&self, state: State, dissipators: Dissipators, load: LinearLoad, interval: f64) -> Start {
+    pub(crate) fn start<'a>(
+        &self,
+        state: State,
+        dissipators: &'a Dissipators,
+        load: LinearLoad,
+        interval: f64,
+    ) -> Start<'a> {
         let (a_g, a_top, a_v) = (load.on_foundation(), load.on_top(&self.structure), load.upwards());
         Start { state, a_g, a_top, a_v, dissipators, interval, local_error: self.local_error }
     }
@@ -133,27 +140,35 @@ pub(crate) enum AnyLevel {
     Nonlinear(Elastic<NonlinearRocking<false>>),
     Linear(Elastic<LinearRocking>),
     Modal(Elastic<ModalRocking>),
-    Rigid(Rigid<false>),
     FixedBase(FixedBase),
     RestrainedNonlinear(Elastic<NonlinearRocking<true>>),
     RestrainedLinear(Elastic<RestrainedLinear>),
+    Rigid(Rigid<false>),
     RestrainedRigid(Rigid<true>),
 }
+
+/// Does the same with a level of every type.
+macro_rules! by_level {
+    ($any:expr, $level:ident => $do:expr) => {
+        match $any {
+            AnyLevel::Nonlinear($level) => $do,
+            AnyLevel::Linear($level) => $do,
+            AnyLevel::Modal($level) => $do,
+            AnyLevel::FixedBase($level) => $do,
+            AnyLevel::RestrainedNonlinear($level) => $do,
+            AnyLevel::RestrainedLinear($level) => $do,
+            AnyLevel::Rigid($level) => $do,
+            AnyLevel::RestrainedRigid($level) => $do,
+        }
+    };
+}
+pub(crate) use by_level;
 
 impl Deref for AnyLevel {
     type Target = dyn Level;
 
     fn deref(&self) -> &Self::Target {
-        match self {
-            AnyLevel::Nonlinear(level) => level,
-            AnyLevel::Linear(level) => level,
-            AnyLevel::Modal(level) => level,
-            AnyLevel::Rigid(level) => level,
-            AnyLevel::FixedBase(level) => level,
-            AnyLevel::RestrainedNonlinear(level) => level,
-            AnyLevel::RestrainedLinear(level) => level,
-            AnyLevel::RestrainedRigid(level) => level,
-        }
+        by_level!(self, level => level)
     }
 }
 
@@ -170,7 +185,7 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
         match phase {
             Phase::FullContact if self.rocking.ties().is_none() => self.contact.as_ref()?.leap(start, structure.u_cr),
             Phase::FullContact => {
-                let limit = uplift::least_displacement(structure, start.a_v, start.interval, &start.dissipators);
+                let limit = uplift::least_displacement(structure, start.a_v, start.interval, start.dissipators);
                 self.contact.as_ref()?.leap(start, limit)
             }
             Phase::Rocking(side) => self.rocking.leap(side, start),

@@ -203,7 +203,7 @@ impl ElasticRocking for RestrainedLinear {
     }
 
     fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
-        let &Start { state, a_top, a_v, interval, ref dissipators, .. } = start;
+        let &Start { state, a_top, a_v, interval, dissipators, .. } = start;
         let span = interval.min(longest_restrained_span(structure));
         let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
         let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;

@@ -167,7 +167,7 @@ impl<const RESTRAINED: bool> ElasticRocking for NonlinearRocking<RESTRAINED> {
         // g + a_v now, and what it gains over the span
         let (g, lift) = if RESTRAINED { (g + start.a_v.value, start.a_v.slope * span) } else { (g, 0.0) };
         let mut held = RESTRAINED.then(|| {
-            let sum = Sum::of_moments(&ties(structure, side, &start.dissipators));
+            let sum = Sum::of_moments(&ties(structure, side, start.dissipators));
             TieSeries::new(sum, Angles::Any, state.theta)
         });
         let [(a, slope), (a_ground, slope_ground)] = [a_top, a_g].map(|a| (a.value, a.slope * span));

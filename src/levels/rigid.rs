@@ -71,7 +71,7 @@ fn accelerations(
 
 /// Writes the motion from `start` about `side` into `arc`.
 fn series<const RESTRAINED: bool>(structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
-    let &Start { state, a_g, a_top, a_v, interval, local_error, ref dissipators } = start;
+    let &Start { state, a_g, a_top, a_v, interval, local_error, dissipators } = start;
     let &Structure { p_l, tan_alpha_cg, J_P, .. } = structure;
     let g = structure.parameters().g;
     let sum = Sum::of_moments(&ties(structure, side, dissipators));
@@ -162,7 +162,7 @@ impl<const RESTRAINED: bool> Level for Rigid<RESTRAINED> {
         let first = |side: Side| {
             let mut push = push;
             if RESTRAINED {
-                let more = |a_v| side.sign() * Self::more_push(structure, side, a_v, &start.dissipators);
+                let more = |a_v| side.sign() * Self::more_push(structure, side, a_v, start.dissipators);
                 let held = more(start.a_v.value);
                 push = [push[0] + held, push[1] + (more(start.a_v.at(arc.span)) - held)];
             }
@@ -172,7 +172,7 @@ impl<const RESTRAINED: bool> Level for Rigid<RESTRAINED> {
         if RESTRAINED && right.sigma() == left.sigma() && right.sigma() < f64::INFINITY {
             let at = right.sigma() * arc.span;
             let load = Load { a_g: start.a_top.at(at), F_t: 0.0, a_v: start.a_v.at(at) };
-            let (_, side) = self.uplift_margin(structure, &start.state, load, &start.dissipators);
+            let (_, side) = self.uplift_margin(structure, &start.state, load, start.dissipators);
             return (right, side);
         }
         if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
@@ -231,8 +231,8 @@ impl<const RESTRAINED: bool> Level for Rigid<RESTRAINED> {
 pub(crate) fn a_t(structure: &Structure, phase: Phase, state: &State, theta_ddot: f64, load: Load) -> f64 {
     let &crate::Parameters { H, B, .. } = structure.parameters();
     let s = phase.side().sign();
-    H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * libm::cos(state.theta)
-        - load.a_v * libm::sin(state.theta)
+    let lifted = if load.a_v == 0.0 { 0.0 } else { load.a_v * libm::sin(state.theta) };
+    H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * libm::cos(state.theta) - lifted
 }
 
 /// Its time derivative, m/s³, given θ̈ and θ⃛; 0 once overturned.
@@ -280,11 +280,12 @@ pub(crate) fn bounds(structure: &Structure, phase: Phase, load: LinearLoad, arc:
     let (sin, cos) = libm::sincos(arc.theta[0]);
     let ground = [load.value.a_g, load.slope.a_g * arc.span];
     let up = [load.value.a_v, load.slope.a_v * arc.span];
+    let along = [0, 1].map(|k| cos * ground[k] - sin * up[k]);
     let row = |k: usize| {
         let theta_ddot = if k < arc.order { (k + 1) as f64 * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
         let centripetal = if k == 0 { offset * arc.theta_dot[0].powi(2) } else { 0.0 };
-        let ground = if k < 2 { cos * ground[k] - sin * up[k] } else { 0.0 };
-        [arc.theta[k], H * arc.theta[k], H * theta_ddot + centripetal + ground]
+        let along = if k < 2 { along[k] } else { 0.0 };
+        [arc.theta[k], H * arc.theta[k], H * theta_ddot + centripetal + along]
     };
     let [theta, sway, a_t] = extremes::bounds(row, arc.order, arc.reach);
     let change = |of: &Series| arc.used(of)[1..].iter().map(|c| c.abs()).sum::<f64>();

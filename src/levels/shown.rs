@@ -3,7 +3,7 @@
 //! δ_t (Eq 26) and a_t (Eq 27) are sums and products of the series of θ, u, sin θ and cos θ. They tell *where* an output is
 //! largest; what it is there is evaluated from the state. At the rigid level a_t is that of [`rigid`].
 
-use crate::levels::detail::{AnyLevel, Model};
+use crate::levels::detail::{Detail, Model};
 use crate::levels::output_series::{Turn, delta_t_bound};
 use crate::levels::rigid;
 use crate::mechanics::load::{LinearLoad, Load};
@@ -15,7 +15,7 @@ use crate::{Outputs, Phase, State};
 
 impl Model {
     fn is_rigid(&self) -> bool {
-        matches!(self.level, AnyLevel::Rigid(_) | AnyLevel::RestrainedRigid(_))
+        self.detail == Detail::Rigid
     }
 
     /// The outputs in `phase` and `state` under `load`.

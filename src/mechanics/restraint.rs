@@ -235,6 +235,9 @@ pub fn centring_moments(structure: &Structure) -> [f64; 2] {
 }
 
 impl Dissipators {
+    /// Of a structure that has not moved yet.
+    pub const NEW: Dissipators = Dissipators { plastic: [0.0; 2], yields: [0; 2], viscous: 0.0, hysteretic: 0.0 };
+
     /// After a transition to rocking about `side` at the rate `theta_dot` (rad/s), or at rest in contact (none): what goes on
     /// the way it yielded goes on yielding.
     pub(crate) fn after(mut self, structure: &Structure, rocking: Option<(Side, f64)>) -> Dissipators {
