@@ -375,8 +375,7 @@ impl Engine {
 
     /// The outputs now under `load`; once overturned, those of the instant before.
     pub fn outputs(&self, load: Load) -> Outputs {
-        let Motion { phase, state, dissipators, .. } = &self.motion; // a sample would copy the motion
-        self.model.outputs(phase.in_motion(), state, load, dissipators)
+        self.model.outputs(self.motion.phase.in_motion(), &self.motion.under(load)) // a sample would copy the motion
     }
 
     /// The reactions now under `load`; once overturned, those of the instant before.

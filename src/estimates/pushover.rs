@@ -22,7 +22,7 @@
 //! mass, and the force drops by that part (2e-3 for Evison, 5e-3 for McManus) as the base lifts off.
 
 use crate::mechanics::outputs::Outputs;
-use crate::mechanics::restraint::{Angles, Dissipators, Sum, ties, uplift_displacement};
+use crate::mechanics::restraint::{Angles, Dissipators, Sum, uplift_displacement};
 use crate::series::bisection::last_where;
 use crate::{Phase, Side, State, Structure};
 use std::f64::consts::FRAC_PI_2;
@@ -66,7 +66,7 @@ pub fn with_dissipators(structure: &Structure, theta: f64, dissipators: &Dissipa
     let s = side.sign();
     let (sin, cos) = libm::sincos(theta.abs());
     let (quadratic, linear) = (k * sin, k * (H * cos + B * sin) + m * g);
-    let held = s * Sum::of_moments(&ties(structure, side, dissipators)).at(Angles::Any, theta, 0.0);
+    let held = s * Sum::of_moments(structure, side, dissipators).at(Angles::Any, theta, 0.0);
     let constant = g * B * (m + m0 * cos * cos) + held * cos;
     let discriminant = linear * linear - 4.0 * quadratic * constant;
     if discriminant < 0.0 {

@@ -16,12 +16,12 @@
 
 use crate::levels::first_uplift;
 use crate::levels::full_contact::{self, ExactContact};
-use crate::levels::level::{ElasticRocking, Level, Rates};
+use crate::levels::level::{ElasticRocking, Level, Now, Rates};
 use crate::levels::linear::{LinearRocking, RestrainedLinear};
 use crate::levels::modal::ModalRocking;
 use crate::levels::nonlinear::NonlinearRocking;
 use crate::levels::rigid::Rigid;
-use crate::mechanics::load::{LinearLoad, Load, Ramp};
+use crate::mechanics::load::{LinearLoad, Ramp};
 use crate::mechanics::restraint::{Angles, Dissipators};
 use crate::mechanics::state::InitialStateError;
 use crate::mechanics::uplift;
@@ -233,31 +233,18 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
         uplift::farthest(structure, state) < limit
     }
 
-    fn uplift_margin(
-        &self,
-        structure: &Structure,
-        state: &State,
-        load: Load,
-        dissipators: &Dissipators,
-    ) -> (f64, Side) {
+    fn uplift_margin(&self, structure: &Structure, now: &Now) -> (f64, Side) {
         let turning = self.rocking.turning_moment(structure);
         match self.rocking.ties() {
-            None => uplift::margin(structure, &turning, state),
-            Some(_) => uplift::margin_of_restrained(structure, &turning, state, load.a_v, dissipators),
+            None => uplift::margin(structure, &turning, now.state),
+            Some(_) => uplift::margin_of_restrained(structure, &turning, now.state, now.load.a_v, now.dissipators),
         }
     }
 
-    fn accelerations(
-        &self,
-        structure: &Structure,
-        phase: Phase,
-        state: &State,
-        load: Load,
-        dissipators: &Dissipators,
-    ) -> [f64; 2] {
+    fn accelerations(&self, structure: &Structure, phase: Phase, now: &Now) -> [f64; 2] {
         match phase {
-            Phase::FullContact => [full_contact::acceleration(structure, state, load), 0.0],
-            Phase::Rocking(side) => self.rocking.accelerations(structure, side, state, load, dissipators),
+            Phase::FullContact => [full_contact::acceleration(structure, now.state, now.load), 0.0],
+            Phase::Rocking(side) => self.rocking.accelerations(structure, side, now),
             Phase::Overturned(_) => [0.0; 2],
         }
     }
@@ -291,19 +278,12 @@ impl Level for FixedBase {
         true
     }
 
-    fn uplift_margin(&self, _: &Structure, _: &State, _: Load, _: &Dissipators) -> (f64, Side) {
+    fn uplift_margin(&self, _structure: &Structure, _now: &Now) -> (f64, Side) {
         (1.0, Side::Right)
     }
 
-    fn accelerations(
-        &self,
-        structure: &Structure,
-        _phase: Phase,
-        state: &State,
-        load: Load,
-        _dissipators: &Dissipators,
-    ) -> [f64; 2] {
-        [full_contact::acceleration(structure, state, load), 0.0]
+    fn accelerations(&self, structure: &Structure, _phase: Phase, now: &Now) -> [f64; 2] {
+        [full_contact::acceleration(structure, now.state, now.load), 0.0]
     }
 }
 
@@ -311,6 +291,7 @@ impl Level for FixedBase {
 mod tests {
     use super::*;
     use crate::Parameters;
+    use proptest::prelude::*;
 
     /// Numbers between −1 and 1: a linear congruential generator.
     fn noise() -> impl Iterator<Item = f64> {
@@ -347,6 +328,36 @@ mod tests {
             assert!(off < 1e-12, "{detail:?}: u_dot is off by {off:e}");
             let off = (state.theta_dot - expected.theta_dot).abs();
             assert!(off <= 1e-12 * theta_dot, "{detail:?}: theta_dot is off by {off:e} of {theta_dot:e}");
+        }
+    }
+
+    proptest! {
+        /// A leap while rocking ends where the series does, and is refused wherever the series comes back to the ground.
+        #[test]
+        fn a_leap_agrees_with_the_series_and_never_passes_an_impact(
+            detail in prop_oneof![Just(Detail::Linear), Just(Detail::Modal)], s in prop_oneof![Just(1.0), Just(-1.0)],
+            u in -4e-3..4e-3f64, u_dot in -0.4..0.4f64, theta in 1e-4..0.05f64, theta_dot in -1.0..1.0f64,
+            value in -5.0..5.0f64, slope in -300.0..300.0f64, interval in 1e-4..0.02f64, zeta_fc in 0.0..0.2f64,
+        ) {
+            let structure = Structure::new(Parameters { zeta_fc, ..Parameters::MCMANUS }).unwrap();
+            let (level, phase) = (detail.level(&structure, 1e-15, false), Phase::Rocking(Side::of(s)));
+            let a_g = Ramp { value, slope };
+            let state = State { u, u_dot, theta: s * theta, theta_dot };
+            let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15, ..Start::default() };
+            let mut arc = Arc::default();
+            level.series(&structure, phase, &start, &mut arc);
+            prop_assert_eq!(arc.reach, 1.0);
+            let lowest = (0..=1000).map(|i| s * arc.at(f64::from(i) / 1000.0).theta).fold(1.0, f64::min);
+            if let Some(end) = level.leap(&structure, phase, &start) {
+                prop_assert!(lowest > 0.0);
+                let expected = arc.end();
+                prop_assert!((end.theta - expected.theta).abs() < 1e-14);
+                prop_assert!((end.theta_dot - expected.theta_dot).abs() < 1e-12);
+                prop_assert!((end.u - expected.u).abs() < 1e-14);
+                prop_assert!((end.u_dot - expected.u_dot).abs() < 1e-12);
+            } else {
+                prop_assert!(lowest < 0.03);
+            }
         }
     }
 }

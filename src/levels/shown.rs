@@ -4,13 +4,13 @@
 //! largest; what it is there is evaluated from the state. At the rigid level a_t is that of [`rigid`].
 
 use crate::levels::detail::{Detail, Model};
+use crate::levels::level::Now;
 use crate::levels::output_series::{Turn, delta_t_bound};
 use crate::levels::rigid;
-use crate::mechanics::load::{LinearLoad, Load};
+use crate::mechanics::load::LinearLoad;
 use crate::mechanics::outputs::damping;
-use crate::mechanics::restraint::Dissipators;
 use crate::series::extremes::{self, Bound};
-use crate::series::taylor::{Arc, Series};
+use crate::series::taylor::{Arc, Series, product};
 use crate::{Outputs, Phase, State};
 
 impl Model {
@@ -18,11 +18,12 @@ impl Model {
         self.detail == Detail::Rigid
     }
 
-    /// The outputs in `phase` and `state` under `load`.
-    pub(crate) fn outputs(&self, phase: Phase, state: &State, load: Load, dissipators: &Dissipators) -> Outputs {
+    /// The outputs in `phase`.
+    pub(crate) fn outputs(&self, phase: Phase, now: &Now) -> Outputs {
+        let &Now { state, load, .. } = now;
         let outputs = Outputs::of(&self.structure, phase, state, load.F_t);
         if self.is_rigid() {
-            let [_, theta_ddot] = self.level.accelerations(&self.structure, phase, state, load, dissipators);
+            let [_, theta_ddot] = self.level.accelerations(&self.structure, phase, now);
             return outputs.with_a_t(&self.structure, rigid::a_t(&self.structure, phase, state, theta_ddot, load));
         }
         outputs
@@ -49,7 +50,7 @@ impl Model {
         let &crate::Parameters { H, B, .. } = self.structure.parameters();
         let offset = phase.side().sign() * B;
         arc.series(|k| {
-            let elastic: f64 = (0..=k).map(|i| arc.u[i] * turn.cos[k - i]).sum();
+            let elastic = product(&arc.u, &turn.cos, k);
             let one = if k == 0 { 1.0 } else { 0.0 };
             offset * (one - turn.cos[k]) + elastic + H * turn.sin[k]
         })

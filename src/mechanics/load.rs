@@ -75,6 +75,11 @@ impl Load {
         Load { a_g, ..Load::default() }
     }
 
+    /// Whether all are numbers.
+    pub fn is_finite(&self) -> bool {
+        LOADS.iter().all(|quantity| (quantity.get)(self).is_finite())
+    }
+
     /// Accepts what lies within the ranges of [`LOADS`].
     #[inline]
     pub fn check(&self) -> Result<(), OutOfRange> {

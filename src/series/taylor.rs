@@ -22,6 +22,11 @@ pub type Series = [f64; MAX_ORDER + 2];
 /// A series of zeros.
 pub const ZERO: Series = [0.0; MAX_ORDER + 2];
 
+/// Coefficient `n` of the product of two series.
+pub(crate) fn product(a: &Series, b: &Series, n: usize) -> f64 {
+    a[..=n].iter().zip(b[..=n].iter().rev()).map(|(a, b)| a * b).sum()
+}
+
 /// Value at `sigma` of the polynomial with these coefficients.
 #[inline]
 pub fn evaluate(coefficients: &[f64], sigma: f64) -> f64 {
