@@ -110,7 +110,6 @@ mod tests {
     use super::*;
     use crate::Parameters;
     use crate::levels::nonlinear::accelerations;
-    use crate::mechanics::energy::energy;
     use crate::mechanics::load::Load;
     use approx::assert_relative_eq;
     use nalgebra::{Matrix2, Vector2};
@@ -136,21 +135,6 @@ mod tests {
             let unbalanced = mass * released + force * direction;
             let size = structure.k * u.abs() * H;
             prop_assert!(unbalanced.norm() < 1e-13 * size, "{unbalanced}");
-        }
-
-        /// The work of the force is the energy that the structure takes up.
-        #[test]
-        fn the_force_is_the_slope_of_the_energy(theta in 1e-3..1.2f64, preset in 0..2usize) {
-            let structure = specimens()[preset];
-            let step = 1e-4;
-            let [before, here, after] =
-                [theta - step, theta, theta + step].map(|theta| at_rotation(&structure, theta).unwrap());
-            let energy = |at: &Equilibrium| {
-                energy(&structure, at.phase, &State { u: at.u, theta: at.theta, ..State::default() })
-            };
-            let slope = (energy(&after) - energy(&before)) / (after.delta_t - before.delta_t);
-            let weight = structure.gamma * structure.parameters().m * structure.parameters().g;
-            prop_assert!((slope - here.force).abs() < 1e-6 * weight, "{slope} {}", here.force);
         }
 
         #[test]

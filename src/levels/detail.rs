@@ -21,7 +21,7 @@ use crate::levels::linear::{LinearRocking, RestrainedLinear};
 use crate::levels::modal::ModalRocking;
 use crate::levels::nonlinear::NonlinearRocking;
 use crate::levels::rigid::Rigid;
-use crate::mechanics::load::{LinearLoad, Ramp};
+use crate::mechanics::load::LinearLoad;
 use crate::mechanics::restraint::{Angles, Dissipators};
 use crate::mechanics::state::InitialStateError;
 use crate::mechanics::uplift;
@@ -179,15 +179,22 @@ pub(crate) struct Elastic<Rocking> {
     rocking: Rocking,
 }
 
+impl<Rocking: ElasticRocking> Elastic<Rocking> {
+    /// The |u| (m) below which the base stays down over the interval of `start`.
+    #[inline(always)]
+    fn limit(&self, structure: &Structure, start: &Start) -> f64 {
+        match self.rocking.ties() {
+            None => structure.u_cr,
+            Some(_) => uplift::least_displacement(structure, start.a_v, start.interval, start.dissipators),
+        }
+    }
+}
+
 impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
     #[inline(always)]
     fn leap(&self, structure: &Structure, phase: Phase, start: &Start) -> Option<State> {
         match phase {
-            Phase::FullContact if self.rocking.ties().is_none() => self.contact.as_ref()?.leap(start, structure.u_cr),
-            Phase::FullContact => {
-                let limit = uplift::least_displacement(structure, start.a_v, start.interval, start.dissipators);
-                self.contact.as_ref()?.leap(start, limit)
-            }
+            Phase::FullContact => self.contact.as_ref()?.leap(start, self.limit(structure, start)),
             Phase::Rocking(side) => self.rocking.leap(side, start),
             Phase::Overturned(_) => None,
         }
@@ -226,11 +233,7 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
     }
 
     fn stays_down(&self, structure: &Structure, state: &State, dissipators: &Dissipators) -> bool {
-        let limit = match self.rocking.ties() {
-            None => structure.u_cr,
-            Some(_) => uplift::least_displacement(structure, Ramp::default(), 0.0, dissipators),
-        };
-        uplift::farthest(structure, state) < limit
+        uplift::farthest(structure, state) < self.limit(structure, &Start { dissipators, ..Start::default() })
     }
 
     fn uplift_margin(&self, structure: &Structure, now: &Now) -> (f64, Side) {
@@ -290,7 +293,7 @@ impl Level for FixedBase {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Parameters;
+    use crate::{Parameters, Ramp};
     use proptest::prelude::*;
 
     /// Numbers between −1 and 1: a linear congruential generator.

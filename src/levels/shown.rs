@@ -19,14 +19,15 @@ impl Model {
     }
 
     /// The outputs in `phase`.
+    #[inline]
     pub(crate) fn outputs(&self, phase: Phase, now: &Now) -> Outputs {
-        let &Now { state, load, .. } = now;
-        let outputs = Outputs::of(&self.structure, phase, state, load.F_t);
-        if self.is_rigid() {
-            let [_, theta_ddot] = self.level.accelerations(&self.structure, phase, now);
-            return outputs.with_a_t(&self.structure, rigid::a_t(&self.structure, phase, state, theta_ddot, load));
-        }
-        outputs
+        let outputs = Outputs::of(&self.structure, phase, now.state, now.load.F_t);
+        if self.is_rigid() { self.with_rigid_a_t(outputs, phase, now) } else { outputs }
+    }
+
+    fn with_rigid_a_t(&self, outputs: Outputs, phase: Phase, now: &Now) -> Outputs {
+        let [_, theta_ddot] = self.level.accelerations(&self.structure, phase, now);
+        outputs.with_a_t(&self.structure, rigid::a_t(&self.structure, phase, now.state, theta_ddot, now.load))
     }
 
     /// Time derivatives of the outputs under `load`, given (ü, θ̈) and (u⃛, θ⃛).
