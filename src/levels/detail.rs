@@ -66,9 +66,7 @@ impl Detail {
             Detail::FixedBase => "fixed_base",
         }
     }
-}
 
-impl Detail {
     /// Whether a motion may start from `initial` at this level.
     pub(crate) fn check_start(self, &State { u, u_dot, theta, .. }: &State) -> Result<(), InitialStateError> {
         match self {
