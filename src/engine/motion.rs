@@ -1,6 +1,8 @@
 //! Everything about a structure that changes with time, in a few dozen numbers.
 
+use crate::levels::level::Now;
 use crate::levels::rules::ChatterLimit;
+use crate::mechanics::load::Load;
 use crate::mechanics::reactions::Impulse;
 use crate::mechanics::restraint::Dissipators;
 use crate::{Phase, Side, State};
@@ -25,9 +27,9 @@ pub(crate) enum Event {
     /// |θ| is π/2 on this side.
     Overturning(Side),
     /// This dissipator begins to yield: pulled, +1, or pressed, −1.
-    Yielding(usize, i8),
+    Yielding(u8, i8),
     /// This dissipator ceases to yield.
-    Unloading(usize),
+    Unloading(u8),
 }
 
 /// Everything about a structure that changes with time.
@@ -53,6 +55,12 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// It under `load`.
+    #[inline]
+    pub(crate) fn under(&self, load: Load) -> Now<'_> {
+        Now { state: &self.state, load, dissipators: &self.dissipators }
+    }
+
     /// Whether a transition is due at this instant: state and phase are those before it.
     pub fn is_transition_due(&self) -> bool {
         self.due.is_some()
@@ -70,9 +78,7 @@ impl Motion {
             }
         }
     }
-}
 
-impl Motion {
     /// For how long contact is held from now on because too many transitions came before, s.
     pub fn held(&self) -> f64 {
         self.chatter.held
