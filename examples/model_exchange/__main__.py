@@ -6,11 +6,10 @@
 import argparse
 from pathlib import Path
 
-from coupling.tables import markdown
 from first_run import PACOIMA_DAM, RECORD
 from tqdm import tqdm
+from validation import report
 from validation.figures import FIXED, QUIET, ROCKING, SMOOTH, save, subplots
-from validation.report import write_page
 
 from .hosts import SAMPLES_ARE_EVENTS, Scene, co_simulation, dop853, fmpy_cvode, fmpy_euler, sundae, sundae_told
 
@@ -47,7 +46,7 @@ def cells(result, exact) -> list:
 def table(found, exact) -> str:
     """Every run of a scene."""
     rows = [[name, f"{setting:g}", *cells(result, exact)] for (name, setting), result in found.items()]
-    return markdown(["", "tolerance or step (s)", "error", "transitions (hidden)", "below the floor (rad)"], rows)
+    return report.table(["", "tolerance or step (s)", "error", "transitions (hidden)", "below the floor (rad)"], rows)
 
 
 def kinks_table(found) -> str:
@@ -59,7 +58,7 @@ def kinks_table(found) -> str:
             results.append(dop853(scene, tolerance))
             rows.append([scene.name, f"{tolerance:g}",
                          *(f"{result.error(exact):.1e}, {result.evaluations}" for result in results)])
-    return markdown(["", "tolerance", "CVODE through the samples", "CVODE anew at every sample", "DOP853 anew at every sample"], rows)
+    return report.table(["", "tolerance", "CVODE through the samples", "CVODE anew at every sample", "DOP853 anew at every sample"], rows)
 
 
 def plot(path: Path, found) -> None:
@@ -101,7 +100,7 @@ def main() -> None:
         kinks=kinks_table(found),
         tables="\n\n".join(tables),
     )
-    write_page(arguments.output, page, "make exchange")
+    report.write_page(arguments.output, page, "make exchange")
     print(arguments.output)
 
 
