@@ -51,8 +51,8 @@ NUMBER = r"\d[\d,]*\.?\d*(?:e[+−-]?\d+)?"
 
 
 def split(page):
-    """Words and numbers, without measured times and the line that says when they were measured."""
-    text = re.sub(r" [\d.]+ s \| \d+ \|$|^\*Made by .*", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    """Words and numbers, without the line that says when they were made."""
+    text = re.sub(r"^\*Made by .*", "", page.read_text(encoding="utf-8"), flags=re.MULTILINE)
     numbers = [float(number.replace(",", "").replace("−", "-")) for number in re.findall(NUMBER, text)]
     return re.sub(NUMBER, "#", text), numbers
 
