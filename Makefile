@@ -245,16 +245,16 @@ report: module
 	PYTHONPATH=examples $(PYTHON) -m validation
 	PYTHONPATH=examples $(PYTHON) -m literature
 
-restrained: .venv/test exporter
-	PYTHONPATH=examples $(PYTHON) -m restrained --exporter $(TARGET)/release/rocking-fmu
+restrained: module
+	PYTHONPATH=examples $(PYTHON) -m restrained
 
 overturning: module
 	PYTHONPATH=examples $(PYTHON) -m overturning
 
 coupling: .venv/test exporter out/mcmanus.fmu out/evison.fmu out/mcmanus3.fmu out/evison3.fmu
-	for example in bridge building_on_soil 'bridge_ssp --exporter $(TARGET)/release/rocking-fmu'; do \
-		PYTHONPATH=examples $(PYTHON) -m coupling.$$example || exit; done
-	PYTHONPATH=examples:tests OMP_NUM_THREADS=1 $(PYTHON) -m coupling
+	PYTHONPATH=examples $(PYTHON) -m coupling.bridge
+	PYTHONPATH=examples $(PYTHON) -m coupling.building_on_soil
+	PATH="$(abspath $(TARGET))/release:$$PATH" PYTHONPATH=examples:tests OMP_NUM_THREADS=1 $(PYTHON) -m coupling
 
 exchange: .venv/test out/mcmanus.fmu
 	PYTHONPATH=examples OMP_NUM_THREADS=1 $(PYTHON) -m model_exchange --fmu out/mcmanus.fmu

@@ -1,11 +1,6 @@
 """Coupled structures by the masters of examples/coupling, against the same systems integrated as one."""
 
 import functools
-import os
-import re
-import subprocess
-import sys
-from pathlib import Path
 
 import monolithic
 import numpy as np
@@ -21,7 +16,6 @@ from reference import EVISON, MCMANUS
 from validation.records import pacoima_dam
 
 TIME, A_G = pacoima_dam()
-ROOT = Path(__file__).parents[1]
 SHORT = slice(700)  # of the record: uplifts, impacts and landings of both piers
 
 
@@ -178,45 +172,7 @@ def test_passed_around_as_it_is_the_soils_loop_blows_up_at_any_step(mcmanus):
 def test_ssp_archive_of_the_bridge(piers, exporter, tmp_path, variant):
     """fmpy runs it as what it is: every value handed on after the step."""
     archive, (time, a_g) = tmp_path / "bridge.ssp", strong_motion()
-    bridge_ssp.write_archive(archive, exporter, time, a_g)
+    bridge_ssp.write_archive(archive, time, a_g, exporter)
     result = bridge_ssp.run(archive, time[-1], time[1] / 2, variant == "Jacobi, extrapolated")
     x = convergence.cosimulated(time, a_g, piers, deck(), variant, 2)[1:, 0]
     assert result["deck.x"][1::2] == pytest.approx(x, abs=1e-9 * np.max(np.abs(x)))
-
-
-def printed(example: str, *arguments) -> list[float]:
-    """The numbers in what an example prints."""
-    command = [sys.executable, "-m", f"coupling.{example}", *map(str, arguments)]
-    environment = os.environ | {"PYTHONPATH": str(ROOT / "examples")}
-    text = subprocess.run(command, env=environment, check=True, capture_output=True, text=True).stdout
-    return [float(number) for number in re.findall(r"(?<![\w.])\d+(?:\.\d+)?(?=[ %\n])", text)]
-
-
-def test_the_bridge_example_prints_the_peaks_of_the_monolithic_bridge(piers, tmp_path):
-    found = printed("bridge", "--piers", *piers, "--figure", tmp_path / "bridge.png")
-    system, response = convergence.monolithic_bridge(deck()), as_one(pacoima_dam)[-1]
-    expected = [1e3 * np.max(np.abs(response.y[:, 0]))]
-    forces = [system.bearing_forces(phases, y) for phases, y in zip(response.phases, response.y)]
-    for i, p in enumerate(system.structures):
-        uplift = 2 * p.B * np.sin(np.max(np.abs(response.y[:, 4 + 4 * i])))
-        expected += [1e3 * uplift, np.max(np.abs(forces), axis=0)[i], len(response.transitions[i])]
-    assert found[:7] == pytest.approx(expected, rel=1e-3)
-
-
-def test_the_bridge_in_model_exchange_prints_the_same(piers):
-    found = printed("bridge_model_exchange", "--piers", *piers)
-    response = as_one(pacoima_dam)[-1]
-    peaks = 1e3 * np.max(np.abs(response.y[:, [0, 4, 8]]), axis=0)
-    assert found[:4] == pytest.approx([*peaks, sum(map(len, response.transitions))], rel=5e-3)
-
-
-def test_the_example_on_soil_prints_the_peaks_of_the_monolithic_system(mcmanus, tmp_path):
-    found = printed("building_on_soil", mcmanus.path, "--figure", tmp_path / "soil.png")
-    system = monolithic.OnSoil((MCMANUS,), building_on_soil.MASS, building_on_soil.STIFFNESS, building_on_soil.DAMPING)
-    response = monolithic.integrate(system, TIME, A_G)
-    rigid = reference.integrate(MCMANUS, TIME, A_G)
-    _, _, u, u_dot, theta, theta_dot = response.y.T
-    soft = reference.Response(MCMANUS, TIME, u, u_dot, theta, theta_dot, response.phases[:, 0])
-    expected = [peak for found in (soft, rigid)
-                for peak in (1e3 * np.max(found.uplift), np.max(np.abs(found.a_t)) / MCMANUS.g)]
-    assert found == pytest.approx(expected, rel=5e-3)

@@ -1,4 +1,4 @@
-"""Writes docs/evidence/coupling.md and its pictures but for those of the three examples: see `make coupling`.
+"""Writes docs/evidence/coupling.md and its pictures but for those of two examples: see `make coupling`.
 
     PYTHONPATH=examples:tests python -m coupling
 """
@@ -7,17 +7,16 @@ import argparse
 from pathlib import Path
 
 from tqdm import tqdm
-from validation.report import write_page
+from validation import report
 
-from . import convergence, early_return, no_slopes, one_system, stability
+from . import bridge_ssp, convergence, early_return, no_slopes, one_system, stability
 from .bridge import PIERS
-from .tables import markdown
 
 
 def convergence_table(steps, errors) -> str:
     """Errors of every variant at every step."""
     rows = [[name, *(f"{value:.1e}" for value in values)] for name, values in errors.items()]
-    return markdown(["Pacoima Dam, step", *(f"{1e3 * h:g} ms" for h in steps)], rows)
+    return report.table(["Pacoima Dam, step", *(f"{1e3 * h:g} ms" for h in steps)], rows)
 
 
 def main() -> None:
@@ -40,16 +39,24 @@ def main() -> None:
     stability.plot_weak(figures / "stability_weak.png", measured)
     stability.plot_iterated(figures / "stability_sweeps.png", measured)
     steps, of_variants, transitions, _ = errors["Pacoima Dam"]
+    halved, slow = of_variants["the same, steps with transitions halved"], of_variants["Gauss-Seidel, extrapolated"]
     page = (Path(__file__).parent / "page.md").read_text(encoding="utf-8").format(
         convergence=convergence_table(steps, of_variants),
         early_return=early_return.table(*to_transitions),
         frequency=stability.FREQUENCY,
         one_system=one_system.table(*to_transitions),
         one_system_stability=one_system.stability_table(),
+        ssp=bridge_ssp.table(fmus),
         transitions=transitions,
+        longest=f"{1e3 * steps[0]:g} ms", shortest=f"{1e3 * steps[-1]:g} ms", middle=f"{1e3 * steps[2]:g} ms",
+        halved_longest=f"{halved[0]:.0e}", halved_shortest=f"{halved[-1]:.0e}",
+        slow_middle=f"{slow[2]:.0e}", slow_shortest=f"{slow[-1]:.0e}",
+        held_jacobi=f"{of_variants['Jacobi, held'][-1]:.0%}",
+        held_gauss_seidel=f"{of_variants['Gauss-Seidel, held'][-1]:.0%}",
+        **stability.findings(measured),
         **no_slopes.tables(fmus),
     )
-    write_page(arguments.output, page, "make coupling")
+    report.write_page(arguments.output, page, "make coupling")
     print(f"{arguments.output}, figures in {figures}")
 
 

@@ -120,6 +120,7 @@ def plot(path: Path, time, a_g, x, tops, uplifts, forces) -> None:
     for axis, place in zip(axes[1:], ("lower right", "upper right", "upper right")):
         axis.legend(loc=place, ncols=3)
     axes[-1].set(xlabel="time (s)", xlim=(0, time[-1]))
+    figure.suptitle("Two piers under one deck rock out of step")
     figure.align_ylabels()
     save(figure, path)
 

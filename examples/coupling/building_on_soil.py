@@ -82,6 +82,7 @@ def plot(path: Path, time, a_g, x, felt, on_soil, on_rock) -> None:
     for axis in axes[[0, 2, 3]]:
         axis.legend(loc="upper right", ncols=2)
     axes[-1].set(xlabel="time (s)", xlim=(0, time[-1]))
+    figure.suptitle("On soil the structure rocks farther and is accelerated less")
     figure.align_ylabels()
     save(figure, path)
 

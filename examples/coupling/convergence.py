@@ -102,5 +102,6 @@ def plot(path: Path, found) -> None:
         axis.set_xticks(1e3 * steps, [f"{1e3 * h:g}" for h in steps])
         axis.minorticks_off()
     axes[0].set_ylabel("largest error over the peak")
+    figure.suptitle("Fourth order takes iteration, lines of same moments, and steps that end at transitions")
     figure.legend(*axes[0].get_legend_handles_labels(), loc="outside lower center", ncols=2)
     save(figure, path)

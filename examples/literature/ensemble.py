@@ -203,5 +203,7 @@ def draw(runs: pd.DataFrame, path: Path) -> None:
     axes[0][0].set_ylabel("level: $\\theta_{max}/\\alpha$")
     axes[1][0].set_ylabel("part of the runs below")
     axes[1][0].legend(loc="upper left")
-    figures.save(figure, path, "Single runs and distributions, level by level",
+    title = "Single runs part; distributions agree, but for rigid blocks in place of soft structures"
+    figure.suptitle(title)
+    figures.save(figure, path, title,
                  "Above: the largest rotation of every run at each level against that of auto. Below: its distribution.")

@@ -142,5 +142,7 @@ def draw(cases: list[Case], path: Path) -> None:
     axes[0].plot([], [], "o", color="black", markersize=3, label="model, slender limit")
     axes[0].plot([], [], "o", color="black", markersize=4, fillstyle="none", label=f"model, $\\tan\\alpha$ = {STOCKY:g}")
     axes[0].legend(loc="upper left")
-    figures.save(figure, path, "Amplitudes that overturn a block",
+    title = "The model of a slender block overturns where the closed form does"
+    figure.suptitle(title)
+    figures.save(figure, path, title,
                  "Closed form for the slender block as lines, the model as dots, over the frequency of the pulse.")

@@ -6,11 +6,10 @@
 import argparse
 from pathlib import Path
 
-from coupling.tables import markdown
 from first_run import PACOIMA_DAM, RECORD
 from tqdm import tqdm
+from validation import report
 from validation.figures import FIXED, QUIET, ROCKING, SMOOTH, save, subplots
-from validation.report import write_page
 
 from .hosts import SAMPLES_ARE_EVENTS, Scene, co_simulation, dop853, fmpy_cvode, fmpy_euler, sundae, sundae_told
 
@@ -47,19 +46,43 @@ def cells(result, exact) -> list:
 def table(found, exact) -> str:
     """Every run of a scene."""
     rows = [[name, f"{setting:g}", *cells(result, exact)] for (name, setting), result in found.items()]
-    return markdown(["", "tolerance or step (s)", "error", "transitions (hidden)", "below the floor (rad)"], rows)
+    return report.table(["", "tolerance or step (s)", "error", "transitions (hidden)", "below the ground (rad)"], rows)
 
 
-def kinks_table(found) -> str:
-    """What it costs and brings to start anew at every sample, by solvers that count their evaluations."""
-    rows = []
-    for scene, (_, exact, _) in found.items():
-        for tolerance in KINKS_TOLERANCES:
-            results = [sundae_told(scene, tolerance, told) for told in (max(tolerance, 1e-6), min(tolerance, SAMPLES_ARE_EVENTS))]
-            results.append(dop853(scene, tolerance))
-            rows.append([scene.name, f"{tolerance:g}",
-                         *(f"{result.error(exact):.1e}, {result.evaluations}" for result in results)])
-    return markdown(["", "tolerance", "CVODE through the samples", "CVODE anew at every sample", "DOP853 anew at every sample"], rows)
+def kinks(found) -> dict:
+    """By scene and tolerance: CVODE through the samples, CVODE anew at every sample, DOP853."""
+    return {(scene, tolerance): [sundae_told(scene, tolerance, max(tolerance, 1e-6)),
+                                 sundae_told(scene, tolerance, min(tolerance, SAMPLES_ARE_EVENTS)),
+                                 dop853(scene, tolerance)]
+            for scene in found for tolerance in KINKS_TOLERANCES}
+
+
+def kinks_table(found, of_kinks) -> str:
+    """What it costs and brings to start anew at every sample."""
+    rows = [[scene.name, f"{tolerance:g}",
+             *(f"{result.error(found[scene][1]):.1e}, {result.evaluations}" for result in results)]
+            for (scene, tolerance), results in of_kinks.items()]
+    return report.table(["", "tolerance", "CVODE through the samples", "CVODE anew at every sample",
+                         "DOP853 anew at every sample"], rows)
+
+
+def spread(values, form: str = ".0e") -> str:
+    return f"{min(values):{form}} to {max(values):{form}}"
+
+
+def findings(found, of_kinks) -> dict[str, str]:
+    """What the page says first."""
+    errors = {(scene, name, setting): result.error(exact) for scene, (results, exact, _) in found.items()
+              for (name, setting), result in results.items()}
+    at_1e8 = {is_cvode: spread([error for (_, name, setting), error in errors.items()
+                                if setting == 1e-8 and ("CVode" in name or "CVODE" in name) == is_cvode])
+              for is_cvode in (True, False)}
+    loose = [error for (_, name, setting), error in errors.items() if name in SOLVERS and setting > 1e-6]
+    euler = [error for (_, name, _), error in errors.items() if name not in SOLVERS]
+    gains = [through.error(found[scene][1]) / anew.error(found[scene][1])
+             for (scene, tolerance), (through, anew, _) in of_kinks.items() if tolerance == min(KINKS_TOLERANCES)]
+    return dict(cvode=at_1e8[True], dop853=at_1e8[False], loose=len(loose), wrong=sum(error > 0.01 for error in loose),
+                euler=f"{min(euler):.0%}", gains=spread(gains, ".0f"))
 
 
 def plot(path: Path, found) -> None:
@@ -93,15 +116,17 @@ def main() -> None:
         found[scene] = results, exact, co_simulation(scene, 1e-12).error(exact)
     plot(arguments.output.with_suffix("") / "tolerance.png", found)
 
+    of_kinks = kinks(found)
     tables = [f"### {scene.name}\n\nCo-simulation: {exact.transitions} transitions; its input times 1 + 1e-12 moves the answer by "
               f"{floor:.1e}.\n\n{table(results, exact)}" for scene, (results, exact, floor) in found.items()]
     page = (Path(__file__).parent / "page.md").read_text(encoding="utf-8").format(
         deepest=max(result.depth for results, *_ in found.values() for result in results.values()),
         runs=sum(len(results) for results, *_ in found.values()),
-        kinks=kinks_table(found),
+        kinks=kinks_table(found, of_kinks),
+        **findings(found, of_kinks),
         tables="\n\n".join(tables),
     )
-    write_page(arguments.output, page, "make exchange")
+    report.write_page(arguments.output, page, "make exchange")
     print(arguments.output)
 
 

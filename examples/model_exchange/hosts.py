@@ -50,7 +50,7 @@ class Result:
 
     @property
     def depth(self) -> float:
-        """How far below the floor it was, rad: theta of the wrong sign while rocking."""
+        """How far below the ground it was, rad: theta of the wrong sign while rocking."""
         theta, phase = self.rows["theta"], self.rows["phase"]
         return max(np.max(np.where(phase == RIGHT, -theta, 0)), np.max(np.where(phase == LEFT, theta, 0)))
 

@@ -105,6 +105,7 @@ def draw(of: Release, path: Path) -> None:
     acceleration.set(ylabel="acceleration $a_t$ (g)", ylim=(-1.1, 1.1))
     displacement.plot(time, 1e3 * response["delta_t"], color=figures.ROCKING)
     displacement.set(ylabel="displacement $\\delta_t$ (mm)", xlabel="time (s)", xlim=(0, DURATION))
+    figure.suptitle("Every impact excites a vibration, and the rocking dies out")
     figure.align_ylabels()
     figures.save(figure, path)
 

@@ -130,6 +130,7 @@ def draw(dam: Test, pulse: Test, path: Path) -> None:
     axes[2, 0].set_ylabel("acceleration,\nrocking (g)")
     axes[3, 0].set_ylabel("acceleration,\nfixed base (g)")
     axes[2, 0].set_ylim(-1.2, 1.2)
+    figure.suptitle("Rocking caps the acceleration that a fixed base amplifies")
     figure.align_ylabels()
     figures.save(figure, path)
 

@@ -120,6 +120,7 @@ def draw(of: Release, c: Components, path: Path) -> None:
     vibration.plot(c.time, c.a_u / G, color=figures.SMOOTH, label=r"vibration mode, $a_u$")
     vibration.set(ylabel="acceleration (g)", xlabel="time (s)")
     vibration.legend(loc="upper right")
+    figure.suptitle("Between impacts a rocking mode and a vibration mode are the whole motion")
     figures.save(figure, path)
 
 

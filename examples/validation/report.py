@@ -62,10 +62,10 @@ class Section:
     source: str = "paper"  # what the second column holds
 
 
-def table(headings: list[str], lines: list[list[str]], texts: tuple[int, ...] = (0,)) -> str:
+def table(headings: list, lines: list[list], texts: tuple[int, ...] = (0,)) -> str:
     """A Markdown table; the columns `texts` are words, the others numbers."""
     rule = ["---" if column in texts else "---:" for column in range(len(headings))]
-    return "\n".join("| " + " | ".join(cells) + " |" for cells in [headings, rule, *lines])
+    return "\n".join("| " + " | ".join(map(str, cells)) + " |" for cells in [headings, rule, *lines])
 
 
 def comparison(section: Section) -> str:
@@ -101,7 +101,8 @@ def markdown(sections: list[Section], figures: str) -> str:
 
 def write_page(path: Path, text: str, command: str) -> None:
     """Writes a page with what it was made by, when, and on which processor."""
-    version = tomllib.loads(Path("Cargo.toml").read_text(encoding="utf-8"))["workspace"]["package"]["version"]
+    manifest = (Path(__file__).parents[2] / "Cargo.toml").read_text(encoding="utf-8")
+    version = tomllib.loads(manifest)["workspace"]["package"]["version"]
     processor = re.search("model name.*: (.*)", Path("/proc/cpuinfo").read_text(encoding="utf-8"))[1]
     made = f"*Made by `{command}`, {date.today()}, version {version}, on one machine with {processor}.*"
     path.write_text(f"{text.rstrip()}\n\n{made}\n", encoding="utf-8")

@@ -81,7 +81,8 @@ def draw(of: Frequencies, path: Path) -> None:
     axis.text(1e3 * EVISON.u_cr, 0.33, r" $u_{cr}$", color=figures.QUIET)
     axis.set(xscale="log", yscale="log", xlim=(0.05, 400), ylim=(0.3, 30),
              xlabel=r"largest lateral displacement of the half cycle, max $\delta_t$ (mm)",
-             ylabel=r"effective frequency $f_t$ (Hz)")
+             ylabel=r"effective frequency $f_t$ (Hz)",
+             title="Beyond $u_{cr}$ Eq 14 gives the frequency of every half cycle")
     axis.set_yticks([0.3, 1, 3, 10, 30], ["0.3", "1", "3", "10", "30"])
     axis.set_xticks([0.1, 1, 10, 100], ["0.1", "1", "10", "100"])
     axis.legend(loc="upper right")

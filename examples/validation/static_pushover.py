@@ -107,6 +107,7 @@ def draw(pushovers: dict[str, Pushover], path: Path) -> None:
     whole.text(215, 335, "negative stiffness")
     whole.text(300, 30, "overturning", ha="right")
     near.legend(loc="lower right")
+    figure.suptitle("From uplift on the stiffness is negative")
     figures.save(figure, path)
 
 

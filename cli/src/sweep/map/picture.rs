@@ -27,9 +27,9 @@ type Swatch = (RGBColor, &'static str);
 
 const CLASSES: [Swatch; 10] = [
     (RGBColor(240, 240, 240), "no uplift"),
-    (RGBColor(214, 234, 248), "rocks and stands, theta_max less than alpha_cg/4"),
-    (RGBColor(169, 211, 240), "rocks and stands, alpha_cg/4 to alpha_cg/2"),
-    (RGBColor(120, 178, 222), "rocks and stands, alpha_cg/2 to 3 alpha_cg/4"),
+    (RGBColor(214, 234, 248), "rocks and stands, θ_max less than α_cg/4"),
+    (RGBColor(169, 211, 240), "rocks and stands, α_cg/4 to α_cg/2"),
+    (RGBColor(120, 178, 222), "rocks and stands, α_cg/2 to 3 α_cg/4"),
     (RGBColor(70, 140, 196), "rocks and stands, more"),
     (colour::VERMILLION, "overturns without impact"),
     (colour::ORANGE, "overturns after one impact"),
@@ -175,7 +175,8 @@ fn panel((whole, area): (&Area, &Area), spectrum: &Spectrum, refinements: u32, k
     macro_rules! paint {
         ($x:expr, $y:expr) => {{
             let mut chart = builder.build_cartesian_2d($x, $y)?;
-            axes(&mut chart, axis_names(map), [8, 8])?;
+            let names = axis_names(map).map(|name| name.replace("omega", "ω").replace("alpha", "α"));
+            axes(&mut chart, names.each_ref().map(String::as_str), [8, 8])?;
             cells(whole, &chart, [&x, &y], spectrum, refinements, key)?;
         }};
     }
