@@ -45,17 +45,6 @@ impl Interface {
             Interface::ModelExchange => Stepping::default(),
         }
     }
-
-    /// Whether an FMU state can be kept in `stage`. Within a step none is.
-    pub(crate) const fn keeps_states_in(self, stage: Stage) -> bool {
-        match stage {
-            Stage::StepComplete | Stage::StepFailed => matches!(self, Interface::CoSimulation(_)),
-            Stage::EventMode => matches!(self.first_stage(), Stage::EventMode),
-            Stage::ContinuousTimeMode => matches!(self, Interface::ModelExchange),
-            Stage::IntermediateUpdateMode | Stage::IntermediateOutputs => false,
-            Stage::Instantiated | Stage::InitializationMode | Stage::Terminated | Stage::Error => true,
-        }
-    }
 }
 
 /// `fmi3IntermediateUpdateCallback`

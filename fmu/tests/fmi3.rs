@@ -208,6 +208,8 @@ unsafe extern "C" fn update(
     unsafe {
         let (mut value, mut rate) = (0.0, 0.0);
         assert_eq!(fmi3SetDebugLogging(c, 0, 0, null()), OK);
+        fmi3FreeInstance(c);
+        assert_eq!((fmi3Terminate(c), fmi3Reset(c), fmi3GetFMUState(c, &mut null_mut())), (ERROR, ERROR, ERROR));
         let got = fmi3GetFloat64(c, &theta, 1, &mut value, 1);
         let got = (got, fmi3GetOutputDerivatives(c, &theta, 1, &1, &mut rate, 1));
         assert_eq!((fmi3SetFloat64(c, &m, 1, end, 1), fmi3SetFloat64(c, &a_g, 1, &f64::NAN, 1)), (ERROR, ERROR));

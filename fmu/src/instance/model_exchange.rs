@@ -4,7 +4,6 @@
 //! The engine stands where the host is; [`Known`] is where the motion was last known to be right.
 
 use super::{Instance, Updated};
-use crate::condition::FARTHEST;
 use crate::failure::Failure;
 use crate::model::{Model, Outside};
 use crate::motion_log::log;
@@ -20,6 +19,9 @@ use rocking::{Load, Motion, State, Transition, Watch};
 /// kinks there is not as exact as it believes; below an error of some 1e-5 to start anew at each is the cheaper way
 /// (docs/evidence/model_exchange.md).
 const KINKS_MATTER: f64 = 1e-8;
+
+/// The largest state (SI units) that is taken from a host.
+const FARTHEST: f64 = 1e12;
 
 /// What came of a complete step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
