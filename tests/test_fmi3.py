@@ -174,7 +174,6 @@ def test_the_description_tells_of_both_interfaces(mcmanus, mcmanus3):
     with zipfile.ZipFile(mcmanus3) as archive:
         exchange = dict(ElementTree.fromstring(archive.read("modelDescription.xml")).find("ModelExchange").attrib)
     assert exchange.pop("modelIdentifier") == three.coSimulation.modelIdentifier
-    assert exchange.pop("canBeInstantiatedOnlyOncePerProcess") == "false"
     can = ["canGetAndSetFMUState", "canSerializeFMUState", "providesDirectionalDerivatives", "providesAdjointDerivatives"]
     assert exchange == dict.fromkeys([*can, "needsCompletedIntegratorStep"], "true")
     assert [(rate.variable.name, rate.variable.derivative.name) for rate in three.derivatives] == list(zip(RATES, STATES))

@@ -31,51 +31,42 @@ impl Platform {
     pub const ALL: [Platform; 5] =
         [Platform::Linux64, Platform::LinuxArm64, Platform::Windows64, Platform::Darwin64, Platform::DarwinArm64];
 
-    /// Its folder in an archive of FMI 3.0, the standard's tuple of architecture and system. `x86_64-darwin` has what
-    /// runs on both.
-    pub fn tuple(self) -> &'static str {
+    /// Its tuple, its folder in FMI 2.0, its target, and the file that cargo builds for it.
+    fn names(self) -> [&'static str; 4] {
         match self {
-            Platform::Linux64 => "x86_64-linux",
-            Platform::LinuxArm64 => "aarch64-linux",
-            Platform::Windows64 => "x86_64-windows",
-            Platform::Darwin64 => "x86_64-darwin",
-            Platform::DarwinArm64 => "aarch64-darwin",
+            Platform::Linux64 => ["x86_64-linux", "linux64", "x86_64-unknown-linux-gnu", "libFlexibleRocking.so"],
+            Platform::LinuxArm64 => {
+                ["aarch64-linux", "aarch64-linux", "aarch64-unknown-linux-gnu", "libFlexibleRocking.so"]
+            }
+            Platform::Windows64 => ["x86_64-windows", "win64", "x86_64-pc-windows-gnu", "FlexibleRocking.dll"],
+            Platform::Darwin64 => ["x86_64-darwin", "darwin64", "universal2-apple-darwin", "libFlexibleRocking.dylib"],
+            Platform::DarwinArm64 => {
+                ["aarch64-darwin", "aarch64-darwin", "aarch64-apple-darwin", "libFlexibleRocking.dylib"]
+            }
         }
     }
 
-    /// The folder of its libraries in an archive of `version`. FMI 2.0 has names for x86 alone; since 2.0.4 it asks for the tuples of FMI
-    /// 3.0 for all others. Hosts that know no tuples look for `darwin64` on every Mac: what stands there runs on both.
+    /// Its folder in an archive of FMI 3.0, the standard's tuple of architecture and system. `x86_64-darwin` has what
+    /// runs on both.
+    pub fn tuple(self) -> &'static str {
+        self.names()[0]
+    }
+
+    /// The folder of its libraries in an archive of `version`. FMI 2.0 has names for x86 alone; since 2.0.4 it asks for
+    /// the tuples of FMI 3.0 for all others. Hosts that know no tuples look for `darwin64` on every Mac: what stands
+    /// there runs on both.
     pub fn folder(self, version: Version) -> &'static str {
-        if version == Version::Fmi3 {
-            return self.tuple();
-        }
-        match self {
-            Platform::Linux64 => "linux64",
-            Platform::LinuxArm64 => "aarch64-linux",
-            Platform::Windows64 => "win64",
-            Platform::Darwin64 => "darwin64",
-            Platform::DarwinArm64 => "aarch64-darwin",
-        }
+        if version == Version::Fmi3 { self.tuple() } else { self.names()[1] }
     }
 
     /// What cargo, or cargo-zigbuild, calls it.
     pub fn target(self) -> &'static str {
-        match self {
-            Platform::Linux64 => "x86_64-unknown-linux-gnu",
-            Platform::LinuxArm64 => "aarch64-unknown-linux-gnu",
-            Platform::Windows64 => "x86_64-pc-windows-gnu",
-            Platform::Darwin64 => "universal2-apple-darwin",
-            Platform::DarwinArm64 => "aarch64-apple-darwin",
-        }
+        self.names()[2]
     }
 
     /// The file that cargo builds for it.
     pub fn file(self) -> &'static str {
-        match self {
-            Platform::Linux64 | Platform::LinuxArm64 => "libFlexibleRocking.so",
-            Platform::Windows64 => "FlexibleRocking.dll",
-            Platform::Darwin64 | Platform::DarwinArm64 => "libFlexibleRocking.dylib",
-        }
+        self.names()[3]
     }
 
     /// Where an archive of the model `name` has the library.

@@ -1,6 +1,7 @@
 //! `terminalsAndIcons/terminalsAndIcons.xml`: where the structure meets what is beneath it and above it.
 
-use model_description::fmi3::{BUS, FmiTerminalsAndIcons, SIGNAL, Terminal, TerminalMemberVariable, Terminals};
+use model_description::List;
+use model_description::fmi3::{BUS, FmiTerminalsAndIcons, SIGNAL, Terminal, TerminalMemberVariable};
 
 /// Name, what it is, and its variables.
 const TERMINALS: [(&str, &str, &[&str]); 2] = [
@@ -25,7 +26,7 @@ pub fn terminals() -> FmiTerminalsAndIcons {
         description: description.into(),
         members: members.iter().map(member).collect(),
     };
-    FmiTerminalsAndIcons { fmi_version: "3.0", terminals: Terminals { terminals: TERMINALS.map(terminal).into() } }
+    FmiTerminalsAndIcons { fmi_version: "3.0", terminals: List { items: TERMINALS.map(terminal).into() } }
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-use crate::{SeError, document};
+use crate::{List, SeError, document};
 use serde::Serialize;
 
 /// Root of `terminalsAndIcons.xml`.
@@ -10,7 +10,7 @@ pub struct FmiTerminalsAndIcons {
     pub fmi_version: &'static str,
     /// The terminals.
     #[serde(rename = "Terminals")]
-    pub terminals: Terminals,
+    pub terminals: List<Terminal>,
 }
 
 impl FmiTerminalsAndIcons {
@@ -18,14 +18,6 @@ impl FmiTerminalsAndIcons {
     pub fn to_xml(&self) -> Result<String, SeError> {
         document(self)
     }
-}
-
-/// Terminals.
-#[derive(Clone, Debug, Serialize)]
-pub struct Terminals {
-    /// The terminals.
-    #[serde(rename = "Terminal")]
-    pub terminals: Vec<Terminal>,
 }
 
 /// Variables that are connected together.

@@ -34,18 +34,14 @@ pub fn model_description(
             max_output_derivative_order: 1,
             provides_intermediate_update: true,
             might_return_early_from_do_step: true,
-            can_return_early_after_intermediate_update: false,
             has_event_mode: true,
         },
-        unit_definitions: fmi::UnitDefinitions { units: units::definitions(structure) },
-        type_definitions: fmi3::TypeDefinitions { enumeration_types: [&PHASES, &DETAILS].map(enumeration_type).into() },
-        log_categories: fmi::LogCategories { categories: logger::Category::ALL.map(log_category).into() },
+        unit_definitions: fmi::List { items: units::definitions(structure) },
+        type_definitions: fmi::List { items: [&PHASES, &DETAILS].map(enumeration_type).into() },
+        log_categories: fmi::List { items: logger::Category::ALL.map(log_category).into() },
         default_experiment: experiment.description(),
-        model_variables: fmi3::ModelVariables {
-            variables: (0..)
-                .zip(&*VARIABLES)
-                .map(|(at, variable)| of_type(at, variable, structure, contents))
-                .collect(),
+        model_variables: fmi::List {
+            items: (0..).zip(&*VARIABLES).map(|(at, variable)| of_type(at, variable, structure, contents)).collect(),
         },
         model_structure: model_structure(),
     }
@@ -62,7 +58,6 @@ fn enumeration_type(enumeration: &Enumeration) -> fmi3::EnumerationType {
 fn capabilities(name: &str) -> fmi3::Capabilities {
     fmi3::Capabilities {
         model_identifier: name.into(),
-        can_be_instantiated_only_once_per_process: false,
         can_get_and_set_fmu_state: true,
         can_serialize_fmu_state: true,
         provides_directional_derivatives: true,
