@@ -421,17 +421,6 @@ functions! {
         instance.get_directional_derivative(unknowns, knowns, seed, sensitivity)
     }
 
-    fmi3GetAdjointDerivative = GetAdjointDerivative(
-        unknowns: *const c_uint, nUnknowns: size_t, knowns: *const c_uint, nKnowns: size_t, seed: *const f64,
-        nSeed: size_t, sensitivity: *mut f64, nSensitivity: size_t,
-    ) |instance| {
-        check_count("nSeed", nSeed, nUnknowns)?;
-        check_count("nSensitivity", nSensitivity, nKnowns)?;
-        let (unknowns, knowns) = (values("unknowns", unknowns, nUnknowns)?, values("knowns", knowns, nKnowns)?);
-        let (seed, sensitivity) = (values("seed", seed, nSeed)?, room("sensitivity", sensitivity, nSensitivity)?);
-        instance.get_adjoint_derivative(unknowns, knowns, seed, sensitivity)
-    }
-
     /// Nothing is left to evaluate: `fmi3UpdateDiscreteStates` does it.
     fmi3EvaluateDiscreteStates = EvaluateDiscreteStates() |_instance| { Ok(()) }
 
@@ -536,6 +525,7 @@ functions! {
     fmi3SetClock = SetClock()
     fmi3GetNumberOfVariableDependencies = GetNumberOfVariableDependencies()
     fmi3GetVariableDependencies = GetVariableDependencies()
+    fmi3GetAdjointDerivative = GetAdjointDerivative()
     fmi3EnterConfigurationMode = EnterConfigurationMode()
     fmi3ExitConfigurationMode = ExitConfigurationMode()
     fmi3GetIntervalDecimal = GetIntervalDecimal()

@@ -85,9 +85,6 @@ pub struct Capabilities {
     /// Derivatives by inputs, in model exchange by states, too, can be asked for, in a direction.
     #[serde(rename = "@providesDirectionalDerivatives")]
     pub provides_directional_derivatives: bool,
-    /// The same, weighted over what is derived.
-    #[serde(rename = "@providesAdjointDerivatives")]
-    pub provides_adjoint_derivatives: bool,
 }
 
 /// Capabilities of the model exchange interface.

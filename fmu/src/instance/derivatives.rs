@@ -61,12 +61,6 @@ impl Instance {
         seed: &[f64],
         values: &mut [MaybeUninit<f64>],
     ) -> Result<(), Failure> {
-        let found = self.directional_derivative(unknowns, knowns, seed)?;
-        values.iter_mut().zip(found).for_each(|(value, derivative)| _ = value.write(derivative));
-        Ok(())
-    }
-
-    fn directional_derivative(&mut self, unknowns: &[u32], knowns: &[u32], seed: &[f64]) -> Result<Vec<f64>, Failure> {
         let variables = self.now.variables;
         let is_initializing = self.now.stage == Stage::InitializationMode;
         let mut direction = Load::default();
@@ -141,28 +135,7 @@ impl Instance {
         if let Some(at) = found.iter().position(|derivative| !derivative.is_finite()) {
             return Err(Failure::NoRate { variable: unknowns[at], time });
         }
-        Ok(found)
-    }
-
-    /// For each known the sum of the derivatives of the unknowns by it, weighted with `seed`.
-    pub fn get_adjoint_derivative(
-        &mut self,
-        unknowns: &[u32],
-        knowns: &[u32],
-        seed: &[f64],
-        values: &mut [MaybeUninit<f64>],
-    ) -> Result<(), Failure> {
-        for (unknown, &value) in unknowns.iter().zip(seed) {
-            if !value.is_finite() {
-                return Err(Failure::BadSlope { variable: find(self.now.variables, *unknown)?, value });
-            }
-        }
-        let mut sums = Vec::with_capacity(knowns.len());
-        for known in knowns {
-            let column = self.directional_derivative(unknowns, &[*known], &[1.0])?;
-            sums.push(column.iter().zip(seed).map(|(part, weight)| part * weight).sum());
-        }
-        values.iter_mut().zip(sums).for_each(|(value, sum)| _ = value.write(sum));
+        values.iter_mut().zip(found).for_each(|(value, derivative)| _ = value.write(derivative));
         Ok(())
     }
 }

@@ -140,11 +140,6 @@ impl Sequence<'_> {
         self.drawn.n + usize::from(self.one_in(40))
     }
 
-    /// How many values there are for the unknowns: as many, or another number.
-    pub fn count_of_unknowns(&mut self) -> usize {
-        self.drawn.unknowns + usize::from(self.one_in(40))
-    }
-
     /// How many texts there are.
     pub fn few(&mut self) -> usize {
         self.drawn.n = self.rng.usize(..4);
@@ -349,9 +344,9 @@ impl Sequence<'_> {
         self.references(&["a_g", "F_t", "a_v"])
     }
 
-    /// Changes of the knowns, or weights of the unknowns.
+    /// Changes of the knowns.
     pub fn seed(&mut self) -> *const f64 {
-        let seed = (0..=self.drawn.n.max(self.drawn.unknowns)).map(|_| self.number()).collect();
+        let seed = (0..=self.drawn.n).map(|_| self.number()).collect();
         self.hold(seed)
     }
 }

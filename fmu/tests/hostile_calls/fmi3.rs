@@ -42,10 +42,6 @@ pub const VERSION: Version = Version {
             call.unknowns(), call.count(), call.knowns(), call.count(), call.seed(), call.count_of_values(),
             call.derivatives(), call.count_of_values()
         )
-        fmi3GetAdjointDerivative(
-            call.unknowns(), call.count(), call.knowns(), call.count(), call.seed(), call.count_of_unknowns(),
-            call.values(), call.count_of_values()
-        )
         fmi3EvaluateDiscreteStates()
         fmi3UpdateDiscreteStates(
             call.room(1), call.room(1), call.room(1), call.room(1), call.room(1), call.finite(1)
@@ -105,7 +101,7 @@ const SLAVE: Table = Table {
         x x x x - - x - -  SetFloat64
         x x x - - - x - -  SetInt32 SetInt64 SetBoolean SetString
         x x x - x x x x x  GetFloat64 GetInt32 GetInt64 GetBoolean GetString
-        - x x - - x x x x  GetDirectionalDerivative GetAdjointDerivative
+        - x x - - x x x x  GetDirectionalDerivative
         - - x - x x - x x  GetOutputDerivatives
         - - x - - - - - -  DoStep EnterEventMode
         - - x - - x x - -  Terminate
@@ -124,7 +120,7 @@ const MODEL: Table = Table {
         - x - - - -  ExitInitializationMode
         x x x x - -  SetFloat64
         x x x - - -  SetInt32 SetInt64 SetBoolean SetString
-        - x x x x x  GetDirectionalDerivative GetAdjointDerivative GetContinuousStateDerivatives
+        - x x x x x  GetDirectionalDerivative GetContinuousStateDerivatives
         - x x x x x  GetEventIndicators GetContinuousStates GetNominalsOfContinuousStates
         - - x - - -  EvaluateDiscreteStates UpdateDiscreteStates EnterContinuousTimeMode
         - - x x - -  SetTime Terminate

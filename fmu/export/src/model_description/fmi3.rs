@@ -61,7 +61,6 @@ fn capabilities(name: &str) -> fmi3::Capabilities {
         can_get_and_set_fmu_state: true,
         can_serialize_fmu_state: true,
         provides_directional_derivatives: true,
-        provides_adjoint_derivatives: true,
     }
 }
 
