@@ -100,8 +100,8 @@ pub enum Failure {
     NoInput(&'static Variable),
     /// By this variable no directional derivative exists.
     #[error(
-        "{} cannot be a known of a directional derivative: only the inputs can, in initialization mode real parameters and \
-         initial values, later u, u_dot, theta, theta_dot and time",
+        "{} cannot be a known of a directional derivative: only the inputs can and, once the simulation has started, u, \
+         u_dot, theta, theta_dot and time",
         .0.name
     )]
     NoKnown(&'static Variable),
@@ -118,13 +118,6 @@ pub enum Failure {
         variable.name
     )]
     NoReaction { variable: &'static Variable, time: f64 },
-    /// No derivative by this parameter or initial value, by steps within the ranges to either side.
-    #[error(
-        "the derivative of {} by {known} does not exist here: {known} cannot change, or not to both sides alike",
-        variable.name,
-        known = known.name
-    )]
-    NoSensitivity { variable: &'static Variable, known: &'static Variable },
     /// The equations of motion are singular here.
     #[error("the derivative of {} does not exist at t = {time} s", variable.name)]
     NoRate { variable: &'static Variable, time: f64 },
