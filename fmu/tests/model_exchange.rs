@@ -72,7 +72,8 @@ fn a_step_over_an_impact_is_put_right() {
 /// After an uplift θ is exactly 0 and grows as t³: neither is that a root, nor is a return within the step missed.
 #[test]
 fn no_indicator_is_zero_where_integration_starts() {
-    let host = Host::started_model(&[("u_0", 8e-4)]);
+    let host = Host::new_model().initialized(&[("u_0", 8e-4)]);
+    assert_eq!(host.exit(), OK);
     let info = host.update().unwrap();
     assert_eq!((host.integer("transitions"), info.values_of_continuous_states_changed), (1, 0));
     assert_eq!(host.states().unwrap()[2], 0.0);
@@ -201,7 +202,7 @@ fn what_no_integrator_should_try_is_sent_back() {
 #[test]
 fn nobody_watches_peaks() {
     let host = Host::new_model();
-    assert_eq!((host.watch_peaks(), host.set_boolean("validity", 1)), (OK, OK));
+    assert_eq!((host.set_boolean("peaks", 1), host.set_boolean("validity", 1)), (OK, OK));
     let host = host.initialized(&[("theta_0", 0.02)]);
     host.log.borrow_mut().clear();
     assert_eq!((host.exit(), host.update().is_ok(), host.go_on()), (OK, true, OK));

@@ -72,7 +72,10 @@ const TOLERANCE: f64 = 1e-12;
 fn following(path: &Path, detail: Detail) -> Host {
     let host = Host::new();
     let scales = [("record_time_scale", SCALES.0), ("record_scale", SCALES.1)];
-    assert_eq!((host.set_integer("detail", detail as i32 + 1), host.set(&scales), host.watch_peaks()), (OK, OK, OK));
+    assert_eq!(
+        (host.set_integer("detail", detail as i32 + 1), host.set(&scales), host.set_boolean("peaks", 1)),
+        (OK, OK, OK)
+    );
     assert_eq!(host.set_record(path.to_str().unwrap()), OK);
     assert_eq!((host.setup(Some(TOLERANCE), 0.0, None), host.enter(), host.exit()), (OK, OK, OK), "{:?}", host.log);
     host
@@ -139,7 +142,7 @@ fn a_record_comes_when_it_is_asked_for() {
         let host = Host::new();
         host.write("steps.csv", "t (s),a\n5,2\n6,4\n7,1\n");
         let placement = [("record_scale", -0.5), ("record_time_scale", 0.5), ("record_start", 0.25)];
-        assert_eq!((host.set(&placement), host.set_record("steps.csv"), host.watch_peaks()), (OK, OK, OK));
+        assert_eq!((host.set(&placement), host.set_record("steps.csv"), host.set_boolean("peaks", 1)), (OK, OK, OK));
         assert_eq!((host.setup(None, start_time, None), host.enter()), (OK, OK));
         assert_eq!((host.get("record_duration"), host.get("a_ground")), (1.0, 0.0));
         assert_eq!(host.exit(), OK);
@@ -204,7 +207,12 @@ fn a_state_goes_on_in_the_midst_of_its_record() {
     let host = |text: &str| {
         let host = Host::initializing(&[]);
         host.write("quake.AT2", text);
-        assert_eq!((host.set_record("quake.AT2"), host.watch_peaks(), host.exit()), (OK, OK, OK), "{:?}", host.log);
+        assert_eq!(
+            (host.set_record("quake.AT2"), host.set_boolean("peaks", 1), host.exit()),
+            (OK, OK, OK),
+            "{:?}",
+            host.log
+        );
         host
     };
     let first = host(&at2(600));
@@ -271,7 +279,7 @@ fn a_record_is_kept_for_another_run() {
 #[test]
 fn contact_that_ends_at_once_has_no_peaks() {
     let host = Host::initializing(&[("a_g", 20.0)]);
-    assert_eq!((host.set_integer("detail", Detail::Rigid as i32 + 1), host.watch_peaks()), (OK, OK));
+    assert_eq!((host.set_integer("detail", Detail::Rigid as i32 + 1), host.set_boolean("peaks", 1)), (OK, OK));
     let before = host.get("a_t_max");
     assert_eq!((host.exit(), host.step(0.0, 1e-3)), (OK, OK));
     assert!(before <= host.get("a_t_max") && host.get("a_t_max") < 20.0, "{before}, {}", host.get("a_t_max"));

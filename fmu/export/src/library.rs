@@ -106,21 +106,11 @@ pub struct Library {
 #[derive(Debug, thiserror::Error)]
 pub enum LibraryError {
     /// No such file, or one that cannot be read.
-    #[error("cannot read the shared library {path}: {error}", path = .path.display())]
-    Unreadable {
-        /// The library.
-        path: PathBuf,
-        /// Why.
-        error: io::Error,
-    },
+    #[error("cannot read the shared library {path}: {1}", path = .0.display())]
+    Unreadable(PathBuf, io::Error),
     /// An archive that cannot be read.
-    #[error("cannot read the libraries in {path}: {error}", path = .path.display())]
-    Archive {
-        /// The archive.
-        path: PathBuf,
-        /// Why.
-        error: ZipError,
-    },
+    #[error("cannot read the libraries in {path}: {1}", path = .0.display())]
+    Archive(PathBuf, ZipError),
     /// Something else, or for another platform.
     #[error("{} is neither an FMU nor a shared library for one of {}", .0.display(), Platform::ALL.map(Platform::tuple).join(", "))]
     NoLibrary(PathBuf),
@@ -132,7 +122,7 @@ pub enum LibraryError {
 impl Library {
     /// The shared library at `path`, or those of the FMU there.
     pub fn read(path: &Path) -> Result<Vec<Library>, LibraryError> {
-        let content = fs::read(path).map_err(|error| LibraryError::Unreadable { path: path.to_owned(), error })?;
+        let content = fs::read(path).map_err(|error| LibraryError::Unreadable(path.to_owned(), error))?;
         Library::from_bytes(path, content)
     }
 
@@ -141,14 +131,14 @@ impl Library {
         if !content.starts_with(b"PK") {
             return Ok(vec![Library::new(path, content)?]);
         }
-        let broken = |error| LibraryError::Archive { path: path.to_owned(), error };
+        let broken = |error| LibraryError::Archive(path.to_owned(), error);
         let mut archive = ZipArchive::new(Cursor::new(content)).map_err(broken)?;
         let mut libraries = Vec::new();
         for at in 0..archive.len() {
             let mut file = archive.by_index(at).map_err(broken)?;
             if file.is_file() && file.name().is_ok_and(|name| name.starts_with("binaries/")) {
                 let mut library = Vec::new();
-                let unreadable = |error| LibraryError::Unreadable { path: path.to_owned(), error };
+                let unreadable = |error| LibraryError::Unreadable(path.to_owned(), error);
                 file.read_to_end(&mut library).map_err(unreadable)?;
                 libraries.push(Library::new(path, library)?);
             }
