@@ -18,7 +18,7 @@ pub enum Interface {
 pub struct Stepping {
     /// It handles events, between steps.
     pub event_mode: bool,
-    /// It takes a step that ends early.
+    /// It accepts steps that end early.
     pub early_return: bool,
 }
 
@@ -50,7 +50,7 @@ impl Interface {
 /// `fmi3IntermediateUpdateCallback`
 pub type IntermediateUpdateCallback = unsafe extern "C" fn(*mut c_void, f64, u8, u8, u8, u8, *mut u8, *mut f64);
 
-/// How a host is called back within a step. It is copied out of the instance, which the host has on loan meanwhile.
+/// How a host is called back within a step. It is copied out of the instance, which the host may call meanwhile.
 #[derive(Clone, Copy)]
 pub(crate) struct IntermediateUpdate {
     pub update: IntermediateUpdateCallback,

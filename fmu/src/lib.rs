@@ -9,8 +9,8 @@
 //! | `instance` | goes from stage to stage; `do_step`, `get_values`, `set_values`, `derivatives`, `model_exchange` |
 //! | [`snapshot`], [`condition`] | FMU states as bytes; all that the future of an instance depends on |
 //! | `sensitivity` | derivatives by states |
-//! | `present` | where an instance stands: stage, setup, inputs, model |
-//! | `shown` | every Real that is computed, at an instant |
+//! | `present` | what an instance holds between two calls: stage, setup, inputs, model |
+//! | `shown` | the values of all computed Reals at an instant |
 //! | `advance` | the model over one step |
 //! | `model` | the structure on its ground, from its start on |
 //! | `motion_log` | the messages about transitions and limits |

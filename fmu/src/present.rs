@@ -1,4 +1,4 @@
-//! Where an instance stands.
+//! What an instance holds between two calls.
 
 use crate::failure::Failure;
 use crate::ground::Kept;
@@ -10,7 +10,7 @@ use crate::setup::Setup;
 use crate::state_machine::Stage;
 use crate::variables::{VARIABLES, Variable};
 
-/// Where an instance stands.
+/// What an instance holds between two calls.
 pub(crate) struct Present {
     /// All of them: no call waits for the table.
     pub variables: &'static [Variable],
@@ -78,7 +78,7 @@ impl Present {
     }
 }
 
-/// The one of `variables`, which are all, that `reference` stands for.
+/// The variable that `reference` stands for in `variables`, the whole table.
 #[inline]
 pub(crate) fn find(variables: &'static [Variable], reference: u32) -> Result<&'static Variable, Failure> {
     let Some(variable) = variables.get(reference as usize) else { return Err(Failure::UnknownReference(reference)) };

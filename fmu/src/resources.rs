@@ -31,7 +31,7 @@ pub struct Contents {
     pub parameters: Parameters,
     /// The first is the one that the ground follows unless the host sets another.
     pub records: Vec<PackedRecord>,
-    /// The one that it follows vertically, likewise.
+    /// The one that it follows vertically unless the host sets another.
     pub vertical: Option<PackedRecord>,
 }
 

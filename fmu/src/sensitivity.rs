@@ -1,8 +1,8 @@
 //! Derivatives by the states, which have no formula.
 //!
 //! Differences to either side of the state are extrapolated to the limit of no difference (Neville's scheme, its entry of
-//! least change). The limits of both sides must agree: at a step or a kink there is no derivative. What is returned is
-//! exact to 1e-8, or to what rounding leaves of reactions that are small beside the forces they are made of.
+//! least change). What is returned is exact to 1e-8, or to what rounding leaves of reactions that are small beside the
+//! forces they are made of.
 
 use crate::failure::Failure;
 use crate::model::Model;
@@ -12,9 +12,9 @@ use crate::variables::Variable;
 use rocking::mechanics::state::COMPONENTS;
 use rocking::{LinearLoad, Phase, State};
 
-/// How far the limits of both sides may be apart, relative to the derivative, or to the unknown's value over the state's
-/// magnitude where that is more.
-const AGREEMENT: f64 = 1e-4;
+/// The largest change that the scheme may last make, relative to the derivative, or to the unknown's value over the
+/// state's magnitude where that is more.
+const LARGEST_CHANGE: f64 = 1e-4;
 
 /// First difference, in parts of the state's magnitude.
 const FIRST: f64 = 0.1;
@@ -46,7 +46,7 @@ pub(crate) fn by_state(
     };
     let signs = match motion.phase {
         Phase::Rocking(side) if COMPONENTS[which] == "theta" => vec![side.sign()],
-        _ => vec![1.0, -1.0],
+        _ => vec![-1.0, 1.0],
     };
     let here = shown(x).unwrap_or_else(|| vec![f64::NAN; unknowns.len()]);
     let sides = signs.into_iter().map(|sign| {
@@ -56,16 +56,13 @@ pub(crate) fn by_state(
     let sides: Vec<_> = sides.collect();
     model.engine.set_motion(motion);
     let derivative = |(at, here): (usize, &f64)| {
-        let agree = |distance: f64, value: f64| distance <= AGREEMENT * value.abs().max(here.abs() / scale);
-        let limits = sides.iter().map(|side| {
-            limit(side.iter().map(|(step, values)| (*step, (values[at] - here) / step)))
-                .filter(|(limit, change)| agree(*change, *limit))
-        });
-        match limits.collect::<Option<Vec<_>>>().as_deref() {
-            Some([(limit, _)]) => Ok(*limit),
-            Some([(a, of_a), (b, of_b)]) if agree((a - b).abs(), *a) => Ok(if of_a < of_b { *a } else { *b }),
-            _ => Err(Failure::NoRate { variable: unknowns[at], time: motion.time }),
-        }
+        let of_side = |side: &Vec<_>| {
+            limit(side.iter().map(|(step, values): &(f64, Vec<f64>)| (*step, (values[at] - here) / step)))
+        };
+        let best = sides.iter().filter_map(of_side).min_by(|(_, a), (_, b)| a.total_cmp(b));
+        let is_settled = |(limit, change): &(f64, f64)| *change <= LARGEST_CHANGE * limit.abs().max(here.abs() / scale);
+        let found = best.filter(is_settled).map(|(limit, _)| limit);
+        found.ok_or(Failure::NoRate { variable: unknowns[at], time: motion.time })
     };
     here.iter().enumerate().map(derivative).collect()
 }

@@ -42,8 +42,11 @@ fn they_are_linear_in_the_direction() {
     let (by_ground, by_force) = (by(&[("a_g", 1.0)]), by(&[("F_t", 1.0)]));
     let both = by(&[("a_g", -2.0), ("F_t", 10.0), ("F_t", 20.0)]);
     let [tiny, huge] = [1e-200, 1e100].map(|size| by(&[("F_t", size)]));
-    let upwards = derivatives(&host, &["R_v", "der(theta_dot)"], &[("a_v", 1.0)]).unwrap();
-    assert!(upwards.iter().all(|by| *by != 0.0), "{upwards:?}, of an input that has not been set");
+    for detail in [1.0, 3.0, 5.0] {
+        let host = Host::started(&[("theta_0", 0.3), ("detail", detail)]);
+        let upwards = derivatives(&host, &["R_v", "der(theta_dot)"], &[("a_v", 1.0)]).unwrap();
+        assert!(upwards.iter().all(|by| *by != 0.0), "{upwards:?}, of an input that has not been set");
+    }
     for (i, name) in OUTPUTS.into_iter().enumerate() {
         assert!(by_force[i] != 0.0, "{name}");
         assert_relative_eq!(both[i], -2.0 * by_ground[i] + 30.0 * by_force[i], max_relative = 1e-12, epsilon = 1e-12);
@@ -116,4 +119,5 @@ fn where_the_equations_are_singular_neither_they_nor_the_reactions_exist() {
                    inertia (m0, J0 too small)";
     host.assert_refused(|| host.try_get(&["theta", "R_m"]), Err(ERROR), message);
     assert_eq!(host.try_get(&["theta", "I_v"]), Ok(vec![0.01, 0.0]));
+    assert_eq!((host.step(1e-6, 0.1), host.get("time")), (ERROR, 0.0));
 }

@@ -90,7 +90,7 @@ pub struct Capabilities {
 /// Capabilities of the model exchange interface.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModelExchange {
-    /// What it can do as the other interface.
+    /// What both interfaces can do.
     #[serde(flatten)]
     pub capabilities: Capabilities,
     /// `fmi3CompletedIntegratorStep` has to be called.
@@ -101,7 +101,7 @@ pub struct ModelExchange {
 /// Capabilities of the co-simulation interface.
 #[derive(Clone, Debug, Serialize)]
 pub struct CoSimulation {
-    /// What it can do as the other interface.
+    /// What both interfaces can do.
     #[serde(flatten)]
     pub capabilities: Capabilities,
     /// Communication steps may differ in size.

@@ -127,7 +127,7 @@ pub struct ModelExchange {
     /// File name of the library, without extension.
     #[serde(rename = "@modelIdentifier")]
     pub model_identifier: String,
-    /// What it can do as the other interface.
+    /// What both interfaces can do.
     #[serde(flatten)]
     pub capabilities: Capabilities,
 }
@@ -147,7 +147,7 @@ pub struct CoSimulation {
     /// Highest order that `fmi2GetRealOutputDerivatives` gives.
     #[serde(rename = "@maxOutputDerivativeOrder")]
     pub max_output_derivative_order: u32,
-    /// What it can do as the other interface.
+    /// What both interfaces can do.
     #[serde(flatten)]
     pub capabilities: Capabilities,
 }

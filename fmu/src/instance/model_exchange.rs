@@ -33,8 +33,8 @@ pub struct Completed {
 }
 
 impl Model {
-    /// The ground's time at the host's clock, whose last digits are coarse where the start is late: what has been
-    /// announced as the instant of a sample is that instant.
+    /// The record's time at the host's `time` (s). Where the start is late the last digits of that are coarse: the instant
+    /// that was announced for a sample is that sample's.
     fn elapsed_at(&self, setup: &Setup, time: f64) -> Elapsed {
         let elapsed = Elapsed::default().and(time - setup.start_time);
         let resolution = 2.0 * f64::EPSILON * time.abs().max(setup.start_time.abs());
