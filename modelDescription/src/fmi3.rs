@@ -5,10 +5,6 @@ use crate::{
 };
 use serde::Serialize;
 
-mod terminals;
-
-pub use terminals::{BUS, FmiTerminalsAndIcons, SIGNAL, Terminal, TerminalMemberVariable};
-
 /// Root of `modelDescription.xml`.
 #[derive(Clone, Debug, Serialize)]
 #[serde(rename = "fmiModelDescription")]

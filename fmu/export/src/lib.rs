@@ -7,7 +7,6 @@ mod experiment;
 mod library;
 mod model_description;
 pub mod significant;
-mod terminals;
 mod units;
 
 use FlexibleRocking::ground::GroundRecord;
@@ -88,7 +87,7 @@ pub enum ExportError {
     /// Two records of one name, which is what the FMU knows them by.
     #[error("two records are called {0}: rename one of them; capitals and small letters are the same here")]
     SameName(String),
-    /// The model description, or what stands beside it in XML, cannot be written.
+    /// The model description cannot be written.
     #[error("modelDescription.xml: {0}")]
     Description(#[from] ::model_description::SeError),
     /// The documentation cannot be written.
@@ -170,7 +169,6 @@ fn entries(
             let description = model_description::fmi3::model_description(name, structure, contents, experiment);
             vec![
                 entry("modelDescription.xml", description.to_xml()?.into()),
-                entry("terminalsAndIcons/terminalsAndIcons.xml", terminals::terminals().to_xml()?.into()),
                 entry("terminalsAndIcons/icon.png", ICON.to_vec()),
             ]
         }
@@ -258,7 +256,7 @@ mod tests {
             ["linux64/Pier.so", "aarch64-linux/Pier.so", "win64/Pier.dll", "darwin64/Pier.dylib"],
         );
         let of_3 = (
-            ["terminalsAndIcons/terminalsAndIcons.xml", "terminalsAndIcons/icon.png"].as_slice(),
+            ["terminalsAndIcons/icon.png"].as_slice(),
             ["x86_64-linux/Pier.so", "aarch64-linux/Pier.so", "x86_64-windows/Pier.dll", "x86_64-darwin/Pier.dylib"],
         );
         for (version, (own, binaries)) in [(Version::Fmi2, of_2), (Version::Fmi3, of_3)] {
