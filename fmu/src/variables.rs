@@ -283,17 +283,7 @@ fn records() -> [Variable; 2] {
 }
 
 fn input(which: usize) -> Variable {
-    let quantity = &LOADS[which];
-    Variable {
-        name: quantity.name,
-        description: quantity.description,
-        data_type: DataType::Real { unit: quantity.unit, range: Some((quantity.min, quantity.max)) },
-        causality: Causality::Input,
-        feedthrough: &[],
-        states: &[],
-        initial_dependencies: &[],
-        source: Source::Input(which),
-    }
+    Variable { causality: Causality::Input, ..fixed(&LOADS[which], Source::Input(which)) }
 }
 
 /// The inputs.
@@ -616,16 +606,8 @@ fn output(
     feedthrough: &'static [&'static str],
     initial_dependencies: &'static [&'static str],
 ) -> Variable {
-    Variable {
-        name,
-        description,
-        data_type: DataType::Real { unit, range: None },
-        causality: Causality::Output,
-        feedthrough,
-        states: &[],
-        initial_dependencies,
-        source,
-    }
+    let data_type = DataType::Real { unit, range: None };
+    Variable { feedthrough, ..discrete(name, description, data_type, source, initial_dependencies) }
 }
 
 fn discrete(
@@ -659,15 +641,10 @@ fn fixed<T>(quantity: &'static Quantity<T>, source: Source) -> Variable {
 fn calculated(name: &'static str, initial_dependencies: &'static [&'static str]) -> Variable {
     let derived = const { &DERIVED }.iter().find(|derived| derived.name == name);
     let derived = derived.unwrap_or_else(|| panic!("no derived quantity is called {name}"));
+    let Derived { description, unit, .. } = derived;
     Variable {
-        name,
-        description: derived.description,
-        data_type: DataType::Real { unit: derived.unit, range: None },
         causality: Causality::CalculatedParameter,
-        feedthrough: &[],
-        states: &[],
-        initial_dependencies,
-        source: Source::Derived(derived),
+        ..output(name, unit, description, Source::Derived(derived), &[], initial_dependencies)
     }
 }
 

@@ -189,7 +189,7 @@ pub struct Category {
 }
 
 /// Settings of a simulation for which nothing else is asked.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct DefaultExperiment {
     /// Start time, s.
     #[serde(rename = "@startTime", serialize_with = "shortest")]

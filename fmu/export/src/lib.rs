@@ -9,10 +9,10 @@ mod model_description;
 pub mod significant;
 mod units;
 
+use ::model_description::DefaultExperiment;
 use FlexibleRocking::ground::GroundRecord;
 use FlexibleRocking::resources::{Contents, PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records};
 use archive::Entry;
-use experiment::Experiment;
 pub use library::{Library, LibraryError, Platform};
 use rocking::Structure;
 use rocking::run::record::{Record, SamplesError};
@@ -142,7 +142,7 @@ pub fn export(
         contents.vertical = Some(packed);
         followed.clone().map_or(Ok(()), |followed: Record| followed.with_vertical(&record.record).map(drop))?;
     }
-    let experiment = Experiment::new(structure, followed.as_ref());
+    let experiment = experiment::default_experiment(structure, followed.as_ref());
     let archive =
         archive::archive(&entries(version, name.as_str(), structure, &contents, experiment, files, &libraries)?)?;
     Ok((contents, archive))
@@ -154,7 +154,7 @@ fn entries(
     name: &str,
     structure: &Structure,
     contents: &Contents,
-    experiment: Experiment,
+    experiment: DefaultExperiment,
     records: Vec<Vec<u8>>,
     libraries: &[&Library],
 ) -> Result<Vec<Entry>, ExportError> {
@@ -250,7 +250,7 @@ mod tests {
         let libraries = Platform::ALL.map(library);
         let libraries: Vec<_> = libraries.iter().collect();
         let (structure, contents) = (structure(Parameters::EVISON), Contents::from(Parameters::EVISON));
-        let experiment = Experiment::new(&structure, None);
+        let experiment = experiment::default_experiment(&structure, None);
         let of_2 = (
             ["model.png"].as_slice(),
             ["linux64/Pier.so", "aarch64-linux/Pier.so", "win64/Pier.dll", "darwin64/Pier.dylib"],

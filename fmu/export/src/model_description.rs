@@ -2,7 +2,6 @@
 
 pub mod fmi3;
 
-use crate::experiment::Experiment;
 use crate::units;
 use FlexibleRocking::logger;
 use FlexibleRocking::resources::Contents;
@@ -20,7 +19,7 @@ pub fn model_description(
     name: &str,
     structure: &Structure,
     contents: &Contents,
-    experiment: Experiment,
+    default_experiment: fmi::DefaultExperiment,
 ) -> fmi::FmiModelDescription {
     fmi::FmiModelDescription {
         fmi_version: "2.0",
@@ -43,7 +42,7 @@ pub fn model_description(
         unit_definitions: fmi::List { items: units::definitions(structure) },
         type_definitions: fmi::List { items: [&PHASES, &DETAILS].map(enumeration_type).into() },
         log_categories: fmi::List { items: logger::Category::ALL.map(log_category).into() },
-        default_experiment: experiment.description(),
+        default_experiment,
         model_variables: fmi::ModelVariables {
             scalar_variables: (0..)
                 .zip(&*VARIABLES)
@@ -201,7 +200,8 @@ mod tests {
 
     fn described(contents: &Contents) -> fmi::FmiModelDescription {
         let structure = Structure::new(contents.parameters).unwrap();
-        model_description("Pier", &structure, contents, Experiment { stop_time: 4.0, step_size: 0.005 })
+        let experiment = fmi::DefaultExperiment { start_time: 0.0, stop_time: 4.0, tolerance: 1e-9, step_size: 0.005 };
+        model_description("Pier", &structure, contents, experiment)
     }
 
     /// What the table says of a few variables is what the description points at.

@@ -1,7 +1,6 @@
 //! The description in FMI 3.0.
 
 use super::{DESCRIPTION, attributes, index, is_initial_unknown, items, log_category, variable_type};
-use crate::experiment::Experiment;
 use crate::units;
 use FlexibleRocking::logger;
 use FlexibleRocking::resources::Contents;
@@ -16,7 +15,7 @@ pub fn model_description(
     name: &str,
     structure: &Structure,
     contents: &Contents,
-    experiment: Experiment,
+    default_experiment: fmi::DefaultExperiment,
 ) -> fmi3::FmiModelDescription {
     fmi3::FmiModelDescription {
         fmi_version: "3.0",
@@ -39,7 +38,7 @@ pub fn model_description(
         unit_definitions: fmi::List { items: units::definitions(structure) },
         type_definitions: fmi::List { items: [&PHASES, &DETAILS].map(enumeration_type).into() },
         log_categories: fmi::List { items: logger::Category::ALL.map(log_category).into() },
-        default_experiment: experiment.description(),
+        default_experiment,
         model_variables: fmi::List {
             items: (0..).zip(&*VARIABLES).map(|(at, variable)| of_type(at, variable, structure, contents)).collect(),
         },
@@ -126,7 +125,7 @@ mod tests {
     fn the_structure_points_at_what_the_table_names() {
         let contents = Contents::from(Parameters::MCMANUS);
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
-        let experiment = Experiment { stop_time: 4.0, step_size: 0.005 };
+        let experiment = crate::experiment::default_experiment(&structure, None);
         let description = model_description("Pier", &structure, &contents, experiment);
         let fmi3::ModelStructure { outputs, continuous_state_derivatives, initial_unknowns, event_indicators } =
             &description.model_structure;
