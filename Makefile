@@ -68,7 +68,7 @@ sudo := $$([ "$$(id -u)" = 0 ] || echo sudo)
 install = $(sudo) apt-get -qq update && \
 	$(sudo) env DEBIAN_FRONTEND=noninteractive apt-get -qq install --no-install-recommends $(1)
 
-.PHONY: demo test check lint tools heavy evidence study python module hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu old_glibc docs pages pictures report restrained overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
+.PHONY: demo test check lint tools heavy evidence study python module hosts browser explore docs/img/explore.png foreign packaged dist wheels wheel release out/release releasable windows zig qemu arm_python old_glibc docs pages pictures report restrained overturning coupling exchange bench licenses fuzz records library exporter mingw host_packages
 
 # pip while cargo compiles.
 demo:
@@ -161,6 +161,17 @@ old_glibc:
 		apt-get $(IN_DEBIAN11) -qq update && apt-get $(IN_DEBIAN11) -qq download libc6:amd64 && \
 		dpkg-deb --extract libc6_*.deb ..; }
 
+# Debian's Python for 64-bit ARM, in which that machine's module runs under qemu.
+ARM_PYTHON := out/arm_python
+FOR_ARM := -o APT::Architecture=arm64 -o APT::Architectures::=arm64 \
+	-o Dir::State=$(CURDIR)/$(ARM_PYTHON)/apt -o Dir::State::Status=/dev/null -o Dir::Cache=$(CURDIR)/$(ARM_PYTHON)/apt
+arm_python: qemu
+	-@test -e $(ARM_PYTHON)/usr || { mkdir -p $(ARM_PYTHON)/apt/lists/partial && cd $(ARM_PYTHON)/apt && \
+		python=$$(apt-cache depends python3-minimal | sed -n 's/.*Depends: \(python3[.0-9]*\)-minimal$$/\1/p') && \
+		apt-get $(FOR_ARM) -qq update && apt-get $(FOR_ARM) -qq download $$python-minimal lib$$python-minimal lib$$python-stdlib \
+			libc6 libgcc-s1 libstdc++6 libexpat1 libffi8 zlib1g && \
+		for package in *.deb; do dpkg-deb --extract $$package .. || exit; done; }
+
 # Whoever simulates it and gives it nothing sees the structure rock under a pulse.
 dist: exporter windows zig
 	mkdir -p out
@@ -189,7 +200,7 @@ wheels: wheel
 # packages; the one of the source is built and installed here alone, for it takes minutes.
 VERSION = $(shell sed -n 's/^version = "\(.*\)"$$/\1/p' Cargo.toml)
 release: releasable
-	$(MAKE) wheels qemu old_glibc host_packages .venv/heavy module
+	$(MAKE) wheels qemu arm_python old_glibc host_packages .venv/heavy module
 	$(MAKE) test
 	$(PYTEST) -m heavy -n auto --dist loadfile
 	PACKAGE='*.tar.gz' $(PYTEST) -m heavy tests/test_wheel.py

@@ -1,6 +1,8 @@
 """The packages in out/wheels: which machines each is for, what is in it, and what its module needs."""
 
 import re
+import subprocess
+import sys
 import tarfile
 import tomllib
 import zipfile
@@ -9,6 +11,7 @@ import binaries
 import pytest
 from conftest import ROOT
 from packages import package
+from pacoima import write_record
 
 pytestmark = pytest.mark.heavy
 
@@ -70,6 +73,22 @@ def test_module(wheel, tmp_path):
         case "macos":
             (binary, _) = binaries.for_macos(module, {"X86_64", "ARM64"})
     assert any(function.name.strip("_") == "PyInit__native" for function in binary.exported_functions)
+
+
+def test_arm_gives_the_bits_of_this_machine(tmp_path):
+    """The module for 64-bit ARM, in Debian's Python for it, under qemu."""
+    pythons = sorted((ROOT / "out/arm_python/usr/bin").glob("python3.*"))
+    if not pythons:
+        pytest.skip("out/arm_python is missing: `make arm_python` fetches it where apt-get can")
+    command = [sys.executable, "-m", "pip", "install", "--quiet", "--target", tmp_path / "arm", "--only-binary=:all:", "--python-version",
+               pythons[0].name.removeprefix("python"), "--platform", "manylinux2014_aarch64"]
+    subprocess.run([*command, package(f"{NAME}-{TAGS['linux-arm']}.whl")], check=True)
+    write_record(tmp_path / "pacoima.csv")
+    script = ("import platform, flexible_rocking as fr; run = fr.simulate(fr.Structure(preset='mcmanus'), fr.Record.read('pacoima.csv'))\n"
+              "print(platform.machine(), *((peak.value.hex(), peak.time.hex()) for peak in run.peaks.values()))")
+    machines = [[sys.executable], ["qemu-aarch64", "-E", f"PYTHONPATH={tmp_path}/arm", "-L", ROOT / "out/arm_python", pythons[0]]]
+    here, arm = (subprocess.run([*of, "-c", script], cwd=tmp_path, check=True, capture_output=True, text=True).stdout for of in machines)
+    assert arm.split()[0] == "aarch64" and arm.split()[1:] == here.split()[1:]
 
 
 def test_source():

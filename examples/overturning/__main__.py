@@ -2,6 +2,7 @@
 
 import argparse
 import csv
+import json
 import random
 import resource
 import subprocess
@@ -31,10 +32,10 @@ class Scene:
         rows = folder / f"{name}.csv"
         before = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime
         command = [Path(get_path("scripts"), "rocking-fmu"), "sweep", FOLDER / f"{name}.toml", "-o", rows]
-        done = subprocess.run([*command, "--picture", picture, "--quiet", "--format", "csv"], check=True,
+        done = subprocess.run([*command, "--picture", picture, "--quiet", "--format", "json"], check=True,
                               capture_output=True, text=True)
         self.seconds = resource.getrusage(resource.RUSAGE_CHILDREN).ru_utime - before
-        self.counts = list(csv.DictReader(done.stdout.splitlines()))
+        self.counts = json.loads(done.stdout)
         with open(rows, newline="", encoding="utf-8") as file:
             of = itemgetter("structures", "omega/p_l", "a_p/(g tan alpha_cg)")
             self.points = sorted(csv.DictReader(file), key=of)  # rows stand in the order in which runs ended
@@ -46,7 +47,7 @@ class Scene:
     def part(self, structure: str, of_class: str) -> str:
         """The part of a structure's grid that is of a class, in %."""
         found = [row for row in self.counts if (row["structure"], row["class"]) == (structure, of_class)]
-        return f"{100 * float(found[0]['part']):.1f}" if found else "–"
+        return f"{100 * found[0]['part']:.1f}" if found else "–"
 
     def least(self, structure: str, ratio: float) -> str:
         """The least a_p/(g tan α_cg) that overturns a structure at the ω/p_l of the grid next to `ratio`."""

@@ -7,6 +7,7 @@ use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
+use rocking::State;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::engine::piece::Sample;
 use rocking::mechanics::state::{COMPONENTS, INITIAL_VALUES};
@@ -14,7 +15,6 @@ use rocking::run::fall::Found;
 use rocking::run::peaks::{self, PEAKS};
 use rocking::run::validity::{ASSUMPTIONS, Limits};
 use rocking::run::{End, Ending};
-use rocking::{State, Watch};
 use rocking_cli::summary::Summary;
 use rocking_cli::tables::{RESPONSE, response_numbers};
 use rocking_cli::validity;
@@ -314,8 +314,7 @@ impl Run {
 
     fn __str__(&self) -> PyResult<String> {
         let (run, limits) = (self.run(), Limits::default());
-        let mut summary = Summary::new(&run.structure);
-        self.transitions.iter().for_each(|transition| summary.transition(transition));
+        let summary = Summary::new(&run.structure, &self.transitions);
         let (beyond, _) = run.validity(limits).map_err(refused)?;
         let lines = validity::section(&run.structure, run.detail, &beyond, &limits);
         Ok(format!("{}\n{}{}", run.ground.title(), summary.text(&self.found).map_err(refused)?, lines.join("\n")))

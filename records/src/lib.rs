@@ -5,6 +5,7 @@
 
 mod at2;
 mod cosmos;
+mod csv;
 mod esm;
 mod fields;
 mod knet;
@@ -15,6 +16,7 @@ mod table;
 mod text;
 mod unit;
 
+pub use csv::{csv, vertical_csv};
 use parsed::{Parsed, usual_step};
 use rocking::run::record::{MAX_SAMPLES, Record};
 pub use source::{Column, Format, Reading, Source, UnitFrom};
@@ -82,22 +84,29 @@ pub enum RecordError {
     },
 }
 
-/// What [`Reading`] must say to make a file readable.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What [`Reading`] must say to make a file readable, under the names that every door has for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Remedy {
     /// That the number of samples does not matter.
+    #[error("ignore_npts takes those")]
     IgnoreCount,
     /// The time between samples.
+    #[error("give it in seconds as dt")]
     Step,
     /// The column.
+    #[error("choose one as column, by number or heading")]
     Column,
     /// The column, or that every number is a sample.
+    #[error("choose one as column, by its number, or say that every number is a sample: column all")]
     ColumnOrAll,
     /// The channel, which has no name but its number.
+    #[error("choose one as column, by its number")]
     Channel,
     /// The unit.
+    #[error("say as unit what they are")]
     Unit,
     /// Nothing: the line itself must begin with `#`, if it is one of text.
+    #[error("begin a line that is no sample with #")]
     Comment,
 }
 

@@ -10,9 +10,10 @@
 
 use crate::mechanics::restraint::{Angles, Dissipators, Sum, ties};
 use crate::{Parameters, Side, Structure};
+use serde::Serialize;
 
 /// A point of the static loop.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Point {
     /// Rotation θ, rad.
     pub theta: f64,
