@@ -80,7 +80,7 @@ def test_a_run_is_the_command_lines(run, said):
     for peak in printed["peaks"]:
         found = run.peaks[peak["name"]]
         assert (found.value, found.time, found.unit) == (peak["peak"], peak["time"], peak["unit"])
-    validity = run.validity()
+    validity = run.validity
     for beyond in printed["validity"]:
         worst = validity[beyond["name"]]
         assert (worst.value, worst.limit) == (float(beyond["value"]), beyond["limit"])
@@ -159,7 +159,7 @@ def test_what_is_refused_has_the_command_lines_text(said, arguments, options):
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), ground, detail="fine"), 'detail = "fine" is unknown; these'),
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), ground, tolerance=1), "tolerance = 1 is out of range"),
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), ground, theta_0=9), "theta_0 = 9 rad is out of range"),
-    (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), ground).validity(tension=-1), "tension = -1 is out of range"),
+    (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), ground).validity_within(tension=-1), "tension = -1 is out of range"),
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), ground).at([0, -1]), "times[1] = -1 s is out of range"),
     (lambda ground: fr.sweep([], ground), 'structures "structures" is empty: give one or more'),
     (lambda ground: fr.sweep(fr.Structure(preset="mcmanus"), [ground, ground]), "two ground motions have the name"),

@@ -50,7 +50,7 @@ def least(points: pd.DataFrame, ratio: float) -> str:
 def beyond(point) -> pd.Series:
     """Of each assumption, whether a point of McManus's map goes beyond it."""
     pulse = fr.pulse(point["shape"], amplitude=point[Y], frequency=point[X], structure=MCMANUS)
-    validity = fr.simulate(MCMANUS, pulse).validity()
+    validity = fr.simulate(MCMANUS, pulse).validity
     return pd.Series({name: worst.first_beyond is not None for name, worst in validity.items()})
 
 

@@ -222,12 +222,18 @@ impl Run {
     }
 
     /// What the model leaves out on this run, exact, each a Worst: tension_max, R_v_min, mu_required, mu_impact,
-    /// tension_impact, energy_gain_max.
-    ///
-    /// Limits, of at least 0: friction (coefficient), tension and edge_load (over the weight; tension at an impact, over its
-    /// impulse), energy_gain (over the kinetic energy before an impact).
+    /// tension_impact, energy_gain_max; within the usual limits.
+    #[getter]
+    fn validity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let Limits { friction, tension, edge_load, gain } = Limits::default();
+        self.validity_within(py, friction, tension, edge_load, gain)
+    }
+
+    /// What the model leaves out as validity has it, within limits of your own, of at least 0: friction (coefficient), tension
+    /// and edge_load (over the weight; tension at an impact, over its impulse), energy_gain (over the kinetic energy before an
+    /// impact).
     #[pyo3(signature = (*, friction=0.5, tension=0.05, edge_load=0.0, energy_gain=0.0))]
-    fn validity<'py>(
+    fn validity_within<'py>(
         &self,
         py: Python<'py>,
         friction: f64,

@@ -66,19 +66,6 @@ impl Motion {
         self.due.is_some()
     }
 
-    /// Whether what is due, if anything, can be in this phase: what is read from bytes need not have come about by motion.
-    pub fn is_possible(&self) -> bool {
-        match self.due {
-            None => true,
-            Some(Event::Uplift(_)) => self.phase == Phase::FullContact,
-            Some(Event::Impact(side)) => self.phase == Phase::Rocking(side),
-            Some(Event::Overturning(_)) => false, // it is never left to be applied
-            Some(Event::Yielding(which, _) | Event::Unloading(which)) => {
-                which < 2 && matches!(self.phase, Phase::Rocking(_))
-            }
-        }
-    }
-
     /// For how long contact is held from now on because too many transitions came before, s.
     pub fn held(&self) -> f64 {
         self.chatter.held
