@@ -25,6 +25,8 @@ fn every_command_prints_what_it_printed() {
         let name = format!("{}{number}.{}", stem.to_str().unwrap(), extension.to_str().unwrap());
         fs::write(folder.path().join(name), layout.bytes).unwrap();
     }
+    let bin = tempfile::tempdir().unwrap();
+    install(bin.path());
     let mut printed = String::new();
     for block in blocks(&expected) {
         if block.starts_with('#') {
@@ -32,7 +34,7 @@ fn every_command_prints_what_it_printed() {
             continue;
         }
         let command = block.lines().next().unwrap();
-        let found = transcript(folder.path(), command);
+        let found = transcript(folder.path(), bin.path(), command);
         if env::var_os("WRITE_TOUR").is_none() {
             assert_eq!(found, block, "\n{found}");
         }
@@ -54,10 +56,18 @@ fn blocks(text: &str) -> Vec<&str> {
     starts.windows(2).map(|pair| &text[pair[0]..pair[1]]).collect()
 }
 
-/// The command in `line`, and what it prints in `folder`, without what differs between machines.
-fn transcript(folder: &Path, line: &str) -> String {
+/// Copies the program and this machine's library to `bin`, where no library for another machine is found beside them.
+fn install(bin: &Path) {
     let program = Path::new(env!("CARGO_BIN_EXE_rocking-fmu"));
-    let path = format!("{}:{}", program.parent().unwrap().display(), env::var("PATH").unwrap());
+    fs::create_dir(bin.join("deps")).unwrap();
+    for file in ["rocking-fmu", "deps/libFlexibleRocking.so"] {
+        fs::copy(program.with_file_name(file), bin.join(file)).unwrap();
+    }
+}
+
+/// The command in `line`, and what it prints in `folder`, without what differs between machines.
+fn transcript(folder: &Path, bin: &Path, line: &str) -> String {
+    let path = format!("{}:{}", bin.display(), env::var("PATH").unwrap());
     let mut shell = Command::new("bash");
     shell.arg("-c").arg(line.trim_start_matches("$ ")).current_dir(folder).env("PATH", path).env("LC_ALL", "C");
     let Output { status, stdout, stderr } = shell.output().unwrap();
