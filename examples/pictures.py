@@ -118,7 +118,7 @@ def motion(fmu: str, path: Path) -> None:
         below.clear()
         below.plot(time[: i + 1], degrees[: i + 1], color=ROCKING)
         below.plot(time[i], degrees[i], "o", color=ROCKING)
-        below.axhline(0, color="0.6", linewidth=0.6)
+        below.axhline(0, color="0.5", linewidth=0.6)
         below.set(xlim=(0, SHOWN), ylim=(-10, 10), xlabel="time (s)", ylabel="rotation (°)")
 
     path.parent.mkdir(parents=True, exist_ok=True)
@@ -144,7 +144,7 @@ def headline(path: Path) -> None:
             axis.annotate(text, (x[at], y[at]), xytext=beside, textcoords="offset points", color=color, va="center")
 
     for method in rows[rows["method"].str.endswith(", transitions at step ends")]["method"].unique():
-        curve(method, "0.6", "", 0, linestyle="--", marker="")
+        curve(method, "0.5", "", 0, linestyle="--", marker="")
     axis.text(400, 0.2, "six textbook methods,\ntransitions at ends of steps", color="0.4")
     curve("RK4", "#009e73", "RK4, transitions located", -1)
     curve("Newmark average acceleration", "#b35900", "Newmark, HHT-α, central\ndifference, the same", -1,
@@ -161,7 +161,7 @@ def headline(path: Path) -> None:
     curve("this project, auto", "black", "this project", 0, (-14, -12), markersize=7, linewidth=0)
     good = rows[rows["error_theta"] <= DIGITS].groupby(rows["method"].str.startswith("this project"))
     peers, ours = good["microseconds_per_sample"].min()
-    axis.axhline(DIGITS, color="0.6", linewidth=0.6, linestyle=":")
+    axis.axhline(DIGITS, color="0.5", linewidth=0.6, linestyle=":")
     axis.set(title=f"To six digits the nearest peer takes {peers / ours:.1f} times as long", xlim=(0.05, 2e4),
              xlabel="computing time per sample of the record (µs)", ylim=(1e-12, 20),
              ylabel="largest error of θ over its peak")

@@ -17,7 +17,7 @@ pub mod piece;
 pub mod transition;
 pub(crate) mod yielding;
 
-use crate::levels::detail::{AnyLevel, Detail, Model};
+use crate::levels::detail::{AnyLevel, Detail, Model, by_level};
 use crate::levels::level::Level;
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
@@ -151,7 +151,6 @@ impl AdvanceError {
 #[derive(Debug)]
 pub struct Engine {
     model: Box<Model>,
-    detail: Detail,
     motion: Motion,
     /// Whether the ground may move vertically.
     vertical: bool,
@@ -198,7 +197,7 @@ impl Engine {
             due: None,
         };
         let far = FAR / structure.omega_fc;
-        Ok(Engine { model, detail, motion, vertical: false, stops: false, far, arc: Arc::default() })
+        Ok(Engine { model, motion, vertical: false, stops: false, far, arc: Arc::default() })
     }
 
     /// The structure.
@@ -223,11 +222,11 @@ impl Engine {
 
     /// Admits a vertical ground acceleration from now on, or none again. Unless this is called, there is none.
     pub fn admit_vertical(&mut self, admitted: bool) -> Result<(), InitialStateError> {
-        let Model { structure, local_error, .. } = *self.model;
+        let Model { structure, detail, local_error, .. } = *self.model;
         let restrained = structure.is_restrained() || admitted;
-        self.detail.check_restrained(restrained)?;
+        detail.check_restrained(restrained)?;
         if admitted != self.vertical {
-            *self.model = Model::new(structure, self.detail, local_error, restrained);
+            *self.model = Model::new(structure, detail, local_error, restrained);
             self.vertical = admitted;
         }
         Ok(())
@@ -242,10 +241,8 @@ impl Engine {
     /// Applies the transition that is due, if there is one, and shows it to `watch`.
     pub fn transit<W: Watch>(&mut self, watch: &mut W) {
         if let Some(event) = self.motion.due.take() {
-            let transition;
-            (self.motion, transition) =
-                transition::resolve(&*self.model.level, &self.model.structure, self.motion, event);
-            watch.transition(&transition);
+            let Engine { model, motion, .. } = self;
+            watch.transition(&transition::resolve(&*model.level, &model.structure, motion, event));
         }
     }
 
@@ -278,32 +275,9 @@ impl Engine {
         }
         let &mut Engine { ref model, ref mut motion, stops, ref mut arc, .. } = self;
         // each level gets a loop of its own, so that nothing stands between the loop and the level's equations
-        match &model.level {
-            AnyLevel::Nonlinear(level) => {
-                Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
-            }
-            AnyLevel::Linear(level) => {
-                Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
-            }
-            AnyLevel::Modal(level) => {
-                Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
-            }
-            AnyLevel::Rigid(level) => {
-                Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
-            }
-            AnyLevel::FixedBase(level) => {
-                Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
-            }
-            AnyLevel::RestrainedNonlinear(level) => {
-                Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
-            }
-            AnyLevel::RestrainedLinear(level) => {
-                Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
-            }
-            AnyLevel::RestrainedRigid(level) => {
-                Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
-            }
-        }
+        by_level!(&model.level, level => {
+            Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
+        })
     }
 
     /// Advances over a long time: in parts, each twice as long as the one before, until all that is left is one leap.
@@ -342,7 +316,7 @@ impl Engine {
     /// Whether `interval` (s) under `load` is one leap.
     fn can_leap(&self, interval: f64, load: LinearLoad) -> bool {
         let Engine { model, motion, .. } = self;
-        let start = model.start(motion.state, motion.dissipators, load, interval);
+        let start = model.start(motion.state, &motion.dissipators, load, interval);
         motion.held() == 0.0 && model.level.leap(&model.structure, motion.phase, &start).is_some()
     }
 
@@ -367,27 +341,25 @@ impl Engine {
     /// Whether `load` can act over `interval` (s).
     #[inline]
     pub(crate) fn check(&self, interval: f64, load: &LinearLoad) -> Result<(), AdvanceError> {
+        let is_ahead = interval > 0.0 && interval <= f64::MAX;
+        let is_admitted = is_ahead && load.is_finite_over(interval) && (!load.is_vertical() || self.vertical);
+        if is_admitted { Ok(()) } else { self.refusal(interval, load) }
+    }
+
+    /// Why it cannot.
+    #[cold]
+    fn refusal(&self, interval: f64, load: &LinearLoad) -> Result<(), AdvanceError> {
         if !(interval > 0.0 && interval <= f64::MAX) {
             return Err(AdvanceError::NotAhead { from: self.motion.time, interval });
         }
-        if load.is_vertical() {
-            return self.check_vertical(interval, load);
-        }
-        if load.is_finite_over(interval) {
-            return Ok(());
-        }
-        Err(bad_load(interval, load))
-    }
-
-    /// Whether a `load` with a vertical part can.
-    #[cold]
-    fn check_vertical(&self, interval: f64, load: &LinearLoad) -> Result<(), AdvanceError> {
         let Ramp { value, slope } = load.upwards();
-        if !self.vertical {
+        if !self.vertical && (value, slope) != (0.0, 0.0) {
             return Err(AdvanceError::Vertical { value, slope });
         }
-        let is_finite = load.is_finite_over(interval) && (value + slope * interval).is_finite();
-        if is_finite { Ok(()) } else { Err(bad_load(interval, load)) }
+        let end = load.at(interval);
+        let Some(bad) = LOADS.iter().find(|quantity| !(quantity.get)(&end).is_finite()) else { return Ok(()) };
+        let [value, slope] = [&load.value, &load.slope].map(bad.get);
+        Err(AdvanceError::Load { name: bad.name, unit: bad.unit, value, slope, interval })
     }
 
     /// Whether the structure, in full contact now, stays there while nothing acts on it.
@@ -403,8 +375,7 @@ impl Engine {
 
     /// The outputs now under `load`; once overturned, those of the instant before.
     pub fn outputs(&self, load: Load) -> Outputs {
-        let Motion { phase, state, dissipators, .. } = &self.motion; // a sample would copy the motion
-        self.model.outputs(phase.in_motion(), state, load, dissipators)
+        self.model.outputs(self.motion.phase.in_motion(), &self.motion.under(load)) // a sample would copy the motion
     }
 
     /// The reactions now under `load`; once overturned, those of the instant before.
@@ -449,7 +420,7 @@ impl Engine {
             return [[0.0; 2]; 2];
         }
         let mut arc = Arc::default();
-        let start = Start { local_error: 1.0, ..model.start(*state, *dissipators, load, 1.0) };
+        let start = Start { local_error: 1.0, ..model.start(*state, dissipators, load, 1.0) };
         model.level.series(&model.structure, *phase, &start, &mut arc);
         let derivative = |k: i32, factor: f64| {
             [arc.u_dot[k as usize], arc.theta_dot[k as usize]].map(|c| factor * c / arc.span.powi(k))
@@ -480,8 +451,7 @@ impl<L: Level> Hand<'_, L> {
         load: LinearLoad,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
-        let begin = self.model.start(now.state, now.dissipators, load, interval);
-        if let Some(end) = self.leap(now, &begin) {
+        if let Some(end) = self.leap(now, &self.model.start(now.state, &now.dissipators, load, interval)) {
             if now.work.steps == self.last_step {
                 return Err(AdvanceError::TooLong { time: now.time, until: now.time + interval });
             }
@@ -494,24 +464,27 @@ impl<L: Level> Hand<'_, L> {
             now.chatter.pass(interval);
             return Ok(Progress::Complete);
         }
-        let before = *now;
-        let result = self.step(now, &begin, load, watch);
-        if result.is_err() {
+        let mut before = None;
+        let result = self.step(now, &mut before, interval, load, watch);
+        if let (Err(_), Some(before)) = (&result, before) {
             *now = before;
         }
         result
     }
 
-    /// Advances over the interval of `begin`, step by step.
+    /// Advances over `interval` (s), step by step. A motion that takes more than one is kept as it was `before`: a step that
+    /// fails changes nothing.
     #[inline(always)]
     fn step<W: Watch>(
         &mut self,
         motion: &mut Motion,
-        begin: &Start,
+        before: &mut Option<Motion>,
+        interval: f64,
         load: LinearLoad,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
-        let &Start { a_g, a_top, a_v, interval, local_error, .. } = begin;
+        let Start { a_g, a_top, a_v, local_error, .. } =
+            self.model.start(motion.state, &motion.dissipators, load, interval);
         let start = motion.time;
         let until = start + interval;
         // Time runs from the start of the interval: transitions are then as sharp at t = 1000 s as at 0.
@@ -523,7 +496,7 @@ impl<L: Level> Hand<'_, L> {
                 a_g: a_g.from(elapsed),
                 a_top: a_top.from(elapsed),
                 a_v: a_v.from(elapsed),
-                dissipators: motion.dissipators,
+                dissipators: &motion.dissipators,
                 interval: left,
                 local_error,
             };
@@ -539,6 +512,9 @@ impl<L: Level> Hand<'_, L> {
             }
             if motion.work.steps == self.last_step {
                 return Err(AdvanceError::TooLong { time: motion.time, until });
+            }
+            if duration < left {
+                before.get_or_insert(*motion);
             }
             motion.work.steps += 1;
             motion.work.evaluations += self.arc.order as u64;
@@ -562,9 +538,7 @@ impl<L: Level> Hand<'_, L> {
                     motion.due = Some(event);
                     return Ok(Progress::Transition);
                 }
-                let transition;
-                (*motion, transition) = transition::resolve(self.level, &self.model.structure, *motion, event);
-                watch.transition(&transition);
+                watch.transition(&transition::resolve(self.level, &self.model.structure, motion, event));
             }
         }
         match motion.phase {
@@ -607,7 +581,7 @@ impl<L: Level> Hand<'_, L> {
         self.level.series(&self.model.structure, Phase::Rocking(side), start, self.arc);
         let mut end = None;
         if let Some(angles) = self.level.ties() {
-            let (crossing, event) = yielding::first(&self.model.structure, side, angles, &start.dissipators, self.arc);
+            let (crossing, event) = yielding::first(&self.model.structure, side, angles, start.dissipators, self.arc);
             end = cut(self.arc, crossing, event);
         }
         if stays_about(self.arc, side) {
@@ -622,17 +596,6 @@ impl<L: Level> Hand<'_, L> {
             crossing => cut(self.arc, crossing, Event::Impact(side)),
         }
     }
-}
-
-/// Which part of a `load` that is not finite over `interval` (s) is not.
-#[cold]
-fn bad_load(interval: f64, load: &LinearLoad) -> AdvanceError {
-    let is_bad = |quantity: &&crate::Quantity<Load>| {
-        ![load.value, load.at(interval)].iter().all(|load| (quantity.get)(load).is_finite())
-    };
-    let bad = LOADS.iter().find(is_bad).expect("one of them is not");
-    let [value, slope] = [&load.value, &load.slope].map(bad.get);
-    AdvanceError::Load { name: bad.name, unit: bad.unit, value, slope, interval }
 }
 
 /// Ends `arc` at `crossing`; `event` is what happens there.

@@ -18,8 +18,8 @@ pub mod validity;
 use crate::engine::piece::Sample;
 use crate::engine::{AdvanceError, DEFAULT_TOLERANCE};
 use crate::mechanics::state::InitialStateError;
-use crate::run::ground_motion::Segment;
 use crate::run::record::Record;
+use crate::run::record::Segment;
 use crate::{Detail, Engine, Motion, Progress, Ramp, State, Structure, Watch};
 use peaks::Peaks;
 use samples::Samples;
@@ -221,22 +221,16 @@ struct Course<Segments> {
 
 impl<Segments: Iterator<Item = Segment>> Course<Segments> {
     /// Follows the motion to the end.
-    fn finish<W: Watch>(self, watch: &mut W) -> Result<(Ending, Engine), RunError> {
-        let Course { mut engine, segments, end, mut rest } = self;
-        for segment in segments {
-            if over(&mut engine, segment, watch).map_err(|cause| error(&engine, cause))? == Progress::Overturned {
-                return Ok((Ending::Overturned, engine));
-            }
-        }
+    fn finish<W: Watch>(mut self, watch: &mut W) -> Result<(Ending, Engine), RunError> {
         loop {
-            let ending = come_to_rest(&mut engine, end, &mut rest, watch);
-            if let Some(ending) = ending.map_err(|cause| error(&engine, cause))? {
-                return Ok((ending, engine));
+            if let Some(ending) = self.go_on(watch)? {
+                return Ok((ending, self.engine));
             }
         }
     }
 
     /// Follows the motion over the next stretch: how it has ended, if it has.
+    #[inline(always)]
     fn go_on<W: Watch>(&mut self, watch: &mut W) -> Result<Option<Ending>, RunError> {
         let Course { engine, segments, end, rest } = self;
         let went_on = match segments.next() {

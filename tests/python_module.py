@@ -33,7 +33,7 @@ def use_all(folder: Path) -> None:
     response = run.at(np.linspace(0, 4, 401))
     frame: pd.DataFrame = response.to_pandas()
     assert response.units["theta"] == "rad" and len(frame) == 401 and wall.modes(response)["q_r"].shape == (401,)
-    assert run.validity["mu_required"].limit == 0.5 and run.ending and run.fall is None and run.steps and run.evaluations
+    assert run.validity_within(friction=0.7)["mu_required"].limit == 0.7 and run.ending and run.fall is None and run.steps and run.evaluations
     assert "<html" in run.page() and run.detail == "auto" and run.tolerance == 1e-9 and run.start < run.end
     assert pickle.loads(pickle.dumps(run)).structure == run.structure == wall and run.record == ground
     run.plot().savefig(folder / "run.svg")

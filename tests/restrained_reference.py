@@ -19,7 +19,6 @@ from scipy.integrate import DOP853
 from scipy.optimize import brentq
 
 GRID = np.linspace(0, 1, 33)  # where guards are looked at within a step
-KINDS = ("yielding", "unloading")
 
 
 @dataclass(frozen=True)

@@ -1,6 +1,5 @@
 """The edges of the parameters' ranges and 100 g, at every level of detail, against the independent integration."""
 
-import subprocess
 from dataclasses import replace
 from math import pi
 
@@ -8,8 +7,7 @@ import numpy as np
 import pytest
 import reference
 from fmpy.fmi1 import FMICallException
-from host import G, Instance, simulate
-from pacoima import write_record
+from host import G, Instance
 from reference import EVISON
 
 LEVELS = {"auto": 1, "nonlinear": 2, "linear": 3, "modal": 4, "rigid": 5, "fixed_base": 6}
@@ -166,34 +164,3 @@ def test_100_g(evison, by, level):
     theta = 1e-3 if level == "rigid" else 0.0
     exact = compare(evison, level, EVISON, time, a_g, (0.0, 0.0, theta, 0.0), 1e-8)
     assert [t.kind for t in exact.transitions][-1:] == ([] if level == "fixed_base" else ["overturned"])
-
-
-def test_a_record_that_ends_within_a_step(evison, exporter, tmp_path):
-    """A master hands over the record's last slope for the whole step, and holds its last value from then on; who knows
-    the record, the program and the FMU that has it inside, leaves the ground at rest from its end on."""
-    time = np.append(np.linspace(0, 0.5, 51), 0.5037)
-    a_g = 5.0 * np.sin(20 * time)
-    last_slope = (a_g[-1] - a_g[-2]) / (time[-1] - time[-2])
-    with evison.start(tolerance=1e-11) as instance:
-        instance.follow(np.append(time[:-1], 0.51), np.append(a_g[:-1], a_g[-2] + 0.01 * last_slope))
-        instance.load(a_g[-1])
-        instance.step(0.6)
-        theta, u = instance.get("theta", "u")
-    knots = np.concatenate([time[:-1], [0.51, 0.51 + 1e-12, 0.6]])
-    exact = reference.integrate(EVISON, knots, np.concatenate([a_g[:-1], [a_g[-2] + 0.01 * last_slope], 2 * [a_g[-1]]]))
-    assert exact.transitions
-    assert u == pytest.approx(exact.u[-1], rel=1e-7)
-    assert theta == pytest.approx(exact.theta[-1], abs=1e-10)
-
-    record, response = tmp_path / "record.csv", tmp_path / "response.csv"
-    write_record(record, time, a_g)
-    subprocess.run([exporter, "simulate", "--preset", "evison", "--record", record, "--unit", "m/s2", "--interval", "0.01",
-                    "--tolerance", "1e-11", "--duration", "0.6", "-o", response], check=True)
-    rows = np.genfromtxt(response, delimiter=",", names=True)
-    exact = reference.integrate(EVISON, np.append(time, [time[-1] + 1e-12, 0.6]), np.append(a_g, [0.0, 0.0]))
-    assert len(rows) == 61
-    result, _ = simulate(evison, stop_time=0.6, output_interval=0.01, relative_tolerance=1e-11,
-                         start_values={"record": str(record)}, output=["theta", "u"])
-    for theta, u in ((rows["thetarad"], rows["um"]), (result["theta"], result["u"])):
-        assert u[-1] == pytest.approx(exact.u[-1], rel=1e-7)
-        assert theta[-1] == pytest.approx(exact.theta[-1], abs=1e-10)

@@ -80,8 +80,10 @@ def test_a_run_is_the_command_lines(run, said):
     for peak in printed["peaks"]:
         found = run.peaks[peak["name"]]
         assert (found.value, found.time, found.unit) == (peak["peak"], peak["time"], peak["unit"])
+    validity = run.validity
     for beyond in printed["validity"]:
-        assert run.validity[beyond["name"]].value == float(beyond["value"])
+        worst = validity[beyond["name"]]
+        assert (worst.value, worst.limit) == (float(beyond["value"]), beyond["limit"])
     found = {"transitions": len(run.transitions), "steps": run.steps, "end": run.end, "ending": run.ending}
     assert found == {name: printed[name] for name in found}
     text = said("simulate", "--record", RECORD, *OPTIONS).splitlines()
@@ -110,16 +112,21 @@ def test_a_constant_vertical_acceleration_is_more_weight():
     assert found.peaks["theta"].value == pytest.approx(expected.peaks["theta"].value, rel=1e-9)
 
 
-def test_the_pushover_and_the_modes_are_the_command_lines(run, said, tmp_path):
+def test_the_pushover_is_the_command_lines(run, said, tmp_path):
     said("pushover", "--points", 50, "-o", "curve.csv")
-    said("simulate", "--record", RECORD, *OPTIONS, "--duration", run.end, "-o", "response.csv")
-    said("modes", "--response", "response.csv", "-o", "modes.csv")
-    response = run.at(pd.read_csv(tmp_path / "response.csv")["time[s]"])
-    modes = pd.DataFrame(run.structure.modes(response)).dropna()
-    assert 100 < len(modes) < len(response["time"])
-    for found, file in ((pd.DataFrame(run.structure.pushover(50)), "curve.csv"), (modes, "modes.csv")):
-        table = pd.read_csv(tmp_path / file).rename(columns=lambda heading: heading.partition("[")[0])
-        assert np.array_equal(found, table[list(found)])
+    table = pd.read_csv(tmp_path / "curve.csv").rename(columns=lambda heading: heading.partition("[")[0])
+    found = pd.DataFrame(run.structure.pushover(50))
+    assert np.array_equal(found, table[list(found)])
+
+
+def test_the_modes_are_those_of_the_state(run):
+    """Eq 16: together they are the rotation, and the vibration mode is the share chi of the strut's."""
+    response = run.at(np.linspace(run.start, run.end, 1000))
+    modes, structure = run.structure.modes(response), run.structure
+    rocks = np.char.startswith(np.array(response["phase"], dtype=str), "rocking")
+    assert 100 < rocks.sum() < 1000 and all(np.array_equal(np.isfinite(mode), rocks) for mode in modes.values())
+    assert (modes["q_r"] + modes["q_u"])[rocks] == pytest.approx(response["theta"][rocks], rel=1e-14)
+    assert structure.H * modes["q_u"][rocks] == pytest.approx(-structure.chi * response["u"][rocks], rel=1e-14)
 
 
 def test_a_fall_ends_the_motion_and_rest_goes_on():
@@ -152,6 +159,7 @@ def test_what_is_refused_has_the_command_lines_text(said, arguments, options):
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), ground, detail="fine"), 'detail = "fine" is unknown; these'),
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), ground, tolerance=1), "tolerance = 1 is out of range"),
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), ground, theta_0=9), "theta_0 = 9 rad is out of range"),
+    (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), ground).validity_within(tension=-1), "tension = -1 is out of range"),
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), ground).at([0, -1]), "times[1] = -1 s is out of range"),
     (lambda ground: fr.sweep([], ground), 'structures "structures" is empty: give one or more'),
     (lambda ground: fr.sweep(fr.Structure(preset="mcmanus"), [ground, ground]), "two ground motions have the name"),
@@ -165,7 +173,7 @@ def test_what_is_refused_is_named(ground, refused, text):
 
 def test_a_file_says_what_would_help(tmp_path):
     (tmp_path / "column.txt").write_text("0.1\n0.2\n-0.1\n")
-    with pytest.raises(ValueError, match="give it with dt=SECONDS"):
+    with pytest.raises(ValueError, match="give it in seconds as dt"):
         fr.Record.read(tmp_path / "column.txt")
     with pytest.warns(UserWarning, match="a step of 0.5 s: is the time in another unit"):
         fr.Record.read(tmp_path / "column.txt", dt=0.5)

@@ -40,24 +40,29 @@ def view(exporter, pacoima_record, tmp_path_factory):
 
 
 @pytest.fixture
-def opened(browser, view):
-    """Opens the page off line; at the end there must have been neither an error nor a request for anything else."""
-    context, problems, requests = None, [], []
+def new_page(browser):
+    """Opens pages off line; at the end there must have been no error, and no request for anything but the pages themselves."""
+    contexts, problems, requests = [], [], []
 
-    def open(path=view[0], **options):
-        nonlocal context
-        context = browser.new_context(**({"viewport": {"width": 1280, "height": 800}, "offline": True} | options))
-        page = context.new_page()
+    def new_page(address, **options):
+        contexts.append(browser.new_context(**({"viewport": {"width": 1440, "height": 900}, "offline": True} | options)))
+        page = contexts[-1].new_page()
         page.on("console", lambda message: problems.append(message.text))
         page.on("pageerror", lambda error: problems.append(str(error)))
         page.on("request", lambda request: requests.append(request.url))
-        page.goto(path.as_uri())
+        page.goto(address)
         return page
 
-    yield open
-    context.close()
+    yield new_page
+    for context in contexts:
+        context.close()
     assert problems == []
-    assert len(requests) == 1 and requests[0].startswith("file://")
+    assert [url.split(":")[0] for url in requests if not url.startswith("blob:")] == ["file"] * len(contexts)
+
+
+@pytest.fixture
+def opened(new_page, view):
+    return lambda path=view[0], **options: new_page(path.as_uri(), **options)
 
 
 def number(text: str) -> float:

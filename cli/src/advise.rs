@@ -2,19 +2,18 @@
 
 use crate::{
     cause::Cause,
+    estimate::Estimate,
     quantities::in_readable_unit,
     record_args::one_of,
-    results::{Format, FormatArgs, Number, print, print_traced},
+    results::{FormatArgs, Number, Traced},
     scene_args::{GroundArgs, InitialArgs},
     structure_args::StructureArgs,
     validity::{self, LimitArgs},
 };
 use anyhow::Context;
-use clap::builder::{PossibleValue, TypedValueParser};
-use fmu_export::significant::significant;
-use rocking::estimates::demand::{Demand, INSTANT_TRANSITION};
+use fmu_export::significant::{short, significant};
+use rocking::estimates::demand::INSTANT_TRANSITION;
 use rocking::estimates::effective_frequency::effective_frequency;
-use rocking::estimates::response_spectrum::spectral_acceleration;
 use rocking::run::record::Record;
 use rocking::{
     Detail, Structure,
@@ -22,11 +21,13 @@ use rocking::{
     run::{
         LONGEST_REST, Run,
         levels::{self, Comparison, Criterion, REFERENCE_TOLERANCE, Response, Verdict},
+        peaks::PEAKS,
         validity::Limits,
     },
 };
+use rocking_sweep::plan::Conditions;
 use serde::Serialize;
-use std::f64::consts::TAU;
+use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 
 /// What to compare, and what is allowed.
@@ -52,25 +53,11 @@ struct AllowedArgs {
     /// Largest relative error allowed, such as 5% or 0.05
     #[arg(long, value_name = "ERROR", default_value = "5%", value_parser = relative_error)]
     within: f64,
-    /// What must stay within it; overturning must always be predicted right
-    #[arg(long, value_name = "LIST", value_parser = criteria(), num_args = 1.., value_delimiter = ',', default_values = Criterion::ALL.map(Criterion::name))]
+    /// What must stay within it: the peak of the rotation, of the elastic displacement, of the acceleration of the top mass,
+    /// and with it V_t and M_t; or any of them over time, the largest difference over the largest value. Overturning must
+    /// always be predicted right
+    #[arg(long, value_name = "LIST", value_parser = one_of(Criterion::ALL.map(|of| (of.name(), of))), num_args = 1.., value_delimiter = ',', default_values = Criterion::ALL.map(Criterion::name))]
     of: Vec<Criterion>,
-}
-
-fn criteria() -> impl TypedValueParser<Value = Criterion> {
-    one_of(Criterion::ALL.map(|of| {
-        let (help, aliases): (_, &[&str]) = match of {
-            Criterion::Theta => ("Peak rotation", &[]),
-            Criterion::U => ("Peak elastic displacement", &[]),
-            Criterion::At => {
-                ("Peak acceleration of the top mass, and with it V_t = m a_t and M_t = m H a_t", &["V_t", "M_t"])
-            }
-            Criterion::ThetaHistory => ("Rotation over time: largest difference over the largest rotation", &[]),
-            Criterion::UHistory => ("Elastic displacement over time, likewise", &[]),
-            Criterion::AtHistory => ("Acceleration of the top mass over time, likewise", &[]),
-        };
-        (PossibleValue::new(of.name()).help(help).aliases(aliases), of)
-    }))
 }
 
 fn relative_error(text: &str) -> Result<f64, String> {
@@ -87,19 +74,19 @@ fn relative_error(text: &str) -> Result<f64, String> {
 /// Runs the levels and prints the table and the advice.
 pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
+    let (initial, duration) = (args.initial.state(), args.ground.duration());
+    let conditions = Conditions { initial, duration, ..Conditions::default() };
+    conditions.check(&structure)?;
     let ground = args.ground.load(structure.parameters().g)?;
-    let (initial, end) = (args.initial.state(), args.ground.end(&ground));
-    let run = Run { initial, end, ..Run::new(structure, &ground) };
+    let run = conditions.run(structure, &ground);
     let comparison = levels::compare(&run).context("detail = nonlinear")?;
 
     let (within, criteria) = (args.allowed.within, &args.allowed.of);
     let advised = comparison.recommended(within, criteria);
-    if args.results.format == Format::Text {
-        let (title, limits) = (args.ground.title(&ground), args.limits.limits());
-        return print(&text(&title, &run, &comparison, (within, criteria), limits)?);
-    }
-    let cause = Cause::new(&structure).under(&args.ground.record, &ground).computed(None, initial);
-    print_traced(args.results.format, &cause, &rows(&comparison, advised))
+    let (title, limits) = (args.ground.title(&ground), args.limits.limits());
+    let text = || text(&title, &run, &comparison, (within, criteria), limits);
+    let cause = &Cause::new(&structure).under(&args.ground.record, &ground).from_state(initial);
+    args.results.print(text, &Traced { cause, rows: &rows(&comparison, advised) })
 }
 
 /// The table and the advice on `run` under the ground motion that `title` names, for people: what is `allowed` is an error and
@@ -197,12 +184,8 @@ fn print_levels(out: &mut impl Write, comparison: &Comparison, advised: Option<&
 #[derive(Serialize)]
 struct Level {
     level: &'static str,
-    error_theta: Number,
-    error_u: Number,
-    error_a_t: Number,
-    error_theta_history: Number,
-    error_u_history: Number,
-    error_a_t_history: Number,
+    #[serde(flatten)]
+    errors: BTreeMap<String, Number>,
     /// None if it still rocks.
     overturned: Option<bool>,
     /// None if the reference still rocks.
@@ -211,54 +194,36 @@ struct Level {
     evaluations: u64,
     cost_of_auto: Option<Number>,
     advised: bool,
-    theta: f64,
-    u: f64,
-    a_t: f64,
-    V_t: f64,
-    M_t: f64,
+    #[serde(flatten)]
+    peaks: BTreeMap<&'static str, f64>,
 }
 
 /// The reference, then the levels.
 fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Level> {
     let auto = comparison.cost_of_auto();
     let row = |level, response: &Response, errors: [f64; 6], is_right_about_overturning, advised| {
-        let [error_theta, error_u, error_a_t, error_theta_history, error_u_history, error_a_t_history] =
-            errors.map(Number);
-        let peaks = &response.peaks;
-        let [theta, u, a_t, V_t, M_t] =
-            [peaks.theta(), peaks.u(), peaks.a_t(), peaks.V_t(), peaks.M_t()].map(|peak| peak.magnitude);
+        let of_criterion = |(of, error): (&Criterion, f64)| (format!("error_{}", of.name()), Number(error));
         Level {
             level,
-            error_theta,
-            error_u,
-            error_a_t,
-            error_theta_history,
-            error_u_history,
-            error_a_t_history,
+            errors: Criterion::ALL.iter().zip(errors).map(of_criterion).collect(),
             overturned: response.overturns(),
             is_right_about_overturning,
             steps: response.work.steps,
             evaluations: response.work.evaluations,
             cost_of_auto: auto.map(|auto| Number(response.cost() as f64 / auto)),
             advised,
-            theta,
-            u,
-            a_t,
-            V_t,
-            M_t,
+            peaks: PEAKS.iter().map(|of| (of.name, (of.of)(&response.peaks).magnitude)).collect(),
         }
     };
+    let of_verdict = |level, Verdict { response, errors, is_right_about_overturning }: &Verdict| {
+        let is_advised = advised.is_some_and(|advised| level == advised.response.detail.name());
+        row(level, response, *errors, *is_right_about_overturning, is_advised)
+    };
     let reference = &comparison.reference;
-    let is_known = reference.overturns().map(|_| true);
-    let levels = comparison.verdicts.iter().map(|Verdict { response, errors, is_right_about_overturning }| {
-        let is_advised = advised.is_some_and(|advised| advised.response.detail == response.detail);
-        row(response.detail.name(), response, *errors, *is_right_about_overturning, is_advised)
-    });
-    let without_vertical = comparison.without_vertical.iter().map(|verdict| {
-        let Verdict { response, errors, is_right_about_overturning } = verdict;
-        row("auto without a_v", response, *errors, *is_right_about_overturning, false)
-    });
-    [row("reference", reference, [0.0; 6], is_known, false)].into_iter().chain(levels).chain(without_vertical).collect()
+    let reference = row("reference", reference, [0.0; 6], reference.overturns().map(|_| true), false);
+    let levels = comparison.verdicts.iter().map(|verdict| of_verdict(verdict.response.detail.name(), verdict));
+    let without_vertical = comparison.without_vertical.iter().map(|verdict| of_verdict("auto without a_v", verdict));
+    [reference].into_iter().chain(levels).chain(without_vertical).collect()
 }
 
 /// The demand of the whole record without a time history (Eqs 21 to 24) as one more row.
@@ -268,9 +233,8 @@ fn print_estimate(
     ground: &Record,
     comparison: &Comparison,
 ) -> anyhow::Result<()> {
-    let S_a = spectral_acceleration(ground, TAU / structure.omega_u, structure.zeta_u);
-    let demand = match Demand::new(structure, S_a, INSTANT_TRANSITION) {
-        Ok(demand) => demand,
+    let demand = match Estimate::new(structure, Some(ground), INSTANT_TRANSITION) {
+        Ok(estimate) => estimate.demand,
         Err(error) => return Ok(writeln!(out, "  {:<10} not possible here: {error}", "estimate")?),
     };
     let a_t = comparison.reference.peaks.a_t().magnitude;
@@ -286,7 +250,7 @@ fn print_advice(
     (within, criteria): (f64, &[Criterion]),
 ) -> fmt::Result {
     let names: Vec<_> = criteria.iter().map(|of| of.name()).collect();
-    let limit = format!("within {} % in {}", shortest_percent(within), names.join(", "));
+    let limit = format!("within {} % in {}", short(100.0 * within), names.join(", "));
     let Some(Verdict { response, .. }) = advised else {
         return writeln!(
             out,
@@ -312,11 +276,6 @@ fn print_vertical(out: &mut impl Write, level: &Verdict, (within, criteria): (f6
     };
     let advice = if level.is_within(within, criteria) { "leave it out" } else { "keep it" };
     writeln!(out, "the vertical component changes {}{overturning}: {advice}", changes.join(", "))
-}
-
-/// A ratio in percent, as it was most likely written.
-fn shortest_percent(ratio: f64) -> f64 {
-    format!("{:.12e}", 100.0 * ratio).parse().expect("a number in Rust's own notation")
 }
 
 /// A ratio in percent, for a column.
@@ -347,9 +306,5 @@ mod tests {
     #[test]
     fn percentages_fit_their_column() {
         assert_eq!([0.0, 3e-14, 2.4e-5, 0.0354, f64::INFINITY].map(percent), ["0", "<1e-9", "2e-3", "3.54", "inf"]);
-        assert_eq!(
-            [0.07, 0.05, 1e-7, 1e-3].map(|ratio| shortest_percent(ratio).to_string()),
-            ["7", "5", "0.00001", "0.1"]
-        );
     }
 }

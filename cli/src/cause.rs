@@ -1,12 +1,10 @@
 //! What a result comes from, so that it can be traced: program, structure, ground motion, and how it was computed.
 use crate::record_args::{RecordArgs, RecordOptions, Understood};
 use FlexibleRocking::BUILD;
-use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::run::record::Record;
-use rocking::structure::parameters::PARAMETERS;
-use rocking::{Detail, Parameters, State, Structure};
+use rocking::{Parameters, State, Structure};
 use rocking_records::Column;
-use rocking_sweep::row_file::{Program, heading};
+use rocking_sweep::{plan::Conditions, row_file::Program};
 use serde::Serialize;
 use std::path::Path;
 use uuid::Uuid;
@@ -29,8 +27,13 @@ pub struct Cause {
     structure: Option<Parameters>,
     #[serde(flatten)]
     ground: Option<Ground>,
-    #[serde(flatten)]
-    run: Option<OfRun>,
+    /// The level of detail of a run, and its relative tolerance.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    detail: Option<&'static str>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    tolerance: Option<f64>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    initial: Option<State>,
 }
 
 /// A ground motion.
@@ -56,20 +59,6 @@ struct Ground {
     scale: f64,
 }
 
-/// How a run was computed.
-#[derive(Serialize)]
-struct OfRun {
-    #[serde(flatten)]
-    level: Option<Level>,
-    initial: State,
-}
-
-#[derive(Serialize)]
-struct Level {
-    detail: &'static str,
-    tolerance: f64,
-}
-
 impl Ground {
     fn new([path, vertical]: [Option<&Path>; 2], options: &RecordOptions, record: &Record) -> Ground {
         let [time_scale, scale] = options.factors();
@@ -85,16 +74,20 @@ impl Ground {
 }
 
 impl Cause {
+    fn of(structure: Option<Parameters>, ground: Option<Ground>) -> Cause {
+        Cause { version: version(), structure, ground, detail: None, tolerance: None, initial: None }
+    }
+
     /// Of what follows from `structure`.
     pub fn new(structure: &Structure) -> Cause {
-        Cause { version: version(), structure: Some(*structure.parameters()), ground: None, run: None }
+        Cause::of(Some(*structure.parameters()), None)
     }
 
     /// Of what follows from the record in the file at `path` alone, which is understood as `options` say.
     pub fn of_record(path: &Path, options: &RecordOptions, understood: &Understood) -> Cause {
         let record_unit = Some(understood.unit().to_string());
         let ground = Ground { record_unit, ..Ground::new([Some(path), None], options, &understood.record) };
-        Cause { version: version(), structure: None, ground: Some(ground), run: None }
+        Cause::of(None, Some(ground))
     }
 
     /// This cause under the `record` that `args` ask for.
@@ -103,35 +96,14 @@ impl Cause {
         Cause { ground: Some(Ground::new(files, &args.options, record)), ..self }
     }
 
-    /// This cause of a run from `initial`, at one level of detail or at all.
-    pub fn computed(self, level: Option<(Detail, f64)>, initial: State) -> Cause {
-        let level = level.map(|(detail, tolerance)| Level { detail: detail.name(), tolerance });
-        Cause { run: Some(OfRun { level, initial }), ..self }
+    /// This cause of a run under these `conditions`.
+    pub fn computed(self, conditions: &Conditions) -> Cause {
+        let &Conditions { detail, tolerance, initial, .. } = conditions;
+        Cause { detail: Some(detail.name()), tolerance: Some(tolerance), initial: Some(initial), ..self }
     }
 
-    /// As columns of a table: headings and values.
-    pub fn columns(&self) -> Vec<(String, String)> {
-        let mut columns = vec![("version".to_owned(), self.version.clone())];
-        let number = |name: &str, unit, value: f64| (heading(name, unit), format!("{value:?}"));
-        if let Some(structure) = &self.structure {
-            columns.extend(PARAMETERS.iter().map(|of| number(of.name, of.unit, (of.get)(structure))));
-        }
-        if let Some(Ground { record, file, file_v, record_unit, record_column, record_dt, time_scale, scale }) =
-            &self.ground
-        {
-            let text = |name: &str, of: &Option<String>| (name.to_owned(), of.clone().unwrap_or_default());
-            columns.extend([("record".to_owned(), record.clone()), text("file", file)]);
-            columns.extend(file_v.iter().map(|file_v| ("file_v".to_owned(), file_v.clone())));
-            columns.extend([text("record_unit", record_unit), text("record_column", record_column)]);
-            columns.push(text("record_dt[s]", &record_dt.map(|dt| format!("{dt:?}"))));
-            columns.extend([number("time_scale", "1", *time_scale), number("scale", "1", *scale)]);
-        }
-        if let Some(OfRun { level, initial }) = &self.run {
-            if let Some(Level { detail, tolerance }) = level {
-                columns.extend([("detail".to_owned(), (*detail).to_owned()), number("tolerance", "1", *tolerance)]);
-            }
-            columns.extend(INITIAL_VALUES.iter().map(|of| number(of.name, of.unit, (of.get)(initial))));
-        }
-        columns
+    /// This cause of runs from `initial` at every level.
+    pub fn from_state(self, initial: State) -> Cause {
+        Cause { initial: Some(initial), ..self }
     }
 }

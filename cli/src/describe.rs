@@ -4,7 +4,7 @@ mod template;
 
 use crate::{
     quantities::NamedValue,
-    results::{Format, FormatArgs, print, print_rows},
+    results::{FormatArgs, print},
     significant::{short, significant},
     structure_args::StructureArgs,
 };
@@ -15,8 +15,6 @@ use rocking::{
     estimates::restoring::{Point, flag},
     structure::{DERIVED, Derived},
 };
-use serde::Serialize;
-use std::f64::consts::FRAC_PI_2;
 use std::fmt::{self, Write};
 
 /// What to describe.
@@ -30,24 +28,12 @@ pub struct DescribeArgs {
     #[arg(long, conflicts_with = "format")]
     template: bool,
     /// Print the moment that turns the base back instead, while it is turned slowly to this rotation and back
-    #[arg(long, value_name = "RAD", value_parser = rotation, conflicts_with = "template")]
+    #[arg(long, value_name = "RAD", conflicts_with = "template")]
     restoring: Option<f64>,
 }
 
 /// Steps of each way of the loop.
 const STEPS: u32 = 20;
-
-/// A row of the loop, in SI units.
-#[derive(Serialize)]
-struct OfLoop {
-    theta: f64,
-    moment: f64,
-}
-
-fn rotation(text: &str) -> Result<f64, String> {
-    let theta = text.parse().ok().filter(|theta: &f64| *theta > 0.0 && *theta < FRAC_PI_2);
-    theta.ok_or_else(|| "a rotation between 0 and pi/2 rad is needed, such as 0.05".into())
-}
 
 /// Prints the parameters as they were given and the derived quantities with the equations that define them.
 pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
@@ -58,10 +44,8 @@ pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
         return print(&out);
     }
     if let Some(theta) = args.restoring {
-        return print_loop(args.results.format, &structure, theta);
-    }
-    if args.results.format == Format::Text {
-        return print(&text(&structure)?);
+        let rows = flag(&structure, theta, STEPS);
+        return args.results.print(|| Ok(text_of_loop(&rows)), &rows);
     }
     let given = PARAMETERS.iter().map(|Quantity { name, unit, description, get, .. }| {
         NamedValue::new(name, get(structure.parameters()), unit, "", description)
@@ -70,25 +54,13 @@ pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
         NamedValue::new(name, value(&structure), unit, equation, description)
     });
     let lines: Vec<_> = given.chain(derived).collect();
-    print_rows(args.results.format, &lines)
+    args.results.print(|| Ok(text(&structure)?), &lines)
 }
 
-/// The moment that turns the base back on the way to `theta` (rad) and back.
-fn print_loop(format: Format, structure: &Structure, theta: f64) -> anyhow::Result<()> {
-    let rows: Vec<_> =
-        flag(structure, theta, STEPS).into_iter().map(|Point { theta, moment }| OfLoop { theta, moment }).collect();
-    if format != Format::Text {
-        return print_rows(format, &rows);
-    }
-    let mut out = format!("{:>12} {:>14} {:>14}\n", "theta (rad)", "there (N.m)", "back (N.m)");
-    let (there, back) = rows.split_at(STEPS as usize + 1);
-    // the way back begins where the way there ends
-    let back = back.iter().rev().chain(there.last());
-    for (there, back) in there.iter().zip(back) {
-        let [theta, there, back] = [there.theta, there.moment, back.moment].map(significant);
-        writeln!(out, "{theta:>12} {there:>14} {back:>14}")?;
-    }
-    print(&out)
+/// The moment that turns the base back on the way there and back, for people.
+fn text_of_loop(rows: &[Point]) -> String {
+    let line = |Point { theta, moment }: &Point| format!("{:>12} {:>14}\n", significant(*theta), significant(*moment));
+    format!("{:>12} {:>14}\n{}", "theta (rad)", "moment (N.m)", rows.iter().map(line).collect::<String>())
 }
 
 /// The parameters and the derived quantities, for people.

@@ -1,20 +1,14 @@
 //! `estimate`: demands without a time history (Eqs 21–24) and the effective frequency of rocking (Eq 14).
 
 use crate::{
-    cause::Cause,
-    quantities::{NamedValue, write_columns},
-    record_args::RecordArgs,
-    results::{Format, FormatArgs, print, print_traced},
-    significant::significant,
-    structure_args::StructureArgs,
+    cause::Cause, quantities::NamedValue, record_args::RecordArgs, results::FormatArgs, structure_args::StructureArgs,
 };
 use rocking::Structure;
 use rocking::estimates::demand::{Demand, INSTANT_TRANSITION};
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::estimates::response_spectrum::spectral_acceleration;
 use rocking::run::record::Record;
-use std::f64::consts::{FRAC_PI_2, TAU};
-use std::fmt::{self, Write};
+use std::f64::consts::TAU;
 
 /// What to estimate.
 #[derive(clap::Args)]
@@ -33,19 +27,11 @@ pub struct EstimateArgs {
         num_args = 1..,
         value_delimiter = ',',
         allow_negative_numbers = true,
-        default_values_t = [0.1, 0.25, 0.5, 0.75, 0.9],
-        value_parser = amplitude
+        default_values_t = [0.1, 0.25, 0.5, 0.75, 0.9]
     )]
     amplitudes: Vec<f64>,
     #[command(flatten)]
     results: FormatArgs,
-}
-
-fn amplitude(text: &str) -> Result<f64, String> {
-    match text.trim().parse() {
-        Ok(part) if part > 0.0 && part < 1.0 => Ok(part),
-        _ => Err("a number between 0 and 1 is needed: beyond, the structure does not come down".into()),
-    }
 }
 
 /// Prints the demands, term by term, and the effective frequencies.
@@ -53,59 +39,19 @@ pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let record = args.ground.load(structure.parameters().g)?;
     let Estimate { fixed_base, rocking, .. } = Estimate::new(&structure, record.as_ref(), args.amplification)?;
-    if args.results.format == Format::Text {
-        return print(&text(args, &structure, record.as_ref(), &fixed_base, &rocking)?);
-    }
-    let frequencies = args.amplitudes.iter().filter_map(|&part| {
-        let theta = part * structure.tan_alpha_cg;
-        (theta < FRAC_PI_2).then(|| NamedValue {
-            name: format!("f_r({part})"),
-            value: effective_frequency(&structure, theta),
-            unit: "Hz",
-            equation: "Eq 14",
-            description: format!("effective frequency of rocking at theta = {part} tan(alpha_cg)"),
-        })
-    });
-    let lines: Vec<_> = fixed_base.into_iter().chain(rocking).chain(frequencies).collect();
-    let cause = Cause::new(&structure);
-    let cause = match &record {
-        Some(record) => cause.under(&args.ground, record),
-        None => cause,
+    let frequency = |part: &f64| NamedValue {
+        name: format!("f_r({part})"),
+        value: effective_frequency(&structure, part * structure.tan_alpha_cg),
+        unit: "Hz",
+        equation: "Eq 14",
+        description: format!("effective frequency of rocking at theta = {part} tan(alpha_cg)"),
     };
-    print_traced(args.results.format, &cause, &lines)
-}
-
-/// The values in columns for people.
-fn text(
-    args: &EstimateArgs,
-    structure: &Structure,
-    record: Option<&Record>,
-    fixed_base: &[NamedValue],
-    rocking: &[NamedValue],
-) -> Result<String, fmt::Error> {
-    let mut out = String::new();
-    let g = structure.parameters().g;
-    if let Some(record) = record {
-        writeln!(out, "Ground motion: {}", record.title())?;
-        write_columns(&mut out, fixed_base, g)?;
-        writeln!(out, "\nDemand while rocking")?;
-    } else {
-        writeln!(out, "Demand while rocking, the ground at rest")?;
+    let lines: Vec<_> = fixed_base.into_iter().chain(rocking).chain(args.amplitudes.iter().map(frequency)).collect();
+    let (cause, g) = (Cause::new(&structure), structure.parameters().g);
+    match &record {
+        Some(record) => args.results.print_table(None, (record.title(), g), &cause.under(&args.ground, record), &lines),
+        None => args.results.print_table(None, ("ground at rest", g), &cause, &lines),
     }
-    write_columns(&mut out, rocking, g)?;
-    writeln!(out, "\nEffective frequency of rocking, Eq 14")?;
-    writeln!(out, "  {:>19} {:>12} {:>12} {:>12}", "theta/tan(alpha_cg)", "theta (rad)", "f_r (Hz)", "1/f_r (s)")?;
-    for part in &args.amplitudes {
-        let theta = part * structure.tan_alpha_cg;
-        if theta >= FRAC_PI_2 {
-            writeln!(out, "  {part:>19} {:>12} beyond pi/2: overturned", significant(theta))?;
-            continue;
-        }
-        let f_r = effective_frequency(structure, theta);
-        let [theta, frequency, period] = [theta, f_r, 1.0 / f_r].map(significant);
-        writeln!(out, "  {part:>19} {theta:>12} {frequency:>12} {period:>12}")?;
-    }
-    Ok(out)
 }
 
 /// What a ground motion asks of a structure without a time history.

@@ -2,15 +2,13 @@
 
 use crate::input;
 use crate::output_files::OutputFiles;
-use crate::record_args::{RecordOptions, one_of, with_option};
+use crate::record_args::{RecordOptions, one_of};
 use crate::structure_args::{StructureArgs, in_one_line};
-use crate::tables::Table;
 use crate::talk::say;
 use FlexibleRocking::guid;
 use anyhow::{Context, bail};
 use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Where the folder `share` of an installation has the archive with the libraries for every platform.
@@ -69,19 +67,10 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
     };
     let output = args.output.clone().unwrap_or_else(|| format!("{}.fmu", args.name.as_str()).into());
     let inputs = args.structure.input().into_iter().chain(args.records().chain(&args.library).map(PathBuf::as_path));
-    if output.extension().is_none_or(|extension| !extension.eq_ignore_ascii_case("fmu")) && output != Path::new("-") {
-        say!("{}: hosts know an FMU by the ending .fmu", output.display());
-    }
+    let file = OutputFiles::of_inputs(inputs).create(&output)?;
     let g = structure.parameters().g;
-    let understood = tempfile::tempdir()?;
-    let mut files = OutputFiles::of_inputs(inputs);
-    let packed = args.records().enumerate().map(|(i, path)| {
-        // those of one name are refused under that
-        record(&args.options, path, g, &understood.path().join(i.to_string()), &mut files)
-    });
-    let mut records = packed.collect::<Result<Vec<_>, _>>()?;
+    let mut records = args.records().map(|path| record(&args.options, path, g)).collect::<Result<Vec<_>, _>>()?;
     let vertical = args.record_v.as_ref().and_then(|_| records.pop());
-    let file = files.create(&output)?;
     let (contents, archive) = fmu_export::export(args.fmi, &args.name, &structure, records, vertical, &libraries)?;
     file.write(&archive)?;
     say!("{}: {} kB", output.display(), archive.len().div_ceil(1000));
@@ -98,27 +87,15 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
     Ok(())
 }
 
-/// The file to pack for the record at `path`, and its content: itself, or what is understood of it, written to the new `folder`.
-fn record(
-    options: &RecordOptions,
-    path: &Path,
-    g: f64,
-    folder: &Path,
-    files: &mut OutputFiles,
-) -> anyhow::Result<(PathBuf, Vec<u8>)> {
-    let understood = options.understand(path, g).map_err(with_option)?;
+/// The file to pack for the record at `path`, and its content: itself, or what is understood of it.
+fn record(options: &RecordOptions, path: &Path, g: f64) -> anyhow::Result<(PathBuf, Vec<u8>)> {
+    let understood = options.understand(path, g)?;
     say!("{}", understood.described);
     understood.warnings(path).for_each(|warning| say!("{warning}"));
     if options.are_none() && !input::is_standard(path) {
         return Ok((path.into(), rocking_records::read_file(path)?));
     }
-    fs::create_dir(folder)?;
-    let packed = folder.join(input::stem(path) + ".csv");
-    let mut table = Table::create(files, &packed)?;
-    understood.write(&mut table)?;
-    table.close()?;
-    let content = fs::read(&packed)?;
-    Ok((packed, content))
+    Ok(((input::stem(path) + ".csv").into(), understood.table().into_bytes()))
 }
 
 /// The shared libraries that were built with `program`, one for each platform that there is one for. Where it is in

@@ -7,7 +7,6 @@ pub mod describe;
 pub mod estimate;
 mod export;
 mod input;
-mod modes;
 pub mod output_files;
 mod picture;
 mod pulse;
@@ -30,10 +29,7 @@ mod view;
 use clap::{Parser, Subcommand};
 use fmu_export::{Platform, significant};
 use std::env::consts::{ARCH, OS};
-use std::{ffi::OsString, io, path::PathBuf, process};
-
-/// Exit code of a command that the user stops: a shell's for SIGINT.
-const STOPPED: i32 = 130;
+use std::{ffi::OsString, io, path::PathBuf};
 
 /// A flexible structure that rocks on its foundation: FMU exporter and simulator.
 ///
@@ -43,7 +39,7 @@ const STOPPED: i32 = 130;
 ///
 /// Results go to standard output, messages to standard error. With --format json an infinite number is the text "inf".
 /// Exit codes: 0 success, also if the reader of the output stops early; 1 failure, with the reason on standard error;
-/// 2 wrong use of options; 130 stopped by the user.
+/// 2 wrong use of options.
 #[derive(Parser)]
 #[command(name = "rocking-fmu", version, long_version = long_version())]
 struct CommandLine {
@@ -110,18 +106,13 @@ enum Command {
     #[command(after_help = "Examples:
   rocking-fmu estimate --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45
   rocking-fmu estimate --preset evison --amplification 1.4 --amplitudes 0.1,0.2,0.3
-  rocking-fmu estimate --parameters pier.toml --record table.csv --unit g --format csv")]
+  rocking-fmu estimate --parameters pier.toml --record table.csv --unit g --format json")]
     Estimate(estimate::EstimateArgs),
     /// Push the structure over slowly: force and moment against displacement, to overturning
     #[command(after_help = "Examples:
   rocking-fmu pushover
   rocking-fmu pushover --preset evison --points 500 -o evison.csv")]
     Pushover(pushover::PushoverArgs),
-    /// Split a response into rocking and vibration mode (Eqs 12, 16, 19)
-    #[command(after_help = "Examples:
-  rocking-fmu simulate --preset evison --free 2 --theta-0 0.04 -o response.csv
-  rocking-fmu modes --preset evison --response response.csv")]
-    Modes(modes::ModesArgs),
     /// Run records x scale factors x structures for fragility curves, or pulses for overturning spectra
     ///
     /// A file with records gives probabilities of overturning and fragility curves; one with pulses a map of every
@@ -163,7 +154,7 @@ A file of pulses, spectrum.toml, a map of each structure:
     /// p_l.
     #[command(after_help = "Examples:
   rocking-fmu pulse sine --amplitude 0.6 --period 0.5
-  rocking-fmu pulse cosine --amplitude-ratio 2.5 --frequency-ratio 4 --preset evison -o cosine.csv --picture cosine.svg
+  rocking-fmu pulse cosine --amplitude-ratio 2.5 --frequency-ratio 4 --preset evison -o cosine.csv
   rocking-fmu pulse mavroeidis_papageorgiou --amplitude 0.4 --period 1.2 --cycles 2.5 --phase 1.5708
   rocking-fmu pulse ricker --amplitude 0.5 --frequency 1 -o ricker.csv && rocking-fmu simulate --record ricker.csv")]
     Pulse(pulse::PulseArgs),
@@ -172,7 +163,7 @@ A file of pulses, spectrum.toml, a map of each structure:
     /// Its samples and their step, its peaks, how long it shakes, and where it leaves the ground at the end: what is
     /// far from 0 there comes of an offset, a wrong column or a wrong unit.
     #[command(after_help = "Examples:
-  rocking-fmu record RSN77_SFERN_PUL164.AT2 --picture record.svg
+  rocking-fmu record RSN77_SFERN_PUL164.AT2
   rocking-fmu record column.txt --dt 0.005 --unit gal -o record.csv
   rocking-fmu record array.csv --column E-W --format json
   unzip -p records.zip E-W.txt | rocking-fmu record - --dt 0.01 --unit mg")]
@@ -182,11 +173,6 @@ A file of pulses, spectrum.toml, a map of each structure:
   rocking-fmu completions bash > ~/.local/share/bash-completion/completions/rocking-fmu
   rocking-fmu completions zsh > ~/.zfunc/_rocking-fmu")]
     Completions(shell::CompletionsArgs),
-    /// Print the manual page of the program, or of one of its commands
-    #[command(after_help = "Examples:
-  rocking-fmu man | man -l -
-  rocking-fmu man simulate > rocking-fmu-simulate.1")]
-    Man(shell::ManArgs),
 }
 
 /// Version, build, and the platforms that an FMU can be for.
@@ -199,17 +185,12 @@ fn long_version() -> String {
 /// Does what the `arguments` ask for, of which the first is the name of the program, and says what fails. `program` is the
 /// path of the program: beside it are the libraries that `export` packs.
 ///
-/// Returns the exit code; does not return where the arguments cannot be read, or the user stops the command.
+/// Returns the exit code; does not return where the arguments cannot be read.
 pub fn main(program: PathBuf, arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let CommandLine { command, quiet } = CommandLine::parse_from(arguments);
     if quiet {
         talk::be_quiet();
     }
-    // without it, as under nohup, whose signals stay ignored, a command that is stopped says nothing
-    let _ = ctrlc::try_set_handler(|| {
-        talk::say_stopped();
-        process::exit(STOPPED);
-    });
     let result = match command {
         Command::Export(args) => export::run(&args, &program),
         Command::Simulate(args) => simulate::run(&args),
@@ -218,12 +199,10 @@ pub fn main(program: PathBuf, arguments: impl IntoIterator<Item = OsString>) -> 
         Command::Describe(args) => describe::run(&args),
         Command::Estimate(args) => estimate::run(&args),
         Command::Pushover(args) => pushover::run(&args),
-        Command::Modes(args) => modes::run(&args),
         Command::Sweep(args) => sweep::run(&args),
         Command::Pulse(args) => pulse::run(&args),
         Command::Record(args) => record::run(&args),
         Command::Completions(args) => shell::completions(&args),
-        Command::Man(args) => shell::man(&args),
     };
     match result {
         Err(error) if !is_closed_pipe(&error) => {

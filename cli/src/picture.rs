@@ -3,17 +3,14 @@
 
 pub mod histories;
 
-use crate::{
-    output_files::{OutputFile, OutputFiles},
-    talk::say,
-};
-use anyhow::Context;
+use crate::output_files::{OutputFile, OutputFiles};
+use anyhow::{Context, bail};
 use plotters::coord::combinators::WithKeyPoints;
 use plotters::coord::{Shift, ranged1d::ValueFormatter, types::RangedCoordf64};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use resvg::{tiny_skia, usvg};
-use std::{ops::Range, path::PathBuf, str::FromStr, sync::Arc};
+use std::{ffi::OsStr, ops::Range, path::Path, sync::Arc};
 
 /// Colours that all eyes tell apart (Okabe and Ito, their purple darker), and those of what is no data.
 #[allow(missing_docs)] // they are called what they are
@@ -62,39 +59,6 @@ pub fn px(pixels: f64) -> i32 {
 /// What is drawn on.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// Where a picture is asked for, and as what.
-#[derive(Clone, Debug)]
-pub struct PictureFile {
-    path: PathBuf,
-    is_png: bool,
-}
-
-impl FromStr for PictureFile {
-    type Err = String;
-
-    fn from_str(path: &str) -> Result<PictureFile, String> {
-        let path = PathBuf::from(path);
-        let extension = path.extension().map(|extension| extension.to_string_lossy().to_ascii_lowercase());
-        match extension.as_deref() {
-            Some("svg") => Ok(PictureFile { path, is_png: false }),
-            Some("png") => Ok(PictureFile { path, is_png: true }),
-            _ => Err("the extension tells what is drawn: .svg or .png is needed".into()),
-        }
-    }
-}
-
-impl PictureFile {
-    /// An SVG file.
-    pub fn svg(path: PathBuf) -> PictureFile {
-        PictureFile { path, is_png: false }
-    }
-
-    /// Begins the file.
-    pub fn create(&self, files: &mut OutputFiles) -> anyhow::Result<Picture> {
-        Ok(Picture { is_png: self.is_png, file: files.create(&self.path)? })
-    }
-}
-
 /// A picture that is being made.
 pub struct Picture {
     is_png: bool,
@@ -102,14 +66,21 @@ pub struct Picture {
 }
 
 impl Picture {
+    /// Begins the picture at `path`: SVG or PNG, as its extension says.
+    pub fn create(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Picture> {
+        let is_png = match path.extension().and_then(OsStr::to_str) {
+            Some("svg") => false,
+            Some("png") => true,
+            _ => bail!("{}: a picture's name ends in .svg or .png", path.display()),
+        };
+        Ok(Picture { is_png, file: files.create(path)? })
+    }
+
     /// Writes what `draw` draws on an area of `size`, in pixels.
     pub fn draw(self, size: (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<()>) -> anyhow::Result<()> {
         let svg = svg(size, draw)?;
         let content = if self.is_png { rasterized(&svg, size)? } else { svg.into_bytes() };
-        let path = self.file.path().to_owned();
-        self.file.write(&content)?;
-        say!("picture        {}", path.display());
-        Ok(())
+        self.file.write_as("picture", &content)
     }
 }
 
@@ -252,35 +223,12 @@ where
     Ok(())
 }
 
-/// A logarithmic axis, at 1, 2, 5, 10, … where these are enough.
+/// A logarithmic axis, with numbers at 1, 2, 5, 10, …
 pub fn log_axis(range: Range<f64>) -> WithKeyPoints<LogCoord<f64>> {
-    let ticks = log_ticks(&range);
-    range.log_scale().with_key_points(ticks)
-}
-
-/// Fewest and most numbers beside a logarithmic axis.
-const FEWEST: usize = 4;
-const MOST: usize = 10;
-
-/// The roundest numbers of `range` that are enough, or as many as there is room for, or its ends.
-fn log_ticks(range: &Range<f64>) -> Vec<f64> {
     let decades = range.start.log10().floor() as i32..=range.end.log10().ceil() as i32;
-    let ticks = |steps: &[f64]| -> Vec<f64> {
-        let all = decades.clone().flat_map(|decade| steps.iter().map(move |step| step * 10.0_f64.powi(decade)));
-        // the ends themselves, whatever rounding has made of them
-        all.filter(|tick| (range.start * (1.0 - 1e-12)..=range.end * (1.0 + 1e-12)).contains(tick)).collect()
-    };
-    let powers = ticks(&[1.0]);
-    let powers = powers.iter().step_by(powers.len().div_ceil(MOST).max(1)).copied().collect();
-    let tenths = [10, 1].map(|parts| (10..100).step_by(parts).map(|tenth| 0.1 * f64::from(tenth)).collect::<Vec<_>>());
-    let mut chosen = vec![range.start, range.end];
-    for ticks in [powers, ticks(&[1.0, 2.0, 5.0]), ticks(&tenths[0]), ticks(&tenths[1])] {
-        if chosen.len() >= FEWEST || ticks.len() > MOST {
-            break;
-        }
-        chosen = if ticks.len() > 1 { ticks } else { chosen };
-    }
-    chosen
+    let numbers = decades.flat_map(|decade| [1.0, 2.0, 5.0].map(|step| step * 10.0_f64.powi(decade)));
+    let inside = numbers.filter(|number| (range.start..=range.end).contains(number)).collect();
+    range.log_scale().with_key_points(inside)
 }
 
 /// A number beside an axis that has this range: what rounding has left of a round number is no part of it.
@@ -294,11 +242,6 @@ fn number(value: f64, range: &Range<f64>) -> String {
     text.replace('-', "−")
 }
 
-/// A mass in kg or t.
-pub fn mass(kilograms: f64) -> String {
-    if kilograms < 1e4 { format!("{} kg", rounded(kilograms)) } else { format!("{} t", rounded(1e-3 * kilograms)) }
-}
-
 /// A number in a picture: three digits.
 pub fn rounded(value: f64) -> String {
     let decimals = if value == 0.0 { 0.0 } else { 2.0 - value.abs().log10().floor() };
@@ -306,20 +249,6 @@ pub fn rounded(value: f64) -> String {
     let number =
         if is_long { format!("{value:.2e}") } else { format!("{value:.*}", decimals.clamp(0.0, 6.0) as usize) };
     number.replace('-', "−")
-}
-
-/// The least and the largest of `values` with room beyond them: about 0 where there are both signs, from 0 on where there
-/// is one.
-pub fn range(values: impl IntoIterator<Item = f64>) -> Range<f64> {
-    const ROOM: f64 = 1.3;
-    let (least, most) =
-        values.into_iter().fold((0.0, 0.0), |(least, most): (f64, f64), value| (least.min(value), most.max(value)));
-    let largest = ROOM * most.max(-least);
-    match (least < 0.0, most > 0.0) {
-        (false, false) => -1.0..1.0,
-        (false, true) => 0.0..largest,
-        (true, _) => -largest..largest,
-    }
 }
 
 #[cfg(test)]
@@ -332,17 +261,5 @@ mod tests {
             .map(|value| number(value, &(-0.5..0.5)));
         assert_eq!(shown, ["−0.4", "0", "0.2", "0.3", "1.2"]);
         assert_eq!([2e-5, 4e7, 200_000.0].map(|value| number(value, &(0.0..1e-4))), ["2e−5", "4e7", "200000"]);
-    }
-
-    #[test]
-    fn logarithmic_axes_have_round_numbers() {
-        let shown = |range: Range<f64>| {
-            log_ticks(&range).iter().map(|tick| number(*tick, &range)).collect::<Vec<_>>().join(" ")
-        };
-        assert_eq!(shown(0.5..12.0), "0.5 1 2 5 10");
-        assert_eq!(shown(0.01..200.0), "0.01 0.1 1 10 100");
-        assert_eq!(shown(1.0..1.5), "1 1.1 1.2 1.3 1.4 1.5");
-        assert_eq!(shown(3.001..3.002), "3.001 3.002");
-        assert_eq!(log_ticks(&(1e-3..1e9)), [1e-3, 0.1, 10.0, 1e3, 1e5, 1e7, 1e9]);
     }
 }

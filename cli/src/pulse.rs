@@ -1,18 +1,13 @@
 //! `pulse`: one of the field's standard ground motions as a CSV file that every other command reads.
 use crate::{
-    cause::Cause,
-    picture::PictureFile,
-    quantities::{NamedValue, write_columns},
-    record::picture,
-    record_args::{one_of, positive},
-    results::{Format, FormatArgs, print_beside, print_traced},
+    cause::Cause, output_files::OutputFiles, quantities::NamedValue, record_args::one_of, results::FormatArgs,
     structure_args::StructureArgs,
-    tables::Table,
 };
 use clap::{ArgGroup, builder::PossibleValue};
 use rocking::Structure;
 use rocking::estimates::intensity::peak_velocity;
 use rocking::run::record::Record;
+use rocking_records::csv;
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
 use std::path::PathBuf;
 
@@ -30,9 +25,6 @@ pub struct PulseArgs {
     output: PathBuf,
     #[command(flatten)]
     results: FormatArgs,
-    /// Draw acceleration, velocity and displacement of the ground, and the response spectrum
-    #[arg(long, value_name = "FILE.svg|png")]
-    picture: Option<PictureFile>,
 }
 
 #[derive(clap::Args)]
@@ -42,28 +34,28 @@ struct OfPulse {
     #[arg(value_name = "SHAPE", value_parser = one_of(Shape::ALL.map(|of| (PossibleValue::new(of.name()).help(of.definition()), of))))]
     shape: Shape,
     /// Amplitude a_p of the ground acceleration
-    #[arg(long, value_name = "G", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "G", allow_negative_numbers = true)]
     amplitude: Option<f64>,
     /// Amplitude in units of g tan(alpha_cg) of the structure
-    #[arg(long, value_name = "RATIO", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
     amplitude_ratio: Option<f64>,
     /// Frequency
-    #[arg(long, value_name = "HZ", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "HZ", allow_negative_numbers = true)]
     frequency: Option<f64>,
     /// Period, 1/frequency: of a half sine too, which lasts half of it
-    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     period: Option<f64>,
     /// Circular frequency in units of p_l of the structure
-    #[arg(long, value_name = "RATIO", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
     frequency_ratio: Option<f64>,
     /// Periods of a sine or cosine [default: 1]; gamma of mavroeidis_papageorgiou [default: 2]
-    #[arg(long, value_name = "NUMBER", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "NUMBER", allow_negative_numbers = true)]
     cycles: Option<f64>,
     /// Phase of a sine or cosine; nu of mavroeidis_papageorgiou
     #[arg(long, value_name = "RAD", default_value_t = 0.0, allow_negative_numbers = true)]
     phase: f64,
     /// How far the straight lines between samples may be off the curve, in parts of the amplitude
-    #[arg(long, value_name = "PART", default_value_t = DEFAULT_ERROR, value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "PART", default_value_t = DEFAULT_ERROR, allow_negative_numbers = true)]
     error: f64,
 }
 
@@ -84,28 +76,12 @@ impl OfPulse {
 /// Writes the pulse and prints what it amounts to.
 pub fn run(args: &PulseArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
-    let g = structure.parameters().g;
     let pulse = args.of.pulse(&structure);
     let record = pulse.record()?;
-    let mut files = args.results.files(args.structure.input());
-    let mut table = Table::create(&mut files, &args.output)?;
-    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
-    table.write(["time[s]", "a_g[g]"])?;
-    let samples = record.times().iter().zip(record.acceleration());
-    samples.map(|(time, a_g)| (time, a_g / g)).try_for_each(|sample| table.write(sample))?;
-    table.finish("pulse")?;
-    let lines = amounts(&pulse, &record, &structure);
-    if args.results.format == Format::Text {
-        let mut text = format!("{}\n", record.title());
-        write_columns(&mut text, &lines, g)?;
-        print_beside(Some(&args.output), &text)?;
-    } else {
-        print_traced(args.results.format, &Cause::new(&structure), &lines)?;
-    }
-    match picture {
-        Some(picture) => picture::draw(picture, &record, g),
-        None => Ok(()),
-    }
+    let file = OutputFiles::of_inputs(args.structure.input()).create(&args.output)?;
+    file.write_as("pulse", csv(&record).as_bytes())?;
+    let (title, cause) = ((record.title(), structure.parameters().g), Cause::new(&structure));
+    args.results.print_table(Some(&args.output), title, &cause, &amounts(&pulse, &record, &structure))
 }
 
 /// What the pulse amounts to, alone and for `structure`.

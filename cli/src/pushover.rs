@@ -1,14 +1,13 @@
 //! `pushover`: lateral force and moment against displacement (Fig 1).
-mod picture;
 
 use crate::{
     cause::Cause,
-    picture::PictureFile,
+    output_files::OutputFiles,
     quantities::in_readable_unit,
-    results::{Format, FormatArgs, print_beside, print_traced},
+    results::{FormatArgs, Traced},
     significant::significant,
     structure_args::StructureArgs,
-    tables::Table,
+    tables::csv,
 };
 use anyhow::Context;
 use rocking::estimates::pushover::{Equilibrium, at_displacement, at_overturning, at_rotation, in_full_contact};
@@ -30,9 +29,6 @@ pub struct PushoverArgs {
     output: Option<PathBuf>,
     #[command(flatten)]
     results: FormatArgs,
-    /// Draw force and moment against displacement
-    #[arg(long, value_name = "FILE.svg|png")]
-    picture: Option<PictureFile>,
 }
 
 /// Points on a branch, more than any curve needs.
@@ -44,33 +40,23 @@ const HEADINGS: [&str; 6] = ["phase", "theta[rad]", "u[m]", "delta_t[m]", "P[N]"
 pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let curve = curve(&structure, args.points)?;
-    let mut files = args.results.files(args.structure.input());
-    let table = args.output.as_deref().map(|path| Table::create(&mut files, path)).transpose()?;
-    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
-    if let Some(mut table) = table {
-        table.write(HEADINGS)?;
-        curve.iter().try_for_each(|at| table.write(line(at)))?;
-        table.finish("curve")?;
+    if let Some(path) = &args.output {
+        let file = OutputFiles::of_inputs(args.structure.input()).create(path)?;
+        file.write_as("curve", &csv(HEADINGS, curve.iter().map(line))?)?;
     }
     let corners = [
         ("uplift", in_full_contact(&structure, u_cr(&structure))),
         ("start of rocking", at_rotation(&structure, 0.0).context(TOO_SOFT)?),
         ("overturning", at_overturning(&structure).context(TOO_SOFT)?),
     ];
-    let mut rows = Vec::new();
-    for (name, corner) in corners {
+    let corner = |(name, corner)| {
         let Equilibrium { theta, delta_t, force: P, moment: M, .. } = corner;
-        rows.push(Corner { name, delta_t, theta, P, M });
-    }
-    if args.results.format == Format::Text {
-        print_beside(args.output.as_deref(), &rows.iter().map(Corner::line).collect::<String>())?;
-    } else {
-        print_traced(args.results.format, &Cause::new(&structure), &rows)?;
-    }
-    match picture {
-        Some(picture) => picture::draw(picture, &structure, &curve, corners.map(|corner| corner.1)),
-        None => Ok(()),
-    }
+        Corner { name, delta_t, theta, P, M }
+    };
+    let rows = corners.map(corner);
+    let text = || Ok(rows.iter().map(Corner::line).collect());
+    let traced = Traced { cause: &Cause::new(&structure), rows: &rows };
+    args.results.print_beside(args.output.as_deref(), text, &traced)
 }
 
 /// The displacement (m) at which the base lifts off, with what a tendon adds.

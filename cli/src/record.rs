@@ -1,13 +1,6 @@
 //! `record`: what is understood of a record, and the same as a table that is read without options.
-pub mod picture;
-
 use crate::{
-    cause::Cause,
-    picture::PictureFile,
-    quantities::{NamedValue, write_columns},
-    record_args::{RecordOptions, with_option},
-    results::{Format, FormatArgs, print_beside, print_traced},
-    tables::Table,
+    cause::Cause, output_files::OutputFiles, quantities::NamedValue, record_args::RecordOptions, results::FormatArgs,
     talk::say,
 };
 use rocking::Parameters;
@@ -31,37 +24,20 @@ pub struct RecordCommand {
     output: Option<PathBuf>,
     #[command(flatten)]
     results: FormatArgs,
-    /// Draw acceleration, velocity and displacement of the ground, and the response spectrum
-    #[arg(long, value_name = "FILE.svg|png")]
-    picture: Option<PictureFile>,
 }
 
 /// Prints what was understood, and writes it.
 pub fn run(args: &RecordCommand) -> anyhow::Result<()> {
-    let understood = args.options.understand(&args.record, G).map_err(with_option)?;
+    let understood = args.options.understand(&args.record, G)?;
     say!("record         {}", understood.described);
     understood.warnings(&args.record).for_each(|warning| say!("{warning}"));
-    let mut files = args.results.files([args.record.as_path()]);
-    let table = args.output.as_deref().map(|path| Table::create(&mut files, path)).transpose()?;
-    let picture = args.picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
-    let record = &understood.record;
-    if let Some(mut table) = table {
-        understood.write(&mut table)?;
-        table.finish("written")?;
+    if let Some(output) = &args.output {
+        let file = OutputFiles::of_inputs([args.record.as_path()]).create(output)?;
+        file.write_as("written", understood.table().as_bytes())?;
     }
-    let lines = amounts(record);
-    if args.results.format == Format::Text {
-        let mut text = format!("{}\n", record.title());
-        write_columns(&mut text, &lines, G)?;
-        print_beside(args.output.as_deref(), &text)?;
-    } else {
-        let cause = Cause::of_record(&args.record, &args.options, &understood);
-        print_traced(args.results.format, &cause, &lines)?;
-    }
-    match picture {
-        Some(picture) => picture::draw(picture, record, G),
-        None => Ok(()),
-    }
+    let (record, output) = (&understood.record, args.output.as_deref());
+    let cause = Cause::of_record(&args.record, &args.options, &understood);
+    args.results.print_table(output, (record.title(), G), &cause, &amounts(record))
 }
 
 /// What the record amounts to.

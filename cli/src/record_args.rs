@@ -1,9 +1,9 @@
 //! Which ground motion record a command works on, how it is read, and how it is scaled.
-use crate::{input, significant::short, tables::Table, talk::say};
+use crate::{input, significant::short, talk::say};
 use anyhow::{anyhow, ensure};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use rocking::run::record::Record;
-use rocking_records::{Column, Reading, RecordError, Remedy, Source, Unit, UnitFrom};
+use rocking_records::{Column, Reading, RecordError, Source, Unit, UnitFrom, csv};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -30,20 +30,20 @@ pub struct RecordOptions {
     #[arg(long, value_parser = one_of(Unit::NAMES), requires = "record")]
     pub unit: Option<Unit>,
     /// Time between the samples of a record without times; a record's own times must agree with it
-    #[arg(long, value_name = "SECONDS", value_parser = positive, requires = "record", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", requires = "record", allow_negative_numbers = true)]
     pub dt: Option<f64>,
     /// Column of the accelerations, by number or heading, or `all` if every number on every line is one; or channel of a
     /// COSMOS or CSMIP file, by number
-    #[arg(long, value_name = "COLUMN", value_parser = column, requires = "record")]
+    #[arg(long, value_name = "COLUMN", requires = "record")]
     pub column: Option<Column>,
     /// Read all samples, even if the file states another number of them
     #[arg(long, requires = "record")]
     pub ignore_npts: bool,
     /// Multiplies the record's times [default: 1]
-    #[arg(long, value_name = "FACTOR", value_parser = positive, requires = "record", allow_negative_numbers = true)]
+    #[arg(long, value_name = "FACTOR", requires = "record", allow_negative_numbers = true)]
     pub time_scale: Option<f64>,
     /// Multiplies the record's accelerations [default: 1]
-    #[arg(long, value_name = "FACTOR", value_parser = finite, requires = "record", allow_negative_numbers = true)]
+    #[arg(long, value_name = "FACTOR", requires = "record", allow_negative_numbers = true)]
     pub scale: Option<f64>,
 }
 
@@ -66,8 +66,6 @@ impl RecordArgs {
 pub struct Understood {
     /// Scaled, in m/s².
     pub record: Record,
-    /// The record in the unit of its file.
-    in_file: Record,
     source: Source,
     /// What it was called, and what was found and assumed, in a line.
     pub described: String,
@@ -77,7 +75,7 @@ impl RecordOptions {
     /// The record in the file at `path`, scaled, in m/s²; `g` (m/s²) is what a record's g stands for. Says what was read as
     /// `what`, and what was assumed.
     fn load(&self, what: &str, path: &Path, g: f64) -> anyhow::Result<Record> {
-        let understood = self.understand(path, g).map_err(with_option)?;
+        let understood = self.understand(path, g)?;
         say!("{what:<14} {}", understood.described);
         understood.warnings(path).for_each(|warning| say!("{warning}"));
         let record = understood.record;
@@ -95,14 +93,14 @@ impl RecordOptions {
             ensure!(dt > 0.0 && dt.is_finite(), "dt = {dt} is out of range: a finite number greater than 0 is needed");
         }
         let how = Reading { unit, dt, column: column.clone(), ignores_count };
-        let (in_file, source) = match input::is_standard(path) {
-            true => rocking_records::from_bytes(Path::new(input::NAME), &input::read(path)?, &how)?,
-            false => rocking_records::read_raw(path, &how)?,
+        let read = match input::is_standard(path) {
+            true => rocking_records::from_bytes(Path::new(input::NAME), &input::read(path)?, &how),
+            false => rocking_records::read_raw(path, &how),
         };
-        let (record, source) = rocking_records::in_m_s2(in_file.clone(), source, g);
+        let (record, source) = read.map_err(with_remedy)?;
+        let (record, source) = rocking_records::in_m_s2(record, source, g);
         let described = described(path, &record, &source, g);
-        let scaled = |record: Record| record.scaled(time_scale, scale);
-        Ok(Understood { record: scaled(record)?, in_file: scaled(in_file)?, source, described })
+        Ok(Understood { record: record.scaled(time_scale, scale)?, source, described })
     }
 
     /// Factors on the record's times and on its accelerations.
@@ -127,12 +125,9 @@ impl Understood {
         self.source.unit
     }
 
-    /// Writes it to a `table` that is read without options, number for number: times in s, accelerations in the unit of its
-    /// file.
-    pub fn write(&self, table: &mut Table) -> anyhow::Result<()> {
-        table.write(["time[s]".into(), format!("a_g[{}]", self.source.unit)])?;
-        let Understood { in_file, .. } = self;
-        in_file.times().iter().zip(in_file.acceleration()).try_for_each(|sample| table.write(sample))
+    /// It as a table that is read without options, in s and m/s².
+    pub fn table(&self) -> String {
+        csv(&self.record)
     }
 }
 
@@ -158,65 +153,11 @@ fn steps(record: &Record) -> String {
     if least == most { format!("step {least} s") } else { format!("steps of {least} to {most} s") }
 }
 
-/// The error with the option that helps.
-pub fn with_option(error: anyhow::Error) -> anyhow::Error {
-    with_remedy(error, |remedy| match remedy {
-        Remedy::IgnoreCount => "--ignore-npts takes those",
-        Remedy::Step => "give it with --dt SECONDS",
-        Remedy::Column => "choose with --column, by number or heading",
-        Remedy::ColumnOrAll => {
-            "choose one with --column NUMBER, or say that every number is a sample, with --column all or a line NPTS= ..., \
-             DT= ... before them"
-        }
-        Remedy::Channel => "choose with --column, by number",
-        Remedy::Unit => "say with --unit what they are",
-        Remedy::Comment => "begin a line that is no sample with #",
-    })
-}
-
-/// The error with what helps in the file of a sweep.
-pub fn with_key(error: anyhow::Error) -> anyhow::Error {
-    with_remedy(error, |remedy| match remedy {
-        Remedy::IgnoreCount => "{ file = ..., ignore_npts = true } takes those",
-        Remedy::Step => "give it, { file = ..., dt = SECONDS }",
-        Remedy::Column => "choose by number or heading, { file = ..., column = ... }",
-        Remedy::ColumnOrAll => {
-            "choose one, { file = ..., column = NUMBER }, or say that every number is a sample, { file = ..., column = 'all' } \
-             or a line NPTS= ..., DT= ... before them"
-        }
-        Remedy::Channel => "choose by number, { file = ..., column = ... }",
-        Remedy::Unit => "say what they are, { file = ..., unit = ... }",
-        Remedy::Comment => "begin a line that is no sample with #",
-    })
-}
-
-/// The error with what helps, in the words of whoever asked.
-pub fn with_remedy(error: anyhow::Error, words: impl Fn(&Remedy) -> &'static str) -> anyhow::Error {
-    match error.downcast_ref() {
-        Some(RecordError::Malformed { remedy: Some(remedy), .. }) => anyhow!("{error}; {}", words(remedy)),
-        _ => error,
-    }
-}
-
-fn column(text: &str) -> Result<Column, String> {
-    match Column::from(text) {
-        Column::Number(0) => Err("columns are counted from 1".into()),
-        column => Ok(column),
-    }
-}
-
-/// A number of seconds, or a factor on them.
-pub fn positive(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(number) if number > 0.0 && f64::is_finite(number) => Ok(number),
-        _ => Err("a finite number greater than 0 is needed".into()),
-    }
-}
-
-fn finite(text: &str) -> Result<f64, String> {
-    match text.parse() {
-        Ok(number) if f64::is_finite(number) => Ok(number),
-        _ => Err("a finite number is needed".into()),
+/// The error with what helps.
+fn with_remedy(error: RecordError) -> anyhow::Error {
+    match error {
+        RecordError::Malformed { remedy: Some(remedy), .. } => anyhow!("{error}; {remedy}"),
+        _ => error.into(),
     }
 }
 
@@ -229,17 +170,4 @@ pub fn one_of<T: Copy + Send + Sync + 'static>(
         let found = names.iter().position(|name| name.matches(&asked, false));
         values[found.expect("clap accepts these names alone")]
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_column_has_a_number_or_a_heading_or_is_all() {
-        assert_eq!(column("3"), Ok(Column::Number(3)));
-        assert_eq!(column("E-W"), Ok(Column::Heading("E-W".into())));
-        assert_eq!(column("all"), Ok(Column::All));
-        assert!(column("0").is_err());
-    }
 }

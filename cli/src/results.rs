@@ -1,7 +1,8 @@
-//! Results on standard output: for people, or for programs as JSON or CSV, where a number reads back to the same bits.
+//! Results on standard output: for people, or for programs as JSON, where a number reads back to the same bits.
 
 use crate::cause::Cause;
-use crate::output_files::{OutputFile, OutputFiles};
+use crate::output_files::OutputFile;
+use crate::quantities::{NamedValue, write_columns};
 use crate::talk::say;
 use clap::ValueEnum;
 use serde::{Serialize, Serializer};
@@ -12,29 +13,58 @@ use std::path::Path;
 pub struct FormatArgs {
     /// How the results are printed
     #[arg(long, value_name = "FORMAT", value_enum, default_value_t = Format::Text, display_order = 999)]
-    pub format: Format,
-}
-
-impl FormatArgs {
-    /// The files of a command that reads `inputs` and prints its results so.
-    pub fn files<'a>(&self, inputs: impl IntoIterator<Item = &'a Path>) -> OutputFiles {
-        let mut files = OutputFiles::of_inputs(inputs);
-        if self.format != Format::Text {
-            files.reserve_standard_output("what --format asks for");
-        }
-        files
-    }
+    format: Format,
 }
 
 /// For whom results are printed.
-#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
-pub enum Format {
+#[derive(Clone, Copy, ValueEnum)]
+enum Format {
     /// Tables to read, six digits
     Text,
     /// JSON in SI units, all digits
     Json,
-    /// CSV in SI units, all digits
-    Csv,
+}
+
+impl FormatArgs {
+    /// Prints what `text` makes, or `result` as JSON.
+    pub fn print(self, text: impl FnOnce() -> anyhow::Result<String>, result: &impl Serialize) -> anyhow::Result<()> {
+        self.print_beside(None, text, result)
+    }
+
+    /// The same, but on standard error where standard output has the table that is written to `output`.
+    pub fn print_beside(
+        self,
+        output: Option<&Path>,
+        text: impl FnOnce() -> anyhow::Result<String>,
+        result: &impl Serialize,
+    ) -> anyhow::Result<()> {
+        let printed = match self.format {
+            Format::Text => text()?,
+            Format::Json => serde_json::to_string_pretty(result)? + "\n",
+        };
+        if output != Some(Path::new("-")) {
+            return print(&printed);
+        }
+        say!("{}", printed.trim_end());
+        Ok(())
+    }
+
+    /// Prints `lines` under a `title`, accelerations also in multiples of `g` (m/s²), or with their `cause` as JSON; on
+    /// standard error where standard output has the table that is written to `output`.
+    pub fn print_table(
+        self,
+        output: Option<&Path>,
+        (title, g): (&str, f64),
+        cause: &Cause,
+        lines: &[NamedValue],
+    ) -> anyhow::Result<()> {
+        let text = || {
+            let mut text = format!("{title}\n");
+            write_columns(&mut text, lines, g)?;
+            Ok(text)
+        };
+        self.print_beside(output, text, &Traced { cause, rows: lines })
+    }
 }
 
 /// A number that may be infinite, for which JSON has no number: it is the text "inf" there, as in a table.
@@ -49,54 +79,12 @@ impl Serialize for Number {
 
 /// Rows and what they come from.
 #[derive(Serialize)]
-struct Traced<'a, R> {
+pub struct Traced<'a, R> {
+    /// What they come from.
     #[serde(flatten)]
-    cause: &'a Cause,
-    rows: &'a [R],
-}
-
-/// Prints `result` as JSON.
-pub fn print_json(result: &impl Serialize) -> anyhow::Result<()> {
-    print(&format!("{}\n", serde_json::to_string_pretty(result)?))
-}
-
-/// Prints `rows` as JSON, or as CSV under the names of their fields.
-pub fn print_rows(format: Format, rows: &[impl Serialize]) -> anyhow::Result<()> {
-    if format == Format::Json {
-        return print_json(&rows);
-    }
-    print(&String::from_utf8(csv(rows)?)?)
-}
-
-/// Prints `rows` with their `cause`: around them in JSON, behind each of them in CSV.
-pub fn print_traced(format: Format, cause: &Cause, rows: &[impl Serialize]) -> anyhow::Result<()> {
-    if format == Format::Json {
-        return print_json(&Traced { cause, rows });
-    }
-    let rows = csv(rows)?;
-    let (headings, values): (Vec<_>, Vec<_>) = cause.columns().into_iter().unzip();
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    for (i, line) in csv::ReaderBuilder::new().has_headers(false).from_reader(rows.as_slice()).records().enumerate() {
-        let line = line?;
-        let of_cause = if i == 0 { &headings } else { &values };
-        writer.write_record(line.iter().chain(of_cause.iter().map(String::as_str)))?;
-    }
-    print(&String::from_utf8(writer.into_inner()?)?)
-}
-
-fn csv(rows: &[impl Serialize]) -> anyhow::Result<Vec<u8>> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
-    rows.iter().try_for_each(|row| writer.serialize(row))?;
-    Ok(writer.into_inner()?)
-}
-
-/// Prints `text`, or says it where standard output has the table that is written to `output`.
-pub fn print_beside(output: Option<&Path>, text: &str) -> anyhow::Result<()> {
-    if output != Some(Path::new("-")) {
-        return print(text);
-    }
-    say!("{}", text.trim_end());
-    Ok(())
+    pub cause: &'a Cause,
+    /// The rows.
+    pub rows: &'a [R],
 }
 
 /// Prints `text`; that it cannot be printed is an error, as in a file.

@@ -1,12 +1,13 @@
 //! The scene that a command simulates: a ground motion record or free vibration, and the initial values.
 use crate::{
-    record_args::{RecordArgs, one_of, positive},
+    record_args::{RecordArgs, one_of},
     significant::short,
     structure_args::StructureArgs,
 };
 use clap::ArgGroup;
 use rocking::run::record::Record;
-use rocking::{Detail, Run, State, Structure, engine::DEFAULT_TOLERANCE, run::End};
+use rocking::{Detail, State, Structure, engine::DEFAULT_TOLERANCE};
+use rocking_sweep::plan::Conditions;
 use std::path::Path;
 
 /// A motion to follow: of which structure, under which ground motion, from where, and how it is computed.
@@ -23,18 +24,14 @@ pub struct MotionArgs {
 }
 
 impl MotionArgs {
-    /// The structure and the ground motion.
-    pub fn load(&self) -> anyhow::Result<(Structure, Record)> {
+    /// The structure, the ground motion, and how the motion is computed.
+    pub fn load(&self) -> anyhow::Result<(Structure, Record, Conditions)> {
         let structure = self.structure.load()?;
-        let ground = self.ground.load(structure.parameters().g)?;
-        Ok((structure, ground))
-    }
-
-    /// The run of `structure` under `ground`.
-    pub fn run<'a>(&self, structure: Structure, ground: &'a Record) -> Run<'a> {
         let LevelArgs { tolerance, detail } = self.level;
-        let (initial, end) = (self.initial.state(), self.ground.end(ground));
-        Run { initial, detail, tolerance, end, ..Run::new(structure, ground) }
+        let (initial, duration) = (self.initial.state(), self.ground.duration());
+        let conditions = Conditions { initial, detail, tolerance, duration };
+        conditions.check(&structure)?;
+        Ok((structure, self.ground.load(structure.parameters().g)?, conditions))
     }
 
     /// The files that are read.
@@ -51,13 +48,12 @@ pub struct GroundArgs {
     #[command(flatten)]
     pub record: RecordArgs,
     /// Simulated time; the ground is at rest after the record's end [default: until the structure stands for good, or still rocks 100/p_l after the record]
-    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
     duration: Option<f64>,
     /// Free vibration over this time instead of a record
     #[arg(
         long,
         value_name = "SECONDS",
-        value_parser = positive,
         allow_negative_numbers = true,
         conflicts_with_all = ["record_v", "unit", "dt", "column", "ignore_npts", "time_scale", "scale", "duration"]
     )]
@@ -91,15 +87,8 @@ struct LevelArgs {
     #[arg(long, value_name = "LEVEL", default_value = Detail::default().name(), value_parser = one_of(Detail::ALL.map(|of| (of.name(), of))))]
     detail: Detail,
     /// Relative tolerance
-    #[arg(long, default_value = format!("{DEFAULT_TOLERANCE:e}"), value_parser = tolerance)]
+    #[arg(long, default_value = format!("{DEFAULT_TOLERANCE:e}"))]
     tolerance: f64,
-}
-
-fn tolerance(text: &str) -> Result<f64, String> {
-    positive(text).and_then(|tolerance| match tolerance {
-        ..1.0 => Ok(tolerance),
-        _ => Err("a number less than 1 is needed, such as 1e-9".into()),
-    })
 }
 
 impl GroundArgs {
@@ -109,10 +98,9 @@ impl GroundArgs {
         Ok(record.unwrap_or_else(|| Record::at_rest(self.free.expect("clap asks for --record or --free"))))
     }
 
-    /// When the run ends.
-    pub fn end(&self, ground: &Record) -> End {
-        let duration = self.duration.or(self.free);
-        duration.map_or(End::AtRest, |duration| End::At(ground.start() + duration))
+    /// From the start to the end of the run, s, where that is asked for.
+    pub fn duration(&self) -> Option<f64> {
+        self.duration.or(self.free)
     }
 
     /// What the ground does, in a line.

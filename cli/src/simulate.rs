@@ -3,15 +3,15 @@ mod picture;
 
 use crate::{
     cause::Cause,
-    picture::PictureFile,
+    output_files::{OutputFile, OutputFiles},
+    picture::Picture,
     quantities::in_readable_unit,
-    record_args::positive,
-    results::{Format, FormatArgs, print_beside},
+    results::FormatArgs,
     scene_args::MotionArgs,
     significant::{short, significant},
     summary::{Summary, instant},
-    tables::{self, Table},
-    talk::{self, say},
+    tables::{EVENTS, RESPONSE, csv, event_line, response_line},
+    talk::say,
     validity::{self, LimitArgs},
 };
 use anyhow::ensure;
@@ -19,10 +19,7 @@ use rocking::run::record::Record;
 use rocking::{
     Run, Structure, Transition,
     mechanics::restraint::centring_moments,
-    run::{
-        End,
-        validity::{Found as Beyond, Validity},
-    },
+    run::validity::{Found as Beyond, Validity},
 };
 use std::path::PathBuf;
 
@@ -41,7 +38,7 @@ pub struct SimulateArgs {
 #[command(next_help_heading = "Results")]
 struct ResultArgs {
     /// Interval of the response that -o writes [default: the record's samples; 0.001 in free vibration]
-    #[arg(long, value_name = "SECONDS", value_parser = positive, requires = "output", allow_negative_numbers = true)]
+    #[arg(long, value_name = "SECONDS", requires = "output", allow_negative_numbers = true)]
     interval: Option<f64>,
     /// Response as CSV, `-` for standard output
     #[arg(short, long, value_name = "FILE.csv")]
@@ -53,7 +50,7 @@ struct ResultArgs {
     format: FormatArgs,
     /// Draw ground acceleration, rotation, displacements and acceleration over time, with marks at transitions
     #[arg(long, value_name = "FILE.svg|png")]
-    picture: Option<PictureFile>,
+    picture: Option<PathBuf>,
 }
 
 impl SimulateArgs {
@@ -73,8 +70,8 @@ impl SimulateArgs {
         let (samples, interval) = self.samples_and_interval(ground);
         let rows = samples.len() as f64 + (end - samples[samples.len() - 1]) / interval;
         ensure!(
-            rows <= MOST_ROWS,
-            "an interval of {} s over {} s makes {rows:.0e} rows: {MOST_ROWS:.0e} are possible; see --interval",
+            interval > 0.0 && rows <= MOST_ROWS,
+            "an interval of {} s over {} s: greater than 0 is needed, and at most {MOST_ROWS:.0e} rows; see --interval",
             short(interval),
             short(end - ground.start())
         );
@@ -82,32 +79,19 @@ impl SimulateArgs {
     }
 
     /// Writes the response of `run` at the instants asked for.
-    fn write_response(&self, run: &Run, mut response: Table) -> anyhow::Result<()> {
-        let progress = talk::progress(run.ground.times().len());
+    fn write_response(&self, run: &Run, file: OutputFile) -> anyhow::Result<()> {
         let (samples, interval) = self.samples_and_interval(run.ground);
         let (start, from) = (samples[0], samples[samples.len() - 1]);
         let times = samples.iter().copied().chain((1_u64..).map(|i| from + i as f64 * interval));
-        let (mut rows, mut last) = (response.write(tables::RESPONSE), None);
-        run.sample(
-            times,
-            |sample| {
-                progress.inc(1);
-                let next = (sample.motion.time, tables::response_line(sample));
-                // an instant that misses the end by rounding is the end
-                let rounding = 1e-6 * interval.min(sample.motion.time - start);
-                if let Some((time, line)) = last.replace(next)
-                    && time < sample.motion.time - rounding
-                    && rows.is_ok()
-                {
-                    rows = response.write(line);
-                }
-            },
-            &mut (),
-        )?;
-        progress.finish_and_clear();
-        rows?;
-        last.map_or(Ok(()), |(_, line)| response.write(line))?;
-        response.finish("response")
+        let mut rows = Vec::new();
+        run.sample(times, |sample| rows.push((sample.motion.time, response_line(sample))), &mut ())?;
+        // an instant that misses the end by rounding is the end
+        if let [.., (before, _), (end, _)] = rows[..]
+            && before >= end - 1e-6 * interval.min(end - start)
+        {
+            rows.remove(rows.len() - 2);
+        }
+        file.write_as("response", &csv(RESPONSE, rows.iter().map(|(_, line)| line))?)
     }
 }
 
@@ -124,52 +108,39 @@ fn centring(structure: &Structure) -> Option<String> {
 
 /// Prints the summary of the response, and writes what is asked for.
 pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
-    let (structure, ground) = args.motion.load()?;
-    let run = args.motion.run(structure, &ground);
+    let (structure, ground, conditions) = args.motion.load()?;
+    let run = conditions.run(structure, &ground);
     if let Some(line) = centring(&structure) {
         say!("centring       {line}");
     }
 
     let output = args.results.output.as_deref();
-    if let (Some(_), End::At(end)) = (output, run.end) {
-        args.check_rows(&ground, end)?;
-    }
-    let ResultArgs { format, picture, events, .. } = &args.results;
-    let mut files = format.files(args.motion.inputs());
-    let response = output.map(|path| Table::create(&mut files, path)).transpose()?;
-    let mut events = events.as_deref().map(|path| Table::create(&mut files, path)).transpose()?;
-    let picture = picture.as_ref().map(|picture| picture.create(&mut files)).transpose()?;
-    if let Some(events) = &mut events {
-        events.write(tables::EVENTS)?;
-    }
-    let (mut summary, mut written) = (Summary::new(&structure), Ok(()));
-    let mut transition = |transition: &Transition| {
-        if let (Some(events), Ok(())) = (&mut events, &written) {
-            written = events.write(tables::event_line(transition));
-        }
-    };
+    let ResultArgs { picture, events, .. } = &args.results;
+    let mut files = OutputFiles::of_inputs(args.motion.inputs());
+    let response = output.map(|path| files.create(path)).transpose()?;
+    let events = events.as_deref().map(|path| files.create(path)).transpose()?;
+    let picture = picture.as_deref().map(|path| Picture::create(path, &mut files)).transpose()?;
     let limits = args.limits.limits();
     let mut validity = Validity::new(&structure, limits, Beyond::since(ground.start()));
-    let found = run.found(&mut (&mut validity, &mut (&mut summary, &mut transition)))?;
-    written?;
-    events.map_or(Ok(()), |events| events.finish("transitions"))?;
-    if let Some(response) = response {
+    let mut transitions = Vec::new();
+    let mut see = |transition: &Transition| transitions.push(*transition);
+    let found = run.found(&mut (&mut validity, &mut see))?;
+    if let Some(file) = events {
+        file.write_as("transitions", &csv(EVENTS, transitions.iter().map(event_line))?)?;
+    }
+    if let Some(file) = response {
         args.check_rows(&ground, found.finish.motion.time)?;
-        args.write_response(&run, response)?;
+        args.write_response(&run, file)?;
     }
-    let (start, end) = (instant(found.start), instant(found.finish.motion.time));
-    if args.results.format.format == Format::Text {
-        let mut text = format!("{}, {start} to {end} s\n{}", ground.title(), summary.text(&found)?);
-        for line in validity::section(&structure, run.detail, validity.found(), &limits) {
-            text = text + &line + "\n";
-        }
-        print_beside(output, &text)?;
-    } else {
-        let validity = validity::rows(validity.found(), &limits);
-        let cause = Cause::new(&structure).under(&args.motion.ground.record, &ground);
-        let cause = cause.computed(Some((run.detail, run.tolerance)), run.initial);
-        summary.print(args.results.format.format, &cause, &found, validity)?;
-    }
+    let summary = Summary::new(&structure, &transitions);
+    let text = || {
+        let (start, end) = (instant(found.start), instant(found.finish.motion.time));
+        let section = validity::section(&structure, run.detail, validity.found(), &limits).join("\n");
+        Ok(format!("{}, {start} to {end} s\n{}{section}\n", ground.title(), summary.text(&found)?))
+    };
+    let cause = Cause::new(&structure).under(&args.motion.ground.record, &ground).computed(&conditions);
+    let whole = summary.whole(&cause, &found, validity::rows(validity.found(), &limits));
+    args.results.format.print_beside(output, text, &whole)?;
     match picture {
         Some(picture) => picture::draw(picture, &run),
         None => Ok(()),

@@ -1,21 +1,22 @@
 //! Which structure a command works on: one of the paper's specimens, or parameters from a file, with single numbers in
-//! the place of theirs, or numbers that are all of it. What is assumed is said.
-use crate::{input, significant::in_full, talk::say};
+//! the place of theirs, or numbers that are all of it.
+use crate::{input, record_args::one_of, significant::in_full, talk::say};
 use anyhow::{Context, anyhow};
-use clap::{Arg, ArgMatches, Command, FromArgMatches, ValueEnum, parser::ValueSource, value_parser};
+use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource, value_parser};
 use rocking::structure::Derived;
-use rocking::structure::natural_quantities::{DEFAULTS, Given, GivenError, NATURAL, names};
-use rocking::structure::parameters::PARAMETERS;
-use rocking::structure::quantity::Quantity;
+use rocking::structure::natural_quantities::{Given, GivenError, NATURAL, names};
+use rocking::structure::parameters::{PARAMETERS, PRESETS};
+use rocking::structure::quantity::{Quantity, with_unit};
 use rocking::{Parameters, Structure};
 use std::path::{Path, PathBuf};
 
 /// The structure asked for.
 #[derive(clap::Args, Debug)]
 pub struct StructureArgs {
-    /// Specimen of the paper [default: mcmanus, where nothing of a structure is given]
-    #[arg(long, value_enum, conflicts_with = "parameters")]
-    preset: Option<Preset>,
+    /// Specimen of the paper: a bridge pier (Table 2) or a shear wall (Table 1) [default: mcmanus, where nothing of a
+    /// structure is given]
+    #[arg(long, value_parser = one_of(PRESETS), conflicts_with = "parameters")]
+    preset: Option<Parameters>,
     /// TOML file of parameters, as `describe --template` writes it, `-` for standard input
     #[arg(long, value_name = "FILE.toml")]
     parameters: Option<PathBuf>,
@@ -27,56 +28,12 @@ pub struct StructureArgs {
 #[derive(Debug)]
 struct Numbers(Given);
 
-/// A specimen of the paper.
-#[derive(Clone, Copy, Debug, clap::ValueEnum, serde::Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Preset {
-    /// Shear wall (Table 1)
-    Evison,
-    /// Bridge pier (Table 2)
-    Mcmanus,
-}
-
-impl Preset {
-    /// Its parameters.
-    pub fn parameters(self) -> Parameters {
-        match self {
-            Preset::Evison => Parameters::EVISON,
-            Preset::Mcmanus => Parameters::MCMANUS,
-        }
-    }
-
-    /// What it is called.
-    pub fn name(self) -> String {
-        self.to_possible_value().map_or_else(String::new, |value| value.get_name().into())
-    }
-}
-
 /// The structure's parameters in one line.
 pub fn in_one_line(structure: &Structure) -> String {
-    listed(structure.parameters(), |_| true)
-}
-
-/// The `parameters` whose names are `meant`, in one line.
-fn listed(parameters: &Parameters, meant: impl Fn(&str) -> bool) -> String {
     let value = |parameter: &Quantity<Parameters>| {
-        let value = (parameter.get)(parameters);
-        let unit = if parameter.unit == "1" { String::new() } else { format!(" {}", parameter.unit) };
-        format!("{} = {value}{unit}", parameter.name)
+        format!("{} = {}", parameter.name, with_unit((parameter.get)(structure.parameters()), parameter.unit))
     };
-    PARAMETERS.iter().filter(|parameter| meant(parameter.name)).map(value).collect::<Vec<_>>().join(", ")
-}
-
-/// Where what is not `given` by name of `parameters` comes from: from a specimen, or by default. None if all is given.
-pub fn left_open(preset: Option<&str>, parameters: &Parameters, given: impl Fn(&str) -> bool) -> Option<String> {
-    let Some(preset) = preset else {
-        let is_default = |name: &str| DEFAULTS.iter().any(|(default, _)| *default == name);
-        let open = listed(parameters, |name| !given(name) && is_default(name));
-        return (!open.is_empty()).then(|| format!("by default: {open}"));
-    };
-    let open = listed(parameters, |name| !given(name));
-    let is_all = PARAMETERS.iter().all(|parameter| !given(parameter.name));
-    (!open.is_empty()).then(|| if is_all { preset.to_owned() } else { format!("from {preset}: {open}") })
+    PARAMETERS.iter().map(value).collect::<Vec<_>>().join(", ")
 }
 
 impl StructureArgs {
@@ -85,35 +42,26 @@ impl StructureArgs {
         self.parameters.as_deref()
     }
 
-    /// Reads the parameters and derives the structure, and says what of it was not given; a refusal names the file, the line
-    /// and the key.
+    /// Reads the parameters and derives the structure; a refusal names the file, the line and the key.
     pub fn load(&self) -> anyhow::Result<Structure> {
         let numbers = &self.numbers.0;
-        let mut of_file = Given::default();
         let parameters = match (&self.parameters, self.preset) {
             (Some(path), _) => {
-                let mut read = || -> anyhow::Result<Structure> {
-                    of_file = toml::from_str(&input::text(path)?)?;
-                    Ok(Structure::new(of_file.parameters()?)?)
+                let read = || -> anyhow::Result<Structure> {
+                    let given: Given = toml::from_str(&input::text(path)?)?;
+                    Ok(Structure::new(given.parameters()?)?)
                 };
                 let structure = read().with_context(|| format!("parameters in {}", input::name(path)))?;
                 numbers.over(structure.parameters())?
             }
-            (None, Some(preset)) => numbers.over(&preset.parameters())?,
-            (None, None) if numbers.is_empty() => Preset::Mcmanus.parameters(),
+            (None, Some(preset)) => numbers.over(&preset)?,
+            (None, None) if numbers.is_empty() => {
+                say!("structure      mcmanus, for none is given: see --preset, --parameters");
+                Parameters::MCMANUS
+            }
             (None, None) => numbers.parameters().map_err(with_options)?,
         };
-        let structure = Structure::new(parameters)?;
-        let preset = match self.preset {
-            Some(preset) => Some(preset.name()),
-            None if self.parameters.is_some() || !numbers.is_empty() => None,
-            None => Some(format!("{}, for none is given: see --preset, --parameters", Preset::Mcmanus.name())),
-        };
-        let given = |name: &str| numbers.determine(name) || of_file.determine(name);
-        if let Some(open) = left_open(preset.as_deref(), &parameters, given) {
-            say!("structure      {open}");
-        }
-        Ok(structure)
+        Ok(Structure::new(parameters)?)
     }
 }
 
@@ -121,12 +69,7 @@ impl StructureArgs {
 fn with_options(error: GivenError) -> anyhow::Error {
     let GivenError::Missing(missing) = &error else { return error.into() };
     let advice = missing.iter().map(|missing| missing.advice(|name| format!("--{}", option_name(name))));
-    let presets = Preset::value_variants().iter().map(|preset| format!("--preset {}", preset.name()));
-    anyhow!(
-        "{}; or take what is missing from a specimen of the paper: {}",
-        advice.collect::<Vec<_>>().join("; "),
-        presets.collect::<Vec<_>>().join(" or ")
-    )
+    anyhow!(advice.collect::<Vec<_>>().join("; "))
 }
 
 /// The option of the number called `name`: `--f-fc` of f_fc.

@@ -1,7 +1,6 @@
 //! What `simulate` prints at the end of a run.
 use crate::cause::Cause;
 use crate::quantities::readable;
-use crate::results::{Format, print_json, print_traced};
 use crate::validity;
 use fmu_export::significant::significant;
 use rocking::mechanics::restraint::Dissipators;
@@ -10,7 +9,7 @@ use rocking::run::{
     fall::Found,
     peaks::{self, Peak},
 };
-use rocking::{Motion, Parameters, Phase, Side, Structure, Transition, TransitionKind, Watch};
+use rocking::{Motion, Parameters, Phase, Side, Structure, Transition, TransitionKind};
 use serde::Serialize;
 use std::fmt::{self, Write};
 
@@ -31,19 +30,9 @@ struct NamedPeak {
     time: f64,
 }
 
-/// A line of the table for programs: what has no value, no unit or no instant leaves it empty.
-#[derive(Serialize)]
-struct TableLine {
-    name: &'static str,
-    value: serde_json::Value,
-    unit: &'static str,
-    /// s.
-    time: Option<f64>,
-}
-
 /// All of it, for programs; instants in s.
 #[derive(Serialize)]
-struct Whole<'a> {
+pub struct Whole<'a> {
     #[serde(flatten)]
     cause: &'a Cause,
     start: f64,
@@ -76,89 +65,44 @@ struct Taken {
     theta_end: f64,
 }
 
-impl Watch for Summary {
-    const SEES_PIECES: bool = false;
-
-    fn transition(&mut self, transition: &Transition) {
-        let first = match transition.kind {
-            TransitionKind::Uplift(_) => &mut self.first_uplift,
-            TransitionKind::Impact(_) | TransitionKind::Landing | TransitionKind::Settling => &mut self.first_impact,
-            TransitionKind::Overturning(_) | TransitionKind::Yielding(_) | TransitionKind::Unloading(_) => return,
-        };
-        first.get_or_insert(transition.time);
-    }
-}
-
 impl Summary {
-    /// Of a run of `structure`, nothing seen yet.
-    pub fn new(structure: &Structure) -> Summary {
-        Summary { structure: *structure, first_uplift: None, first_impact: None }
+    /// Of a run of `structure` with these `transitions`.
+    pub fn new(structure: &Structure, transitions: &[Transition]) -> Summary {
+        let first = |is_meant: fn(&TransitionKind) -> bool| {
+            transitions.iter().find(|transition| is_meant(&transition.kind)).map(|transition| transition.time)
+        };
+        let first_uplift = first(|kind| matches!(kind, TransitionKind::Uplift(_)));
+        let first_impact = first(|kind| {
+            matches!(kind, TransitionKind::Impact(_) | TransitionKind::Landing | TransitionKind::Settling)
+        });
+        Summary { structure: *structure, first_uplift, first_impact }
     }
 
-    /// Prints it for programs, with the `cause` of the run, what was `found` in it and what the model leaves out.
-    pub fn print(
-        &self,
-        format: Format,
-        cause: &Cause,
-        found: &Found,
-        validity: Vec<validity::Beyond>,
-    ) -> anyhow::Result<()> {
+    /// All of it for programs, with the `cause` of the run, what was `found` in it and what the model leaves out.
+    pub fn whole<'a>(&self, cause: &'a Cause, found: &Found, validity: Vec<validity::Beyond>) -> Whole<'a> {
         let &Found { ground, ref peaks, fall, start, finish: Finish { ending, motion } } = found;
         let row = |name, unit, Peak { magnitude: peak, time }| NamedPeak { name, peak, unit, time };
         let of_structure = peaks::of(&self.structure).map(|peak| row(peak.name, peak.unit, (peak.of)(peaks)));
-        let rows: Vec<_> = [row("a_g", "m/s2", ground)].into_iter().chain(of_structure).collect();
-        let &Summary { first_uplift, first_impact, .. } = self;
-        let (work, transitions, taken) = (motion.work, motion.transitions, self.taken(motion));
-        if format == Format::Csv {
-            let line = |name, value, unit, time| TableLine { name, value, unit, time };
-            let (none, count) = (serde_json::Value::Null, |name, count: u64| line(name, count.into(), "1", None));
-            let mut lines: Vec<_> =
-                rows.iter().map(|row| line(row.name, row.peak.into(), row.unit, Some(row.time))).collect();
-            lines.extend([
-                line("start", none.clone(), "", Some(start)),
-                line("ending", serde_json::to_value(ending)?, "", Some(motion.time)),
-                line("fall", none.clone(), "", fall),
-                line("first_uplift", none.clone(), "", first_uplift),
-                line("first_impact", none, "", first_impact),
-            ]);
-            if let Some(Taken { E_viscous, E_hysteretic, theta_end }) = taken {
-                let rows = [
-                    ("E_viscous", E_viscous, "J"),
-                    ("E_hysteretic", E_hysteretic, "J"),
-                    ("theta_end", theta_end, "rad"),
-                ];
-                lines.extend(rows.map(|(name, value, unit)| line(name, value.into(), unit, None)));
-            }
-            lines.extend([
-                count("transitions", transitions),
-                count("steps", work.steps),
-                count("evaluations", work.evaluations),
-            ]);
-            for row in validity {
-                lines.push(line(row.name, serde_json::to_value(row.value)?, "1", Some(row.time)));
-            }
-            return print_traced(format, cause, &lines);
-        }
         let overturned = match ending {
             Ending::StillRocking => None,
             ending => Some(ending == Ending::Overturned),
         };
-        print_json(&Whole {
+        Whole {
             cause,
             start,
             end: motion.time,
             ending,
             overturned,
             fall,
-            peaks: rows,
-            taken,
-            first_uplift,
-            first_impact,
-            transitions,
-            steps: work.steps,
-            evaluations: work.evaluations,
+            peaks: [row("a_g", "m/s2", ground)].into_iter().chain(of_structure).collect(),
+            taken: self.taken(motion),
+            first_uplift: self.first_uplift,
+            first_impact: self.first_impact,
+            transitions: motion.transitions,
+            steps: motion.work.steps,
+            evaluations: motion.work.evaluations,
             validity,
-        })
+        }
     }
 
     /// What dissipators have done by the end, in `motion`; none without them.

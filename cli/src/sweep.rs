@@ -10,12 +10,11 @@ use crate::{
     cause::program,
     input,
     output_files::OutputFiles,
-    picture::{Picture, PictureFile},
-    results::{Format, FormatArgs, print, print_json, print_rows},
-    significant::significant,
+    picture::Picture,
+    results::FormatArgs,
     talk::{self, say, say_few},
 };
-use anyhow::{Context, bail};
+use anyhow::{bail, ensure};
 use clap::value_parser;
 use file::{Asked, RecordSweep};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -27,10 +26,7 @@ use rocking_sweep::{
     plan::{Case, Plan},
     rows::Sweep,
 };
-use std::{
-    path::{Path, PathBuf},
-    time::Instant,
-};
+use std::path::{Path, PathBuf};
 use uuid::Uuid;
 
 /// What to run.
@@ -45,7 +41,7 @@ pub struct SweepArgs {
     output: Option<PathBuf>,
     /// Picture of the probabilities and fragility curves, or of the maps [default: beside the rows, as SVG]
     #[arg(long, value_name = "FILE.svg|png")]
-    picture: Option<PictureFile>,
+    picture: Option<PathBuf>,
     /// Runs at a time [default: one per core]
     #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
@@ -65,10 +61,10 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
         None if input::is_standard(&args.file) => "sweep.csv".into(),
         None => PathBuf::from(args.file.file_stem().unwrap_or_default()).with_extension("csv"),
     };
-    let picture = args.picture.clone().unwrap_or(PictureFile::svg(output.with_extension("svg")));
-    files.reserve_rows(&output)?;
-    let picture = picture.create(&mut files).context("picture of the sweep")?;
-    talk::if_stopped(format!(": finished runs are in {}; the same command continues from there", output.display()));
+    ensure!(!input::is_standard(&output), "rows need a file, which is read again: give it with -o");
+    files.create(&output)?;
+    let picture = args.picture.clone().unwrap_or(output.with_extension("svg"));
+    let picture = Picture::create(&picture, &mut files)?;
     match asked {
         Asked::Records(sweep) => run_records(args, sweep, &output, picture),
         Asked::Pulses(sweep) => map::run(args, sweep, &output, picture),
@@ -77,7 +73,7 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
 
 /// Every record at every scale factor on every structure.
 fn run_records(args: &SweepArgs, sweep: RecordSweep, output: &Path, picture: Picture) -> anyhow::Result<()> {
-    let RecordSweep { plan, limits, measure, records, structures } = sweep;
+    let RecordSweep { plan, limits, measure, records } = sweep;
     let program = program();
     let runs = Sweep::open(&plan, args.validity, &program, output)?;
     let missing = runs.missing();
@@ -87,49 +83,28 @@ fn run_records(args: &SweepArgs, sweep: RecordSweep, output: &Path, picture: Pic
         "{name}: {done} of {} runs done, structures: {members}, records: {motions}, scale factors: {scales}",
         plan.len()
     );
-    say_few(&structures, "structures");
     say_few(&records, "records");
     runs.others.others(output, "runs that are not in this sweep").iter().for_each(|line| say!("{line}"));
 
-    let pool = thread_pool(args, missing.len())?;
-    let clock = Instant::now();
     let (bar, goes_on) = progress(missing.len(), "runs")?;
-    let (keys, outcomes) = pool.install(|| runs.finish(goes_on))?;
+    let (keys, outcomes) = thread_pool(args)?.install(|| runs.finish(goes_on))?;
     bar.finish_and_clear();
-    say_rate(missing.len(), "runs", clock, &pool);
 
     let populations = exceedances::count(&plan, measure, &limits, &outcomes);
-    match args.results.format {
-        Format::Text => {
-            let mut out = String::new();
-            populations.iter().try_for_each(|population| table::write(&mut out, population, measure))?;
-            print(&out)?;
-        }
-        Format::Json => print_json(&table::curves(&populations, measure))?,
-        Format::Csv => print_rows(
-            Format::Csv,
-            &table::curves(&populations, measure).iter().map(|of| &of.curve).collect::<Vec<_>>(),
-        )?,
-    }
+    let text = || {
+        let mut out = String::new();
+        populations.iter().try_for_each(|population| table::write(&mut out, population, measure))?;
+        Ok(out)
+    };
+    args.results.print(text, &table::curves(&populations, measure))?;
     say!("rows           {}", output.display());
     picture::draw(picture, &populations, measure)?;
     report_failures(&plan, &keys, &outcomes)
 }
 
-/// As many threads as are asked for, or one per core, but no more than there are `runs`.
-fn thread_pool(args: &SweepArgs, runs: usize) -> anyhow::Result<ThreadPool> {
-    let threads = args.threads.map_or(0, |threads| usize::from(threads).min(runs).max(1));
-    Ok(ThreadPoolBuilder::new().num_threads(threads).build()?)
-}
-
-/// Says how fast the runs that there were to do, which are called `what`, have been done since `clock`.
-fn say_rate(done: usize, what: &str, clock: Instant, pool: &ThreadPool) {
-    if done > 0 {
-        let (seconds, threads) = (clock.elapsed().as_secs_f64(), pool.current_num_threads());
-        let rate = done as f64 / seconds;
-        let [seconds, rate, per_thread] = [seconds, rate, rate / threads as f64].map(significant);
-        say!("{done} {what} in {seconds} s: {rate} /s, {per_thread} /s on each of {threads} threads");
-    }
+/// As many threads as are asked for, or one per core.
+fn thread_pool(args: &SweepArgs) -> anyhow::Result<ThreadPool> {
+    Ok(ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, usize::from)).build()?)
 }
 
 /// A bar for the progress of many runs, which are called `what`, and what moves it after each.

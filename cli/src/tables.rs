@@ -1,45 +1,17 @@
 //! The tables that `simulate` writes: the response and its transitions as CSV.
-use crate::output_files::{OutputFile, OutputFiles};
-use crate::talk::say;
 use rocking::engine::piece::Sample;
 use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::{Impulse, Outputs, Reactions, State, Transition};
 use serde::Serialize;
-use std::path::Path;
 
-/// A CSV file that is being made.
-pub struct Table {
-    file: OutputFile,
-    writer: csv::Writer<Vec<u8>>,
-}
-
-impl Table {
-    /// A table at `path`, or on standard output for `-`, still without its headings: a command writes nothing before it
-    /// has all of its files.
-    pub fn create(files: &mut OutputFiles, path: &Path) -> anyhow::Result<Table> {
-        let writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
-        Ok(Table { file: files.create(path)?, writer })
+/// `lines` under `headings` as CSV; a number reads back to the same bits.
+pub fn csv(headings: impl Serialize, lines: impl Iterator<Item = impl Serialize>) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+    writer.serialize(headings)?;
+    for line in lines {
+        writer.serialize(line)?;
     }
-
-    /// Adds a line, the headings or another; a number reads back to the same bits.
-    pub fn write(&mut self, line: impl Serialize) -> anyhow::Result<()> {
-        Ok(self.writer.serialize(line)?)
-    }
-
-    /// Writes the file.
-    pub fn close(self) -> anyhow::Result<()> {
-        self.file.write(&self.writer.into_inner()?)
-    }
-
-    /// Writes the file, and says where, as `what`.
-    pub fn finish(self, what: &str) -> anyhow::Result<()> {
-        let path = self.file.path().to_owned();
-        self.close()?;
-        if path != Path::new("-") {
-            say!("{what:<14} {}", path.display());
-        }
-        Ok(())
-    }
+    Ok(writer.into_inner()?)
 }
 
 /// Headings of the response: the ground accelerations, and the outputs of the FMU under their names and units.

@@ -1,9 +1,8 @@
 //! What a command says beside its results: on standard error, where it disturbs no program that reads the results.
 
 use indicatif::ProgressBar;
-use std::io::{IsTerminal, Write, stderr};
+use std::io::{Write, stderr};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
 
 /// Says a line on standard error, unless the user wants quiet. A closed standard error is no failure.
 macro_rules! say {
@@ -29,7 +28,6 @@ pub fn say_few(lines: &[String], what: &str) {
 }
 
 static QUIET: AtomicBool = AtomicBool::new(false);
-static IF_STOPPED: Mutex<String> = Mutex::new(String::new());
 
 /// From now on nothing is said but errors.
 pub fn be_quiet() {
@@ -44,17 +42,6 @@ pub fn is_quiet() -> bool {
 /// A bar that shows how many of `length` steps are done; none where standard error is no terminal.
 pub fn progress(length: usize) -> ProgressBar {
     if is_quiet() { ProgressBar::hidden() } else { ProgressBar::new(length as u64) }
-}
-
-/// What is to be said if the user stops the command from now on.
-pub fn if_stopped(advice: String) {
-    *IF_STOPPED.lock().unwrap_or_else(PoisonError::into_inner) = advice;
-}
-
-/// Says that the command has been stopped, below a bar that may be there.
-pub fn say_stopped() {
-    let line = if stderr().is_terminal() { "\n" } else { "" };
-    say!("{line}stopped{}", IF_STOPPED.lock().unwrap_or_else(PoisonError::into_inner));
 }
 
 /// Says why a command failed, quiet or not.

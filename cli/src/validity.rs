@@ -12,27 +12,17 @@ use serde::Serialize;
 pub struct LimitArgs {
     /// Coefficient of friction of the ground, a limit of |R_h|/R_v and |I_h|/I_v [of concrete cast against smooth formwork:
     /// EN 1992-1-1, 6.2.5(2)]
-    #[arg(long, value_name = "MU", default_value_t = Limits::default().friction, value_parser = at_least_0)]
+    #[arg(long, value_name = "MU", default_value_t = Limits::default().friction, allow_negative_numbers = true)]
     friction: f64,
     /// Tension at the base that is tolerated without a warning, over the weight; at an impact, over its impulse
-    #[arg(long, value_name = "PART", default_value_t = Limits::default().tension, value_parser = part)]
+    #[arg(long, value_name = "PART", default_value_t = Limits::default().tension, allow_negative_numbers = true)]
     tension: f64,
     /// Least load of the edge in contact that is tolerated without a warning, over the weight
-    #[arg(long, value_name = "PART", default_value_t = Limits::default().edge_load, value_parser = part)]
+    #[arg(long, value_name = "PART", default_value_t = Limits::default().edge_load, allow_negative_numbers = true)]
     edge_load: f64,
     /// Energy gained at an impact that is tolerated without a warning, over the kinetic energy before it
-    #[arg(long, value_name = "PART", default_value_t = Limits::default().gain, value_parser = at_least_0)]
+    #[arg(long, value_name = "PART", default_value_t = Limits::default().gain, allow_negative_numbers = true)]
     energy_gain: f64,
-}
-
-fn at_least_0(text: &str) -> Result<f64, String> {
-    let value = text.parse().ok().filter(|value: &f64| *value >= 0.0 && value.is_finite());
-    value.ok_or_else(|| "a number of at least 0 is needed, such as 0.5".into())
-}
-
-fn part(text: &str) -> Result<f64, String> {
-    let value = text.parse().ok().filter(|value: &f64| (0.0..1.0).contains(value));
-    value.ok_or_else(|| "a number of at least 0 and less than 1 is needed, such as 0.05".into())
 }
 
 impl LimitArgs {

@@ -1,6 +1,6 @@
 //! `view`: a page that shows the structure in motion, one file that needs nothing else.
-use crate::{input, output_files::OutputFiles, scene_args::MotionArgs, talk::say};
-use std::path::{Path, PathBuf};
+use crate::{input, output_files::OutputFiles, scene_args::MotionArgs};
+use std::path::PathBuf;
 
 /// What to show.
 #[derive(clap::Args)]
@@ -14,15 +14,10 @@ pub struct ViewArgs {
 
 /// Follows the motion and writes the page.
 pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
-    let (structure, ground) = args.motion.load()?;
-    let path = args.output_path();
-    let file = OutputFiles::of_inputs(args.motion.inputs()).create(&path)?;
-    let page = rocking_view::page(&args.motion.run(structure, &ground))?;
-    file.write(page.as_bytes())?;
-    if path != Path::new("-") {
-        say!("view           {}", path.display());
-    }
-    Ok(())
+    let (structure, ground, conditions) = args.motion.load()?;
+    let file = OutputFiles::of_inputs(args.motion.inputs()).create(&args.output_path())?;
+    let page = rocking_view::page(&conditions.run(structure, &ground))?;
+    file.write_as("view", page.as_bytes())
 }
 
 impl ViewArgs {

@@ -1,6 +1,7 @@
 """Writes docs/evidence/overturning.md and its pictures: PYTHONPATH=examples python -m overturning."""
 
 import argparse
+import json
 import random
 import subprocess
 from pathlib import Path
@@ -26,12 +27,11 @@ X, Y = "omega/p_l", "a_p/(g tan alpha_cg)"
 
 def maps(name: str, picture: Path, folder: Path) -> tuple[pd.DataFrame, pd.DataFrame]:
     """The maps of one TOML file: the part of each structure's points that is of each class, and every point."""
-    rows, counts = folder / f"{name}.csv", folder / f"{name}-counts.csv"
+    rows = folder / f"{name}.csv"
     command = [Path(get_path("scripts"), "rocking-fmu"), "sweep", FOLDER / f"{name}.toml", "-o", rows]
-    with open(counts, "w", encoding="utf-8") as printed:
-        subprocess.run([*command, "--picture", picture, "--quiet", "--format", "csv"], check=True, stdout=printed)
+    counts = subprocess.check_output([*command, "--picture", picture, "--quiet", "--format", "json"], text=True)
     points = pd.read_csv(rows).sort_values(["structures", X, Y])  # rows stand in the order in which runs ended
-    return pd.read_csv(counts).set_index(["structure", "class"])["part"], points
+    return pd.DataFrame(json.loads(counts)).set_index(["structure", "class"])["part"], points
 
 
 def part(parts: pd.Series, structure: str, of_class: str) -> str:

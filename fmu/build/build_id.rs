@@ -66,7 +66,7 @@ pub fn build_id(workspace: &Path) -> Result<String, Box<dyn Error>> {
     sources.sort();
     for source in sources {
         let text = fs::read_to_string(workspace.join(&source))?.replace("\r\n", "\n");
-        add(&name_of(&source), text.as_bytes());
+        add(&source.to_string_lossy().replace('\\', "/"), text.as_bytes());
     }
     let lock: Lock = toml::from_str(&fs::read_to_string(workspace.join(LOCK))?)?;
     let mut packages = BTreeSet::new();
@@ -88,12 +88,6 @@ pub fn build_id(workspace: &Path) -> Result<String, Box<dyn Error>> {
         add(name, format!("{version} {}", checksum.as_deref().unwrap_or_default()).as_bytes());
     }
     Ok(Uuid::new_v5(&Uuid::NAMESPACE_OID, &content).braced().to_string())
-}
-
-/// `path` as it is called on every system.
-fn name_of(path: &Path) -> String {
-    let parts = path.components().map(|part| part.as_os_str().to_string_lossy());
-    parts.collect::<Vec<_>>().join("/")
 }
 
 /// Appends `path` (relative to `workspace`), or all files under it.

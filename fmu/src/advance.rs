@@ -10,9 +10,9 @@ use std::f64::consts::FRAC_PI_2;
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 impl Model {
-    /// [`Model::advance`] for a host that transitions are handed over to. One that rounding alone keeps from the end of
-    /// the step is met there: a host that goes back and steps to the instant that it was told meets it again. What is
-    /// due at the very start, since an input has just jumped, is applied: no step is over where it began.
+    /// [`Model::advance`] up to the first transition. One within rounding of the end of the step counts as at its end: a
+    /// host that goes back and steps to the instant that it was told meets it again. One at the very start, where an
+    /// input has just jumped, is applied at once: every step takes time.
     #[inline(never)]
     pub fn advance_to_transition<W: Watch>(
         &mut self,
@@ -45,7 +45,7 @@ impl Model {
         Ok(progress)
     }
 
-    /// Whether no transition can come within `ahead` (s), which is next to nothing.
+    /// Whether no transition can come within `ahead` (s), a tiny time.
     fn goes_on_for(&self, setup: &Setup, ahead: f64) -> bool {
         let &Motion { phase, state: State { u, u_dot, theta, theta_dot }, .. } = self.engine.motion();
         let way = |rate: f64| ahead * (rate.abs() + 1.0); // at most, whatever accelerates it

@@ -90,7 +90,7 @@ pub(crate) unsafe fn free<F: Function>(c: *mut c_void) {
     if availability == BUSY {
         return;
     }
-    // within a step the host has the instance on loan: the step goes on with it
+    // called from within a step, which goes on with the instance
     if unsafe { &*component.instance.get() }.stage().is_within_step() {
         component.availability.store(availability, Ordering::Release);
         return;
@@ -122,7 +122,7 @@ pub(crate) unsafe fn call<F: Function>(
     unsafe { call_in(c, function, |allowed_in| allowed_in[function.place()], body) }
 }
 
-/// The rest of a call of `function` within which the host had the instance on loan.
+/// The rest of a call of `function`, after the host has been called back.
 pub(crate) unsafe fn call_on<F: Function>(
     c: *mut c_void,
     function: F,

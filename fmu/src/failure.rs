@@ -17,7 +17,7 @@ pub enum Failure {
     /// The function may not be called in this stage.
     #[error("not allowed in the state \"{stage}\"; allowed in: {allowed_in}")]
     WrongStage { stage: Stage, allowed_in: String },
-    /// A pointer that must not be null or is not aligned.
+    /// A pointer that is null or not aligned.
     #[error("{0} must be a valid pointer; it is null or misaligned")]
     BadPointer(&'static str),
     /// More values than one call may pass.
@@ -32,7 +32,7 @@ pub enum Failure {
     /// An interface of the standard that this unit does not have.
     #[error("this FMU is for model exchange and co-simulation: see modelDescription.xml")]
     NotThisInterface,
-    /// Event mode of a host that said it has none.
+    /// Event mode, which the host did not ask for at instantiation.
     #[error("there is no event mode: the instance was made with eventModeUsed = false")]
     NoEventMode,
     /// An empty name.
@@ -70,7 +70,7 @@ pub enum Failure {
     StrongRecord(OutOfRange),
     /// The record has changed since a state was kept.
     #[error(
-        "the FMU state was kept under another record = {record:?}{}: its samples are not those of the file that is there now",
+        "record = {record:?}{} has other samples now than when the FMU state was kept",
         if record_v.is_empty() { String::new() } else { format!(" or record_v = {record_v:?}") }
     )]
     OtherRecord { record: String, record_v: String },
@@ -89,26 +89,26 @@ pub enum Failure {
     /// Initial values that contradict each other.
     #[error(transparent)]
     InitialState(#[from] InitialStateError),
-    /// A setting of the experiment.
+    /// A tolerance, a start or a stop time out of range.
     #[error("{name} = {} is out of range: it must be {limit}", with_unit(*value, "1"))]
     Experiment { name: &'static str, value: f64, limit: String },
-    /// A derivative of no use.
+    /// A derivative of another order than the first.
     #[error("order = {order} for {} is out of range: only derivatives of order 1 exist", variable.name)]
     WrongOrder { variable: &'static Variable, order: i32 },
-    /// A slope of something else than an input.
+    /// A slope of what is no input.
     #[error("{} has no derivative that can be set: only the inputs have", .0.name)]
     NoInput(&'static Variable),
-    /// By this variable no directional derivative exists.
+    /// A variable that no directional derivative can be taken by.
     #[error(
-        "{} cannot be a known of a directional derivative: only the inputs can, in initialization mode real parameters and \
-         initial values, later u, u_dot, theta, theta_dot and time",
+        "{} cannot be a known of a directional derivative: only the inputs can and, once the simulation has started, u, \
+         u_dot, theta, theta_dot and time",
         .0.name
     )]
     NoKnown(&'static Variable),
     /// A slope or a part of a direction that is not a number.
     #[error("the derivative of {}, {value}, is out of range: it must be finite", variable.name)]
     BadSlope { variable: &'static Variable, value: f64 },
-    /// A derivative of something else than a continuous output.
+    /// A derivative of what is no continuous output.
     #[error("{} has no derivative: only continuous real outputs have", .0.name)]
     NoOutput(&'static Variable),
     /// The equations of motion are singular here, and with them the reactions.
@@ -118,13 +118,6 @@ pub enum Failure {
         variable.name
     )]
     NoReaction { variable: &'static Variable, time: f64 },
-    /// No derivative by this parameter or initial value, by steps within the ranges to either side.
-    #[error(
-        "the derivative of {} by {known} does not exist here: {known} cannot change, or not to both sides alike",
-        variable.name,
-        known = known.name
-    )]
-    NoSensitivity { variable: &'static Variable, known: &'static Variable },
     /// The equations of motion are singular here.
     #[error("the derivative of {} does not exist at t = {time} s", variable.name)]
     NoRate { variable: &'static Variable, time: f64 },
@@ -146,11 +139,11 @@ pub enum Failure {
     #[error("the structure overturned at t = {time} s; the simulation ends there")]
     Overturned { time: f64 },
     /// A time that is not finite.
-    #[error("time = {} is out of range: it must be finite, and so its distance from startTime", with_unit(*.0, "s"))]
+    #[error("time = {} is out of range: time and time - startTime must be finite", with_unit(*.0, "s"))]
     BadTime(f64),
     /// A step of the host's integrator that ends before it starts.
     #[error(
-        "the integrator's step from t = {from} s ends at t = {to} s: time goes on from an event or a complete step"
+        "the integrator's step from t = {from} s ends at t = {to} s: time must not fall below the last event or complete step"
     )]
     StepBack { from: f64, to: f64 },
     /// A trial state that is far from any motion.
@@ -166,11 +159,10 @@ pub enum Failure {
     WrongCount { name: &'static str, given: usize, needed: usize },
     /// A state kept by an instance of another interface.
     #[error(
-        "the FMU state was kept by an instance of another kind: model exchange, co-simulation, and co-simulation with \
-         eventModeUsed or earlyReturnAllowed have states of their own"
+        "the FMU state was kept by an instance for the other interface, or with another eventModeUsed or earlyReturnAllowed"
     )]
     OtherInterface,
-    /// A question that has no answer.
+    /// A status that this FMU does not have.
     #[error("{0} has no answer here")]
     NoAnswer(&'static str),
     /// Not one of the instance's FMU states.

@@ -54,9 +54,9 @@ pub struct EventInfo {
     pub nominals_of_continuous_states_changed: c_int,
     /// Whether the states are not those that the host set.
     pub values_of_continuous_states_changed: c_int,
-    /// Whether there is a
+    /// Whether the time of the next event is known.
     pub next_event_time_defined: c_int,
-    /// time of the next event, s.
+    /// Time of the next event, s.
     pub next_event_time: c_double,
 }
 
@@ -168,7 +168,7 @@ fn remedy(failure: &Failure) -> &'static str {
         },
         Failure::Fixed(_) => ": set it before fmi2ExitInitializationMode, or call fmi2Reset",
         Failure::WrongPoint { .. } => ": step from there, or go back with fmi2SetFMUstate",
-        Failure::StepBack { .. } => ", or goes back with fmi2SetFMUstate",
+        Failure::StepBack { .. } => "; to go back, call fmi2SetFMUstate",
         Failure::PastStop { .. } => " given to fmi2SetupExperiment: shorten it",
         Failure::WrongSize { .. } => " (fmi2SerializedFMUstateSize)",
         Failure::NoAnswer(_) => {
@@ -285,7 +285,7 @@ functions! {
         instance.get_real_output_derivatives(values("vr", vr, nvr)?, orders, rates)
     }
 
-    /// Whether the host will go back makes no difference: FMU states are kept until it frees them.
+    /// `noSetFMUStatePriorToCurrentPoint` is ignored: FMU states are kept until the host frees them.
     fmi2DoStep = DoStep(
         currentCommunicationPoint: c_double, communicationStepSize: c_double, _noSetFMUStatePriorToCurrentPoint: c_int,
     ) |instance| {
@@ -339,7 +339,7 @@ functions! {
 
     fmi2EnterContinuousTimeMode = EnterContinuousTimeMode() |instance| { instance.enter(Stage::ContinuousTimeMode) }
 
-    /// Whether the host will go back makes no difference: FMU states are kept until it frees them.
+    /// `noSetFMUStatePriorToCurrentPoint` is ignored: FMU states are kept until the host frees them.
     fmi2CompletedIntegratorStep = CompletedIntegratorStep(
         _noSetFMUStatePriorToCurrentPoint: c_int, enterEventMode: *mut c_int, terminateSimulation: *mut c_int,
     ) |instance| {

@@ -170,7 +170,7 @@ impl IntermediateUpdate {
         self.call(time, set_requested, get_allowed, step_finished);
     }
 
-    /// That the host wants the step to return early makes no difference.
+    /// A request to return early is ignored.
     fn call(self, time: f64, set_requested: u8, get_allowed: u8, step_finished: u8) {
         let IntermediateUpdate { update, environment, .. } = self;
         let (mut requested, mut at, can_return_early) = (0, 0.0, 0);
@@ -218,7 +218,7 @@ fn remedy(failure: &Failure) -> &'static str {
         },
         Failure::Fixed(_) => ": set it before fmi3ExitInitializationMode, or call fmi3Reset",
         Failure::WrongPoint { .. } => ": step from there, or go back with fmi3SetFMUState",
-        Failure::StepBack { .. } => ", or goes back with fmi3SetFMUState",
+        Failure::StepBack { .. } => "; to go back, call fmi3SetFMUState",
         Failure::PastStop { .. } => " given to fmi3EnterInitializationMode: shorten it",
         Failure::WrongSize { .. } => " (fmi3SerializedFMUStateSize)",
         _ => "",
@@ -227,8 +227,8 @@ fn remedy(failure: &Failure) -> &'static str {
 
 /// `fmi3DoStep`
 ///
-/// Whether the host will go back makes no difference: FMU states are kept until it frees them. A host that can be
-/// called back has the instance on loan between the parts of the call.
+/// `noSetFMUStatePriorToCurrentPoint` is ignored: FMU states are kept until the host frees them. Between the parts of
+/// this function the host is called back, and may call the instance.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn fmi3DoStep(
     c: *mut c_void,
@@ -421,18 +421,7 @@ functions! {
         instance.get_directional_derivative(unknowns, knowns, seed, sensitivity)
     }
 
-    fmi3GetAdjointDerivative = GetAdjointDerivative(
-        unknowns: *const c_uint, nUnknowns: size_t, knowns: *const c_uint, nKnowns: size_t, seed: *const f64,
-        nSeed: size_t, sensitivity: *mut f64, nSensitivity: size_t,
-    ) |instance| {
-        check_count("nSeed", nSeed, nUnknowns)?;
-        check_count("nSensitivity", nSensitivity, nKnowns)?;
-        let (unknowns, knowns) = (values("unknowns", unknowns, nUnknowns)?, values("knowns", knowns, nKnowns)?);
-        let (seed, sensitivity) = (values("seed", seed, nSeed)?, room("sensitivity", sensitivity, nSensitivity)?);
-        instance.get_adjoint_derivative(unknowns, knowns, seed, sensitivity)
-    }
-
-    /// Nothing is left to evaluate: `fmi3UpdateDiscreteStates` does it.
+    /// Does nothing: `fmi3UpdateDiscreteStates` evaluates.
     fmi3EvaluateDiscreteStates = EvaluateDiscreteStates() |_instance| { Ok(()) }
 
     fmi3UpdateDiscreteStates = UpdateDiscreteStates(
@@ -471,7 +460,7 @@ functions! {
 
     fmi3EnterContinuousTimeMode = EnterContinuousTimeMode() |instance| { instance.enter(Stage::ContinuousTimeMode) }
 
-    /// Whether the host will go back makes no difference: FMU states are kept until it frees them.
+    /// `noSetFMUStatePriorToCurrentPoint` is ignored: FMU states are kept until the host frees them.
     fmi3CompletedIntegratorStep = CompletedIntegratorStep(
         _noSetFMUStatePriorToCurrentPoint: u8, enterEventMode: *mut u8, terminateSimulation: *mut u8,
     ) |instance| {
@@ -514,8 +503,8 @@ functions! {
         write("nContinuousStates", nContinuousStates, COMPONENTS.len())
     }
 
-    // What this unit has none of: never allowed. Arguments that are not read need not be declared: on the platforms that
-    // there are libraries for, the caller takes them back.
+    // For what this unit does not have: never allowed. Arguments that are not read are not declared: on all platforms that
+    // there are libraries for, the caller removes them.
     fmi3GetFloat32 = GetFloat32()
     fmi3GetInt8 = GetInt8()
     fmi3GetUInt8 = GetUInt8()
@@ -536,6 +525,7 @@ functions! {
     fmi3SetClock = SetClock()
     fmi3GetNumberOfVariableDependencies = GetNumberOfVariableDependencies()
     fmi3GetVariableDependencies = GetVariableDependencies()
+    fmi3GetAdjointDerivative = GetAdjointDerivative()
     fmi3EnterConfigurationMode = EnterConfigurationMode()
     fmi3ExitConfigurationMode = ExitConfigurationMode()
     fmi3GetIntervalDecimal = GetIntervalDecimal()

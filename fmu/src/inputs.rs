@@ -178,13 +178,4 @@ impl Inputs {
         self.followed = LinearLoad { value: self.next.value, slope: load.slope };
         self.given = [Given::Nothing; LOADS.len()];
     }
-
-    /// Whether calls can lead here.
-    pub(crate) fn are_possible(&self) -> bool {
-        let Inputs { next, set, followed, before: (before, ago), .. } = self;
-        (0.0..f64::INFINITY).contains(ago)
-            && [&next.value, set, &followed.value, before].into_iter().all(|load| load.check().is_ok())
-            && next.slope.is_finite()
-            && followed.slope.is_finite()
-    }
 }

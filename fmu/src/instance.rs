@@ -2,7 +2,6 @@
 //! stage, and keeps FMU states.
 
 use crate::failure::Failure;
-use crate::inputs::Inputs;
 use crate::interface::{Interface, IntermediateUpdate, Stepping};
 use crate::logger::{Logger, Status};
 use crate::motion_log::{log, warn};
@@ -35,8 +34,6 @@ pub struct Instance {
     host: Option<IntermediateUpdate>,
     /// While the host is asked for inputs: the duration of the step, s.
     asked: Option<f64>,
-    /// The inputs before the host was asked for them.
-    inputs_before: Inputs,
     /// While the host reads outputs: the stage that the step has led to.
     led_to: Option<Stage>,
 }
@@ -67,8 +64,8 @@ impl Instance {
     pub fn new(archive: Archive, interface: Interface, events: bool, mut logger: Logger) -> Instance {
         logger.set_events(events);
         let now = Present::new(archive, interface);
-        let (snapshots, shown, host, asked, inputs_before, led_to) = Default::default();
-        Instance { logger, events_at_start: events, now, snapshots, shown, host, asked, inputs_before, led_to }
+        let (snapshots, shown, host, asked, led_to) = Default::default();
+        Instance { logger, events_at_start: events, now, snapshots, shown, host, asked, led_to }
     }
 
     /// The instance with a `host` that it calls back within steps.
@@ -128,8 +125,8 @@ impl Instance {
                 let watched = [("peaks", self.now.setup.peaks), ("validity", self.now.setup.validity)];
                 for (name, _) in watched.into_iter().filter(|(_, is_watched)| *is_watched) {
                     self.logger.warning(&format!(
-                        "{name} = true watches nothing in model exchange, where the motion between two points is the host's: what \
-                         it stands for is NaN; use co-simulation"
+                        "{name} = true has no effect in model exchange, where the host integrates: the values are NaN; use \
+                         co-simulation"
                     ));
                 }
                 self.start_outside()?;

@@ -18,7 +18,7 @@ pub enum Interface {
 pub struct Stepping {
     /// It handles events, between steps.
     pub event_mode: bool,
-    /// It takes a step that ends early.
+    /// It accepts steps that end early.
     pub early_return: bool,
 }
 
@@ -45,23 +45,12 @@ impl Interface {
             Interface::ModelExchange => Stepping::default(),
         }
     }
-
-    /// Whether an FMU state can be kept in `stage`. Within a step none is.
-    pub(crate) const fn keeps_states_in(self, stage: Stage) -> bool {
-        match stage {
-            Stage::StepComplete | Stage::StepFailed => matches!(self, Interface::CoSimulation(_)),
-            Stage::EventMode => matches!(self.first_stage(), Stage::EventMode),
-            Stage::ContinuousTimeMode => matches!(self, Interface::ModelExchange),
-            Stage::IntermediateUpdateMode | Stage::IntermediateOutputs => false,
-            Stage::Instantiated | Stage::InitializationMode | Stage::Terminated | Stage::Error => true,
-        }
-    }
 }
 
 /// `fmi3IntermediateUpdateCallback`
 pub type IntermediateUpdateCallback = unsafe extern "C" fn(*mut c_void, f64, u8, u8, u8, u8, *mut u8, *mut f64);
 
-/// How a host is called back within a step. It is copied out of the instance, which the host has on loan meanwhile.
+/// How a host is called back within a step. It is copied out of the instance, which the host may call meanwhile.
 #[derive(Clone, Copy)]
 pub(crate) struct IntermediateUpdate {
     pub update: IntermediateUpdateCallback,

@@ -8,9 +8,9 @@
 //! | [`c_abi`] | checks stage and pointers, makes slices of pointers, catches panics, logs why a call failed |
 //! | `instance` | goes from stage to stage; `do_step`, `get_values`, `set_values`, `derivatives`, `model_exchange` |
 //! | [`snapshot`], [`condition`] | FMU states as bytes; all that the future of an instance depends on |
-//! | [`sensitivity`] | derivatives by parameters and states |
-//! | `present` | where an instance stands: stage, setup, inputs, model |
-//! | `shown` | every Real that is computed, at an instant |
+//! | `sensitivity` | derivatives by states |
+//! | `present` | what an instance holds between two calls: stage, setup, inputs, model |
+//! | `shown` | the values of all computed Reals at an instant |
 //! | `advance` | the model over one step |
 //! | `model` | the structure on its ground, from its start on |
 //! | `motion_log` | the messages about transitions and limits |
@@ -42,7 +42,7 @@ mod model;
 mod motion_log;
 mod present;
 pub mod resources;
-pub mod sensitivity;
+mod sensitivity;
 mod setup;
 mod shown;
 pub mod snapshot;

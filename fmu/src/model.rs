@@ -108,16 +108,15 @@ impl Model {
         })
     }
 
-    /// Whether there has been no step, and the structure is in motion or at rest as it stands: contact that ends at
-    /// once under `load` is neither.
-    fn starts_as_it_stands(&self, load: Load) -> bool {
+    /// Whether no step has been made, and the first phase lasts: under `load` the structure does not uplift at once.
+    fn is_at_start(&self, load: Load) -> bool {
         self.engine.motion().work.steps == 0 && self.engine.uplift_due(load).is_none()
     }
 
     /// The peaks since the start; before the first step, the values under `load`.
     pub fn peaks(&self, setup: &Setup, load: Load) -> Peaks {
         let mut peaks = self.peaks;
-        if self.starts_as_it_stands(load) {
+        if self.is_at_start(load) {
             peaks.see_instant(setup.start_time, &self.engine.outputs(load));
         }
         peaks
@@ -126,7 +125,7 @@ impl Model {
     /// What the motion has gone beyond since the start; before the first step, what the reactions under `load` are.
     pub fn validity(&self, setup: &Setup, load: Load) -> Found {
         let mut validity = self.watch_validity();
-        if self.starts_as_it_stands(load) {
+        if self.is_at_start(load) {
             validity.see_instant(setup.start_time, self.engine.motion().phase, &self.engine.edges(load));
         }
         *validity.found()

@@ -1,7 +1,7 @@
-//! Where an instance stands.
+//! What an instance holds between two calls.
 
 use crate::failure::Failure;
-use crate::ground::GroundRecord;
+use crate::ground::Kept;
 use crate::inputs::Inputs;
 use crate::interface::Interface;
 use crate::model::Model;
@@ -9,9 +9,8 @@ use crate::resources::Archive;
 use crate::setup::Setup;
 use crate::state_machine::Stage;
 use crate::variables::{VARIABLES, Variable};
-use std::sync::Arc;
 
-/// Where an instance stands.
+/// What an instance holds between two calls.
 pub(crate) struct Present {
     /// All of them: no call waits for the table.
     pub variables: &'static [Variable],
@@ -23,8 +22,8 @@ pub(crate) struct Present {
     /// Until initialization ends it is built when an output is asked for, and dropped when what it was built from is
     /// set anew.
     pub model: Option<Model>,
-    /// The record that was followed last, which is not read anew for another run.
-    pub record: Option<Arc<GroundRecord>>,
+    /// The record that was followed last, which is not parsed anew for another run.
+    pub kept: Option<Kept>,
 }
 
 impl Present {
@@ -37,7 +36,7 @@ impl Present {
             setup: Setup::new(&archive.contents),
             inputs: Inputs::default(),
             model: None,
-            record: None,
+            kept: None,
             archive,
         }
     }
@@ -73,13 +72,13 @@ impl Present {
 
     #[cold]
     fn build(&mut self) -> Result<(), Failure> {
-        self.record = self.setup.ground(&self.archive)?;
-        self.model = Some(Model::new(&self.setup, self.record.clone())?);
+        let ground = self.archive.ground(&self.setup.record, &self.setup.record_v, &mut self.kept)?;
+        self.model = Some(Model::new(&self.setup, ground)?);
         Ok(())
     }
 }
 
-/// The one of `variables`, which are all, that `reference` stands for.
+/// The variable that `reference` stands for in `variables`, the whole table.
 #[inline]
 pub(crate) fn find(variables: &'static [Variable], reference: u32) -> Result<&'static Variable, Failure> {
     let Some(variable) = variables.get(reference as usize) else { return Err(Failure::UnknownReference(reference)) };

@@ -31,7 +31,7 @@ pub struct Contents {
     pub parameters: Parameters,
     /// The first is the one that the ground follows unless the host sets another.
     pub records: Vec<PackedRecord>,
-    /// The one that it follows vertically, likewise.
+    /// The one that it follows vertically unless the host sets another.
     pub vertical: Option<PackedRecord>,
 }
 
@@ -87,29 +87,14 @@ pub enum ResourceError {
     #[error("fmuResourceLocation = {0:?} is not a file URI of this machine, such as file:///tmp/fmu/resources")]
     NotAFileUri(String),
     /// No such file, or not readable.
-    #[error("{file}: {error}; unpack the whole archive and pass its folder \"resources\"", file = file.display())]
-    Unreadable {
-        /// The file.
-        file: PathBuf,
-        /// Why.
-        error: io::Error,
-    },
-    /// Not the TOML of parameters.
-    #[error("{file}: {error}", file = file.display())]
-    Malformed {
-        /// The file.
-        file: PathBuf,
-        /// Line and reason.
-        error: Box<toml::de::Error>,
-    },
+    #[error("{file}: {1}; unpack the whole archive and pass its folder \"resources\"", file = .0.display())]
+    Unreadable(PathBuf, io::Error),
+    /// Not the TOML that is needed.
+    #[error("{file}: {1}", file = .0.display())]
+    Malformed(PathBuf, Box<toml::de::Error>),
     /// A parameter out of range.
-    #[error("{file}: {error}", file = file.display())]
-    Refused {
-        /// The file.
-        file: PathBuf,
-        /// Which, and the limit.
-        error: ParameterError,
-    },
+    #[error("{file}: {1}", file = .0.display())]
+    Refused(PathBuf, ParameterError),
 }
 
 impl Archive {
@@ -117,9 +102,7 @@ impl Archive {
     pub fn open(folder: PathBuf) -> Result<Archive, ResourceError> {
         let file = folder.join(PARAMETERS_FILE);
         let parameters: Parameters = read(&file)?;
-        if let Err(error) = parameters.check() {
-            return Err(ResourceError::Refused { file, error });
-        }
+        parameters.check().map_err(|error| ResourceError::Refused(file, error))?;
         let list = folder.join(RECORDS_FILE);
         let Records { record: records, vertical } = if list.exists() { read(&list)? } else { Records::default() };
         Ok(Archive { folder, contents: Contents { parameters, records, vertical } })
@@ -136,8 +119,8 @@ fn read<T: DeserializeOwned>(file: &Path) -> Result<T, ResourceError> {
     let file = file.to_owned();
     match fs::read_to_string(&file).map(|text| toml::from_str(&text)) {
         Ok(Ok(content)) => Ok(content),
-        Ok(Err(error)) => Err(ResourceError::Malformed { file, error: Box::new(error) }),
-        Err(error) => Err(ResourceError::Unreadable { file, error }),
+        Ok(Err(error)) => Err(ResourceError::Malformed(file, Box::new(error))),
+        Err(error) => Err(ResourceError::Unreadable(file, error)),
     }
 }
 

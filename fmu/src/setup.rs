@@ -1,8 +1,8 @@
 //! What is set before a simulation starts.
 
-use crate::ground::{GroundError, GroundRecord};
+use crate::ground::GroundRecord;
 use crate::inputs::Between;
-use crate::resources::{Archive, Contents};
+use crate::resources::Contents;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::load::LOADS;
 use rocking::run::ground_motion::Placement;
@@ -62,11 +62,6 @@ impl Setup {
         let of_ground = if self.a_g_late { Between::Late } else { Between::Held };
         let F_t = if self.F_t_extrapolated { Between::Extrapolated } else { Between::Held };
         [of_ground, F_t, of_ground]
-    }
-
-    /// The ground motion that it asks for, of `archive` or on disk.
-    pub(crate) fn ground(&self, archive: &Archive) -> Result<Option<Arc<GroundRecord>>, GroundError> {
-        archive.ground(&self.record, &self.record_v)
     }
 
     /// `record` as it acts.

@@ -1,4 +1,4 @@
-//! What a model shows at an instant: everything real that is computed.
+//! The values of all Reals that are computed, at an instant.
 
 use crate::failure::Failure;
 use crate::model::Model;

@@ -1,13 +1,6 @@
 //! FMU states: kept for the host under handles, and as bytes.
 //!
-//! ```text
-//! "FlexRock"   8 bytes
-//! version      4 bytes, little endian
-//! build        38 bytes
-//! length       4 bytes, little endian: of the payload
-//! payload      a condition, by postcard
-//! checksum     16 bytes: UUID v5 of everything before
-//! ```
+//! Bytes are the name of the build (38), a condition as postcard writes it, and the checksum of both (16): a UUID v5.
 
 use crate::BUILD;
 use crate::condition::Condition;
@@ -56,62 +49,24 @@ impl Snapshots {
     }
 }
 
-const MAGIC: [u8; 8] = *b"FlexRock";
-const VERSION: u32 = 7;
-
 /// A condition as bytes.
 pub fn serialize(condition: &Condition) -> Vec<u8> {
     let payload = postcard::to_stdvec(condition).expect("numbers and enumerations can always be written");
-    let length = u32::try_from(payload.len()).expect("the payload is a few hundred bytes and a name");
-    let mut bytes = header().to_vec();
-    bytes.extend(length.to_le_bytes());
-    bytes.extend(payload);
+    let mut bytes = [BUILD.as_bytes(), &payload].concat();
     bytes.extend(checksum(&bytes));
     bytes
 }
 
-/// The condition that `bytes` hold, or which part of them is wrong.
+/// The condition that `bytes` hold, or what is wrong with them.
 pub fn deserialize(bytes: &[u8]) -> Result<Condition, Failure> {
-    let header = header();
-    let Some((given_header, rest)) = bytes.split_at_checked(header.len()) else {
-        return Err(Failure::BadBytes("it is too short"));
+    let Some(rest) = bytes.strip_prefix(BUILD.as_bytes()) else {
+        return Err(Failure::BadBytes("it does not begin with the name of this build"));
     };
-    if given_header[..MAGIC.len()] != MAGIC {
-        return Err(Failure::BadBytes("it does not begin as one"));
-    }
-    if given_header[MAGIC.len()..][..4] != VERSION.to_le_bytes() {
-        return Err(Failure::BadBytes("it has another format version"));
-    }
-    if given_header != header {
-        return Err(Failure::BadBytes("it was written by another build of the FMU"));
-    }
-    let parts = rest.split_first_chunk().and_then(|(length, rest)| Some((length, rest.split_last_chunk()?)));
-    let Some((length, (payload, given_checksum))) = parts else {
-        return Err(Failure::BadBytes("it is too short"));
-    };
-    if payload.len() != u32::from_le_bytes(*length) as usize {
-        return Err(Failure::BadBytes("its length is not the one that it states"));
-    }
-    if checksum(&bytes[..bytes.len() - given_checksum.len()]) != *given_checksum {
-        return Err(Failure::BadBytes("its checksum is wrong"));
-    }
-    let condition: Condition =
-        postcard::from_bytes(payload).map_err(|_| Failure::BadBytes("its content cannot be read"))?;
-    if !condition.is_possible() {
-        return Err(Failure::BadBytes("its content contradicts itself"));
-    }
-    Ok(condition)
+    let whole = rest.split_last_chunk().filter(|(_, given)| checksum(&bytes[..bytes.len() - given.len()]) == **given);
+    let Some((payload, _)) = whole else { return Err(Failure::BadBytes("its checksum is wrong")) };
+    postcard::from_bytes(payload).map_err(|_| Failure::BadBytes("its content cannot be read"))
 }
 
 fn checksum(bytes: &[u8]) -> [u8; 16] {
     Uuid::new_v5(&Uuid::NAMESPACE_OID, bytes).into_bytes()
-}
-
-/// Everything before the length.
-fn header() -> [u8; 50] {
-    let mut header = [0; 50];
-    header[..8].copy_from_slice(&MAGIC);
-    header[8..12].copy_from_slice(&VERSION.to_le_bytes());
-    header[12..].copy_from_slice(BUILD.as_bytes());
-    header
 }

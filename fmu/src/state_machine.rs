@@ -44,7 +44,7 @@ impl Stage {
         Stage::Error,
     ];
 
-    /// The stages within a step, in which the host has the instance on loan.
+    /// The stages within a step, in which the host is called back.
     pub(crate) const WITHIN_STEP: Stages = Stage::IntermediateUpdateMode.bit() | Stage::IntermediateOutputs.bit();
 
     /// Whether a step is under way.

@@ -51,7 +51,7 @@ pub enum Causality {
     Input,
     /// The FMU, for other models.
     Output,
-    /// The FMU, for whoever looks at it.
+    /// The FMU, for display.
     Local,
     /// Time, which all others depend on.
     Independent,
@@ -283,17 +283,7 @@ fn records() -> [Variable; 2] {
 }
 
 fn input(which: usize) -> Variable {
-    let quantity = &LOADS[which];
-    Variable {
-        name: quantity.name,
-        description: quantity.description,
-        data_type: DataType::Real { unit: quantity.unit, range: Some((quantity.min, quantity.max)) },
-        causality: Causality::Input,
-        feedthrough: &[],
-        states: &[],
-        initial_dependencies: &[],
-        source: Source::Input(which),
-    }
+    Variable { causality: Causality::Input, ..fixed(&LOADS[which], Source::Input(which)) }
 }
 
 /// The inputs.
@@ -374,14 +364,14 @@ fn outputs() -> Vec<Variable> {
             &["theta", "theta_dot"],
             OF_DISSIPATOR,
         ),
-        tie("F_d2", "the same of those at -xi_d", |r| r.F_d2, &["theta", "theta_dot"], OF_DISSIPATOR),
+        tie("F_d2", "force of the dissipators at -xi_d, as F_d1", |r| r.F_d2, &["theta", "theta_dot"], OF_DISSIPATOR),
         impulse("I_h", "N.s", "horizontal impulse of the impacts on the ground so far", |i| i.I_h),
         impulse("I_v", "N.s", "vertical impulse of the impacts on the ground so far, downwards", |i| i.I_v),
         impulse("I_m", "N.m.s", "moment impulse of the impacts on the ground so far, positive as theta", |i| i.I_m),
     ]
 }
 
-/// Variables for whoever looks on: no other model needs them.
+/// Variables for display: no other model needs them.
 fn locals() -> [Variable; 12] {
     const GROUND: &[&str] = &["g", "record", "record_scale", "record_time_scale", "record_start"];
     const GROUND_V: &[&str] = &["g", "record_v", "record_scale", "record_time_scale", "record_start"];
@@ -412,7 +402,7 @@ fn locals() -> [Variable; 12] {
             GROUND_V,
         ),
         kept("e_p1", "m", "plastic elongation of the elastoplastic dissipator at +xi_d", |d| d.plastic[0], PLASTIC),
-        kept("e_p2", "m", "the same of the one at -xi_d", |d| d.plastic[1], PLASTIC),
+        kept("e_p2", "m", "plastic elongation of the elastoplastic dissipator at -xi_d", |d| d.plastic[1], PLASTIC),
         kept("E_viscous", "J", "energy that the viscous dissipators have taken", |d| d.viscous, &[]),
         kept("E_hysteretic", "J", "energy that the elastoplastic dissipators have taken", |d| d.hysteretic, &[]),
         counted("phase", PHASES.description, phases, Source::Integer(phase_number), &["theta_0"]),
@@ -616,16 +606,8 @@ fn output(
     feedthrough: &'static [&'static str],
     initial_dependencies: &'static [&'static str],
 ) -> Variable {
-    Variable {
-        name,
-        description,
-        data_type: DataType::Real { unit, range: None },
-        causality: Causality::Output,
-        feedthrough,
-        states: &[],
-        initial_dependencies,
-        source,
-    }
+    let data_type = DataType::Real { unit, range: None };
+    Variable { feedthrough, ..discrete(name, description, data_type, source, initial_dependencies) }
 }
 
 fn discrete(
@@ -659,15 +641,10 @@ fn fixed<T>(quantity: &'static Quantity<T>, source: Source) -> Variable {
 fn calculated(name: &'static str, initial_dependencies: &'static [&'static str]) -> Variable {
     let derived = const { &DERIVED }.iter().find(|derived| derived.name == name);
     let derived = derived.unwrap_or_else(|| panic!("no derived quantity is called {name}"));
+    let Derived { description, unit, .. } = derived;
     Variable {
-        name,
-        description: derived.description,
-        data_type: DataType::Real { unit: derived.unit, range: None },
         causality: Causality::CalculatedParameter,
-        feedthrough: &[],
-        states: &[],
-        initial_dependencies,
-        source: Source::Derived(derived),
+        ..output(name, unit, description, Source::Derived(derived), &[], initial_dependencies)
     }
 }
 

@@ -119,8 +119,8 @@ fn a_state_is_taken_by_an_instance_of_its_kind_alone() {
             assert_eq!(fmi3DeserializeFMUState(host.c, bytes.as_ptr(), bytes.len(), &mut state), OK);
             assert_eq!(fmi3SetFMUState(host.c, state), ERROR);
         }
-        let message = "fmi3SetFMUState: the FMU state was kept by an instance of another kind: model exchange, \
-                       co-simulation, and co-simulation with eventModeUsed or earlyReturnAllowed have states of their own";
+        let message = "fmi3SetFMUState: the FMU state was kept by an instance for the other interface, or with another \
+                       eventModeUsed or earlyReturnAllowed";
         assert_eq!(host.log.take(), [message]);
     }
 }
@@ -168,7 +168,7 @@ fn a_refusal_names_the_function_and_what_to_call() {
         &format!("fmi3SerializeFMUState: size = 0 does not fit: the serialized FMU state {bytes}"),
     ];
     assert_eq!(host.log.take(), expected);
-    let ends = "time goes on from an event or a complete step, or goes back with fmi3SetFMUState";
+    let ends = "time must not fall below the last event or complete step; to go back, call fmi3SetFMUState";
     assert!(model.log.take()[0].ends_with(ends));
 }
 
@@ -208,6 +208,8 @@ unsafe extern "C" fn update(
     unsafe {
         let (mut value, mut rate) = (0.0, 0.0);
         assert_eq!(fmi3SetDebugLogging(c, 0, 0, null()), OK);
+        fmi3FreeInstance(c);
+        assert_eq!((fmi3Terminate(c), fmi3Reset(c), fmi3GetFMUState(c, &mut null_mut())), (ERROR, ERROR, ERROR));
         let got = fmi3GetFloat64(c, &theta, 1, &mut value, 1);
         let got = (got, fmi3GetOutputDerivatives(c, &theta, 1, &1, &mut rate, 1));
         assert_eq!((fmi3SetFloat64(c, &m, 1, end, 1), fmi3SetFloat64(c, &a_g, 1, &f64::NAN, 1)), (ERROR, ERROR));
@@ -253,7 +255,7 @@ fn a_host_that_is_called_back_sets_inputs_reads_and_does_no_harm() {
                 let read = std::mem::take(&mut (*environment).read);
                 assert_eq!(read, if reads { vec![[time + 0.25, value, rate]] } else { vec![] });
             }
-            // an input that runs out of its range on the way ends the step and is as it was
+            // a step that is refused asks for nothing
             (*environment).end = 1e4;
             assert_eq!(fmi3SetFloat64(c, &a_g, 1, &3.0, 1), OK);
             assert_eq!(fmi3DoStep(c, 0.5, 0.25, 0, event, terminate, early, null_mut()), ERROR);

@@ -72,7 +72,8 @@ fn a_step_over_an_impact_is_put_right() {
 /// After an uplift θ is exactly 0 and grows as t³: neither is that a root, nor is a return within the step missed.
 #[test]
 fn no_indicator_is_zero_where_integration_starts() {
-    let host = Host::started_model(&[("u_0", 8e-4)]);
+    let host = Host::new_model().initialized(&[("u_0", 8e-4)]);
+    assert_eq!(host.exit(), OK);
     let info = host.update().unwrap();
     assert_eq!((host.integer("transitions"), info.values_of_continuous_states_changed), (1, 0));
     assert_eq!(host.states().unwrap()[2], 0.0);
@@ -188,8 +189,9 @@ fn what_no_integrator_should_try_is_sent_back() {
     assert_eq!(host.set_time(f64::INFINITY), ERROR);
     said("fmi2SetTime: time = inf s is out of range");
     assert_eq!(host.bytes(), before);
+    assert_eq!((host.set_time(1e-3), host.complete()), (OK, Ok((false, false))));
     assert_eq!((host.set_time(-0.5), host.complete()), (OK, Err(ERROR)));
-    said("fmi2CompletedIntegratorStep: the integrator's step from t = 0 s ends at t = -0.5 s");
+    said("fmi2CompletedIntegratorStep: the integrator's step from t = 0.001 s ends at t = -0.5 s");
 
     let host = Host::going_model(&[("m0", 0.0), ("J0", 0.0), ("theta_0", 0.1)]);
     assert_eq!(host.set_states([0.285, 0.0, 0.1, 0.0]), OK);
@@ -199,16 +201,16 @@ fn what_no_integrator_should_try_is_sent_back() {
 
 /// Peaks between the host's steps are not the FMU's to see.
 #[test]
-fn nobody_watches_peaks() {
+fn peaks_and_validity_are_not_watched() {
     let host = Host::new_model();
-    assert_eq!((host.watch_peaks(), host.set_boolean("validity", 1)), (OK, OK));
+    assert_eq!((host.set_boolean("peaks", 1), host.set_boolean("validity", 1)), (OK, OK));
     let host = host.initialized(&[("theta_0", 0.02)]);
     host.log.borrow_mut().clear();
     assert_eq!((host.exit(), host.update().is_ok(), host.go_on()), (OK, true, OK));
     let warnings: Vec<_> = host.log.take().into_iter().map(|message| (message.status, message.text)).collect();
     let expected = ["peaks", "validity"].map(|name| {
-        let text = "= true watches nothing in model exchange, where the motion between two points is the host's: what it \
-                    stands for is NaN; use co-simulation";
+        let text =
+            "= true has no effect in model exchange, where the host integrates: the values are NaN; use co-simulation";
         (WARNING, format!("{name} {text}"))
     });
     assert_eq!(warnings, expected);

@@ -104,6 +104,19 @@ fn rates_are_those_of_the_equations_of_motion_under_the_present_input() {
     }
 }
 
+/// Beside what a tiny step changes.
+#[test]
+fn restraints_have_rates() {
+    let restraints = [("P_0", 200.0), ("k_t", 1e5), ("xi_d", 0.2), ("c_d", 50.0), ("k_d", 1e6), ("F_y", 1e3)];
+    let host = Host::started(&[&[("theta_0", 0.02), ("theta_dot_0", -0.3)], &restraints[..]].concat());
+    let names = ["P_t", "F_d1", "F_d2"];
+    let (before, rates) = (host.try_get(&names).unwrap(), names.map(|name| host.rate(name, 1).unwrap()));
+    assert_eq!(host.step(0.0, 1e-8), OK);
+    for (at, after) in host.try_get(&names).unwrap().into_iter().enumerate() {
+        assert_relative_eq!(rates[at], (after - before[at]) / 1e-8, max_relative = 1e-4);
+    }
+}
+
 /// The step is the interval: where the motion takes place in time makes no difference in any bit. A host that multiplies
 /// is never more than a rounding away, and nothing else but that is taken for rounding.
 #[test]

@@ -1,14 +1,9 @@
 //! Types of FMI 3.0, where they are not those of FMI 2.0.
 
 use crate::{
-    Attributes, Boolean, DefaultExperiment, Enumeration, Integer, Item, LogCategories, Real, SeError, UnitDefinitions,
-    document,
+    Attributes, Boolean, Category, DefaultExperiment, Enumeration, Integer, Item, List, Real, SeError, Unit, document,
 };
 use serde::Serialize;
-
-mod terminals;
-
-pub use terminals::{BUS, FmiTerminalsAndIcons, SIGNAL, Terminal, TerminalMemberVariable, Terminals};
 
 /// Root of `modelDescription.xml`.
 #[derive(Clone, Debug, Serialize)]
@@ -46,19 +41,19 @@ pub struct FmiModelDescription {
     pub co_simulation: CoSimulation,
     /// Units of the variables.
     #[serde(rename = "UnitDefinitions")]
-    pub unit_definitions: UnitDefinitions,
+    pub unit_definitions: List<Unit>,
     /// Types that variables declare.
     #[serde(rename = "TypeDefinitions")]
-    pub type_definitions: TypeDefinitions,
+    pub type_definitions: List<EnumerationType>,
     /// Log categories that can be switched on.
     #[serde(rename = "LogCategories")]
-    pub log_categories: LogCategories,
+    pub log_categories: List<Category>,
     /// Settings of a simulation for which nothing else is asked.
     #[serde(rename = "DefaultExperiment")]
     pub default_experiment: DefaultExperiment,
     /// All variables.
     #[serde(rename = "ModelVariables")]
-    pub model_variables: ModelVariables,
+    pub model_variables: List<Variable>,
     /// What depends on what.
     #[serde(rename = "ModelStructure")]
     pub model_structure: ModelStructure,
@@ -77,9 +72,6 @@ pub struct Capabilities {
     /// File name of the library, without extension.
     #[serde(rename = "@modelIdentifier")]
     pub model_identifier: String,
-    /// Only one instance may live in a process.
-    #[serde(rename = "@canBeInstantiatedOnlyOncePerProcess")]
-    pub can_be_instantiated_only_once_per_process: bool,
     /// The state can be taken out and put back.
     #[serde(rename = "@canGetAndSetFMUState")]
     pub can_get_and_set_fmu_state: bool,
@@ -89,15 +81,12 @@ pub struct Capabilities {
     /// Derivatives by inputs, in model exchange by states, too, can be asked for, in a direction.
     #[serde(rename = "@providesDirectionalDerivatives")]
     pub provides_directional_derivatives: bool,
-    /// The same, weighted over what is derived.
-    #[serde(rename = "@providesAdjointDerivatives")]
-    pub provides_adjoint_derivatives: bool,
 }
 
 /// Capabilities of the model exchange interface.
 #[derive(Clone, Debug, Serialize)]
 pub struct ModelExchange {
-    /// What it can do as the other interface.
+    /// What both interfaces can do.
     #[serde(flatten)]
     pub capabilities: Capabilities,
     /// `fmi3CompletedIntegratorStep` has to be called.
@@ -108,7 +97,7 @@ pub struct ModelExchange {
 /// Capabilities of the co-simulation interface.
 #[derive(Clone, Debug, Serialize)]
 pub struct CoSimulation {
-    /// What it can do as the other interface.
+    /// What both interfaces can do.
     #[serde(flatten)]
     pub capabilities: Capabilities,
     /// Communication steps may differ in size.
@@ -123,20 +112,9 @@ pub struct CoSimulation {
     /// A step may end early.
     #[serde(rename = "@mightReturnEarlyFromDoStep")]
     pub might_return_early_from_do_step: bool,
-    /// A host that is called back may ask for that.
-    #[serde(rename = "@canReturnEarlyAfterIntermediateUpdate")]
-    pub can_return_early_after_intermediate_update: bool,
     /// Events can be handed over to the host.
     #[serde(rename = "@hasEventMode")]
     pub has_event_mode: bool,
-}
-
-/// Types that variables declare.
-#[derive(Clone, Debug, Serialize)]
-pub struct TypeDefinitions {
-    /// The types.
-    #[serde(rename = "EnumerationType")]
-    pub enumeration_types: Vec<EnumerationType>,
 }
 
 /// The literals of an enumeration.
@@ -151,14 +129,6 @@ pub struct EnumerationType {
     /// The literals.
     #[serde(rename = "Item")]
     pub items: Vec<Item>,
-}
-
-/// All variables.
-#[derive(Clone, Debug, Serialize)]
-pub struct ModelVariables {
-    /// The variables.
-    #[serde(rename = "$value")]
-    pub variables: Vec<Variable>,
 }
 
 /// A variable, by the element of its type.

@@ -8,13 +8,13 @@ mod model_structure;
 mod model_variables;
 mod unit_definitions;
 
-pub use model_structure::{DEPENDENT, ModelStructure, Unknown, Unknowns};
+pub use model_structure::{DEPENDENT, ModelStructure, Unknown};
 pub use model_variables::{
     Attributes, Boolean, Causality, Enumeration, Initial, Integer, ModelVariables, Real, ScalarVariable, Text,
     Variability, VariableType,
 };
 pub use quick_xml::SeError;
-pub use unit_definitions::{BaseUnit, DisplayUnit, Unit, UnitDefinitions};
+pub use unit_definitions::{BaseUnit, DisplayUnit, Unit};
 
 use quick_xml::se::Serializer as XmlSerializer;
 use serde::{Serialize, Serializer};
@@ -61,13 +61,13 @@ pub struct FmiModelDescription {
     pub co_simulation: CoSimulation,
     /// Units of the variables.
     #[serde(rename = "UnitDefinitions")]
-    pub unit_definitions: UnitDefinitions,
+    pub unit_definitions: List<Unit>,
     /// Types that variables declare.
     #[serde(rename = "TypeDefinitions")]
-    pub type_definitions: TypeDefinitions,
+    pub type_definitions: List<SimpleType>,
     /// Log categories that can be switched on.
     #[serde(rename = "LogCategories")]
-    pub log_categories: LogCategories,
+    pub log_categories: List<Category>,
     /// Settings of a simulation for which nothing else is asked.
     #[serde(rename = "DefaultExperiment")]
     pub default_experiment: DefaultExperiment,
@@ -96,12 +96,17 @@ fn document(root: &impl Serialize) -> Result<String, SeError> {
     Ok(xml)
 }
 
-/// What both interfaces can do.
+/// Elements of one kind, each under the name of its type.
+#[derive(Clone, Debug, Serialize)]
+pub struct List<T> {
+    /// The elements.
+    #[serde(rename = "$value")]
+    pub items: Vec<T>,
+}
+
+/// What both interfaces can do. An attribute with the standard's default is left out.
 #[derive(Clone, Debug, Serialize)]
 pub struct Capabilities {
-    /// Only one instance may live in a process.
-    #[serde(rename = "@canBeInstantiatedOnlyOncePerProcess")]
-    pub can_be_instantiated_only_once_per_process: bool,
     /// The host's memory callbacks are not used.
     #[serde(rename = "@canNotUseMemoryManagementFunctions")]
     pub can_not_use_memory_management_functions: bool,
@@ -122,10 +127,7 @@ pub struct ModelExchange {
     /// File name of the library, without extension.
     #[serde(rename = "@modelIdentifier")]
     pub model_identifier: String,
-    /// `fmi2CompletedIntegratorStep` need not be called.
-    #[serde(rename = "@completedIntegratorStepNotNeeded")]
-    pub completed_integrator_step_not_needed: bool,
-    /// What it can do as the other interface.
+    /// What both interfaces can do.
     #[serde(flatten)]
     pub capabilities: Capabilities,
 }
@@ -145,17 +147,9 @@ pub struct CoSimulation {
     /// Highest order that `fmi2GetRealOutputDerivatives` gives.
     #[serde(rename = "@maxOutputDerivativeOrder")]
     pub max_output_derivative_order: u32,
-    /// What it can do as the other interface.
+    /// What both interfaces can do.
     #[serde(flatten)]
     pub capabilities: Capabilities,
-}
-
-/// Types that variables declare.
-#[derive(Clone, Debug, Serialize)]
-pub struct TypeDefinitions {
-    /// The types.
-    #[serde(rename = "SimpleType")]
-    pub simple_types: Vec<SimpleType>,
 }
 
 /// An enumeration that variables declare.
@@ -169,15 +163,7 @@ pub struct SimpleType {
     pub description: String,
     /// Its literals.
     #[serde(rename = "Enumeration")]
-    pub enumeration: Items,
-}
-
-/// The literals of an enumeration.
-#[derive(Clone, Debug, Serialize)]
-pub struct Items {
-    /// The literals.
-    #[serde(rename = "Item")]
-    pub items: Vec<Item>,
+    pub enumeration: List<Item>,
 }
 
 /// A literal of an enumeration.
@@ -189,14 +175,6 @@ pub struct Item {
     /// The integer that stands for it.
     #[serde(rename = "@value")]
     pub value: i32,
-}
-
-/// Log categories that can be switched on.
-#[derive(Clone, Debug, Serialize)]
-pub struct LogCategories {
-    /// The categories.
-    #[serde(rename = "Category")]
-    pub categories: Vec<Category>,
 }
 
 /// A log category.
@@ -211,7 +189,7 @@ pub struct Category {
 }
 
 /// Settings of a simulation for which nothing else is asked.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct DefaultExperiment {
     /// Start time, s.
     #[serde(rename = "@startTime", serialize_with = "shortest")]

@@ -1,3 +1,4 @@
+use crate::List;
 use serde::Serialize;
 
 /// What depends on what.
@@ -5,21 +6,13 @@ use serde::Serialize;
 pub struct ModelStructure {
     /// Every output, with what it depends on at a communication point.
     #[serde(rename = "Outputs")]
-    pub outputs: Unknowns,
+    pub outputs: List<Unknown>,
     /// The derivative of every continuous state, in the order of the states, with what it depends on at any time.
     #[serde(rename = "Derivatives")]
-    pub derivatives: Unknowns,
+    pub derivatives: List<Unknown>,
     /// Every variable that initialization calculates, by rising index, with what it depends on there.
     #[serde(rename = "InitialUnknowns")]
-    pub initial_unknowns: Unknowns,
-}
-
-/// Calculated variables.
-#[derive(Clone, Debug, Serialize)]
-pub struct Unknowns {
-    /// The variables.
-    #[serde(rename = "Unknown")]
-    pub unknowns: Vec<Unknown>,
+    pub initial_unknowns: List<Unknown>,
 }
 
 /// A calculated variable and what it depends on.

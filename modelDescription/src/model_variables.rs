@@ -55,7 +55,7 @@ pub enum Causality {
     Input,
     /// The model, for the environment.
     Output,
-    /// The model, for whoever looks at it.
+    /// The model, for display.
     Local,
     /// Time, on which all others depend.
     Independent,

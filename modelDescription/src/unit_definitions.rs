@@ -1,14 +1,6 @@
 use crate::shortest;
 use serde::Serialize;
 
-/// Units of the variables.
-#[derive(Clone, Debug, Serialize)]
-pub struct UnitDefinitions {
-    /// The units.
-    #[serde(rename = "Unit")]
-    pub units: Vec<Unit>,
-}
-
 /// A unit and what it is in SI base units.
 #[derive(Clone, Debug, Serialize)]
 pub struct Unit {

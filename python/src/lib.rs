@@ -13,6 +13,7 @@ use arguments::{one_of, refused};
 use fmu_export::{Library, Version};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use rocking_records::{csv, vertical_csv};
 use std::ffi::OsString;
 use std::fs;
 use std::path::PathBuf;
@@ -65,12 +66,12 @@ fn export(
         PathBuf::from(record.0.title().replace(|letter| !is_plain(letter), "_") + ending)
     };
     let content = |packed: &Packed| match packed {
-        Packed::Record(record) => Ok((name_of(record.get(), ".csv"), record.get().table().into_bytes())),
+        Packed::Record(record) => Ok((name_of(record.get(), ".csv"), csv(&record.get().0).into_bytes())),
         Packed::File(path) => Ok((path.clone(), rocking_records::read_file(path)?)),
     };
     let vertical = |packed: &Packed| match packed {
         Packed::Record(record) => {
-            record.get().vertical_table().map(|table| (name_of(record.get(), "_v.csv"), table.into_bytes()))
+            vertical_csv(&record.get().0).map(|table| (name_of(record.get(), "_v.csv"), table.into_bytes()))
         }
         Packed::File(_) => None,
     };

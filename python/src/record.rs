@@ -8,8 +8,8 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat, PyInt};
 use rocking::estimates::intensity::peak_velocity;
 use rocking::estimates::response_spectrum::spectral_acceleration;
-use rocking_cli::record_args::{RecordOptions, with_remedy};
-use rocking_records::{Column, Remedy, Unit};
+use rocking_cli::record_args::RecordOptions;
+use rocking_records::{Column, Unit, csv};
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
 use std::ffi::CString;
 use std::fs;
@@ -31,23 +31,6 @@ pub struct Record(pub rocking::run::record::Record);
 
 fn unit(name: &str) -> PyResult<Unit> {
     one_of("unit", name, Unit::NAMES)
-}
-
-fn table(times: &[f64], name: &str, accelerations: &[f64]) -> String {
-    let lines: String = times.iter().zip(accelerations).map(|(time, a)| format!("{time:?},{a:?}\n")).collect();
-    format!("time[s],{name}[m/s2]\n{lines}")
-}
-
-impl Record {
-    /// The horizontal component as a table that is read without options.
-    pub fn table(&self) -> String {
-        table(self.0.times(), "a_g", self.0.acceleration())
-    }
-
-    /// The vertical component as such a table.
-    pub fn vertical_table(&self) -> Option<String> {
-        self.0.vertical().map(|a_v| table(self.0.times(), "a_v", a_v))
-    }
 }
 
 #[pymethods]
@@ -110,14 +93,10 @@ impl Record {
     ) -> PyResult<Record> {
         let unit = unit.map(self::unit).transpose()?;
         let column = column.map(|column| -> PyResult<_> { Ok(Column::from(column.str()?.to_str()?)) }).transpose()?;
-        if let Some(Column::Number(0)) = column {
-            return Err(PyValueError::new_err("columns are counted from 1"));
-        }
         let (time_scale, scale) = (Some(time_scale), Some(scale));
         let options = RecordOptions { unit, dt, column, ignore_npts, time_scale, scale };
         let read = |file: PathBuf| -> PyResult<rocking::run::record::Record> {
-            let understood =
-                py.detach(|| options.understand(&file, g)).map_err(|error| refused(with_argument(error)))?;
+            let understood = py.detach(|| options.understand(&file, g)).map_err(refused)?;
             for warning in understood.warnings(&file) {
                 PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(warning)?, 2)?;
             }
@@ -196,7 +175,7 @@ impl Record {
 
     /// Writes the horizontal component to `file` as a table that is read without options: time[s], a_g[m/s2], all digits.
     fn write(&self, file: PathBuf) -> PyResult<()> {
-        Ok(fs::write(file, self.table())?)
+        Ok(fs::write(file, csv(&self.0))?)
     }
 
     fn __len__(&self) -> usize {
@@ -221,21 +200,6 @@ impl Record {
 
 /// Times and accelerations, horizontal and vertical.
 type Samples<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Option<Bound<'py, PyArray1<f64>>>);
-
-/// The error with the argument that helps.
-fn with_argument(error: anyhow::Error) -> anyhow::Error {
-    with_remedy(error, |remedy| match remedy {
-        Remedy::IgnoreCount => "ignore_npts=True takes those",
-        Remedy::Step => "give it with dt=SECONDS",
-        Remedy::Column => "choose with column=, by number or heading",
-        Remedy::ColumnOrAll => {
-            "choose one with column=NUMBER, or say that every number is a sample, with column=\"all\""
-        }
-        Remedy::Channel => "choose with column=, by number",
-        Remedy::Unit => "say with unit= what they are",
-        Remedy::Comment => "begin a line that is no sample with #",
-    })
-}
 
 /// The pulse of this shape as a Record: "half_sine", "sine", "cosine", "ricker", "antisymmetric_ricker",
 /// "mavroeidis_papageorgiou".

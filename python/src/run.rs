@@ -7,6 +7,7 @@ use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyString};
+use rocking::State;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::engine::piece::Sample;
 use rocking::mechanics::state::{COMPONENTS, INITIAL_VALUES};
@@ -14,7 +15,6 @@ use rocking::run::fall::Found;
 use rocking::run::peaks::{self, PEAKS};
 use rocking::run::validity::{ASSUMPTIONS, Limits};
 use rocking::run::{End, Ending};
-use rocking::{State, Watch};
 use rocking_cli::summary::Summary;
 use rocking_cli::tables::{RESPONSE, response_numbers};
 use rocking_cli::validity;
@@ -131,36 +131,6 @@ impl Run {
 
 #[pymethods]
 impl Run {
-    #[new]
-    #[pyo3(signature = (structure, record=None, *, duration=None, detail="auto", tolerance=DEFAULT_TOLERANCE, **initial))]
-    fn new(
-        py: Python<'_>,
-        structure: Py<Structure>,
-        record: Option<Py<Record>>,
-        duration: Option<f64>,
-        detail: &str,
-        tolerance: f64,
-        initial: Option<&Bound<'_, PyDict>>,
-    ) -> PyResult<Run> {
-        let conditions = conditions(detail, tolerance, duration, initial)?;
-        conditions.check(&structure.get().0).map_err(refused)?;
-        let record = match (record, duration) {
-            (Some(record), _) => record,
-            (None, Some(duration)) => Py::new(py, Record(rocking::run::record::Record::at_rest(duration)))?,
-            (None, None) => {
-                return Err(PyValueError::new_err("record and duration are missing: free vibration needs a duration"));
-            }
-        };
-        let (structure_in, ground) = (structure.get(), record.get());
-        let (found, transitions) = py.detach(|| {
-            let mut transitions = Vec::new();
-            let mut see = |transition: &rocking::Transition| transitions.push(*transition);
-            let found = conditions.run(structure_in.0, &ground.0).found(&mut see).map_err(refused)?;
-            Ok::<_, PyErr>((found, transitions))
-        })?;
-        Ok(Run { structure, record, conditions, found, transitions })
-    }
-
     /// The structure.
     #[getter]
     fn structure(&self, py: Python<'_>) -> Py<Structure> {
@@ -252,10 +222,32 @@ impl Run {
     }
 
     /// What the model leaves out on this run, exact, each a Worst: tension_max, R_v_min, mu_required, mu_impact,
-    /// tension_impact, energy_gain_max, against the limits that the command line has by default.
+    /// tension_impact, energy_gain_max; within the usual limits.
     #[getter]
     fn validity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let limits = Limits::default();
+        let Limits { friction, tension, edge_load, gain } = Limits::default();
+        self.validity_within(py, friction, tension, edge_load, gain)
+    }
+
+    /// What the model leaves out as validity has it, within limits of your own, of at least 0: friction (coefficient), tension
+    /// and edge_load (over the weight; tension at an impact, over its impulse), energy_gain (over the kinetic energy before an
+    /// impact).
+    #[pyo3(signature = (*, friction=0.5, tension=0.05, edge_load=0.0, energy_gain=0.0))]
+    fn validity_within<'py>(
+        &self,
+        py: Python<'py>,
+        friction: f64,
+        tension: f64,
+        edge_load: f64,
+        energy_gain: f64,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let limits = Limits { friction, tension, edge_load, gain: energy_gain };
+        let named =
+            [("friction", friction), ("tension", tension), ("edge_load", edge_load), ("energy_gain", energy_gain)];
+        if let Some((name, value)) = named.into_iter().find(|(_, value)| !(*value >= 0.0 && value.is_finite())) {
+            let needed = "a finite number of at least 0 is needed";
+            return Err(PyValueError::new_err(format!("{name} = {value} is out of range: {needed}")));
+        }
         let (found, _) = py.detach(|| self.run().validity(limits)).map_err(refused)?;
         let named = PyDict::new(py);
         for (assumption, worst) in ASSUMPTIONS.iter().zip(&found.worst) {
@@ -314,26 +306,25 @@ impl Run {
 
     fn __str__(&self) -> PyResult<String> {
         let (run, limits) = (self.run(), Limits::default());
-        let mut summary = Summary::new(&run.structure);
-        self.transitions.iter().for_each(|transition| summary.transition(transition));
+        let summary = Summary::new(&run.structure, &self.transitions);
         let (beyond, _) = run.validity(limits).map_err(refused)?;
         let lines = validity::section(&run.structure, run.detail, &beyond, &limits);
         Ok(format!("{}\n{}{}", run.ground.title(), summary.text(&self.found).map_err(refused)?, lines.join("\n")))
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Scene, Bound<'py, PyDict>)> {
+    /// A pickle is the call of `simulate`.
+    fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, ())> {
         let asked = PyDict::new(py);
         let Conditions { initial, detail, tolerance, duration } = &self.conditions;
         asked.set_item("duration", duration)?;
         asked.set_item("detail", detail.name())?;
         asked.set_item("tolerance", tolerance)?;
         INITIAL_VALUES.iter().try_for_each(|of| asked.set_item(of.name, (of.get)(initial)))?;
-        Ok(((self.structure(py), self.record(py)), asked))
+        let simulate = py.import("flexible_rocking")?.getattr("simulate")?;
+        let scene = (simulate, self.structure(py), self.record(py));
+        Ok((py.import("functools")?.getattr("partial")?.call(scene, Some(&asked))?, ()))
     }
 }
-
-/// What is run under what.
-type Scene = (Py<Structure>, Py<Record>);
 
 /// Columns of numbers, phases, numbers of transitions.
 type Samples = (Vec<Vec<f64>>, Vec<&'static str>, Vec<u64>);
@@ -394,5 +385,21 @@ pub fn simulate(
     tolerance: f64,
     initial: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Run> {
-    Run::new(py, structure, record, duration, detail, tolerance, initial)
+    let conditions = conditions(detail, tolerance, duration, initial)?;
+    conditions.check(&structure.get().0).map_err(refused)?;
+    let record = match (record, duration) {
+        (Some(record), _) => record,
+        (None, Some(duration)) => Py::new(py, Record(rocking::run::record::Record::at_rest(duration)))?,
+        (None, None) => {
+            return Err(PyValueError::new_err("record and duration are missing: free vibration needs a duration"));
+        }
+    };
+    let (structure_in, ground) = (structure.get(), record.get());
+    let (found, transitions) = py.detach(|| {
+        let mut transitions = Vec::new();
+        let mut see = |transition: &rocking::Transition| transitions.push(*transition);
+        let found = conditions.run(structure_in.0, &ground.0).found(&mut see).map_err(refused)?;
+        Ok::<_, PyErr>((found, transitions))
+    })?;
+    Ok(Run { structure, record, conditions, found, transitions })
 }

@@ -9,7 +9,7 @@ use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::estimates::modal_split::{ModalAccelerations, Modes};
 use rocking::estimates::pushover::Equilibrium;
 use rocking::structure::natural_quantities::Given;
-use rocking::structure::parameters::PARAMETERS;
+use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::{DERIVED, Derived};
 use rocking::{Parameters, Side, State};
 use rocking_cli::{describe, pushover};
@@ -62,10 +62,7 @@ impl Structure {
         let given = given(numbers)?;
         let parameters = match preset {
             None => given.parameters(),
-            Some(preset) => {
-                let presets = [("evison", Parameters::EVISON), ("mcmanus", Parameters::MCMANUS)];
-                given.over(&one_of("preset", preset, presets)?)
-            }
+            Some(preset) => given.over(&one_of("preset", preset, PRESETS)?),
         };
         Structure::of(parameters.map_err(refused)?)
     }

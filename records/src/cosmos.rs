@@ -24,8 +24,7 @@ pub(super) fn format(text: &str) -> Option<Format> {
 struct Announced<'a> {
     line: usize,
     count: usize,
-    /// None where the line ends before it.
-    unit: Option<&'a str>,
+    unit: &'a str,
     /// Letters in a column; none where the line does not state them, and blanks separate.
     width: Option<usize>,
     dt: f64,
@@ -43,16 +42,11 @@ pub(super) fn parse(text: &str, format: Format, how: &Reading) -> Result<Parsed,
                 None => "which to take is not known".into(),
                 Some(asked) => format!("{asked} is asked for; they have numbers"),
             };
-            let remedy = Remedy::Channel;
-            return Err(bad(channels[0].line, format!("{count} channel(s), and {asked}")).remedied_by(remedy));
+            return Err(bad(channels[0].line, format!("{count} channel(s), and {asked}")).remedied_by(Remedy::Column));
         }
     };
     let &Announced { line: announced, count, unit, width, dt } = &channels[channel];
-    let stated = match unit {
-        Some(unit) => Unit::named(unit).map_or(Stated::Other(unit.into()), Stated::Unit),
-        None if how.unit.is_some() => Stated::Nothing,
-        None => return Err(bad(announced, "the unit of the accelerations is not stated").remedied_by(Remedy::Unit)),
-    };
+    let stated = Unit::named(unit).map_or(Stated::Other(unit.into()), Stated::Unit);
     let (unit, unit_from) = decide(&stated, how.unit, announced)?;
     let mut parsed = Parsed::new(format, title(text, format), unit, unit_from, Times::Every(dt));
     if channels.len() > 1 {
@@ -95,8 +89,8 @@ fn channels(text: &str, format: Format) -> Result<Vec<Announced<'_>>, BadLine> {
     Ok(channels)
 }
 
-/// `7500 points of accel data equally spaced at  .010 sec, in cm/sec2. (8f10.6)`, which may end after the interval or
-/// the unit, or have `(units: cm/sec/sec)`.
+/// `7500 points of accel data equally spaced at  .010 sec, in cm/sec2. (8f10.6)`, which may end after the unit, or have
+/// `(units: cm/sec/sec)`.
 fn csmip(line: usize, content: &str) -> Result<Announced<'_>, BadLine> {
     let unclear = || bad(line, format!("found {} where number, interval and unit are stated", quote(content)));
     let lower = content.to_ascii_lowercase();
@@ -104,7 +98,7 @@ fn csmip(line: usize, content: &str) -> Result<Announced<'_>, BadLine> {
     let dt = lower.split_once("spaced at").and_then(|(_, rest)| step(rest.split_whitespace().next()?));
     let start = [" in ", "units:"].into_iter().find_map(|before| Some(lower.find(before)? + before.len()));
     let unit = start.and_then(|start| content.get(start..)).and_then(|rest| rest.split_whitespace().next());
-    let unit = unit.map(|unit| unit.trim_end_matches(['.', ',', ')']));
+    let unit = unit.ok_or_else(unclear)?.trim_end_matches(['.', ',', ')']);
     Ok(Announced { line, count, unit, width: width(content), dt: dt.ok_or_else(unclear)? })
 }
 
@@ -116,13 +110,7 @@ fn cosmos<'a>(line: usize, content: &'a str, reals: &Reals) -> Result<Announced<
     let unit = content.get(start..).and_then(|rest| rest.split([',', '(', ' ']).find(|word| !word.is_empty()));
     let dt =
         reals.step().ok_or_else(|| bad(line, "the real header states no interval of the samples: value 62, in ms"))?;
-    Ok(Announced {
-        line,
-        count,
-        unit: Some(unit.ok_or_else(unclear)?),
-        width: Some(width(content).ok_or_else(unclear)?),
-        dt,
-    })
+    Ok(Announced { line, count, unit: unit.ok_or_else(unclear)?, width: Some(width(content).ok_or_else(unclear)?), dt })
 }
 
 /// The letters of a column of `(8F10.3)`, the last format that `line` has.

@@ -1,8 +1,7 @@
 //! How a line of text is cut into fields: what separates them, and what stands before decimals.
 
-use super::text::{number, quote};
-use super::unit::{Stated, TimeUnit};
-use super::{Column, Reading};
+use super::text::is_number;
+use super::unit::TimeUnit;
 use std::borrow::Cow;
 
 /// How the fields of a line are told apart, and what stands before the digits after the point.
@@ -17,10 +16,6 @@ pub(super) struct Layout {
 pub(super) fn words(line: &str) -> Vec<&str> {
     let fields = split(line, |letter| letter.is_whitespace() || matches!(letter, ',' | ';'));
     fields.into_iter().map(unquoted).filter(|field| !field.is_empty()).collect()
-}
-
-pub(super) fn is_number(word: &str) -> bool {
-    number(&word.replace(',', ".")).is_some()
 }
 
 /// Whether `line` has numbers and nothing else.
@@ -52,7 +47,7 @@ fn unquoted(field: &str) -> &str {
 
 /// The `count` cells of a line of headings, which may be a comment: however it is divided, and without numbers among them.
 /// Single blanks divide headings of one word each, of which one has times.
-pub(super) fn headings<'a>(line: &'a str, count: usize) -> Option<Vec<&'a str>> {
+pub(super) fn cells<'a>(line: &'a str, count: usize) -> Option<Vec<&'a str>> {
     let line = line.trim_start_matches([' ', '\t', '#', '%', '!', '/']).trim_end_matches([' ', '\t', ',', ';']);
     let is_time = |word: &&str| TimeUnit::of(word).is_some();
     let divided: [&dyn Fn() -> Vec<&'a str>; 6] = [
@@ -73,44 +68,20 @@ fn not_blank<'a>(cells: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
 }
 
 impl Layout {
-    /// That of lines of numbers. A semicolon separates wherever there is one. So does a comma, unless blanks separate and
-    /// each comma is between digits. Whole numbers with commas may be columns or decimals: a heading of two columns or the
-    /// option says so, else they are refused.
-    pub fn of<'a, L: Iterator<Item = &'a str>>(
-        lines: impl Fn() -> L,
-        before: &[&str],
-        how: &Reading,
-    ) -> Result<Layout, String> {
+    /// That of lines of numbers: a semicolon separates wherever there is one; so does a comma, unless blanks separate and
+    /// each comma is between digits.
+    pub fn of<'a, L: Iterator<Item = &'a str>>(lines: impl Fn() -> L) -> Layout {
         let has = |letter: char| lines().any(|line| line.contains(letter));
-        if has(';') {
-            return Ok(Layout { separator: Some(';'), decimal_comma: has(',') });
-        }
-        let fields = |line: &'a str| line.trim().split(',');
-        let is_decimal = |line: &'a str| {
-            let fields: Vec<_> = fields(line).collect();
+        let is_decimal = |line: &str| {
+            let fields: Vec<_> = line.trim().split(',').collect();
             fields.windows(2).all(|pair| pair[0].ends_with(is_digit) && pair[1].starts_with(is_digit))
         };
-        let (has_blanks, are_decimal) =
-            (lines().any(|line| line.trim().contains(char::is_whitespace)), lines().all(is_decimal));
-        if !has(',') || has_blanks && are_decimal {
-            return Ok(Layout { separator: None, decimal_comma: has(',') });
+        let has_blanks = lines().any(|line| line.trim().contains(char::is_whitespace));
+        match has(',') {
+            decimal_comma if has(';') => Layout { separator: Some(';'), decimal_comma },
+            true if !has_blanks || !lines().all(is_decimal) => Layout { separator: Some(','), decimal_comma: false },
+            decimal_comma => Layout { separator: None, decimal_comma },
         }
-        let is_part =
-            |field: &str| field == "-0" || field.len() > 1 && field.starts_with('0') && field.parse::<u64>().is_ok();
-        let has_quantity = |cell: &str| TimeUnit::of(cell).is_some() || matches!(Stated::of(cell), Stated::Unit(_));
-        let is_said = || {
-            matches!(how.column, Some(Column::Number(2..)))
-                || before.iter().filter_map(|line| headings(line, 2)).flatten().any(has_quantity)
-        };
-        let is_unclear = || are_decimal && lines().all(|line| fields(line).count() < 3) && !is_said();
-        if !has('.') && !has_blanks && (lines().any(|line| fields(line).any(is_part)) || is_unclear()) {
-            return Err(format!(
-                "the commas of {} may stand between numbers or before decimals: write a point before decimals, or a \
-                 semicolon between columns",
-                quote(lines().next().unwrap_or_default())
-            ));
-        }
-        Ok(Layout { separator: Some(','), decimal_comma: false })
     }
 
     pub fn fields<'a>(&self, line: &'a str) -> Vec<&'a str> {
@@ -123,13 +94,9 @@ impl Layout {
         fields.into_iter().map(unquoted).collect()
     }
 
-    /// A number as Rust writes it. With decimal commas a point is none before decimals.
+    /// A number as Rust writes it.
     pub fn plain<'a>(&self, field: &'a str) -> Cow<'a, str> {
-        match self.decimal_comma {
-            true if field.contains('.') => Cow::Borrowed("."),
-            true => Cow::Owned(field.replacen(',', ".", 1)),
-            false => Cow::Borrowed(field),
-        }
+        if self.decimal_comma { Cow::Owned(field.replace(',', ".")) } else { Cow::Borrowed(field) }
     }
 }
 

@@ -7,16 +7,13 @@ use super::{BadLine, Format, Reading, Unit, bad, source::decide};
 
 const HEADER_LINES: usize = 17;
 
-/// The stated maximum has three decimals, gal.
-const ROUNDING: f64 = 1e-3;
-
 /// Whether `text` is one of these files.
 pub(super) fn is_its(text: &str) -> bool {
     text.starts_with("Origin Time")
 }
 
 /// The step from the sampling frequency; a count times the scale factor is an acceleration in gal. What the recorder shows
-/// at rest, its offset, is the mean of all counts and no acceleration; values whose largest is the stated maximum have none.
+/// at rest, its offset, is the mean of all counts and no acceleration.
 pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     const WIDTH: usize = 9;
     let find = |key: &str| {
@@ -44,18 +41,9 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     parsed.read(numbered(text).skip(HEADER_LINES), Some(WIDTH))?;
     parsed.check_count("Duration Time(s) x Sampling Freq(Hz)", (duration * frequency).round() as usize, how)?;
     parsed.values.iter_mut().for_each(|count| *count *= factor);
-    let maximum = find("Max. Acc. (gal)").or(find("Max Acc. (gal)")).ok().and_then(|(_, maximum)| number(maximum));
-    let is_maximum = |peak: f64| maximum.is_some_and(|maximum| (peak - maximum).abs() <= factor + ROUNDING);
-    let peak = |values: &[f64]| values.iter().fold(0.0, |peak: f64, value| peak.max(value.abs()));
-    if is_maximum(peak(&parsed.values)) {
-        return Ok(parsed);
-    }
     let offset = parsed.values.iter().sum::<f64>() / parsed.values.len().max(1) as f64;
     parsed.values.iter_mut().for_each(|value| *value -= offset);
     parsed.remark(format!("the recorder's offset, the mean of {offset:.3} gal, is taken off"));
-    if let (Some(maximum), false) = (maximum, is_maximum(peak(&parsed.values))) {
-        parsed.remark(format!("the header's maximum of {maximum} gal is not that of the data"));
-    }
     Ok(parsed)
 }
 

@@ -5,6 +5,7 @@
 
 mod at2;
 mod cosmos;
+mod csv;
 mod esm;
 mod fields;
 mod knet;
@@ -15,7 +16,8 @@ mod table;
 mod text;
 mod unit;
 
-use parsed::{Parsed, usual_step};
+pub use csv::{csv, vertical_csv};
+use parsed::Parsed;
 use rocking::run::record::{MAX_SAMPLES, Record};
 pub use source::{Column, Format, Reading, Source, UnitFrom};
 use std::fs::{self, File};
@@ -37,11 +39,8 @@ const LARGEST_USUAL_VELOCITY: f64 = 2.0;
 /// Steps of recorders, s.
 const USUAL_STEPS: std::ops::RangeInclusive<f64> = 1e-4..=0.1;
 
-/// Most usual steps between two samples.
+/// Most steps, of their mean, between two samples.
 const LONGEST_GAP: f64 = 5.0;
-
-/// Longest duration of a record, s: an hour.
-const LONGEST_USUAL: f64 = 3600.0;
 
 /// Why a file is refused.
 #[derive(Debug, thiserror::Error)]
@@ -82,23 +81,21 @@ pub enum RecordError {
     },
 }
 
-/// What [`Reading`] must say to make a file readable.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+/// What [`Reading`] must say to make a file readable, under the names that every door has for it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Remedy {
     /// That the number of samples does not matter.
+    #[error("ignore_npts takes those")]
     IgnoreCount,
     /// The time between samples.
+    #[error("give it in seconds as dt")]
     Step,
-    /// The column.
+    /// The column, the channel, or that every number is a sample.
+    #[error("choose one as column: its number, its heading, or all")]
     Column,
-    /// The column, or that every number is a sample.
-    ColumnOrAll,
-    /// The channel, which has no name but its number.
-    Channel,
     /// The unit.
+    #[error("say as unit what they are")]
     Unit,
-    /// Nothing: the line itself must begin with `#`, if it is one of text.
-    Comment,
 }
 
 /// A line that is not what the format asks for, before the file's name is known.
@@ -152,7 +149,7 @@ pub fn in_m_s2(record: Record, mut source: Source, g: f64) -> (Record, Source) {
 fn doubts(record: &Record, g: f64) -> Vec<String> {
     let duration = record.end() - record.start();
     let last = record.velocities_and_displacements().last();
-    let step = nine_digits(usual_step(record.times()).unwrap_or_default());
+    let step = nine_digits(duration / (record.times().len() - 1) as f64);
     let longest = nine_digits(record.times().windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max));
     let velocity = last.unwrap_or_default()[0];
     let (peak, mean) = (record.pga() / g, velocity / duration / g);
@@ -162,9 +159,7 @@ fn doubts(record: &Record, g: f64) -> Vec<String> {
         (peak > LARGEST_USUAL_PEAK).then(|| format!("a peak of {peak:.0} g: is the unit right?")),
         (!is_usual).then(|| format!("a step of {step} s: is the time in another unit?")),
         (longest > LONGEST_GAP * step)
-            .then(|| format!("a step of {longest} s, where most are {step} s: is something missing?")),
-        (duration > LONGEST_USUAL)
-            .then(|| format!("a duration of {:.1} hours: is the time in another unit?", duration / 3600.0)),
+            .then(|| format!("a step of {longest} s, where their mean is {step} s: is something missing?")),
         is_drift.then(|| {
             format!(
                 "a mean acceleration of {mean:.2} g, after which the ground moves on at {velocity:.0} m/s: is it \
@@ -276,12 +271,10 @@ mod tests {
         assert!(doubts(4000, 0.01, 0.0, 3.0).is_empty());
         assert_eq!(doubts(4000, 0.5, 0.0, 3.0), ["a step of 0.5 s: is the time in another unit?"]);
         assert_eq!(doubts(4000, 5e-5, 0.0, 3.0), ["a step of 0.00005 s: is the time in another unit?"]);
-        assert_eq!(doubts(40_000, 0.1, 0.0, 3.0), ["a duration of 1.1 hours: is the time in another unit?"]);
         assert_eq!(doubts(4000, 0.01, 0.0, 59.0), ["a peak of 6 g: is the unit right?"]);
-        let gap = Record::from_samples("", vec![0.0, 0.01, 0.02, 0.03, 0.24, 0.25], vec![0.0; 6])
-            .map(|record| super::doubts(&record, 9.81))
-            .unwrap();
-        assert_eq!(gap, ["a step of 0.21 s, where most are 0.01 s: is something missing?"]);
+        let times = (0..99).map(|i| 0.01 * f64::from(if i < 50 { i } else { i + 49 })).collect();
+        let gap = Record::from_samples("", times, vec![0.0; 99]).map(|record| super::doubts(&record, 9.81)).unwrap();
+        assert_eq!(gap, ["a step of 0.5 s, where their mean is 0.015 s: is something missing?"]);
         let drift =
             "a mean acceleration of 0.29 g, after which the ground moves on at 114 m/s: is it the right column?";
         assert_eq!(doubts(4000, 0.01, 0.29 * 9.81, 3.0), [drift]);

@@ -118,10 +118,3 @@ impl Parsed {
         record.map(|record| (record, source)).map_err(|error| bad(last_line, error.to_string()))
     }
 }
-
-/// The time between most samples (s), the median.
-pub(super) fn usual_step(times: &[f64]) -> Option<f64> {
-    let mut steps: Vec<_> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    let middle = steps.len().checked_sub(1)? / 2;
-    Some(*steps.select_nth_unstable_by(middle, f64::total_cmp).1)
-}

@@ -1,7 +1,6 @@
 //! NPTS and DT, as lines before the samples state them.
 
 use super::text::{number, quote};
-use super::unit::TimeUnit;
 use super::{BadLine, MAX_SAMPLES, bad};
 
 /// What is stated.
@@ -18,19 +17,15 @@ impl Sampling {
     /// `4164    0.0100    NPTS, DT`.
     pub fn of(number: usize, line: &str) -> Result<Sampling, BadLine> {
         let upper = line.to_ascii_uppercase();
-        let words: Vec<_> =
-            upper.split(|letter: char| letter.is_whitespace() || ",;=:\"#%!".contains(letter)).collect();
-        let words: Vec<_> = words.into_iter().filter(|word| !word.is_empty()).collect();
+        let words = upper.split(|letter: char| letter.is_whitespace() || ",;=:\"#%!".contains(letter));
+        let words: Vec<_> = words.filter(|word| !word.is_empty()).collect();
         let after = |name: &str| {
-            let after = &words[words.iter().position(|word| *word == name)? + 1..];
-            after
-                .first()?
-                .starts_with(|letter: char| letter.is_ascii_digit() || "+-.".contains(letter))
-                .then_some(after)
+            let after = *words.get(words.iter().position(|word| *word == name)? + 1)?;
+            after.starts_with(|letter: char| letter.is_ascii_digit() || "+-.".contains(letter)).then_some(after)
         };
         let (npts, dt) = match words.as_slice() {
-            [npts, _, "NPTS", "DT", ..] => (Some(*npts), Some(&words[1..2])),
-            _ => (after("NPTS").map(|words| words[0]), after("DT")),
+            [npts, dt, "NPTS", "DT", ..] => (Some(*npts), Some(*dt)),
+            _ => (after("NPTS"), after("DT")),
         };
         let stated = npts.map(count).transpose().and_then(|npts| Ok((npts, dt.map(step).transpose()?)));
         let (npts, dt) = stated.map_err(|problem| bad(number, problem))?;
@@ -45,15 +40,8 @@ fn count(word: &str) -> Result<usize, String> {
     }
 }
 
-/// The step (s) that `words` begin with: `.0100 SEC`, `0.01s`, `10 ms`, or without a unit.
-fn step(words: &[&str]) -> Result<f64, String> {
-    let unit = |word: &str| TimeUnit::named(&word.trim_end_matches('.').to_lowercase());
-    let digits = words[0].trim_end_matches(char::is_alphabetic);
-    let (digits, unit) = match unit(&words[0][digits.len()..]) {
-        Some(unit) => (digits, Some(unit)),
-        None => (words[0], words.get(1).and_then(|word| unit(word))),
-    };
-    let second = unit.map_or(Ok(1.0), |unit| unit.in_seconds())?;
-    let dt = number(digits).map(|dt| dt * second).filter(|dt| *dt > 0.0);
-    dt.ok_or_else(|| format!("DT = {} must be a number of seconds greater than 0", quote(words[0])))
+/// The step (s): `.0100`, `0.01s`.
+fn step(word: &str) -> Result<f64, String> {
+    let dt = number(word.trim_end_matches(char::is_alphabetic)).filter(|dt| *dt > 0.0);
+    dt.ok_or_else(|| format!("DT = {} must be a number of seconds greater than 0", quote(word)))
 }

@@ -1,8 +1,8 @@
 //! How a record's file is read, and what was found in it or assumed of it.
 
 use super::text::quote;
-use super::unit::{Stated, is_like_a_unit};
-use super::{BadLine, Remedy, Unit, bad};
+use super::unit::Stated;
+use super::{BadLine, Unit, bad};
 use serde::{Deserialize, Deserializer, de::Error};
 use std::fmt;
 
@@ -75,12 +75,10 @@ pub enum UnitFrom {
     Assumed,
 }
 
-impl Column {
-    const ALL: &str = "all";
-}
+const ALL: &str = "all";
 
 fn all<'de, D: Deserializer<'de>>(word: D) -> Result<(), D::Error> {
-    let is_all = String::deserialize(word)? == Column::ALL;
+    let is_all = String::deserialize(word)? == ALL;
     is_all.then_some(()).ok_or_else(|| D::Error::custom("another column"))
 }
 
@@ -89,7 +87,7 @@ impl From<&str> for Column {
     fn from(text: &str) -> Column {
         match text.parse() {
             Ok(number) => Column::Number(number),
-            Err(_) if text == Column::ALL => Column::All,
+            Err(_) if text == ALL => Column::All,
             Err(_) => Column::Heading(text.into()),
         }
     }
@@ -98,7 +96,7 @@ impl From<&str> for Column {
 impl fmt::Display for Column {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         match self {
-            Column::All => out.write_str(Column::ALL),
+            Column::All => out.write_str(ALL),
             Column::Number(number) => write!(out, "{number}"),
             Column::Heading(heading) => out.write_str(&quote(heading)),
         }
@@ -126,14 +124,12 @@ pub(super) fn decide(stated: &Stated, asked: Option<Unit>, line: usize) -> Resul
     match (stated, asked) {
         (Stated::Unit(unit), Some(asked)) if *unit != asked => contradicted(unit, asked),
         (Stated::Unit(unit), _) => Ok((*unit, UnitFrom::File)),
-        (Stated::Other(other), Some(asked)) if is_like_a_unit(other) => contradicted(&quote(other), asked),
-        (_, Some(asked)) => Ok((asked, UnitFrom::User)),
+        (Stated::Other(other), Some(asked)) => contradicted(&quote(other), asked),
+        (Stated::Nothing, Some(asked)) => Ok((asked, UnitFrom::User)),
         (Stated::Nothing, None) => Ok((Unit::MetrePerSecondSquared, UnitFrom::Assumed)),
         (Stated::Other(other), None) => {
             let known = Unit::NAMES.map(|(name, _)| name).join(", ");
-            let remedy = (!is_like_a_unit(other)).then_some(Remedy::Unit);
-            let problem = format!("the accelerations are in {}, which is none of {known}", quote(other));
-            Err(BadLine { remedy, ..bad(line, problem) })
+            Err(bad(line, format!("the accelerations are in {}, which is none of {known}", quote(other))))
         }
     }
 }

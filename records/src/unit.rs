@@ -1,8 +1,8 @@
 //! Units of acceleration, and how files write them.
 
-use super::text::{number, quote};
+use super::text::is_number;
 use serde::Deserialize;
-use std::fmt;
+use std::{fmt, iter};
 
 /// Unit of the accelerations of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -91,53 +91,40 @@ impl fmt::Display for Unit {
 }
 
 /// What the heading of a column of times says of their unit.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum TimeUnit {
     Unstated,
     Second,
     Millisecond,
-    /// One that is not known here.
-    Other(String),
 }
 
 impl TimeUnit {
-    /// Of `time`, `t`, what begins so and goes on with a unit, and of what is a unit or has one in brackets; nothing of
-    /// any other heading.
+    /// Of `time`, `t`, these with a unit, and of what is a unit or ends with one in brackets; nothing of any other heading.
     pub(super) fn of(heading: &str) -> Option<TimeUnit> {
-        let heading = heading.trim().to_lowercase();
-        let bare = heading.trim_matches(['(', ')', '[', ']', '{', '}']);
-        let in_brackets = || bracketed(&heading).into_iter().find(|text| !text.is_empty());
-        if let Some(unit) = TimeUnit::named(bare).or_else(|| TimeUnit::named(in_brackets()?)) {
-            return Some(unit);
+        let heading = heading.to_lowercase();
+        let words = heading.split(|letter: char| !letter.is_alphanumeric());
+        let words: Vec<_> = words.filter(|word| !word.is_empty() && *word != "in").collect();
+        match words.as_slice() {
+            ["t" | "time" | "times"] => Some(TimeUnit::Unstated),
+            [unit] | ["t" | "time" | "times", unit] => TimeUnit::named(unit),
+            [.., unit] if heading.ends_with(&format!("({unit})")) || heading.ends_with(&format!("[{unit}]")) => {
+                TimeUnit::named(unit)
+            }
+            _ => None,
         }
-        let name = heading.split(['(', '[', '{']).next().unwrap_or_default();
-        let mut words = name.split(|letter: char| !letter.is_alphanumeric() && letter != '\u{b5}');
-        if !matches!(words.next(), Some("t" | "time" | "times")) {
-            return None;
-        }
-        let mut unit = in_brackets().map_or(TimeUnit::Unstated, |text| TimeUnit::Other(text.into()));
-        for word in words.filter(|word| !word.is_empty() && *word != "in") {
-            unit = TimeUnit::named(word)?;
-        }
-        Some(unit)
     }
 
-    pub(super) fn named(text: &str) -> Option<TimeUnit> {
+    fn named(text: &str) -> Option<TimeUnit> {
         match text {
             "s" | "sec" | "secs" | "second" | "seconds" => Some(TimeUnit::Second),
             "ms" | "msec" | "msecs" | "millisecond" | "milliseconds" => Some(TimeUnit::Millisecond),
-            "us" | "\u{b5}s" | "usec" | "min" | "minutes" | "hr" | "hours" => Some(TimeUnit::Other(text.into())),
             _ => None,
         }
     }
 
     /// How many seconds it has; those that are not stated are seconds.
-    pub(super) fn in_seconds(&self) -> Result<f64, String> {
-        match self {
-            TimeUnit::Unstated | TimeUnit::Second => Ok(1.0),
-            TimeUnit::Millisecond => Ok(1e-3),
-            TimeUnit::Other(unit) => Err(format!("the times are in {}, which is neither s nor ms", quote(unit))),
-        }
+    pub(super) fn in_seconds(self) -> f64 {
+        if self == TimeUnit::Millisecond { 1e-3 } else { 1.0 }
     }
 }
 
@@ -152,26 +139,8 @@ fn plain(text: &str) -> String {
     plain.flat_map(char::to_lowercase).collect()
 }
 
-/// All that stands in brackets in `heading`.
-pub(super) fn bracketed(heading: &str) -> Vec<&str> {
-    let mut found = Vec::new();
-    let mut rest = heading;
-    while let Some(open) = rest.find(['(', '[', '{']) {
-        let inner = &rest[open + 1..];
-        let close = match rest.as_bytes()[open] {
-            b'(' => ')',
-            b'[' => ']',
-            _ => '}',
-        };
-        let Some(end) = inner.find(close) else { break };
-        found.push(inner[..end].trim());
-        rest = &inner[end + 1..];
-    }
-    found
-}
-
-/// Whether `text`, which is no unit that is known here, is meant as one, and not as a remark.
-pub(super) fn is_like_a_unit(text: &str) -> bool {
+/// Whether `text`, which is no unit that is known here, is meant as one.
+fn is_like_a_unit(text: &str) -> bool {
     let text = text.to_lowercase();
     text.contains("/s")
         || text.contains(['^', '%'])
@@ -197,46 +166,29 @@ pub(super) enum Stated {
 }
 
 impl Stated {
-    /// The unit that the `heading` of a column of accelerations states: in brackets, after a blank, a slash or an
-    /// underscore, or as all of it. `a_g` is the ground acceleration, whatever its unit; after a number stands the unit of
-    /// that.
+    /// The unit that the `heading` of a column of accelerations, or a line of text before samples alone, states: after a blank,
+    /// a slash, an underscore or the like, to the end or the next bracket. `a_g` is the ground acceleration, whatever its
+    /// unit; after a number stands the unit of that.
     pub(super) fn of(heading: &str) -> Stated {
-        let is_number = |word: &str| number(&word.replace(',', ".")).is_some();
-        let brackets: Vec<_> =
-            bracketed(heading).into_iter().filter(|text| !text.is_empty() && !is_number(text)).collect();
-        if let Some(unit) = brackets.iter().find_map(|text| Unit::named(text)) {
+        const DIVIDERS: &[char] = &[' ', '\t', ',', ':', '=', '/', '_', '(', '[', '{'];
+        const LONGEST: usize = 200;
+        if heading.len() > LONGEST {
+            return Stated::Nothing;
+        }
+        let starts = || iter::once(0).chain(heading.match_indices(DIVIDERS).map(|(index, _)| index + 1));
+        let to_bracket = |start: usize| heading[start..].split([')', ']', '}']).next().unwrap_or_default();
+        let is_free = |start: &usize| {
+            let before = heading[..*start].trim_end_matches(DIVIDERS);
+            !is_number(before.rsplit(DIVIDERS).next().unwrap_or_default())
+        };
+        let is_a_g = |start: usize| heading[..start].to_lowercase().ends_with("a_");
+        let named = |start| Unit::named(to_bracket(start)).filter(|unit| *unit != Unit::G || !is_a_g(start));
+        if let Some(unit) = starts().filter(is_free).find_map(named) {
             return Stated::Unit(unit);
         }
-        if let Some(other) = brackets.first() {
-            return Stated::Other((*other).to_owned());
-        }
-        let heading = heading.trim();
-        let mut words = heading.split([' ', '\t', ',', ':', '=']).filter(|word| !word.is_empty()).rev();
-        let last = words.next().filter(|_| !words.next().is_some_and(is_number));
-        let (after_blank, after_slash) = (heading.split_once(char::is_whitespace), heading.split_once('/'));
-        let after = [after_blank, after_slash].map(|parts| parts.map(|(_, unit)| unit));
-        let candidates = || [Some(heading), after[0], last, after[1]].into_iter().flatten();
-        let after_underscore = || {
-            let (name, unit) = heading
-                .match_indices('_')
-                .find_map(|(index, _)| Some((&heading[..index], Unit::named(&heading[index + 1..])?)))?;
-            (unit != Unit::G || !name.eq_ignore_ascii_case("a")).then_some(unit)
-        };
-        match candidates().find_map(Unit::named).or_else(after_underscore) {
-            Some(unit) => Stated::Unit(unit),
-            None => match candidates().skip(2).find(|text| is_like_a_unit(text)) {
-                Some(other) => Stated::Other(other.to_owned()),
-                None => Stated::Nothing,
-            },
-        }
-    }
-
-    /// What a line of text says of the unit, before accelerations that have no columns.
-    pub(super) fn of_line(line: &str) -> Stated {
-        match Stated::of(line.trim_start_matches([' ', '\t', '#', '%', '!', '/'])) {
-            Stated::Other(other) if !is_like_a_unit(&other) => Stated::Nothing,
-            stated => stated,
-        }
+        let mut words = heading.rsplit([' ', '\t', ',', '(', '[', '{', ')', ']', '}']);
+        let other = words.find(|word| is_like_a_unit(word));
+        other.map_or(Stated::Nothing, |other| Stated::Other(other.to_owned()))
     }
 }
 
@@ -270,7 +222,8 @@ mod tests {
         ] {
             headings.iter().for_each(|heading| assert_eq!(Stated::of(heading), Stated::Unit(unit), "{heading}"));
         }
-        for nothing in ["a_g", "acc", "acceleration", "ground motion", "", "a_G", "ag", "EW", "peak 0.3 g", "in g: 0.3"]
+        for nothing in
+            ["a_g", "acc", "acceleration", "ground motion", "", "a_G", "ag", "EW", "peak 0.3 g", "in g: 0.3", "# a_g"]
         {
             assert_eq!(Stated::of(nothing), Stated::Nothing, "{nothing}");
         }
@@ -296,8 +249,6 @@ mod tests {
             (&["t", "Time"][..], TimeUnit::Unstated),
             (&["t/s", "Zeit [s]", "time, sec"], TimeUnit::Second),
             (&["t/ms", "time_ms", "(ms)", "time in ms"], TimeUnit::Millisecond),
-            (&["t (h)"], TimeUnit::Other("h".into())),
-            (&["time min"], TimeUnit::Other("min".into())),
         ] {
             headings.iter().for_each(|heading| assert_eq!(TimeUnit::of(heading).as_ref(), Some(&unit), "{heading}"));
         }

@@ -1,6 +1,8 @@
 //! Everything about a structure that changes with time, in a few dozen numbers.
 
+use crate::levels::level::Now;
 use crate::levels::rules::ChatterLimit;
+use crate::mechanics::load::Load;
 use crate::mechanics::reactions::Impulse;
 use crate::mechanics::restraint::Dissipators;
 use crate::{Phase, Side, State};
@@ -25,9 +27,9 @@ pub(crate) enum Event {
     /// |θ| is π/2 on this side.
     Overturning(Side),
     /// This dissipator begins to yield: pulled, +1, or pressed, −1.
-    Yielding(usize, i8),
+    Yielding(u8, i8),
     /// This dissipator ceases to yield.
-    Unloading(usize),
+    Unloading(u8),
 }
 
 /// Everything about a structure that changes with time.
@@ -53,26 +55,17 @@ pub struct Motion {
 }
 
 impl Motion {
+    /// It under `load`.
+    #[inline]
+    pub(crate) fn under(&self, load: Load) -> Now<'_> {
+        Now { state: &self.state, load, dissipators: &self.dissipators }
+    }
+
     /// Whether a transition is due at this instant: state and phase are those before it.
     pub fn is_transition_due(&self) -> bool {
         self.due.is_some()
     }
 
-    /// Whether what is due, if anything, can be in this phase: what is read from bytes need not have come about by motion.
-    pub fn is_possible(&self) -> bool {
-        match self.due {
-            None => true,
-            Some(Event::Uplift(_)) => self.phase == Phase::FullContact,
-            Some(Event::Impact(side)) => self.phase == Phase::Rocking(side),
-            Some(Event::Overturning(_)) => false, // it is never left to be applied
-            Some(Event::Yielding(which, _) | Event::Unloading(which)) => {
-                which < 2 && matches!(self.phase, Phase::Rocking(_))
-            }
-        }
-    }
-}
-
-impl Motion {
     /// For how long contact is held from now on because too many transitions came before, s.
     pub fn held(&self) -> f64 {
         self.chatter.held

@@ -7,7 +7,7 @@ use crate::engine::motion::Motion;
 use crate::engine::transition::Transition;
 use crate::engine::yielding;
 use crate::levels::detail::Model;
-use crate::levels::level::Rates;
+use crate::levels::level::{Now, Rates};
 use crate::levels::output_series::{self, Turn};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::{self, Measure};
@@ -78,8 +78,7 @@ pub struct Sample<'a> {
 impl Sample<'_> {
     /// The outputs; once overturned, those of the instant before.
     pub fn outputs(&self) -> Outputs {
-        let Motion { phase, state, dissipators, .. } = &self.motion;
-        self.model.outputs(phase.in_motion(), state, self.load, dissipators)
+        self.model.outputs(self.motion.phase.in_motion(), &self.motion.under(self.load))
     }
 
     /// The reactions; once overturned, those of the instant before.
@@ -106,8 +105,8 @@ impl Sample<'_> {
 
     /// (ü, θ̈), m/s² and rad/s²; once overturned, those of the instant before.
     pub(crate) fn accelerations(&self) -> [f64; 2] {
-        let Sample { motion: Motion { phase, state, dissipators, .. }, load, model } = self;
-        model.level.accelerations(&model.structure, phase.in_motion(), state, *load, dissipators)
+        let Sample { motion, load, model } = self;
+        model.level.accelerations(&model.structure, motion.phase.in_motion(), &motion.under(*load))
     }
 }
 
@@ -147,7 +146,8 @@ impl Piece<'_> {
 
     /// The outputs in `state`, `tau` seconds into it.
     pub(crate) fn outputs(&self, tau: f64, state: &State) -> Outputs {
-        self.model.outputs(self.before.phase, state, self.load.at(tau), &self.before.dissipators)
+        let now = Now { state, load: self.load.at(tau), dissipators: &self.before.dissipators };
+        self.model.outputs(self.before.phase, &now)
     }
 
     /// The state `tau` seconds into it.
@@ -209,9 +209,9 @@ pub(crate) struct Part<'a> {
 impl<'a> Part<'a> {
     /// The part as a step.
     #[inline]
-    fn step(&self) -> Start {
+    fn step(&self) -> Start<'a> {
         let Part { piece, start: (passed, state), end: (until, _) } = *self;
-        piece.model.start(state, piece.before.dissipators, piece.load.from(passed), until - passed)
+        piece.model.start(state, &piece.before.dissipators, piece.load.from(passed), until - passed)
     }
 
     /// Its halves, where the state between them is known without expanding the motion.
@@ -295,7 +295,8 @@ impl<'a> Part<'a> {
 
         let [(from, first), (_, last)] = self.ends();
         let load = LinearLoad { value: load.at(from), ..load };
-        let accelerations = level.accelerations(structure, phase, &step.state, load.value, &step.dissipators);
+        let now = Now { state: &step.state, load: load.value, dissipators: step.dissipators };
+        let accelerations = level.accelerations(structure, phase, &now);
         let rates = Outputs::rates_by(structure, phase, &step.state, accelerations, load);
         std::array::from_fn(|i| {
             let of = |outputs: &Outputs| Measure::ALL[i].of(outputs).abs();

@@ -58,18 +58,18 @@ pub struct Transition {
     pub after: State,
 }
 
-/// The `motion` after what `event` leads to, and the transition to be reported.
+/// Takes `motion` to what `event` leads to: the transition to be reported.
 #[inline]
 pub(crate) fn resolve(
     level: &(impl Level + ?Sized),
     structure: &Structure,
-    mut motion: Motion,
+    motion: &mut Motion,
     event: Event,
-) -> (Motion, Transition) {
+) -> Transition {
     let before = motion.state;
     let yields = match event {
-        Event::Yielding(which, way) => Some((TransitionKind::Yielding(which), which, way)),
-        Event::Unloading(which) => Some((TransitionKind::Unloading(which), which, 0)),
+        Event::Yielding(which, way) => Some((TransitionKind::Yielding(which.into()), usize::from(which), way)),
+        Event::Unloading(which) => Some((TransitionKind::Unloading(which.into()), usize::from(which), 0)),
         _ => None,
     };
     if let Some((kind, which, way)) = yields {
@@ -77,7 +77,7 @@ pub(crate) fn resolve(
         motion.dissipators.yields[which] = way;
         // it ceases to where the elongation turns round
         motion.state.theta_dot = if way == 0 { 0.0 } else { before.theta_dot };
-        return (motion, Transition { time: motion.time, kind, before, after: motion.state });
+        return Transition { time: motion.time, kind, before, after: motion.state };
     }
     let limit = level.chatter_limit(structure);
     let (kind, phase, after) = match event {
@@ -103,5 +103,5 @@ pub(crate) fn resolve(
         let rocking = if let Phase::Rocking(side) = phase { Some((side, after.theta_dot)) } else { None };
         motion.dissipators = motion.dissipators.after(structure, rocking);
     }
-    (motion, Transition { time: motion.time, kind, before, after })
+    Transition { time: motion.time, kind, before, after }
 }

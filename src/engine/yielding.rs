@@ -39,10 +39,10 @@ pub(crate) fn first(
                     let towards = (f64::from(way) * lever).signum();
                     let is_less = Guard::new(arc.used(&arc.theta), -towards, towards * theta);
                     let moves_back = moves(-f64::from(way));
-                    see(first_time_all_closed([is_less, moves_back], arc.reach), Event::Yielding(j, way));
+                    see(first_time_all_closed([is_less, moves_back], arc.reach), Event::Yielding(j as u8, way));
                 }
             }
-            way => see(first_time_all_closed([moves(f64::from(way))], arc.reach), Event::Unloading(j)),
+            way => see(first_time_all_closed([moves(f64::from(way))], arc.reach), Event::Unloading(j as u8)),
         }
     }
     found

@@ -27,7 +27,8 @@ pub enum DemandError {
     OutOfRange(#[from] OutOfRange),
     /// More than the weight turns the structure back.
     #[error(
-        "Eqs 14 and 21 to 24 are of a structure that its weight alone turns back, not with P_0 = {P_0:?} N, k_t = {k_t:?} N/m,          c_d = {c_d:?} N.s/m, k_d = {k_d:?} N/m: follow the motion instead"
+        "Eqs 14 and 21 to 24 are of a structure that its weight alone turns back, not with P_0 = {P_0:?} N, k_t = {k_t:?} N/m, \
+         c_d = {c_d:?} N.s/m, k_d = {k_d:?} N/m: follow the motion instead"
     )]
     Restrained {
         /// Prestress of the tendon, N.

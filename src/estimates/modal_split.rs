@@ -81,18 +81,6 @@ mod tests {
 
     const STATE: State = State { u: 2e-4, u_dot: -0.03, theta: 0.02, theta_dot: 0.15 };
 
-    #[test]
-    fn the_split_adds_up_and_leaves_a_rigid_rotation_alone() {
-        let structure = Structure::new(Parameters::MCMANUS).unwrap();
-        let modes = Modes::of(&structure, &STATE);
-        assert_relative_eq!(modes.q_r + modes.q_u, STATE.theta, max_relative = 1e-15);
-        assert_relative_eq!(modes.q_r_dot + modes.q_u_dot, STATE.theta_dot, max_relative = 1e-15);
-        assert_relative_eq!(structure.parameters().H * modes.q_u, -structure.chi * STATE.u, max_relative = 1e-14);
-        let rigid = State { u: 0.0, u_dot: 0.0, ..STATE };
-        let alone = Modes { q_r: 0.02, q_u: 0.0, q_r_dot: 0.15, q_u_dot: 0.0 };
-        assert_eq!(Modes::of(&structure, &rigid), alone);
-    }
-
     /// The linearised equations (7, 8), their gravity terms replaced by those which the modes keep: g H q_r in (8), and
     /// in (7) χ g q_r, whose moment about the vibration mode's node is the same.
     #[test]

@@ -22,7 +22,7 @@
 //! mass, and the force drops by that part (2e-3 for Evison, 5e-3 for McManus) as the base lifts off.
 
 use crate::mechanics::outputs::Outputs;
-use crate::mechanics::restraint::{Angles, Dissipators, Sum, ties, uplift_displacement};
+use crate::mechanics::restraint::{Angles, Dissipators, Sum, uplift_displacement};
 use crate::series::bisection::last_where;
 use crate::{Phase, Side, State, Structure};
 use std::f64::consts::FRAC_PI_2;
@@ -66,7 +66,7 @@ pub fn with_dissipators(structure: &Structure, theta: f64, dissipators: &Dissipa
     let s = side.sign();
     let (sin, cos) = libm::sincos(theta.abs());
     let (quadratic, linear) = (k * sin, k * (H * cos + B * sin) + m * g);
-    let held = s * Sum::of_moments(&ties(structure, side, dissipators)).at(Angles::Any, theta, 0.0);
+    let held = s * Sum::of_moments(structure, side, dissipators).at(Angles::Any, theta, 0.0);
     let constant = g * B * (m + m0 * cos * cos) + held * cos;
     let discriminant = linear * linear - 4.0 * quadratic * constant;
     if discriminant < 0.0 {
@@ -110,7 +110,6 @@ mod tests {
     use super::*;
     use crate::Parameters;
     use crate::levels::nonlinear::accelerations;
-    use crate::mechanics::energy::energy;
     use crate::mechanics::load::Load;
     use approx::assert_relative_eq;
     use nalgebra::{Matrix2, Vector2};
@@ -136,21 +135,6 @@ mod tests {
             let unbalanced = mass * released + force * direction;
             let size = structure.k * u.abs() * H;
             prop_assert!(unbalanced.norm() < 1e-13 * size, "{unbalanced}");
-        }
-
-        /// The work of the force is the energy that the structure takes up.
-        #[test]
-        fn the_force_is_the_slope_of_the_energy(theta in 1e-3..1.2f64, preset in 0..2usize) {
-            let structure = specimens()[preset];
-            let step = 1e-4;
-            let [before, here, after] =
-                [theta - step, theta, theta + step].map(|theta| at_rotation(&structure, theta).unwrap());
-            let energy = |at: &Equilibrium| {
-                energy(&structure, at.phase, &State { u: at.u, theta: at.theta, ..State::default() })
-            };
-            let slope = (energy(&after) - energy(&before)) / (after.delta_t - before.delta_t);
-            let weight = structure.gamma * structure.parameters().m * structure.parameters().g;
-            prop_assert!((slope - here.force).abs() < 1e-6 * weight, "{slope} {}", here.force);
         }
 
         #[test]

@@ -8,11 +8,12 @@
 //! Eq 6 at rest, of a strut that is not deformed. From the way there to the way back the elastoplastic dissipators change sign:
 //! the loop is a flag of the height Σ_j 2 F_y |sB − ξ_j| cos(θ/2).
 
-use crate::mechanics::restraint::{Angles, Dissipators, Sum, ties};
+use crate::mechanics::restraint::{Angles, Dissipators, Sum};
 use crate::{Parameters, Side, Structure};
+use serde::Serialize;
 
 /// A point of the static loop.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Point {
     /// Rotation θ, rad.
     pub theta: f64,
@@ -28,7 +29,7 @@ pub fn flag(structure: &Structure, theta: f64, steps: u32) -> Vec<Point> {
     let mut dissipators = Dissipators::default();
     let at = |theta: f64| {
         dissipators = dissipators.moved(structure, Side::Right, theta);
-        let of_ties = Sum::of_moments(&ties(structure, Side::Right, &dissipators)).at(Angles::Any, theta, 0.0);
+        let of_ties = Sum::of_moments(structure, Side::Right, &dissipators).at(Angles::Any, theta, 0.0);
         let (sin, cos) = libm::sincos(theta);
         Point { theta, moment: (m + m0) * g * B * cos - m * g * H * sin + of_ties }
     };

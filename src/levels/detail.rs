@@ -16,12 +16,12 @@
 
 use crate::levels::first_uplift;
 use crate::levels::full_contact::{self, ExactContact};
-use crate::levels::level::{ElasticRocking, Level, Rates};
+use crate::levels::level::{ElasticRocking, Level, Now, Rates};
 use crate::levels::linear::{LinearRocking, RestrainedLinear};
 use crate::levels::modal::ModalRocking;
 use crate::levels::nonlinear::NonlinearRocking;
 use crate::levels::rigid::Rigid;
-use crate::mechanics::load::{LinearLoad, Load, Ramp};
+use crate::mechanics::load::LinearLoad;
 use crate::mechanics::restraint::{Angles, Dissipators};
 use crate::mechanics::state::InitialStateError;
 use crate::mechanics::uplift;
@@ -66,9 +66,7 @@ impl Detail {
             Detail::FixedBase => "fixed_base",
         }
     }
-}
 
-impl Detail {
     /// Whether a motion may start from `initial` at this level.
     pub(crate) fn check_start(self, &State { u, u_dot, theta, .. }: &State) -> Result<(), InitialStateError> {
         match self {
@@ -107,6 +105,7 @@ impl Detail {
 #[derive(Clone, Debug)]
 pub(crate) struct Model {
     pub structure: Structure,
+    pub detail: Detail,
     pub level: AnyLevel,
     /// Truncation error that a step may have.
     pub local_error: f64,
@@ -115,12 +114,18 @@ pub(crate) struct Model {
 impl Model {
     /// Of `structure` at the level `detail`, `restrained` or shaken vertically.
     pub(crate) fn new(structure: Structure, detail: Detail, local_error: f64, restrained: bool) -> Model {
-        Model { structure, level: detail.level(&structure, local_error, restrained), local_error }
+        Model { structure, detail, level: detail.level(&structure, local_error, restrained), local_error }
     }
 
     /// The step of `interval` (s) from `state` under `load`.
     #[inline]
-    pub(crate) fn start(&self, state: State, dissipators: Dissipators, load: LinearLoad, interval: f64) -> Start {
+    pub(crate) fn start<'a>(
+        &self,
+        state: State,
+        dissipators: &'a Dissipators,
+        load: LinearLoad,
+        interval: f64,
+    ) -> Start<'a> {
         let (a_g, a_top, a_v) = (load.on_foundation(), load.on_top(&self.structure), load.upwards());
         Start { state, a_g, a_top, a_v, dissipators, interval, local_error: self.local_error }
     }
@@ -133,27 +138,35 @@ pub(crate) enum AnyLevel {
     Nonlinear(Elastic<NonlinearRocking<false>>),
     Linear(Elastic<LinearRocking>),
     Modal(Elastic<ModalRocking>),
-    Rigid(Rigid<false>),
     FixedBase(FixedBase),
     RestrainedNonlinear(Elastic<NonlinearRocking<true>>),
     RestrainedLinear(Elastic<RestrainedLinear>),
+    Rigid(Rigid<false>),
     RestrainedRigid(Rigid<true>),
 }
+
+/// Does the same with a level of every type.
+macro_rules! by_level {
+    ($any:expr, $level:ident => $do:expr) => {
+        match $any {
+            AnyLevel::Nonlinear($level) => $do,
+            AnyLevel::Linear($level) => $do,
+            AnyLevel::Modal($level) => $do,
+            AnyLevel::FixedBase($level) => $do,
+            AnyLevel::RestrainedNonlinear($level) => $do,
+            AnyLevel::RestrainedLinear($level) => $do,
+            AnyLevel::Rigid($level) => $do,
+            AnyLevel::RestrainedRigid($level) => $do,
+        }
+    };
+}
+pub(crate) use by_level;
 
 impl Deref for AnyLevel {
     type Target = dyn Level;
 
     fn deref(&self) -> &Self::Target {
-        match self {
-            AnyLevel::Nonlinear(level) => level,
-            AnyLevel::Linear(level) => level,
-            AnyLevel::Modal(level) => level,
-            AnyLevel::Rigid(level) => level,
-            AnyLevel::FixedBase(level) => level,
-            AnyLevel::RestrainedNonlinear(level) => level,
-            AnyLevel::RestrainedLinear(level) => level,
-            AnyLevel::RestrainedRigid(level) => level,
-        }
+        by_level!(self, level => level)
     }
 }
 
@@ -164,15 +177,22 @@ pub(crate) struct Elastic<Rocking> {
     rocking: Rocking,
 }
 
+impl<Rocking: ElasticRocking> Elastic<Rocking> {
+    /// The |u| (m) below which the base stays down over the interval of `start`.
+    #[inline(always)]
+    fn limit(&self, structure: &Structure, start: &Start) -> f64 {
+        match self.rocking.ties() {
+            None => structure.u_cr,
+            Some(_) => uplift::least_displacement(structure, start.a_v, start.interval, start.dissipators),
+        }
+    }
+}
+
 impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
     #[inline(always)]
     fn leap(&self, structure: &Structure, phase: Phase, start: &Start) -> Option<State> {
         match phase {
-            Phase::FullContact if self.rocking.ties().is_none() => self.contact.as_ref()?.leap(start, structure.u_cr),
-            Phase::FullContact => {
-                let limit = uplift::least_displacement(structure, start.a_v, start.interval, &start.dissipators);
-                self.contact.as_ref()?.leap(start, limit)
-            }
+            Phase::FullContact => self.contact.as_ref()?.leap(start, self.limit(structure, start)),
             Phase::Rocking(side) => self.rocking.leap(side, start),
             Phase::Overturned(_) => None,
         }
@@ -211,38 +231,21 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
     }
 
     fn stays_down(&self, structure: &Structure, state: &State, dissipators: &Dissipators) -> bool {
-        let limit = match self.rocking.ties() {
-            None => structure.u_cr,
-            Some(_) => uplift::least_displacement(structure, Ramp::default(), 0.0, dissipators),
-        };
-        uplift::farthest(structure, state) < limit
+        uplift::farthest(structure, state) < self.limit(structure, &Start { dissipators, ..Start::default() })
     }
 
-    fn uplift_margin(
-        &self,
-        structure: &Structure,
-        state: &State,
-        load: Load,
-        dissipators: &Dissipators,
-    ) -> (f64, Side) {
+    fn uplift_margin(&self, structure: &Structure, now: &Now) -> (f64, Side) {
         let turning = self.rocking.turning_moment(structure);
         match self.rocking.ties() {
-            None => uplift::margin(structure, &turning, state),
-            Some(_) => uplift::margin_of_restrained(structure, &turning, state, load.a_v, dissipators),
+            None => uplift::margin(structure, &turning, now.state),
+            Some(_) => uplift::margin_of_restrained(structure, &turning, now.state, now.load.a_v, now.dissipators),
         }
     }
 
-    fn accelerations(
-        &self,
-        structure: &Structure,
-        phase: Phase,
-        state: &State,
-        load: Load,
-        dissipators: &Dissipators,
-    ) -> [f64; 2] {
+    fn accelerations(&self, structure: &Structure, phase: Phase, now: &Now) -> [f64; 2] {
         match phase {
-            Phase::FullContact => [full_contact::acceleration(structure, state, load), 0.0],
-            Phase::Rocking(side) => self.rocking.accelerations(structure, side, state, load, dissipators),
+            Phase::FullContact => [full_contact::acceleration(structure, now.state, now.load), 0.0],
+            Phase::Rocking(side) => self.rocking.accelerations(structure, side, now),
             Phase::Overturned(_) => [0.0; 2],
         }
     }
@@ -276,26 +279,20 @@ impl Level for FixedBase {
         true
     }
 
-    fn uplift_margin(&self, _: &Structure, _: &State, _: Load, _: &Dissipators) -> (f64, Side) {
+    fn uplift_margin(&self, _structure: &Structure, _now: &Now) -> (f64, Side) {
         (1.0, Side::Right)
     }
 
-    fn accelerations(
-        &self,
-        structure: &Structure,
-        _phase: Phase,
-        state: &State,
-        load: Load,
-        _dissipators: &Dissipators,
-    ) -> [f64; 2] {
-        [full_contact::acceleration(structure, state, load), 0.0]
+    fn accelerations(&self, structure: &Structure, _phase: Phase, now: &Now) -> [f64; 2] {
+        [full_contact::acceleration(structure, now.state, now.load), 0.0]
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Parameters;
+    use crate::{Parameters, Ramp};
+    use proptest::prelude::*;
 
     /// Numbers between −1 and 1: a linear congruential generator.
     fn noise() -> impl Iterator<Item = f64> {
@@ -332,6 +329,36 @@ mod tests {
             assert!(off < 1e-12, "{detail:?}: u_dot is off by {off:e}");
             let off = (state.theta_dot - expected.theta_dot).abs();
             assert!(off <= 1e-12 * theta_dot, "{detail:?}: theta_dot is off by {off:e} of {theta_dot:e}");
+        }
+    }
+
+    proptest! {
+        /// A leap while rocking ends where the series does, and is refused wherever the series comes back to the ground.
+        #[test]
+        fn a_leap_agrees_with_the_series_and_never_passes_an_impact(
+            detail in prop_oneof![Just(Detail::Linear), Just(Detail::Modal)], s in prop_oneof![Just(1.0), Just(-1.0)],
+            u in -4e-3..4e-3f64, u_dot in -0.4..0.4f64, theta in 1e-4..0.05f64, theta_dot in -1.0..1.0f64,
+            value in -5.0..5.0f64, slope in -300.0..300.0f64, interval in 1e-4..0.02f64, zeta_fc in 0.0..0.2f64,
+        ) {
+            let structure = Structure::new(Parameters { zeta_fc, ..Parameters::MCMANUS }).unwrap();
+            let (level, phase) = (detail.level(&structure, 1e-15, false), Phase::Rocking(Side::of(s)));
+            let a_g = Ramp { value, slope };
+            let state = State { u, u_dot, theta: s * theta, theta_dot };
+            let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15, ..Start::default() };
+            let mut arc = Arc::default();
+            level.series(&structure, phase, &start, &mut arc);
+            prop_assert_eq!(arc.reach, 1.0);
+            let lowest = (0..=1000).map(|i| s * arc.at(f64::from(i) / 1000.0).theta).fold(1.0, f64::min);
+            if let Some(end) = level.leap(&structure, phase, &start) {
+                prop_assert!(lowest > 0.0);
+                let expected = arc.end();
+                prop_assert!((end.theta - expected.theta).abs() < 1e-14);
+                prop_assert!((end.theta_dot - expected.theta_dot).abs() < 1e-12);
+                prop_assert!((end.u - expected.u).abs() < 1e-14);
+                prop_assert!((end.u_dot - expected.u_dot).abs() < 1e-12);
+            } else {
+                prop_assert!(lowest < 0.03);
+            }
         }
     }
 }

@@ -39,8 +39,8 @@ pub(crate) fn first_of_restrained(
     let a_v = |k: usize| start.a_v.coefficient(k, arc.span);
     let about = |side: Side| {
         let of = |a_v: f64| {
-            let held = turning.weight + holding_moment(structure, side, a_v, &start.dissipators);
-            (uplift_displacement(structure, side, a_v, &start.dissipators), held)
+            let held = turning.weight + holding_moment(structure, side, a_v, start.dissipators);
+            (uplift_displacement(structure, side, a_v, start.dissipators), held)
         };
         let (now, at_end) = (of(a_v(0)), of(a_v(0) + a_v(1)));
         let line = |now: f64, end: f64, k: usize| [now, end - now].get(k).copied().unwrap_or(0.0);

@@ -95,7 +95,7 @@ mod tests {
         offset + rate * t + (-z * w * t).exp() * (a * (wd * t).cos() + b * (wd * t).sin())
     }
 
-    fn from(state: State, a_g: Ramp, interval: f64) -> Start {
+    fn from(state: State, a_g: Ramp, interval: f64) -> Start<'static> {
         Start { state, a_g, a_top: a_g, interval, local_error: 1e-15, ..Start::default() }
     }
 

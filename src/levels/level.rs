@@ -10,6 +10,15 @@ use crate::series::taylor::{Arc, Start};
 use crate::{Phase, Side, State, Structure};
 use std::f64::consts::TAU;
 
+/// A structure at one instant.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Now<'a> {
+    pub state: &'a State,
+    /// What acts.
+    pub load: Load,
+    pub dissipators: &'a Dissipators,
+}
+
 /// What moves a structure. Where nothing else is said it is as at the levels with an elastic strut.
 pub(crate) trait Level {
     /// The state at the end of `start` where it is known exactly and no transition can happen until then.
@@ -39,10 +48,9 @@ pub(crate) trait Level {
         uplift::farthest(structure, state) < structure.u_cr
     }
 
-    /// How far a structure in full contact in `state` under `load` is from uplift, in parts of what uplift takes, and about
-    /// which side that would be: continuous, positive while the base stays down, due where it is not.
-    fn uplift_margin(&self, structure: &Structure, state: &State, load: Load, dissipators: &Dissipators)
-    -> (f64, Side);
+    /// How far a structure in full contact is from uplift, in parts of what uplift takes, and about which side that would be:
+    /// continuous, positive while the base stays down, due where it is not.
+    fn uplift_margin(&self, structure: &Structure, now: &Now) -> (f64, Side);
 
     /// Phase and state just after an impact that ends rocking about `side` in the state `before`.
     fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
@@ -62,15 +70,8 @@ pub(crate) trait Level {
         }
     }
 
-    /// (ü, θ̈) in `phase` under `load`, m/s² and rad/s²; not a number where the equations have no solution.
-    fn accelerations(
-        &self,
-        structure: &Structure,
-        phase: Phase,
-        state: &State,
-        load: Load,
-        dissipators: &Dissipators,
-    ) -> [f64; 2];
+    /// (ü, θ̈) in `phase`, m/s² and rad/s²; not a number where the equations have no solution.
+    fn accelerations(&self, structure: &Structure, phase: Phase, now: &Now) -> [f64; 2];
 }
 
 /// Equations of rocking with an elastic strut.
@@ -97,14 +98,7 @@ pub(crate) trait ElasticRocking {
     /// What decides the sign of θ̈ at the start of rocking.
     fn turning_moment(&self, structure: &Structure) -> TurningMoment;
 
-    fn accelerations(
-        &self,
-        structure: &Structure,
-        side: Side,
-        state: &State,
-        load: Load,
-        dissipators: &Dissipators,
-    ) -> [f64; 2];
+    fn accelerations(&self, structure: &Structure, side: Side, now: &Now) -> [f64; 2];
 }
 
 /// Bounds of |u|, |θ| and their derivatives over an exact leap.

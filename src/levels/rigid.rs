@@ -18,16 +18,16 @@
 //! move, is an error that later impacts amplify like a step's. The kinetic energy left behind, ½ J_P θ̇², is at most ε² of
 //! ½ m g H tan² α_cg, which overturning takes at small angles.
 
-use crate::levels::level::{Level, Rates};
+use crate::levels::level::{Level, Now, Rates};
 use crate::levels::output_series::{Turn, delta_t_bound};
 use crate::levels::rules::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD};
 use crate::levels::tie_series::TieSeries;
 use crate::mechanics::load::{LinearLoad, Load};
-use crate::mechanics::restraint::{Angles, Dissipators, Sum, holding_moment, ties};
+use crate::mechanics::restraint::{Angles, Dissipators, Sum, holding_moment};
 use crate::mechanics::uplift::least_push;
 use crate::series::extremes::{self, Bound};
 use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
-use crate::series::taylor::{Arc, LONGEST_SPAN, Series, Start, Truncation, ZERO};
+use crate::series::taylor::{Arc, LONGEST_SPAN, Series, Start, Truncation, ZERO, product};
 use crate::{Phase, Side, State, Structure};
 
 /// P and Q at `theta`.
@@ -44,37 +44,12 @@ fn force_by_shape(structure: &Structure, side: Side) -> [f64; 2] {
     [aspect - slenderness, 1.0 + aspect * slenderness].map(|part| part / (1.0 + slenderness * slenderness))
 }
 
-/// (ü, θ̈) = (0, θ̈) in m/s² and rad/s² in `phase`; nothing moves relative to the ground in full contact.
-fn accelerations(
-    structure: &Structure,
-    phase: Phase,
-    state: &State,
-    load: Load,
-    restrained_by: Option<&Dissipators>,
-) -> [f64; 2] {
-    let &crate::Parameters { m, g, .. } = structure.parameters();
-    match phase {
-        Phase::Rocking(side) => {
-            let [p, q] = shape(structure, side, state.theta);
-            let [of_p, of_q] = force_by_shape(structure, side);
-            let free = structure.p_l.powi(2) * (p - load.a_g / g * q + load.F_t / (m * g) * (of_p * p + of_q * q));
-            let back = restrained_by.map_or(0.0, |dissipators| {
-                let ties = Sum::of_moments(&ties(structure, side, dissipators));
-                ties.at(Angles::Any, state.theta, state.theta_dot) / structure.J_P
-                    - structure.p_l.powi(2) * load.a_v / g * p
-            });
-            [0.0, free - back]
-        }
-        Phase::FullContact | Phase::Overturned(_) => [0.0; 2],
-    }
-}
-
 /// Writes the motion from `start` about `side` into `arc`.
 fn series<const RESTRAINED: bool>(structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
-    let &Start { state, a_g, a_top, a_v, interval, local_error, ref dissipators } = start;
+    let &Start { state, a_g, a_top, a_v, interval, local_error, dissipators } = start;
     let &Structure { p_l, tan_alpha_cg, J_P, .. } = structure;
     let g = structure.parameters().g;
-    let sum = Sum::of_moments(&ties(structure, side, dissipators));
+    let sum = Sum::of_moments(structure, side, dissipators);
     let mut held = RESTRAINED.then(|| TieSeries::new(sum, Angles::Any, state.theta));
     let fastest = if RESTRAINED { (p_l * p_l + sum.stiffness / J_P).sqrt().max(sum.damping / J_P) } else { p_l };
     let span = interval.min(LONGEST_SPAN / fastest.max(state.theta_dot.abs()));
@@ -107,11 +82,6 @@ fn series<const RESTRAINED: bool>(structure: &Structure, side: Side, start: &Sta
         q[k] = -product(&p, &arc.theta_dot, k - 1) * per;
         (0.0, theta_dot)
     });
-}
-
-/// Coefficient `k` of the product of two series.
-fn product(a: &Series, b: &Series, k: usize) -> f64 {
-    a[..=k].iter().zip(b[..=k].iter().rev()).map(|(a, b)| a * b).sum()
 }
 
 /// The rigid limit as a level of detail.
@@ -162,7 +132,7 @@ impl<const RESTRAINED: bool> Level for Rigid<RESTRAINED> {
         let first = |side: Side| {
             let mut push = push;
             if RESTRAINED {
-                let more = |a_v| side.sign() * Self::more_push(structure, side, a_v, &start.dissipators);
+                let more = |a_v| side.sign() * Self::more_push(structure, side, a_v, start.dissipators);
                 let held = more(start.a_v.value);
                 push = [push[0] + held, push[1] + (more(start.a_v.at(arc.span)) - held)];
             }
@@ -172,23 +142,18 @@ impl<const RESTRAINED: bool> Level for Rigid<RESTRAINED> {
         if RESTRAINED && right.sigma() == left.sigma() && right.sigma() < f64::INFINITY {
             let at = right.sigma() * arc.span;
             let load = Load { a_g: start.a_top.at(at), F_t: 0.0, a_v: start.a_v.at(at) };
-            let (_, side) = self.uplift_margin(structure, &start.state, load, &start.dissipators);
+            let now = Now { state: &start.state, load, dissipators: start.dissipators };
+            let (_, side) = self.uplift_margin(structure, &now);
             return (right, side);
         }
         if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
     }
 
-    fn stays_down(&self, structure: &Structure, _state: &State, dissipators: &Dissipators) -> bool {
-        self.uplift_margin(structure, &State::default(), Load::default(), dissipators).0 > 0.0
+    fn stays_down(&self, structure: &Structure, state: &State, dissipators: &Dissipators) -> bool {
+        self.uplift_margin(structure, &Now { state, load: Load::default(), dissipators }).0 > 0.0
     }
 
-    fn uplift_margin(
-        &self,
-        structure: &Structure,
-        _state: &State,
-        load: Load,
-        dissipators: &Dissipators,
-    ) -> (f64, Side) {
+    fn uplift_margin(&self, structure: &Structure, &Now { load, dissipators, .. }: &Now) -> (f64, Side) {
         let push = load.on_top(structure) / least_push(structure);
         let more = |side| Self::more_push(structure, side, load.a_v, dissipators) / least_push(structure);
         let (right, left) = (1.0 + push + more(Side::Right), 1.0 - push + more(Side::Left));
@@ -214,15 +179,18 @@ impl<const RESTRAINED: bool> Level for Rigid<RESTRAINED> {
         }
     }
 
-    fn accelerations(
-        &self,
-        structure: &Structure,
-        phase: Phase,
-        state: &State,
-        load: Load,
-        dissipators: &Dissipators,
-    ) -> [f64; 2] {
-        accelerations(structure, phase, state, load, RESTRAINED.then_some(dissipators))
+    /// Nothing moves relative to the ground in full contact.
+    fn accelerations(&self, structure: &Structure, phase: Phase, now: &Now) -> [f64; 2] {
+        let (&crate::Parameters { m, g, .. }, Structure { p_l, .. }) = (structure.parameters(), structure);
+        let (Phase::Rocking(side), &Now { state, load, dissipators }) = (phase, now) else { return [0.0; 2] };
+        let [p, q] = shape(structure, side, state.theta);
+        let [of_p, of_q] = force_by_shape(structure, side);
+        let free = p_l.powi(2) * (p - load.a_g / g * q + load.F_t / (m * g) * (of_p * p + of_q * q));
+        if !RESTRAINED {
+            return [0.0, free];
+        }
+        let held = Sum::of_moments(structure, side, dissipators).at(Angles::Any, state.theta, state.theta_dot);
+        [0.0, free - (held / structure.J_P - p_l.powi(2) * load.a_v / g * p)]
     }
 }
 
@@ -231,8 +199,8 @@ impl<const RESTRAINED: bool> Level for Rigid<RESTRAINED> {
 pub(crate) fn a_t(structure: &Structure, phase: Phase, state: &State, theta_ddot: f64, load: Load) -> f64 {
     let &crate::Parameters { H, B, .. } = structure.parameters();
     let s = phase.side().sign();
-    H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * libm::cos(state.theta)
-        - load.a_v * libm::sin(state.theta)
+    let lifted = if load.a_v == 0.0 { 0.0 } else { load.a_v * libm::sin(state.theta) };
+    H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * libm::cos(state.theta) - lifted
 }
 
 /// Its time derivative, m/s³, given θ̈ and θ⃛; 0 once overturned.
@@ -265,7 +233,7 @@ pub(crate) fn a_t_series(structure: &Structure, phase: Phase, load: LinearLoad, 
     let (up, up_slope) = (load.value.a_v, load.slope.a_v * arc.span);
     arc.series(|k| {
         let theta_ddot = if k < arc.order { (k + 1) as f64 * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
-        let centripetal: f64 = (0..=k).map(|i| arc.theta_dot[i] * arc.theta_dot[k - i]).sum();
+        let centripetal = product(&arc.theta_dot, &arc.theta_dot, k);
         let ground = now * turn.cos[k] + if k > 0 { slope * turn.cos[k - 1] } else { 0.0 };
         let lifted = up * turn.sin[k] + if k > 0 { up_slope * turn.sin[k - 1] } else { 0.0 };
         H * theta_ddot + offset * centripetal + ground - lifted
@@ -280,11 +248,12 @@ pub(crate) fn bounds(structure: &Structure, phase: Phase, load: LinearLoad, arc:
     let (sin, cos) = libm::sincos(arc.theta[0]);
     let ground = [load.value.a_g, load.slope.a_g * arc.span];
     let up = [load.value.a_v, load.slope.a_v * arc.span];
+    let along = [0, 1].map(|k| cos * ground[k] - sin * up[k]);
     let row = |k: usize| {
         let theta_ddot = if k < arc.order { (k + 1) as f64 * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
         let centripetal = if k == 0 { offset * arc.theta_dot[0].powi(2) } else { 0.0 };
-        let ground = if k < 2 { cos * ground[k] - sin * up[k] } else { 0.0 };
-        [arc.theta[k], H * arc.theta[k], H * theta_ddot + centripetal + ground]
+        let along = if k < 2 { along[k] } else { 0.0 };
+        [arc.theta[k], H * arc.theta[k], H * theta_ddot + centripetal + along]
     };
     let [theta, sway, a_t] = extremes::bounds(row, arc.order, arc.reach);
     let change = |of: &Series| arc.used(of)[1..].iter().map(|c| c.abs()).sum::<f64>();

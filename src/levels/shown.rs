@@ -3,29 +3,31 @@
 //! δ_t (Eq 26) and a_t (Eq 27) are sums and products of the series of θ, u, sin θ and cos θ. They tell *where* an output is
 //! largest; what it is there is evaluated from the state. At the rigid level a_t is that of [`rigid`].
 
-use crate::levels::detail::{AnyLevel, Model};
+use crate::levels::detail::{Detail, Model};
+use crate::levels::level::Now;
 use crate::levels::output_series::{Turn, delta_t_bound};
 use crate::levels::rigid;
-use crate::mechanics::load::{LinearLoad, Load};
+use crate::mechanics::load::LinearLoad;
 use crate::mechanics::outputs::damping;
-use crate::mechanics::restraint::Dissipators;
 use crate::series::extremes::{self, Bound};
-use crate::series::taylor::{Arc, Series};
+use crate::series::taylor::{Arc, Series, product};
 use crate::{Outputs, Phase, State};
 
 impl Model {
     fn is_rigid(&self) -> bool {
-        matches!(self.level, AnyLevel::Rigid(_) | AnyLevel::RestrainedRigid(_))
+        self.detail == Detail::Rigid
     }
 
-    /// The outputs in `phase` and `state` under `load`.
-    pub(crate) fn outputs(&self, phase: Phase, state: &State, load: Load, dissipators: &Dissipators) -> Outputs {
-        let outputs = Outputs::of(&self.structure, phase, state, load.F_t);
-        if self.is_rigid() {
-            let [_, theta_ddot] = self.level.accelerations(&self.structure, phase, state, load, dissipators);
-            return outputs.with_a_t(&self.structure, rigid::a_t(&self.structure, phase, state, theta_ddot, load));
-        }
-        outputs
+    /// The outputs in `phase`.
+    #[inline]
+    pub(crate) fn outputs(&self, phase: Phase, now: &Now) -> Outputs {
+        let outputs = Outputs::of(&self.structure, phase, now.state, now.load.F_t);
+        if self.is_rigid() { self.with_rigid_a_t(outputs, phase, now) } else { outputs }
+    }
+
+    fn with_rigid_a_t(&self, outputs: Outputs, phase: Phase, now: &Now) -> Outputs {
+        let [_, theta_ddot] = self.level.accelerations(&self.structure, phase, now);
+        outputs.with_a_t(&self.structure, rigid::a_t(&self.structure, phase, now.state, theta_ddot, now.load))
     }
 
     /// Time derivatives of the outputs under `load`, given (ü, θ̈) and (u⃛, θ⃛).
@@ -49,7 +51,7 @@ impl Model {
         let &crate::Parameters { H, B, .. } = self.structure.parameters();
         let offset = phase.side().sign() * B;
         arc.series(|k| {
-            let elastic: f64 = (0..=k).map(|i| arc.u[i] * turn.cos[k - i]).sum();
+            let elastic = product(&arc.u, &turn.cos, k);
             let one = if k == 0 { 1.0 } else { 0.0 };
             offset * (one - turn.cos[k]) + elastic + H * turn.sin[k]
         })

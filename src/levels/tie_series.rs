@@ -1,7 +1,7 @@
 //! The ties of a restrained structure as series in time: cos(θ/2) and sin(θ/2) have derivatives that follow from that of θ.
 
 use crate::mechanics::restraint::{Angles, Sum};
-use crate::series::taylor::{Arc, Series, ZERO, reciprocal};
+use crate::series::taylor::{Arc, Series, ZERO, product, reciprocal};
 
 /// A [`Sum`] over a step, order by order.
 #[derive(Clone, Debug)]
@@ -16,11 +16,6 @@ pub(crate) struct TieSeries {
     /// The force along the ties.
     force: Series,
     angles: Angles,
-}
-
-/// Coefficient `n` of the product of two series.
-fn product(a: &Series, b: &Series, n: usize) -> f64 {
-    a[..=n].iter().zip(b[..=n].iter().rev()).map(|(a, b)| a * b).sum()
 }
 
 impl TieSeries {

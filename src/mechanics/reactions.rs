@@ -102,9 +102,7 @@ impl Reactions {
         }
         rates
     }
-}
 
-impl Reactions {
     /// What the edges of the base carry of these: the `ties` pull upwards, and to the right where the base is turned, so that the
     /// edges press down by as much more. `angles` is how they elongate, and the moment is that of full contact.
     pub(crate) fn of_edges(

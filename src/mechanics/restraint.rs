@@ -134,9 +134,9 @@ pub(crate) struct Sum {
 }
 
 impl Sum {
-    /// Their moment Σ F l cos(θ/2) about the pivot, which turns the base back, N·m.
-    pub(crate) fn of_moments(ties: &[Tie; 3]) -> Sum {
-        Sum::of(ties, |tie| tie.lever)
+    /// The moment Σ F l cos(θ/2) about the pivot by which tendon and dissipators turn the base back, N·m.
+    pub(crate) fn of_moments(structure: &Structure, side: Side, dissipators: &Dissipators) -> Sum {
+        Sum::of(&ties(structure, side, dissipators), |tie| tie.lever)
     }
 
     /// Their vertical pull Σ F cos(θ/2), N.
@@ -222,8 +222,8 @@ pub fn uplift_displacement(structure: &Structure, side: Side, a_v: f64, dissipat
 /// Over m, the moment about the pivot that holds the base down beside that of its weight at rest, m²/s².
 pub(crate) fn holding_moment(structure: &Structure, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
     let &crate::Parameters { m, B, .. } = structure.parameters();
-    let ties = Sum::of_moments(&ties(structure, side, dissipators));
-    structure.gamma * a_v * B + side.sign() * ties.force / m
+    let held = Sum::of_moments(structure, side, dissipators).force;
+    structure.gamma * a_v * B + side.sign() * held / m
 }
 
 /// Whether a structure centres itself once it has rocked: what turns it back at the ground, [(m + m0) g + P_0] B, and the most that
@@ -235,6 +235,9 @@ pub fn centring_moments(structure: &Structure) -> [f64; 2] {
 }
 
 impl Dissipators {
+    /// Of a structure that has not moved yet.
+    pub const NEW: Dissipators = Dissipators { plastic: [0.0; 2], yields: [0; 2], viscous: 0.0, hysteretic: 0.0 };
+
     /// After a transition to rocking about `side` at the rate `theta_dot` (rad/s), or at rest in contact (none): what goes on
     /// the way it yielded goes on yielding.
     pub(crate) fn after(mut self, structure: &Structure, rocking: Option<(Side, f64)>) -> Dissipators {

@@ -76,17 +76,6 @@ pub struct GroundMotion<'a> {
     pub placement: Placement,
 }
 
-/// The part of a ground motion between two samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Segment {
-    /// First instant, s.
-    pub start: f64,
-    /// Last instant, s.
-    pub end: f64,
-    /// Ground accelerations from `start` on.
-    pub ground: LinearLoad,
-}
-
 /// A part of an interval over which the ground's accelerations are linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Stretch {
@@ -95,30 +84,6 @@ struct Stretch {
     duration: f64,
     /// From the start of the stretch on.
     ground: LinearLoad,
-}
-
-impl Record {
-    /// The ground motion from its first sample until `end` (s); after its last sample the ground is at rest.
-    pub fn segments_until(&self, end: f64) -> impl Iterator<Item = Segment> {
-        let ground = GroundMotion::from(self);
-        let linear = (1..self.times().len()).map(move |next| Segment {
-            start: self.times()[next - 1],
-            end: self.times()[next],
-            ground: ground.ramp(next),
-        });
-        let at_rest = Segment { start: self.end(), end: f64::INFINITY, ground: LinearLoad::default() };
-        linear
-            .chain([at_rest])
-            .take_while(move |segment| segment.start < end)
-            .map(move |segment| Segment { end: segment.end.min(end), ..segment })
-    }
-}
-
-impl Segment {
-    /// The ground accelerations as they are given from `time` (s) on.
-    pub fn from(&self, time: f64) -> LinearLoad {
-        self.ground.from(time - self.start)
-    }
 }
 
 impl GroundMotion<'_> {
@@ -223,7 +188,8 @@ impl GroundMotion<'_> {
                 next += 1; // times that are the same once they are scaled
                 (end, ground) = (ahead(next), this.ramp(next));
             }
-            let is_last = end >= interval || end >= interval - this.uncut(next, elapsed);
+            let is_close = || end >= interval - this.same_instant(next) && end >= interval - this.uncut(next, elapsed);
+            let is_last = end >= interval || is_close();
             let duration = if is_last {
                 interval - start
             } else if is_first {
@@ -296,7 +262,7 @@ impl GroundMotion<'_> {
     }
 
     /// The ground accelerations from the last of `reached` samples to the next.
-    #[inline]
+    #[inline(always)]
     pub(super) fn ramp(&self, reached: usize) -> LinearLoad {
         if reached == 0 || reached >= self.record.times().len() {
             return LinearLoad::default();
@@ -459,20 +425,5 @@ mod tests {
         }
         let (done, motion) = advance(1.0);
         assert_eq!((done, motion.time, motion.work.steps), (Ok(Progress::Complete), 6.0, 1000));
-    }
-
-    #[test]
-    fn segments_are_linear_between_samples_and_at_rest_after_them() {
-        let record =
-            Record::from_samples("", vec![1.0, 2.0, 4.0], vec![2.0, 4.0, 0.0]).unwrap().scaled(0.5, 10.0).unwrap();
-        assert_eq!(record.times(), [0.5, 1.0, 2.0]);
-        let segment = |start, end, value, slope| Segment { start, end, ground: Ramp { value, slope }.into() };
-        let first = segment(0.5, 1.0, 20.0, 40.0);
-        let until = |end| record.segments_until(end).collect::<Vec<_>>();
-        assert_eq!(until(0.5), []);
-        assert_eq!(until(1.0), [first]);
-        assert_eq!(until(1.5), [first, segment(1.0, 1.5, 40.0, -40.0)]);
-        assert_eq!(until(3.0), [first, segment(1.0, 2.0, 40.0, -40.0), segment(2.0, 3.0, 0.0, 0.0)]);
-        assert_eq!(first.from(0.75), Ramp { value: 30.0, slope: 40.0 }.into());
     }
 }

@@ -6,7 +6,7 @@ use super::peaks::{PeakWatch, Peaks};
 use super::{Course, Ending, Run, RunError};
 use crate::Detail;
 use crate::engine::motion::Work;
-use crate::run::ground_motion::Segment;
+use crate::run::record::Segment;
 
 /// Tolerance of the run that all others are measured by.
 pub const REFERENCE_TOLERANCE: f64 = 1e-12;

@@ -45,8 +45,7 @@ impl Sample<'_> {
         match phase {
             Phase::FullContact if self.motion.held() > 0.0 => [1.0; INDICATORS],
             Phase::FullContact => {
-                let (margin, _) =
-                    self.model.level.uplift_margin(&self.model.structure, &state, self.load, &dissipators);
+                let (margin, _) = self.model.level.uplift_margin(&self.model.structure, &self.motion.under(self.load));
                 [margin + BAND, 1.0]
             }
             Phase::Rocking(side) => {
@@ -163,7 +162,7 @@ impl Engine {
         if motion.phase != Phase::FullContact || motion.held() > 0.0 {
             return None;
         }
-        let (margin, side) = model.level.uplift_margin(&model.structure, &motion.state, load, &motion.dissipators);
+        let (margin, side) = model.level.uplift_margin(&model.structure, &motion.under(load));
         (margin <= 0.0).then_some(side)
     }
 }

@@ -120,12 +120,6 @@ impl Peaks {
         Peaks { largest: [none; 4], ground: none, m, H, B, P_0, k_t, evaluations: 0 }
     }
 
-    /// Whether they are those of a structure with these masses, lengths and tendon.
-    pub fn are_of(&self, structure: &Structure) -> bool {
-        let &crate::Parameters { m, H, B, P_0, k_t, .. } = structure.parameters();
-        (self.m, self.H, self.B, self.P_0, self.k_t) == (m, H, B, P_0, k_t)
-    }
-
     /// The `outputs` at `time` (s), which need not be in a piece.
     pub fn see_instant(&mut self, time: f64, outputs: &Outputs) {
         Measure::ALL.into_iter().for_each(|measure| self.see(measure, time, outputs));

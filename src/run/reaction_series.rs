@@ -18,10 +18,10 @@
 
 use crate::levels::output_series::Turn;
 use crate::levels::tie_series::TieSeries;
-use crate::mechanics::load::LinearLoad;
+use crate::mechanics::load::{LinearLoad, Ramp};
 use crate::mechanics::restraint::{Angles, Sum, Tie};
 use crate::series::extremes;
-use crate::series::taylor::{Arc, Series, ZERO};
+use crate::series::taylor::{self, Arc, Series, ZERO};
 use crate::{Phase, Side, Structure};
 
 /// Reactions over an arc. The moment is that of full contact; while rocking it is sB R_v and left out.
@@ -63,32 +63,24 @@ impl ReactionSeries {
     }
 }
 
-/// Coefficient `k` of what is `value` at the start and changes by `slope` (per second) over `arc`.
-fn linear(value: f64, slope: f64, arc: &Arc, k: usize) -> f64 {
-    match k {
-        0 => value,
-        1 => slope * arc.span,
-        _ => 0.0,
-    }
-}
-
 /// The slope (per second) of `series` over `arc`.
 fn slope(series: &Series, arc: &Arc) -> Series {
     arc.series(|k| if k < arc.order { (k + 1) as f64 * series[k + 1] / arc.span } else { 0.0 })
 }
 
 fn product(a: &Series, b: &Series, arc: &Arc) -> Series {
-    arc.series(|k| a[..=k].iter().zip(b[..=k].iter().rev()).map(|(a, b)| a * b).sum())
+    arc.series(|k| taylor::product(a, b, k))
 }
 
 fn in_full_contact(structure: &Structure, load: LinearLoad, arc: &Arc) -> ReactionSeries {
     let &crate::Parameters { m, m0, H, g, .. } = structure.parameters();
     let u_ddot = slope(&arc.u_dot, arc);
     let LinearLoad { value, slope } = load;
-    let strut = arc.series(|k| linear(value.F_t - m * value.a_g, slope.F_t - m * slope.a_g, arc, k) - m * u_ddot[k]);
-    let weight = |mass: f64, k: usize| linear(mass * (g + value.a_v), mass * slope.a_v, arc, k);
+    let linear = |value: f64, slope: f64, k: usize| Ramp { value, slope }.coefficient(k, arc.span);
+    let strut = arc.series(|k| linear(value.F_t - m * value.a_g, slope.F_t - m * slope.a_g, k) - m * u_ddot[k]);
+    let weight = |mass: f64, k: usize| linear(mass * (g + value.a_v), mass * slope.a_v, k);
     ReactionSeries {
-        R_h: arc.series(|k| strut[k] - m0 * linear(value.a_g, slope.a_g, arc, k)),
+        R_h: arc.series(|k| strut[k] - m0 * linear(value.a_g, slope.a_g, k)),
         R_v: arc.series(|k| weight(m + m0, k)),
         R_m: arc.series(|k| {
             let before = if k > 0 { weight(m, 1) * arc.u[k - 1] } else { 0.0 };
@@ -113,11 +105,12 @@ fn while_rocking(structure: &Structure, phase: Phase, load: LinearLoad, arc: &Ar
     let [along_cos, along_sin] = [&cos, &sin].map(|turn| product(&along, turn, arc));
     let [across_cos, across_sin] = [&cos, &sin].map(|turn| product(&across, turn, arc));
     let LinearLoad { value, slope } = load;
-    let pushed = |k| linear(value.F_t - (m + m0) * value.a_g, slope.F_t - (m + m0) * slope.a_g, arc, k);
-    let weight = |k| linear((m + m0) * (g + value.a_v), (m + m0) * slope.a_v, arc, k);
+    let total = m + m0;
+    let pushed = Ramp { value: value.F_t - total * value.a_g, slope: slope.F_t - total * slope.a_g };
+    let weight = Ramp { value: total * (g + value.a_v), slope: total * slope.a_v };
     ReactionSeries {
-        R_h: arc.series(|k| pushed(k) - along_cos[k] - across_sin[k]),
-        R_v: arc.series(|k| weight(k) + across_cos[k] - along_sin[k]),
+        R_h: arc.series(|k| pushed.coefficient(k, arc.span) - along_cos[k] - across_sin[k]),
+        R_v: arc.series(|k| weight.coefficient(k, arc.span) + across_cos[k] - along_sin[k]),
         R_m: ZERO,
     }
 }

@@ -339,7 +339,7 @@ impl Validity {
             let strut = c_fc * state.u_dot + k * state.u;
             Reactions { R_h: strut - m0 * piece.load.at(tau).a_g, R_v: self.weight(), R_m: H * strut + m * g * state.u }
         });
-        let start = piece.model.start(piece.before.state, piece.before.dissipators, piece.load, piece.duration);
+        let start = piece.model.start(piece.before.state, &piece.before.dissipators, piece.load, piece.duration);
         let Rates { u_ddot, u_dddot, .. } = piece.model.level.rates(piece.before.phase, &start, &piece.end);
         let per_bend = piece.duration * piece.duration / 8.0;
         let strut = per_bend * (c_fc * u_dddot + k * u_ddot);

@@ -76,7 +76,7 @@ pub fn bounds<const N: usize>(row: impl Fn(usize) -> [f64; N], order: usize, rea
 }
 
 /// How far Σ c_k σᵏ can leave the chord between its ends up to σ = `reach`.
-#[inline]
+#[inline(always)]
 pub fn off_chord(coefficients: &[f64], reach: f64) -> f64 {
     let (weights, higher) = (&OFF_CHORD[2..], coefficients.get(2..).unwrap_or_default());
     if reach < 1.0 {

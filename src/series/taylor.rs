@@ -22,6 +22,11 @@ pub type Series = [f64; MAX_ORDER + 2];
 /// A series of zeros.
 pub const ZERO: Series = [0.0; MAX_ORDER + 2];
 
+/// Coefficient `n` of the product of two series.
+pub(crate) fn product(a: &Series, b: &Series, n: usize) -> f64 {
+    a[..=n].iter().zip(b[..=n].iter().rev()).map(|(a, b)| a * b).sum()
+}
+
 /// Value at `sigma` of the polynomial with these coefficients.
 #[inline]
 pub fn evaluate(coefficients: &[f64], sigma: f64) -> f64 {
@@ -141,8 +146,8 @@ impl Arc {
 }
 
 /// What a step starts from and what is asked of it.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Start {
+#[derive(Clone, Copy, Debug)]
+pub struct Start<'a> {
     /// The state there.
     pub state: State,
     /// Ground acceleration from there on.
@@ -152,11 +157,20 @@ pub struct Start {
     /// Vertical ground acceleration from there on.
     pub a_v: Ramp,
     /// The dissipators there.
-    pub dissipators: Dissipators,
+    pub dissipators: &'a Dissipators,
     /// How far it may go at most, s.
     pub interval: f64,
     /// Truncation error over the largest velocities that the step can bring.
     pub local_error: f64,
+}
+
+/// At rest on ground at rest, over no time.
+impl Default for Start<'_> {
+    fn default() -> Self {
+        let (state, rest) = (State::default(), Ramp::default());
+        let dissipators = &Dissipators::NEW;
+        Start { state, a_g: rest, a_top: rest, a_v: rest, dissipators, interval: 0.0, local_error: 0.0 }
+    }
 }
 
 /// The largest truncated terms that a step may have.

@@ -189,7 +189,7 @@ impl Given {
     }
 
     /// Whether these numbers determine the parameter called `name`: by itself, or by what stands for it.
-    pub fn determine(&self, name: &str) -> bool {
+    fn determine(&self, name: &str) -> bool {
         let stands_in = |natural: &Natural| match natural.name {
             "alpha_cg" => name == if self.get("H").is_some() { "B" } else { "H" },
             _ => natural.stands_for == name,

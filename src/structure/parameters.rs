@@ -66,6 +66,9 @@ pub const PARAMETERS: [Quantity<Parameters>; 16] = [
     quantity!(F_y ["N"] 0.0, 1e15, "force at which an elastoplastic dissipator yields"),
 ];
 
+/// The specimens of the paper by name: a bridge pier (Table 2) and a shear wall (Table 1).
+pub const PRESETS: [(&str, Parameters); 2] = [("mcmanus", Parameters::MCMANUS), ("evison", Parameters::EVISON)];
+
 /// The slenderest structure accepted: H/B beyond it leaves 1 − χ (after Eq 13) without significant digits.
 pub const MAX_SLENDERNESS: f64 = 1e3;
 

@@ -8,7 +8,7 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::ops::Range;
 use std::path::Path;
 
-/// The colours of Okabe and Ito, where they are too light darkened: all have a contrast of 3 to 1 on white.
+/// The colours of Okabe and Ito, where they are too light darkened: all have a contrast of 3 to 1 on white and on the pale grey.
 #[allow(missing_docs)] // they are called what they are
 pub mod colour {
     use plotters::style::RGBColor;
@@ -16,7 +16,7 @@ pub mod colour {
     pub const BLACK: RGBColor = RGBColor(0, 0, 0);
     pub const WHITE: RGBColor = RGBColor(255, 255, 255);
     pub const ORANGE: RGBColor = RGBColor(160, 110, 0);
-    pub const SKY: RGBColor = RGBColor(40, 140, 200);
+    pub const SKY: RGBColor = RGBColor(28, 120, 180);
     pub const GREEN: RGBColor = RGBColor(0, 145, 105);
     pub const BLUE: RGBColor = RGBColor(0, 90, 150);
     pub const VERMILLION: RGBColor = RGBColor(213, 94, 0);
@@ -154,7 +154,7 @@ pub struct Panel {
     pub title: String,                              // above it
     pub x: Axis,                                    // across
     pub y: Axis,                                    // up
-    pub areas: Vec<[(f64, f64); 2]>,                // pale rectangles behind the data, from corner to corner
+    pub areas: Vec<[(f64, f64); 2]>,                // pale rectangles with a rim behind the data, from corner to corner
     pub series: Vec<Series>,                        // the data, the first on top
     pub notes: Vec<((f64, f64), String, RGBColor)>, // words that begin at a point, on top of the data
 }
@@ -268,9 +268,11 @@ impl Panel {
             .y_label_area_size(140)
             .build_cartesian_2d(self.x.range(), self.y.range())?;
         let place = |point: &(f64, f64)| (self.x.place(point.0), self.y.place(point.1));
-        let areas =
-            self.areas.iter().map(|corners| Rectangle::new([0, 1].map(|k| place(&corners[k])), colour::PALE.filled()));
-        chart.draw_series(areas)?;
+        for corners in &self.areas {
+            let corners = [0, 1].map(|k| place(&corners[k]));
+            let rim = colour::GREY.stroke_width(2);
+            chart.draw_series([colour::PALE.filled(), rim].map(|style| Rectangle::new(corners, style)))?;
+        }
         chart
             .configure_mesh()
             .bold_line_style(BLACK.mix(0.12).stroke_width(2))
@@ -305,25 +307,35 @@ impl Panel {
             names.extend(end.filter(|_| !name.is_empty()).map(|end| (end, name.as_str(), style.colour)));
         }
         names.extend(self.notes.iter().map(|(at, text, colour)| (pixel(place(at)), text.as_str(), *colour)));
-        draw_names(area, names)
+        let (_, frame) = chart.plotting_area().get_pixel_range();
+        draw_names(area, frame.start - top..frame.end - top, names)
     }
 }
 
-/// Words beside their points, from top to bottom, each as far below the others as it needs; lines are parted by commas.
-fn draw_names(area: &Drawing, mut names: Vec<((i32, i32), &str, RGBColor)>) -> Result<()> {
-    let mut drawn: Vec<(i32, i32, i32)> = Vec::new(); // from left to right, at which height
+/// Words beside their points, lines parted by commas: each as near below its point as there is room within the frame, whose top
+/// and bottom are given, or else above it.
+fn draw_names(area: &Drawing, frame: Range<i32>, mut names: Vec<((i32, i32), &str, RGBColor)>) -> Result<()> {
+    let line_height = WORDS as i32 + 2;
+    let mut drawn: Vec<(Range<i32>, Range<i32>)> = Vec::new(); // from left to right, from top to bottom
     names.sort_by_key(|((x, y), ..)| (*y, *x));
-    for ((x, mut y), text, colour) in names {
-        for line in text.split_inclusive(", ") {
-            let (left, height) = (x + 14, WORDS as i32 + 2);
-            let right = left + line.chars().count() as i32 * WORDS as i32 * 3 / 5;
-            let is_free =
-                |y: i32| drawn.iter().all(|(from, to, at)| right < *from || *to < left || (y - at).abs() >= height);
-            y = (y..).find(|y| is_free(*y)).expect("there is room below all");
-            drawn.push((left, right, y));
+    for ((x, y), text, colour) in names {
+        let lines: Vec<_> = text.split_inclusive(", ").collect();
+        let longest = lines.iter().map(|line| line.chars().count()).max().unwrap_or(0);
+        let across = x + 14..x + 14 + longest as i32 * WORDS as i32 * 3 / 5;
+        let down = |y: i32| y - line_height / 2..y - line_height / 2 + lines.len() as i32 * line_height;
+        let meet = |a: &Range<i32>, b: &Range<i32>| a.start < b.end && b.start < a.end;
+        let is_free = |y: &i32| {
+            let down = down(*y);
+            let is_within = frame.start <= down.start && down.end <= frame.end;
+            is_within && !drawn.iter().any(|other| meet(&other.0, &across) && meet(&other.1, &down))
+        };
+        let mut places = (y..frame.end).chain((frame.start..y).rev());
+        let y = places.find(is_free).with_context(|| format!("no room for {text:?}"))?;
+        for (line, y) in lines.iter().zip((y..).step_by(line_height as usize)) {
             let style = TextStyle { color: colour.to_backend_color(), ..TextStyle::from((FONT, WORDS)) };
-            area.draw(&Text::new(line, (left, y), style.pos(Pos::new(HPos::Left, VPos::Center))))?;
+            area.draw(&Text::new(*line, (across.start, y), style.pos(Pos::new(HPos::Left, VPos::Center))))?;
         }
+        drawn.push((across, down(y)));
     }
     Ok(())
 }

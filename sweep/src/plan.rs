@@ -11,7 +11,7 @@ use rocking::structure::parameters::{MAX_SLENDERNESS, PARAMETERS};
 use rocking::structure::quantity::with_unit;
 use rocking::{Detail, Engine, Parameters, Quantity, State, Structure, Watch};
 use serde::Serialize;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::sync::OnceLock;
 
 /// More runs than this are refused: thousands of runs a second take hours for them.
@@ -201,13 +201,6 @@ impl NamedRecord {
     pub fn scale(&self) -> f64 {
         self.scale
     }
-
-    /// Whether `other` is the same motion under whatever name.
-    fn is_same(&self, other: &NamedRecord) -> bool {
-        let (one, two) = (&self.record, &other.record);
-        let are_same = one.times() == two.times() && one.acceleration() == two.acceleration();
-        self.scale == other.scale && are_same && one.vertical() == two.vertical()
-    }
 }
 
 impl Conditions {
@@ -240,7 +233,6 @@ impl Plan {
         ensure(!motions.is_empty(), || is_empty("records"))?;
         check_names("populations", populations.iter().map(Population::name))?;
         check_names("ground motions", motions.iter().map(NamedRecord::name))?;
-        check_motions(&motions)?;
         let (conditions, spectral) = (Conditions::default(), Vec::new());
         let mut plan = Plan { populations, motions, scales, conditions, spectral };
         let [structures, motions, scales] = plan.size();
@@ -358,20 +350,6 @@ fn check_names<'a>(kind: &str, names: impl Iterator<Item = &'a str>) -> Result<(
     let mut seen = HashSet::new();
     let repeated = { names }.find(|name| !seen.insert(*name));
     ensure(repeated.is_none(), || format!("two {kind} have the name {:?}: rename one", repeated.unwrap_or_default()))
-}
-
-/// Each ground motion once; equal ones have equal peaks.
-fn check_motions(motions: &[NamedRecord]) -> Result<(), Refused> {
-    let mut by_peaks: HashMap<_, Vec<&NamedRecord>> = HashMap::new();
-    let mut same = Vec::new();
-    for one in motions {
-        let alike = by_peaks.entry([one.pga, one.pgv].map(f64::to_bits)).or_default();
-        match alike.iter().find(|other| other.is_same(one)) {
-            Some(other) => same.push(format!("the ground motions {:?} and {:?}", other.name, one.name)),
-            None => alike.push(one),
-        }
-    }
-    ensure(same.is_empty(), || format!("{}: they are the same and would count twice: leave one out", same.join(", ")))
 }
 
 /// Finite numbers, one or more, each of them once.

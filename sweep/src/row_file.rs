@@ -31,7 +31,6 @@ pub struct RowFile {
 #[derive(Debug)]
 pub struct Known<T> {
     by_key: HashMap<Uuid, T>,
-    repeated: usize,
 }
 
 /// The program that does the runs.
@@ -61,13 +60,12 @@ impl<T> Known<T> {
         self.by_key.remove(key)
     }
 
-    /// What there is beside them in the file at `path`, a line each: rows of other runs or points, `what`, and rows
-    /// that are there again.
-    pub fn others(&self, path: &Path, what: &str) -> Vec<String> {
-        let others = format!("of {what} (other inputs, or another build of the program): kept");
-        let counts = [(self.by_key.len(), others.as_str()), (self.repeated, "there again: counted once")];
-        let line = |(count, are)| (count > 0).then(|| format!("{}: {count} row(s) are {are}", path.display()));
-        counts.into_iter().filter_map(line).collect()
+    /// What there is beside them in the file at `path`: rows of other runs or points, `what`.
+    pub fn others(&self, path: &Path, what: &str) -> Option<String> {
+        let (path, count) = (path.display(), self.by_key.len());
+        let others =
+            format!("{path}: {count} row(s) are of {what} (other inputs, or another build of the program): kept");
+        (count > 0).then_some(others)
     }
 }
 
@@ -88,7 +86,7 @@ impl RowFile {
             let mut content = Vec::new();
             file.read_to_end(&mut content)?;
             let first = line(&headings)?;
-            let mut known = Known { by_key: HashMap::new(), repeated: 0 };
+            let mut known = Known { by_key: HashMap::new() };
             if first.starts_with(&content) {
                 file.rewind()?;
                 file.write_all(&first)?;
@@ -108,7 +106,7 @@ impl RowFile {
                 let at = row.position().map_or(0, csv::Position::line);
                 let (key, value) =
                     read().with_context(|| format!("line {at} cannot be read: remove it, to do its run again"))?;
-                known.repeated += usize::from(known.by_key.insert(key, value).is_some());
+                known.by_key.insert(key, value);
             }
             Ok((file, length, known))
         };

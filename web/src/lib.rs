@@ -10,14 +10,15 @@ use rocking::engine::piece::Sample;
 use rocking::levels::detail::Detail;
 use rocking::run::levels::{Criterion, REFERENCE_TOLERANCE, Verdict, compare, relative};
 use rocking::run::validity::{self, ASSUMPTIONS, Limits};
-use rocking::run::{End, RunError, record::Record};
+use rocking::run::{End, RunError};
 use rocking::structure::natural_quantities::NATURAL;
-use rocking::structure::{DERIVED, parameters::PARAMETERS};
+use rocking::structure::DERIVED;
+use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::{Run, State, Structure};
-use rocking_records::Unit;
+use rocking_records::{Unit, csv};
 use rocking_sweep::{map::CLASSES, pulse::Shape};
 use rocking_view::Scene;
-use scene::{Fields, File, GROUNDS, Ground, NUMBERS, PRESETS};
+use scene::{Fields, File, GROUNDS, Ground, NUMBERS};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 use wasm_bindgen::prelude::wasm_bindgen;
@@ -237,10 +238,4 @@ fn sampled(run: &Run, instants: &[f64]) -> Result<(Vec<State>, u64), String> {
     let work = run.sample(instants.iter().copied(), show, &mut ()).map_err(says)?.motion.work;
     states.pop(); // the end
     Ok((states, work.steps + work.evaluations))
-}
-
-/// `record` as a table; its numbers read back to the same bits.
-fn csv(record: &Record) -> String {
-    let lines = record.times().iter().zip(record.acceleration()).map(|(time, a_g)| format!("{time:?},{a_g:?}\n"));
-    format!("time[s],a_g[m/s2]\n{}", lines.collect::<String>())
 }

@@ -4,7 +4,8 @@ use crate::says;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::{End, record::Record};
 use rocking::structure::natural_quantities::{Given, names};
-use rocking::{Detail, Parameters, Run, State, Structure};
+use rocking::structure::parameters::PRESETS;
+use rocking::{Detail, Run, State, Structure};
 use rocking_records::{Column, Reading, Source, Unit};
 use rocking_sweep::pulse::{Pulse, Shape};
 use rocking_sweep::synthetic;
@@ -12,9 +13,6 @@ use serde::Deserialize;
 use serde::de::value::{Error, StrDeserializer};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-
-/// The specimens of the paper.
-pub const PRESETS: [(&str, Parameters); 2] = [("mcmanus", Parameters::MCMANUS), ("evison", Parameters::EVISON)];
 
 /// Name, unit and meaning of a number of the ground motion or of how the motion is computed, what it is unless something else
 /// is asked for, and what the page's slider goes from and to; a field may have any number.
@@ -115,12 +113,7 @@ impl Fields {
                 let pga = g * self.number("amplitude")?;
                 synthetic::record(pga, self.number("duration")?, self.number("seed")? as u64).map(alone).map_err(says)
             }
-            _ => {
-                let record = self.pulse(g)?.record().map_err(says)?;
-                // as `pulse` writes it, in g, and every other command reads it
-                let in_g = record.acceleration().iter().map(|a| a / g * g).collect();
-                Ok(alone(Record::from_samples(record.title(), record.times().into(), in_g).map_err(says)?))
-            }
+            _ => self.pulse(g)?.record().map(alone).map_err(says),
         }
     }
 

@@ -1,10 +1,11 @@
 //! The picture of a run: ground, rotation, displacements and acceleration over time, marks at the transitions.
 use crate::picture::{
     Picture, TITLE, colour,
-    histories::{Histories, Marks, Panel},
-    mass, rounded, titled,
+    histories::{Histories, Panel},
+    rounded, titled,
 };
 use crate::quantities::in_readable_unit;
+use crate::significant::short;
 use anyhow::Context;
 use rocking::{
     Parameters, Run, Structure,
@@ -27,7 +28,7 @@ pub fn draw(picture: Picture, run: &Run) -> anyhow::Result<()> {
     let first = curve.points.first().context("a run has a start")?;
     let histories = Histories {
         panels: panels(run, &curve),
-        marks: Marks::of(&curve.transitions.iter().map(|at| (at.time, at.kind)).collect::<Vec<_>>()),
+        transitions: curve.transitions.iter().map(|at| (at.time, at.kind)).collect(),
         time: first.time..curve.found.finish.motion.time,
     };
     picture.draw((WIDTH, TITLE + histories.height()), |area| {
@@ -40,29 +41,27 @@ fn panels(run: &Run, curve: &Curve) -> Vec<Panel> {
     let g = run.structure.parameters().g;
     let over_time = |value: fn(&Point) -> f64| curve.points.iter().map(|at| (at.time, value(at))).collect();
     let shown = if ground.time <= finish.motion.time { *ground } else { Peak::default() };
-    let a_g = Panel::of("ground acceleration", (g, "g"), colour::GREY, over_time(|at| at.a_g), shown);
     let panel = |name, unit, value, peak| Panel::of(name, unit, colour::BLUE, over_time(value), peak);
     let uplift = rounded(1e3 * peaks.uplift().magnitude);
     let V_t = in_readable_unit(peaks.V_t().magnitude, "N", rounded);
-    let structure = [
+    vec![
+        Panel::of("ground acceleration", (g, "g"), colour::GREY, over_time(|at| at.a_g), shown),
         panel("rotation θ", (1.0, "rad"), |at| at.outputs.theta, peaks.theta()).with(format!("uplift {uplift} mm")),
         panel("displacement u", (1e-3, "mm"), |at| at.outputs.u, peaks.u()),
         panel("displacement δ_t", (1e-3, "mm"), |at| at.outputs.delta_t, peaks.delta_t()),
         panel("acceleration a_t", (g, "g"), |at| at.outputs.a_t, peaks.a_t()).with(format!("V_t {V_t}")),
-    ];
-    // free vibration needs no panel of a ground at rest
-    (ground.magnitude > 0.0).then_some(a_g).into_iter().chain(structure).collect()
+    ]
 }
 
 /// The structure and what became of it, in a line.
 fn about(structure: &Structure, curve: &Curve) -> String {
     let &Parameters { m, H, B, f_fc, .. } = structure.parameters();
-    let (m, [H, base, f_fc]) = (mass(m), [H, 2.0 * B, f_fc].map(rounded));
+    let [m, H, base, f_fc] = [m, H, 2.0 * B, f_fc].map(short);
     let end = match curve.found.finish.ending {
         Ending::Overturned => ", overturned",
         Ending::StillRocking => ", still rocking",
         Ending::AtRest | Ending::AtTime => "",
     };
     let count = curve.transitions.len();
-    format!("{m} at {H} m on a base {base} m wide, {f_fc} Hz in full contact; {count} transitions{end}")
+    format!("{m} kg at {H} m on a base {base} m wide, {f_fc} Hz in full contact; {count} transitions{end}")
 }

@@ -1,17 +1,11 @@
 //! What a sweep runs, from a TOML file: every record at every scale factor on every structure, or pulses of every frequency
 //! and amplitude.
-use crate::{
-    input,
-    output_files::OutputFiles,
-    record_args::{RecordOptions, with_key},
-    scene_args::InitialArgs,
-    structure_args::{Preset, left_open},
-    talk::say_few,
-};
+use crate::{input, output_files::OutputFiles, record_args::RecordOptions, scene_args::InitialArgs, talk::say_few};
 use anyhow::{Context, anyhow, bail, ensure};
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::record::Record;
 use rocking::structure::natural_quantities::Given;
+use rocking::structure::parameters::PRESETS;
 use rocking::{Detail, Parameters, Structure, engine::DEFAULT_TOLERANCE};
 use rocking_records::{Column, Unit};
 use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map};
@@ -19,8 +13,8 @@ use rocking_sweep::outcome::Limit;
 use rocking_sweep::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population};
 use rocking_sweep::pulse::{Pulse, Shape};
 use serde::Deserialize;
+use std::collections::BTreeMap;
 use std::path::{MAIN_SEPARATOR, Path};
-use std::{collections::BTreeMap, collections::HashMap};
 
 /// Records on structures.
 pub struct RecordSweep {
@@ -32,8 +26,6 @@ pub struct RecordSweep {
     pub measure: IntensityMeasure,
     /// What was read of each record, and what was assumed, in a line.
     pub records: Vec<String>,
-    /// What of each structure was not given, in a line.
-    pub structures: Vec<String>,
 }
 
 /// Maps of pulses.
@@ -42,8 +34,6 @@ pub struct MapSweep {
     pub maps: Vec<(String, Map)>,
     /// How often their grids are refined along boundaries.
     pub refinements: u32,
-    /// What of each structure was not given, in a line.
-    pub structures: Vec<String>,
 }
 
 /// What a file asks for.
@@ -150,7 +140,7 @@ impl RecordEntry {
 #[serde(deny_unknown_fields)]
 struct StructureGrid {
     name: String,
-    preset: Option<Preset>,
+    preset: Option<String>,
     parameters: Option<Given>,
     /// By the name of a parameter, or `slenderness`; every combination is run.
     #[serde(default)]
@@ -191,7 +181,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
             files.add_input(path);
             let (unit, time_scale) = (options.unit.or(unit), options.time_scale.or(time_scale));
             let options = RecordOptions { unit, time_scale, scale: None, ..options.clone() };
-            let understood = options.understand(path, g).map_err(with_key)?;
+            let understood = options.understand(path, g)?;
             warnings.extend(understood.warnings(path));
             records.push(understood.described);
             Ok::<_, anyhow::Error>(understood.record)
@@ -204,8 +194,7 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read);
         say_few(&warnings, "warnings");
         let plan = Plan::new(populations, motions?, scales)?.under(file.conditions())?;
-        let structures = left_open_of(&file.structures)?;
-        Ok(Asked::Records(RecordSweep { plan, limits, measure, records, structures }))
+        Ok(Asked::Records(RecordSweep { plan, limits, measure, records }))
     };
     read().with_context(|| format!("sweep in {}", path.display()))
 }
@@ -222,7 +211,7 @@ impl MapFile {
             let map = self.map(grid).with_context(|| format!("structures {name:?}"))?;
             maps.push((name.into(), map));
         }
-        Ok(MapSweep { maps, refinements: refine, structures: left_open_of(&self.structures)? })
+        Ok(MapSweep { maps, refinements: refine })
     }
 
     fn map(&self, grid: &StructureGrid) -> anyhow::Result<Map> {
@@ -277,12 +266,6 @@ fn gravity(structures: &[StructureGrid]) -> anyhow::Result<f64> {
     found.context("structures is empty: name one or more")
 }
 
-/// What of each structure was not given, in a line.
-fn left_open_of(structures: &[StructureGrid]) -> anyhow::Result<Vec<String>> {
-    let lines = structures.iter().map(|grid| Ok(grid.left_open()?.map(|line| format!("{}: {line}", grid.name))));
-    lines.filter_map(Result::transpose).collect()
-}
-
 impl Values {
     fn list(&self) -> anyhow::Result<Vec<f64>> {
         match *self {
@@ -317,18 +300,15 @@ impl Values {
 impl StructureGrid {
     fn base(&self) -> anyhow::Result<Parameters> {
         match (&self.preset, &self.parameters) {
-            (Some(preset), None) => Ok(preset.parameters()),
+            (Some(preset), None) => {
+                let found = PRESETS.iter().find(|(name, _)| name == preset);
+                found
+                    .map(|(_, parameters)| *parameters)
+                    .with_context(|| format!("preset = {preset:?}: mcmanus and evison are known"))
+            }
             (None, Some(given)) => Ok(given.parameters()?),
             _ => bail!("give either preset or parameters"),
         }
-    }
-
-    /// Where what neither is given nor varies comes from.
-    fn left_open(&self) -> anyhow::Result<Option<String>> {
-        let varies = |name: &str| self.vary.contains_key(name) || name == "H" && self.vary.contains_key("slenderness");
-        let given = |name: &str| varies(name) || self.parameters.as_ref().is_some_and(|given| given.determine(name));
-        let preset = self.preset.map(Preset::name);
-        Ok(left_open(preset.as_deref(), &self.base()?, given))
     }
 
     fn population(&self) -> anyhow::Result<Population> {
@@ -340,13 +320,13 @@ impl StructureGrid {
     }
 }
 
-/// The records that `sources` name, each of them once, under their paths from `folder`.
+/// The records that `sources` name, under their paths from `folder`.
 fn motions(
     sources: &[RecordEntry],
     folder: &Path,
     mut read: impl FnMut(&Path, Option<&Path>, &RecordOptions) -> anyhow::Result<Record>,
 ) -> anyhow::Result<Vec<NamedRecord>> {
-    let (mut motions, mut named, mut bad) = (Vec::new(), HashMap::new(), Vec::<anyhow::Error>::new());
+    let (mut motions, mut bad) = (Vec::new(), Vec::<anyhow::Error>::new());
     for source in sources {
         let (pattern, vertical, options) = source.pattern_and_options()?;
         let scale = options.scale.unwrap_or(1.0);
@@ -369,14 +349,6 @@ fn motions(
                 i == 0 || vertical.is_none(),
                 "records {pattern:?}: vertical goes with one file, and there are more"
             );
-            if let Some(other) = named.insert((path.canonicalize()?, with.clone()), options.clone()) {
-                ensure!(
-                    other == options,
-                    "{} is named twice in records, with different options: leave one out",
-                    path.display()
-                );
-                continue;
-            }
             // The same on every system, so that a sweep can go on on another.
             let name = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().replace(MAIN_SEPARATOR, "/");
             let record = read(&path, vertical.as_deref(), &options);

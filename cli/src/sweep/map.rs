@@ -2,13 +2,8 @@
 mod picture;
 mod rows;
 
-use super::{SweepArgs, file::MapSweep, progress, say_rate, thread_pool};
-use crate::{
-    picture::Picture,
-    results::{Format, print, print_rows},
-    significant::short,
-    talk::{say, say_few},
-};
+use super::{SweepArgs, file::MapSweep, progress, thread_pool};
+use crate::{picture::Picture, significant::short, talk::say};
 use anyhow::{bail, ensure};
 use picture::Shown;
 use rayon::prelude::*;
@@ -16,7 +11,7 @@ use rocking::run::{LONGEST_REST, validity};
 use rocking_sweep::map::{CLASSES, Class, Fate, Map, Place, Point};
 use rocking_sweep::row_file::{Known, RowFile};
 use serde::Serialize;
-use std::{collections::HashMap, fmt::Write, path::Path, time::Instant};
+use std::{collections::HashMap, fmt::Write, path::Path};
 use uuid::Uuid;
 
 /// A map, and what is known of it.
@@ -42,15 +37,12 @@ struct Count<'a> {
 pub fn run(args: &SweepArgs, sweep: MapSweep, output: &Path, picture: Picture) -> anyhow::Result<()> {
     ensure!(!args.validity, "--validity is for records: `simulate` a pulse that `pulse` writes");
     let (file, mut known) = rows::open(output)?;
-    let largest = sweep.maps.iter().map(|(_, map)| map.grid().count()).max().unwrap_or(0);
-    let pool = thread_pool(args, if sweep.refinements > 0 { usize::MAX } else { largest })?;
-    say_few(&sweep.structures, "structures");
+    let pool = thread_pool(args)?;
     for (name, map) in &sweep.maps {
         let warnings = validity::of_parameters(&map.structure, map.detail);
         warnings.iter().for_each(|warning| say!("{name}: {warning}"));
     }
-    let clock = Instant::now();
-    let (mut done, mut spectra) = (0, Vec::new());
+    let mut spectra = Vec::new();
     for (name, map) in sweep.maps {
         let mut spectrum = Spectrum { name, map, points: HashMap::new() };
         for level in 0..=sweep.refinements {
@@ -64,32 +56,27 @@ pub fn run(args: &SweepArgs, sweep: MapSweep, output: &Path, picture: Picture) -
                 if lacking.is_empty() {
                     break;
                 }
-                done += pool.install(|| do_points(&mut spectrum, level, lacking, &mut known, &file))?;
+                pool.install(|| do_points(&mut spectrum, level, lacking, &mut known, &file))?;
             }
         }
         spectra.push(spectrum);
     }
-    say_rate(done, "points", clock, &pool);
     known.others(output, "points that are not in these maps").iter().for_each(|line| say!("{line}"));
     let counts: Vec<_> = spectra.iter().flat_map(count).collect();
-    match args.results.format {
-        Format::Text => print(&text(&spectra, &counts)?)?,
-        format => print_rows(format, &counts)?,
-    }
+    args.results.print(|| text(&spectra, &counts), &counts)?;
     say!("rows           {}", output.display());
     picture::draw(picture, &spectra, sweep.refinements)?;
     report_failures(&spectra)
 }
 
-/// Finds `places` of a map among the points that are `known`, or runs the structure there and adds the row; returns how
-/// many were run.
+/// Finds `places` of a map among the points that are `known`, or runs the structure there and adds the row.
 fn do_points(
     spectrum: &mut Spectrum,
     level: u32,
     places: Vec<Place>,
     known: &mut Known<Point>,
     file: &RowFile,
-) -> anyhow::Result<usize> {
+) -> anyhow::Result<()> {
     let Spectrum { name, map, points } = spectrum;
     let keys: Vec<_> = places.par_iter().map(|place| rows::key_at(name, map, *place)).collect();
     let mut lacking = Vec::new();
@@ -106,7 +93,7 @@ fn do_points(
     let (bar, goes_on) = progress(lacking.len(), "points")?;
     points.extend(file.do_runs(&lacking, run, goes_on)?);
     bar.finish_and_clear();
-    Ok(lacking.len())
+    Ok(())
 }
 
 /// How many points of the grid there are of each class that there are any of.

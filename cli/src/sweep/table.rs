@@ -84,7 +84,7 @@ pub fn write(out: &mut impl Write, of: &Exceedances, measure: IntensityMeasure) 
     writeln!(out)
 }
 
-/// A fragility curve, for programs.
+/// A fragility curve with the bins of its runs, for programs.
 #[derive(Serialize)]
 pub struct Fitted {
     structures: String,
@@ -99,14 +99,6 @@ pub struct Fitted {
     dispersion: Option<Number>,
     /// Why there is no curve.
     reason: Option<String>,
-}
-
-/// A fragility curve with the bins that it is fitted to.
-#[derive(Serialize)]
-pub struct WithBins {
-    /// The curve.
-    #[serde(flatten)]
-    pub curve: Fitted,
     bins: Vec<Counted>,
 }
 
@@ -120,13 +112,14 @@ struct Counted {
 }
 
 /// Every curve of `populations`, whose intensities are in `measure`.
-pub fn curves(populations: &[Exceedances], measure: IntensityMeasure) -> Vec<WithBins> {
+pub fn curves(populations: &[Exceedances], measure: IntensityMeasure) -> Vec<Fitted> {
     let all = populations.iter().flat_map(|of| of.fragilities.iter().map(move |fragility| (of, fragility)));
     all.map(|(of, fragility)| {
         let Fragility { limit, curve, tallies, .. } = fragility;
         let fitted = curve.as_ref().ok();
         let range = fitted.and_then(FragilityCurve::median_range);
-        let curve = Fitted {
+        let bins = of.bins.iter().zip(tallies).map(|(&bin, &tally)| Counted { bin, tally });
+        Fitted {
             structures: of.population.clone(),
             limit: limit.to_string(),
             measure: measure.name(),
@@ -137,9 +130,8 @@ pub fn curves(populations: &[Exceedances], measure: IntensityMeasure) -> Vec<Wit
             median_to: range.map(|(_, to)| Number(to)),
             dispersion: fitted.map(|curve| Number(curve.dispersion)),
             reason: curve.as_ref().err().map(ToString::to_string),
-        };
-        let bins = of.bins.iter().zip(tallies).map(|(&bin, &tally)| Counted { bin, tally });
-        WithBins { curve, bins: bins.collect() }
+            bins: bins.collect(),
+        }
     })
     .collect()
 }

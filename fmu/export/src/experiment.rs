@@ -6,35 +6,23 @@ use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::record::Record;
 use std::f64::consts::TAU;
 
-/// Stop time and communication step, s.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Experiment {
-    /// From the start.
-    pub stop_time: f64,
-    /// Between communication points.
-    pub step_size: f64,
-}
-
-impl Experiment {
-    /// The whole of `record`, in steps of its samples, or of no record, in steps that show the vibration mode, 1/(20 f_u),
-    /// rounded to a 1, 2 or 5; then as long as a free motion is worth looking at, 10/p_l: after a pulse the structure rocks
-    /// farther than under it.
-    pub fn new(structure: &Structure, record: Option<&Record>) -> Experiment {
-        let (duration, step_size) = match record {
-            Some(record) => {
-                let duration = record.end() - record.start();
-                (duration, duration / (record.times().len() - 1) as f64)
-            }
-            None => (0.0, at_most(TAU / structure.omega_u / 20.0)),
-        };
-        let afterwards = (10.0 / structure.p_l / step_size).ceil() * step_size;
-        Experiment { stop_time: rounded(duration + afterwards), step_size: rounded(step_size) }
-    }
-
-    /// What a description of either version says of it.
-    pub fn description(self) -> DefaultExperiment {
-        let Experiment { stop_time, step_size } = self;
-        DefaultExperiment { start_time: 0.0, stop_time, tolerance: DEFAULT_TOLERANCE, step_size }
+/// The whole of `record`, in steps of its samples, or of no record, in steps that show the vibration mode, 1/(20 f_u),
+/// rounded to a 1, 2 or 5; then as long as a free motion is worth looking at, 10/p_l: after a pulse the structure rocks
+/// farther than under it.
+pub fn default_experiment(structure: &Structure, record: Option<&Record>) -> DefaultExperiment {
+    let (duration, step_size) = match record {
+        Some(record) => {
+            let duration = record.end() - record.start();
+            (duration, duration / (record.times().len() - 1) as f64)
+        }
+        None => (0.0, at_most(TAU / structure.omega_u / 20.0)),
+    };
+    let afterwards = (10.0 / structure.p_l / step_size).ceil() * step_size;
+    DefaultExperiment {
+        start_time: 0.0,
+        stop_time: rounded(duration + afterwards),
+        tolerance: DEFAULT_TOLERANCE,
+        step_size: rounded(step_size),
     }
 }
 
@@ -61,7 +49,7 @@ mod tests {
         for (interval, samples) in [(0.005, 8_000), (0.01, 3), (0.02, 2_688), (1.0 / 240.0, 24_001)] {
             let times: Vec<_> = (0..samples).map(|at| 3.7 + f64::from(at) * interval).collect();
             let record = Record::from_samples("record", times, vec![1.0; samples as usize]).unwrap();
-            let Experiment { stop_time, step_size } = Experiment::new(&structure, Some(&record));
+            let DefaultExperiment { stop_time, step_size, .. } = default_experiment(&structure, Some(&record));
             let shortest = record.times().windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
             assert!(step_size <= shortest * (1.0 + 1e-8), "{step_size} is longer than {interval}");
             let steps = stop_time / step_size;

@@ -7,13 +7,12 @@ mod experiment;
 mod library;
 mod model_description;
 pub mod significant;
-mod terminals;
 mod units;
 
+use ::model_description::DefaultExperiment;
 use FlexibleRocking::ground::GroundRecord;
 use FlexibleRocking::resources::{Contents, PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records};
 use archive::Entry;
-use experiment::Experiment;
 pub use library::{Library, LibraryError, Platform};
 use rocking::Structure;
 use rocking::run::record::{Record, SamplesError};
@@ -88,7 +87,7 @@ pub enum ExportError {
     /// Two records of one name, which is what the FMU knows them by.
     #[error("two records are called {0}: rename one of them; capitals and small letters are the same here")]
     SameName(String),
-    /// The model description, or what stands beside it in XML, cannot be written.
+    /// The model description cannot be written.
     #[error("modelDescription.xml: {0}")]
     Description(#[from] ::model_description::SeError),
     /// The documentation cannot be written.
@@ -143,7 +142,7 @@ pub fn export(
         contents.vertical = Some(packed);
         followed.clone().map_or(Ok(()), |followed: Record| followed.with_vertical(&record.record).map(drop))?;
     }
-    let experiment = Experiment::new(structure, followed.as_ref());
+    let experiment = experiment::default_experiment(structure, followed.as_ref());
     let archive =
         archive::archive(&entries(version, name.as_str(), structure, &contents, experiment, files, &libraries)?)?;
     Ok((contents, archive))
@@ -155,7 +154,7 @@ fn entries(
     name: &str,
     structure: &Structure,
     contents: &Contents,
-    experiment: Experiment,
+    experiment: DefaultExperiment,
     records: Vec<Vec<u8>>,
     libraries: &[&Library],
 ) -> Result<Vec<Entry>, ExportError> {
@@ -170,7 +169,6 @@ fn entries(
             let description = model_description::fmi3::model_description(name, structure, contents, experiment);
             vec![
                 entry("modelDescription.xml", description.to_xml()?.into()),
-                entry("terminalsAndIcons/terminalsAndIcons.xml", terminals::terminals().to_xml()?.into()),
                 entry("terminalsAndIcons/icon.png", ICON.to_vec()),
             ]
         }
@@ -252,13 +250,13 @@ mod tests {
         let libraries = Platform::ALL.map(library);
         let libraries: Vec<_> = libraries.iter().collect();
         let (structure, contents) = (structure(Parameters::EVISON), Contents::from(Parameters::EVISON));
-        let experiment = Experiment::new(&structure, None);
+        let experiment = experiment::default_experiment(&structure, None);
         let of_2 = (
             ["model.png"].as_slice(),
             ["linux64/Pier.so", "aarch64-linux/Pier.so", "win64/Pier.dll", "darwin64/Pier.dylib"],
         );
         let of_3 = (
-            ["terminalsAndIcons/terminalsAndIcons.xml", "terminalsAndIcons/icon.png"].as_slice(),
+            ["terminalsAndIcons/icon.png"].as_slice(),
             ["x86_64-linux/Pier.so", "aarch64-linux/Pier.so", "x86_64-windows/Pier.dll", "x86_64-darwin/Pier.dylib"],
         );
         for (version, (own, binaries)) in [(Version::Fmi2, of_2), (Version::Fmi3, of_3)] {

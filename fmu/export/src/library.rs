@@ -31,51 +31,42 @@ impl Platform {
     pub const ALL: [Platform; 5] =
         [Platform::Linux64, Platform::LinuxArm64, Platform::Windows64, Platform::Darwin64, Platform::DarwinArm64];
 
-    /// Its folder in an archive of FMI 3.0, the standard's tuple of architecture and system. `x86_64-darwin` has what
-    /// runs on both.
-    pub fn tuple(self) -> &'static str {
+    /// Its tuple, its folder in FMI 2.0, its target, and the file that cargo builds for it.
+    fn names(self) -> [&'static str; 4] {
         match self {
-            Platform::Linux64 => "x86_64-linux",
-            Platform::LinuxArm64 => "aarch64-linux",
-            Platform::Windows64 => "x86_64-windows",
-            Platform::Darwin64 => "x86_64-darwin",
-            Platform::DarwinArm64 => "aarch64-darwin",
+            Platform::Linux64 => ["x86_64-linux", "linux64", "x86_64-unknown-linux-gnu", "libFlexibleRocking.so"],
+            Platform::LinuxArm64 => {
+                ["aarch64-linux", "aarch64-linux", "aarch64-unknown-linux-gnu", "libFlexibleRocking.so"]
+            }
+            Platform::Windows64 => ["x86_64-windows", "win64", "x86_64-pc-windows-gnu", "FlexibleRocking.dll"],
+            Platform::Darwin64 => ["x86_64-darwin", "darwin64", "universal2-apple-darwin", "libFlexibleRocking.dylib"],
+            Platform::DarwinArm64 => {
+                ["aarch64-darwin", "aarch64-darwin", "aarch64-apple-darwin", "libFlexibleRocking.dylib"]
+            }
         }
     }
 
-    /// The folder of its libraries in an archive of `version`. FMI 2.0 has names for x86 alone; since 2.0.4 it asks for the tuples of FMI
-    /// 3.0 for all others. Hosts that know no tuples look for `darwin64` on every Mac: what stands there runs on both.
+    /// Its folder in an archive of FMI 3.0, the standard's tuple of architecture and system. `x86_64-darwin` has what
+    /// runs on both.
+    pub fn tuple(self) -> &'static str {
+        self.names()[0]
+    }
+
+    /// The folder of its libraries in an archive of `version`. FMI 2.0 has names for x86 alone; since 2.0.4 it asks for
+    /// the tuples of FMI 3.0 for all others. Hosts that know no tuples look for `darwin64` on every Mac: what stands
+    /// there runs on both.
     pub fn folder(self, version: Version) -> &'static str {
-        if version == Version::Fmi3 {
-            return self.tuple();
-        }
-        match self {
-            Platform::Linux64 => "linux64",
-            Platform::LinuxArm64 => "aarch64-linux",
-            Platform::Windows64 => "win64",
-            Platform::Darwin64 => "darwin64",
-            Platform::DarwinArm64 => "aarch64-darwin",
-        }
+        if version == Version::Fmi3 { self.tuple() } else { self.names()[1] }
     }
 
     /// What cargo, or cargo-zigbuild, calls it.
     pub fn target(self) -> &'static str {
-        match self {
-            Platform::Linux64 => "x86_64-unknown-linux-gnu",
-            Platform::LinuxArm64 => "aarch64-unknown-linux-gnu",
-            Platform::Windows64 => "x86_64-pc-windows-gnu",
-            Platform::Darwin64 => "universal2-apple-darwin",
-            Platform::DarwinArm64 => "aarch64-apple-darwin",
-        }
+        self.names()[2]
     }
 
     /// The file that cargo builds for it.
     pub fn file(self) -> &'static str {
-        match self {
-            Platform::Linux64 | Platform::LinuxArm64 => "libFlexibleRocking.so",
-            Platform::Windows64 => "FlexibleRocking.dll",
-            Platform::Darwin64 | Platform::DarwinArm64 => "libFlexibleRocking.dylib",
-        }
+        self.names()[3]
     }
 
     /// Where an archive of the model `name` has the library.
@@ -115,21 +106,11 @@ pub struct Library {
 #[derive(Debug, thiserror::Error)]
 pub enum LibraryError {
     /// No such file, or one that cannot be read.
-    #[error("cannot read the shared library {path}: {error}", path = .path.display())]
-    Unreadable {
-        /// The library.
-        path: PathBuf,
-        /// Why.
-        error: io::Error,
-    },
+    #[error("cannot read the shared library {path}: {1}", path = .0.display())]
+    Unreadable(PathBuf, io::Error),
     /// An archive that cannot be read.
-    #[error("cannot read the libraries in {path}: {error}", path = .path.display())]
-    Archive {
-        /// The archive.
-        path: PathBuf,
-        /// Why.
-        error: ZipError,
-    },
+    #[error("cannot read the libraries in {path}: {1}", path = .0.display())]
+    Archive(PathBuf, ZipError),
     /// Something else, or for another platform.
     #[error("{} is neither an FMU nor a shared library for one of {}", .0.display(), Platform::ALL.map(Platform::tuple).join(", "))]
     NoLibrary(PathBuf),
@@ -141,7 +122,7 @@ pub enum LibraryError {
 impl Library {
     /// The shared library at `path`, or those of the FMU there.
     pub fn read(path: &Path) -> Result<Vec<Library>, LibraryError> {
-        let content = fs::read(path).map_err(|error| LibraryError::Unreadable { path: path.to_owned(), error })?;
+        let content = fs::read(path).map_err(|error| LibraryError::Unreadable(path.to_owned(), error))?;
         Library::from_bytes(path, content)
     }
 
@@ -150,14 +131,14 @@ impl Library {
         if !content.starts_with(b"PK") {
             return Ok(vec![Library::new(path, content)?]);
         }
-        let broken = |error| LibraryError::Archive { path: path.to_owned(), error };
+        let broken = |error| LibraryError::Archive(path.to_owned(), error);
         let mut archive = ZipArchive::new(Cursor::new(content)).map_err(broken)?;
         let mut libraries = Vec::new();
         for at in 0..archive.len() {
             let mut file = archive.by_index(at).map_err(broken)?;
             if file.is_file() && file.name().is_ok_and(|name| name.starts_with("binaries/")) {
                 let mut library = Vec::new();
-                let unreadable = |error| LibraryError::Unreadable { path: path.to_owned(), error };
+                let unreadable = |error| LibraryError::Unreadable(path.to_owned(), error);
                 file.read_to_end(&mut library).map_err(unreadable)?;
                 libraries.push(Library::new(path, library)?);
             }

@@ -2,7 +2,6 @@
 
 pub mod fmi3;
 
-use crate::experiment::Experiment;
 use crate::units;
 use FlexibleRocking::logger;
 use FlexibleRocking::resources::Contents;
@@ -20,7 +19,7 @@ pub fn model_description(
     name: &str,
     structure: &Structure,
     contents: &Contents,
-    experiment: Experiment,
+    default_experiment: fmi::DefaultExperiment,
 ) -> fmi::FmiModelDescription {
     fmi::FmiModelDescription {
         fmi_version: "2.0",
@@ -32,11 +31,7 @@ pub fn model_description(
         generation_tool: concat!("rocking-fmu ", env!("CARGO_PKG_VERSION")).into(),
         variable_naming_convention: fmi::FLAT,
         number_of_event_indicators: INDICATORS,
-        model_exchange: fmi::ModelExchange {
-            model_identifier: name.into(),
-            completed_integrator_step_not_needed: false,
-            capabilities: capabilities(),
-        },
+        model_exchange: fmi::ModelExchange { model_identifier: name.into(), capabilities: capabilities() },
         co_simulation: fmi::CoSimulation {
             model_identifier: name.into(),
             can_handle_variable_communication_step_size: true,
@@ -44,10 +39,10 @@ pub fn model_description(
             max_output_derivative_order: 1,
             capabilities: capabilities(),
         },
-        unit_definitions: fmi::UnitDefinitions { units: units::definitions(structure) },
-        type_definitions: fmi::TypeDefinitions { simple_types: [&PHASES, &DETAILS].map(enumeration_type).into() },
-        log_categories: fmi::LogCategories { categories: logger::Category::ALL.map(log_category).into() },
-        default_experiment: experiment.description(),
+        unit_definitions: fmi::List { items: units::definitions(structure) },
+        type_definitions: fmi::List { items: [&PHASES, &DETAILS].map(enumeration_type).into() },
+        log_categories: fmi::List { items: logger::Category::ALL.map(log_category).into() },
+        default_experiment,
         model_variables: fmi::ModelVariables {
             scalar_variables: (0..)
                 .zip(&*VARIABLES)
@@ -64,7 +59,6 @@ pub fn model_description(
 
 fn capabilities() -> fmi::Capabilities {
     fmi::Capabilities {
-        can_be_instantiated_only_once_per_process: false,
         can_not_use_memory_management_functions: true,
         can_get_and_set_fmu_state: true,
         can_serialize_fmu_state: true,
@@ -76,7 +70,7 @@ fn enumeration_type(enumeration: &Enumeration) -> fmi::SimpleType {
     fmi::SimpleType {
         name: enumeration.name.into(),
         description: enumeration.description.into(),
-        enumeration: fmi::Items { items: items(enumeration) },
+        enumeration: fmi::List { items: items(enumeration) },
     }
 }
 
@@ -171,10 +165,10 @@ fn model_structure() -> fmi::ModelStructure {
     };
     let at_any_time: fn(&Variable) -> Vec<u32> = |v| v.feedthrough.iter().chain(v.states).map(|v| index(v)).collect();
     fmi::ModelStructure {
-        outputs: fmi::Unknowns { unknowns: unknowns(|v| v.causality == Causality::Output, at_any_time) },
-        derivatives: fmi::Unknowns { unknowns: unknowns(|v| v.as_state_rate().is_some(), at_any_time) },
-        initial_unknowns: fmi::Unknowns {
-            unknowns: unknowns(is_initial_unknown, |v| {
+        outputs: fmi::List { items: unknowns(|v| v.causality == Causality::Output, at_any_time) },
+        derivatives: fmi::List { items: unknowns(|v| v.as_state_rate().is_some(), at_any_time) },
+        initial_unknowns: fmi::List {
+            items: unknowns(is_initial_unknown, |v| {
                 v.feedthrough.iter().chain(v.initial_dependencies).map(|name| index(name)).collect()
             }),
         },
@@ -206,7 +200,8 @@ mod tests {
 
     fn described(contents: &Contents) -> fmi::FmiModelDescription {
         let structure = Structure::new(contents.parameters).unwrap();
-        model_description("Pier", &structure, contents, Experiment { stop_time: 4.0, step_size: 0.005 })
+        let experiment = fmi::DefaultExperiment { start_time: 0.0, stop_time: 4.0, tolerance: 1e-9, step_size: 0.005 };
+        model_description("Pier", &structure, contents, experiment)
     }
 
     /// What the table says of a few variables is what the description points at.
@@ -216,8 +211,8 @@ mod tests {
         let variables = &description.model_variables.scalar_variables;
         let name = |index: &u32| variables[*index as usize - 1].attributes.name.as_str();
         let fmi::ModelStructure { outputs, derivatives, initial_unknowns } = &description.model_structure;
-        let dependencies = |unknowns: &fmi::Unknowns, of: &str| {
-            let unknown = unknowns.unknowns.iter().find(|unknown| name(&unknown.index) == of).unwrap();
+        let dependencies = |unknowns: &fmi::List<fmi::Unknown>, of: &str| {
+            let unknown = unknowns.items.iter().find(|unknown| name(&unknown.index) == of).unwrap();
             unknown.dependencies.iter().map(name).collect::<Vec<_>>().join(" ")
         };
         assert_eq!(dependencies(outputs, "a_t"), "a_g F_t a_v u u_dot theta theta_dot");
@@ -229,7 +224,7 @@ mod tests {
             fmi::VariableType::Real(real) => name(&real.derivative.unwrap()).to_owned(),
             other => panic!("{other:?}"),
         };
-        assert_eq!(derivatives.unknowns.iter().map(of).collect::<Vec<_>>(), COMPONENTS);
+        assert_eq!(derivatives.items.iter().map(of).collect::<Vec<_>>(), COMPONENTS);
     }
 
     #[test]

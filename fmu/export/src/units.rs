@@ -26,7 +26,7 @@ pub const UNITS: [(&str, [i32; 4]); 17] = [
     ("kg.m2", [1, 2, 0, 0]),
 ];
 
-/// Definitions of the units, for a structure that knows what its g is.
+/// Definitions of the units; the display unit g is that of `structure`.
 pub fn definitions(structure: &Structure) -> Vec<fmi::Unit> {
     let definition = |(name, [kg, m, s, rad]): (&str, [i32; 4])| {
         let shown = shown_in(name, structure);

@@ -40,7 +40,6 @@ tables! {
     SerializeFMUState             [x x x - - x x x x x]
     DeserializeFMUState           [x x x - - x x x x x]
     GetDirectionalDerivative      [- x x - - x x x x x]
-    GetAdjointDerivative          [- x x - - x x x x x]
     EvaluateDiscreteStates        [- - - - - - x - - -]
     UpdateDiscreteStates          [- - - - - - x - - -]
     EnterStepMode                 [- - - - - - s - - -]

@@ -3,13 +3,11 @@
 use super::Instance;
 use crate::failure::Failure;
 use crate::present::find;
-use crate::sensitivity::{by_state, sensitivities};
+use crate::sensitivity::by_state;
 use crate::shown::Shown;
-use crate::state_machine::Stage;
 use crate::variables::{Source, Variable};
 use rocking::mechanics::state::COMPONENTS;
 use rocking::{LinearLoad, Load, Parameters};
-use std::collections::BTreeMap;
 use std::mem::MaybeUninit;
 
 impl Instance {
@@ -49,11 +47,10 @@ impl Instance {
         Ok(())
     }
 
-    /// Derivatives of outputs and of derivatives of states: by inputs; once the simulation has started by states, and
-    /// by time, with which the record changes; in initialization mode by parameters and initial values
-    /// ([`sensitivity`](crate::sensitivity)), then of calculated parameters, too. The outputs are affine in the inputs:
-    /// the derivative is a difference, taken over a change of the size of gravity and the strut's force, which keeps
-    /// its digits.
+    /// Derivatives of outputs and of derivatives of states: by inputs; once the simulation has started by states
+    /// ([`sensitivity`](crate::sensitivity)), and by time, with which the record changes. The outputs are affine in the
+    /// inputs: the derivative is a difference, taken over a change of the size of gravity and the strut's force, which
+    /// keeps its digits.
     pub fn get_directional_derivative(
         &mut self,
         unknowns: &[u32],
@@ -61,18 +58,10 @@ impl Instance {
         seed: &[f64],
         values: &mut [MaybeUninit<f64>],
     ) -> Result<(), Failure> {
-        let found = self.directional_derivative(unknowns, knowns, seed)?;
-        values.iter_mut().zip(found).for_each(|(value, derivative)| _ = value.write(derivative));
-        Ok(())
-    }
-
-    fn directional_derivative(&mut self, unknowns: &[u32], knowns: &[u32], seed: &[f64]) -> Result<Vec<f64>, Failure> {
         let variables = self.now.variables;
-        let is_initializing = self.now.stage == Stage::InitializationMode;
         let mut direction = Load::default();
         let has_started = self.now.stage.has_started();
-        let (mut of_setup, mut of_state) = (BTreeMap::<u32, f64>::new(), [0.0; COMPONENTS.len()]);
-        let mut of_time = 0.0;
+        let (mut of_state, mut of_time) = ([0.0; COMPONENTS.len()], 0.0);
         for (reference, &value) in knowns.iter().zip(seed) {
             let variable = find(variables, *reference)?;
             if !value.is_finite() {
@@ -81,9 +70,6 @@ impl Instance {
             match variable.source {
                 Source::Input(which) if !self.now.inputs.acts_at_once(which) => (),
                 Source::Input(which) => direction[which] += value,
-                Source::Parameter(_) | Source::InitialValue(_) | Source::Placement(_) if is_initializing => {
-                    *of_setup.entry(*reference).or_default() += value;
-                }
                 Source::Time if has_started => of_time += value,
                 _ => match variable.as_state().filter(|_| has_started) {
                     Some(which) => of_state[which] += value,
@@ -97,7 +83,6 @@ impl Instance {
                 Source::Output(_) | Source::Reaction(_) | Source::StateRate(_) | Source::Ground(_) => Ok(variable),
                 Source::Restraint(_) => Ok(variable),
                 Source::Impulse(_) => Ok(variable), // which events alone change
-                Source::Derived(_) | Source::RecordDuration if is_initializing => Ok(variable),
                 _ => Err(Failure::NoOutput(variable)),
             }
         };
@@ -130,39 +115,14 @@ impl Instance {
             Load { a_g: of_size_one(direction.a_g), F_t: of_size_one(direction.F_t), a_v: of_size_one(direction.a_v) },
         );
         let change = |of: &&Variable| after.value(of.source).zip(before.value(of.source)).map_or(0.0, |(a, b)| a - b);
-        let mut found: Vec<_> = unknowns.iter().zip(by_states).map(|(of, by)| size * change(of) + by).collect();
+        let found: Vec<_> = unknowns.iter().zip(by_states).map(|(of, by)| size * change(of) + by).collect();
         if is_admitted_for_this {
             model.engine.admit_vertical(false)?;
-        }
-        for (reference, seed) in of_setup {
-            let by = sensitivities(setup, &model.ground, inputs, &unknowns, find(variables, reference)?)?;
-            found.iter_mut().zip(by).for_each(|(sum, by)| *sum += seed * by);
         }
         if let Some(at) = found.iter().position(|derivative| !derivative.is_finite()) {
             return Err(Failure::NoRate { variable: unknowns[at], time });
         }
-        Ok(found)
-    }
-
-    /// For each known the sum of the derivatives of the unknowns by it, weighted with `seed`.
-    pub fn get_adjoint_derivative(
-        &mut self,
-        unknowns: &[u32],
-        knowns: &[u32],
-        seed: &[f64],
-        values: &mut [MaybeUninit<f64>],
-    ) -> Result<(), Failure> {
-        for (unknown, &value) in unknowns.iter().zip(seed) {
-            if !value.is_finite() {
-                return Err(Failure::BadSlope { variable: find(self.now.variables, *unknown)?, value });
-            }
-        }
-        let mut sums = Vec::with_capacity(knowns.len());
-        for known in knowns {
-            let column = self.directional_derivative(unknowns, &[*known], &[1.0])?;
-            sums.push(column.iter().zip(seed).map(|(part, weight)| part * weight).sum());
-        }
-        values.iter_mut().zip(sums).for_each(|(value, sum)| _ = value.write(sum));
+        values.iter_mut().zip(found).for_each(|(value, derivative)| _ = value.write(derivative));
         Ok(())
     }
 }

@@ -14,14 +14,14 @@ use rocking::engine::{AdvanceError, Progress};
 const SAME_TIME: (f64, f64) = (1e-4, 8.0);
 
 impl Instance {
-    /// Begins a step over `step` (s) from `point` (s). Returns the host that is to be asked for the inputs at the end
-    /// of the step, outside of any call, if it wants to be; [`Instance::do_step`] comes after that.
+    /// Begins a step over `step` (s) from `point` (s). If the host sets inputs within steps, returns how to call it back,
+    /// which comes before [`Instance::do_step`].
     pub(crate) fn begin_step(&mut self, point: f64, step: f64) -> Result<Option<IntermediateUpdate>, Failure> {
-        let (model, setup, inputs, stage) = self.now.parts()?;
+        let (model, setup, _, stage) = self.now.parts()?;
         check_step(model, setup, point, step)?;
         let asked = self.host.filter(|host| host.sets_inputs);
         if asked.is_some() {
-            (self.asked, self.inputs_before) = (Some(step), *inputs);
+            self.asked = Some(step);
             *stage = Stage::IntermediateUpdateMode;
         }
         Ok(asked)
@@ -31,19 +31,9 @@ impl Instance {
     /// that is handed over. The instance takes over the host's clock.
     #[inline(always)]
     pub fn do_step(&mut self, point: f64, step: f64) -> Result<Progress, Failure> {
-        let was_asked = self.asked.take().is_some();
-        if was_asked {
+        if self.asked.take().is_some() {
             self.now.stage = Stage::StepComplete;
         }
-        let result = self.advance(point, step);
-        if was_asked && result.is_err() {
-            self.now.inputs = self.inputs_before;
-        }
-        result
-    }
-
-    #[inline(always)]
-    fn advance(&mut self, point: f64, step: f64) -> Result<Progress, Failure> {
         let (logger, stops) = (&self.logger, self.now.interface.stepping().hands_over());
         let (model, setup, inputs, stage) = self.now.parts()?;
         check_step(model, setup, point, step)?;
@@ -83,8 +73,7 @@ impl Instance {
         }
     }
 
-    /// Returns the host that is to read where the step has led, outside of any call, if it wants to;
-    /// [`Instance::end_step`] comes after that.
+    /// If the host reads outputs within steps, returns how to call it back, which comes before [`Instance::end_step`].
     pub(crate) fn show_step(&mut self) -> Option<IntermediateUpdate> {
         let told = self.host.filter(|host| host.gets_outputs);
         if told.is_some() {

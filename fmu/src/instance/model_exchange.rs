@@ -4,7 +4,6 @@
 //! The engine stands where the host is; [`Known`] is where the motion was last known to be right.
 
 use super::{Instance, Updated};
-use crate::condition::FARTHEST;
 use crate::failure::Failure;
 use crate::model::{Model, Outside};
 use crate::motion_log::log;
@@ -21,6 +20,9 @@ use rocking::{Load, Motion, State, Transition, Watch};
 /// (docs/evidence/model_exchange.md).
 const KINKS_MATTER: f64 = 1e-8;
 
+/// The largest state (SI units) that is taken from a host.
+const FARTHEST: f64 = 1e12;
+
 /// What came of a complete step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Completed {
@@ -31,8 +33,8 @@ pub struct Completed {
 }
 
 impl Model {
-    /// The ground's time at the host's clock, whose last digits are coarse where the start is late: what has been
-    /// announced as the instant of a sample is that instant.
+    /// The record's time at the host's `time` (s). Where the start is late the last digits of that are coarse: the instant
+    /// that was announced for a sample is that sample's.
     fn elapsed_at(&self, setup: &Setup, time: f64) -> Elapsed {
         let elapsed = Elapsed::default().and(time - setup.start_time);
         let resolution = 2.0 * f64::EPSILON * time.abs().max(setup.start_time.abs());

@@ -155,18 +155,10 @@ impl Host {
         Host::instantiate(Instantiate { fmu_type: MODEL_EXCHANGE, ..Instantiate::default() }).unwrap()
     }
 
-    /// For model exchange, in event mode, at t = 0.
-    pub fn started_model(start_values: &[(&str, f64)]) -> Host {
-        let host = Host::new_model().initialized(start_values);
-        assert_eq!(host.exit(), OK, "{:?}", host.log);
-        host
-    }
-
     /// For model exchange, in continuous-time mode, at t = 0.
     pub fn going_model(start_values: &[(&str, f64)]) -> Host {
-        let host = Host::started_model(start_values);
-        host.update().unwrap();
-        assert_eq!(host.go_on(), OK);
+        let host = Host::new_model().initialized(start_values);
+        assert_eq!((host.exit(), host.update().is_ok(), host.go_on()), (OK, true, OK), "{:?}", host.log);
         host
     }
 
@@ -235,11 +227,6 @@ impl Host {
 
     pub fn set_boolean(&self, name: &str, value: c_int) -> c_int {
         unsafe { fmi2SetBoolean(self.component, &reference(name), 1, &value) }
-    }
-
-    /// Has the peaks watched for.
-    pub fn watch_peaks(&self) -> c_int {
-        self.set_boolean("peaks", 1)
     }
 
     /// Sets the record.

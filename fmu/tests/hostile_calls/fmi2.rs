@@ -1,6 +1,6 @@
 //! FMI 2.0: how its functions are called, when they may be, how instances are made.
 
-use crate::arguments::{SWITCHES, calls};
+use crate::arguments::{CATEGORIES, SWITCHES, calls};
 use crate::{C, Table, Told, Version, host};
 use FlexibleRocking::c_abi::Function as _;
 use FlexibleRocking::fmi2::*;
@@ -9,25 +9,26 @@ use FlexibleRocking::state_machine::Stage;
 use fastrand::Rng;
 use host::{ERROR, STAGES_OF_MODEL};
 use libc::{c_char, c_int, c_void};
-use std::ptr::{null, null_mut};
 
 pub const VERSION: Version = Version {
     functions: || Function::ALL.iter().map(|function| function.name()).collect(),
     calls: calls! { call:
-        fmi2SetDebugLogging(call.flag(), call.few(), call.categories())
-        fmi2SetupExperiment(call.flag(), call.tolerance(), call.start(), call.flag(), call.stop())
+        fmi2SetDebugLogging(call.integer(0..2), call.few(), call.texts(&CATEGORIES))
+        fmi2SetupExperiment(
+            call.integer(0..2), call.within(1e-14, 0.1), call.within(1e-3, 1.0), call.integer(0..2), call.within(1.0, 1e6)
+        )
         fmi2EnterInitializationMode()
         fmi2ExitInitializationMode()
         fmi2Terminate()
         fmi2Reset()
-        fmi2GetReal(call.references(&[]), call.count(), call.reals())
+        fmi2GetReal(call.references(&[]), call.count(), call.reals_of_references())
         fmi2GetInteger(call.references(&["phase"]), call.count(), call.values())
         fmi2GetBoolean(call.references(&["peaks"]), call.count(), call.values())
         fmi2GetString(call.references(&["record"]), call.count(), call.values())
         fmi2SetReal(call.references_to_set(), call.count(), call.reals_to_set())
-        fmi2SetInteger(call.references(&["detail"]), call.count(), call.integers())
-        fmi2SetBoolean(call.references(&SWITCHES), call.count(), call.flags())
-        fmi2SetString(call.references(&["record"]), call.count(), call.texts())
+        fmi2SetInteger(call.references(&["detail"]), call.count(), call.integers(0..8))
+        fmi2SetBoolean(call.references(&SWITCHES), call.count(), call.integers(0..2))
+        fmi2SetString(call.references(&["record"]), call.count(), call.texts(call.records))
         fmi2GetFMUstate(call.place_of_state())
         fmi2SetFMUstate(call.state())
         fmi2FreeFMUstate(call.place_of_state())
@@ -37,25 +38,27 @@ pub const VERSION: Version = Version {
         fmi2GetDirectionalDerivative(
             call.unknowns(), call.count(), call.knowns(), call.count(), call.seed(), call.derivatives()
         )
-        fmi2SetRealInputDerivatives(call.references_to_set(), call.count(), call.orders(), call.reals_to_set())
-        fmi2GetRealOutputDerivatives(call.references(&["R_h"]), call.count(), call.orders(), call.reals())
-        fmi2DoStep(call.point(), call.step(), call.flag())
+        fmi2SetRealInputDerivatives(call.references_to_set(), call.count(), call.integers(1..2), call.reals_to_set())
+        fmi2GetRealOutputDerivatives(
+            call.references(&["R_h"]), call.count(), call.integers(1..2), call.reals_of_references()
+        )
+        fmi2DoStep(call.point(), call.step(), call.integer(0..2))
         fmi2CancelStep()
-        fmi2GetStatus(call.item(), call.room(1))
-        fmi2GetRealStatus(call.item(), call.real())
-        fmi2GetIntegerStatus(call.item(), call.room(1))
-        fmi2GetBooleanStatus(call.item(), call.room(1))
-        fmi2GetStringStatus(call.item(), call.room(1))
+        fmi2GetStatus(call.integer(0..4), call.room(1))
+        fmi2GetRealStatus(call.integer(0..4), call.finite(1))
+        fmi2GetIntegerStatus(call.integer(0..4), call.room(1))
+        fmi2GetBooleanStatus(call.integer(0..4), call.room(1))
+        fmi2GetStringStatus(call.integer(0..4), call.room(1))
         fmi2EnterEventMode()
         fmi2NewDiscreteStates(call.room(1))
         fmi2EnterContinuousTimeMode()
-        fmi2CompletedIntegratorStep(call.flag(), call.room(1), call.room(1))
+        fmi2CompletedIntegratorStep(call.integer(0..2), call.room(1), call.room(1))
         fmi2SetTime(call.time())
         fmi2SetContinuousStates(call.states(), call.count())
-        fmi2GetDerivatives(call.reals_of(4), call.count())
-        fmi2GetEventIndicators(call.reals_of(2), call.count())
-        fmi2GetContinuousStates(call.reals_of(4), call.count())
-        fmi2GetNominalsOfContinuousStates(call.reals_of(4), call.count())
+        fmi2GetDerivatives(call.reals(4), call.count())
+        fmi2GetEventIndicators(call.reals(2), call.count())
+        fmi2GetContinuousStates(call.reals(4), call.count())
+        fmi2GetNominalsOfContinuousStates(call.reals(4), call.count())
     },
     slave: SLAVE,
     model: MODEL,
@@ -66,7 +69,6 @@ pub const VERSION: Version = Version {
     free_state: fmi2FreeFMUstate,
     size: fmi2SerializedFMUstateSize,
     serialize: fmi2SerializeFMUstate,
-    event_indicators: fmi2GetEventIndicators,
 };
 
 /// The table of FMI 2.0.4, section 4.2.4, without the columns of a step in progress or canceled, which a slave with
@@ -111,21 +113,13 @@ const MODEL: Table = Table {
         - - - x - -  CompletedIntegratorStep SetContinuousStates",
 };
 
-fn instantiate(
-    rng: &mut Rng,
-    interface: Interface,
-    [name, guid, location]: [*const c_char; 3],
-    told: Option<&Told>,
-) -> C {
-    let mut functions = host::callbacks(told.map_or(null_mut(), |told| (&raw const *told).cast_mut().cast()));
+fn instantiate(rng: &mut Rng, interface: Interface, [name, guid, location]: [*const c_char; 3], told: &Told) -> C {
+    let mut functions = host::callbacks((&raw const *told).cast_mut().cast());
     let logger: unsafe extern "C" fn(_, _, _, _, _) = tell;
-    functions.logger = told.map(|_| unsafe { std::mem::transmute(logger as *const ()) });
-    let functions = if rng.u8(..20) == 0 { null() } else { &raw const functions };
+    functions.logger = Some(unsafe { std::mem::transmute::<*const (), CallbackLogger>(logger as *const ()) });
     let is_model = interface == Interface::ModelExchange;
     let kind = if is_model { host::MODEL_EXCHANGE } else { host::CO_SIMULATION };
-    let kind = if rng.u8(..40) == 0 { rng.i32(2..) } else { kind };
-    let logging_on = if rng.u8(..20) == 0 { rng.i32(..) } else { rng.i32(0..2) };
-    unsafe { fmi2Instantiate(name, kind, guid, location, functions, 0, logging_on) }
+    unsafe { fmi2Instantiate(name, kind, guid, location, &functions, 0, rng.i32(0..2)) }
 }
 
 unsafe extern "C" fn tell(

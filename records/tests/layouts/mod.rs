@@ -104,8 +104,7 @@ pub fn all(count: usize) -> Vec<Layout> {
         table("Time,Acceleration\n(sec),(cm/sec^2)", |i| format!("{:.3}", i as f64 * DT)),
         read_as(with_step(None), table("n,acc (gal)", |i| (i + 1).to_string())),
         read_as(Reading { column: Some(Column::All), ..with_step(Some(gal)) }, several("", 8)),
-        read_as(with_step(None), several("El Centro 1940 05 18\nACCELERATION TIME SERIES IN UNITS OF CM/SEC^2.\n", 5)),
-        read_as(Reading { unit: Some(gal), ..Reading::default() }, several(&format!("{count} {DT}\n"), 5)),
+        several(&format!("ACCELERATION TIME HISTORY IN UNITS OF CM/SEC^2\nNPTS= {count}, DT= {DT} SEC\n"), 5),
     ]);
     all
 }

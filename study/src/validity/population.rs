@@ -37,12 +37,6 @@ const STRENGTH: (f64, f64) = (1.0, 4.0);
 /// Part of the structures that has r = 1.
 const PART_ELASTIC: f64 = 0.25;
 
-/// One structure on its ground.
-pub struct Case {
-    pub structure: Structure,
-    pub ground: Record, // the ground motion, as it is scaled
-}
-
 /// What becomes of a structure by one rule of uplift.
 #[derive(Clone, Debug)]
 pub struct Response {
@@ -67,7 +61,7 @@ fn even<const D: usize>(k: usize) -> [f64; D] {
 }
 
 /// Structure `k`, and its ground among `records`.
-pub fn case(k: usize, records: &[Record]) -> Case {
+fn case(k: usize, records: &[Record]) -> (Structure, Record) {
     let [slenderness, f_fc, m0, J0, zeta_fc, r, B, strength, record] = even(k);
     let linear = |part: f64, (low, high): (f64, f64)| low + part * (high - low);
     let logarithmic = |part: f64, (low, high): (f64, f64)| low * (high / low).powf(part);
@@ -86,14 +80,14 @@ pub fn case(k: usize, records: &[Record]) -> Case {
     let structure = structure(parameters);
     let record = &records[(record * records.len() as f64) as usize];
     let pga = logarithmic(strength, STRENGTH) * parameters.g * structure.tan_alpha_cg;
-    Case { structure, ground: record.clone().scaled(1.0, pga / record.pga()).expect("a finite factor") }
+    (structure, record.clone().scaled(1.0, pga / record.pga()).expect("a finite factor"))
 }
 
 /// All of them, which end with their records.
 pub fn all(folder: &Path) -> Result<Vec<Pair>> {
     let records = RECORDS.map(|file| read_record(folder, file)).into_iter().collect::<Result<Vec<_>>>()?;
     let respond = |k| {
-        let Case { structure, ground } = case(k, &records);
+        let (structure, ground) = case(k, &records);
         let run = Run { end: End::At(ground.end()), ..Run::new(structure, &ground) };
         Ok(both(&run)?)
     };

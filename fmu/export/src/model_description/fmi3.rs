@@ -1,7 +1,6 @@
 //! The description in FMI 3.0.
 
 use super::{DESCRIPTION, attributes, index, is_initial_unknown, items, log_category, variable_type};
-use crate::experiment::Experiment;
 use crate::units;
 use FlexibleRocking::logger;
 use FlexibleRocking::resources::Contents;
@@ -16,7 +15,7 @@ pub fn model_description(
     name: &str,
     structure: &Structure,
     contents: &Contents,
-    experiment: Experiment,
+    default_experiment: fmi::DefaultExperiment,
 ) -> fmi3::FmiModelDescription {
     fmi3::FmiModelDescription {
         fmi_version: "3.0",
@@ -34,18 +33,14 @@ pub fn model_description(
             max_output_derivative_order: 1,
             provides_intermediate_update: true,
             might_return_early_from_do_step: true,
-            can_return_early_after_intermediate_update: false,
             has_event_mode: true,
         },
-        unit_definitions: fmi::UnitDefinitions { units: units::definitions(structure) },
-        type_definitions: fmi3::TypeDefinitions { enumeration_types: [&PHASES, &DETAILS].map(enumeration_type).into() },
-        log_categories: fmi::LogCategories { categories: logger::Category::ALL.map(log_category).into() },
-        default_experiment: experiment.description(),
-        model_variables: fmi3::ModelVariables {
-            variables: (0..)
-                .zip(&*VARIABLES)
-                .map(|(at, variable)| of_type(at, variable, structure, contents))
-                .collect(),
+        unit_definitions: fmi::List { items: units::definitions(structure) },
+        type_definitions: fmi::List { items: [&PHASES, &DETAILS].map(enumeration_type).into() },
+        log_categories: fmi::List { items: logger::Category::ALL.map(log_category).into() },
+        default_experiment,
+        model_variables: fmi::List {
+            items: (0..).zip(&*VARIABLES).map(|(at, variable)| of_type(at, variable, structure, contents)).collect(),
         },
         model_structure: model_structure(),
     }
@@ -62,11 +57,9 @@ fn enumeration_type(enumeration: &Enumeration) -> fmi3::EnumerationType {
 fn capabilities(name: &str) -> fmi3::Capabilities {
     fmi3::Capabilities {
         model_identifier: name.into(),
-        can_be_instantiated_only_once_per_process: false,
         can_get_and_set_fmu_state: true,
         can_serialize_fmu_state: true,
         provides_directional_derivatives: true,
-        provides_adjoint_derivatives: true,
     }
 }
 
@@ -132,7 +125,7 @@ mod tests {
     fn the_structure_points_at_what_the_table_names() {
         let contents = Contents::from(Parameters::MCMANUS);
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
-        let experiment = Experiment { stop_time: 4.0, step_size: 0.005 };
+        let experiment = crate::experiment::default_experiment(&structure, None);
         let description = model_description("Pier", &structure, &contents, experiment);
         let fmi3::ModelStructure { outputs, continuous_state_derivatives, initial_unknowns, event_indicators } =
             &description.model_structure;
