@@ -152,19 +152,19 @@ function motionView() {
     ];
   }
 
-  /** The ties as lines from the ground to the base, each with its force below it. */
+  /** The ties as lines from the ground to the base, and their forces below, from left to right. */
   function drawTies(state, side, theta) {
-    const { x, y, scale } = stage;
+    const { x, y } = stage;
     const { B } = motion.parameters;
-    const [lines, texts] = [at("ties"), at("pulls")];
+    const [lines, forces] = [at("ties"), at("pulls")];
     lines.replaceChildren();
-    texts.replaceChildren();
-    for (const { name, kind, along } of ties()) {
+    forces.replaceChildren();
+    const text = element(forces, "text", { x, y: y + 56, "text-anchor": "middle" });
+    for (const { name, kind, along } of ties().sort((one, other) => one.along - other.along)) {
       const lever = along - side * B;
       const top = { x: side * B + lever * Math.cos(theta), y: lever * Math.sin(theta) };
       element(lines, "line", { class: kind, x1: along, y1: 0, x2: top.x, y2: top.y });
-      const force = `${significant(state[name] / 1e3)} kN`;
-      element(texts, "text", { x: x + scale * along, y: y + 56, "text-anchor": "middle", "data-name": name }, `${name} ${force}`);
+      element(text, "tspan", { dx: 10, "data-name": name }, `${name} ${significant(state[name] / 1e3)} kN`);
     }
   }
 
