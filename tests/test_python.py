@@ -216,7 +216,8 @@ def test_a_sweep_that_is_stopped_keeps_its_rows(tmp_path):
               "    fr.sweep(fr.Structure(preset='mcmanus'), pulse, scale=np.linspace(0.1, 1, 1000000), progress=True)\n"
               "except KeyboardInterrupt as stopped:\n"
               "    print(len(stopped.table), set(stopped.table['ending']))\n")
-    with subprocess.Popen([sys.executable, "-c", script], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as sweep:
+    command = ["env", "--default-signal=INT", sys.executable, "-c", script]  # where the tests run in the background it is ignored
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as sweep:
         while not re.search("[1-9][0-9]* of", sweep.stderr.read(8)):
             pass
         time.sleep(0.2)
