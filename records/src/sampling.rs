@@ -44,9 +44,9 @@ fn count(word: &str) -> Result<usize, String> {
 
 /// The step (s) that `words` begin with: `.0100`, `0.01s`, `10 MSEC`. A word after it is its unit, unless a comma is between.
 fn step(words: &[&str]) -> Result<f64, String> {
-    let stated: Vec<_> = words.iter().copied().take(2).take_while(|word| !matches!(*word, "," | "NPTS")).collect();
-    let stated = stated.join(" ");
-    let digits = words[0].trim_end_matches(char::is_alphabetic);
+    let (word, next) = (words[0], words.get(1).filter(|next| !matches!(**next, "," | "NPTS")));
+    let stated = next.map_or(word.to_owned(), |next| format!("{word} {next}"));
+    let digits = word.trim_end_matches(char::is_alphabetic);
     let unit = match stated[digits.len()..].trim_matches(|letter: char| !letter.is_alphabetic()) {
         "" => Some(TimeUnit::Second),
         unit => TimeUnit::named(&unit.to_lowercase()),

@@ -151,7 +151,7 @@ impl<'a> Table<'a> {
         match self.headings_of(0).next() {
             Some(name) if !self.is_whole(0) => {
                 let problem = format!("column 1 is {}, which is no time in s or ms: ", quote(name));
-                Err(bad(self.first, problem + "give the step in seconds as dt, or head the column time (s)"))
+                Err(bad(self.first, problem + "give the step in seconds as dt, or head a column of seconds time (s)"))
             }
             _ => self.check_growth(0).map_err(|no_times| no_times.remedied_by(Remedy::Column)),
         }
@@ -231,12 +231,12 @@ impl<'a> Table<'a> {
         let step = self.stated.dt.or(how.dt).map(Times::Every);
         match time {
             Some((time, TimeUnit::Unstated)) if self.is_whole(time) => {
-                let mut first = self.column(time).take(2);
-                let even = first.next().zip(first.next()).map_or(1.0, |(first, second)| second - first);
-                self.check_steps(time, "count the samples", |step| step > 0.0 && step == even)?;
                 let problem = format!("column {} has whole numbers: are they counts or milliseconds? ", time + 1);
                 let remedy = "Give the step in seconds as dt, or head the column time (ms)";
-                step.ok_or_else(|| bad(self.first, problem + remedy))
+                let step = step.ok_or_else(|| bad(self.first, problem + remedy))?;
+                let even = self.column(time).nth(1).unwrap_or_default() - self.numbers[time];
+                self.check_steps(time, "count the samples", |step| step > 0.0 && step == even)?;
+                Ok(step)
             }
             Some((time, unit)) => {
                 self.check_growth(time)?;
@@ -532,6 +532,7 @@ mod tests {
             ("0 1\n1 2 3\n", "2: 3 column(s) instead of 2 as on line 1"),
             ("0;1\n0,5;1.234,5\n", "2: the acceleration \"1.234,5\" is not a number"),
             ("0,O.1\n.5,1\n1,2\n", "1: \"0,O.1\" is neither numbers nor text: correct it, or write # before it"),
+            ("5,NPTS,DT\n1\n2\n", "1: DT = \",\" must be a number of seconds greater than 0"),
             ("DT=0.005 min\n1\n2\n", "1: DT = \"0.005 MIN\" must be a number of seconds greater than 0"),
             (
                 "DT=0.02\nt,a\n0,1\n.01,2\n.02,3\n",
@@ -540,8 +541,8 @@ mod tests {
             ("NPTS=4\nt,a\n0,1\n.5,2\n", "4: NPTS states 4 samples, and the file has 2"),
             (
                 "t (min),a (g)\n0,1\n.5,2\n",
-                "2: column 1 is \"t (min)\", which is no time in s or ms: give the step in seconds as dt, or head the \
-                 column time (s)",
+                "2: column 1 is \"t (min)\", which is no time in s or ms: give the step in seconds as dt, or head a \
+                 column of seconds time (s)",
             ),
             (
                 "t,a\n0,1\n5,-2\n10,3\n",
