@@ -95,7 +95,7 @@ fn record(options: &RecordOptions, path: &Path, g: f64) -> anyhow::Result<(PathB
     if options.are_none() && !input::is_standard(path) {
         return Ok((path.into(), rocking_records::read_file(path)?));
     }
-    Ok(((input::stem(path) + ".csv").into(), understood.table().into_bytes()))
+    Ok(((input::stem(path) + ".csv").into(), understood.table_in_file_unit().into_bytes()))
 }
 
 /// The shared libraries that were built with `program`, one for each platform that there is one for. Where it is in

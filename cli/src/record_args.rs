@@ -3,7 +3,7 @@ use crate::{input, significant::short, talk::say};
 use anyhow::{anyhow, ensure};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use rocking::run::record::Record;
-use rocking_records::{Column, Reading, RecordError, Source, Unit, UnitFrom, csv};
+use rocking_records::{Column, Reading, RecordError, Source, Unit, UnitFrom, csv, csv_in};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -66,6 +66,8 @@ impl RecordArgs {
 pub struct Understood {
     /// Scaled, in m/s².
     pub record: Record,
+    /// Scaled, in the unit of its file.
+    in_file_unit: Record,
     source: Source,
     /// What it was called, and what was found and assumed, in a line.
     pub described: String,
@@ -97,10 +99,11 @@ impl RecordOptions {
             true => rocking_records::from_bytes(Path::new(input::NAME), &input::read(path)?, &how),
             false => rocking_records::read_raw(path, &how),
         };
-        let (record, source) = read.map_err(with_remedy)?;
-        let (record, source) = rocking_records::in_m_s2(record, source, g);
+        let (in_file_unit, source) = read.map_err(with_remedy)?;
+        let (record, source) = rocking_records::in_m_s2(in_file_unit.clone(), source, g);
         let described = described(path, &record, &source, g);
-        Ok(Understood { record: record.scaled(time_scale, scale)?, source, described })
+        let in_file_unit = in_file_unit.scaled(time_scale, scale)?;
+        Ok(Understood { record: record.scaled(time_scale, scale)?, in_file_unit, source, described })
     }
 
     /// Factors on the record's times and on its accelerations.
@@ -128,6 +131,11 @@ impl Understood {
     /// It as a table that is read without options, in s and m/s².
     pub fn table(&self) -> String {
         csv(&self.record)
+    }
+
+    /// It as a table that is read without options, in s and the unit of its file: one in g follows a g that is set later.
+    pub fn table_in_file_unit(&self) -> String {
+        csv_in(&self.in_file_unit, self.source.unit)
     }
 }
 

@@ -118,7 +118,7 @@ mod tests {
         for dt in ["0.0", "-.01", "1E308", "0X"] {
             assert_eq!(
                 at2_problem(&format!("NPTS= 3, DT= {dt} SEC"), ".1 .2 .3"),
-                format!("4: DT = {dt:?} must be a number of seconds greater than 0")
+                format!("4: DT = \"{dt} SEC\" must be a number of seconds greater than 0")
             );
         }
         assert_eq!(

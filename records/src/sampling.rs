@@ -1,6 +1,7 @@
 //! NPTS and DT, as lines before the samples state them.
 
 use super::text::{number, quote};
+use super::unit::TimeUnit;
 use super::{BadLine, MAX_SAMPLES, bad};
 
 /// What is stated.
@@ -16,16 +17,17 @@ impl Sampling {
     /// What `line` states, which is the one of this `number`: `NPTS=  4172, DT=   .0100 SEC, UNITS=G`, one of the two, or
     /// `4164    0.0100    NPTS, DT`.
     pub fn of(number: usize, line: &str) -> Result<Sampling, BadLine> {
-        let upper = line.to_ascii_uppercase();
-        let words = upper.split(|letter: char| letter.is_whitespace() || ",;=:\"#%!".contains(letter));
+        let upper = line.to_ascii_uppercase().replace([',', ';'], " , ");
+        let words = upper.split(|letter: char| letter.is_whitespace() || "=:\"#%!".contains(letter));
         let words: Vec<_> = words.filter(|word| !word.is_empty()).collect();
         let after = |name: &str| {
-            let after = *words.get(words.iter().position(|word| *word == name)? + 1)?;
-            after.starts_with(|letter: char| letter.is_ascii_digit() || "+-.".contains(letter)).then_some(after)
+            let ([",", after @ ..] | after) = &words[words.iter().position(|word| *word == name)? + 1..];
+            let is_value = |letter: char| letter.is_ascii_digit() || "+-.".contains(letter);
+            after.first()?.starts_with(is_value).then_some(after)
         };
         let (npts, dt) = match words.as_slice() {
-            [npts, dt, "NPTS", "DT", ..] => (Some(*npts), Some(*dt)),
-            _ => (after("NPTS"), after("DT")),
+            [npts, _, "NPTS", "DT", ..] | [npts, _, "NPTS", ",", "DT", ..] => (Some(*npts), Some(&words[1..2])),
+            _ => (after("NPTS").map(|words| words[0]), after("DT")),
         };
         let stated = npts.map(count).transpose().and_then(|npts| Ok((npts, dt.map(step).transpose()?)));
         let (npts, dt) = stated.map_err(|problem| bad(number, problem))?;
@@ -40,8 +42,15 @@ fn count(word: &str) -> Result<usize, String> {
     }
 }
 
-/// The step (s): `.0100`, `0.01s`.
-fn step(word: &str) -> Result<f64, String> {
-    let dt = number(word.trim_end_matches(char::is_alphabetic)).filter(|dt| *dt > 0.0);
-    dt.ok_or_else(|| format!("DT = {} must be a number of seconds greater than 0", quote(word)))
+/// The step (s) that `words` begin with: `.0100`, `0.01s`, `10 MSEC`. A word after it is its unit, unless a comma is between.
+fn step(words: &[&str]) -> Result<f64, String> {
+    let (word, next) = (words[0], words.get(1).filter(|next| !matches!(**next, "," | "NPTS")));
+    let stated = next.map_or(word.to_owned(), |next| format!("{word} {next}"));
+    let digits = word.trim_end_matches(char::is_alphabetic);
+    let unit = match stated[digits.len()..].trim_matches(|letter: char| !letter.is_alphabetic()) {
+        "" => Some(TimeUnit::Second),
+        unit => TimeUnit::named(&unit.to_lowercase()),
+    };
+    let dt = number(digits).zip(unit).map(|(dt, unit)| dt * unit.in_seconds()).filter(|dt| *dt > 0.0);
+    dt.ok_or_else(|| format!("DT = {} must be a number of seconds greater than 0", quote(&stated)))
 }

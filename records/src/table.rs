@@ -7,7 +7,7 @@
 use super::fields::{Layout, cells, is_numbers};
 use super::parsed::{Parsed, Times};
 use super::sampling::Sampling;
-use super::text::{number, numbered, quote, without_blanks};
+use super::text::{is_number, number, numbered, quote, without_blanks};
 use super::unit::{Stated, TimeUnit, mentions_unit};
 use super::{BadLine, Column, Format, Reading, Remedy, bad, source::decide};
 
@@ -45,7 +45,13 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     let table = Table::read(text)?;
     let Samples { time, value } = table.samples(how)?;
     let (unit, unit_from) = decide(&table.stated_unit(value, how)?, how.unit, table.first)?;
-    let mut parsed = Parsed::new(Format::Table, "", unit, unit_from, table.times(time, how)?);
+    let times = table.times(time, how)?;
+    if let Some((stated, (step, false))) = table.stated.dt.and_then(|dt| Some((dt, times.have_step(dt)?))) {
+        let problem =
+            format!("DT states a sample every {stated:?} s, and the times have {step:?} s: correct one of them");
+        return Err(bad(table.first, problem));
+    }
+    let mut parsed = Parsed::new(Format::Table, "", unit, unit_from, times);
     parsed.remark(table.layout.to_string());
     match value {
         Some(value) => parsed.remark(format!("column {}{}", value + 1, table.name(value))),
@@ -75,9 +81,18 @@ impl<'a> Table<'a> {
         let layout = Layout::of(|| samples().map(|(_, line)| line));
         let count = layout.fields(sample).len();
         let (mut before, mut headings, mut stated) = (Vec::new(), Vec::new(), Sampling::default());
+        let is_damaged = |line: &str| {
+            let fields = layout.fields(line);
+            !is_comment(line) && fields.len() == count && is_number(fields[0])
+        };
         for (line, text) in numbered(text).take(first - 1).filter(|(_, line)| !line.trim().is_empty()) {
             before.push(text);
             match Sampling::of(line, text)? {
+                Sampling { npts: None, dt: None } if is_damaged(text) => {
+                    let problem =
+                        format!("{} is neither numbers nor text: correct it, or write # before it", quote(text));
+                    return Err(bad(line, problem));
+                }
                 Sampling { npts: None, dt: None } if count > 1 => headings.extend(cells(text, count)),
                 of_line => stated = Sampling { npts: stated.npts.or(of_line.npts), dt: stated.dt.or(of_line.dt) },
             }
@@ -117,12 +132,33 @@ impl<'a> Table<'a> {
 
     /// Refuses times that do not grow.
     fn check_growth(&self, column: usize) -> Result<(), BadLine> {
+        self.check_steps(column, "have the times", |step| step > 0.0)
+    }
+
+    /// Refuses a column that cannot do `what`: one of its steps is not right.
+    fn check_steps(&self, column: usize, what: &str, is_right: impl Fn(f64) -> bool) -> Result<(), BadLine> {
         let mut steps = self.column(column).zip(self.column(column).skip(1));
-        let Some(row) = steps.position(|(before, at)| at <= before) else { return Ok(()) };
+        let Some(row) = steps.position(|(before, at)| !is_right(at - before)) else { return Ok(()) };
         let [before, at] = [row, row + 1].map(|row| self.numbers[row * self.count + column]);
         let mut samples = numbered(self.text).skip(self.first - 1).filter(|(_, line)| !is_comment(line));
         let line = samples.nth(row + 1).map_or(self.last, |(line, _)| line);
-        Err(bad(line, format!("column {} has {at:?} after {before:?}, which are no times", column + 1)))
+        Err(bad(line, format!("column {} cannot {what}: {at:?} comes after {before:?}", column + 1)))
+    }
+
+    /// Refuses a first column that has no times: its heading says something else, or they do not grow. Whole numbers may
+    /// count the samples, whatever their heading.
+    fn check_first(&self) -> Result<(), BadLine> {
+        match self.headings_of(0).next() {
+            Some(name) if !self.is_whole(0) => {
+                let problem = format!("column 1 is {}, which is no time in s or ms: ", quote(name));
+                Err(bad(self.first, problem + "give the step in seconds as dt, or head a column of seconds time (s)"))
+            }
+            _ => self.check_growth(0).map_err(|no_times| no_times.remedied_by(Remedy::Column)),
+        }
+    }
+
+    fn is_whole(&self, column: usize) -> bool {
+        self.column(column).all(|number| number.fract() == 0.0)
     }
 
     /// All headings of the column.
@@ -146,17 +182,19 @@ impl<'a> Table<'a> {
             Some(column) => *column == Column::All,
             None => self.stated.npts == Some(self.numbers.len()),
         };
+        let are_all = are_all && self.headed_time().is_none();
         if are_all || self.count == 1 && self.uneven.is_none() {
+            self.check_count()?;
             return Ok(Samples { time: None, value: None });
         }
         if let Some(uneven) = &self.uneven {
             return Err(uneven.clone());
         }
-        let time = match (self.headed_time(), self.check_growth(0)) {
+        let time = match (self.headed_time(), self.check_first()) {
             (Some(headed), _) => Some(headed),
             (None, Ok(())) => Some((0, TimeUnit::Unstated)),
             (None, Err(_)) if how.dt.or(self.stated.dt).is_some() => None,
-            (None, Err(no_times)) => return Err(no_times.remedied_by(Remedy::Column)),
+            (None, Err(no_times)) => return Err(no_times),
         };
         let is_time = |column: usize| time.is_some_and(|(time, _)| column == time);
         let left: Vec<_> = (0..self.count).filter(|column| !is_time(*column)).collect();
@@ -177,23 +215,38 @@ impl<'a> Table<'a> {
         Ok(Samples { time, value: Some(value) })
     }
 
+    /// Refuses a bare count of the samples, with or without the step, before samples alone.
+    fn check_count(&self) -> Result<(), BadLine> {
+        let npts = self.numbers[0];
+        let is_count = npts > 1.0 && [npts + 1.0, npts + 2.0].contains(&(self.numbers.len() as f64));
+        if self.stated.npts.is_some() || !is_count {
+            return Ok(());
+        }
+        let problem = format!("{npts} is the number of samples after it: write NPTS= {npts}, and a step as DT= 0.01");
+        Err(bad(self.first, problem))
+    }
+
     /// The instants of the samples, which are in the column `time`, if any.
     fn times(&self, time: Option<(usize, TimeUnit)>, how: &Reading) -> Result<Times, BadLine> {
-        let are_whole = |column| self.column(column).all(|number| number.fract() == 0.0);
-        let why = match time {
-            Some((time, TimeUnit::Unstated)) if are_whole(time) => format!(
-                "column {} has whole numbers, which count the samples or are milliseconds, for no heading has a unit, as \
-                 time (ms) does",
-                time + 1
-            ),
+        let step = self.stated.dt.or(how.dt).map(Times::Every);
+        match time {
+            Some((time, TimeUnit::Unstated)) if self.is_whole(time) => {
+                let problem = format!("column {} has whole numbers: are they counts or milliseconds? ", time + 1);
+                let remedy = "Give the step in seconds as dt, or head the column time (ms)";
+                let step = step.ok_or_else(|| bad(self.first, problem + remedy))?;
+                let even = self.column(time).nth(1).unwrap_or_default() - self.numbers[time];
+                self.check_steps(time, "count the samples", |step| step > 0.0 && step == even)?;
+                Ok(step)
+            }
             Some((time, unit)) => {
                 self.check_growth(time)?;
-                return Ok(Times::At(self.column(time).map(|time| time * unit.in_seconds()).collect()));
+                Ok(Times::At(self.column(time).map(|time| time * unit.in_seconds()).collect()))
             }
-            None => "no column has times".into(),
-        };
-        let unknown = || bad(self.first, why + ": the time between samples is not known").remedied_by(Remedy::Step);
-        self.stated.dt.or(how.dt).map(Times::Every).ok_or_else(unknown)
+            None => {
+                let problem = "no column has times: the time between samples is not known";
+                step.ok_or_else(|| bad(self.first, problem).remedied_by(Remedy::Step))
+            }
+        }
     }
 
     /// The column that is asked for.
@@ -208,7 +261,8 @@ impl<'a> Table<'a> {
                 (None, None) => refused(asked, "there are no headings".into()),
                 (None, Some(names)) => refused(asked, format!("the headings are {}", listed(names))),
             },
-            Some(Column::All) | None => Ok(None),
+            Some(asked @ Column::All) => refused(asked, "a heading says that one has times".into()),
+            None => Ok(None),
         }
     }
 
@@ -229,8 +283,8 @@ impl<'a> Table<'a> {
             None => self.before.clone(),
         };
         if let Some(other) = texts.iter().find(|text| is_no_acceleration(text)) {
-            let problem = format!("{} is before the data, and accelerations are needed", quote(other));
-            return Err(bad(self.first, problem));
+            let place = value.map_or("a line before the data".into(), |value| format!("column {}", value + 1));
+            return Err(bad(self.first, format!("{place} is {}: accelerations are needed", quote(other))));
         }
         let stated = texts.into_iter().map(Stated::of).find(|stated| *stated != Stated::Nothing);
         match (stated, self.before.iter().find(|line| mentions_unit(line))) {
@@ -256,11 +310,12 @@ fn without_samples(text: &str) -> BadLine {
     )
 }
 
-/// Whether `text` says velocity or displacement, as the other files of PEER do, and not acceleration.
+/// Whether `text` says velocity or displacement, as the other files of PEER do, or spectral, and not acceleration.
 fn is_no_acceleration(text: &str) -> bool {
     let lower = text.to_lowercase();
     let mut words = lower.split(|letter: char| !letter.is_alphabetic());
-    words.any(|word| matches!(word, "vel" | "velocity" | "disp" | "displacement")) && !lower.contains("acc")
+    words.any(|word| matches!(word, "vel" | "velocity" | "disp" | "displacement" | "sa" | "psa"))
+        && !lower.contains("acc")
 }
 
 /// The first of `headings`, as many as a message can show.
@@ -357,9 +412,7 @@ mod tests {
                 "{text}"
             );
         }
-        for text in ["1\n2\n", "0,1\n1,-2\n2,3\n", "t,a\n0,1\n5,-2\n10,3\n"] {
-            assert_eq!(read(text, &AS_IT_IS).unwrap_err().remedy, Some(Remedy::Step), "{text}");
-        }
+        assert_eq!(read("1\n2\n", &AS_IT_IS).unwrap_err().remedy, Some(Remedy::Step));
 
         let three = "time (s),N-S (gal),E-W (g)\n0,1,5\n1,2,6\n";
         let unclear = read(three, &AS_IT_IS).unwrap_err();
@@ -405,7 +458,9 @@ mod tests {
 
     #[test]
     fn a_stated_step_is_read_whatever_follows_it() {
-        for line in ["DT=0.01 s", "NPTS= 3, DT= .01 SEC, UNITS=G", "dt = 0.01s, npts = 3 (of 3)"] {
+        for line in
+            ["DT=0.01 s", "NPTS= 3, DT= .01 SEC, UNITS=G", "dt = 0.01s, npts = 3 (of 3)", "NPTS= 3, DT= 10 MSEC."]
+        {
             let text = format!("{line}\n1\n2\n4\n");
             assert_eq!(read(&text, &AS_IT_IS).unwrap().0.times(), [0.0, 0.01, 0.02], "{line}");
             let refused = problem(&text, &Reading { dt: Some(0.02), ..AS_IT_IS });
@@ -415,8 +470,8 @@ mod tests {
 
     #[test]
     fn velocities_and_displacements_are_refused() {
-        for heading in ["velocity", "Displacement", "disp (cm)", "vel_x"] {
-            let expected = format!("2: {heading:?} is before the data, and accelerations are needed");
+        for heading in ["velocity", "Displacement", "disp (cm)", "vel_x", "Sa (g)"] {
+            let expected = format!("2: column 2 is {heading:?}: accelerations are needed");
             assert_eq!(problem(&format!("time,{heading}\n0,1\n.5,2\n"), &AS_IT_IS), expected);
         }
     }
@@ -440,7 +495,7 @@ mod tests {
 
     #[test]
     fn text_is_no_data() {
-        for title in ["Kocaeli 1999 08 17", "17 March, run 4", "(1) 2 3"] {
+        for title in ["Kocaeli 1999 08 17", "17 March, run 4, north", "4 5 6 (gauges)"] {
             let (record, _) = read(&format!("{title}\n0.0 0.1\n0.5 0.2\n"), &AS_IT_IS).unwrap();
             assert_eq!((record.times(), record.acceleration()), (&[0.0, 0.5][..], &[0.1, 0.2][..]), "{title}");
         }
@@ -471,13 +526,46 @@ mod tests {
             ("0,1\n1,NaN\n", "2: the acceleration \"NaN\" is not a number"),
             ("0,1\n1,\n", "2: 1 column(s) instead of 2 as on line 1"),
             ("0,1,2\n1,,2\n", "2: in column 2, \"\" is not a number"),
-            ("t,a\n0,1\n.5,2\n0.5,3\n", "4: column 1 has 0.5 after 0.5, which are no times"),
-            ("0,1\n.5,2\n0.4,3\n", "3: column 1 has 0.4 after 0.5, which are no times"),
+            ("t,a\n0,1\n.5,2\n0.5,3\n", "4: column 1 cannot have the times: 0.5 comes after 0.5"),
+            ("0,1\n.5,2\n0.4,3\n", "3: column 1 cannot have the times: 0.4 comes after 0.5"),
             ("0,.1\n1,.2\n\n2,.3\n", "3: a blank line amid the data: something may be missing there"),
             ("0 1\n1 2 3\n", "2: 3 column(s) instead of 2 as on line 1"),
             ("0;1\n0,5;1.234,5\n", "2: the acceleration \"1.234,5\" is not a number"),
+            ("0,O.1\n.5,1\n1,2\n", "1: \"0,O.1\" is neither numbers nor text: correct it, or write # before it"),
+            ("5,NPTS,DT\n1\n2\n", "1: DT = \",\" must be a number of seconds greater than 0"),
+            ("DT=0.005 min\n1\n2\n", "1: DT = \"0.005 MIN\" must be a number of seconds greater than 0"),
+            (
+                "DT=0.02\nt,a\n0,1\n.01,2\n.02,3\n",
+                "3: DT states a sample every 0.02 s, and the times have 0.01 s: correct one of them",
+            ),
+            ("NPTS=4\nt,a\n0,1\n.5,2\n", "4: NPTS states 4 samples, and the file has 2"),
+            (
+                "t (min),a (g)\n0,1\n.5,2\n",
+                "2: column 1 is \"t (min)\", which is no time in s or ms: give the step in seconds as dt, or head a \
+                 column of seconds time (s)",
+            ),
+            (
+                "t,a\n0,1\n5,-2\n10,3\n",
+                "2: column 1 has whole numbers: are they counts or milliseconds? Give the step in seconds as dt, or head \
+                 the column time (ms)",
+            ),
         ] {
             assert_eq!(problem(text, &AS_IT_IS), expected, "{text}");
+        }
+        let all = Reading { column: Some(Column::All), dt: Some(0.01), ..AS_IT_IS };
+        for (text, expected) in [
+            ("4\n1\n2\n3\n2\n", "1: 4 is the number of samples after it: write NPTS= 4, and a step as DT= 0.01"),
+            ("5 .01\n1 2 3\n2 1\n", "1: 5 is the number of samples after it: write NPTS= 5, and a step as DT= 0.01"),
+            ("t,a\n0,1\n.5,2\n", "2: column all is asked for, and a heading says that one has times"),
+        ] {
+            assert_eq!(problem(text, &all), expected, "{text}");
+        }
+        let step = Reading { dt: Some(0.01), ..AS_IT_IS };
+        for (text, expected) in [
+            ("n,a\n1,.1\n2,.2\n4,.3\n", "4: column 1 cannot count the samples: 4.0 comes after 2.0"),
+            ("f (Hz),a\n.1,1\n.2,2\n", "2: 2 columns (\"f (Hz)\", \"a\"): which has the accelerations is not known"),
+        ] {
+            assert_eq!(problem(text, &step), expected, "{text}");
         }
     }
 }

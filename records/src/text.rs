@@ -13,6 +13,9 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Cow<'_, str>, BadLine> {
         Cow::Owned(char::decode_utf16(units).map(|letter| letter.unwrap_or(char::REPLACEMENT_CHARACTER)).collect())
     };
     let text: Cow<str> = match bytes {
+        [b'P', b'K', 3, 4, ..] | [0x1f, 0x8b, ..] => {
+            return Err(bad(1, "the file is packed: unpack it, or save the table as CSV"));
+        }
         [0xff, 0xfe, text @ ..] => utf_16(u16::from_le_bytes, text),
         [0xfe, 0xff, text @ ..] => utf_16(u16::from_be_bytes, text),
         _ => match std::str::from_utf8(bytes) {
@@ -122,6 +125,9 @@ mod tests {
             assert_eq!(decode(&bytes).unwrap(), text, "{bytes:?}");
         }
         assert_eq!(decode(b"0,1\n\0"), Err(bad(2, "a byte of 0, which no text has: save it as text in UTF-8")));
+        for packed in [&b"PK\x03\x04\x14\0"[..], b"\x1f\x8b\x08\0"] {
+            assert_eq!(decode(packed), Err(bad(1, "the file is packed: unpack it, or save the table as CSV")));
+        }
     }
 
     #[test]

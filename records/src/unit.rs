@@ -99,14 +99,16 @@ pub(super) enum TimeUnit {
 }
 
 impl TimeUnit {
-    /// Of `time`, `t`, these with a unit, and of what is a unit or ends with one in brackets; nothing of any other heading.
+    /// Of `time`, `t`, these with a unit, and of what is a unit or ends with one in brackets; nothing of any other heading,
+    /// nor of a period.
     pub(super) fn of(heading: &str) -> Option<TimeUnit> {
         let heading = heading.to_lowercase();
         let words = heading.split(|letter: char| !letter.is_alphanumeric());
         let words: Vec<_> = words.filter(|word| !word.is_empty() && *word != "in").collect();
         match words.as_slice() {
-            ["t" | "time" | "times"] => Some(TimeUnit::Unstated),
-            [unit] | ["t" | "time" | "times", unit] => TimeUnit::named(unit),
+            _ if heading.contains("period") => None,
+            ["t" | "time" | "times" | "zeit"] => Some(TimeUnit::Unstated),
+            [unit] | ["t" | "time" | "times" | "zeit", unit] => TimeUnit::named(unit),
             [.., unit] if heading.ends_with(&format!("({unit})")) || heading.ends_with(&format!("[{unit}]")) => {
                 TimeUnit::named(unit)
             }
@@ -114,7 +116,7 @@ impl TimeUnit {
         }
     }
 
-    fn named(text: &str) -> Option<TimeUnit> {
+    pub(super) fn named(text: &str) -> Option<TimeUnit> {
         match text {
             "s" | "sec" | "secs" | "second" | "seconds" => Some(TimeUnit::Second),
             "ms" | "msec" | "msecs" | "millisecond" | "milliseconds" => Some(TimeUnit::Millisecond),
@@ -246,13 +248,15 @@ mod tests {
     #[test]
     fn a_heading_of_times_states_their_unit() {
         for (headings, unit) in [
-            (&["t", "Time"][..], TimeUnit::Unstated),
+            (&["t", "Time", "Zeit"][..], TimeUnit::Unstated),
             (&["t/s", "Zeit [s]", "time, sec"], TimeUnit::Second),
             (&["t/ms", "time_ms", "(ms)", "time in ms"], TimeUnit::Millisecond),
         ] {
             headings.iter().for_each(|heading| assert_eq!(TimeUnit::of(heading).as_ref(), Some(&unit), "{heading}"));
         }
-        for other in ["time history", "trigger", "theta", "a (m/s2)", "acc", "", "T1"] {
+        for other in
+            ["time history", "trigger", "theta", "a (m/s2)", "acc", "", "T1", "Period (s)", "t (min)", "f (Hz)"]
+        {
             assert_eq!(TimeUnit::of(other), None, "{other}");
         }
     }
