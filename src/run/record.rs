@@ -220,7 +220,7 @@ impl Iterator for Segments<'_> {
     #[inline(always)] // for each sample of a run
     fn next(&mut self) -> Option<Segment> {
         let Segments { record, reached, time: start, a_g: value, end } = *self;
-        if start >= end {
+        if !(start < end) {
             return None;
         }
         let (Some(&time), Some(&a_g)) = (record.times.get(reached), record.acceleration.get(reached)) else {
@@ -359,7 +359,7 @@ mod tests {
         let segment = |start, end, value, slope| Segment { start, end, ground: Ramp { value, slope }.into() };
         let first = segment(0.5, 1.0, 20.0, 40.0);
         let until = |end| record.segments_until(end).collect::<Vec<_>>();
-        assert_eq!(until(0.5), []);
+        assert_eq!((until(0.5), until(f64::NAN)), (vec![], vec![]));
         assert_eq!(until(1.0), [first]);
         assert_eq!(until(1.5), [first, segment(1.0, 1.5, 40.0, -40.0)]);
         assert_eq!(until(3.0), [first, segment(1.0, 2.0, 40.0, -40.0), segment(2.0, 3.0, 0.0, 0.0)]);
