@@ -167,7 +167,8 @@ impl Record {
 
     /// The ground motion from its first sample until `end` (s); after its last sample the ground is at rest.
     pub fn segments_until(&self, end: f64) -> Segments<'_> {
-        Segments { record: self, reached: 1, time: self.times[0], a_g: self.acceleration[0], end }
+        let (time, a_g) = (self.times[0], self.acceleration[0]);
+        Segments { record: self, reached: 1, time, a_g, end: end.max(time) } // where `end` is NaN, `time`
     }
 
     /// Velocity (m/s) and displacement (m) of the ground at each sample, at rest before the first one: exact, as the
@@ -220,7 +221,7 @@ impl Iterator for Segments<'_> {
     #[inline(always)] // for each sample of a run
     fn next(&mut self) -> Option<Segment> {
         let Segments { record, reached, time: start, a_g: value, end } = *self;
-        if !(start < end) {
+        if start >= end {
             return None;
         }
         let (Some(&time), Some(&a_g)) = (record.times.get(reached), record.acceleration.get(reached)) else {
