@@ -73,6 +73,7 @@ fn relative_error(text: &str) -> Result<f64, String> {
 
 /// Runs the levels and prints the table and the advice.
 pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
+    let limits = args.limits.limits()?;
     let structure = args.structure.load()?;
     let (initial, duration) = (args.initial.state(), args.ground.duration());
     let conditions = Conditions { initial, duration, ..Conditions::default() };
@@ -83,7 +84,7 @@ pub fn run(args: &AdviseArgs) -> anyhow::Result<()> {
 
     let (within, criteria) = (args.allowed.within, &args.allowed.of);
     let advised = comparison.recommended(within, criteria);
-    let (title, limits) = (args.ground.title(&ground), args.limits.limits());
+    let title = args.ground.title(&ground);
     let text = || text(&title, &run, &comparison, (within, criteria), limits);
     let cause = &Cause::new(&structure).under(&args.ground.record, &ground).from_state(initial);
     args.results.print(text, &Traced { cause, rows: &rows(&comparison, advised) })

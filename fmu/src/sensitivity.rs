@@ -1,8 +1,7 @@
 //! Derivatives by the states, which have no formula.
 //!
 //! Differences to either side of the state are extrapolated to the limit of no difference (Neville's scheme, its entry of
-//! least change). What is returned is exact to 1e-8, or to what rounding leaves of reactions that are small beside the
-//! forces they are made of.
+//! least change). A limit that has not settled to 1e-4 ([`LARGEST_CHANGE`]) is refused; the tests find it right to 1e-6.
 
 use crate::failure::Failure;
 use crate::model::Model;
@@ -22,8 +21,8 @@ const FIRST: f64 = 0.1;
 /// Differences, each half of the one before.
 const DIFFERENCES: i32 = 12;
 
-/// The derivatives of `unknowns` by the state `which` in the present phase under `inputs`. θ is moved away from the
-/// floor alone, at which the height of the free edge has a kink.
+/// The derivatives of `unknowns` by the state `which` in the present phase under `inputs`. While the base rocks, θ is moved
+/// away from 0 only: at 0 the height of the free edge has a kink.
 pub(crate) fn by_state(
     model: &mut Model,
     setup: &Setup,

@@ -1,4 +1,5 @@
-//! What hosts count on that unload the library after every run. Alone in its process: all instances share the records.
+//! Hosts that unload the library after every run count on this: nothing of a run is left. Alone in its process: all instances
+//! share the records.
 #![allow(unsafe_code)] // the C interface
 
 mod host;

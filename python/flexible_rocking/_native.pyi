@@ -173,7 +173,12 @@ class Run:
     @property
     def validity(self) -> dict[str, Worst]: ...
     def validity_within(
-        self, *, friction: float = 0.5, tension: float = 0.05, edge_load: float = 0.0, energy_gain: float = 0.0
+        self,
+        *,
+        friction: float | None = None,
+        tension: float | None = None,
+        edge_load: float | None = None,
+        energy_gain: float | None = None,
     ) -> dict[str, Worst]: ...
     def at(self, times: ArrayLike) -> Response: ...
     def plot(self) -> Any: ...

@@ -74,8 +74,8 @@ impl Record {
     ///
     /// What the file does not state is said by unit (of its accelerations), dt (s between samples), column (a number
     /// from 1, a heading, or "all"), ignore_npts (take the samples that are there). vertical is the file of the vertical
-    /// component, read by the same options. time_scale and scale multiply; g (m/s2) is what a record's g stands for. What is likely wrong with it is a warning. Raises ValueError with the
-    /// line and what would help.
+    /// component, read by the same options. time_scale and scale multiply; g (m/s2) is what a record's g stands for. What is
+    /// likely wrong with it is a warning. Raises ValueError with the line and what would help.
     #[staticmethod]
     #[pyo3(signature = (file, *, vertical=None, unit=None, dt=None, column=None, ignore_npts=false, time_scale=1.0, scale=1.0, g=9.81))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]

@@ -225,29 +225,29 @@ impl Run {
     /// tension_impact, energy_gain_max; within the usual limits.
     #[getter]
     fn validity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let Limits { friction, tension, edge_load, gain } = Limits::default();
-        self.validity_within(py, friction, tension, edge_load, gain)
+        self.validity_within(py, None, None, None, None)
     }
 
-    /// What the model leaves out as validity has it, within limits of your own, of at least 0: friction (coefficient), tension
-    /// and edge_load (over the weight; tension at an impact, over its impulse), energy_gain (over the kinetic energy before an
-    /// impact).
-    #[pyo3(signature = (*, friction=0.5, tension=0.05, edge_load=0.0, energy_gain=0.0))]
+    /// What the model leaves out as validity has it, within limits of your own, of at least 0, or None for the usual one:
+    /// friction (coefficient), tension and edge_load (over the weight; tension at an impact, over its impulse), energy_gain
+    /// (over the kinetic energy before an impact).
+    #[pyo3(signature = (*, friction=None, tension=None, edge_load=None, energy_gain=None))]
     fn validity_within<'py>(
         &self,
         py: Python<'py>,
-        friction: f64,
-        tension: f64,
-        edge_load: f64,
-        energy_gain: f64,
+        friction: Option<f64>,
+        tension: Option<f64>,
+        edge_load: Option<f64>,
+        energy_gain: Option<f64>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let limits = Limits { friction, tension, edge_load, gain: energy_gain };
-        let named =
-            [("friction", friction), ("tension", tension), ("edge_load", edge_load), ("energy_gain", energy_gain)];
-        if let Some((name, value)) = named.into_iter().find(|(_, value)| !(*value >= 0.0 && value.is_finite())) {
-            let needed = "a finite number of at least 0 is needed";
-            return Err(PyValueError::new_err(format!("{name} = {value} is out of range: {needed}")));
-        }
+        let usual = Limits::default();
+        let limits = Limits {
+            friction: friction.unwrap_or(usual.friction),
+            tension: tension.unwrap_or(usual.tension),
+            edge_load: edge_load.unwrap_or(usual.edge_load),
+            energy_gain: energy_gain.unwrap_or(usual.energy_gain),
+        };
+        limits.check().map_err(refused)?;
         let (found, _) = py.detach(|| self.run().validity(limits)).map_err(refused)?;
         let named = PyDict::new(py);
         for (assumption, worst) in ASSUMPTIONS.iter().zip(&found.worst) {

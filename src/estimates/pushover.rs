@@ -54,19 +54,14 @@ pub fn in_full_contact(structure: &Structure, u: f64) -> Equilibrium {
 /// Rocking at the rotation `theta` (rad), |θ| < π/2; 0 is the start of rocking to the right. `None` for a strut too
 /// soft to hold the structure there. The dissipators have been moved there from rest.
 pub fn at_rotation(structure: &Structure, theta: f64) -> Option<Equilibrium> {
-    let dissipators = Dissipators::default().moved(structure, Side::of(theta), theta);
-    with_dissipators(structure, theta, &dissipators)
-}
-
-/// [`at_rotation`] with the `dissipators` as they are there, [`Dissipators::moved`] to it.
-pub fn with_dissipators(structure: &Structure, theta: f64, dissipators: &Dissipators) -> Option<Equilibrium> {
     let &crate::Parameters { m, m0, H, B, g, .. } = structure.parameters();
     let k = structure.k;
     let side = Side::of(theta);
     let s = side.sign();
     let (sin, cos) = libm::sincos(theta.abs());
     let (quadratic, linear) = (k * sin, k * (H * cos + B * sin) + m * g);
-    let held = s * Sum::of_moments(structure, side, dissipators).at(Angles::Any, theta, 0.0);
+    let dissipators = Dissipators::default().moved(structure, side, theta);
+    let held = s * Sum::of_moments(structure, side, &dissipators).at(Angles::Any, theta, 0.0);
     let constant = g * B * (m + m0 * cos * cos) + held * cos;
     let discriminant = linear * linear - 4.0 * quadratic * constant;
     if discriminant < 0.0 {

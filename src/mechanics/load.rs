@@ -158,7 +158,7 @@ impl LinearLoad {
         LinearLoad { value: Load { a_v: a_v.value, ..self.value }, slope: Load { a_v: a_v.slope, ..self.slope } }
     }
 
-    /// Whether all are numbers over an interval (s), which they are if their sum at its end is one.
+    /// Whether the sum of all at the end of an `interval` (s) is finite; then each is, all along.
     #[inline]
     pub(crate) fn is_finite_over(&self, interval: f64) -> bool {
         let Load { a_g, F_t, a_v } = self.at(interval);

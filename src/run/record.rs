@@ -167,7 +167,8 @@ impl Record {
 
     /// The ground motion from its first sample until `end` (s); after its last sample the ground is at rest.
     pub fn segments_until(&self, end: f64) -> Segments<'_> {
-        Segments { record: self, reached: 1, time: self.times[0], a_g: self.acceleration[0], end }
+        let (time, a_g) = (self.times[0], self.acceleration[0]);
+        Segments { record: self, reached: 1, time, a_g, end: end.max(time) } // where `end` is NaN, `time`
     }
 
     /// Velocity (m/s) and displacement (m) of the ground at each sample, at rest before the first one: exact, as the
@@ -359,7 +360,7 @@ mod tests {
         let segment = |start, end, value, slope| Segment { start, end, ground: Ramp { value, slope }.into() };
         let first = segment(0.5, 1.0, 20.0, 40.0);
         let until = |end| record.segments_until(end).collect::<Vec<_>>();
-        assert_eq!(until(0.5), []);
+        assert_eq!((until(0.5), until(f64::NAN)), (vec![], vec![]));
         assert_eq!(until(1.0), [first]);
         assert_eq!(until(1.5), [first, segment(1.0, 1.5, 40.0, -40.0)]);
         assert_eq!(until(3.0), [first, segment(1.0, 2.0, 40.0, -40.0), segment(2.0, 3.0, 0.0, 0.0)]);

@@ -59,14 +59,39 @@ pub struct Limits {
     /// Of `mu_required` and `mu_impact`.
     pub friction: f64,
     /// Of `energy_gain_max`.
-    pub gain: f64,
+    pub energy_gain: f64,
 }
 
 impl Default for Limits {
     /// Friction: 0.5, of concrete on concrete cast against smooth formwork (EN 1992-1-1:2004, 6.2.5(2), "very smooth").
     /// Tension: 0.05, since any uplift at u_cr takes g/(H ω_fc²) or so, and damping adds to it. Edge load and gain: 0.
     fn default() -> Limits {
-        Limits { tension: 0.05, edge_load: 0.0, friction: 0.5, gain: 0.0 }
+        Limits { tension: 0.05, edge_load: 0.0, friction: 0.5, energy_gain: 0.0 }
+    }
+}
+
+/// A limit that is no finite number of at least 0.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("{name} = {value} is out of range: a finite number of at least 0 is needed")]
+pub struct LimitError {
+    name: &'static str,
+    value: f64,
+}
+
+impl Limits {
+    /// Whether each of them is a limit.
+    ///
+    /// # Errors
+    ///
+    /// One that is not a finite number of at least 0.
+    pub fn check(&self) -> Result<(), LimitError> {
+        let &Limits { tension, edge_load, friction, energy_gain } = self;
+        let named =
+            [("friction", friction), ("tension", tension), ("edge_load", edge_load), ("energy_gain", energy_gain)];
+        match named.into_iter().find(|(_, value)| !(*value >= 0.0 && value.is_finite())) {
+            Some((name, value)) => Err(LimitError { name, value }),
+            None => Ok(()),
+        }
     }
 }
 
@@ -159,7 +184,7 @@ pub const ASSUMPTIONS: [Assumption; 6] = [
     assumption!(
         "energy_gain_max" "largest gain of an impact over the kinetic energy before it; 0 while none gains",
         "an impact raises the energy; in truth it cannot",
-        true, |limits| limits.gain
+        true, |limits| limits.energy_gain
     ),
 ];
 
@@ -180,8 +205,6 @@ pub struct Found {
     pub held: f64,
     /// How long the motion has been, s.
     pub duration: f64,
-    /// Right-hand-side evaluations that it took beside those of the motion itself.
-    pub evaluations: u64,
 }
 
 impl Found {
@@ -190,7 +213,7 @@ impl Found {
         let none = |value| Worst { value, time, first_beyond: None, beyond: 0.0 };
         // of each the least bad that there can be
         let worst = [-1.0, f64::INFINITY, 0.0, 0.0, -1.0, 0.0].map(none);
-        Found { worst, weight: none(1.0), gains: 0, impacts: 0, settlings: 0, held: 0.0, duration: 0.0, evaluations: 0 }
+        Found { worst, weight: none(1.0), gains: 0, impacts: 0, settlings: 0, held: 0.0, duration: 0.0 }
     }
 
     /// Sees `value` of assumption `which` at `time` (s). Of values that are the same but for rounding the first counts.
@@ -461,7 +484,6 @@ impl Watch for Validity {
                 arcs.skip_middle();
             }
         }
-        self.found.evaluations += arcs.evaluations;
     }
 
     fn transition(&mut self, transition: &Transition) {

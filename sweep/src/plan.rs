@@ -349,7 +349,9 @@ fn is_there_twice(what: &str) -> String {
 fn check_names<'a>(kind: &str, names: impl Iterator<Item = &'a str>) -> Result<(), Refused> {
     let mut seen = HashSet::new();
     let repeated = { names }.find(|name| !seen.insert(*name));
-    ensure(repeated.is_none(), || format!("two {kind} have the name {:?}: rename one", repeated.unwrap_or_default()))
+    ensure(repeated.is_none(), || {
+        format!("two {kind} have the name {:?}: rename one or leave one out", repeated.unwrap_or_default())
+    })
 }
 
 /// Finite numbers, one or more, each of them once.

@@ -93,7 +93,8 @@ impl Fields {
     pub fn structure(&self) -> Result<Structure, String> {
         let preset = self.text("preset").unwrap_or(PRESETS[0].0);
         let found = PRESETS.iter().find(|(name, _)| *name == preset);
-        let (_, base) = found.ok_or_else(|| format!("preset = {preset:?}: mcmanus and evison are known"))?;
+        let known = || PRESETS.map(|of| of.0).join(", ");
+        let (_, base) = found.ok_or_else(|| format!("preset = {preset:?} is unknown; these are known: {}", known()))?;
         let mut given = Given::default();
         for name in names() {
             if let Some(value) = self.given(name) {

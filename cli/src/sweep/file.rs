@@ -302,9 +302,9 @@ impl StructureGrid {
         match (&self.preset, &self.parameters) {
             (Some(preset), None) => {
                 let found = PRESETS.iter().find(|(name, _)| name == preset);
-                found
-                    .map(|(_, parameters)| *parameters)
-                    .with_context(|| format!("preset = {preset:?}: mcmanus and evison are known"))
+                found.map(|(_, parameters)| *parameters).with_context(|| {
+                    format!("preset = {preset:?} is unknown; these are known: {}", PRESETS.map(|of| of.0).join(", "))
+                })
             }
             (None, Some(given)) => Ok(given.parameters()?),
             _ => bail!("give either preset or parameters"),
