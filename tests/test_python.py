@@ -164,6 +164,8 @@ def test_what_is_refused_has_the_command_lines_text(said, arguments, options):
     (lambda ground: fr.sweep([], ground), 'structures "structures" is empty: give one or more'),
     (lambda ground: fr.sweep(fr.Structure(preset="mcmanus"), [ground, ground]), "two ground motions have the name"),
     (lambda ground: fr.sweep(fr.Structure(preset="mcmanus"), ground, intensity="PGD"), "intensity = 'PGD' is unknown"),
+    (lambda ground: fr.sweep(fr.Structure(preset="mcmanus"), ground, path="/dev/full"), "/dev/full: rows need a file"),
+    (lambda ground: fr.advise(fr.Structure(preset="mcmanus"), ground, within=5), "within = 5 is out of range"),
 ])
 def test_what_is_refused_is_named(ground, refused, text):
     with pytest.raises(ValueError) as error:
@@ -177,6 +179,13 @@ def test_a_file_says_what_would_help(tmp_path):
         fr.Record.read(tmp_path / "column.txt")
     with pytest.warns(UserWarning, match="a step of 0.5 s: is the time in another unit"):
         fr.Record.read(tmp_path / "column.txt", dt=0.5)
+    with pytest.raises(ValueError, match="this would overwrite the input"):
+        fr.export(tmp_path / "column.txt", fr.Structure(preset="mcmanus"), record=tmp_path / "column.txt")
+
+
+def test_a_tendon_has_the_peak_of_its_force(ground):
+    peaks = fr.simulate(fr.Structure(preset="mcmanus", P_0=500, k_t=2e5), ground).peaks
+    assert peaks["P_t"].value == pytest.approx(500 + 4e5 * 0.285 * np.sin(peaks["theta"].value / 2), rel=1e-12)
 
 
 def test_threads_and_processes_give_the_same_bits(run, ground):

@@ -3,6 +3,7 @@
 use crate::arguments::{conditions, one_of, refused};
 use crate::record::Record;
 use crate::structure::Structure;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rocking::engine::DEFAULT_TOLERANCE;
@@ -66,6 +67,10 @@ pub fn advise(
     duration: Option<f64>,
     initial: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Advice> {
+    if !(within > 0.0 && within < 1.0) {
+        let needed = "more than 0 and less than 1 is needed";
+        return Err(PyValueError::new_err(format!("within = {within} is out of range: {needed}")));
+    }
     let criterion = |name: &String| one_of("of", name, Criterion::ALL.map(|of| (of.name(), of)));
     let criteria: Vec<_> = match of {
         Some(names) => names.iter().map(criterion).collect::<PyResult<_>>()?,

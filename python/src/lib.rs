@@ -13,9 +13,9 @@ use arguments::{one_of, refused};
 use fmu_export::{Library, Version};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use rocking_cli::output_files::OutputFiles;
 use rocking_records::{csv, vertical_csv};
 use std::ffi::OsString;
-use std::fs;
 use std::path::PathBuf;
 
 /// The engine of `flexible_rocking`, which has what is here under its own names.
@@ -80,11 +80,18 @@ fn export(
         return Err(PyValueError::new_err(format!("record {}: {needed}", other + 2)));
     }
     let written = py.detach(|| -> anyhow::Result<()> {
+        let mut files = OutputFiles::of_inputs([library.as_path()]);
+        for packed in &records {
+            if let Packed::File(path) = packed {
+                files.add_input(path);
+            }
+        }
+        let target = files.create(&target)?;
         let vertical = records.first().and_then(vertical);
         let records = records.iter().map(content).collect::<Result<_, rocking_records::RecordError>>()?;
         let (libraries, name) = (Library::read(&library)?, name.parse()?);
         let (_, archive) = fmu_export::export(version, &name, &structure.0, records, vertical, &libraries)?;
-        Ok(fs::write(target, archive)?)
+        target.write(&archive)
     });
     written.map_err(refused)
 }

@@ -8,11 +8,11 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat, PyInt};
 use rocking::estimates::intensity::peak_velocity;
 use rocking::estimates::response_spectrum::spectral_acceleration;
+use rocking_cli::output_files::OutputFiles;
 use rocking_cli::record_args::RecordOptions;
 use rocking_records::{Column, Unit, csv};
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
 use std::ffi::CString;
-use std::fs;
 use std::path::PathBuf;
 
 /// A ground motion: the acceleration of the ground at two instants or more, linear between them.
@@ -175,7 +175,7 @@ impl Record {
 
     /// Writes the horizontal component to `file` as a table that is read without options: time[s], a_g[m/s2], all digits.
     fn write(&self, file: PathBuf) -> PyResult<()> {
-        Ok(fs::write(file, csv(&self.0))?)
+        OutputFiles::default().create(&file).and_then(|file| file.write(csv(&self.0).as_bytes())).map_err(refused)
     }
 
     fn __len__(&self) -> usize {

@@ -12,7 +12,7 @@ use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::engine::piece::Sample;
 use rocking::mechanics::state::{COMPONENTS, INITIAL_VALUES};
 use rocking::run::fall::Found;
-use rocking::run::peaks::{self, PEAKS};
+use rocking::run::peaks;
 use rocking::run::validity::{ASSUMPTIONS, Limits};
 use rocking::run::{End, Ending};
 use rocking_cli::summary::Summary;
@@ -156,14 +156,14 @@ impl Run {
     }
 
     /// The exact largest magnitudes by name, each a Peak: a_g (m/s2), theta (rad), u (m), delta_t (m, Eq 26), uplift
-    /// (m, Eq 25), a_t (m/s2, Eq 27), V_t (N, Eqs 2, 23), M_t (N.m, Eqs 3, 24). Of a structure that overturns those
-    /// before it falls.
+    /// (m, Eq 25), a_t (m/s2, Eq 27), V_t (N, Eqs 2, 23), M_t (N.m, Eqs 3, 24), and with a tendon its force P_t (N). Of a
+    /// structure that overturns those before it falls.
     #[getter]
     fn peaks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let named = PyDict::new(py);
         let peak = |peaks::Peak { magnitude: value, time }, unit| Peak { value, time, unit };
         named.set_item("a_g", Py::new(py, peak(self.found.ground, "m/s2"))?)?;
-        for of in &PEAKS {
+        for of in peaks::of(&self.structure.get().0) {
             named.set_item(of.name, Py::new(py, peak((of.of)(&self.found.peaks), of.unit))?)?;
         }
         Ok(named)

@@ -77,6 +77,7 @@ impl RowFile {
         parse: impl Fn(&StringRecord) -> anyhow::Result<T>,
     ) -> anyhow::Result<(RowFile, Known<T>)> {
         let open = || {
+            ensure!(path.is_file() || !path.exists(), "rows need a file, which is read again: name one");
             let mut file = File::options().read(true).write(true).create(true).truncate(false).open(path)?;
             match file.try_lock() {
                 Ok(()) => {}
