@@ -56,12 +56,13 @@ mod tests {
         ACCELERATION TIME SERIES IN UNITS OF G\n";
 
     /// The counts of every header variant, and what they say.
-    const COUNTS: [(&str, usize, f64); 8] = [
+    const COUNTS: [(&str, usize, f64); 9] = [
         ("NPTS=   3, DT=   .0100 SEC,                    ", 3, 0.01),
         ("NPTS=     3  DT=  0.0050 SEC,", 3, 0.005),
         ("NPTS= 3 DT= 0.0050000", 3, 0.005),
         ("NPTS=3,DT=.02SEC", 3, 0.02),
         ("  3    0.0100    NPTS, DT", 3, 0.01),
+        ("3, .5 NPTS, DT", 3, 0.5),
         ("npts=   3, dt=   5.0e-3 sec", 3, 0.005),
         ("\tNPTS =\t3 ,\tDT =\t1D-2\tSEC", 3, 0.01),
         ("NPTS= 3, DT= .01 SEC, UNITS=G", 3, 0.01),

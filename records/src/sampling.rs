@@ -25,8 +25,9 @@ impl Sampling {
             let is_value = |letter: char| letter.is_ascii_digit() || "+-.".contains(letter);
             after.first()?.starts_with(is_value).then_some(after)
         };
-        let (npts, dt) = match words.as_slice() {
-            [npts, _, "NPTS", "DT", ..] | [npts, _, "NPTS", ",", "DT", ..] => (Some(*npts), Some(&words[1..2])),
+        let without_commas: Vec<_> = words.iter().copied().filter(|word| *word != ",").collect();
+        let (npts, dt) = match without_commas.as_slice() {
+            [npts, dt, "NPTS", "DT", ..] => (Some(*npts), Some(std::slice::from_ref(dt))),
             _ => (after("NPTS").map(|words| words[0]), after("DT")),
         };
         let stated = npts.map(count).transpose().and_then(|npts| Ok((npts, dt.map(step).transpose()?)));

@@ -532,7 +532,7 @@ mod tests {
             ("0 1\n1 2 3\n", "2: 3 column(s) instead of 2 as on line 1"),
             ("0;1\n0,5;1.234,5\n", "2: the acceleration \"1.234,5\" is not a number"),
             ("0,O.1\n.5,1\n1,2\n", "1: \"0,O.1\" is neither numbers nor text: correct it, or write # before it"),
-            ("5,NPTS,DT\n1\n2\n", "1: DT = \",\" must be a number of seconds greater than 0"),
+            ("5,NPTS,DT\n1\n2\n", "2: no column has times: the time between samples is not known"),
             ("DT=0.005 min\n1\n2\n", "1: DT = \"0.005 MIN\" must be a number of seconds greater than 0"),
             (
                 "DT=0.02\nt,a\n0,1\n.01,2\n.02,3\n",
