@@ -18,6 +18,8 @@ pub struct OutputFiles {
 /// A file that is going to be written, once all of it is known.
 pub struct OutputFile {
     path: PathBuf,
+    /// Where it is or will be.
+    target: PathBuf,
 }
 
 impl OutputFiles {
@@ -40,8 +42,8 @@ impl OutputFiles {
             bail!("{shown}: this would overwrite the input {}; name another file", input.display());
         }
         ensure!(!self.outputs.contains(&target), "{shown}: something else is written there as well; name another file");
-        self.outputs.push(target);
-        Ok(OutputFile { path: path.into() })
+        self.outputs.push(target.clone());
+        Ok(OutputFile { path: path.into(), target })
     }
 }
 
@@ -65,7 +67,7 @@ fn folder_of(path: &Path) -> &Path {
 impl OutputFile {
     /// Standard output.
     pub fn standard_output() -> OutputFile {
-        OutputFile { path: "-".into() }
+        OutputFile { path: "-".into(), target: "-".into() }
     }
 
     /// Writes all of it.
@@ -76,7 +78,7 @@ impl OutputFile {
         }
         let written = match fs::metadata(&self.path) {
             Ok(there) if !there.is_file() => fs::write(&self.path, content), // a device or a pipe
-            _ => replace(&self.path, content),
+            _ => replace(&self.target, content),
         };
         written.with_context(|| format!("{} cannot be written", self.path.display()))
     }
@@ -93,13 +95,12 @@ impl OutputFile {
 }
 
 /// What is there stays until a file beside it is whole, with its permissions, and takes its place: a full disk loses nothing.
-fn replace(path: &Path, content: &[u8]) -> io::Result<()> {
-    let target = path.canonicalize().unwrap_or_else(|_| path.into());
+fn replace(target: &Path, content: &[u8]) -> io::Result<()> {
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)] // on Windows the folder decides
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-    let mut file = builder.prefix(".rocking-fmu-").tempfile_in(folder_of(&target))?;
-    match File::options().write(true).open(&target) {
+    let mut file = builder.prefix(".rocking-fmu-").tempfile_in(folder_of(target))?;
+    match File::options().write(true).open(target) {
         Ok(there) => file.as_file().set_permissions(there.metadata()?.permissions())?,
         Err(error) if error.kind() == io::ErrorKind::NotFound => {}
         Err(error) => return Err(error),

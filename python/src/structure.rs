@@ -23,8 +23,8 @@ use rocking_cli::{describe, pushover};
 /// zeta_fc, c_ratio (1), r, g (m/s2, 9.81); the values in brackets are what they are if they are left out. In the place
 /// of a parameter: period_fc (s) for f_fc, weight and weight0 (kN) for m and m0, width (m) for B, alpha_cg (rad) for H,
 /// or for B where H is given, p_l (rad/s) for J0. Restraints, 0 without them: a tendon of P_0 (N) and k_t (N/m), and a
-/// pair of dissipators at xi_d (m) from the middle, viscous c_d (N.s/m) or elastoplastic k_d (N/m) and F_y (N). With preset, "mcmanus" or "evison", the specimen of the paper with
-/// these numbers in the place of its own.
+/// pair of dissipators at xi_d (m) from the middle, viscous c_d (N.s/m) or elastoplastic k_d (N/m) and F_y (N). With
+/// preset, "mcmanus" or "evison", the specimen of the paper with these numbers in the place of its own.
 ///
 /// What follows from them is an attribute, too: alpha_cg, p_l, chi, u_cr, f_u, ...; `parameters` and `derived` have all
 /// of them, print(structure) shows them with units and equation numbers. A structure cannot be changed; `replace` makes

@@ -1,4 +1,5 @@
 //! A record as tables that are read without options; their numbers read back to the same bits.
+
 use super::Unit;
 use rocking::run::record::Record;
 

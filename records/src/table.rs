@@ -190,11 +190,13 @@ impl<'a> Table<'a> {
         if let Some(uneven) = &self.uneven {
             return Err(uneven.clone());
         }
-        let time = match (self.headed_time(), self.check_first()) {
-            (Some(headed), _) => Some(headed),
-            (None, Ok(())) => Some((0, TimeUnit::Unstated)),
-            (None, Err(_)) if how.dt.or(self.stated.dt).is_some() => None,
-            (None, Err(no_times)) => return Err(no_times),
+        let time = match self.headed_time() {
+            None => match self.check_first() {
+                Ok(()) => Some((0, TimeUnit::Unstated)),
+                Err(_) if how.dt.or(self.stated.dt).is_some() => None,
+                Err(no_times) => return Err(no_times),
+            },
+            headed => headed,
         };
         let is_time = |column: usize| time.is_some_and(|(time, _)| column == time);
         let left: Vec<_> = (0..self.count).filter(|column| !is_time(*column)).collect();

@@ -27,6 +27,12 @@ pub struct Ramp {
 }
 
 impl Ramp {
+    /// From the acceleration `from` to `to` (m/s²) within `duration` (s).
+    #[inline(always)] // for each sample of a run
+    pub fn between(from: f64, to: f64, duration: f64) -> Ramp {
+        Ramp { value: from, slope: (to - from) / duration }
+    }
+
     /// Its value `tau` seconds into the interval, m/s².
     pub fn at(self, tau: f64) -> f64 {
         self.value + self.slope * tau

@@ -269,12 +269,11 @@ impl GroundMotion<'_> {
         }
         let last = reached - 1;
         let step = self.time(reached) - self.time(last);
-        let line = |from: f64, to: f64| Ramp { value: from, slope: (to - from) / step };
-        let ground: LinearLoad = line(self.acceleration(last), self.acceleration(reached)).into();
+        let ground: LinearLoad = Ramp::between(self.acceleration(last), self.acceleration(reached), step).into();
         if self.record.vertical().is_none() {
             return ground;
         }
-        ground.and_upwards(line(self.vertical(last), self.vertical(reached)))
+        ground.and_upwards(Ramp::between(self.vertical(last), self.vertical(reached), step))
     }
 
     /// The ground accelerations from the last of `reached` samples to the next, as they are given from `elapsed` on.

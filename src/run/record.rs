@@ -229,7 +229,7 @@ impl Iterator for Segments<'_> {
             return Some(Segment { start, end, ground: LinearLoad::default() });
         };
         (self.reached, self.time, self.a_g) = (reached + 1, time, a_g);
-        let mut ground = Ramp { value, slope: (a_g - value) / (time - start) }.into();
+        let mut ground = Ramp::between(value, a_g, time - start).into();
         if let Some(vertical) = &record.vertical {
             ground = and_upwards(ground, &vertical[reached - 1..=reached], time - start);
         }
@@ -240,7 +240,7 @@ impl Iterator for Segments<'_> {
 /// `ground` whose vertical acceleration goes from the first of these to the second within `duration` (s).
 #[cold]
 fn and_upwards(ground: LinearLoad, vertical: &[f64], duration: f64) -> LinearLoad {
-    ground.and_upwards(Ramp { value: vertical[0], slope: (vertical[1] - vertical[0]) / duration })
+    ground.and_upwards(Ramp::between(vertical[0], vertical[1], duration))
 }
 
 /// These samples with those that bring them to rest until `end` (s), where they end before.

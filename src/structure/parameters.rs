@@ -69,6 +69,11 @@ pub const PARAMETERS: [Quantity<Parameters>; 16] = [
 /// The specimens of the paper by name: a bridge pier (Table 2) and a shear wall (Table 1).
 pub const PRESETS: [(&str, Parameters); 2] = [("mcmanus", Parameters::MCMANUS), ("evison", Parameters::EVISON)];
 
+/// A name that is none of [`PRESETS`].
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("preset = {0:?} is unknown; these are known: {known}", known = PRESETS.map(|of| of.0).join(", "))]
+pub struct UnknownPreset(String);
+
 /// The slenderest structure accepted: H/B beyond it leaves 1 − χ (after Eq 13) without significant digits.
 pub const MAX_SLENDERNESS: f64 = 1e3;
 
@@ -125,6 +130,12 @@ impl Parameters {
         r: 0.99,
         ..Parameters::EVISON // as free to rock, under the same g
     };
+
+    /// The specimen of this name, one of [`PRESETS`].
+    pub fn preset(name: &str) -> Result<Parameters, UnknownPreset> {
+        let found = PRESETS.iter().find(|(known, _)| *known == name);
+        found.map(|(_, parameters)| *parameters).ok_or_else(|| UnknownPreset(name.to_owned()))
+    }
 
     /// Checks every parameter against [`PARAMETERS`] and the slenderness against [`MAX_SLENDERNESS`].
     pub fn check(&self) -> Result<(), ParameterError> {

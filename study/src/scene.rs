@@ -103,7 +103,7 @@ impl Scene {
     /// Ground acceleration over the interval `k`, from its start on.
     pub fn ramp(&self, k: usize) -> Ramp {
         let a_g = self.ground.acceleration();
-        Ramp { value: a_g[k], slope: (a_g[k + 1] - a_g[k]) / self.dt() }
+        Ramp::between(a_g[k], a_g[k + 1], self.dt())
     }
 
     /// The same scene with results at `cuts` instants between two samples.

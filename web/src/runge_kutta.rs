@@ -32,7 +32,7 @@ pub fn run(
     for i in 1..instants.len() {
         let (dt, parts) = (instants[i] - instants[i - 1], parts(i));
         let ramp = match i < times.len() {
-            true => Ramp { value: a[i - 1], slope: (a[i] - a[i - 1]) / dt },
+            true => Ramp::between(a[i - 1], a[i], dt),
             false => Ramp::default(),
         };
         let step = dt / parts;

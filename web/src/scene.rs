@@ -5,7 +5,7 @@ use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::{End, record::Record};
 use rocking::structure::natural_quantities::{Given, names};
 use rocking::structure::parameters::PRESETS;
-use rocking::{Detail, Run, State, Structure};
+use rocking::{Detail, Parameters, Run, State, Structure};
 use rocking_records::{Column, Reading, Source, Unit};
 use rocking_sweep::pulse::{Pulse, Shape};
 use rocking_sweep::synthetic;
@@ -92,16 +92,14 @@ impl Fields {
     /// The structure: a specimen with the numbers that are given in the place of its own.
     pub fn structure(&self) -> Result<Structure, String> {
         let preset = self.text("preset").unwrap_or(PRESETS[0].0);
-        let found = PRESETS.iter().find(|(name, _)| *name == preset);
-        let known = || PRESETS.map(|of| of.0).join(", ");
-        let (_, base) = found.ok_or_else(|| format!("preset = {preset:?} is unknown; these are known: {}", known()))?;
+        let base = Parameters::preset(preset).map_err(says)?;
         let mut given = Given::default();
         for name in names() {
             if let Some(value) = self.given(name) {
                 given.give(name, value?).map_err(says)?;
             }
         }
-        Structure::new(given.over(base).map_err(says)?).map_err(says)
+        Structure::new(given.over(&base).map_err(says)?).map_err(says)
     }
 
     /// The ground motion before it is scaled; `g` in m/s².

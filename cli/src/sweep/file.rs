@@ -5,7 +5,6 @@ use anyhow::{Context, anyhow, bail, ensure};
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::record::Record;
 use rocking::structure::natural_quantities::Given;
-use rocking::structure::parameters::PRESETS;
 use rocking::{Detail, Parameters, Structure, engine::DEFAULT_TOLERANCE};
 use rocking_records::{Column, Unit};
 use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map};
@@ -300,12 +299,7 @@ impl Values {
 impl StructureGrid {
     fn base(&self) -> anyhow::Result<Parameters> {
         match (&self.preset, &self.parameters) {
-            (Some(preset), None) => {
-                let found = PRESETS.iter().find(|(name, _)| name == preset);
-                found.map(|(_, parameters)| *parameters).with_context(|| {
-                    format!("preset = {preset:?} is unknown; these are known: {}", PRESETS.map(|of| of.0).join(", "))
-                })
-            }
+            (Some(preset), None) => Ok(Parameters::preset(preset)?),
             (None, Some(given)) => Ok(given.parameters()?),
             _ => bail!("give either preset or parameters"),
         }
