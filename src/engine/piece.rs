@@ -151,7 +151,7 @@ impl Piece<'_> {
     }
 
     /// The state `tau` seconds into it.
-    fn state_at(&self, tau: f64) -> State {
+    pub(crate) fn state_at(&self, tau: f64) -> State {
         if tau <= 0.0 {
             return self.before.state;
         }

@@ -193,6 +193,18 @@ impl Peaks {
         ThetaWatch { peaks: self }
     }
 
+    /// Looks for more of them in `piece` up to `tau` seconds after its start.
+    pub(super) fn see_until(&mut self, piece: &Piece, tau: f64) {
+        let arc = piece.arc.map(|arc| Arc { reach: tau / arc.span, ..arc.clone() });
+        let part = Piece { duration: tau, end: piece.state_at(tau), arc: arc.as_ref(), ..*piece };
+        for (at, state) in [(0.0, part.before.state), (tau, part.end)] {
+            self.see_instant(piece.before.time + at, &part.outputs(at, &state));
+        }
+        if tau > 0.0 {
+            self.look(&Measure::ALL, &part.whole(), HALVINGS);
+        }
+    }
+
     /// Looks for those of `measures` in `part`, where it may hold larger magnitudes; `halvings` are left.
     fn look(&mut self, measures: &[Measure], part: &Part, halvings: u32) {
         let start = part.piece.before.time + part.start.0;
@@ -299,10 +311,10 @@ struct Kept {
 }
 
 impl PeakWatch<'_> {
-    /// The peaks.
-    pub(super) fn end(mut self) -> Peaks {
+    /// Peaks of the pieces so far.
+    pub(super) fn so_far(&mut self) -> &Peaks {
         self.look_back();
-        *self.peaks
+        self.peaks
     }
 
     /// Looks at what has been kept, the latest first, which is often the largest.
