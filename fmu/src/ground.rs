@@ -56,7 +56,10 @@ impl GroundRecord {
     }
 
     /// The ground motion of both components; of `vertical` alone on ground that rests horizontally.
-    pub fn with_vertical(horizontal: Option<GroundRecord>, vertical: &GroundRecord) -> Result<GroundRecord, SamplesError> {
+    pub fn with_vertical(
+        horizontal: Option<GroundRecord>,
+        vertical: &GroundRecord,
+    ) -> Result<GroundRecord, SamplesError> {
         let (up, unit) = (&vertical.record, vertical.units[0]);
         let (record, units, of_horizontal) = match horizontal {
             Some(horizontal) => (horizontal.record, [horizontal.units[0], unit], horizontal.digest),

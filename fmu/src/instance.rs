@@ -182,6 +182,12 @@ impl Instance {
         Ok(self.now.model()?.engine.motion().time)
     }
 
+    /// What ends the simulation: the structure has overturned.
+    pub fn overturned(&mut self) -> Result<Failure, Failure> {
+        let model = self.now.model()?;
+        Ok(Failure::Overturned { time: model.engine.motion().time, fall: model.peaks.fall() })
+    }
+
     /// Whether the structure has overturned, which ends the simulation.
     pub fn has_overturned(&mut self) -> Result<bool, Failure> {
         Ok(self.now.model()?.has_overturned())

@@ -128,7 +128,8 @@ fn a_host_that_holds_samples_of_a_motion_is_warned_once() {
         host.log.take()
     };
     let quake = |step: i32| (0.3 * f64::from(step)).sin();
-    for still in [|_| 0.0, |_| 2.0, |step| if step < 3 { 0.0 } else { 1.0 }, |step| if step == 7 { -2.0 } else { 0.0 }] {
+    for still in [|_| 0.0, |_| 2.0, |step| if step < 3 { 0.0 } else { 1.0 }, |step| if step == 7 { -2.0 } else { 0.0 }]
+    {
         assert_eq!(warnings(&started(&[], &[]), still, false), []);
     }
     assert_eq!(warnings(&started(&["a_g_late"], &[]), quake, false), []);

@@ -58,7 +58,8 @@ mod tests {
                 format!("{},{}\n", 3.7 + time, scale * (TAU * time / 0.5).sin() * f64::from(time < 0.5))
             };
             let text: String = (0..4000).map(line).collect();
-            let ground = GroundRecord::from_bytes(Path::new("a.csv"), format!("t (s),a (g)\n{text}").as_bytes()).unwrap();
+            let ground =
+                GroundRecord::from_bytes(Path::new("a.csv"), format!("t (s),a (g)\n{text}").as_bytes()).unwrap();
             let DefaultExperiment { stop_time, step_size, .. } = default_experiment(&structure, Some(&ground));
             let record = ground.in_m_s2(9.81);
             let finish = Run::new(structure, &record).follow(&mut ()).unwrap();
