@@ -20,7 +20,7 @@ use rocking::{
     engine::DEFAULT_TOLERANCE,
     run::{
         LONGEST_REST, Run,
-        levels::{self, Comparison, Criterion, REFERENCE_TOLERANCE, Response, Verdict},
+        levels::{self, Comparison, Criterion, REFERENCE_TOLERANCE, RULE, Response, Verdict},
         peaks::PEAKS,
         validity::Limits,
     },
@@ -258,7 +258,7 @@ fn print_advice(
             "\nno level stays {limit}: use detail = nonlinear with a tolerance below {DEFAULT_TOLERANCE:e}"
         );
     };
-    write!(out, "\nuse detail = {}: of the cheapest levels {limit} the simplest", response.detail.name())?;
+    write!(out, "\nuse detail = {}: {RULE} {limit}", response.detail.name())?;
     match comparison.cost_of_auto() {
         Some(auto) if response.detail != Detail::Auto => {
             writeln!(out, ", at {:.2} times the cost of auto", response.cost() as f64 / auto)

@@ -84,9 +84,9 @@ enum Command {
     View(view::ViewArgs),
     /// Compare the levels of detail on a ground motion record, or free vibration, and recommend one
     ///
-    /// Runs every level and shows its error against `nonlinear` at the tolerance 1e-12, its cost, and which level is
-    /// the cheapest that stays within --within, the simplest where costs differ by less than a factor of 2; beside them
-    /// what the demand equations say without a time history.
+    /// Runs every level and shows its error against `nonlinear` at the tolerance 1e-12 and its cost. Names the cheapest
+    /// level whose errors stay within --within, or the simplest of equally cheap levels. Shows the demand equations,
+    /// which need no time history, in a row of their own.
     #[command(after_help = "Examples:
   rocking-fmu advise --record RSN77_SFERN_PUL164.AT2 --time-scale 0.2 --scale 1.45
   rocking-fmu advise --record RSN77_SFERN_PUL164.AT2 --within 10% --of theta,a_t

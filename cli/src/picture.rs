@@ -46,7 +46,7 @@ pub const SMALL: f64 = 11.0;
 
 /// Characters of a title, and of the line below it, that fit.
 const LONGEST_TITLE: usize = 90;
-const LONGEST_ABOUT: usize = 125;
+const LONGEST_ABOUT: usize = 140;
 
 /// Height of a title, pixels.
 pub const TITLE: u32 = 52;

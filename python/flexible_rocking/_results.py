@@ -47,7 +47,7 @@ class Estimate(dict[str, float]):
 
 
 def plot_run(run: "Run") -> "Figure":
-    """The histories of a run, with marks at its transitions."""
+    """The histories of a run, with marks at its transitions, and a dashed line from which the structure falls."""
     import numpy as np
     from matplotlib import pyplot
 
@@ -58,6 +58,8 @@ def plot_run(run: "Run") -> "Figure":
         axis.plot(response["time"], response[name], linewidth=0.8)
         axis.plot(instants, run.at(instants)[name], ".", markersize=3)
         axis.set(ylabel=f"{symbol} ({unit})", xlim=(run.start, run.end))
+        if run.fall is not None:
+            axis.axvline(run.fall, color="tab:purple", linestyle="--", linewidth=0.8)
     axes[-1].set(xlabel="time (s)")
-    figure.suptitle(run.record.title)
+    figure.suptitle(run.record.title if run.fall is None else f"{run.record.title}, falls from {run.fall:.6g} s on")
     return figure

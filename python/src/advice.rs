@@ -50,8 +50,8 @@ impl Advice {
     }
 }
 
-/// Runs every level of detail and says which is the cheapest whose errors stay `within` a part of the reference,
-/// `nonlinear` at the tolerance 1e-12.
+/// Runs every level of detail and names the cheapest level whose errors stay `within` a part of the reference,
+/// `nonlinear` at the tolerance 1e-12, or the simplest of equally cheap levels.
 ///
 /// of: what must stay within it, of "theta", "u", "a_t" (peaks) and "theta_history", "u_history", "a_t_history";
 /// without it all of them. duration and initial values as in `simulate`. Raises ValueError where the reference cannot

@@ -15,8 +15,8 @@ pub const REFERENCE_TOLERANCE: f64 = 1e-12;
 pub const SIMPLEST_FIRST: [Detail; 6] =
     [Detail::FixedBase, Detail::Rigid, Detail::Modal, Detail::Linear, Detail::Auto, Detail::Nonlinear];
 
-/// Costs within this factor of the least count as the same: the equations then decide.
-const SAME_COST: f64 = 2.0;
+/// Rule by which [`Comparison::recommended`] chooses among the levels whose errors are small enough.
+pub const RULE: &str = "the cheapest level, or the simplest of equally cheap levels,";
 
 /// Levels go on together, from sample to sample, but no longer than this over ω_u at once: of what lies between nothing is kept.
 const LONGEST_STRETCH: f64 = 2000.0;
@@ -284,12 +284,11 @@ impl Comparison {
         auto.map(|auto| auto.response.cost() as f64)
     }
 
-    /// The cheapest level whose errors by every one of `criteria` are at most `within`; of those of about the same cost
-    /// the one of the fewest equations.
+    /// Returns the cheapest level whose errors by every one of `criteria` are at most `within`; the one of the fewest
+    /// equations if several levels have the least cost.
     pub fn recommended(&self, within: f64, criteria: &[Criterion]) -> Option<&Verdict> {
-        let admitted = || self.verdicts.iter().filter(|verdict| verdict.is_within(within, criteria));
-        let least = admitted().map(|verdict| verdict.response.cost()).min()? as f64;
-        admitted().find(|verdict| verdict.response.cost() as f64 <= SAME_COST * least)
+        let admitted = self.verdicts.iter().filter(|verdict| verdict.is_within(within, criteria));
+        admitted.min_by_key(|verdict| verdict.response.cost()) // the first of several
     }
 }
 
@@ -306,7 +305,7 @@ mod tests {
     }
 
     #[test]
-    fn the_cheapest_level_within_the_limit_is_advised_and_of_equals_the_simplest() {
+    fn the_cheapest_level_within_the_limit_is_advised_or_the_simplest_of_equally_cheap_ones() {
         let mut comparison = Comparison {
             reference: verdict(Detail::Nonlinear, [0.0; 6], 100).response,
             verdicts: vec![
@@ -323,11 +322,13 @@ mod tests {
         let advice = |of: &Comparison, within: f64, criteria: &[Criterion]| {
             of.recommended(within, criteria).map(|verdict| verdict.response.detail)
         };
-        assert_eq!(advice(&comparison, 0.1, &all), Some(Detail::Modal), "1.45 times the least cost counts as the same");
+        assert_eq!(advice(&comparison, 0.1, &all), Some(Detail::Linear), "linear beats modal in both cost and error");
+        assert_eq!(advice(&comparison, 0.015, &[Criterion::Theta]), Some(Detail::Auto), "auto beats rigid in both");
+        assert_eq!(advice(&comparison, 0.001, &all), Some(Detail::Auto));
+        comparison.verdicts[2].response.work.evaluations = 20;
+        assert_eq!(advice(&comparison, 0.1, &all), Some(Detail::Modal), "modal costs as much as linear");
         assert_eq!(advice(&comparison, 0.05, &all), Some(Detail::Linear), "the history of u by modal is off by 6 %");
         assert_eq!(advice(&comparison, 0.05, &[Criterion::Theta, Criterion::At]), Some(Detail::Modal));
-        assert_eq!(advice(&comparison, 0.015, &[Criterion::Theta]), Some(Detail::Rigid));
-        assert_eq!(advice(&comparison, 0.001, &all), Some(Detail::Auto));
         for wrong_or_unsure in [Some(false), None] {
             comparison.verdicts[3].is_right_about_overturning = wrong_or_unsure;
             assert_eq!(advice(&comparison, 0.05, &all), Some(Detail::Auto));

@@ -290,7 +290,7 @@
     );
   }
 
-  function drawLevels({ levels, advised, refused }) {
+  function drawLevels({ levels, advised, rule, refused }) {
     const body = at("levels").tBodies[0];
     body.replaceChildren(
       ...levels.map(({ detail, errors, overturns, cost }) => {
@@ -311,7 +311,7 @@
       }),
       ...refused.map(([detail, why]) => line([detail, why])),
     );
-    at("advice").textContent = advised ? `Use ${advised}: the cheapest within 5 % in all peaks and histories.` : "No level is within 5 %.";
+    at("advice").textContent = advised ? `Use ${advised}: ${rule} within 5 % in all peaks and histories.` : "No level is within 5 %.";
   }
   at("pin").addEventListener("click", () => {
     pinned = pinned ? undefined : motion;

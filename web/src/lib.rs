@@ -8,7 +8,7 @@ mod scene;
 use fmu_export::{Library, ModelName, Version};
 use rocking::engine::piece::Sample;
 use rocking::levels::detail::Detail;
-use rocking::run::levels::{Criterion, REFERENCE_TOLERANCE, Verdict, compare, relative};
+use rocking::run::levels::{Criterion, REFERENCE_TOLERANCE, RULE, Verdict, compare, relative};
 use rocking::run::validity::{self, ASSUMPTIONS, Limits};
 use rocking::run::{End, RunError};
 use rocking::structure::DERIVED;
@@ -169,7 +169,7 @@ impl Explorer {
         };
         let refused = |(detail, error): &(Detail, RunError)| json!([detail.name(), error.to_string()]);
         Ok(json!({
-            "advised": advised,
+            "advised": advised, "rule": RULE,
             "levels": compared.verdicts.iter().map(row).collect::<Vec<_>>(),
             "refused": compared.refused.iter().map(refused).collect::<Vec<_>>(),
         })

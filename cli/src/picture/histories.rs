@@ -1,6 +1,6 @@
 //! Panels over one axis of time, and marks at the instants of transitions.
 
-use super::{Area, SMALL, axes, chart, colour, dot, line, px, rounded, stroke, words, words_before};
+use super::{Area, SMALL, axes, chart, colour, dashed, dot, line, px, rounded, stroke, words, words_before};
 use plotters::prelude::*;
 use rocking::{TransitionKind, run::peaks::Peak};
 use std::ops::Range;
@@ -49,6 +49,8 @@ pub struct Histories {
     pub transitions: Vec<(f64, TransitionKind)>,
     /// From and to, s.
     pub time: Range<f64>,
+    /// Instant (s) from which the structure falls: a dashed line.
+    pub fall: Option<f64>,
 }
 
 impl Panel {
@@ -99,6 +101,9 @@ impl Histories {
         let mut chart = chart(area, NO_NUMBERS).build_cartesian_2d(self.time.clone(), -end..end)?;
         axes(&mut chart, ["", name], [10, 5])?;
         chart.draw_series([PathElement::new(points.clone(), line(*colour))])?;
+        if let Some(fall) = self.fall {
+            dashed(&mut chart, &[(fall, -end), (fall, end)], colour::PURPLE)?;
+        }
         if let Some((time, value, peak)) = peak {
             chart.draw_series([dot((*time, *value), 3.0, colour::INK)])?;
             let is_late = *time > self.time.start + 0.85 * (self.time.end - self.time.start);

@@ -6,6 +6,7 @@ use crate::picture::{
 };
 use crate::quantities::in_readable_unit;
 use crate::significant::short;
+use crate::summary::instant;
 use anyhow::Context;
 use rocking::{
     Parameters, Run, Structure,
@@ -30,6 +31,7 @@ pub fn draw(picture: Picture, run: &Run) -> anyhow::Result<()> {
         panels: panels(run, &curve),
         transitions: curve.transitions.iter().map(|at| (at.time, at.kind)).collect(),
         time: first.time..curve.found.finish.motion.time,
+        fall: curve.found.fall,
     };
     picture.draw((WIDTH, TITLE + histories.height()), |area| {
         histories.draw(&titled(area, run.ground.title(), &about(&run.structure, &curve))?)
@@ -57,10 +59,11 @@ fn panels(run: &Run, curve: &Curve) -> Vec<Panel> {
 fn about(structure: &Structure, curve: &Curve) -> String {
     let &Parameters { m, H, B, f_fc, .. } = structure.parameters();
     let [m, H, base, f_fc] = [m, H, 2.0 * B, f_fc].map(short);
-    let end = match curve.found.finish.ending {
-        Ending::Overturned => ", overturned",
-        Ending::StillRocking => ", still rocking",
-        Ending::AtRest | Ending::AtTime => "",
+    let end = match (curve.found.finish.ending, curve.found.fall) {
+        (_, Some(fall)) => format!(", falls from {} s on, peaks until then", instant(fall)),
+        (Ending::Overturned, None) => ", overturned".into(),
+        (Ending::StillRocking, None) => ", still rocking".into(),
+        (Ending::AtRest | Ending::AtTime, None) => String::new(),
     };
     let count = curve.transitions.len();
     format!("{m} kg at {H} m on a base {base} m wide, {f_fc} Hz in full contact; {count} transitions{end}")
