@@ -213,7 +213,7 @@ fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Level> {
             evaluations: response.work.evaluations,
             cost_of_auto: auto.map(|auto| Number(response.cost() as f64 / auto)),
             advised,
-            peaks: PEAKS.iter().map(|of| (of.name, (of.of)(&response.peaks).magnitude)).collect(),
+            peaks: PEAKS.iter().map(|of| (of.name, of.of(&response.peaks).magnitude)).collect(),
         }
     };
     let of_verdict = |level, Verdict { response, errors, is_right_about_overturning }: &Verdict| {

@@ -122,7 +122,7 @@ fn any_step_meets_every_sample() {
                 assert_close(&shown, step_through(&host, steps).last().unwrap(), tolerance);
                 assert_eq!(host.get("record_duration"), duration);
                 for peaking in &PEAKS {
-                    let peak = (peaking.of)(&expected);
+                    let peak = peaking.of(&expected);
                     let [found, time] = ["", "t_"].map(|start| host.get(&format!("{start}{}_max", peaking.name)));
                     assert_relative_eq!(found, peak.magnitude, max_relative = tolerance);
                     assert_relative_eq!(time, peak.time - record.start(), max_relative = 1e-9, epsilon = 1e-9);
@@ -223,8 +223,8 @@ fn what_overturns_has_the_peaks_of_a_run_before_its_fall() {
         let step = 10.0 / f64::from(steps);
         let last = (0..steps).map(|at| host.step(f64::from(at) * step, step)).find(|status| *status != OK);
         assert_eq!((last, host.try_boolean("overturned")), (Some(DISCARD), Ok(1)));
-        for Peaking { name, of, .. } in PEAKS {
-            let peak = of(&found.peaks);
+        for peaking in &PEAKS {
+            let (name, peak) = (peaking.name, peaking.of(&found.peaks));
             assert_relative_eq!(host.get(&format!("{name}_max")), peak.magnitude, max_relative = 1e-8);
             assert_relative_eq!(host.get(&format!("t_{name}_max")), peak.time, max_relative = 1e-6);
         }

@@ -275,7 +275,7 @@ mod tests {
     use crate::levels::full_contact;
     use crate::levels::nonlinear;
     use crate::mechanics::load::Load;
-    use crate::{Engine, Parameters, Reactions, Side};
+    use crate::{Engine, LinearLoad, Parameters, Reactions, Side};
     use approx::assert_relative_eq;
 
     /// Eq 27 with ü and θ̈ from Eqs 5 and 6 is what the state alone gives, and Eq 1 in full contact.

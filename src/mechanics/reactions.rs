@@ -152,13 +152,7 @@ impl Reactions {
 
     /// The pulls of the `ties` on the ground at this state: up, to the right, and their moment about the middle of the base, which
     /// is the moment of full contact.
-    pub(crate) fn pulls(
-        structure: &Structure,
-        side: Side,
-        angles: Angles,
-        state: &State,
-        ties: &[Tie; 3],
-    ) -> [f64; 3] {
+    pub(crate) fn pulls(structure: &Structure, side: Side, angles: Angles, state: &State, ties: &[Tie; 3]) -> [f64; 3] {
         let chord = angles.chord(state.theta, state.theta_dot);
         let (sin, cos) = if angles == Angles::Any { libm::sincos(state.theta / 2.0) } else { (0.0, 1.0) };
         let middle = side.sign() * structure.parameters().B;
@@ -211,7 +205,8 @@ mod tests {
         let state = State { u: 3e-3, u_dot: 0.2, theta: -0.3, theta_dot: 0.8 };
         let (u_ddot, theta_ddot, load) = (-5.0, 2.0, Load { a_g: 3.0, F_t: 250.0, a_v: -1.5 });
         let phase = Phase::Rocking(Side::Left);
-        let twice = |value, rate, second| Dual { value: Dual { value, rate }, rate: Dual { value: rate, rate: second } };
+        let twice =
+            |value, rate, second| Dual { value: Dual { value, rate }, rate: Dual { value: rate, rate: second } };
         let theta_dot = Dual { value: state.theta_dot, rate: theta_ddot };
         let plain = Instant::of(&structure, phase, &state, load);
         let none = || Dual::constant(0.0);

@@ -264,7 +264,7 @@ mod tests {
             assert!((stepped.fall().unwrap() - instant).abs() < 1e-9);
             for peaking in &PEAKS {
                 let [expected, one_pass, stepped] =
-                    [&until, peaks, stepped.peaks()].map(|peaks| (peaking.of)(peaks).magnitude);
+                    [&until, peaks, stepped.peaks()].map(|peaks| peaking.of(peaks).magnitude);
                 assert!((one_pass - expected).abs() <= 1e-12 * expected, "{detail:?} {}", peaking.name);
                 assert!((stepped - expected).abs() <= 1e-8 * expected, "{detail:?} {}", peaking.name);
             }

@@ -231,7 +231,7 @@ impl Peaks {
             self.see_instant(piece.before.time + at, &part.outputs(at, &state));
         }
         if tau > 0.0 {
-            self.look(&Measure::ALL, &part.whole(), HALVINGS);
+            self.look(&Measure::SEARCHED, &part.whole(), HALVINGS);
         }
     }
 

@@ -25,12 +25,12 @@ use super::{Finish, Run, RunError};
 use crate::engine::piece::{Expansion, Piece, Sample, Watch};
 use crate::levels::level::Rates;
 use crate::mechanics::impact;
+use crate::numbers::Number;
 use crate::run::reaction_series::{self, extents};
-use crate::series::terms::Terms;
 use crate::series::bisection::last_where;
 use crate::series::extremes;
-use crate::numbers::Number;
 use crate::series::taylor::evaluate;
+use crate::series::terms::Terms;
 use crate::{Detail, Impulse, Motion, Parameters, Phase, Ramp, Reactions, Side, Structure, Transition, TransitionKind};
 use serde::{Deserialize, Serialize};
 

@@ -99,7 +99,13 @@ pub fn ranges<const N: usize>(row: impl Fn(usize) -> [f64; N], order: usize, rea
             }
         }
     }
-    std::array::from_fn(|i| Range { start: start[i], end: end[i], off_chord: off[i], slope: slope[i], turning: turning[i] })
+    std::array::from_fn(|i| Range {
+        start: start[i],
+        end: end[i],
+        off_chord: off[i],
+        slope: slope[i],
+        turning: turning[i],
+    })
 }
 
 /// How far Σ c_k σᵏ can leave the chord between its ends up to σ = `reach`.

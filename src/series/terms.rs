@@ -61,7 +61,9 @@ impl Terms {
     #[inline]
     fn plus(mut self, other: Terms) -> Terms {
         let (sum, added) = (&mut self.coefficients, &other.coefficients);
-        for (sum, added) in sum.as_chunks_mut::<4>().0.iter_mut().zip(added.as_chunks::<4>().0).take(other.degree / 4 + 1) {
+        for (sum, added) in
+            sum.as_chunks_mut::<4>().0.iter_mut().zip(added.as_chunks::<4>().0).take(other.degree / 4 + 1)
+        {
             for i in 0..4 {
                 sum[i] += added[i];
             }
