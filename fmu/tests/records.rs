@@ -5,7 +5,7 @@ mod host;
 
 use approx::assert_relative_eq;
 use host::*;
-use rocking::run::peaks::{PEAKS, Peaking};
+use rocking::run::peaks::PEAKS;
 use rocking::run::record::Record;
 use rocking::run::{End, Run};
 use rocking::{Detail, LinearLoad, Load, Parameters, Structure};
