@@ -9,9 +9,10 @@ use crate::engine::piece::{Expansion, Part, Piece, Watch};
 use crate::levels::detail::Model;
 use crate::levels::output_series::crude_bound_of;
 use crate::mechanics::outputs::Measure;
+use crate::mechanics::restraint::Angles;
 use crate::series::extremes::{self, Bound};
 use crate::series::taylor::Arc;
-use crate::{LinearLoad, Motion, Outputs, Phase, State, Structure, Transition};
+use crate::{Detail, LinearLoad, Motion, Outputs, Phase, State, Structure, Transition};
 use serde::{Deserialize, Serialize};
 
 /// A bound above the largest magnitude by no more than this part of it may be rounding.
@@ -71,6 +72,10 @@ pub struct Peaks {
     /// Prestress and stiffness of its tendon.
     P_0: f64,
     k_t: f64,
+    /// How the tendon elongates.
+    angles: Angles,
+    /// The start of the motion, s.
+    start: f64,
     /// Right-hand-side evaluations that it took to find them.
     evaluations: u64,
 }
@@ -108,16 +113,12 @@ pub fn of(structure: &Structure) -> impl Iterator<Item = &'static Peaking> + use
 }
 
 impl Peaks {
-    /// Of `structure`, nothing seen yet.
-    pub fn new(structure: &Structure) -> Peaks {
-        Peaks::since(0.0, structure)
-    }
-
-    /// Of `structure` from `time` (s) on, nothing seen yet: it is the instant of what stays 0.
-    pub fn since(time: f64, structure: &Structure) -> Peaks {
+    /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion. A peak that stays 0 has this instant.
+    pub fn since(time: f64, structure: &Structure, detail: Detail) -> Peaks {
         let &crate::Parameters { m, H, B, P_0, k_t, .. } = structure.parameters();
         let none = Peak { magnitude: 0.0, time };
-        Peaks { largest: [none; 4], ground: none, m, H, B, P_0, k_t, evaluations: 0 }
+        let angles = detail.angles();
+        Peaks { largest: [none; 4], ground: none, m, H, B, P_0, k_t, angles, start: time, evaluations: 0 }
     }
 
     /// The `outputs` at `time` (s), which need not be in a piece.
@@ -146,10 +147,11 @@ impl Peaks {
         Peak { magnitude: 2.0 * self.B * libm::sin(theta.magnitude), ..theta }
     }
 
-    /// Of the tendon's force P_t = P_0 + 2 k_t B sin(|θ|/2), N: with |θ|, too.
+    /// Of the tendon's force P_t = P_0 + k_t e, N: with |θ|, too, unless the force is constant.
     pub fn P_t(&self) -> Peak {
         let theta = self.theta();
-        Peak { magnitude: self.P_0 + 2.0 * self.k_t * self.B * libm::sin(0.5 * theta.magnitude), ..theta }
+        let magnitude = self.P_0 + self.k_t * self.B * self.angles.chord(theta.magnitude, 0.0).length;
+        Peak { magnitude, time: if self.k_t > 0.0 { theta.time } else { self.start } }
     }
 
     /// Of the acceleration of the top mass |a_t|, m/s² (Eq 27).
