@@ -53,6 +53,11 @@ const FAR: f64 = 1000.0;
 /// A step shorter than this part of 1/ω_u is not the doing of the step's end or of a transition: the solution ends.
 const STALLED: f64 = 1e-12;
 
+/// Whether `tolerance` is a relative tolerance of results.
+pub fn check_tolerance(tolerance: f64) -> Result<(), InitialStateError> {
+    if tolerance > 0.0 && tolerance < 1.0 { Ok(()) } else { Err(InitialStateError::Tolerance(tolerance)) }
+}
+
 /// How far an advance came.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Progress {
@@ -178,6 +183,7 @@ impl Engine {
         detail: Detail,
     ) -> Result<Engine, InitialStateError> {
         let phase = initial.initial_phase()?;
+        check_tolerance(tolerance)?;
         let local_error = (LOCAL_SHARE * tolerance).clamp(f64::EPSILON / 2.0, LARGEST_LOCAL_ERROR);
         detail.check_start(&initial)?;
         let restrained = structure.is_restrained();
@@ -360,6 +366,29 @@ impl Engine {
         let Some(bad) = LOADS.iter().find(|quantity| !(quantity.get)(&end).is_finite()) else { return Ok(()) };
         let [value, slope] = [&load.value, &load.slope].map(bad.get);
         Err(AdvanceError::Load { name: bad.name, unit: bad.unit, value, slope, interval })
+    }
+
+    /// Whether certainly no transition comes within `ahead` (s), a tiny time, under `load`.
+    pub fn goes_on_for(&self, ahead: f64, load: LinearLoad) -> bool {
+        let Engine { model, motion, .. } = self;
+        let &Motion { phase, state, ref dissipators, .. } = motion;
+        let way = |rate: f64| ahead * (rate.abs() + 1.0); // at most, whatever accelerates it
+        match phase {
+            Phase::FullContact => {
+                let start = model.start(state, dissipators, load, ahead);
+                state.u.abs() + way(state.u_dot) < model.level.least_displacement(&model.structure, &start)
+            }
+            Phase::Rocking(side) => {
+                let change = way(state.theta_dot);
+                let yields = |angles| {
+                    let [_, theta_ddot] = self.sample(load.value).accelerations();
+                    let changes = [change, way(2.0 * theta_ddot)];
+                    yielding::least_margin(&model.structure, side, angles, dissipators, &state, changes) <= 0.0
+                };
+                (change..FRAC_PI_2 - change).contains(&state.theta.abs()) && !model.level.ties().is_some_and(yields)
+            }
+            Phase::Overturned(_) => true,
+        }
     }
 
     /// Whether the structure, in full contact now, stays there while nothing acts on it.

@@ -203,7 +203,7 @@ impl<'a> Run<'a> {
 
     /// The exact peaks of all of the run, a fall too, and how it ended; those that are shown are [`Run::found`]'s.
     pub fn peaks(&self) -> Result<(Peaks, Finish), RunError> {
-        let mut peaks = Peaks::since(self.ground.start(), &self.structure);
+        let mut peaks = Peaks::since(self.ground.start(), &self.structure, self.detail);
         let finish = self.follow(&mut peaks.watch())?;
         Ok((peaks, finish))
     }

@@ -31,7 +31,7 @@ pub struct Structure {
     pub chi: f64,
     /// 1 − χ = (J_P − m H²)/J_P, free of cancellation.
     pub one_minus_chi: f64,
-    /// Critical displacement u_cr = g tan α_cg/ω_fc², m (after Eq 4).
+    /// Critical displacement u_cr = (g tan α_cg + P_0 B/(m H))/ω_fc², m (after Eq 4): uplift of a base at rest.
     pub u_cr: f64,
     /// Circular frequency of the vibration mode while rocking ω_u = ω_fc/√(1−χ), rad/s (before Eq 18).
     pub omega_u: f64,
@@ -74,7 +74,7 @@ pub const DERIVED: [Derived; 16] = [
     derived!("omega_fc" ["rad/s"] "circular frequency in full contact", "Eq 1", |s| s.omega_fc),
     derived!("k" ["N/m"] "stiffness of the strut", "Eq 1", |s| s.k),
     derived!("c_fc" ["N.s/m"] "viscous damping in full contact", "after Eq 1", |s| s.c_fc),
-    derived!("u_cr" ["m"] "critical displacement: uplift", "after Eq 4", |s| s.u_cr),
+    derived!("u_cr" ["m"] "critical displacement: uplift of a base at rest", "after Eq 4", |s| s.u_cr),
     derived!("c_u" ["N.s/m"] "viscous damping while rocking", "after Eq 6", |s| s.c_u),
     derived!("J_P" ["kg.m2"] "inertia about a pivot", "after Eq 8", |s| s.J_P),
     derived!("p_l" ["rad/s"] "frequency parameter", "before Eq 11", |s| s.p_l),
@@ -92,7 +92,7 @@ impl Structure {
     /// Derives a structure from its parameters, or says which parameter is refused and why.
     pub fn new(parameters: Parameters) -> Result<Structure, ParameterError> {
         parameters.check()?;
-        let Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, g, .. } = parameters;
+        let Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, g, P_0, .. } = parameters;
         let gamma = (m + m0) / m;
         let omega_fc = TAU * f_fc;
         let k = m * omega_fc * omega_fc;
@@ -115,7 +115,7 @@ impl Structure {
             tan_alpha_cg,
             chi,
             one_minus_chi,
-            u_cr: g * tan_alpha_cg / (omega_fc * omega_fc),
+            u_cr: (g * tan_alpha_cg + P_0 * B / (m * H)) / (omega_fc * omega_fc),
             omega_u: omega_fc / one_minus_chi.sqrt(),
             stiffness: omega_fc * omega_fc,
             damping_fc: c_fc / m,

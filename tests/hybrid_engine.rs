@@ -3,7 +3,9 @@
 use approx::assert_abs_diff_eq;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::run::peaks::Peaks;
-use rocking::{Engine, Motion, Parameters, Phase, Progress, Ramp, Side, State, Structure, Transition, TransitionKind};
+use rocking::{
+    Detail, Engine, Motion, Parameters, Phase, Progress, Ramp, Side, State, Structure, Transition, TransitionKind,
+};
 use std::f64::consts::FRAC_PI_2;
 
 const STILL: Ramp = Ramp { value: 0.0, slope: 0.0 };
@@ -75,7 +77,7 @@ fn evisons_free_vibration_has_its_impacts_and_its_peak() {
         assert_abs_diff_eq!(*impact, expected, epsilon = 1e-9);
     }
 
-    let mut peaks = Peaks::new(&structure);
+    let mut peaks = Peaks::since(0.0, &structure, Detail::Auto);
     evison_released(&structure).advance(2.0, STILL, &mut peaks.watch()).unwrap();
     assert_abs_diff_eq!(peaks.a_t().magnitude / 9.81, 0.92061, epsilon = 5e-6);
     assert_abs_diff_eq!(peaks.a_t().time, 1.3349, epsilon = 6e-5);

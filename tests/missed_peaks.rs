@@ -140,7 +140,7 @@ fn no_peak_is_missed() {
         let tolerance = [1e-12, 1e-9, 1e-6][rng.usize(0..3)];
         let start = || Engine::with_detail(structure, state, 0.0, tolerance, detail).unwrap();
         let mut engine = start();
-        let [mut peaks, mut alone] = [Peaks::new(&structure); 2];
+        let [mut peaks, mut alone] = [Peaks::since(0.0, &structure, detail); 2];
         let mut validity = Validity::new(&structure, Limits::default(), Found::since(0.0));
         let mut dense = Dense {
             parameters,

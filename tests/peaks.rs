@@ -91,7 +91,7 @@ fn the_first_of_equal_peaks_counts() {
         let crest = f64::atan2(u_dot, omega * u).rem_euclid(std::f64::consts::PI) / omega;
         for step in [1000.0, 333.3, 0.01, 7e-3] {
             let mut engine = Engine::new(structure, State { u, u_dot, ..State::default() }, 0.0, 1e-9).unwrap();
-            let (mut peaks, mut highest) = (Peaks::new(&structure), u.abs());
+            let (mut peaks, mut highest) = (Peaks::since(0.0, &structure, Detail::Auto), u.abs());
             for _ in 0..f64::ceil(100.0 / step).max(2.0) as u32 {
                 engine.advance(step, Ramp::default(), &mut peaks.watch()).unwrap();
                 highest = highest.max(engine.motion().state.u.abs());

@@ -143,10 +143,7 @@ fn print_reference(out: &mut impl Write, structure: &Structure, comparison: &Com
     if theta == 0.0 {
         return writeln!(out, "  the base never lifts off; the estimate is that of a base that does\n");
     }
-    if structure.is_restrained() {
-        return writeln!(out);
-    }
-    let f_r = significant(effective_frequency(structure, theta));
+    let Ok(f_r) = effective_frequency(structure, theta).map(significant) else { return writeln!(out) };
     writeln!(out, "  effective frequency of rocking at that theta: {f_r} Hz (Eq 14)\n")
 }
 

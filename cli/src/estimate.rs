@@ -43,14 +43,16 @@ pub fn run(args: &EstimateArgs) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let record = args.ground.load(structure.parameters().g)?;
     let Estimate { fixed_base, rocking, .. } = Estimate::new(&structure, record.as_ref(), args.amplification)?;
-    let frequency = |part: &f64| NamedValue {
-        name: format!("f_r({part})"),
-        value: effective_frequency(&structure, part * structure.tan_alpha_cg),
-        unit: "Hz",
-        equation: "Eq 14",
-        description: format!("effective frequency of rocking at theta = {part} tan(alpha_cg)"),
-    };
-    let lines: Vec<_> = fixed_base.into_iter().chain(rocking).chain(args.amplitudes.iter().map(frequency)).collect();
+    let mut lines: Vec<_> = fixed_base.into_iter().chain(rocking).collect();
+    for part in &args.amplitudes {
+        lines.push(NamedValue {
+            name: format!("f_r({part})"),
+            value: effective_frequency(&structure, part * structure.tan_alpha_cg)?,
+            unit: "Hz",
+            equation: "Eq 14",
+            description: format!("effective frequency of rocking at theta = {part} tan(alpha_cg)"),
+        });
+    }
     let (cause, g) = (Cause::new(&structure), structure.parameters().g);
     match &record {
         Some(record) => args.results.print_table(None, (record.title(), g), &cause.under(&args.ground, record), &lines),

@@ -2,7 +2,7 @@
 
 use crate::results::Number;
 use crate::significant::significant;
-use rocking::run::validity::{self, ASSUMPTIONS, Assumption, Found, LimitError, Limits, Worst};
+use rocking::run::validity::{self, ASSUMPTIONS, Assumption, EDGE_LOAD, Found, LimitError, Limits, WEIGHT, Worst};
 use rocking::{Detail, Structure};
 use serde::Serialize;
 
@@ -42,6 +42,7 @@ const LABELS: [&str; ASSUMPTIONS.len()] = [
     "friction of impacts, |I_h|/I_v",
     "pull of impacts, over I_v",
     "energy gained at an impact, over T",
+    "weight, (g + a_v)/g",
 ];
 
 /// One of [`ASSUMPTIONS`], for programs.
@@ -81,8 +82,9 @@ pub fn section(structure: &Structure, detail: Detail, found: &Found, limits: &Li
     let of_parameters = validity::of_parameters(structure, detail);
     let mut lines = vec!["what the model leaves out here".to_owned()];
     lines.extend(of_parameters.into_iter().map(|warning| format!("  {warning}")));
-    lines.extend(found.warning_of_flight().map(|warning| format!("  {warning}")));
-    lines.extend((0..ASSUMPTIONS.len()).map(|which| line(which, found, limits)));
+    let is_level = found.worst[WEIGHT].value == 1.0;
+    let shown = (0..ASSUMPTIONS.len()).filter(|which| *which != WEIGHT || !is_level);
+    lines.extend(shown.map(|which| line(which, found, limits)));
     lines.push(format!("  {:<34} {}", "energy gained at", of_impacts(found.gains, found.impacts)));
     let held = match found.settlings {
         0 => "0".to_owned(),
@@ -100,7 +102,11 @@ fn line(which: usize, found: &Found, limits: &Limits) -> String {
     let Worst { value, time, first_beyond, beyond } = found.worst[which];
     let assumption = &ASSUMPTIONS[which];
     let limit = (assumption.limit)(limits);
-    let side = if assumption.name == "R_v_min" { "below" } else { "above" };
+    let side = match which {
+        EDGE_LOAD => "below",
+        WEIGHT => "at or below",
+        _ => "above",
+    };
     let passed = match first_beyond {
         None => format!("never {side} {limit}"),
         Some(first) => {

@@ -58,6 +58,6 @@ fn the_errors_are_those_of_the_runs() {
     let estimate = Demand::new(&structure, S_a, 2.0).unwrap().a_t;
     let shown: f64 = row(&table, "estimate")[3].parse().unwrap();
     assert!((shown - 100.0 * (estimate / expected[2] - 1.0).abs()).abs() < 0.02 + 2e-3 * shown, "{shown}");
-    let f_r = effective_frequency(&structure, expected[0]);
+    let f_r = effective_frequency(&structure, expected[0]).unwrap();
     assert!(table.contains(&format!("at that theta: {f_r:.4}")), "{f_r}\n{table}");
 }

@@ -3,8 +3,7 @@
 use crate::model::Model;
 use crate::setup::Setup;
 use rocking::engine::{AdvanceError, Progress};
-use rocking::{Detail, LinearLoad, Motion, Phase, State, Watch};
-use std::f64::consts::FRAC_PI_2;
+use rocking::{LinearLoad, Watch};
 
 /// Part of the time, or of 1/p_l if that is more, that rounding can shift a transition by.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
@@ -29,11 +28,13 @@ impl Model {
         }
         let rounding = ROUNDING * until.abs().max(self.engine.structure().p_l.recip());
         if progress == Progress::Complete {
-            if self.goes_on_for(setup, rounding) {
+            let later = inputs.from(step);
+            let load = if self.may_move_vertically(setup) { self.load(setup, later) } else { later };
+            if self.engine.goes_on_for(rounding, load) {
                 return Ok(progress);
             }
             let motion = *self.engine.motion();
-            progress = self.follow(setup, rounding, &inputs.from(step), watch).unwrap_or(Progress::Complete);
+            progress = self.follow(setup, rounding, &later, watch).unwrap_or(Progress::Complete);
             if progress == Progress::Complete {
                 self.engine.set_motion(motion);
             }
@@ -43,19 +44,6 @@ impl Model {
             self.elapsed = elapsed.and(step);
         }
         Ok(progress)
-    }
-
-    /// Whether no transition can come within `ahead` (s), a tiny time.
-    fn goes_on_for(&self, setup: &Setup, ahead: f64) -> bool {
-        let &Motion { phase, state: State { u, u_dot, theta, theta_dot }, .. } = self.engine.motion();
-        let way = |rate: f64| ahead * (rate.abs() + 1.0); // at most, whatever accelerates it
-        match phase {
-            // without u the load alone decides
-            Phase::FullContact if setup.detail == Detail::Rigid => false,
-            Phase::FullContact => u.abs() + way(u_dot) < self.engine.structure().u_cr,
-            Phase::Rocking(_) => (way(theta_dot)..FRAC_PI_2 - way(theta_dot)).contains(&theta.abs()),
-            Phase::Overturned(_) => true,
-        }
     }
 
     /// Advances by `step` (s) under `inputs` and the record, with peaks and validity watched as `setup` says. If it

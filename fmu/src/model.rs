@@ -4,6 +4,7 @@
 use crate::failure::Failure;
 use crate::ground::{Digest, GroundRecord};
 use crate::setup::Setup;
+use rocking::engine::check_tolerance;
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::fall::FallingPeaks;
 use rocking::run::ground_motion::Elapsed;
@@ -59,9 +60,7 @@ impl Setup {
     pub(crate) fn check_experiment(&self) -> Result<(), Failure> {
         let &Setup { tolerance, start_time, stop_time, .. } = self;
         let refuse = |name, value, limit: &str| Failure::Experiment { name, value, limit: limit.to_owned() };
-        if !(tolerance > 0.0 && tolerance < 1.0) {
-            return Err(refuse("tolerance", tolerance, "between 0 and 1, such as 1e-9"));
-        }
+        check_tolerance(tolerance)?;
         if !start_time.is_finite() {
             return Err(refuse("startTime", start_time, "finite"));
         }
@@ -87,7 +86,7 @@ impl Model {
             engine.admit_vertical(true)?;
         }
         ground.as_deref().map_or(Ok(()), |ground| setup.check_ground(ground))?;
-        let peaks = FallingPeaks::since(setup.start_time, engine.structure());
+        let peaks = FallingPeaks::since(setup.start_time, engine.structure(), setup.detail);
         let validity = Found::since(setup.start_time);
         Ok(Model { engine, ground, elapsed: Elapsed::default(), outside: None, peaks, validity })
     }

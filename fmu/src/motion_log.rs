@@ -10,7 +10,6 @@ pub(crate) fn warn(logger: &Logger, known: &Found, found: &Found) {
     (0..ASSUMPTIONS.len())
         .filter(is_new)
         .filter_map(|which| found.warning(which, &Limits::default()))
-        .chain(found.warning_of_flight().filter(|_| known.weight.first_beyond.is_none()))
         .for_each(|warning| logger.warning(&warning));
 }
 

@@ -408,7 +408,7 @@ fn locals() -> [Variable; 12] {
         counted("phase", PHASES.description, phases, Source::Integer(phase_number), &["theta_0"]),
         counted(
             "transitions",
-            "uplifts, impacts and landings so far",
+            "transitions so far: uplifts, impacts, landings (settling, too), overturning; dissipators that begin or cease to yield",
             DataType::Integer,
             Source::Integer(transitions),
             &[],

@@ -91,8 +91,10 @@ impl Structure {
     }
 
     /// The effective frequency of rocking with the amplitude theta (rad), Hz (Eq 14); 0 from tan(alpha_cg) on.
-    fn effective_frequency(&self, theta: f64) -> f64 {
-        effective_frequency(&self.0, theta)
+    ///
+    /// Raises ValueError for a structure with a tendon or dissipators.
+    fn effective_frequency(&self, theta: f64) -> PyResult<f64> {
+        effective_frequency(&self.0, theta).map_err(refused)
     }
 
     /// The static pushover of Fig 1 to the right, from rest to overturning (Eqs 5 and 6 without inertia): a dict of arrays
@@ -114,6 +116,8 @@ impl Structure {
 
     /// `response`, what Run.at returns, split into the rocking and the vibration mode: a dict of arrays (n,) q_r, q_u (rad,
     /// Eq 16), a_r, a_u (m/s2, Eqs 12, 19), which are NaN where it does not rock.
+    ///
+    /// Raises ValueError for a structure with a tendon or dissipators.
     fn modes<'py>(&self, response: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
         let of = |name: &str| -> PyResult<Bound<'py, PyAny>> {
             response.get_item(name)?.ok_or_else(|| PyValueError::new_err(format!("response has no {name:?}")))
@@ -123,14 +127,14 @@ impl Structure {
         let mut modes = [const { Vec::new() }; 4];
         for (phase, (((theta, u), u_dot), a_g)) in of("phase")?.try_iter()?.zip(motion) {
             let state = State { u, u_dot, theta, theta_dot: 0.0 }; // whose rate the split does not need
+            let of = Modes::of(&self.0, &state).map_err(refused)?;
             let split = |side| {
-                let (of, accelerations) =
-                    (Modes::of(&self.0, &state), ModalAccelerations::of(&self.0, side, &state, a_g));
-                [of.q_r, of.q_u, accelerations.a_r, accelerations.a_u]
+                let accelerations = ModalAccelerations::of(&self.0, side, &state, a_g).map_err(refused)?;
+                PyResult::Ok([of.q_r, of.q_u, accelerations.a_r, accelerations.a_u])
             };
             let split = match phase?.extract()? {
-                "rocking left" => split(Side::Left),
-                "rocking right" => split(Side::Right),
+                "rocking left" => split(Side::Left)?,
+                "rocking right" => split(Side::Right)?,
                 _ => [f64::NAN; 4],
             };
             modes.iter_mut().zip(split).for_each(|(column, number)| column.push(number));

@@ -103,7 +103,7 @@ impl Sample<'_> {
     pub fn restraints(&self) -> Restraints {
         let Motion { phase, state, dissipators, .. } = &self.motion;
         let chord = self.model.level.ties().unwrap_or(Angles::Any).chord(state.theta, state.theta_dot);
-        Restraints::of(&self.model.structure, phase.side(), state.theta, dissipators, chord)
+        Restraints::of(&self.model.structure, phase.side(), dissipators, chord)
     }
 
     /// (ü, θ̈), m/s² and rad/s²; once overturned, those of the instant before.

@@ -28,7 +28,7 @@ pub(crate) fn first(
             found = (crossing, event);
         }
     };
-    for (j, lever) in levers(structure, side).into_iter().enumerate() {
+    for (j, lever) in moving(structure, side) {
         // positive while it moves that way
         let moves = |way: f64| Guard::new(&theta_dot[zeros..], (way * lever).signum(), 0.0);
         match dissipators.yields[j] {
@@ -48,8 +48,13 @@ pub(crate) fn first(
     found
 }
 
-/// How far the `dissipators` of a structure that rocks about `side` in `state` are from beginning to yield, in parts of F_y, or from
-/// ceasing to, in parts of p_l α_cg, whichever is less.
+/// The dissipators, by number, with their levers about `side`; without one at the pivot, which rocking does not elongate.
+fn moving(structure: &Structure, side: Side) -> impl Iterator<Item = (usize, f64)> {
+    levers(structure, side).into_iter().enumerate().filter(|(_, lever)| *lever != 0.0)
+}
+
+/// Distance of the `dissipators` from beginning to yield, as a fraction of F_y, or from ceasing to, as a fraction of p_l α_cg: the
+/// smallest, for a structure that rocks about `side` in `state`.
 pub(crate) fn margin(
     structure: &Structure,
     side: Side,
@@ -57,14 +62,29 @@ pub(crate) fn margin(
     dissipators: &Dissipators,
     state: &State,
 ) -> f64 {
+    least_margin(structure, side, angles, dissipators, state, [0.0; 2])
+}
+
+/// [`margin`] less what changes of θ and θ̇ by at most `changes` (rad, rad/s) can take of it.
+pub(crate) fn least_margin(
+    structure: &Structure,
+    side: Side,
+    angles: Angles,
+    dissipators: &Dissipators,
+    state: &State,
+    changes: [f64; 2],
+) -> f64 {
     let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
     let chord = angles.chord(state.theta, 0.0).length;
     let of = |(j, lever): (usize, f64)| match f64::from(dissipators.yields[j]) {
         _ if F_y == 0.0 => 1.0,
-        0.0 => 1.0 - k_d * (lever * chord - dissipators.plastic[j]).abs() / F_y,
-        way => way * lever.signum() * state.theta_dot / (structure.p_l * libm::atan(structure.tan_alpha_cg)),
+        0.0 => 1.0 - k_d * ((lever * chord - dissipators.plastic[j]).abs() + lever.abs() * changes[0]) / F_y,
+        way => {
+            let natural = structure.p_l * libm::atan(structure.tan_alpha_cg);
+            (way * lever.signum() * state.theta_dot - changes[1]) / natural
+        }
     };
-    levers(structure, side).into_iter().enumerate().map(of).fold(1.0, f64::min)
+    moving(structure, side).map(of).fold(1.0, f64::min)
 }
 
 /// The `dissipators` at σ = `reach` of `arc`, rocking about `side`.

@@ -26,20 +26,33 @@ pub enum DemandError {
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
     /// More than the weight turns the structure back.
-    #[error(
-        "Eqs 14 and 21 to 24 are of a structure that its weight alone turns back, not with P_0 = {P_0:?} N, k_t = {k_t:?} N/m, \
-         c_d = {c_d:?} N.s/m, k_d = {k_d:?} N/m: follow the motion instead"
-    )]
-    Restrained {
-        /// Prestress of the tendon, N.
-        P_0: f64,
-        /// Its stiffness, N/m.
-        k_t: f64,
-        /// Damping of a viscous dissipator, N·s/m.
-        c_d: f64,
-        /// Stiffness of an elastoplastic one, N/m.
-        k_d: f64,
-    },
+    #[error(transparent)]
+    Restrained(#[from] Restrained),
+}
+
+/// A structure with ties is asked for an estimate that knows none.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "Eqs 10 to 24 are of a structure that its weight alone turns back, not with P_0 = {P_0:?} N, k_t = {k_t:?} N/m, \
+     c_d = {c_d:?} N.s/m, k_d = {k_d:?} N/m: follow the motion instead"
+)]
+pub struct Restrained {
+    /// Prestress of the tendon, N.
+    pub P_0: f64,
+    /// Stiffness of the tendon, N/m.
+    pub k_t: f64,
+    /// Damping of a viscous dissipator, N·s/m.
+    pub c_d: f64,
+    /// Stiffness of an elastoplastic dissipator, N/m.
+    pub k_d: f64,
+}
+
+impl Restrained {
+    /// Refuses a `structure` with a tendon or dissipators.
+    pub(crate) fn check(structure: &Structure) -> Result<(), Restrained> {
+        let &crate::Parameters { P_0, k_t, c_d, k_d, .. } = structure.parameters();
+        if structure.is_restrained() { Err(Restrained { P_0, k_t, c_d, k_d }) } else { Ok(()) }
+    }
 }
 
 /// The demands on a rocking structure, term by term.
@@ -69,10 +82,8 @@ impl Demand {
             let max = INSTANT_TRANSITION;
             return Err(OutOfRange { name: "C", value: C, unit: "1", min: 0.0, max, description }.into());
         }
-        let &crate::Parameters { m, H, g, P_0, k_t, c_d, k_d, .. } = structure.parameters();
-        if structure.is_restrained() {
-            return Err(DemandError::Restrained { P_0, k_t, c_d, k_d });
-        }
+        Restrained::check(structure)?;
+        let &crate::Parameters { m, H, g, .. } = structure.parameters();
         let ground = structure.one_minus_chi * S_a;
         let rocking = structure.chi * g * structure.tan_alpha_cg;
         let impact = C * rocking;
@@ -94,6 +105,7 @@ mod tests {
     use super::*;
     use crate::levels::nonlinear::accelerations;
     use crate::mechanics::load::Load;
+    use crate::mechanics::restraint::Dissipators;
     use crate::{Parameters, Side, State};
     use approx::assert_relative_eq;
 
@@ -128,7 +140,7 @@ mod tests {
         let structure = Structure::new(Parameters { f_fc: 1e3, ..Parameters::MCMANUS }).unwrap();
         let demand = Demand::new(&structure, 0.0, INSTANT_TRANSITION).unwrap();
         let quiet = State { u: structure.chi * structure.u_cr, ..State::default() };
-        let u_ddot = accelerations(&structure, Side::Left, &quiet, Load::default()).unwrap()[0];
+        let u_ddot = accelerations(&structure, Side::Left, &quiet, Load::default(), &Dissipators::NEW).unwrap()[0];
         assert_relative_eq!(u_ddot, -demand.u_ddot_gr, max_relative = 1e-5);
     }
 

@@ -10,26 +10,29 @@
 //! down. A real structure does not exceed f_fc: rocking that small is vibration in full contact.
 
 use crate::Structure;
+use crate::estimates::demand::Restrained;
 
 /// Time from release at rest at the rotation `theta` (rad) to impact, s; ∞ from tan α_cg on.
-pub fn time_to_impact(structure: &Structure, theta: f64) -> f64 {
+pub fn time_to_impact(structure: &Structure, theta: f64) -> Result<f64, Restrained> {
+    Restrained::check(structure)?;
     let part = theta.abs() / structure.tan_alpha_cg;
     if part >= 1.0 {
-        return f64::INFINITY;
+        return Ok(f64::INFINITY);
     }
     let x = part / (1.0 - part); // acosh(1 + x), with every digit of a small x
-    libm::log1p(x + (x * (x + 2.0)).sqrt()) / structure.p_l
+    Ok(libm::log1p(x + (x * (x + 2.0)).sqrt()) / structure.p_l)
 }
 
-/// Effective rocking frequency f_r of the amplitude `theta` (rad), Hz (Eq 14).
-pub fn effective_frequency(structure: &Structure, theta: f64) -> f64 {
-    0.25 / time_to_impact(structure, theta)
+/// Effective rocking frequency f_r of the amplitude `theta` (rad), Hz (Eq 14), of a structure without ties.
+pub fn effective_frequency(structure: &Structure, theta: f64) -> Result<f64, Restrained> {
+    Ok(0.25 / time_to_impact(structure, theta)?)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Parameters;
+    use crate::estimates::modal_split::Modes;
+    use crate::{Parameters, State};
     use approx::assert_relative_eq;
 
     fn evison() -> Structure {
@@ -42,7 +45,7 @@ mod tests {
         let structure = evison();
         for part in [1e-12, 1e-6, 0.1, 0.5, 0.9, 0.999_999] {
             let theta = part * structure.tan_alpha_cg;
-            let half = 0.5 * structure.p_l * time_to_impact(&structure, theta);
+            let half = 0.5 * structure.p_l * time_to_impact(&structure, theta).unwrap();
             // cosh − 1 = 2 sinh²(half argument)
             let dropped = (structure.tan_alpha_cg - theta) * 2.0 * half.sinh().powi(2);
             assert_relative_eq!(dropped, theta, max_relative = 1e-13 / (1.0 - part));
@@ -52,8 +55,16 @@ mod tests {
     #[test]
     fn the_limits_are_those_of_no_rotation_and_of_the_unstable_equilibrium() {
         let structure = evison();
-        assert_eq!(effective_frequency(&structure, 0.0), f64::INFINITY);
-        assert_eq!(effective_frequency(&structure, -structure.tan_alpha_cg), 0.0);
-        assert_eq!(effective_frequency(&structure, 1.0), 0.0);
+        assert_eq!(effective_frequency(&structure, 0.0), Ok(f64::INFINITY));
+        assert_eq!(effective_frequency(&structure, -structure.tan_alpha_cg), Ok(0.0));
+        assert_eq!(effective_frequency(&structure, 1.0), Ok(0.0));
+    }
+
+    #[test]
+    fn a_tied_structure_has_no_effective_frequency_and_no_modes() {
+        let tied = Structure::new(Parameters { k_t: 1e4, ..Parameters::EVISON }).unwrap();
+        let refused = Restrained { P_0: 0.0, k_t: 1e4, c_d: 0.0, k_d: 0.0 };
+        assert_eq!(effective_frequency(&tied, 0.01), Err(refused.clone()));
+        assert_eq!(Modes::of(&tied, &State::default()), Err(refused));
     }
 }

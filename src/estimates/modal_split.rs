@@ -20,6 +20,7 @@
 //! The paper's (13) and (20) are these with q_r → 0. The sum needs no a_g: it is χ g q_r − (c_u u̇ + k u)/m, and
 //! differs from that of the full equations by g (θ − χ q_r) to first order.
 
+use crate::estimates::demand::Restrained;
 use crate::{Side, State, Structure};
 
 /// The rotation of the base, split into the two modes.
@@ -36,12 +37,13 @@ pub struct Modes {
 }
 
 impl Modes {
-    /// Splits the rotation of `state` (Eq 16).
-    pub fn of(structure: &Structure, state: &State) -> Modes {
+    /// Splits the rotation of `state` (Eq 16) of a structure without ties.
+    pub fn of(structure: &Structure, state: &State) -> Result<Modes, Restrained> {
+        Restrained::check(structure)?;
         let &State { u, u_dot, theta, theta_dot } = state;
         let ratio = -structure.p_l * structure.p_l / structure.parameters().g;
         let (q_u, q_u_dot) = (ratio * u, ratio * u_dot);
-        Modes { q_r: theta - q_u, q_u, q_r_dot: theta_dot - q_u_dot, q_u_dot }
+        Ok(Modes { q_r: theta - q_u, q_u, q_r_dot: theta_dot - q_u_dot, q_u_dot })
     }
 }
 
@@ -56,14 +58,14 @@ pub struct ModalAccelerations {
 
 impl ModalAccelerations {
     /// The modes' accelerations while rocking about `side` under the ground acceleration `a_g` (m/s²).
-    pub fn of(structure: &Structure, side: Side, state: &State, a_g: f64) -> ModalAccelerations {
+    pub fn of(structure: &Structure, side: Side, state: &State, a_g: f64) -> Result<ModalAccelerations, Restrained> {
         let &Structure { chi, one_minus_chi, omega_u, zeta_u, tan_alpha_cg, .. } = structure;
         let g = structure.parameters().g;
         let step = side.sign() * g * tan_alpha_cg;
-        let a_r = chi * (g * Modes::of(structure, state).q_r - a_g - step);
+        let a_r = chi * (g * Modes::of(structure, state)?.q_r - a_g - step);
         let u_ddot =
             chi / one_minus_chi * step - a_g - 2.0 * zeta_u * omega_u * state.u_dot - omega_u * omega_u * state.u;
-        ModalAccelerations { a_r, a_u: one_minus_chi * u_ddot + a_g }
+        Ok(ModalAccelerations { a_r, a_u: one_minus_chi * u_ddot + a_g })
     }
 
     /// Of both modes together, a_t (Eq 20).
@@ -88,14 +90,14 @@ mod tests {
         let structure = Structure::new(Parameters::EVISON).unwrap();
         let &Parameters { m, H, B, g, .. } = structure.parameters();
         for (side, a_g) in [(Side::Right, 2.0), (Side::Left, -15.0)] {
-            let q_r = Modes::of(&structure, &STATE).q_r;
+            let q_r = Modes::of(&structure, &STATE).unwrap().q_r;
             let mass = Matrix2::new(1.0, H, H, structure.J_P / m);
             let force = Vector2::new(
                 structure.chi * g * q_r - (structure.c_u * STATE.u_dot + structure.k * STATE.u) / m - a_g,
                 g * H * q_r - H * a_g - side.sign() * structure.gamma * g * B,
             );
             let accelerations = mass.try_inverse().unwrap() * force;
-            let modal = ModalAccelerations::of(&structure, side, &STATE, a_g);
+            let modal = ModalAccelerations::of(&structure, side, &STATE, a_g).unwrap();
             let a_t = accelerations[0] + H * accelerations[1] + a_g;
             assert_relative_eq!(modal.a_t(), a_t, max_relative = 1e-12);
             assert_relative_eq!(modal.a_u, structure.one_minus_chi * accelerations[0] + a_g, max_relative = 1e-12);
@@ -107,7 +109,7 @@ mod tests {
     fn a_small_rotation_leaves_the_step_of_equation_13() {
         let structure = Structure::new(Parameters::EVISON).unwrap();
         let g = structure.parameters().g;
-        let step = |side, a_g| ModalAccelerations::of(&structure, side, &State::default(), a_g).a_r / g;
+        let step = |side, a_g| ModalAccelerations::of(&structure, side, &State::default(), a_g).unwrap().a_r / g;
         assert_relative_eq!(step(Side::Left, 0.0), 0.33326, max_relative = 1e-4);
         assert_relative_eq!(step(Side::Right, 0.0), -0.33326, max_relative = 1e-4);
         assert_relative_eq!(step(Side::Right, g), -0.33326 - structure.chi, max_relative = 1e-4);

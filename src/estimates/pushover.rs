@@ -117,18 +117,21 @@ mod tests {
     proptest! {
         /// The force is what holds the masses against the accelerations that Eqs 5 and 6 would give them.
         #[test]
-        fn the_force_balances_equations_5_and_6(theta in -1.4..1.4f64, preset in 0..2usize) {
-            let structure = specimens()[preset];
+        fn the_force_balances_equations_5_and_6(theta in -1.4..1.4f64, preset in 0..3usize) {
+            let tied = Parameters { P_0: 300.0, k_t: 2e4, k_d: 1e5, F_y: 200.0, ..Parameters::MCMANUS };
+            let [evison, mcmanus] = specimens();
+            let structure = [evison, mcmanus, Structure::new(tied).unwrap()][preset];
             let &Parameters { m, m0, H, B, J0, .. } = structure.parameters();
             let Equilibrium { u, force, .. } = at_rotation(&structure, theta).unwrap();
             let side = Side::of(theta);
             let lever = side.sign() * B - u;
             let state = State { u, theta, ..State::default() };
-            let released = accelerations(&structure, side, &state, Load::default()).unwrap();
+            let moved = Dissipators::NEW.moved(&structure, side, theta);
+            let released = accelerations(&structure, side, &state, Load::default(), &moved).unwrap();
             let mass = Matrix2::new(m, m * H, m * H, J0 + m * H * H + m * lever * lever + m0 * B * B);
             let direction = Vector2::new(theta.cos(), H * theta.cos() + lever * theta.sin());
             let unbalanced = mass * released + force * direction;
-            let size = structure.k * u.abs() * H;
+            let size = structure.k * u.abs().max(0.1 * structure.u_cr) * H;
             prop_assert!(unbalanced.norm() < 1e-13 * size, "{unbalanced}");
         }
 

@@ -76,6 +76,11 @@ impl Detail {
         }
     }
 
+    /// How large the rotations are that the ties elongate by at this level.
+    pub(crate) fn angles(self) -> Angles {
+        if self == Detail::Linear { Angles::Small } else { Angles::Any }
+    }
+
     /// Whether this level has a motion of what is `restrained`, or shaken vertically.
     pub(crate) fn check_restrained(self, restrained: bool) -> Result<(), InitialStateError> {
         if self == Detail::Modal && restrained { Err(InitialStateError::RestrainedModal) } else { Ok(()) }
@@ -177,22 +182,11 @@ pub(crate) struct Elastic<Rocking> {
     rocking: Rocking,
 }
 
-impl<Rocking: ElasticRocking> Elastic<Rocking> {
-    /// The |u| (m) below which the base stays down over the interval of `start`.
-    #[inline(always)]
-    fn limit(&self, structure: &Structure, start: &Start) -> f64 {
-        match self.rocking.ties() {
-            None => structure.u_cr,
-            Some(_) => uplift::least_displacement(structure, start.a_v, start.interval, start.dissipators),
-        }
-    }
-}
-
 impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
     #[inline(always)]
     fn leap(&self, structure: &Structure, phase: Phase, start: &Start) -> Option<State> {
         match phase {
-            Phase::FullContact => self.contact.as_ref()?.leap(start, self.limit(structure, start)),
+            Phase::FullContact => self.contact.as_ref()?.leap(start, self.least_displacement(structure, start)),
             Phase::Rocking(side) => self.rocking.leap(side, start),
             Phase::Overturned(_) => None,
         }
@@ -230,8 +224,12 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
         }
     }
 
-    fn stays_down(&self, structure: &Structure, state: &State, dissipators: &Dissipators) -> bool {
-        uplift::farthest(structure, state) < self.limit(structure, &Start { dissipators, ..Start::default() })
+    #[inline(always)]
+    fn least_displacement(&self, structure: &Structure, start: &Start) -> f64 {
+        match self.rocking.ties() {
+            None => structure.u_cr,
+            Some(_) => uplift::least_displacement(structure, start.a_v, start.interval, start.dissipators),
+        }
     }
 
     fn uplift_margin(&self, structure: &Structure, now: &Now) -> (f64, Side) {
@@ -275,8 +273,8 @@ impl Level for FixedBase {
         (Crossing::None, Side::Right)
     }
 
-    fn stays_down(&self, _structure: &Structure, _state: &State, _dissipators: &Dissipators) -> bool {
-        true
+    fn least_displacement(&self, _structure: &Structure, _start: &Start) -> f64 {
+        f64::INFINITY
     }
 
     fn uplift_margin(&self, _structure: &Structure, _now: &Now) -> (f64, Side) {

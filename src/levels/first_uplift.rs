@@ -72,6 +72,7 @@ mod tests {
     use crate::levels::full_contact;
     use crate::levels::nonlinear::accelerations;
     use crate::mechanics::load::{Load, Ramp};
+    use crate::mechanics::restraint::Dissipators;
     use crate::{Parameters, State};
     use proptest::prelude::*;
 
@@ -95,7 +96,8 @@ mod tests {
             let structure = Structure::new(Parameters { zeta_fc: 0.1, ..Parameters::MCMANUS }).unwrap();
             let state = State { u, u_dot, ..State::default() };
             let side = Side::of(u);
-            let theta_ddot = accelerations(&structure, side, &state, Load { a_g, F_t, a_v: 0.0 }).unwrap()[1];
+            let load = Load { a_g, F_t, a_v: 0.0 };
+            let theta_ddot = accelerations(&structure, side, &state, load, &Dissipators::NEW).unwrap()[1];
             prop_assume!(theta_ddot.abs() > 1e-6 && (u.abs() - structure.u_cr).abs() > 1e-8);
             let both = u.abs() >= structure.u_cr && side.sign() * theta_ddot > 0.0;
             let expected = if both { (Crossing::At(0.0), side) } else { (Crossing::None, Side::Right) };
@@ -129,7 +131,8 @@ mod tests {
             panic!("no uplift")
         };
         let there = arc.at(sigma);
-        let theta_ddot = accelerations(&structure, Side::Right, &there, Load::ground(push.value)).unwrap()[1];
+        let load = Load::ground(push.value);
+        let theta_ddot = accelerations(&structure, Side::Right, &there, load, &Dissipators::NEW).unwrap()[1];
         assert!(sigma * arc.span > 1e-5 && there.u > structure.u_cr);
         assert!((0.0..1e-9).contains(&theta_ddot), "{theta_ddot}");
     }

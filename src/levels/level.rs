@@ -43,9 +43,13 @@ pub(crate) trait Level {
     /// The first instant of `arc`, a motion in full contact from `start`, at which uplift is due, and about which side.
     fn first_uplift(&self, structure: &Structure, start: &Start, arc: &Arc) -> (Crossing, Side);
 
+    /// The |u| (m) below which the base stays down over the interval of `start`, whatever pushes the top mass.
+    fn least_displacement(&self, structure: &Structure, start: &Start) -> f64;
+
     /// Whether a structure in full contact in `state` stays there while nothing acts on it.
-    fn stays_down(&self, structure: &Structure, state: &State, _dissipators: &Dissipators) -> bool {
-        uplift::farthest(structure, state) < structure.u_cr
+    fn stays_down(&self, structure: &Structure, state: &State, dissipators: &Dissipators) -> bool {
+        let at_rest = Start { dissipators, ..Start::default() };
+        uplift::farthest(structure, state) < self.least_displacement(structure, &at_rest)
     }
 
     /// How far a structure in full contact is from uplift, in parts of what uplift takes, and about which side that would be:

@@ -270,6 +270,7 @@ mod tests {
     use crate::Parameters;
     use crate::levels::nonlinear::accelerations;
     use crate::mechanics::load::Load;
+    use crate::mechanics::restraint::Dissipators;
     use approx::assert_relative_eq;
 
     /// Eqs 7 and 8 as they stand, and their distance from Eqs 5 and 6, which is of second order.
@@ -287,7 +288,7 @@ mod tests {
             assert_relative_eq!(u_ddot + H * theta_ddot + elastic - g * theta, -a_g * scale, epsilon = 1e-12);
             let left = H * u_ddot + structure.J_P / m * theta_ddot - g * u - g * H * theta;
             assert_relative_eq!(left, -H * a_g * scale + structure.gamma * g * B, max_relative = 1e-12);
-            let full = accelerations(&structure, side, &state, Load::ground(a_g * scale)).unwrap();
+            let full = accelerations(&structure, side, &state, Load::ground(a_g * scale), &Dissipators::NEW).unwrap();
             (full[1] - theta_ddot).abs()
         };
         // The weight's moment stays as the rest shrinks: it leaves an error of first order in u/B.

@@ -26,7 +26,7 @@
 use crate::levels::level::{ElasticRocking, Now};
 use crate::levels::tie_series::TieSeries;
 use crate::mechanics::load::Load;
-use crate::mechanics::restraint::{Angles, Sum};
+use crate::mechanics::restraint::{Angles, Dissipators, Sum};
 use crate::mechanics::uplift::TurningMoment;
 use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
 use crate::{Side, State, Structure};
@@ -34,14 +34,19 @@ use nalgebra::{Matrix2, Vector2};
 use std::cell::RefCell;
 use wide::f64x2;
 
-/// (ü, θ̈) in m/s² and rad/s² under `load`: Eqs 5 and 6 as they stand, solved for the
-/// accelerations. `None` where the mass matrix is singular: m0 = J0 = 0 and u = sB, the top mass above the pivot.
-pub fn accelerations(structure: &Structure, side: Side, state: &State, load: Load) -> Option<Vector2<f64>> {
-    solved(structure, side, state, load, 0.0)
-}
-
-/// (ü, θ̈) where restraints turn the structure back by a moment `back` (N·m).
-fn solved(structure: &Structure, side: Side, state: &State, load: Load, back: f64) -> Option<Vector2<f64>> {
+/// Accelerations (ü, θ̈) in m/s² and rad/s² under `load`, by Eqs 5 and 6 with the ties and these `dissipators`. None if the mass
+/// matrix is singular: m0 = J0 = 0 and u = sB, the top mass above the pivot.
+pub fn accelerations(
+    structure: &Structure,
+    side: Side,
+    state: &State,
+    load: Load,
+    dissipators: &Dissipators,
+) -> Option<Vector2<f64>> {
+    let back = match structure.is_restrained() {
+        true => Sum::of_moments(structure, side, dissipators).at(Angles::Any, state.theta, state.theta_dot),
+        false => 0.0,
+    };
     let Load { a_g, F_t, a_v } = load;
     let &crate::Parameters { m, m0, H, B, J0, g, .. } = structure.parameters();
     let g = g + a_v;
@@ -143,12 +148,7 @@ impl<const RESTRAINED: bool> ElasticRocking for NonlinearRocking<RESTRAINED> {
 
     fn accelerations(&self, structure: &Structure, side: Side, now: &Now) -> [f64; 2] {
         let &Now { state, load, dissipators } = now;
-        let back = if RESTRAINED {
-            Sum::of_moments(structure, side, dissipators).at(Angles::Any, state.theta, state.theta_dot)
-        } else {
-            0.0
-        };
-        solved(structure, side, state, load, back).map_or([f64::NAN; 2], Into::into)
+        accelerations(structure, side, state, load, dissipators).map_or([f64::NAN; 2], Into::into)
     }
 
     #[inline(always)]
@@ -269,7 +269,7 @@ mod tests {
             NonlinearRocking::<false>::default().series(&structure, side, &start, &mut arc);
             for sigma in [0.0, 0.2, 0.55, 1.0] {
                 let load = load.at(sigma * arc.span);
-                let expected = accelerations(&structure, side, &arc.at(sigma), load).unwrap();
+                let expected = accelerations(&structure, side, &arc.at(sigma), load, &Dissipators::NEW).unwrap();
                 let derivative = |series: &Series| -> f64 {
                     (1..=arc.order).map(|k| k as f64 * series[k] * sigma.powi(k as i32 - 1)).sum::<f64>() / arc.span
                 };
@@ -284,6 +284,7 @@ mod tests {
     fn the_mass_matrix_is_singular_with_the_top_mass_above_the_pivot_of_a_massless_foundation() {
         let structure = Structure::new(Parameters { m0: 0.0, J0: 0.0, B: 0.25, ..Parameters::EVISON }).unwrap();
         let above_the_pivot = State { u: 0.25, theta: 0.01, ..State::default() };
-        assert_eq!(accelerations(&structure, Side::Right, &above_the_pivot, Load::default()), None);
+        let nothing = (Load::default(), &Dissipators::NEW);
+        assert_eq!(accelerations(&structure, Side::Right, &above_the_pivot, nothing.0, nothing.1), None);
     }
 }

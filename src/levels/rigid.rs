@@ -147,6 +147,11 @@ impl<const RESTRAINED: bool> Level for Rigid<RESTRAINED> {
         if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
     }
 
+    /// Without u the load alone decides.
+    fn least_displacement(&self, _structure: &Structure, _start: &Start) -> f64 {
+        0.0
+    }
+
     fn stays_down(&self, structure: &Structure, state: &State, dissipators: &Dissipators) -> bool {
         self.uplift_margin(structure, &Now { state, load: Load::default(), dissipators }).0 > 0.0
     }

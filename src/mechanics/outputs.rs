@@ -275,6 +275,7 @@ mod tests {
     use crate::levels::full_contact;
     use crate::levels::nonlinear;
     use crate::mechanics::load::Load;
+    use crate::mechanics::restraint::Dissipators;
     use crate::{Engine, LinearLoad, Parameters, Reactions, Side};
     use approx::assert_relative_eq;
 
@@ -284,12 +285,13 @@ mod tests {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
         let &Parameters { H, B, .. } = structure.parameters();
         let state = State { u: 3e-3, u_dot: -0.2, theta: -0.08, theta_dot: 0.6 };
-        let load = Load { a_g: 7.0, F_t: 300.0, a_v: 0.0 };
-        let accelerations = nonlinear::accelerations(&structure, Side::Left, &state, load).unwrap();
+        let load = Load { a_g: 7.0, F_t: 300.0, a_v: -3.0 };
+        let accelerations = nonlinear::accelerations(&structure, Side::Left, &state, load, &Dissipators::NEW).unwrap();
         let expected = accelerations[0]
             + H * accelerations[1]
             + state.theta_dot.powi(2) * (-B - state.u)
-            + load.a_g * libm::cos(state.theta);
+            + load.a_g * libm::cos(state.theta)
+            - load.a_v * libm::sin(state.theta);
         let outputs = Outputs::of(&structure, Phase::Rocking(Side::Left), &state, load.F_t);
         assert_relative_eq!(outputs.a_t, expected, max_relative = 1e-12);
 

@@ -42,7 +42,7 @@ pub struct Restraints {
 }
 
 /// How large the rotations are that the equations are for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Angles {
     Any,
     Small,
@@ -164,20 +164,13 @@ impl Sum {
 }
 
 impl Restraints {
-    /// Of `structure` about `side` at the rotation `theta` (rad); the dissipators are elongated as `chord` says.
-    pub(crate) fn of(
-        structure: &Structure,
-        side: Side,
-        theta: f64,
-        dissipators: &Dissipators,
-        chord: Chord,
-    ) -> Restraints {
-        let [tendon, first, second] = ties(structure, side, dissipators);
-        let P_t = tendon.force_at(Angles::Any.chord(theta, 0.0));
-        Restraints { P_t, F_d1: first.force_at(chord), F_d2: second.force_at(chord) }
+    /// Forces of the ties of `structure` about `side`, elongated by `chord`.
+    pub(crate) fn of(structure: &Structure, side: Side, dissipators: &Dissipators, chord: Chord) -> Restraints {
+        let [P_t, F_d1, F_d2] = ties(structure, side, dissipators).map(|tie| tie.force_at(chord));
+        Restraints { P_t, F_d1, F_d2 }
     }
 
-    /// Their rates, N/s, in `state` while θ̇ changes by `theta_ddot` (rad/s²); the dissipators are elongated as `angles` say.
+    /// Rates of the forces, N/s, in `state` while θ̇ changes by `theta_ddot` (rad/s²).
     pub(crate) fn rates(
         structure: &Structure,
         side: Side,
@@ -186,11 +179,10 @@ impl Restraints {
         &State { theta, theta_dot, .. }: &State,
         theta_ddot: f64,
     ) -> Restraints {
-        let rate = |tie: Tie, angles: Angles| {
-            Tie { force: 0.0, ..tie }.force_at(angles.chord_rate(theta, theta_dot, theta_ddot))
-        };
-        let [tendon, first, second] = ties(structure, side, dissipators);
-        Restraints { P_t: rate(tendon, Angles::Any), F_d1: rate(first, angles), F_d2: rate(second, angles) }
+        let chord = angles.chord_rate(theta, theta_dot, theta_ddot);
+        let rate = |tie: Tie| Tie { force: 0.0, ..tie }.force_at(chord);
+        let [P_t, F_d1, F_d2] = ties(structure, side, dissipators).map(rate);
+        Restraints { P_t, F_d1, F_d2 }
     }
 }
 
@@ -219,11 +211,12 @@ pub fn uplift_displacement(structure: &Structure, side: Side, a_v: f64, dissipat
     structure.u_cr + more / (structure.parameters().H * structure.stiffness)
 }
 
-/// Over m, the moment about the pivot that holds the base down beside that of its weight at rest, m²/s².
+/// Moment about the pivot that holds the base down beside that of its weight and tendon at rest, over m, m²/s².
 pub(crate) fn holding_moment(structure: &Structure, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
     let &crate::Parameters { m, B, .. } = structure.parameters();
-    let held = Sum::of_moments(structure, side, dissipators).force;
-    structure.gamma * a_v * B + side.sign() * held / m
+    let [_, pair @ ..] = ties(structure, side, dissipators);
+    let residual: f64 = pair.iter().map(|tie| tie.lever * tie.force).sum();
+    structure.gamma * a_v * B + side.sign() * residual / m
 }
 
 /// Whether a structure centres itself once it has rocked: what turns it back at the ground, [(m + m0) g + P_0] B, and the most that

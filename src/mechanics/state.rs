@@ -1,7 +1,7 @@
 //! The state of the structure and the phase it is in.
 
 use crate::Structure;
-use crate::structure::quantity::{OutOfRange, Quantity, quantity};
+use crate::structure::quantity::{OutOfRange, Quantity, quantity, with_unit};
 use serde::{Deserialize, Serialize};
 
 /// State of the structure.
@@ -105,6 +105,9 @@ pub enum InitialStateError {
     /// One value is outside its own range.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
+    /// The tolerance of the results is none.
+    #[error("tolerance = {} is out of range: it must be between 0 and 1, such as 1e-9", with_unit(*.0, "1"))]
+    Tolerance(f64),
     /// The base turns although both pivots are down.
     #[error(
         "theta_dot_0 = {0:?} rad/s contradicts theta_0 = 0 (full contact, where theta and theta_dot are both 0): \

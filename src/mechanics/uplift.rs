@@ -22,32 +22,33 @@ pub(crate) const LEAST_EXCESS: f64 = 1e-12;
 
 /// The sign of s θ̈ at θ = θ̇ = 0 is that of s (u·`u` + u̇·`u_dot`) − `weight`.
 #[derive(Clone, Copy, Debug)]
-pub struct TurningMoment {
+pub(crate) struct TurningMoment {
     /// Moment per displacement.
     pub u: f64,
     /// Moment per velocity.
     pub u_dot: f64,
-    /// Moment of the weight.
+    /// Moment of the weight, and of the tendon at rest.
     pub weight: f64,
 }
 
 impl TurningMoment {
-    /// By Eqs 5 and 6: over m, H (c_u u̇ + k u)/m + g u against γ g B.
+    /// Moments of Eqs 5 and 6 over m: H (c_u u̇ + k u)/m + g u against γ g B + P_0 B/m.
     pub fn new(structure: &Structure) -> TurningMoment {
-        let &crate::Parameters { H, B, g, .. } = structure.parameters();
+        let &crate::Parameters { m, H, B, g, P_0, .. } = structure.parameters();
         let &Structure { stiffness, damping_u, gamma, .. } = structure;
-        TurningMoment { u: H * stiffness + g, u_dot: H * damping_u, weight: gamma * g * B }
+        TurningMoment { u: H * stiffness + g, u_dot: H * damping_u, weight: gamma * g * B + P_0 * B / m }
     }
 }
 
-/// The |a_top| (m/s²) from which on the base of a rigid structure lifts off: g tan α_cg.
+/// The |a_top| (m/s²) from which on the base of a rigid structure lifts off: g tan α_cg + P_0 B/(m H).
 pub fn least_push(structure: &Structure) -> f64 {
-    (1.0 + LEAST_EXCESS) * structure.parameters().g * structure.tan_alpha_cg
+    let &crate::Parameters { m, H, B, g, P_0, .. } = structure.parameters();
+    (1.0 + LEAST_EXCESS) * g * structure.tan_alpha_cg + (1.0 + LEAST_EXCESS) * P_0 * B / (m * H)
 }
 
 /// How far a structure in full contact in `state` is from uplift, in parts of u_cr or of the moment of the weight, whichever
 /// lacks more, and the side that lacks less. Uplift is due where it is not positive.
-pub fn margin(structure: &Structure, turning: &TurningMoment, state: &State) -> (f64, Side) {
+pub(crate) fn margin(structure: &Structure, turning: &TurningMoment, state: &State) -> (f64, Side) {
     let displacement = state.u / structure.u_cr;
     let moment = (turning.u * state.u + turning.u_dot * state.u_dot) / turning.weight;
     let about = |side: Side| (1.0 - side.sign() * displacement).max(1.0 + LEAST_EXCESS - side.sign() * moment);

@@ -9,7 +9,7 @@ use crate::run::ground_motion::GroundMotion;
 use crate::series::bisection::last_where;
 use crate::series::first_crossing::{Crossing, Guard, first_time_closed_from};
 use crate::series::taylor;
-use crate::{Outputs, Piece, Side, Structure, Transition, TransitionKind, Watch};
+use crate::{Detail, Outputs, Piece, Side, Structure, Transition, TransitionKind, Watch};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
@@ -64,9 +64,9 @@ pub fn angle_of_no_return(structure: &Structure) -> Option<f64> {
 }
 
 impl FallingPeaks {
-    /// Peaks of `structure` from `time` (s) on, before any motion.
-    pub fn since(time: f64, structure: &Structure) -> FallingPeaks {
-        let (all, no_return) = (Peaks::since(time, structure), angle_of_no_return(structure));
+    /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion.
+    pub fn since(time: f64, structure: &Structure, detail: Detail) -> FallingPeaks {
+        let (all, no_return) = (Peaks::since(time, structure, detail), angle_of_no_return(structure));
         FallingPeaks { all, no_return, fall: None, has_overturned: false }
     }
 
@@ -186,7 +186,7 @@ impl Run<'_> {
     /// Result of the run, and the peaks of all its motion, including a fall.
     pub(super) fn found_and_all(&self, watch: &mut impl Watch) -> Result<(Found, Peaks), RunError> {
         let start = self.ground.start();
-        let mut peaks = FallingPeaks::since(start, &self.structure);
+        let mut peaks = FallingPeaks::since(start, &self.structure, self.detail);
         let finish = self.follow(&mut (&mut peaks.watch(), watch))?;
         let ground = self.peak_of_ground(finish.motion.time);
         let found = Found { ground, peaks: *peaks.peaks(), fall: peaks.fall(), start, finish };
@@ -217,12 +217,12 @@ mod tests {
     use crate::run::peaks::PEAKS;
     use crate::run::record::Record;
     use crate::run::{End, Ending};
-    use crate::{Detail, Parameters, Progress, State};
+    use crate::{Parameters, Progress, State};
     use std::f64::consts::TAU;
 
     /// The peaks before the fall and its instant, of a run that overturns.
     fn fall_of(run: &Run) -> FallingPeaks {
-        let mut peaks = FallingPeaks::since(run.ground.start(), &run.structure);
+        let mut peaks = FallingPeaks::since(run.ground.start(), &run.structure, run.detail);
         assert_eq!(run.follow(&mut peaks.watch()).unwrap().ending, Ending::Overturned);
         peaks
     }
@@ -239,7 +239,7 @@ mod tests {
             let run = Run { detail, ..Run::new(structure, &ground) };
             let mut seen: Vec<(f64, Outputs)> = Vec::new();
             let dense = (0..40_000).map(|i| f64::from(i) * 1e-4);
-            let mut watched = FallingPeaks::since(0.0, &structure);
+            let mut watched = FallingPeaks::since(0.0, &structure, Detail::Auto);
             run.sample(dense, |at| seen.push((at.motion.time, at.outputs())), &mut watched.watch()).unwrap();
             let instant = watched.fall().unwrap();
             let last = seen.iter().rposition(|(_, outputs)| outputs.theta.abs() < alpha_cg).unwrap();
@@ -274,7 +274,8 @@ mod tests {
     /// `run` in steps of `step` (s), each watched by itself, as an FMU does.
     fn in_steps(run: &Run, step: f64) -> FallingPeaks {
         let mut engine = run.start().unwrap();
-        let (mut elapsed, mut kept) = (Elapsed::default(), FallingPeaks::since(run.ground.start(), &run.structure));
+        let (mut elapsed, mut kept) =
+            (Elapsed::default(), FallingPeaks::since(run.ground.start(), &run.structure, run.detail));
         let ground = GroundMotion::from(run.ground);
         loop {
             let progress = ground.advance(&mut engine, elapsed, step, Default::default(), &mut kept.watch()).unwrap();
@@ -296,7 +297,7 @@ mod tests {
             for beyond in (0..40).map(|i| 1e-4 * f64::from(i)) {
                 let initial = State { theta: -alpha_cg * (1.0 + beyond), ..State::default() };
                 let run = Run { detail, initial, ..Run::new(structure, &ground) };
-                let (mut watched, mut seen) = (FallingPeaks::since(0.0, &structure), Vec::new());
+                let (mut watched, mut seen) = (FallingPeaks::since(0.0, &structure, Detail::Auto), Vec::new());
                 let times = (0..100_000).map(|i| f64::from(i) * 2e-4);
                 let show = |at: &crate::engine::piece::Sample| seen.push((at.motion.time, at.motion.state.theta.abs()));
                 let ending = run.sample(times, show, &mut watched.watch()).unwrap().ending;
@@ -345,7 +346,7 @@ mod tests {
             let loop_there = restoring::flag(&structure, no_return, 1000)[1000];
             assert!(loop_there.moment.abs() < 1e-9 * restoring::flag(&structure, 0.0, 1)[0].moment);
             let falls = |theta_dot: f64| {
-                let mut peaks = FallingPeaks::since(0.0, &structure);
+                let mut peaks = FallingPeaks::since(0.0, &structure, Detail::Auto);
                 let ending = pushed(structure, theta_dot).follow(&mut peaks.watch()).unwrap().ending;
                 (ending == Ending::Overturned, peaks)
             };

@@ -103,8 +103,9 @@ pub struct Comparison {
 
 /// Does `run` at every level.
 pub fn compare(run: &Run) -> Result<Comparison, RunError> {
-    let none = FallingPeaks::since(run.ground.start(), &run.structure);
-    let (mut exact_peaks, mut peaks, mut level_peaks) = (none, SIMPLEST_FIRST.map(|_| none), none);
+    let since = |detail| FallingPeaks::since(run.ground.start(), &run.structure, detail);
+    let (mut exact_peaks, mut peaks) = (since(Detail::Nonlinear), SIMPLEST_FIRST.map(since));
+    let mut level_peaks = since(Detail::Auto);
     let level_ground = run.ground.clone().without_vertical();
     let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..run.clone() };
     let mut reference = start(&exact, &mut exact_peaks)?;
@@ -300,7 +301,13 @@ mod tests {
     fn verdict(detail: Detail, errors: [f64; 6], cost: u64) -> Verdict {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
         let work = Work { steps: 0, evaluations: cost };
-        let response = Response { detail, peaks: Peaks::new(&structure), ending: Ending::AtRest, transitions: 0, work };
+        let response = Response {
+            detail,
+            peaks: Peaks::since(0.0, &structure, detail),
+            ending: Ending::AtRest,
+            transitions: 0,
+            work,
+        };
         Verdict { response, errors, is_right_about_overturning: Some(true) }
     }
 

@@ -9,9 +9,10 @@ use crate::engine::piece::{Expansion, Part, Piece, Watch};
 use crate::levels::detail::Model;
 use crate::levels::shown::Searched;
 use crate::mechanics::outputs::{Measure, OUTPUTS, PeakRule};
+use crate::mechanics::restraint::Angles;
 use crate::series::extremes::{self, Bound};
 use crate::series::taylor::Arc;
-use crate::{LinearLoad, Motion, Outputs, Parameters, Phase, State, Structure, Transition};
+use crate::{Detail, LinearLoad, Motion, Outputs, Parameters, Phase, State, Structure, Transition};
 use serde::{Deserialize, Serialize};
 
 /// A bound above the largest magnitude by no more than this part of it may be rounding.
@@ -66,6 +67,10 @@ pub struct Peaks {
     ground: Peak,
     /// Parameters of the structure, which give the peaks that come with others.
     parameters: Parameters,
+    /// Elongation of the tendon at this level of detail.
+    angles: Angles,
+    /// The start of the motion, s.
+    start: f64,
     /// Right-hand-side evaluations that the search took.
     evaluations: u64,
 }
@@ -132,16 +137,11 @@ pub fn of(structure: &Structure) -> impl Iterator<Item = &'static Peaking> + use
 }
 
 impl Peaks {
-    /// Peaks of a motion of `structure` of which nothing has been seen yet.
-    pub fn new(structure: &Structure) -> Peaks {
-        Peaks::since(0.0, structure)
-    }
-
-    /// Peaks of a motion of `structure` from `time` (s) on, which is the instant of a peak that stays 0.
-    pub fn since(time: f64, structure: &Structure) -> Peaks {
-        let none = Peak { magnitude: 0.0, time };
+    /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion. A peak that stays 0 has this instant.
+    pub fn since(time: f64, structure: &Structure, detail: Detail) -> Peaks {
+        let (none, angles) = (Peak { magnitude: 0.0, time }, detail.angles());
         let largest = [none; Measure::SEARCHED.len()];
-        Peaks { largest, ground: none, parameters: *structure.parameters(), evaluations: 0 }
+        Peaks { largest, ground: none, parameters: *structure.parameters(), angles, start: time, evaluations: 0 }
     }
 
     /// Sees the `outputs` at `time` (s), which need not be in a piece.
@@ -181,10 +181,11 @@ impl Peaks {
         self.of(Measure::uplift)
     }
 
-    /// Peak of the tendon's force P_t = P_0 + 2 k_t B sin(|θ|/2), N. It comes with the peak of |θ|, too.
+    /// Peak of the tendon's force P_t = P_0 + k_t e, N. It comes with the peak of |θ|, unless the force is constant.
     pub fn P_t(&self) -> Peak {
         let (theta, &Parameters { B, P_0, k_t, .. }) = (self.theta(), &self.parameters);
-        Peak { magnitude: P_0 + 2.0 * k_t * B * libm::sin(0.5 * theta.magnitude), ..theta }
+        let magnitude = P_0 + k_t * B * self.angles.chord(theta.magnitude, 0.0).length;
+        Peak { magnitude, time: if k_t > 0.0 { theta.time } else { self.start } }
     }
 
     /// Peak of the acceleration of the top mass |a_t|, m/s² (Eq 27).

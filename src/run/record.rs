@@ -82,11 +82,15 @@ impl Record {
 
     /// This ground motion with the vertical component `vertical`, positive upwards, whose first sample comes with its own. The
     /// samples are then at the times of both. After the last sample of the shorter component the ground rests in that
-    /// direction: it comes to rest within 1e-9 of the last step, where it has not.
+    /// direction: it comes to rest within 1e-9 of the last step, where it has not. A component of zeros is no vertical motion:
+    /// the ground motion stays as it is.
     pub fn with_vertical(self, vertical: &Record) -> Result<Record, SamplesError> {
         if self.start() != vertical.start() {
             let (start, begins) = (self.start(), vertical.start());
             return Err(SamplesError::Apart { title: self.title, start, vertical: vertical.title.clone(), begins });
+        }
+        if vertical.acceleration.iter().all(|a_v| *a_v == 0.0) {
+            return Ok(self);
         }
         let end = self.end().max(vertical.end());
         let [own, other] = [(&self.times, &self.acceleration), (&vertical.times, &vertical.acceleration)]

@@ -140,6 +140,8 @@ pub const IMPACT_FRICTION: usize = 3;
 pub const IMPACT_TENSION: usize = 4;
 /// Of `energy_gain_max`.
 pub const ENERGY: usize = 5;
+/// Of `weight_min`.
+pub const WEIGHT: usize = 6;
 
 macro_rules! assumption {
     ($name:literal $description:literal, $meaning:literal, $is_of_impacts:literal, $limit:expr) => {
@@ -156,7 +158,7 @@ macro_rules! assumption {
 }
 
 /// All of them, in the order of [`Found::worst`].
-pub const ASSUMPTIONS: [Assumption; 6] = [
+pub const ASSUMPTIONS: [Assumption; 7] = [
     assumption!(
         "tension_max" "largest (|R_m|/B - R_v)/W in full contact, W = (m + m0) g: above 0 tension holds the base down",
         "tension holds the base down in full contact; in truth it lifts off earlier than at u_cr",
@@ -187,6 +189,11 @@ pub const ASSUMPTIONS: [Assumption; 6] = [
         "an impact raises the energy; in truth it cannot",
         true, |limits| limits.energy_gain
     ),
+    assumption!(
+        "weight_min" "least (g + a_v)/g: at 0 or below nothing holds the base down; 1 without vertical motion",
+        "nothing holds the base down; in truth it flies",
+        false, |_| 0.0
+    ),
 ];
 
 /// What is found of a motion.
@@ -194,8 +201,8 @@ pub const ASSUMPTIONS: [Assumption; 6] = [
 pub struct Found {
     /// In the order of [`ASSUMPTIONS`].
     pub worst: [Worst; ASSUMPTIONS.len()],
-    /// Of (g + a_v)/g, whose least is the worst; beyond its limit the base would fly.
-    pub weight: Worst,
+    /// Whether the base has been down, for `tension_max`.
+    has_stood: bool,
     /// Impacts that raise the energy, however little.
     pub gains: u64,
     /// Impacts and landings.
@@ -213,16 +220,19 @@ impl Found {
     pub fn since(time: f64) -> Found {
         let none = |value| Worst { value, time, first_beyond: None, beyond: 0.0 };
         // of each the least bad that there can be
-        let worst = [-1.0, f64::INFINITY, 0.0, 0.0, -1.0, 0.0].map(none);
-        Found { worst, weight: none(1.0), gains: 0, impacts: 0, settlings: 0, held: 0.0, duration: 0.0 }
+        let worst = [-1.0, f64::INFINITY, 0.0, 0.0, -1.0, 0.0, 1.0].map(none);
+        Found { worst, has_stood: false, gains: 0, impacts: 0, settlings: 0, held: 0.0, duration: 0.0 }
     }
 
     /// Sees `value` of assumption `which` at `time` (s). Of values that are the same but for rounding the first counts.
     fn see(&mut self, which: usize, value: f64, time: f64) {
+        // a base pressed down by more than its weight has less tension than that of nothing seen
+        let is_first = which == TENSION && !std::mem::replace(&mut self.has_stood, true);
         let worst = &mut self.worst[which];
         let is_same =
             value == worst.value || (value - worst.value).abs() <= MARGIN * value.abs().min(worst.value.abs());
-        let is_worse = if which == EDGE_LOAD { value < worst.value } else { value > worst.value };
+        let is_least = matches!(which, EDGE_LOAD | WEIGHT);
+        let is_worse = is_first || if is_least { value < worst.value } else { value > worst.value };
         if is_same {
             worst.time = worst.time.min(time);
         } else if is_worse {
@@ -243,11 +253,7 @@ impl Found {
     /// Sees a `ramp` of the vertical ground acceleration that lasts from `time` (s) on for `duration`, where gravity is `g`.
     fn see_vertical(&mut self, g: f64, ramp: Ramp, time: f64, duration: f64) {
         let ends = [0.0, duration].map(|tau| (time + tau, 1.0 + ramp.at(tau) / g));
-        for (time, value) in ends {
-            if value < self.weight.value {
-                (self.weight.value, self.weight.time) = (value, time);
-            }
-        }
+        ends.iter().for_each(|(time, value)| self.see(WEIGHT, *value, *time));
         let root = (-(g + ramp.value) / ramp.slope).clamp(0.0, duration);
         let (from, to) = match ends.map(|(_, value)| value <= 0.0) {
             [false, false] => return,
@@ -255,18 +261,7 @@ impl Found {
             [true, false] => (0.0, root),
             [false, true] => (root, duration),
         };
-        self.weight.first_beyond.get_or_insert(time + from);
-        self.weight.beyond += to - from;
-    }
-
-    /// What there is to say once the base would have flown: when, for how long, what it means.
-    pub fn warning_of_flight(&self) -> Option<String> {
-        let Worst { value, time, first_beyond, beyond } = self.weight;
-        let first = first_beyond?;
-        Some(format!(
-            "t = {first} s: g + a_v is not above 0, for {beyond} s so far: nothing holds the base down, in truth it flies; so far \
-             the least (g + a_v)/g = {value} at t = {time} s"
-        ))
+        self.see_beyond(WEIGHT, time + from, to - from);
     }
 
     /// What assumption `which` of [`ASSUMPTIONS`] says once its limit has been passed: what, when, how much, what it
@@ -274,7 +269,11 @@ impl Found {
     pub fn warning(&self, which: usize, limits: &Limits) -> Option<String> {
         let (Assumption { name, meaning, limit, .. }, Worst { value, time, first_beyond, .. }) =
             (&ASSUMPTIONS[which], &self.worst[which]);
-        let side = if which == EDGE_LOAD { "below" } else { "above" };
+        let side = match which {
+            EDGE_LOAD => "below",
+            WEIGHT => "not above",
+            _ => "above",
+        };
         let first = (*first_beyond)?;
         let limit = limit(limits);
         Some(format!("t = {first} s: {name} is {side} {limit}: {meaning}; so far {name} = {value} at t = {time} s"))
@@ -604,16 +603,17 @@ impl Run<'_> {
 
 /// What the parameters alone say at the level `detail`, before anything moves.
 pub fn of_parameters(structure: &Structure, detail: Detail) -> Vec<String> {
-    let &Parameters { B, H, g, r, .. } = structure.parameters();
+    let &Parameters { m, B, H, g, r, P_0, .. } = structure.parameters();
     let &Structure { gamma, omega_fc, u_cr, .. } = structure;
     let mut warnings = Vec::new();
     if detail == Detail::FixedBase {
         return warnings;
     }
     if detail != Detail::Rigid && u_cr > B {
-        let balanced = gamma * g * B / (H * omega_fc * omega_fc + g);
+        let balanced = (gamma * g * B + P_0 * B / m) / (H * omega_fc * omega_fc + g);
+        let held = if P_0 > 0.0 { "gamma g + P_0/m" } else { "gamma g" };
         warnings.push(format!(
-            "u_cr = {u_cr} m exceeds B = {B} m (H w_fc^2 < gamma g): the base is held down until the top mass is beyond \
+            "u_cr = {u_cr} m exceeds B = {B} m (H w_fc^2 < {held}): the base is held down until the top mass is beyond \
              its edge, although from u = {balanced} m on its weight does not keep it there; raise f_fc, or do not \
              believe what follows"
         ));

@@ -3,7 +3,7 @@
 use nalgebra::Vector2;
 use rocking::levels::full_contact;
 use rocking::levels::nonlinear;
-use rocking::{Load, Phase, Ramp, State, Structure};
+use rocking::{Dissipators, Load, Phase, Ramp, State, Structure};
 use std::cell::Cell;
 
 /// Two second-order equations for the positions (u, θ).
@@ -29,7 +29,8 @@ impl Equations for PhaseEquations<'_> {
                 Vector2::new(full_contact::acceleration(self.structure, &state, Load::ground(self.a_g.at(tau))), 0.0)
             }
             Phase::Rocking(side) | Phase::Overturned(side) => {
-                nonlinear::accelerations(self.structure, side, &state, Load::ground(self.a_g.at(tau)))
+                let load = Load::ground(self.a_g.at(tau));
+                nonlinear::accelerations(self.structure, side, &state, load, &Dissipators::NEW)
                     .unwrap_or_else(|| Vector2::repeat(f64::NAN))
             }
         }

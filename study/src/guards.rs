@@ -2,7 +2,7 @@
 
 use rocking::levels::nonlinear;
 use rocking::mechanics::impact;
-use rocking::{Load, Phase, Side, State, Structure};
+use rocking::{Dissipators, Load, Phase, Side, State, Structure};
 use std::f64::consts::FRAC_PI_2;
 
 /// Excess of |u| over u_cr, and of s θ̈ over 0 in units of g/H, that count as uplift. What rounding alone can bring
@@ -13,7 +13,7 @@ const LEAST_EXCESS: f64 = 1e-12;
 pub fn uplift_excess(structure: &Structure, state: &State) -> f64 {
     let side = Side::of(state.u);
     // What turns the base at θ = θ̇ = 0 does not depend on a_g.
-    let theta_ddot = match nonlinear::accelerations(structure, side, state, Load::default()) {
+    let theta_ddot = match nonlinear::accelerations(structure, side, state, Load::default(), &Dissipators::NEW) {
         Some(accelerations) => side.sign() * accelerations[1],
         None => f64::NAN,
     };

@@ -10,7 +10,7 @@ use minijinja::{Value, context};
 use population::{Pair, both};
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::impact;
-use rocking::run::validity::{ASSUMPTIONS, EDGE_LOAD, FRICTION, Found, IMPACT_FRICTION, IMPACT_TENSION, TENSION};
+use rocking::run::validity::{ASSUMPTIONS, EDGE_LOAD, FRICTION, Found, IMPACT_FRICTION, IMPACT_TENSION, TENSION, WEIGHT};
 use rocking::{Detail, Parameters};
 use std::path::Path;
 
@@ -107,7 +107,7 @@ fn rows(population: &[Pair]) -> Vec<Value> {
             worst => number(worst),
         }
     };
-    ASSUMPTIONS.iter().enumerate().map(row).collect()
+    ASSUMPTIONS.iter().take(WEIGHT).enumerate().map(row).collect() // the ground moves horizontally alone
 }
 
 fn repair(population: &[Pair]) -> Value {

@@ -7,7 +7,7 @@
 
 use crate::pulse::{Pulse, units_of};
 use crate::{Refused, ensure};
-use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::engine::{DEFAULT_TOLERANCE, check_tolerance};
 use rocking::mechanics::uplift::least_push;
 use rocking::run::record::Record;
 use rocking::run::{Ending, Run, peaks::Peaks};
@@ -160,7 +160,7 @@ impl Point {
     }
 
     fn of(run: &Run) -> Point {
-        let mut peaks = Peaks::since(run.ground.start(), &run.structure);
+        let mut peaks = Peaks::since(run.ground.start(), &run.structure, run.detail);
         let mut impacts = 0;
         let mut count = |transition: &Transition| {
             let comes_down = matches!(
@@ -225,9 +225,7 @@ impl Map {
     /// This map to the relative `tolerance`, at the level `detail`, with each point's condition, by a second run, if it
     /// `finds_condition`.
     pub fn computed_by(self, detail: Detail, tolerance: f64, finds_condition: bool) -> Result<Map, Refused> {
-        ensure(tolerance > 0.0 && tolerance < 1.0, || {
-            format!("tolerance = {tolerance} is out of range: a number between 0 and 1 is needed")
-        })?;
+        check_tolerance(tolerance).map_err(Refused::by)?;
         Ok(Map { detail, tolerance, finds_condition, ..self })
     }
 

@@ -214,12 +214,10 @@ impl Conditions {
     /// Refuses, with the reason, what no run of `structure` can have.
     pub fn check(&self, structure: &Structure) -> Result<(), Refused> {
         let Conditions { initial, detail, tolerance, duration } = *self;
-        let check = |is_in_range, name, value, needed| {
-            ensure(is_in_range, || format!("{name} = {} is out of range: {needed} is needed", with_unit(value, "1")))
-        };
-        check(tolerance > 0.0 && tolerance < 1.0, "tolerance", tolerance, "a number between 0 and 1")?;
         let duration = duration.unwrap_or(1.0);
-        check(duration > 0.0 && duration.is_finite(), "duration", duration, "a finite number greater than 0")?;
+        ensure(duration > 0.0 && duration.is_finite(), || {
+            format!("duration = {} is out of range: a finite number greater than 0 is needed", with_unit(duration, "1"))
+        })?;
         Engine::with_detail(*structure, initial, 0.0, tolerance, detail).map(|_| ()).map_err(Refused::by)
     }
 }

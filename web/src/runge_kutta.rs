@@ -3,8 +3,9 @@
 
 use rocking::levels::{full_contact, nonlinear};
 use rocking::mechanics::impact;
+use rocking::mechanics::restraint::uplift_displacement;
 use rocking::run::record::Record;
-use rocking::{Load, Phase, Ramp, Side, State, Structure};
+use rocking::{Dissipators, Load, Phase, Ramp, Side, State, Structure};
 use std::f64::consts::FRAC_PI_2;
 
 /// More evaluations than these are not waited for.
@@ -29,6 +30,7 @@ pub fn run(
     }
     let (mut states, mut evaluations) = (vec![initial], 0);
     let (mut phase, mut state) = (initial.initial_phase().map_err(|error| error.to_string())?, initial);
+    let mut dissipators = Dissipators::NEW.moved(structure, phase.side(), state.theta);
     for i in 1..instants.len() {
         let (dt, parts) = (instants[i] - instants[i - 1], parts(i));
         let ramp = match i < times.len() {
@@ -37,9 +39,10 @@ pub fn run(
         };
         let step = dt / parts;
         for part in 0..parts as u64 {
-            state = stepped(structure, phase, &state, |tau| ramp.at(part as f64 * step + tau), step);
+            state = stepped(structure, phase, &state, &dissipators, |tau| ramp.at(part as f64 * step + tau), step);
+            dissipators = dissipators.moved(structure, phase.side(), state.theta);
             evaluations += 4;
-            (phase, state) = next(structure, phase, &state).unwrap_or((phase, state));
+            (phase, state) = next(structure, phase, &state, &dissipators).unwrap_or((phase, state));
             if let Phase::Overturned(_) = phase {
                 return Ok((states, evaluations));
             }
@@ -49,13 +52,22 @@ pub fn run(
     Ok((states, evaluations))
 }
 
-/// One step over `h` (s): k₁ … k₄ in the textbook's order.
-fn stepped(structure: &Structure, phase: Phase, from: &State, a_g: impl Fn(f64) -> f64, h: f64) -> State {
+/// One step over `h` (s): k₁ … k₄ in the textbook's order. At each of them the `dissipators`, as they are at the start, are moved
+/// to the rotation there.
+fn stepped(
+    structure: &Structure,
+    phase: Phase,
+    from: &State,
+    dissipators: &Dissipators,
+    a_g: impl Fn(f64) -> f64,
+    h: f64,
+) -> State {
     let rates = |state: &State, tau: f64| {
         let load = Load::ground(a_g(tau));
         let [u_ddot, theta_ddot] = match phase {
             Phase::Rocking(side) => {
-                nonlinear::accelerations(structure, side, state, load).map_or([f64::NAN; 2], Into::into)
+                let moved = dissipators.moved(structure, side, state.theta);
+                nonlinear::accelerations(structure, side, state, load, &moved).map_or([f64::NAN; 2], Into::into)
             }
             _ => [full_contact::acceleration(structure, state, load), 0.0],
         };
@@ -78,12 +90,16 @@ fn moved(from: &State, rates: &State, tau: f64) -> State {
 }
 
 /// Phase and state after the end of the `phase`, if it has ended in `state`.
-fn next(structure: &Structure, phase: Phase, state: &State) -> Option<(Phase, State)> {
+fn next(structure: &Structure, phase: Phase, state: &State, dissipators: &Dissipators) -> Option<(Phase, State)> {
     match phase {
-        Phase::FullContact if state.u.abs() >= structure.u_cr => {
+        Phase::FullContact => {
             let side = Side::of(state.u);
-            let lifts = nonlinear::accelerations(structure, side, state, Load::default())?[1] * side.sign() > 0.0;
-            lifts.then_some((Phase::Rocking(side), *state))
+            let lifts = || {
+                let rates = nonlinear::accelerations(structure, side, state, Load::default(), dissipators);
+                rates.is_some_and(|rates| rates[1] * side.sign() > 0.0)
+            };
+            let is_due = state.u.abs() >= uplift_displacement(structure, side, 0.0, dissipators) && lifts();
+            is_due.then_some((Phase::Rocking(side), *state))
         }
         Phase::Rocking(side) if side.sign() * state.theta >= FRAC_PI_2 => Some((Phase::Overturned(side), *state)),
         Phase::Rocking(side) if side.sign() * state.theta < 0.0 => Some(impact::resolve(structure, side, state)),

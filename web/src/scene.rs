@@ -1,7 +1,7 @@
 //! A scene as the page has it: fields of text, as they stand in the link, read by the parser that reads a command line's.
 
 use crate::says;
-use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::engine::{DEFAULT_TOLERANCE, check_tolerance};
 use rocking::run::{End, record::Record};
 use rocking::structure::natural_quantities::{Given, names};
 use rocking::structure::parameters::PRESETS;
@@ -165,10 +165,7 @@ impl Fields {
     /// The relative tolerance of the results.
     pub fn tolerance(&self) -> Result<f64, String> {
         let tolerance = self.number("tolerance")?;
-        match tolerance > 0.0 && tolerance < 1.0 {
-            true => Ok(tolerance),
-            false => Err(format!("tolerance = {tolerance} is out of range: a number between 0 and 1 is needed")),
-        }
+        check_tolerance(tolerance).map(|()| tolerance).map_err(|error| error.to_string())
     }
 }
 

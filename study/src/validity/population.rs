@@ -104,7 +104,7 @@ pub fn both(run: &Run) -> Result<Pair, RunError> {
 
 fn respond(run: &Run) -> Result<Response, RunError> {
     let start = run.ground.start();
-    let mut peaks = Peaks::since(start, &run.structure);
+    let mut peaks = Peaks::since(start, &run.structure, run.detail);
     let mut validity = Validity::new(&run.structure, Limits::default(), Found::since(start));
     let finish = run.follow(&mut (&mut peaks.watch(), &mut validity))?;
     let overturns = finish.ending == Ending::Overturned;
