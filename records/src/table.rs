@@ -496,6 +496,17 @@ mod tests {
         assert_eq!(one("# peak 0.3 g").unwrap_err().remedy, Some(Remedy::Unit));
     }
 
+    /// A factor may be in any heading of the column. The user says what the numbers are.
+    #[test]
+    fn a_factor_in_a_heading_is_not_passed_over() {
+        for headings in ["t (s);a (10^-3 g)", "t (s);a*1000\ns;g", "t (s);g\n;x 1000", "t (s);a (g/1000)"] {
+            let text = format!("{headings}\n0;1\n.5;2\n");
+            assert_eq!(read(&text, &AS_IT_IS).unwrap_err().remedy, Some(Remedy::Unit), "{headings}");
+            let asked = Reading { unit: Some(Unit::MilliG), ..AS_IT_IS };
+            assert_eq!(read(&text, &asked).unwrap().1.unit, Unit::MilliG, "{headings}");
+        }
+    }
+
     #[test]
     fn text_is_no_data() {
         for title in ["Kocaeli 1999 08 17", "17 March, run 4, north", "4 5 6 (gauges)"] {

@@ -156,6 +156,7 @@ fn has_factor(text: &str) -> bool {
         let is_sign = match sign {
             '*' | '\u{d7}' | '\u{b7}' | '\u{22c5}' => true,
             '^' => before.ends_with(char::is_numeric),
+            'x' | 'X' if before.is_empty() => after.starts_with(' '), // unlike the name x1
             'x' | 'X' => before.ends_with([' ', '\t', '(', '[', '{']),
             '/' => !before.trim_end().ends_with(char::is_numeric), // unlike a date
             _ => false,
@@ -191,8 +192,8 @@ pub(super) enum Stated {
 }
 
 impl Stated {
-    /// The unit that the `heading` of a column of accelerations, or a line of text before samples alone, states: after a blank,
-    /// a slash, an underscore or the like, to the end or the next bracket. `a_g` is the ground acceleration, whatever its
+    /// The unit that `heading` states: the heading of a column of accelerations, or a line of text before samples alone. The
+    /// unit stands after a blank, a slash, an underscore or the like, up to the end or the next bracket. `a_g` is the ground acceleration, whatever its
     /// unit. A unit after a number is the unit of that number.
     pub(super) fn of(heading: &str) -> Stated {
         const DIVIDERS: &[char] = &[' ', '\t', ',', ':', '=', '/', '_', '(', '[', '{'];
