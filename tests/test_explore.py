@@ -44,7 +44,7 @@ COMPUTED = """([fields, name, record]) => {
 
 #: Names of files and headings of columns that a shell or Python would take for something else.
 HOSTILE = ["-", "--help", "a b.csv", "it's; touch pwned; '.csv", 'a"; touch pwned; ".csv', "$(touch pwned).csv", "`touch pwned`.csv",
-           "a\ntouch pwned\n.csv", "a\\", "{x} %s ünï.csv", "!x", "~", "#x.csv", "*"]
+           "a\ntouch pwned\n.csv", "a\\", "{x} \\n ünï.csv", "!x", "~", "#x.csv", "*"]
 
 @pytest.fixture
 def opened(new_page):
@@ -106,7 +106,7 @@ def random_scenes(count: int):
                           "zeta_fc": ["01e-2"], "P_0": ["300"], "k_t": ["4e4"]})
         run = some({"theta_0": ["-0.01", "0.02"], "u_0": ["1e-3"], "detail": ["nonlinear", "linear", "rigid"], "tolerance": ["1E-6"]})
         scales = some({"scale": ["1.7", "-1"], "time_scale": ["0.5"]})
-        name, heading = random.choice(HOSTILE), random.choice(HOSTILE).replace("\n", "")
+        name, heading = random.choice(HOSTILE), random.choice(HOSTILE).replace(";", "&").replace("\n", "&")
         unit, size = random.choice([("g", 0.6), ("cm/s2", 600), ("%g", 60)])
         table = f"time [s],other,{heading}\n" + "".join(f"{0.2 * i},7,{size * a}\n" for i, a in enumerate([0, 1, -1.2, 0.4, 0, 0]))
         bare = "".join(f"{size * a}\n" for a in [0, 1, -1.2, 0.4, 0])
