@@ -86,7 +86,7 @@ def check_scenes(exporter, folder, evaluate):
     for fields in SCENES:
         peaks, ground, taken_along = evaluate([fields, RECORD.name, RECORD.read_text()])
         (folder / "ground.csv").write_text(ground)
-        assert agree(peaks, by_command_line(exporter, folder, taken_along["command"])), fields
+        assert agree(peaks, by_command_line(exporter, folder, taken_along[0])), fields
 
 
 def test_numbers_are_the_command_lines_in_chromium(opened, exporter, tmp_path):
@@ -145,6 +145,7 @@ def test_a_link_is_taken_whole_or_what_is_wrong_in_it_is_named(opened):
                      ("ground=record&amplitude=1", '"amplitude" of the link is unknown with ground = record; these'),
                      ("dt=0.1", '"dt" of the link is unknown with ground = sine; these'),
                      ("ground=quake", 'ground = "quake" is unknown; these are known: half_sine, sine,'),
+                     ("ground=synthetic&seed=1.5", "seed = 1.5 is out of range: a whole number of at least 0 is needed"),
                      ("H=2&H=3", 'H = "2, 3": invalid float literal')]:
         page.evaluate("hash => { location.hash = hash }", key)
         settled(page)

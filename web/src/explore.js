@@ -486,11 +486,11 @@
   }
 
   function drawTake() {
-    const { command, script, to_set } = JSON.parse(explorer.taken_along(text()));
+    const [command, script, toSet] = JSON.parse(explorer.taken_along(text()));
     at("link").textContent = location.href;
     at("command").textContent = command;
     at("python").textContent = script;
-    at("to_set").textContent = to_set && `An FMU does not hold how a run starts and is computed. Set in the host: ${to_set}`;
+    at("to_set").textContent = toSet && `An FMU holds neither the start nor the method of a run. Set in the host: ${toSet}`;
     at("csv").parentElement.hidden = ground() === "free";
   }
 

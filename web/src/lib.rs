@@ -22,6 +22,7 @@ use rocking_view::Scene;
 use scene::{Fields, File, GROUNDS, Ground, NUMBERS, READING, numbers_of};
 use serde_json::{Value, json};
 use std::path::Path;
+use take::{GROUND, taken_along};
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// Error of a level that its use is advised within, as `advise` has it.
@@ -219,8 +220,8 @@ impl Explorer {
     pub fn taken_along(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
         self.load(&fields)?;
-        let scene = take::Calls::of(&fields, self.file.as_ref().map(|file| file.path.as_path()))?;
-        Ok(json!({ "command": scene.command()?, "script": scene.script(), "to_set": scene.to_set() }).to_string())
+        let path = self.file.as_ref().map(|file| file.path.as_path());
+        Ok(json!(taken_along(&fields, path)?).to_string())
     }
 
     /// The FMU of this structure under this ground motion, for hosts of FMI 2.0 or 3.0.
@@ -233,7 +234,7 @@ impl Explorer {
             ("free", _) => Vec::new(),
             ("record", Some(file)) if is_as_read => vec![(file.path.clone(), file.bytes.clone())],
             ("record", Some(file)) => vec![(file.path.with_extension("csv"), ground.table().into_bytes())],
-            _ => vec![(take::GROUND.into(), ground.table().into_bytes())],
+            _ => vec![(GROUND.into(), ground.table().into_bytes())],
         };
         let exported = fmu_export::export(version, &ModelName::default(), &structure, record, None, &self.libraries);
         Ok(exported.map_err(says)?.1)

@@ -173,8 +173,11 @@ impl Fields {
             "free" => Ok(Ground::of(Record::at_rest(self.number("duration")?))),
             "synthetic" => {
                 let pga = g * self.number("amplitude")?;
-                let record = synthetic::record(pga, self.number("duration")?, self.number("seed")? as u64);
-                record.map(Ground::of).map_err(says)
+                let (duration, seed) = (self.number("duration")?, self.number("seed")?);
+                if seed as u64 as f64 != seed {
+                    return Err(format!("seed = {seed} is out of range: a whole number of at least 0 is needed"));
+                }
+                synthetic::record(pga, duration, seed as u64).map(Ground::of).map_err(says)
             }
             _ => self.pulse(g)?.record().map(Ground::of).map_err(says),
         }
@@ -201,17 +204,13 @@ impl Fields {
         if let Some(dt) = dt.filter(|dt| !(*dt > 0.0 && dt.is_finite())) {
             return Err(format!("dt = {dt} is out of range: a finite number greater than 0 is needed"));
         }
-        let asked = self.text("unit");
-        let unit = asked.map(|asked| {
-            let known = Unit::NAMES.iter().find(|(name, _)| *name == asked);
-            known.map(|(_, unit)| *unit).ok_or_else(|| format!("unit = {asked:?} is unknown"))
-        });
+        let unit = self.text("unit").map(|_| self.named("unit", "")).transpose()?;
         let ignores_count = match self.text("ignore_npts") {
             None => false,
             Some("true") => true,
             Some(asked) => return Err(format!("ignore_npts = {asked:?} is unknown: it is true or left out")),
         };
-        Ok(Reading { unit: unit.transpose()?, dt, column: self.text("column").map(Column::from), ignores_count })
+        Ok(Reading { unit, dt, column: self.text("column").map(Column::from), ignores_count })
     }
 
     /// The run of `structure` under `ground`.

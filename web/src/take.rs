@@ -13,90 +13,47 @@ pub const GROUND: &str = "ground.csv";
 /// Options of one call, by the names that the command line and Python share.
 type Options = Vec<(&'static str, Value)>;
 
-/// The calls that compute one scene, and the options of each.
-pub struct Calls<'a> {
-    ground: &'a str,
-    structure: Options,
-    /// Numbers of a pulse, or the duration of free vibration.
-    motion: Options,
-    /// Name of the record's file.
-    file: String,
-    of_file: Options,
-    run: Options,
-}
-
-impl Calls<'_> {
-    /// The calls that compute the scene `fields` with the record at `path`. Every key of the scene is in one of them.
-    pub fn of<'a>(fields: &'a Fields, path: Option<&Path>) -> Result<Calls<'a>, String> {
-        let ground = fields.kind();
-        let file = path.filter(|_| ground == "record").unwrap_or(Path::new(GROUND));
-        let given = |names: &mut dyn Iterator<Item = &'static str>| -> Result<Options, String> {
-            let given = names.filter_map(|name| Some((name, fields.text(name)?)));
-            given.map(|(name, text)| Ok((name, literal(name, text)?))).collect()
-        };
-        // a command has no usual value of these
-        let needed = |names: &[&'static str]| -> Result<Options, String> {
-            names.iter().map(|name| Ok((*name, literal(name, &fields.number(name)?.to_string())?))).collect()
-        };
-        let motion = match ground {
-            "record" | "synthetic" => Vec::new(),
-            "free" => needed(&["duration"])?,
-            _ => [needed(&["amplitude", "frequency"])?, given(&mut ["cycles", "phase"].into_iter())?].concat(),
-        };
-        let preset = fields.text("preset").unwrap_or(PRESETS[0].0);
-        Ok(Calls {
-            ground,
-            structure: [vec![("preset", preset.into())], given(&mut names())?].concat(),
-            motion,
-            file: if file == Path::new("-") { "./-".into() } else { file.display().to_string() }, // no standard input
-            of_file: given(&mut fields.of_file())?,
-            run: given(&mut RUN.into_iter())?,
-        })
-    }
-
-    fn is_pulse(&self) -> bool {
-        !["record", "synthetic", "free"].contains(&self.ground)
-    }
-
-    /// The commands of a POSIX shell, a line each.
-    pub fn command(&self) -> Result<String, String> {
-        let motion = match self.ground {
-            "free" => vec![("free", self.motion[0].1.clone())],
-            _ => vec![("record", self.file.as_str().into())],
-        };
-        let simulate = command("simulate", &[&self.structure, &motion, &self.of_file, &self.run])?;
-        if !self.is_pulse() {
-            return Ok(simulate);
+/// The scene `fields` with the record at `path` as the commands of a POSIX shell, a script in Python, and the start and method
+/// of its run, which an FMU does not hold. Every key of the scene is in the commands and in the script.
+pub fn taken_along(fields: &Fields, path: Option<&Path>) -> Result<[String; 3], String> {
+    let usual = |name: &str| match name {
+        "preset" => Some(PRESETS[0].0.to_owned()),
+        "amplitude" | "frequency" | "duration" => fields.number(name).ok().map(|usual| usual.to_string()),
+        _ => None, // the command line and Python have the same
+    };
+    let options = |names: &mut dyn Iterator<Item = &'static str>| -> Result<Options, String> {
+        let given =
+            names.filter_map(|name| Some((name, fields.text(name).map(str::to_owned).or_else(|| usual(name))?)));
+        given.map(|(name, text)| Ok((name, literal(name, &text)?))).collect()
+    };
+    let structure = options(&mut ["preset"].into_iter().chain(names()))?;
+    let (of_file, run) = (options(&mut fields.of_file())?, options(&mut RUN.into_iter())?);
+    let file = path.filter(|_| fields.kind() == "record").map_or(GROUND.into(), |path| path.display().to_string());
+    let file = if file == "-" { "./-".into() } else { file }; // which is no standard input
+    let simulate = |motion, of_file| command("simulate", &[&structure, &vec![motion], of_file, &run]);
+    let after_first = |options: &Options| arguments(options)[", ".len()..].to_owned();
+    let (command, record, motion) = match fields.kind() {
+        "free" => {
+            let motion = options(&mut ["duration"].into_iter())?;
+            (simulate(("free", motion[0].1.clone()), &of_file)?, String::new(), arguments(&motion))
         }
-        let output = vec![("output", GROUND.into())];
-        let pulse = command(&format!("pulse {}", self.ground), &[&self.motion, &self.structure, &output])?;
-        Ok(format!("{pulse}\n{simulate}"))
-    }
-
-    /// The script in Python.
-    pub fn script(&self) -> String {
-        let [structure, of_file, run] = [&self.structure, &self.of_file, &self.run].map(|options| arguments(options));
-        let record = match self.ground {
-            "free" => String::new(),
-            _ if !self.is_pulse() => {
-                format!("record = fr.Record.read({}{of_file})\n", Value::from(self.file.as_str()))
-            }
-            shape => {
-                let scaled = if of_file.is_empty() { String::new() } else { format!(".scaled({})", &of_file[2..]) };
-                format!("record = fr.pulse(\"{shape}\"{}, g=structure.g){scaled}\n", arguments(&self.motion))
-            }
-        };
-        let motion = if record.is_empty() { arguments(&self.motion) } else { ", record".into() };
-        format!(
-            "import flexible_rocking as fr\n\nstructure = fr.Structure({})\n{record}run = fr.simulate(structure{motion}{run})",
-            &structure[2..]
-        )
-    }
-
-    /// The values of the run, which an FMU does not hold.
-    pub fn to_set(&self) -> String {
-        arguments(&self.run).trim_start_matches(", ").to_owned()
-    }
+        "record" | "synthetic" => {
+            let record = format!("record = fr.Record.read({}{})\n", Value::from(file.as_str()), arguments(&of_file));
+            (simulate(("record", file.into()), &of_file)?, record, ", record".into())
+        }
+        shape => {
+            let pulse = options(&mut ["amplitude", "frequency", "cycles", "phase"].into_iter())?;
+            let written = command(&format!("pulse {shape}"), &[&pulse, &structure, &vec![("output", GROUND.into())]])?;
+            let scaled = if of_file.is_empty() { "".into() } else { format!(".scaled({})", after_first(&of_file)) };
+            let record = format!("record = fr.pulse(\"{shape}\"{}, g=structure.g){scaled}\n", arguments(&pulse));
+            (format!("{written}\n{}", simulate(("record", file.into()), &of_file)?), record, ", record".into())
+        }
+    };
+    let (structure, run) = (after_first(&structure), arguments(&run));
+    let script = format!(
+        "import flexible_rocking as fr\n\nstructure = fr.Structure({structure})\n{record}run = fr.simulate(structure{motion}{run})"
+    );
+    Ok([command, script, run.trim_start_matches(", ").to_owned()])
 }
 
 /// The value of the key `name`, given as `text`.
