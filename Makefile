@@ -123,7 +123,7 @@ hosts: .venv/heavy exporter windows host_packages
 	$(PYTEST) -m heavy -n auto --dist loadfile tests/test_hosts_*.py
 
 # The pages of `view` and `explore` in Chromium, and in Firefox; where these cannot be had, the tests are skipped and say so.
-browser: .venv/heavy exporter explore
+browser: .venv/heavy module explore
 	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
 	-@$(HAS_FIREFOX) || { $(call install,firefox-esr); }
 	$(PYTEST) -m heavy tests/test_view.py tests/test_explore.py

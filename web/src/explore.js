@@ -17,15 +17,22 @@
 
   // ---- The scene: what differs from the defaults, as the text that was given
 
-  let fields = Object.fromEntries(new URLSearchParams(location.hash.slice(1)));
-  let tab = fields.tab ?? "play";
-  let step = fields.step ?? "0.001"; // of RK4, s
-  delete fields.tab;
-  delete fields.step;
+  let fields;
+  let tab;
+  let step; // of RK4, s
+  let isLinked; // whether the link says how the next file is read
+  /** Reads the scene from the link. The texts of a key that is there twice are one text, which the engine rejects. */
+  function follow() {
+    const link = new URLSearchParams(location.hash.slice(1));
+    const texts = [...link.keys()].map((key) => [key, link.getAll(key).join(", ")]);
+    isLinked = true;
+    ({ tab = "play", step = "0.001", ...fields } = Object.fromEntries(texts));
+  }
+  follow();
   const text = () => JSON.stringify(fields);
   const ground = () => fields.ground ?? "sine";
   const preset = () => tables.presets.find(({ name }) => name === (fields.preset ?? "mcmanus")) ?? tables.presets[0];
-  const isFile = () => ground() === "record";
+  const value = (name) => fields[name] ?? String(tables.numbers.find((of) => of.name === name).usual);
 
   function give(name, value) {
     if (value === "") delete fields[name];
@@ -131,9 +138,15 @@
 
   /** The numbers that the ground motion has. */
   function numbersOf(name) {
-    const shape = tables.shapes.find((of) => of.name === name);
-    if (shape) return ["amplitude", "frequency", ...(shape.has_choice ? ["cycles", "phase"] : [])];
-    return tables.grounds.find(([of]) => of === name)?.[1] ?? [];
+    return tables.shapes.find((of) => of.name === name)?.numbers ?? tables.grounds.find(([of]) => of === name)?.[1] ?? [];
+  }
+
+  /** Takes another ground motion, and drops what the scene has for the one before alone. */
+  function shake(name) {
+    const kept = ["tolerance", ...numbersOf(name), ...(name === "record" ? tables.reading : [])];
+    const numbers = [...tables.reading, ...tables.numbers.map((of) => of.name)];
+    if (name !== ground()) for (const of of numbers) if (!kept.includes(of)) delete fields[of];
+    give("ground", name);
   }
 
   at("preset").addEventListener("change", ({ target }) => {
@@ -141,25 +154,37 @@
     give("preset", target.value);
   });
   at("ground").addEventListener("change", ({ target }) => {
-    const kept = ["tolerance", ...numbersOf(target.value)];
-    for (const { name } of tables.numbers) if (!kept.includes(name)) delete fields[name];
     if (target.value === "free") fields.theta_0 ??= "0.05";
-    give("ground", target.value);
+    shake(target.value);
   });
   for (const id of ["detail", "unit"]) at(id).addEventListener("change", ({ target }) => give(id, target.value));
   for (const id of ["dt", "column"]) at(id).addEventListener("input", ({ target }) => give(id, target.value.trim()));
+  at("ignore_npts").addEventListener("change", ({ target }) => give("ignore_npts", target.checked ? "true" : ""));
   at("natural").addEventListener("change", change);
   at("reset").addEventListener("click", () => {
     fields = {};
     change();
   });
 
-  function showControls() {
-    derived = Object.fromEntries(about.derived.map(({ name, value }) => [name, value]));
+  /** Shows what is given, whether the engine accepts it or not. */
+  function showGiven() {
     at("preset").value = preset().name;
     at("ground").value = ground();
     at("detail").value = fields.detail ?? "auto";
+    at("reading").hidden = ground() !== "record";
+    at("ignore_npts").checked = "ignore_npts" in fields;
     for (const id of ["unit", "dt", "column"]) if (document.activeElement !== at(id)) at(id).value = fields[id] ?? "";
+    const own = [...numbersOf(ground()), "tolerance"];
+    const cycles = tables.shapes.find(({ name }) => name === ground())?.cycles;
+    for (const { name, usual } of tables.numbers) {
+      rows[name](Number(fields[name] ?? (name === "cycles" ? cycles : usual)), name in fields);
+      rows[name].element.hidden = !own.includes(name) && !(name in fields);
+    }
+    rows.step(Number(step), false);
+  }
+
+  function showControls() {
+    derived = Object.fromEntries(about.derived.map(({ name, value }) => [name, value]));
     const isNatural = at("natural").checked;
     const stand_in = (name) => tables.natural.some((of) => of.stands_for === name);
     for (const { name } of tables.parameters) {
@@ -170,14 +195,6 @@
       rows[name](derived[name], name in fields);
       rows[name].element.hidden = !isNatural;
     }
-    const own = [...numbersOf(ground()), "tolerance"];
-    const cycles = tables.shapes.find(({ name }) => name === ground())?.cycles;
-    for (const { name, usual } of tables.numbers) {
-      rows[name](Number(fields[name] ?? (name === "cycles" ? cycles : usual)), name in fields);
-      rows[name].element.hidden = !own.includes(name);
-    }
-    rows.step(Number(step), false);
-    at("reading").hidden = !isFile();
     at("remarks").textContent = [`${about.samples} samples, peak ${short(about.pga)} g`, ...about.remarks, ...about.warnings].join("; ");
     const derivedLine = ({ name, unit, description, value }) =>
       line([name, `${short(value)}${unit === "1" ? "" : ` ${unit}`}`], description);
@@ -207,6 +224,7 @@
   const colours = { fixed_base: "--orange", rigid: "--grey", modal: "--purple", linear: "--green", nonlinear: "--ink", auto: "--blue" };
 
   function update(part) {
+    showGiven();
     try {
       about = JSON.parse(explorer.about(text()));
       motion = decode(JSON.parse(explorer.show(text(), part)));
@@ -254,7 +272,7 @@
     const scene = new URLSearchParams({ ...fields, ...(tab === "play" ? {} : { tab }), ...(tab === "speed" ? { step } : {}) });
     history.replaceState(null, "", `#${scene}`);
     update(1e-4);
-    if (at("problem").hidden) panels[tab]();
+    if (at("problem").hidden) trying(panels[tab])();
   }
 
   // ---- A worker for what takes longer
@@ -277,9 +295,9 @@
 
   function drawValidity() {
     const rows = JSON.parse(explorer.validity(text()));
-    const passed = rows.filter((of) => of.first_beyond !== null).length;
+    const exceeded = rows.filter((of) => of.first_beyond !== null).length;
     at("validity").querySelector("summary").textContent =
-      `what the model leaves out here: ${passed === 0 ? "no limit is passed" : `${passed} of ${rows.length} limits are passed`}`;
+      `what the model leaves out here: ${exceeded === 0 ? "no limit is" : `${exceeded} of ${rows.length} limits are`} exceeded`;
     at("validity").querySelector("tbody").replaceChildren(
       ...rows.map(({ description, meaning, value, time, limit, part, first_beyond }) => {
         const beyond = first_beyond === null ? "never" : `${percent(part)} %`;
@@ -340,10 +358,16 @@
   });
   const swatches = [...at("classes").querySelectorAll(".swatch")];
 
+  /** The scene without what differs from point to point, and without what no point has. */
+  function sceneOfMap() {
+    const scene = { ...fields, ground: shapeOfMap() };
+    const none = ["amplitude", "frequency", "duration", "seed", "theta_0", "u_0", "scale", "time_scale", ...tables.reading];
+    for (const name of none) delete scene[name];
+    return scene;
+  }
+
   function drawMap() {
-    const { amplitude, frequency, ...kept } = fields;
-    for (const name of ["scale", "time_scale", "duration", "seed", "theta_0", "u_0"]) delete kept[name];
-    const scene = { ...kept, ground: shapeOfMap() };
+    const scene = sceneOfMap();
     drawAxes();
     if (spectrum.of === JSON.stringify(scene)) return;
     Object.assign(spectrum, { points: [], axes: undefined, of: JSON.stringify(scene) });
@@ -390,8 +414,7 @@
     svg(axes, "text", { ...middle, x: left + width / 2, y: below }, `ω/p_l of a ${words(shapeOfMap())}: ${ofFrequency}`);
     const upright = `translate(14 ${top + height / 2}) rotate(-90)`;
     svg(axes, "text", { ...middle, transform: upright }, `a_p/(g tan α_cg): ${ofAmplitude}`);
-    const usual = (name) => Number(fields[name] ?? tables.numbers.find((of) => of.name === name).usual);
-    const here = [usual("frequency") / of_frequency, (usual("amplitude") * g) / of_amplitude];
+    const here = [value("frequency") / value("time_scale") / of_frequency, (value("amplitude") * value("scale") * g) / of_amplitude];
     if (ground() === shapeOfMap()) svg(axes, "circle", { class: "here", cx: x(here[0]), cy: y(here[1]), r: 6 });
   }
 
@@ -401,24 +424,25 @@
     const along = ([from, to], part) => from * (to / from) ** part;
     const place = (part) => Math.floor(part * steps * finest) / (steps * finest); // the point that stands for it
     const eight = (value) => String(Number(value.toPrecision(8)));
+    fields = sceneOfMap();
     fields.frequency = eight(of_frequency * along(frequency, place(offsetX / target.clientWidth)));
     const ratio = along(amplitude, place(1 - offsetY / target.clientHeight));
     fields.amplitude = eight((ratio * of_amplitude) / motion.parameters.g);
-    const shape = shapeOfMap();
-    for (const name of ["scale", "time_scale"]) delete fields[name];
-    give("ground", shape);
+    change();
   });
 
   function drawSpeed() {
     const tolerances = Array.from({ length: 10 }, (_, i) => `1e-${i + 3}`);
     const steps = Array.from({ length: 10 }, (_, i) => 0.02 / 2 ** i);
     const all = [...tolerances.map((tolerance) => ({ tolerance })), ...steps.map((step) => ({ step }))];
-    const settings = [{ tolerance: fields.tolerance ?? "1e-9" }, { step: Number(step) }, ...all];
+    const isPossible = (of) => of.tolerance || motion.P_t === undefined; // RK4 knows no tendon and no dissipators
+    const own = [{ tolerance: value("tolerance") }, { step: Number(step) }].filter(isPossible);
+    const settings = [...own, ...all.filter(isPossible)];
     const found = [];
     at("methods").tBodies[0].replaceChildren();
     ask("speed", fields, (part) => {
-      found.push({ ...part, error: unlimited(part.error), isOwn: found.length < 2 });
-      if (found.length <= 2) {
+      found.push({ ...part, error: unlimited(part.error), isOwn: found.length < own.length });
+      if (found.length <= own.length) {
         const name = part.tolerance ? `engine, ${part.tolerance}` : `RK4, ${step} s`;
         const time = `${short(Number(part.time.toPrecision(2)))} ms`;
         at("methods").tBodies[0].append(line([name, unlimited(part.error).toExponential(1), part.evaluations, time]));
@@ -462,37 +486,12 @@
   }
 
   function drawTake() {
-    const option = (name) => `--${name.replaceAll("_", "-")} ${fields[name]}`;
-    const options = (names) => names.filter((name) => name in fields).map(option);
-    const structure = [...tables.parameters, ...tables.natural].map(({ name }) => name);
-    const shape = tables.shapes.some(({ name }) => name === ground());
-    const isFree = ground() === "free";
-    const value = (name) => fields[name] ?? tables.numbers.find((number) => number.name === name).usual;
-    const ofPulse = numbersOf(ground()).filter((name) => name in fields || ["amplitude", "frequency"].includes(name));
-    const file = isFile() ? fileName : "ground.csv";
-    const quoted = /^[\w.-]+$/.test(file) ? file : `'${file}'`;
-
-    const record = isFree ? [`--free ${value("duration")}`] : [`--record ${quoted}`];
-    const isChanged = structure.some((name) => name in fields);
-    const preset = options(["preset"]).concat(isChanged && !("preset" in fields) ? "--preset mcmanus" : []);
-    const others = options([...structure, "unit", "dt", "column", "scale", "time_scale", "theta_0", "u_0", "detail", "tolerance"]);
-    const pulse = ["rocking-fmu pulse", ground(), ...ofPulse.map((name) => `--${name} ${value(name)}`), ...options(["g"]), "-o ground.csv"];
-    const commands = [...(shape ? [pulse] : []), ["rocking-fmu simulate", ...preset, ...record, ...others]];
-    at("command").textContent = commands.map((words) => words.join(" ")).join("\n");
+    const [command, script, toSet] = JSON.parse(explorer.taken_along(text()));
     at("link").textContent = location.href;
-    const named = (pairs) => pairs.map(([name, number]) => `${name}=${number}`).join(", ");
-    const given = (names) => named(names.filter((name) => name in fields).map((name) => [name, fields[name]]));
-    const text = (name) => (name in fields ? `${name}="${fields[name]}"` : "");
-    const read = [`"${file}"`, text("unit"), text("column"), given(["dt", "scale", "time_scale"])].filter(Boolean).join(", ");
-    const python = shape ? `fr.pulse("${ground()}", ${named(ofPulse.map((name) => [name, value(name)]))})` : `fr.Record.read(${read})`;
-    const initial = [isFree ? `duration=${value("duration")}` : "record", given(["theta_0", "u_0"])].filter(Boolean).join(", ");
-    at("python").textContent = [
-      "import flexible_rocking as fr", "",
-      `structure = fr.Structure(${named(tables.parameters.map(({ name }) => [name, about.parameters[name]]))})`,
-      ...(isFree ? [] : [`record = ${python}`]),
-      `run = fr.simulate(structure, ${initial}, detail="${fields.detail ?? "auto"}", tolerance=${value("tolerance")})`,
-    ].join("\n");
-    at("csv").parentElement.hidden = isFree;
+    at("command").textContent = command;
+    at("python").textContent = script;
+    at("to_set").textContent = toSet && `An FMU holds neither the start nor the method of a run. Set in the host: ${toSet}`;
+    at("csv").parentElement.hidden = ground() === "free";
   }
 
   function save(name, content) {
@@ -522,27 +521,30 @@
     take: drawTake,
   };
   function open(name) {
-    tab = name in panels ? name : "play";
+    tab = Object.hasOwn(panels, name) ? name : "play";
     job++; // whatever was under way is no longer wanted
     spectrum.of = "";
     for (const button of at("tabs").children) button.setAttribute("aria-selected", button.dataset.tab === tab);
     for (const panel of document.querySelectorAll("[data-panel]")) panel.hidden = panel.dataset.panel !== tab;
     settle();
   }
+  addEventListener("hashchange", () => {
+    follow();
+    open(tab);
+  });
   at("tabs").addEventListener("click", ({ target }) => target.dataset.tab && open(target.dataset.tab));
 
   // ---- Files
 
-  let fileName;
   async function take(file) {
     if (!file) return;
     const bytes = new Uint8Array(await file.arrayBuffer());
     if (/\.(fmu|so|dll|dylib)$/i.test(file.name)) return takeLibraries(file.name, bytes);
     explorer.take_record(file.name, bytes);
     worker.postMessage({ record: { name: file.name, bytes } });
-    fileName = file.name;
-    for (const name of ["unit", "dt", "column", "amplitude", "frequency", "cycles", "phase", "duration", "seed", "theta_0", "u_0"]) delete fields[name];
-    give("ground", "record");
+    if (!isLinked) for (const name of tables.reading) delete fields[name];
+    isLinked = false;
+    shake("record");
   }
   function takeLibraries(name, bytes) {
     try {

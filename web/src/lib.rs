@@ -4,6 +4,7 @@
 mod map;
 mod runge_kutta;
 mod scene;
+mod take;
 
 use fmu_export::{Library, ModelName, Version};
 use rocking::engine::piece::Sample;
@@ -15,12 +16,13 @@ use rocking::structure::DERIVED;
 use rocking::structure::natural_quantities::NATURAL;
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::{Run, State, Structure};
-use rocking_records::{Unit, csv};
+use rocking_records::Unit;
 use rocking_sweep::{map::CLASSES, pulse::Shape};
 use rocking_view::Scene;
-use scene::{Fields, File, GROUNDS, Ground, NUMBERS};
+use scene::{Fields, File, GROUNDS, Ground, NUMBERS, READING, numbers_of};
 use serde_json::{Value, json};
-use std::path::{Path, PathBuf};
+use std::path::Path;
+use take::{GROUND, taken_along};
 use wasm_bindgen::prelude::wasm_bindgen;
 
 /// Error of a level that its use is advised within, as `advise` has it.
@@ -41,7 +43,7 @@ pub fn tables() -> String {
             "stands_for": of.stands_for,
         })
     };
-    let shape = |of: Shape| json!({ "name": of.name(), "definition": of.definition(), "cycles": of.cycles(), "has_choice": of.has_choice() });
+    let shape = |of: Shape| json!({ "name": of.name(), "definition": of.definition(), "cycles": of.cycles(), "numbers": numbers_of(of.name()) });
     let preset = |(name, parameters): &(&str, rocking::Parameters)| json!({ "name": name, "parameters": parameters });
     json!({
         "parameters": PARAMETERS.iter().map(parameter).collect::<Vec<_>>(),
@@ -50,6 +52,7 @@ pub fn tables() -> String {
         "shapes": Shape::ALL.map(shape),
         "numbers": NUMBERS,
         "grounds": GROUNDS,
+        "reading": READING,
         "details": Detail::ALL.map(Detail::name),
         "units": Unit::NAMES.map(|(name, _)| name),
         "classes": CLASSES.map(|(_, name)| name),
@@ -120,7 +123,7 @@ impl Explorer {
     /// What follows from the structure, what was found in the record's file, what of the parameters the model leaves out.
     pub fn about(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
-        let (structure, Ground { record, remarks }) = self.load(&fields)?;
+        let (structure, Ground { record, remarks, .. }) = self.load(&fields)?;
         let detail = fields.run(structure, &record)?.detail;
         let derived = DERIVED.iter().map(|of| {
             json!({ "name": of.name, "unit": of.unit, "description": of.description, "value": (of.value)(&structure) })
@@ -210,7 +213,15 @@ impl Explorer {
     pub fn record_file(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
         let g = fields.structure()?.parameters().g;
-        Ok(csv(&fields.unscaled(self.file.as_mut(), g)?.record))
+        Ok(fields.unscaled(self.file.as_mut(), g)?.table())
+    }
+
+    /// The scene as a command line, as a script in Python, and the values that a host must set in its FMU.
+    pub fn taken_along(&mut self, fields: &str) -> Result<String, String> {
+        let fields = Fields::read(fields)?;
+        self.load(&fields)?;
+        let path = self.file.as_ref().map(|file| file.path.as_path());
+        Ok(json!(taken_along(&fields, path)?).to_string())
     }
 
     /// The FMU of this structure under this ground motion, for hosts of FMI 2.0 or 3.0.
@@ -218,13 +229,12 @@ impl Explorer {
         let fields = Fields::read(fields)?;
         let version = if fmi == 3 { Version::Fmi3 } else { Version::Fmi2 };
         let (structure, ground) = self.load(&fields)?;
-        let is_as_read = fields.scales()? == [1.0; 2] && fields.reading()? == Default::default();
-        let record = match &self.file {
-            Some(file) if fields.text("ground") == Some("record") && is_as_read => {
-                vec![(file.path.clone(), file.bytes.clone())]
-            }
-            _ if fields.text("ground") == Some("free") => Vec::new(),
-            _ => vec![(PathBuf::from("ground.csv"), csv(&ground.record).into_bytes())],
+        let is_as_read = fields.of_file().all(|key| fields.text(key).is_none());
+        let record = match (fields.kind(), &self.file) {
+            ("free", _) => Vec::new(),
+            ("record", Some(file)) if is_as_read => vec![(file.path.clone(), file.bytes.clone())],
+            ("record", Some(file)) => vec![(file.path.with_extension("csv"), ground.table().into_bytes())],
+            _ => vec![(GROUND.into(), ground.table().into_bytes())],
         };
         let exported = fmu_export::export(version, &ModelName::default(), &structure, record, None, &self.libraries);
         Ok(exported.map_err(says)?.1)

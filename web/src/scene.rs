@@ -6,7 +6,7 @@ use rocking::run::{End, record::Record};
 use rocking::structure::natural_quantities::{Given, names};
 use rocking::structure::parameters::PRESETS;
 use rocking::{Detail, Parameters, Run, State, Structure};
-use rocking_records::{Column, Reading, Source, Unit};
+use rocking_records::{Column, Reading, RecordError, Source, Unit, csv_in};
 use rocking_sweep::pulse::{Pulse, Shape};
 use rocking_sweep::synthetic;
 use serde::Deserialize;
@@ -33,14 +33,31 @@ pub const NUMBERS: [Number; 11] = [
     ("tolerance", "1", "relative tolerance of the results", DEFAULT_TOLERANCE, [1e-12, 1e-3]),
 ];
 
-/// Ground motions that are no pulses, with the names of their numbers.
+/// Ground motions other than pulses, with the names of their numbers.
 pub const GROUNDS: [(&str, &[&str]); 3] = [
     ("synthetic", &["amplitude", "duration", "seed", "time_scale"]),
     ("record", &["scale", "time_scale"]),
     ("free", &["duration", "theta_0", "u_0"]),
 ];
 
-/// What is asked for, by name: parameters and natural quantities, the ground motion, how the motion is computed.
+/// Keys of a link that say how the record's file is read.
+pub const READING: [&str; 4] = ["unit", "dt", "column", "ignore_npts"];
+
+/// Keys of a link that scale the ground motion.
+pub const SCALES: [&str; 2] = ["time_scale", "scale"];
+
+/// Keys of a link that say how the motion starts and how it is computed.
+pub const RUN: [&str; 4] = ["theta_0", "u_0", "detail", "tolerance"];
+
+/// Names of the numbers of the ground motion called `ground`, none if it is unknown.
+pub fn numbers_of(ground: &str) -> Option<Vec<&'static str>> {
+    let shape = Shape::ALL.into_iter().find(|shape| shape.name() == ground);
+    let of_pulse = |shape: Shape| if shape.has_choice() { 4 } else { 2 };
+    let of_pulse = shape.map(|shape| NUMBERS[..of_pulse(shape)].iter().map(|number| number.0).collect());
+    of_pulse.or_else(|| GROUNDS.iter().find(|(name, _)| *name == ground).map(|(_, numbers)| numbers.to_vec()))
+}
+
+/// The scene as key and text: parameters and natural quantities, the ground motion, how the motion is computed.
 #[derive(Clone, PartialEq, Deserialize)]
 #[serde(transparent)]
 pub struct Fields(BTreeMap<String, String>);
@@ -52,16 +69,63 @@ pub struct File {
     read: Option<(Reading, Record, Source)>,
 }
 
-/// A ground motion in m/s², and what is said of its file.
+/// A ground motion, and the remarks on its file.
 pub struct Ground {
+    /// The ground motion in m/s².
     pub record: Record,
+    /// The ground motion in the unit of its file.
+    in_file_unit: Record,
+    unit: Unit,
     pub remarks: Vec<String>,
 }
 
+impl Ground {
+    fn of(record: Record) -> Ground {
+        let in_file_unit = record.clone();
+        Ground { record, in_file_unit, unit: Unit::MetrePerSecondSquared, remarks: Vec::new() }
+    }
+
+    /// The ground motion as a table that is read without options, in s and the unit of its file.
+    pub fn table(&self) -> String {
+        csv_in(&self.in_file_unit, self.unit)
+    }
+}
+
 impl Fields {
-    /// Reads the page's JSON.
+    /// Reads the page's JSON. A key without use in this scene is an error.
     pub fn read(json: &str) -> Result<Fields, String> {
-        serde_json::from_str(json).map_err(says)
+        let given: BTreeMap<String, String> = serde_json::from_str(json).map_err(says)?;
+        let fields = Fields(given.into_iter().map(|(key, text)| (key, text.trim().to_owned())).collect());
+        let ground = fields.kind();
+        let numbers = numbers_of(ground).ok_or_else(|| {
+            let known = Shape::ALL.map(Shape::name).into_iter().chain(GROUNDS.map(|(name, _)| name));
+            format!("ground = {ground:?} is unknown; these are known: {}", known.collect::<Vec<_>>().join(", "))
+        })?;
+        let of_structure = ["preset"].into_iter().chain(names());
+        let known =
+            of_structure.chain(["ground"]).chain(numbers).chain(fields.of_file()).chain(RUN).collect::<Vec<_>>();
+        match fields.0.keys().find(|key| !known.contains(&key.as_str())) {
+            Some(key) => {
+                let known = known.join(", ");
+                Err(format!("{key:?} of the link is unknown with ground = {ground}; these are known: {known}"))
+            }
+            None => Ok(fields),
+        }
+    }
+
+    /// Name of the ground motion.
+    pub fn kind(&self) -> &str {
+        self.text("ground").unwrap_or(Shape::Sine.name())
+    }
+
+    /// Keys that say how this kind of ground motion is read from its file and scaled.
+    pub fn of_file(&self) -> impl Iterator<Item = &'static str> {
+        let (reading, scales) = match self.kind() {
+            "record" => (READING.as_slice(), SCALES.as_slice()),
+            "free" => (&[][..], &[][..]),
+            _ => (&[][..], SCALES.as_slice()),
+        };
+        reading.iter().chain(scales).copied()
     }
 
     /// These without those called `names`.
@@ -71,15 +135,15 @@ impl Fields {
     }
 
     pub fn text(&self, name: &str) -> Option<&str> {
-        self.0.get(name).map(|text| text.trim())
+        self.0.get(name).map(String::as_str)
     }
 
     fn given(&self, name: &str) -> Option<Result<f64, String>> {
         self.text(name).map(|text| text.parse().map_err(|error| format!("{name} = {text:?}: {error}")))
     }
 
-    /// One of [`NUMBERS`].
-    fn number(&self, name: &str) -> Result<f64, String> {
+    /// One of [`NUMBERS`], or its usual value.
+    pub fn number(&self, name: &str) -> Result<f64, String> {
         let default = || NUMBERS.iter().find(|number| number.0 == name).expect("it is one of them").3;
         self.given(name).unwrap_or_else(|| Ok(default()))
     }
@@ -104,28 +168,27 @@ impl Fields {
 
     /// The ground motion before it is scaled; `g` in m/s².
     pub fn unscaled(&self, file: Option<&mut File>, g: f64) -> Result<Ground, String> {
-        let alone = |record| Ground { record, remarks: Vec::new() };
-        match self.text("ground").unwrap_or(Shape::Sine.name()) {
+        match self.kind() {
             "record" => file.ok_or("no record is here: drop its file on the page")?.ground(self.reading()?, g),
-            "free" => Ok(alone(Record::at_rest(self.number("duration")?))),
+            "free" => Ok(Ground::of(Record::at_rest(self.number("duration")?))),
             "synthetic" => {
                 let pga = g * self.number("amplitude")?;
-                synthetic::record(pga, self.number("duration")?, self.number("seed")? as u64).map(alone).map_err(says)
+                let (duration, seed) = (self.number("duration")?, self.number("seed")?);
+                if seed as u64 as f64 != seed {
+                    return Err(format!("seed = {seed} is out of range: a whole number of at least 0 is needed"));
+                }
+                synthetic::record(pga, duration, seed as u64).map(Ground::of).map_err(says)
             }
-            _ => self.pulse(g)?.record().map(alone).map_err(says),
+            _ => self.pulse(g)?.record().map(Ground::of).map_err(says),
         }
     }
 
     /// The ground motion that acts.
     pub fn ground(&self, file: Option<&mut File>, g: f64) -> Result<Ground, String> {
-        let Ground { record, remarks } = self.unscaled(file, g)?;
-        let [time_scale, scale] = self.scales()?;
-        Ok(Ground { record: record.scaled(time_scale, scale).map_err(says)?, remarks })
-    }
-
-    /// Factors on times and accelerations.
-    pub fn scales(&self) -> Result<[f64; 2], String> {
-        Ok([self.number("time_scale")?, self.number("scale")?])
+        let ground = self.unscaled(file, g)?;
+        let (time_scale, scale) = (self.number("time_scale")?, self.number("scale")?);
+        let scaled = |record: Record| record.scaled(time_scale, scale).map_err(says);
+        Ok(Ground { record: scaled(ground.record)?, in_file_unit: scaled(ground.in_file_unit)?, ..ground })
     }
 
     /// The pulse asked for.
@@ -138,19 +201,20 @@ impl Fields {
     /// How a file is read.
     pub fn reading(&self) -> Result<Reading, String> {
         let dt = self.given("dt").transpose()?;
-        let asked = self.text("unit");
-        let unit = asked.map(|asked| {
-            let known = Unit::NAMES.iter().find(|(name, _)| *name == asked);
-            known.map(|(_, unit)| *unit).ok_or_else(|| format!("unit = {asked:?} is unknown"))
-        });
-        Ok(Reading { unit: unit.transpose()?, dt, column: self.text("column").map(Column::from), ..Reading::default() })
+        let unit = self.text("unit").map(|_| self.named("unit", "")).transpose()?;
+        let ignores_count = match self.text("ignore_npts") {
+            None => false,
+            Some("true") => true,
+            Some(asked) => return Err(format!("ignore_npts = {asked:?} is unknown: it is true or left out")),
+        };
+        Ok(Reading { unit, dt, column: self.text("column").map(Column::from), ignores_count, ..Reading::default() })
     }
 
     /// The run of `structure` under `ground`.
     pub fn run<'a>(&self, structure: Structure, ground: &'a Record) -> Result<Run<'a>, String> {
         let (detail, tolerance) = (self.detail()?, self.tolerance()?);
         let initial = State { theta: self.number("theta_0")?, u: self.number("u_0")?, ..State::default() };
-        let end = if self.text("ground") == Some("free") { End::At(ground.end()) } else { End::AtRest };
+        let end = if self.kind() == "free" { End::At(ground.end()) } else { End::AtRest };
         Ok(Run { detail, tolerance, initial, end, ..Run::new(structure, ground) })
     }
 
@@ -173,13 +237,17 @@ impl File {
 
     fn ground(&mut self, how: Reading, g: f64) -> Result<Ground, String> {
         if self.read.as_ref().is_none_or(|(before, ..)| *before != how) {
-            let (record, source) = rocking_records::from_bytes(&self.path, &self.bytes, &how).map_err(says)?;
+            let read = rocking_records::from_bytes(&self.path, &self.bytes, &how);
+            let (record, source) = read.map_err(|error| match error {
+                RecordError::Malformed { remedy: Some(remedy), .. } => format!("{error}; {remedy}"),
+                _ => says(error),
+            })?;
             self.read = Some((how, record, source));
         }
-        let (_, record, source) = self.read.clone().expect("it has just been read");
-        let (record, source) = rocking_records::in_m_s2(record, source, g).map_err(says)?;
+        let (_, in_file_unit, source) = self.read.clone().expect("it has just been read");
+        let (record, source) = rocking_records::in_m_s2(in_file_unit.clone(), source, g).map_err(says)?;
         let mut remarks = vec![format!("{}, {}", source.format, source.unit)];
         remarks.extend(source.remarks.into_iter().chain(source.warnings));
-        Ok(Ground { record, remarks })
+        Ok(Ground { record, in_file_unit, unit: source.unit, remarks })
     }
 }

@@ -1,0 +1,89 @@
+//! A scene as what computes it elsewhere: commands for a shell, a script in Python, and values to set in its FMU.
+
+use crate::scene::{Fields, RUN};
+use rocking::structure::natural_quantities::names;
+use rocking::structure::parameters::PRESETS;
+use rocking_records::Column;
+use serde_json::{Number, Value};
+use std::path::Path;
+
+/// Name of the file in which the page saves a ground motion.
+pub const GROUND: &str = "ground.csv";
+
+/// Options of one call, by the names that the command line and Python share.
+type Options = Vec<(&'static str, Value)>;
+
+/// The scene `fields` with the record at `path` as the commands of a POSIX shell, a script in Python, and the start and method
+/// of its run, which an FMU does not hold. Every key of the scene is in the commands and in the script.
+pub fn taken_along(fields: &Fields, path: Option<&Path>) -> Result<[String; 3], String> {
+    let usual = |name: &str| match name {
+        "preset" => Some(PRESETS[0].0.to_owned()),
+        "amplitude" | "frequency" | "duration" => fields.number(name).ok().map(|usual| usual.to_string()),
+        _ => None, // the command line and Python have the same
+    };
+    let options = |names: &mut dyn Iterator<Item = &'static str>| -> Result<Options, String> {
+        let given =
+            names.filter_map(|name| Some((name, fields.text(name).map(str::to_owned).or_else(|| usual(name))?)));
+        given.map(|(name, text)| Ok((name, literal(name, &text)?))).collect()
+    };
+    let structure = options(&mut ["preset"].into_iter().chain(names()))?;
+    let (of_file, run) = (options(&mut fields.of_file())?, options(&mut RUN.into_iter())?);
+    let file = path.filter(|_| fields.kind() == "record").map_or(GROUND.into(), |path| path.display().to_string());
+    let file = if file == "-" { "./-".into() } else { file }; // which is no standard input
+    let simulate = |motion, of_file| command("simulate", &[&structure, &vec![motion], of_file, &run]);
+    let after_first = |options: &Options| arguments(options)[", ".len()..].to_owned();
+    let (command, record, motion) = match fields.kind() {
+        "free" => {
+            let motion = options(&mut ["duration"].into_iter())?;
+            (simulate(("free", motion[0].1.clone()), &of_file)?, String::new(), arguments(&motion))
+        }
+        "record" | "synthetic" => {
+            let record = format!("record = fr.Record.read({}{})\n", Value::from(file.as_str()), arguments(&of_file));
+            (simulate(("record", file.into()), &of_file)?, record, ", record".into())
+        }
+        shape => {
+            let pulse = options(&mut ["amplitude", "frequency", "cycles", "phase"].into_iter())?;
+            let written = command(&format!("pulse {shape}"), &[&pulse, &structure, &vec![("output", GROUND.into())]])?;
+            let scaled = if of_file.is_empty() { "".into() } else { format!(".scaled({})", after_first(&of_file)) };
+            let record = format!("record = fr.pulse(\"{shape}\"{}, g=structure.g){scaled}\n", arguments(&pulse));
+            (format!("{written}\n{}", simulate(("record", file.into()), &of_file)?), record, ", record".into())
+        }
+    };
+    let (structure, run) = (after_first(&structure), arguments(&run));
+    let script = format!(
+        "import flexible_rocking as fr\n\nstructure = fr.Structure({structure})\n{record}run = fr.simulate(structure{motion}{run})"
+    );
+    Ok([command, script, run.trim_start_matches(", ").to_owned()])
+}
+
+/// The value of the key `name`, given as `text`.
+fn literal(name: &str, text: &str) -> Result<Value, String> {
+    let number = || text.parse::<i64>().map(Number::from).ok().or_else(|| Number::from_f64(text.parse().ok()?));
+    match name {
+        "preset" | "unit" | "detail" => Ok(text.into()),
+        "ignore_npts" => Ok(true.into()),
+        "column" => Ok(match Column::from(text) {
+            Column::Number(number) => number.into(),
+            _ => text.into(),
+        }),
+        _ => number().map(Value::Number).ok_or_else(|| format!("{name} = {text:?} is no finite number")),
+    }
+}
+
+/// One command with `options`, each quoted for a POSIX shell.
+fn command(name: &str, options: &[&Options]) -> Result<String, String> {
+    let mut words = vec![format!("rocking-fmu {name}")];
+    for (name, value) in options.iter().copied().flatten() {
+        let text = value.as_str().map_or_else(|| value.to_string(), str::to_owned);
+        let quoted = shlex::try_quote(&text).map_err(|error| format!("{name} = {text:?}: {error}"))?;
+        let name = name.replace('_', "-");
+        words.push(if value.is_boolean() { format!("--{name}") } else { format!("--{name}={quoted}") });
+    }
+    Ok(words.join(" "))
+}
+
+/// The `options` as keyword arguments of Python, each behind a comma. Strings and numbers of JSON are literals of Python.
+fn arguments(options: &Options) -> String {
+    let literal = |value: &Value| if value.is_boolean() { "True".into() } else { value.to_string() };
+    options.iter().map(|(name, value)| format!(", {name}={}", literal(value))).collect()
+}
