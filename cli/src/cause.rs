@@ -1,23 +1,12 @@
 //! What a result comes from, so that it can be traced: program, structure, ground motion, and how it was computed.
 use crate::record_args::{RecordArgs, RecordOptions, Understood};
-use FlexibleRocking::BUILD;
 use rocking::run::record::Record;
 use rocking::{Parameters, State, Structure};
 use rocking_records::Column;
-use rocking_sweep::{plan::Conditions, row_file::Program};
+use rocking_report::program::version;
+use rocking_sweep::plan::Conditions;
 use serde::Serialize;
 use std::path::Path;
-use uuid::Uuid;
-
-/// Version of the program, and the first digits of its build.
-pub fn version() -> String {
-    format!("{}+{}", env!("CARGO_PKG_VERSION"), &BUILD[1..9])
-}
-
-/// The program, as the rows of a sweep name it.
-pub fn program() -> Program {
-    Program { build: Uuid::try_parse(BUILD).expect("the build script wrote it"), version: version() }
-}
 
 /// What a result comes from; what has no part in it is left out.
 #[derive(Serialize)]
@@ -103,7 +92,7 @@ impl Cause {
     }
 
     /// This cause of runs from `initial` at every level.
-    pub fn from_state(self, initial: State) -> Cause {
+    pub fn with_initial(self, initial: State) -> Cause {
         Cause { initial: Some(initial), ..self }
     }
 }

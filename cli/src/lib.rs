@@ -1,29 +1,26 @@
 //! The command line: write the FMU, simulate a record without a host, show what follows from a structure's parameters.
 #![allow(non_snake_case)] // H, B, V_t: the paper's own letters
 
-pub mod advise;
-pub mod cause;
-pub mod describe;
-pub mod estimate;
+mod advise;
+mod cause;
+mod describe;
+mod estimate;
 mod export;
 mod input;
+mod limit_args;
 pub mod output_files;
 mod picture;
 mod pulse;
-pub mod pushover;
-pub mod quantities;
+mod pushover;
 mod record;
 pub mod record_args;
-pub mod results;
+mod results;
 mod scene_args;
 mod shell;
 mod simulate;
-pub mod structure_args;
-pub mod summary;
+mod structure_args;
 mod sweep;
-pub mod tables;
-pub mod talk;
-pub mod validity;
+mod talk;
 mod view;
 
 use clap::{Parser, Subcommand};

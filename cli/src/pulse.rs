@@ -1,13 +1,13 @@
 //! `pulse`: one of the field's standard ground motions as a CSV file that every other command reads.
 use crate::{
-    cause::Cause, output_files::OutputFiles, quantities::NamedValue, record_args::one_of, results::FormatArgs,
-    structure_args::StructureArgs,
+    cause::Cause, output_files::OutputFiles, record_args::one_of, results::FormatArgs, structure_args::StructureArgs,
 };
 use clap::{ArgGroup, builder::PossibleValue};
 use rocking::Structure;
 use rocking::estimates::intensity::peak_velocity;
 use rocking::run::record::Record;
 use rocking_records::csv;
+use rocking_report::quantities::NamedValue;
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
 use std::path::PathBuf;
 

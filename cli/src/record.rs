@@ -1,11 +1,9 @@
 //! `record`: what is understood of a record, and the same as a table that is read without options.
-use crate::{
-    cause::Cause, output_files::OutputFiles, quantities::NamedValue, record_args::RecordOptions, results::FormatArgs,
-    talk::say,
-};
+use crate::{cause::Cause, output_files::OutputFiles, record_args::RecordOptions, results::FormatArgs, talk::say};
 use rocking::Parameters;
 use rocking::estimates::intensity::{arias_intensity, peak_velocity, significant_duration};
 use rocking::run::record::Record;
+use rocking_report::quantities::NamedValue;
 use std::path::PathBuf;
 
 /// What a record's g stands for, m/s².

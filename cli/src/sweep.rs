@@ -7,7 +7,6 @@ mod picture;
 mod table;
 
 use crate::{
-    cause::program,
     input,
     output_files::OutputFiles,
     picture::Picture,
@@ -20,6 +19,7 @@ use file::{Asked, RecordSweep};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 use rocking::structure::quantity::with_unit;
+use rocking_report::program::program;
 use rocking_sweep::{
     exceedances,
     outcome::Outcome,

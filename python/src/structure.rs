@@ -12,7 +12,7 @@ use rocking::structure::natural_quantities::Given;
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::{DERIVED, Derived};
 use rocking::{Parameters, Side, State};
-use rocking_cli::{describe, pushover};
+use rocking_report::{describe, pushover};
 
 /// A flexible structure on a base that may lift off (Fig 2 of the paper).
 ///

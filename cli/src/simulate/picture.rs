@@ -4,9 +4,7 @@ use crate::picture::{
     histories::{Histories, Panel},
     rounded, titled,
 };
-use crate::quantities::in_readable_unit;
 use crate::significant::short;
-use crate::summary::instant;
 use anyhow::Context;
 use rocking::{
     Parameters, Run, Structure,
@@ -17,6 +15,7 @@ use rocking::{
         peaks::Peak,
     },
 };
+use rocking_report::{quantities::in_readable_unit, summary::instant};
 
 /// Part of a peak by which a line may miss the motion: less than its width.
 const PART: f64 = 1e-3;

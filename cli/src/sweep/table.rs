@@ -1,8 +1,8 @@
 //! What a sweep prints of a population: how often its structures exceed a limit, by intensity, and the curves.
-use crate::results::Number;
 use crate::significant::significant;
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::LONGEST_REST;
+use rocking_report::quantities::Number;
 use rocking_sweep::exceedances::{Bin, Exceedances, Fragility, Tally};
 use rocking_sweep::fragility::{FEWEST_GROUPS, FragilityCurve};
 use serde::Serialize;

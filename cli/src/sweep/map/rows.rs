@@ -2,8 +2,8 @@
 //!
 //! A point's key stands for the structure and its name, the pulse, the level of detail, the tolerance, whether its condition is found, and
 //! the build of the program: not for its place, so that another grid through the same point has it.
-use crate::cause::{program, version};
 use csv::StringRecord;
+use rocking_report::program::{program, version};
 use rocking_sweep::map::{Map, Place, Point};
 use rocking_sweep::plan::AXES;
 use rocking_sweep::pulse::units_of;

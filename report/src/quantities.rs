@@ -1,6 +1,6 @@
 //! Named values for people and for programs.
 use crate::significant::significant;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::fmt::{self, Write};
 
 /// One value.
@@ -50,4 +50,14 @@ pub fn write_columns(out: &mut impl Write, lines: &[NamedValue], g: f64) -> fmt:
         writeln!(out, "  {name:<20} {value:>12} {unit:<6} {in_g:>10}  {equation:<13} {description}")?;
     }
     Ok(())
+}
+
+/// A number that may be infinite, for which JSON has no number: it is the text "inf" there, as in a table.
+pub struct Number(pub f64);
+
+impl Serialize for Number {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Number(value) = *self;
+        if value.is_finite() { serializer.serialize_f64(value) } else { serializer.collect_str(&value) }
+    }
 }

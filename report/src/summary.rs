@@ -1,5 +1,4 @@
-//! What `simulate` prints at the end of a run.
-use crate::cause::Cause;
+//! The summary of a run.
 use crate::quantities::readable;
 use crate::validity;
 use fmu_export::significant::significant;
@@ -32,7 +31,7 @@ struct NamedPeak {
 
 /// All of it, for programs; instants in s.
 #[derive(Serialize)]
-pub struct Whole<'a> {
+pub struct Whole<'a, Cause> {
     #[serde(flatten)]
     cause: &'a Cause,
     start: f64,
@@ -79,20 +78,16 @@ impl Summary {
     }
 
     /// All of it for programs, with the `cause` of the run, what was `found` in it and what the model leaves out.
-    pub fn whole<'a>(&self, cause: &'a Cause, found: &Found, validity: Vec<validity::Beyond>) -> Whole<'a> {
+    pub fn whole<'a, C>(&self, cause: &'a C, found: &Found, validity: Vec<validity::Beyond>) -> Whole<'a, C> {
         let &Found { ground, ref peaks, fall, start, finish: Finish { ending, motion } } = found;
         let row = |name, unit, Peak { magnitude: peak, time }| NamedPeak { name, peak, unit, time };
         let of_structure = peaks::of(&self.structure).map(|peak| row(peak.name, peak.unit, (peak.of)(peaks)));
-        let overturned = match ending {
-            Ending::StillRocking => None,
-            ending => Some(ending == Ending::Overturned),
-        };
         Whole {
             cause,
             start,
             end: motion.time,
             ending,
-            overturned,
+            overturned: ending.overturned(),
             fall,
             peaks: [row("a_g", "m/s2", ground)].into_iter().chain(of_structure).collect(),
             taken: self.taken(motion),
