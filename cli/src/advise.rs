@@ -1,4 +1,4 @@
-//! `advise`: every level of detail on the user's own scene, its errors and its cost, and the cheapest that will do.
+//! `advise`: errors and cost of each level of detail on the user's own scene, and the cheapest level that is good enough.
 
 use crate::{
     cause::Cause,
@@ -13,7 +13,7 @@ use rocking::run::levels::{self, Criterion};
 use rocking_report::advice::{rows, text};
 use rocking_sweep::plan::Conditions;
 
-/// What to compare, and what is allowed.
+/// Arguments of `advise`.
 #[derive(clap::Args)]
 pub struct AdviseArgs {
     #[command(flatten)]
@@ -36,9 +36,9 @@ struct AllowedArgs {
     /// Largest relative error allowed, such as 5% or 0.05
     #[arg(long, value_name = "ERROR", default_value = "5%", value_parser = relative_error)]
     within: f64,
-    /// What must stay within it: the peak of the rotation, of the elastic displacement, of the acceleration of the top mass,
-    /// and with it V_t and M_t; or any of them over time, the largest difference over the largest value. Overturning must
-    /// always be predicted right
+    /// Results whose errors must not exceed --within. `theta`, `u` and `a_t` are the peaks of rotation, elastic displacement
+    /// and acceleration of the top mass; V_t and M_t have the error of a_t. The error of a history is the largest difference
+    /// as a fraction of the largest value. Overturning must be predicted right in any case
     #[arg(long, value_name = "LIST", value_parser = one_of(Criterion::ALL.map(|of| (of.name(), of))), num_args = 1.., value_delimiter = ',', default_values = Criterion::ALL.map(Criterion::name))]
     of: Vec<Criterion>,
 }

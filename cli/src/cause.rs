@@ -1,4 +1,4 @@
-//! What a result comes from, so that it can be traced: program, structure, ground motion, and how it was computed.
+//! The origin of a result: program, structure, ground motion, and the conditions of the computation.
 use crate::record_args::{RecordArgs, RecordOptions, Understood};
 use rocking::run::record::Record;
 use rocking::{Parameters, State, Structure};
@@ -8,7 +8,7 @@ use rocking_sweep::plan::Conditions;
 use serde::Serialize;
 use std::path::Path;
 
-/// What a result comes from; what has no part in it is left out.
+/// The origin of a result; a part without influence on the result is left out.
 #[derive(Serialize)]
 pub struct Cause {
     version: String,
@@ -28,11 +28,11 @@ pub struct Cause {
 /// A ground motion.
 #[derive(Serialize)]
 struct Ground {
-    /// Its title.
+    /// Title of the record.
     record: String,
-    /// Its name, as far as it is text.
+    /// Name of the file, as far as the name is text.
     file: Option<String>,
-    /// That of the vertical component, if there is one.
+    /// Name of the file of the vertical component, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     file_v: Option<String>,
     /// Unit of the accelerations in the file, where it is asked for or they are looked at alone.

@@ -17,7 +17,7 @@ use rocking::{
 use rocking_report::{describe::text, quantities::NamedValue};
 use std::f64::consts::FRAC_PI_2;
 
-/// What to describe.
+/// Arguments of `describe`.
 #[derive(clap::Args)]
 pub struct DescribeArgs {
     #[command(flatten)]

@@ -6,7 +6,7 @@ use rocking::estimates::demand::INSTANT_TRANSITION;
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking_report::{estimate::Estimate, quantities::NamedValue};
 
-/// What to estimate.
+/// Arguments of `estimate`.
 #[derive(clap::Args)]
 pub struct EstimateArgs {
     #[command(flatten)]

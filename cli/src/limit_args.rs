@@ -1,8 +1,8 @@
-//! The limits beyond which something that the model leaves out gives a warning.
+//! Arguments for the limits of validity; a value beyond its limit gives a warning.
 
 use rocking::run::validity::{LimitError, Limits};
 
-/// What is tolerated without a warning.
+/// Limits beyond which a value gives a warning.
 #[derive(clap::Args)]
 #[command(next_help_heading = "What the model leaves out")]
 pub struct LimitArgs {
@@ -22,7 +22,7 @@ pub struct LimitArgs {
 }
 
 impl LimitArgs {
-    /// As limits. Refuses one that is none.
+    /// Checks the arguments and returns them as limits.
     pub fn limits(&self) -> Result<Limits, LimitError> {
         let &LimitArgs { friction, tension, edge_load, energy_gain } = self;
         let limits = Limits { friction, tension, edge_load, energy_gain };

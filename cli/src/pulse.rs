@@ -85,7 +85,7 @@ pub fn run(args: &PulseArgs) -> anyhow::Result<()> {
     args.results.print_table(Some(&args.output), title, &cause, &amounts(&pulse, &record, &structure))
 }
 
-/// What the pulse amounts to, alone and for `structure`.
+/// Measures of the pulse, alone and for `structure`.
 fn amounts(pulse: &Pulse, record: &Record, structure: &Structure) -> Vec<NamedValue> {
     let (of_amplitude, of_frequency) = units_of(structure);
     let [velocity, displacement] = record.velocities_and_displacements().last().expect("a record has samples");

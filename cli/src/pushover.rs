@@ -9,7 +9,7 @@ use crate::{
 use rocking_report::pushover::{Corner, HEADINGS, corners, curve, line};
 use std::path::PathBuf;
 
-/// What to push over.
+/// Arguments of `pushover`.
 #[derive(clap::Args)]
 pub struct PushoverArgs {
     #[command(flatten)]

@@ -48,7 +48,7 @@ pub struct RecordOptions {
 }
 
 impl RecordArgs {
-    /// The record, scaled; `g` (m/s²) is what a record's g stands for. Says what was read, and what was assumed.
+    /// Reads and scales the record, and reports what it found and assumed. A record's g means `g` (m/s²).
     pub fn load(&self, g: f64) -> anyhow::Result<Option<Record>> {
         let Some(path) = &self.record else { return Ok(None) };
         let record = self.options.load("record", path, g)?;
@@ -69,13 +69,13 @@ pub struct Understood {
     /// Scaled, in the unit of its file.
     in_file_unit: Record,
     source: Source,
-    /// What it was called, and what was found and assumed, in a line.
+    /// Name, findings and assumptions in a line.
     pub described: String,
 }
 
 impl RecordOptions {
-    /// The record in the file at `path`, scaled, in m/s²; `g` (m/s²) is what a record's g stands for. Says what was read as
-    /// `what`, and what was assumed.
+    /// Reads and scales the record in the file at `path`, in m/s²; a record's g means `g` (m/s²). Reports findings and
+    /// assumptions under the name `what`.
     fn load(&self, what: &str, path: &Path, g: f64) -> anyhow::Result<Record> {
         let understood = self.understand(path, g)?;
         say!("{what:<14} {}", understood.described);
@@ -118,7 +118,7 @@ impl RecordOptions {
 }
 
 impl Understood {
-    /// What is likely wrong with the record in the file at `path`, a line each.
+    /// Likely errors of the record in the file at `path`, a line each.
     pub fn warnings(&self, path: &Path) -> impl Iterator<Item = String> {
         self.source.warnings.iter().map(move |warning| format!("warning: {}: {warning}", input::name(path)))
     }
@@ -139,8 +139,7 @@ impl Understood {
     }
 }
 
-/// What a record's file is, and what was assumed where it says nothing, in a line; `g` (m/s²) is what a record's g stands
-/// for.
+/// Format of a record's file, findings and assumptions, in a line; a record's g means `g` (m/s²).
 fn described(path: &Path, record: &Record, source: &Source, g: f64) -> String {
     let unit_from = match source.unit_from {
         UnitFrom::File => "as the file states",

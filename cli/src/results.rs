@@ -18,7 +18,7 @@ pub struct FormatArgs {
     format: Format,
 }
 
-/// For whom results are printed.
+/// Format of printed results.
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Format {
     /// Tables to read, six digits
@@ -86,10 +86,10 @@ pub fn csv(headings: impl Serialize, lines: impl Iterator<Item = impl Serialize>
     Ok(writer.into_inner()?)
 }
 
-/// Rows and what they come from.
+/// Rows and their origin.
 #[derive(Serialize)]
 pub struct Traced<'a, R> {
-    /// What they come from.
+    /// Origin of the rows.
     #[serde(flatten)]
     pub cause: &'a Cause,
     /// The rows.

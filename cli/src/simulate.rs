@@ -26,7 +26,7 @@ use rocking_report::{
 };
 use std::path::PathBuf;
 
-/// What to simulate.
+/// Arguments of `simulate`.
 #[derive(clap::Args)]
 pub struct SimulateArgs {
     #[command(flatten)]

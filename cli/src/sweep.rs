@@ -29,7 +29,7 @@ use rocking_sweep::{
 use std::path::{Path, PathBuf};
 use uuid::Uuid;
 
-/// What to run.
+/// Arguments of `sweep`.
 #[derive(clap::Args)]
 pub struct SweepArgs {
     /// Records, scale factors, structures and limits; or pulses and structures

@@ -1,4 +1,4 @@
-//! What a command says beside its results: on standard error, where it disturbs no program that reads the results.
+//! Messages of a command, on standard error: a program that reads the results does not see them.
 
 use indicatif::ProgressBar;
 use rocking_report::message;
@@ -30,7 +30,7 @@ pub fn say_few(lines: &[String], what: &str) {
 
 static QUIET: AtomicBool = AtomicBool::new(false);
 
-/// From now on nothing is said but errors.
+/// Suppresses all messages except errors.
 pub fn be_quiet() {
     QUIET.store(true, Ordering::Relaxed);
 }

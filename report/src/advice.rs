@@ -21,8 +21,8 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt::{self, Write};
 
-/// The table and the advice on `run` under the ground motion that `title` names, for people: what is `allowed` is an error and
-/// the criteria that it holds for.
+/// The table and the advice on `run` under the ground motion that `title` names, for people. `allowed` is an error and the
+/// criteria to which it applies.
 pub fn text(
     title: &str,
     run: &Run,
@@ -117,9 +117,9 @@ pub struct Level {
     level: &'static str,
     #[serde(flatten)]
     errors: BTreeMap<String, Number>,
-    /// None if it still rocks.
+    /// None if the structure still rocks at the end.
     overturned: Option<bool>,
-    /// None if the reference still rocks.
+    /// None if the structure still rocks at the end of the reference.
     is_right_about_overturning: Option<bool>,
     steps: u64,
     evaluations: u64,
@@ -194,7 +194,7 @@ fn print_advice(
     }
 }
 
-/// What the vertical component changes: by how much the motion on `level` ground differs.
+/// Effect of the vertical component: the differences of the motion on `level` ground.
 fn print_vertical(out: &mut impl Write, level: &Verdict, (within, criteria): (f64, &[Criterion])) -> fmt::Result {
     let changes: Vec<_> =
         criteria.iter().map(|of| format!("{} by {} %", of.name(), percent(level.errors[*of as usize]))).collect();

@@ -1,4 +1,4 @@
-//! What is shown of a structure and its runs, whoever shows it: in words for people, and as rows for programs.
+//! Reports on a structure and its runs: words for people, rows for programs. Every door shows the same.
 #![allow(non_snake_case)] // H, V_t, M_t: the paper's own letters
 
 pub mod advice;
@@ -13,7 +13,7 @@ pub mod validity;
 
 use fmu_export::significant;
 
-/// Why something failed: each cause once, though some repeat what caused them.
+/// Message of `error`: each cause once, even if a cause repeats the next one.
 pub fn message(error: &anyhow::Error) -> String {
     let mut message = String::new();
     for cause in error.chain().map(ToString::to_string) {

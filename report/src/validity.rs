@@ -1,4 +1,4 @@
-//! What the model leaves out on a scene, in words and for programs.
+//! Validity of a run: effects that the model leaves out, in words and for programs.
 
 use crate::quantities::Number;
 use crate::significant::significant;
@@ -6,7 +6,7 @@ use rocking::run::validity::{self, ASSUMPTIONS, Assumption, Found, Limits, Worst
 use rocking::{Detail, Structure};
 use serde::Serialize;
 
-/// What is shown of each of [`ASSUMPTIONS`].
+/// Label of each of [`ASSUMPTIONS`].
 const LABELS: [&str; ASSUMPTIONS.len()] = [
     "tension under the base, over W",
     "load of the edge, R_v/W",
@@ -16,14 +16,14 @@ const LABELS: [&str; ASSUMPTIONS.len()] = [
     "energy gained at an impact, over T",
 ];
 
-/// One of [`ASSUMPTIONS`], for programs.
+/// Result for one of the [`ASSUMPTIONS`], for programs.
 #[derive(Serialize)]
 pub struct Beyond {
-    /// Its name.
+    /// Name of the assumption.
     pub name: &'static str,
-    /// The worst of it.
+    /// Worst value.
     pub value: Number,
-    /// Its instant, s.
+    /// Instant of the worst value, s.
     pub time: f64,
     limit: f64,
     /// When the limit was passed first, s.
@@ -32,7 +32,7 @@ pub struct Beyond {
     beyond: f64,
 }
 
-/// All of them, in a run in which this was `found`.
+/// Results for all assumptions, in a run in which this was `found`.
 pub fn rows(found: &Found, limits: &Limits) -> Vec<Beyond> {
     let row = |(assumption, worst): (&Assumption, &Worst)| {
         let Worst { value, time, first_beyond, beyond } = *worst;
