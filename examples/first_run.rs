@@ -13,7 +13,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     println!("{}: {}", ground.title(), source.unit);
     let run = Run::new(Structure::new(Parameters::MCMANUS)?, &ground);
     let (peaks, finish) = run.peaks()?;
-    PEAKS.iter().for_each(|peak| println!("{} in {}: {:?}", peak.name, peak.unit, (peak.of)(&peaks)));
+    PEAKS.iter().for_each(|peak| println!("{} in {}: {:?}", peak.name, peak.unit, peak.of(&peaks)));
     println!("{:?} at {} s", finish.ending, finish.motion.time);
     let verdicts = levels::compare(&run)?.verdicts;
     verdicts.iter().for_each(|level| println!("{:?}: {:?}", level.response.detail, level.errors));

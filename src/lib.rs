@@ -7,6 +7,7 @@
 //! | room | what is in it |
 //! |---|---|
 //! | [`structure`] | the structure's numbers, their ranges, the two specimens; what follows from them (before Eq 11, after 13, before 18) |
+//! | numbers | value, rate, bounds and power series: the numbers in which each formula is evaluated |
 //! | [`mechanics`] | state, loads, uplift, impact, outputs (Eqs 2, 3, 23–27), reactions, energy |
 //! | [`series`] | Taylor series in time, first crossings, extremes |
 //! | [`levels`] | full contact (Eq 1), nonlinear (5, 6), linear (7–9), modal (11, 16, 18), rigid (6 with u = 0) |
@@ -28,6 +29,7 @@ pub mod engine;
 pub mod estimates;
 pub mod levels;
 pub mod mechanics;
+mod numbers;
 pub mod run;
 pub mod series;
 pub mod structure;

@@ -2,7 +2,7 @@
 
 pub mod energy;
 pub mod impact;
-pub(crate) mod kinematics;
+pub(crate) mod instant;
 pub mod load;
 pub mod outputs;
 pub mod reactions;

@@ -4,3 +4,4 @@ pub mod bisection;
 pub(crate) mod extremes;
 pub mod first_crossing;
 pub mod taylor;
+pub(crate) mod terms;

@@ -202,7 +202,7 @@ fn no_peak_is_missed() {
         }
         let mut there = There {
             parameters,
-            peaks: PEAKS.each_ref().map(|peaking| ((peaking.of)(&peaks).time, 0.0)),
+            peaks: PEAKS.each_ref().map(|peaking| (peaking.of(&peaks).time, 0.0)),
             worst: [0, 1, 2].map(|i| (found[i].time, f64::NEG_INFINITY)),
         };
         engine = start();
@@ -210,7 +210,7 @@ fn no_peak_is_missed() {
             let _ = engine.advance(h, load, &mut there);
         }
         for ((peaking, sampled), (time, shown)) in PEAKS.iter().zip(dense.largest).zip(there.peaks) {
-            let peak = (peaking.of)(&peaks).magnitude;
+            let peak = peaking.of(&peaks).magnitude;
             let name = format!("scene {seed}, {}: {} = {peak} at {time} s", detail.name(), peaking.name);
             assert!(peak >= sampled * (1.0 - 1e-9), "{name} < {sampled}");
             assert!((peak - shown).abs() <= 1e-9 * peak, "{name}, where it is {shown}");

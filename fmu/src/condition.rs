@@ -9,8 +9,8 @@ use crate::present::Present;
 use crate::setup::Setup;
 use crate::state_machine::Stage;
 use rocking::Motion;
+use rocking::run::fall::FallingPeaks;
 use rocking::run::ground_motion::Elapsed;
-use rocking::run::peaks::Peaks;
 use rocking::run::validity::Found;
 use serde::{Deserialize, Serialize};
 
@@ -39,7 +39,7 @@ pub struct Course {
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
     /// Peaks so far, if they are watched.
-    pub peaks: Peaks,
+    pub peaks: FallingPeaks,
     /// Which limits of the model have been passed so far, if they are watched.
     pub validity: Found,
     /// Names the record that the ground follows.

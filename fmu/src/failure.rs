@@ -136,8 +136,11 @@ pub enum Failure {
     #[error(transparent)]
     Advance(#[from] AdvanceError),
     /// The structure has overturned within the step.
-    #[error("the structure overturned at t = {time} s; the simulation ends there")]
-    Overturned { time: f64 },
+    #[error(
+        "the structure overturned at t = {time} s{}; the simulation ends there",
+        fall.map_or(String::new(), |fall| format!(", falling since t = {fall} s, before which its peaks are"))
+    )]
+    Overturned { time: f64, fall: Option<f64> },
     /// A time that is not finite.
     #[error("time = {} is out of range: time and time - startTime must be finite", with_unit(*.0, "s"))]
     BadTime(f64),

@@ -290,7 +290,7 @@ functions! {
         currentCommunicationPoint: c_double, communicationStepSize: c_double, _noSetFMUStatePriorToCurrentPoint: c_int,
     ) |instance| {
         match instance.do_step(currentCommunicationPoint, communicationStepSize)? {
-            Progress::Overturned => Err(Failure::Overturned { time: instance.time()? }),
+            Progress::Overturned => Err(instance.overturned()?),
             Progress::Complete | Progress::Transition => Ok(()),
         }
     }

@@ -252,7 +252,8 @@ pub unsafe extern "C" fn fmi3DoStep(
         let progress = instance.do_step(point, step)?;
         let (time, may_return_early) = (instance.time()?, instance.may_return_early());
         if progress == Progress::Overturned {
-            instance.warn(&format!("fmi3DoStep: {}", Failure::Overturned { time }));
+            let overturned = instance.overturned()?;
+            instance.warn(&format!("fmi3DoStep: {overturned}"));
         }
         write("eventHandlingNeeded", eventHandlingNeeded, u8::from(progress == Progress::Transition))?;
         write("terminateSimulation", terminateSimulation, u8::from(progress == Progress::Overturned))?;

@@ -56,7 +56,10 @@ impl GroundRecord {
     }
 
     /// The ground motion of both components; of `vertical` alone on ground that rests horizontally.
-    fn with_vertical(horizontal: Option<GroundRecord>, vertical: &GroundRecord) -> Result<GroundRecord, SamplesError> {
+    pub fn with_vertical(
+        horizontal: Option<GroundRecord>,
+        vertical: &GroundRecord,
+    ) -> Result<GroundRecord, SamplesError> {
         let (up, unit) = (&vertical.record, vertical.units[0]);
         let (record, units, of_horizontal) = match horizontal {
             Some(horizontal) => (horizontal.record, [horizontal.units[0], unit], horizontal.digest),
@@ -64,6 +67,12 @@ impl GroundRecord {
         };
         let digest = Uuid::new_v5(&Uuid::from_bytes(of_horizontal), &vertical.digest).into_bytes();
         Ok(GroundRecord { record: record.with_vertical(up)?, units, digest })
+    }
+
+    /// The record with its accelerations in m/s², if a g is `g` (m/s²).
+    pub fn in_m_s2(&self, g: f64) -> Record {
+        let [unit, vertical_unit] = self.units.map(|unit| unit.in_m_s2(g));
+        self.record.clone().multiplied_each(unit, vertical_unit)
     }
 
     /// The digest, as archives have it.

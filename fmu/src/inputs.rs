@@ -1,6 +1,6 @@
 //! The inputs: what the host sets at communication points, and the line that each of them follows over a step.
 
-use rocking::mechanics::load::LOADS;
+use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::{LinearLoad, Load};
 use serde::{Deserialize, Serialize};
 
@@ -38,7 +38,13 @@ pub struct Inputs {
     before: (Load, f64),
     /// Whether the last step ended before the next communication point.
     ended_early: bool,
+    /// Over how many steps in a row, up to [`STAIRS`], a ground acceleration was held at another value each.
+    stairs: u8,
 }
+
+/// Steps in a row over which a ground acceleration is held, at another value each, before it is taken for samples of a
+/// motion: a push begins and ends with one such step.
+const STAIRS: u8 = 3;
 
 /// What has been set of an input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -63,6 +69,12 @@ impl Inputs {
         self.set
     }
 
+    /// Whether the values of a ground acceleration come as samples of a motion and are held from step to step.
+    #[inline]
+    pub(crate) fn makes_stairs(&self) -> bool {
+        self.stairs == STAIRS
+    }
+
     /// Makes the inputs act as `between` says. Until then, and where no steps are made, they act at once.
     pub(crate) fn start(&mut self, between: [Between; LOADS.len()]) {
         self.between = between;
@@ -71,7 +83,7 @@ impl Inputs {
     /// Sets the value of the input `which` of [`LOADS`].
     #[inline]
     pub(crate) fn set(&mut self, which: usize, value: f64) {
-        let Inputs { between, next, set, given, followed, before: (before, ago), ended_early } = self;
+        let Inputs { between, next, set, given, followed, before: (before, ago), ended_early, .. } = self;
         let given = &mut given[which];
         set[which] = value;
         if *given == Given::Slope {
@@ -158,6 +170,11 @@ impl Inputs {
     #[inline]
     pub(crate) fn pass(&mut self, load: LinearLoad, duration: f64, ended_early: bool) {
         if !self.ended_early {
+            let is_stair = [0, VERTICAL].into_iter().any(|which| {
+                let is_held = self.given[which] == Given::Value && self.between[which] == Between::Held;
+                is_held && load.value[which] != self.before.0[which]
+            });
+            self.stairs = if is_stair { (self.stairs + 1).min(STAIRS) } else { 0 };
             self.before = (load.value, 0.0);
         }
         self.before.1 += duration;

@@ -36,6 +36,8 @@ pub struct Instance {
     asked: Option<f64>,
     /// While the host reads outputs: the stage that the step has led to.
     led_to: Option<Stage>,
+    /// Whether the host has been warned that it holds a ground acceleration from sample to sample.
+    told_of_stairs: bool,
 }
 
 /// What came of an event.
@@ -64,8 +66,8 @@ impl Instance {
     pub fn new(archive: Archive, interface: Interface, events: bool, mut logger: Logger) -> Instance {
         logger.set_events(events);
         let now = Present::new(archive, interface);
-        let (snapshots, shown, host, asked, led_to) = Default::default();
-        Instance { logger, events_at_start: events, now, snapshots, shown, host, asked, led_to }
+        let (snapshots, shown, host, asked, led_to, told_of_stairs) = Default::default();
+        Instance { logger, events_at_start: events, now, snapshots, shown, host, asked, led_to, told_of_stairs }
     }
 
     /// The instance with a `host` that it calls back within steps.
@@ -171,12 +173,19 @@ impl Instance {
     pub fn reset(&mut self) -> Result<(), Failure> {
         self.now.reset();
         self.logger.set_events(self.events_at_start);
+        self.told_of_stairs = false;
         Ok(())
     }
 
     /// Where the simulation is, s.
     pub fn time(&mut self) -> Result<f64, Failure> {
         Ok(self.now.model()?.engine.motion().time)
+    }
+
+    /// What ends the simulation: the structure has overturned.
+    pub fn overturned(&mut self) -> Result<Failure, Failure> {
+        let model = self.now.model()?;
+        Ok(Failure::Overturned { time: model.engine.motion().time, fall: model.peaks.fall() })
     }
 
     /// Whether the structure has overturned, which ends the simulation.

@@ -5,9 +5,9 @@ use crate::failure::Failure;
 use crate::ground::{Digest, GroundRecord};
 use crate::setup::Setup;
 use rocking::mechanics::load::{LOADS, VERTICAL};
+use rocking::run::fall::FallingPeaks;
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::outside_step::Known;
-use rocking::run::peaks::Peaks;
 use rocking::run::validity::{Found, Limits, Validity};
 use rocking::{Engine, LinearLoad, Load, Phase, Structure, Watch};
 use serde::{Deserialize, Serialize};
@@ -21,7 +21,7 @@ pub(crate) struct Model {
     pub elapsed: Elapsed,
     /// If the host integrates: the engine is then where the host is.
     pub outside: Option<Outside>,
-    pub peaks: Peaks,
+    pub peaks: FallingPeaks,
     pub validity: Found,
 }
 
@@ -87,7 +87,7 @@ impl Model {
             engine.admit_vertical(true)?;
         }
         ground.as_deref().map_or(Ok(()), |ground| setup.check_ground(ground))?;
-        let peaks = Peaks::since(setup.start_time, engine.structure());
+        let peaks = FallingPeaks::since(setup.start_time, engine.structure());
         let validity = Found::since(setup.start_time);
         Ok(Model { engine, ground, elapsed: Elapsed::default(), outside: None, peaks, validity })
     }
@@ -113,8 +113,9 @@ impl Model {
         self.engine.motion().work.steps == 0 && self.engine.uplift_due(load).is_none()
     }
 
-    /// The peaks since the start; before the first step, the values under `load`.
-    pub fn peaks(&self, setup: &Setup, load: Load) -> Peaks {
+    /// The peaks since the start, of a structure that has overturned those before it fell; before the first step, the
+    /// values under `load`.
+    pub fn peaks(&self, setup: &Setup, load: Load) -> FallingPeaks {
         let mut peaks = self.peaks;
         if self.is_at_start(load) {
             peaks.see_instant(setup.start_time, &self.engine.outputs(load));

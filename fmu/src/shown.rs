@@ -59,7 +59,7 @@ impl<'a> Shown<'a> {
             Source::StateRate(which) => self.state_rates().components()[which],
             Source::Indicator(which) => model.engine.sample(load).event_indicators()[which],
             Source::Peak(_) if !setup.peaks || model.is_integrated_outside() => f64::NAN,
-            Source::Peak(of) => of(&model.peaks(setup, load)),
+            Source::Peak(of) => of(model.peaks(setup, load).peaks()),
             Source::Worst(_) | Source::WorstInstant(_) if !setup.validity || model.is_integrated_outside() => f64::NAN,
             Source::Worst(which) => model.validity(setup, load).worst[which].value,
             Source::WorstInstant(which) => model.validity(setup, load).worst[which].time,

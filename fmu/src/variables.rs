@@ -505,7 +505,7 @@ fn peaks() -> Vec<Variable> {
                     concat!(
                         "largest |",
                         stringify!($name),
-                        "| since startTime, exact: within steps, too, and during a fall to overturning; NaN unless peaks is true"
+                        "| since startTime, exact: within steps, too; if the structure overturns, before its fall; NaN unless peaks is true"
                     ),
                     |peaks| peaks.$name().magnitude,
                 ),

@@ -114,3 +114,30 @@ fn a_slope_that_leads_out_of_the_range_is_not_followed() {
         assert_eq!(host.get("a_ground"), a_g);
     }
 }
+
+/// Samples of a motion that are held from step to step are told once, by what to do; a push, slopes and a_g_late are not.
+#[test]
+fn a_host_that_holds_samples_of_a_motion_is_warned_once() {
+    let warnings = |host: &Host, a_g: fn(i32) -> f64, slopes: bool| {
+        for step in 0..20 {
+            let (time, value) = (f64::from(step) * 0.01, a_g(step));
+            assert_eq!(host.set(&[("a_g", value)]), OK);
+            assert!(!slopes || host.set_slope("a_g", 1, (a_g(step + 1) - value) / 0.01) == OK);
+            assert_eq!(host.step(time, 0.01), OK);
+        }
+        host.log.take()
+    };
+    let quake = |step: i32| (0.3 * f64::from(step)).sin();
+    for still in [|_| 0.0, |_| 2.0, |step| if step < 3 { 0.0 } else { 1.0 }, |step| if step == 7 { -2.0 } else { 0.0 }]
+    {
+        assert_eq!(warnings(&started(&[], &[]), still, false), []);
+    }
+    assert_eq!(warnings(&started(&["a_g_late"], &[]), quake, false), []);
+    assert_eq!(warnings(&started(&[], &[]), quake, true), []);
+    let host = started(&[], &[]);
+    let told = warnings(&host, quake, false);
+    assert_eq!((told.len(), told[0].status, told[0].category.as_str()), (1, WARNING, "logStatusWarning"), "{told:?}");
+    assert!(["record", "a_g_late", "slope"].iter().all(|remedy| told[0].text.contains(remedy)), "{told:?}");
+    assert_eq!((host.reset(), host.setup(None, 0.0, None), host.enter(), host.exit()), (OK, OK, OK, OK));
+    assert_eq!(warnings(&host, quake, false), told, "another simulation is warned again");
+}

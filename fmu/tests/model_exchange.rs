@@ -133,6 +133,34 @@ fn the_record_acts_at_every_instant_and_its_jumps_are_foreseen() {
     }
 }
 
+/// The next event is the very sample's instant, wherever the host is between two samples, and in an instance that goes on
+/// from a kept state.
+#[test]
+fn a_sample_has_one_instant_however_the_host_gets_there() {
+    let samples: Vec<_> = (0..500).map(|i| f64::from(6 * i) / 1e3).collect();
+    let text: String = samples.iter().map(|time| format!("{time:.3},{}\n", (9.0 * time).sin())).collect();
+    let host = || {
+        let host = Host::new_model();
+        host.write("quake.csv", &format!("t (s),a (m/s2)\n{text}"));
+        host
+    };
+    let (first, second) = (host(), host());
+    assert_eq!((first.set_record("quake.csv"), first.setup(None, 0.7, None)), (OK, OK));
+    assert_eq!((first.enter(), first.exit()), (OK, OK));
+    let follow = |host: &Host, steps: std::ops::Range<u32>| {
+        for step in steps {
+            let time = 0.7 + f64::from(step) * 0.002;
+            assert_eq!((host.set_time(time), host.enter_event_mode()), (OK, OK));
+            let next = samples.iter().map(|sample| 0.7 + (sample - samples[0])).find(|sample| *sample > time + 1e-9);
+            assert_eq!((host.update().unwrap().next_event_time, host.go_on()), (next.unwrap(), OK), "at {time} s");
+        }
+    };
+    assert_eq!((first.update().is_ok(), first.go_on()), (true, OK));
+    follow(&first, 1..400);
+    assert_eq!(second.go_back(second.deserialize(&first.bytes()).unwrap()), OK);
+    follow(&second, 400..900);
+}
+
 /// A host that arrives at a jump sees what led there until it enters event mode, which a kept state remembers, and one that
 /// never does sees what comes after it as soon as it has passed the jump.
 #[test]

@@ -122,7 +122,7 @@ fn any_step_meets_every_sample() {
                 assert_close(&shown, step_through(&host, steps).last().unwrap(), tolerance);
                 assert_eq!(host.get("record_duration"), duration);
                 for peaking in &PEAKS {
-                    let peak = (peaking.of)(&expected);
+                    let peak = peaking.of(&expected);
                     let [found, time] = ["", "t_"].map(|start| host.get(&format!("{start}{}_max", peaking.name)));
                     assert_relative_eq!(found, peak.magnitude, max_relative = tolerance);
                     assert_relative_eq!(time, peak.time - record.start(), max_relative = 1e-9, epsilon = 1e-9);
@@ -198,6 +198,51 @@ fn the_input_adds_to_the_record() {
     assert_eq!(host.try_get(&["theta", "u", "u_dot"]).unwrap(), [state.theta, state.u, state.u_dot]);
     assert_relative_eq!(host.get("a_g"), 0.125);
     assert_relative_eq!(host.get("a_ground"), 1.125);
+}
+
+/// The peaks of a structure that overturns are those before its fall, whatever the steps, and the message names its instant.
+#[test]
+fn what_overturns_has_the_peaks_of_a_run_before_its_fall() {
+    let line = |i: u32| {
+        let time = f64::from(i) * 0.01;
+        format!("{time},{}\n", 1.5 * (std::f64::consts::TAU * time / 1.5).sin() * f64::from(i < 150))
+    };
+    let text: String = (0..400).map(line).collect();
+    let ground = rocking_records::from_bytes(
+        Path::new("a.csv"),
+        format!("t (s),a (m/s2)\n{text}").as_bytes(),
+        &Reading::default(),
+    );
+    let ground = ground.unwrap().0.multiplied(4.0);
+    let found = Run::new(Structure::new(Parameters::EVISON).unwrap(), &ground).found(&mut ()).unwrap();
+    let fall = found.fall.unwrap();
+    for steps in [1, 7, 100, 1000] {
+        let host = Host::initializing(&[("record_scale", 4.0)]);
+        host.write("a.csv", &format!("t (s),a (m/s2)\n{text}"));
+        assert_eq!((host.set_record("a.csv"), host.set_boolean("peaks", 1), host.exit()), (OK, OK, OK));
+        let step = 10.0 / f64::from(steps);
+        let last = (0..steps).map(|at| host.step(f64::from(at) * step, step)).find(|status| *status != OK);
+        assert_eq!((last, host.try_boolean("overturned")), (Some(DISCARD), Ok(1)));
+        for peaking in &PEAKS {
+            let (name, peak) = (peaking.name, peaking.of(&found.peaks));
+            assert_relative_eq!(host.get(&format!("{name}_max")), peak.magnitude, max_relative = 1e-8);
+            assert_relative_eq!(host.get(&format!("t_{name}_max")), peak.time, max_relative = 1e-6);
+        }
+        let log = host.log.take();
+        let told: f64 = log
+            .last()
+            .unwrap()
+            .text
+            .split("falling since t = ")
+            .nth(1)
+            .unwrap()
+            .split(' ')
+            .next()
+            .unwrap()
+            .parse()
+            .unwrap();
+        assert_relative_eq!(told, fall, max_relative = 1e-8);
+    }
 }
 
 /// Mid-record, in another instance whose archive has the record, too, a state goes on with the same bits; with another

@@ -164,7 +164,7 @@ impl Run {
         let peak = |peaks::Peak { magnitude: value, time }, unit| Peak { value, time, unit };
         named.set_item("a_g", Py::new(py, peak(self.found.ground, "m/s2"))?)?;
         for of in peaks::of(&self.structure.get().0) {
-            named.set_item(of.name, Py::new(py, peak((of.of)(&self.found.peaks), of.unit))?)?;
+            named.set_item(of.name, Py::new(py, peak(of.of(&self.found.peaks), of.unit))?)?;
         }
         Ok(named)
     }

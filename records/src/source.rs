@@ -2,7 +2,7 @@
 
 use super::text::quote;
 use super::unit::Stated;
-use super::{BadLine, Unit, bad};
+use super::{BadLine, Remedy, Unit, bad};
 use serde::{Deserialize, Deserializer, de::Error};
 use std::fmt;
 
@@ -125,7 +125,11 @@ pub(super) fn decide(stated: &Stated, asked: Option<Unit>, line: usize) -> Resul
         (Stated::Unit(unit), Some(asked)) if *unit != asked => contradicted(unit, asked),
         (Stated::Unit(unit), _) => Ok((*unit, UnitFrom::File)),
         (Stated::Other(other), Some(asked)) => contradicted(&quote(other), asked),
-        (Stated::Nothing, Some(asked)) => Ok((asked, UnitFrom::User)),
+        (Stated::Nothing | Stated::Multiplied(_), Some(asked)) => Ok((asked, UnitFrom::User)),
+        (Stated::Multiplied(heading), None) => {
+            let problem = format!("{} has a factor: the unit of the accelerations is not clear", quote(heading));
+            Err(bad(line, problem).remedied_by(Remedy::Unit))
+        }
         (Stated::Nothing, None) => Ok((Unit::MetrePerSecondSquared, UnitFrom::Assumed)),
         (Stated::Other(other), None) => {
             let known = Unit::NAMES.map(|(name, _)| name).join(", ");

@@ -288,7 +288,8 @@ impl<'a> Table<'a> {
             let place = value.map_or("a line before the data".into(), |value| format!("column {}", value + 1));
             return Err(bad(self.first, format!("{place} is {}: accelerations are needed", quote(other))));
         }
-        let stated = texts.into_iter().map(Stated::of).find(|stated| *stated != Stated::Nothing);
+        let stated = texts.into_iter().map(Stated::of).filter(|stated| *stated != Stated::Nothing);
+        let stated = stated.min_by_key(|stated| !matches!(stated, Stated::Multiplied(_))); // else the first
         match (stated, self.before.iter().find(|line| mentions_unit(line))) {
             (None, Some(line)) if how.unit.is_none() => {
                 let line = quote(line);

@@ -142,7 +142,7 @@ pub fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Level> {
             evaluations: response.work.evaluations,
             cost_of_auto: comparison.cost_over_auto(response).map(Number),
             advised,
-            peaks: PEAKS.iter().map(|of| (of.name, (of.of)(&response.peaks).magnitude)).collect(),
+            peaks: PEAKS.iter().map(|of| (of.name, of.of(&response.peaks).magnitude)).collect(),
         }
     };
     let of_verdict = |level, Verdict { response, errors, is_right_about_overturning }: &Verdict| {

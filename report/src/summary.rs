@@ -81,7 +81,7 @@ impl Summary {
     pub fn whole<'a, C>(&self, cause: &'a C, found: &Found, validity: Vec<validity::Beyond>) -> Whole<'a, C> {
         let &Found { ground, ref peaks, fall, start, finish: Finish { ending, motion } } = found;
         let row = |name, unit, Peak { magnitude: peak, time }| NamedPeak { name, peak, unit, time };
-        let of_structure = peaks::of(&self.structure).map(|peak| row(peak.name, peak.unit, (peak.of)(peaks)));
+        let of_structure = peaks::of(&self.structure).map(|peak| row(peak.name, peak.unit, peak.of(peaks)));
         Whole {
             cause,
             start,
@@ -112,7 +112,7 @@ impl Summary {
         let &Found { ground, ref peaks, fall, finish: Finish { ending, motion }, .. } = found;
         let mut out = String::new();
         let &Parameters { g, .. } = self.structure.parameters();
-        let of_structure = peaks::of(&self.structure).map(|of| (of.name, (of.of)(peaks), of.unit));
+        let of_structure = peaks::of(&self.structure).map(|of| (of.name, of.of(peaks), of.unit));
         for (name, peak, unit) in [("a_g", ground, "m/s2")].into_iter().chain(of_structure) {
             let (per_unit, unit) = match unit {
                 "m" => (1e-3, "mm"),

@@ -7,10 +7,10 @@ use crate::engine::motion::Motion;
 use crate::engine::transition::Transition;
 use crate::engine::yielding;
 use crate::levels::detail::Model;
-use crate::levels::level::{Now, Rates};
-use crate::levels::output_series::{self, Turn};
+use crate::levels::level::Now;
+use crate::levels::shown::Searched;
 use crate::mechanics::load::{LinearLoad, Load};
-use crate::mechanics::outputs::{self, Measure};
+use crate::mechanics::outputs::Measure;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraints, ties};
 use crate::series::extremes::Bound;
 use crate::series::taylor::{Arc, Series, Start, evaluate};
@@ -93,7 +93,10 @@ impl Sample<'_> {
         let (structure, side) = (&model.structure, phase.side());
         let ties = || ties(structure, side, dissipators);
         let reactions = self.reactions();
-        model.level.ties().map_or(reactions, |angles| reactions.of_edges(structure, side, angles, state, &ties()))
+        model.level.ties().map_or(reactions, |angles| {
+            let [up, right, moment] = Reactions::pulls(structure, side, angles, state, &ties());
+            reactions.of_edges(up, right, moment)
+        })
     }
 
     /// The forces of the restraints.
@@ -151,7 +154,7 @@ impl Piece<'_> {
     }
 
     /// The state `tau` seconds into it.
-    fn state_at(&self, tau: f64) -> State {
+    pub(crate) fn state_at(&self, tau: f64) -> State {
         if tau <= 0.0 {
             return self.before.state;
         }
@@ -237,8 +240,8 @@ impl<'a> Part<'a> {
         [self.start, self.end].map(|(tau, state)| (tau, self.piece.outputs(tau, &state)))
     }
 
-    /// Bounds of the magnitudes of [`Measure::ALL`] over it.
-    pub(crate) fn bounds(&self) -> [Bound; 4] {
+    /// Bounds of the magnitudes of the searched outputs over this part.
+    pub(crate) fn bounds(&self) -> Searched<Bound> {
         let Piece { model, before, load, arc, .. } = self.piece;
         match arc {
             Some(arc) => model.bounds(before.phase, *load, arc),
@@ -246,64 +249,55 @@ impl<'a> Part<'a> {
         }
     }
 
-    /// Bounds of these magnitudes that cost less.
-    pub(crate) fn crude_bounds(&self) -> [f64; 4] {
-        let Piece { model, before, arc, .. } = self.piece;
+    /// Bounds of the same magnitudes that cost less.
+    pub(crate) fn crude_bounds(&self) -> Searched<f64> {
+        let &Piece { model, before, load, arc, .. } = self.piece;
+        if model.is_rigid() {
+            return self.bounds().map(|bound| bound.largest());
+        }
         let end = &self.end.1;
-        let of_state = if let Some(arc) = arc {
-            output_series::crude_bounds_of_state(arc, end)
+        let most = if let Some(arc) = arc {
+            State {
+                u: arc.most(&arc.u, end.u),
+                u_dot: arc.most(&arc.u_dot, end.u_dot),
+                theta: arc.most(&arc.theta, end.theta),
+                theta_dot: arc.most(&arc.theta_dot, end.theta_dot),
+            }
         } else {
             let start = self.step();
             let rates = model.level.rates(before.phase, &start, end);
             let off_chord = start.interval * start.interval / 8.0;
             let bound =
                 |most: f64, from: f64, to: f64, bend: f64| most.min(from.abs().max(to.abs()) + bend * off_chord);
-            [
-                bound(rates.theta, start.state.theta, end.theta, rates.theta_ddot),
-                bound(rates.u, start.state.u, end.u, rates.u_ddot),
-                bound(rates.u_dot, start.state.u_dot, end.u_dot, rates.u_dddot),
-            ]
+            State {
+                u: bound(rates.u, start.state.u, end.u, rates.u_ddot),
+                u_dot: bound(rates.u_dot, start.state.u_dot, end.u_dot, rates.u_dddot),
+                theta: bound(rates.theta, start.state.theta, end.theta, rates.theta_ddot),
+                theta_dot: rates.theta_dot,
+            }
         };
-        let crude = model.crude_bounds(before.phase, self.most_force(), of_state);
-        if crude[Measure::At as usize] < f64::INFINITY { crude } else { self.bounds().map(|bound| bound.largest()) }
+        model.most(before.phase, load.from(self.start.0), self.end.0 - self.start.0, &most)
     }
 
-    /// The largest |F_t| in it, N.
-    fn most_force(&self) -> f64 {
-        let [first, last] = [self.start.0, self.end.0].map(|tau| self.piece.load.at(tau).F_t.abs());
-        first.max(last)
-    }
-
-    /// What changes no faster than its second derivative leaves its chord by no more than that over 8/h², and does not turn
-    /// round where its rate at an end is more than that times h.
-    fn bounds_of_leap(&self) -> [Bound; 4] {
+    /// Bounds over a leap: a quantity whose second derivative is at most M over the time h stays within M h²/8 of its chord. It
+    /// does not turn round if its rate at the start exceeds M h.
+    fn bounds_of_leap(&self) -> Searched<Bound> {
         let &Piece { model, before: &Motion { phase, .. }, load, .. } = self.piece;
         let Model { structure, level, .. } = model;
-        let step = self.step();
-        let (end, h) = (&self.end.1, step.interval);
-        let Rates { u, u_dot, u_ddot, u_dddot, theta, theta_dot, theta_ddot } = level.rates(phase, &step, end);
-        let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
-        let (stiffness, damping) = (structure.stiffness, outputs::damping(structure, phase) / m);
-        let force = self.most_force();
-        let turn = theta_dot * theta_dot + theta * theta_ddot; // bounds |θ̈ sin θ + θ̇² cos θ|
-        let sway = theta_ddot + theta * theta_dot * theta_dot; // and |θ̈ cos θ − θ̇² sin θ|
-        let delta_t_bend = u_ddot + 2.0 * u_dot * theta_dot * theta + (B + u) * turn + H * sway;
-        let push_bend = (force * turn + 2.0 * load.slope.F_t.abs() * theta_dot * theta) / m;
-        let a_t_bend = g * sway + damping * u_dddot + stiffness * u_ddot + push_bend;
-        let bends = [theta_ddot, u_ddot, delta_t_bend, a_t_bend];
-        let within = model.crude_bounds(phase, force, [theta, u, u_dot]);
-
-        let [(from, first), (_, last)] = self.ends();
-        let load = LinearLoad { value: load.at(from), ..load };
+        let (step, end, load) = (self.step(), &self.end.1, load.from(self.start.0));
+        let h = step.interval;
+        let bends = model.bends(phase, load, h, &level.rates(phase, &step, end));
+        let [(_, first), (_, last)] = self.ends();
         let now = Now { state: &step.state, load: load.value, dissipators: step.dissipators };
         let accelerations = level.accelerations(structure, phase, &now);
-        let rates = Outputs::rates_by(structure, phase, &step.state, accelerations, load);
+        let rates = model.searched_rates(phase, &step.state, accelerations, load);
         std::array::from_fn(|i| {
-            let of = |outputs: &Outputs| Measure::ALL[i].of(outputs).abs();
+            let of = |outputs: &Outputs| Measure::SEARCHED[i].of(outputs).abs();
             let ends = of(&first).max(of(&last));
-            let between = (bends[i] * h * h / 8.0).min((within[i] - ends).max(0.0));
-            let rate = of(&rates) * h;
-            Bound { ends, between, rate: [rate - bends[i] * h * h, rate + bends[i] * h * h] }
+            let bend = if bends[i].bend.is_nan() { f64::INFINITY } else { bends[i].bend };
+            let between = (bend * h * h / 8.0).min((bends[i].value - ends).max(0.0));
+            let rate = rates[i].abs() * h;
+            Bound { ends, between, rate: [rate - bend * h * h, rate + bend * h * h] }
         })
     }
 }
@@ -380,13 +374,13 @@ impl Expansion<'_> {
         self.piece.outputs(self.from + sigma * self.arc.span, &self.arc.at(sigma))
     }
 
-    /// Shows `measure` as series in σ, each with the σ at which it starts and the arc that it is of: the polynomial itself, or,
-    /// where sin θ and cos θ take more terms than it has, parts of it.
+    /// Shows `measure` as series in σ, each with the σ at which it starts and the arc that it belongs to. There is one series, or
+    /// several over parts of the polynomial if sin θ and cos θ need more terms than the polynomial has.
     pub(crate) fn series(&self, measure: Measure, show: &mut dyn FnMut(f64, &Arc, &Series)) {
         self.series_over(self.arc, 0.0, measure, FINEST_PART, show);
     }
 
-    /// Shows those over `arc`, which starts at `from` on the polynomial; `halvings` are left.
+    /// Shows the series over `arc`, which starts at `from` on the polynomial and may be halved `halvings` times.
     fn series_over(
         &self,
         arc: &Arc,
@@ -396,17 +390,15 @@ impl Expansion<'_> {
         show: &mut dyn FnMut(f64, &Arc, &Series),
     ) {
         let &Piece { model, before: &Motion { phase, .. }, load, .. } = self.piece;
+        match measure {
+            Measure::theta => return show(from, arc, &arc.series(|k| arc.theta[k])),
+            Measure::u => return show(from, arc, &arc.series(|k| arc.u[k])),
+            _ => (),
+        }
         let until = from + arc.duration() / self.arc.span;
-        let series = match measure {
-            Measure::Theta => arc.series(|k| arc.theta[k]),
-            Measure::U => arc.series(|k| arc.u[k]),
-            Measure::DeltaT => model.delta_t_series(phase, arc, &Turn::of(arc)),
-            Measure::At => {
-                let load = load.from(self.from + from * self.arc.span);
-                model.a_t_series(phase, load, arc, &Turn::of(arc))
-            }
-        };
-        if halvings > 0 && matches!(measure, Measure::DeltaT | Measure::At) {
+        let load = load.from(self.from + from * self.arc.span);
+        let series = measure.at(&model.terms(phase, load, arc)).series();
+        if halvings > 0 {
             let off = evaluate(arc.used(&series), arc.reach) - measure.of(&self.outputs(until));
             let terms = arc.used(&series).iter().rev().fold(0.0, |sum, c| sum * arc.reach + c.abs());
             if off.abs() > (100.0 * model.local_error).max(CONVERGED) * terms {

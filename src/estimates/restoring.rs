@@ -1,15 +1,11 @@
 //! The moment that turns a rocking base back, without a time history: what the weight, a tendon and dissipators restore while
 //! the base is turned slowly.
 //!
-//! ```text
-//! M(θ) = (m + m0) g B cos θ − m g H sin θ + P_0 B cos(θ/2) + k_t B² sin θ + Σ_j F_j (sB − ξ_j) cos(θ/2),      s = +1
-//! ```
-//!
-//! Eq 6 at rest, of a strut that is not deformed. From the way there to the way back the elastoplastic dissipators change sign:
+//! The moment is [`restoring_moment`]: Eq 6 at rest, of a strut that is not deformed. From the way there to the way back the elastoplastic dissipators change sign:
 //! the loop is a flag of the height Σ_j 2 F_y |sB − ξ_j| cos(θ/2).
 
-use crate::mechanics::restraint::{Angles, Dissipators, Sum};
-use crate::{Parameters, Side, Structure};
+use crate::mechanics::restraint::{Dissipators, restoring_moment};
+use crate::{Side, Structure};
 use serde::Serialize;
 
 /// A point of the static loop.
@@ -24,14 +20,11 @@ pub struct Point {
 /// The base of `structure` turned slowly from rest to the rotation `theta` (rad, 0 to π/2) and back to 0, each way in as many
 /// equal steps: the moment at the start and after each of them.
 pub fn flag(structure: &Structure, theta: f64, steps: u32) -> Vec<Point> {
-    let &Parameters { m, m0, H, B, g, .. } = structure.parameters();
     let there = (0..=steps).map(|i| theta * f64::from(i) / f64::from(steps));
     let mut dissipators = Dissipators::default();
     let at = |theta: f64| {
         dissipators = dissipators.moved(structure, Side::Right, theta);
-        let of_ties = Sum::of_moments(structure, Side::Right, &dissipators).at(Angles::Any, theta, 0.0);
-        let (sin, cos) = libm::sincos(theta);
-        Point { theta, moment: (m + m0) * g * B * cos - m * g * H * sin + of_ties }
+        Point { theta, moment: restoring_moment(structure, theta, &dissipators) }
     };
     there.clone().chain(there.rev().skip(1)).map(at).collect()
 }
@@ -39,6 +32,7 @@ pub fn flag(structure: &Structure, theta: f64, steps: u32) -> Vec<Point> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Parameters;
     use crate::mechanics::restraint::centring_moments;
 
     const RESTRAINED: Parameters =

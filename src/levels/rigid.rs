@@ -19,15 +19,13 @@
 //! ½ m g H tan² α_cg, which overturning takes at small angles.
 
 use crate::levels::level::{Level, Now, Rates};
-use crate::levels::output_series::{Turn, delta_t_bound};
 use crate::levels::rules::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD};
 use crate::levels::tie_series::TieSeries;
-use crate::mechanics::load::{LinearLoad, Load};
+use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{Angles, Dissipators, Sum, holding_moment};
 use crate::mechanics::uplift::least_push;
-use crate::series::extremes::{self, Bound};
 use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
-use crate::series::taylor::{Arc, LONGEST_SPAN, Series, Start, Truncation, ZERO, product};
+use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation, ZERO, product};
 use crate::{Phase, Side, State, Structure};
 
 /// P and Q at `theta`.
@@ -192,78 +190,4 @@ impl<const RESTRAINED: bool> Level for Rigid<RESTRAINED> {
         let held = Sum::of_moments(structure, side, dissipators).at(Angles::Any, state.theta, state.theta_dot);
         [0.0, free - (held / structure.J_P - p_l.powi(2) * load.a_v / g * p)]
     }
-}
-
-/// a_t, m/s², given θ̈: here u says nothing of the forces, so that it is Eq 27 as it stands, which follows the ground; of a_v it
-/// has −a_v sin θ.
-pub(crate) fn a_t(structure: &Structure, phase: Phase, state: &State, theta_ddot: f64, load: Load) -> f64 {
-    let &crate::Parameters { H, B, .. } = structure.parameters();
-    let s = phase.side().sign();
-    let lifted = if load.a_v == 0.0 { 0.0 } else { load.a_v * libm::sin(state.theta) };
-    H * theta_ddot + state.theta_dot.powi(2) * s * B + load.a_g * libm::cos(state.theta) - lifted
-}
-
-/// Its time derivative, m/s³, given θ̈ and θ⃛; 0 once overturned.
-pub(crate) fn a_t_rate(
-    structure: &Structure,
-    phase: Phase,
-    state: &State,
-    [theta_ddot, theta_dddot]: [f64; 2],
-    load: LinearLoad,
-) -> f64 {
-    let &crate::Parameters { H, B, .. } = structure.parameters();
-    let &State { theta, theta_dot, .. } = state;
-    let s = phase.side().sign();
-    match phase {
-        Phase::Overturned(_) => 0.0,
-        _ => {
-            H * theta_dddot + 2.0 * s * B * theta_dot * theta_ddot + load.slope.a_g * libm::cos(theta)
-                - load.value.a_g * libm::sin(theta) * theta_dot
-                - load.slope.a_v * libm::sin(theta)
-                - load.value.a_v * libm::cos(theta) * theta_dot
-        }
-    }
-}
-
-/// Its series over `arc` under `load`.
-pub(crate) fn a_t_series(structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc, turn: &Turn) -> Series {
-    let &crate::Parameters { H, B, .. } = structure.parameters();
-    let offset = phase.side().sign() * B;
-    let (now, slope) = (load.value.a_g, load.slope.a_g * arc.span);
-    let (up, up_slope) = (load.value.a_v, load.slope.a_v * arc.span);
-    arc.series(|k| {
-        let theta_ddot = if k < arc.order { (k + 1) as f64 * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
-        let centripetal = product(&arc.theta_dot, &arc.theta_dot, k);
-        let ground = now * turn.cos[k] + if k > 0 { slope * turn.cos[k - 1] } else { 0.0 };
-        let lifted = up * turn.sin[k] + if k > 0 { up_slope * turn.sin[k - 1] } else { 0.0 };
-        H * theta_ddot + offset * centripetal + ground - lifted
-    })
-}
-
-/// Bounds of |θ|, |u|, |δ_t| and |a_t| over `arc` under `load`: a_t about H θ̈ + s B θ̇₀² + a_g cos θ₀ − a_v sin θ₀, θ₀ and θ̇₀
-/// those at the start.
-pub(crate) fn bounds(structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc) -> [Bound; 4] {
-    let &crate::Parameters { H, B, .. } = structure.parameters();
-    let offset = phase.side().sign() * B;
-    let (sin, cos) = libm::sincos(arc.theta[0]);
-    let ground = [load.value.a_g, load.slope.a_g * arc.span];
-    let up = [load.value.a_v, load.slope.a_v * arc.span];
-    let along = [0, 1].map(|k| cos * ground[k] - sin * up[k]);
-    let row = |k: usize| {
-        let theta_ddot = if k < arc.order { (k + 1) as f64 * arc.theta_dot[k + 1] / arc.span } else { 0.0 };
-        let centripetal = if k == 0 { offset * arc.theta_dot[0].powi(2) } else { 0.0 };
-        let along = if k < 2 { along[k] } else { 0.0 };
-        [arc.theta[k], H * arc.theta[k], H * theta_ddot + centripetal + along]
-    };
-    let [theta, sway, a_t] = extremes::bounds(row, arc.order, arc.reach);
-    let change = |of: &Series| arc.used(of)[1..].iter().map(|c| c.abs()).sum::<f64>();
-    let rate = |of: &Series| (1..).zip(&arc.used(of)[1..]).map(|(k, c)| f64::from(k) * c.abs()).sum::<f64>();
-    let (turned, hastened) = (change(&arc.theta), change(&arc.theta_dot));
-    let fastest = arc.theta_dot[0].abs() + hastened;
-    let ground_most = [ground, up].as_flattened().iter().map(|a| a.abs()).sum::<f64>();
-    let most = B * hastened * (fastest + arc.theta_dot[0].abs()) + turned * ground_most;
-    let ground_rate = rate(&arc.theta) * ground_most + turned * (ground[1].abs() + up[1].abs());
-    let most_rate = 2.0 * B * fastest * rate(&arc.theta_dot) + ground_rate;
-    let delta_t = delta_t_bound(structure, theta, Bound::default(), sway);
-    [theta, Bound::default(), delta_t, a_t.and(most, most_rate)]
 }

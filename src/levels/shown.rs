@@ -1,33 +1,40 @@
-//! What a level shows of a motion: the outputs at an instant, and over a step as series in time like the motion itself.
+//! The motion of a level as the numbers in which the formulas are evaluated: values, rates, bounds and power series.
 //!
-//! δ_t (Eq 26) and a_t (Eq 27) are sums and products of the series of θ, u, sin θ and cos θ. They tell *where* an output is
-//! largest; what it is there is evaluated from the state. At the rigid level a_t is that of [`rigid`].
+//! The series tell the instant at which an output is largest; its value there comes from the state. At the rigid level a_t
+//! follows from θ̈ (Eq 27).
 
 use crate::levels::detail::{Detail, Model};
-use crate::levels::level::Now;
-use crate::levels::output_series::{Turn, delta_t_bound};
-use crate::levels::rigid;
+use crate::levels::level::{Now, Rates};
+use crate::mechanics::instant::{Instant, Strut, damping};
 use crate::mechanics::load::LinearLoad;
-use crate::mechanics::outputs::damping;
-use crate::series::extremes::{self, Bound};
-use crate::series::taylor::{Arc, Series, product};
-use crate::{Outputs, Phase, State};
+use crate::mechanics::outputs::{Measure, Outputs, searched};
+use crate::numbers::bend::Bend;
+use crate::numbers::dual::Dual;
+use crate::numbers::linear::{Leaf, Linear};
+use crate::numbers::most::Most;
+use crate::numbers::{Number, Turn};
+use crate::series::extremes::{self, Bound, Range};
+use crate::series::taylor::{Arc, Series};
+use crate::series::terms::Terms;
+use crate::{Phase, State, Structure};
+
+/// One number for each output whose peak is searched.
+pub(crate) type Searched<T> = [T; Measure::SEARCHED.len()];
 
 impl Model {
-    fn is_rigid(&self) -> bool {
+    pub(crate) fn is_rigid(&self) -> bool {
         self.detail == Detail::Rigid
     }
 
     /// The outputs in `phase`.
     #[inline]
     pub(crate) fn outputs(&self, phase: Phase, now: &Now) -> Outputs {
-        let outputs = Outputs::of(&self.structure, phase, now.state, now.load.F_t);
-        if self.is_rigid() { self.with_rigid_a_t(outputs, phase, now) } else { outputs }
-    }
-
-    fn with_rigid_a_t(&self, outputs: Outputs, phase: Phase, now: &Now) -> Outputs {
-        let [_, theta_ddot] = self.level.accelerations(&self.structure, phase, now);
-        outputs.with_a_t(&self.structure, rigid::a_t(&self.structure, phase, now.state, theta_ddot, now.load))
+        let mut x = Instant::of(&self.structure, phase, now.state, now.load);
+        if self.is_rigid() {
+            let [_, theta_ddot] = self.level.accelerations(&self.structure, phase, now);
+            x.strut = Strut::Rigid(theta_ddot);
+        }
+        Outputs::at(&x)
     }
 
     /// Time derivatives of the outputs under `load`, given (ü, θ̈) and (u⃛, θ⃛).
@@ -38,73 +45,213 @@ impl Model {
         [accelerations, jerks]: [[f64; 2]; 2],
         load: LinearLoad,
     ) -> Outputs {
-        let rates = Outputs::rates_by(&self.structure, phase, state, accelerations, load);
+        let mut x = Instant::moving(&self.structure, phase, state, accelerations, load);
         if self.is_rigid() {
-            let of_theta = [accelerations[1], jerks[1]];
-            return rates.with_a_t(&self.structure, rigid::a_t_rate(&self.structure, phase, state, of_theta, load));
+            x.strut = Strut::Rigid(Dual { value: accelerations[1], rate: jerks[1] });
         }
-        rates
+        Outputs::at(&x).map(|output| output.rate)
     }
 
-    /// δ_t over `arc` (Eq 26).
-    pub(crate) fn delta_t_series(&self, phase: Phase, arc: &Arc, turn: &Turn) -> Series {
-        let &crate::Parameters { H, B, .. } = self.structure.parameters();
-        let offset = phase.side().sign() * B;
-        arc.series(|k| {
-            let elastic = product(&arc.u, &turn.cos, k);
-            let one = if k == 0 { 1.0 } else { 0.0 };
-            offset * (one - turn.cos[k]) + elastic + H * turn.sin[k]
-        })
+    /// The motion over `arc` under `load` as power series.
+    pub(crate) fn terms(&self, phase: Phase, load: LinearLoad, arc: &Arc) -> Instant<'_, Terms> {
+        terms(&self.structure, phase, load, arc, self.is_rigid())
     }
 
-    /// a_t over `arc` under `load`, by Eq 5: g sin θ − (c u̇ + k u)/m + (F_t/m) cos θ.
-    pub(crate) fn a_t_series(&self, phase: Phase, load: LinearLoad, arc: &Arc, turn: &Turn) -> Series {
-        let structure = &self.structure;
-        if self.is_rigid() {
-            return rigid::a_t_series(structure, phase, load, arc, turn);
-        }
-        let &crate::Parameters { m, g, .. } = structure.parameters();
-        let damping = damping(structure, phase) / m;
-        let (push, push_slope) = (load.value.F_t / m, load.slope.F_t / m * arc.span);
-        arc.series(|k| {
-            let elastic = damping * arc.u_dot[k] + structure.stiffness * arc.u[k];
-            let pushed = push * turn.cos[k] + if k > 0 { push_slope * turn.cos[k - 1] } else { 0.0 };
-            g * turn.sin[k] - elastic + pushed
-        })
-    }
-
-    /// Bounds of |θ|, |u|, |δ_t| and |a_t| that follow from those of |θ|, |u| and |u̇|; `F_t` is that of |F_t|. At the rigid
-    /// level these do not bound a_t, nor is there anything crude that does.
-    pub(crate) fn crude_bounds(&self, phase: Phase, F_t: f64, [theta, u, u_dot]: [f64; 3]) -> [f64; 4] {
-        let structure = &self.structure;
-        let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
-        let a_t = if self.is_rigid() {
-            f64::INFINITY
-        } else {
-            g * theta + structure.stiffness * u + (damping(structure, phase) * u_dot + F_t) / m
+    /// Bounds of the searched outputs over a piece under `load` that lasts `duration` (s), given bounds of the components of
+    /// the state. The elastic strut is assumed: the rigid limit has no bound of a_t from these.
+    #[inline]
+    pub(crate) fn most(&self, phase: Phase, load: LinearLoad, duration: f64, state: &State) -> Searched<f64> {
+        let last = load.at(duration);
+        let most = |from: f64, to: f64| Most(from.abs().max(to.abs()));
+        let theta = Most(state.theta);
+        let x = Instant {
+            structure: &self.structure,
+            s: phase.side().sign(),
+            strut: Strut::Elastic(damping(&self.structure, phase)),
+            u: Most(state.u),
+            u_dot: Most(state.u_dot),
+            theta,
+            theta_dot: Most(state.theta_dot),
+            turn: theta.turn(),
+            a_g: most(load.value.a_g, last.a_g),
+            F_t: most(load.value.F_t, last.F_t),
+            a_v: most(load.value.a_v, last.a_v),
         };
-        [theta, u, u + H * theta + B * theta * theta / 2.0, a_t]
+        searched(&x).map(|Most(most)| most)
     }
 
-    /// Bounds of |θ|, |u|, |δ_t| and |a_t| over `arc` under `load`: of what is linear in θ and u, and of the rest.
-    pub(crate) fn bounds(&self, phase: Phase, load: LinearLoad, arc: &Arc) -> [Bound; 4] {
-        let structure = &self.structure;
-        if self.is_rigid() {
-            return rigid::bounds(structure, phase, load, arc);
-        }
-        let &crate::Parameters { m, H, g, .. } = structure.parameters();
-        let (stiffness, damping) = (structure.stiffness, damping(structure, phase) / m);
-        let push = [load.value.F_t / m, load.slope.F_t / m * arc.span];
-        let row = |k: usize| {
-            let (theta, u) = (arc.theta[k], arc.u[k]);
-            let push = if k < 2 { push[k] } else { 0.0 };
-            [theta, u, u + H * theta, g * theta - damping * arc.u_dot[k] - stiffness * u + push]
+    /// Bounds of the searched outputs, their rates and second derivatives over a leap under `load` that lasts `duration` (s).
+    pub(crate) fn bends(&self, phase: Phase, load: LinearLoad, duration: f64, rates: &Rates) -> Searched<Bend> {
+        let &Rates { u, u_dot, u_ddot, u_dddot, theta, theta_dot, theta_ddot } = rates;
+        let last = load.at(duration);
+        let bend = |value, rate, bend| Bend { value, rate, bend };
+        let ramp = |from: f64, to: f64, slope: f64| bend(from.abs().max(to.abs()), slope.abs(), 0.0);
+        let turning = bend(theta, theta_dot, theta_ddot);
+        let x = Instant {
+            structure: &self.structure,
+            s: phase.side().sign(),
+            strut: Strut::Elastic(damping(&self.structure, phase)),
+            u: bend(u, u_dot, u_ddot),
+            u_dot: bend(u_dot, u_ddot, u_dddot),
+            theta: turning,
+            theta_dot: bend(theta_dot, theta_ddot, if theta_ddot == 0.0 { 0.0 } else { f64::INFINITY }),
+            turn: turning.turn(),
+            a_g: ramp(load.value.a_g, last.a_g, load.slope.a_g),
+            F_t: ramp(load.value.F_t, last.F_t, load.slope.F_t),
+            a_v: ramp(load.value.a_v, last.a_v, load.slope.a_v),
         };
-        let [theta, u, sway, pull] = extremes::bounds(row, arc.order, arc.reach);
-        let (most_theta, theta_rate, most_push) = (theta.largest(), theta.rate[1], push[0].abs() + push[1].abs());
-        let square = most_theta * most_theta;
-        let a_t = square * (g * most_theta / 6.0 + most_push / 2.0);
-        let a_t_rate = most_theta * theta_rate * (g * most_theta / 2.0 + most_push) + square * push[1].abs() / 2.0;
-        [theta, u, delta_t_bound(structure, theta, u, sway), pull.and(a_t, a_t_rate)]
+        searched(&x)
+    }
+
+    /// Rates of the searched outputs in `phase` and `state` under `load`, given (ü, θ̈), with an elastic strut.
+    pub(crate) fn searched_rates(
+        &self,
+        phase: Phase,
+        state: &State,
+        accelerations: [f64; 2],
+        load: LinearLoad,
+    ) -> Searched<f64> {
+        searched(&Instant::moving(&self.structure, phase, state, accelerations, load)).map(|output| output.rate)
+    }
+
+    /// Bounds of the searched outputs over `arc` under `load`.
+    pub(crate) fn bounds(&self, phase: Phase, load: LinearLoad, arc: &Arc) -> Searched<Bound> {
+        if self.is_rigid() { self.bounds_of_rigid(phase, load, arc) } else { self.bounds_of_elastic(phase, load, arc) }
+    }
+
+    /// Leaves: θ, u, u̇, time.
+    fn bounds_of_elastic(&self, phase: Phase, load: LinearLoad, arc: &Arc) -> Searched<Bound> {
+        let leaves = |k: usize| [arc.theta[k], arc.u[k], arc.u_dot[k]];
+        let [theta, u, u_dot] = extremes::ranges(leaves, arc.order, arc.reach).map(leaf);
+        let x = Instant {
+            strut: Strut::Elastic(damping(&self.structure, phase)),
+            u: Linear::leaf(1, 1.0, u),
+            u_dot: Linear::leaf(2, 1.0, u_dot),
+            theta_dot: loose(arc, &arc.theta_dot),
+            ..over::<4>(&self.structure, phase, load, arc, theta)
+        };
+        let searched = searched(&x);
+        let courses = courses(&searched, |k| [arc.theta[k], arc.u[k], arc.u_dot[k], time(k)], arc);
+        std::array::from_fn(|i| courses[i].and(searched[i].rest, searched[i].rest_rate))
+    }
+
+    /// Leaves: θ, θ̇, θ̈, time.
+    fn bounds_of_rigid(&self, phase: Phase, load: LinearLoad, arc: &Arc) -> Searched<Bound> {
+        let leaves = |k: usize| [arc.theta[k], arc.theta_dot[k], arc.slope(&arc.theta_dot, k)];
+        let [theta, theta_dot, theta_ddot] = extremes::ranges(leaves, arc.order, arc.reach).map(leaf);
+        let x = Instant {
+            strut: Strut::Rigid(Linear::leaf(2, 1.0, theta_ddot)),
+            theta_dot: Linear::leaf(1, 1.0, theta_dot),
+            ..over::<4>(&self.structure, phase, load, arc, theta)
+        };
+        let searched = searched(&x);
+        let with_time = |k: usize| {
+            let [theta, theta_dot, theta_ddot] = leaves(k);
+            [theta, theta_dot, theta_ddot, time(k)]
+        };
+        let courses = courses(&searched, with_time, arc);
+        std::array::from_fn(|i| courses[i].and(searched[i].rest, searched[i].rest_rate))
+    }
+}
+
+/// Coefficient `k` of time, the last leaf.
+#[inline]
+pub(crate) fn time(k: usize) -> f64 {
+    if k == 1 { 1.0 } else { 0.0 }
+}
+
+#[inline]
+pub(crate) fn leaf(range: Range) -> Leaf {
+    Leaf { start: range.start, change: range.change(), rate: range.rate() }
+}
+
+/// A component of `arc` that is no leaf.
+#[inline]
+fn loose<const L: usize>(arc: &Arc, series: &Series) -> Linear<L> {
+    let [range] = extremes::ranges(|k| [series[k]], arc.order, arc.reach);
+    Linear::loose(leaf(range))
+}
+
+/// The instant over `arc` whose first leaf is θ and whose last leaf is time. The components u, u̇ and θ̇ are left at 0.
+#[inline]
+pub(crate) fn over<'a, const L: usize>(
+    structure: &'a Structure,
+    phase: Phase,
+    load: LinearLoad,
+    arc: &Arc,
+    theta: Leaf,
+) -> Instant<'a, Linear<L>> {
+    let ramp = |value: f64, slope: f64| {
+        let passes = Leaf { start: 0.0, change: arc.reach, rate: arc.reach };
+        Linear::leaf(L - 1, slope * arc.span, passes) + Linear::constant(value)
+    };
+    let none = Linear::constant(0.0);
+    let LinearLoad { value, slope } = load;
+    Instant {
+        structure,
+        s: phase.side().sign(),
+        strut: Strut::Elastic(0.0),
+        u: none,
+        u_dot: none,
+        theta: Linear::leaf(0, 1.0, theta),
+        theta_dot: none,
+        turn: Linear::turn(0, theta, libm::sincos(theta.start)),
+        a_g: ramp(value.a_g, slope.a_g),
+        F_t: ramp(value.F_t, slope.F_t),
+        a_v: ramp(value.a_v, slope.a_v),
+    }
+}
+
+/// The courses of the linear parts of `quantities` over `arc`, whose leaves have the coefficients `leaves`.
+#[inline]
+pub(crate) fn courses<const L: usize, const N: usize>(
+    quantities: &[Linear<L>; N],
+    leaves: impl Fn(usize) -> [f64; L],
+    arc: &Arc,
+) -> [Range; N] {
+    let row = |k: usize| {
+        if k == 0 {
+            return std::array::from_fn(|i| quantities[i].start);
+        }
+        let leaves = leaves(k);
+        std::array::from_fn(|i| (0..L).map(|leaf| quantities[i].slopes[leaf] * leaves[leaf]).sum())
+    };
+    extremes::ranges(row, arc.order, arc.reach)
+}
+
+/// The motion over `arc` under `load` as power series.
+fn terms<'a>(
+    structure: &'a Structure,
+    phase: Phase,
+    load: LinearLoad,
+    arc: &Arc,
+    is_rigid: bool,
+) -> Instant<'a, Terms> {
+    let of = |series: &Series| Terms::of(series, arc.order);
+    let ramp = |value: f64, slope: f64| Terms::ramp(value, slope * arc.span);
+    let (theta, theta_dot, turn) = match phase {
+        Phase::FullContact => (Terms::constant(0.0), Terms::constant(0.0), Turn::none()),
+        Phase::Rocking(_) | Phase::Overturned(_) => {
+            let theta = of(&arc.theta);
+            (theta, of(&arc.theta_dot), theta.turn())
+        }
+    };
+    let strut = match is_rigid {
+        true => Strut::Rigid(theta_dot.slope(arc.span)),
+        false => Strut::Elastic(damping(structure, phase)),
+    };
+    let LinearLoad { value, slope } = load;
+    Instant {
+        structure,
+        s: phase.side().sign(),
+        strut,
+        u: of(&arc.u),
+        u_dot: of(&arc.u_dot),
+        theta,
+        theta_dot,
+        turn,
+        a_g: ramp(value.a_g, slope.a_g),
+        F_t: ramp(value.F_t, slope.F_t),
+        a_v: ramp(value.a_v, slope.a_v),
     }
 }

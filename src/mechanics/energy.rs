@@ -1,6 +1,10 @@
 //! Mechanical energy: constant between impacts when c_u = 0 and a_g = 0.
 
-use crate::{Phase, State, Structure};
+use crate::mechanics::instant::Instant;
+use crate::mechanics::load::Load;
+use crate::mechanics::outputs::height;
+use crate::numbers::Number;
+use crate::{Parameters, Phase, State, Structure};
 
 /// Energy in J, zero at height zero:
 ///
@@ -10,13 +14,19 @@ use crate::{Phase, State, Structure};
 ///
 /// In full contact θ = θ̇ = 0 and s does not matter.
 pub fn energy(structure: &Structure, phase: Phase, state: &State) -> f64 {
-    let &crate::Parameters { m, m0, H, B, J0, g, .. } = structure.parameters();
-    let &State { u, u_dot, theta, theta_dot } = state;
-    let s = phase.side().sign();
-    let (sin, cos) = libm::sincos(theta);
-    let lever = s * B - u;
-    let kinetic = 0.5 * m * ((u_dot + H * theta_dot).powi(2) + (lever * theta_dot).powi(2))
-        + 0.5 * (J0 + m0 * B * B) * theta_dot * theta_dot;
-    let potential = m * g * (lever * sin + H * cos) + s * m0 * g * B * sin;
-    kinetic + 0.5 * structure.k * u * u + potential
+    let x = Instant::of(structure, phase, state, Load::default());
+    kinetic(&x) + x.u * (0.5 * structure.k) * x.u + potential(&x)
+}
+
+/// Kinetic energy, J.
+pub(crate) fn kinetic<N: Number>(x: &Instant<N>) -> N {
+    let &Parameters { m, m0, H, B, J0, .. } = x.structure.parameters();
+    let (along, across) = (x.u_dot + x.theta_dot * H, x.lever() * x.theta_dot);
+    (along * along + across * across) * (0.5 * m) + x.theta_dot * (0.5 * (J0 + m0 * B * B)) * x.theta_dot
+}
+
+/// Potential energy of the weights, J.
+fn potential<N: Number>(x: &Instant<N>) -> N {
+    let &Parameters { m, m0, g, .. } = x.structure.parameters();
+    height(x) * (m * g) + x.turn.sin * (m0 * g * x.pivot())
 }

@@ -9,6 +9,9 @@
 //! - L θ̇ > 0: rocking goes on about the other pivot: s ← −s, θ̇ ← r θ̇, u and u̇ unchanged;
 //! - otherwise full contact: u̇ ← u̇ + H θ̇ (horizontal momentum is kept), θ = θ̇ = 0.
 
+use crate::mechanics::energy::kinetic;
+use crate::mechanics::instant::Instant;
+use crate::mechanics::load::Load;
 use crate::{Phase, Side, State, Structure};
 
 /// Angular momentum L about the pivot that comes down, kg·m²/s, of a structure that touches the ground (θ = 0).
@@ -55,10 +58,7 @@ fn inertia_before(structure: &Structure, u: f64) -> f64 {
 
 /// Kinetic energy T₋ in the state `before`, which ends rocking about `side`, J.
 pub(crate) fn kinetic_energy(structure: &Structure, side: Side, before: &State) -> f64 {
-    let &crate::Parameters { m, H, .. } = structure.parameters();
-    let &State { u, u_dot, theta_dot, .. } = before;
-    let about_height = inertia_before(structure, side.sign() * u) - m * H * H;
-    0.5 * (m * (u_dot + H * theta_dot).powi(2) + about_height * theta_dot * theta_dot)
+    kinetic(&Instant::of(structure, Phase::Rocking(side), before, Load::default()))
 }
 
 /// A = J0 + m (H² + u²) and F = (m + m0) B², kg·m²: J₋ is A + F − 2 m B s u.

@@ -1,140 +1,270 @@
-//! What the structure shows at an instant: accelerations, forces, displacements (Eqs 2, 3, 23–27) and their rates.
+//! The outputs of the structure at an instant: accelerations, forces, displacements (Eqs 2, 3, 23–27).
 //!
 //! ```text
 //! a_t = ü + H θ̈ + θ̇² (sB − u) + a_g cos θ          (full contact: ü + a_g)                       (27)
 //! ```
 //!
-//! By (5) that is g sin θ − (c_u u̇ + k u)/m + (F_t/m) cos θ, and by (1) −(c_fc u̇ + k u)/m + F_t/m in full contact:
-//! the outputs depend on the state and on F_t and are computed so; only their rates need the ground acceleration. The
-//! levels with linear equations have the same outputs, by Eq 5 rather than by their own ü and θ̈. The rigid limit,
-//! where u is 0 whatever the forces, is the exception: there (27) is taken as it stands, with the ground acceleration.
+//! By (5) this is g sin θ − (c_u u̇ + k u)/m + (F_t/m) cos θ, and by (1) −(c_fc u̇ + k u)/m + F_t/m in full contact. The outputs
+//! therefore depend on the state and on F_t only. The levels with linear equations use Eq 5, too, instead of their own ü and θ̈.
+//! The rigid limit is the exception: its u is 0 whatever the forces, so that it uses (27) with the ground acceleration.
+//!
+//! To add an output, write its formula in [`formulas`] and its row in the table below. The row gives it a field, a column, a
+//! rate and, if its peak is searched, an exact peak.
 
-use crate::mechanics::load::LinearLoad;
-use crate::{Phase, State, Structure};
+use crate::mechanics::instant::Instant;
+use crate::mechanics::load::Load;
+use crate::numbers::Number;
+use crate::{Parameters, Phase, State, Structure};
 
-/// The outputs at one instant; from [`crate::Engine::rates`], their time derivatives in the same fields.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Outputs {
+/// The way to the peak of an output.
+#[derive(Clone, Copy, Debug)]
+pub enum PeakRule {
+    /// No peak is shown.
+    None,
+    /// The peak is searched between the ends of pieces, too. It is shown at this place among all peaks.
+    Searched(usize),
+    /// The peak comes with the peak of another output, whose magnitude gives it. It is shown at this place among all peaks.
+    With(usize, Measure, fn(&Parameters, f64) -> f64),
+}
+
+impl PeakRule {
+    /// Whether the peak is searched.
+    pub const fn is_searched(self) -> bool {
+        matches!(self, PeakRule::Searched(_))
+    }
+}
+
+/// A row of the table of outputs.
+#[derive(Clone, Copy, Debug)]
+pub struct Output {
+    /// Symbol.
+    pub name: &'static str,
+    /// Unit.
+    pub unit: &'static str,
+    /// Symbol and unit as the heading of a column.
+    pub heading: &'static str,
+    /// The output itself.
+    pub measure: Measure,
+    /// The way to its peak.
+    pub peak: PeakRule,
+}
+
+/// Makes the table: [`Outputs`], [`Measure`] and [`OUTPUTS`] from its rows.
+macro_rules! outputs {
+    ($($(#[doc = $doc:literal])+ $name:ident [$unit:literal] $peak:expr;)+) => {
+        /// The outputs at one instant; from [`Engine::rates`](crate::Engine::rates), their time derivatives in the same fields.
+        #[derive(Clone, Copy, Debug, PartialEq)]
+        pub struct Outputs<N = f64> {
+            $($(#[doc = $doc])+ pub $name: N,)+
+        }
+
+        /// One of the outputs.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        #[allow(non_camel_case_types)] // the names of the fields
+        pub enum Measure {
+            $($(#[doc = $doc])+ $name,)+
+        }
+
+        /// All outputs, in the order of their columns.
+        pub const OUTPUTS: [Output; [$(Measure::$name),+].len()] = [$(Output {
+            name: stringify!($name),
+            unit: $unit,
+            heading: concat!(stringify!($name), "[", $unit, "]"),
+            measure: Measure::$name,
+            peak: $peak,
+        }),+];
+
+        impl<N> Outputs<N> {
+            /// The outputs with `f` applied to each.
+            pub fn map<M>(self, f: impl Fn(N) -> M) -> Outputs<M> {
+                Outputs { $($name: f(self.$name)),+ }
+            }
+
+            /// The outputs in the order of [`OUTPUTS`].
+            pub fn values(self) -> [N; OUTPUTS.len()] {
+                [$(self.$name),+]
+            }
+        }
+
+        impl<N: Number> Outputs<N> {
+            /// The outputs at the instant `x`.
+            #[inline]
+            pub(crate) fn at(x: &Instant<N>) -> Outputs<N> {
+                Outputs { $($name: formulas::$name(x)),+ }
+            }
+        }
+
+        impl Measure {
+            /// The output at the instant `x`.
+            #[inline]
+            pub(crate) fn at<N: Number>(self, x: &Instant<N>) -> N {
+                match self {
+                    $(Measure::$name => formulas::$name(x),)+
+                }
+            }
+
+            /// This output among `outputs`.
+            #[inline]
+            pub fn of(self, outputs: &Outputs) -> f64 {
+                match self {
+                    $(Measure::$name => outputs.$name,)+
+                }
+            }
+        }
+
+        /// The outputs at the instant `x` whose peaks are searched, in the order of [`Measure::SEARCHED`].
+        #[inline(always)]
+        pub(crate) fn searched<N: Number>(x: &Instant<N>) -> [N; Measure::SEARCHED.len()] {
+            let (mut found, mut count) = ([N::constant(0.0); Measure::SEARCHED.len()], 0);
+            $(if const { OUTPUTS[Measure::$name as usize].peak.is_searched() } {
+                found[count] = formulas::$name(x);
+                count += 1;
+            })+
+            debug_assert_eq!(count, found.len());
+            found
+        }
+    };
+}
+
+outputs! {
     /// Rotation of the base θ, rad.
-    pub theta: f64,
+    theta["rad"] PeakRule::Searched(0);
     /// Elastic displacement u, m.
-    pub u: f64,
+    u["m"] PeakRule::Searched(1);
     /// Acceleration of the top mass in the direction of u, a_t, m/s² (Eq 27).
-    pub a_t: f64,
+    a_t["m/s2"] PeakRule::Searched(4);
     /// Base shear V_t = m a_t, N (Eqs 2, 23).
-    pub V_t: f64,
+    V_t["N"] PeakRule::With(5, Measure::a_t, |&Parameters { m, .. }, a_t| m * a_t);
     /// Overturning moment M_t = m H a_t, N·m (Eqs 3, 24).
-    pub M_t: f64,
+    M_t["N.m"] PeakRule::With(6, Measure::a_t, |&Parameters { m, H, .. }, a_t| m * H * a_t);
     /// Angular velocity θ̇, rad/s.
-    pub theta_dot: f64,
+    theta_dot["rad/s"] PeakRule::None;
     /// Elastic velocity u̇, m/s.
-    pub u_dot: f64,
+    u_dot["m/s"] PeakRule::None;
     /// Uplift of the free edge of the base δ_u = 2 B sin|θ|, m (Eq 25).
-    pub uplift: f64,
+    uplift["m"] PeakRule::With(3, Measure::theta, |&Parameters { B, .. }, theta| 2.0 * B * libm::sin(theta));
     /// Lateral displacement of the top mass δ_t = sB (1 − cos θ) + u cos θ + H sin θ, m (Eq 26).
-    pub delta_t: f64,
-    /// Its rate, the lateral velocity of the top mass relative to the ground, m/s: u̇ cos θ + [(sB − u) sin θ + H cos
-    /// θ] θ̇.
-    pub v_t: f64,
+    delta_t["m"] PeakRule::Searched(2);
+    /// Lateral velocity of the top mass relative to the ground, the rate of δ_t: u̇ cos θ + [(sB − u) sin θ + H cos θ] θ̇, m/s.
+    v_t["m/s"] PeakRule::None;
 }
 
-/// The outputs whose peaks and histories are looked at; others follow from them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Measure {
-    /// θ, and with it the uplift (Eq 25).
-    Theta,
-    /// u.
-    U,
-    /// δ_t (Eq 26).
-    DeltaT,
-    /// a_t (Eq 27), and with it V_t and M_t.
-    At,
-}
+/// The formula of each output, by its name.
+mod formulas {
+    use crate::Parameters;
+    use crate::mechanics::instant::{Instant, Strut};
+    use crate::numbers::Number;
 
-impl Measure {
-    /// All of them.
-    pub const ALL: [Measure; 4] = [Measure::Theta, Measure::U, Measure::DeltaT, Measure::At];
+    #[inline]
+    pub fn theta<N: Number>(x: &Instant<N>) -> N {
+        x.theta
+    }
 
-    /// Its value among `outputs`.
-    pub fn of(self, outputs: &Outputs) -> f64 {
-        match self {
-            Measure::Theta => outputs.theta,
-            Measure::U => outputs.u,
-            Measure::DeltaT => outputs.delta_t,
-            Measure::At => outputs.a_t,
+    #[inline]
+    pub fn theta_dot<N: Number>(x: &Instant<N>) -> N {
+        x.theta_dot
+    }
+
+    #[inline]
+    pub fn u<N: Number>(x: &Instant<N>) -> N {
+        x.u
+    }
+
+    #[inline]
+    pub fn u_dot<N: Number>(x: &Instant<N>) -> N {
+        x.u_dot
+    }
+
+    /// Eq 27 by (5), and at the rigid level as it stands; of a_v it has −a_v sin θ, which (5) cancels.
+    #[inline]
+    pub fn a_t<N: Number>(x: &Instant<N>) -> N {
+        let &Parameters { m, H, g, .. } = x.structure.parameters();
+        match x.strut {
+            Strut::Elastic(damping) => {
+                x.turn.sin * g + (x.F_t * x.turn.cos - x.u_dot * damping - x.u * x.structure.k) / m
+            }
+            Strut::Rigid(theta_ddot) => {
+                theta_ddot * H + x.theta_dot * x.theta_dot * x.pivot() + x.a_g * x.turn.cos - x.a_v * x.turn.sin
+            }
         }
     }
+
+    #[inline]
+    pub fn V_t<N: Number>(x: &Instant<N>) -> N {
+        a_t(x) * x.structure.parameters().m
+    }
+
+    #[inline]
+    pub fn M_t<N: Number>(x: &Instant<N>) -> N {
+        let &Parameters { m, H, .. } = x.structure.parameters();
+        a_t(x) * (m * H)
+    }
+
+    #[inline]
+    pub fn uplift<N: Number>(x: &Instant<N>) -> N {
+        x.turn.sin * (2.0 * x.pivot())
+    }
+
+    #[inline]
+    pub fn delta_t<N: Number>(x: &Instant<N>) -> N {
+        x.turn.versine * x.pivot() + x.u * x.turn.cos + x.turn.sin * x.structure.parameters().H
+    }
+
+    #[inline]
+    pub fn v_t<N: Number>(x: &Instant<N>) -> N {
+        x.u_dot * x.turn.cos + super::height(x) * x.theta_dot
+    }
 }
 
-/// The damping in force: c_fc in full contact, c_u otherwise, N·s/m.
-pub(crate) fn damping(structure: &Structure, phase: Phase) -> f64 {
-    match phase {
-        Phase::FullContact => structure.c_fc,
-        Phase::Rocking(_) | Phase::Overturned(_) => structure.c_u,
-    }
+/// Height of the top mass above the ground, (sB − u) sin θ + H cos θ, m.
+#[inline]
+pub(crate) fn height<N: Number>(x: &Instant<N>) -> N {
+    x.lever() * x.turn.sin + x.turn.cos * x.structure.parameters().H
 }
 
 impl Outputs {
     /// The outputs of `structure` in `phase` and `state` with the force `F_t` (N) on the top mass.
     pub fn of(structure: &Structure, phase: Phase, state: &State, F_t: f64) -> Outputs {
-        let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
-        let &State { u, u_dot, theta, theta_dot } = state;
-        let (s, damping) = (phase.side().sign(), damping(structure, phase));
-        let (sin, cos) = libm::sincos(theta);
-        let a_t = g * sin + (F_t * cos - damping * u_dot - structure.k * u) / m;
-        let one_minus_cos = sin * sin / (1.0 + cos); // without cancellation: cos θ ≥ 0
-        Outputs {
-            theta,
-            u,
-            a_t,
-            V_t: m * a_t,
-            M_t: m * H * a_t,
-            theta_dot,
-            u_dot,
-            uplift: 2.0 * B * sin.abs(),
-            delta_t: s * B * one_minus_cos + u * cos + H * sin,
-            v_t: u_dot * cos + ((s * B - u) * sin + H * cos) * theta_dot,
+        Outputs::at(&Instant::of(structure, phase, state, Load { F_t, ..Load::default() }))
+    }
+}
+
+impl Measure {
+    const COUNT: usize = {
+        let (mut count, mut i) = (0, 0);
+        while i < OUTPUTS.len() {
+            count += OUTPUTS[i].peak.is_searched() as usize;
+            i += 1;
         }
+        count
+    };
+
+    /// The outputs whose peaks are searched.
+    pub const SEARCHED: [Measure; Measure::COUNT] = {
+        let (mut searched, mut count, mut i) = ([Measure::theta; Measure::COUNT], 0, 0);
+        while i < OUTPUTS.len() {
+            if OUTPUTS[i].peak.is_searched() {
+                searched[count] = OUTPUTS[i].measure;
+                count += 1;
+            }
+            i += 1;
+        }
+        searched
+    };
+
+    /// The place of this output in [`Measure::SEARCHED`]; the number of searched outputs before it.
+    pub(crate) const fn place(self) -> usize {
+        let (mut count, mut i) = (0, 0);
+        while i < self as usize {
+            count += OUTPUTS[i].peak.is_searched() as usize;
+            i += 1;
+        }
+        count
     }
 
-    /// These outputs with another a_t (m/s²), or its rate, and with the forces that follow from it.
-    pub(crate) fn with_a_t(self, structure: &Structure, a_t: f64) -> Outputs {
-        let &crate::Parameters { m, H, .. } = structure.parameters();
-        Outputs { a_t, V_t: m * a_t, M_t: m * H * a_t, ..self }
-    }
-
-    /// Time derivatives of the outputs, given `accelerations` (ü, θ̈) under `load`; 0 once overturned, where motion has
-    /// ended.
-    pub(crate) fn rates_by(
-        structure: &Structure,
-        phase: Phase,
-        state: &State,
-        accelerations: [f64; 2],
-        load: LinearLoad,
-    ) -> Outputs {
-        let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
-        let moves = if let Phase::Overturned(_) = phase { 0.0 } else { 1.0 };
-        let &State { u, .. } = state;
-        let (u_dot, theta_dot) = (moves * state.u_dot, moves * state.theta_dot);
-        let [u_ddot, theta_ddot] = accelerations;
-        let (s, damping) = (phase.side().sign(), damping(structure, phase));
-        let (sin, cos) = libm::sincos(state.theta);
-        let force_rate = moves * (load.slope.F_t * cos - load.value.F_t * sin * theta_dot);
-        let a_t = g * cos * theta_dot - (damping * u_ddot + structure.k * u_dot) / m + force_rate / m;
-        let lever = s * B - u;
-        let (height, height_rate) = (lever * sin + H * cos, (lever * cos - H * sin) * theta_dot - u_dot * sin);
-        Outputs {
-            theta: theta_dot,
-            u: u_dot,
-            a_t,
-            V_t: m * a_t,
-            M_t: m * H * a_t,
-            theta_dot: theta_ddot,
-            u_dot: u_ddot,
-            uplift: 2.0 * B * s * cos * theta_dot,
-            delta_t: u_dot * cos + height * theta_dot,
-            v_t: u_ddot * cos - u_dot * sin * theta_dot + height_rate * theta_dot + height * theta_ddot,
-        }
+    /// The row of this output.
+    pub fn row(self) -> &'static Output {
+        const { &OUTPUTS }.get(self as usize).expect("each output has a row")
     }
 }
 
@@ -145,7 +275,7 @@ mod tests {
     use crate::levels::full_contact;
     use crate::levels::nonlinear;
     use crate::mechanics::load::Load;
-    use crate::{Engine, Parameters, Reactions, Side};
+    use crate::{Engine, LinearLoad, Parameters, Reactions, Side};
     use approx::assert_relative_eq;
 
     /// Eq 27 with ü and θ̈ from Eqs 5 and 6 is what the state alone gives, and Eq 1 in full contact.

@@ -234,6 +234,18 @@ pub fn centring_moments(structure: &Structure) -> [f64; 2] {
     [((m + m0) * g + P_0) * B, levers(structure, Side::Right).iter().map(|lever| F_y * lever.abs()).sum()]
 }
 
+/// Moment that turns the base of a structure back about the right pivot at the rotation `theta` (rad), at rest, u = 0, N·m:
+///
+/// ```text
+/// M(θ) = (m + m0) g B cos θ − m g H sin θ + P_0 B cos(θ/2) + k_t B² sin θ + Σ_j F_j (B − ξ_j) cos(θ/2)
+/// ```
+pub fn restoring_moment(structure: &Structure, theta: f64, dissipators: &Dissipators) -> f64 {
+    let &crate::Parameters { m, m0, H, B, g, .. } = structure.parameters();
+    let of_ties = Sum::of_moments(structure, Side::Right, dissipators).at(Angles::Any, theta, 0.0);
+    let (sin, cos) = libm::sincos(theta);
+    (m + m0) * g * B * cos - m * g * H * sin + of_ties
+}
+
 impl Dissipators {
     /// Of a structure that has not moved yet.
     pub const NEW: Dissipators = Dissipators { plastic: [0.0; 2], yields: [0; 2], viscous: 0.0, hysteretic: 0.0 };

@@ -117,7 +117,7 @@ impl Watch for Tracer {
         while let Some(expansion) = arcs.next() {
             let (passed, span) = (expansion.from, expansion.arc.span);
             let mut between = Vec::new();
-            expansion.series(Measure::At, &mut |from, arc, a_t| {
+            expansion.series(Measure::a_t, &mut |from, arc, a_t| {
                 let [theta, u, a_t] = [&arc.theta, &arc.u, a_t].map(|series| arc.used(series));
                 let part = arc.span / span;
                 divide([theta, u, a_t], self.within, [0.0, arc.reach], DIVISIONS, &mut |sigma| {

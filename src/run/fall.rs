@@ -1,95 +1,179 @@
-//! Where a structure that overturns begins to fall: when |θ| passes α_cg, beyond which its weight pulls it over, for
-//! the last time. Its peaks are those before.
+//! The fall of a structure that overturns: it begins when |θ| passes the angle of no return for the last time. The peaks of
+//! such a structure are those before the fall.
 
-use super::ground_motion::GroundMotion;
-use super::peaks::{Peak, Peaks};
-use super::{End, Ending, Finish, Run, RunError};
+use super::peaks::{Peak, PeakWatch, Peaks};
+use super::{Finish, Run, RunError};
 use crate::engine::piece::Expansion;
+use crate::mechanics::restraint::{Dissipators, restoring_moment};
+use crate::run::ground_motion::GroundMotion;
+use crate::series::bisection::last_where;
 use crate::series::first_crossing::{Crossing, Guard, first_time_closed_from};
 use crate::series::taylor;
-use crate::{Load, Piece, Structure, Watch};
+use crate::{Outputs, Piece, Side, Structure, Transition, TransitionKind, Watch};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::FRAC_PI_2;
 
-/// What a run came to.
+/// Result of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Found {
-    /// Of the ground acceleration (m/s²), as far as the record is asked for: past an overturning, too.
+    /// Peak of the ground acceleration until the run ended, m/s².
     pub ground: Peak,
-    /// Of the structure: of one that overturns, before it falls.
+    /// Peaks of the structure; if it overturns, those before it falls.
     pub peaks: Peaks,
-    /// Since when it falls, s.
+    /// Start of the fall of a structure that overturns, s.
     pub fall: Option<f64>,
-    /// When the run began, s.
+    /// Start of the run, s.
     pub start: f64,
-    /// How it ended.
+    /// End of the run.
     pub finish: Finish,
 }
 
-/// Watches a motion for the instant.
-#[derive(Clone, Copy, Debug)]
-pub struct Fall {
-    /// α_cg, rad.
-    alpha_cg: f64,
-    instant: Option<f64>,
+/// Exact peaks of a motion that may end in a fall: those of all the motion, and those before the fall.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FallingPeaks {
+    all: Peaks,
+    /// Angle of no return, rad; none below π/2 if the tendon turns the structure back from everywhere.
+    no_return: Option<f64>,
+    /// The last passing of the angle of no return, while |θ| is beyond.
+    fall: Option<Fall>,
+    has_overturned: bool,
 }
 
-impl Fall {
-    /// Of `structure`, nothing seen yet.
-    pub fn new(structure: &Structure) -> Fall {
-        Fall { alpha_cg: libm::atan(structure.tan_alpha_cg), instant: None }
+/// A passing of the angle of no return.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+struct Fall {
+    /// Instant of the passing, s.
+    instant: f64,
+    /// Peaks until then.
+    before: Peaks,
+}
+
+/// Rotation beyond which nothing turns the structure back, rad: α_cg without ties. With ties it is where [`restoring_moment`]
+/// vanishes, the dissipators moved there slowly from rest; none if the ties turn the structure back up to π/2.
+///
+/// The moment vanishes once: while an elastic tie makes it grow it is positive, and it falls from there on.
+pub fn angle_of_no_return(structure: &Structure) -> Option<f64> {
+    if !structure.is_restrained() {
+        return Some(libm::atan(structure.tan_alpha_cg));
+    }
+    let restores = |theta| {
+        let dissipators = Dissipators::default().moved(structure, Side::Right, theta);
+        restoring_moment(structure, theta, &dissipators) > 0.0
+    };
+    (!restores(FRAC_PI_2)).then(|| last_where(0.0, FRAC_PI_2, restores))
+}
+
+impl FallingPeaks {
+    /// Peaks of `structure` from `time` (s) on, before any motion.
+    pub fn since(time: f64, structure: &Structure) -> FallingPeaks {
+        let (all, no_return) = (Peaks::since(time, structure), angle_of_no_return(structure));
+        FallingPeaks { all, no_return, fall: None, has_overturned: false }
     }
 
-    /// Since when |θ| ≥ α_cg (s); none if it is not.
-    pub fn instant(&self) -> Option<f64> {
-        self.instant
+    /// Peaks of all the motion, including a fall.
+    pub fn all(&self) -> &Peaks {
+        &self.all
+    }
+
+    /// Peaks before the fall, if the structure has overturned, otherwise of all the motion.
+    pub fn peaks(&self) -> &Peaks {
+        self.passing().map_or(&self.all, |fall| &fall.before)
+    }
+
+    /// Start of the fall, s, if the structure has overturned.
+    pub fn fall(&self) -> Option<f64> {
+        self.passing().map(|fall| fall.instant)
+    }
+
+    fn passing(&self) -> Option<&Fall> {
+        self.fall.as_ref().filter(|_| self.has_overturned)
+    }
+
+    /// Adds the `outputs` at `time` (s), which need not be in a piece.
+    pub fn see_instant(&mut self, time: f64, outputs: &Outputs) {
+        self.all.see_instant(time, outputs);
+    }
+
+    /// Looks for peaks in the pieces of a motion. The peaks are complete when the watch is dropped.
+    pub fn watch(&mut self) -> FallWatch<'_> {
+        let FallingPeaks { all, no_return, fall, has_overturned } = self;
+        FallWatch { all: all.watch(), no_return: *no_return, fall, has_overturned }
     }
 }
 
-impl Watch for Fall {
+/// Looks for the peaks of a motion that may end in a fall.
+#[derive(Debug)]
+pub struct FallWatch<'a> {
+    all: PeakWatch<'a>,
+    no_return: Option<f64>,
+    fall: &'a mut Option<Fall>,
+    has_overturned: &'a mut bool,
+}
+
+impl Watch for FallWatch<'_> {
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &Piece) {
-        if piece.end.theta.abs() < self.alpha_cg {
-            self.instant = None;
-            return;
+        match self.no_return {
+            Some(angle) if piece.end.theta.abs() >= angle => self.beyond(piece, angle),
+            _ => *self.fall = None,
         }
+        self.all.piece(piece);
+    }
+
+    fn transition(&mut self, transition: &Transition) {
+        if let TransitionKind::Overturning(_) = transition.kind {
+            *self.has_overturned = true;
+            let all = &mut self.all;
+            self.fall.get_or_insert_with(|| Fall { instant: transition.time, before: *all.so_far() });
+        }
+        self.all.transition(transition);
+    }
+}
+
+impl FallWatch<'_> {
+    /// The peaks, once the motion has been watched.
+    pub(super) fn end(mut self) -> FallingPeaks {
+        let (fall, has_overturned) = (*self.fall, *self.has_overturned);
+        FallingPeaks { all: *self.all.so_far(), no_return: self.no_return, fall, has_overturned }
+    }
+
+    /// Keeps the peaks up to the last passing of `angle` (rad) in a `piece` that ends beyond.
+    #[cold]
+    fn beyond(&mut self, piece: &Piece, angle: f64) {
+        let mut passing = None;
         let mut arcs = piece.arcs();
         while let Some(expansion) = arcs.next() {
-            let passing = self.last_passing(piece.end.theta.signum(), &expansion);
-            self.instant = passing.or(self.instant).or(Some(expansion.time(0.0)));
+            passing = last_passing(angle, piece.end.theta.signum(), &expansion).or(passing);
+        }
+        // a motion that starts beyond falls from its start
+        let starts_beyond = || self.fall.is_none().then_some((piece.before.time, 0.0));
+        if let Some((instant, tau)) = passing.or_else(starts_beyond) {
+            let mut before = *self.all.so_far();
+            before.see_until(piece, tau);
+            *self.fall = Some(Fall { instant, before });
         }
     }
 }
 
-impl Fall {
-    /// When |θ| passes α_cg for the last time on a polynomial, at whose end it is beyond on this `side`, s: the first time
-    /// going back from its end.
-    fn last_passing(&self, side: f64, expansion: &Expansion) -> Option<f64> {
-        let arc = expansion.arc;
-        let mut theta = arc.theta;
-        let back = &mut theta[..=arc.order];
-        taylor::stretch(back, arc.reach, -arc.reach);
-        let beyond = Guard::new(back, side, -self.alpha_cg);
-        let mut sigma = 0.0;
-        loop {
-            match first_time_closed_from(beyond, sigma, 1.0) {
-                Crossing::None => return None,
-                Crossing::NoneUntil(until) if until - sigma > f64::EPSILON => sigma = until,
-                Crossing::At(last) | Crossing::NoneUntil(last) => {
-                    return Some(expansion.time(0.0) + (1.0 - last) * arc.duration());
-                }
+/// The last time at which |θ| passes `angle` (rad) on a polynomial that ends beyond on this `side`: the instant, and seconds from
+/// the start of the piece. The search goes back from the end of the polynomial.
+fn last_passing(angle: f64, side: f64, expansion: &Expansion) -> Option<(f64, f64)> {
+    let arc = expansion.arc;
+    let mut theta = arc.theta;
+    let back = &mut theta[..=arc.order];
+    taylor::stretch(back, arc.reach, -arc.reach);
+    let beyond = Guard::new(back, side, -angle);
+    let mut sigma = 0.0;
+    loop {
+        match first_time_closed_from(beyond, sigma, 1.0) {
+            Crossing::None => return None,
+            Crossing::NoneUntil(until) if until - sigma > f64::EPSILON => sigma = until,
+            Crossing::At(last) | Crossing::NoneUntil(last) => {
+                let passed = (1.0 - last) * arc.duration();
+                return Some((expansion.time(0.0) + passed, expansion.from + passed));
             }
         }
-    }
-
-    /// Of the peaks of `all` of `run`, which has ended so, those before the fall, and since when it falls (s).
-    pub(super) fn peaks_before(
-        &self,
-        run: &Run,
-        ending: Ending,
-        all: &Peaks,
-    ) -> Result<(Peaks, Option<f64>), RunError> {
-        let fall = self.instant.filter(|_| ending == Ending::Overturned);
-        Ok((fall.map_or(Ok(*all), |fall| run.peaks_until(fall))?, fall))
     }
 }
 
@@ -99,19 +183,19 @@ impl Run<'_> {
         Ok(self.found_and_all(watch)?.0)
     }
 
-    /// What the run came to, and the peaks of all of its motion, a fall included.
+    /// Result of the run, and the peaks of all its motion, including a fall.
     pub(super) fn found_and_all(&self, watch: &mut impl Watch) -> Result<(Found, Peaks), RunError> {
         let start = self.ground.start();
-        let (mut all, mut fall) = (Peaks::since(start, &self.structure), Fall::new(&self.structure));
-        let finish = self.follow(&mut (&mut all.watch(), &mut (&mut fall, watch)))?;
-        let (peaks, fall) = fall.peaks_before(self, finish.ending, &all)?;
-        Ok((Found { ground: self.peak_of_ground(), peaks, fall, start, finish }, all))
+        let mut peaks = FallingPeaks::since(start, &self.structure);
+        let finish = self.follow(&mut (&mut peaks.watch(), watch))?;
+        let ground = self.peak_of_ground(finish.motion.time);
+        let found = Found { ground, peaks: *peaks.peaks(), fall: peaks.fall(), start, finish };
+        Ok((found, *peaks.all()))
     }
 
-    /// The largest ground acceleration (m/s²) until the run is asked to end, whatever becomes of the structure.
-    fn peak_of_ground(&self) -> Peak {
+    /// Peak of the ground acceleration until the time `until` (s), m/s².
+    fn peak_of_ground(&self, until: f64) -> Peak {
         let (times, acceleration) = (self.ground.times(), self.ground.acceleration());
-        let until = if let End::At(end) = self.end { end } else { self.ground.end() };
         let next = times.partition_point(|time| *time <= until);
         let cut = (next < times.len()).then(|| {
             let from = times[next - 1];
@@ -123,27 +207,25 @@ impl Run<'_> {
         };
         samples.chain(cut).fold(Peak { magnitude: 0.0, time: self.ground.start() }, most)
     }
-
-    /// The exact peaks until `instant` (s), which may be the first sample's.
-    fn peaks_until(&self, instant: f64) -> Result<Peaks, RunError> {
-        let start = self.ground.start();
-        if instant > start {
-            return Ok(Run { end: End::At(instant), ..self.clone() }.peaks()?.0);
-        }
-        let mut peaks = Peaks::since(start, &self.structure);
-        let a_g = self.ground.acceleration()[0];
-        peaks.see_instant(start, &self.start()?.outputs(Load::ground(a_g)));
-        Ok(peaks)
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::run::Ending;
+    use crate::estimates::restoring;
+    use crate::run::ground_motion::Elapsed;
+    use crate::run::peaks::PEAKS;
     use crate::run::record::Record;
-    use crate::{Detail, Outputs, Parameters, State};
+    use crate::run::{End, Ending};
+    use crate::{Detail, Parameters, Progress, State};
     use std::f64::consts::TAU;
+
+    /// The peaks before the fall and its instant, of a run that overturns.
+    fn fall_of(run: &Run) -> FallingPeaks {
+        let mut peaks = FallingPeaks::since(run.ground.start(), &run.structure);
+        assert_eq!(run.follow(&mut peaks.watch()).unwrap().ending, Ending::Overturned);
+        peaks
+    }
 
     /// Against dense samples: below α_cg before it, beyond from then on, and no peak is of later.
     #[test]
@@ -155,16 +237,15 @@ mod tests {
         let ground = Record::from_samples("", times, acceleration).unwrap();
         for detail in [Detail::Auto, Detail::Linear, Detail::Rigid] {
             let run = Run { detail, ..Run::new(structure, &ground) };
-            let mut fall = Fall::new(&structure);
             let mut seen: Vec<(f64, Outputs)> = Vec::new();
             let dense = (0..40_000).map(|i| f64::from(i) * 1e-4);
-            let finish = run.sample(dense, |at| seen.push((at.motion.time, at.outputs())), &mut fall).unwrap();
-            assert_eq!(finish.ending, Ending::Overturned);
-            let instant = fall.instant().unwrap();
+            let mut watched = FallingPeaks::since(0.0, &structure);
+            run.sample(dense, |at| seen.push((at.motion.time, at.outputs())), &mut watched.watch()).unwrap();
+            let instant = watched.fall().unwrap();
             let last = seen.iter().rposition(|(_, outputs)| outputs.theta.abs() < alpha_cg).unwrap();
             assert!(seen[last].0 <= instant && instant <= seen[last + 1].0, "{detail:?}: {instant}");
 
-            let peaks = run.peaks_until(instant).unwrap();
+            let peaks = watched.peaks();
             assert!((peaks.theta().magnitude - alpha_cg).abs() < 1e-9);
             for (peak, of) in [
                 (peaks.u(), (|at| at.u) as fn(&Outputs) -> f64),
@@ -175,6 +256,32 @@ mod tests {
                 assert!(most <= peak.magnitude * (1.0 + 1e-9) && peak.time <= instant, "{detail:?}: {most} {peak:?}");
                 assert!(most >= peak.magnitude * 0.99, "{detail:?}: {most} {peak:?}");
             }
+            assert!(watched.all().theta().magnitude > 1.57);
+
+            // a run that ends there, and one in the steps of a host, which keeps the peaks between them
+            let until = Run { end: End::At(instant), ..run.clone() }.peaks().unwrap().0;
+            let stepped = in_steps(&run, 3e-3);
+            assert!((stepped.fall().unwrap() - instant).abs() < 1e-9);
+            for peaking in &PEAKS {
+                let [expected, one_pass, stepped] =
+                    [&until, peaks, stepped.peaks()].map(|peaks| peaking.of(peaks).magnitude);
+                assert!((one_pass - expected).abs() <= 1e-12 * expected, "{detail:?} {}", peaking.name);
+                assert!((stepped - expected).abs() <= 1e-8 * expected, "{detail:?} {}", peaking.name);
+            }
+        }
+    }
+
+    /// `run` in steps of `step` (s), each watched by itself, as an FMU does.
+    fn in_steps(run: &Run, step: f64) -> FallingPeaks {
+        let mut engine = run.start().unwrap();
+        let (mut elapsed, mut kept) = (Elapsed::default(), FallingPeaks::since(run.ground.start(), &run.structure));
+        let ground = GroundMotion::from(run.ground);
+        loop {
+            let progress = ground.advance(&mut engine, elapsed, step, Default::default(), &mut kept.watch()).unwrap();
+            if progress == Progress::Overturned {
+                return kept;
+            }
+            elapsed = elapsed.and(step);
         }
     }
 
@@ -189,13 +296,12 @@ mod tests {
             for beyond in (0..40).map(|i| 1e-4 * f64::from(i)) {
                 let initial = State { theta: -alpha_cg * (1.0 + beyond), ..State::default() };
                 let run = Run { detail, initial, ..Run::new(structure, &ground) };
-                let (mut fall, mut seen) = (Fall::new(&structure), Vec::new());
+                let (mut watched, mut seen) = (FallingPeaks::since(0.0, &structure), Vec::new());
                 let times = (0..100_000).map(|i| f64::from(i) * 2e-4);
                 let show = |at: &crate::engine::piece::Sample| seen.push((at.motion.time, at.motion.state.theta.abs()));
-                if run.sample(times, show, &mut fall).unwrap().ending != Ending::Overturned {
-                    continue;
-                }
-                let instant = fall.instant().unwrap();
+                let ending = run.sample(times, show, &mut watched.watch()).unwrap().ending;
+                assert_eq!(watched.fall().is_some(), ending == Ending::Overturned);
+                let Some(instant) = watched.fall() else { continue };
                 let Some(last) = seen.iter().rposition(|(_, theta)| *theta < alpha_cg) else {
                     assert_eq!(instant, 0.0, "{detail:?} {beyond}");
                     continue;
@@ -215,13 +321,57 @@ mod tests {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
         let ground = Record::at_rest(1.0);
         let initial = State { theta: -0.3, ..State::default() };
-        let run = Run { initial, ..Run::new(structure, &ground) };
-        let mut fall = Fall::new(&structure);
-        assert_eq!(run.follow(&mut fall).unwrap().ending, Ending::Overturned);
-        assert_eq!(fall.instant(), Some(0.0));
-        assert_eq!(run.peaks_until(0.0).unwrap().theta().magnitude, 0.3);
-        let fallen_back = Run { initial: State { theta: 0.1, ..initial }, ..run };
-        assert_ne!(fallen_back.follow(&mut fall).unwrap().ending, Ending::Overturned);
-        assert_eq!(fall.instant(), None);
+        let watched = fall_of(&Run { initial, ..Run::new(structure, &ground) });
+        assert_eq!((watched.fall(), watched.peaks().theta().magnitude), (Some(0.0), 0.3));
+    }
+
+    /// Beyond α_cg a tied structure comes back. Once it falls, its peak is the angle at which the static moment of weight, tendon
+    /// and dissipators vanishes. A tendon of 4e4 N/m turns McManus back from everywhere: it falls where it overturns.
+    #[test]
+    fn a_tied_structure_falls_from_where_its_own_moment_vanishes() {
+        let tied = Parameters { k_t: 2e4, xi_d: 0.2, k_d: 1e5, F_y: 300.0, ..Parameters::MCMANUS };
+        let stiff = Structure::new(Parameters { k_t: 4e4, ..tied }).unwrap();
+        assert_eq!(angle_of_no_return(&stiff), None);
+        let ground = Record::at_rest(60.0);
+        let pushed = |structure: Structure, theta_dot: f64| {
+            let initial = State { theta: 1e-3, theta_dot, ..State::default() };
+            Run { initial, ..Run::new(structure, &ground) }
+        };
+        for tied in [tied, Parameters { k_t: 1e4, P_0: 500.0, ..tied }] {
+            let structure = Structure::new(tied).unwrap();
+            let no_return = angle_of_no_return(&structure).unwrap();
+            let alpha_cg = structure.tan_alpha_cg.atan();
+            assert!(no_return > 1.5 * alpha_cg, "{no_return}");
+            let loop_there = restoring::flag(&structure, no_return, 1000)[1000];
+            assert!(loop_there.moment.abs() < 1e-9 * restoring::flag(&structure, 0.0, 1)[0].moment);
+            let falls = |theta_dot: f64| {
+                let mut peaks = FallingPeaks::since(0.0, &structure);
+                let ending = pushed(structure, theta_dot).follow(&mut peaks.watch()).unwrap().ending;
+                (ending == Ending::Overturned, peaks)
+            };
+            let least = last_where(0.0, 20.0, |theta_dot| !falls(theta_dot).0);
+            let (_, stands) = falls(least);
+            assert!(stands.peaks().theta().magnitude > alpha_cg && stands.fall().is_none());
+            assert_eq!(stands.peaks(), stands.all());
+            let (_, falls) = falls(least * 1.001);
+            assert!((falls.peaks().theta().magnitude - no_return).abs() < 1e-12);
+        }
+        let falls = fall_of(&pushed(stiff, 20.0));
+        assert_eq!(falls.peaks(), falls.all());
+        assert!((falls.peaks().theta().magnitude - FRAC_PI_2).abs() < 1e-12);
+    }
+
+    /// Overturning ends a run, and with it what its ground has done.
+    #[test]
+    fn the_peak_of_the_ground_is_that_until_the_run_ended() {
+        let structure = Structure::new(Parameters::MCMANUS).unwrap();
+        let times: Vec<f64> = (0..=100).map(f64::from).collect();
+        let acceleration = times.iter().map(|time| 9.0 * (time / 100.0)).collect();
+        let ground = Record::from_samples("", times, acceleration).unwrap();
+        let found = Run::new(structure, &ground).found(&mut ()).unwrap();
+        let end = found.finish.motion.time;
+        assert!(found.finish.ending == Ending::Overturned && end < 60.0);
+        assert_eq!(found.ground.time, end);
+        assert!((found.ground.magnitude - 0.09 * end).abs() < 1e-12);
     }
 }

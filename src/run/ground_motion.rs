@@ -121,24 +121,25 @@ impl GroundMotion<'_> {
         let next = self.reached(elapsed, |i| self.same_instant(i));
         let mut near = next.saturating_sub(1)..self.record.times().len().min(next + 1);
         let sample = near.find(|i| self.ahead(*i, elapsed).abs() <= resolution);
-        sample.map_or(elapsed, |i| Elapsed::default().and(self.placement.start + (self.time(i) - self.time(0))))
+        sample.map_or(elapsed, |i| Elapsed::default().and(self.instant(i)))
     }
 
-    /// Seconds from `elapsed` to the next instant at which the ground acceleration jumps, by a first or last sample that is
-    /// not 0.
+    /// The next instant after `elapsed` at which the ground acceleration jumps, by a first or last sample that is not 0, s
+    /// after the start.
     pub fn next_jump(&self, elapsed: Elapsed) -> Option<f64> {
         let ends = [0, self.record.times().len() - 1].into_iter().filter(|i| self.is_moved(*i));
         self.first_ahead(ends, elapsed)
     }
 
-    /// Seconds from `elapsed` to the next sample, where the ground acceleration has a kink.
+    /// The instant of the next sample after `elapsed`, where the ground acceleration has a kink, s after the start.
     pub fn next_sample(&self, elapsed: Elapsed) -> Option<f64> {
         self.first_ahead(self.reached(elapsed, |i| self.same_instant(i))..self.record.times().len(), elapsed)
     }
 
-    /// Seconds from `elapsed` to the first of `samples`, which follow each other, that is still to come.
+    /// The instant of the first of `samples`, which follow each other, that is still to come. It is the sample's own,
+    /// wherever `elapsed` is.
     fn first_ahead(&self, mut samples: impl Iterator<Item = usize>, elapsed: Elapsed) -> Option<f64> {
-        samples.find_map(|i| Some(self.ahead(i, elapsed)).filter(|ahead| *ahead > self.same_instant(i)))
+        samples.find(|i| self.ahead(*i, elapsed) > self.same_instant(*i)).map(|i| self.instant(i))
     }
 
     /// Advances `engine`, which is at `elapsed`, by `interval` (s) under the record and `load`, as one advance: the
@@ -224,9 +225,14 @@ impl GroundMotion<'_> {
         self.acceleration(i) != 0.0 || self.vertical(i) != 0.0
     }
 
+    /// When sample `i` comes, s after the start.
+    fn instant(&self, i: usize) -> f64 {
+        self.placement.start + (self.time(i) - self.time(0))
+    }
+
     /// Seconds from `elapsed` to sample `i`.
     fn ahead(&self, i: usize, elapsed: Elapsed) -> f64 {
-        self.placement.start + (self.time(i) - self.time(0)) - elapsed.sum - elapsed.rounding
+        self.instant(i) - elapsed.sum - elapsed.rounding
     }
 
     /// How close to sample `i` an instant before it is not told from it, s.

@@ -96,7 +96,7 @@ impl Watch for History {
         let mut arcs = piece.arcs();
         while let Some(expansion) = arcs.next() {
             let (start, span) = (expansion.time(0.0), expansion.arc.span);
-            expansion.series(Measure::At, &mut |from, arc, a_t| {
+            expansion.series(Measure::a_t, &mut |from, arc, a_t| {
                 let start = start + from * span;
                 let series = [arc.series(|k| arc.theta[k]), arc.series(|k| arc.u[k]), *a_t];
                 self.stretches.push(Stretch {

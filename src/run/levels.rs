@@ -1,8 +1,8 @@
 //! Levels of detail compared on one run: the errors of each, what it costs, and the cheapest that will do.
 
-use super::fall::Fall;
+use super::fall::{FallWatch, FallingPeaks};
 use super::history::{Distance, History};
-use super::peaks::{PeakWatch, Peaks};
+use super::peaks::Peaks;
 use super::{Course, Ending, Run, RunError};
 use crate::Detail;
 use crate::engine::motion::Work;
@@ -103,7 +103,7 @@ pub struct Comparison {
 
 /// Does `run` at every level.
 pub fn compare(run: &Run) -> Result<Comparison, RunError> {
-    let none = Peaks::new(&run.structure);
+    let none = FallingPeaks::since(run.ground.start(), &run.structure);
     let (mut exact_peaks, mut peaks, mut level_peaks) = (none, SIMPLEST_FIRST.map(|_| none), none);
     let level_ground = run.ground.clone().without_vertical();
     let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..run.clone() };
@@ -131,11 +131,11 @@ pub fn compare(run: &Run) -> Result<Comparison, RunError> {
         reference.history.stretches.drain(..done);
         trials.iter_mut().for_each(|trial| trial.compared -= done);
     }
-    let (reference, all, _) = reference.response()?;
+    let (reference, all, _) = reference.response();
     let (mut verdicts, mut without_vertical) = (Vec::new(), None);
     for trial in trials {
         let is_level = trial.is_level;
-        let (response, _, distance) = trial.response()?;
+        let (response, _, distance) = trial.response();
         let verdict = Verdict::new(response, distance, &reference, &all);
         if is_level {
             without_vertical = Some(verdict);
@@ -153,8 +153,7 @@ struct Trial<'a, Segments> {
     /// Whether its ground moves horizontally alone and the reference's does not.
     is_level: bool,
     course: Course<Segments>,
-    peaks: PeakWatch<'a>,
-    fall: Fall,
+    peaks: FallWatch<'a>,
     /// What is still to be compared with the reference.
     history: History,
     /// From the reference.
@@ -168,7 +167,7 @@ struct Trial<'a, Segments> {
 /// Of `run`, whose `peaks` will be there.
 fn start<'a>(
     run: &Run<'a>,
-    peaks: &'a mut Peaks,
+    peaks: &'a mut FallingPeaks,
 ) -> Result<Trial<'a, impl Iterator<Item = Segment> + use<'a>>, RunError> {
     let omega_u = run.structure.omega_u;
     let Course { engine, segments, end, rest } = run.course()?;
@@ -178,7 +177,6 @@ fn start<'a>(
         is_level: false,
         course: Course { engine, segments, end, rest },
         peaks: peaks.watch(),
-        fall: Fall::new(&run.structure),
         history: History::default(),
         distance: Distance::new(omega_u),
         compared: 0,
@@ -201,7 +199,7 @@ impl<Segments: Iterator<Item = Segment>> Trial<'_, Segments> {
     /// Goes on over the next stretch unless it has ended.
     fn go_on(&mut self) -> Result<(), RunError> {
         if self.ending.is_none() {
-            self.ending = self.course.go_on(&mut (&mut self.peaks, &mut (&mut self.fall, &mut self.history)))?;
+            self.ending = self.course.go_on(&mut (&mut self.peaks, &mut self.history))?;
         }
         Ok(())
     }
@@ -222,13 +220,13 @@ impl<Segments: Iterator<Item = Segment>> Trial<'_, Segments> {
     }
 
     /// What came of it, the peaks of all of it, and how far from the reference it has been.
-    fn response(self) -> Result<(Response, Peaks, Distance), RunError> {
+    fn response(self) -> (Response, Peaks, Distance) {
         let motion = self.course.engine.motion();
         let ending = self.ending.expect("it has been followed to its end");
-        let all = self.peaks.end();
-        let (peaks, _) = self.fall.peaks_before(&self.run, ending, &all)?;
+        let peaks = self.peaks.end();
         let (transitions, work) = (motion.transitions, motion.work);
-        Ok((Response { detail: self.run.detail, peaks, ending, transitions, work }, all, self.distance))
+        let response = Response { detail: self.run.detail, peaks: *peaks.peaks(), ending, transitions, work };
+        (response, *peaks.all(), self.distance)
     }
 }
 

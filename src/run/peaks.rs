@@ -7,11 +7,11 @@
 
 use crate::engine::piece::{Expansion, Part, Piece, Watch};
 use crate::levels::detail::Model;
-use crate::levels::output_series::crude_bound_of;
-use crate::mechanics::outputs::Measure;
+use crate::levels::shown::Searched;
+use crate::mechanics::outputs::{Measure, OUTPUTS, PeakRule};
 use crate::series::extremes::{self, Bound};
 use crate::series::taylor::Arc;
-use crate::{LinearLoad, Motion, Outputs, Phase, State, Structure, Transition};
+use crate::{LinearLoad, Motion, Outputs, Parameters, Phase, State, Structure, Transition};
 use serde::{Deserialize, Serialize};
 
 /// A bound above the largest magnitude by no more than this part of it may be rounding.
@@ -61,123 +61,153 @@ impl Peak {
 /// Peaks of the motion that has been watched.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Peaks {
-    /// In the order of [`Measure::ALL`].
-    largest: [Peak; 4],
+    /// Peaks of the searched outputs, in the order of [`Measure::SEARCHED`].
+    largest: Searched<Peak>,
     ground: Peak,
-    /// Of the structure: m, H, B.
-    m: f64,
-    H: f64,
-    B: f64,
-    /// Prestress and stiffness of its tendon.
-    P_0: f64,
-    k_t: f64,
-    /// Right-hand-side evaluations that it took to find them.
+    /// Parameters of the structure, which give the peaks that come with others.
+    parameters: Parameters,
+    /// Right-hand-side evaluations that the search took.
     evaluations: u64,
 }
 
-/// A peak's name and unit, and which it is.
-#[derive(Debug)]
+/// A row of the table of peaks.
+#[derive(Clone, Copy, Debug)]
 pub struct Peaking {
     /// Symbol of the quantity.
     pub name: &'static str,
     /// Its unit.
     pub unit: &'static str,
-    /// Its peak.
-    pub of: fn(&Peaks) -> Peak,
+    quantity: Quantity,
 }
 
-/// All peaks: what to call them, in which unit.
-pub const PEAKS: [Peaking; 7] = [
-    Peaking { name: "theta", unit: "rad", of: |peaks| peaks.theta() },
-    Peaking { name: "u", unit: "m", of: |peaks| peaks.u() },
-    Peaking { name: "delta_t", unit: "m", of: |peaks| peaks.delta_t() },
-    Peaking { name: "uplift", unit: "m", of: |peaks| peaks.uplift() },
-    Peaking { name: "a_t", unit: "m/s2", of: |peaks| peaks.a_t() },
-    Peaking { name: "V_t", unit: "N", of: |peaks| peaks.V_t() },
-    Peaking { name: "M_t", unit: "N.m", of: |peaks| peaks.M_t() },
-];
+/// A quantity that has a peak.
+#[derive(Clone, Copy, Debug)]
+enum Quantity {
+    Output(Measure),
+    Tendon,
+}
 
-/// The tendon's force.
-static TENDON: Peaking = Peaking { name: "P_t", unit: "N", of: |peaks| peaks.P_t() };
+impl Peaking {
+    /// The peak of the quantity among `peaks`.
+    pub fn of(&self, peaks: &Peaks) -> Peak {
+        match self.quantity {
+            Quantity::Output(measure) => peaks.of(measure),
+            Quantity::Tendon => peaks.P_t(),
+        }
+    }
+}
 
-/// The peaks that `structure` has: all of [`PEAKS`], and with a tendon that of its force.
+/// The number of outputs that have a peak.
+const COUNT: usize = {
+    let (mut count, mut i) = (0, 0);
+    while i < OUTPUTS.len() {
+        count += !matches!(OUTPUTS[i].peak, PeakRule::None) as usize;
+        i += 1;
+    }
+    count
+};
+
+/// The peaks of the outputs, each at the place that its row in the table of outputs gives it.
+pub const PEAKS: [Peaking; COUNT] = {
+    let mut peaks = [TENDON; COUNT];
+    let mut i = 0;
+    while i < OUTPUTS.len() {
+        let output = &OUTPUTS[i];
+        if let PeakRule::Searched(place) | PeakRule::With(place, ..) = output.peak {
+            peaks[place] = Peaking { name: output.name, unit: output.unit, quantity: Quantity::Output(output.measure) };
+        }
+        i += 1;
+    }
+    peaks
+};
+
+/// The force of the tendon.
+const TENDON: Peaking = Peaking { name: "P_t", unit: "N", quantity: Quantity::Tendon };
+
+/// The peaks that `structure` has: all of [`PEAKS`], and with a tendon the peak of its force.
 pub fn of(structure: &Structure) -> impl Iterator<Item = &'static Peaking> + use<> {
-    let &crate::Parameters { P_0, k_t, .. } = structure.parameters();
-    let tendon = (P_0 > 0.0 || k_t > 0.0).then_some(&TENDON);
+    let &Parameters { P_0, k_t, .. } = structure.parameters();
+    let tendon = (P_0 > 0.0 || k_t > 0.0).then_some(const { &TENDON });
     const { &PEAKS }.iter().chain(tendon)
 }
 
 impl Peaks {
-    /// Of `structure`, nothing seen yet.
+    /// Peaks of a motion of `structure` of which nothing has been seen yet.
     pub fn new(structure: &Structure) -> Peaks {
         Peaks::since(0.0, structure)
     }
 
-    /// Of `structure` from `time` (s) on, nothing seen yet: it is the instant of what stays 0.
+    /// Peaks of a motion of `structure` from `time` (s) on, which is the instant of a peak that stays 0.
     pub fn since(time: f64, structure: &Structure) -> Peaks {
-        let &crate::Parameters { m, H, B, P_0, k_t, .. } = structure.parameters();
         let none = Peak { magnitude: 0.0, time };
-        Peaks { largest: [none; 4], ground: none, m, H, B, P_0, k_t, evaluations: 0 }
+        let largest = [none; Measure::SEARCHED.len()];
+        Peaks { largest, ground: none, parameters: *structure.parameters(), evaluations: 0 }
     }
 
-    /// The `outputs` at `time` (s), which need not be in a piece.
+    /// Sees the `outputs` at `time` (s), which need not be in a piece.
     pub fn see_instant(&mut self, time: f64, outputs: &Outputs) {
-        Measure::ALL.into_iter().for_each(|measure| self.see(measure, time, outputs));
+        Measure::SEARCHED.into_iter().for_each(|measure| self.see(measure, time, outputs));
     }
 
-    /// Of the rotation |θ|, rad.
+    /// Peak of an output that has one; of any other output the peak is 0.
+    pub fn of(&self, measure: Measure) -> Peak {
+        match measure.row().peak {
+            PeakRule::None => Peak::default(),
+            PeakRule::Searched(_) => self.largest[measure.place()],
+            PeakRule::With(_, measure, magnitude) => {
+                let peak = self.of(measure);
+                Peak { magnitude: magnitude(&self.parameters, peak.magnitude), ..peak }
+            }
+        }
+    }
+
+    /// Peak of the rotation |θ|, rad.
     pub fn theta(&self) -> Peak {
-        self.largest[Measure::Theta as usize]
+        self.of(Measure::theta)
     }
 
-    /// Of the elastic displacement |u|, m.
+    /// Peak of the elastic displacement |u|, m.
     pub fn u(&self) -> Peak {
-        self.largest[Measure::U as usize]
+        self.of(Measure::u)
     }
 
-    /// Of the lateral displacement of the top mass |δ_t|, m (Eq 26).
+    /// Peak of the lateral displacement of the top mass |δ_t|, m (Eq 26).
     pub fn delta_t(&self) -> Peak {
-        self.largest[Measure::DeltaT as usize]
+        self.of(Measure::delta_t)
     }
 
-    /// Of the uplift δ_u = 2 B sin|θ|, m (Eq 25): with |θ|, which never exceeds π/2.
+    /// Peak of the uplift δ_u = 2 B sin|θ|, m (Eq 25). It comes with the peak of |θ|, which never exceeds π/2.
     pub fn uplift(&self) -> Peak {
-        let theta = self.theta();
-        Peak { magnitude: 2.0 * self.B * libm::sin(theta.magnitude), ..theta }
+        self.of(Measure::uplift)
     }
 
-    /// Of the tendon's force P_t = P_0 + 2 k_t B sin(|θ|/2), N: with |θ|, too.
+    /// Peak of the tendon's force P_t = P_0 + 2 k_t B sin(|θ|/2), N. It comes with the peak of |θ|, too.
     pub fn P_t(&self) -> Peak {
-        let theta = self.theta();
-        Peak { magnitude: self.P_0 + 2.0 * self.k_t * self.B * libm::sin(0.5 * theta.magnitude), ..theta }
+        let (theta, &Parameters { B, P_0, k_t, .. }) = (self.theta(), &self.parameters);
+        Peak { magnitude: P_0 + 2.0 * k_t * B * libm::sin(0.5 * theta.magnitude), ..theta }
     }
 
-    /// Of the acceleration of the top mass |a_t|, m/s² (Eq 27).
+    /// Peak of the acceleration of the top mass |a_t|, m/s² (Eq 27).
     pub fn a_t(&self) -> Peak {
-        self.largest[Measure::At as usize]
+        self.of(Measure::a_t)
     }
 
-    /// Of |V_t| = m |a_t|, N (Eqs 2, 23).
+    /// Peak of |V_t| = m |a_t|, N (Eqs 2, 23).
     pub fn V_t(&self) -> Peak {
-        self.times_a_t(self.m)
+        self.of(Measure::V_t)
     }
 
-    /// Of |M_t| = m H |a_t|, N·m (Eqs 3, 24).
+    /// Peak of |M_t| = m H |a_t|, N·m (Eqs 3, 24).
     pub fn M_t(&self) -> Peak {
-        self.times_a_t(self.m * self.H)
+        self.of(Measure::M_t)
     }
 
-    fn times_a_t(&self, factor: f64) -> Peak {
-        let a_t = self.a_t();
-        Peak { magnitude: factor * a_t.magnitude, ..a_t }
-    }
-
-    /// Of the ground acceleration |a_g|, m/s²: linear in a piece.
+    /// Peak of the ground acceleration |a_g|, m/s², which is linear in a piece.
     pub fn a_g(&self) -> Peak {
         self.ground
     }
 
-    /// Right-hand-side evaluations that finding them took beside those of the motion itself.
+    /// Right-hand-side evaluations that the search took beside those of the motion.
     pub fn evaluations(&self) -> u64 {
         self.evaluations
     }
@@ -193,6 +223,18 @@ impl Peaks {
         ThetaWatch { peaks: self }
     }
 
+    /// Looks for more of them in `piece` up to `tau` seconds after its start.
+    pub(super) fn see_until(&mut self, piece: &Piece, tau: f64) {
+        let arc = piece.arc.map(|arc| Arc { reach: tau / arc.span, ..arc.clone() });
+        let part = Piece { duration: tau, end: piece.state_at(tau), arc: arc.as_ref(), ..*piece };
+        for (at, state) in [(0.0, part.before.state), (tau, part.end)] {
+            self.see_instant(piece.before.time + at, &part.outputs(at, &state));
+        }
+        if tau > 0.0 {
+            self.look(&Measure::SEARCHED, &part.whole(), HALVINGS);
+        }
+    }
+
     /// Looks for those of `measures` in `part`, where it may hold larger magnitudes; `halvings` are left.
     fn look(&mut self, measures: &[Measure], part: &Part, halvings: u32) {
         let start = part.piece.before.time + part.start.0;
@@ -202,7 +244,7 @@ impl Peaks {
         let bounds = part.bounds();
         let mut is_open = false;
         for &measure in measures {
-            let bound = &bounds[measure as usize];
+            let bound = &bounds[measure.place()];
             if self.may_change(measure, bound.ends, start) {
                 for (tau, outputs) in part.ends() {
                     self.see(measure, part.piece.before.time + tau, &outputs);
@@ -222,7 +264,7 @@ impl Peaks {
         let mut arcs = part.arcs();
         while let Some(expansion) = arcs.next() {
             for &measure in measures {
-                if self.is_open(measure, &bounds[measure as usize], start) {
+                if self.is_open(measure, &bounds[measure.place()], start) {
                     self.search(measure, &expansion);
                 }
             }
@@ -232,19 +274,19 @@ impl Peaks {
     }
 
     /// Whether magnitudes of `measures` within `bounds` from `time` (s) on may change what has been seen.
-    fn may_change_within(&self, measures: &[Measure], bounds: &[f64; 4], time: f64) -> bool {
-        measures.iter().any(|measure| self.may_change(*measure, bounds[*measure as usize], time))
+    fn may_change_within(&self, measures: &[Measure], bounds: &Searched<f64>, time: f64) -> bool {
+        measures.iter().any(|measure| self.may_change(*measure, bounds[measure.place()], time))
     }
 
     /// Whether a magnitude of at most `bound` from `time` (s) on may do so.
     fn may_change(&self, measure: Measure, bound: f64, time: f64) -> bool {
-        self.largest[measure as usize].may_change(bound, time)
+        self.largest[measure.place()].may_change(bound, time)
     }
 
     /// Whether a magnitude of at most `bound` may be more than what has been seen, or the same.
     #[inline]
     fn may_be_same(&self, measure: Measure, bound: f64) -> bool {
-        bound > 0.0 && self.largest[measure as usize].may_be_same(bound)
+        bound > 0.0 && self.largest[measure.place()].may_be_same(bound)
     }
 
     /// Whether it may do so between the ends.
@@ -268,7 +310,7 @@ impl Peaks {
     }
 
     fn see(&mut self, measure: Measure, time: f64, outputs: &Outputs) {
-        self.largest[measure as usize].see(measure.of(outputs), time);
+        self.largest[measure.place()].see(measure.of(outputs), time);
     }
 }
 
@@ -290,7 +332,7 @@ pub struct PeakWatch<'a> {
 #[derive(Debug)]
 struct Kept {
     /// Bounds of what it holds.
-    bounds: [f64; 4],
+    bounds: Searched<f64>,
     before: Motion,
     duration: f64,
     load: LinearLoad,
@@ -299,19 +341,19 @@ struct Kept {
 }
 
 impl PeakWatch<'_> {
-    /// The peaks.
-    pub(super) fn end(mut self) -> Peaks {
+    /// Peaks of the pieces so far.
+    pub(super) fn so_far(&mut self) -> &Peaks {
         self.look_back();
-        *self.peaks
+        self.peaks
     }
 
     /// Looks at what has been kept, the latest first, which is often the largest.
     fn look_back(&mut self) {
         let Some(model) = &self.model else { return };
         while let Some(Kept { bounds, before, duration, load, end, arc }) = self.kept.pop() {
-            if self.peaks.may_change_within(&Measure::ALL, &bounds, before.time) {
+            if self.peaks.may_change_within(&Measure::SEARCHED, &bounds, before.time) {
                 let piece = Piece { before: &before, duration, load, end, model, arc: arc.as_ref() };
-                self.peaks.look(&Measure::ALL, &piece.whole(), HALVINGS);
+                self.peaks.look(&Measure::SEARCHED, &piece.whole(), HALVINGS);
             }
         }
     }
@@ -333,7 +375,7 @@ impl Watch for PeakWatch<'_> {
         }
         let bounds = piece.whole().crude_bounds();
         let [is_torn, is_first] = [&mut self.is_torn, &mut self.goes_on].map(std::mem::take);
-        if !Measure::ALL.iter().any(|measure| self.peaks.may_be_same(*measure, bounds[*measure as usize])) {
+        if !Measure::SEARCHED.iter().any(|measure| self.peaks.may_be_same(*measure, bounds[measure.place()])) {
             return;
         }
         if is_torn {
@@ -342,12 +384,12 @@ impl Watch for PeakWatch<'_> {
         self.peaks.see_instant(before.time + duration, &piece.outputs(duration, &end));
         let peaks = &*self.peaks;
         let may_change =
-            |bounds: &[f64; 4], motion: &Motion| peaks.may_change_within(&Measure::ALL, bounds, motion.time);
+            |bounds: &Searched<f64>, motion: &Motion| peaks.may_change_within(&Measure::SEARCHED, bounds, motion.time);
         if !may_change(&bounds, before) {
             return;
         }
         if is_first {
-            return self.peaks.look(&Measure::ALL, &piece.whole(), HALVINGS);
+            return self.peaks.look(&Measure::SEARCHED, &piece.whole(), HALVINGS);
         }
         if self.kept.len() == KEPT {
             self.kept.retain(|kept| may_change(&kept.bounds, &kept.before));
@@ -379,16 +421,16 @@ impl Watch for ThetaWatch<'_> {
         if before.phase == Phase::FullContact {
             return;
         }
-        let Some(arc) = piece.arc else { return peaks.look(&[Measure::Theta], &piece.whole(), HALVINGS) };
-        if !peaks.may_be_same(Measure::Theta, crude_bound_of(arc, &arc.theta, piece.end.theta)) {
+        let Some(arc) = piece.arc else { return peaks.look(&[Measure::theta], &piece.whole(), HALVINGS) };
+        if !peaks.may_be_same(Measure::theta, arc.most(&arc.theta, piece.end.theta)) {
             return;
         }
         for (tau, state) in [(0.0, before.state), (piece.duration, piece.end)] {
-            peaks.largest[Measure::Theta as usize].see(state.theta, before.time + tau);
+            peaks.largest[Measure::theta.place()].see(state.theta, before.time + tau);
         }
-        let [bound] = extremes::bounds(|k| [arc.theta[k]], arc.order, arc.reach);
-        if peaks.is_open(Measure::Theta, &bound, before.time) {
-            peaks.search(Measure::Theta, &Expansion { piece, from: 0.0, arc });
+        let [range] = extremes::ranges(|k| [arc.theta[k]], arc.order, arc.reach);
+        if peaks.is_open(Measure::theta, &range.and(0.0, 0.0), before.time) {
+            peaks.search(Measure::theta, &Expansion { piece, from: 0.0, arc });
         }
     }
 }

@@ -119,9 +119,14 @@ impl Record {
     }
 
     /// This ground motion with every acceleration multiplied by a finite `scale`.
-    pub fn multiplied(mut self, scale: f64) -> Record {
-        let vertical = self.vertical.iter_mut().flatten();
-        self.acceleration.iter_mut().chain(vertical).for_each(|acceleration| *acceleration *= scale);
+    pub fn multiplied(self, scale: f64) -> Record {
+        self.multiplied_each(scale, scale)
+    }
+
+    /// This ground motion with every horizontal acceleration multiplied by `scale` and every vertical one by `vertical`.
+    pub fn multiplied_each(mut self, scale: f64, vertical: f64) -> Record {
+        self.acceleration.iter_mut().for_each(|acceleration| *acceleration *= scale);
+        self.vertical.iter_mut().flatten().for_each(|acceleration| *acceleration *= vertical);
         self
     }
 

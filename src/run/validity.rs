@@ -25,11 +25,12 @@ use super::{Finish, Run, RunError};
 use crate::engine::piece::{Expansion, Piece, Sample, Watch};
 use crate::levels::level::Rates;
 use crate::mechanics::impact;
-use crate::mechanics::restraint::ties;
-use crate::run::reaction_series::{ReactionSeries, accelerations_at_ends, off_chord};
+use crate::numbers::Number;
+use crate::run::reaction_series::{self, extents};
 use crate::series::bisection::last_where;
 use crate::series::extremes;
-use crate::series::taylor::{Series, evaluate};
+use crate::series::taylor::evaluate;
+use crate::series::terms::Terms;
 use crate::{Detail, Impulse, Motion, Parameters, Phase, Ramp, Reactions, Side, Structure, Transition, TransitionKind};
 use serde::{Deserialize, Serialize};
 
@@ -334,14 +335,9 @@ impl Validity {
         }
     }
 
-    /// Whether reactions that are such at the `ends` and leave the chords between them by no more than `off` may hold
-    /// something worse than what has been seen, or go beyond a limit.
-    fn may_matter(&self, phase: Phase, ends: &[Reactions; 2], off: [f64; 3]) -> bool {
+    /// Whether reactions within these bounds may hold something worse than what has been seen, or go beyond a limit.
+    fn may_matter(&self, phase: Phase, [R_h, R_v, R_m]: [f64; 3]) -> bool {
         let W = self.weight();
-        let largest = |of: fn(&Reactions) -> f64| of(&ends[0]).abs().max(of(&ends[1]).abs());
-        let R_v = ends[0].R_v.min(ends[1].R_v) - off[1];
-        let R_h = largest(|reactions| reactions.R_h) + off[0];
-        let R_m = largest(|reactions| reactions.R_m) + off[2];
         let Limits { tension, edge_load, friction, .. } = self.limits;
         let [tension, edge_load, friction] = [(TENSION, tension), (EDGE_LOAD, edge_load), (FRICTION, friction)]
             .map(|(which, limit)| (self.found.worst[which].value, limit));
@@ -360,24 +356,22 @@ impl Validity {
         let &Structure { k, c_fc, .. } = &self.structure;
         let ends = [(0.0, &piece.before.state), (piece.duration, &piece.end)].map(|(tau, state)| {
             let strut = c_fc * state.u_dot + k * state.u;
-            Reactions { R_h: strut - m0 * piece.load.at(tau).a_g, R_v: self.weight(), R_m: H * strut + m * g * state.u }
+            [strut - m0 * piece.load.at(tau).a_g, H * strut + m * g * state.u]
         });
         let start = piece.model.start(piece.before.state, &piece.before.dissipators, piece.load, piece.duration);
         let Rates { u_ddot, u_dddot, .. } = piece.model.level.rates(piece.before.phase, &start, &piece.end);
         let per_bend = piece.duration * piece.duration / 8.0;
         let strut = per_bend * (c_fc * u_dddot + k * u_ddot);
-        self.may_matter(piece.before.phase, &ends, [strut, 0.0, H * strut + per_bend * m * g * u_ddot])
+        let [R_h, R_m] = [0, 1].map(|i| ends[0][i].abs().max(ends[1][i].abs()));
+        let bounds = [R_h + strut, self.weight(), R_m + H * strut + per_bend * m * g * u_ddot];
+        self.may_matter(piece.before.phase, bounds)
     }
 
     /// Whether the motion over a polynomial may hold something worse than what has been seen, or go beyond a limit.
     fn arc_may_matter(&self, &Expansion { piece, from, arc }: &Expansion) -> bool {
         let phase = piece.before.phase;
-        let [first, last] = accelerations_at_ends(arc);
-        let ends = [(0.0, first), (arc.reach, last)].map(|(sigma, accelerations)| {
-            let load = piece.load.at(from + sigma * arc.span);
-            Reactions::of(&self.structure, phase, &arc.at(sigma), accelerations, load)
-        });
-        self.may_matter(phase, &ends, off_chord(&self.structure, phase, arc))
+        let Reactions { R_h, R_v, R_m } = extents(piece.model, phase, piece.load.from(from), arc);
+        self.may_matter(phase, [R_h.magnitude(), R_v.least, R_m.magnitude()])
     }
 
     /// Looks at the motion over a polynomial; `halvings` are left.
@@ -422,7 +416,7 @@ impl Validity {
             let combinations = self.worse(which, worst);
             for combination in &combinations {
                 let series = stretch.combination(combination);
-                let used = stretch.of.arc.used(&series);
+                let used = series.used();
                 if highest(used, stretch.of.arc.reach) > ROUNDING * self.weight() {
                     extremes::stationary_points(used, stretch.of.arc.reach, |sigma| {
                         let value = self.value(which, &stretch.reactions(sigma));
@@ -518,18 +512,14 @@ impl Watch for Validity {
 /// A polynomial of a motion with its reactions.
 struct Stretch<'a> {
     of: Expansion<'a>,
-    series: ReactionSeries,
+    series: Reactions<Terms>,
 }
 
 impl<'a> Stretch<'a> {
     fn new(of: Expansion<'a>) -> Stretch<'a> {
         let Expansion { piece, from, arc } = of;
-        let (structure, phase) = (&piece.model.structure, piece.before.phase);
-        let mut series = ReactionSeries::of(structure, phase, piece.load.from(from), arc);
-        if let Some(angles) = piece.model.level.ties() {
-            let ties = ties(structure, phase.side(), &piece.before.dissipators);
-            series = series.of_edges(structure, phase.side(), angles, &ties, arc);
-        }
+        let Motion { phase, dissipators, .. } = piece.before;
+        let series = reaction_series::series(piece.model, *phase, dissipators, piece.load.from(from), arc);
         Stretch { of, series }
     }
 
@@ -544,7 +534,7 @@ impl<'a> Stretch<'a> {
     fn has_converged(&self) -> bool {
         let Reactions { R_h, R_v, .. } = self.reactions(self.of.arc.reach);
         [(&self.series.R_h, R_h), (&self.series.R_v, R_v)].into_iter().all(|(series, expected)| {
-            let used = self.of.arc.used(series);
+            let used = series.used();
             let terms = used.iter().rev().fold(0.0, |sum, c| sum * self.of.arc.reach + c.abs());
             let off = evaluate(used, self.of.arc.reach) - expected;
             // what is no number is not so for want of terms
@@ -553,11 +543,10 @@ impl<'a> Stretch<'a> {
     }
 
     /// h R_h + v R_v + m R_m + n for [h, v, m, n].
-    fn combination(&self, [h, v, m, n]: &[f64; 4]) -> Series {
-        let ReactionSeries { R_h, R_v, R_m } = &self.series;
-        let mut series = self.of.arc.series(|k| h * R_h[k] + v * R_v[k] + m * R_m[k]);
-        series[0] += n;
-        series
+    fn combination(&self, &[h, v, m, n]: &[f64; 4]) -> Terms {
+        let Reactions { R_h, R_v, R_m } = &self.series;
+        let weighed = [(h, R_h), (v, R_v), (m, R_m)].into_iter().filter(|(weight, _)| *weight != 0.0);
+        weighed.fold(Terms::constant(n), |sum, (weight, terms)| sum + *terms * weight)
     }
 
     /// Where one of `combinations` is positive: from and to, in σ, in their order.
@@ -565,7 +554,7 @@ impl<'a> Stretch<'a> {
         let mut found: Vec<(f64, f64)> = Vec::new();
         for combination in combinations {
             let series = self.combination(combination);
-            let used = self.of.arc.used(&series);
+            let used = series.used();
             if highest(used, self.of.arc.reach) > 0.0 {
                 positive(used, self.of.arc.reach, &mut found);
             }

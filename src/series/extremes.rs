@@ -16,43 +16,74 @@ const OFF_CHORD: Series = {
     off
 };
 
-/// What is known of |Σ c_k σᵏ| over a step without looking for its extremes.
+/// Bounds of |Σ c_k σᵏ| over a step, found without a search for its extremes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Bound {
-    /// The larger of its ends.
+    /// The larger of the magnitudes at both ends.
     pub ends: f64,
-    /// By how much it may exceed that in between.
+    /// The most by which the magnitude exceeds `ends` in between.
     pub between: f64,
-    /// How fast it changes at least, and at most, per unit of σ/reach. The least is not above 0 where it may turn round.
+    /// The least and the largest rate, per unit of σ/reach. The polynomial may turn round unless the least is above 0.
     pub rate: [f64; 2],
 }
 
 impl Bound {
-    /// The bound where something else, of which `most` and its rate `most_rate` are bounds, is added.
-    pub fn and(self, most: f64, most_rate: f64) -> Bound {
-        let rate = [self.rate[0] - most_rate, self.rate[1] + most_rate];
-        Bound { ends: self.ends + most, between: self.between, rate }
-    }
-
-    /// Whether it may turn round.
+    /// Whether the polynomial may turn round.
     pub fn may_turn(&self) -> bool {
         self.rate[0] <= 0.0
     }
 
-    /// Bound of its magnitude.
+    /// Bound of the magnitude.
     pub fn largest(&self) -> f64 {
         self.ends + if self.may_turn() { self.between } else { 0.0 }
     }
 }
 
-/// Bounds of several |Σ c_k σᵏ| up to σ = `reach`; `row` gives their coefficients of each order up to `order`.
+/// The course of Σ c_k σᵏ over a step: its ends, and bounds between them.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Range {
+    /// Value at σ = 0.
+    pub start: f64,
+    /// Value at σ = `reach`.
+    pub end: f64,
+    /// The most by which the polynomial leaves the chord between its ends.
+    pub off_chord: f64,
+    /// Magnitude of the slope at the start, per unit of σ/reach.
+    slope: f64,
+    /// The most by which the slope changes.
+    turning: f64,
+}
+
+impl Range {
+    /// Bounds of the magnitude of the polynomial and a rest, which is at most `rest` and changes by at most `rest_rate`.
+    #[inline]
+    pub fn and(&self, rest: f64, rest_rate: f64) -> Bound {
+        let turning = self.turning + rest_rate;
+        let ends = self.start.abs().max(self.end.abs()) + rest;
+        Bound { ends, between: self.off_chord, rate: [self.slope - turning, self.slope + turning] }
+    }
+
+    /// Bound of the change from the start.
+    #[inline]
+    pub fn change(&self) -> f64 {
+        (self.end - self.start).abs() + self.off_chord
+    }
+
+    /// Bound of the rate, per unit of σ/reach.
+    #[inline]
+    pub fn rate(&self) -> f64 {
+        self.slope + self.turning
+    }
+}
+
+/// The courses of several Σ c_k σᵏ up to σ = `reach`; `row` gives their coefficients of each order up to `order`.
 ///
-/// Each is at its ends what its terms add up to there, and leaves the chord between them by no more than the terms of
-/// higher order do; where these are too small to turn it round it rises or falls throughout.
+/// Between its ends a polynomial leaves their chord by no more than its terms of higher order do. If these are too small to
+/// turn the polynomial round, it rises or falls throughout.
 #[inline]
-pub fn bounds<const N: usize>(row: impl Fn(usize) -> [f64; N], order: usize, reach: f64) -> [Bound; N] {
+pub fn ranges<const N: usize>(row: impl Fn(usize) -> [f64; N], order: usize, reach: f64) -> [Range; N] {
     let start = row(0);
-    let [mut end, mut between, mut slope, mut turning] = [start, [0.0; N], [0.0; N], [0.0; N]];
+    let [mut end, mut off, mut slope, mut turning] = [start, [0.0; N], [0.0; N], [0.0; N]];
     let mut power = 1.0;
     for (k, off_chord) in OFF_CHORD.iter().enumerate().take(order + 1).skip(1) {
         power *= reach;
@@ -63,15 +94,17 @@ pub fn bounds<const N: usize>(row: impl Fn(usize) -> [f64; N], order: usize, rea
             if k == 1 {
                 slope[i] = term.abs();
             } else {
-                between[i] += off_chord * term.abs();
+                off[i] += off_chord * term.abs();
                 turning[i] += k as f64 * term.abs();
             }
         }
     }
-    std::array::from_fn(|i| Bound {
-        ends: start[i].abs().max(end[i].abs()),
-        between: between[i],
-        rate: [slope[i] - turning[i], slope[i] + turning[i]],
+    std::array::from_fn(|i| Range {
+        start: start[i],
+        end: end[i],
+        off_chord: off[i],
+        slope: slope[i],
+        turning: turning[i],
     })
 }
 
@@ -95,10 +128,10 @@ pub fn off_chord(coefficients: &[f64], reach: f64) -> f64 {
     sums.iter().sum::<f64>() + of_rest
 }
 
-/// [`bounds`] of one.
+/// Bound of |Σ c_k σᵏ| up to σ = `reach`, by its course.
 pub fn bound(coefficients: &[f64], reach: f64) -> f64 {
-    let [bound] = bounds(|k| [coefficients[k]], coefficients.len() - 1, reach);
-    bound.largest()
+    let [range] = ranges(|k| [coefficients[k]], coefficients.len() - 1, reach);
+    range.and(0.0, 0.0).largest()
 }
 
 /// A tighter bound of |Σ c_k σᵏ| up to σ = `reach`: the largest of the cubic with its values and slopes at both ends, and

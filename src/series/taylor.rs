@@ -9,6 +9,7 @@
 use crate::State;
 use crate::mechanics::load::Ramp;
 use crate::mechanics::restraint::Dissipators;
+use crate::series::extremes::off_chord;
 
 /// Highest order of an expansion. At a local error of 1e-16 it carries ω·h of more than 3 rad per step.
 pub const MAX_ORDER: usize = 28;
@@ -110,6 +111,18 @@ impl Arc {
         let mut series = ZERO;
         series.iter_mut().enumerate().take(self.order + 1).for_each(|(k, c)| *c = coefficients(k));
         series
+    }
+
+    /// Coefficient `k` of the slope (per second) of `series`; of the highest order, which the arc does not have, 0.
+    #[inline]
+    pub(crate) fn slope(&self, series: &Series, k: usize) -> f64 {
+        if k < self.order { (k + 1) as f64 * series[k + 1] / self.span } else { 0.0 }
+    }
+
+    /// Bound of the magnitude of a `series` of this arc that ends in `end`.
+    #[inline]
+    pub(crate) fn most(&self, series: &Series, end: f64) -> f64 {
+        series[0].abs().max(end.abs()) + off_chord(self.used(series), self.reach)
     }
 
     /// Whether the expansion consists of numbers: what is not one stays so from order to order.

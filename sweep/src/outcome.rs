@@ -77,7 +77,7 @@ impl Outcome {
         };
         let mut magnitudes = [peaks.theta().magnitude / libm::atan(run.structure.tan_alpha_cg); MEASURES.len()];
         for (magnitude, peaking) in magnitudes.iter_mut().zip(&PEAKS) {
-            *magnitude = (peaking.of)(&peaks).magnitude;
+            *magnitude = peaking.of(&peaks).magnitude;
         }
         Outcome::Ended(Summary {
             ending: finish.ending,

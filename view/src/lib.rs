@@ -127,7 +127,7 @@ impl<'a> Scene<'a> {
         phases.dedup_by_key(|(_, phase)| *phase);
         let tie = |force: fn(&Restraints) -> f64| Column::new(curve, move |at| force(&at.restraints));
         let ties = || Ties { P_t: tie(|of| of.P_t), F_d1: tie(|of| of.F_d1), F_d2: tie(|of| of.F_d2) };
-        let all_peaks = peaks::of(&run.structure).map(|peaking| (peaking.name, (peaking.of)(&found)));
+        let all_peaks = peaks::of(&run.structure).map(|peaking| (peaking.name, peaking.of(&found)));
         let all_peaks = [("a_g", a_g)].into_iter().chain(all_peaks);
         Scene {
             title: run.ground.title(),

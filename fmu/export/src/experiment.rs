@@ -1,26 +1,29 @@
 //! How long a simulation lasts, and how far its communication points are apart, where a host is told nothing else.
 
+use FlexibleRocking::ground::GroundRecord;
 use model_description::DefaultExperiment;
 use rocking::Structure;
 use rocking::engine::DEFAULT_TOLERANCE;
-use rocking::run::record::Record;
+use rocking::run::{LONGEST_REST, Run};
 use std::f64::consts::TAU;
 
-/// The whole of `record`, in steps of its samples, or of no record, in steps that show the vibration mode, 1/(20 f_u),
-/// rounded to a 1, 2 or 5; then as long as a free motion is worth looking at, 10/p_l: after a pulse the structure rocks
-/// farther than under it.
-pub fn default_experiment(structure: &Structure, record: Option<&Record>) -> DefaultExperiment {
-    let (duration, step_size) = match record {
+/// With a record, the whole run of the `structure` on the `ground`, in steps of the record's samples: until the structure
+/// stands for good or overturns, as a run without a stated end. Without a record, as long as a free motion is worth looking
+/// at, 10/p_l, in steps that show the vibration mode, 1/(20 f_u), rounded to a 1, 2 or 5.
+pub fn default_experiment(structure: &Structure, ground: Option<&GroundRecord>) -> DefaultExperiment {
+    let (duration, step_size) = match ground.map(|ground| ground.in_m_s2(structure.parameters().g)) {
         Some(record) => {
-            let duration = record.end() - record.start();
-            (duration, duration / (record.times().len() - 1) as f64)
+            let of_record = record.end() - record.start();
+            let run = Run::new(*structure, &record).follow(&mut ());
+            let longest = of_record + LONGEST_REST / structure.p_l;
+            let duration = run.map_or(longest, |finish| finish.motion.time - record.start());
+            (duration, of_record / (record.times().len() - 1) as f64)
         }
-        None => (0.0, at_most(TAU / structure.omega_u / 20.0)),
+        None => (10.0 / structure.p_l, at_most(TAU / structure.omega_u / 20.0)),
     };
-    let afterwards = (10.0 / structure.p_l / step_size).ceil() * step_size;
     DefaultExperiment {
         start_time: 0.0,
-        stop_time: rounded(duration + afterwards),
+        stop_time: rounded((duration / step_size).ceil() * step_size),
         tolerance: DEFAULT_TOLERANCE,
         step_size: rounded(step_size),
     }
@@ -42,20 +45,29 @@ fn at_most(seconds: f64) -> f64 {
 mod tests {
     use super::*;
     use rocking::Parameters;
+    use rocking::run::Ending;
+    use std::path::Path;
 
+    /// Against the end of the run, of a structure that comes to rest after the record and of one that overturns on it.
     #[test]
-    fn a_record_is_followed_beyond_its_end_by_its_samples() {
+    fn a_run_is_followed_to_its_end_by_the_samples_of_its_record() {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
-        for (interval, samples) in [(0.005, 8_000), (0.01, 3), (0.02, 2_688), (1.0 / 240.0, 24_001)] {
-            let times: Vec<_> = (0..samples).map(|at| 3.7 + f64::from(at) * interval).collect();
-            let record = Record::from_samples("record", times, vec![1.0; samples as usize]).unwrap();
-            let DefaultExperiment { stop_time, step_size, .. } = default_experiment(&structure, Some(&record));
-            let shortest = record.times().windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
-            assert!(step_size <= shortest * (1.0 + 1e-8), "{step_size} is longer than {interval}");
+        for (interval, scale, ending) in [(0.02, 0.4, Ending::AtRest), (1.0 / 240.0, 0.9, Ending::Overturned)] {
+            let line = |i: u32| {
+                let time = f64::from(i) * interval;
+                format!("{},{}\n", 3.7 + time, scale * (TAU * time / 0.5).sin() * f64::from(time < 0.5))
+            };
+            let text: String = (0..4000).map(line).collect();
+            let ground =
+                GroundRecord::from_bytes(Path::new("a.csv"), format!("t (s),a (g)\n{text}").as_bytes()).unwrap();
+            let DefaultExperiment { stop_time, step_size, .. } = default_experiment(&structure, Some(&ground));
+            let record = ground.in_m_s2(9.81);
+            let finish = Run::new(structure, &record).follow(&mut ()).unwrap();
+            assert_eq!(finish.ending, ending);
+            assert!((step_size - interval).abs() < 1e-8 * interval, "{step_size}");
             let steps = stop_time / step_size;
             assert!((steps - steps.round()).abs() < 1e-3, "{stop_time} {step_size}");
-            let afterwards = stop_time - f64::from(samples - 1) * interval;
-            assert!((0.0..interval + 1e-6).contains(&(afterwards - 10.0 / structure.p_l)), "{afterwards}");
+            assert!((0.0..interval).contains(&(stop_time - (finish.motion.time - 3.7))), "{stop_time} {finish:?}");
         }
     }
 

@@ -15,7 +15,7 @@ use FlexibleRocking::resources::{Contents, PARAMETERS_FILE, PackedRecord, RECORD
 use archive::Entry;
 pub use library::{Library, LibraryError, Platform};
 use rocking::Structure;
-use rocking::run::record::{Record, SamplesError};
+use rocking::run::record::SamplesError;
 use rocking_records::RecordError;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -121,7 +121,6 @@ pub fn export(
         return Err(ExportError::SamePlatform(two[0].platform));
     }
     let (mut contents, mut files) = (Contents::from(*structure.parameters()), Vec::new());
-    let mut followed = None;
     let mut pack = |contents: &Contents, (path, content): RecordFile| {
         let record = GroundRecord::from_bytes(&path, &content)?;
         let name = path.file_name().and_then(|name| name.to_str());
@@ -130,19 +129,20 @@ pub fn export(
             return Err(ExportError::SameName(file));
         }
         files.push(content);
-        followed.get_or_insert_with(|| record.record.clone());
         Ok((PackedRecord { file, digest: record.name() }, record))
     };
+    let mut ground = None;
     for record in records {
-        let (packed, _) = pack(&contents, record)?;
+        let (packed, record) = pack(&contents, record)?;
         contents.records.push(packed);
+        ground.get_or_insert(record);
     }
     if let Some(vertical) = vertical {
         let (packed, record) = pack(&contents, vertical)?;
         contents.vertical = Some(packed);
-        followed.clone().map_or(Ok(()), |followed: Record| followed.with_vertical(&record.record).map(drop))?;
+        ground = Some(GroundRecord::with_vertical(ground, &record)?);
     }
-    let experiment = experiment::default_experiment(structure, followed.as_ref());
+    let experiment = experiment::default_experiment(structure, ground.as_ref());
     let archive =
         archive::archive(&entries(version, name.as_str(), structure, &contents, experiment, files, &libraries)?)?;
     Ok((contents, archive))

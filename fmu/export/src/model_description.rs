@@ -247,7 +247,7 @@ mod tests {
             r#"<String start="pulse &amp; rest.csv"/>"#,
             r#"description="whether the largest magnitudes theta_max, u_max, ... are watched for" causality="parameter" variability="fixed" initial="exact">
       <Boolean start="false"/>"#,
-            r#"exact: within steps, too, and during a fall to overturning; NaN unless peaks is true" causality="local" variability="continuous" initial="calculated">
+            r#"exact: within steps, too; if the structure overturns, before its fall; NaN unless peaks is true" causality="local" variability="continuous" initial="calculated">
       <Real unit="rad" displayUnit="deg" nominal="0.351"/>"#,
             r#"<BaseUnit kg="1" m="1" s="-2"/>"#,
             r#"modelName="Pier" guid"#,

@@ -3,6 +3,7 @@
 use super::Instance;
 use crate::failure::Failure;
 use crate::interface::IntermediateUpdate;
+use crate::logger::Logger;
 use crate::model::Model;
 use crate::motion_log::{log, warn};
 use crate::setup::Setup;
@@ -57,6 +58,10 @@ impl Instance {
                 if passed > 0.0 {
                     inputs.pass(load, passed, reached < point + step);
                 }
+                if inputs.makes_stairs() && !self.told_of_stairs {
+                    self.told_of_stairs = true;
+                    warn_of_stairs(logger, reached);
+                }
                 known.iter().for_each(|known| warn(logger, known, &model.validity));
                 if progress == Progress::Overturned {
                     *stage = Stage::StepFailed;
@@ -91,6 +96,17 @@ impl Instance {
     pub fn may_return_early(&self) -> bool {
         self.now.interface.stepping().early_return
     }
+}
+
+/// Warns that a ground acceleration, of which values alone are set, is held over each step up to `time` (s).
+#[cold]
+fn warn_of_stairs(logger: &Logger, time: f64) {
+    logger.warning(&format!(
+        "t = {time} s: the host sets new values of the ground acceleration (a_g, a_v) at every step without their slopes, \
+         and each value is held over its step: the peaks of such a stepped motion can be tens of per cent off. Give the \
+         ground motion as the parameter record, or set a_g_late = true, or set the slope (the time derivative) with each \
+         value"
+    ));
 }
 
 /// Refuses a step that `model` cannot make from `point` (s) over `step` (s).

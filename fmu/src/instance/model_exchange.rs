@@ -59,7 +59,7 @@ impl Model {
     /// The next instant at which contact is released or the record jumps or, if that matters, has a kink, s.
     fn next_event(&self, setup: &Setup) -> Option<f64> {
         let motion = self.engine.motion();
-        let held = Some(motion.held()).filter(|held| *held > 0.0);
+        let released = Some(motion.held()).filter(|held| *held > 0.0).map(|held| motion.time + held);
         let ground = self.ground.as_ref().map(|ground| setup.ground_motion(ground));
         let of_ground = ground.and_then(|ground| {
             if setup.tolerance <= KINKS_MATTER {
@@ -68,7 +68,8 @@ impl Model {
                 ground.next_jump(self.elapsed)
             }
         });
-        let next = motion.time + held.into_iter().chain(of_ground).reduce(f64::min)?;
+        let of_ground = of_ground.map(|instant| setup.start_time + instant);
+        let next = released.into_iter().chain(of_ground).reduce(f64::min)?;
         Some(next).filter(|next| *next > motion.time && next.is_finite())
     }
 }

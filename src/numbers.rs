@@ -1,0 +1,127 @@
+//! Numbers that a formula is evaluated in. An equation stands once, as a function generic over [`Number`]:
+//!
+//! | number | contents | answers |
+//! |---|---|---|
+//! | `f64` | a value | the output or reaction at an instant |
+//! | [`Dual`](dual::Dual) | value and rate | its time derivative |
+//! | [`Most`](most::Most) | bound of the magnitude | whether a piece may hold a peak, in few instructions |
+//! | [`Bend`](bend::Bend) | bounds of value, rate and second derivative | the same over an exact leap |
+//! | [`Linear`](linear::Linear) | linear part by its slopes, bound of the rest | the same over a polynomial, more tightly |
+//! | [`Terms`](crate::series::terms::Terms) | coefficients of a power series | the instant of the peak |
+//!
+//! Write `x * c` with the constant last, and `/ m` instead of `* (1.0 / m)`: then values keep their last bit. A sine or cosine
+//! never stands in a formula, because each number has its own rule for it: the formula reads [`Turn`].
+
+pub(crate) mod bend;
+pub(crate) mod dual;
+pub(crate) mod linear;
+pub(crate) mod most;
+
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A kind of number.
+pub trait Number:
+    Copy
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Neg<Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+{
+    /// The number that does not change with time.
+    fn constant(value: f64) -> Self;
+}
+
+impl Number for f64 {
+    #[inline]
+    fn constant(value: f64) -> f64 {
+        value
+    }
+}
+
+/// Implements the operators of a number by its methods `plus`, `times` and `map`. The method `map` applies a linear function
+/// to each part.
+macro_rules! operators {
+    ([$($parameters:tt)*] $number:ty) => {
+        impl<$($parameters)*> std::ops::Add for $number {
+            type Output = Self;
+
+            #[inline]
+            fn add(self, other: Self) -> Self {
+                self.plus(other)
+            }
+        }
+
+        impl<$($parameters)*> std::ops::Sub for $number {
+            type Output = Self;
+
+            #[inline]
+            fn sub(self, other: Self) -> Self {
+                self.plus(-other)
+            }
+        }
+
+        impl<$($parameters)*> std::ops::Mul for $number {
+            type Output = Self;
+
+            #[inline]
+            fn mul(self, other: Self) -> Self {
+                self.times(other)
+            }
+        }
+
+        impl<$($parameters)*> std::ops::Neg for $number {
+            type Output = Self;
+
+            #[inline]
+            fn neg(self) -> Self {
+                self.map(|part| -part)
+            }
+        }
+
+        impl<$($parameters)*> std::ops::Mul<f64> for $number {
+            type Output = Self;
+
+            #[inline]
+            fn mul(self, factor: f64) -> Self {
+                self.map(|part| part * factor)
+            }
+        }
+
+        impl<$($parameters)*> std::ops::Div<f64> for $number {
+            type Output = Self;
+
+            #[inline]
+            fn div(self, divisor: f64) -> Self {
+                self.map(|part| part / divisor)
+            }
+        }
+    };
+}
+pub(crate) use operators;
+
+/// Sine, cosine and versine of the rotation.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Turn<N> {
+    pub sin: N,
+    pub cos: N,
+    /// 1 − cos θ.
+    pub versine: N,
+}
+
+impl<N: Number> Turn<N> {
+    /// The turn of a base that stays on the ground.
+    pub(crate) fn none() -> Turn<N> {
+        Turn { sin: N::constant(0.0), cos: N::constant(1.0), versine: N::constant(0.0) }
+    }
+}
+
+impl Turn<f64> {
+    /// The turn by `theta` (rad), |θ| ≤ π/2.
+    #[inline]
+    pub(crate) fn by(theta: f64) -> Turn<f64> {
+        let (sin, cos) = libm::sincos(theta);
+        Turn { sin, cos, versine: sin * sin / (1.0 + cos) } // without cancellation: cos θ ≥ 0
+    }
+}
