@@ -74,6 +74,13 @@ pub enum Ending {
     StillRocking,
 }
 
+impl Ending {
+    /// Whether the structure overturned; None if the run ended before this was certain.
+    pub fn overturned(self) -> Option<bool> {
+        (self != Ending::StillRocking).then_some(self == Ending::Overturned)
+    }
+}
+
 impl fmt::Display for Ending {
     /// As it is called in files.
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {

@@ -95,7 +95,7 @@ def test_arm_gives_the_bits_of_this_machine(tmp_path):
 def test_source():
     """The package of the source has every file that is compiled, and what these include."""
     path = package(f"{NAME}.tar.gz")
-    compiled = [file for folder in ("src", "modelDescription/src", "fmu/src", "fmu/build", "fmu/export", "view/src", "cli/src", "sweep/src", "python/src")
+    compiled = [file for folder in ("src", "modelDescription/src", "fmu/src", "fmu/build", "fmu/export", "view/src", "report/src", "cli/src", "sweep/src", "python/src")
                 for file in (ROOT / folder).rglob("*") if file.is_file()]
     compiled += [(file.parent / included).resolve() for file in compiled if file.suffix == ".rs"
                  for included in re.findall(r'include_(?:str|bytes)!\("(.*?)"\)', file.read_text())]

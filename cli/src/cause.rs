@@ -1,25 +1,14 @@
-//! What a result comes from, so that it can be traced: program, structure, ground motion, and how it was computed.
+//! The origin of a result: program, structure, ground motion, and the conditions of the computation.
 use crate::record_args::{RecordArgs, RecordOptions, Understood};
-use FlexibleRocking::BUILD;
 use rocking::run::record::Record;
 use rocking::{Parameters, State, Structure};
 use rocking_records::Column;
-use rocking_sweep::{plan::Conditions, row_file::Program};
+use rocking_report::program::version;
+use rocking_sweep::plan::Conditions;
 use serde::Serialize;
 use std::path::Path;
-use uuid::Uuid;
 
-/// Version of the program, and the first digits of its build.
-pub fn version() -> String {
-    format!("{}+{}", env!("CARGO_PKG_VERSION"), &BUILD[1..9])
-}
-
-/// The program, as the rows of a sweep name it.
-pub fn program() -> Program {
-    Program { build: Uuid::try_parse(BUILD).expect("the build script wrote it"), version: version() }
-}
-
-/// What a result comes from; what has no part in it is left out.
+/// The origin of a result; a part without influence on the result is left out.
 #[derive(Serialize)]
 pub struct Cause {
     version: String,
@@ -39,11 +28,11 @@ pub struct Cause {
 /// A ground motion.
 #[derive(Serialize)]
 struct Ground {
-    /// Its title.
+    /// Title of the record.
     record: String,
-    /// Its name, as far as it is text.
+    /// Name of the file, as far as the name is text.
     file: Option<String>,
-    /// That of the vertical component, if there is one.
+    /// Name of the file of the vertical component, if there is one.
     #[serde(skip_serializing_if = "Option::is_none")]
     file_v: Option<String>,
     /// Unit of the accelerations in the file, where it is asked for or they are looked at alone.
@@ -103,7 +92,7 @@ impl Cause {
     }
 
     /// This cause of runs from `initial` at every level.
-    pub fn from_state(self, initial: State) -> Cause {
+    pub fn with_initial(self, initial: State) -> Cause {
         Cause { initial: Some(initial), ..self }
     }
 }

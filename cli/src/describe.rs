@@ -3,23 +3,21 @@
 mod template;
 
 use crate::{
-    quantities::NamedValue,
     results::{FormatArgs, print},
-    significant::{short, significant},
+    significant::significant,
     structure_args::StructureArgs,
 };
 use anyhow::ensure;
 use rocking::structure::parameters::PARAMETERS;
 use rocking::structure::quantity::Quantity;
 use rocking::{
-    Structure,
     estimates::restoring::{Point, flag},
     structure::{DERIVED, Derived},
 };
+use rocking_report::{describe::text, quantities::NamedValue};
 use std::f64::consts::FRAC_PI_2;
-use std::fmt::{self, Write};
 
-/// What to describe.
+/// Arguments of `describe`.
 #[derive(clap::Args)]
 pub struct DescribeArgs {
     #[command(flatten)]
@@ -65,21 +63,4 @@ pub fn run(args: &DescribeArgs) -> anyhow::Result<()> {
 fn text_of_loop(rows: &[Point]) -> String {
     let line = |Point { theta, moment }: &Point| format!("{:>12} {:>14}\n", significant(*theta), significant(*moment));
     format!("{:>12} {:>14}\n{}", "theta (rad)", "moment (N.m)", rows.iter().map(line).collect::<String>())
-}
-
-/// The parameters and the derived quantities, for people.
-pub fn text(structure: &Structure) -> Result<String, fmt::Error> {
-    let mut out = String::new();
-    let unit = |unit| if unit == "1" { "-" } else { unit };
-    writeln!(out, "Parameters")?;
-    for Quantity { name, unit: of, description, get, .. } in &PARAMETERS {
-        let value = short(get(structure.parameters()));
-        writeln!(out, "  {name:<10} {value:>12} {:<6} {description}", unit(of))?;
-    }
-    writeln!(out, "\nDerived quantities")?;
-    for Derived { name, unit: of, description, equation, value } in &DERIVED {
-        let value = significant(value(structure));
-        writeln!(out, "  {name:<10} {value:>12} {:<6} {equation:<13} {description}", unit(of))?;
-    }
-    Ok(out)
 }

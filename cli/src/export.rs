@@ -11,10 +11,10 @@ use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
 
-/// Where the folder `share` of an installation has the archive with the libraries for every platform.
+/// Path of the archive with the libraries for every platform, in the folder `share` of an installation.
 const INSTALLED: &str = "flexible-rocking/FlexibleRocking.fmu";
 
-/// What to export.
+/// Arguments of `export`.
 #[derive(clap::Args)]
 pub struct ExportArgs {
     #[command(flatten)]
@@ -51,7 +51,7 @@ impl ExportArgs {
     }
 }
 
-/// Writes the FMU and says what was written; `program` is what the libraries are beside.
+/// Writes the FMU and reports its content; the libraries are beside `program`.
 pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
     let structure = args.structure.load()?;
     let libraries = if args.library.is_empty() {
@@ -97,12 +97,16 @@ fn record(options: &RecordOptions, path: &Path, g: f64) -> anyhow::Result<(PathB
     Ok(((input::stem(path) + ".csv").into(), understood.table().into_bytes()))
 }
 
-/// The shared libraries that were built with `program`, one for each platform that there is one for. Where it is in
-/// cargo's target folder, those that `make dist` builds for a named target are beside its profile, and come first: they
-/// need no newer system than they say. Its own platform's is in the folder `deps` beside the program; cargo links it to
-/// where the program is only if the package of the FMU was asked for as well: by `cargo build` and `cargo run` in the
-/// root, but not with `-p rocking-cli`. Once installed, the program is in `bin`, and in `share` beside that is an
-/// archive to take them from; what pip installs for one user of Windows has a folder of Python's version between the two.
+/// The shared libraries that were built with `program`, at most one for each platform.
+///
+/// If the program is in cargo's target folder, the libraries of `make dist` are in the folders of their targets, beside
+/// the folder of the program's profile. These libraries come first because they need no newer system than they say. The
+/// library of the program's own platform is in the folder `deps` beside the program. Cargo links this library into the
+/// program's folder only if the package of the FMU is built as well, as `cargo build` does in the root and
+/// `-p rocking-cli` does not.
+///
+/// An installed program is in `bin`; the folder `share` beside `bin` has an archive with the libraries. If pip installs
+/// for one user of Windows, a folder of Python's version is between the two.
 fn libraries_of(program: &Path) -> anyhow::Result<Vec<Library>> {
     let own = format!("{DLL_PREFIX}FlexibleRocking{DLL_SUFFIX}");
     let beside = program.with_file_name(&own);

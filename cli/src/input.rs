@@ -1,4 +1,4 @@
-//! What a command reads: a file, or standard input under the name `-`.
+//! The input of a command: a file, or standard input under the name `-`.
 
 use anyhow::{Context, ensure};
 use rocking_records::MAX_FILE;
@@ -7,7 +7,7 @@ use std::io::{Read, stdin};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// What standard input is called.
+/// Name of standard input in messages.
 pub const NAME: &str = "standard input";
 
 static IS_READ: AtomicBool = AtomicBool::new(false);
@@ -23,12 +23,12 @@ pub fn is_stream(path: &Path) -> bool {
     is_standard(path) || is_open && fs::metadata(path).is_ok_and(|told| !told.is_file() && !told.is_dir())
 }
 
-/// What `path` is called.
+/// Name of the file at `path` in messages.
 pub fn name(path: &Path) -> String {
     if is_standard(path) { NAME.into() } else { path.display().to_string() }
 }
 
-/// What a file of `path` that is made of it is called after.
+/// Stem of the name of a file that is made from the file at `path`.
 pub fn stem(path: &Path) -> String {
     if is_standard(path) {
         "record".into()
@@ -37,7 +37,7 @@ pub fn stem(path: &Path) -> String {
     }
 }
 
-/// What is at `path`. Standard input comes once.
+/// Reads the file at `path`. A stream can be read once, and its size is limited.
 pub fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
     if !is_stream(path) {
         return Ok(fs::read(path)?);

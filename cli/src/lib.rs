@@ -1,29 +1,26 @@
 //! The command line: write the FMU, simulate a record without a host, show what follows from a structure's parameters.
 #![allow(non_snake_case)] // H, B, V_t: the paper's own letters
 
-pub mod advise;
-pub mod cause;
-pub mod describe;
-pub mod estimate;
+mod advise;
+mod cause;
+mod describe;
+mod estimate;
 mod export;
 mod input;
+mod limit_args;
 pub mod output_files;
 mod picture;
 mod pulse;
-pub mod pushover;
-pub mod quantities;
+mod pushover;
 mod record;
 pub mod record_args;
-pub mod results;
+mod results;
 mod scene_args;
 mod shell;
 mod simulate;
-pub mod structure_args;
-pub mod summary;
+mod structure_args;
 mod sweep;
-pub mod tables;
-pub mod talk;
-pub mod validity;
+mod talk;
 mod view;
 
 use clap::{Parser, Subcommand};
@@ -37,7 +34,7 @@ use std::{ffi::OsString, io, path::PathBuf};
 /// Single numbers such as --f-fc 8 replace those of --preset or --parameters. Without any of these the structure is the
 /// McManus specimen. Units are SI, angles in rad.
 ///
-/// Results go to standard output, messages to standard error. With --format json an infinite number is the text "inf".
+/// Results go to standard output, messages to standard error. The text "inf" stands for an infinite number if --format is json.
 /// Exit codes: 0 success, also if the reader of the output stops early; 1 failure, with the reason on standard error;
 /// 2 wrong use of options.
 #[derive(Parser)]
@@ -115,8 +112,9 @@ enum Command {
     Pushover(pushover::PushoverArgs),
     /// Run records x scale factors x structures for fragility curves, or pulses for overturning spectra
     ///
-    /// A file with records gives probabilities of overturning and fragility curves; one with pulses a map of every
-    /// structure over frequency and amplitude: whether it lifts off, stands, or overturns, and after how many impacts.
+    /// A file with records gives probabilities of overturning and fragility curves. A file with pulses gives a map of each
+    /// structure over frequency and amplitude. The map shows whether the structure lifts off, stands or overturns, and
+    /// after how many impacts.
     ///
     /// Appends a row per run to the CSV file as the runs end. A sweep that was stopped goes on where it was when the
     /// same command is given again; once all runs are there, the command shows the results alone.
@@ -160,8 +158,8 @@ A file of pulses, spectrum.toml, a map of each structure:
     Pulse(pulse::PulseArgs),
     /// Show what is understood of a record, and write it as a table that is read without options
     ///
-    /// Its samples and their step, its peaks, how long it shakes, and where it leaves the ground at the end: what is
-    /// far from 0 there comes of an offset, a wrong column or a wrong unit.
+    /// Prints the samples and their step, the peaks, the duration of shaking, and the velocity and displacement of the
+    /// ground at the end. An offset, a wrong column or a wrong unit leaves a velocity or displacement far from 0.
     #[command(after_help = "Examples:
   rocking-fmu record RSN77_SFERN_PUL164.AT2
   rocking-fmu record column.txt --dt 0.005 --unit gal -o record.csv

@@ -1,4 +1,4 @@
-//! The files that a command writes. One that it reads, or writes already, is refused.
+//! The files that a command writes. A command cannot overwrite its inputs, or write one file twice.
 
 use crate::{input, talk::say};
 use anyhow::{Context, bail, ensure};
@@ -18,12 +18,12 @@ pub struct OutputFiles {
 /// A file that is going to be written, once all of it is known.
 pub struct OutputFile {
     path: PathBuf,
-    /// Where it is or will be.
+    /// Canonical path of the file.
     target: PathBuf,
 }
 
 impl OutputFiles {
-    /// Of a command that reads `inputs`.
+    /// The files of a command that reads `inputs`.
     pub fn of_inputs<'a>(inputs: impl IntoIterator<Item = &'a Path>) -> OutputFiles {
         OutputFiles { inputs: inputs.into_iter().map(Path::to_owned).collect(), outputs: Vec::new() }
     }
@@ -33,8 +33,8 @@ impl OutputFiles {
         self.inputs.push(path.into());
     }
 
-    /// The file at `path`, or standard output for `-`. Refuses one that the command reads, or writes already, a folder, and a
-    /// file in a folder that is not there.
+    /// The file at `path`, or standard output for `-`. The path cannot be an input, another output, a folder, or a file in
+    /// a folder that does not exist.
     pub fn create(&mut self, path: &Path) -> anyhow::Result<OutputFile> {
         let (shown, target) = (path.display(), place(path)?);
         let is_target = |input: &&PathBuf| input.canonicalize().is_ok_and(|input| input == target);
@@ -47,7 +47,7 @@ impl OutputFiles {
     }
 }
 
-/// Where the file at `path` is or will be, the same for every way there.
+/// Canonical path of the file at `path`, which need not exist.
 fn place(path: &Path) -> anyhow::Result<PathBuf> {
     if input::is_standard(path) {
         return Ok(path.into());
@@ -94,7 +94,7 @@ impl OutputFile {
     }
 }
 
-/// What is there stays until a file beside it is whole, with its permissions, and takes its place: a full disk loses nothing.
+/// Writes a new file beside `target`, which then replaces `target` and keeps its permissions. A full disk loses nothing.
 fn replace(target: &Path, content: &[u8]) -> io::Result<()> {
     let mut builder = tempfile::Builder::new();
     #[cfg(unix)] // on Windows the folder decides

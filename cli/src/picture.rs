@@ -56,7 +56,7 @@ pub fn px(pixels: f64) -> i32 {
     (pixels * f64::from(UNITS)).round() as i32
 }
 
-/// What is drawn on.
+/// Area to draw on.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 /// A picture that is being made.
@@ -84,7 +84,7 @@ impl Picture {
     }
 }
 
-/// What `draw` draws on an area of this size, in pixels, as SVG.
+/// The drawing by `draw` on an area of this size, in pixels, as SVG.
 fn svg((width, height): (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<()>) -> anyhow::Result<String> {
     let (wide, high) = (width * UNITS as u32, height * UNITS as u32);
     let mut svg = String::new();

@@ -1,13 +1,13 @@
 //! `pulse`: one of the field's standard ground motions as a CSV file that every other command reads.
 use crate::{
-    cause::Cause, output_files::OutputFiles, quantities::NamedValue, record_args::one_of, results::FormatArgs,
-    structure_args::StructureArgs,
+    cause::Cause, output_files::OutputFiles, record_args::one_of, results::FormatArgs, structure_args::StructureArgs,
 };
 use clap::{ArgGroup, builder::PossibleValue};
 use rocking::Structure;
 use rocking::estimates::intensity::peak_velocity;
 use rocking::run::record::Record;
 use rocking_records::csv;
+use rocking_report::quantities::NamedValue;
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
 use std::path::PathBuf;
 
@@ -85,7 +85,7 @@ pub fn run(args: &PulseArgs) -> anyhow::Result<()> {
     args.results.print_table(Some(&args.output), title, &cause, &amounts(&pulse, &record, &structure))
 }
 
-/// What the pulse amounts to, alone and for `structure`.
+/// Measures of the pulse, alone and for `structure`.
 fn amounts(pulse: &Pulse, record: &Record, structure: &Structure) -> Vec<NamedValue> {
     let (of_amplitude, of_frequency) = units_of(structure);
     let [velocity, displacement] = record.velocities_and_displacements().last().expect("a record has samples");

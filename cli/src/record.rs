@@ -1,13 +1,12 @@
 //! `record`: what is understood of a record, and the same as a table that is read without options.
-use crate::{
-    cause::Cause, output_files::OutputFiles, quantities::NamedValue, record_args::RecordOptions, results::FormatArgs,
-};
+use crate::{cause::Cause, output_files::OutputFiles, record_args::RecordOptions, results::FormatArgs};
 use rocking::Parameters;
 use rocking::estimates::intensity::{arias_intensity, peak_velocity, significant_duration};
 use rocking::run::record::Record;
+use rocking_report::quantities::NamedValue;
 use std::path::PathBuf;
 
-/// What a record's g stands for, m/s².
+/// Gravity of a record whose unit is g, m/s².
 const G: f64 = Parameters::MCMANUS.g;
 
 /// Which record, and what to make of it.
@@ -39,7 +38,7 @@ pub fn run(args: &RecordCommand) -> anyhow::Result<()> {
     args.results.print_table(output, (record.title(), G), &cause, &amounts(record))
 }
 
-/// What the record amounts to.
+/// Measures of the record.
 fn amounts(record: &Record) -> Vec<NamedValue> {
     let [velocity, displacement] = record.velocities_and_displacements().last().expect("a record has samples");
     let steps = || record.times().windows(2).map(|pair| pair[1] - pair[0]);

@@ -48,7 +48,7 @@ pub struct RecordOptions {
 }
 
 impl RecordArgs {
-    /// The record, scaled; `g` (m/s²) is what a record's g stands for. Says what was read, and what was assumed.
+    /// Reads and scales the record, and reports what it found and assumed. A record's g means `g` (m/s²).
     pub fn load(&self, g: f64) -> anyhow::Result<Option<Record>> {
         let Some(path) = &self.record else { return Ok(None) };
         let record = self.options.load("record", path, g)?;
@@ -69,13 +69,13 @@ pub struct Understood {
     /// Scaled, in the unit of its file.
     in_file_unit: Record,
     unit: Unit,
-    /// What was found and assumed, then what is likely wrong.
+    /// Findings and assumptions in a sentence, then one sentence for each likely error.
     pub sentences: Vec<String>,
 }
 
 impl RecordOptions {
-    /// The record in the file at `path`, scaled, in m/s²; `g` (m/s²) is what a record's g stands for. Says what was read as
-    /// `what`, and what was assumed.
+    /// Reads and scales the record in the file at `path`, in m/s²; a record's g means `g` (m/s²). Reports findings and
+    /// assumptions under the name `what`.
     fn load(&self, what: &str, path: &Path, g: f64) -> anyhow::Result<Record> {
         let understood = self.understand(path, g)?;
         understood.say(&format!("{what:<14} "));
@@ -114,13 +114,13 @@ impl RecordOptions {
 }
 
 impl Understood {
-    /// Says what was found and assumed, after `label`, and warns of what is likely wrong.
+    /// Prints findings and assumptions after `label`, and warnings.
     pub fn say(&self, label: &str) {
         say!("{label}{}", self.sentences[0]);
         self.warnings().for_each(|warning| say!("{warning}"));
     }
 
-    /// What is likely wrong, a line each.
+    /// Warnings of likely errors, a line each.
     pub fn warnings(&self) -> impl Iterator<Item = String> {
         self.sentences[1..].iter().map(|warning| format!("warning: {warning}"))
     }

@@ -3,11 +3,11 @@
 use crate::cause::Cause;
 use crate::input;
 use crate::output_files::OutputFile;
-use crate::quantities::{NamedValue, write_columns};
 use crate::talk::say;
 use anyhow::ensure;
 use clap::ValueEnum;
-use serde::{Serialize, Serializer};
+use rocking_report::quantities::{NamedValue, write_columns};
+use serde::Serialize;
 use std::path::Path;
 
 /// How results are printed.
@@ -18,7 +18,7 @@ pub struct FormatArgs {
     format: Format,
 }
 
-/// For whom results are printed.
+/// Format of printed results.
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Format {
     /// Tables to read, six digits
@@ -76,20 +76,20 @@ impl FormatArgs {
     }
 }
 
-/// A number that may be infinite, for which JSON has no number: it is the text "inf" there, as in a table.
-pub struct Number(pub f64);
-
-impl Serialize for Number {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let Number(value) = *self;
-        if value.is_finite() { serializer.serialize_f64(value) } else { serializer.collect_str(&value) }
+/// `lines` under `headings` as CSV; a number reads back to the same bits.
+pub fn csv(headings: impl Serialize, lines: impl Iterator<Item = impl Serialize>) -> anyhow::Result<Vec<u8>> {
+    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
+    writer.serialize(headings)?;
+    for line in lines {
+        writer.serialize(line)?;
     }
+    Ok(writer.into_inner()?)
 }
 
-/// Rows and what they come from.
+/// Rows and their origin.
 #[derive(Serialize)]
 pub struct Traced<'a, R> {
-    /// What they come from.
+    /// Origin of the rows.
     #[serde(flatten)]
     pub cause: &'a Cause,
     /// The rows.

@@ -103,7 +103,7 @@ impl GroundArgs {
         self.duration.or(self.free)
     }
 
-    /// What the ground does, in a line.
+    /// The ground motion in a line.
     pub fn title(&self, ground: &Record) -> String {
         match self.free {
             Some(duration) => format!("none, free vibration over {} s", short(duration)),
@@ -111,7 +111,7 @@ impl GroundArgs {
         }
     }
 
-    /// What stands for the interval of the samples (s) in free vibration, which has none.
+    /// Interval of the output in free vibration, which has no samples, s.
     pub fn free_vibration_interval(&self) -> Option<f64> {
         self.free.map(|_| 1e-3)
     }

@@ -3,16 +3,13 @@ mod picture;
 
 use crate::{
     cause::Cause,
+    limit_args::LimitArgs,
     output_files::{OutputFile, OutputFiles},
     picture::Picture,
-    quantities::in_readable_unit,
-    results::FormatArgs,
+    results::{FormatArgs, csv},
     scene_args::MotionArgs,
     significant::{short, significant},
-    summary::{Summary, instant},
-    tables::{EVENTS, RESPONSE, csv, event_line, response_line},
     talk::say,
-    validity::{self, LimitArgs},
 };
 use anyhow::ensure;
 use rocking::run::record::Record;
@@ -21,9 +18,15 @@ use rocking::{
     mechanics::restraint::centring_moments,
     run::validity::{Found as Beyond, Validity},
 };
+use rocking_report::{
+    quantities::in_readable_unit,
+    summary::{Summary, instant},
+    tables::{EVENTS, RESPONSE, event_line, response_line},
+    validity,
+};
 use std::path::PathBuf;
 
-/// What to simulate.
+/// Arguments of `simulate`.
 #[derive(clap::Args)]
 pub struct SimulateArgs {
     #[command(flatten)]

@@ -7,7 +7,6 @@ mod picture;
 mod table;
 
 use crate::{
-    cause::program,
     input,
     output_files::OutputFiles,
     picture::Picture,
@@ -19,6 +18,7 @@ use file::{Asked, RecordSweep};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPool;
 use rocking::structure::quantity::with_unit;
+use rocking_report::program::program;
 use rocking_sweep::{
     exceedances,
     outcome::Outcome,
@@ -29,7 +29,7 @@ use rocking_sweep::{
 use std::path::{Path, PathBuf};
 use uuid::Uuid;
 
-/// What to run.
+/// Arguments of `sweep`.
 #[derive(clap::Args)]
 pub struct SweepArgs {
     /// Records, scale factors, structures and limits; or pulses and structures

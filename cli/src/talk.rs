@@ -1,6 +1,7 @@
-//! What a command says beside its results: on standard error, where it disturbs no program that reads the results.
+//! Messages of a command, on standard error: a program that reads the results does not see them.
 
 use indicatif::ProgressBar;
+use rocking_report::message;
 use std::io::{Write, stderr};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -29,7 +30,7 @@ pub fn say_few(lines: &[String], what: &str) {
 
 static QUIET: AtomicBool = AtomicBool::new(false);
 
-/// From now on nothing is said but errors.
+/// Suppresses all messages except errors.
 pub fn be_quiet() {
     QUIET.store(true, Ordering::Relaxed);
 }
@@ -47,17 +48,4 @@ pub fn progress(length: usize) -> ProgressBar {
 /// Says why a command failed, quiet or not.
 pub fn say_error(error: &anyhow::Error) {
     let _ = writeln!(stderr(), "error: {}", message(error));
-}
-
-/// Why something failed: each cause once, though some repeat what caused them.
-pub fn message(error: &anyhow::Error) -> String {
-    let mut message = String::new();
-    for cause in error.chain().map(ToString::to_string) {
-        if message.is_empty() {
-            message = cause;
-        } else if !message.ends_with(&cause) {
-            message = format!("{message}: {cause}");
-        }
-    }
-    message
 }

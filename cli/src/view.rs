@@ -2,7 +2,7 @@
 use crate::{input, output_files::OutputFiles, scene_args::MotionArgs};
 use std::path::PathBuf;
 
-/// What to show.
+/// Arguments of `view`.
 #[derive(clap::Args)]
 pub struct ViewArgs {
     #[command(flatten)]

@@ -20,7 +20,7 @@ name = 'McManus'
 preset = 'mcmanus'
 ";
 
-/// What a row says of a point is what `simulate` says of the pulse that `pulse` writes.
+/// A row has the numbers that `simulate` prints for the pulse that `pulse` writes.
 #[test]
 fn a_point_is_a_simulation_of_its_pulse() {
     let folder = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! `sweep` driven from outside: its probabilities. What becomes of its rows, the tour shows.
+//! `sweep` driven from outside: its probabilities. The tour shows its rows.
 
 mod command_line;
 

@@ -1,4 +1,4 @@
-//! What the model leaves out, as the rows of a `sweep` say it, against the library's own runs.
+//! The columns of validity in the rows of a `sweep`, against the library's own runs.
 
 mod command_line;
 

@@ -10,8 +10,8 @@ use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::estimates::demand::INSTANT_TRANSITION;
 use rocking::run::levels::{Criterion, Verdict, compare};
 use rocking::run::validity::Limits;
-use rocking_cli::quantities::{NamedValue, write_columns};
-use rocking_cli::{advise as advice, estimate as estimates};
+use rocking_report::quantities::write_columns;
+use rocking_report::{advice, estimate as estimates};
 
 /// Every level of detail on one scene, and which is the cheapest that will do: what `advise` returns. print(advice)
 /// shows it.
@@ -36,7 +36,7 @@ impl Advice {
             for (criterion, error) in Criterion::ALL.iter().zip(verdict.errors) {
                 level.set_item(criterion.name(), error)?;
             }
-            level.set_item("overturned", verdict.response.overturns())?;
+            level.set_item("overturned", verdict.response.ending.overturned())?;
             level.set_item("steps", verdict.response.work.steps)?;
             level.set_item("evaluations", verdict.response.work.evaluations)?;
             level.set_item("cost_of_auto", cost)?;
@@ -84,9 +84,8 @@ pub fn advise(
         let title = format!("{}, {} samples", record.0.title(), record.0.times().len());
         let text = advice::text(&title, &run, &comparison, (within, &criteria), Limits::default())?;
         let detail = comparison.recommended(within, &criteria).map(|verdict| verdict.response.detail.name());
-        let auto = comparison.cost_of_auto();
-        let cost = |verdict: &Verdict| auto.map(|auto| verdict.response.cost() as f64 / auto);
-        let levels = comparison.verdicts.into_iter().map(|verdict| (verdict.clone(), cost(&verdict))).collect();
+        let cost = |verdict: &Verdict| comparison.cost_over_auto(&verdict.response);
+        let levels = comparison.verdicts.iter().map(|verdict| (verdict.clone(), cost(verdict))).collect();
         Ok(Advice { text, detail, levels })
     });
     advised.map_err(refused)
@@ -107,10 +106,9 @@ pub fn estimate<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let record = record.map(|record| &record.0);
     let estimated = py.detach(|| estimates::Estimate::new(&structure.0, record, amplification)).map_err(refused)?;
-    let lines: Vec<NamedValue> = estimated.fixed_base.into_iter().chain(estimated.rocking).collect();
     let mut text = String::new();
-    write_columns(&mut text, &lines, structure.0.parameters().g).map_err(refused)?;
+    write_columns(&mut text, &estimated.terms, structure.0.parameters().g).map_err(refused)?;
     let values = PyDict::new(py);
-    lines.iter().try_for_each(|line| values.set_item(&line.name, line.value))?;
+    estimated.terms.iter().try_for_each(|line| values.set_item(&line.name, line.value))?;
     py.import("flexible_rocking._results")?.call_method1("Estimate", (values, text))
 }

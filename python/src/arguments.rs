@@ -6,12 +6,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::{Detail, State};
-use rocking_cli::talk;
 use rocking_sweep::plan::Conditions;
 
 /// The `ValueError` that says why.
 pub fn refused(error: impl Into<anyhow::Error>) -> PyErr {
-    PyValueError::new_err(talk::message(&error.into()))
+    PyValueError::new_err(rocking_report::message(&error.into()))
 }
 
 /// The number that `value` is, which messages call `name`.

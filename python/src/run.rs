@@ -15,9 +15,9 @@ use rocking::run::fall::Found;
 use rocking::run::peaks;
 use rocking::run::validity::{ASSUMPTIONS, Limits};
 use rocking::run::{End, Ending};
-use rocking_cli::summary::Summary;
-use rocking_cli::tables::{RESPONSE, response_numbers};
-use rocking_cli::validity;
+use rocking_report::summary::Summary;
+use rocking_report::tables::{RESPONSE, response_numbers};
+use rocking_report::validity;
 use rocking_sweep::plan::Conditions;
 
 /// The largest magnitude of a quantity in a run, exact between all instants: float(peak) is its value.
@@ -173,10 +173,7 @@ impl Run {
     /// record.
     #[getter]
     fn overturned(&self) -> Option<bool> {
-        match self.found.finish.ending {
-            Ending::StillRocking => None,
-            ending => Some(ending == Ending::Overturned),
-        }
+        self.found.finish.ending.overturned()
     }
 
     /// How it ended: "at rest", "overturned", "at time", "still rocking".

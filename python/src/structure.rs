@@ -12,7 +12,7 @@ use rocking::structure::natural_quantities::Given;
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::{DERIVED, Derived};
 use rocking::{Parameters, Side, State};
-use rocking_cli::{describe, pushover};
+use rocking_report::{describe, pushover};
 
 /// A flexible structure on a base that may lift off (Fig 2 of the paper).
 ///
@@ -103,7 +103,7 @@ impl Structure {
     /// Raises ValueError where the strut is too soft to hold the structure.
     #[pyo3(signature = (points=100))]
     fn pushover<'py>(&self, py: Python<'py>, points: u32) -> PyResult<Bound<'py, PyDict>> {
-        let curve = pushover::curve(&self.0, points).map_err(refused)?;
+        let curve = rocking::estimates::pushover::curve(&self.0, points).map_err(refused)?;
         let column = |of: fn(&Equilibrium) -> f64| PyArray1::from_iter(py, curve.iter().map(of));
         let named = PyDict::new(py);
         named.set_item("theta", column(|at| at.theta))?;

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::Ending;
-use rocking_cli::cause;
+use rocking_report::program::program;
 use rocking_sweep::exceedances::{self, Bin, Tally};
 use rocking_sweep::fragility::FragilityCurve;
 use rocking_sweep::outcome::{Limit, MEASURES, Outcome, Summary};
@@ -58,7 +58,7 @@ pub fn sweep(
     let conditions = conditions(detail, tolerance, duration, Some(initial))?;
     let plan = py.detach(|| Plan::new(populations, motions, scales)?.under(conditions)).map_err(refused)?;
 
-    let (program, done, stopped) = (cause::program(), AtomicUsize::new(0), AtomicBool::new(false));
+    let (program, done, stopped) = (program(), AtomicUsize::new(0), AtomicBool::new(false));
     let sweep = py.detach(|| Sweep::open(&plan, validity, &program, &path)).map_err(refused)?;
     let all = sweep.missing().len();
     let pool = thread_pool(threads).map_err(refused)?;

@@ -237,15 +237,6 @@ pub fn relative((difference, expected): (f64, f64)) -> f64 {
 }
 
 impl Response {
-    /// Whether the structure overturns, if that is known: of one that still rocks when its time is over it is not.
-    pub fn overturns(&self) -> Option<bool> {
-        match self.ending {
-            Ending::Overturned => Some(true),
-            Ending::AtRest | Ending::AtTime => Some(false),
-            Ending::StillRocking => None,
-        }
-    }
-
     /// Steps and evaluations together: an exact leap costs about as much as an evaluation.
     pub fn cost(&self) -> u64 {
         self.work.steps + self.work.evaluations
@@ -264,7 +255,10 @@ impl Verdict {
         let [theta, u, a_t] = peaks.map(relative);
         let [theta_history, u_history, a_t_history] = <[_; 3]>::map(histories, relative);
         Verdict {
-            is_right_about_overturning: reference.overturns().map(|overturns| response.overturns() == Some(overturns)),
+            is_right_about_overturning: reference
+                .ending
+                .overturned()
+                .map(|overturned| response.ending.overturned() == Some(overturned)),
             errors: [theta, u, a_t, theta_history, u_history, a_t_history],
             response,
         }
@@ -273,16 +267,16 @@ impl Verdict {
     /// Whether it is right about overturning, or leaves it open as the reference does, and its errors by every one of `criteria` are at most `within`.
     pub fn is_within(&self, within: f64, criteria: &[Criterion]) -> bool {
         let error = |criterion: &Criterion| self.errors[*criterion as usize];
-        let is_right = self.is_right_about_overturning.unwrap_or(self.response.overturns().is_none());
+        let is_right = self.is_right_about_overturning.unwrap_or(self.response.ending.overturned().is_none());
         is_right && criteria.iter().map(error).all(|error| error <= within)
     }
 }
 
 impl Comparison {
-    /// Steps and evaluations of the level `auto`, which others are measured by, if it can do the run.
-    pub fn cost_of_auto(&self) -> Option<f64> {
+    /// Cost of `response` as a multiple of the cost of the level `auto`; None if `auto` cannot do the run.
+    pub fn cost_over_auto(&self, response: &Response) -> Option<f64> {
         let auto = self.verdicts.iter().find(|verdict| verdict.response.detail == Detail::Auto);
-        auto.map(|auto| auto.response.cost() as f64)
+        auto.map(|auto| response.cost() as f64 / auto.response.cost() as f64)
     }
 
     /// Returns the cheapest level whose errors by every one of `criteria` are at most `within`; the one of the fewest

@@ -162,12 +162,11 @@ impl Explorer {
         let (structure, ground) = self.load(&fields)?;
         let compared = compare(&fields.run(structure, &ground.record)?).map_err(says)?;
         let advised = compared.recommended(WITHIN, &Criterion::ALL).map(|verdict| verdict.response.detail.name());
-        let cost_of_auto = compared.cost_of_auto();
         let row = |Verdict { response, errors, .. }: &Verdict| {
             json!({
                 "detail": response.detail.name(), "errors": errors.map(|error| error.to_string()),
-                "overturns": response.overturns(), "transitions": response.transitions,
-                "cost": cost_of_auto.map(|auto| response.cost() as f64 / auto),
+                "overturns": response.ending.overturned(), "transitions": response.transitions,
+                "cost": compared.cost_over_auto(response),
             })
         };
         let refused = |(detail, error): &(Detail, RunError)| json!([detail.name(), error.to_string()]);

@@ -22,7 +22,7 @@ pub type Points = Vec<(f64, f64)>;
 
 /// One panel.
 pub struct Panel {
-    /// What it shows, with its unit.
+    /// Name and unit of the history.
     name: String,
     colour: RGBColor,
     points: Points,
@@ -30,7 +30,7 @@ pub struct Panel {
     peak: Option<(f64, f64, String)>,
 }
 
-/// What a mark means, its colour, and which transitions have it.
+/// Name of a mark, its colour, and the test for the transitions that it marks.
 type Mark = (&'static str, RGBColor, fn(&TransitionKind) -> bool);
 
 /// The marks below the panels, a kind to a lane.
@@ -45,7 +45,7 @@ const MARKS: [Mark; 4] = [
 pub struct Histories {
     /// From the top.
     pub panels: Vec<Panel>,
-    /// What is marked below them, and when (s).
+    /// Transitions to mark below the panels, with their instants (s).
     pub transitions: Vec<(f64, TransitionKind)>,
     /// From and to, s.
     pub time: Range<f64>,

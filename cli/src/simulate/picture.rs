@@ -4,9 +4,7 @@ use crate::picture::{
     histories::{Histories, Panel},
     rounded, titled,
 };
-use crate::quantities::in_readable_unit;
 use crate::significant::short;
-use crate::summary::instant;
 use anyhow::Context;
 use rocking::{
     Parameters, Run, Structure,
@@ -14,9 +12,9 @@ use rocking::{
         Ending,
         curve::{Curve, Point},
         fall::Found,
-        peaks::Peak,
     },
 };
+use rocking_report::{quantities::in_readable_unit, summary::instant};
 
 /// Part of a peak by which a line may miss the motion: less than its width.
 const PART: f64 = 1e-3;
@@ -39,15 +37,14 @@ pub fn draw(picture: Picture, run: &Run) -> anyhow::Result<()> {
 }
 
 fn panels(run: &Run, curve: &Curve) -> Vec<Panel> {
-    let Found { ground, peaks, finish, .. } = &curve.found;
+    let Found { ground, peaks, .. } = &curve.found;
     let g = run.structure.parameters().g;
     let over_time = |value: fn(&Point) -> f64| curve.points.iter().map(|at| (at.time, value(at))).collect();
-    let shown = if ground.time <= finish.motion.time { *ground } else { Peak::default() };
     let panel = |name, unit, value, peak| Panel::of(name, unit, colour::BLUE, over_time(value), peak);
     let uplift = rounded(1e3 * peaks.uplift().magnitude);
     let V_t = in_readable_unit(peaks.V_t().magnitude, "N", rounded);
     vec![
-        Panel::of("ground acceleration", (g, "g"), colour::GREY, over_time(|at| at.a_g), shown),
+        Panel::of("ground acceleration", (g, "g"), colour::GREY, over_time(|at| at.a_g), *ground),
         panel("rotation θ", (1.0, "rad"), |at| at.outputs.theta, peaks.theta()).with(format!("uplift {uplift} mm")),
         panel("displacement u", (1e-3, "mm"), |at| at.outputs.u, peaks.u()),
         panel("displacement δ_t", (1e-3, "mm"), |at| at.outputs.delta_t, peaks.delta_t()),

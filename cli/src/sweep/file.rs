@@ -1,4 +1,4 @@
-//! What a sweep runs, from a TOML file: every record at every scale factor on every structure, or pulses of every frequency
+//! The TOML file of a sweep: every record at every scale factor on every structure, or pulses of every frequency
 //! and amplitude.
 use crate::{input, output_files::OutputFiles, record_args::RecordOptions, scene_args::InitialArgs, talk::say_few};
 use anyhow::{Context, anyhow, bail, ensure};
@@ -17,13 +17,13 @@ use std::path::{MAIN_SEPARATOR, Path};
 
 /// Records on structures.
 pub struct RecordSweep {
-    /// What to run.
+    /// Runs of the sweep.
     pub plan: Plan,
-    /// What is counted beside overturning.
+    /// Limits to count beside overturning.
     pub limits: Vec<Limit>,
-    /// By what a run's ground motion is measured.
+    /// Measure of the intensity of a run's ground motion.
     pub measure: IntensityMeasure,
-    /// What was read of each record, and what was assumed, in a line.
+    /// Findings and assumptions of each record, in a line.
     pub records: Vec<String>,
 }
 
@@ -35,7 +35,7 @@ pub struct MapSweep {
     pub refinements: u32,
 }
 
-/// What a file asks for.
+/// Content of a file.
 pub enum Asked {
     /// Records on structures.
     Records(RecordSweep),

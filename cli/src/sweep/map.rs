@@ -16,7 +16,7 @@ use uuid::Uuid;
 
 /// A map, and what is known of it.
 pub struct Spectrum {
-    /// What its structure is called.
+    /// Name of the structure.
     pub name: String,
     /// The map.
     pub map: Map,

@@ -16,7 +16,7 @@ const PLOT: u32 = 440;
 const LEGEND_LINE: f64 = 20.0;
 const LEGEND_MARGIN: f64 = 14.0;
 
-/// Where the columns of the legend are, pixels: line and dot, name, and the ends of median, its range, dispersion.
+/// Positions of the columns of the legend, pixels: line and dot, name, and the ends of median, its range, dispersion.
 const COLUMNS: [f64; 5] = [40.0, 84.0, 560.0, 700.0, 800.0];
 
 /// A median that is not much further away than the strongest ground motion is shown.

@@ -1,8 +1,8 @@
-//! What a sweep prints of a population: how often its structures exceed a limit, by intensity, and the curves.
-use crate::results::Number;
+//! The table of a population: how often its structures exceed a limit, by intensity, and the curves.
 use crate::significant::significant;
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::LONGEST_REST;
+use rocking_report::quantities::Number;
 use rocking_sweep::exceedances::{Bin, Exceedances, Fragility, Tally};
 use rocking_sweep::fragility::{FEWEST_GROUPS, FragilityCurve};
 use serde::Serialize;
@@ -11,7 +11,7 @@ use std::fmt::{self, Write};
 /// Columns of a limit are this wide, or as wide as its name.
 const WIDTH: usize = 18;
 
-/// What is said of a median beyond all runs: nothing there was counted.
+/// Remark on a median beyond the intensities of all runs.
 pub const BEYOND_THE_RUNS: &str = "beyond the runs";
 
 /// Whether the median of `fragility` is weaker or stronger than the ground motion of every run `of` its population.

@@ -12,14 +12,14 @@ const PANEL: (u32, u32) = (560, 440);
 const NAME: f64 = 20.0;
 const LEGEND_LINE: f64 = 19.0;
 
-/// Where the axes of a panel begin, pixels.
+/// Distance of the axes from the left edge of a panel, pixels.
 const LEFT: f64 = 78.0;
 
 /// Characters of a name that fit above a panel.
 const LONGEST_NAME: usize = 70;
 
-/// A cell reaches this much below those that are drawn after it, pixels, so that nothing shines through between them: over
-/// the whole pixel at its edge, which it may cover in part.
+/// Length by which a cell reaches below the cells that are drawn after it, pixels. The pixel at the edge is then covered
+/// whole, and nothing shines through between cells.
 const OVERLAP: f64 = 1.0;
 
 /// A colour, and what it stands for.
@@ -47,20 +47,20 @@ const CONDITIONS: [Swatch; 6] = [
     (colour::INK, "1e-12 changes the class"),
 ];
 
-/// What the colours of a picture stand for.
+/// Meaning of the colours of a picture.
 #[derive(Clone, Copy)]
 struct Key {
     /// The number of a point's swatch.
     of: fn(&Point) -> usize,
     swatches: &'static [Swatch],
-    /// What the picture is of, after the structure's name.
+    /// Title of the picture, after the structure's name.
     suffix: &'static str,
 }
 
 const OF_CLASS: Key = Key { of: class_of, swatches: &CLASSES, suffix: "" };
 const OF_CONDITION: Key = Key { of: condition_of, swatches: &CONDITIONS, suffix: ": condition" };
 
-/// What the axes of a picture of `map` are called.
+/// Names of the axes of a picture of `map`.
 pub fn axis_names(map: &Map) -> [&'static str; 2] {
     if map.is_dimensionless { ["omega/p_l", "a_p/(g tan alpha_cg)"] } else { ["frequency (Hz)", "amplitude a_p (g)"] }
 }

@@ -1,9 +1,10 @@
-//! The rows of maps: what a point is, and what became of the structure there.
+//! The rows of maps: each point, and the fate of the structure there.
 //!
-//! A point's key stands for the structure and its name, the pulse, the level of detail, the tolerance, whether its condition is found, and
-//! the build of the program: not for its place, so that another grid through the same point has it.
-use crate::cause::{program, version};
+//! The key of a point stands for the structure and its name, the pulse, the level of detail and the tolerance. The key
+//! also stands for the build of the program, and for whether the condition is found. The place in the grid is no part of
+//! the key, so another grid through the same point has the same key.
 use csv::StringRecord;
+use rocking_report::program::{program, version};
 use rocking_sweep::map::{Map, Place, Point};
 use rocking_sweep::plan::AXES;
 use rocking_sweep::pulse::units_of;

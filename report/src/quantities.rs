@@ -1,20 +1,20 @@
 //! Named values for people and for programs.
 use crate::significant::significant;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::fmt::{self, Write};
 
 /// One value.
 #[derive(Serialize)]
 pub struct NamedValue {
-    /// Its symbol.
+    /// Symbol of the value.
     pub name: String,
     /// The value.
     pub value: f64,
-    /// Its unit; `1` for a ratio.
+    /// Unit of the value; `1` for a ratio.
     pub unit: &'static str,
-    /// Where the paper defines it.
+    /// Equation of the paper that defines the value.
     pub equation: &'static str,
-    /// What it is.
+    /// Description of the value.
     pub description: String,
 }
 
@@ -25,8 +25,8 @@ impl NamedValue {
     }
 }
 
-/// The unit in which people read a force or a moment in N or N.m of this `magnitude`, as how many SI units it has and what
-/// it is called; any other `unit` stays.
+/// The unit in which people read a force or a moment (N, N.m) of this `magnitude`: its size in SI units, and its name. Any
+/// other `unit` stays.
 pub fn readable(magnitude: f64, unit: &str) -> (f64, &str) {
     match unit {
         "N" if magnitude.abs() >= 1e3 => (1e3, "kN"),
@@ -35,7 +35,7 @@ pub fn readable(magnitude: f64, unit: &str) -> (f64, &str) {
     }
 }
 
-/// A force or a moment in that unit, in as many `digits` as are asked for.
+/// A force or a moment in the unit of [`readable`], written by `digits`.
 pub fn in_readable_unit(value: f64, unit: &str, digits: fn(f64) -> String) -> String {
     let (per_unit, unit) = readable(value, unit);
     format!("{} {unit}", digits(value / per_unit))
@@ -50,4 +50,14 @@ pub fn write_columns(out: &mut impl Write, lines: &[NamedValue], g: f64) -> fmt:
         writeln!(out, "  {name:<20} {value:>12} {unit:<6} {in_g:>10}  {equation:<13} {description}")?;
     }
     Ok(())
+}
+
+/// A number that may be infinite, for which JSON has no number: it is the text "inf" there, as in a table.
+pub struct Number(pub f64);
+
+impl Serialize for Number {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Number(value) = *self;
+        if value.is_finite() { serializer.serialize_f64(value) } else { serializer.collect_str(&value) }
+    }
 }

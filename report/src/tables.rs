@@ -1,18 +1,8 @@
-//! The tables that `simulate` writes: the response and its transitions as CSV.
+//! The tables of a run: the response and its transitions.
 use rocking::engine::piece::Sample;
 use rocking::mechanics::restraint::{Dissipators, Restraints};
 use rocking::{Impulse, Outputs, Reactions, State, Transition};
 use serde::Serialize;
-
-/// `lines` under `headings` as CSV; a number reads back to the same bits.
-pub fn csv(headings: impl Serialize, lines: impl Iterator<Item = impl Serialize>) -> anyhow::Result<Vec<u8>> {
-    let mut writer = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
-    writer.serialize(headings)?;
-    for line in lines {
-        writer.serialize(line)?;
-    }
-    Ok(writer.into_inner()?)
-}
 
 /// Headings of the response: the ground accelerations, and the outputs of the FMU under their names and units.
 pub const RESPONSE: [&str; 28] = [

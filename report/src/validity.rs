@@ -1,40 +1,12 @@
-//! What the model leaves out on a scene: the section that `simulate` and `advise` print, and the limits it goes by.
+//! Validity of a run: effects that the model leaves out, in words and for programs.
 
-use crate::results::Number;
+use crate::quantities::Number;
 use crate::significant::significant;
-use rocking::run::validity::{self, ASSUMPTIONS, Assumption, EDGE_LOAD, Found, LimitError, Limits, WEIGHT, Worst};
+use rocking::run::validity::{self, ASSUMPTIONS, Assumption, EDGE_LOAD, Found, Limits, WEIGHT, Worst};
 use rocking::{Detail, Structure};
 use serde::Serialize;
 
-/// What is tolerated without a warning.
-#[derive(clap::Args)]
-#[command(next_help_heading = "What the model leaves out")]
-pub struct LimitArgs {
-    /// Coefficient of friction of the ground, a limit of |R_h|/R_v and |I_h|/I_v [of concrete cast against smooth formwork:
-    /// EN 1992-1-1, 6.2.5(2)]
-    #[arg(long, value_name = "MU", default_value_t = Limits::default().friction, allow_negative_numbers = true)]
-    friction: f64,
-    /// Tension at the base that is tolerated without a warning, over the weight; at an impact, over its impulse
-    #[arg(long, value_name = "PART", default_value_t = Limits::default().tension, allow_negative_numbers = true)]
-    tension: f64,
-    /// Least load of the edge in contact that is tolerated without a warning, over the weight
-    #[arg(long, value_name = "PART", default_value_t = Limits::default().edge_load, allow_negative_numbers = true)]
-    edge_load: f64,
-    /// Energy gained at an impact that is tolerated without a warning, over the kinetic energy before it
-    #[arg(long, value_name = "PART", default_value_t = Limits::default().energy_gain, allow_negative_numbers = true)]
-    energy_gain: f64,
-}
-
-impl LimitArgs {
-    /// As limits. Refuses one that is none.
-    pub fn limits(&self) -> Result<Limits, LimitError> {
-        let &LimitArgs { friction, tension, edge_load, energy_gain } = self;
-        let limits = Limits { friction, tension, edge_load, energy_gain };
-        limits.check().map(|()| limits)
-    }
-}
-
-/// What is shown of each of [`ASSUMPTIONS`].
+/// Label of each of [`ASSUMPTIONS`].
 const LABELS: [&str; ASSUMPTIONS.len()] = [
     "tension under the base, over W",
     "load of the edge, R_v/W",
@@ -45,14 +17,14 @@ const LABELS: [&str; ASSUMPTIONS.len()] = [
     "weight, (g + a_v)/g",
 ];
 
-/// One of [`ASSUMPTIONS`], for programs.
+/// Result for one of the [`ASSUMPTIONS`], for programs.
 #[derive(Serialize)]
 pub struct Beyond {
-    /// Its name.
+    /// Name of the assumption.
     pub name: &'static str,
-    /// The worst of it.
+    /// Worst value.
     pub value: Number,
-    /// Its instant, s.
+    /// Instant of the worst value, s.
     pub time: f64,
     limit: f64,
     /// When the limit was passed first, s.
@@ -61,7 +33,7 @@ pub struct Beyond {
     beyond: f64,
 }
 
-/// All of them, in a run in which this was `found`.
+/// Results for all assumptions, in a run in which this was `found`.
 pub fn rows(found: &Found, limits: &Limits) -> Vec<Beyond> {
     let row = |(assumption, worst): (&Assumption, &Worst)| {
         let Worst { value, time, first_beyond, beyond } = *worst;

@@ -1,5 +1,4 @@
-//! What `simulate` prints at the end of a run.
-use crate::cause::Cause;
+//! The summary of a run.
 use crate::quantities::readable;
 use crate::validity;
 use fmu_export::significant::significant;
@@ -30,17 +29,17 @@ struct NamedPeak {
     time: f64,
 }
 
-/// All of it, for programs; instants in s.
+/// The summary for programs; instants in s.
 #[derive(Serialize)]
-pub struct Whole<'a> {
+pub struct Whole<'a, Cause> {
     #[serde(flatten)]
     cause: &'a Cause,
     start: f64,
     end: f64,
     ending: Ending,
-    /// None if it still rocks.
+    /// None if the structure still rocks at the end.
     overturned: Option<bool>,
-    /// Since when it falls: the peaks are those before.
+    /// Start of the fall, s; the peaks are those before it.
     fall: Option<f64>,
     peaks: Vec<NamedPeak>,
     /// Of a structure with dissipators.
@@ -54,7 +53,7 @@ pub struct Whole<'a> {
     validity: Vec<validity::Beyond>,
 }
 
-/// What dissipators have done by the end of a run.
+/// Work of the dissipators until the end of a run.
 #[derive(Clone, Copy, Serialize)]
 struct Taken {
     /// Energy, J.
@@ -78,21 +77,17 @@ impl Summary {
         Summary { structure: *structure, first_uplift, first_impact }
     }
 
-    /// All of it for programs, with the `cause` of the run, what was `found` in it and what the model leaves out.
-    pub fn whole<'a>(&self, cause: &'a Cause, found: &Found, validity: Vec<validity::Beyond>) -> Whole<'a> {
+    /// The summary for programs, with the `cause` of the run, the results `found`, and the validity.
+    pub fn whole<'a, C>(&self, cause: &'a C, found: &Found, validity: Vec<validity::Beyond>) -> Whole<'a, C> {
         let &Found { ground, ref peaks, fall, start, finish: Finish { ending, motion } } = found;
         let row = |name, unit, Peak { magnitude: peak, time }| NamedPeak { name, peak, unit, time };
         let of_structure = peaks::of(&self.structure).map(|peak| row(peak.name, peak.unit, peak.of(peaks)));
-        let overturned = match ending {
-            Ending::StillRocking => None,
-            ending => Some(ending == Ending::Overturned),
-        };
         Whole {
             cause,
             start,
             end: motion.time,
             ending,
-            overturned,
+            overturned: ending.overturned(),
             fall,
             peaks: [row("a_g", "m/s2", ground)].into_iter().chain(of_structure).collect(),
             taken: self.taken(motion),
@@ -105,7 +100,7 @@ impl Summary {
         }
     }
 
-    /// What dissipators have done by the end, in `motion`; none without them.
+    /// Work of the dissipators until the end, in `motion`; None without dissipators.
     fn taken(&self, motion: Motion) -> Option<Taken> {
         let &Parameters { c_d, k_d, .. } = self.structure.parameters();
         let Dissipators { viscous: E_viscous, hysteretic: E_hysteretic, .. } = motion.dissipators;

@@ -1,0 +1,31 @@
+//! Arguments for the limits of validity; a value beyond its limit gives a warning.
+
+use rocking::run::validity::{LimitError, Limits};
+
+/// Limits beyond which a value gives a warning.
+#[derive(clap::Args)]
+#[command(next_help_heading = "What the model leaves out")]
+pub struct LimitArgs {
+    /// Coefficient of friction of the ground, a limit of |R_h|/R_v and |I_h|/I_v [of concrete cast against smooth formwork:
+    /// EN 1992-1-1, 6.2.5(2)]
+    #[arg(long, value_name = "MU", default_value_t = Limits::default().friction, allow_negative_numbers = true)]
+    friction: f64,
+    /// Tension at the base that is tolerated without a warning, over the weight; at an impact, over its impulse
+    #[arg(long, value_name = "PART", default_value_t = Limits::default().tension, allow_negative_numbers = true)]
+    tension: f64,
+    /// Least load of the edge in contact that is tolerated without a warning, over the weight
+    #[arg(long, value_name = "PART", default_value_t = Limits::default().edge_load, allow_negative_numbers = true)]
+    edge_load: f64,
+    /// Energy gained at an impact that is tolerated without a warning, over the kinetic energy before it
+    #[arg(long, value_name = "PART", default_value_t = Limits::default().energy_gain, allow_negative_numbers = true)]
+    energy_gain: f64,
+}
+
+impl LimitArgs {
+    /// Checks the arguments and returns them as limits.
+    pub fn limits(&self) -> Result<Limits, LimitError> {
+        let &LimitArgs { friction, tension, edge_load, energy_gain } = self;
+        let limits = Limits { friction, tension, edge_load, energy_gain };
+        limits.check().map(|()| limits)
+    }
+}

@@ -1,0 +1,62 @@
+//! Demands without a time history, term by term (Eqs 4, 21 to 24).
+
+use crate::quantities::NamedValue;
+use rocking::Structure;
+use rocking::estimates::demand::Demand;
+use rocking::estimates::response_spectrum::spectral_acceleration;
+use rocking::run::record::Record;
+use std::f64::consts::TAU;
+
+/// The demand of a ground motion on a structure, without a time history.
+pub struct Estimate {
+    /// Demand while rocking (Eqs 21 to 24).
+    pub demand: Demand,
+    /// Demand on a fixed base (Eq 4) if there is a ground motion, then the demand while rocking, term by term.
+    pub terms: Vec<NamedValue>,
+}
+
+impl Estimate {
+    /// Of `structure` under `record`, or on ground at rest, with the dynamic amplification `C`, 0 to 2.
+    pub fn new(structure: &Structure, record: Option<&Record>, C: f64) -> anyhow::Result<Estimate> {
+        let spectral = |record| spectral_acceleration(record, TAU / structure.omega_u, structure.zeta_u);
+        let S_a = record.map_or(0.0, spectral);
+        let demand = Demand::new(structure, S_a, C)?;
+        let mut terms = record.map_or(Vec::new(), |record| on_fixed_base(structure, record));
+        terms.extend(while_rocking(structure, S_a, C, &demand));
+        Ok(Estimate { demand, terms })
+    }
+}
+
+/// The ground motion, and what it asks of the structure on a fixed base.
+fn on_fixed_base(structure: &Structure, record: &Record) -> Vec<NamedValue> {
+    let S_a = spectral_acceleration(record, TAU / structure.omega_fc, structure.parameters().zeta_fc);
+    vec![
+        NamedValue::new("PGA", record.pga(), "m/s2", "", "peak ground acceleration"),
+        NamedValue::new("S_a(T_fc, zeta_fc)", S_a, "m/s2", "Eq 4", "lateral acceleration on a fixed base"),
+        NamedValue::new("V_fc", structure.parameters().m * S_a, "N", "Eq 4", "base shear on a fixed base"),
+    ]
+}
+
+/// The demand while rocking, term by term, and what it comes from.
+fn while_rocking(structure: &Structure, S_a: f64, C: f64, demand: &Demand) -> Vec<NamedValue> {
+    let &Demand { u_ddot_gr, ground, rocking, impact, a_t, V_t, M_t } = demand;
+    vec![
+        NamedValue::new(
+            "T_u",
+            TAU / structure.omega_u,
+            "s",
+            "before Eq 18",
+            "period of the vibration mode while rocking",
+        ),
+        NamedValue::new("zeta_u", structure.zeta_u, "1", "before Eq 18", "its damping ratio"),
+        NamedValue::new("S_a(T_u, zeta_u)", S_a, "m/s2", "after Eq 20", "its absolute spectral acceleration"),
+        NamedValue::new("C", C, "1", "Eq 21", "dynamic amplification at a transition between rocking phases"),
+        NamedValue::new("u_ddot_gr", u_ddot_gr, "m/s2", "Eq 21", "elastic acceleration as the weight changes sides"),
+        NamedValue::new("(1-chi) S_a", ground, "m/s2", "Eq 22", "vibration that the ground excites"),
+        NamedValue::new("chi g tan", rocking, "m/s2", "Eq 22", "rocking mode, chi g tan(alpha_cg)"),
+        NamedValue::new("C chi g tan", impact, "m/s2", "Eq 22", "vibration that the change of sides excites"),
+        NamedValue::new("a_t", a_t, "m/s2", "Eq 22", "lateral acceleration, the sum of these three"),
+        NamedValue::new("V_t", V_t, "N", "Eq 23", "base shear m a_t"),
+        NamedValue::new("M_t", M_t, "N.m", "Eq 24", "overturning moment m H a_t"),
+    ]
+}

@@ -1,0 +1,27 @@
+//! Reports on a structure and its runs: words for people, rows for programs. Every door shows the same.
+#![allow(non_snake_case)] // H, V_t, M_t: the paper's own letters
+
+pub mod advice;
+pub mod describe;
+pub mod estimate;
+pub mod program;
+pub mod pushover;
+pub mod quantities;
+pub mod summary;
+pub mod tables;
+pub mod validity;
+
+use fmu_export::significant;
+
+/// Message of `error`: each cause once, even if a cause repeats the next one.
+pub fn message(error: &anyhow::Error) -> String {
+    let mut message = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        if message.is_empty() {
+            message = cause;
+        } else if !message.ends_with(&cause) {
+            message = format!("{message}: {cause}");
+        }
+    }
+    message
+}

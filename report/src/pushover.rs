@@ -1,0 +1,58 @@
+//! The pushover: lateral force and moment against displacement (Fig 1).
+
+use crate::{quantities::in_readable_unit, significant::significant};
+use rocking::estimates::pushover::{Equilibrium, PushoverError, at_overturning, at_rotation, in_full_contact};
+use rocking::mechanics::restraint::{Dissipators, uplift_displacement};
+use rocking::{Phase, Side, Structure};
+use serde::Serialize;
+
+/// Headings of the curve.
+pub const HEADINGS: [&str; 6] = ["phase", "theta[rad]", "u[m]", "delta_t[m]", "P[N]", "M[N.m]"];
+
+/// The displacement (m) at which the base lifts off, with what a tendon adds.
+fn u_cr(structure: &Structure) -> f64 {
+    uplift_displacement(structure, Side::Right, 0.0, &Dissipators::default())
+}
+
+/// A corner of the curve, in SI units.
+#[derive(Serialize)]
+pub struct Corner {
+    name: &'static str,
+    delta_t: f64,
+    theta: f64,
+    P: f64,
+    M: f64,
+}
+
+/// The corners of the curve, in its order. Refuses a strut that is too soft.
+pub fn corners(structure: &Structure) -> Result<[Corner; 3], PushoverError> {
+    let corner = |(name, corner)| {
+        let Equilibrium { theta, delta_t, force: P, moment: M, .. } = corner;
+        Corner { name, delta_t, theta, P, M }
+    };
+    let corners = [
+        ("uplift", in_full_contact(structure, u_cr(structure))),
+        ("start of rocking", at_rotation(structure, 0.0).ok_or(PushoverError::TooSoft)?),
+        ("overturning", at_overturning(structure).ok_or(PushoverError::TooSoft)?),
+    ];
+    Ok(corners.map(corner))
+}
+
+impl Corner {
+    /// The corner in a line for people.
+    pub fn line(&self) -> String {
+        let &Corner { name, delta_t, theta, P, M } = self;
+        let ([theta, delta_t], [force, moment]) = (
+            [theta, 1e3 * delta_t].map(significant),
+            [(P, "N"), (M, "N.m")].map(|(of, unit)| in_readable_unit(of, unit, significant)),
+        );
+        format!("{name:<16} delta_t {delta_t:>8} mm, theta {theta:>8} rad, P {force:>10}, M {moment:>12}\n")
+    }
+}
+
+/// A line of the curve.
+pub fn line(at: &Equilibrium) -> impl Serialize + use<> {
+    let &Equilibrium { phase, theta, u, delta_t, force, moment } = at;
+    let phase = if phase == Phase::FullContact { "full contact" } else { "rocking right" };
+    (phase, theta, u, delta_t, force, moment)
+}
