@@ -67,7 +67,7 @@ pub struct Understood {
     /// Scaled, in m/s².
     pub record: Record,
     /// Scaled, in the unit of its file.
-    in_file_unit: Record,
+    pub in_file_unit: Record,
     source: Source,
     /// What it was called, and what was found and assumed, in a line.
     pub described: String,
@@ -121,6 +121,11 @@ impl Understood {
     /// What is likely wrong with the record in the file at `path`, a line each.
     pub fn warnings(&self, path: &Path) -> impl Iterator<Item = String> {
         self.source.warnings.iter().map(move |warning| format!("warning: {}: {warning}", input::name(path)))
+    }
+
+    /// Whether its unit is assumed.
+    pub fn is_assumed(&self) -> bool {
+        self.source.unit_from == UnitFrom::Assumed
     }
 
     /// The unit of its file.

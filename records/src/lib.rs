@@ -145,8 +145,8 @@ pub fn in_m_s2(record: Record, mut source: Source, g: f64) -> (Record, Source) {
     (record, source)
 }
 
-/// What no record of an earthquake has, and one that is read wrongly has; `g` in m/s².
-fn doubts(record: &Record, g: f64) -> Vec<String> {
+/// A sentence for each thing that no earthquake has and a record that is read wrongly has; `record` and `g` in m/s².
+pub fn doubts(record: &Record, g: f64) -> Vec<String> {
     let duration = record.end() - record.start();
     let last = record.velocities_and_displacements().last();
     let step = nine_digits(duration / (record.times().len() - 1) as f64);

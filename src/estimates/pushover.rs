@@ -100,6 +100,45 @@ pub fn at_overturning(structure: &Structure) -> Option<Equilibrium> {
     at_rotation(structure, last_where(0.0, farthest, restores))
 }
 
+/// Most points on a branch, more than any curve needs.
+const MOST_POINTS: u32 = 1_000_000;
+
+/// Why there is no curve.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PushoverError {
+    /// The number of points is out of range.
+    #[error("points = {0} is out of range: 2 to {MOST_POINTS} are needed on each branch")]
+    Points(u32),
+    /// The strut does not hold the structure.
+    #[error("the strut is too soft to hold the structure all the way to overturning: raise f_fc or lower m0")]
+    TooSoft,
+}
+
+/// The displacement (m) at which the base lifts off to the right, with what a tendon adds.
+pub fn u_cr(structure: &Structure) -> f64 {
+    uplift_displacement(structure, Side::Right, 0.0, &Dissipators::default())
+}
+
+/// The pushover from 0 to overturning, to the right, at as many `points` on each branch: full contact, then rocking.
+pub fn curve(structure: &Structure, points: u32) -> Result<Vec<Equilibrium>, PushoverError> {
+    if !(2..=MOST_POINTS).contains(&points) {
+        return Err(PushoverError::Points(points));
+    }
+    let end = at_overturning(structure).ok_or(PushoverError::TooSoft)?;
+    let at = |delta_t| at_displacement(structure, delta_t).ok_or(PushoverError::TooSoft);
+    displacements(structure, end.delta_t, points).map(at).collect()
+}
+
+/// Displacements (m) evenly on each branch: 0 to u_cr, and from just beyond to `end`.
+fn displacements(structure: &Structure, end: f64, points: u32) -> impl Iterator<Item = f64> {
+    let evenly = move |from: f64, to: f64| {
+        (0..points)
+            .map(move |i| if i == points - 1 { to } else { from + (to - from) * f64::from(i) / f64::from(points - 1) })
+    };
+    let u_cr = u_cr(structure);
+    evenly(0.0, u_cr).chain(evenly(u_cr.next_up(), end))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -172,6 +211,14 @@ mod tests {
                 .collect();
             assert!(forces.windows(2).all(|pair| pair[1].0 < pair[0].0 && pair[1].1 < pair[0].1));
         }
+    }
+
+    #[test]
+    fn a_curve_of_no_points_or_too_many_is_refused() {
+        for points in [0, 1, 2_000_000_000] {
+            assert_eq!(curve(&specimens()[0], points), Err(PushoverError::Points(points)));
+        }
+        assert_eq!(curve(&specimens()[0], 2).unwrap().len(), 4);
     }
 
     #[test]
