@@ -332,7 +332,8 @@ impl Record {
 /// mavroeidis_papageorgiou (2); phase in rad; error, how far its straight lines may be off the curve over the amplitude.
 /// g in m/s2. Raises ValueError for a pulse that cannot be.
 #[pyfunction]
-#[pyo3(signature = (shape, *, amplitude, frequency, cycles=None, phase=0.0, error=DEFAULT_ERROR, structure=None, g=9.81))]
+#[pyo3(signature = (shape, *, amplitude, frequency, cycles=None, phase=0.0, error=DEFAULT_ERROR, structure=None, g=G))]
+#[pyo3(text_signature = "(shape, *, amplitude, frequency, cycles=None, phase=0.0, error=0.0001, structure=None, g=9.81)")]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn pulse(
     shape: &str,
