@@ -25,7 +25,6 @@ pub struct PushoverArgs {
     results: FormatArgs,
 }
 
-
 /// Writes the curve from 0 to overturning, to the right, and prints its corners.
 pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     args.results.check_beside(args.output.as_deref())?;

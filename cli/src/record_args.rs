@@ -67,7 +67,7 @@ pub struct Understood {
     /// Scaled, in m/s².
     pub record: Record,
     /// Scaled, in the unit of its file.
-    in_file_unit: Record,
+    pub in_file_unit: Record,
     unit: Unit,
     /// Findings and assumptions in a sentence, then one sentence for each likely error.
     pub sentences: Vec<String>,

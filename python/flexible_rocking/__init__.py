@@ -25,12 +25,12 @@ from os import PathLike
 from pathlib import Path
 
 from . import _native
-from ._native import Advice, Curve, Peak, Record, Run, Structure, Transition, Worst, advise, estimate, pulse, simulate
-from ._results import Estimate, Response
+from ._native import Curve, Record, Run, Structure, __version__, advise, estimate, pulse, simulate
+from ._results import Advice, Estimate, Peak, Response, Transition, Transitions, Worst
 from ._sweep import Fragility, fragility, sweep
 
-__all__ = ["Advice", "Curve", "Estimate", "Fragility", "Peak", "Record", "Response", "Run", "Structure", "Transition", "Worst",
-           "advise", "estimate", "export", "fmu", "fragility", "pulse", "simulate", "sweep"]
+__all__ = ["Advice", "Curve", "Estimate", "Fragility", "Peak", "Record", "Response", "Run", "Structure", "Transition",
+           "Transitions", "Worst", "__version__", "advise", "estimate", "export", "fmu", "fragility", "pulse", "simulate", "sweep"]
 
 
 def fmu() -> Path:
@@ -52,7 +52,8 @@ def export(
 
     record: a Record or a file, or several; the FMU follows the first and has the others inside, each Record under its title.
     name: what hosts call the model. fmi: the version of the standard, 2 (2.0) or 3 (3.0). library: an FMU or a shared library
-    to take the code from; by default `fmu()`. Raises ValueError with the reason.
+    to take the code from; by default `fmu()`. What is assumed of a file, or likely wrong with it, is a warning. Raises ValueError
+    with the reason.
     """
     records = [record] if isinstance(record, (Record, str, PathLike)) else list(record)
     _native.export(target, structure, records, name, fmi, fmu() if library is None else library)

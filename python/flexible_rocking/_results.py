@@ -1,6 +1,7 @@
 """What runs return, as Python has it: tables and pictures."""
 
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 if TYPE_CHECKING:
     import numpy as np
@@ -11,6 +12,95 @@ if TYPE_CHECKING:
     from ._native import Run
 
 LABELS = {"a_g": ("m/s2", "$a_g$"), "theta": ("rad", r"$\theta$"), "u": ("m", "$u$"), "a_t": ("m/s2", "$a_t$")}
+
+
+class Peak(float):
+    """The largest magnitude of a quantity in a run, exact between all instants: a float in `unit`.
+
+    time: the first instant that has it, s.
+    """
+
+    time: float
+    unit: str
+
+    def __new__(cls, value: float, time: float, unit: str) -> "Peak":
+        peak = super().__new__(cls, value)
+        peak.time, peak.unit = time, unit
+        return peak
+
+    @property
+    def value(self) -> float:
+        """The magnitude as a plain float."""
+        return float(self)
+
+    def __getnewargs__(self) -> tuple[float, float, str]:  # type: ignore[override]
+        return self.value, self.time, self.unit
+
+    def __repr__(self) -> str:
+        return f"{self.value} {self.unit} at {self.time} s"
+
+
+class Transition(NamedTuple):
+    """A transition of a run. kind: "uplift left", "impact right", "landing", "settling", "overturning left", ...
+
+    before, after: u (m), u_dot (m/s), theta (rad), theta_dot (rad/s) just before and just after its time (s).
+    """
+
+    time: float
+    kind: str
+    before: dict[str, float]
+    after: dict[str, float]
+
+    def __repr__(self) -> str:
+        return f"{self.kind} at {self.time} s"
+
+
+class Transitions(list[Transition]):
+    """The transitions of a run in the order of time."""
+
+    def to_pandas(self) -> "pd.DataFrame":
+        """A DataFrame with the time as its index, the kind, and the state before and after: a row per transition."""
+        import pandas
+
+        states = [f"{name}_{when}" for when in ("before", "after") for name in ("u", "u_dot", "theta", "theta_dot")]
+        rows = [(of.time, of.kind, *of.before.values(), *of.after.values()) for of in self]
+        return pandas.DataFrame(rows, columns=["time", "kind", *states]).set_index("time")
+
+
+class Worst(NamedTuple):
+    """How far a run goes beyond one of the things that the model takes for granted.
+
+    value: the worst value, the largest, of R_v_min the least; time: its first instant, s. limit: a value beyond it gives a
+    warning. first_beyond: when the limit was passed first, s; None if it never was. beyond: for how long, s, or at how many
+    impacts it was passed.
+    """
+
+    value: float
+    time: float
+    limit: float
+    first_beyond: float | None
+    beyond: float
+
+    def __repr__(self) -> str:
+        passed = "never passed" if self.first_beyond is None else f"passed first at {self.first_beyond} s"
+        return f"{self.value} at {self.time} s; limit {self.limit}, {passed}"
+
+
+@dataclass(frozen=True, repr=False)
+class Advice:
+    """Every level of detail on one scene, and which is the cheapest that will do: what `advise` returns.
+
+    detail: the level that is advised; None where none is good enough. levels: a dict each: level, relative errors by criterion,
+    overturned (None where it still rocks), steps, evaluations, cost_of_auto (steps and evaluations over those of auto). text:
+    what print(advice) shows.
+    """
+
+    detail: str | None
+    levels: list[dict[str, Any]]
+    text: str
+
+    def __repr__(self) -> str:
+        return self.text
 
 
 class Response(dict[str, "NDArray[Any]"]):

@@ -1,34 +1,77 @@
 //! What Python's arguments say, and how they are refused: by name, value and limit, in the words of the library.
 
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
-use pyo3::exceptions::PyValueError;
+use pyo3::call::PyCallArgs;
+use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyFloat, PyInt};
 use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::{Detail, State};
 use rocking_sweep::plan::Conditions;
+use std::ffi::CString;
 
 /// The `ValueError` that says why.
 pub fn refused(error: impl Into<anyhow::Error>) -> PyErr {
     PyValueError::new_err(rocking_report::message(&error.into()))
 }
 
-/// The number that `value` is, which messages call `name`.
+/// The number that `value` is, which messages call `name`: a float, an int, or what numpy has in their place.
 pub fn number(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
-    value.extract().map_err(|_| PyValueError::new_err(format!("{name} = {value:?}: it is no number")))
+    if value.is_exact_instance_of::<PyFloat>() || value.is_exact_instance_of::<PyInt>() {
+        return value.extract();
+    }
+    let array = array(name, value).ok().filter(|array| array.ndim() == 0);
+    let numbers = array.and_then(|array| array.to_vec().ok());
+    numbers.map(|of| of[0]).ok_or_else(|| PyValueError::new_err(format!("{name} = {value:?}: it is no number")))
 }
 
-/// The numbers of an array of one dimension, or what numpy makes one of, which messages call `name`.
+/// The numbers of an array of one dimension, or the one that `value` is, which messages call `name`.
 pub fn numbers(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
-    let py = value.py();
-    let array = py.import("numpy")?.call_method1("asarray", (value, "float64"));
-    let array = array.map_err(|error| PyValueError::new_err(format!("{name}: {}", error.value(py))))?;
-    let array = array.cast_into::<PyArrayDyn<f64>>()?;
-    if array.ndim() != 1 {
+    let array = array(name, value)?;
+    if array.ndim() > 1 {
         let shape = array.shape();
         return Err(PyValueError::new_err(format!("{name} has the shape {shape:?}: one dimension is needed")));
     }
-    Ok(array.readonly().as_array().iter().copied().collect())
+    array.to_vec().map_err(refused)
+}
+
+/// What numpy makes of `value`, contiguous and aligned: the one place where arrays enter. Anything but plain numbers is refused,
+/// because numpy would turn it into other numbers.
+fn array<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let refused = |why: &str| PyValueError::new_err(format!("{name}: {why}"));
+    let numpy = value.py().import("numpy")?;
+    if numpy.getattr("ma")?.call_method1("is_masked", (value,))?.is_truthy()? {
+        return Err(refused("some of it is masked: leave that out, as by .compressed(), or fill it, as by .filled(0)"));
+    }
+    let read = |of: &Bound<'py, PyAny>| -> PyResult<(Bound<'py, PyAny>, String)> {
+        let array = numpy.call_method1("asarray", (of,));
+        let array = array.map_err(|error| refused(&error.value(of.py()).to_string()))?;
+        let kind = array.getattr("dtype")?.getattr("kind")?.extract()?;
+        Ok((array, kind))
+    };
+    let (mut array, mut kind) = read(value)?;
+    if kind == "O" {
+        (array, kind) = read(&array.call_method0("tolist")?)?; // of a table that has columns of other types, too
+    }
+    match kind.as_str() {
+        "f" | "i" | "u" => Ok(numpy.call_method1("require", (array, "float64", "CA"))?.cast_into()?),
+        "M" => Err(refused("these are dates: numbers are needed, such as the seconds since the first")),
+        "m" => Err(refused("these are durations: numbers are needed, in s, as by / numpy.timedelta64(1, 's')")),
+        "b" => Err(refused("these are bools: numbers are needed")),
+        "c" => Err(refused("these are complex: real numbers are needed")),
+        _ => Err(refused("numbers are needed, not text or other objects")),
+    }
+}
+
+/// Warns of each of `sentences`, at the line of Python that is `above` levels up.
+pub fn warn(py: Python<'_>, sentences: impl IntoIterator<Item = String>, above: i32) -> PyResult<()> {
+    let warn = |of: String| PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(of)?, above);
+    sentences.into_iter().try_for_each(warn)
+}
+
+/// What the Python part calls `name`, made of `parts`.
+pub fn result<'py>(py: Python<'py>, name: &str, parts: impl PyCallArgs<'py>) -> PyResult<Bound<'py, PyAny>> {
+    py.import("flexible_rocking._results")?.call_method1(name, parts)
 }
 
 /// The one of `all` that is called `asked`; a message calls what is asked for `name`.
@@ -42,9 +85,10 @@ pub fn one_of<T, const N: usize>(name: &str, asked: &str, all: [(&str, T); N]) -
 pub fn conditions(
     detail: &str,
     tolerance: f64,
-    duration: Option<f64>,
+    duration: Option<&Bound<'_, PyAny>>,
     initial: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Conditions> {
+    let duration = duration.map(|duration| number("duration", duration)).transpose()?;
     let detail = one_of("detail", detail, Detail::ALL.map(|of| (of.name(), of)))?;
     let mut state = State::default();
     for (name, value) in initial.into_iter().flatten() {

@@ -4,17 +4,19 @@
 
 mod advice;
 mod arguments;
+mod interruptible;
 mod record;
 mod run;
 mod structure;
 mod sweep;
 
-use arguments::{one_of, refused};
+use arguments::{one_of, refused, warn};
 use fmu_export::{Library, Version};
+use interruptible::interruptible;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use rocking_cli::output_files::OutputFiles;
-use rocking_records::{csv, vertical_csv};
+use rocking_cli::record_args::RecordOptions;
 use std::ffi::OsString;
 use std::path::PathBuf;
 
@@ -22,17 +24,21 @@ use std::path::PathBuf;
 #[pymodule]
 mod _native {
     #[pymodule_export]
-    use super::advice::{Advice, advise, estimate};
+    use super::advice::{advise, estimate};
     #[pymodule_export]
     use super::record::{Record, pulse};
     #[pymodule_export]
-    use super::run::{Peak, Run, Transition, Worst, simulate};
+    use super::run::{Run, simulate};
     #[pymodule_export]
     use super::structure::Structure;
     #[pymodule_export]
     use super::sweep::{Curve, fragility, intensity_measures, measure_of, sweep};
     #[pymodule_export]
     use super::{command_line, export};
+
+    #[pymodule_export]
+    #[expect(non_upper_case_globals, reason = "as Python has it")]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
 }
 
 /// What the command line `rocking-fmu` does with `arguments`, the first of which is its name: its exit code. `program`
@@ -56,42 +62,44 @@ fn export(
     target: PathBuf,
     structure: &structure::Structure,
     records: Vec<Packed>,
-    name: &str,
+    name: String,
     fmi: u32,
     library: PathBuf,
 ) -> PyResult<()> {
     let version = one_of("fmi", &fmi.to_string(), [("2", Version::Fmi2), ("3", Version::Fmi3)])?;
-    let name_of = |record: &record::Record, ending: &str| {
-        let is_plain = |letter: char| letter.is_alphanumeric() || letter == '-';
-        PathBuf::from(record.0.title().replace(|letter| !is_plain(letter), "_") + ending)
-    };
-    let content = |packed: &Packed| match packed {
-        Packed::Record(record) => Ok((name_of(record.get(), ".csv"), csv(&record.get().0).into_bytes())),
-        Packed::File(path) => Ok((path.clone(), rocking_records::read_file(path)?)),
-    };
-    let vertical = |packed: &Packed| match packed {
-        Packed::Record(record) => {
-            vertical_csv(&record.get().0).map(|table| (name_of(record.get(), "_v.csv"), table.into_bytes()))
+    let mut files = OutputFiles::of_inputs([library.as_path()]);
+    for packed in &records {
+        if let Packed::File(path) = packed {
+            files.add_input(path);
         }
-        Packed::File(_) => None,
+    }
+    let target = files.create(&target).map_err(refused)?;
+    let is_plain = |letter: char| letter.is_alphanumeric() || letter == '-';
+    // the file, or the tables of the record, the vertical component last
+    let contents = |packed: &Packed| -> PyResult<Vec<(PathBuf, Vec<u8>)>> {
+        let path = match packed {
+            Packed::Record(record) => {
+                let name = record.get().title().replace(|letter| !is_plain(letter), "_");
+                let files = ["", "_v"].map(|ending| PathBuf::from(format!("{name}{ending}.csv")));
+                return Ok(files.into_iter().zip(record.get().tables().map(String::into_bytes)).collect());
+            }
+            Packed::File(path) => path,
+        };
+        let understood = RecordOptions::default().understand(path, structure.0.parameters().g).map_err(refused)?;
+        warn(py, understood.sentences[1..].to_vec(), 2)?;
+        Ok(vec![(path.clone(), rocking_records::read_file(path).map_err(refused)?)])
     };
-    if let Some(other) = records.iter().skip(1).position(|record| vertical(record).is_some()) {
+    let mut records: Vec<_> = records.iter().map(contents).collect::<PyResult<_>>()?;
+    if let Some(other) = records.iter().skip(1).position(|record| record.len() > 1) {
         let needed = "the FMU follows the first alone, and no other may have a vertical component";
         return Err(PyValueError::new_err(format!("record {}: {needed}", other + 2)));
     }
-    let written = py.detach(|| -> anyhow::Result<()> {
-        let mut files = OutputFiles::of_inputs([library.as_path()]);
-        for packed in &records {
-            if let Packed::File(path) = packed {
-                files.add_input(path);
-            }
-        }
-        let target = files.create(&target)?;
-        let vertical = records.first().and_then(vertical);
-        let records = records.iter().map(content).collect::<Result<_, rocking_records::RecordError>>()?;
+    let vertical = records.first_mut().filter(|first| first.len() > 1).and_then(Vec::pop);
+    let structure = structure.0;
+    interruptible(py, move |_| -> anyhow::Result<()> {
         let (libraries, name) = (Library::read(&library)?, name.parse()?);
-        let (_, archive) = fmu_export::export(version, &name, &structure.0, records, vertical, &libraries)?;
+        let records = records.into_iter().flatten().collect();
+        let (_, archive) = fmu_export::export(version, &name, &structure, records, vertical, &libraries)?;
         target.write(&archive)
-    });
-    written.map_err(refused)
+    })
 }

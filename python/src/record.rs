@@ -1,19 +1,27 @@
 //! `Record`: a ground motion from arrays, a file or a formula.
 
-use crate::arguments::{number, numbers, one_of, refused};
+use crate::arguments::{number, numbers, one_of, refused, warn};
+use crate::interruptible::interruptible;
 use crate::structure::Structure;
+use anyhow::ensure;
 use numpy::PyArray1;
-use pyo3::exceptions::{PyUserWarning, PyValueError};
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyFloat, PyInt};
+use pyo3::types::PyType;
+use rocking::Parameters;
 use rocking::estimates::intensity::peak_velocity;
-use rocking::estimates::response_spectrum::spectrum;
+use rocking::estimates::response_spectrum;
+use rocking::run::record::Record as Samples;
 use rocking_cli::output_files::OutputFiles;
 use rocking_cli::record_args::RecordOptions;
-use rocking_records::{Column, Unit, csv};
+use rocking_records::{Column, Unit, csv_in, doubts, vertical_csv};
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
-use std::ffi::CString;
+use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;
+use std::sync::Arc;
+
+/// What a unit of g stands for where no structure is shaken, m/s².
+pub const G: f64 = Parameters::EVISON.g;
 
 /// A ground motion: the acceleration of the ground at two instants or more, linear between them.
 ///
@@ -22,51 +30,130 @@ use std::path::PathBuf;
 /// Record(time, a_g, a_v): with the vertical component, positive upwards, of the same shape and unit.
 /// Record.read(file): a file as the archives publish it.
 ///
-/// unit: "m/s2" (default), "g", "cm/s2", "gal", "mm/s2", "in/s2", "ft/s2", "mg", "%g"; g (m/s2) is what a unit of g
-/// stands for. time_scale multiplies the times, scale the accelerations; title is what it is called in tables. The
-/// samples are copied once, into the record. Raises ValueError for other shapes, NaN and infinity, and times that do
-/// not increase.
+/// unit: "m/s2" (default), "g", "cm/s2", "gal", "mm/s2", "in/s2", "ft/s2", "mg", "%g". A record keeps its unit: g is that of
+/// the structure that it shakes; the attributes of the record are in m/s2, with 9.81 m/s2 for g. time_scale multiplies the
+/// times, scale the accelerations; title is what the record is called in tables. The samples are copied. What is likely wrong
+/// with them is a warning. Raises ValueError for other shapes, NaN and infinity, and times that do not increase.
 #[pyclass(frozen, module = "flexible_rocking")]
-pub struct Record(pub rocking::run::record::Record);
+pub struct Record {
+    given: Vec<Given>,
+    /// Multiplies the accelerations once they are in m/s².
+    scale: f64,
+    /// Under [`G`].
+    usual: Arc<Samples>,
+}
+
+/// A component, the horizontal one first, and the unit of its samples: one of g, or m/s².
+type Given = (Samples, Unit);
+
+/// The same in Python: times, accelerations, the name of their unit.
+type Plain<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, String);
+
+/// A function, and what it makes a record of: its title, what was given, its scale.
+type Pickled<'py> = (Bound<'py, PyAny>, (String, Vec<Plain<'py>>, f64));
 
 fn unit(name: &str) -> PyResult<Unit> {
     one_of("unit", name, Unit::NAMES)
 }
 
+/// `given` in m/s² under `g` (m/s²).
+fn in_m_s2(given: &[Given], scale: f64, g: f64) -> anyhow::Result<Arc<Samples>> {
+    let mut components =
+        given.iter().map(|(samples, unit)| samples.clone().multiplied(unit.in_m_s2(g)).scaled(1.0, scale));
+    let mut record = components.next().expect("a record has a component")?;
+    if let Some(vertical) = components.next() {
+        record = record.with_vertical(&vertical?)?;
+    }
+    Ok(Arc::new(record))
+}
+
+/// Whether a g decides how large the `unit` is.
+fn is_of_g(unit: Unit) -> bool {
+    unit.in_m_s2(1.0) != unit.in_m_s2(2.0)
+}
+
+impl Record {
+    fn of(given: Vec<Given>, scale: f64) -> PyResult<Record> {
+        let fixed = |(samples, unit): Given| match unit {
+            unit if is_of_g(unit) => (samples, unit),
+            unit => (samples.multiplied(unit.in_m_s2(G)), Unit::MetrePerSecondSquared),
+        };
+        let given: Vec<_> = given.into_iter().map(fixed).collect();
+        let usual = in_m_s2(&given, scale, G).map_err(refused)?;
+        Ok(Record { given, scale, usual })
+    }
+
+    /// `samples`, m/s².
+    pub fn in_si(samples: Samples) -> PyResult<Record> {
+        Record::of(vec![(samples, Unit::MetrePerSecondSquared)], 1.0)
+    }
+
+    /// It in m/s² as it shakes a structure under `g` (m/s²).
+    pub fn under(&self, g: f64) -> PyResult<Arc<Samples>> {
+        if g == G { Ok(Arc::clone(&self.usual)) } else { in_m_s2(&self.given, self.scale, g).map_err(refused) }
+    }
+
+    /// Whether a g decides how strong it is.
+    pub fn is_in_g(&self) -> bool {
+        self.given.iter().any(|(_, unit)| is_of_g(*unit))
+    }
+
+    /// Its components as tables that are read without options, in their units.
+    pub fn tables(&self) -> impl Iterator<Item = String> {
+        let tables = [csv_in, vertical_csv];
+        self.given
+            .iter()
+            .zip(tables)
+            .map(|((samples, unit), table)| table(&samples.clone().multiplied(self.scale), *unit))
+    }
+}
+
+/// A Record that is asked for, as `record`.
+pub struct Ground(pub Py<Record>);
+
+impl<'a, 'py> FromPyObject<'a, 'py> for Ground {
+    type Error = PyErr;
+
+    fn extract(value: Borrowed<'a, 'py, PyAny>) -> PyResult<Ground> {
+        let needed =
+            || format!("record = {value:?} is no Record: Record.read(file) reads one, Record(time, a_g) makes one");
+        value.cast::<Record>().map(|of| Ground(of.to_owned().unbind())).map_err(|_| PyTypeError::new_err(needed()))
+    }
+}
+
 #[pymethods]
 impl Record {
     #[new]
-    #[pyo3(signature = (time, a_g, a_v=None, *, unit="m/s2", g=9.81, time_scale=1.0, scale=1.0, title="record"))]
+    #[pyo3(signature = (time, a_g, a_v=None, *, unit="m/s2", time_scale=1.0, scale=1.0, title="record"))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn new(
+        py: Python<'_>,
         time: &Bound<'_, PyAny>,
         a_g: &Bound<'_, PyAny>,
         a_v: Option<&Bound<'_, PyAny>>,
         unit: &str,
-        g: f64,
         time_scale: f64,
         scale: f64,
         title: &str,
     ) -> PyResult<Record> {
         let a_g = numbers("a_g", a_g)?;
-        let times: Vec<f64> = if time.is_instance_of::<PyFloat>() || time.is_instance_of::<PyInt>() {
-            let dt = number("dt", time)?;
-            if !(dt > 0.0 && dt.is_finite()) {
+        let times: Vec<f64> = match number("dt", time) {
+            Ok(dt) if dt > 0.0 && dt.is_finite() => (0..a_g.len()).map(|i| i as f64 * dt).collect(),
+            Ok(dt) => {
                 let needed = "a finite number greater than 0 is needed";
                 return Err(PyValueError::new_err(format!("dt = {dt} is out of range: {needed}")));
             }
-            (0..a_g.len()).map(|i| i as f64 * dt).collect()
-        } else {
-            numbers("time", time)?
+            Err(_) => numbers("time", time)?,
         };
-        let per_unit = self::unit(unit)?.in_m_s2(g);
-        let component =
-            |samples| rocking::run::record::Record::from_samples(title, times.clone(), samples).map_err(refused);
-        let mut record = component(a_g)?;
-        if let Some(a_v) = a_v {
-            record = record.with_vertical(&component(numbers("a_v", a_v)?)?).map_err(refused)?;
-        }
-        record.multiplied(per_unit).scaled(time_scale, scale).map(Record).map_err(refused)
+        let (components, unit) = ([Some(a_g), a_v.map(|a_v| numbers("a_v", a_v)).transpose()?], self::unit(unit)?);
+        let component = |samples| -> PyResult<Given> {
+            let samples = Samples::from_samples(title, times.clone(), samples).map_err(refused)?;
+            Ok((samples, unit))
+        };
+        let given = components.into_iter().flatten().map(component).collect::<PyResult<_>>()?;
+        let record = Record::of(given, 1.0)?.scaled(scale, time_scale)?;
+        warn(py, doubts(&record.usual, G).into_iter().map(|doubt| format!("{title}: {doubt}")), 1)?;
+        Ok(record)
     }
 
     /// Reads the record in `file`: PEER .AT2, ESM and ITACA, K-NET, COSMOS, CSMIP, or a table of text, known by its
@@ -74,88 +161,113 @@ impl Record {
     ///
     /// What the file does not state is said by unit (of its accelerations), dt (s between samples), column (a number
     /// from 1, a heading, or "all"), ignore_npts (take the samples that are there). vertical is the file of the vertical
-    /// component, read by the same options. time_scale and scale multiply; g (m/s2) is what a record's g stands for. What is
-    /// likely wrong with it is a warning. Raises ValueError with the line and what would help.
+    /// component, read by the same options. time_scale and scale multiply. What is assumed of the file because it does not
+    /// state it, and what is likely wrong with it, is a warning. Raises ValueError with the line and what would help.
     #[staticmethod]
-    #[pyo3(signature = (file, *, vertical=None, unit=None, dt=None, column=None, ignore_npts=false, time_scale=1.0, scale=1.0, g=9.81))]
+    #[pyo3(signature = (file, *, vertical=None, unit=None, dt=None, column=None, ignore_npts=false, time_scale=1.0, scale=1.0))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn read(
         py: Python<'_>,
         file: PathBuf,
         vertical: Option<PathBuf>,
         unit: Option<&str>,
-        dt: Option<f64>,
+        dt: Option<&Bound<'_, PyAny>>,
         column: Option<Bound<'_, PyAny>>,
         ignore_npts: bool,
         time_scale: f64,
         scale: f64,
-        g: f64,
     ) -> PyResult<Record> {
         let unit = unit.map(self::unit).transpose()?;
+        let dt = dt.map(|dt| number("dt", dt)).transpose()?;
         let column = column.map(|column| -> PyResult<_> { Ok(Column::from(column.str()?.to_str()?)) }).transpose()?;
-        let (time_scale, scale) = (Some(time_scale), Some(scale));
-        let options = RecordOptions { unit, dt, column, ignore_npts, time_scale, scale };
-        let read = |file: PathBuf| -> PyResult<rocking::run::record::Record> {
-            let understood = py.detach(|| options.understand(&file, g)).map_err(refused)?;
-            for warning in &understood.sentences[1..] {
-                PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(warning.as_str())?, 2)?;
-            }
-            Ok(understood.record)
+        let options = RecordOptions { unit, dt, column, ignore_npts, ..RecordOptions::default() };
+        let read = |file: PathBuf| -> PyResult<Given> {
+            let options = options.clone();
+            let (understood, sentences) = interruptible(py, move |_| -> anyhow::Result<_> {
+                let understood = options.understand(&file, G)?;
+                let sentences = understood.sentences[1..].to_vec();
+                Ok((understood, sentences))
+            })?;
+            warn(py, sentences, 1)?;
+            let unit = understood.unit();
+            Ok((understood.in_file_unit, unit))
         };
-        let record = read(file)?;
-        let Some(vertical) = vertical else { return Ok(Record(record)) };
-        record.with_vertical(&read(vertical)?).map(Record).map_err(refused)
+        let given = [Some(file), vertical].into_iter().flatten().map(read).collect::<PyResult<_>>()?;
+        Record::of(given, 1.0)?.scaled(scale, time_scale)
+    }
+
+    /// A pickle has what was given.
+    #[classmethod]
+    fn _of(_: &Bound<'_, PyType>, title: &str, given: Vec<Plain<'_>>, scale: f64) -> PyResult<Record> {
+        let component = |(times, samples, unit): &Plain<'_>| -> PyResult<Given> {
+            let (times, samples) = (numbers("time", times)?, numbers("a_g", samples)?);
+            Ok((Samples::from_samples(title, times, samples).map_err(refused)?, self::unit(unit)?))
+        };
+        Record::of(given.iter().map(component).collect::<PyResult<_>>()?, scale)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Pickled<'py>> {
+        let of = slf.get();
+        let component = |(samples, unit): &Given| {
+            let [times, samples] =
+                [samples.times(), samples.acceleration()].map(|of| PyArray1::from_slice(slf.py(), of).into_any());
+            (times, samples, unit.to_string())
+        };
+        let given = of.given.iter().map(component).collect();
+        Ok((slf.get_type().getattr("_of")?, (of.title().to_owned(), given, of.scale)))
     }
 
     /// Times of the samples, s: an array (n,), a copy.
     #[getter]
     fn time<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.0.times())
+        PyArray1::from_slice(py, self.usual.times())
     }
 
     /// Horizontal ground accelerations of the samples, m/s2: an array (n,), a copy.
     #[getter]
     fn a_g<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
-        PyArray1::from_slice(py, self.0.acceleration())
+        PyArray1::from_slice(py, self.usual.acceleration())
     }
 
     /// Vertical ground accelerations of the samples, m/s2, positive upwards: an array (n,), a copy; None without them.
     #[getter]
     fn a_v<'py>(&self, py: Python<'py>) -> Option<Bound<'py, PyArray1<f64>>> {
-        self.0.vertical().map(|a_v| PyArray1::from_slice(py, a_v))
+        self.usual.vertical().map(|a_v| PyArray1::from_slice(py, a_v))
     }
 
     /// What it is called.
     #[getter]
-    fn title(&self) -> &str {
-        self.0.title()
+    pub fn title(&self) -> &str {
+        self.usual.title()
     }
 
     /// Peak ground acceleration, m/s2.
     #[getter]
     fn pga(&self) -> f64 {
-        self.0.pga()
+        self.usual.pga()
     }
 
     /// Peak ground velocity, m/s.
     #[getter]
     fn pgv(&self) -> f64 {
-        peak_velocity(&self.0)
+        peak_velocity(&self.usual)
     }
 
     /// Time from the first sample to the last, s.
     #[getter]
     fn duration(&self) -> f64 {
-        self.0.end() - self.0.start()
+        self.usual.end() - self.usual.start()
     }
 
     /// This ground motion with its times multiplied by time_scale, its accelerations by scale.
     #[pyo3(signature = (scale=1.0, *, time_scale=1.0))]
     fn scaled(&self, scale: f64, time_scale: f64) -> PyResult<Record> {
-        self.0.clone().scaled(time_scale, scale).map(Record).map_err(refused)
+        Samples::clone(&self.usual).scaled(time_scale, scale).map_err(refused)?;
+        let in_time = |(samples, unit): &Given| Ok((samples.clone().scaled(time_scale, 1.0).map_err(refused)?, *unit));
+        Record::of(self.given.iter().map(in_time).collect::<PyResult<_>>()?, self.scale * scale)
     }
 
-    /// Absolute spectral accelerations S_a, m/s2, at `periods` (s), an array (n,), with the damping ratio zeta: an
+    /// Absolute spectral accelerations S_a, m/s2, at `periods` (s), a number or an array (n,), with the damping ratio zeta: an
     /// array (n,).
     #[pyo3(signature = (periods, zeta=0.05))]
     fn spectrum<'py>(
@@ -164,38 +276,47 @@ impl Record {
         periods: &Bound<'py, PyAny>,
         zeta: f64,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let periods = numbers("periods", periods)?;
-        let spectrum = py.detach(|| spectrum(&self.0, &periods, zeta)).map_err(refused)?;
+        let (record, periods) = (Arc::clone(&self.usual), numbers("periods", periods)?);
+        let spectrum = interruptible(py, move |abandoned| {
+            response_spectrum::spectrum(&record, periods.into_iter().inspect(|_| abandoned.check()), zeta)
+        })?;
         Ok(PyArray1::from_vec(py, spectrum))
     }
 
-    /// Writes the horizontal component to `file` as a table that is read without options: time[s], a_g[m/s2], all digits.
-    fn write(&self, file: PathBuf) -> PyResult<()> {
-        OutputFiles::default().create(&file).and_then(|file| file.write(csv(&self.0).as_bytes())).map_err(refused)
+    /// Writes the record to `file` as a table that is read without options: time[s], a_g in its unit, all digits; likewise the
+    /// vertical component, if there is one, to the file `vertical`.
+    #[pyo3(signature = (file, *, vertical=None))]
+    fn write(&self, file: PathBuf, vertical: Option<PathBuf>) -> PyResult<()> {
+        let write = || -> anyhow::Result<()> {
+            let paths: Vec<_> = [Some(&file), vertical.as_ref()].into_iter().flatten().collect();
+            ensure!(paths.len() >= self.given.len(), "the record has a vertical component: give its file as vertical");
+            ensure!(paths.len() <= self.given.len(), "the record has no vertical component: leave vertical out");
+            let mut files = OutputFiles::default();
+            let files: Vec<_> = paths.into_iter().map(|path| files.create(path)).collect::<Result<_, _>>()?;
+            files.into_iter().zip(self.tables()).try_for_each(|(file, table)| file.write(table.as_bytes()))
+        };
+        write().map_err(refused)
     }
 
     fn __len__(&self) -> usize {
-        self.0.times().len()
+        self.usual.times().len()
     }
 
     fn __repr__(&self) -> String {
-        let (samples, pga) = (self.0.times().len(), self.0.pga());
-        format!("<Record {:?}: {samples} samples, {} s, peak {pga:.4} m/s2>", self.0.title(), self.duration())
+        let (samples, pga) = (self.usual.times().len(), self.usual.pga());
+        format!("<Record {:?}: {samples} samples, {} s, peak {pga:.4} m/s2>", self.title(), self.duration())
     }
 
     fn __eq__(&self, other: &Record) -> bool {
-        self.0 == other.0
+        (&self.given, self.scale) == (&other.given, other.scale)
     }
 
-    fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<(Samples<'py>, Bound<'py, PyDict>)> {
-        let title = PyDict::new(py);
-        title.set_item("title", self.0.title())?;
-        Ok(((self.time(py), self.a_g(py), self.a_v(py)), title))
+    fn __hash__(&self) -> u64 {
+        let mut hasher = DefaultHasher::new();
+        (self.title(), self.usual.times().len(), self.usual.pga().to_bits()).hash(&mut hasher);
+        hasher.finish()
     }
 }
-
-/// Times and accelerations, horizontal and vertical.
-type Samples<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Option<Bound<'py, PyArray1<f64>>>);
 
 /// The pulse of this shape as a Record: "half_sine", "sine", "cosine", "ricker", "antisymmetric_ricker",
 /// "mavroeidis_papageorgiou".
@@ -205,7 +326,10 @@ type Samples<'py> = (Bound<'py, PyArray1<f64>>, Bound<'py, PyArray1<f64>>, Optio
 /// mavroeidis_papageorgiou (2); phase in rad; error, how far its straight lines may be off the curve over the amplitude.
 /// g in m/s2. Raises ValueError for a pulse that cannot be.
 #[pyfunction]
-#[pyo3(signature = (shape, *, amplitude, frequency, cycles=None, phase=0.0, error=DEFAULT_ERROR, structure=None, g=9.81))]
+#[pyo3(signature = (shape, *, amplitude, frequency, cycles=None, phase=0.0, error=DEFAULT_ERROR, structure=None, g=G))]
+#[pyo3(
+    text_signature = "(shape, *, amplitude, frequency, cycles=None, phase=0.0, error=0.0001, structure=None, g=9.81)"
+)]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn pulse(
     shape: &str,
@@ -221,5 +345,5 @@ pub fn pulse(
     let (of_amplitude, of_frequency) = structure.map_or((g, 1.0), |structure| units_of(&structure.0));
     let pulse = Pulse::new(shape, amplitude * of_amplitude, frequency * of_frequency);
     let pulse = Pulse { cycles: cycles.unwrap_or(pulse.cycles), phase, error, ..pulse };
-    pulse.record().map(Record).map_err(refused)
+    Record::in_si(pulse.record().map_err(refused)?)
 }

@@ -1,111 +1,31 @@
 //! `simulate` and `Run`: one structure under one ground motion.
 
-use crate::arguments::{conditions, numbers, refused};
-use crate::record::Record;
+use crate::arguments::{conditions, numbers, refused, result};
+use crate::interruptible::{Abandoned, interruptible};
+use crate::record::{Ground, Record};
 use crate::structure::Structure;
 use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyString};
-use rocking::State;
+use pyo3::types::PyDict;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::engine::piece::Sample;
 use rocking::mechanics::state::{COMPONENTS, INITIAL_VALUES};
 use rocking::run::fall::Found;
-use rocking::run::peaks;
-use rocking::run::validity::{ASSUMPTIONS, Limits};
-use rocking::run::{End, Ending};
+use rocking::run::peaks::{self, Peak};
+use rocking::run::validity::{ASSUMPTIONS, Limits, Worst};
+use rocking::run::{End, Ending, RunError};
+use rocking::{Phase, Side, State, Transition};
 use rocking_report::summary::Summary;
 use rocking_report::tables::{RESPONSE, response_numbers};
 use rocking_report::validity;
 use rocking_sweep::plan::Conditions;
-
-/// The largest magnitude of a quantity in a run, exact between all instants: float(peak) is its value.
-#[pyclass(frozen, get_all, module = "flexible_rocking")]
-pub struct Peak {
-    /// The magnitude, in `unit`.
-    value: f64,
-    /// The first instant that has it, s.
-    time: f64,
-    /// Its unit.
-    unit: &'static str,
-}
-
-#[pymethods]
-impl Peak {
-    fn __float__(&self) -> f64 {
-        self.value
-    }
-
-    fn __repr__(&self) -> String {
-        let Peak { value, time, unit } = self;
-        format!("{value} {unit} at {time} s")
-    }
-}
-
-/// A transition of a run: uplift, impact, landing, settling, overturning.
-#[pyclass(frozen, module = "flexible_rocking")]
-pub struct Transition(rocking::Transition);
+use std::sync::Arc;
 
 fn state<'py>(py: Python<'py>, of: &State) -> PyResult<Bound<'py, PyDict>> {
     let state = PyDict::new(py);
     COMPONENTS.iter().zip(of.components()).try_for_each(|(name, value)| state.set_item(name, value))?;
     Ok(state)
-}
-
-#[pymethods]
-impl Transition {
-    /// Its instant, s.
-    #[getter]
-    fn time(&self) -> f64 {
-        self.0.time
-    }
-
-    /// "uplift left", "impact right", "landing", "settling", "overturning left", ...
-    #[getter]
-    fn kind(&self) -> &'static str {
-        self.0.kind.name()
-    }
-
-    /// u (m), u_dot (m/s), theta (rad), theta_dot (rad/s) just before it.
-    #[getter]
-    fn before<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        state(py, &self.0.before)
-    }
-
-    /// The same just after it.
-    #[getter]
-    fn after<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        state(py, &self.0.after)
-    }
-
-    fn __repr__(&self) -> String {
-        format!("{} at {} s", self.0.kind.name(), self.0.time)
-    }
-}
-
-/// What a run asks for beyond one of the things that the model takes for granted.
-#[pyclass(frozen, get_all, module = "flexible_rocking")]
-pub struct Worst {
-    /// The worst value: the largest, of R_v_min the least.
-    value: f64,
-    /// Its first instant, s.
-    time: f64,
-    /// What may be asked for without a word.
-    limit: f64,
-    /// When the limit was passed first, s; None if it never was.
-    first_beyond: Option<f64>,
-    /// For how long, s, or at how many impacts it was passed.
-    beyond: f64,
-}
-
-#[pymethods]
-impl Worst {
-    fn __repr__(&self) -> String {
-        let Worst { value, time, limit, first_beyond, .. } = self;
-        let passed = first_beyond.map_or("never passed".into(), |first| format!("passed first at {first} s"));
-        format!("{value} at {time} s; limit {limit}, {passed}")
-    }
 }
 
 /// A structure that has been followed through a ground motion: what `simulate` returns.
@@ -117,6 +37,8 @@ impl Worst {
 pub struct Run {
     structure: Py<Structure>,
     record: Py<Record>,
+    /// The record as it shakes the structure.
+    ground: Arc<rocking::run::record::Record>,
     conditions: Conditions,
     found: Found,
     transitions: Vec<rocking::Transition>,
@@ -125,7 +47,7 @@ pub struct Run {
 impl Run {
     /// The run of the library.
     fn run(&self) -> rocking::Run<'_> {
-        self.conditions.run(self.structure.get().0, &self.record.get().0)
+        self.conditions.run(self.structure.get().0, &self.ground)
     }
 }
 
@@ -155,16 +77,16 @@ impl Run {
         self.conditions.tolerance
     }
 
-    /// The exact largest magnitudes by name, each a Peak: a_g (m/s2), theta (rad), u (m), delta_t (m, Eq 26), uplift
+    /// The exact largest magnitudes by name, each a Peak, a float with unit and time: a_g (m/s2), theta (rad), u (m), delta_t (m, Eq 26), uplift
     /// (m, Eq 25), a_t (m/s2, Eq 27), V_t (N, Eqs 2, 23), M_t (N.m, Eqs 3, 24), and with a tendon its force P_t (N). Of a
     /// structure that overturns those before it falls.
     #[getter]
     fn peaks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let named = PyDict::new(py);
-        let peak = |peaks::Peak { magnitude: value, time }, unit| Peak { value, time, unit };
-        named.set_item("a_g", Py::new(py, peak(self.found.ground, "m/s2"))?)?;
+        let peak = |Peak { magnitude, time }, unit| result(py, "Peak", (magnitude, time, unit));
+        named.set_item("a_g", peak(self.found.ground, "m/s2")?)?;
         for of in peaks::of(&self.structure.get().0) {
-            named.set_item(of.name, Py::new(py, peak(of.of(&self.found.peaks), of.unit))?)?;
+            named.set_item(of.name, peak(of.of(&self.found.peaks), of.unit)?)?;
         }
         Ok(named)
     }
@@ -200,10 +122,14 @@ impl Run {
         self.found.fall
     }
 
-    /// Every transition in the order of time.
+    /// Every transition in the order of time, each a Transition: a list, with to_pandas().
     #[getter]
-    fn transitions(&self) -> Vec<Transition> {
-        self.transitions.iter().copied().map(Transition).collect()
+    fn transitions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let transition = |of: &Transition| {
+            let [before, after] = [&of.before, &of.after].map(|of| state(py, of));
+            result(py, "Transition", (of.time, of.kind.name(), before?, after?))
+        };
+        result(py, "Transitions", (self.transitions.iter().map(transition).collect::<PyResult<Vec<_>>>()?,))
     }
 
     /// Steps that it took.
@@ -221,22 +147,22 @@ impl Run {
     /// What the model leaves out on this run, exact, each a Worst: tension_max, R_v_min, mu_required, mu_impact,
     /// tension_impact, energy_gain_max; within the usual limits.
     #[getter]
-    fn validity<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        self.validity_within(py, None, None, None, None)
+    fn validity(slf: Py<Self>, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+        Run::validity_within(slf, py, None, None, None, None)
     }
 
     /// What the model leaves out as validity has it, within limits of your own, of at least 0, or None for the usual one:
     /// friction (coefficient), tension and edge_load (over the weight; tension at an impact, over its impulse), energy_gain
     /// (over the kinetic energy before an impact).
     #[pyo3(signature = (*, friction=None, tension=None, edge_load=None, energy_gain=None))]
-    fn validity_within<'py>(
-        &self,
-        py: Python<'py>,
+    fn validity_within(
+        slf: Py<Self>,
+        py: Python<'_>,
         friction: Option<f64>,
         tension: Option<f64>,
         edge_load: Option<f64>,
         energy_gain: Option<f64>,
-    ) -> PyResult<Bound<'py, PyDict>> {
+    ) -> PyResult<Bound<'_, PyDict>> {
         let usual = Limits::default();
         let limits = Limits {
             friction: friction.unwrap_or(usual.friction),
@@ -245,30 +171,31 @@ impl Run {
             energy_gain: energy_gain.unwrap_or(usual.energy_gain),
         };
         limits.check().map_err(refused)?;
-        let (found, _) = py.detach(|| self.run().validity(limits)).map_err(refused)?;
+        let (found, _) = interruptible(py, move |_| slf.get().run().validity(limits))?;
         let named = PyDict::new(py);
         for (assumption, worst) in ASSUMPTIONS.iter().zip(&found.worst) {
-            let rocking::run::validity::Worst { value, time, first_beyond, beyond } = *worst;
-            let limit = (assumption.limit)(&limits);
-            named.set_item(assumption.name, Py::new(py, Worst { value, time, limit, first_beyond, beyond })?)?;
+            let Worst { value, time, first_beyond, beyond } = *worst;
+            let parts = (value, time, (assumption.limit)(&limits), first_beyond, beyond);
+            named.set_item(assumption.name, result(py, "Worst", parts)?)?;
         }
         Ok(named)
     }
 
-    /// The motion at `times` (s), an array (n,) in any order: a Response, a dict of arrays (n,) by the names of the
+    /// The motion at `times` (s), a number or an array (n,) in any order: a Response, a dict of arrays (n,) by the names of the
     /// FMU's outputs (time, a_g, theta, u, a_t, V_t, M_t, ..., phase, transitions), with to_pandas().
     ///
     /// Exact: the engine's own polynomials and flows are evaluated, nothing is interpolated. At a transition the values
     /// are those just after it. After the end of the run the motion goes on over ground at rest; once overturned there
     /// is none, and it is NaN. Raises ValueError for times before the start of the run, and NaN.
-    fn at<'py>(&self, py: Python<'py>, times: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
+    fn at<'py>(slf: Py<Self>, py: Python<'py>, times: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let times = numbers("times", times)?;
-        let start = self.found.start;
+        let start = slf.get().found.start;
         if let Some(i) = times.iter().position(|time| !(*time >= start && time.is_finite())) {
             let needed = format!("a finite time from the start of the run on, {start} s, is needed");
             return Err(PyValueError::new_err(format!("times[{i}] = {} s is out of range: {needed}", times[i])));
         }
-        let (columns, phases, transitions) = py.detach(|| self.sample(&times)).map_err(refused)?;
+        let Samples { columns, phases, transitions } =
+            interruptible(py, move |abandoned| slf.get().sample(&times, abandoned))?;
         let response = PyDict::new(py);
         let units = PyDict::new(py);
         let headings = RESPONSE.map(|heading| heading.trim_end_matches(']').split_once('[').unwrap_or((heading, "1")));
@@ -276,9 +203,10 @@ impl Run {
             response.set_item(name, PyArray1::from_vec(py, column))?;
             units.set_item(name, unit)?;
         }
-        response.set_item("phase", phases.iter().map(|phase| PyString::intern(py, phase)).collect::<Vec<_>>())?;
+        let names = py.import("numpy")?.call_method1("array", (PHASES.map(Phase::name).to_vec(),))?;
+        response.set_item("phase", names.get_item(PyArray1::from_vec(py, phases))?)?;
         response.set_item("transitions", PyArray1::from_vec(py, transitions))?;
-        py.import("flexible_rocking._results")?.call_method1("Response", (response, units))
+        result(py, "Response", (response, units))
     }
 
     /// Draws a_g, theta, u and a_t over time with matplotlib, with marks at transitions; returns the figure.
@@ -287,26 +215,29 @@ impl Run {
     }
 
     /// The page that shows the structure in motion over its histories, HTML for any browser.
-    fn page(&self, py: Python<'_>) -> PyResult<String> {
-        py.detach(|| rocking_view::page(&self.run())).map_err(refused)
+    fn page(slf: Py<Self>, py: Python<'_>) -> PyResult<String> {
+        interruptible(py, move |_| rocking_view::page(&slf.get().run()))
     }
 
-    fn _repr_html_(&self, py: Python<'_>) -> PyResult<String> {
-        let page = self.page(py)?.replace('&', "&amp;").replace('"', "&quot;");
+    fn _repr_html_(slf: Py<Self>, py: Python<'_>) -> PyResult<String> {
+        let page = Run::page(slf, py)?.replace('&', "&amp;").replace('"', "&quot;");
         Ok(format!("<iframe srcdoc=\"{page}\" style=\"width: 100%; height: 640px; border: 0\"></iframe>"))
     }
 
     fn __repr__(&self) -> String {
-        let (title, end, transitions) = (self.record.get().0.title(), self.end(), self.transitions.len());
+        let (title, end, transitions) = (self.record.get().title(), self.end(), self.transitions.len());
         format!("<Run under {title:?}: {} at {end} s, {transitions} transitions>", self.ending())
     }
 
-    fn __str__(&self) -> PyResult<String> {
-        let (run, limits) = (self.run(), Limits::default());
-        let summary = Summary::new(&run.structure, &self.transitions);
-        let (beyond, _) = run.validity(limits).map_err(refused)?;
-        let lines = validity::section(&run.structure, run.detail, &beyond, &limits);
-        Ok(format!("{}\n{}{}", run.ground.title(), summary.text(&self.found).map_err(refused)?, lines.join("\n")))
+    fn __str__(slf: Py<Self>, py: Python<'_>) -> PyResult<String> {
+        interruptible(py, move |_| -> anyhow::Result<_> {
+            let (of, limits) = (slf.get(), Limits::default());
+            let run = of.run();
+            let summary = Summary::new(&run.structure, &of.transitions);
+            let (beyond, _) = run.validity(limits)?;
+            let lines = validity::section(&run.structure, run.detail, &beyond, &limits);
+            Ok(format!("{}\n{}{}", run.ground.title(), summary.text(&of.found)?, lines.join("\n")))
+        })
     }
 
     /// A pickle is the call of `simulate`.
@@ -323,12 +254,23 @@ impl Run {
     }
 }
 
-/// Columns of numbers, phases, numbers of transitions.
-type Samples = (Vec<Vec<f64>>, Vec<&'static str>, Vec<u64>);
+/// The phases by their numbers among the [`Samples`].
+const PHASES: [Phase; 4] =
+    [Phase::Overturned(Side::Left), Phase::FullContact, Phase::Rocking(Side::Left), Phase::Rocking(Side::Right)];
+
+/// A motion at instants.
+struct Samples {
+    /// Of numbers.
+    columns: Vec<Vec<f64>>,
+    /// Positions in [`PHASES`].
+    phases: Vec<u8>,
+    /// How many there have been.
+    transitions: Vec<u64>,
+}
 
 impl Run {
-    /// The motion at `times` (s), none of which is before the start.
-    fn sample(&self, times: &[f64]) -> Result<Samples, rocking::run::RunError> {
+    /// The motion at `times` (s), none of which is before the start, unless it is `abandoned`.
+    fn sample(&self, times: &[f64], abandoned: &mut Abandoned) -> Result<Samples, RunError> {
         let mut order: Vec<usize> = (0..times.len()).collect();
         order.sort_by(|a, b| times[*a].total_cmp(&times[*b]));
         let last = order.last().map_or(self.found.start, |last| times[*last]);
@@ -338,26 +280,29 @@ impl Run {
             _ => rocking::Run { end: End::At(last), ..self.run() },
         };
         let mut columns = vec![vec![f64::NAN; times.len()]; RESPONSE.len() - 2];
-        let (mut phases, mut transitions) = (vec!["overturned"; times.len()], vec![0; times.len()]);
+        let (mut phases, mut transitions) = (vec![0; times.len()], vec![0; times.len()]);
         let mut next = 0;
         let mut show = |at: usize, sample: &Sample| {
             let numbers = response_numbers(sample);
             columns.iter_mut().zip(numbers).for_each(|(column, number)| column[at] = number);
-            (phases[at], transitions[at]) = (sample.motion.phase.name(), sample.motion.transitions);
+            let phase = PHASES.iter().position(|phase| *phase == sample.motion.phase);
+            (phases[at], transitions[at]) = (phase.unwrap_or(0) as u8, sample.motion.transitions);
         };
+        let watching = abandoned.clone();
         let see = |sample: &Sample| {
             // the last that is shown is the end, for which there may be several times, or none
             while next < order.len() && times[order[next]] <= sample.motion.time {
+                watching.check();
                 show(order[next], sample);
                 next += 1;
             }
         };
-        run.sample(order.iter().map(|index| times[*index]), see, &mut ())?;
+        run.sample(order.iter().map(|index| times[*index]), see, abandoned)?;
         columns[0].copy_from_slice(times);
         for index in &order[next..] {
             transitions[*index] = self.transitions.len() as u64;
         }
-        Ok((columns, phases, transitions))
+        Ok(Samples { columns, phases, transitions })
     }
 }
 
@@ -373,30 +318,33 @@ impl Run {
 /// Python go on meanwhile; the same inputs give the same bits.
 #[pyfunction]
 #[pyo3(signature = (structure, record=None, *, duration=None, detail="auto", tolerance=DEFAULT_TOLERANCE, **initial))]
+#[pyo3(text_signature = "(structure, record=None, *, duration=None, detail='auto', tolerance=1e-09, **initial)")]
 pub fn simulate(
     py: Python<'_>,
     structure: Py<Structure>,
-    record: Option<Py<Record>>,
-    duration: Option<f64>,
+    record: Option<Ground>,
+    duration: Option<&Bound<'_, PyAny>>,
     detail: &str,
     tolerance: f64,
     initial: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Run> {
     let conditions = conditions(detail, tolerance, duration, initial)?;
-    conditions.check(&structure.get().0).map_err(refused)?;
-    let record = match (record, duration) {
-        (Some(record), _) => record,
-        (None, Some(duration)) => Py::new(py, Record(rocking::run::record::Record::at_rest(duration)))?,
+    let followed = structure.get().0;
+    conditions.check(&followed).map_err(refused)?;
+    let record = match (record, conditions.duration) {
+        (Some(Ground(record)), _) => record,
+        (None, Some(duration)) => Py::new(py, Record::in_si(rocking::run::record::Record::at_rest(duration))?)?,
         (None, None) => {
             return Err(PyValueError::new_err("record and duration are missing: free vibration needs a duration"));
         }
     };
-    let (structure_in, ground) = (structure.get(), record.get());
-    let (found, transitions) = py.detach(|| {
+    let ground = record.get().under(followed.parameters().g)?;
+    let shaking = Arc::clone(&ground);
+    let (found, transitions) = interruptible(py, move |abandoned| {
         let mut transitions = Vec::new();
-        let mut see = |transition: &rocking::Transition| transitions.push(*transition);
-        let found = conditions.run(structure_in.0, &ground.0).found(&mut see).map_err(refused)?;
-        Ok::<_, PyErr>((found, transitions))
+        let mut see = |transition: &Transition| transitions.push(*transition);
+        let found = conditions.run(followed, &shaking).found(&mut (abandoned, &mut see))?;
+        Ok::<_, RunError>((found, transitions))
     })?;
-    Ok(Run { structure, record, conditions, found, transitions })
+    Ok(Run { structure, record, ground, conditions, found, transitions })
 }

@@ -1,18 +1,19 @@
 //! `Structure`: parameters and what follows from them, by the names in the library's tables.
 
 use crate::arguments::{number, numbers, one_of, refused};
+use crate::interruptible::interruptible;
 use numpy::PyArray1;
 use pyo3::exceptions::{PyAttributeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rocking::estimates::effective_frequency::effective_frequency;
 use rocking::estimates::modal_split::{ModalAccelerations, Modes};
-use rocking::estimates::pushover::Equilibrium;
+use rocking::estimates::pushover::{self, Equilibrium};
 use rocking::structure::natural_quantities::Given;
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::{DERIVED, Derived};
 use rocking::{Parameters, Side, State};
-use rocking_report::{describe, pushover};
+use rocking_report::describe;
 
 /// A flexible structure on a base that may lift off (Fig 2 of the paper).
 ///
@@ -100,10 +101,11 @@ impl Structure {
     /// The static pushover of Fig 1 to the right, from rest to overturning (Eqs 5 and 6 without inertia): a dict of arrays
     /// (2 points,) theta (rad), u, delta_t (m), P (N), M (N.m), `points` of them in full contact, then as many while it rocks.
     ///
-    /// Raises ValueError where the strut is too soft to hold the structure.
+    /// Raises ValueError where the strut is too soft to hold the structure, and for other than 2 to 1,000,000 points.
     #[pyo3(signature = (points=100))]
     fn pushover<'py>(&self, py: Python<'py>, points: u32) -> PyResult<Bound<'py, PyDict>> {
-        let curve = rocking::estimates::pushover::curve(&self.0, points).map_err(refused)?;
+        let structure = self.0;
+        let curve = interruptible(py, move |_| pushover::curve(&structure, points))?;
         let column = |of: fn(&Equilibrium) -> f64| PyArray1::from_iter(py, curve.iter().map(of));
         let named = PyDict::new(py);
         named.set_item("theta", column(|at| at.theta))?;
@@ -126,6 +128,7 @@ impl Structure {
         let motion = theta?.into_iter().zip(u?).zip(u_dot?).zip(a_g?);
         let mut modes = [const { Vec::new() }; 4];
         for (phase, (((theta, u), u_dot), a_g)) in of("phase")?.try_iter()?.zip(motion) {
+            response.py().check_signals()?;
             let state = State { u, u_dot, theta, theta_dot: 0.0 }; // whose rate the split does not need
             let of = Modes::of(&self.0, &state).map_err(refused)?;
             let split = |side| {
@@ -172,7 +175,8 @@ impl Structure {
     }
 
     fn __hash__(&self) -> u64 {
-        self.named().fold(0, |hash, (_, value)| hash.rotate_left(7).wrapping_mul(31) ^ value.to_bits())
+        let bits = |value: f64| (value + 0.0).to_bits(); // of -0 as of 0, which it equals
+        self.named().fold(0, |hash, (_, value)| hash.rotate_left(7).wrapping_mul(31) ^ bits(value))
     }
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((), Bound<'py, PyDict>)> {

@@ -1,16 +1,18 @@
 //! `sweep` and `fragility`: many runs on all cores, and what they say together.
 
-use crate::arguments::{conditions, number, numbers, refused};
-use crate::record::Record;
+use crate::arguments::{conditions, numbers, refused};
+use crate::interruptible::{FAULT, MOMENT};
+use crate::record::{G, Ground};
 use crate::structure::Structure;
 use numpy::{PyArray1, PyArray2};
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::Ending;
 use rocking_report::program::program;
 use rocking_sweep::exceedances::{self, Bin, Tally};
-use rocking_sweep::fragility::FragilityCurve;
+use rocking_sweep::fragility::{Certainty, FragilityCurve};
 use rocking_sweep::outcome::{Limit, MEASURES, Outcome, Summary};
 use rocking_sweep::plan::{NamedRecord, Plan, Population};
 use rocking_sweep::row_file::heading;
@@ -22,10 +24,9 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
-use std::time::Duration;
 
-/// How long a signal, such as Ctrl-C, may have to wait.
-const MOMENT: Duration = Duration::from_millis(50);
+/// More threads than any machine has cores for.
+const MOST_THREADS: usize = 1024;
 
 /// Does every run that is not in the file at `path` yet: every one of the populations of structures under every record
 /// at every scale. Returns the keys of all runs, in that order. `progress` is told how many runs of how many are done.
@@ -34,27 +35,38 @@ const MOMENT: Duration = Duration::from_millis(50);
 pub fn sweep(
     py: Python<'_>,
     structures: Vec<(String, Vec<Py<Structure>>)>,
-    records: Vec<(String, Py<Record>)>,
+    records: Vec<(String, Ground)>,
     scale: &Bound<'_, PyAny>,
     path: PathBuf,
     detail: &str,
     tolerance: f64,
-    duration: Option<f64>,
+    duration: Option<&Bound<'_, PyAny>>,
     initial: &Bound<'_, PyDict>,
     validity: bool,
     threads: usize,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Vec<String>> {
-    let scales = match number("scale", scale) {
-        Ok(scale) => vec![scale],
-        Err(_) => numbers("scale", scale)?,
-    };
+    if threads > MOST_THREADS {
+        let needed = format!("0 to {MOST_THREADS} are possible, 0 is one a core");
+        return Err(PyValueError::new_err(format!("threads = {threads} is out of range: {needed}")));
+    }
+    let scales = numbers("scale", scale)?;
     let population = |(name, of): &(String, Vec<Py<Structure>>)| {
         Population::of(name, of.iter().map(|structure| *structure.get().0.parameters()).collect())
     };
     let populations = structures.iter().map(population).collect::<Result<_, _>>().map_err(refused)?;
-    let motion = |(name, record): &(String, Py<Record>)| NamedRecord::new(name, record.get().0.clone(), 1.0);
-    let motions = records.iter().map(motion).collect::<Result<_, _>>().map_err(refused)?;
+    let mut gs = structures.iter().flat_map(|(_, of)| of).map(|structure| structure.get().0.parameters().g);
+    let g = gs.next().unwrap_or(G);
+    let other = gs.find(|other| *other != g);
+    let motion = |(name, Ground(record)): &(String, Ground)| {
+        let record = record.get();
+        if let (true, Some(other)) = (record.is_in_g(), other) {
+            let needed = "a sweep has one g, in which its records are given";
+            return Err(PyValueError::new_err(format!("g = {other} m/s2 and g = {g} m/s2: {needed}")));
+        }
+        NamedRecord::new(name, record.under(g)?.as_ref().clone(), 1.0).map_err(refused)
+    };
+    let motions = records.iter().map(motion).collect::<PyResult<_>>()?;
     let conditions = conditions(detail, tolerance, duration, Some(initial))?;
     let plan = py.detach(|| Plan::new(populations, motions, scales)?.under(conditions)).map_err(refused)?;
 
@@ -86,7 +98,8 @@ pub fn sweep(
                     stopped.store(interruption.is_err(), Ordering::Relaxed);
                 }
             }
-            interruption.and(runs.join().expect("a run returns its errors").map_err(refused))
+            let finished = runs.join().map_err(|_| PyRuntimeError::new_err(FAULT));
+            interruption.and(finished?.map_err(refused))
         })
     });
     let (keys, _) = finished?;
@@ -102,12 +115,27 @@ pub fn intensity_measures(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
     Ok(measures)
 }
 
+/// How sure a curve is: a covariance, and a number of standard deviations.
+type Sure = ([[f64; 2]; 2], f64);
+
 /// A lognormal fragility curve, and how sure it is.
 #[pyclass(frozen, module = "flexible_rocking")]
 pub struct Curve(FragilityCurve);
 
 #[pymethods]
 impl Curve {
+    #[new]
+    #[pyo3(signature = (median, dispersion, known=None))]
+    fn new(median: f64, dispersion: f64, known: Option<Sure>) -> Curve {
+        let certainty = |(covariance, half_width): Sure| Certainty { covariance: covariance.into(), half_width };
+        Curve(FragilityCurve { median, dispersion, certainty: known.map(certainty) })
+    }
+
+    fn __getnewargs__(&self) -> (f64, f64, Option<Sure>) {
+        let FragilityCurve { median, dispersion, certainty } = self.0;
+        (median, dispersion, certainty.map(|of| (of.covariance.into(), of.half_width)))
+    }
+
     /// Intensity at which the limit is exceeded with the probability 1/2.
     #[getter]
     fn median(&self) -> f64 {

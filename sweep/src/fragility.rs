@@ -60,9 +60,9 @@ pub struct FragilityCurve {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certainty {
     /// Of a and b in P = Φ(a + b ln(x/x_m)).
-    covariance: Matrix2<f64>,
+    pub covariance: Matrix2<f64>,
     /// Half a 95 % interval over the standard deviation.
-    half_width: f64,
+    pub half_width: f64,
 }
 
 impl Trials {

@@ -1,0 +1,67 @@
+//! Work without the GIL that Ctrl-C ends: other threads of Python go on meanwhile.
+
+use crate::arguments::refused;
+use pyo3::exceptions::PyRuntimeError;
+use pyo3::prelude::*;
+use rocking::{Piece, Watch};
+use std::panic::resume_unwind;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
+use std::time::Duration;
+
+/// How long a signal, such as Ctrl-C, may have to wait.
+pub const MOMENT: Duration = Duration::from_millis(50);
+
+/// What is said of a panic, whose message the standard error has.
+pub const FAULT: &str = "a fault of flexible_rocking itself, which is printed above: please report it";
+
+/// Whether nobody waits for the work any more. As the watcher of a run it ends the run then.
+#[derive(Clone, Default)]
+pub struct Abandoned(Arc<AtomicBool>);
+
+impl Abandoned {
+    /// Ends the thread of the work if nobody waits for it.
+    pub fn check(&self) {
+        if self.0.load(Ordering::Relaxed) {
+            resume_unwind(Box::new("abandoned")); // which prints nothing
+        }
+    }
+}
+
+impl Watch for Abandoned {
+    const SEES_PIECES: bool = true;
+
+    fn piece(&mut self, _: &Piece) {
+        self.check();
+    }
+}
+
+/// What `work` returns. The work is done on a thread of its own; a signal ends the wait for the result at once, whatever the
+/// work is at, and the work at its next check. A panic of the work is an error.
+pub fn interruptible<T: Send + 'static, E: Into<anyhow::Error> + Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(&mut Abandoned) -> Result<T, E> + Send + 'static,
+) -> PyResult<T> {
+    let (done, result) = mpsc::channel();
+    let abandoned = Abandoned::default();
+    let mut watching = abandoned.clone();
+    thread::Builder::new().spawn(move || done.send(work(&mut watching)))?;
+    py.detach(move || {
+        loop {
+            match result.recv_timeout(MOMENT) {
+                Ok(result) => return result.map_err(refused),
+                Err(RecvTimeoutError::Timeout) => {
+                    if let Some(Err(signal)) = Python::try_attach(|py| py.check_signals()) {
+                        abandoned.0.store(true, Ordering::Relaxed);
+                        return Err(signal);
+                    }
+                }
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(PyRuntimeError::new_err(FAULT));
+                }
+            }
+        }
+    })
+}
