@@ -17,10 +17,10 @@ use toml::{Table, Value};
 use uuid::Uuid;
 
 /// Folders with the sources of the library, from the workspace.
-pub const SOURCES: [&str; 3] = ["src", "records/src", "fmu/src"];
+pub const SOURCES: [&str; 4] = ["src", "records/src", "fmu/fmi/src", "fmu/src"];
 
 /// Manifests of the packages with these sources; the first is the workspace's as well.
-pub const MANIFESTS: [&str; 3] = ["Cargo.toml", "records/Cargo.toml", "fmu/Cargo.toml"];
+pub const MANIFESTS: [&str; 4] = ["Cargo.toml", "records/Cargo.toml", "fmu/fmi/Cargo.toml", "fmu/Cargo.toml"];
 
 /// Versions of all dependencies.
 pub const LOCK: &str = "Cargo.lock";

@@ -1,6 +1,6 @@
 //! How the structure on its ground is taken over one step of a co-simulation.
 
-use crate::model::Model;
+use crate::scene::Scene;
 use crate::setup::Setup;
 use rocking::engine::{AdvanceError, Progress};
 use rocking::{LinearLoad, Watch};
@@ -8,8 +8,8 @@ use rocking::{LinearLoad, Watch};
 /// Part of the time, or of 1/p_l if that is more, that rounding can shift a transition by.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-impl Model {
-    /// [`Model::advance`] up to the first transition. One within rounding of the end of the step counts as at its end: a
+impl Scene {
+    /// [`Scene::advance`] up to the first transition. One within rounding of the end of the step counts as at its end: a
     /// host that goes back and steps to the instant that it was told meets it again. One at the very start, where an
     /// input has just jumped, is applied at once: every step takes time.
     #[inline(never)]
@@ -89,7 +89,7 @@ impl Model {
         inputs: &LinearLoad,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
-        let Model { engine, ground, elapsed, .. } = self;
+        let Scene { engine, ground, elapsed, .. } = self;
         let Some(ground) = ground else { return engine.advance(step, *inputs, watch) };
         let start = engine.motion().time;
         let progress = setup.ground_motion(ground).advance(engine, *elapsed, step, *inputs, watch)?;

@@ -1,6 +1,7 @@
 //! The records that the ground follows, found by name or path.
 
-use crate::resources::{self, Archive};
+use crate::resources::Archive;
+use fmi_unit::uri;
 use rocking::run::record::{Record, SamplesError};
 use rocking_records::{Reading, RecordError, Source, Unit};
 use std::error::Error;
@@ -125,7 +126,7 @@ impl Archive {
         }
         let is_uri = text.split_once(':').is_some_and(|(scheme, _)| scheme.eq_ignore_ascii_case("file"));
         let path = if is_uri {
-            resources::path(text).ok_or_else(|| GroundError::NotAFileUri(parameter, text.to_owned()))?
+            uri::path(text).ok_or_else(|| GroundError::NotAFileUri(parameter, text.to_owned()))?
         } else if text.contains(is_separator) {
             PathBuf::from(text)
         } else {

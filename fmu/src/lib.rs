@@ -1,56 +1,44 @@
 //! Unit of a flexible rocking structure for co-simulation and model exchange, of FMI 2.0 and of FMI 3.0.
 //!
-//! A call of the host goes down this list; what is on a line knows nothing of the lines above it.
+//! The C functions, stages and FMU states are [`fmi_unit`]'s, the physics is [`rocking`]'s. What is on a line of this list knows
+//! nothing of the lines above it.
 //!
 //! | file | does |
 //! |---|---|
-//! | [`fmi2`], [`fmi3`] | name the C functions and their arguments, and the stages that each may be called in |
-//! | [`c_abi`] | checks stage and pointers, makes slices of pointers, catches panics, logs why a call failed |
-//! | `instance` | goes from stage to stage; `do_step`, `get_values`, `set_values`, `derivatives`, `model_exchange` |
-//! | [`snapshot`], [`condition`] | FMU states as bytes; all that the future of an instance depends on |
-//! | `sensitivity` | derivatives by states |
-//! | `present` | what an instance holds between two calls: stage, setup, inputs, model |
-//! | `shown` | the values of all computed Reals at an instant |
-//! | `advance` | the model over one step |
-//! | `model` | the structure on its ground, from its start on |
+//! | [`unit`] | what an instance is asked: values, start, steps, events, its state as bytes |
+//! | `derivatives`, `outside` | derivatives of outputs; the motion under the host's integrator |
+//! | `shown` | the values of all computed real numbers at an instant |
+//! | `advance` | the structure on its ground over one step |
+//! | `scene` | the structure on its ground, from its start on |
 //! | `motion_log` | the messages about transitions and limits |
-//! | `failure` | every message about a call that is refused |
+//! | `failure` | every message about what is refused |
 //! | [`variables`] | the table of variables |
-//! | `setup`, `inputs`, [`interface`] | what is set before the start and during the simulation; who integrates |
+//! | `setup`, `inputs` | what is set before the start and during the simulation |
 //! | [`ground`], [`resources`] | records; what the archive carries |
-//! | [`logger`], [`state_machine`] | messages to the host; the stages, and tables of them |
 //!
-//! The physics is [`rocking`]'s. In a browser no host calls C functions: the table of variables alone is used there.
+//! In a browser no host calls C functions: the table of variables alone is used there.
 #![cfg_attr(target_family = "wasm", allow(dead_code))]
-#![allow(non_snake_case)] // the shared library's name, and the standard's names of arguments
+#![allow(non_snake_case)] // the shared library's name
 
 mod advance;
-#[cfg(not(target_family = "wasm"))]
-pub mod c_abi;
-pub mod condition;
+mod derivatives;
 mod failure;
-#[cfg(not(target_family = "wasm"))]
-pub mod fmi2;
-#[cfg(not(target_family = "wasm"))]
-pub mod fmi3;
 pub mod ground;
 mod inputs;
-mod instance;
-pub mod interface;
-pub mod logger;
-mod model;
 mod motion_log;
-mod present;
+mod outside;
 pub mod resources;
-mod sensitivity;
+mod scene;
 mod setup;
 mod shown;
-pub mod snapshot;
-pub mod state_machine;
+pub mod unit;
 pub mod variables;
 
 use resources::Contents;
 use uuid::Uuid;
+
+#[cfg(not(target_family = "wasm"))]
+fmi_unit::export_fmu!(unit::Unit);
 
 /// Names the build: all that enters the library.
 pub const BUILD: &str = env!("FLEXIBLE_ROCKING_BUILD");

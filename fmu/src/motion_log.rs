@@ -1,6 +1,6 @@
 //! What the host is told of the motion: its transitions, and the limits of the model that it passes.
 
-use crate::logger::Logger;
+use fmi_unit::Logger;
 use rocking::run::validity::{ASSUMPTIONS, Found, Limits};
 use rocking::{Side, Transition, TransitionKind};
 
@@ -24,6 +24,17 @@ pub(crate) fn log(logger: &Logger, transition: &Transition) {
     }
 }
 
+/// Warns that a ground acceleration, of which values alone are set, is held over each step up to `time` (s).
+#[cold]
+pub(crate) fn warn_of_stairs(logger: &Logger, time: f64) {
+    logger.warning(&format!(
+        "t = {time} s: the host sets new values of the ground acceleration (a_g, a_v) at every step without their slopes, \
+         and each value is held over its step: the peaks of such a stepped motion can be tens of per cent off. Give the \
+         ground motion as the parameter record, or set a_g_late = true, or set the slope (the time derivative) with each \
+         value"
+    ));
+}
+
 fn describe(transition: &Transition) -> String {
     let Transition { time, kind, before, after } = transition;
     let side = |side| if side == Side::Left { "left" } else { "right" };
@@ -43,7 +54,7 @@ fn describe(transition: &Transition) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::logger::Status;
+    use fmi_unit::logger::Status;
     use rocking::State;
     use std::cell::RefCell;
     use std::rc::Rc;

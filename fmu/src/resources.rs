@@ -1,7 +1,6 @@
 //! What the archive carries in its folder `resources`, found through the URI that the host gives: the parameters, and
 //! the list of the records that were packed.
 
-use percent_encoding::percent_decode_str;
 use rocking::Parameters;
 use rocking::structure::parameters::ParameterError;
 use serde::de::DeserializeOwned;
@@ -83,9 +82,6 @@ impl From<Parameters> for Contents {
 /// Why the parameters could not be read.
 #[derive(Debug, thiserror::Error)]
 pub enum ResourceError {
-    /// Not the URI of a local folder.
-    #[error("fmuResourceLocation = {0:?} is not a file URI of this machine, such as file:///tmp/fmu/resources")]
-    NotAFileUri(String),
     /// No such file, or not readable.
     #[error("{file}: {1}; unpack the whole archive and pass its folder \"resources\"", file = .0.display())]
     Unreadable(PathBuf, io::Error),
@@ -109,11 +105,6 @@ impl Archive {
     }
 }
 
-/// The folder that the file URI `location` points to.
-pub(crate) fn folder(location: &str) -> Result<PathBuf, ResourceError> {
-    path(location).ok_or_else(|| ResourceError::NotAFileUri(location.to_owned()))
-}
-
 /// The content of the TOML file `file`.
 fn read<T: DeserializeOwned>(file: &Path) -> Result<T, ResourceError> {
     let file = file.to_owned();
@@ -124,38 +115,9 @@ fn read<T: DeserializeOwned>(file: &Path) -> Result<T, ResourceError> {
     }
 }
 
-/// The local path of a file URI (RFC 8089): `file:/path`, `file:///path`, `file://localhost/path`; on Windows
-/// `file:///C:/path` is `C:/path`.
-pub(crate) fn path(uri: &str) -> Option<PathBuf> {
-    let (scheme, rest) = uri.split_once(':')?;
-    if !scheme.eq_ignore_ascii_case("file") {
-        return None;
-    }
-    let path = match rest.strip_prefix("//") {
-        Some(authority) => authority.strip_prefix("localhost").unwrap_or(authority),
-        None => rest,
-    };
-    if !path.starts_with('/') {
-        return None;
-    }
-    let path = percent_decode_str(path).decode_utf8().ok()?;
-    let drive = path.strip_prefix('/').filter(|path| cfg!(windows) && path.get(1..2) == Some(":"));
-    Some(Path::new(drive.unwrap_or(&path)).to_owned())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn file_uris_become_paths() {
-        for uri in ["file:/a/b%20c/%C3%BC%25", "file:///a/b%20c/ü%25", "FILE://localhost/a/b c/%c3%bc%25"] {
-            assert_eq!(path(uri).as_deref(), Some(Path::new("/a/b c/ü%")), "{uri}");
-        }
-        for uri in ["/a/b", "a/b", "file:a", "file://elsewhere/a", "http://localhost/a", "file:///%ff", ""] {
-            assert_eq!(path(uri), None, "{uri}");
-        }
-    }
 
     #[test]
     fn a_refusal_names_the_file_and_the_reason() {

@@ -18,7 +18,6 @@ pub struct Setup {
     pub(crate) detail: Detail,
     pub(crate) tolerance: f64,
     pub(crate) start_time: f64,
-    pub(crate) stop_time: Option<f64>,
     /// Which record the ground follows; none if empty.
     pub(crate) record: Arc<str>,
     /// Which record it follows vertically; none if empty.
@@ -45,7 +44,6 @@ impl Setup {
             detail: Detail::default(),
             tolerance: DEFAULT_TOLERANCE,
             start_time: 0.0,
-            stop_time: None,
             record: contents.default_record().into(),
             record_v: contents.default_vertical().into(),
             placement: Placement::default(),

@@ -1,9 +1,9 @@
-//! The one table of the FMU's variables. What a variable is called, what it may be, who sets it and what it depends on
-//! stands here and nowhere else: the model description is written from this table, and the C functions read and write
-//! through it. A value reference is a position in the table.
+//! The one table of the FMU's variables. What a variable is called, what it may be, who sets it, where its value is and what
+//! it follows from stands here and nowhere else.
 
 use crate::resources::Contents;
 use crate::setup::Setup;
+use fmi_unit::{Causality, DataType, Enumeration, Role, Value, Variable};
 use rocking::Motion;
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::mechanics::restraint::{Dissipators, Restraints};
@@ -13,93 +13,10 @@ use rocking::run::outside_step::INDICATORS;
 use rocking::run::peaks::Peaks;
 use rocking::run::validity::{ASSUMPTIONS, Assumption};
 use rocking::structure::parameters::PARAMETERS;
-use rocking::structure::quantity::{OutOfRange, Quantity};
+use rocking::structure::quantity::Quantity;
 use rocking::structure::{DERIVED, Derived};
 use rocking::{Detail, Impulse, Load, Outputs, Parameters, Phase, Reactions, Side, State};
-use std::sync::LazyLock;
-
-/// One variable.
-#[derive(Clone, Copy, Debug)]
-pub struct Variable {
-    /// Name, as hosts show it.
-    pub name: &'static str,
-    /// What it is, in one line.
-    pub description: &'static str,
-    /// Its data type, with what belongs to that type alone.
-    pub data_type: DataType,
-    /// Who sets it.
-    pub causality: Causality,
-    /// The inputs that its value depends on at any time, the state given, by name: direct feedthrough.
-    pub feedthrough: &'static [&'static str],
-    /// The states that its value depends on at any time, by name.
-    pub states: &'static [&'static str],
-    /// The parameters and initial values that its value at the start of a simulation depends on as well, by name.
-    pub initial_dependencies: &'static [&'static str],
-    /// Where its value is.
-    pub(crate) source: Source,
-}
-
-/// Who sets a variable. With it goes how its initial value comes about: parameters are given, what the FMU computes is
-/// calculated, inputs have none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Causality {
-    /// The user, before the simulation.
-    Parameter,
-    /// The FMU, from the parameters.
-    CalculatedParameter,
-    /// The host, during the simulation.
-    Input,
-    /// The FMU, for other models.
-    Output,
-    /// The FMU, for display.
-    Local,
-    /// Time, which all others depend on.
-    Independent,
-}
-
-/// Data type of a variable.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum DataType {
-    /// A real number.
-    Real {
-        /// Unit as FMI writes it, `1` for a ratio.
-        unit: &'static str,
-        /// Smallest and largest value accepted, of what a host sets.
-        range: Option<(f64, f64)>,
-    },
-    /// An integer, not negative.
-    Integer,
-    /// True or false.
-    Boolean,
-    /// Text.
-    String,
-    /// One of these, numbered from 1.
-    Enumeration(&'static Enumeration),
-}
-
-/// A value of any type.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Value {
-    /// A real number.
-    Real(f64),
-    /// The number of an item of an enumeration.
-    Item(i32),
-    /// True or false.
-    Boolean(bool),
-    /// Text.
-    String(String),
-}
-
-/// An enumeration.
-#[derive(Debug, PartialEq)]
-pub struct Enumeration {
-    /// Name of the type.
-    pub name: &'static str,
-    /// What it tells, in one line.
-    pub description: &'static str,
-    /// Its items, numbered from 1.
-    pub items: &'static [&'static str],
-}
+use std::sync::Arc;
 
 /// An integer, or a Boolean as 0 or 1.
 pub(crate) type OfMotion = fn(&Motion) -> i32;
@@ -167,13 +84,25 @@ impl Source {
         }
     }
 
-    /// Accepts `value` for a Real parameter or an initial value, or says why not.
-    pub fn check(&self, value: f64) -> Result<(), OutOfRange> {
+    /// The value of what is set: of a parameter or an input.
+    pub fn set_value(&self, setup: &Setup) -> Option<Value> {
         match self {
-            Source::Parameter(quantity) => quantity.check(value),
-            Source::InitialValue(quantity) => quantity.check(value),
-            Source::Placement(quantity) => quantity.check(value),
-            _ => Ok(()),
+            Source::Input(which) => Some(Value::Real((LOADS[*which].get)(&Load::default()))),
+            Source::Detail => Some(Value::Integer(detail_number(setup.detail))),
+            Source::Text(text) => Some(Value::String((text.get)(setup).to_owned())),
+            Source::Switch(switch) => Some(Value::Boolean((switch.get)(setup))),
+            _ => self.setting(setup).map(Value::Real),
+        }
+    }
+
+    /// Sets a parameter.
+    pub fn set_to(&self, setup: &mut Setup, value: Value) {
+        match (self, value) {
+            (Source::Detail, Value::Integer(number)) => setup.detail = detail(number.into()).unwrap_or(setup.detail),
+            (Source::Text(text), Value::String(value)) => (text.set)(setup, &value),
+            (Source::Switch(switch), Value::Boolean(on)) => (switch.set)(setup, on),
+            (_, Value::Real(value)) => self.set(setup, value),
+            _ => (),
         }
     }
 
@@ -241,34 +170,45 @@ fn overturned(motion: &Motion) -> i32 {
     i32::from(matches!(motion.phase, Phase::Overturned(_)))
 }
 
-/// How many variables there are: their table is no allocation, which would be left behind where the library is
-/// unloaded.
-const COUNT: usize = 104;
+/// A variable, and where its value is.
+type Row = (Variable, Source);
 
-/// All variables, in the order of the model description.
-pub static VARIABLES: LazyLock<[Variable; COUNT]> = LazyLock::new(|| {
-    let inputs = (0..LOADS.len()).map(input);
-    inputs
-        .chain(outputs())
-        .chain(locals())
-        .chain(state_rates())
-        .chain(event_indicators())
-        .chain(peaks())
-        .chain(validity())
-        .chain(const { &PARAMETERS }.iter().map(|quantity| fixed(quantity, Source::Parameter(quantity))))
-        .chain([parameter("detail", DETAILS.description, DataType::Enumeration(&DETAILS), Source::Detail)])
-        .chain(const { &INITIAL_VALUES }.iter().map(|quantity| fixed(quantity, Source::InitialValue(quantity))))
-        .chain(records())
-        .chain(const { &PLACEMENT }.iter().map(|quantity| fixed(quantity, Source::Placement(quantity))))
-        .chain(switches())
-        .chain(calculated_parameters())
-        .chain([time()])
-        .collect::<Vec<_>>()
-        .try_into()
-        .unwrap_or_else(|found: Vec<_>| panic!("{} variables, not {COUNT}", found.len()))
-});
+/// All variables.
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// The variables, in the order of the model description.
+    pub variables: Arc<[Variable]>,
+    /// Where their values are.
+    pub(crate) sources: Arc<[Source]>,
+}
 
-fn records() -> [Variable; 2] {
+impl Table {
+    /// The table of an FMU with these `contents`, which give start values.
+    pub fn new(contents: &Contents) -> Table {
+        let setup = Setup::new(contents);
+        let rows = (0..LOADS.len())
+            .map(input)
+            .chain(outputs())
+            .chain(locals())
+            .chain(state_rates())
+            .chain(event_indicators())
+            .chain(peaks())
+            .chain(validity())
+            .chain(const { &PARAMETERS }.iter().map(|quantity| fixed(quantity, Source::Parameter(quantity))))
+            .chain([parameter("detail", DETAILS.description, DataType::Enumeration(&DETAILS), Source::Detail)])
+            .chain(const { &INITIAL_VALUES }.iter().map(|quantity| fixed(quantity, Source::InitialValue(quantity))))
+            .chain(records())
+            .chain(const { &PLACEMENT }.iter().map(|quantity| fixed(quantity, Source::Placement(quantity))))
+            .chain(switches())
+            .chain(calculated_parameters())
+            .chain([(Variable::time(), Source::Time)]);
+        let started = rows.map(|(variable, source)| (Variable { start: source.set_value(&setup), ..variable }, source));
+        let (variables, sources): (Vec<_>, Vec<_>) = started.unzip();
+        Table { variables: variables.into(), sources: sources.into() }
+    }
+}
+
+fn records() -> [Row; 2] {
     static HORIZONTAL: Text = Text { get: |setup| &setup.record, set: |setup, text| setup.record = text.into() };
     static VERTICAL: Text = Text { get: |setup| &setup.record_v, set: |setup, text| setup.record_v = text.into() };
     let horizontal = "ground motion record that the ground follows beside a_g: the name of a file in the archive's \
@@ -282,89 +222,104 @@ fn records() -> [Variable; 2] {
     ]
 }
 
-fn input(which: usize) -> Variable {
-    Variable { causality: Causality::Input, ..fixed(&LOADS[which], Source::Input(which)) }
+fn input(which: usize) -> Row {
+    let (variable, source) = fixed(&LOADS[which], Source::Input(which));
+    (Variable { causality: Causality::Input, is_continuous: true, ..variable }, source)
 }
 
-/// The inputs.
-const LOAD_NAMES: &[&str] = &["a_g", "F_t", "a_v"];
-
-/// What accelerations depend on: the masses, the geometry and theta_dot_0 by the rigid level, the others by the elastic
-/// ones.
+/// What accelerations follow from.
 #[rustfmt::skip]
-const ACCELERATIONS: &[&str] = &[
-    "m", "m0", "H", "B", "J0", "f_fc", "zeta_fc", "c_ratio", "g", "detail", "theta_0", "theta_dot_0", "u_0", "u_dot_0",
-    "P_0", "k_t", "xi_d", "c_d", "k_d", "F_y", "record", "record_v", "record_scale", "record_time_scale", "record_start",
+const ACCELERATION: &[&str] = &[
+    "a_ground", "F_t", "a_v_ground", "u", "u_dot", "theta", "theta_dot", "m", "m0", "H", "B", "J0", "f_fc", "zeta_fc", "c_ratio",
+    "g", "detail", "P_0", "k_t", "xi_d", "c_d", "k_d", "F_y",
 ];
 
-fn outputs() -> Vec<Variable> {
-    const DELTA_T: &[&str] = &["H", "B", "theta_0", "u_0"];
-    const V_T: &[&str] = &["H", "B", "theta_0", "theta_dot_0", "u_0", "u_dot_0"];
-    let of_state = |name, unit, description, of, states, initial_dependencies| Variable {
-        states,
-        ..output(name, unit, description, Source::Output(of), &[], initial_dependencies)
-    };
-    let force = |name, unit, description, of| Variable {
-        states: &COMPONENTS,
-        ..output(name, unit, description, Source::Output(of), LOAD_NAMES, ACCELERATIONS)
-    };
-    let reaction = |name, unit, description, of| Variable {
-        states: &COMPONENTS,
-        ..output(name, unit, description, Source::Reaction(of), LOAD_NAMES, ACCELERATIONS)
-    };
+/// A continuous real number, and what it follows from.
+fn real(
+    causality: Causality,
+    name: &'static str,
+    unit: &'static str,
+    description: &'static str,
+    source: Source,
+    of: &[&'static str],
+) -> Row {
+    (Variable::real(causality, name, unit, description).from(of.iter().copied()), source)
+}
+
+fn output(
+    name: &'static str,
+    unit: &'static str,
+    description: &'static str,
+    source: Source,
+    of: &[&'static str],
+) -> Row {
+    real(Causality::Output, name, unit, description, source, of)
+}
+
+fn local(
+    name: &'static str,
+    unit: &'static str,
+    description: &'static str,
+    source: Source,
+    of: &[&'static str],
+) -> Row {
+    real(Causality::Local, name, unit, description, source, of)
+}
+
+/// A local variable that events alone change.
+fn counted(name: &'static str, description: &'static str, data_type: DataType, source: Source) -> Row {
+    (Variable::of_type(data_type, Causality::Local, name, description), source)
+}
+
+/// The row of a continuous state, which starts from the parameter `from`.
+fn state((variable, source): Row, from: &'static str) -> Row {
+    (variable.state([from]), source)
+}
+
+const fn number(unit: &'static str) -> DataType {
+    DataType::Real { unit, range: None }
+}
+
+fn outputs() -> Vec<Row> {
+    let of_state = |name, unit, description, of, from| output(name, unit, description, Source::Output(of), from);
+    let reaction = |name, unit, description, of| output(name, unit, description, Source::Reaction(of), ACCELERATION);
     let impulse = |name, unit, description, of| {
-        discrete(name, description, DataType::Real { unit, range: None }, Source::Impulse(of), &[])
+        (Variable::of_type(number(unit), Causality::Output, name, description), Source::Impulse(of))
     };
-    let tie = |name, description, of, states, initial_dependencies| Variable {
-        states,
-        ..output(name, "N", description, Source::Restraint(of), &[], initial_dependencies)
-    };
-    const OF_DISSIPATOR: &[&str] = &["B", "theta_0", "theta_dot_0", "xi_d", "c_d", "k_d", "F_y"];
+    let tie = |name, description, of, from| output(name, "N", description, Source::Restraint(of), from);
+    const OF_DISSIPATOR: &[&str] = &["theta", "theta_dot", "B", "xi_d", "c_d", "k_d", "F_y"];
+    let turned = "rotation of the base, positive about the right edge";
     let elastic = "elastic displacement of the top mass in the frame that turns with the base";
+    let shear = "m a_t, the base shear where no force acts on the top mass (Eqs 2, 23)";
+    let moment = "m H a_t, the overturning moment where no force acts on the top mass (Eqs 3, 24)";
+    let first = "force of the dissipators at +xi_d, viscous and elastoplastic together; pulled is positive";
     vec![
-        of_state(
-            "theta",
-            "rad",
-            "rotation of the base, positive about the right edge",
-            |o| o.theta,
-            &["theta"],
-            &["theta_0"],
-        ),
-        of_state("u", "m", elastic, |o| o.u, &["u"], &["u_0"]),
-        force("a_t", "m/s2", "acceleration of the top mass, ground included (Eq 27)", |o| o.a_t),
-        force("V_t", "N", "m a_t, the base shear where no force acts on the top mass (Eqs 2, 23)", |o| o.V_t),
-        force("M_t", "N.m", "m H a_t, the overturning moment where no force acts on the top mass (Eqs 3, 24)", |o| {
-            o.M_t
-        }),
-        of_state(
-            "uplift",
-            "m",
-            "height of the free edge of the base (Eq 25)",
-            |o| o.uplift,
-            &["theta"],
-            &["B", "theta_0"],
-        ),
+        state(of_state("theta", "rad", turned, |o| o.theta, &[]), "theta_0"),
+        state(of_state("u", "m", elastic, |o| o.u, &[]), "u_0"),
+        of_state("a_t", "m/s2", "acceleration of the top mass, ground included (Eq 27)", |o| o.a_t, ACCELERATION),
+        of_state("V_t", "N", shear, |o| o.V_t, &["m", "a_t"]),
+        of_state("M_t", "N.m", moment, |o| o.M_t, &["m", "H", "a_t"]),
+        of_state("uplift", "m", "height of the free edge of the base (Eq 25)", |o| o.uplift, &["theta", "B"]),
         of_state(
             "delta_t",
             "m",
             "lateral displacement of the top mass (Eq 26)",
             |o| o.delta_t,
-            &["u", "theta"],
-            DELTA_T,
+            &["u", "theta", "H", "B"],
         ),
-        of_state("v_t", "m/s", "lateral velocity of the top mass relative to the ground", |o| o.v_t, &COMPONENTS, V_T),
+        of_state(
+            "v_t",
+            "m/s",
+            "lateral velocity of the top mass relative to the ground",
+            |o| o.v_t,
+            &["u", "u_dot", "theta", "theta_dot", "H", "B"],
+        ),
         reaction("R_h", "N", "horizontal force on the ground, positive to the right", |r| r.R_h),
         reaction("R_v", "N", "vertical force on the ground, positive downwards", |r| r.R_v),
         reaction("R_m", "N.m", "moment on the ground about the middle of the base, positive as theta", |r| r.R_m),
-        tie("P_t", "force of the tendon", |r| r.P_t, &["theta"], &["B", "theta_0", "P_0", "k_t"]),
-        tie(
-            "F_d1",
-            "force of the dissipators at +xi_d, viscous and elastoplastic together; pulled is positive",
-            |r| r.F_d1,
-            &["theta", "theta_dot"],
-            OF_DISSIPATOR,
-        ),
-        tie("F_d2", "force of the dissipators at -xi_d, as F_d1", |r| r.F_d2, &["theta", "theta_dot"], OF_DISSIPATOR),
+        tie("P_t", "force of the tendon", |r| r.P_t, &["theta", "B", "P_0", "k_t"]),
+        tie("F_d1", first, |r| r.F_d1, OF_DISSIPATOR),
+        tie("F_d2", "force of the dissipators at -xi_d, as F_d1", |r| r.F_d2, OF_DISSIPATOR),
         impulse("I_h", "N.s", "horizontal impulse of the impacts on the ground so far", |i| i.I_h),
         impulse("I_v", "N.s", "vertical impulse of the impacts on the ground so far, downwards", |i| i.I_v),
         impulse("I_m", "N.m.s", "moment impulse of the impacts on the ground so far, positive as theta", |i| i.I_m),
@@ -372,130 +327,83 @@ fn outputs() -> Vec<Variable> {
 }
 
 /// Variables for display: no other model needs them.
-fn locals() -> [Variable; 12] {
-    const GROUND: &[&str] = &["g", "record", "record_scale", "record_time_scale", "record_start"];
-    const GROUND_V: &[&str] = &["g", "record_v", "record_scale", "record_time_scale", "record_start"];
+fn locals() -> Vec<Row> {
     const PLASTIC: &[&str] = &["B", "theta_0", "xi_d", "k_d", "F_y"];
-    let local = |name, unit, description, source, feedthrough, initial_dependencies| Variable {
-        causality: Causality::Local,
-        ..output(name, unit, description, source, feedthrough, initial_dependencies)
-    };
-    let counted = |name, description, data_type, source, initial_dependencies| Variable {
-        causality: Causality::Local,
-        ..discrete(name, description, data_type, source, initial_dependencies)
-    };
-    let kept = |name, unit, description, of, initial_dependencies| {
-        local(name, unit, description, Source::Dissipator(of), &[], initial_dependencies)
-    };
+    let kept = |name, unit, description, of, from| local(name, unit, description, Source::Dissipator(of), from);
     let (turning, swaying) = (Source::Output(|o| o.theta_dot), Source::Output(|o| o.u_dot));
-    let phases = DataType::Enumeration(&PHASES);
-    [
-        local("theta_dot", "rad/s", "angular velocity of the base", turning, &[], &["theta_dot_0"]),
-        local("u_dot", "m/s", "elastic velocity of the top mass", swaying, &[], &["u_dot_0"]),
-        local("a_ground", "m/s2", "ground acceleration: a_g and the record", Source::Ground(0), &["a_g"], GROUND),
-        local(
-            "a_v_ground",
-            "m/s2",
-            "vertical ground acceleration: a_v and record_v",
-            Source::Ground(VERTICAL),
-            &["a_v"],
-            GROUND_V,
-        ),
+    let ground = |name, description, which, input, record| {
+        let placed = ["record_scale", "record_time_scale", "record_start", "g", "time"];
+        local(name, "m/s2", description, Source::Ground(which), &[&[input, record][..], &placed].concat())
+    };
+    let (phase, source) =
+        counted("phase", PHASES.description, DataType::Enumeration(&PHASES), Source::Integer(phase_number));
+    vec![
+        state(local("theta_dot", "rad/s", "angular velocity of the base", turning, &[]), "theta_dot_0"),
+        state(local("u_dot", "m/s", "elastic velocity of the top mass", swaying, &[]), "u_dot_0"),
+        ground("a_ground", "ground acceleration: a_g and the record", 0, "a_g", "record"),
+        ground("a_v_ground", "vertical ground acceleration: a_v and record_v", VERTICAL, "a_v", "record_v"),
         kept("e_p1", "m", "plastic elongation of the elastoplastic dissipator at +xi_d", |d| d.plastic[0], PLASTIC),
         kept("e_p2", "m", "plastic elongation of the elastoplastic dissipator at -xi_d", |d| d.plastic[1], PLASTIC),
         kept("E_viscous", "J", "energy that the viscous dissipators have taken", |d| d.viscous, &[]),
         kept("E_hysteretic", "J", "energy that the elastoplastic dissipators have taken", |d| d.hysteretic, &[]),
-        counted("phase", PHASES.description, phases, Source::Integer(phase_number), &["theta_0"]),
+        (phase.from(["theta_0"]), source),
         counted(
             "transitions",
             "transitions so far: uplifts, impacts, landings (settling, too), overturning; dissipators that begin or cease to yield",
             DataType::Integer,
             Source::Integer(transitions),
-            &[],
         ),
-        counted(
-            "overturned",
-            "whether the structure has overturned",
-            DataType::Boolean,
-            Source::Boolean(overturned),
-            &[],
-        ),
+        counted("overturned", "whether the structure has overturned", DataType::Boolean, Source::Boolean(overturned)),
         counted(
             "t_overturned",
             "instant of overturning; startTime while the structure stands",
-            DataType::Real { unit: "s", range: None },
+            number("s"),
             Source::Overturning,
-            &[],
         ),
     ]
 }
 
 /// Derivatives of the states.
-fn state_rates() -> [Variable; 4] {
-    let rate = |which, name, unit, description| Variable {
-        causality: Causality::Local,
-        ..output(name, unit, description, Source::StateRate(which), &[], &[])
-    };
-    let velocity = |which, name, unit, description, states, initial_dependencies| Variable {
-        states,
-        initial_dependencies,
-        ..rate(which, name, unit, description)
-    };
-    let acceleration = |which, name, unit, description| Variable {
-        states: &COMPONENTS,
-        feedthrough: LOAD_NAMES,
-        initial_dependencies: ACCELERATIONS,
-        ..rate(which, name, unit, description)
+fn state_rates() -> [Row; 4] {
+    let rate = |which, name, unit, description, of| {
+        let (variable, source) = local(name, unit, description, Source::StateRate(which), of);
+        (variable.rate_of(COMPONENTS[which]), source)
     };
     let [of_u, of_theta] = ["rate of u", "rate of theta"];
+    let [of_u_dot, of_theta_dot] = [
+        "rate of u_dot, by the equations of the level of detail",
+        "rate of theta_dot, by the equations of the level of detail",
+    ];
     [
-        velocity(0, "der(u)", "m/s", of_u, &["u_dot"], &["u_dot_0"]),
-        acceleration(1, "der(u_dot)", "m/s2", "rate of u_dot, by the equations of the level of detail"),
-        velocity(2, "der(theta)", "rad/s", of_theta, &["theta_dot"], &["theta_dot_0"]),
-        acceleration(3, "der(theta_dot)", "rad/s2", "rate of theta_dot, by the equations of the level of detail"),
+        rate(0, "der(u)", "m/s", of_u, &["u_dot"]),
+        rate(1, "der(u_dot)", "m/s2", of_u_dot, ACCELERATION),
+        rate(2, "der(theta)", "rad/s", of_theta, &["theta_dot"]),
+        rate(3, "der(theta_dot)", "rad/s2", of_theta_dot, ACCELERATION),
     ]
 }
 
 /// The event indicators, in their order: they tell a host that integrates that a phase ends.
-fn event_indicators() -> [Variable; INDICATORS] {
+fn event_indicators() -> [Row; INDICATORS] {
     #[rustfmt::skip]
     const PHASE: &[&str] = &[
-        "m", "m0", "H", "B", "f_fc", "zeta_fc", "c_ratio", "g", "detail", "theta_0", "u_0", "u_dot_0",
-        "P_0", "record", "record_v", "record_scale", "record_time_scale", "record_start",
+        "a_ground", "F_t", "a_v_ground", "u", "u_dot", "theta", "m", "m0", "H", "B", "f_fc", "zeta_fc", "c_ratio", "g", "detail", "P_0",
     ];
-    let indicator = |which, name, description| Variable {
-        causality: Causality::Local,
-        ..output(name, "1", description, Source::Indicator(which), &[], &[])
+    let indicator = |which, name, description, of| {
+        let (variable, source) = local(name, "1", description, Source::Indicator(which), of);
+        (Variable { role: Role::Indicator, ..variable }, source)
     };
+    let of_phase =
+        "event indicator, positive while the phase lasts: what u and its moment lack to uplift; theta over alpha_cg";
+    let of_end = "event indicator, positive until the structure has overturned, or a dissipator yields or ceases to";
     [
-        Variable {
-            feedthrough: LOAD_NAMES,
-            states: &["u", "u_dot", "theta"],
-            initial_dependencies: PHASE,
-            ..indicator(
-                0,
-                "phase_indicator",
-                "event indicator, positive while the phase lasts: what u and its moment lack to uplift; theta over alpha_cg",
-            )
-        },
-        Variable {
-            states: &["theta", "theta_dot"],
-            initial_dependencies: &["B", "theta_0", "xi_d", "k_d", "F_y"],
-            ..indicator(
-                1,
-                "overturning_indicator",
-                "event indicator, positive until the structure has overturned, or a dissipator yields or ceases to",
-            )
-        },
+        indicator(0, "phase_indicator", of_phase, PHASE),
+        indicator(1, "overturning_indicator", of_end, &["theta", "theta_dot", "B", "xi_d", "k_d", "F_y"]),
     ]
 }
 
 /// Largest magnitudes and their instants.
-fn peaks() -> Vec<Variable> {
-    let peak = |name, unit, description, of| Variable {
-        causality: Causality::Local,
-        ..discrete(name, description, DataType::Real { unit, range: None }, Source::Peak(of), &[])
-    };
+fn peaks() -> Vec<Row> {
+    let peak = |name, unit, description, of| local(name, unit, description, Source::Peak(of), &[]);
     macro_rules! peaks {
         ($($name:ident $unit:literal)*) => {
             vec![$(
@@ -522,29 +430,24 @@ fn peaks() -> Vec<Variable> {
 }
 
 /// What the motion goes beyond.
-fn validity() -> Vec<Variable> {
-    let local = |name, description, data_type, source| Variable {
-        causality: Causality::Local,
-        ..discrete(name, description, data_type, source, &[])
-    };
-    let real = |unit| DataType::Real { unit, range: None };
+fn validity() -> Vec<Row> {
     let of_assumption = |(which, assumption): (usize, &'static Assumption)| {
-        let Assumption { name, time_name, description, time_description, .. } = assumption;
+        let Assumption { name, time_name, description, time_description, is_of_impacts, .. } = *assumption;
+        let worst = |name, unit, description, source| {
+            let (variable, source) = local(name, unit, description, source, &[]);
+            (Variable { is_continuous: !is_of_impacts, ..variable }, source)
+        };
         [
-            local(name, description, real("1"), Source::Worst(which)),
-            local(time_name, time_description, real("s"), Source::WorstInstant(which)),
+            worst(name, "1", description, Source::Worst(which)),
+            worst(time_name, "s", time_description, Source::WorstInstant(which)),
         ]
     };
-    let gains = "impacts since startTime that raise the energy";
-    const { &ASSUMPTIONS }
-        .iter()
-        .enumerate()
-        .flat_map(of_assumption)
-        .chain([local("energy_gains", gains, DataType::Integer, Source::Gains)])
-        .collect()
+    let gains =
+        counted("energy_gains", "impacts since startTime that raise the energy", DataType::Integer, Source::Gains);
+    const { &ASSUMPTIONS }.iter().enumerate().flat_map(of_assumption).chain([gains]).collect()
 }
 
-fn switches() -> [Variable; 4] {
+fn switches() -> [Row; 4] {
     static LATE: Switch = Switch { get: |setup| setup.a_g_late, set: |setup, on| setup.a_g_late = on };
     static EXTRAPOLATED: Switch =
         Switch { get: |setup| setup.F_t_extrapolated, set: |setup, on| setup.F_t_extrapolated = on };
@@ -569,122 +472,30 @@ fn switches() -> [Variable; 4] {
     ]
 }
 
-/// Time. Descriptions of FMI 2.0 leave it out: it is last, so that the other references are the same in both versions.
-fn time() -> Variable {
-    Variable {
-        causality: Causality::Independent,
-        ..output("time", "s", "where the simulation is", Source::Time, &[], &[])
-    }
-}
-
-fn calculated_parameters() -> [Variable; 6] {
+fn calculated_parameters() -> [Row; 6] {
+    let causality = Causality::CalculatedParameter;
+    let calculated = |name, of: &[&'static str]| {
+        let derived = const { &DERIVED }.iter().find(|derived| derived.name == name);
+        let derived = derived.unwrap_or_else(|| panic!("no derived quantity is called {name}"));
+        real(causality, name, derived.unit, derived.description, Source::Derived(derived), of)
+    };
+    let duration = "from the first to the last sample of the record, of either component; 0 without a record";
+    let of_record = ["record", "record_v", "record_time_scale"];
     [
         calculated("alpha_cg", &["m", "m0", "H", "B"]),
         calculated("p_l", &["m", "m0", "H", "B", "J0", "g"]),
         calculated("chi", &["m", "m0", "H", "B", "J0"]),
         calculated("u_cr", &["m", "m0", "H", "B", "f_fc", "g"]),
         calculated("f_u", &["m", "m0", "H", "B", "J0", "f_fc"]),
-        Variable {
-            causality: Causality::CalculatedParameter,
-            ..output(
-                "record_duration",
-                "s",
-                "from the first to the last sample of the record, of either component; 0 without a record",
-                Source::RecordDuration,
-                &[],
-                &["record", "record_v", "record_time_scale"],
-            )
-        },
+        real(causality, "record_duration", "s", duration, Source::RecordDuration, &of_record),
     ]
 }
 
-fn output(
-    name: &'static str,
-    unit: &'static str,
-    description: &'static str,
-    source: Source,
-    feedthrough: &'static [&'static str],
-    initial_dependencies: &'static [&'static str],
-) -> Variable {
-    let data_type = DataType::Real { unit, range: None };
-    Variable { feedthrough, ..discrete(name, description, data_type, source, initial_dependencies) }
+fn parameter(name: &'static str, description: &'static str, data_type: DataType, source: Source) -> Row {
+    (Variable::of_type(data_type, Causality::Parameter, name, description), source)
 }
 
-fn discrete(
-    name: &'static str,
-    description: &'static str,
-    data_type: DataType,
-    source: Source,
-    initial_dependencies: &'static [&'static str],
-) -> Variable {
-    Variable {
-        name,
-        description,
-        data_type,
-        causality: Causality::Output,
-        feedthrough: &[],
-        states: &[],
-        initial_dependencies,
-        source,
-    }
-}
-
-fn parameter(name: &'static str, description: &'static str, data_type: DataType, source: Source) -> Variable {
-    Variable { causality: Causality::Parameter, ..discrete(name, description, data_type, source, &[]) }
-}
-
-fn fixed<T>(quantity: &'static Quantity<T>, source: Source) -> Variable {
-    let data_type = DataType::Real { unit: quantity.unit, range: Some((quantity.min, quantity.max)) };
-    parameter(quantity.name, quantity.description, data_type, source)
-}
-
-fn calculated(name: &'static str, initial_dependencies: &'static [&'static str]) -> Variable {
-    let derived = const { &DERIVED }.iter().find(|derived| derived.name == name);
-    let derived = derived.unwrap_or_else(|| panic!("no derived quantity is called {name}"));
-    let Derived { description, unit, .. } = derived;
-    Variable {
-        causality: Causality::CalculatedParameter,
-        ..output(name, unit, description, Source::Derived(derived), &[], initial_dependencies)
-    }
-}
-
-impl Variable {
-    /// Whether it may change at any time, and not at transitions alone.
-    pub fn is_continuous(&self) -> bool {
-        match self.source {
-            Source::Input(_) | Source::Output(_) | Source::Reaction(_) => true,
-            Source::StateRate(_) | Source::Indicator(_) => true,
-            Source::Restraint(_) | Source::Dissipator(_) => true,
-            Source::Ground(_) | Source::Peak(_) | Source::Time => true,
-            Source::Worst(which) | Source::WorstInstant(which) => !ASSUMPTIONS[which].is_of_impacts,
-            _ => false,
-        }
-    }
-
-    /// Which of the continuous states it is, by the place in [`COMPONENTS`].
-    pub fn as_state(&self) -> Option<usize> {
-        COMPONENTS.iter().position(|name| *name == self.name)
-    }
-
-    /// Which of the continuous states it is the derivative of.
-    pub fn as_state_rate(&self) -> Option<usize> {
-        if let Source::StateRate(which) = self.source { Some(which) } else { None }
-    }
-
-    /// Which of the event indicators it is.
-    pub fn as_indicator(&self) -> Option<usize> {
-        if let Source::Indicator(which) = self.source { Some(which) } else { None }
-    }
-
-    /// The start value in an FMU with these `contents`: of the inputs, the parameters and the initial values.
-    pub fn start(&self, contents: &Contents) -> Option<Value> {
-        let setup = Setup::new(contents);
-        match self.source {
-            Source::Input(which) => Some(Value::Real((LOADS[which].get)(&Load::default()))),
-            Source::Detail => Some(Value::Item(detail_number(setup.detail))),
-            Source::Text(text) => Some(Value::String((text.get)(&setup).to_owned())),
-            Source::Switch(switch) => Some(Value::Boolean((switch.get)(&setup))),
-            _ => self.source.setting(&setup).map(Value::Real),
-        }
-    }
+fn fixed<T>(quantity: &'static Quantity<T>, source: Source) -> Row {
+    let &Quantity { name, unit, description, min, max, .. } = quantity;
+    parameter(name, description, DataType::Real { unit, range: Some((min, max)) }, source)
 }

@@ -3,8 +3,8 @@
 
 mod host;
 
-use FlexibleRocking::fmi2::fmi2GetDirectionalDerivative;
 use approx::assert_relative_eq;
+use fmi_unit::fmi2::fmi2GetDirectionalDerivative;
 use host::*;
 
 /// The derivatives of `unknowns` where each of `knowns` changes by so much, or the status.

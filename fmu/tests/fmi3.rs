@@ -3,8 +3,9 @@
 
 mod host;
 
-use FlexibleRocking::fmi3::*;
-use FlexibleRocking::interface::Stepping;
+use FlexibleRocking::unit::Unit;
+use fmi_unit::fmi3::{self, *};
+use fmi_unit::interface::Stepping;
 use host::{ERROR, OK, reference, resources};
 use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
@@ -33,27 +34,14 @@ impl Host {
         let (resources, log) = (resources(), Box::<Log>::default());
         let token = CString::new(FlexibleRocking::guid(&Parameters::EVISON.into())).unwrap();
         let folder = CString::new(format!("{}/", resources.path().display())).unwrap();
-        let (name, token, folder) = (c"wall".as_ptr(), token.as_ptr(), folder.as_ptr());
-        let (environment, log_message) = ((&raw const *log).cast_mut().cast(), Some(record as LogMessageCallback));
+        let texts = [c"wall".as_ptr(), token.as_ptr(), folder.as_ptr()];
+        let told = ((&raw const *log).cast_mut().cast(), Some(record as LogMessageCallback), 0);
         let c = match stepping {
             Some(Stepping { event_mode, early_return }) => unsafe {
-                let (event_mode, early_return, none) = (event_mode.into(), early_return.into(), null());
-                fmi3InstantiateCoSimulation(
-                    name,
-                    token,
-                    folder,
-                    0,
-                    0,
-                    event_mode,
-                    early_return,
-                    none,
-                    0,
-                    environment,
-                    log_message,
-                    None,
-                )
+                let flags = [event_mode.into(), early_return.into()];
+                fmi3::instantiate_co_simulation::<Unit>(texts, told, flags, (null(), 0), None)
             },
-            None => unsafe { fmi3InstantiateModelExchange(name, token, folder, 0, 0, environment, log_message) },
+            None => unsafe { fmi3::instantiate_model_exchange::<Unit>(texts, told) },
         };
         assert!(!c.is_null(), "{log:?}");
         Host { c, log, _resources: resources }
@@ -178,8 +166,8 @@ fn the_other_versions_functions_refuse_an_instance() {
     let host = Host::started(None, 2.0);
     let before = host.bytes();
     unsafe {
-        assert_eq!(FlexibleRocking::fmi2::fmi2Reset(host.c), ERROR);
-        FlexibleRocking::fmi2::fmi2FreeInstance(host.c);
+        assert_eq!(fmi_unit::fmi2::fmi2Reset(host.c), ERROR);
+        fmi_unit::fmi2::fmi2FreeInstance(host.c);
     }
     assert_eq!(host.bytes(), before);
 }
@@ -231,11 +219,11 @@ fn a_host_that_is_called_back_sets_inputs_reads_and_does_no_harm() {
     let token = CString::new(FlexibleRocking::guid(&Parameters::EVISON.into())).unwrap();
     let folder = CString::new(resources.path().to_str().unwrap()).unwrap();
     let mut called = Called { c: null_mut(), end: 2.0, read: Vec::new() };
-    let (name, token, folder) = (c"wall".as_ptr(), token.as_ptr(), folder.as_ptr());
+    let texts = [c"wall".as_ptr(), token.as_ptr(), folder.as_ptr()];
     let (a_g, theta, environment) = (reference("a_g"), reference("theta"), &raw mut called);
     let with = |required: &[c_uint], environment: *mut Called| unsafe {
-        let (required, n, environment) = (required.as_ptr(), required.len(), environment.cast());
-        fmi3InstantiateCoSimulation(name, token, folder, 0, 0, 0, 0, required, n, environment, None, Some(update))
+        let required = (required.as_ptr(), required.len());
+        fmi3::instantiate_co_simulation::<Unit>(texts, (environment.cast(), None, 0), [0, 0], required, Some(update))
     };
     assert!(with(&[a_g, c_uint::MAX], environment).is_null());
     for (required, sets, reads) in [(&[a_g][..], true, false), (&[theta], false, true), (&[a_g, theta], true, true)] {

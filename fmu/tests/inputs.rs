@@ -3,8 +3,8 @@
 
 mod host;
 
-use FlexibleRocking::fmi2::fmi2GetDirectionalDerivative;
 use approx::assert_relative_eq;
+use fmi_unit::fmi2::fmi2GetDirectionalDerivative;
 use host::*;
 
 const SHOWN: [&str; 6] = ["theta", "u", "a_t", "R_h", "a_g", "F_t"];

@@ -3,8 +3,8 @@
 
 mod host;
 
-use FlexibleRocking::fmi2::*;
 use approx::assert_relative_eq;
+use fmi_unit::fmi2::*;
 use host::*;
 
 const PHASE_IN_CONTACT: i32 = 1;

@@ -3,8 +3,9 @@
 
 mod host;
 
-use FlexibleRocking::snapshot;
+use FlexibleRocking::BUILD;
 use approx::assert_relative_eq;
+use fmi_unit::snapshot::Snapshot;
 use host::*;
 use rocking::run::fall::FallingPeaks;
 use rocking::run::peaks::PEAKS;
@@ -119,7 +120,7 @@ fn what_nobody_asks_for_is_not_watched() {
     let run = |validity| {
         let host = host(validity);
         step(&host, 0.0, &[5.0]);
-        let course = snapshot::deserialize(&host.bytes()).unwrap().course.unwrap();
+        let course = course(&Snapshot::deserialize(BUILD, &host.bytes()).unwrap()).unwrap();
         (host, course)
     };
     let ((_, with), (silent, without)) = (run(1), run(0));

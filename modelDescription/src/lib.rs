@@ -1,13 +1,15 @@
 //! FMI 2.0 model description of a unit for model exchange and co-simulation: its types, named as in the standard, and their XML.
 //!
-//! Build a [`FmiModelDescription`], call [`FmiModelDescription::to_xml`]. The fields stand in the order that the
+//! A [`Description`] makes a [`FmiModelDescription`] of a table of variables; call [`FmiModelDescription::to_xml`]. The fields stand in the order that the
 //! standard's schema asks of the elements; an attribute that is `None` is left out. What FMI 3.0 has otherwise is in [`fmi3`].
 
+mod description;
 pub mod fmi3;
 mod model_structure;
 mod model_variables;
 mod unit_definitions;
 
+pub use description::Description;
 pub use model_structure::{DEPENDENT, ModelStructure, Unknown};
 pub use model_variables::{
     Attributes, Boolean, Causality, Enumeration, Initial, Integer, ModelVariables, Real, ScalarVariable, Text,

@@ -2,11 +2,12 @@
 
 use crate::Version;
 use crate::library::{Library, Platform};
-use crate::model_description::DESCRIPTION;
+use crate::model_description::{DESCRIPTION, EVENTS};
 use crate::significant::{in_full, significant};
-use FlexibleRocking::logger::Category;
 use FlexibleRocking::resources::Contents;
-use FlexibleRocking::variables::{Causality, DataType, VARIABLES, Value, Variable};
+use FlexibleRocking::variables::Table;
+use fmi_unit::logger::Category;
+use fmi_unit::{Causality, DataType, Value, Variable};
 use minijinja::{Environment, UndefinedBehavior, Value as Filling, context};
 use rocking::Structure;
 use rocking::engine::{DEFAULT_TOLERANCE, MAX_STEPS_PER_ADVANCE};
@@ -34,9 +35,10 @@ pub fn documentation(
         ("Parameters and initial values", Causality::Parameter),
         ("Calculated parameters", Causality::CalculatedParameter),
     ];
+    let variables = Table::new(contents).variables;
     let group = |(title, causality)| {
-        let variables = VARIABLES.iter().filter(|variable| variable.causality == causality);
-        let rows = variables.map(|variable| row(variable, structure, contents)).collect::<Vec<_>>();
+        let variables = variables.iter().filter(|variable| variable.causality == causality);
+        let rows = variables.map(|variable| row(variable, structure)).collect::<Vec<_>>();
         context! { title, rows }
     };
     let page = context! {
@@ -75,16 +77,16 @@ fn platform(version: Version, platform: Platform) -> Filling {
 }
 
 fn log_category(category: Category) -> Filling {
-    context! { name => category.name().to_string_lossy().into_owned(), description => category.description() }
+    context! { name => category.name().to_string_lossy().into_owned(), description => if category == Category::Events { EVENTS } else { category.description() } }
 }
 
-fn row(variable: &Variable, structure: &Structure, contents: &Contents) -> Filling {
+fn row(variable: &Variable, structure: &Structure) -> Filling {
     let (unit, range) = match variable.data_type {
         DataType::Real { unit, range } => (if unit == "1" { "–" } else { unit }, range),
         _ => ("", None),
     };
     let meaning = match variable.data_type {
-        DataType::Real { .. } => variable.description.to_owned(),
+        DataType::Real { .. } => variable.description.to_string(),
         DataType::Integer => format!("{} (Integer)", variable.description),
         DataType::Boolean => format!("{} (Boolean)", variable.description),
         DataType::String => format!("{} (String)", variable.description),
@@ -95,19 +97,19 @@ fn row(variable: &Variable, structure: &Structure, contents: &Contents) -> Filli
         }
     };
     context! {
-        name => variable.name,
+        name => &*variable.name,
         unit,
-        value => value(variable, structure, contents),
+        value => value(variable, structure),
         range => range.map_or(String::new(), |(min, max)| format!("{} … {}", in_full(min), in_full(max))),
         meaning,
     }
 }
 
 /// What is known of a variable's value before the simulation: its start value, or what follows from the parameters.
-fn value(variable: &Variable, structure: &Structure, contents: &Contents) -> String {
-    match variable.start(contents) {
+fn value(variable: &Variable, structure: &Structure) -> String {
+    match variable.start.clone() {
         Some(Value::Real(start)) => return in_full(start),
-        Some(Value::Item(start)) => return start.to_string(),
+        Some(Value::Integer(start)) => return start.to_string(),
         Some(Value::Boolean(start)) => return start.to_string(),
         Some(Value::String(start)) => return start,
         None => (),
@@ -125,7 +127,11 @@ mod tests {
     fn the_page_has_a_row_for_every_variable() {
         let structure = Structure::new(Parameters::EVISON).unwrap();
         let page = documentation(Version::Fmi2, "Pier", &structure, &Parameters::EVISON.into(), &[]).unwrap();
-        for variable in VARIABLES.iter().filter(|variable| variable.causality != Causality::Independent) {
+        for variable in Table::new(&Parameters::EVISON.into())
+            .variables
+            .iter()
+            .filter(|variable| variable.causality != Causality::Independent)
+        {
             let cell = format!("<tr><td class=\"n\"><code>{}</code></td><td class=\"n\">", variable.name);
             assert_eq!(page.matches(&cell).count(), 1, "{}", variable.name);
         }

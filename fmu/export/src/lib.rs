@@ -160,19 +160,9 @@ fn entries(
 ) -> Result<Vec<Entry>, ExportError> {
     let entry = |path: &str, content| Entry { path: path.to_owned(), content };
     let page = documentation::documentation(version, name, structure, contents, libraries)?;
-    let mut entries = match version {
-        Version::Fmi2 => {
-            let description = model_description::model_description(name, structure, contents, experiment);
-            vec![entry("modelDescription.xml", description.to_xml()?.into()), entry("model.png", ICON.to_vec())]
-        }
-        Version::Fmi3 => {
-            let description = model_description::fmi3::model_description(name, structure, contents, experiment);
-            vec![
-                entry("modelDescription.xml", description.to_xml()?.into()),
-                entry("terminalsAndIcons/icon.png", ICON.to_vec()),
-            ]
-        }
-    };
+    let description = model_description::xml(version, name, structure, contents, experiment)?;
+    let icon = if version == Version::Fmi2 { "model.png" } else { "terminalsAndIcons/icon.png" };
+    let mut entries = vec![entry("modelDescription.xml", description.into()), entry(icon, ICON.to_vec())];
     entries.extend([
         entry("documentation/index.html", page.into()),
         entry("documentation/licenses/license.txt", LICENSES.into()),

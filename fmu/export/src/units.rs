@@ -1,6 +1,6 @@
 //! Units: what each is in SI, what hosts show it in, and magnitudes that are usual.
 
-use FlexibleRocking::variables::{DataType, Variable};
+use fmi_unit::{DataType, Variable};
 use model_description as fmi;
 use rocking::structure::parameters::PARAMETERS;
 use rocking::{State, Structure};
@@ -68,7 +68,7 @@ pub fn nominal(variable: &Variable, structure: &Structure) -> Option<f64> {
     let usual = State::usual(structure);
     let (m, height, alpha) = (parameters.m, parameters.H, usual.theta);
     let acceleration = parameters.g * structure.tan_alpha_cg;
-    let name = ["_max", "_0"].iter().find_map(|ending| variable.name.strip_suffix(ending)).unwrap_or(variable.name);
+    let name = ["_max", "_0"].iter().find_map(|ending| variable.name.strip_suffix(ending)).unwrap_or(&variable.name);
     let magnitude = match name {
         "theta" => Some(alpha),
         "theta_dot" | "der(theta)" => Some(usual.theta_dot),

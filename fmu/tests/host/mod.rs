@@ -1,16 +1,20 @@
 //! A host: loads nothing, calls the C functions directly, keeps what is logged.
 #![allow(unsafe_code, dead_code)] // the C interface; every test file uses a part of this
 
-use FlexibleRocking::fmi2::*;
 use FlexibleRocking::guid;
 use FlexibleRocking::resources::PARAMETERS_FILE;
-use FlexibleRocking::state_machine::Stage;
-use FlexibleRocking::variables::VARIABLES;
+use FlexibleRocking::unit::{Condition, Course, Unit};
+use FlexibleRocking::variables::Table;
+use fmi_unit::Variable;
+use fmi_unit::fmi2::{self, *};
+use fmi_unit::snapshot::Snapshot;
+use fmi_unit::state_machine::Stage;
 use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
 use std::cell::RefCell;
 use std::ffi::{CStr, CString};
 use std::ptr;
+use std::sync::{Arc, LazyLock};
 use tempfile::TempDir;
 
 /// `fmi2ModelExchange`
@@ -32,6 +36,11 @@ pub const STAGES_OF_MODEL: [Stage; 6] = [
     Stage::Terminated,
     Stage::Error,
 ];
+
+/// How far the simulation had come that `snapshot` is of, once it had started.
+pub fn course(snapshot: &Snapshot) -> Option<Course> {
+    postcard::from_bytes::<Condition>(&snapshot.model).unwrap().course
+}
 
 /// One message, as the host's logger got it.
 #[derive(Clone, Debug, PartialEq)]
@@ -106,6 +115,9 @@ pub fn callbacks(environment: *mut c_void) -> CallbackFunctions {
     }
 }
 
+/// The variables, with the start values of Evison's wall.
+pub static VARIABLES: LazyLock<Arc<[Variable]>> = LazyLock::new(|| Table::new(&Parameters::EVISON.into()).variables);
+
 pub fn reference(name: &str) -> c_uint {
     VARIABLES.iter().position(|variable| variable.name == name).unwrap_or_else(|| panic!("{name}")) as c_uint
 }
@@ -128,13 +140,12 @@ impl Host {
         let [name, guid, location] =
             [arguments.name, &arguments.guid, &location].map(|text| CString::new(text).unwrap());
         let component = unsafe {
-            fmi2Instantiate(
+            fmi2::instantiate::<Unit>(
                 name.as_ptr(),
                 arguments.fmu_type,
                 guid.as_ptr(),
                 location.as_ptr(),
                 &callbacks((&raw const *log).cast_mut().cast()),
-                0,
                 arguments.logging_on,
             )
         };

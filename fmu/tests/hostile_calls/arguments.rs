@@ -1,11 +1,11 @@
 //! Arguments of calls, from sensible to absurd: what is read is held until the call is over, and of what is written it is
 //! known whether it may be.
 
+use crate::host::VARIABLES;
 use crate::{C, Sequence, host};
-use FlexibleRocking::state_machine::Stage;
-use FlexibleRocking::variables::{DataType, VARIABLES, Value};
+use fmi_unit::state_machine::Stage;
+use fmi_unit::{DataType, Value};
 use libc::{c_char, c_uint};
-use rocking::Parameters;
 use rocking::run::validity::ASSUMPTIONS;
 use std::any::Any;
 use std::ffi::{CStr, CString};
@@ -121,7 +121,7 @@ impl Sequence<'_> {
     /// Room for a real number of each variable. What nobody watches for is not a number, and friction may be infinite.
     pub fn reals_of_references(&mut self) -> *mut f64 {
         let is_finite = self.drawn.references.iter().all(|reference| {
-            let name = VARIABLES.get(*reference as usize).map_or("", |variable| variable.name);
+            let name = VARIABLES.get(*reference as usize).map_or("", |variable| &variable.name);
             !name.ends_with("_max") && !ASSUMPTIONS.iter().any(|of| [of.name, of.time_name].contains(&name))
         });
         let place = self.values();
@@ -206,7 +206,7 @@ impl Sequence<'_> {
             1 => [min, max][self.rng.usize(..2)],
             2 | 3 if min > 0.0 => self.between(min, max),
             2 | 3 => self.sign() * self.between(1e-6, max),
-            _ => match variable.and_then(|variable| variable.start(&Parameters::EVISON.into())) {
+            _ => match variable.and_then(|variable| variable.start.clone()) {
                 Some(Value::Real(start)) if start != 0.0 => (start * self.between(0.3, 3.0)).clamp(min, max),
                 _ if min == 0.0 => self.between(1e-2, 1e6f64.min(max)),
                 _ => self.sign() * self.between(1e-4, 50.0f64.min(max)),
@@ -298,7 +298,7 @@ impl Sequence<'_> {
 
     /// Mostly where the instance is, s.
     pub fn point(&mut self) -> f64 {
-        let now = self.before.as_ref().and_then(|of| of.course).map_or(0.0, |course| course.motion.time);
+        let now = self.before.as_ref().and_then(host::course).map_or(0.0, |course| course.motion.time);
         if self.one_in(16) { self.number() } else { now }
     }
 
@@ -316,7 +316,7 @@ impl Sequence<'_> {
 
     /// On by some milliseconds, or anywhere, s. A check over a long time takes as much work as a thousand others.
     pub fn time(&mut self) -> f64 {
-        let outside = self.before.as_ref().and_then(|condition| condition.course?.outside);
+        let outside = self.before.as_ref().and_then(|snapshot| host::course(snapshot)?.outside);
         let now = outside.map_or(0.0, |outside| outside.known.motion.time);
         match self.rng.u16(..4000) {
             0..8 => self.number(),

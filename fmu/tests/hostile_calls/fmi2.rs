@@ -2,11 +2,12 @@
 
 use crate::arguments::{CATEGORIES, SWITCHES, calls};
 use crate::{C, Table, Told, Version, host};
-use FlexibleRocking::c_abi::Function as _;
-use FlexibleRocking::fmi2::*;
-use FlexibleRocking::interface::Interface;
-use FlexibleRocking::state_machine::Stage;
+use FlexibleRocking::unit::Unit;
 use fastrand::Rng;
+use fmi_unit::c_abi::Function as _;
+use fmi_unit::fmi2::{self, *};
+use fmi_unit::interface::Interface;
+use fmi_unit::state_machine::Stage;
 use host::{ERROR, STAGES_OF_MODEL};
 use libc::{c_char, c_int, c_void};
 
@@ -119,7 +120,7 @@ fn instantiate(rng: &mut Rng, interface: Interface, [name, guid, location]: [*co
     functions.logger = Some(unsafe { std::mem::transmute::<*const (), CallbackLogger>(logger as *const ()) });
     let is_model = interface == Interface::ModelExchange;
     let kind = if is_model { host::MODEL_EXCHANGE } else { host::CO_SIMULATION };
-    unsafe { fmi2Instantiate(name, kind, guid, location, &functions, 0, rng.i32(0..2)) }
+    unsafe { fmi2::instantiate::<Unit>(name, kind, guid, location, &functions, rng.i32(0..2)) }
 }
 
 unsafe extern "C" fn tell(

@@ -2,11 +2,12 @@
 
 use crate::arguments::{CATEGORIES, SWITCHES, calls};
 use crate::{C, Table, Told, Version, host};
-use FlexibleRocking::c_abi::Function as _;
-use FlexibleRocking::fmi3::*;
-use FlexibleRocking::interface::{Interface, Stepping};
-use FlexibleRocking::state_machine::Stage;
+use FlexibleRocking::unit::Unit;
 use fastrand::Rng;
+use fmi_unit::c_abi::Function as _;
+use fmi_unit::fmi3::{self, *};
+use fmi_unit::interface::{Interface, Stepping};
+use fmi_unit::state_machine::Stage;
 use host::{ERROR, STAGES_OF_MODEL};
 use libc::{c_char, c_int, c_void};
 use std::ptr::null;
@@ -127,31 +128,16 @@ const MODEL: Table = Table {
         - - - x - -  EnterEventMode CompletedIntegratorStep SetContinuousStates",
 };
 
-fn instantiate(rng: &mut Rng, interface: Interface, [name, token, folder]: [*const c_char; 3], told: &Told) -> C {
-    let (events, environment) = (rng.u8(0..2), (&raw const *told).cast_mut().cast());
+fn instantiate(rng: &mut Rng, interface: Interface, texts: [*const c_char; 3], told: &Told) -> C {
+    let environment = (&raw const *told).cast_mut().cast();
+    let log = (environment, Some(tell as LogMessageCallback), rng.u8(0..2));
     unsafe {
         match interface {
             Interface::CoSimulation(Stepping { event_mode, early_return }) => {
-                let (event_mode, early_return) = (event_mode.into(), early_return.into());
-                let (none, log) = (null(), Some(tell as LogMessageCallback));
-                fmi3InstantiateCoSimulation(
-                    name,
-                    token,
-                    folder,
-                    0,
-                    events,
-                    event_mode,
-                    early_return,
-                    none,
-                    0,
-                    environment,
-                    log,
-                    None,
-                )
+                let flags = [event_mode.into(), early_return.into()];
+                fmi3::instantiate_co_simulation::<Unit>(texts, log, flags, (null(), 0), None)
             }
-            Interface::ModelExchange => {
-                fmi3InstantiateModelExchange(name, token, folder, 0, events, environment, Some(tell))
-            }
+            Interface::ModelExchange => fmi3::instantiate_model_exchange::<Unit>(texts, log),
         }
     }
 }

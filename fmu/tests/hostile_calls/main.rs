@@ -12,12 +12,12 @@ mod fmi3;
 #[path = "../host/mod.rs"]
 mod host;
 
-use FlexibleRocking::condition::Condition;
-use FlexibleRocking::interface::{Interface, Stepping};
-use FlexibleRocking::snapshot;
-use FlexibleRocking::state_machine::{Stage, Stages};
+use FlexibleRocking::BUILD;
 use arguments::Drawn;
 use fastrand::Rng;
+use fmi_unit::interface::{Interface, Stepping};
+use fmi_unit::snapshot::Snapshot;
+use fmi_unit::state_machine::{Stage, Stages};
 use host::{DISCARD, ERROR, OK, WARNING};
 use libc::{c_char, c_int, c_void};
 use proptest::collection::vec;
@@ -219,7 +219,7 @@ struct Sequence<'a> {
     freed: C,
     /// What it was when it was made, as bytes, and what it is before the next call.
     new: Vec<u8>,
-    before: Option<Condition>,
+    before: Option<Snapshot>,
     /// Serialized states.
     bytes: Vec<Vec<u8>>,
     drawn: Drawn,
@@ -284,7 +284,7 @@ impl<'a> Sequence<'a> {
         assert!(self.c.is_null() || !is_wrong);
         if !self.c.is_null() {
             self.new = self.version.bytes(self.c);
-            assert_eq!(snapshot::deserialize(&self.new).unwrap().interface, interface);
+            assert_eq!(Snapshot::deserialize(BUILD, &self.new).unwrap().interface, interface);
         }
     }
 
@@ -298,7 +298,7 @@ impl<'a> Sequence<'a> {
     /// Calls any function, or one that leads on.
     fn call(&mut self, tally: &mut Tally) {
         let bytes = self.version.bytes(self.c);
-        let before = snapshot::deserialize(&bytes).unwrap();
+        let before = Snapshot::deserialize(BUILD, &bytes).unwrap();
         let (calls, stage) = (self.version.calls, before.stage);
         let mut number = self.rng.usize(..calls.len());
         // few come to an error
@@ -350,7 +350,7 @@ impl<'a> Sequence<'a> {
             assert!(after == bytes, "the refused {name} changed something");
             return;
         }
-        let condition = snapshot::deserialize(&after).unwrap();
+        let condition = Snapshot::deserialize(BUILD, &after).unwrap();
         let is_said = |text: &str| failure.as_ref().is_some_and(|failure| failure.contains(text));
         assert!(!is_said("not allowed in the state"), "{failure:?}");
         let stage = match &name[4..] {
@@ -385,10 +385,10 @@ impl<'a> Sequence<'a> {
     }
 
     /// The work is bounded, and time goes on over a step that is neither cut short nor ends in overturning.
-    fn check_step(&self, before: &Condition, after: &Condition) {
+    fn check_step(&self, before: &Snapshot, after: &Snapshot) {
         let is_whole =
             after.stage == Stage::StepComplete && self.drawn.rooms.iter().take(3).all(|flag| flag.words[0] as u8 == 0);
-        let [before, after] = [before, after].map(|of| of.course.unwrap().motion);
+        let [before, after] = [before, after].map(|of| host::course(of).unwrap().motion);
         assert!(!is_whole || after.time > before.time, "from {} to {}", before.time, after.time);
         let steps = after.work.steps - before.work.steps;
         assert!(steps <= MAX_STEPS_PER_ADVANCE, "{steps} steps");

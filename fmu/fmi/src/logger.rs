@@ -21,7 +21,7 @@ pub enum Status {
 /// What a message is about. Hosts switch categories on and off by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Category {
-    /// Uplift, impact, landing, overturning.
+    /// What happens at events.
     Events,
     /// What the user should know of the results.
     Warning,
@@ -53,7 +53,7 @@ impl Category {
     /// What it is about, in one line.
     pub const fn description(self) -> &'static str {
         match self {
-            Category::Events => "uplift, impact, landing and overturning, as they happen",
+            Category::Events => "what happens at events",
             Category::Warning => "what should be known of the results; always on",
             Category::Discard => "steps that end early and why; always on",
             Category::Error => "refused calls and why; always on",

@@ -4,7 +4,7 @@
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// A state of FMI's state machine, called stage here: `State` is that of the structure.
+/// A state of FMI's state machine, called stage here: a state is the model's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Stage {
     /// Created or reset.
@@ -17,7 +17,7 @@ pub enum Stage {
     IntermediateUpdateMode,
     /// At the end of a step, while the host reads what it has led to.
     IntermediateOutputs,
-    /// The structure has overturned; there is nothing left to step to.
+    /// A step has ended the simulation; there is nothing left to step to.
     StepFailed,
     /// At an event.
     EventMode,
@@ -25,7 +25,7 @@ pub enum Stage {
     ContinuousTimeMode,
     /// The simulation is over.
     Terminated,
-    /// The solver could not go on; values are for debugging only.
+    /// The model could not go on; values are for debugging only.
     Error,
 }
 
@@ -53,7 +53,7 @@ impl Stage {
     }
 
     /// The set of this stage alone.
-    pub(crate) const fn bit(self) -> Stages {
+    pub const fn bit(self) -> Stages {
         1 << self as u8
     }
 
@@ -71,7 +71,7 @@ impl fmt::Display for Stage {
             Stage::StepComplete => "step complete",
             Stage::IntermediateUpdateMode => "intermediate update mode, for inputs",
             Stage::IntermediateOutputs => "intermediate update mode, for outputs",
-            Stage::StepFailed => "step failed (overturned)",
+            Stage::StepFailed => "step failed",
             Stage::EventMode => "event mode",
             Stage::ContinuousTimeMode => "continuous-time mode",
             Stage::Terminated => "terminated",

@@ -9,14 +9,14 @@ use crate::c_abi::{
     room, text, values, write, write_all, write_state, write_state_size,
 };
 use crate::failure::Failure;
-use crate::instance::{self, Instance, Updated};
+use crate::instance::Instance;
 use crate::interface::{Interface, Stepping};
 use crate::logger::{Logger, Sink};
-use crate::resources;
+use crate::model::{Experiment, Model, Progress, Update};
 use crate::state_machine::{Stage, Table};
-use crate::variables::{DataType, Variable};
+use crate::uri;
+use crate::variables::{DataType, Role};
 use libc::{c_char, c_double, c_int, c_uint, c_void, size_t};
-use rocking::Progress;
 use std::ffi::CString;
 
 /// `fmi2CallbackLogger`
@@ -37,7 +37,7 @@ pub struct CallbackFunctions {
     pub component_environment: *mut c_void,
 }
 
-const MAGIC: u64 = 0x526f_636b_696e_6732;
+const MAGIC: u64 = 0x466d_6955_6e69_7432;
 
 const MODEL_EXCHANGE: c_int = 0;
 const CO_SIMULATION: c_int = 1;
@@ -72,15 +72,13 @@ pub extern "C" fn fmi2GetVersion() -> *const c_char {
     c"2.0".as_ptr()
 }
 
-/// `fmi2Instantiate`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi2Instantiate(
+/// `fmi2Instantiate` of the model `M`
+pub unsafe fn instantiate<M: Model>(
     instanceName: *const c_char,
     fmuType: c_int,
     fmuGUID: *const c_char,
     fmuResourceLocation: *const c_char,
     functions: *const CallbackFunctions,
-    _visible: c_int,
     loggingOn: c_int,
 ) -> *mut c_void {
     let create = || {
@@ -92,7 +90,7 @@ pub unsafe extern "C" fn fmi2Instantiate(
             let interface = match fmuType {
                 MODEL_EXCHANGE => Interface::ModelExchange,
                 CO_SIMULATION => Interface::CoSimulation(Stepping::default()),
-                value => return Err(Failure::BadChoice { name: "fmuType", value, accepted }),
+                value => return Err(Failure::BadChoice { name: "fmuType".into(), value, accepted }),
             };
             let guid = unsafe { text("fmuGUID", fmuGUID) };
             let location = unsafe { text("fmuResourceLocation", fmuResourceLocation) };
@@ -100,15 +98,17 @@ pub unsafe extern "C" fn fmi2Instantiate(
             if name?.is_empty() {
                 return Err(Failure::NoName);
             }
-            Ok((instance::open("fmuGUID", guid?, resources::folder(location?)?)?, interface, events?))
+            let location = location?;
+            let folder = uri::path(location).ok_or_else(|| Failure::NotAFileUri(location.to_owned()))?;
+            Ok((c_abi::open::<M>("fmuGUID", guid?, &folder)?, interface, events?))
         };
         match arguments() {
-            Ok((archive, interface, events)) => {
+            Ok((model, interface, events)) => {
                 let allowed_in: &Table = match interface {
                     Interface::ModelExchange => &stages::MODEL_EXCHANGE,
                     Interface::CoSimulation(_) => &stages::CO_SIMULATION,
                 };
-                Some((Instance::new(archive, interface, events, logger), allowed_in))
+                Some((Instance::new(model, interface, events, logger, None), allowed_in))
             }
             Err(failure) => {
                 logger.failure(failure.status(), &format!("fmi2Instantiate: {failure}"));
@@ -136,11 +136,11 @@ pub unsafe extern "C" fn fmi2FreeInstance(c: *mut c_void) {
 }
 
 /// What the `fmi2Boolean` `value`, given as `name`, stands for.
-fn boolean(name: &'static str, value: c_int) -> Result<bool, Failure> {
+fn boolean(name: &str, value: c_int) -> Result<bool, Failure> {
     match value {
         0 => Ok(false),
         1 => Ok(true),
-        _ => Err(Failure::BadChoice { name, value, accepted: "0 (fmi2False), 1 (fmi2True)" }),
+        _ => Err(Failure::BadChoice { name: name.into(), value, accepted: "0 (fmi2False), 1 (fmi2True)" }),
     }
 }
 
@@ -153,20 +153,20 @@ const TERMINATED: &str = "fmi2Terminated";
 fn status_kind(value: c_int) -> Result<&'static str, Failure> {
     let accepted = "0 (fmi2DoStepStatus), 1 (fmi2PendingStatus), 2 (fmi2LastSuccessfulTime), 3 (fmi2Terminated)";
     let kind = usize::try_from(value).ok().and_then(|at| STATUS_KINDS.get(at));
-    kind.copied().ok_or(Failure::BadChoice { name: "fmi2StatusKind", value, accepted })
+    kind.copied().ok_or(Failure::BadChoice { name: "fmi2StatusKind".into(), value, accepted })
 }
 
 /// What to call instead.
 fn remedy(failure: &Failure) -> &'static str {
     match failure {
-        Failure::WrongType(Variable { data_type, .. }) => match data_type {
+        Failure::WrongType { data_type, .. } => match data_type {
             DataType::Real { .. } => ": call fmi2GetReal or fmi2SetReal instead",
             DataType::Integer => ": call fmi2GetInteger instead",
             DataType::Enumeration(_) => ": call fmi2GetInteger or fmi2SetInteger instead",
             DataType::Boolean => ": call fmi2GetBoolean or fmi2SetBoolean instead",
             DataType::String => ": call fmi2GetString or fmi2SetString instead",
         },
-        Failure::Fixed(_) => ": set it before fmi2ExitInitializationMode, or call fmi2Reset",
+        Failure::Fixed { .. } => ": set it before fmi2ExitInitializationMode, or call fmi2Reset",
         Failure::WrongPoint { .. } => ": step from there, or go back with fmi2SetFMUstate",
         Failure::StepBack { .. } => "; to go back, call fmi2SetFMUstate",
         Failure::PastStop { .. } => " given to fmi2SetupExperiment: shorten it",
@@ -193,7 +193,7 @@ functions! {
     ) |instance| {
         let tolerance = boolean("toleranceDefined", toleranceDefined)?.then_some(tolerance);
         let stop_time = boolean("stopTimeDefined", stopTimeDefined)?.then_some(stopTime);
-        instance.setup_experiment(tolerance, startTime, stop_time)
+        instance.set_up(Experiment { tolerance, start_time: startTime, stop_time })
     }
 
     fmi2EnterInitializationMode = EnterInitializationMode() |instance| { instance.enter(Stage::InitializationMode) }
@@ -290,8 +290,8 @@ functions! {
         currentCommunicationPoint: c_double, communicationStepSize: c_double, _noSetFMUStatePriorToCurrentPoint: c_int,
     ) |instance| {
         match instance.do_step(currentCommunicationPoint, communicationStepSize)? {
-            Progress::Overturned => Err(instance.overturned()?),
-            Progress::Complete | Progress::Transition => Ok(()),
+            Progress::Ended => instance.ending()?.map_or(Ok(()), Err),
+            Progress::Complete | Progress::Event => Ok(()),
         }
     }
 
@@ -313,7 +313,7 @@ functions! {
 
     fmi2GetBooleanStatus = GetBooleanStatus(s: c_int, value: *mut c_int) |instance| {
         match status_kind(s)? {
-            TERMINATED => write("value", value, c_int::from(instance.has_overturned()?)),
+            TERMINATED => write("value", value, c_int::from(instance.ending()?.is_some())),
             other => Err(Failure::NoAnswer(other)),
         }
     }
@@ -326,7 +326,7 @@ functions! {
 
     fmi2NewDiscreteStates = NewDiscreteStates(fmi2eventInfo: *mut EventInfo) |instance| {
         check_pointer("fmi2eventInfo", fmi2eventInfo)?;
-        let Updated { has_ended, has_new_states, next_event } = instance.update_discrete_states()?;
+        let Update { has_ended, has_new_states, next_event } = instance.update_discrete_states()?;
         write("fmi2eventInfo", fmi2eventInfo, EventInfo {
             new_discrete_states_needed: 0,
             terminate_simulation: has_ended.into(),
@@ -349,7 +349,8 @@ functions! {
     fmi2SetTime = SetTime(time: c_double) |instance| { instance.set_time(time) }
 
     fmi2SetContinuousStates = SetContinuousStates(x: *const c_double, nx: size_t) |instance| {
-        instance.set_continuous_states(read_all("x", x, ("nx", nx))?)
+        let needed = instance.count(|role| *role == Role::State);
+        instance.set_continuous_states(read_all("x", x, ("nx", nx), needed)?)
     }
 
     fmi2GetDerivatives = GetDerivatives(derivatives: *mut c_double, nx: size_t) |instance| {
@@ -368,38 +369,5 @@ functions! {
         x_nominal: *mut c_double, nx: size_t,
     ) |instance| {
         write_all("x_nominal", x_nominal, ("nx", nx), instance.nominals()?)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::guid;
-    use crate::logger::Status;
-    use crate::resources::PARAMETERS_FILE;
-    use rocking::Parameters;
-    use std::ptr;
-
-    #[test]
-    fn a_panic_is_fatal_and_the_instance_can_only_be_freed() {
-        let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join(PARAMETERS_FILE), toml::to_string(&Parameters::EVISON).unwrap()).unwrap();
-        let [guid, location] = [guid(&Parameters::EVISON.into()), format!("file://{}", folder.path().display())]
-            .map(|text| CString::new(text).unwrap());
-        let functions = CallbackFunctions {
-            logger: None,
-            allocate_memory: ptr::null(),
-            free_memory: ptr::null(),
-            step_finished: ptr::null(),
-            component_environment: ptr::null_mut(),
-        };
-        unsafe {
-            let c = fmi2Instantiate(c"a".as_ptr(), 1, guid.as_ptr(), location.as_ptr(), &functions, 0, 0);
-            assert_eq!(fmi2EnterInitializationMode(c), Status::Ok as c_int);
-            assert_eq!(c_abi::call(c, Function::GetReal, |_| panic!("on purpose")), Status::Fatal as c_int);
-            assert_eq!(fmi2ExitInitializationMode(c), Status::Fatal as c_int);
-            assert_eq!(fmi2Reset(c), Status::Fatal as c_int);
-            fmi2FreeInstance(c);
-        }
     }
 }

@@ -10,28 +10,24 @@
 mod stages;
 
 use crate::c_abi::{
-    self, call, call_on, check_count, check_pointer, complete_step, escaped, free_state, functions, instantiate,
-    keep_state, names_events, read_all, read_state, room, text, values, write, write_all, write_state,
-    write_state_size,
+    self, call, call_on, check_count, check_pointer, complete_step, escaped, free_state, functions, keep_state,
+    names_events, read_all, read_state, room, text, values, write, write_all, write_state, write_state_size,
 };
 use crate::failure::Failure;
-use crate::instance::{self, Instance, Updated};
+use crate::instance::Instance;
 pub use crate::interface::IntermediateUpdateCallback;
 use crate::interface::{Interface, IntermediateUpdate, Stepping};
 use crate::logger::{Logger, Sink};
-use crate::present::find;
+use crate::model::{Experiment, Model, Progress, Update};
 use crate::state_machine::{Stage, Table};
-use crate::variables::{Causality, DataType, VARIABLES, Variable};
+use crate::variables::{Causality, DataType, Role};
 use libc::{c_char, c_int, c_uint, c_void, size_t};
-use rocking::Progress;
-use rocking::mechanics::state::COMPONENTS;
-use rocking::run::outside_step::INDICATORS;
-use std::path::PathBuf;
+use std::path::Path;
 
 /// `fmi3LogMessageCallback`
 pub type LogMessageCallback = unsafe extern "C" fn(*mut c_void, c_int, *const c_char, *const c_char);
 
-const MAGIC: u64 = 0x526f_636b_696e_6733;
+const MAGIC: u64 = 0x466d_6955_6e69_7433;
 
 /// `fmi3GetVersion`
 #[unsafe(no_mangle)]
@@ -39,93 +35,64 @@ pub extern "C" fn fmi3GetVersion() -> *const c_char {
     c"3.0".as_ptr()
 }
 
-/// `fmi3InstantiateCoSimulation`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3InstantiateCoSimulation(
-    instanceName: *const c_char,
-    instantiationToken: *const c_char,
-    resourcePath: *const c_char,
-    _visible: u8,
-    loggingOn: u8,
-    eventModeUsed: u8,
-    earlyReturnAllowed: u8,
-    requiredIntermediateVariables: *const c_uint,
-    nRequiredIntermediateVariables: size_t,
-    instanceEnvironment: *mut c_void,
-    logMessage: Option<LogMessageCallback>,
+/// Name, token and folder of an instance.
+type Texts = [*const c_char; 3];
+
+/// Where an instance logs to, and whether events too.
+type Log = (*mut c_void, Option<LogMessageCallback>, u8);
+
+/// `fmi3InstantiateCoSimulation` of the model `M`
+pub unsafe fn instantiate_co_simulation<M: Model>(
+    texts: Texts,
+    log: Log,
+    [eventModeUsed, earlyReturnAllowed]: [u8; 2],
+    required: (*const c_uint, size_t),
     intermediateUpdate: Option<IntermediateUpdateCallback>,
 ) -> *mut c_void {
-    let interface = || {
+    let interface = |model: &M| {
         let event_mode = boolean("eventModeUsed", eventModeUsed)?;
         let early_return = boolean("earlyReturnAllowed", earlyReturnAllowed)?;
-        let required = unsafe {
-            values("requiredIntermediateVariables", requiredIntermediateVariables, nRequiredIntermediateVariables)
-        }?;
+        let required = unsafe { values("requiredIntermediateVariables", required.0, required.1) }?;
+        let variables = model.variables();
         let (mut sets_inputs, mut gets_outputs) = (false, false);
-        for reference in required {
-            let is_input = find(VARIABLES.as_slice(), *reference)?.causality == Causality::Input;
+        for &reference in required {
+            let last = variables.len() - 1;
+            let variable = variables.get(reference as usize).ok_or(Failure::UnknownReference { reference, last })?;
+            let is_input = variable.causality == Causality::Input;
             (sets_inputs, gets_outputs) = (sets_inputs || is_input, gets_outputs || !is_input);
         }
-        let environment = instanceEnvironment;
+        let environment = log.0;
         let host =
             intermediateUpdate.map(|update| IntermediateUpdate { update, environment, sets_inputs, gets_outputs });
         let allowed_in: &Table = &stages::CO_SIMULATION;
         Ok((Interface::CoSimulation(Stepping { event_mode, early_return }), allowed_in, host))
     };
-    let arguments = [instanceName, instantiationToken, resourcePath];
-    let host = (instanceEnvironment, logMessage);
-    unsafe { create("fmi3InstantiateCoSimulation", arguments, loggingOn, host, interface) }
+    unsafe { create("fmi3InstantiateCoSimulation", texts, log, interface) }
 }
 
-/// `fmi3InstantiateModelExchange`
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3InstantiateModelExchange(
-    instanceName: *const c_char,
-    instantiationToken: *const c_char,
-    resourcePath: *const c_char,
-    _visible: u8,
-    loggingOn: u8,
-    instanceEnvironment: *mut c_void,
-    logMessage: Option<LogMessageCallback>,
-) -> *mut c_void {
+/// `fmi3InstantiateModelExchange` of the model `M`
+pub unsafe fn instantiate_model_exchange<M: Model>(texts: Texts, log: Log) -> *mut c_void {
     let allowed_in: &Table = &stages::MODEL_EXCHANGE;
-    let interface = || Ok((Interface::ModelExchange, allowed_in, None));
-    let (arguments, host) = ([instanceName, instantiationToken, resourcePath], (instanceEnvironment, logMessage));
-    unsafe { create("fmi3InstantiateModelExchange", arguments, loggingOn, host, interface) }
+    let interface = |_: &M| Ok((Interface::ModelExchange, allowed_in, None));
+    unsafe { create("fmi3InstantiateModelExchange", texts, log, interface) }
 }
 
 /// `fmi3InstantiateScheduledExecution`: there is nothing to schedule.
-#[unsafe(no_mangle)]
-pub unsafe extern "C" fn fmi3InstantiateScheduledExecution(
-    instanceName: *const c_char,
-    instantiationToken: *const c_char,
-    resourcePath: *const c_char,
-    _visible: u8,
-    loggingOn: u8,
-    instanceEnvironment: *mut c_void,
-    logMessage: Option<LogMessageCallback>,
-    _clockUpdate: *const c_void,
-    _lockPreemption: *const c_void,
-    _unlockPreemption: *const c_void,
-) -> *mut c_void {
-    let (arguments, host) = ([instanceName, instantiationToken, resourcePath], (instanceEnvironment, logMessage));
-    let interface = || Err(Failure::NotThisInterface);
-    unsafe { create("fmi3InstantiateScheduledExecution", arguments, loggingOn, host, interface) }
+pub unsafe fn instantiate_scheduled_execution<M: Model>(texts: Texts, log: Log) -> *mut c_void {
+    let interface = |_: &M| Err(Failure::NotThisInterface);
+    unsafe { create("fmi3InstantiateScheduledExecution", texts, log, interface) }
 }
 
-/// An instance of the `interface` that `function` makes, from the name, the token and the folder; null, with the reason
-/// in the log, if there is none.
-unsafe fn create(
+/// An instance of the `interface` that `function` makes; null, with the reason in the log, if there is none.
+unsafe fn create<M: Model>(
     function: &str,
-    [name, token, folder]: [*const c_char; 3],
-    logging_on: u8,
-    (environment, log): (*mut c_void, Option<LogMessageCallback>),
-    interface: impl FnOnce() -> Result<(Interface, &'static Table, Option<IntermediateUpdate>), Failure>,
+    [name, token, folder]: Texts,
+    (environment, log, logging_on): Log,
+    interface: impl FnOnce(&M) -> Result<(Interface, &'static Table, Option<IntermediateUpdate>), Failure>,
 ) -> *mut c_void {
-    instantiate::<Function>(|| {
+    c_abi::instantiate::<Function>(|| {
         let logger = Logger::new(sink(log, environment));
         let found = || {
-            let (interface, allowed_in, called_back) = interface()?;
             let name = unsafe { text("instanceName", name) }?;
             let token = unsafe { text("instantiationToken", token) }?;
             let folder = unsafe { text("resourcePath", folder) }?;
@@ -133,12 +100,12 @@ unsafe fn create(
             if name.trim().is_empty() {
                 return Err(Failure::NoName);
             }
-            let archive = instance::open("instantiationToken", token, PathBuf::from(folder))?;
-            Ok((archive, interface, allowed_in, called_back, events))
+            let model = c_abi::open::<M>("instantiationToken", token, Path::new(folder))?;
+            Ok((interface(&model)?, model, events))
         };
         match found() {
-            Ok((archive, interface, allowed_in, called_back, events)) => {
-                Some((Instance::new(archive, interface, events, logger).calling_back(called_back), allowed_in))
+            Ok(((interface, allowed_in, called_back), model, events)) => {
+                Some((Instance::new(model, interface, events, logger, called_back), allowed_in))
             }
             Err(failure) => {
                 logger.failure(failure.status(), &format!("{function}: {failure}"));
@@ -188,11 +155,13 @@ pub unsafe extern "C" fn fmi3FreeInstance(instance: *mut c_void) {
 }
 
 /// What the `fmi3Boolean` `value`, given as `name`, stands for.
-fn boolean(name: &'static str, value: u8) -> Result<bool, Failure> {
+fn boolean(name: &str, value: u8) -> Result<bool, Failure> {
     match value {
         0 => Ok(false),
         1 => Ok(true),
-        _ => Err(Failure::BadChoice { name, value: value.into(), accepted: "0 (fmi3False), 1 (fmi3True)" }),
+        _ => {
+            Err(Failure::BadChoice { name: name.into(), value: value.into(), accepted: "0 (fmi3False), 1 (fmi3True)" })
+        }
     }
 }
 
@@ -209,14 +178,14 @@ unsafe fn references<'a>(
 /// What to call instead.
 fn remedy(failure: &Failure) -> &'static str {
     match failure {
-        Failure::WrongType(Variable { data_type, .. }) => match data_type {
+        Failure::WrongType { data_type, .. } => match data_type {
             DataType::Real { .. } => ": call fmi3GetFloat64 or fmi3SetFloat64 instead",
             DataType::Integer => ": call fmi3GetInt32 instead",
             DataType::Enumeration(_) => ": call fmi3GetInt64 or fmi3SetInt64 instead",
             DataType::Boolean => ": call fmi3GetBoolean or fmi3SetBoolean instead",
             DataType::String => ": call fmi3GetString or fmi3SetString instead",
         },
-        Failure::Fixed(_) => ": set it before fmi3ExitInitializationMode, or call fmi3Reset",
+        Failure::Fixed { .. } => ": set it before fmi3ExitInitializationMode, or call fmi3Reset",
         Failure::WrongPoint { .. } => ": step from there, or go back with fmi3SetFMUState",
         Failure::StepBack { .. } => "; to go back, call fmi3SetFMUState",
         Failure::PastStop { .. } => " given to fmi3EnterInitializationMode: shorten it",
@@ -251,12 +220,11 @@ pub unsafe extern "C" fn fmi3DoStep(
     let mut compute = |instance: &mut Instance| unsafe {
         let progress = instance.do_step(point, step)?;
         let (time, may_return_early) = (instance.time()?, instance.may_return_early());
-        if progress == Progress::Overturned {
-            let overturned = instance.overturned()?;
-            instance.warn(&format!("fmi3DoStep: {overturned}"));
+        if let (Progress::Ended, Some(ending)) = (progress, instance.ending()?) {
+            instance.warn(&format!("fmi3DoStep: {ending}"));
         }
-        write("eventHandlingNeeded", eventHandlingNeeded, u8::from(progress == Progress::Transition))?;
-        write("terminateSimulation", terminateSimulation, u8::from(progress == Progress::Overturned))?;
+        write("eventHandlingNeeded", eventHandlingNeeded, u8::from(progress == Progress::Event))?;
+        write("terminateSimulation", terminateSimulation, u8::from(progress == Progress::Ended))?;
         write("earlyReturn", earlyReturn, u8::from(may_return_early && time < point + step))?;
         write("lastSuccessfulTime", lastSuccessfulTime, time)?;
         told = instance.show_step().map(|host| (host, time));
@@ -302,7 +270,7 @@ functions! {
     ) |instance| {
         let tolerance = boolean("toleranceDefined", toleranceDefined)?.then_some(tolerance);
         let stop_time = boolean("stopTimeDefined", stopTimeDefined)?.then_some(stopTime);
-        instance.setup_experiment(tolerance, startTime, stop_time)?;
+        instance.set_up(Experiment { tolerance, start_time: startTime, stop_time })?;
         instance.enter(Stage::InitializationMode)
     }
 
@@ -440,7 +408,7 @@ functions! {
             check_pointer(name, flag)?;
         }
         check_pointer("nextEventTime", nextEventTime)?;
-        let Updated { has_ended, has_new_states, next_event } = instance.update_discrete_states()?;
+        let Update { has_ended, has_new_states, next_event } = instance.update_discrete_states()?;
         let told = [false, has_ended, false, has_new_states, next_event.is_some()];
         for ((name, flag), told) in flags.into_iter().zip(told) {
             write(name, flag, told.into())?;
@@ -472,7 +440,8 @@ functions! {
 
     fmi3SetContinuousStates = SetContinuousStates(continuousStates: *const f64, nContinuousStates: size_t) |instance| {
         let count = ("nContinuousStates", nContinuousStates);
-        instance.set_continuous_states(read_all("continuousStates", continuousStates, count)?)
+        let needed = instance.count(|role| *role == Role::State);
+        instance.set_continuous_states(read_all("continuousStates", continuousStates, count, needed)?)
     }
 
     fmi3GetContinuousStateDerivatives = GetContinuousStateDerivatives(
@@ -496,12 +465,12 @@ functions! {
         write_all("nominals", nominals, ("nContinuousStates", nContinuousStates), instance.nominals()?)
     }
 
-    fmi3GetNumberOfEventIndicators = GetNumberOfEventIndicators(nEventIndicators: *mut size_t) |_instance| {
-        write("nEventIndicators", nEventIndicators, INDICATORS)
+    fmi3GetNumberOfEventIndicators = GetNumberOfEventIndicators(nEventIndicators: *mut size_t) |instance| {
+        write("nEventIndicators", nEventIndicators, instance.count(|role| *role == Role::Indicator))
     }
 
-    fmi3GetNumberOfContinuousStates = GetNumberOfContinuousStates(nContinuousStates: *mut size_t) |_instance| {
-        write("nContinuousStates", nContinuousStates, COMPONENTS.len())
+    fmi3GetNumberOfContinuousStates = GetNumberOfContinuousStates(nContinuousStates: *mut size_t) |instance| {
+        write("nContinuousStates", nContinuousStates, instance.count(|role| *role == Role::State))
     }
 
     // For what this unit does not have: never allowed. Arguments that are not read are not declared: on all platforms that

@@ -13,7 +13,7 @@ pub enum Interface {
     ModelExchange,
 }
 
-/// How the host of a co-simulation meets transitions.
+/// How the host of a co-simulation meets events.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Stepping {
     /// It handles events, between steps.
@@ -23,7 +23,7 @@ pub struct Stepping {
 }
 
 impl Stepping {
-    /// Whether a step ends at a transition, which is handed over: the host must be able to do both.
+    /// Whether a step ends at an event, which is handed over: the host must be able to do both.
     pub fn hands_over(self) -> bool {
         self.event_mode && self.early_return
     }
@@ -38,7 +38,7 @@ impl Interface {
         }
     }
 
-    /// How the host meets transitions that the FMU comes across.
+    /// How the host meets events that the FMU comes across.
     pub fn stepping(self) -> Stepping {
         match self {
             Interface::CoSimulation(stepping) => stepping,

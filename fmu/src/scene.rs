@@ -1,10 +1,9 @@
 //! The structure on its ground: how a simulation starts from its setup, and what acts on the structure and has been
 //! found out about it since.
 
-use crate::failure::Failure;
+use crate::failure::Refusal;
 use crate::ground::{Digest, GroundRecord};
 use crate::setup::Setup;
-use rocking::engine::check_tolerance;
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::fall::FallingPeaks;
 use rocking::run::ground_motion::Elapsed;
@@ -15,7 +14,7 @@ use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The structure on its ground.
-pub(crate) struct Model {
+pub(crate) struct Scene {
     pub engine: Engine,
     pub ground: Option<Arc<GroundRecord>>,
     /// Time since the start, on ground that follows a record.
@@ -39,37 +38,20 @@ pub struct Outside {
 
 impl Setup {
     /// The structure at the start time.
-    pub(crate) fn engine(&self) -> Result<Engine, Failure> {
+    pub(crate) fn engine(&self) -> Result<Engine, Refusal> {
         let structure = Structure::new(self.parameters)?;
         Ok(Engine::with_detail(structure, self.initial, self.start_time, self.tolerance, self.detail)?)
     }
 
     /// Refuses a `record` that cannot act as it is scaled.
-    fn check_ground(&self, record: &GroundRecord) -> Result<(), Failure> {
+    fn check_ground(&self, record: &GroundRecord) -> Result<(), Refusal> {
         let ground = self.ground_motion(record);
-        LOADS[0].check(ground.pga()).map_err(Failure::StrongRecord)?;
-        LOADS[VERTICAL].check(ground.vertical_peak()).map_err(Failure::StrongRecord)?;
+        LOADS[0].check(ground.pga()).map_err(Refusal::StrongRecord)?;
+        LOADS[VERTICAL].check(ground.vertical_peak()).map_err(Refusal::StrongRecord)?;
         if ground.duration().is_finite() {
             return Ok(());
         }
-        let (name, limit) = ("record_duration", "finite: lower record_time_scale".to_owned());
-        Err(Failure::Experiment { name, value: ground.duration(), limit })
-    }
-
-    /// Refuses a tolerance, a start and a stop time that cannot be.
-    pub(crate) fn check_experiment(&self) -> Result<(), Failure> {
-        let &Setup { tolerance, start_time, stop_time, .. } = self;
-        let refuse = |name, value, limit: &str| Failure::Experiment { name, value, limit: limit.to_owned() };
-        check_tolerance(tolerance)?;
-        if !start_time.is_finite() {
-            return Err(refuse("startTime", start_time, "finite"));
-        }
-        match stop_time.filter(|stop_time| !(*stop_time >= start_time && stop_time.is_finite())) {
-            Some(stop_time) => {
-                Err(refuse("stopTime", stop_time, &format!("finite and not before startTime = {start_time} s")))
-            }
-            None => Ok(()),
-        }
+        Err(Refusal::LongRecord(ground.duration()))
     }
 }
 
@@ -78,9 +60,9 @@ fn may_move_vertically(setup: &Setup, ground: Option<&GroundRecord>) -> bool {
     setup.vertical || ground.is_some_and(|ground| ground.record.vertical().is_some())
 }
 
-impl Model {
+impl Scene {
     /// At the start that `setup` describes, on ground that follows `ground`.
-    pub fn new(setup: &Setup, ground: Option<Arc<GroundRecord>>) -> Result<Model, Failure> {
+    pub fn new(setup: &Setup, ground: Option<Arc<GroundRecord>>) -> Result<Scene, Refusal> {
         let mut engine = setup.engine()?;
         if may_move_vertically(setup, ground.as_deref()) {
             engine.admit_vertical(true)?;
@@ -88,7 +70,7 @@ impl Model {
         ground.as_deref().map_or(Ok(()), |ground| setup.check_ground(ground))?;
         let peaks = FallingPeaks::since(setup.start_time, engine.structure(), setup.detail);
         let validity = Found::since(setup.start_time);
-        Ok(Model { engine, ground, elapsed: Elapsed::default(), outside: None, peaks, validity })
+        Ok(Scene { engine, ground, elapsed: Elapsed::default(), outside: None, peaks, validity })
     }
 
     /// Whether the ground may move vertically.

@@ -17,8 +17,8 @@
 
 use crate::failure::Failure;
 use crate::instance::Instance;
-use crate::instance::model_exchange::Completed;
 use crate::logger::{Category, Status};
+use crate::model::{Completed, Model};
 use crate::state_machine::{Stage, Stages, Table, names};
 use libc::{c_char, c_int, c_void, size_t};
 use std::any::Any;
@@ -27,6 +27,7 @@ use std::ffi::CString;
 use std::marker::PhantomData;
 use std::mem::MaybeUninit;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
 use std::sync::atomic::{AtomicU8, Ordering};
 use std::{ptr, slice};
 
@@ -81,6 +82,16 @@ pub(crate) fn instantiate<F: Function>(create: impl FnOnce() -> Option<(Instance
     let (magic, availability, instance) = (Cell::new(F::MAGIC), AtomicU8::new(READY), UnsafeCell::new(instance));
     let component = Component::<F> { magic, availability, allowed_in, instance, version: PhantomData };
     Box::into_raw(Box::new(component)).cast()
+}
+
+/// The model in the folder `resources`, whose token must be `given`, the argument `name`.
+pub(crate) fn open<M: Model>(name: &'static str, given: &str, resources: &Path) -> Result<Box<M>, Failure> {
+    let model = M::open(resources)?;
+    let needed = model.token();
+    if given != needed {
+        return Err(Failure::WrongToken { name, given: given.to_owned(), needed });
+    }
+    Ok(Box::new(model))
 }
 
 /// Frees a component. Does nothing for null, and while a call is under way, as from within the logger.
@@ -204,27 +215,27 @@ pub(crate) unsafe fn room<'a, T>(
     Ok(unsafe { slice::from_raw_parts_mut(pointer.cast(), length) })
 }
 
-/// The `N` numbers at `pointer`, of which `count`, the argument `of`, has to say that they are as many.
-pub(crate) unsafe fn read_all<const N: usize>(
+/// The `needed` numbers at `pointer`, of which `count`, the argument `of`, has to say that they are as many.
+pub(crate) unsafe fn read_all<'a>(
     name: &'static str,
     pointer: *const f64,
     (of, count): (&'static str, size_t),
-) -> Result<[f64; N], Failure> {
-    check_count(of, count, N)?;
-    check_pointer(name, pointer)?;
-    Ok(unsafe { *pointer.cast() })
+    needed: usize,
+) -> Result<&'a [f64], Failure> {
+    check_count(of, count, needed)?;
+    unsafe { values(name, pointer, count) }
 }
 
 /// Writes `numbers` to `pointer`, if `count`, the argument `of`, says that there is room for as many.
-pub(crate) unsafe fn write_all<const N: usize>(
+pub(crate) unsafe fn write_all(
     name: &'static str,
     pointer: *mut f64,
     (of, count): (&'static str, size_t),
-    numbers: [f64; N],
+    numbers: Vec<f64>,
 ) -> Result<(), Failure> {
-    check_count(of, count, N)?;
-    check_pointer(name, pointer)?;
-    unsafe { pointer.cast::<[f64; N]>().write(numbers) };
+    check_count(of, count, numbers.len())?;
+    let places = unsafe { room(name, pointer, count) }?;
+    places.iter_mut().zip(numbers).for_each(|(place, number)| _ = place.write(number));
     Ok(())
 }
 

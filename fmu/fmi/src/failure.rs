@@ -1,0 +1,200 @@
+//! Why a call is not done: every message of that kind, in one place. What to call instead, the C interface adds.
+
+use crate::logger::Status;
+use crate::state_machine::Stage;
+use crate::variables::{Causality, DataType, Variable};
+
+/// Why a call is not done. Nothing has changed, unless the simulation has ended or is stuck.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // of fields, which are in the messages
+pub enum Failure {
+    /// The model's own reason: the call returns an error.
+    #[error("{0}")]
+    Refused(String),
+    /// The model's own reason, at a trial that may be repeated elsewhere: the call is discarded.
+    #[error("{0}")]
+    Discarded(String),
+    /// The model's own reason, and it cannot go on.
+    #[error("{0}")]
+    Stuck(String),
+    /// The simulation has ended.
+    #[error("{0}; the simulation ends there")]
+    Ended(String),
+    /// The function may not be called in this stage.
+    #[error("not allowed in the state \"{stage}\"; allowed in: {allowed_in}")]
+    WrongStage { stage: Stage, allowed_in: String },
+    /// A pointer that is null or not aligned.
+    #[error("{0} must be a valid pointer; it is null or misaligned")]
+    BadPointer(&'static str),
+    /// More values than one call may pass.
+    #[error("{length} values are too many for one call: at most {limit}")]
+    TooLong { length: usize, limit: usize },
+    /// A string without an end, or not in UTF-8.
+    #[error("{name} is not UTF-8 text of at most {limit} bytes")]
+    BadText { name: &'static str, limit: usize },
+    /// A number that stands for none of the choices.
+    #[error("{name} = {value} is not one of {accepted}")]
+    BadChoice { name: String, value: i32, accepted: &'static str },
+    /// An interface of the standard that this unit does not have.
+    #[error("this FMU is for model exchange and co-simulation: see modelDescription.xml")]
+    NotThisInterface,
+    /// Event mode, which the host did not ask for at instantiation.
+    #[error("there is no event mode: the instance was made with eventModeUsed = false")]
+    NoEventMode,
+    /// An empty name.
+    #[error("instanceName must not be empty")]
+    NoName,
+    /// Not the URI of a folder.
+    #[error("fmuResourceLocation = {0:?} is not a file URI of this machine, such as file:///tmp/fmu/resources")]
+    NotAFileUri(String),
+    /// A model description of another FMU.
+    #[error(
+        "{name} = {given:?} is not {needed}: modelDescription.xml, the library and the folder resources are not of one FMU; \
+         export it again, and unpack every FMU into a folder of its own"
+    )]
+    WrongToken { name: &'static str, given: String, needed: String },
+    /// No such log category.
+    #[error("log category {0:?} does not exist; see LogCategories in modelDescription.xml")]
+    UnknownCategory(String),
+    /// No such variable.
+    #[error("value reference {reference} does not exist; they run from 0 to {last}")]
+    UnknownReference { reference: u32, last: usize },
+    /// A variable of another type.
+    #[error("{name} is {}", type_name(*data_type))]
+    WrongType { name: String, data_type: DataType },
+    /// A variable that is not set by the host.
+    #[error("{name} cannot be set: it is {}, computed by the FMU", causality_name(*causality))]
+    NotSettable { name: String, causality: Causality },
+    /// A number that stands for no item of an enumeration.
+    #[error("{name} = {value} is out of range: {}", items(*data_type))]
+    NoSuchItem { name: String, value: i64, data_type: DataType },
+    /// A parameter, too late.
+    #[error("{name} is fixed once the simulation has started")]
+    Fixed { name: String },
+    /// A value out of range.
+    #[error(
+        "{name} = {} is out of range: it must lie between {} and {} ({description})",
+        with_unit(*value, unit), with_unit(*min, "1"), with_unit(*max, unit)
+    )]
+    OutOfRange { name: String, value: f64, unit: &'static str, min: f64, max: f64, description: String },
+    /// A tolerance, a start or a stop time out of range.
+    #[error("{name} = {} is out of range: it must be {limit}", with_unit(*value, "1"))]
+    Experiment { name: &'static str, value: f64, limit: String },
+    /// A derivative of another order than the first.
+    #[error("order = {order} for {name} is out of range: only derivatives of order 1 exist")]
+    WrongOrder { name: String, order: i32 },
+    /// A slope of what is no input.
+    #[error("{name} has no derivative that can be set: only the inputs have")]
+    NoInput { name: String },
+    /// A variable that no directional derivative can be taken by.
+    #[error(
+        "{name} cannot be a known of a directional derivative: only the inputs can and, once the simulation has started, \
+         {knowns} and time"
+    )]
+    NoKnown { name: String, knowns: String },
+    /// A slope or a part of a direction that is not a number.
+    #[error("the derivative of {name}, {value}, is out of range: it must be finite")]
+    BadSlope { name: String, value: f64 },
+    /// A derivative of what is no continuous output.
+    #[error("{name} has no derivative: only continuous real outputs have")]
+    NoOutput { name: String },
+    /// A derivative that has no value.
+    #[error("the derivative of {name} does not exist at t = {time} s")]
+    NoRate { name: String, time: f64 },
+    /// A step from the wrong time.
+    #[error("currentCommunicationPoint = {} is not where the FMU is, t = {time} s", with_unit(*given, "s"))]
+    WrongPoint { given: f64, time: f64 },
+    /// A step of no length, or of no number.
+    #[error(
+        "communicationStepSize = {step} s is out of range: it must be positive, finite, and large enough to move t = {time} s"
+    )]
+    BadStep { step: f64, time: f64 },
+    /// A step past the end.
+    #[error("the step would end at t = {until} s, past stopTime = {stop} s")]
+    PastStop { until: f64, stop: f64 },
+    /// A time that is not finite.
+    #[error("time = {} is out of range: time and time - startTime must be finite", with_unit(*.0, "s"))]
+    BadTime(f64),
+    /// A step of the host's integrator that ends before it starts.
+    #[error(
+        "the integrator's step from t = {from} s ends at t = {to} s: time must not fall below the last event or complete step"
+    )]
+    StepBack { from: f64, to: f64 },
+    /// Another number of values, states or indicators.
+    #[error("{name} = {given} is not {needed}")]
+    WrongCount { name: &'static str, given: usize, needed: usize },
+    /// A state kept by an instance of another interface.
+    #[error(
+        "the FMU state was kept by an instance for the other interface, or with another eventModeUsed or earlyReturnAllowed"
+    )]
+    OtherInterface,
+    /// A status that this FMU does not have.
+    #[error("{0} has no answer here")]
+    NoAnswer(&'static str),
+    /// Not one of the instance's FMU states.
+    #[error(
+        "FMUstate {0:#x} is not one that this instance has handed out and not freed; pass a pointer to NULL for a new one"
+    )]
+    UnknownSnapshot(usize),
+    /// A buffer of the wrong size.
+    #[error("size = {given} does not fit: the serialized FMU state takes {needed} bytes")]
+    WrongSize { given: usize, needed: usize },
+    /// Bytes that are no FMU state of this library.
+    #[error("serializedState is not a serialized state of this FMU: {0}")]
+    BadBytes(&'static str),
+    /// A caught panic.
+    #[error("internal failure, please report it: {0}; the instance can only be freed")]
+    Panicked(String),
+}
+
+impl Failure {
+    /// What the call returns.
+    pub fn status(&self) -> Status {
+        match self {
+            Failure::Ended(_) | Failure::Discarded(_) | Failure::NoAnswer(_) => Status::Discard,
+            Failure::Panicked(_) => Status::Fatal,
+            _ => Status::Error,
+        }
+    }
+
+    /// Refuses to set `variable`, or to set or get it as another type than its own.
+    pub(crate) fn wrong_type(variable: &Variable) -> Failure {
+        Failure::WrongType { name: variable.name.to_string(), data_type: variable.data_type }
+    }
+}
+
+/// `value` with its unit, which a ratio has none of, in digits that stay few.
+fn with_unit(value: f64, unit: &str) -> String {
+    let digits = if value.abs() < 1e7 { format!("{value:?}") } else { format!("{value:e}") };
+    let digits = digits.strip_suffix(".0").unwrap_or(&digits);
+    if unit == "1" { digits.into() } else { format!("{digits} {unit}") }
+}
+
+/// What the numbers of an enumeration stand for.
+fn items(data_type: DataType) -> String {
+    let DataType::Enumeration(enumeration) = data_type else { return String::new() };
+    (1..)
+        .zip(enumeration.items)
+        .map(|(number, item): (u32, _)| format!("{number} = {item}"))
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+fn type_name(data_type: DataType) -> &'static str {
+    match data_type {
+        DataType::Real { .. } => "a real number",
+        DataType::Integer => "an integer",
+        DataType::Boolean => "a Boolean",
+        DataType::String => "a string",
+        DataType::Enumeration(_) => "an enumeration",
+    }
+}
+
+fn causality_name(causality: Causality) -> &'static str {
+    match causality {
+        Causality::CalculatedParameter => "a calculated parameter",
+        Causality::Local => "a local variable",
+        Causality::Independent => "the independent variable",
+        _ => "an output",
+    }
+}

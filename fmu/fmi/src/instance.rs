@@ -1,0 +1,635 @@
+//! One instance of the FMU, in safe code that knows no version of the standard: it goes from stage to stage, checks what a
+//! call asks of the model, and keeps FMU states.
+
+use crate::failure::Failure;
+use crate::interface::{Interface, IntermediateUpdate, Stepping};
+use crate::logger::{Logger, Status};
+use crate::model::{Completed, Experiment, Model, Progress, Step, Update};
+use crate::snapshot::{Snapshot, Snapshots};
+use crate::state_machine::Stage;
+use crate::variables::state_references;
+use crate::variables::{Causality, DataType, Role, Value, Variable};
+use std::ffi::{CString, c_char};
+use std::mem::MaybeUninit;
+use std::sync::Arc;
+
+/// How close two times that mean the same are, in parts of the step, or in units in the last place if that is more.
+const SAME_TIME: (f64, f64) = (1e-4, 8.0);
+
+/// Of a variable: it is a real number.
+const REAL: u8 = 1;
+
+/// Of a variable: it is an input, of real numbers.
+const INPUT: u8 = 2;
+
+/// One instance.
+pub struct Instance {
+    model: Box<dyn Model>,
+    variables: Arc<[Variable]>,
+    /// The variables' limits as inputs and their kinds, packed for the calls of every step.
+    kinds: Vec<Kind>,
+    interface: Interface,
+    stage: Stage,
+    experiment: Experiment,
+    logger: Logger,
+    events_at_start: bool,
+    snapshots: Snapshots,
+    /// Values on their way between the host and the model.
+    reals: Vec<f64>,
+    /// The texts that the host was given last, which it may read until the next call.
+    shown: Vec<CString>,
+    /// The host that is called back within steps, if there is one.
+    host: Option<IntermediateUpdate>,
+    /// While the host is asked for inputs: the duration of the step, s.
+    asked: Option<f64>,
+    /// While the host reads outputs: the stage that the step has led to.
+    led_to: Option<Stage>,
+}
+
+#[derive(Clone, Copy)]
+struct Kind {
+    is: u8,
+    min: f64,
+    max: f64,
+}
+
+impl From<&Variable> for Kind {
+    fn from(variable: &Variable) -> Kind {
+        let DataType::Real { range, .. } = variable.data_type else { return Kind { is: 0, min: 0.0, max: 0.0 } };
+        let is = if variable.causality == Causality::Input { REAL | INPUT } else { REAL };
+        let (min, max) = range.unwrap_or((f64::MIN, f64::MAX));
+        Kind { is, min, max }
+    }
+}
+
+impl Instance {
+    /// An instance of `model`, just instantiated; `events` says whether events are logged.
+    pub(crate) fn new(
+        model: Box<dyn Model>,
+        interface: Interface,
+        events: bool,
+        mut logger: Logger,
+        host: Option<IntermediateUpdate>,
+    ) -> Instance {
+        logger.set_events(events);
+        let variables = model.variables();
+        let kinds = variables.iter().map(Kind::from).collect();
+        let (stage, events_at_start) = (Stage::Instantiated, events);
+        let (experiment, snapshots, reals, shown, asked, led_to) = Default::default();
+        Instance {
+            model,
+            variables,
+            kinds,
+            interface,
+            stage,
+            experiment,
+            logger,
+            events_at_start,
+            snapshots,
+            reals,
+            shown,
+            host,
+            asked,
+            led_to,
+        }
+    }
+
+    /// State of FMI's state machine.
+    pub(crate) fn stage(&self) -> Stage {
+        self.stage
+    }
+
+    /// Logs why a call returns `status`.
+    pub(crate) fn report(&self, status: Status, message: &str) {
+        self.logger.failure(status, message);
+    }
+
+    /// Switches the log of events on or off.
+    pub(crate) fn log_events(&mut self, on: bool) {
+        self.logger.set_events(on);
+    }
+
+    /// Sends a warning.
+    pub(crate) fn warn(&self, message: &str) {
+        self.logger.warning(message);
+    }
+
+    /// The variable that `reference` stands for.
+    #[inline]
+    fn find(&self, reference: u32) -> Result<&Variable, Failure> {
+        let last = self.variables.len() - 1;
+        self.variables.get(reference as usize).ok_or(Failure::UnknownReference { reference, last })
+    }
+
+    /// How many variables play a role.
+    pub(crate) fn count(&self, is_one: fn(&Role) -> bool) -> usize {
+        self.variables.iter().filter(|variable| is_one(&variable.role)).count()
+    }
+
+    /// Sets tolerance and times.
+    pub(crate) fn set_up(&mut self, experiment: Experiment) -> Result<(), Failure> {
+        let Experiment { tolerance, start_time, stop_time } = experiment;
+        let refuse = |name, value, limit: &str| Err(Failure::Experiment { name, value, limit: limit.to_owned() });
+        if let Some(tolerance) = tolerance.filter(|tolerance| !(*tolerance > 0.0 && *tolerance < 1.0)) {
+            return refuse("tolerance", tolerance, "between 0 and 1, such as 1e-9");
+        }
+        if !start_time.is_finite() {
+            return refuse("startTime", start_time, "finite");
+        }
+        if let Some(stop) = stop_time.filter(|stop| !(*stop >= start_time && stop.is_finite())) {
+            return refuse("stopTime", stop, &format!("finite and not before startTime = {start_time} s"));
+        }
+        self.model.set_up(&experiment);
+        self.experiment = experiment;
+        Ok(())
+    }
+
+    /// Goes to `stage`, at which nothing else is to be done.
+    pub(crate) fn enter(&mut self, stage: Stage) -> Result<(), Failure> {
+        self.stage = stage;
+        Ok(())
+    }
+
+    /// Starts the simulation: parameters and initial values are checked together, and fixed.
+    pub(crate) fn exit_initialization_mode(&mut self) -> Result<(), Failure> {
+        self.model.start(self.interface, &self.logger)?;
+        self.enter(self.interface.first_stage())
+    }
+
+    /// Goes to event mode, at the end of a step or where the host's integrator is.
+    pub(crate) fn enter_event_mode(&mut self) -> Result<(), Failure> {
+        match self.interface {
+            Interface::CoSimulation(Stepping { event_mode: false, .. }) => return Err(Failure::NoEventMode),
+            Interface::ModelExchange if self.stage == Stage::ContinuousTimeMode => self.model.arrive_at_event()?,
+            _ => (),
+        }
+        self.enter(Stage::EventMode)
+    }
+
+    /// Applies what the event brings.
+    pub(crate) fn update_discrete_states(&mut self) -> Result<Update, Failure> {
+        let update = self.model.update(&self.logger);
+        self.stop_if_stuck(update)
+    }
+
+    /// Makes the instance as it was instantiated. FMU states stay the host's until it frees them.
+    pub(crate) fn reset(&mut self) -> Result<(), Failure> {
+        self.model.reset();
+        self.experiment = Experiment::default();
+        self.logger.set_events(self.events_at_start);
+        self.enter(Stage::Instantiated)
+    }
+
+    /// Where the simulation is, s.
+    pub(crate) fn time(&mut self) -> Result<f64, Failure> {
+        self.model.time()
+    }
+
+    /// Why the simulation is over, if it is.
+    pub(crate) fn ending(&mut self) -> Result<Option<Failure>, Failure> {
+        Ok(self.model.ending()?.map(Failure::Ended))
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        let Instance { interface, stage, experiment, .. } = *self;
+        Snapshot { interface, stage, experiment, model: self.model.state() }
+    }
+
+    /// Keeps the present state as the FMU state `handle`, or as a new one for 0; returns the handle.
+    pub(crate) fn get_fmu_state(&mut self, handle: usize) -> Result<usize, Failure> {
+        self.snapshots.keep(handle, self.snapshot())
+    }
+
+    /// Goes back to the FMU state `handle`.
+    pub(crate) fn set_fmu_state(&mut self, handle: usize) -> Result<(), Failure> {
+        let Snapshot { interface, stage, experiment, model } = self.snapshots.find(handle)?;
+        if *interface != self.interface {
+            return Err(Failure::OtherInterface);
+        }
+        self.model.restore(model)?;
+        (self.stage, self.experiment) = (*stage, *experiment);
+        Ok(())
+    }
+
+    /// Forgets the FMU state `handle`.
+    pub(crate) fn free_fmu_state(&mut self, handle: usize) -> Result<(), Failure> {
+        self.snapshots.free(handle)
+    }
+
+    /// The FMU state `handle` as bytes.
+    pub(crate) fn serialize_fmu_state(&self, handle: usize) -> Result<Vec<u8>, Failure> {
+        Ok(self.snapshots.find(handle)?.serialize(&self.model.build()))
+    }
+
+    /// Keeps the state that `bytes` hold as the FMU state `handle`, or as a new one for 0; returns the handle.
+    pub(crate) fn deserialize_fmu_state(&mut self, bytes: &[u8], handle: usize) -> Result<usize, Failure> {
+        self.snapshots.keep(handle, Snapshot::deserialize(&self.model.build(), bytes)?)
+    }
+
+    /// Goes to the stage of errors if the model cannot go on.
+    fn stop_if_stuck<T>(&mut self, result: Result<T, Failure>) -> Result<T, Failure> {
+        result.inspect_err(|failure| {
+            if let Failure::Stuck(_) = failure {
+                self.stage = Stage::Error;
+            }
+        })
+    }
+}
+
+/// How values are read and set: all of a call, or none if one is refused.
+impl Instance {
+    /// Reads real numbers.
+    #[inline]
+    pub(crate) fn get_real(&mut self, references: &[u32], values: &mut [MaybeUninit<f64>]) -> Result<(), Failure> {
+        let is_real = |reference: &u32| self.kinds.get(*reference as usize).is_some_and(|kind| kind.is & REAL != 0);
+        if let Some(wrong) = references.iter().find(|reference| !is_real(reference)) {
+            return Err(self.find(*wrong).map_or_else(|failure| failure, Failure::wrong_type));
+        }
+        self.reals.resize(references.len(), 0.0);
+        self.model.get_reals(references, &mut self.reals)?;
+        values.iter_mut().zip(&self.reals).for_each(|(place, value)| _ = place.write(*value));
+        Ok(())
+    }
+
+    /// Reads what is no real number, of the types that are `of_type`.
+    fn get_others(&mut self, references: &[u32], of_type: fn(&DataType) -> bool) -> Result<Vec<Value>, Failure> {
+        for reference in references {
+            let variable = self.find(*reference)?;
+            if !of_type(&variable.data_type) {
+                return Err(Failure::wrong_type(variable));
+            }
+        }
+        references.iter().map(|reference| self.model.get(*reference)).collect()
+    }
+
+    /// Reads integers, numbers of enumerations, or both: what `of_type` says.
+    pub(crate) fn get_numbers<T: From<i32>>(
+        &mut self,
+        references: &[u32],
+        values: &mut [MaybeUninit<T>],
+        of_type: fn(&DataType) -> bool,
+    ) -> Result<(), Failure> {
+        let number = |value| if let Value::Integer(number) = value { number } else { 0 };
+        let found = self.get_others(references, of_type)?.into_iter().map(number);
+        values.iter_mut().zip(found).for_each(|(place, value)| _ = place.write(value.into()));
+        Ok(())
+    }
+
+    /// Reads Booleans.
+    pub(crate) fn get_boolean<T: From<bool>>(
+        &mut self,
+        references: &[u32],
+        values: &mut [MaybeUninit<T>],
+    ) -> Result<(), Failure> {
+        let found = self.get_others(references, |data_type| *data_type == DataType::Boolean)?;
+        values.iter_mut().zip(found).for_each(|(place, value)| _ = place.write((value == Value::Boolean(true)).into()));
+        Ok(())
+    }
+
+    /// Reads texts, which the host may use until the next call.
+    pub(crate) fn get_string(
+        &mut self,
+        references: &[u32],
+        values: &mut [MaybeUninit<*const c_char>],
+    ) -> Result<(), Failure> {
+        let found = self.get_others(references, |data_type| *data_type == DataType::String)?;
+        let text =
+            |value| if let Value::String(text) = value { CString::new(text).unwrap_or_default() } else { c"".into() };
+        self.shown = found.into_iter().map(text).collect();
+        values.iter_mut().zip(&self.shown).for_each(|(place, text)| _ = place.write(text.as_ptr()));
+        Ok(())
+    }
+
+    /// Sets real numbers. While the host integrates, it can set the states, too.
+    #[inline]
+    pub(crate) fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
+        let is_fit = |(reference, value): (&u32, &f64)| {
+            let kind = self.kinds.get(*reference as usize);
+            kind.is_some_and(|kind| kind.is & INPUT != 0 && *value >= kind.min && *value <= kind.max)
+        };
+        if self.asked.is_none() && references.iter().zip(values).all(is_fit) {
+            return self.model.set_inputs(references, values);
+        }
+        self.set_real_slowly(references, values)
+    }
+
+    #[cold]
+    #[inline(never)]
+    fn set_real_slowly(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
+        let mut states = None;
+        for (reference, &value) in references.iter().zip(values) {
+            let variable = self.find(*reference)?;
+            let DataType::Real { unit, range } = variable.data_type else { return Err(refused(variable)) };
+            if variable.role == Role::State && self.stage == Stage::ContinuousTimeMode {
+                let which = state_references(&self.variables).position(|state| state == *reference);
+                let states = states.get_or_insert(self.model.states()?);
+                states[which.expect("it is a state")] = value;
+                continue;
+            }
+            let (name, description) = (variable.name.to_string(), variable.description.to_string());
+            match variable.causality {
+                Causality::Input => (),
+                Causality::Parameter if self.stage.has_started() => return Err(Failure::Fixed { name }),
+                Causality::Parameter => (),
+                _ => return Err(refused(variable)),
+            }
+            if let Some((min, max)) = range.filter(|(min, max)| !(*min..=*max).contains(&value)) {
+                return Err(Failure::OutOfRange { name, value, unit, min, max, description });
+            }
+        }
+        if let Some(states) = states {
+            self.model.set_states(&states)?;
+        }
+        let (mut inputs, mut of_inputs) = (Vec::new(), Vec::new());
+        for (reference, &value) in references.iter().zip(values) {
+            match (self.variables[*reference as usize].causality, self.asked) {
+                (Causality::Input, Some(step)) => self.model.lead(*reference, value, step)?,
+                (Causality::Input, None) => {
+                    inputs.push(*reference);
+                    of_inputs.push(value);
+                }
+                (Causality::Parameter, _) => self.model.set(*reference, Value::Real(value)),
+                _ => (), // a state
+            }
+        }
+        self.model.set_inputs(&inputs, &of_inputs)
+    }
+
+    /// Sets parameters that are no real numbers, to the values that `value_of` gives for their types.
+    fn set_others<T: Copy>(
+        &mut self,
+        references: &[u32],
+        values: &[T],
+        value_of: impl Fn(&Variable, T) -> Result<Value, Failure>,
+    ) -> Result<(), Failure> {
+        let checked = references.iter().zip(values).map(|(reference, value)| {
+            let variable = self.find(*reference)?;
+            match variable.causality {
+                Causality::Input | Causality::Parameter => (),
+                _ => return Err(refused(variable)),
+            }
+            let value = value_of(variable, *value)?;
+            if self.stage.has_started() {
+                return Err(Failure::Fixed { name: variable.name.to_string() });
+            }
+            Ok(value)
+        });
+        let checked = checked.collect::<Result<Vec<_>, Failure>>()?;
+        references.iter().zip(checked).for_each(|(reference, value)| self.model.set(*reference, value));
+        Ok(())
+    }
+
+    /// Sets numbers of enumerations.
+    pub(crate) fn set_integer<T: Copy + Into<i64>>(&mut self, references: &[u32], values: &[T]) -> Result<(), Failure> {
+        self.set_others(references, values, |variable, value| {
+            let DataType::Enumeration(enumeration) = variable.data_type else { return Err(refused(variable)) };
+            let (value, name, data_type) = (value.into(), variable.name.to_string(), variable.data_type);
+            let is_item = (1..=enumeration.items.len() as i64).contains(&value);
+            if is_item { Ok(Value::Integer(value as i32)) } else { Err(Failure::NoSuchItem { name, value, data_type }) }
+        })
+    }
+
+    /// Refuses all integers, where enumerations have a function of their own.
+    pub(crate) fn set_no_integer(&mut self, references: &[u32]) -> Result<(), Failure> {
+        references.first().map_or(Ok(()), |first| Err(refused(self.find(*first)?)))
+    }
+
+    /// Sets Booleans; `truth` says what the value of a name stands for.
+    pub(crate) fn set_boolean<T: Copy>(
+        &mut self,
+        references: &[u32],
+        values: &[T],
+        truth: fn(&str, T) -> Result<bool, Failure>,
+    ) -> Result<(), Failure> {
+        self.set_others(references, values, |variable, value| {
+            let is_one = variable.data_type == DataType::Boolean;
+            if is_one { truth(&variable.name, value).map(Value::Boolean) } else { Err(refused(variable)) }
+        })
+    }
+
+    /// Sets texts.
+    pub(crate) fn set_string(&mut self, references: &[u32], values: &[&str]) -> Result<(), Failure> {
+        self.set_others(references, values, |variable, value| {
+            let is_one = variable.data_type == DataType::String;
+            if is_one { Ok(Value::String(value.to_owned())) } else { Err(refused(variable)) }
+        })
+    }
+
+    /// Sets slopes of the inputs over the next step.
+    #[inline]
+    pub(crate) fn set_real_input_derivatives(
+        &mut self,
+        references: &[u32],
+        orders: &[i32],
+        values: &[f64],
+    ) -> Result<(), Failure> {
+        for ((reference, &order), &value) in references.iter().zip(orders).zip(values) {
+            let is_input = self.kinds.get(*reference as usize).is_some_and(|kind| kind.is & INPUT != 0);
+            if !(is_input && order == 1 && value.is_finite()) {
+                return Err(self.no_slope(*reference, order, value));
+            }
+        }
+        if references.is_empty() { Ok(()) } else { self.model.set_slopes(references, values) }
+    }
+
+    #[cold]
+    fn no_slope(&self, reference: u32, order: i32, value: f64) -> Failure {
+        let variable = match self.find(reference) {
+            Ok(variable) => variable,
+            Err(failure) => return failure,
+        };
+        let name = variable.name.to_string();
+        match variable.causality {
+            Causality::Input if order != 1 => Failure::WrongOrder { name, order },
+            Causality::Input => Failure::BadSlope { name, value },
+            _ => Failure::NoInput { name },
+        }
+    }
+
+    /// Rates of outputs by time.
+    pub(crate) fn get_real_output_derivatives(
+        &mut self,
+        references: &[u32],
+        orders: &[i32],
+        values: &mut [MaybeUninit<f64>],
+    ) -> Result<(), Failure> {
+        for reference in references {
+            self.find(*reference)?;
+        }
+        let mut rates = vec![0.0; references.len()];
+        if !references.is_empty() {
+            self.model.rates(references, &mut rates)?;
+        }
+        if let Some((reference, order)) = references.iter().zip(orders).find(|(_, order)| **order != 1) {
+            return Err(Failure::WrongOrder { name: self.model.name(*reference), order: *order });
+        }
+        if let Some(at) = rates.iter().position(|rate| !rate.is_finite()) {
+            return Err(Failure::NoRate { name: self.model.name(references[at]), time: self.model.time()? });
+        }
+        values.iter_mut().zip(rates).for_each(|(place, rate)| _ = place.write(rate));
+        Ok(())
+    }
+
+    /// Derivatives of `unknowns` where each of `knowns` changes by its part of the `seed`.
+    pub(crate) fn get_directional_derivative(
+        &mut self,
+        unknowns: &[u32],
+        knowns: &[u32],
+        seed: &[f64],
+        values: &mut [MaybeUninit<f64>],
+    ) -> Result<(), Failure> {
+        for (reference, &value) in knowns.iter().zip(seed) {
+            let variable = self.find(*reference)?;
+            if !value.is_finite() {
+                return Err(Failure::BadSlope { name: variable.name.to_string(), value });
+            }
+        }
+        for reference in unknowns {
+            let variable = self.find(*reference)?;
+            if !matches!(variable.data_type, DataType::Real { .. }) {
+                return Err(Failure::NoOutput { name: variable.name.to_string() });
+            }
+        }
+        let direction: Vec<_> = knowns.iter().copied().zip(seed.iter().copied()).collect();
+        let found = self.model.derivatives(unknowns, &direction, self.stage.has_started())?;
+        if let Some(at) = found.iter().position(|derivative| !derivative.is_finite()) {
+            return Err(Failure::NoRate { name: self.model.name(unknowns[at]), time: self.model.time()? });
+        }
+        values.iter_mut().zip(found).for_each(|(place, derivative)| _ = place.write(derivative));
+        Ok(())
+    }
+}
+
+/// Why a function of another type cannot set `variable`.
+fn refused(variable: &Variable) -> Failure {
+    match variable.causality {
+        Causality::Input | Causality::Parameter => Failure::wrong_type(variable),
+        causality => Failure::NotSettable { name: variable.name.to_string(), causality },
+    }
+}
+
+/// Steps of a co-simulation.
+impl Instance {
+    /// Begins a step over `step` (s) from `point` (s). If the host sets inputs within steps, returns how to call it back,
+    /// which comes before [`Instance::do_step`].
+    pub(crate) fn begin_step(&mut self, point: f64, step: f64) -> Result<Option<IntermediateUpdate>, Failure> {
+        let asked = self.host.filter(|host| host.sets_inputs);
+        if asked.is_some() {
+            self.check_step(point, step)?;
+            self.asked = Some(step);
+            self.stage = Stage::IntermediateUpdateMode;
+        }
+        Ok(asked)
+    }
+
+    /// Steps from `point` (s), where the instance is but for rounding, over `step` (s), or to the first event if that is
+    /// handed over. The instance takes over the host's clock.
+    #[inline]
+    pub(crate) fn do_step(&mut self, point: f64, step: f64) -> Result<Progress, Failure> {
+        if self.asked.take().is_some() {
+            self.stage = Stage::StepComplete;
+        }
+        self.check_step(point, step)?;
+        let stops_at_events = self.interface.stepping().hands_over();
+        let step = Step { start: point, duration: step, stops_at_events };
+        match self.model.advance(step, &self.logger) {
+            Ok(Progress::Ended) => {
+                self.stage = Stage::StepFailed;
+                Ok(Progress::Ended)
+            }
+            result => self.stop_if_stuck(result),
+        }
+    }
+
+    /// If the host reads outputs within steps, returns how to call it back, which comes before [`Instance::end_step`].
+    pub(crate) fn show_step(&mut self) -> Option<IntermediateUpdate> {
+        let told = self.host.filter(|host| host.gets_outputs);
+        if told.is_some() {
+            self.led_to = Some(std::mem::replace(&mut self.stage, Stage::IntermediateOutputs));
+        }
+        told
+    }
+
+    /// Ends the step, once the host has read.
+    pub(crate) fn end_step(&mut self) {
+        self.stage = self.led_to.take().unwrap_or(self.stage);
+    }
+
+    /// Whether the host takes a step that ends early.
+    pub(crate) fn may_return_early(&self) -> bool {
+        self.interface.stepping().early_return
+    }
+
+    /// Refuses a step that cannot be made from `point` (s) over `step` (s).
+    #[inline]
+    fn check_step(&mut self, point: f64, step: f64) -> Result<(), Failure> {
+        let time = self.model.time()?;
+        let until = point + step;
+        if !(step > 0.0 && step <= f64::MAX) {
+            return Err(Failure::BadStep { step, time });
+        }
+        if !is_same_time(point, time, step) {
+            return Err(Failure::WrongPoint { given: point, time });
+        }
+        if until <= point {
+            return Err(Failure::BadStep { step, time });
+        }
+        match self.experiment.stop_time {
+            Some(stop) if until > stop && !is_same_time(until, stop, step) => Err(Failure::PastStop { until, stop }),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Hosts add up steps or multiply them: their times (s) differ in the last digits, but never so far that a step could
+/// be missed.
+#[inline]
+fn is_same_time(a: f64, b: f64, step: f64) -> bool {
+    let (part, places) = SAME_TIME;
+    let apart = (a - b).abs();
+    apart <= part * step || apart <= 0.5 * step && apart <= places * (b.abs().next_up() - b.abs())
+}
+
+/// What an instance does for a host that integrates.
+impl Instance {
+    /// Goes to the host's `time` (s).
+    pub(crate) fn set_time(&mut self, time: f64) -> Result<(), Failure> {
+        if !(time.is_finite() && (time - self.experiment.start_time).is_finite()) {
+            return Err(Failure::BadTime(time));
+        }
+        self.model.time()?;
+        self.model.set_time(time, self.stage == Stage::EventMode);
+        Ok(())
+    }
+
+    /// Goes to the host's states.
+    pub(crate) fn set_continuous_states(&mut self, states: &[f64]) -> Result<(), Failure> {
+        self.model.set_states(states)
+    }
+
+    /// The states at which the host is, or from which it is to start.
+    pub(crate) fn continuous_states(&mut self) -> Result<Vec<f64>, Failure> {
+        self.model.states()
+    }
+
+    /// The magnitudes of the states.
+    pub(crate) fn nominals(&mut self) -> Result<Vec<f64>, Failure> {
+        self.model.nominals()
+    }
+
+    /// Derivatives of the states.
+    pub(crate) fn derivatives(&mut self) -> Result<Vec<f64>, Failure> {
+        self.model.state_rates()
+    }
+
+    /// The event indicators.
+    pub(crate) fn event_indicators(&mut self) -> Result<Vec<f64>, Failure> {
+        self.model.indicators()
+    }
+
+    /// Tells the model that the host has completed a step to where it is.
+    pub(crate) fn completed_integrator_step(&mut self) -> Result<Completed, Failure> {
+        let completed = self.model.complete_step(&self.logger);
+        self.stop_if_stuck(completed)
+    }
+}

@@ -1,0 +1,198 @@
+//! What a model is: the one trait that an author writes.
+
+use crate::failure::Failure;
+use crate::interface::Interface;
+use crate::logger::Logger;
+use crate::sensitivity;
+use crate::variables::{Value, Variable};
+use std::path::Path;
+use std::sync::Arc;
+
+/// A model behind the interfaces of FMI. One value of the type is one instance.
+///
+/// The unit checks a call before the model sees it: stage, references, types, ranges, counts. A call that the model refuses
+/// must leave the model as it was.
+pub trait Model: 'static {
+    /// The model of the FMU whose folder `resources` is this one; the error is a message to the user.
+    fn open(resources: &Path) -> Result<Self, Failure>
+    where
+        Self: Sized;
+
+    /// The GUID of the FMU, FMI 3.0's instantiation token. FMUs that differ in anything must differ in it.
+    fn token(&self) -> String;
+
+    /// What FMU states are known by: only states that were written under this name are read. FMUs with other start values
+    /// may have the same.
+    fn build(&self) -> String {
+        self.token()
+    }
+
+    /// The table of variables, which stays the same; value references are its positions.
+    fn variables(&self) -> Arc<[Variable]>;
+
+    /// Back to what [`Model::open`] made.
+    fn reset(&mut self);
+
+    /// The value of a variable, also before the start: then it is what follows from the values set so far.
+    fn get(&mut self, reference: u32) -> Result<Value, Failure>;
+
+    /// The values of real variables: those of [`Model::get`], unless there is a faster way.
+    fn get_reals(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Failure> {
+        for (reference, value) in references.iter().zip(values) {
+            let Value::Real(real) = self.get(*reference)? else { unreachable!("the table says that it is real") };
+            *value = real;
+        }
+        Ok(())
+    }
+
+    /// Sets a parameter or an input, within its range.
+    fn set(&mut self, reference: u32, value: Value);
+
+    /// Sets inputs, real numbers within their ranges: as [`Model::set`], unless there is a faster way.
+    fn set_inputs(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
+        references.iter().zip(values).for_each(|(reference, value)| self.set(*reference, Value::Real(*value)));
+        Ok(())
+    }
+
+    /// Sets the slopes of inputs over the next step, finite numbers. Without it inputs are held.
+    fn set_slopes(&mut self, references: &[u32], _slopes: &[f64]) -> Result<(), Failure> {
+        Err(Failure::NoInput { name: self.name(references[0]) })
+    }
+
+    /// Sets the value that an input has at the end of the step that begins now and lasts `step` (s).
+    fn lead(&mut self, reference: u32, value: f64, _step: f64) -> Result<(), Failure> {
+        self.set_inputs(&[reference], &[value])
+    }
+
+    /// Takes tolerance and times, before the start.
+    fn set_up(&mut self, _experiment: &Experiment) {}
+
+    /// Starts the simulation: what cannot be is refused now.
+    fn start(&mut self, interface: Interface, log: &Logger) -> Result<(), Failure>;
+
+    /// Where the simulation is, s.
+    fn time(&mut self) -> Result<f64, Failure>;
+
+    /// Advances over a step of a co-simulation, which begins at `step.start` but for rounding of [`Model::time`].
+    fn advance(&mut self, step: Step, log: &Logger) -> Result<Progress, Failure>;
+
+    /// Applies what an event brings: the one that a step has ended at, or those up to where the host's integrator is.
+    fn update(&mut self, log: &Logger) -> Result<Update, Failure>;
+
+    /// Why the simulation is over, if it is, as a sentence of a message.
+    fn ending(&mut self) -> Result<Option<String>, Failure> {
+        Ok(None)
+    }
+
+    /// All that the future of the simulation depends on, as bytes.
+    fn state(&self) -> Vec<u8>;
+
+    /// Goes to a state of [`Model::state`].
+    fn restore(&mut self, bytes: &[u8]) -> Result<(), Failure>;
+
+    /// Rates of real variables by time.
+    fn rates(&mut self, references: &[u32], _rates: &mut [f64]) -> Result<(), Failure> {
+        Err(Failure::NoOutput { name: self.name(references[0]) })
+    }
+
+    /// Derivatives of variables along a direction, given by changes of others.
+    fn derivatives(&mut self, of: &[u32], direction: &[(u32, f64)], has_started: bool) -> Result<Vec<f64>, Failure> {
+        sensitivity::along(self, of, direction, has_started)
+    }
+
+    /// Goes to the `time` (s) of the host's integrator, also at an event.
+    fn set_time(&mut self, _time: f64, _is_at_event: bool) {}
+
+    /// The continuous states, in the order of the table.
+    fn states(&mut self) -> Result<Vec<f64>, Failure> {
+        Ok(Vec::new())
+    }
+
+    /// Goes to the states of the host's integrator.
+    fn set_states(&mut self, _states: &[f64]) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// Usual magnitudes of the states.
+    fn nominals(&mut self) -> Result<Vec<f64>, Failure> {
+        Ok(vec![1.0; self.states()?.len()])
+    }
+
+    /// Derivatives of the states, in their order.
+    fn state_rates(&mut self) -> Result<Vec<f64>, Failure> {
+        Ok(Vec::new())
+    }
+
+    /// The event indicators, in the order of the table.
+    fn indicators(&mut self) -> Result<Vec<f64>, Failure> {
+        Ok(Vec::new())
+    }
+
+    /// The host's integrator has completed a step to where it is.
+    fn complete_step(&mut self, _log: &Logger) -> Result<Completed, Failure> {
+        Ok(Completed::default())
+    }
+
+    /// The host's integrator enters event mode.
+    fn arrive_at_event(&mut self) -> Result<(), Failure> {
+        Ok(())
+    }
+
+    /// The name of a variable.
+    fn name(&self, reference: u32) -> String {
+        self.variables()[reference as usize].name.to_string()
+    }
+}
+
+/// Tolerance and times that a host gives.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Experiment {
+    /// Relative tolerance.
+    pub tolerance: Option<f64>,
+    /// Start time, s.
+    pub start_time: f64,
+    /// Time that is not exceeded, s.
+    pub stop_time: Option<f64>,
+}
+
+/// A step of a co-simulation.
+#[derive(Clone, Copy, Debug)]
+pub struct Step {
+    /// Where it begins, by the host's clock, s.
+    pub start: f64,
+    /// How long it lasts, s.
+    pub duration: f64,
+    /// Whether it ends at the first event on it, which [`Model::update`] then applies.
+    pub stops_at_events: bool,
+}
+
+/// How a step has ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// At its end.
+    Complete,
+    /// At an event.
+    Event,
+    /// With the simulation: [`Model::ending`] says why.
+    Ended,
+}
+
+/// What came of an event.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Update {
+    /// Whether the simulation is over.
+    pub has_ended: bool,
+    /// Whether the states differ from those that the host set.
+    pub has_new_states: bool,
+    /// The instant of the next event that can be foreseen, s.
+    pub next_event: Option<f64>,
+}
+
+/// What came of a complete step of the host's integrator.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Completed {
+    /// Whether there is an event to be dealt with.
+    pub needs_event_mode: bool,
+    /// Whether the simulation is over.
+    pub has_ended: bool,
+}

@@ -1,0 +1,124 @@
+//! Derivatives by differences, for quantities that have no formula.
+//!
+//! Differences to either side are extrapolated to the limit of no difference (Neville's scheme, its entry of least change). A
+//! limit that has not settled to 1e-4 ([`LARGEST_CHANGE`]) is refused; tests find it right to 1e-6.
+
+use crate::failure::Failure;
+use crate::model::Model;
+use crate::variables::{Causality, Role, Variable, state_references};
+
+/// The largest change that the scheme may last make, relative to the derivative, or to the value of the unknown over the
+/// magnitude of the known if that is more.
+const LARGEST_CHANGE: f64 = 1e-4;
+
+/// First difference, in parts of the known's magnitude.
+const FIRST: f64 = 0.1;
+
+/// Differences, each half of the one before.
+const DIFFERENCES: i32 = 12;
+
+/// The derivatives of the values that `shown` gives for a number, at `x`, whose magnitude is `scale`; differences are taken
+/// to the sides of `signs` alone. A derivative that does not settle is none.
+pub fn by_differences(
+    x: f64,
+    scale: f64,
+    signs: &[f64],
+    mut shown: impl FnMut(f64) -> Option<Vec<f64>>,
+) -> Option<Vec<Option<f64>>> {
+    let here = shown(x)?;
+    let sides = signs.iter().map(|sign| {
+        let places = (0..DIFFERENCES).map(|k| x + sign * (FIRST * scale) * 0.5_f64.powi(k));
+        places.filter(|place| *place != x).filter_map(|place| Some((place - x, shown(place)?))).collect::<Vec<_>>()
+    });
+    let sides: Vec<_> = sides.collect();
+    let derivative = |(at, here): (usize, &f64)| {
+        let of_side = |side: &Vec<_>| {
+            limit(side.iter().map(|(step, values): &(f64, Vec<f64>)| (*step, (values[at] - here) / step)))
+        };
+        let best = sides.iter().filter_map(of_side).min_by(|(_, a), (_, b)| a.total_cmp(b));
+        let is_settled = |(limit, change): &(f64, f64)| *change <= LARGEST_CHANGE * limit.abs().max(here.abs() / scale);
+        best.filter(is_settled).map(|(limit, _)| limit)
+    };
+    Some(here.iter().enumerate().map(derivative).collect())
+}
+
+/// The limit of `quotients`, given with their steps, at the step 0, and the change that the scheme last made to it.
+fn limit(quotients: impl Iterator<Item = (f64, f64)>) -> Option<(f64, f64)> {
+    let (mut steps, mut row) = (Vec::new(), Vec::<f64>::new());
+    let mut best: Option<(f64, f64)> = None;
+    for (step, quotient) in quotients {
+        let before = std::mem::replace(&mut row, vec![quotient]);
+        steps.push(step);
+        for (column, diagonal) in before.iter().enumerate() {
+            let farther = steps[steps.len() - 2 - column];
+            let value = row[column] + (row[column] - diagonal) * step / (farther - step);
+            let change = (value - row[column]).abs().max((value - diagonal).abs());
+            if best.is_none_or(|(_, least)| change < least) {
+                best = Some((value, change));
+            }
+            row.push(value);
+        }
+    }
+    best
+}
+
+/// The derivatives of `of` along `direction` by inputs and, once the simulation `has_started`, by states.
+pub(crate) fn along<M: Model + ?Sized>(
+    model: &mut M,
+    of: &[u32],
+    direction: &[(u32, f64)],
+    has_started: bool,
+) -> Result<Vec<f64>, Failure> {
+    let variables = model.variables();
+    let (states, nominals) = (model.states()?, model.nominals()?);
+    let mut sums = vec![0.0; of.len()];
+    for (reference, change) in direction {
+        let known = &variables[*reference as usize];
+        let values = |model: &mut M| {
+            let mut values = vec![0.0; of.len()];
+            model
+                .get_reals(of, &mut values)
+                .ok()
+                .filter(|()| values.iter().all(|value| value.is_finite()))
+                .map(|()| values)
+        };
+        let found = if known.causality == Causality::Input {
+            let mut x = [0.0];
+            model.get_reals(&[*reference], &mut x)?;
+            let scale = known.nominal.unwrap_or(1.0).max(x[0].abs());
+            let found = by_differences(x[0], scale, &[-1.0, 1.0], |value| {
+                model.set_inputs(&[*reference], &[value]).ok()?;
+                values(model)
+            });
+            model.set_inputs(&[*reference], &x)?;
+            found
+        } else if known.role == Role::State && has_started {
+            let which = state_references(&variables).position(|state| state == *reference).expect("it is a state");
+            let found =
+                by_differences(states[which], nominals[which].max(states[which].abs()), &[-1.0, 1.0], |value| {
+                    let mut states = states.clone();
+                    states[which] = value;
+                    model.set_states(&states).ok()?;
+                    values(model)
+                });
+            model.set_states(&states)?;
+            found
+        } else {
+            return Err(no_known(&variables, *reference));
+        };
+        for (at, sum) in sums.iter_mut().enumerate() {
+            let Some(by) = found.as_ref().and_then(|found| found[at]) else {
+                return Err(Failure::NoRate { name: model.name(of[at]), time: model.time()? });
+            };
+            *sum += change * by;
+        }
+    }
+    Ok(sums)
+}
+
+/// Refuses a directional derivative by a variable that is neither an input nor a state.
+pub fn no_known(variables: &[Variable], reference: u32) -> Failure {
+    let name = |reference: u32| variables[reference as usize].name.to_string();
+    let knowns = state_references(variables).map(name).collect::<Vec<_>>().join(", ");
+    Failure::NoKnown { name: name(reference), knowns }
+}

@@ -1,0 +1,140 @@
+//! What the structure does for a host that integrates: every complete step is checked, and transitions are applied.
+//!
+//! The engine stands where the host is; [`Known`] is where the motion was last known to be right.
+
+use crate::failure::Refusal;
+use crate::motion_log::log;
+use crate::scene::{Outside, Scene};
+use crate::setup::Setup;
+use fmi_unit::{Completed, Failure, Logger, Update};
+use rocking::mechanics::state::COMPONENTS;
+use rocking::run::ground_motion::Elapsed;
+use rocking::run::outside_step::{Checked, Known};
+use rocking::{Load, State, Transition, Watch};
+
+/// The relative tolerance up to which samples of the record are events. A solver of high order that integrates over the
+/// kinks there is not as exact as it believes; below an error of some 1e-5 to start anew at each is the cheaper way
+/// (docs/evidence/model_exchange.md).
+const KINKS_MATTER: f64 = 1e-8;
+
+/// The largest state (SI units) that is taken from a host.
+const FARTHEST: f64 = 1e12;
+
+impl Scene {
+    /// The record's time at the host's `time` (s). Where the start is late the last digits of that are coarse: the instant
+    /// that was announced for a sample is that sample's.
+    fn elapsed_at(&self, setup: &Setup, time: f64) -> Elapsed {
+        let elapsed = Elapsed::default().and(time - setup.start_time);
+        let resolution = 2.0 * f64::EPSILON * time.abs().max(setup.start_time.abs());
+        self.ground.as_ref().map_or(elapsed, |ground| setup.ground_motion(ground).by_clock(elapsed, resolution))
+    }
+
+    /// What acts now under the inputs `load`.
+    pub fn acting(&self, setup: &Setup, load: Load) -> Load {
+        self.load(setup, load.into()).value
+    }
+
+    /// Checks the step from where the motion was last known to where the host is, with the inputs `load` there.
+    fn check<W: Watch>(&mut self, setup: &Setup, known: &Known, load: Load, watch: &mut W) -> Result<Checked, Failure> {
+        let (from, to) = (known.motion.time, self.engine.motion().time);
+        if to < from && !self.has_overturned() {
+            return Err(Failure::StepBack { from, to });
+        }
+        let ground = self.ground.as_ref().map(|ground| setup.ground_motion(ground));
+        Ok(known.check(&mut self.engine, ground.as_ref(), self.elapsed, load, watch).map_err(Refusal::from)?)
+    }
+
+    /// The next instant at which contact is released or the record jumps or, if that matters, has a kink, s.
+    fn next_event(&self, setup: &Setup) -> Option<f64> {
+        let motion = self.engine.motion();
+        let released = Some(motion.held()).filter(|held| *held > 0.0).map(|held| motion.time + held);
+        let ground = self.ground.as_ref().map(|ground| setup.ground_motion(ground));
+        let of_ground = ground.and_then(|ground| {
+            if setup.tolerance <= KINKS_MATTER {
+                ground.next_sample(self.elapsed)
+            } else {
+                ground.next_jump(self.elapsed)
+            }
+        });
+        let of_ground = of_ground.map(|instant| setup.start_time + instant);
+        let next = released.into_iter().chain(of_ground).reduce(f64::min)?;
+        Some(next).filter(|next| *next > motion.time && next.is_finite())
+    }
+
+    /// Leaves the motion to the host's integrator, with the inputs `load`.
+    pub fn leave_to_host(&mut self, load: Load) {
+        let (motion, elapsed) = (*self.engine.motion(), self.elapsed);
+        self.outside = Some(Outside { known: Known { motion, elapsed, load }, arrived: load, event: elapsed });
+    }
+
+    /// Goes to the host's `time` (s).
+    pub fn go_to(&mut self, setup: &Setup, time: f64, is_at_event: bool) {
+        self.elapsed = self.elapsed_at(setup, time);
+        self.engine.set_time(time);
+        if let (Some(outside), true) = (&mut self.outside, is_at_event) {
+            outside.event = self.elapsed;
+        }
+    }
+
+    /// Goes to the host's state u, u̇, θ, θ̇.
+    pub fn take_states(&mut self, states: &[f64]) -> Result<(), Failure> {
+        let far = states.iter().zip(COMPONENTS).find(|(value, _)| !(value.abs() <= FARTHEST));
+        if let Some((&value, name)) = far {
+            return Err(Refusal::FarState { name, value }.into());
+        }
+        self.engine.set_state(State::of(std::array::from_fn(|at| states[at])));
+        Ok(())
+    }
+
+    /// Checks the step that the host has made to where it is, with the inputs `load`. If it has passed over a transition,
+    /// event mode puts it right.
+    pub fn complete_step(&mut self, setup: &Setup, load: Load) -> Result<Completed, Failure> {
+        let Some(mut outside) = self.outside else { return Ok(Completed::default()) };
+        let Checked { motion, is_corrected, .. } = self.check(setup, &outside.known, load, &mut ())?;
+        if !is_corrected {
+            outside.known = Known { motion, elapsed: self.elapsed, load };
+            self.outside = Some(outside);
+            self.engine.set_motion(motion);
+        }
+        Ok(Completed { needs_event_mode: is_corrected, has_ended: self.has_overturned() })
+    }
+
+    /// Remembers what acts, the inputs `load`, where the host goes to event mode.
+    pub fn arrive(&mut self, load: Load) {
+        if let Some(outside) = &mut self.outside {
+            (outside.arrived, outside.event) = (load, self.elapsed);
+        }
+    }
+
+    /// Applies the transitions up to where the host is, and the uplift that is due there under the inputs `load`.
+    pub fn catch_up(&mut self, setup: &Setup, load: Load, logger: &Logger) -> Result<Update, Failure> {
+        let Some(outside) = self.outside else { return Ok(Update::default()) };
+        let from = outside.known.motion.time;
+        let mut passed: Vec<Transition> = Vec::new();
+        let mut watch = |transition: &Transition| passed.push(*transition);
+        let Checked { motion, was_hidden, .. } = self.check(setup, &outside.known, outside.arrived, &mut watch)?;
+        let host = *self.engine.motion();
+        passed.iter().for_each(|transition| log(logger, transition));
+        if was_hidden {
+            logger.event(|| {
+                format!(
+                    "t = {} s: the integrator's step from t = {from} s shows nothing of {}: the states are put right",
+                    host.time,
+                    passed.iter().map(|transition| transition.kind.name()).collect::<Vec<_>>().join(", ")
+                )
+            });
+        }
+        self.engine.set_motion(motion);
+        let acting = self.acting(setup, load);
+        self.engine.lift_off_if_due(acting, &mut |transition: &Transition| log(logger, transition));
+        let motion = *self.engine.motion();
+        let known = Known { motion, elapsed: self.elapsed, load };
+        self.outside = Some(Outside { known, arrived: load, event: outside.event });
+        self.engine.set_time(host.time);
+        Ok(Update {
+            has_ended: self.has_overturned(),
+            has_new_states: motion.state != host.state,
+            next_event: self.next_event(setup),
+        })
+    }
+}
