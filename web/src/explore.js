@@ -2,7 +2,7 @@
   const at = (id) => document.getElementById(id);
   const { decode, show } = motionView();
 
-  /** The bytes that an element of the page has, compressed. */
+  /** The bytes that an element of the page holds in compressed form. */
   async function unpacked(id) {
     const bytes = Uint8Array.from(atob(at(id).textContent), (letter) => letter.charCodeAt(0));
     const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
@@ -15,13 +15,13 @@
   tables.numbers = tables.numbers.map(([name, unit, description, usual, slider]) => ({ name, unit, description, usual, slider }));
   const explorer = new wasm_bindgen.Explorer();
 
-  // ---- The scene: what differs from the defaults, as the text that was given
+  // ---- The scene: fields that differ from the defaults, as the text that was given
 
   let fields;
   let tab;
   let step; // of RK4, s
   let isLinked; // whether the link says how the next file is read
-  /** Reads the scene from the link. The texts of a key that is there twice are one text, which the engine rejects. */
+  /** Reads the scene from the link. If a key is there twice, its texts are joined, and the engine rejects the joined text. */
   function follow() {
     const link = new URLSearchParams(location.hash.slice(1));
     const texts = [...link.keys()].map((key) => [key, link.getAll(key).join(", ")]);
@@ -38,7 +38,7 @@
     if (value === "") delete fields[name];
     else fields[name] = value;
     const { stands_for } = tables.natural.find((of) => of.name === name) ?? {};
-    delete fields[stands_for]; // what is given last counts
+    delete fields[stands_for]; // the field that was given last replaces the other
     for (const natural of tables.natural) if (natural.stands_for === name) delete fields[natural.name];
     change();
   }
@@ -47,7 +47,7 @@
 
   const words = (name) => name.replaceAll("_", " ");
   const greek = { zeta: "ζ", theta: "θ", alpha: "α", omega: "ω", xi: "ξ", amplitude: "a_p", frequency: "f", step: "RK4 step" };
-  /** The field's own way to write a name: ζ with index fc. */
+  /** A name as engineers write it: ζ with index fc. */
   function symbol(name) {
     const [head, ...index] = (greek[name] ?? name).replace(/^([A-Za-z])(\d+)$/, "$1_$2").split("_");
     const label = document.createElement("span");
@@ -57,7 +57,7 @@
     return label;
   }
 
-  /** A position, 0 to 1, on the way `from` `to`: in logarithms where both are greater than 0, else more finely about 0. */
+  /** Position of a value between `from` and `to`, 0 to 1: logarithmic for a wide range above 0, finer near 0 if `from` is 0. */
   function scale([from, to]) {
     if (from > 0 && to / from > 4) {
       return { value: (part) => from * (to / from) ** part, part: (value) => Math.log(value / from) / Math.log(to / from) };
@@ -66,7 +66,7 @@
     return { value: (part) => from + (to - from) * part, part: (value) => (value - from) / (to - from) };
   }
 
-  /** What a slider of a parameter goes from and to: about that of the specimen, or of what its unit is in its masses and lengths. */
+  /** The range of a parameter's slider: about the value of the specimen, or about the unit made of its m, H and g. */
   function reach({ name, unit, min, max }) {
     const { m, H, g } = preset().parameters;
     const usual = preset().parameters[name] ?? 0;
@@ -78,9 +78,9 @@
     return [min, Math.min(max, Math.max(4 * usual, of(above) / of(below)))];
   }
 
-  let about; // what the engine says of the scene
+  let about; // the engine's answer about the scene
   let motion;
-  let derived; // what follows from the structure, by name
+  let derived; // derived quantities of the structure, by name
   const rows = {};
   function row(parent, { name, unit, description, slider }, given) {
     const made = document.createElement("div");
@@ -112,7 +112,7 @@
 
   for (const of of tables.parameters) row("structure", { ...of, slider: () => reach(of) }, (value) => give(of.name, value));
   for (const of of tables.natural) {
-    let middle; // the slider stays where it was taken hold of
+    let middle; // the range stays the same while the slider is held
     const slider = () => {
       const isHeld = document.activeElement === rows[of.name].element.children[1];
       if (!isHeld) middle = derived[of.name];
@@ -136,12 +136,12 @@
   at("unit").append(new Option("unit: as stated", ""), ...tables.units.map((name) => new Option(name, name)));
   at("detail").append(...tables.details.map((name) => new Option(name, name)));
 
-  /** The numbers that the ground motion has. */
+  /** Names of the numbers of a ground motion. */
   function numbersOf(name) {
     return tables.shapes.find((of) => of.name === name)?.numbers ?? tables.grounds.find(([of]) => of === name)?.[1] ?? [];
   }
 
-  /** Takes another ground motion, and drops what the scene has for the one before alone. */
+  /** Takes another ground motion. Fields that only the ground motion before it has are dropped. */
   function shake(name) {
     const kept = ["tolerance", ...numbersOf(name), ...(name === "record" ? tables.reading : [])];
     const numbers = [...tables.reading, ...tables.numbers.map((of) => of.name)];
@@ -166,7 +166,7 @@
     change();
   });
 
-  /** Shows what is given, whether the engine accepts it or not. */
+  /** Shows the given fields, even if the engine rejects them. */
   function showGiven() {
     at("preset").value = preset().name;
     at("ground").value = ground();
@@ -201,11 +201,11 @@
     at("derived").replaceChildren(...about.derived.map(derivedLine));
   }
 
-  /** A number as the engine writes it where JSON has none. */
+  /** A number that the engine writes as text, because JSON has no infinity. */
   const unlimited = (text) => Number(text.replace("inf", "Infinity"));
   const short = (value) => String(Number(value.toPrecision(5))).replace("-", "−").replace("Infinity", "∞");
   const percent = (part) => (part === 0 ? "0" : part < 1e-11 ? "< 10⁻⁹" : Number.isFinite(part) ? `${Number((100 * part).toPrecision(2))}` : "∞");
-  /** A row of a table, with its cells' content. */
+  /** A row of a table with these cells. */
   function line(cells, title = "") {
     const made = document.createElement("tr");
     made.title = title;
@@ -217,7 +217,7 @@
     return made;
   }
 
-  // ---- What is shown: at once to a hundredth of a peak, and exactly when the hand rests
+  // ---- The run: shown to 1/100 of a peak while a control moves, and to 1/10000 when it rests
 
   let pinned;
   const beside = new Set(["fixed_base"]);
@@ -244,7 +244,7 @@
     }
   }
 
-  /** Says what is wrong; what is drawn is then of the scene before. */
+  /** Shows the problem. The drawing is then of the scene before. */
   function tell(problem) {
     at("problem").hidden = problem === undefined;
     at("problem").textContent = problem ?? "";
@@ -275,7 +275,7 @@
     if (at("problem").hidden) trying(panels[tab])();
   }
 
-  // ---- A worker for what takes longer
+  // ---- A worker for long computations
 
   const worker = new Worker(URL.createObjectURL(new Blob([at("glue").textContent, at("worker").textContent])));
   worker.postMessage({ module });
@@ -334,7 +334,7 @@
   at("pin").addEventListener("click", () => {
     pinned = pinned ? undefined : motion;
     at("pin").textContent = pinned ? "Unpin" : "Pin this scene";
-    at("pinned").innerHTML = pinned ? '<span class="swatch" style="--colour: var(--pinned)"></span>pinned: θ of <b></b> rad at most' : "";
+    at("pinned").innerHTML = pinned ? '<span class="swatch" style="--colour: var(--pinned)"></span>pinned: peak θ <b></b> rad' : "";
     if (pinned) at("pinned").lastElementChild.textContent = short(pinned.peaks.theta.magnitude);
     update(1e-4);
   });
@@ -346,7 +346,7 @@
     parent.append(made);
   };
 
-  // The map: 32 steps along each axis, of which the finest is an eighth.
+  // The map has 32 steps along each axis, and its finest points are an eighth of a step apart.
   const [steps, finest] = [32, 8];
   const spectrum = { points: [], axes: undefined, of: "" };
   const shapeOfMap = () => (tables.shapes.some(({ name }) => name === ground()) ? ground() : "sine");
@@ -358,7 +358,7 @@
   });
   const swatches = [...at("classes").querySelectorAll(".swatch")];
 
-  /** The scene without what differs from point to point, and without what no point has. */
+  /** The scene without the numbers that differ from point to point, and without those that no point has. */
   function sceneOfMap() {
     const scene = { ...fields, ground: shapeOfMap() };
     const none = ["amplitude", "frequency", "duration", "seed", "theta_0", "u_0", "scale", "time_scale", ...tables.reading];
@@ -395,7 +395,7 @@
   }
   at("theme").addEventListener("click", () => spectrum.points.forEach(paint));
 
-  /** The axes in the units of the structure, with those of the ground beside them; where the scene is, a ring. */
+  /** The axes in units of the structure, with these units in Hz and g. A ring marks the pulse of the scene. */
   function drawAxes() {
     const axes = at("axes");
     axes.replaceChildren();
@@ -422,7 +422,7 @@
     if (!spectrum.axes) return;
     const { frequency, amplitude, of_frequency, of_amplitude } = spectrum.axes;
     const along = ([from, to], part) => from * (to / from) ** part;
-    const place = (part) => Math.floor(part * steps * finest) / (steps * finest); // the point that stands for it
+    const place = (part) => Math.floor(part * steps * finest) / (steps * finest); // the nearest computed point to the lower left
     const eight = (value) => String(Number(value.toPrecision(8)));
     fields = sceneOfMap();
     fields.frequency = eight(of_frequency * along(frequency, place(offsetX / target.clientWidth)));
@@ -435,7 +435,7 @@
     const tolerances = Array.from({ length: 10 }, (_, i) => `1e-${i + 3}`);
     const steps = Array.from({ length: 10 }, (_, i) => 0.02 / 2 ** i);
     const all = [...tolerances.map((tolerance) => ({ tolerance })), ...steps.map((step) => ({ step }))];
-    const isPossible = (of) => of.tolerance || motion.P_t === undefined; // RK4 knows no tendon and no dissipators
+    const isPossible = (of) => of.tolerance || motion.P_t === undefined; // RK4 has no tendon and no dissipators here
     const own = [{ tolerance: value("tolerance") }, { step: Number(step) }].filter(isPossible);
     const settings = [...own, ...all.filter(isPossible)];
     const found = [];
@@ -468,7 +468,7 @@
       svg(chart, "line", { class: "grid", x1: left, x2: right, y1: y(10 ** exponent), y2: y(10 ** exponent) });
       svg(chart, "text", { x: left - 6, y: y(10 ** exponent) + 4, "text-anchor": "end" }, power(exponent));
     }
-    svg(chart, "text", { x: left, y: 13 }, "error of θ and u over their largest");
+    svg(chart, "text", { x: left, y: 13 }, "error of θ and u as a fraction of their peaks");
     svg(chart, "text", { class: "muted", x: right, y: bottom + 30, "text-anchor": "end" }, "evaluations and steps");
     const isEngine = ({ tolerance }) => tolerance !== undefined;
     for (const [name, colour, of] of [["engine", "--blue", isEngine], ["RK4", "--orange", (part) => !isEngine(part)]]) {
@@ -522,7 +522,7 @@
   };
   function open(name) {
     tab = Object.hasOwn(panels, name) ? name : "play";
-    job++; // whatever was under way is no longer wanted
+    job++; // ends the job that is under way
     spectrum.of = "";
     for (const button of at("tabs").children) button.setAttribute("aria-selected", button.dataset.tab === tab);
     for (const panel of document.querySelectorAll("[data-panel]")) panel.hidden = panel.dataset.panel !== tab;
@@ -567,12 +567,12 @@
   });
 
   if (at("packed").textContent) takeLibraries("FlexibleRocking.fmu", await unpacked("packed"));
-  else at("platforms").textContent = "needs shared libraries: those of an FMU of this version";
+  else at("platforms").textContent = "needs shared libraries: take them from an FMU of this version";
   const asked = fields;
-  fields = {}; // what is shown where the scene asked for needs a file first
+  fields = {}; // the page shows this scene while the linked scene has no file
   update(1e-2);
   fields = asked;
-  document.querySelector("#readings [data-name=theta] button").click(); // to where it rocks most
+  document.querySelector("#readings [data-name=theta] button").click(); // shows the instant of the largest rotation
   open(tab);
   document.body.dataset.ready = "";
 })();

@@ -1,4 +1,4 @@
-//! The model in a browser: what the page calls, each with the scene as JSON of its fields, and an answer in JSON.
+//! The model in a browser: the functions that the page calls. Each takes the scene as JSON of its fields and answers in JSON.
 #![allow(non_snake_case)] // H, B: the paper's own letters
 
 mod map;
@@ -25,14 +25,14 @@ use std::path::Path;
 use take::{GROUND, taken_along};
 use wasm_bindgen::prelude::wasm_bindgen;
 
-/// Error of a level that its use is advised within, as `advise` has it.
+/// Largest error of an advised level of detail, as in `advise`.
 const WITHIN: f64 = 0.05;
 
 fn says(error: impl std::error::Error) -> String {
     error.to_string()
 }
 
-/// What the page's controls are made of: the library's own tables.
+/// The library's tables, of which the page makes its controls.
 #[wasm_bindgen]
 pub fn tables() -> String {
     let parameter = |of: &rocking::Quantity<rocking::Parameters>| json!({ "name": of.name, "unit": of.unit, "description": of.description, "min": of.min, "max": of.max });
@@ -60,31 +60,31 @@ pub fn tables() -> String {
     .to_string()
 }
 
-/// What the page works on, beside the scene: the record's file and the shared libraries for an FMU.
+/// The files of the page: the record, and the shared libraries for an FMU.
 #[wasm_bindgen]
 #[derive(Default)]
 pub struct Explorer {
     file: Option<File>,
     libraries: Vec<Library>,
-    /// The motion that methods are compared with, and of what it is.
+    /// The motion that methods are compared with, and its scene.
     reference: Option<(Fields, Vec<State>)>,
 }
 
 #[wasm_bindgen]
 impl Explorer {
-    /// Nothing dropped yet.
+    /// An explorer without files.
     #[wasm_bindgen(constructor)]
     pub fn new() -> Explorer {
         Explorer::default()
     }
 
-    /// The record's file from now on.
+    /// Takes the record's file, in the place of the one before.
     pub fn take_record(&mut self, name: &str, bytes: Vec<u8>) {
         self.file = Some(File::new(name, bytes));
         self.reference = None;
     }
 
-    /// The libraries of the FMU, or the library, in `bytes` from now on; their platforms.
+    /// Takes the libraries of the FMU in `bytes`, or the one library there. The answer names their platforms.
     pub fn take_libraries(&mut self, name: &str, bytes: Vec<u8>) -> Result<String, String> {
         self.libraries = Library::from_bytes(Path::new(name), bytes).map_err(says)?;
         Ok(self.libraries.iter().map(|library| library.platform.tuple()).collect::<Vec<_>>().join(", "))
@@ -96,7 +96,7 @@ impl Explorer {
         Ok((structure, ground))
     }
 
-    /// The run as the script of `view` shows it, to this `part` of its peaks.
+    /// The run as the script of `view` shows it, exact to this `part` of each peak.
     pub fn show(&mut self, fields: &str, part: f64) -> Result<String, String> {
         let fields = Fields::read(fields)?;
         let (structure, ground) = self.load(&fields)?;
@@ -105,7 +105,7 @@ impl Explorer {
         Ok(Scene::new(&run, part, &curve).json())
     }
 
-    /// The exact peaks alone, by name in SI units: what `show` has, without a curve.
+    /// The exact peaks by name, in SI units. They are the peaks of `show`, without its curve.
     pub fn peaks(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
         let (structure, ground) = self.load(&fields)?;
@@ -120,7 +120,7 @@ impl Explorer {
         .to_string())
     }
 
-    /// What follows from the structure, what was found in the record's file, what of the parameters the model leaves out.
+    /// Derived quantities of the structure, remarks on the record's file, and warnings about the parameters.
     pub fn about(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
         let (structure, Ground { record, remarks, .. }) = self.load(&fields)?;
@@ -139,7 +139,7 @@ impl Explorer {
         .to_string())
     }
 
-    /// What the model takes for granted on this run, the worst of each.
+    /// The assumptions of the model, each with its worst value in this run.
     pub fn validity(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
         let (structure, ground) = self.load(&fields)?;
@@ -156,7 +156,7 @@ impl Explorer {
         Ok(Value::from_iter(ASSUMPTIONS.iter().zip(&found.worst).map(row)).to_string())
     }
 
-    /// The levels of detail on this scene, as `advise` compares them.
+    /// The levels of detail, compared on this scene as `advise` compares them.
     pub fn compare(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
         let (structure, ground) = self.load(&fields)?;
@@ -178,8 +178,8 @@ impl Explorer {
         .to_string())
     }
 
-    /// The engine at the scene's tolerance, or with `step` (s) RK4: errors of θ and u over their largest, against the
-    /// equations to 1e-12, and the evaluations, until 10/p_l after the ground motion.
+    /// Error and evaluations of the engine at the scene's tolerance, or of RK4 if a `step` (s) is given, until 10/p_l after the
+    /// ground motion. The error is the largest of θ and u, as a fraction of the peak, against a run at the tolerance 1e-12.
     pub fn measure(&mut self, fields: &str, step: Option<f64>) -> Result<String, String> {
         let fields = Fields::read(fields)?;
         let (structure, Ground { record, .. }) = self.load(&fields)?;
@@ -200,7 +200,7 @@ impl Explorer {
         let error = |of: fn(&State) -> f64| {
             let largest = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
             let difference = largest(&mut states.iter().zip(exact).map(|(a, b)| of(a) - of(b)));
-            // one of them lies where the other stands
+            // one motion ends in overturning and the other continues
             let has_gone = states.len() != exact.len() || states.iter().any(|state| !of(state).is_finite());
             if has_gone { f64::INFINITY } else { relative((difference, largest(&mut exact.iter().map(of)))) }
         };
@@ -215,7 +215,7 @@ impl Explorer {
         Ok(fields.unscaled(self.file.as_mut(), g)?.table())
     }
 
-    /// The scene as a command line, as a script in Python, and the values that a host must set in its FMU.
+    /// The scene as commands, as a script in Python, and as values that a host must set in its FMU.
     pub fn taken_along(&mut self, fields: &str) -> Result<String, String> {
         let fields = Fields::read(fields)?;
         self.load(&fields)?;
@@ -223,7 +223,7 @@ impl Explorer {
         Ok(json!(taken_along(&fields, path)?).to_string())
     }
 
-    /// The FMU of this structure under this ground motion, for hosts of FMI 2.0 or 3.0.
+    /// The FMU of this structure under this ground motion, for FMI 2.0, or 3.0 if `fmi` is 3.
     pub fn export(&mut self, fields: &str, fmi: u32) -> Result<Vec<u8>, String> {
         let fields = Fields::read(fields)?;
         let version = if fmi == 3 { Version::Fmi3 } else { Version::Fmi2 };
@@ -240,7 +240,7 @@ impl Explorer {
     }
 }
 
-/// The states of `run` at `instants` (s) as far as it goes, and its evaluations with its steps.
+/// The states of `run` at those `instants` (s) that it reaches, and the sum of its evaluations and steps.
 fn sampled(run: &Run, instants: &[f64]) -> Result<(Vec<State>, u64), String> {
     let mut states = Vec::new();
     let show = |sample: &Sample| states.push(sample.motion.state);

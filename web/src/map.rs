@@ -1,4 +1,4 @@
-//! An overturning spectrum that fills in while it is computed, from coarse to fine.
+//! An overturning spectrum that the page draws while it is computed, from coarse to fine.
 
 use crate::scene::Fields;
 use rocking_sweep::map::{Axis, CLASSES, Map, Place, Point};
@@ -7,14 +7,14 @@ use serde_json::json;
 use std::collections::{HashMap, VecDeque};
 use wasm_bindgen::prelude::wasm_bindgen;
 
-/// Steps of the grid along each axis, a power of 2, and how often it is refined.
+/// Number of steps of the grid along each axis, a power of 2, and number of refinements.
 const STEPS: usize = 32;
 const REFINEMENTS: u32 = 3;
 
-/// From and to, of ω/p_l and a_p/(g tan α_cg).
+/// Ranges of ω/p_l and of a_p/(g tan α_cg).
 const RANGES: [(f64, f64); 2] = [(0.5, 16.0), (0.8, 16.0)];
 
-/// A map on its way.
+/// A map that is being computed.
 #[wasm_bindgen]
 pub struct Spectrum {
     map: Map,
@@ -25,7 +25,7 @@ pub struct Spectrum {
 
 #[wasm_bindgen]
 impl Spectrum {
-    /// Of the scene's structure under pulses of its shape.
+    /// The map of the scene's structure under pulses of the scene's shape.
     #[wasm_bindgen(constructor)]
     pub fn new(fields: &str) -> Result<Spectrum, String> {
         let fields = Fields::read(fields)?;
@@ -44,7 +44,7 @@ impl Spectrum {
         Ok(Spectrum { map, known: HashMap::new(), queue: queue.into(), level: 0 })
     }
 
-    /// The axes: from and to, in units of the structure, and what these are in Hz and m/s².
+    /// The ranges of the axes in units of the structure, and these units in Hz and m/s².
     pub fn axes(&self) -> String {
         let [frequency, amplitude] = RANGES.map(|(from, to)| [from, to]);
         let (of_amplitude, of_frequency) = units_of(&self.map.structure);
@@ -52,8 +52,8 @@ impl Spectrum {
             .to_string()
     }
 
-    /// Runs the next `count` points at most: of each the steps along frequency and amplitude, how many steps it stands for,
-    /// its class, the largest θ/α_cg. None are left when there are no more.
+    /// Runs the next points, at most `count`. Each point is five numbers: its steps along frequency and amplitude, the size of
+    /// its square in steps, its class, and the largest θ/α_cg. The answer is empty at the end of the map.
     pub fn next(&mut self, count: usize) -> Vec<f64> {
         let mut done = Vec::new();
         while done.len() < 5 * count
@@ -83,7 +83,7 @@ impl Spectrum {
     }
 }
 
-/// How many steps of the grid the point stands for until those about it are known.
+/// Size of the point's square, in steps of the grid, until its neighbours are known.
 fn size(place: Place) -> f64 {
     let is_on = |step: &f64| place.steps().iter().all(|at| at % step == 0.0);
     [4.0, 2.0].into_iter().find(is_on).unwrap_or(1.0)

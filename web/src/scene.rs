@@ -1,4 +1,4 @@
-//! A scene as the page has it: fields of text, as they stand in the link, read by the parser that reads a command line's.
+//! The scene of the page: fields of text, as in the link. Numbers are parsed as on a command line.
 
 use crate::says;
 use rocking::engine::{DEFAULT_TOLERANCE, check_tolerance};
@@ -14,18 +14,18 @@ use serde::de::value::{Error, StrDeserializer};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Name, unit and meaning of a number of the ground motion or of how the motion is computed, what it is unless something else
-/// is asked for, and what the page's slider goes from and to; a field may have any number.
+/// A number of the ground motion or of the run: name, unit, meaning, usual value, and the range of its slider. A field may
+/// hold a number outside the slider's range.
 pub type Number = (&'static str, &'static str, &'static str, f64, [f64; 2]);
 
-/// All of them.
+/// The numbers of ground motions and runs.
 pub const NUMBERS: [Number; 11] = [
     ("amplitude", "g", "peak ground acceleration", 0.6, [0.02, 4.0]),
     ("frequency", "Hz", "frequency of the pulse", 2.0, [0.1, 20.0]),
     ("cycles", "1", "periods of the pulse", f64::NAN, [0.25, 10.0]),
     ("phase", "rad", "phase of the pulse", 0.0, [-3.2, 3.2]),
     ("duration", "s", "duration of the ground motion", 10.0, [1.0, 60.0]),
-    ("seed", "1", "what the noise begins with", 1.0, [1.0, 100.0]),
+    ("seed", "1", "seed of the noise", 1.0, [1.0, 100.0]),
     ("theta_0", "rad", "rotation at the start", 0.0, [-0.3, 0.3]),
     ("u_0", "m", "elastic displacement at the start", 0.0, [-0.05, 0.05]),
     ("scale", "1", "multiplies the record's accelerations", 1.0, [0.1, 10.0]),
@@ -62,7 +62,7 @@ pub fn numbers_of(ground: &str) -> Option<Vec<&'static str>> {
 #[serde(transparent)]
 pub struct Fields(BTreeMap<String, String>);
 
-/// A file that was dropped on the page, and how it was read last.
+/// A file that was dropped on the page, and its last reading.
 pub struct File {
     pub path: PathBuf,
     pub bytes: Vec<u8>,
@@ -128,7 +128,7 @@ impl Fields {
         reading.iter().chain(scales).copied()
     }
 
-    /// These without those called `names`.
+    /// The fields except those called `names`.
     pub fn without(&self, names: &[&str]) -> Fields {
         let kept = self.0.iter().filter(|(name, _)| !names.contains(&name.as_str()));
         Fields(kept.map(|(name, text)| (name.clone(), text.clone())).collect())
@@ -142,18 +142,18 @@ impl Fields {
         self.text(name).map(|text| text.parse().map_err(|error| format!("{name} = {text:?}: {error}")))
     }
 
-    /// One of [`NUMBERS`], or its usual value.
+    /// The number called `name` of [`NUMBERS`], or its usual value.
     pub fn number(&self, name: &str) -> Result<f64, String> {
         let default = || NUMBERS.iter().find(|number| number.0 == name).expect("it is one of them").3;
         self.given(name).unwrap_or_else(|| Ok(default()))
     }
 
-    /// One of a library's names.
+    /// The value of a library's type that is given by its name, or else called `default`.
     fn named<'a, T: Deserialize<'a>>(&'a self, name: &str, default: &'a str) -> Result<T, String> {
         T::deserialize(StrDeserializer::<Error>::new(self.text(name).unwrap_or(default))).map_err(says)
     }
 
-    /// The structure: a specimen with the numbers that are given in the place of its own.
+    /// The structure: a specimen, with the given numbers in place of its own.
     pub fn structure(&self) -> Result<Structure, String> {
         let preset = self.text("preset").unwrap_or(PRESETS[0].0);
         let base = Parameters::preset(preset).map_err(says)?;
@@ -169,7 +169,7 @@ impl Fields {
     /// The ground motion before it is scaled; `g` in m/s².
     pub fn unscaled(&self, file: Option<&mut File>, g: f64) -> Result<Ground, String> {
         match self.kind() {
-            "record" => file.ok_or("no record is here: drop its file on the page")?.ground(self.reading()?, g),
+            "record" => file.ok_or("there is no record: drop its file on the page")?.ground(self.reading()?, g),
             "free" => Ok(Ground::of(Record::at_rest(self.number("duration")?))),
             "synthetic" => {
                 let pga = g * self.number("amplitude")?;
@@ -183,7 +183,7 @@ impl Fields {
         }
     }
 
-    /// The ground motion that acts.
+    /// The ground motion, scaled; `g` in m/s².
     pub fn ground(&self, file: Option<&mut File>, g: f64) -> Result<Ground, String> {
         let ground = self.unscaled(file, g)?;
         let (time_scale, scale) = (self.number("time_scale")?, self.number("scale")?);
@@ -191,14 +191,14 @@ impl Fields {
         Ok(Ground { record: scaled(ground.record)?, in_file_unit: scaled(ground.in_file_unit)?, ..ground })
     }
 
-    /// The pulse asked for.
+    /// The pulse of the scene; `g` in m/s².
     pub fn pulse(&self, g: f64) -> Result<Pulse, String> {
         let shape = self.named("ground", Shape::Sine.name())?;
         let pulse = Pulse::new(shape, g * self.number("amplitude")?, self.number("frequency")?);
         Ok(Pulse { cycles: self.given("cycles").unwrap_or(Ok(pulse.cycles))?, phase: self.number("phase")?, ..pulse })
     }
 
-    /// How a file is read.
+    /// The options with which the file is read.
     pub fn reading(&self) -> Result<Reading, String> {
         let dt = self.given("dt").transpose()?;
         let unit = self.text("unit").map(|_| self.named("unit", "")).transpose()?;
@@ -210,7 +210,7 @@ impl Fields {
         Ok(Reading { unit, dt, column: self.text("column").map(Column::from), ignores_count, ..Reading::default() })
     }
 
-    /// The run of `structure` under `ground`.
+    /// The run of `structure` under `ground`, with the scene's start and method.
     pub fn run<'a>(&self, structure: Structure, ground: &'a Record) -> Result<Run<'a>, String> {
         let (detail, tolerance) = (self.detail()?, self.tolerance()?);
         let initial = State { theta: self.number("theta_0")?, u: self.number("u_0")?, ..State::default() };

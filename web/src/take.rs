@@ -1,4 +1,4 @@
-//! A scene as what computes it elsewhere: commands for a shell, a script in Python, and values to set in its FMU.
+//! The scene for use outside the page: commands for a shell, a script in Python, and values to set in its FMU.
 
 use crate::scene::{Fields, RUN};
 use rocking::structure::natural_quantities::names;
@@ -13,13 +13,13 @@ pub const GROUND: &str = "ground.csv";
 /// Options of one call, by the names that the command line and Python share.
 type Options = Vec<(&'static str, Value)>;
 
-/// The scene `fields` with the record at `path` as the commands of a POSIX shell, a script in Python, and the start and method
-/// of its run, which an FMU does not hold. Every key of the scene is in the commands and in the script.
+/// Commands of a POSIX shell, a script in Python, and start and method of the run, which an FMU does not hold. All three are of
+/// the scene `fields` with the record at `path`. Commands and script contain every key of the scene.
 pub fn taken_along(fields: &Fields, path: Option<&Path>) -> Result<[String; 3], String> {
     let usual = |name: &str| match name {
         "preset" => Some(PRESETS[0].0.to_owned()),
         "amplitude" | "frequency" | "duration" => fields.number(name).ok().map(|usual| usual.to_string()),
-        _ => None, // the command line and Python have the same
+        _ => None, // the command line and Python have the usual values of the page
     };
     let options = |names: &mut dyn Iterator<Item = &'static str>| -> Result<Options, String> {
         let given =
@@ -29,7 +29,7 @@ pub fn taken_along(fields: &Fields, path: Option<&Path>) -> Result<[String; 3], 
     let structure = options(&mut ["preset"].into_iter().chain(names()))?;
     let (of_file, run) = (options(&mut fields.of_file())?, options(&mut RUN.into_iter())?);
     let file = path.filter(|_| fields.kind() == "record").map_or(GROUND.into(), |path| path.display().to_string());
-    let file = if file == "-" { "./-".into() } else { file }; // which is no standard input
+    let file = if file == "-" { "./-".into() } else { file }; // `-` alone is standard input
     let simulate = |motion, of_file| command("simulate", &[&structure, &vec![motion], of_file, &run]);
     let after_first = |options: &Options| arguments(options)[", ".len()..].to_owned();
     let (command, record, motion) = match fields.kind() {

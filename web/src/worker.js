@@ -1,4 +1,4 @@
-// What takes longer than a frame. A newer job ends the one before.
+// Computations that last longer than a frame. A newer job ends the job before it.
 let explorer;
 let current = 0;
 
@@ -8,7 +8,7 @@ const work = {
   async speed(fields, answer, { settings }) {
     for (const { tolerance, step } of settings) {
       const scene = tolerance ? JSON.stringify({ ...JSON.parse(fields), tolerance }) : fields;
-      explorer.measure(scene, step); // what both need is there
+      explorer.measure(scene, step); // finds the reference motion, which is not timed
       const start = performance.now();
       const measured = JSON.parse(explorer.measure(scene, step));
       const going = await answer({ ...measured, tolerance, step, time: performance.now() - start });
@@ -35,7 +35,7 @@ onmessage = async ({ data }) => {
     explorer.take_record(data.record.name, data.record.bytes);
   } else {
     current = data.job;
-    /** Sends a part of the answer; whether the rest is still wanted. */
+    /** Sends a part of the answer. Returns whether the page still needs the rest. */
     const answer = async (part) => {
       postMessage({ job: data.job, part });
       await new Promise((next) => setTimeout(next));

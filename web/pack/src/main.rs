@@ -1,5 +1,5 @@
-//! Puts the page together: `pack ENGINE.wasm PAGE.html [LIBRARIES]`. The engine, and the shared libraries if there is a file of
-//! them, ride inside, compressed.
+//! Writes the page: `pack ENGINE.wasm PAGE.html [LIBRARIES]`. The page contains the engine, compressed, and the shared libraries
+//! if their file is given.
 
 use anyhow::Context;
 use base64::Engine;
@@ -12,7 +12,7 @@ use wasm_bindgen_cli_support::Bindgen;
 fn main() -> anyhow::Result<()> {
     let arguments: Vec<String> = env::args().skip(1).collect();
     let [engine, page, libraries @ ..] = arguments.as_slice() else {
-        anyhow::bail!("call it as pack ENGINE.wasm PAGE.html [LIBRARIES]");
+        anyhow::bail!("usage: pack ENGINE.wasm PAGE.html [LIBRARIES]");
     };
     let mut bound = Bindgen::new().input_path(engine).no_modules(true)?.typescript(false).generate_output()?;
     let glue = bound.js().to_owned();
