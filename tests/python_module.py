@@ -18,7 +18,7 @@ def use_all(folder: Path) -> None:
     assert fr.Record.read(folder / "sine.csv").scaled(1.0, time_scale=1.0).pga == ground.pga
     assert fr.Record(0.01, ground.a_g).duration == 4.0 and len(ground) == 401 and ground.pgv > 0
     spectrum: np.ndarray = ground.spectrum([0.1, 0.2], zeta=0.02)
-    assert spectrum.shape == (2,)
+    assert spectrum.shape == (2,) and hash(ground)
 
     pier = fr.Structure(weight=4000, m0=1e5, alpha_cg=0.2, B=1.5, period_fc=0.4, zeta_fc=0.03, r=0.95)
     wall = fr.Structure(preset="evison").replace(f_fc=8.0)
@@ -29,6 +29,8 @@ def use_all(folder: Path) -> None:
     theta: fr.Peak = run.peaks["theta"]
     assert float(theta) == theta.value and theta.time > 0 and theta.unit == "rad" and not run.overturned
     first = run.transitions[0]
+    rows_of_transitions: pd.DataFrame = run.transitions.to_pandas()
+    assert f"{theta:.3f}" and theta > 0 and len(rows_of_transitions) == len(run.transitions) and fr.__version__
     assert first.kind and first.time > 0 and first.before["theta"] != 1 and first.after["theta"] != 1
     response = run.at(np.linspace(0, 4, 401))
     frame: pd.DataFrame = response.to_pandas()

@@ -2,6 +2,9 @@
 
 import ast
 import contextlib
+import copy
+import importlib.metadata
+import inspect
 import io
 import json
 import multiprocessing
@@ -21,6 +24,7 @@ import pandas as pd
 import pytest
 from conftest import ROOT
 from first_run import RECORD
+from fmpy import simulate_fmu
 
 fr = pytest.importorskip("flexible_rocking", reason="flexible_rocking is not installed: `make python` does it")
 import python_module  # noqa: E402
@@ -129,6 +133,13 @@ def test_the_modes_are_those_of_the_state(run):
     assert structure.H * modes["q_u"][rocks] == pytest.approx(-structure.chi * response["u"][rocks], rel=1e-14)
 
 
+def test_a_tied_structure_has_no_modes(run):
+    tied = run.structure.replace(P_0=500)
+    for refused in (lambda: tied.effective_frequency(0.04), lambda: tied.modes(run.at(run.record.time)), lambda: fr.estimate(tied)):
+        with pytest.raises(ValueError, match="its weight alone"):
+            refused()
+
+
 def test_a_fall_ends_the_motion_and_rest_goes_on():
     fallen = fr.simulate(fr.Structure(preset="mcmanus"), duration=60, theta_0=0.3)
     response = fallen.at([fallen.end + 1, 0, fallen.end])
@@ -154,7 +165,20 @@ def test_what_is_refused_has_the_command_lines_text(said, arguments, options):
     (lambda ground: fr.Record([0, 1], [0, float("nan")]), 'acceleration[1] = NaN m/s² is not finite'),
     (lambda ground: fr.Record([0, 1], [0]), "2 time(s) and 1 acceleration(s) instead of as many of each"),
     (lambda ground: fr.Record(0.0, [0, 1]), "dt = 0 is out of range: a finite number greater than 0 is needed"),
-    (lambda ground: fr.Record(0.1, ["a", "b"]), "a_g: could not convert string to float"),
+    (lambda ground: fr.Record(0.1, ["a", "b"]), "a_g: numbers are needed, not text or other objects"),
+    (lambda ground: fr.Record(pd.date_range("2026", periods=2), [0, 1]), "time: these are dates"),
+    (lambda ground: fr.Record(pd.to_timedelta([0, 5], unit="ms"), [0, 1]), "time: these are durations: numbers are needed, in s"),
+    (lambda ground: fr.Record(0.1, np.ma.masked_equal([0.0, -999.0, 1.0], -999)), "a_g: some of it is masked"),
+    (lambda ground: fr.Record(0.1, np.array(["1", 2.0], object)), "a_g: numbers are needed"),
+    (lambda ground: fr.Record(0.1, [True, False]), "a_g: these are bools"),
+    (lambda ground: fr.Record(0.1, [1j, 2j]), "a_g: these are complex"),
+    (lambda ground: fr.Structure(preset="mcmanus", m=True), "m = True: it is no number"),
+    (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), duration=np.timedelta64(9, "ns")), "it is no number"),
+    (lambda ground: ground.spectrum([0.2, 1e-9]), "period = 1e-9 s is out of range: it must lie between 0.0001 and 1000 s"),
+    (lambda ground: ground.spectrum(0.2, zeta=float("nan")), "zeta = NaN is out of range"),
+    (lambda ground: ground.spectrum(0.2, zeta=-0.1), "zeta = -0.1 is out of range: it must lie between 0 and 10"),
+    (lambda ground: fr.Structure(preset="mcmanus").pushover(points=2_000_000_000), "points = 2000000000 is out of range: 2 to 1000000"),
+    (lambda ground: fr.sweep(fr.Structure(preset="mcmanus"), ground, threads=2**40), "threads = 1099511627776 is out of range: 0 to 1024"),
     (lambda ground: fr.Structure(preset="mcmanus", r="high"), "r = 'high': it is no number"),
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus")), "record and duration are missing"),
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), ground, detail="fine"), 'detail = "fine" is unknown; these'),
@@ -178,8 +202,16 @@ def test_a_file_says_what_would_help(tmp_path):
     (tmp_path / "column.txt").write_text("0.1\n0.2\n-0.1\n")
     with pytest.raises(ValueError, match="give it in seconds as dt"):
         fr.Record.read(tmp_path / "column.txt")
-    with pytest.warns(UserWarning, match="a step of 0.5 s: is the time in another unit"):
+    with pytest.warns(UserWarning) as warned:
         fr.Record.read(tmp_path / "column.txt", dt=0.5)
+    assumed, doubted = (str(warning.message) for warning in warned)
+    assert "; m/s2 assumed" in assumed and "a step of 0.5 s: is the time in another unit" in doubted
+    assert {warning.filename for warning in warned} == {__file__}
+    (tmp_path / "table.txt").write_text("0 1\n0.01 2\n0.02 0\n")
+    with pytest.warns(UserWarning, match="table.txt: .*; m/s2 assumed"):
+        fr.export(tmp_path / "table.fmu", fr.Structure(preset="mcmanus"), record=tmp_path / "table.txt")
+    with pytest.warns(UserWarning, match="mine: a peak of 6 g: is the unit right"):
+        fr.Record(0.01, [0, 6, -6, 0], unit="g", title="mine")
     with pytest.raises(ValueError, match="this would overwrite the input"):
         fr.export(tmp_path / "column.txt", fr.Structure(preset="mcmanus"), record=tmp_path / "column.txt")
 
@@ -187,6 +219,160 @@ def test_a_file_says_what_would_help(tmp_path):
 def test_a_tendon_has_the_peak_of_its_force(ground):
     peaks = fr.simulate(fr.Structure(preset="mcmanus", P_0=500, k_t=2e5), ground).peaks
     assert peaks["P_t"].value == pytest.approx(500 + 4e5 * 0.285 * np.sin(peaks["theta"].value / 2), rel=1e-12)
+
+
+def test_arrays_are_read_whatever_their_strides(ground):
+    """A field beside an int32, as fmpy returns, and every other thing that has the same numbers."""
+    pier = fr.Structure(preset="mcmanus")
+    fields = np.zeros(len(ground), dtype=[("transitions", "i4"), ("time", "f8"), ("a_g", ">f8")])
+    fields["time"], fields["a_g"] = ground.time, ground.a_g
+    assert fields["time"].strides[0] % 8 != 0
+    for time_, a_g in [(fields["time"], fields["a_g"]), (pd.Series(ground.time), ground.a_g[::-1][::-1]),
+                       (ground.time.tolist(), ground.a_g.astype(object))]:
+        same = fr.Record(time_, a_g, title=ground.title)
+        assert np.array_equal(same.time, ground.time) and np.array_equal(same.a_g, ground.a_g)
+    times = fields["time"][100:200]
+    assert np.array_equal(ground.spectrum(times), ground.spectrum(times.copy()))
+    run = fr.simulate(pier, ground)
+    assert np.array_equal(run.at(times)["theta"], run.at(times.copy())["theta"])
+    assert fr.sweep(pier, ground, scale=times[:3])["scale"].tolist() == times[:3].tolist()
+    assert fr.Record(np.float32(0.0625), np.ones(3, np.int64)).duration == 0.125 and run.at(np.int64(1))["time"].tolist() == [1.0]
+
+
+@pytest.mark.parametrize("unit, per_g", [("g", 1), ("mg", 1000), ("%g", 100)])
+def test_a_unit_of_g_is_that_of_the_structure(said, tmp_path, unit, per_g):
+    moon = fr.Structure(preset="mcmanus", g=1.62)
+    time_ = np.arange(0, 1, 0.01)
+    in_g = per_g * 0.9 * np.sin(4 * np.pi * time_)
+    ground = fr.Record(time_, in_g, unit=unit).scaled(1.1)
+    in_si = fr.Record(time_, in_g * {"g": 1.62, "mg": 1.62 / 1e3, "%g": 1.62 / 1e2}[unit]).scaled(1.1)
+    run, expected = (fr.simulate(moon, of) for of in (ground, in_si))
+    assert run.peaks == expected.peaks and np.array_equal(run.at(time_)["a_g"], expected.at(time_)["a_g"])
+    assert pickle.loads(pickle.dumps(run)).peaks == run.peaks and ground.pga == pytest.approx(9.81 * 1.1 * 0.9, rel=2e-3)
+    assert fr.sweep(moon, ground)["peak_theta[rad]"].tolist() == [run.peaks["theta"]]
+    assert fr.estimate(moon, ground)["a_t"] == fr.estimate(moon, in_si)["a_t"]
+    with pytest.raises(ValueError, match="g = 9.81 m/s2 and g = 1.62 m/s2: a sweep has one g"):
+        fr.sweep([moon, fr.Structure(preset="mcmanus")], ground)
+    fr.Record(time_, in_g, unit=unit).write(tmp_path / "g.csv")
+    printed = json.loads(said("simulate", "--preset", "mcmanus", "--g", 1.62, "--record", "g.csv", "--scale", 1.1, "--format", "json", "-o", "rows.csv"))
+    assert {of["name"]: of["peak"] for of in printed["peaks"]} == run.peaks
+
+
+def test_both_components_are_written(tmp_path):
+    both = fr.Record(0.01, [0, 2, 0], [1, 0, 3], unit="g", title="both")
+    with pytest.raises(ValueError, match="the record has a vertical component: give its file as vertical"):
+        both.write(tmp_path / "h.csv")
+    both.write(tmp_path / "h.csv", vertical=tmp_path / "v.csv")
+    read = fr.Record.read(tmp_path / "h.csv", vertical=tmp_path / "v.csv")
+    assert np.array_equal(read.a_g, both.a_g) and np.array_equal(read.a_v, both.a_v)
+    with pytest.raises(ValueError, match="the record has no vertical component: leave vertical out"):
+        fr.Record(0.01, [0, 2, 0]).write(tmp_path / "h.csv", vertical=tmp_path / "v.csv")
+
+
+@pytest.fixture(scope="module")
+def long_run():
+    time_ = np.arange(2_000_000) * 0.01
+    return fr.simulate(fr.Structure(preset="mcmanus"), fr.Record(time_, 2.2 * np.sin(9 * time_)))
+
+
+@pytest.mark.parametrize("computes", [
+    lambda run: fr.simulate(run.structure, run.record),
+    lambda run: run.at(np.linspace(0, run.end, 20_000_000)),
+    lambda run: fr.advise(run.structure, run.record),
+    lambda run: run.record.spectrum(np.linspace(0.1, 2, 1000)),
+    lambda run: run.structure.pushover(points=1_000_000),
+    lambda run: run.validity,
+    lambda run: str(run),
+], ids=["simulate", "at", "advise", "spectrum", "pushover", "validity", "str"])
+def test_signals_are_answered_while_it_computes(long_run, computes):
+    """A timer ticks. Python hears of it once after a call that answers to nothing, and several times during one that does."""
+    heard = []
+
+    def hear(*_):
+        heard.append(True)
+        if len(heard) == 3:
+            raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, hear)
+    signal.setitimer(signal.ITIMER_REAL, 0.05, 0.05)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            computes(long_run)
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+def test_results_are_pickled_and_copied(run, ground):
+    pulses = {f"{f} Hz": fr.pulse("sine", amplitude=0.5, frequency=f) for f in (1.0, 1.5, 2.0, 2.5, 3.0)}
+    fragility = fr.fragility(fr.sweep(run.structure, pulses, scale=np.linspace(0.2, 3, 15)))
+    for same in (lambda of: pickle.loads(pickle.dumps(of)), copy.deepcopy):
+        for result in (run.peaks["theta"], run.transitions, run.validity["mu_required"], fr.advise(run.structure, ground), ground):
+            assert same(result) == result and type(same(result)) is type(result) and repr(same(result)) == repr(result)
+        assert (same(run.peaks["u"]).time, same(run.peaks["u"]).unit) == (run.peaks["u"].time, "m")
+        copied = same(fragility)
+        assert (copied.median, copied.curve.median_range) == (fragility.median, fragility.curve.median_range)
+        assert copied.curve.band([0.5]).tolist() == fragility.curve.band([0.5]).tolist()
+
+
+def test_a_peak_is_a_float(run):
+    peak = run.peaks["theta"]
+    assert f"{peak:.3f}" == f"{peak.value:.3f}" and peak > 0.01 and 2 * peak == 2 * peak.value and max(peak, 0.0) is peak
+    assert json.dumps(peak) == str(peak.value) and np.sqrt([peak]).dtype == float and str(peak).endswith(" s")
+
+
+def test_transitions_are_a_table(run):
+    table = run.transitions.to_pandas()
+    assert list(table.index) == [of.time for of in run.transitions] and set(table["kind"]) == {of.kind for of in run.transitions}
+    assert table["theta_dot_before"].tolist() == [of.before["theta_dot"] for of in run.transitions]
+    assert run.transitions[1:1] == [] and list(type(run.transitions)().to_pandas()) == list(table)
+
+
+def test_what_is_asked_for_in_another_form_is_taken_or_refused_by_name(run, ground):
+    pier = run.structure
+    assert fr.advise(pier, ground, of="theta").detail == fr.advise(pier, ground, of=["theta"]).detail
+    assert run.at(1.0)["theta"].tolist() == run.at([1.0])["theta"].tolist()
+    for wrong in (lambda: fr.simulate(pier, "a.AT2"), lambda: fr.advise(pier, "a.AT2"), lambda: fr.sweep(pier, "a.AT2"),
+                  lambda: fr.sweep(pier, ["a.AT2"]), lambda: fr.estimate(pier, "a.AT2")):
+        with pytest.raises(TypeError, match="record = 'a.AT2' is no Record: Record.read"):
+            wrong()
+    assert hash(ground) == hash(copy.copy(ground)) and len({ground, ground.scaled(2)}) == 2
+    flat = fr.Structure(preset="evison", J0=-0.0)
+    assert flat == fr.Structure(preset="evison") and hash(flat) == hash(fr.Structure(preset="evison"))
+
+
+def test_help_shows_the_defaults(ground):
+    stub = ast.parse((ROOT / "python/flexible_rocking/_native.pyi").read_text())
+    typed = {of.name: dict(zip((each.arg for each in of.args.kwonlyargs), of.args.kw_defaults))
+             for of in stub.body if isinstance(of, ast.FunctionDef)}
+    for function in (fr.simulate, fr.advise, fr.estimate, fr.pulse):
+        for name, shown in inspect.signature(function).parameters.items():
+            if typed[function.__name__].get(name):
+                assert shown.default == ast.literal_eval(typed[function.__name__][name]), name
+    assert fr.simulate(fr.Structure(preset="evison"), duration=1).tolerance == inspect.signature(fr.simulate).parameters["tolerance"].default
+    assert fr.__version__ == importlib.metadata.version("flexible-rocking")
+
+
+def test_pip_installs_a_fresh_clone(tmp_path):
+    """With nothing but cargo and pip: the script of README, and an FMU that the installed command line packs."""
+    if not (ROOT / ".git").exists():
+        pytest.skip("this is no clone: of the package of the source, see test_wheel.py")
+    clone, python = tmp_path / "clone", tmp_path / "venv/bin/python"
+    environment = os.environ | {"CARGO_TARGET_DIR": str(ROOT / "out/fresh")}
+
+    def run(*command):
+        done = subprocess.run([str(part) for part in command], cwd=tmp_path, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, done.stdout + done.stderr
+        return done.stdout
+
+    run("git", "clone", "--quiet", ROOT, clone)
+    run(sys.executable, "-m", "venv", "venv")
+    run(python, "-m", "pip", "install", "--quiet", clone)
+    script, printed = re.search(r"```py\n(.*?)```\n\n```text\n(.*?)```", (clone / "README.md").read_text(encoding="utf-8"), re.DOTALL).groups()
+    assert run(python, "-c", script) == printed
+    run(python, "-c", "import flexible_rocking as fr; "
+                      "fr.export('own.fmu', fr.Structure(preset='evison'), record=fr.pulse('sine', amplitude=0.5, frequency=2))")
+    assert np.abs(simulate_fmu(tmp_path / "own.fmu", stop_time=2)["theta"]).max() > 0
 
 
 def test_threads_and_processes_give_the_same_bits(run, ground):

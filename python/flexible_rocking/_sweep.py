@@ -49,9 +49,9 @@ def sweep(
     """
     groups = structures if isinstance(structures, Mapping) else {"structures": structures}
     populations = [(name, [of] if isinstance(of, _native.Structure) else list(of)) for name, of in groups.items()]
-    if isinstance(records, (_native.Record, str, PathLike)):  # a path is refused by name, as all but a Record
-        records = [records]  # type: ignore[list-item]
-    titled = ((of.title if isinstance(of, _native.Record) else "", of) for of in records)
+    given: Any = [records] if isinstance(records, (_native.Record, str, PathLike)) else records
+    # all but a Record is refused by name
+    titled = ((of.title if isinstance(of, _native.Record) else "", of) for of in given)
     motions = list(records.items() if isinstance(records, Mapping) else titled)
     units = _native.intensity_measures()
     if intensity not in units:
