@@ -435,9 +435,8 @@
     const tolerances = Array.from({ length: 10 }, (_, i) => `1e-${i + 3}`);
     const steps = Array.from({ length: 10 }, (_, i) => 0.02 / 2 ** i);
     const all = [...tolerances.map((tolerance) => ({ tolerance })), ...steps.map((step) => ({ step }))];
-    const isPossible = (of) => of.tolerance || motion.P_t === undefined; // RK4 has no tendon and no dissipators here
-    const own = [{ tolerance: value("tolerance") }, { step: Number(step) }].filter(isPossible);
-    const settings = [...own, ...all.filter(isPossible)];
+    const own = [{ tolerance: value("tolerance") }, { step: Number(step) }];
+    const settings = [...own, ...all];
     const found = [];
     at("methods").tBodies[0].replaceChildren();
     ask("speed", fields, (part) => {
