@@ -148,11 +148,6 @@ impl Model for Unit {
         Arc::clone(&self.table.variables)
     }
 
-    fn reset(&mut self) {
-        self.setup = Setup::new(&self.archive.contents);
-        (self.inputs, self.scene, self.has_started, self.told_of_stairs) = Default::default();
-    }
-
     fn get(&mut self, reference: u32) -> Result<Value, Failure> {
         let source = self.table.sources[reference as usize];
         Ok(match source {
@@ -357,6 +352,7 @@ impl Model for Unit {
             scene = Some(found);
         }
         self.has_started = course.is_some();
+        self.told_of_stairs &= self.has_started;
         (self.setup, self.inputs, self.scene) = (setup, inputs, scene);
         Ok(())
     }

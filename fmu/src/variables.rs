@@ -3,7 +3,7 @@
 
 use crate::resources::Contents;
 use crate::setup::Setup;
-use fmi_unit::{Causality, DataType, Enumeration, Role, Value, Variable};
+use fmi_unit::{Causality, DataType, Enumeration, Value, Variable};
 use rocking::Motion;
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::mechanics::restraint::{Dissipators, Restraints};
@@ -273,7 +273,7 @@ fn counted(name: &'static str, description: &'static str, data_type: DataType, s
 
 /// The row of a continuous state, which starts from the parameter `from`.
 fn state((variable, source): Row, from: &'static str) -> Row {
-    (variable.state([from]), source)
+    (variable.state().from([from]), source)
 }
 
 const fn number(unit: &'static str) -> DataType {
@@ -385,7 +385,7 @@ fn event_indicators() -> [Row; INDICATORS] {
     ];
     let indicator = |which, name, description, of| {
         let (variable, source) = local(name, "1", description, Source::Indicator(which), of);
-        (Variable { role: Role::Indicator, ..variable }, source)
+        (variable.indicator(), source)
     };
     let of_phase =
         "event indicator, positive while the phase lasts: what u and its moment lack to uplift; theta over alpha_cg";

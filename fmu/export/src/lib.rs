@@ -1,7 +1,6 @@
 //! Makes the FMU: an archive of the shared libraries with all that describes them.
 #![allow(non_snake_case)] // the shared library's name
 
-mod archive;
 mod documentation;
 mod experiment;
 mod library;
@@ -10,9 +9,9 @@ pub mod significant;
 mod units;
 
 use ::model_description::DefaultExperiment;
+use ::model_description::archive::{Entry, archive};
 use FlexibleRocking::ground::GroundRecord;
 use FlexibleRocking::resources::{Contents, PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records};
-use archive::Entry;
 pub use library::{Library, LibraryError, Platform};
 use rocking::Structure;
 use rocking::run::record::SamplesError;
@@ -143,8 +142,7 @@ pub fn export(
         ground = Some(GroundRecord::with_vertical(ground, &record)?);
     }
     let experiment = experiment::default_experiment(structure, ground.as_ref());
-    let archive =
-        archive::archive(&entries(version, name.as_str(), structure, &contents, experiment, files, &libraries)?)?;
+    let archive = archive(&entries(version, name.as_str(), structure, &contents, experiment, files, &libraries)?)?;
     Ok((contents, archive))
 }
 
