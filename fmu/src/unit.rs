@@ -8,7 +8,7 @@ use crate::resources::Archive;
 use crate::scene::{Outside, Scene};
 use crate::setup::Setup;
 use crate::shown::Shown;
-use crate::variables::{Source, Table};
+use crate::variables::{SOLUTION, Source, Table};
 use crate::{BUILD, guid};
 use fmi_unit::{Completed, Experiment, Failure, Interface, Logger, Model, Progress, Step, Update, Value, Variable};
 use rocking::engine::DEFAULT_TOLERANCE;
@@ -104,22 +104,6 @@ impl Unit {
     }
 }
 
-/// Needs the structure in motion.
-const SCENE: u8 = 1;
-
-/// Needs a solution of the equations of motion.
-const SOLUTION: u8 = 2;
-
-/// What has to be there for a real number to be read from `source`.
-#[inline]
-fn needs(source: Source) -> u8 {
-    match source {
-        Source::Input(_) | Source::Parameter(_) | Source::InitialValue(_) | Source::Placement(_) => 0,
-        Source::Reaction(_) | Source::StateRate(_) => SCENE | SOLUTION,
-        _ => SCENE,
-    }
-}
-
 /// The value of a real number that the host sets.
 fn setting(setup: &Setup, inputs: &Inputs, source: Source) -> f64 {
     match source {
@@ -164,18 +148,20 @@ impl Model for Unit {
     }
 
     fn get_reals(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Failure> {
-        let sources = Arc::clone(&self.table.sources);
-        let needed = references.iter().fold(0, |needed, reference| needed | needs(sources[*reference as usize]));
-        if needed == 0 {
+        let needed = references.iter().fold(0, |needed, reference| needed | self.table.needs[*reference as usize]);
+        if needed != 0 && self.scene.is_none() {
+            self.build()?;
+        }
+        let Unit { table: Table { sources, .. }, setup, inputs, scene, .. } = self;
+        let Some(scene) = scene.as_ref().filter(|_| needed != 0) else {
             for (reference, value) in references.iter().zip(values) {
-                *value = setting(&self.setup, &self.inputs, sources[*reference as usize]);
+                *value = setting(setup, inputs, sources[*reference as usize]);
             }
             return Ok(());
-        }
-        let (scene, setup, inputs) = self.parts()?;
+        };
         let shown = Shown::new(scene, setup, scene.load(setup, inputs.values().into()).value);
         if needed & SOLUTION != 0
-            && let Some(reference) = shown.unsolved(references, &sources)
+            && let Some(reference) = shown.unsolved(references, sources)
         {
             let time = scene.engine.motion().time;
             return Err(Refusal::NoReaction { name: self.name(reference), time }.into());

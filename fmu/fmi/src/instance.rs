@@ -98,6 +98,7 @@ impl Instance {
     }
 
     /// State of FMI's state machine.
+    #[inline]
     pub(crate) fn stage(&self) -> Stage {
         self.stage
     }
@@ -246,15 +247,18 @@ impl Instance {
 /// How values are read and set: all of a call, or none if one is refused.
 impl Instance {
     /// Reads real numbers.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn get_real(&mut self, references: &[u32], values: &mut [MaybeUninit<f64>]) -> Result<(), Failure> {
         let is_real = |reference: &u32| self.kinds.get(*reference as usize).is_some_and(|kind| kind.is & REAL != 0);
         if let Some(wrong) = references.iter().find(|reference| !is_real(reference)) {
             return Err(self.find(*wrong).map_or_else(|failure| failure, Failure::wrong_type));
         }
-        self.reals.resize(references.len(), 0.0);
-        self.model.get_reals(references, &mut self.reals)?;
-        values.iter_mut().zip(&self.reals).for_each(|(place, value)| _ = place.write(*value));
+        if self.reals.len() < references.len() {
+            self.reals.resize(references.len(), 0.0);
+        }
+        let reals = &mut self.reals[..references.len()];
+        self.model.get_reals(references, reals)?;
+        values.iter_mut().zip(reals).for_each(|(place, value)| _ = place.write(*value));
         Ok(())
     }
 
@@ -308,7 +312,7 @@ impl Instance {
     }
 
     /// Sets real numbers. While the host integrates, it can set the states, too.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
         let is_fit = |(reference, value): (&u32, &f64)| {
             let kind = self.kinds.get(*reference as usize);
@@ -423,7 +427,7 @@ impl Instance {
     }
 
     /// Sets slopes of the inputs over the next step.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn set_real_input_derivatives(
         &mut self,
         references: &[u32],
@@ -531,7 +535,7 @@ impl Instance {
 
     /// Steps from `point` (s), where the instance is but for rounding, over `step` (s), or to the first event if that is
     /// handed over. The instance takes over the host's clock.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn do_step(&mut self, point: f64, step: f64) -> Result<Progress, Failure> {
         if self.asked.take().is_some() {
             self.stage = Stage::StepComplete;
@@ -568,7 +572,7 @@ impl Instance {
     }
 
     /// Refuses a step that cannot be made from `point` (s) over `step` (s).
-    #[inline]
+    #[inline(always)]
     fn check_step(&mut self, point: f64, step: f64) -> Result<(), Failure> {
         let time = self.model.time()?;
         let until = point + step;
