@@ -253,6 +253,41 @@ def test_the_fragility_is_the_command_lines(exporter, tmp_path):
         assert found.bins.to_dict("records") == [pytest.approx(of, rel=1e-12) for of in expected["bins"]]
 
 
+@pytest.fixture(scope="module")
+def two_populations():
+    pulses = {f"{f} Hz": fr.pulse("sine", amplitude=0.3, frequency=f) for f in (0.5, 0.7, 0.9, 1.1, 1.3, 1.6)}
+    structures = {name: fr.Structure(preset=name) for name in ("mcmanus", "evison")}
+    return fr.sweep(structures, pulses, scale=np.linspace(0.5, 3, 16), intensity="PGV")
+
+
+def test_a_curve_is_of_one_population_under_one_measure(two_populations):
+    limit, alone = "theta/alpha_cg >= 0.3", two_populations[two_populations["structures"] == "mcmanus"]
+    lost = pd.read_csv(io.StringIO(alone.to_csv(index=False)))
+    for table, refused in [
+        (two_populations, "the table has 2 values of structures, 'mcmanus', 'evison', and a curve is of one: choose"),
+        (pd.concat([alone, alone.assign(detail="linear")]), "the table has 2 values of detail, 'auto', 'linear'"),
+        (pd.concat([alone, alone.assign(**{"u_0[m]": 0.01})]), "the table has 2 values of u_0[m], 0.0, 0.01, and"),
+        (lost, "intensity is needed: the table has lost the measure of its sweep; give one of PGA, PGV, S_a"),
+        (alone.assign(**{"peak_theta/alpha_cg": np.nan}), "peak_theta/alpha_cg is NaN in"),
+        (alone.assign(ending=np.nan), "unknown variant `nan`"),
+    ]:
+        with pytest.raises(ValueError, match=re.escape(refused)):
+            fr.fragility(table, limit)
+    over_pgv = fr.fragility(alone, limit)
+    named = fr.fragility(lost, limit, intensity="PGV")
+    doubled = fr.fragility(alone.assign(twice=2 * alone["PGV[m/s]"]), limit, intensity="twice")
+    assert [named.median, doubled.median / 2] == pytest.approx([over_pgv.median] * 2, rel=1e-9)
+
+
+def test_limits_have_usual_units(two_populations):
+    alone = two_populations[two_populations["structures"] == "mcmanus"]
+    for usual, own in [("theta >= 0.5 deg", np.radians(0.5)), ("uplift >= 1 cm", 0.01), ("a_t >= 0.6 g", 0.6 * 9.81)]:
+        expected = fr.fragility(alone, f"{usual.split()[0]} >= {float(own)!r}")
+        assert fr.fragility(alone, usual).bins.equals(expected.bins)
+    with pytest.raises(ValueError, match="a number is needed, in m, cm, mm"):
+        fr.fragility(alone, "uplift >= 1 inch")
+
+
 def test_the_sweep_on_dask_comes_to_the_same(tmp_path):
     (tmp_path / "out").mkdir()
     shutil.copy(RECORD, tmp_path / "out")

@@ -90,12 +90,11 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
 /// The file to pack for the record at `path`, and its content: itself, or what is understood of it.
 fn record(options: &RecordOptions, path: &Path, g: f64) -> anyhow::Result<(PathBuf, Vec<u8>)> {
     let understood = options.understand(path, g)?;
-    say!("{}", understood.described);
-    understood.warnings(path).for_each(|warning| say!("{warning}"));
-    if options.are_none() && !input::is_standard(path) {
+    understood.say("");
+    if options.are_none() && !input::is_stream(path) {
         return Ok((path.into(), rocking_records::read_file(path)?));
     }
-    Ok(((input::stem(path) + ".csv").into(), understood.table_in_file_unit().into_bytes()))
+    Ok(((input::stem(path) + ".csv").into(), understood.table().into_bytes()))
 }
 
 /// The shared libraries that were built with `program`, one for each platform that there is one for. Where it is in

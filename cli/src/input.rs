@@ -2,7 +2,7 @@
 
 use anyhow::{Context, ensure};
 use rocking_records::MAX_FILE;
-use std::fs;
+use std::fs::{self, File};
 use std::io::{Read, stdin};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,6 +15,12 @@ static IS_READ: AtomicBool = AtomicBool::new(false);
 /// Whether `path` stands for standard input.
 pub fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
+}
+
+/// Whether `path` can be read once only: standard input, or a pipe that is open already, which bash makes of `<(command)`.
+pub fn is_stream(path: &Path) -> bool {
+    let is_open = path.starts_with("/dev/fd") || path.starts_with("/proc");
+    is_standard(path) || is_open && fs::metadata(path).is_ok_and(|told| !told.is_file() && !told.is_dir())
 }
 
 /// What `path` is called.
@@ -31,15 +37,20 @@ pub fn stem(path: &Path) -> String {
     }
 }
 
-/// What is at `path`. Standard input has an end, and comes once.
+/// What is at `path`. Standard input comes once.
 pub fn read(path: &Path) -> anyhow::Result<Vec<u8>> {
-    if !is_standard(path) {
+    if !is_stream(path) {
         return Ok(fs::read(path)?);
     }
-    ensure!(!IS_READ.swap(true, Ordering::Relaxed), "{NAME} is read already: only one file can be `-`");
-    let mut bytes = Vec::new();
-    stdin().lock().take(MAX_FILE + 1).read_to_end(&mut bytes).context(NAME)?;
-    ensure!(bytes.len() as u64 <= MAX_FILE, "{NAME} has more than {MAX_FILE} bytes, more than any record");
+    let (mut bytes, most) = (Vec::new(), MAX_FILE + 1);
+    let read = if is_standard(path) {
+        ensure!(!IS_READ.swap(true, Ordering::Relaxed), "{NAME} is read already: only one file can be `-`");
+        stdin().lock().take(most).read_to_end(&mut bytes)
+    } else {
+        File::open(path).and_then(|file| file.take(most).read_to_end(&mut bytes))
+    };
+    read.with_context(|| name(path))?;
+    ensure!(bytes.len() as u64 <= MAX_FILE, "{} has more than {MAX_FILE} bytes, more than any record", name(path));
     Ok(bytes)
 }
 

@@ -9,8 +9,8 @@ use crate::{
     structure_args::StructureArgs,
     tables::csv,
 };
-use anyhow::Context;
-use rocking::estimates::pushover::{Equilibrium, at_displacement, at_overturning, at_rotation, in_full_contact};
+pub use rocking::estimates::pushover::curve;
+use rocking::estimates::pushover::{Equilibrium, PushoverError, at_overturning, at_rotation, in_full_contact};
 use rocking::mechanics::restraint::{Dissipators, uplift_displacement};
 use rocking::{Phase, Side, Structure};
 use serde::Serialize;
@@ -22,7 +22,7 @@ pub struct PushoverArgs {
     #[command(flatten)]
     structure: StructureArgs,
     /// Points on each of the two branches, full contact and rocking
-    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u32).range(2..=MOST_POINTS))]
+    #[arg(long, value_name = "N", default_value_t = 100)]
     points: u32,
     /// Curve as CSV, `-` for standard output
     #[arg(short, long, value_name = "FILE.csv")]
@@ -30,9 +30,6 @@ pub struct PushoverArgs {
     #[command(flatten)]
     results: FormatArgs,
 }
-
-/// Points on a branch, more than any curve needs.
-const MOST_POINTS: i64 = 1_000_000;
 
 const HEADINGS: [&str; 6] = ["phase", "theta[rad]", "u[m]", "delta_t[m]", "P[N]", "M[N.m]"];
 
@@ -48,8 +45,8 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     }
     let corners = [
         ("uplift", in_full_contact(&structure, u_cr(&structure))),
-        ("start of rocking", at_rotation(&structure, 0.0).context(TOO_SOFT)?),
-        ("overturning", at_overturning(&structure).context(TOO_SOFT)?),
+        ("start of rocking", at_rotation(&structure, 0.0).ok_or(PushoverError::TooSoft)?),
+        ("overturning", at_overturning(&structure).ok_or(PushoverError::TooSoft)?),
     ];
     let corner = |(name, corner)| {
         let Equilibrium { theta, delta_t, force: P, moment: M, .. } = corner;
@@ -85,26 +82,6 @@ impl Corner {
         );
         format!("{name:<16} delta_t {delta_t:>8} mm, theta {theta:>8} rad, P {force:>10}, M {moment:>12}\n")
     }
-}
-
-const TOO_SOFT: &str = "the strut is too soft to hold the structure all the way to overturning: raise f_fc or lower m0";
-
-/// The pushover from 0 to overturning, to the right, at as many `points` on each branch: full contact, then rocking. Refuses a
-/// strut that is too soft.
-pub fn curve(structure: &Structure, points: u32) -> anyhow::Result<Vec<Equilibrium>> {
-    let end = at_overturning(structure).context(TOO_SOFT)?;
-    let at = |delta_t| at_displacement(structure, delta_t).context(TOO_SOFT);
-    displacements(structure, end.delta_t, points).map(at).collect()
-}
-
-/// Displacements (m) evenly on each branch: 0 to u_cr, and from just beyond to `end`.
-fn displacements(structure: &Structure, end: f64, points: u32) -> impl Iterator<Item = f64> {
-    let evenly = move |from: f64, to: f64| {
-        (0..points)
-            .map(move |i| if i == points - 1 { to } else { from + (to - from) * f64::from(i) / f64::from(points - 1) })
-    };
-    let u_cr = u_cr(structure);
-    evenly(0.0, u_cr).chain(evenly(u_cr.next_up(), end))
 }
 
 fn line(at: &Equilibrium) -> impl Serialize + use<> {

@@ -1,7 +1,6 @@
 //! `record`: what is understood of a record, and the same as a table that is read without options.
 use crate::{
     cause::Cause, output_files::OutputFiles, quantities::NamedValue, record_args::RecordOptions, results::FormatArgs,
-    talk::say,
 };
 use rocking::Parameters;
 use rocking::estimates::intensity::{arias_intensity, peak_velocity, significant_duration};
@@ -30,8 +29,7 @@ pub struct RecordCommand {
 pub fn run(args: &RecordCommand) -> anyhow::Result<()> {
     args.results.check_beside(args.output.as_deref())?;
     let understood = args.options.understand(&args.record, G)?;
-    say!("record         {}", understood.described);
-    understood.warnings(&args.record).for_each(|warning| say!("{warning}"));
+    understood.say("record         ");
     if let Some(output) = &args.output {
         let file = OutputFiles::of_inputs([args.record.as_path()]).create(output)?;
         file.write_as("written", understood.table().as_bytes())?;

@@ -1,9 +1,9 @@
 //! Which ground motion record a command works on, how it is read, and how it is scaled.
 use crate::{input, significant::short, talk::say};
-use anyhow::{anyhow, ensure};
+use anyhow::anyhow;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use rocking::run::record::Record;
-use rocking_records::{Column, Reading, RecordError, Source, Unit, UnitFrom, csv, csv_in};
+use rocking_records::{Column, Reading, RecordError, Unit, csv_in};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -68,9 +68,9 @@ pub struct Understood {
     pub record: Record,
     /// Scaled, in the unit of its file.
     in_file_unit: Record,
-    source: Source,
-    /// What it was called, and what was found and assumed, in a line.
-    pub described: String,
+    unit: Unit,
+    /// What was found and assumed, then what is likely wrong.
+    pub sentences: Vec<String>,
 }
 
 impl RecordOptions {
@@ -78,11 +78,10 @@ impl RecordOptions {
     /// `what`, and what was assumed.
     fn load(&self, what: &str, path: &Path, g: f64) -> anyhow::Result<Record> {
         let understood = self.understand(path, g)?;
-        say!("{what:<14} {}", understood.described);
-        understood.warnings(path).for_each(|warning| say!("{warning}"));
+        understood.say(&format!("{what:<14} "));
         let record = understood.record;
         if self.time_scale.is_some() || self.scale.is_some() {
-            say!("scaled         {}, peak {} g", steps(&record), short(record.pga() / g));
+            say!("scaled         {}, peak {} g", rocking_records::steps(&record), short(record.pga() / g));
         }
         Ok(record)
     }
@@ -91,19 +90,16 @@ impl RecordOptions {
     pub fn understand(&self, path: &Path, g: f64) -> anyhow::Result<Understood> {
         let &RecordOptions { unit, dt, ref column, ignore_npts: ignores_count, .. } = self;
         let [time_scale, scale] = self.factors();
-        if let Some(dt) = dt {
-            ensure!(dt > 0.0 && dt.is_finite(), "dt = {dt} is out of range: a finite number greater than 0 is needed");
-        }
         let how = Reading { unit, dt, column: column.clone(), ignores_count };
-        let read = match input::is_standard(path) {
-            true => rocking_records::from_bytes(Path::new(input::NAME), &input::read(path)?, &how),
+        let read = match input::is_stream(path) {
+            true => rocking_records::from_bytes(Path::new(&input::name(path)), &input::read(path)?, &how),
             false => rocking_records::read_raw(path, &how),
         };
         let (in_file_unit, source) = read.map_err(with_remedy)?;
-        let (record, source) = rocking_records::in_m_s2(in_file_unit.clone(), source, g);
-        let described = described(path, &record, &source, g);
+        let (record, source) = rocking_records::in_m_s2(in_file_unit.clone(), source, g)?;
+        let sentences = source.sentences(&input::name(path), &record, g);
         let in_file_unit = in_file_unit.scaled(time_scale, scale)?;
-        Ok(Understood { record: record.scaled(time_scale, scale)?, in_file_unit, source, described })
+        Ok(Understood { record: record.scaled(time_scale, scale)?, in_file_unit, unit: source.unit, sentences })
     }
 
     /// Factors on the record's times and on its accelerations.
@@ -118,47 +114,26 @@ impl RecordOptions {
 }
 
 impl Understood {
-    /// What is likely wrong with the record in the file at `path`, a line each.
-    pub fn warnings(&self, path: &Path) -> impl Iterator<Item = String> {
-        self.source.warnings.iter().map(move |warning| format!("warning: {}: {warning}", input::name(path)))
+    /// Says what was found and assumed, after `label`, and warns of what is likely wrong.
+    pub fn say(&self, label: &str) {
+        say!("{label}{}", self.sentences[0]);
+        self.warnings().for_each(|warning| say!("{warning}"));
+    }
+
+    /// What is likely wrong, a line each.
+    pub fn warnings(&self) -> impl Iterator<Item = String> {
+        self.sentences[1..].iter().map(|warning| format!("warning: {warning}"))
     }
 
     /// The unit of its file.
     pub fn unit(&self) -> Unit {
-        self.source.unit
-    }
-
-    /// It as a table that is read without options, in s and m/s².
-    pub fn table(&self) -> String {
-        csv(&self.record)
+        self.unit
     }
 
     /// It as a table that is read without options, in s and the unit of its file: one in g follows a g that is set later.
-    pub fn table_in_file_unit(&self) -> String {
-        csv_in(&self.in_file_unit, self.source.unit)
+    pub fn table(&self) -> String {
+        csv_in(&self.in_file_unit, self.unit)
     }
-}
-
-/// What a record's file is, and what was assumed where it says nothing, in a line; `g` (m/s²) is what a record's g stands
-/// for.
-fn described(path: &Path, record: &Record, source: &Source, g: f64) -> String {
-    let unit_from = match source.unit_from {
-        UnitFrom::File => "as the file states",
-        UnitFrom::User => "as asked for",
-        UnitFrom::Assumed => "assumed, for the file does not state it",
-    };
-    let remarks: String = source.remarks.iter().map(|remark| format!(", {remark}")).collect();
-    let (format, unit, peak) = (source.format, source.unit, short(record.pga() / g));
-    let (path, samples) = (input::name(path), record.times().len());
-    format!("{path}: {format}{remarks}; {unit} {unit_from}; {samples} samples, {}, peak {peak} g", steps(record))
-}
-
-/// The time between samples.
-fn steps(record: &Record) -> String {
-    let steps = record.times().windows(2).map(|pair| pair[1] - pair[0]);
-    let (least, most) = steps.fold((f64::INFINITY, 0.0_f64), |(least, most), step| (least.min(step), most.max(step)));
-    let [least, most] = [least, most].map(short);
-    if least == most { format!("step {least} s") } else { format!("steps of {least} to {most} s") }
 }
 
 /// The error with what helps.

@@ -15,16 +15,16 @@ use crate::{
     talk::{self, say, say_few},
 };
 use anyhow::{bail, ensure};
-use clap::value_parser;
 use file::{Asked, RecordSweep};
 use indicatif::{ProgressBar, ProgressStyle};
-use rayon::{ThreadPool, ThreadPoolBuilder};
+use rayon::ThreadPool;
 use rocking::structure::quantity::with_unit;
 use rocking_sweep::{
     exceedances,
     outcome::Outcome,
     plan::{Case, Plan},
     rows::Sweep,
+    thread_pool,
 };
 use std::path::{Path, PathBuf};
 use uuid::Uuid;
@@ -42,9 +42,9 @@ pub struct SweepArgs {
     /// Picture of the probabilities and fragility curves, or of the maps [default: beside the rows, as SVG]
     #[arg(long, value_name = "FILE.svg|png")]
     picture: Option<PathBuf>,
-    /// Runs at a time [default: one per core]
-    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
-    threads: Option<u16>,
+    /// Runs at a time; 0 is one per core
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    threads: usize,
     /// Find, too, how far each run exceeds the model's limits: tension, load of the edge, friction, energy gained at impacts
     #[arg(long)]
     validity: bool,
@@ -54,6 +54,7 @@ pub struct SweepArgs {
 
 /// Does the runs that are not in the file yet, then prints and draws the probabilities.
 pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
+    let pool = thread_pool(args.threads)?;
     let mut files = OutputFiles::of_inputs([args.file.as_path()]);
     let asked = file::read(&args.file, &mut files)?;
     let output = match &args.output {
@@ -66,13 +67,19 @@ pub fn run(args: &SweepArgs) -> anyhow::Result<()> {
     let picture = args.picture.clone().unwrap_or(output.with_extension("svg"));
     let picture = Picture::create(&picture, &mut files)?;
     match asked {
-        Asked::Records(sweep) => run_records(args, sweep, &output, picture),
-        Asked::Pulses(sweep) => map::run(args, sweep, &output, picture),
+        Asked::Records(sweep) => run_records(args, sweep, &pool, &output, picture),
+        Asked::Pulses(sweep) => map::run(args, sweep, &pool, &output, picture),
     }
 }
 
 /// Every record at every scale factor on every structure.
-fn run_records(args: &SweepArgs, sweep: RecordSweep, output: &Path, picture: Picture) -> anyhow::Result<()> {
+fn run_records(
+    args: &SweepArgs,
+    sweep: RecordSweep,
+    pool: &ThreadPool,
+    output: &Path,
+    picture: Picture,
+) -> anyhow::Result<()> {
     let RecordSweep { plan, limits, measure, records } = sweep;
     let program = program();
     let runs = Sweep::open(&plan, args.validity, &program, output)?;
@@ -87,7 +94,7 @@ fn run_records(args: &SweepArgs, sweep: RecordSweep, output: &Path, picture: Pic
     runs.others.others(output, "runs that are not in this sweep").iter().for_each(|line| say!("{line}"));
 
     let (bar, goes_on) = progress(missing.len(), "runs")?;
-    let (keys, outcomes) = thread_pool(args)?.install(|| runs.finish(goes_on))?;
+    let (keys, outcomes) = pool.install(|| runs.finish(goes_on))?;
     bar.finish_and_clear();
 
     let populations = exceedances::count(&plan, measure, &limits, &outcomes);
@@ -100,11 +107,6 @@ fn run_records(args: &SweepArgs, sweep: RecordSweep, output: &Path, picture: Pic
     say!("rows           {}", output.display());
     picture::draw(picture, &populations, measure)?;
     report_failures(&plan, &keys, &outcomes)
-}
-
-/// As many threads as are asked for, or one per core.
-fn thread_pool(args: &SweepArgs) -> anyhow::Result<ThreadPool> {
-    Ok(ThreadPoolBuilder::new().num_threads(args.threads.map_or(0, usize::from)).build()?)
 }
 
 /// A bar for the progress of many runs, which are called `what`, and what moves it after each.

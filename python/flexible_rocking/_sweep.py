@@ -130,24 +130,40 @@ class Fragility:
 
 
 def fragility(table: "pd.DataFrame", limit: str = "overturned", *, intensity: str | None = None) -> Fragility:
-    """Fits the lognormal curve of greatest likelihood to the runs of a sweep's table, or to some of its rows.
+    """Fits the lognormal curve of greatest likelihood to the runs of one population in a sweep's table, or to some of its rows.
 
-    limit: "overturned", or a peak such as "theta/alpha_cg >= 0.5", "uplift >= 0.01 m"; a run that overturned has exceeded
-    every one. intensity: "PGA", "PGV", "S_a"; by default that of the sweep. Runs that failed are not counted. How sure the
-    curve is follows from the records, whose runs do not depend on each other; where there is one record, from the structures.
-    Raises ValueError with the reason where there is no curve: never exceeded, always exceeded, no overlap.
+    limit: "overturned", or a peak such as "theta/alpha_cg >= 0.5", "theta >= 3 deg", "uplift >= 1 cm", "a_t >= 0.3 g" (the
+    structure's own g); a run that overturned has exceeded every one. intensity: "PGA", "PGV", "S_a" or a column of the
+    table; by default the measure of the sweep. Runs that failed are not counted. How sure the curve
+    is follows from the records, whose runs do not depend on each other; where there is one record, from the structures.
+    Several structures that `sweep` ran under one name are one population. Raises ValueError with the reason if there is no
+    curve (never exceeded, always exceeded, no overlap), if the table has several populations or conditions, if peaks are NaN,
+    and if the table has lost the measure of its sweep.
     """
     import pandas
 
     units = _native.intensity_measures()
-    column = f"{intensity}[{units.get(intensity, '')}]" if intensity else table.attrs.get("intensity", f"PGA[{units['PGA']}]")
+    known = {name: f"{name}[{unit}]" for name, unit in units.items()}
+    if intensity is None and "intensity" not in table.attrs:  # merge, concat and read_csv lose it
+        raise ValueError(f"intensity is needed: the table has lost the measure of its sweep; give one of {', '.join(units)}")
+    column = known.get(intensity, intensity) if intensity else table.attrs["intensity"]
     if column not in table:
-        raise ValueError(f"intensity = {intensity!r} is unknown; these are known: {', '.join(units)}")
+        raise ValueError(f"intensity = {intensity!r} is unknown; these are known: {', '.join(units)}, and the table's columns")
+    conditions = ["structures", "detail", "tolerance", "duration[s]", *table.filter(regex=r"_0\[(rad|m)(/s)?]$")]
+    for name in table.columns.intersection(conditions):
+        if len(values := table[name].unique()) > 1:
+            several = ", ".join(map(repr, values[:5].tolist())) + (", ..." if len(values) > 5 else "")
+            raise ValueError(f"the table has {len(values)} values of {name}, {several}, and a curve is of one: choose the rows, "
+                             f"table[table[{name!r}] == {values[0]!r}], or call fragility for each of table.groupby({name!r})")
     peak = _native.measure_of(limit)
     ended = table[table["ending"] != "failed"]
     varying = ["record"] if ended["record"].nunique() > 1 else list(table.columns[1:table.columns.get_loc("record")])
     groups = ended.groupby(varying, sort=False, dropna=False).ngroup()
-    peaks = ended[peak] if peak else ended["peak_theta[rad]"]
-    curve, bins = _native.fragility(groups.tolist(), ended[column].tolist(), ended["ending"].tolist(), peaks.tolist(), limit)
+    peaks = ended[peak or "peak_theta[rad]"]
+    if missing := int((peaks.isna() & (ended["ending"] != "overturned")).sum()):
+        raise ValueError(f"{peaks.name} is NaN in {missing} rows of runs that ended: run them again, or leave them out by "
+                         f"table.dropna(subset={[peaks.name]!r}), and with them what they would have counted")
+    curve, bins = _native.fragility(groups.tolist(), ended[column].tolist(), [str(ending) for ending in ended["ending"]],
+                                    peaks.tolist(), ended["g[m/s2]"].tolist(), limit)
     names = ["lowest", "mean", "highest", "runs", "known", "exceedances"]
     return Fragility(limit, column, curve, pandas.DataFrame(bins, columns=names))

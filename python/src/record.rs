@@ -7,7 +7,7 @@ use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyFloat, PyInt};
 use rocking::estimates::intensity::peak_velocity;
-use rocking::estimates::response_spectrum::spectral_acceleration;
+use rocking::estimates::response_spectrum::spectrum;
 use rocking_cli::output_files::OutputFiles;
 use rocking_cli::record_args::RecordOptions;
 use rocking_records::{Column, Unit, csv};
@@ -97,8 +97,8 @@ impl Record {
         let options = RecordOptions { unit, dt, column, ignore_npts, time_scale, scale };
         let read = |file: PathBuf| -> PyResult<rocking::run::record::Record> {
             let understood = py.detach(|| options.understand(&file, g)).map_err(refused)?;
-            for warning in understood.warnings(&file) {
-                PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(warning)?, 2)?;
+            for warning in &understood.sentences[1..] {
+                PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(warning.as_str())?, 2)?;
             }
             Ok(understood.record)
         };
@@ -165,12 +165,8 @@ impl Record {
         zeta: f64,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let periods = numbers("periods", periods)?;
-        if let Some(period) = periods.iter().find(|period| !(**period > 0.0 && period.is_finite())) {
-            let needed = "a finite number greater than 0 is needed";
-            return Err(PyValueError::new_err(format!("period = {period} s is out of range: {needed}")));
-        }
-        let spectrum = |period: &f64| spectral_acceleration(&self.0, *period, zeta);
-        Ok(PyArray1::from_vec(py, py.detach(|| periods.iter().map(spectrum).collect())))
+        let spectrum = py.detach(|| spectrum(&self.0, &periods, zeta)).map_err(refused)?;
+        Ok(PyArray1::from_vec(py, spectrum))
     }
 
     /// Writes the horizontal component to `file` as a table that is read without options: time[s], a_g[m/s2], all digits.

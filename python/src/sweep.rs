@@ -6,7 +6,6 @@ use crate::structure::Structure;
 use numpy::{PyArray1, PyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use rayon::ThreadPoolBuilder;
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::Ending;
 use rocking_cli::cause;
@@ -16,6 +15,7 @@ use rocking_sweep::outcome::{Limit, MEASURES, Outcome, Summary};
 use rocking_sweep::plan::{NamedRecord, Plan, Population};
 use rocking_sweep::row_file::heading;
 use rocking_sweep::rows::Sweep;
+use rocking_sweep::thread_pool;
 use serde::Deserialize;
 use serde::de::IntoDeserializer;
 use std::path::PathBuf;
@@ -61,7 +61,7 @@ pub fn sweep(
     let (program, done, stopped) = (cause::program(), AtomicUsize::new(0), AtomicBool::new(false));
     let sweep = py.detach(|| Sweep::open(&plan, validity, &program, &path)).map_err(refused)?;
     let all = sweep.missing().len();
-    let pool = ThreadPoolBuilder::new().num_threads(threads).build().map_err(refused)?;
+    let pool = thread_pool(threads).map_err(refused)?;
     let progress = progress.map(Bound::unbind);
     let say = |py: Python<'_>| match &progress {
         Some(progress) => progress.call1(py, (done.load(Ordering::Relaxed), all)).map(drop),
@@ -145,8 +145,8 @@ impl Curve {
 /// known, and how many exceed the limit.
 type Counted = (f64, f64, f64, usize, usize, usize);
 
-/// The curve of runs, and the counted runs that are drawn beside it. Of each run: its group, its intensity, how it ended, and
-/// the peak that the limit is of.
+/// The curve of runs, and the counted runs that are drawn beside it. Of each run: its group, its intensity, how it ended, the
+/// peak that the limit is of, and g (m/s²).
 #[pyfunction]
 pub fn fragility(
     py: Python<'_>,
@@ -154,17 +154,18 @@ pub fn fragility(
     intensities: Vec<f64>,
     endings: Vec<String>,
     peaks: Vec<f64>,
+    gs: Vec<f64>,
     limit: &str,
 ) -> PyResult<(Curve, Vec<Counted>)> {
     let limit: Limit = limit.parse().map_err(refused)?;
-    let exceeds = |ending: &String, peak: f64| -> PyResult<Option<bool>> {
+    let exceeds = |ending: &String, peak: f64, g: f64| -> PyResult<Option<bool>> {
         let ending: Result<_, serde::de::value::Error> = Ending::deserialize(ending.as_str().into_deserializer());
         let (ending, peaks) = (ending.map_err(refused)?, [peak; MEASURES.len()]);
         let summary = Summary { ending, end: 0.0, peaks, transitions: 0, steps: 0, evaluations: 0 };
-        Ok(Outcome::Ended(summary).exceeds(&limit))
+        Ok(Outcome::Ended(summary).exceeds(&limit, g))
     };
-    let runs = groups.into_iter().zip(intensities).zip(endings.iter().zip(peaks));
-    let runs = runs.map(|((group, intensity), (ending, peak))| Ok((group, intensity, exceeds(ending, peak)?)));
+    let runs = groups.into_iter().zip(intensities).zip(endings.iter().zip(peaks.into_iter().zip(gs)));
+    let runs = runs.map(|((group, at), (ending, (peak, g)))| Ok((group, at, exceeds(ending, peak, g)?)));
     let runs = runs.collect::<PyResult<Vec<_>>>()?;
     let (curve, bins) = py.detach(|| exceedances::of_runs(runs)).map_err(refused)?;
     let counts = |(of, tally): (Bin, Tally)| (of.lowest, of.mean, of.highest, of.runs, tally.known, tally.exceedances);

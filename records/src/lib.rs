@@ -19,7 +19,9 @@ mod unit;
 pub use csv::{csv, csv_in, vertical_csv};
 use parsed::Parsed;
 use rocking::run::record::{MAX_SAMPLES, Record};
-pub use source::{Column, Format, Reading, Source, UnitFrom};
+use rocking::structure::parameters::PARAMETERS;
+use rocking::structure::quantity::OutOfRange;
+pub use source::{Column, Format, Reading, Source, UnitFrom, steps};
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
@@ -67,6 +69,12 @@ pub enum RecordError {
         /// Its size.
         size: u64,
     },
+    /// [`Reading::dt`] is no step.
+    #[error("dt = {0} is out of range: a finite number greater than 0 is needed")]
+    BadStep(f64),
+    /// The acceleration of gravity is out of range.
+    #[error(transparent)]
+    BadGravity(#[from] OutOfRange),
     /// A line is not what the format asks for.
     #[error("{}, line {line}: {problem}", path.display())]
     Malformed {
@@ -116,7 +124,7 @@ impl BadLine {
 /// stands for.
 pub fn read(path: &Path, how: &Reading, g: f64) -> Result<(Record, Source), RecordError> {
     let (record, source) = read_raw(path, how)?;
-    Ok(in_m_s2(record, source, g))
+    Ok(in_m_s2(record, source, g)?)
 }
 
 /// Reads the record in the file at `path` with its accelerations as the file gives them; their unit is the source's.
@@ -128,6 +136,9 @@ pub fn read_raw(path: &Path, how: &Reading) -> Result<(Record, Source), RecordEr
 pub fn from_bytes(path: &Path, bytes: &[u8], how: &Reading) -> Result<(Record, Source), RecordError> {
     let malformed =
         |BadLine { line, problem, remedy }| RecordError::Malformed { path: path.into(), line, problem, remedy };
+    if let Some(dt) = how.dt.filter(|dt| !(*dt > 0.0 && dt.is_finite())) {
+        return Err(RecordError::BadStep(dt));
+    }
     let text = text::decode(bytes).map_err(malformed)?;
     let (record, source) =
         parse(&text, format(path, &text), how).and_then(|parsed| parsed.record(how)).map_err(malformed)?;
@@ -139,14 +150,15 @@ pub fn from_bytes(path: &Path, bytes: &[u8], how: &Reading) -> Result<(Record, S
 
 /// The record as its file gives it, with its accelerations in m/s²; `g` (m/s²) is what a record's g stands for. What no
 /// earthquake has is among the warnings of the `source`.
-pub fn in_m_s2(record: Record, mut source: Source, g: f64) -> (Record, Source) {
+pub fn in_m_s2(record: Record, mut source: Source, g: f64) -> Result<(Record, Source), OutOfRange> {
+    PARAMETERS.iter().filter(|quantity| quantity.name == "g").try_for_each(|quantity| quantity.check(g))?;
     let record = record.multiplied(source.unit.in_m_s2(g));
     source.warnings.extend(doubts(&record, g));
-    (record, source)
+    Ok((record, source))
 }
 
-/// What no record of an earthquake has, and one that is read wrongly has; `g` in m/s².
-fn doubts(record: &Record, g: f64) -> Vec<String> {
+/// A sentence for each thing that no earthquake has and a record that is read wrongly has; `record` and `g` in m/s².
+pub fn doubts(record: &Record, g: f64) -> Vec<String> {
     let duration = record.end() - record.start();
     let last = record.velocities_and_displacements().last();
     let step = nine_digits(duration / (record.times().len() - 1) as f64);
@@ -255,6 +267,40 @@ mod tests {
         File::create(&large).unwrap().set_len(MAX_FILE + 1).unwrap();
         let expected = format!("{} has 268435457 bytes; a record may have 268435456", large.display());
         assert_eq!(refusal(&large), expected);
+    }
+
+    #[test]
+    fn a_step_and_a_g_that_cannot_be_are_refused_by_name_and_value() {
+        let read = |dt, g| {
+            let how = Reading { dt, ..Reading::default() };
+            let (record, source) = from_bytes(Path::new("a.csv"), b"a (g)\n1\n2\n", &how)?;
+            Ok::<_, RecordError>(in_m_s2(record, source, g)?.0)
+        };
+        for dt in [f64::NAN, -0.1, 0.0, f64::INFINITY] {
+            let refused = read(Some(dt), 9.81).unwrap_err().to_string();
+            assert_eq!(refused, format!("dt = {dt} is out of range: a finite number greater than 0 is needed"));
+        }
+        for g in [f64::NAN, -9.81, 0.0, 1e300] {
+            assert!(read(Some(0.1), g).unwrap_err().to_string().starts_with("g = "), "{g}");
+        }
+        assert_eq!(read(Some(0.1), 1.62).unwrap().acceleration(), [1.62, 3.24]);
+    }
+
+    /// The first sentence describes the findings, each other one warns.
+    #[test]
+    fn what_was_found_and_assumed_is_said_in_sentences() {
+        let said = |text: &[u8]| {
+            let (record, source) = from_bytes(Path::new("a.csv"), text, &Reading::default())?;
+            let (record, source) = in_m_s2(record, source, 9.81)?;
+            Ok::<_, RecordError>(source.sentences("a.csv", &record, 9.81))
+        };
+        let found = "a.csv: table, separated by commas, column 2 \"a (g)\", 1 line(s) of text before the data; g as the file \
+                     states; 2 samples, step 0.01 s, peak 2 g";
+        assert_eq!(said(b"t,a (g)\n0,1\n.01,2\n").unwrap(), [found]);
+        let found = "a.csv: table, separated by commas, column 2; m/s2 assumed; 3 samples, steps of 0.01 to 0.02 s, peak 6.21152 g";
+        let assumed = "a.csv: the file states no unit: m/s2 is assumed; say as unit what it is";
+        let peak = "a.csv: a peak of 6 g: is the unit right?";
+        assert_eq!(said(b"0,1\n.01,60.935\n.03,-1\n").unwrap(), [found, assumed, peak]);
     }
 
     /// Each has one fault, and is right otherwise.

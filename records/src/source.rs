@@ -1,8 +1,8 @@
 //! How a record's file is read, and what was found in it or assumed of it.
 
-use super::text::quote;
+use super::text::{quote, six_digits};
 use super::unit::Stated;
-use super::{BadLine, Unit, bad};
+use super::{BadLine, Record, Remedy, Unit, bad};
 use serde::{Deserialize, Deserializer, de::Error};
 use std::fmt;
 
@@ -62,6 +62,32 @@ pub struct Source {
     pub remarks: Vec<String>,
     /// What is likely wrong with the file or with how it is read, though it may be right.
     pub warnings: Vec<String>,
+}
+
+impl Source {
+    /// Sentences to report before a run under `record` (m/s²), which was read from the file called `name`. The first describes
+    /// the findings and assumptions, each other one warns. The peak is reported in units of `g` (m/s²).
+    pub fn sentences(&self, name: &str, record: &Record, g: f64) -> Vec<String> {
+        let unit_from = match self.unit_from {
+            UnitFrom::File => "as the file states",
+            UnitFrom::User => "as asked for",
+            UnitFrom::Assumed => "assumed",
+        };
+        let remarks: String = self.remarks.iter().map(|remark| format!(", {remark}")).collect();
+        let (format, unit, samples) = (self.format, self.unit, record.times().len());
+        let (steps, peak) = (steps(record), six_digits(record.pga() / g));
+        let found = format!("{name}: {format}{remarks}; {unit} {unit_from}; {samples} samples, {steps}, peak {peak} g");
+        let warnings = self.warnings.iter().map(|warning| format!("{name}: {warning}"));
+        [found].into_iter().chain(warnings).collect()
+    }
+}
+
+/// The time between the samples of `record`, in words.
+pub fn steps(record: &Record) -> String {
+    let steps = record.times().windows(2).map(|pair| pair[1] - pair[0]);
+    let (least, most) = steps.fold((f64::INFINITY, 0.0_f64), |(least, most), step| (least.min(step), most.max(step)));
+    let [least, most] = [least, most].map(six_digits);
+    if least == most { format!("step {least} s") } else { format!("steps of {least} to {most} s") }
 }
 
 /// Who decides the unit of a record.
@@ -125,7 +151,11 @@ pub(super) fn decide(stated: &Stated, asked: Option<Unit>, line: usize) -> Resul
         (Stated::Unit(unit), Some(asked)) if *unit != asked => contradicted(unit, asked),
         (Stated::Unit(unit), _) => Ok((*unit, UnitFrom::File)),
         (Stated::Other(other), Some(asked)) => contradicted(&quote(other), asked),
-        (Stated::Nothing, Some(asked)) => Ok((asked, UnitFrom::User)),
+        (Stated::Nothing | Stated::Multiplied(_), Some(asked)) => Ok((asked, UnitFrom::User)),
+        (Stated::Multiplied(heading), None) => {
+            let problem = format!("{} has a factor: the unit of the accelerations is not clear", quote(heading));
+            Err(bad(line, problem).remedied_by(Remedy::Unit))
+        }
         (Stated::Nothing, None) => Ok((Unit::MetrePerSecondSquared, UnitFrom::Assumed)),
         (Stated::Other(other), None) => {
             let known = Unit::NAMES.map(|(name, _)| name).join(", ");

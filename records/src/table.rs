@@ -288,7 +288,8 @@ impl<'a> Table<'a> {
             let place = value.map_or("a line before the data".into(), |value| format!("column {}", value + 1));
             return Err(bad(self.first, format!("{place} is {}: accelerations are needed", quote(other))));
         }
-        let stated = texts.into_iter().map(Stated::of).find(|stated| *stated != Stated::Nothing);
+        let stated = texts.into_iter().map(Stated::of).filter(|stated| *stated != Stated::Nothing);
+        let stated = stated.min_by_key(|stated| !matches!(stated, Stated::Multiplied(_))); // else the first
         match (stated, self.before.iter().find(|line| mentions_unit(line))) {
             (None, Some(line)) if how.unit.is_none() => {
                 let line = quote(line);
@@ -493,6 +494,17 @@ mod tests {
             assert_eq!(one(line).unwrap().1.unit, Unit::CentimetrePerSecondSquared, "{line}");
         }
         assert_eq!(one("# peak 0.3 g").unwrap_err().remedy, Some(Remedy::Unit));
+    }
+
+    /// A factor may be in any heading of the column. The user says what the numbers are.
+    #[test]
+    fn a_factor_in_a_heading_is_not_passed_over() {
+        for headings in ["t (s);a (10^-3 g)", "t (s);a*1000\ns;g", "t (s);g\n;x 1000", "t (s);a (g/1000)"] {
+            let text = format!("{headings}\n0;1\n.5;2\n");
+            assert_eq!(read(&text, &AS_IT_IS).unwrap_err().remedy, Some(Remedy::Unit), "{headings}");
+            let asked = Reading { unit: Some(Unit::MilliG), ..AS_IT_IS };
+            assert_eq!(read(&text, &asked).unwrap().1.unit, Unit::MilliG, "{headings}");
+        }
     }
 
     #[test]

@@ -1,12 +1,14 @@
 //! The text of a record's file: its encoding, its lines, the numbers in them.
 
 use super::{BadLine, bad};
+use rocking::structure::quantity::with_unit;
 use std::borrow::Cow;
 
 /// What DOS writes after the last line.
 const END_OF_DOS: char = '\x1a';
 
-/// The text of a file in UTF-8, UTF-16 with its mark or Latin-1, its lines ended by `\n` alone.
+/// The text of a file in UTF-8, UTF-16 or Latin-1, its lines ended by `\n` alone. UTF-16 without its mark begins with two
+/// letters of ASCII.
 pub(super) fn decode(bytes: &[u8]) -> Result<Cow<'_, str>, BadLine> {
     let utf_16 = |order: fn([u8; 2]) -> u16, bytes: &[u8]| {
         let units = bytes.chunks_exact(2).map(|pair| order([pair[0], pair[1]]));
@@ -18,6 +20,8 @@ pub(super) fn decode(bytes: &[u8]) -> Result<Cow<'_, str>, BadLine> {
         }
         [0xff, 0xfe, text @ ..] => utf_16(u16::from_le_bytes, text),
         [0xfe, 0xff, text @ ..] => utf_16(u16::from_be_bytes, text),
+        [1..=255, 0, 1..=255, 0, ..] => utf_16(u16::from_le_bytes, bytes),
+        [0, 1..=255, 0, 1..=255, ..] => utf_16(u16::from_be_bytes, bytes),
         _ => match std::str::from_utf8(bytes) {
             Ok(text) => Cow::Borrowed(text.trim_start_matches('\u{feff}')),
             Err(_) => Cow::Owned(bytes.iter().map(|&byte| char::from(byte)).collect()),
@@ -77,6 +81,11 @@ pub(super) fn nine_digits(value: f64) -> f64 {
     format!("{value:.8e}").parse().unwrap_or(value)
 }
 
+/// `value` to six digits.
+pub(super) fn six_digits(value: f64) -> String {
+    with_unit(format!("{value:.5e}").parse().unwrap_or(value), "1")
+}
+
 /// The words of lines of a fixed width: columns of `width` letters, where a number that fills its column leaves no blank
 /// before it.
 pub(super) fn columns(line: &str, width: Option<usize>) -> Vec<&str> {
@@ -118,6 +127,8 @@ mod tests {
             latin,
             marked(b"\xff\xfe", &little),
             marked(b"\xfe\xff", &big),
+            little,
+            big,
             text.replace('\n', "\r\n").into_bytes(),
             text.replace('\n', "\r").into_bytes(),
             marked(text.as_bytes(), b"\x1a\r\n"),

@@ -1,6 +1,5 @@
 //! Units of acceleration, and how files write them.
 
-use super::text::is_number;
 use serde::Deserialize;
 use std::{fmt, iter};
 
@@ -99,14 +98,14 @@ pub(super) enum TimeUnit {
 }
 
 impl TimeUnit {
-    /// Of `time`, `t`, these with a unit, and of what is a unit or ends with one in brackets; nothing of any other heading,
-    /// nor of a period.
+    /// The unit that the `heading` of a column of times states: of `time`, `t`, these with a unit, and of a heading that is a
+    /// unit or ends with one in brackets. None of any other heading, of a period, and of times with a factor.
     pub(super) fn of(heading: &str) -> Option<TimeUnit> {
         let heading = heading.to_lowercase();
         let words = heading.split(|letter: char| !letter.is_alphanumeric());
         let words: Vec<_> = words.filter(|word| !word.is_empty() && *word != "in").collect();
         match words.as_slice() {
-            _ if heading.contains("period") => None,
+            _ if heading.contains("period") || has_factor(&heading) => None,
             ["t" | "time" | "times" | "zeit"] => Some(TimeUnit::Unstated),
             [unit] | ["t" | "time" | "times" | "zeit", unit] => TimeUnit::named(unit),
             [.., unit] if heading.ends_with(&format!("({unit})")) || heading.ends_with(&format!("[{unit}]")) => {
@@ -132,7 +131,8 @@ impl TimeUnit {
 
 /// Small letters, with powers as plain digits and without what units may have between them.
 fn plain(text: &str) -> String {
-    let plain = text.chars().filter(|letter| !letter.is_whitespace() && !"^*.()_\u{b7}\u{22c5}".contains(*letter));
+    let plain =
+        text.chars().filter(|letter| !letter.is_whitespace() && !"^*.()_\u{b7}\u{22c5}\u{d7}".contains(*letter));
     let plain = plain.map(|letter| match letter {
         '\u{b2}' => '2',
         '\u{207b}' | '\u{2212}' => '-',
@@ -147,6 +147,28 @@ fn is_like_a_unit(text: &str) -> bool {
     text.contains("/s")
         || text.contains(['^', '%'])
         || matches!(&*text, "counts" | "count" | "v" | "mv" | "volts" | "ug")
+}
+
+/// Whether `text`, a heading or the parts of one beside its unit, has a factor: `10^-3`, `*1000`, `x 0.1`, `/1000`.
+fn has_factor(text: &str) -> bool {
+    text.char_indices().any(|(start, sign)| {
+        let (before, after) = (&text[..start], &text[start + sign.len_utf8()..]);
+        let is_sign = match sign {
+            '*' | '\u{d7}' | '\u{b7}' | '\u{22c5}' => true,
+            '^' => before.ends_with(char::is_numeric),
+            'x' | 'X' if before.is_empty() => after.starts_with(' '), // unlike the name x1
+            'x' | 'X' => before.ends_with([' ', '\t', '(', '[', '{']),
+            '/' => !before.trim_end().ends_with(char::is_numeric), // unlike a date
+            _ => false,
+        };
+        is_sign && after.trim_start_matches([' ', '\t', '+', '-', '\u{2212}', '.']).starts_with(char::is_numeric)
+    })
+}
+
+/// Whether `word` is a number, or a factor such as `10^-3`, `10-3`, `x0.1`.
+fn is_factor(word: &str) -> bool {
+    let begins = word.trim_start_matches(['x', 'X', '+', '-', '.']).starts_with(char::is_numeric);
+    begins && word.chars().all(|letter| !letter.is_alphabetic() || "eEdDxX".contains(letter))
 }
 
 /// Whether `line` has a unit of accelerations as a word anywhere.
@@ -165,12 +187,14 @@ pub(super) enum Stated {
     Unit(Unit),
     /// A unit of something else, or one that is not known here.
     Other(String),
+    /// The accelerations are multiplied by a factor: this heading has one.
+    Multiplied(String),
 }
 
 impl Stated {
-    /// The unit that the `heading` of a column of accelerations, or a line of text before samples alone, states: after a blank,
-    /// a slash, an underscore or the like, to the end or the next bracket. `a_g` is the ground acceleration, whatever its
-    /// unit; after a number stands the unit of that.
+    /// The unit that `heading` states: the heading of a column of accelerations, or a line of text before samples alone. The
+    /// unit stands after a blank, a slash, an underscore or the like, up to the end or the next bracket. `a_g` is the ground acceleration, whatever its
+    /// unit. A unit after a number is the unit of that number.
     pub(super) fn of(heading: &str) -> Stated {
         const DIVIDERS: &[char] = &[' ', '\t', ',', ':', '=', '/', '_', '(', '[', '{'];
         const LONGEST: usize = 200;
@@ -180,13 +204,20 @@ impl Stated {
         let starts = || iter::once(0).chain(heading.match_indices(DIVIDERS).map(|(index, _)| index + 1));
         let to_bracket = |start: usize| heading[start..].split([')', ']', '}']).next().unwrap_or_default();
         let is_free = |start: &usize| {
-            let before = heading[..*start].trim_end_matches(DIVIDERS);
-            !is_number(before.rsplit(DIVIDERS).next().unwrap_or_default())
+            let mut words = heading[..*start].rsplit(DIVIDERS);
+            !words.find(|word| !matches!(*word, "" | "x" | "X" | "*" | "\u{d7}")).is_some_and(is_factor)
         };
         let is_a_g = |start: usize| heading[..start].to_lowercase().ends_with("a_");
-        let named = |start| Unit::named(to_bracket(start)).filter(|unit| *unit != Unit::G || !is_a_g(start));
-        if let Some(unit) = starts().filter(is_free).find_map(named) {
-            return Stated::Unit(unit);
+        let named = |start| {
+            let unit = Unit::named(to_bracket(start)).filter(|unit| *unit != Unit::G || !is_a_g(start))?;
+            Some((unit, [&heading[..start], &heading[start + to_bracket(start).len()..]]))
+        };
+        let found = starts().filter(is_free).find_map(named);
+        let (unit, beside) = found.map_or((None, [heading, ""]), |(unit, beside)| (Some(unit), beside));
+        match unit {
+            _ if beside.into_iter().any(has_factor) => return Stated::Multiplied(heading.to_owned()),
+            Some(unit) => return Stated::Unit(unit),
+            None => {}
         }
         let mut words = heading.rsplit([' ', '\t', ',', '(', '[', '{', ')', ']', '}']);
         let other = words.find(|word| is_like_a_unit(word));
@@ -229,6 +260,32 @@ mod tests {
         {
             assert_eq!(Stated::of(nothing), Stated::Nothing, "{nothing}");
         }
+        for multiplied in [
+            "acc (10^-3 g)",
+            "acc (10-3 g)",
+            "a [10\u{207b}\u{b3} g]",
+            "acc (x0.1 g)",
+            "acc (1000 x g)",
+            "acc*1000 (g)",
+            "acc x 1000 [m/s^2]",
+            "acc (g/1000)",
+            "acc (g\u{b7}10^-3)",
+            "acc (g) x 10",
+            "acc (g x10)",
+            "acc (1/1000 g)",
+            "acc (1e-3 g)",
+            "acc*1000",
+        ] {
+            let stated = Stated::of(multiplied);
+            let is_refused =
+                matches!(stated, Stated::Multiplied(_)) || stated == Stated::Nothing && mentions_unit(multiplied);
+            assert!(is_refused, "{multiplied}: {stated:?}");
+        }
+        for (heading, unit) in
+            [("CH 2, 090 deg, acc (g)", g), ("17/3/2005 north (g)", g), ("acc x [g]", g), ("S90E m*s^-2", m)]
+        {
+            assert_eq!(Stated::of(heading), Stated::Unit(unit), "{heading}");
+        }
         for other in ["cm/s", "counts", "km/s2", "nm/s^2"] {
             assert_eq!(Stated::of(&format!("acc ({other})")), Stated::Other(other.into()));
             assert_eq!(Stated::of(&format!("acc {other}")), Stated::Other(other.into()));
@@ -254,9 +311,21 @@ mod tests {
         ] {
             headings.iter().for_each(|heading| assert_eq!(TimeUnit::of(heading).as_ref(), Some(&unit), "{heading}"));
         }
-        for other in
-            ["time history", "trigger", "theta", "a (m/s2)", "acc", "", "T1", "Period (s)", "t (min)", "f (Hz)"]
-        {
+        for other in [
+            "time*1000 (s)",
+            "t (x10 s)",
+            "t/10 (s)",
+            "time history",
+            "trigger",
+            "theta",
+            "a (m/s2)",
+            "acc",
+            "",
+            "T1",
+            "Period (s)",
+            "t (min)",
+            "f (Hz)",
+        ] {
             assert_eq!(TimeUnit::of(other), None, "{other}");
         }
     }

@@ -44,6 +44,36 @@ pub struct Equilibrium {
     pub moment: f64,
 }
 
+/// Most points on each branch of a [`curve`].
+pub const MOST_POINTS: u32 = 1_000_000;
+
+/// Why there is no pushover.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum PushoverError {
+    /// Another number of points than a curve has.
+    #[error("points = {0} is out of range: 2 to {MOST_POINTS} on each branch are possible")]
+    BadPoints(u32),
+    /// The strut gives way before the structure overturns.
+    #[error("the strut is too soft to hold the structure all the way to overturning: raise f_fc or lower m0")]
+    TooSoft,
+}
+
+/// The pushover from rest to overturning, to the right: `points` evenly over the displacements in full contact, then as many
+/// while rocking.
+pub fn curve(structure: &Structure, points: u32) -> Result<Vec<Equilibrium>, PushoverError> {
+    if !(2..=MOST_POINTS).contains(&points) {
+        return Err(PushoverError::BadPoints(points));
+    }
+    let end = at_overturning(structure).ok_or(PushoverError::TooSoft)?.delta_t;
+    let u_cr = uplift_displacement(structure, Side::Right, 0.0, &Dissipators::default());
+    let evenly = |from: f64, to: f64| {
+        let part = move |i| f64::from(i) / f64::from(points - 1);
+        (0..points).map(move |i| if i == points - 1 { to } else { from + (to - from) * part(i) })
+    };
+    let displacements = evenly(0.0, u_cr).chain(evenly(u_cr.next_up(), end));
+    displacements.map(|delta_t| at_displacement(structure, delta_t).ok_or(PushoverError::TooSoft)).collect()
+}
+
 /// Full contact at the elastic displacement `u` (m), |u| ≤ u_cr.
 pub fn in_full_contact(structure: &Structure, u: f64) -> Equilibrium {
     let force = structure.k * u;
@@ -112,6 +142,15 @@ mod tests {
 
     fn specimens() -> [Structure; 2] {
         [Parameters::EVISON, Parameters::MCMANUS].map(|parameters| Structure::new(parameters).unwrap())
+    }
+
+    #[test]
+    fn more_points_than_fit_into_memory_are_refused() {
+        for points in [0, 1, 2_000_000_000] {
+            let refused = curve(&specimens()[0], points).unwrap_err().to_string();
+            assert_eq!(refused, format!("points = {points} is out of range: 2 to 1000000 on each branch are possible"));
+        }
+        assert_eq!(curve(&specimens()[0], 2).unwrap().len(), 4);
     }
 
     proptest! {

@@ -23,10 +23,22 @@ use crate::levels::oscillator::Oscillator;
 use crate::run::record::Record;
 use crate::run::record::Segment;
 use crate::series::bisection::last_where;
+use crate::structure::quantity::OutOfRange;
 use nalgebra::{Matrix2, Vector2};
 use std::f64::consts::{PI, TAU};
 
-/// S_a of `record` at the period `T` (s) and the damping ratio `zeta`, m/s². The oscillator starts at rest and swings
+/// The spectrum of `record`: S_a at each of `periods` (s) and the damping ratio `zeta`, m/s².
+pub fn spectrum(record: &Record, periods: &[f64], zeta: f64) -> Result<Vec<f64>, OutOfRange> {
+    let check = |name, unit, value, min, max, description| match (min..=max).contains(&value) {
+        true => Ok(()),
+        false => Err(OutOfRange { name, value, unit, min, max, description }),
+    };
+    check("zeta", "1", zeta, 0.0, 10.0, "damping ratio of the oscillator")?;
+    periods.iter().try_for_each(|T| check("period", "s", *T, 1e-4, 1e3, "period of the oscillator"))?;
+    Ok(periods.iter().map(|T| spectral_acceleration(record, *T, zeta)).collect())
+}
+
+/// S_a of `record` at the period `T` (s) and the damping ratio `zeta` of a structure, m/s². The oscillator starts at rest and swings
 /// on for a period after the record's end: its largest swing comes within a quarter of one.
 pub fn spectral_acceleration(record: &Record, T: f64, zeta: f64) -> f64 {
     Oscillator { omega: TAU / T, zeta }.peak(record.segments_until(record.end() + T))
@@ -111,6 +123,22 @@ mod tests {
             Segment { start: t[0], end: t[1], ground: a_g.into() }
         };
         samples.map(segment).collect()
+    }
+
+    #[test]
+    fn a_spectrum_of_no_oscillator_is_refused() {
+        let record = Record::from_samples("", vec![0.0, 1.0], vec![1.0, -1.0]).unwrap();
+        for (period, zeta, name) in [
+            (1.0, f64::NAN, "zeta"),
+            (1.0, -0.1, "zeta"),
+            (1.0, 11.0, "zeta"),
+            (0.0, 0.05, "period"),
+            (1e-9, 0.05, "period"),
+            (f64::INFINITY, 0.05, "period"),
+        ] {
+            assert_eq!(spectrum(&record, &[0.5, period], zeta).unwrap_err().name, name);
+        }
+        assert_eq!(spectrum(&record, &[0.5], 0.05), Ok(vec![spectral_acceleration(&record, 0.5, 0.05)]));
     }
 
     /// Closed form of the response to ground that takes up the acceleration 1 at once and keeps it: the peak

@@ -73,12 +73,16 @@ impl Tally {
 /// A run's group, its intensity, and what it came to: an outcome, or whether a limit was exceeded, if that is known.
 type Counted<T> = (usize, f64, T);
 
+/// The outcome of a run under g (m/s²).
+type Of<'a> = (&'a Outcome, f64);
+
 /// Counts the `outcomes` of all runs of `plan`, in their order, population by population: against intensities in
 /// `measure`, how many overturn and how many exceed each of `limits`.
 pub fn count(plan: &Plan, measure: IntensityMeasure, limits: &[Limit], outcomes: &[Outcome]) -> Vec<Exceedances> {
     let mut runs = plan.cases().zip(outcomes).peekable();
     let mut next_of = |name: &str| runs.next_if(|(case, _)| case.population.name() == name);
-    let counted = |(case, outcome): (Case, _)| (case.group, case.intensity(measure), outcome);
+    let counted =
+        |(case, outcome): (Case, _)| (case.group, case.intensity(measure), (outcome, case.structure.parameters().g));
     let of = |population: &crate::plan::Population| {
         let runs: Vec<_> = std::iter::from_fn(|| next_of(population.name()).map(counted)).collect();
         of_population(population.name(), limits, &runs)
@@ -86,11 +90,11 @@ pub fn count(plan: &Plan, measure: IntensityMeasure, limits: &[Limit], outcomes:
     plan.populations().iter().map(of).collect()
 }
 
-fn of_population(name: &str, limits: &[Limit], runs: &[Counted<&Outcome>]) -> Exceedances {
+fn of_population(name: &str, limits: &[Limit], runs: &[Counted<Of>]) -> Exceedances {
     let still_rocking =
         |outcome: &Outcome| matches!(outcome, Outcome::Ended(summary) if summary.ending == Ending::StillRocking);
-    let number = |is: &dyn Fn(&Outcome) -> bool| runs.iter().filter(|(_, _, outcome)| is(outcome)).count();
-    let ended = runs.iter().filter(|(_, _, outcome)| matches!(outcome, Outcome::Ended(_))).copied();
+    let number = |is: &dyn Fn(&Outcome) -> bool| runs.iter().filter(|(_, _, (outcome, _))| is(outcome)).count();
+    let ended = runs.iter().filter(|(_, _, (outcome, _))| matches!(outcome, Outcome::Ended(_))).copied();
     let bins = bins(ended.collect());
     Exceedances {
         population: name.into(),
@@ -101,8 +105,8 @@ fn of_population(name: &str, limits: &[Limit], runs: &[Counted<&Outcome>]) -> Ex
     }
 }
 
-fn fragility(limit: Limit, bins: &[Vec<Counted<&Outcome>>]) -> Fragility {
-    let exceeds = |&(group, intensity, outcome): &Counted<&Outcome>| (group, intensity, outcome.exceeds(&limit));
+fn fragility(limit: Limit, bins: &[Vec<Counted<Of>>]) -> Fragility {
+    let exceeds = |&(group, intensity, (outcome, g)): &Counted<Of>| (group, intensity, outcome.exceeds(&limit, g));
     let bins: Vec<Vec<_>> = bins.iter().map(|runs| runs.iter().map(exceeds).collect()).collect();
     let (tallies, curve) = fit(&bins);
     Fragility { limit, tallies, curve }
@@ -189,6 +193,7 @@ mod tests {
             (0, 8.0, &failed),
         ];
         let limit = Limit::peak("theta", 0.5).unwrap();
+        let runs = runs.map(|(group, intensity, outcome)| (group, intensity, (outcome, 9.81)));
         let Exceedances { bins, fragilities, failed, still_rocking, .. } = of_population("piers", &[limit], &runs);
         assert_eq!((failed, still_rocking), (1, 1));
         let at = |intensity, runs| Bin { lowest: intensity, mean: intensity, highest: intensity, runs };

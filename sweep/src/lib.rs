@@ -24,6 +24,8 @@ pub mod row_file;
 pub mod rows;
 pub mod synthetic;
 
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
 /// Why something cannot be run or counted: what is wrong, and what to change.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{0}")]
@@ -36,6 +38,17 @@ impl Refused {
     }
 }
 
+/// Most runs at a time.
+const MOST_THREADS: usize = 1024;
+
+/// The threads that do `threads` runs at a time; 0 is one per core.
+pub fn thread_pool(threads: usize) -> Result<ThreadPool, Refused> {
+    ensure(threads <= MOST_THREADS, || {
+        format!("threads = {threads} is out of range: 0, which is one per core, to {MOST_THREADS} are possible")
+    })?;
+    ThreadPoolBuilder::new().num_threads(threads).build().map_err(Refused::by)
+}
+
 /// Refuses, with the reason, what is not so.
 fn ensure(is_so: bool, why: impl FnOnce() -> String) -> Result<(), Refused> {
     if is_so { Ok(()) } else { Err(Refused(why())) }
@@ -44,4 +57,14 @@ fn ensure(is_so: bool, why: impl FnOnce() -> String) -> Result<(), Refused> {
 /// `value` as messages and names show it.
 fn six_digits(value: f64) -> f64 {
     format!("{value:.5e}").parse().expect("a number in Rust's own notation")
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn more_threads_than_any_machine_needs_are_refused_before_they_are_made() {
+        let refused = super::thread_pool(2_000_000_000).unwrap_err().to_string();
+        assert_eq!(refused, "threads = 2000000000 is out of range: 0, which is one per core, to 1024 are possible");
+        assert_eq!(super::thread_pool(3).unwrap().current_num_threads(), 3);
+    }
 }

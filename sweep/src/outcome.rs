@@ -5,7 +5,9 @@ use rocking::Watch;
 use rocking::run::fall::Found;
 use rocking::run::peaks::PEAKS;
 use rocking::run::{Ending, Run};
+use rocking::structure::quantity::with_unit;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::PI;
 use std::fmt;
 use std::str::FromStr;
 
@@ -51,6 +53,18 @@ pub const MEASURES: [(&str, &str); PEAKS.len() + 1] = {
     measures
 };
 
+/// Usual units of limits: name, unit of the measure, and how many of that one it is; g is the structure's own.
+const USUAL_UNITS: [(&str, &str, Option<f64>); 8] = [
+    ("deg", "rad", Some(PI / 180.0)),
+    ("mrad", "rad", Some(1e-3)),
+    ("cm", "m", Some(1e-2)),
+    ("mm", "m", Some(1e-3)),
+    ("g", "m/s2", None),
+    ("cm/s2", "m/s2", Some(1e-2)),
+    ("kN", "N", Some(1e3)),
+    ("kN.m", "N.m", Some(1e3)),
+];
+
 /// What may be exceeded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Limit {
@@ -60,8 +74,10 @@ pub enum Limit {
     Peak {
         /// Which of [`MEASURES`].
         measure: usize,
-        /// In the measure's unit.
+        /// In `unit`.
         value: f64,
+        /// The measure's own unit or a usual one, such as deg.
+        unit: &'static str,
     },
 }
 
@@ -89,47 +105,69 @@ impl Outcome {
         })
     }
 
-    /// Whether `limit` was exceeded, where that is known: of a failed run it is not, nor of a structure that still rocks
-    /// and has stayed within the limit so far.
-    pub fn exceeds(&self, limit: &Limit) -> Option<bool> {
+    /// Whether the structure exceeded `limit` under `g` (m/s²). None if that is unknown: the run failed, the peak is NaN, or the
+    /// structure still rocks and has stayed within the limit so far.
+    pub fn exceeds(&self, limit: &Limit, g: f64) -> Option<bool> {
         let Outcome::Ended(summary) = self else { return None };
         let has_exceeded = match *limit {
             _ if summary.ending == Ending::Overturned => true,
             Limit::Overturning => false,
-            Limit::Peak { measure, value } => summary.peaks[measure] >= value,
+            Limit::Peak { measure, .. } if summary.peaks[measure].is_nan() => return None,
+            Limit::Peak { measure, value, unit } => {
+                let usual = USUAL_UNITS.iter().find(|(usual, ..)| *usual == unit);
+                summary.peaks[measure] >= value * usual.map_or(1.0, |(.., factor)| factor.unwrap_or(g))
+            }
         };
         Some(has_exceeded).filter(|has_exceeded| *has_exceeded || summary.ending != Ending::StillRocking)
     }
 }
 
 impl Limit {
-    /// That the peak of the measure called `name` stays below `value` > 0.
+    /// The limit `value` > 0 of the measure called `name`, in the unit of [`MEASURES`].
     pub fn peak(name: &str, value: f64) -> Result<Limit, Refused> {
-        let known = || MEASURES.map(|(name, _)| name).join(", ");
-        let measure = MEASURES.iter().position(|(measure, _)| *measure == name);
-        let measure = measure.ok_or_else(|| Refused(format!("{name:?} is unknown; these are known: {}", known())))?;
-        let out_of_range = || format!("{name} = {value} is out of range: a finite number greater than 0 is needed");
-        ensure(value > 0.0 && value.is_finite(), out_of_range)?;
-        Ok(Limit::Peak { measure, value })
+        let (measure, unit) = measure(name)?;
+        Limit::checked(measure, value, unit)
     }
+
+    fn checked(measure: usize, value: f64, unit: &'static str) -> Result<Limit, Refused> {
+        let shown = || format!("{} = {}", MEASURES[measure].0, with_unit(value, unit));
+        let is_possible = value > 0.0 && value.is_finite();
+        ensure(is_possible, || format!("{} is out of range: a finite number greater than 0 is needed", shown()))?;
+        Ok(Limit::Peak { measure, value, unit })
+    }
+}
+
+/// The position of the measure called `name` among [`MEASURES`], and its unit.
+fn measure(name: &str) -> Result<(usize, &'static str), Refused> {
+    let known = || MEASURES.map(|(name, _)| name).join(", ");
+    let found = MEASURES.iter().position(|(measure, _)| *measure == name).map(|at| (at, MEASURES[at].1));
+    found.ok_or_else(|| Refused(format!("{name:?} is unknown; these are known: {}", known())))
 }
 
 impl FromStr for Limit {
     type Err = Refused;
 
-    /// `overturned`, or a measure and a value such as `theta/alpha_cg >= 0.5`, as a limit is shown.
+    /// Reads `overturned`, or a measure and a value such as `theta/alpha_cg >= 0.5` or `theta >= 3 deg`, as a limit is shown.
     fn from_str(text: &str) -> Result<Limit, Refused> {
         if text == Limit::Overturning.to_string() {
             return Ok(Limit::Overturning);
         }
-        let (name, value) = text.split_once(" >= ").unwrap_or((text, ""));
-        let unit = MEASURES.iter().find(|(measure, _)| *measure == name).map_or("1", |(_, unit)| unit);
-        let value = value.strip_suffix(unit).filter(|_| unit != "1").unwrap_or(value).trim();
-        let value = value.parse().map_err(|_| {
+        let (name, given) = text.split_once(">=").map_or((text, ""), |(name, given)| (name.trim(), given.trim()));
+        if given.is_empty() {
             let known = MEASURES.map(|(name, _)| name).join(", ");
-            Refused(format!("limit = {text:?}: overturned or MEASURE >= VALUE is needed, with a measure of {known}"))
+            let needed = format!("overturned or MEASURE >= VALUE is needed, with a measure of {known}");
+            return Err(Refused(format!("limit = {text:?}: {needed}")));
+        }
+        let (measure, own) = measure(name)?;
+        let usual = USUAL_UNITS.into_iter().filter_map(|(usual, of, _)| (of == own).then_some(usual));
+        let units: Vec<_> = [own].into_iter().chain(usual).filter(|unit| *unit != "1").collect();
+        let in_unit = |unit: &'static str| Some((given.strip_suffix(unit)?.trim_end().parse().ok()?, unit));
+        let value = given.parse().ok().map(|value| (value, own)).or(units.iter().copied().find_map(in_unit));
+        let (value, unit) = value.ok_or_else(|| {
+            let possible = if units.is_empty() { "no unit".into() } else { units.join(", ") };
+            Refused(format!("limit = {text:?}: a number is needed, in {possible}"))
         })?;
-        Limit::peak(name, value)
+        Limit::checked(measure, value, unit)
     }
 }
 
@@ -137,7 +175,7 @@ impl fmt::Display for Limit {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         match *self {
             Limit::Overturning => write!(out, "overturned"),
-            Limit::Peak { measure, value } => match MEASURES[measure] {
+            Limit::Peak { measure, value, unit } => match (MEASURES[measure].0, unit) {
                 (name, "1") => write!(out, "{name} >= {value}"),
                 (name, unit) => write!(out, "{name} >= {value} {unit}"),
             },
@@ -156,11 +194,50 @@ mod tests {
         {
             assert_eq!(limit.to_string().parse(), Ok(limit));
         }
+        for text in ["theta >= 3 deg", "a_t >= 0.3 g", "M_t >= 1.5 kN.m"] {
+            assert_eq!(text.parse::<Limit>().unwrap().to_string(), text);
+        }
         assert_eq!("a_t >= 3".parse(), Limit::peak("a_t", 3.0));
+        assert_eq!("uplift>=1cm".parse::<Limit>(), "uplift >= 1 cm".parse());
         let refused = |text: &str| text.parse::<Limit>().unwrap_err().to_string();
         assert!(refused("fallen").starts_with("limit = \"fallen\": overturned or MEASURE >= VALUE is needed"));
-        assert!(refused("a_t >= 3 g").starts_with("limit = \"a_t >= 3 g\""));
+        let unknown = "limit = \"a_t >= 3 kN\": a number is needed, in m/s2, g, cm/s2";
+        assert_eq!(refused("a_t >= 3 kN"), unknown);
+        assert_eq!(
+            refused("theta/alpha_cg >= 3 deg"),
+            "limit = \"theta/alpha_cg >= 3 deg\": a number is needed, in no unit"
+        );
+        assert_eq!(
+            refused("theta >= -3 deg"),
+            "theta = -3 deg is out of range: a finite number greater than 0 is needed"
+        );
         assert!(refused("phi >= 3").starts_with("\"phi\" is unknown; these are known: theta, "));
+    }
+
+    /// 0.3 g are 2.943 m/s² on the earth, and 0.486 m/s² on the moon.
+    #[test]
+    fn a_limit_in_a_usual_unit_is_the_same_in_the_measures_own() {
+        let exceeds = |limit: &str, peak: f64, g: f64| {
+            let summary = Summary {
+                ending: Ending::AtRest,
+                end: 1.0,
+                peaks: [peak; MEASURES.len()],
+                transitions: 0,
+                steps: 0,
+                evaluations: 0,
+            };
+            Outcome::Ended(summary).exceeds(&limit.parse().unwrap(), g)
+        };
+        for (limit, value, g) in [
+            ("theta >= 3 deg", 0.052_359_877_559_829_89, 9.81),
+            ("uplift >= 1 cm", 0.01, 9.81),
+            ("a_t >= 0.3 g", 2.943, 9.81),
+            ("a_t >= 0.3 g", 0.486, 1.62),
+            ("V_t >= 2 kN", 2e3, 9.81),
+        ] {
+            let found = [0.999, 1.001, f64::NAN].map(|of| exceeds(limit, of * value, g));
+            assert_eq!(found, [Some(false), Some(true), None], "{limit}");
+        }
     }
 
     #[test]
@@ -178,8 +255,8 @@ mod tests {
             (ended(Ending::StillRocking, 0.05), None, None),
             (Outcome::Failed { time: 1.0, reason: "chatter".into() }, None, None),
         ] {
-            assert_eq!(outcome.exceeds(&Limit::Overturning), overturned, "{outcome:?}");
-            assert_eq!(outcome.exceeds(&limit), exceeded, "{outcome:?}");
+            assert_eq!(outcome.exceeds(&Limit::Overturning, 9.81), overturned, "{outcome:?}");
+            assert_eq!(outcome.exceeds(&limit, 9.81), exceeded, "{outcome:?}");
         }
     }
 }

@@ -138,9 +138,6 @@ impl Fields {
     /// How a file is read.
     pub fn reading(&self) -> Result<Reading, String> {
         let dt = self.given("dt").transpose()?;
-        if let Some(dt) = dt.filter(|dt| !(*dt > 0.0 && dt.is_finite())) {
-            return Err(format!("dt = {dt} is out of range: a finite number greater than 0 is needed"));
-        }
         let asked = self.text("unit");
         let unit = asked.map(|asked| {
             let known = Unit::NAMES.iter().find(|(name, _)| *name == asked);
@@ -183,7 +180,7 @@ impl File {
             self.read = Some((how, record, source));
         }
         let (_, record, source) = self.read.clone().expect("it has just been read");
-        let (record, source) = rocking_records::in_m_s2(record, source, g);
+        let (record, source) = rocking_records::in_m_s2(record, source, g).map_err(says)?;
         let mut remarks = vec![format!("{}, {}", source.format, source.unit)];
         remarks.extend(source.remarks.into_iter().chain(source.warnings));
         Ok(Ground { record, remarks })

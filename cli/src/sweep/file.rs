@@ -64,9 +64,16 @@ struct SweepFile {
     initial: InitialArgs,
     /// Name of the intensity measure.
     intensity: Option<String>,
-    /// By the name of a measure.
+    /// By the name of a measure, in its own unit or with a usual one.
     #[serde(default)]
-    limits: BTreeMap<String, Vec<f64>>,
+    limits: BTreeMap<String, Vec<Amount>>,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "expected a number, or a text such as \"3 deg\"")]
+enum Amount {
+    InOwnUnit(f64),
+    WithUnit(String),
 }
 
 /// The file with `pulses`.
@@ -181,8 +188,8 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
             let (unit, time_scale) = (options.unit.or(unit), options.time_scale.or(time_scale));
             let options = RecordOptions { unit, time_scale, scale: None, ..options.clone() };
             let understood = options.understand(path, g)?;
-            warnings.extend(understood.warnings(path));
-            records.push(understood.described);
+            warnings.extend(understood.warnings());
+            records.push(understood.sentences[0].clone());
             Ok::<_, anyhow::Error>(understood.record)
         };
         let read = |path: &Path, vertical: Option<&Path>, options: &RecordOptions| {
@@ -246,7 +253,10 @@ impl SweepFile {
         for (name, values) in &self.limits {
             ensure!(!values.is_empty(), "{name} is empty: give one or more");
             for value in values {
-                limits.push(Limit::peak(name, *value)?);
+                limits.push(match value {
+                    Amount::InOwnUnit(value) => Limit::peak(name, *value)?,
+                    Amount::WithUnit(value) => format!("{name} >= {value}").parse()?,
+                });
             }
         }
         Ok(limits)

@@ -2,11 +2,11 @@
 mod picture;
 mod rows;
 
-use super::{SweepArgs, file::MapSweep, progress, thread_pool};
+use super::{SweepArgs, file::MapSweep, progress};
 use crate::{picture::Picture, significant::short, talk::say};
 use anyhow::{bail, ensure};
 use picture::Shown;
-use rayon::prelude::*;
+use rayon::{ThreadPool, prelude::*};
 use rocking::run::{LONGEST_REST, validity};
 use rocking_sweep::map::{CLASSES, Class, Fate, Map, Place, Point};
 use rocking_sweep::row_file::{Known, RowFile};
@@ -34,10 +34,15 @@ struct Count<'a> {
 }
 
 /// Does the runs that are not in the file at `output` yet, then prints and draws the maps.
-pub fn run(args: &SweepArgs, sweep: MapSweep, output: &Path, picture: Picture) -> anyhow::Result<()> {
+pub fn run(
+    args: &SweepArgs,
+    sweep: MapSweep,
+    pool: &ThreadPool,
+    output: &Path,
+    picture: Picture,
+) -> anyhow::Result<()> {
     ensure!(!args.validity, "--validity is for records: `simulate` a pulse that `pulse` writes");
     let (file, mut known) = rows::open(output)?;
-    let pool = thread_pool(args)?;
     for (name, map) in &sweep.maps {
         let warnings = validity::of_parameters(&map.structure, map.detail);
         warnings.iter().for_each(|warning| say!("{name}: {warning}"));
