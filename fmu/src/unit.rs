@@ -82,7 +82,8 @@ impl Unit {
 
     #[cold]
     fn build(&mut self) -> Result<(), Refusal> {
-        let ground = self.archive.ground(&self.setup.record, &self.setup.record_v, &mut self.kept)?;
+        let ground =
+            self.archive.ground(&self.setup.record, &self.setup.record_v, self.setup.parameters.g, &mut self.kept)?;
         self.scene = Some(Scene::new(&self.setup, ground)?);
         Ok(())
     }
@@ -217,6 +218,11 @@ impl Model for Unit {
 
     fn start(&mut self, interface: Interface, logger: &Logger) -> Result<(), Failure> {
         let (scene, setup, inputs) = self.parts()?;
+        for of_file in scene.ground.iter().flat_map(|ground| &ground.sentences) {
+            let (found, doubts) = of_file.split_at(1.min(of_file.len()));
+            found.iter().for_each(|found| logger.event(|| found.clone()));
+            doubts.iter().for_each(|doubt| logger.warning(doubt));
+        }
         for warning in validity::of_parameters(scene.engine.structure(), setup.detail) {
             logger.warning(&warning);
         }
@@ -324,7 +330,8 @@ impl Model for Unit {
             let mut found = match self.scene.take_if(is_the_same) {
                 Some(scene) => scene,
                 None => {
-                    let ground = self.archive.ground(&setup.record, &setup.record_v, &mut self.kept);
+                    let ground =
+                        self.archive.ground(&setup.record, &setup.record_v, setup.parameters.g, &mut self.kept);
                     Scene::new(&setup, ground.map_err(Refusal::from)?)?
                 }
             };

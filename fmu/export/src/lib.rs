@@ -121,7 +121,7 @@ pub fn export(
     }
     let (mut contents, mut files) = (Contents::from(*structure.parameters()), Vec::new());
     let mut pack = |contents: &Contents, (path, content): RecordFile| {
-        let record = GroundRecord::from_bytes(&path, &content)?;
+        let record = GroundRecord::from_bytes(&path, &content, structure.parameters().g)?;
         let name = path.file_name().and_then(|name| name.to_str());
         let file = name.ok_or_else(|| ExportError::RecordName(path.clone()))?.to_owned();
         if contents.packed().any(|packed| packed.file.to_lowercase() == file.to_lowercase()) {
