@@ -3,7 +3,7 @@
 use crate::resources::Archive;
 use fmi_unit::uri;
 use rocking::run::record::{Record, SamplesError};
-use rocking_records::{Reading, RecordError, Source, Unit};
+use rocking_records::{Reading, RecordError, Unit};
 use std::error::Error;
 use std::path::{MAIN_SEPARATOR, Path, PathBuf, is_separator};
 use std::sync::Arc;
@@ -21,6 +21,8 @@ pub struct GroundRecord {
     pub units: [Unit; 2],
     /// Names all of it.
     pub digest: Digest,
+    /// What was found in each file and assumed of it, and then what is doubtful.
+    pub sentences: Vec<Vec<String>>,
 }
 
 /// A record, and the name of the texts and the files that it was read from.
@@ -48,12 +50,17 @@ pub enum GroundError {
 
 impl GroundRecord {
     /// Reads `bytes`, which are the content of the file at `path`; accelerations whose unit that does not state are in m/s².
-    pub fn from_bytes(path: &Path, bytes: &[u8]) -> Result<GroundRecord, RecordError> {
-        let (record, Source { unit, .. }) = rocking_records::from_bytes(path, bytes, &Reading::default())?;
+    /// A g stands for `g` (m/s²) in what is said of the record.
+    pub fn from_bytes(path: &Path, bytes: &[u8], g: f64) -> Result<GroundRecord, RecordError> {
+        let (record, source) = rocking_records::from_bytes(path, bytes, &Reading::default())?;
+        let unit = source.unit;
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        let said = rocking_records::in_m_s2(record.clone(), source, g);
+        let sentences = said.map_or(Vec::new(), |(in_m_s2, source)| source.sentences(&name, &in_m_s2, g));
         let numbers = record.times().iter().chain(record.acceleration());
         let bytes: Vec<_> = numbers.flat_map(|number| number.to_le_bytes()).chain([unit as u8]).collect();
         let digest = Uuid::new_v5(&Uuid::NAMESPACE_OID, &bytes).into_bytes();
-        Ok(GroundRecord { record, units: [unit; 2], digest })
+        Ok(GroundRecord { record, units: [unit; 2], digest, sentences: vec![sentences] })
     }
 
     /// The ground motion of both components; of `vertical` alone on ground that rests horizontally.
@@ -62,12 +69,13 @@ impl GroundRecord {
         vertical: &GroundRecord,
     ) -> Result<GroundRecord, SamplesError> {
         let (up, unit) = (&vertical.record, vertical.units[0]);
-        let (record, units, of_horizontal) = match horizontal {
-            Some(horizontal) => (horizontal.record, [horizontal.units[0], unit], horizontal.digest),
-            None => (up.clone().multiplied(0.0), [unit; 2], Digest::default()),
+        let (record, units, of_horizontal, mut sentences) = match horizontal {
+            Some(along) => (along.record, [along.units[0], unit], along.digest, along.sentences),
+            None => (up.clone().multiplied(0.0), [unit; 2], Digest::default(), Vec::new()),
         };
+        sentences.extend(vertical.sentences.iter().cloned());
         let digest = Uuid::new_v5(&Uuid::from_bytes(of_horizontal), &vertical.digest).into_bytes();
-        Ok(GroundRecord { record: record.with_vertical(up)?, units, digest })
+        Ok(GroundRecord { record: record.with_vertical(up)?, units, digest, sentences })
     }
 
     /// The record with its accelerations in m/s², if a g is `g` (m/s²).
@@ -92,11 +100,13 @@ struct Asked<'a> {
 
 impl Archive {
     /// The ground motion that the parameters `record` and `record_v` ask for: none if both are empty; files of the archive
-    /// by their names, or others by their paths or URIs. It is parsed, and kept, unless it is `kept` already.
+    /// by their names, or others by their paths or URIs; a g stands for `g` (m/s²) in what is said of them. It is parsed, and
+    /// kept, unless it is `kept` already.
     pub(crate) fn ground(
         &self,
         record: &str,
         record_v: &str,
+        g: f64,
         kept: &mut Option<Kept>,
     ) -> Result<Option<Arc<GroundRecord>>, GroundError> {
         let (along, up) = (self.read("record", record)?, self.read("record_v", record_v)?);
@@ -105,12 +115,13 @@ impl Archive {
         }
         let parts =
             [&along, &up].map(|of| of.as_ref().map_or([[].as_slice(); 2], |of| [of.text.as_bytes(), &of.bytes]));
-        let name = parts.as_flattened().iter().fold(Uuid::NAMESPACE_OID, |name, part| Uuid::new_v5(&name, part));
+        let of_g = Uuid::new_v5(&Uuid::NAMESPACE_OID, &g.to_le_bytes());
+        let name = parts.as_flattened().iter().fold(of_g, |name, part| Uuid::new_v5(&name, part));
         if let Some((_, ground)) = kept.as_ref().filter(|(of, _)| *of == name) {
             return Ok(Some(Arc::clone(ground)));
         }
-        let along = along.map(|along| self.parse(along)).transpose()?;
-        let ground = match up.map(|up| self.parse(up)).transpose()? {
+        let along = along.map(|along| self.parse(along, g)).transpose()?;
+        let ground = match up.map(|up| self.parse(up, g)).transpose()? {
             Some(up) => Some(GroundRecord::with_vertical(along, &up)?),
             None => along,
         };
@@ -141,9 +152,9 @@ impl Archive {
     }
 
     /// The record in that file; one that was packed must be as it was.
-    fn parse(&self, Asked { parameter, text, path, bytes }: Asked) -> Result<GroundRecord, GroundError> {
+    fn parse(&self, Asked { parameter, text, path, bytes }: Asked, g: f64) -> Result<GroundRecord, GroundError> {
         let record =
-            GroundRecord::from_bytes(&path, &bytes).map_err(|error| GroundError::NoRecord(parameter, error))?;
+            GroundRecord::from_bytes(&path, &bytes, g).map_err(|error| GroundError::NoRecord(parameter, error))?;
         match self.contents.packed().find(|packed| packed.file == text) {
             Some(packed) if packed.digest != record.name() => Err(GroundError::Changed(parameter, text.to_owned())),
             _ => Ok(record),
@@ -170,7 +181,7 @@ mod tests {
         fs::write(&file, "t/s,a\n0,1\n1,2\n").unwrap();
         let modified = fs::metadata(&file).unwrap().modified().unwrap();
         let (archive, mut kept) = (archive(folder.path()), None);
-        let mut read = |text: &str| archive.ground(text, "", &mut kept).unwrap().unwrap();
+        let mut read = |text: &str| archive.ground(text, "", 9.81, &mut kept).unwrap().unwrap();
         let first = read("pulse 1.csv");
         assert!(Arc::ptr_eq(&first, &read("pulse 1.csv")), "it was parsed again");
         let uri = format!("FILE://{}", file.display()).replace(' ', "%20");
@@ -182,7 +193,7 @@ mod tests {
         fs::File::options().write(true).open(&file).unwrap().set_modified(modified).unwrap();
         let second = read("pulse 1.csv");
         assert_eq!((first.record.acceleration(), second.record.acceleration()), (&[1.0, 2.0][..], &[1.0, 3.0][..]));
-        let in_g = GroundRecord::from_bytes(&file, b"t/s,a (g)\n0,1\n1,3\n").unwrap();
+        let in_g = GroundRecord::from_bytes(&file, b"t/s,a (g)\n0,1\n1,3\n", 9.81).unwrap();
         assert!(second.digest != first.digest && second.digest != in_g.digest);
     }
 
@@ -192,16 +203,19 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let file = folder.path().join("pulse.csv");
         fs::write(&file, "t/s,a\n0,1\n1,2\n").unwrap();
-        let digest = GroundRecord::from_bytes(&file, b"t/s,a\n0,1\n1,2\n").unwrap().name();
+        let digest = GroundRecord::from_bytes(&file, b"t/s,a\n0,1\n1,2\n", 9.81).unwrap().name();
         let mut archive = archive(folder.path());
         archive.contents.records.push(PackedRecord { file: "pulse.csv".to_owned(), digest });
-        assert!(archive.ground("pulse.csv", "", &mut None).unwrap().is_some());
+        assert!(archive.ground("pulse.csv", "", 9.81, &mut None).unwrap().is_some());
         fs::write(&file, "t/s,a\n0,1\n1,3\n").unwrap();
         assert_eq!(
-            archive.ground("pulse.csv", "", &mut None).unwrap_err().to_string(),
+            archive.ground("pulse.csv", "", 9.81, &mut None).unwrap_err().to_string(),
             "record = \"pulse.csv\" in the archive is not the one that was exported with it; export it again"
         );
-        assert!(archive.ground(file.to_str().unwrap(), "", &mut None).unwrap().is_some(), "by its path it is any file");
+        assert!(
+            archive.ground(file.to_str().unwrap(), "", 9.81, &mut None).unwrap().is_some(),
+            "by its path it is any file"
+        );
     }
 
     #[test]
@@ -211,7 +225,7 @@ mod tests {
         fs::create_dir(folder.path().join("folder.csv")).unwrap();
         fs::write(folder.path().join("broken.csv"), "0,1\nroot:x:0:0:secret,2\n").unwrap();
         let archive = archive(folder.path());
-        let refusal = |text: &str| archive.ground("", text, &mut None).unwrap_err().to_string();
+        let refusal = |text: &str| archive.ground("", text, 9.81, &mut None).unwrap_err().to_string();
         for (text, message) in [
             ("absent.csv", format!("record_v = \"absent.csv\" is not in {at}; a path on disk needs a separator: ./absent.csv")),
             ("..", format!("record_v: {at}/.. is not a file")),

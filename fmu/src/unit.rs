@@ -8,7 +8,7 @@ use crate::resources::Archive;
 use crate::scene::{Outside, Scene};
 use crate::setup::Setup;
 use crate::shown::Shown;
-use crate::variables::{Source, Table};
+use crate::variables::{SOLUTION, Source, Table};
 use crate::{BUILD, guid};
 use fmi_unit::{Completed, Experiment, Failure, Interface, Logger, Model, Progress, Step, Update, Value, Variable};
 use rocking::engine::DEFAULT_TOLERANCE;
@@ -82,7 +82,8 @@ impl Unit {
 
     #[cold]
     fn build(&mut self) -> Result<(), Refusal> {
-        let ground = self.archive.ground(&self.setup.record, &self.setup.record_v, &mut self.kept)?;
+        let ground =
+            self.archive.ground(&self.setup.record, &self.setup.record_v, self.setup.parameters.g, &mut self.kept)?;
         self.scene = Some(Scene::new(&self.setup, ground)?);
         Ok(())
     }
@@ -101,22 +102,6 @@ impl Unit {
     #[inline]
     fn is_vertical(&self, references: &[u32], values: &[f64]) -> bool {
         references.iter().zip(values).any(|(reference, value)| *reference == VERTICAL as u32 && *value != 0.0)
-    }
-}
-
-/// Needs the structure in motion.
-const SCENE: u8 = 1;
-
-/// Needs a solution of the equations of motion.
-const SOLUTION: u8 = 2;
-
-/// What has to be there for a real number to be read from `source`.
-#[inline]
-fn needs(source: Source) -> u8 {
-    match source {
-        Source::Input(_) | Source::Parameter(_) | Source::InitialValue(_) | Source::Placement(_) => 0,
-        Source::Reaction(_) | Source::StateRate(_) => SCENE | SOLUTION,
-        _ => SCENE,
     }
 }
 
@@ -148,11 +133,6 @@ impl Model for Unit {
         Arc::clone(&self.table.variables)
     }
 
-    fn reset(&mut self) {
-        self.setup = Setup::new(&self.archive.contents);
-        (self.inputs, self.scene, self.has_started, self.told_of_stairs) = Default::default();
-    }
-
     fn get(&mut self, reference: u32) -> Result<Value, Failure> {
         let source = self.table.sources[reference as usize];
         Ok(match source {
@@ -169,18 +149,20 @@ impl Model for Unit {
     }
 
     fn get_reals(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Failure> {
-        let sources = Arc::clone(&self.table.sources);
-        let needed = references.iter().fold(0, |needed, reference| needed | needs(sources[*reference as usize]));
-        if needed == 0 {
+        let needed = references.iter().fold(0, |needed, reference| needed | self.table.needs[*reference as usize]);
+        if needed != 0 && self.scene.is_none() {
+            self.build()?;
+        }
+        let Unit { table: Table { sources, .. }, setup, inputs, scene, .. } = self;
+        let Some(scene) = scene.as_ref().filter(|_| needed != 0) else {
             for (reference, value) in references.iter().zip(values) {
-                *value = setting(&self.setup, &self.inputs, sources[*reference as usize]);
+                *value = setting(setup, inputs, sources[*reference as usize]);
             }
             return Ok(());
-        }
-        let (scene, setup, inputs) = self.parts()?;
+        };
         let shown = Shown::new(scene, setup, scene.load(setup, inputs.values().into()).value);
         if needed & SOLUTION != 0
-            && let Some(reference) = shown.unsolved(references, &sources)
+            && let Some(reference) = shown.unsolved(references, sources)
         {
             let time = scene.engine.motion().time;
             return Err(Refusal::NoReaction { name: self.name(reference), time }.into());
@@ -236,6 +218,11 @@ impl Model for Unit {
 
     fn start(&mut self, interface: Interface, logger: &Logger) -> Result<(), Failure> {
         let (scene, setup, inputs) = self.parts()?;
+        for of_file in scene.ground.iter().flat_map(|ground| &ground.sentences) {
+            let (found, doubts) = of_file.split_at(1.min(of_file.len()));
+            found.iter().for_each(|found| logger.event(|| found.clone()));
+            doubts.iter().for_each(|doubt| logger.warning(doubt));
+        }
         for warning in validity::of_parameters(scene.engine.structure(), setup.detail) {
             logger.warning(&warning);
         }
@@ -343,7 +330,8 @@ impl Model for Unit {
             let mut found = match self.scene.take_if(is_the_same) {
                 Some(scene) => scene,
                 None => {
-                    let ground = self.archive.ground(&setup.record, &setup.record_v, &mut self.kept);
+                    let ground =
+                        self.archive.ground(&setup.record, &setup.record_v, setup.parameters.g, &mut self.kept);
                     Scene::new(&setup, ground.map_err(Refusal::from)?)?
                 }
             };
@@ -357,6 +345,7 @@ impl Model for Unit {
             scene = Some(found);
         }
         self.has_started = course.is_some();
+        self.told_of_stairs &= self.has_started;
         (self.setup, self.inputs, self.scene) = (setup, inputs, scene);
         Ok(())
     }

@@ -3,7 +3,7 @@
 
 use crate::resources::Contents;
 use crate::setup::Setup;
-use fmi_unit::{Causality, DataType, Enumeration, Role, Value, Variable};
+use fmi_unit::{Causality, DataType, Enumeration, Value, Variable};
 use rocking::Motion;
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::mechanics::restraint::{Dissipators, Restraints};
@@ -117,6 +117,21 @@ impl Source {
     }
 }
 
+/// Needs the structure in motion.
+const SCENE: u8 = 1;
+
+/// Needs a solution of the equations of motion.
+pub(crate) const SOLUTION: u8 = 2;
+
+/// What has to be there for a real number to be read from `source`.
+fn needs(source: Source) -> u8 {
+    match source {
+        Source::Input(_) | Source::Parameter(_) | Source::InitialValue(_) | Source::Placement(_) => 0,
+        Source::Reaction(_) | Source::StateRate(_) => SCENE | SOLUTION,
+        _ => SCENE,
+    }
+}
+
 /// The phases, as [`phase_number`] numbers them.
 pub static PHASES: Enumeration = Enumeration {
     name: "Phase",
@@ -180,6 +195,8 @@ pub struct Table {
     pub variables: Arc<[Variable]>,
     /// Where their values are.
     pub(crate) sources: Arc<[Source]>,
+    /// What has to be there to read them.
+    pub(crate) needs: Arc<[u8]>,
 }
 
 impl Table {
@@ -204,7 +221,8 @@ impl Table {
             .chain([(Variable::time(), Source::Time)]);
         let started = rows.map(|(variable, source)| (Variable { start: source.set_value(&setup), ..variable }, source));
         let (variables, sources): (Vec<_>, Vec<_>) = started.unzip();
-        Table { variables: variables.into(), sources: sources.into() }
+        let needs = sources.iter().map(|source| needs(*source)).collect();
+        Table { variables: variables.into(), sources: sources.into(), needs }
     }
 }
 
@@ -273,7 +291,7 @@ fn counted(name: &'static str, description: &'static str, data_type: DataType, s
 
 /// The row of a continuous state, which starts from the parameter `from`.
 fn state((variable, source): Row, from: &'static str) -> Row {
-    (variable.state([from]), source)
+    (variable.state().from([from]), source)
 }
 
 const fn number(unit: &'static str) -> DataType {
@@ -390,7 +408,7 @@ fn event_indicators() -> [Row; INDICATORS] {
     ];
     let indicator = |which, name, description, of| {
         let (variable, source) = local(name, "1", description, Source::Indicator(which), of);
-        (Variable { role: Role::Indicator, ..variable }, source)
+        (variable.indicator(), source)
     };
     let of_phase =
         "event indicator, positive while the phase lasts: what u and its moment lack to uplift; theta over alpha_cg";

@@ -6,7 +6,7 @@ use fmi_unit::variables::{dependencies, position};
 use fmi_unit::{Causality, DataType, Enumeration, Role, Value, Variable};
 
 /// What a description says of a model.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Description<'a> {
     /// Name of the model, and of its libraries' files.
     pub name: &'a str,
@@ -81,7 +81,7 @@ impl Description<'_> {
                 max_output_derivative_order: self.has_slopes.into(),
                 capabilities,
             },
-            unit_definitions: fmi::List { items: self.units.clone() },
+            unit_definitions: fmi::List { items: self.all_units() },
             type_definitions: fmi::List {
                 items: self
                     .enumerations()
@@ -147,7 +147,7 @@ impl Description<'_> {
                 might_return_early_from_do_step: true,
                 has_event_mode: true,
             },
-            unit_definitions: fmi::List { items: self.units.clone() },
+            unit_definitions: fmi::List { items: self.all_units() },
             type_definitions: fmi::List {
                 items: self
                     .enumerations()
@@ -180,6 +180,20 @@ impl Description<'_> {
     fn unknowns(&self, is_one: fn(&Variable) -> bool, at_start: bool) -> Vec<(usize, Vec<usize>)> {
         let found = (0..self.variables.len()).filter(|at| is_one(&self.variables[*at]));
         found.map(|at| (at, dependencies(self.variables, at, at_start))).collect()
+    }
+
+    /// The units, and those that variables have beside them, of which nothing but the name is known.
+    fn all_units(&self) -> Vec<fmi::Unit> {
+        let mut units = self.units.clone();
+        for variable in self.variables {
+            match variable.data_type {
+                DataType::Real { unit, .. } if unit != "1" && units.iter().all(|known| known.name != unit) => {
+                    units.push(fmi::Unit { name: unit.into(), base_unit: None, display_units: Vec::new() });
+                }
+                _ => (),
+            }
+        }
+        units
     }
 
     /// The enumerations that variables have, each once.
@@ -297,6 +311,7 @@ fn variability(variable: &Variable) -> fmi::Variability {
 fn initial(variable: &Variable) -> Option<fmi::Initial> {
     match variable.causality {
         Causality::Parameter => Some(fmi::Initial::Exact),
+        Causality::Output | Causality::Local if variable.start.is_some() => Some(fmi::Initial::Exact),
         Causality::CalculatedParameter | Causality::Output | Causality::Local => Some(fmi::Initial::Calculated),
         Causality::Input | Causality::Independent => None,
     }

@@ -40,10 +40,10 @@ pub struct FmiModelDescription {
     #[serde(rename = "CoSimulation")]
     pub co_simulation: CoSimulation,
     /// Units of the variables.
-    #[serde(rename = "UnitDefinitions")]
+    #[serde(rename = "UnitDefinitions", skip_serializing_if = "List::is_empty")]
     pub unit_definitions: List<Unit>,
     /// Types that variables declare.
-    #[serde(rename = "TypeDefinitions")]
+    #[serde(rename = "TypeDefinitions", skip_serializing_if = "List::is_empty")]
     pub type_definitions: List<EnumerationType>,
     /// Log categories that can be switched on.
     #[serde(rename = "LogCategories")]

@@ -3,6 +3,7 @@
 //! A [`Description`] makes a [`FmiModelDescription`] of a table of variables; call [`FmiModelDescription::to_xml`]. The fields stand in the order that the
 //! standard's schema asks of the elements; an attribute that is `None` is left out. What FMI 3.0 has otherwise is in [`fmi3`].
 
+pub mod archive;
 mod description;
 pub mod fmi3;
 mod model_structure;
@@ -62,10 +63,10 @@ pub struct FmiModelDescription {
     #[serde(rename = "CoSimulation")]
     pub co_simulation: CoSimulation,
     /// Units of the variables.
-    #[serde(rename = "UnitDefinitions")]
+    #[serde(rename = "UnitDefinitions", skip_serializing_if = "List::is_empty")]
     pub unit_definitions: List<Unit>,
     /// Types that variables declare.
-    #[serde(rename = "TypeDefinitions")]
+    #[serde(rename = "TypeDefinitions", skip_serializing_if = "List::is_empty")]
     pub type_definitions: List<SimpleType>,
     /// Log categories that can be switched on.
     #[serde(rename = "LogCategories")]
@@ -104,6 +105,12 @@ pub struct List<T> {
     /// The elements.
     #[serde(rename = "$value")]
     pub items: Vec<T>,
+}
+
+impl<T> List<T> {
+    fn is_empty(&self) -> bool {
+        self.items.is_empty()
+    }
 }
 
 /// What both interfaces can do. An attribute with the standard's default is left out.
@@ -205,6 +212,12 @@ pub struct DefaultExperiment {
     /// Communication step, s.
     #[serde(rename = "@stepSize", serialize_with = "shortest")]
     pub step_size: f64,
+}
+
+impl Default for DefaultExperiment {
+    fn default() -> DefaultExperiment {
+        DefaultExperiment { start_time: 0.0, stop_time: 3.0, tolerance: 1e-9, step_size: 0.01 }
+    }
 }
 
 /// Writes a number with the fewest digits that read back the same: `1e-9`, not `0.000000001`.

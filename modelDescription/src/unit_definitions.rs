@@ -8,8 +8,8 @@ pub struct Unit {
     #[serde(rename = "@name")]
     pub name: String,
     /// Its SI base units.
-    #[serde(rename = "BaseUnit")]
-    pub base_unit: BaseUnit,
+    #[serde(rename = "BaseUnit", skip_serializing_if = "Option::is_none")]
+    pub base_unit: Option<BaseUnit>,
     /// Units that hosts may show instead.
     #[serde(rename = "DisplayUnit")]
     pub display_units: Vec<DisplayUnit>,

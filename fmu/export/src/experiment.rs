@@ -59,7 +59,7 @@ mod tests {
             };
             let text: String = (0..4000).map(line).collect();
             let ground =
-                GroundRecord::from_bytes(Path::new("a.csv"), format!("t (s),a (g)\n{text}").as_bytes()).unwrap();
+                GroundRecord::from_bytes(Path::new("a.csv"), format!("t (s),a (g)\n{text}").as_bytes(), 9.81).unwrap();
             let DefaultExperiment { stop_time, step_size, .. } = default_experiment(&structure, Some(&ground));
             let record = ground.in_m_s2(9.81);
             let finish = Run::new(structure, &record).follow(&mut ()).unwrap();

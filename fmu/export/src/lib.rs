@@ -1,7 +1,6 @@
 //! Makes the FMU: an archive of the shared libraries with all that describes them.
 #![allow(non_snake_case)] // the shared library's name
 
-mod archive;
 mod documentation;
 mod experiment;
 mod library;
@@ -10,9 +9,9 @@ pub mod significant;
 mod units;
 
 use ::model_description::DefaultExperiment;
+use ::model_description::archive::{Entry, archive};
 use FlexibleRocking::ground::GroundRecord;
 use FlexibleRocking::resources::{Contents, PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records};
-use archive::Entry;
 pub use library::{Library, LibraryError, Platform};
 use rocking::Structure;
 use rocking::run::record::SamplesError;
@@ -122,7 +121,7 @@ pub fn export(
     }
     let (mut contents, mut files) = (Contents::from(*structure.parameters()), Vec::new());
     let mut pack = |contents: &Contents, (path, content): RecordFile| {
-        let record = GroundRecord::from_bytes(&path, &content)?;
+        let record = GroundRecord::from_bytes(&path, &content, structure.parameters().g)?;
         let name = path.file_name().and_then(|name| name.to_str());
         let file = name.ok_or_else(|| ExportError::RecordName(path.clone()))?.to_owned();
         if contents.packed().any(|packed| packed.file.to_lowercase() == file.to_lowercase()) {
@@ -143,8 +142,7 @@ pub fn export(
         ground = Some(GroundRecord::with_vertical(ground, &record)?);
     }
     let experiment = experiment::default_experiment(structure, ground.as_ref());
-    let archive =
-        archive::archive(&entries(version, name.as_str(), structure, &contents, experiment, files, &libraries)?)?;
+    let archive = archive(&entries(version, name.as_str(), structure, &contents, experiment, files, &libraries)?)?;
     Ok((contents, archive))
 }
 

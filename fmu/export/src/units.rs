@@ -31,7 +31,7 @@ pub fn definitions(structure: &Structure) -> Vec<fmi::Unit> {
     let definition = |(name, [kg, m, s, rad]): (&str, [i32; 4])| {
         let shown = shown_in(name, structure);
         let shown = shown.map(|(name, factor)| fmi::DisplayUnit { name: name.into(), factor });
-        let base_unit = fmi::BaseUnit { kg, m, s, rad };
+        let base_unit = Some(fmi::BaseUnit { kg, m, s, rad });
         fmi::Unit { name: name.into(), base_unit, display_units: shown.into_iter().collect() }
     };
     UNITS.map(definition).into()

@@ -114,6 +114,7 @@ pub(crate) unsafe fn free<F: Function>(c: *mut c_void) {
 }
 
 /// Follows `c` if it points to a component.
+#[inline]
 unsafe fn component<'a, F: Function>(c: *mut c_void) -> Option<&'a Component<F>> {
     let c = c.cast::<Component<F>>();
     if c.is_null() || !c.is_aligned() {
@@ -125,6 +126,7 @@ unsafe fn component<'a, F: Function>(c: *mut c_void) -> Option<&'a Component<F>>
 }
 
 /// Calls `body` with the instance that `c` points to, if `function` is allowed in its state. No panic gets out.
+#[inline]
 pub(crate) unsafe fn call<F: Function>(
     c: *mut c_void,
     function: F,
@@ -142,6 +144,7 @@ pub(crate) unsafe fn call_on<F: Function>(
     unsafe { call_in(c, function, |_| Stage::WITHIN_STEP, body) }
 }
 
+#[inline]
 unsafe fn call_in<F: Function>(
     c: *mut c_void,
     function: F,
@@ -192,6 +195,7 @@ fn panic_message(panic: &(dyn Any + Send)) -> &str {
 }
 
 /// The `length` values at `pointer`.
+#[inline]
 pub(crate) unsafe fn values<'a, T>(name: &'static str, pointer: *const T, length: size_t) -> Result<&'a [T], Failure> {
     check_length(length)?;
     if length == 0 {
@@ -202,6 +206,7 @@ pub(crate) unsafe fn values<'a, T>(name: &'static str, pointer: *const T, length
 }
 
 /// Room for `length` values at `pointer`.
+#[inline]
 pub(crate) unsafe fn room<'a, T>(
     name: &'static str,
     pointer: *mut T,
@@ -257,10 +262,12 @@ pub(crate) unsafe fn write<T>(name: &'static str, pointer: *mut T, value: T) -> 
     Ok(())
 }
 
+#[inline]
 fn check_length(length: size_t) -> Result<(), Failure> {
     if length > MAX_LENGTH { Err(Failure::TooLong { length, limit: MAX_LENGTH }) } else { Ok(()) }
 }
 
+#[inline]
 pub(crate) fn check_pointer<T>(name: &'static str, pointer: *const T) -> Result<(), Failure> {
     if pointer.is_null() || !pointer.is_aligned() { Err(Failure::BadPointer(name)) } else { Ok(()) }
 }

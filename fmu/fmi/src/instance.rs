@@ -33,6 +33,8 @@ pub struct Instance {
     experiment: Experiment,
     logger: Logger,
     events_at_start: bool,
+    /// The model's state, as it was made.
+    at_start: Vec<u8>,
     snapshots: Snapshots,
     /// Values on their way between the host and the model.
     reals: Vec<f64>,
@@ -74,7 +76,7 @@ impl Instance {
         logger.set_events(events);
         let variables = model.variables();
         let kinds = variables.iter().map(Kind::from).collect();
-        let (stage, events_at_start) = (Stage::Instantiated, events);
+        let (stage, events_at_start, at_start) = (Stage::Instantiated, events, model.state());
         let (experiment, snapshots, reals, shown, asked, led_to) = Default::default();
         Instance {
             model,
@@ -85,6 +87,7 @@ impl Instance {
             experiment,
             logger,
             events_at_start,
+            at_start,
             snapshots,
             reals,
             shown,
@@ -95,6 +98,7 @@ impl Instance {
     }
 
     /// State of FMI's state machine.
+    #[inline]
     pub(crate) fn stage(&self) -> Stage {
         self.stage
     }
@@ -119,6 +123,10 @@ impl Instance {
     fn find(&self, reference: u32) -> Result<&Variable, Failure> {
         let last = self.variables.len() - 1;
         self.variables.get(reference as usize).ok_or(Failure::UnknownReference { reference, last })
+    }
+
+    fn is_state(&self, reference: u32) -> bool {
+        self.variables[reference as usize].role == Role::State
     }
 
     /// How many variables play a role.
@@ -174,7 +182,7 @@ impl Instance {
 
     /// Makes the instance as it was instantiated. FMU states stay the host's until it frees them.
     pub(crate) fn reset(&mut self) -> Result<(), Failure> {
-        self.model.reset();
+        self.model.restore(&self.at_start)?;
         self.experiment = Experiment::default();
         self.logger.set_events(self.events_at_start);
         self.enter(Stage::Instantiated)
@@ -239,15 +247,18 @@ impl Instance {
 /// How values are read and set: all of a call, or none if one is refused.
 impl Instance {
     /// Reads real numbers.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn get_real(&mut self, references: &[u32], values: &mut [MaybeUninit<f64>]) -> Result<(), Failure> {
         let is_real = |reference: &u32| self.kinds.get(*reference as usize).is_some_and(|kind| kind.is & REAL != 0);
         if let Some(wrong) = references.iter().find(|reference| !is_real(reference)) {
             return Err(self.find(*wrong).map_or_else(|failure| failure, Failure::wrong_type));
         }
-        self.reals.resize(references.len(), 0.0);
-        self.model.get_reals(references, &mut self.reals)?;
-        values.iter_mut().zip(&self.reals).for_each(|(place, value)| _ = place.write(*value));
+        if self.reals.len() < references.len() {
+            self.reals.resize(references.len(), 0.0);
+        }
+        let reals = &mut self.reals[..references.len()];
+        self.model.get_reals(references, reals)?;
+        values.iter_mut().zip(reals).for_each(|(place, value)| _ = place.write(*value));
         Ok(())
     }
 
@@ -301,7 +312,7 @@ impl Instance {
     }
 
     /// Sets real numbers. While the host integrates, it can set the states, too.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn set_real(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
         let is_fit = |(reference, value): (&u32, &f64)| {
             let kind = self.kinds.get(*reference as usize);
@@ -316,7 +327,7 @@ impl Instance {
     #[cold]
     #[inline(never)]
     fn set_real_slowly(&mut self, references: &[u32], values: &[f64]) -> Result<(), Failure> {
-        let mut states = None;
+        let mut states: Option<Vec<f64>> = None;
         for (reference, &value) in references.iter().zip(values) {
             let variable = self.find(*reference)?;
             let DataType::Real { unit, range } = variable.data_type else { return Err(refused(variable)) };
@@ -329,16 +340,16 @@ impl Instance {
             let (name, description) = (variable.name.to_string(), variable.description.to_string());
             match variable.causality {
                 Causality::Input => (),
-                Causality::Parameter if self.stage.has_started() => return Err(Failure::Fixed { name }),
-                Causality::Parameter => (),
-                _ => return Err(refused(variable)),
+                _ if variable.start.is_none() => return Err(refused(variable)),
+                _ if self.stage.has_started() => return Err(Failure::Fixed { name }),
+                _ => (),
             }
             if let Some((min, max)) = range.filter(|(min, max)| !(*min..=*max).contains(&value)) {
                 return Err(Failure::OutOfRange { name, value, unit, min, max, description });
             }
         }
-        if let Some(states) = states {
-            self.model.set_states(&states)?;
+        if let Some(states) = &states {
+            self.model.set_states(states)?;
         }
         let (mut inputs, mut of_inputs) = (Vec::new(), Vec::new());
         for (reference, &value) in references.iter().zip(values) {
@@ -348,8 +359,8 @@ impl Instance {
                     inputs.push(*reference);
                     of_inputs.push(value);
                 }
-                (Causality::Parameter, _) => self.model.set(*reference, Value::Real(value)),
-                _ => (), // a state
+                _ if states.is_none() || !self.is_state(*reference) => self.model.set(*reference, Value::Real(value)),
+                _ => (), // set with all states
             }
         }
         self.model.set_inputs(&inputs, &of_inputs)
@@ -416,7 +427,7 @@ impl Instance {
     }
 
     /// Sets slopes of the inputs over the next step.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn set_real_input_derivatives(
         &mut self,
         references: &[u32],
@@ -524,7 +535,7 @@ impl Instance {
 
     /// Steps from `point` (s), where the instance is but for rounding, over `step` (s), or to the first event if that is
     /// handed over. The instance takes over the host's clock.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn do_step(&mut self, point: f64, step: f64) -> Result<Progress, Failure> {
         if self.asked.take().is_some() {
             self.stage = Stage::StepComplete;
@@ -561,7 +572,7 @@ impl Instance {
     }
 
     /// Refuses a step that cannot be made from `point` (s) over `step` (s).
-    #[inline]
+    #[inline(always)]
     fn check_step(&mut self, point: f64, step: f64) -> Result<(), Failure> {
         let time = self.model.time()?;
         let until = point + step;

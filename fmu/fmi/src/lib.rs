@@ -43,7 +43,25 @@ pub use failure::Failure;
 pub use interface::Interface;
 pub use logger::Logger;
 pub use model::{Completed, Experiment, Model, Progress, Step, Update};
+#[doc(hidden)]
+pub use postcard;
 pub use variables::{Causality, DataType, Enumeration, Role, Value, Variable};
+
+/// The functions [`Model::state`] and [`Model::restore`] of a model that is all of its state and implements serde's traits.
+#[macro_export]
+macro_rules! state_by_serde {
+    () => {
+        fn state(&self) -> ::std::vec::Vec<u8> {
+            $crate::postcard::to_stdvec(self).expect("the model can be written")
+        }
+
+        fn restore(&mut self, bytes: &[u8]) -> ::std::result::Result<(), $crate::Failure> {
+            *self = $crate::postcard::from_bytes(bytes)
+                .map_err(|_| $crate::Failure::BadBytes("its content cannot be read"))?;
+            Ok(())
+        }
+    };
+}
 
 /// Exports the functions that make instances of a [`Model`]. All others are exported with this crate.
 #[macro_export]

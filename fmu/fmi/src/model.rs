@@ -4,9 +4,10 @@ use crate::failure::Failure;
 use crate::interface::Interface;
 use crate::logger::Logger;
 use crate::sensitivity;
-use crate::variables::{Value, Variable};
+use crate::variables::{Role, Value, Variable, references, state_references};
 use std::path::Path;
 use std::sync::Arc;
+use uuid::Uuid;
 
 /// A model behind the interfaces of FMI. One value of the type is one instance.
 ///
@@ -18,8 +19,13 @@ pub trait Model: 'static {
     where
         Self: Sized;
 
-    /// The GUID of the FMU, FMI 3.0's instantiation token. FMUs that differ in anything must differ in it.
-    fn token(&self) -> String;
+    /// The GUID of the FMU, FMI 3.0's instantiation token. FMUs that differ in anything must differ in it: here in the type of
+    /// the model and its table of variables.
+    fn token(&self) -> String {
+        let path = std::any::type_name::<Self>(); // with the name of the crate, which may be a program's or a library's
+        let content = format!("{} {:?}", path.rsplit("::").next().unwrap_or(path), self.variables());
+        Uuid::new_v5(&Uuid::NAMESPACE_OID, content.as_bytes()).braced().to_string()
+    }
 
     /// What FMU states are known by: only states that were written under this name are read. FMUs with other start values
     /// may have the same.
@@ -29,9 +35,6 @@ pub trait Model: 'static {
 
     /// The table of variables, which stays the same; value references are its positions.
     fn variables(&self) -> Arc<[Variable]>;
-
-    /// Back to what [`Model::open`] made.
-    fn reset(&mut self);
 
     /// The value of a variable, also before the start: then it is what follows from the values set so far.
     fn get(&mut self, reference: u32) -> Result<Value, Failure>;
@@ -45,7 +48,7 @@ pub trait Model: 'static {
         Ok(())
     }
 
-    /// Sets a parameter or an input, within its range.
+    /// Sets a parameter or an input, within its range, or what the host's integrator has come to: a state or time.
     fn set(&mut self, reference: u32, value: Value);
 
     /// Sets inputs, real numbers within their ranges: as [`Model::set`], unless there is a faster way.
@@ -65,13 +68,27 @@ pub trait Model: 'static {
     }
 
     /// Takes tolerance and times, before the start.
-    fn set_up(&mut self, _experiment: &Experiment) {}
+    fn set_up(&mut self, experiment: &Experiment) {
+        self.set_time(experiment.start_time, false);
+    }
 
     /// Starts the simulation: what cannot be is refused now.
-    fn start(&mut self, interface: Interface, log: &Logger) -> Result<(), Failure>;
+    fn start(&mut self, _interface: Interface, _log: &Logger) -> Result<(), Failure> {
+        Ok(())
+    }
 
-    /// Where the simulation is, s.
-    fn time(&mut self) -> Result<f64, Failure>;
+    /// Where the simulation is, s: the value of the last variable.
+    fn time(&mut self) -> Result<f64, Failure> {
+        let last = self.variables().len() as u32 - 1;
+        Ok(self.values(&[last])?[0])
+    }
+
+    /// Values of real variables.
+    fn values(&mut self, references: &[u32]) -> Result<Vec<f64>, Failure> {
+        let mut values = vec![0.0; references.len()];
+        self.get_reals(references, &mut values)?;
+        Ok(values)
+    }
 
     /// Advances over a step of a co-simulation, which begins at `step.start` but for rounding of [`Model::time`].
     fn advance(&mut self, step: Step, log: &Logger) -> Result<Progress, Failure>;
@@ -101,31 +118,39 @@ pub trait Model: 'static {
     }
 
     /// Goes to the `time` (s) of the host's integrator, also at an event.
-    fn set_time(&mut self, _time: f64, _is_at_event: bool) {}
+    fn set_time(&mut self, time: f64, _is_at_event: bool) {
+        let last = self.variables().len() as u32 - 1;
+        self.set(last, Value::Real(time));
+    }
 
     /// The continuous states, in the order of the table.
     fn states(&mut self) -> Result<Vec<f64>, Failure> {
-        Ok(Vec::new())
+        self.values(&state_references(&self.variables()).collect::<Vec<_>>())
     }
 
     /// Goes to the states of the host's integrator.
-    fn set_states(&mut self, _states: &[f64]) -> Result<(), Failure> {
+    fn set_states(&mut self, states: &[f64]) -> Result<(), Failure> {
+        let variables = self.variables();
+        let references = state_references(&variables);
+        references.zip(states).for_each(|(reference, state)| self.set(reference, Value::Real(*state)));
         Ok(())
     }
 
     /// Usual magnitudes of the states.
     fn nominals(&mut self) -> Result<Vec<f64>, Failure> {
-        Ok(vec![1.0; self.states()?.len()])
+        let variables = self.variables();
+        let nominal = |state: u32| variables[state as usize].nominal.unwrap_or(1.0);
+        Ok(state_references(&variables).map(nominal).collect())
     }
 
     /// Derivatives of the states, in their order.
     fn state_rates(&mut self) -> Result<Vec<f64>, Failure> {
-        Ok(Vec::new())
+        self.values(&references(&self.variables(), |role| matches!(role, Role::RateOf(_))))
     }
 
     /// The event indicators, in the order of the table.
     fn indicators(&mut self) -> Result<Vec<f64>, Failure> {
-        Ok(Vec::new())
+        self.values(&references(&self.variables(), |role| *role == Role::Indicator))
     }
 
     /// The host's integrator has completed a step to where it is.

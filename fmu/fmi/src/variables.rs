@@ -24,7 +24,7 @@ pub struct Variable {
     pub role: Role,
     /// The variables that the value follows from directly, by name; of a state, those that it starts from.
     pub depends_on: Vec<Text>,
-    /// Start value of an input or a parameter.
+    /// Start value of an input, of a parameter, or of what the host may set before the start as it sets a parameter.
     pub start: Option<Value>,
     /// Unit that hosts best show the value in, if that is another than its own.
     pub display_unit: Option<Text>,
@@ -151,9 +151,14 @@ impl Variable {
         self
     }
 
-    /// The variable as a continuous state, which starts from those called `names`.
-    pub fn state<T: Into<Text>>(self, names: impl IntoIterator<Item = T>) -> Variable {
-        Variable { role: Role::State, ..self.from(names) }
+    /// The variable as a continuous state.
+    pub fn state(self) -> Variable {
+        Variable { role: Role::State, ..self }
+    }
+
+    /// The variable as an event indicator, positive until the event.
+    pub fn indicator(self) -> Variable {
+        Variable { role: Role::Indicator, ..self }
     }
 
     /// The variable as the derivative of the state `name`.
@@ -171,8 +176,9 @@ impl Variable {
 
     /// Whether initialization calculates the variable for others.
     pub fn is_initial_unknown(&self) -> bool {
-        matches!(self.causality, Causality::Output | Causality::CalculatedParameter)
-            || matches!(self.role, Role::State | Role::RateOf(_))
+        self.start.is_none()
+            && (matches!(self.causality, Causality::Output | Causality::CalculatedParameter)
+                || matches!(self.role, Role::State | Role::RateOf(_)))
     }
 }
 
@@ -180,6 +186,11 @@ impl Variable {
 pub fn position(variables: &[Variable], name: &str) -> usize {
     let found = variables.iter().position(|variable| variable.name == name);
     found.unwrap_or_else(|| panic!("no variable is called {name}"))
+}
+
+/// The references of the variables whose role is one, in their order.
+pub fn references(variables: &[Variable], is_one: fn(&Role) -> bool) -> Vec<u32> {
+    (0..).zip(variables).filter(|(_, variable)| is_one(&variable.role)).map(|(reference, _)| reference).collect()
 }
 
 /// The references of the continuous states, in their order.
@@ -201,7 +212,13 @@ pub fn dependencies(variables: &[Variable], of: usize, at_start: bool) -> Vec<us
         let is_known = match variable.causality {
             Causality::Parameter | Causality::Input => true,
             Causality::Independent => !at_start,
-            _ => variable.role == Role::State && !at_start,
+            _ => {
+                if at_start {
+                    variable.start.is_some()
+                } else {
+                    variable.role == Role::State
+                }
+            }
         };
         if is_known {
             known.insert(at);
