@@ -110,7 +110,8 @@ study:
 	cargo test --release --manifest-path study/Cargo.toml
 
 python: .venv/heavy module
-	$(PYTEST) -m heavy tests/test_python.py tests/test_validation.py tests/test_literature.py
+	$(PYTEST) -m heavy tests/test_python.py tests/test_validation.py tests/test_literature.py \
+		tests/test_doors.py::test_python_has_the_command_lines_numbers
 
 # In .venv the module is that of this folder; the archive in its place has the libraries that are there.
 module: .venv/dist exporter
@@ -126,7 +127,7 @@ hosts: .venv/heavy exporter windows host_packages
 browser: .venv/heavy module explore
 	-@$(HAS_CHROMIUM) || { $(call install,chromium); }
 	-@$(HAS_FIREFOX) || { $(call install,firefox-esr); }
-	$(PYTEST) -m heavy tests/test_view.py tests/test_explore.py
+	$(PYTEST) -m heavy tests/test_view.py tests/test_explore.py tests/test_doors.py::test_the_page_has_the_command_lines_numbers
 
 docs/img/explore.png: .venv/heavy explore
 	$(PYTHON) examples/explore_picture.py

@@ -71,7 +71,8 @@ def command_line(exporter: Path) -> str:
     commands = [line.split(maxsplit=1) for line in listed.splitlines() if not line.startswith("  help")]
     rows = "\n".join(f"| [`{name}`](#{name}) | {what} |" for name, what in commands)
     sections = "\n\n".join(f"## {name}\n\n```text\n{told(name)}\n```" for name, _ in commands)
-    return (f"# Command line\n\nWhich commands and options does `rocking-fmu` have? This is what `--help` prints.\n\n"
+    return (f"# Command line\n\nWhich commands and options does `rocking-fmu` have? This is what `--help` prints.\n"
+            f"[Runs](runs.md) has the rules that every run follows.\n\n"
             f"| command | does |\n|---|---|\n{rows}\n\n```text\n{help_of_all}\n```\n\n{sections}\n")
 
 
@@ -90,7 +91,7 @@ def variables(fmu: Path) -> str:
     """docs/reference/variables.md."""
     page = ("# Variables\n\nWhich variables does the FMU have, in which units and ranges? This is the model description of "
             "McManus's pier,\n`rocking-fmu export --preset mcmanus`. The values are that structure's. Request local variables "
-            "by name.\n")
+            "by name.\n[Runs](runs.md) has the rules that every run follows.\n")
 
     def number(value: str | None) -> str:
         return "" if value is None else re.sub(r"e([+-])0?", r"e\1", f"{float(value):g}").replace("e+", "e")

@@ -16,6 +16,7 @@ use rocking::{
     Transition, TransitionKind,
 };
 use shaking::shaking;
+use std::mem::discriminant;
 
 const LEVELS: [Detail; 4] = [Detail::Auto, Detail::Nonlinear, Detail::Linear, Detail::Rigid];
 
@@ -475,5 +476,29 @@ fn a_tolerance_that_is_none_is_refused() {
     for tolerance in [f64::NAN, -1.0, 0.0, 1.0] {
         let refused = Engine::new(structure(Parameters::MCMANUS), State::default(), 0.0, tolerance).unwrap_err();
         assert!(refused.to_string().starts_with(&format!("tolerance = {tolerance}")), "{refused}");
+    }
+}
+
+/// A dissipator that has yielded up to an impact is back at F_y at the next impact: no yielding begins there, however time is cut.
+#[test]
+fn no_dissipator_begins_to_yield_at_an_impact() {
+    let ground = shaking(5, 0.01, 300, 3.0);
+    for (detail, part) in LEVELS.into_iter().flat_map(|detail| [0.5, 0.8, 1.2].map(|part| (detail, part))) {
+        let yielding = Parameters { xi_d: part * Parameters::MCMANUS.B, k_d: 1e5, F_y: 100.0, ..Parameters::MCMANUS };
+        let followed_to = |end: End| {
+            let mut transitions: Vec<Transition> = Vec::new();
+            let run = Run { detail, end, ..Run::new(structure(yielding), &ground) };
+            let finish = run.follow(&mut |at: &Transition| transitions.push(*at)).unwrap();
+            (finish.motion.time, transitions)
+        };
+        let (end, transitions) = followed_to(End::AtRest);
+        let kinds = |of: &[Transition]| of.iter().map(|at| discriminant(&at.kind)).collect::<Vec<_>>();
+        assert_eq!(kinds(&transitions), kinds(&followed_to(End::At(end)).1), "{detail:?} {part}");
+        let at_impact = |pair: &[Transition]| {
+            matches!(pair[0].kind, TransitionKind::Yielding(_))
+                && matches!(pair[1].kind, TransitionKind::Impact(_) | TransitionKind::Landing)
+                && pair[1].time - pair[0].time < 1e-9
+        };
+        assert!(transitions.len() > 20 && !transitions.windows(2).any(at_impact), "{detail:?} {part}");
     }
 }

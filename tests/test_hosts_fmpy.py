@@ -16,7 +16,7 @@ from fmpy.fmi2 import defaultCallbacks, fmi2CallbackFunctions, fmi2CallbackLogge
 from fmpy.logging import addLoggerProxy
 from fmpy.util import read_csv
 from host import simulate
-from pacoima import A_G, END, OUTPUTS, STEP, STEPS, TIME, distance, held, instants, linear, rows, write_record
+from pacoima import A_G, END, OUTPUTS, STEP, STEPS, TIME, distance, held, linear, rows, write_record
 
 _SAID = []
 
@@ -35,16 +35,6 @@ def test_simulate_fmu_with_the_record_inside(shaken, exact, step):
     result, events = simulate(shaken["mcmanus"], stop_time=END, output_interval=step, output=OUTPUTS)
     assert len(events) == 31
     assert distance(rows(result), exact(step)) < 1e-9
-
-
-@pytest.mark.parametrize("step", STEPS)
-def test_the_steps_of_a_slave_with_the_record_inside(shaken, exact, step):
-    with shaken["mcmanus"].start() as instance:
-        found = [instance.reals(OUTPUTS)]
-        for until in instants(step)[1:]:
-            instance.step(until)
-            found.append(instance.reals(OUTPUTS))
-    assert distance(np.array(found), exact(step)) < 1e-9
 
 
 @pytest.mark.parametrize("step", STEPS)

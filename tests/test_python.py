@@ -79,19 +79,11 @@ def test_the_stub_has_the_names_of_the_tables():
     assert all(re.search(rf"\b{name}\b", fr.simulate.__doc__) for name in typed["_InitialValues"])
 
 
-def test_a_run_is_the_command_lines(run, said):
-    printed = json.loads(said("simulate", "--record", RECORD, *OPTIONS, "--format", "json", "-o", "response.csv"))
-    for peak in printed["peaks"]:
-        found = run.peaks[peak["name"]]
-        assert (found.value, found.time, found.unit) == (peak["peak"], peak["time"], peak["unit"])
-    validity = run.validity
-    for beyond in printed["validity"]:
-        worst = validity[beyond["name"]]
-        assert (worst.value, worst.limit) == (float(beyond["value"]), beyond["limit"])
-    found = {"transitions": len(run.transitions), "steps": run.steps, "end": run.end, "ending": run.ending}
-    assert found == {name: printed[name] for name in found}
+def test_a_run_prints_what_the_command_line_prints(run, said):
     text = said("simulate", "--record", RECORD, *OPTIONS).splitlines()
     assert str(run).splitlines()[1:] == text[1:]
+    validity = json.loads(said("simulate", "--record", RECORD, *OPTIONS, "--format", "json"))["validity"]
+    assert {name: of.limit for name, of in run.validity.items()} == {of["name"]: of["limit"] for of in validity}
 
 
 def test_the_motion_between_samples_is_the_command_lines(run, said, tmp_path):

@@ -11,6 +11,11 @@ use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::series::taylor::{Arc, ZERO};
 use crate::{Side, State, Structure};
 
+/// Rotation at which a dissipator would begin to yield as the base comes down, as a fraction of the rotation that takes it from 0 to
+/// F_y, below which the impact comes first. A dissipator that has yielded up to an impact returns to F_y at the next one: rounding
+/// alone would decide.
+const AT_CONTACT: f64 = 1e-10;
+
 /// The first instant of `arc`, rocking about `side`, at which one of the `dissipators` begins to yield or ceases to, and which.
 pub(crate) fn first(
     structure: &Structure,
@@ -37,6 +42,10 @@ pub(crate) fn first(
                     let elongation = dissipators.plastic[j] + f64::from(way) * F_y / k_d;
                     let Some(theta) = angles.rotation(elongation / lever) else { continue };
                     let towards = (f64::from(way) * lever).signum();
+                    let is_at_contact = theta.abs() <= AT_CONTACT * (F_y / (k_d * lever)).abs();
+                    if is_at_contact && towards != side.sign() {
+                        continue;
+                    }
                     let is_less = Guard::new(arc.used(&arc.theta), -towards, towards * theta);
                     let moves_back = moves(-f64::from(way));
                     see(first_time_all_closed([is_less, moves_back], arc.reach), Event::Yielding(j as u8, way));

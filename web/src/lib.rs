@@ -110,7 +110,7 @@ impl Explorer {
         let fields = Fields::read(fields)?;
         let (structure, ground) = self.load(&fields)?;
         let found = fields.run(structure, &ground.record)?.found(&mut ()).map_err(says)?;
-        let peaks = rocking::run::peaks::PEAKS.iter().map(|peaking| (peaking.name, peaking.of(&found.peaks)));
+        let peaks = rocking::run::peaks::of(&structure).map(|peaking| (peaking.name, peaking.of(&found.peaks)));
         let peaks = peaks.map(|(name, peak)| json!([name, peak.magnitude, peak.time]));
         let motion = &found.finish.motion;
         Ok(json!({

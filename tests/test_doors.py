@@ -1,0 +1,265 @@
+"""Random scenes through every door: command line, FMU 2.0, FMU 3.0, Python and the page give the same numbers.
+
+docs/reference/runs.md has the rules. Numbers are equal to the bit, but for an FMU's last digits after the record."""
+
+import csv
+import json
+import re
+import subprocess
+from dataclasses import asdict, dataclass, field, replace
+from pathlib import Path
+from random import Random
+
+import fmpy
+import numpy as np
+import pytest
+from conftest import ROOT
+from first_run import RECORD
+from host import PHASES
+from reference import EVISON, MCMANUS, Structure
+
+LEVELS = ("auto", "nonlinear", "linear", "modal", "rigid", "fixed_base")
+VALIDITY = ("tension_max", "R_v_min", "mu_required", "mu_impact", "tension_impact", "energy_gain_max")
+GROUNDS = ("AT2", "CSV", "arrays", "arrays with a_v", "free")
+SCENES = range(40)
+
+
+@dataclass
+class Scene:
+    """What to simulate; `answer` is the command line's."""
+
+    structure: dict  # numbers by name, and the preset
+    ground: str
+    record: Path | None = None
+    vertical: Path | None = None
+    arrays: list = field(default_factory=list)  # s, m/s2, m/s2
+    scales: dict = field(default_factory=dict)
+    initial: dict = field(default_factory=dict)
+    how: dict = field(default_factory=dict)  # detail, tolerance
+    duration: float | None = None
+    start: float = 0.0
+    record_end: float = 0.0
+    answer: dict = field(default_factory=dict)
+
+
+def random_structure(random: Random) -> tuple[Structure, dict]:
+    """It for the reference, and as numbers by name."""
+    preset, base = random.choice([("mcmanus", MCMANUS), ("evison", EVISON)])
+    changed = dict(f_fc=random.uniform(2, 12), r=random.uniform(0.85, 1), m0=random.uniform(0, 80), g=random.choice([1.62, 9.80665]))
+    changed = {name: changed[name] for name in random.sample(list(changed), random.randrange(5))}
+    structure = replace(base, **changed)
+    numbers = {"preset": preset} | changed if random.random() < 0.5 else asdict(structure)
+    if random.random() < 0.4:
+        weight = (structure.m + structure.m0) * structure.g
+        numbers |= dict(P_0=random.uniform(0, 0.5) * weight, k_t=random.uniform(0, 20) * weight / structure.B)
+    if random.random() < 0.2:
+        weight = (structure.m + structure.m0) * structure.g
+        numbers |= dict(xi_d=structure.B, c_d=0.01 * weight / structure.B, k_d=50 * weight / structure.B, F_y=0.1 * weight)
+    return structure, numbers
+
+
+def write(path: Path, unit: str, time, a) -> Path:
+    """A table with all digits."""
+    path.write_text(f"t (s),a ({unit})\n" + "".join(f"{t!r},{a!r}\n" for t, a in zip(time.tolist(), a.tolist())))
+    return path
+
+
+def random_scene(number: int, folder: Path) -> Scene:
+    random = Random(number)
+    structure, numbers = random_structure(random)
+    scene = Scene(numbers, GROUNDS[number % len(GROUNDS)])
+    strength = random.uniform(1, 10) * structure.g * structure.tan_alpha_cg  # m/s2; 1 lifts a rigid block
+    if scene.ground == "free":
+        scene.duration = scene.record_end = 10.0
+        scene.initial = dict(theta_0=random.uniform(-1.1, 1.1) * structure.alpha_cg, u_0=random.uniform(-1, 1) * structure.u_cr)
+    elif scene.ground == "AT2":
+        scene.record = RECORD
+        scene.scales = dict(scale=strength / (1.17 * structure.g), time_scale=random.choice([0.2, 0.5, 1.0]))
+        scene.record_end = 4171 * 0.01 * scene.scales["time_scale"]
+    else:
+        scene.start = random.choice([0.0, 0.0, 3.7])
+        time = scene.start + np.cumsum([0.0, *(random.choice([0.01, 0.007]) for _ in range(299))])
+        phase = 2 * np.pi * random.uniform(1, 3) * (time - scene.start)
+        a_g = strength * np.sin(phase)
+        if scene.ground == "CSV":
+            scene.record = write(folder / f"{number}.csv", "cm/s2", time, 100 * a_g)
+            scene.scales = random.choice([{}, dict(scale=1.3), dict(scale=0.7, time_scale=0.8)])
+        else:
+            scene.record, scene.arrays = write(folder / f"{number}.csv", "m/s2", time, a_g), [time, a_g]
+        if scene.ground == "arrays with a_v":
+            scene.arrays.append(random.uniform(0, 1.1) * structure.g * np.cos(3 * phase))
+            scene.vertical = write(folder / f"{number}v.csv", "m/s2", time, scene.arrays[2])
+        time_scale = scene.scales.get("time_scale", 1.0)
+        scene.start, scene.record_end = time[0] * time_scale, time[-1] * time_scale
+        scene.duration = random.choice([None, None, None, 1.2345])
+    if random.random() < 0.6:
+        can = LEVELS if numbers.keys().isdisjoint({"P_0", "xi_d"}) and not scene.vertical else ("nonlinear", "linear", "rigid")
+        scene.how = dict(detail=random.choice(can), tolerance=random.choice([1e-9, 1e-6]))
+        if scene.how["detail"] == "rigid":
+            scene.initial.pop("u_0", None)
+        elif scene.how["detail"] == "fixed_base":
+            scene.initial.pop("theta_0", None)
+    return scene
+
+
+def options(**values) -> list[str]:
+    return [f"--{name.replace('_', '-')}={value}" for name, value in values.items()]
+
+
+def command_line(exporter: Path, scene: Scene, folder: Path) -> dict:
+    """Every number, and the instant that decides it: peaks, worsts, transitions, and how the run ended."""
+    ground = options(record=scene.record, **scene.scales) if scene.record else options(free=scene.duration)
+    ground += options(record_v=scene.vertical) if scene.vertical else []
+    ground += options(duration=scene.duration) if scene.duration and scene.record else []
+    command = [exporter, "--quiet", "simulate", *ground, *options(**scene.structure, **scene.initial, **scene.how)]
+    told = json.loads(subprocess.run([*command, "--format", "json", "--events", "events.csv"], cwd=folder, check=True,
+                                     capture_output=True, text=True).stdout)
+    with open(folder / "events.csv") as file:
+        transitions = [(float(row["time[s]"]), row["kind"].split()[0]) for row in csv.DictReader(file)]
+    rows = {row["name"]: (float(row.get("peak", row.get("value"))), row["time"]) for row in told["peaks"] + told["validity"]}
+    counted = {name: told[name] for name in ("transitions", "end", "ending", "fall", "steps", "evaluations")}
+    return rows | numbered(transitions) | at_end(told["end"], counted)
+
+
+def numbered(transitions: list) -> dict:
+    return {f"{kind} {number}": (time, time) for number, (time, kind) in enumerate(transitions)}
+
+
+def at_end(end: float, counted: dict) -> dict:
+    return {name: (value, end) for name, value in counted.items() if value is not None}
+
+
+@pytest.fixture(scope="module")
+def scenes(exporter, tmp_path_factory) -> list[Scene]:
+    folder = tmp_path_factory.mktemp("scenes")
+    made = [random_scene(number, folder) for number in SCENES]
+    for scene in made:
+        scene.answer = command_line(exporter, scene, folder)
+    return made
+
+
+def test_the_scenes_are_of_all_kinds(scenes):
+    def count(is_meant):
+        return sum(map(is_meant, scenes))
+
+    assert [count(lambda of: of.answer["ending"][0] == ending) > 3 for ending in ("at rest", "overturned", "at time")] == [True] * 3
+    assert count(lambda of: of.structure.get("g", 9.81) != 9.81) > 9 and count(lambda of: "preset" in of.structure) > 9
+    assert count(lambda of: "k_t" in of.structure) > 9 and count(lambda of: "k_d" in of.structure) > 3
+    assert count(lambda of: of.start != 0) > 3 and {of.how.get("detail") for of in scenes} >= set(LEVELS[1:])
+    assert count(lambda of: of.answer["transitions"][0] > 10) > 20
+
+
+@pytest.mark.parametrize("number", SCENES)
+def test_the_ground_peaks_while_the_run_lasts(scenes, number):
+    scene = scenes[number]
+    peak, instant = scene.answer["a_g"]
+    assert scene.start <= instant <= scene.answer["end"][0]
+    if scene.arrays:
+        time, a_g = scene.arrays[:2]
+        covered = np.append(time[time < scene.answer["end"][0]], min(scene.answer["end"][0], time[-1]))
+        assert peak == pytest.approx(np.abs(np.interp(covered, time, a_g)).max(), rel=1e-12)
+
+
+def export(exporter: Path, scene: Scene, fmi: int, folder: Path) -> Path:
+    fmu = folder / f"{fmi}.fmu"
+    files = [f"--{name}={path}" for name, path in (("record", scene.record), ("record-v", scene.vertical)) if path]
+    subprocess.run([exporter, "--quiet", "export", f"--fmi={fmi}", *options(**scene.structure), *files, "-o", fmu], check=True)
+    return fmu
+
+
+def co_simulation(fmu: Path, scene: Scene) -> dict:
+    """The same of an FMU, the record inside, that fmpy steps to the end in one step."""
+    end, overturns = scene.answer["end"][0], scene.answer["ending"][0] == "overturned"
+    until = max(end, scene.record_end) + 1 if overturns else end
+    values = {f"record_{name}": value for name, value in scene.scales.items()} | scene.initial
+    values |= dict(peaks=True, validity=True, detail=1 + LEVELS.index(scene.how.get("detail", "auto")))
+    names = {variable.name for variable in fmpy.read_model_description(str(fmu)).modelVariables}
+    peaks = {name.removeprefix("t_") for name in names if re.fullmatch("t_.*_max|t_mu_.*|t_R_v_min|t_tension_impact", name)}
+    asked, said = [*peaks, *(f"t_{name}" for name in peaks), "transitions", "phase", "t_overturned"], []
+    rows = fmpy.simulate_fmu(str(fmu), start_time=scene.start, stop_time=until, output_interval=until - scene.start, start_values=values,
+                             relative_tolerance=scene.how.get("tolerance", 1e-9), output=asked, record_events=False,
+                             fmi_type="CoSimulation", debug_logging=True, logger=lambda *message: said.append(message[-1].decode()))
+    last = rows[-1]
+    end = last["t_overturned"] if last["phase"] == PHASES["overturned"] else last["time"]
+    found = {name if name in VALIDITY else name.removesuffix("_max"): (last[name], last[f"t_{name}"]) for name in peaks}
+    kinds = "uplift|impact|landing|overturning|yielding|unloading"
+    transitions = [(text, re.match(rf"t = (\S+) s: ({kinds})", text)) for text in said]
+    transitions = [(float(of[1]), "settling" if "contact is held" in text else of[2]) for text, of in transitions if of]
+    fall = [float(of[1]) for text in said if (of := re.search(r"falling since t = (\S+) s", text))]
+    counted = dict(transitions=last["transitions"], end=end, fall=fall[0] if fall else None)
+    return found | numbered(transitions) | at_end(end, counted)
+
+
+@pytest.mark.parametrize("number", SCENES)
+def test_both_fmus_have_the_command_lines_numbers(scenes, exporter, tmp_path, number):
+    scene = scenes[number]
+    expected = {name: of for name, of in scene.answer.items() if name not in ("a_g", "ending", "steps", "evaluations")}
+    fmu = export(exporter, scene, 2, tmp_path)
+    found = co_simulation(fmu, scene)
+    assert co_simulation(export(exporter, scene, 3, tmp_path), scene) == found
+    assert found.keys() - {"P_t"} == expected.keys() - {"P_t"}
+    for name, of in expected.items():
+        is_exact = (expected["end"][1] if name in VALIDITY else max(of[1], found[name][1])) <= scene.record_end
+        limit = 0 if is_exact and scene.start == 0 else 1e-15 if is_exact else 1e-9
+        assert found[name] == pytest.approx(of, rel=limit, abs=0), name
+    if scene.record and not (scene.scales or scene.how or scene.duration):
+        own = fmpy.read_model_description(str(fmu)).defaultExperiment
+        assert -1e-8 < float(own.stopTime) - (expected["end"][0] - scene.start) < float(own.stepSize)
+
+
+@pytest.mark.heavy
+@pytest.mark.filterwarnings("ignore::UserWarning")  # of records
+@pytest.mark.parametrize("number", SCENES)
+def test_python_has_the_command_lines_numbers(scenes, number):
+    fr = pytest.importorskip("flexible_rocking", reason="make python")
+    scene = scenes[number]
+    ground = None
+    if scene.arrays:
+        ground = fr.Record(*scene.arrays).scaled(**scene.scales)
+    elif scene.record:
+        ground = fr.Record.read(scene.record, **scene.scales)
+    run = fr.simulate(fr.Structure(**scene.structure), ground, duration=scene.duration, **scene.initial, **scene.how)
+    found = {name: (of.value, of.time) for name, of in (run.peaks | run.validity).items()}
+    found |= numbered([(of.time, of.kind.split()[0]) for of in run.transitions])
+    found |= at_end(run.end, {name: getattr(run, name) for name in ("end", "ending", "fall", "steps", "evaluations")})
+    assert found == {name: of for name, of in scene.answer.items() if name != "transitions"}
+
+
+#: The page's engine in node: a line of fields and file in, a line of answers out.
+ENGINE = """
+const fs = require("fs"), zlib = require("zlib");
+const page = fs.readFileSync(process.argv[1], "utf8");
+const part = (id) => page.match(new RegExp(`<script[^>]*id="${id}"[^>]*>([^]*?)</script>`))[1];
+require("vm").runInThisContext(part("glue") + ";globalThis.wasm_bindgen = wasm_bindgen");
+wasm_bindgen.initSync({ module: new WebAssembly.Module(zlib.gunzipSync(Buffer.from(part("engine"), "base64"))) });
+const answer = ([fields, file]) => {
+  const explorer = new wasm_bindgen.Explorer();
+  if (file) explorer.take_record(file, fs.readFileSync(file));
+  return [JSON.parse(explorer.peaks(fields)), JSON.parse(explorer.validity(fields))];
+};
+console.log(JSON.stringify(JSON.parse(fs.readFileSync(0)).map(answer)));
+"""
+
+
+@pytest.mark.heavy
+def test_the_page_has_the_command_lines_numbers(scenes):
+    """Of the scenes that its fields can hold, in the node that playwright brings."""
+    driver = pytest.importorskip("playwright._impl._driver", reason="make browser")
+    page = ROOT / "out" / "explore.html"
+    assert page.is_file(), f"{page} is not there: make explore"
+    meant = [scene for scene in scenes if not scene.vertical and not (scene.record and scene.duration)]
+    asked = []
+    for scene in meant:
+        ground = {"ground": "record"} | scene.scales if scene.record else {"ground": "free", "duration": scene.duration}
+        fields = {name: str(value) for name, value in (scene.structure | scene.initial | scene.how | ground).items()}
+        asked.append([json.dumps(fields), scene.record and str(scene.record)])
+    node, _ = driver.compute_driver_executable()
+    answers = json.loads(subprocess.run([node, "-e", ENGINE, page], input=json.dumps(asked), check=True, capture_output=True,
+                                        text=True).stdout)
+    assert len(answers) > 20
+    unknown = {"a_g", "ending", "fall"}
+    for scene, (run, validity) in zip(meant, answers):
+        found = {name: (value, time) for name, value, time in run["peaks"]}
+        found |= {row["name"]: (float(row["value"]), row["time"]) for row in validity}
+        found |= at_end(run["end"], {name: run[name] for name in ("transitions", "end", "steps", "evaluations")})
+        assert found == {name: of for name, of in scene.answer.items() if name not in unknown and " " not in name}, scene
