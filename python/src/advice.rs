@@ -50,7 +50,7 @@ pub fn advise<'py>(
     };
     let conditions = conditions("auto", DEFAULT_TOLERANCE, duration, initial)?;
     conditions.check(&structure.0).map_err(refused)?;
-    let (structure, record) = (structure.0, record.0.get().under(structure.0.parameters().g)?);
+    let (structure, record) = (structure.0, record.0.get().under(structure.0.parameters().g));
     let (text, detail, levels) = interruptible(py, move |_| -> anyhow::Result<_> {
         let run = conditions.run(structure, &record);
         let comparison = compare(&run)?;
@@ -91,7 +91,7 @@ pub fn estimate<'py>(
     amplification: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
     let (structure, g) = (structure.0, structure.0.parameters().g);
-    let record = record.map(|Ground(record)| record.get().under(g)).transpose()?;
+    let record = record.map(|Ground(record)| record.get().under(g));
     let estimated = interruptible(py, move |_| estimates::Estimate::new(&structure, record.as_deref(), amplification))?;
     let mut text = String::new();
     write_columns(&mut text, &estimated.terms, g).map_err(refused)?;

@@ -81,7 +81,7 @@ fn export(
             Packed::Record(record) => {
                 let name = record.get().title().replace(|letter| !is_plain(letter), "_");
                 let files = ["", "_v"].map(|ending| PathBuf::from(format!("{name}{ending}.csv")));
-                return Ok(files.into_iter().zip(record.get().tables().map(String::into_bytes)).collect());
+                return Ok(files.into_iter().zip(record.get().tables().into_iter().map(String::into_bytes)).collect());
             }
             Packed::File(path) => path,
         };

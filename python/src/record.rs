@@ -7,7 +7,6 @@ use anyhow::ensure;
 use numpy::PyArray1;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyType;
 use rocking::Parameters;
 use rocking::estimates::intensity::peak_velocity;
 use rocking::estimates::response_spectrum;
@@ -36,75 +35,55 @@ pub const G: f64 = Parameters::EVISON.g;
 /// with them is a warning. Raises ValueError for other shapes, NaN and infinity, and times that do not increase.
 #[pyclass(frozen, module = "flexible_rocking")]
 pub struct Record {
-    given: Vec<Given>,
+    given: Samples,
+    /// Of what was given: m/s², or a unit of g.
+    unit: Unit,
     /// Multiplies the accelerations once they are in m/s².
     scale: f64,
-    /// Under [`G`].
+    /// In m/s², under [`G`].
     usual: Arc<Samples>,
 }
-
-/// A component, the horizontal one first, and the unit of its samples: one of g, or m/s².
-type Given = (Samples, Unit);
-
-/// The same in Python: times, accelerations, the name of their unit.
-type Plain<'py> = (Bound<'py, PyAny>, Bound<'py, PyAny>, String);
-
-/// A function, and what it makes a record of: its title, what was given, its scale.
-type Pickled<'py> = (Bound<'py, PyAny>, (String, Vec<Plain<'py>>, f64));
 
 fn unit(name: &str) -> PyResult<Unit> {
     one_of("unit", name, Unit::NAMES)
 }
 
-/// `given` in m/s² under `g` (m/s²).
-fn in_m_s2(given: &[Given], scale: f64, g: f64) -> anyhow::Result<Arc<Samples>> {
-    let mut components =
-        given.iter().map(|(samples, unit)| samples.clone().multiplied(unit.in_m_s2(g)).scaled(1.0, scale));
-    let mut record = components.next().expect("a record has a component")?;
-    if let Some(vertical) = components.next() {
-        record = record.with_vertical(&vertical?)?;
+/// These in m/s², unless the g of a structure decides how large their `unit` is.
+fn fixed(samples: Samples, unit: Unit) -> (Samples, Unit) {
+    match unit {
+        Unit::G | Unit::MilliG | Unit::PercentG => (samples, unit),
+        unit => (samples.multiplied(unit.in_m_s2(G)), Unit::MetrePerSecondSquared),
     }
-    Ok(Arc::new(record))
-}
-
-/// Whether a g decides how large the `unit` is.
-fn is_of_g(unit: Unit) -> bool {
-    unit.in_m_s2(1.0) != unit.in_m_s2(2.0)
 }
 
 impl Record {
-    fn of(given: Vec<Given>, scale: f64) -> PyResult<Record> {
-        let fixed = |(samples, unit): Given| match unit {
-            unit if is_of_g(unit) => (samples, unit),
-            unit => (samples.multiplied(unit.in_m_s2(G)), Unit::MetrePerSecondSquared),
-        };
-        let given: Vec<_> = given.into_iter().map(fixed).collect();
-        let usual = in_m_s2(&given, scale, G).map_err(refused)?;
-        Ok(Record { given, scale, usual })
+    fn new(given: Samples, unit: Unit, scale: f64) -> Record {
+        let usual = Arc::new(given.clone().multiplied(unit.in_m_s2(G)).multiplied(scale));
+        Record { given, unit, scale, usual }
     }
 
-    /// `samples`, m/s².
-    pub fn in_si(samples: Samples) -> PyResult<Record> {
-        Record::of(vec![(samples, Unit::MetrePerSecondSquared)], 1.0)
+    /// Of `samples` in m/s².
+    pub fn in_si(samples: Samples) -> Record {
+        Record::new(samples, Unit::MetrePerSecondSquared, 1.0)
     }
 
     /// It in m/s² as it shakes a structure under `g` (m/s²).
-    pub fn under(&self, g: f64) -> PyResult<Arc<Samples>> {
-        if g == G { Ok(Arc::clone(&self.usual)) } else { in_m_s2(&self.given, self.scale, g).map_err(refused) }
+    pub fn under(&self, g: f64) -> Arc<Samples> {
+        if g == G || !self.is_in_g() {
+            return Arc::clone(&self.usual);
+        }
+        Arc::new(self.given.clone().multiplied(self.unit.in_m_s2(g)).multiplied(self.scale))
     }
 
-    /// Whether a g decides how strong it is.
+    /// Whether the g of a structure decides how strong it is.
     pub fn is_in_g(&self) -> bool {
-        self.given.iter().any(|(_, unit)| is_of_g(*unit))
+        self.unit != Unit::MetrePerSecondSquared
     }
 
-    /// Its components as tables that are read without options, in their units.
-    pub fn tables(&self) -> impl Iterator<Item = String> {
-        let tables = [csv_in, vertical_csv];
-        self.given
-            .iter()
-            .zip(tables)
-            .map(|((samples, unit), table)| table(&samples.clone().multiplied(self.scale), *unit))
+    /// Its components, the horizontal one first, as tables that are read without options.
+    pub fn tables(&self) -> Vec<String> {
+        let scaled = self.given.clone().multiplied(self.scale);
+        [csv_in(&scaled, self.unit)].into_iter().chain(vertical_csv(&scaled, self.unit)).collect()
     }
 }
 
@@ -126,13 +105,28 @@ impl Record {
     #[new]
     #[pyo3(signature = (time, a_g, a_v=None, *, unit="m/s2", time_scale=1.0, scale=1.0, title="record"))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
-    fn new(
+    fn of_arrays(
         py: Python<'_>,
         time: &Bound<'_, PyAny>,
         a_g: &Bound<'_, PyAny>,
         a_v: Option<&Bound<'_, PyAny>>,
         unit: &str,
         time_scale: f64,
+        scale: f64,
+        title: &str,
+    ) -> PyResult<Record> {
+        let record = Record::_of(time, a_g, a_v, unit, scale, title)?.scaled(1.0, time_scale)?;
+        warn(py, doubts(&record.usual, G).into_iter().map(|doubt| format!("{title}: {doubt}")), 1)?;
+        Ok(record)
+    }
+
+    /// The same without a warning: pickles call it.
+    #[staticmethod]
+    fn _of(
+        time: &Bound<'_, PyAny>,
+        a_g: &Bound<'_, PyAny>,
+        a_v: Option<&Bound<'_, PyAny>>,
+        unit: &str,
         scale: f64,
         title: &str,
     ) -> PyResult<Record> {
@@ -145,15 +139,20 @@ impl Record {
             }
             Err(_) => numbers("time", time)?,
         };
-        let (components, unit) = ([Some(a_g), a_v.map(|a_v| numbers("a_v", a_v)).transpose()?], self::unit(unit)?);
-        let component = |samples| -> PyResult<Given> {
-            let samples = Samples::from_samples(title, times.clone(), samples).map_err(refused)?;
-            Ok((samples, unit))
-        };
-        let given = components.into_iter().flatten().map(component).collect::<PyResult<_>>()?;
-        let record = Record::of(given, 1.0)?.scaled(scale, time_scale)?;
-        warn(py, doubts(&record.usual, G).into_iter().map(|doubt| format!("{title}: {doubt}")), 1)?;
-        Ok(record)
+        let component = |samples| Samples::from_samples(title, times.clone(), samples).map_err(refused);
+        let mut samples = component(a_g)?;
+        if let Some(a_v) = a_v {
+            samples = samples.with_vertical(&component(numbers("a_v", a_v)?)?).map_err(refused)?;
+        }
+        let (given, unit) = fixed(samples, self::unit(unit)?);
+        Record::new(given, unit, 1.0).scaled(scale, 1.0)
+    }
+
+    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Parts<'py>)> {
+        let (of, array) = (slf.get(), |of| PyArray1::from_slice(slf.py(), of));
+        let [times, a_g] = [of.given.times(), of.given.acceleration()].map(array);
+        let (unit, title) = (of.unit.to_string(), of.title().to_owned());
+        Ok((slf.getattr("_of")?, (times, a_g, of.given.vertical().map(array), unit, of.scale, title)))
     }
 
     /// Reads the record in `file`: PEER .AT2, ESM and ITACA, K-NET, COSMOS, CSMIP, or a table of text, known by its
@@ -181,7 +180,7 @@ impl Record {
         let dt = dt.map(|dt| number("dt", dt)).transpose()?;
         let column = column.map(|column| -> PyResult<_> { Ok(Column::from(column.str()?.to_str()?)) }).transpose()?;
         let options = RecordOptions { unit, dt, column, ignore_npts, ..RecordOptions::default() };
-        let read = |file: PathBuf| -> PyResult<Given> {
+        let read = |file: PathBuf| -> PyResult<(Samples, Unit)> {
             let options = options.clone();
             let (understood, sentences) = interruptible(py, move |_| -> anyhow::Result<_> {
                 let understood = options.understand(&file, G)?;
@@ -190,31 +189,20 @@ impl Record {
             })?;
             warn(py, sentences, 1)?;
             let unit = understood.unit();
-            Ok((understood.in_file_unit, unit))
+            Ok(fixed(understood.in_file_unit, unit))
         };
-        let given = [Some(file), vertical].into_iter().flatten().map(read).collect::<PyResult<_>>()?;
-        Record::of(given, 1.0)?.scaled(scale, time_scale)
-    }
-
-    /// A pickle has what was given.
-    #[classmethod]
-    fn _of(_: &Bound<'_, PyType>, title: &str, given: Vec<Plain<'_>>, scale: f64) -> PyResult<Record> {
-        let component = |(times, samples, unit): &Plain<'_>| -> PyResult<Given> {
-            let (times, samples) = (numbers("time", times)?, numbers("a_g", samples)?);
-            Ok((Samples::from_samples(title, times, samples).map_err(refused)?, self::unit(unit)?))
-        };
-        Record::of(given.iter().map(component).collect::<PyResult<_>>()?, scale)
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Pickled<'py>> {
-        let of = slf.get();
-        let component = |(samples, unit): &Given| {
-            let [times, samples] =
-                [samples.times(), samples.acceleration()].map(|of| PyArray1::from_slice(slf.py(), of).into_any());
-            (times, samples, unit.to_string())
-        };
-        let given = of.given.iter().map(component).collect();
-        Ok((slf.get_type().getattr("_of")?, (of.title().to_owned(), given, of.scale)))
+        let (mut given, unit) = read(file)?;
+        if let Some(vertical) = vertical {
+            let (vertical, of_vertical) = read(vertical)?;
+            if of_vertical != unit {
+                let needed = "one unit is needed; say unit, or scale one of the files";
+                return Err(PyValueError::new_err(format!(
+                    "vertical is in {of_vertical} and file in {unit}: {needed}"
+                )));
+            }
+            given = given.with_vertical(&vertical).map_err(refused)?;
+        }
+        Record::new(given, unit, 1.0).scaled(scale, time_scale)
     }
 
     /// Times of the samples, s: an array (n,), a copy.
@@ -263,8 +251,8 @@ impl Record {
     #[pyo3(signature = (scale=1.0, *, time_scale=1.0))]
     fn scaled(&self, scale: f64, time_scale: f64) -> PyResult<Record> {
         Samples::clone(&self.usual).scaled(time_scale, scale).map_err(refused)?;
-        let in_time = |(samples, unit): &Given| Ok((samples.clone().scaled(time_scale, 1.0).map_err(refused)?, *unit));
-        Record::of(self.given.iter().map(in_time).collect::<PyResult<_>>()?, self.scale * scale)
+        let given = self.given.clone().scaled(time_scale, 1.0).map_err(refused)?;
+        Ok(Record::new(given, self.unit, self.scale * scale))
     }
 
     /// Absolute spectral accelerations S_a, m/s2, at `periods` (s), a number or an array (n,), with the damping ratio zeta: an
@@ -288,12 +276,15 @@ impl Record {
     #[pyo3(signature = (file, *, vertical=None))]
     fn write(&self, file: PathBuf, vertical: Option<PathBuf>) -> PyResult<()> {
         let write = || -> anyhow::Result<()> {
-            let paths: Vec<_> = [Some(&file), vertical.as_ref()].into_iter().flatten().collect();
-            ensure!(paths.len() >= self.given.len(), "the record has a vertical component: give its file as vertical");
-            ensure!(paths.len() <= self.given.len(), "the record has no vertical component: leave vertical out");
+            let (paths, tables) = ([Some(&file), vertical.as_ref()].into_iter().flatten(), self.tables());
+            ensure!(
+                paths.clone().count() >= tables.len(),
+                "the record has a vertical component: give its file as vertical"
+            );
+            ensure!(paths.clone().count() <= tables.len(), "the record has no vertical component: leave vertical out");
             let mut files = OutputFiles::default();
-            let files: Vec<_> = paths.into_iter().map(|path| files.create(path)).collect::<Result<_, _>>()?;
-            files.into_iter().zip(self.tables()).try_for_each(|(file, table)| file.write(table.as_bytes()))
+            let files = paths.map(|path| files.create(path)).collect::<Result<Vec<_>, _>>()?;
+            files.into_iter().zip(tables).try_for_each(|(file, table)| file.write(table.as_bytes()))
         };
         write().map_err(refused)
     }
@@ -308,7 +299,7 @@ impl Record {
     }
 
     fn __eq__(&self, other: &Record) -> bool {
-        (&self.given, self.scale) == (&other.given, other.scale)
+        (&self.given, self.unit, self.scale) == (&other.given, other.unit, other.scale)
     }
 
     fn __hash__(&self) -> u64 {
@@ -317,6 +308,10 @@ impl Record {
         hasher.finish()
     }
 }
+
+/// What [`Record::_of`] takes.
+type Parts<'py> = (Array<'py>, Array<'py>, Option<Array<'py>>, String, f64, String);
+type Array<'py> = Bound<'py, PyArray1<f64>>;
 
 /// The pulse of this shape as a Record: "half_sine", "sine", "cosine", "ricker", "antisymmetric_ricker",
 /// "mavroeidis_papageorgiou".
@@ -345,5 +340,5 @@ pub fn pulse(
     let (of_amplitude, of_frequency) = structure.map_or((g, 1.0), |structure| units_of(&structure.0));
     let pulse = Pulse::new(shape, amplitude * of_amplitude, frequency * of_frequency);
     let pulse = Pulse { cycles: cycles.unwrap_or(pulse.cycles), phase, error, ..pulse };
-    Record::in_si(pulse.record().map_err(refused)?)
+    pulse.record().map(Record::in_si).map_err(refused)
 }

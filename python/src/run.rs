@@ -333,12 +333,12 @@ pub fn simulate(
     conditions.check(&followed).map_err(refused)?;
     let record = match (record, conditions.duration) {
         (Some(Ground(record)), _) => record,
-        (None, Some(duration)) => Py::new(py, Record::in_si(rocking::run::record::Record::at_rest(duration))?)?,
+        (None, Some(duration)) => Py::new(py, Record::in_si(rocking::run::record::Record::at_rest(duration)))?,
         (None, None) => {
             return Err(PyValueError::new_err("record and duration are missing: free vibration needs a duration"));
         }
     };
-    let ground = record.get().under(followed.parameters().g)?;
+    let ground = record.get().under(followed.parameters().g);
     let shaking = Arc::clone(&ground);
     let (found, transitions) = interruptible(py, move |abandoned| {
         let mut transitions = Vec::new();

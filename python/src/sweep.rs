@@ -64,7 +64,7 @@ pub fn sweep(
             let needed = "a sweep has one g, in which its records are given";
             return Err(PyValueError::new_err(format!("g = {other} m/s2 and g = {g} m/s2: {needed}")));
         }
-        NamedRecord::new(name, record.under(g)?.as_ref().clone(), 1.0).map_err(refused)
+        NamedRecord::new(name, record.under(g).as_ref().clone(), 1.0).map_err(refused)
     };
     let motions = records.iter().map(motion).collect::<PyResult<_>>()?;
     let conditions = conditions(detail, tolerance, duration, Some(initial))?;

@@ -13,9 +13,9 @@ pub fn csv_in(record: &Record, unit: Unit) -> String {
     table(record, &format!("a_g[{unit}]"), record.acceleration())
 }
 
-/// The vertical component `vertical`, likewise.
-pub fn vertical_csv(vertical: &Record, unit: Unit) -> String {
-    table(vertical, &format!("a_v[{unit}]"), vertical.acceleration())
+/// The vertical component, if there is one, likewise.
+pub fn vertical_csv(record: &Record, unit: Unit) -> Option<String> {
+    record.vertical().map(|a_v| table(record, &format!("a_v[{unit}]"), a_v))
 }
 
 fn table(record: &Record, heading: &str, accelerations: &[f64]) -> String {
