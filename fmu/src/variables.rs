@@ -503,7 +503,7 @@ fn calculated_parameters() -> [Row; 6] {
         calculated("alpha_cg", &["m", "m0", "H", "B"]),
         calculated("p_l", &["m", "m0", "H", "B", "J0", "g"]),
         calculated("chi", &["m", "m0", "H", "B", "J0"]),
-        calculated("u_cr", &["m", "m0", "H", "B", "f_fc", "g"]),
+        calculated("u_cr", &["m", "m0", "H", "B", "f_fc", "g", "P_0"]),
         calculated("f_u", &["m", "m0", "H", "B", "J0", "f_fc"]),
         real(causality, "record_duration", "s", duration, Source::RecordDuration, &of_record),
     ]
