@@ -47,34 +47,34 @@ macro_rules! operators {
         impl<$($parameters)*> std::ops::Add for $number {
             type Output = Self;
 
-            #[inline]
+            #[inline(always)]
             fn add(self, other: Self) -> Self {
-                self.plus(other)
+                self.plus(&other)
             }
         }
 
         impl<$($parameters)*> std::ops::Sub for $number {
             type Output = Self;
 
-            #[inline]
+            #[inline(always)]
             fn sub(self, other: Self) -> Self {
-                self.plus(-other)
+                self.plus(&-other)
             }
         }
 
         impl<$($parameters)*> std::ops::Mul for $number {
             type Output = Self;
 
-            #[inline]
+            #[inline(always)]
             fn mul(self, other: Self) -> Self {
-                self.times(other)
+                self.times(&other)
             }
         }
 
         impl<$($parameters)*> std::ops::Neg for $number {
             type Output = Self;
 
-            #[inline]
+            #[inline(always)]
             fn neg(self) -> Self {
                 self.map(|part| -part)
             }
@@ -83,7 +83,7 @@ macro_rules! operators {
         impl<$($parameters)*> std::ops::Mul<f64> for $number {
             type Output = Self;
 
-            #[inline]
+            #[inline(always)]
             fn mul(self, factor: f64) -> Self {
                 self.map(|part| part * factor)
             }
@@ -92,7 +92,7 @@ macro_rules! operators {
         impl<$($parameters)*> std::ops::Div<f64> for $number {
             type Output = Self;
 
-            #[inline]
+            #[inline(always)]
             fn div(self, divisor: f64) -> Self {
                 self.map(|part| part / divisor)
             }

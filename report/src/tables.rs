@@ -1,23 +1,34 @@
 //! The tables of a run: the response and its transitions.
 use rocking::engine::piece::Sample;
+use rocking::mechanics::outputs::OUTPUTS;
 use rocking::mechanics::restraint::{Dissipators, Restraints};
-use rocking::{Impulse, Outputs, Reactions, State, Transition};
+use rocking::{Impulse, Reactions, State, Transition};
 use serde::Serialize;
 
 /// Headings of the response: the ground accelerations, and the outputs of the FMU under their names and units.
-pub const RESPONSE: [&str; 28] = [
+pub const RESPONSE: [&str; AROUND.len() + OUTPUTS.len()] = {
+    let mut headings = [""; AROUND.len() + OUTPUTS.len()];
+    let mut i = 0;
+    while i < headings.len() {
+        headings[i] = if i < BEFORE {
+            AROUND[i]
+        } else if i < BEFORE + OUTPUTS.len() {
+            OUTPUTS[i - BEFORE].heading
+        } else {
+            AROUND[i - OUTPUTS.len()]
+        };
+        i += 1;
+    }
+    headings
+};
+
+/// The number of columns before the outputs.
+const BEFORE: usize = 2;
+
+/// The columns before and after the outputs.
+const AROUND: [&str; 18] = [
     "time[s]",
     "a_g[m/s2]",
-    "theta[rad]",
-    "u[m]",
-    "a_t[m/s2]",
-    "V_t[N]",
-    "M_t[N.m]",
-    "theta_dot[rad/s]",
-    "u_dot[m/s]",
-    "uplift[m]",
-    "delta_t[m]",
-    "v_t[m/s]",
     "R_h[N]",
     "R_v[N]",
     "R_m[N.m]",
@@ -39,15 +50,14 @@ pub const RESPONSE: [&str; 28] = [
 /// The numbers of a line of the response, in the order of [`RESPONSE`]; phase and transitions follow.
 pub fn response_numbers(sample: &Sample) -> [f64; RESPONSE.len() - 2] {
     let &Sample { motion, load, .. } = sample;
-    let Outputs { theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t } = sample.outputs();
     let Reactions { R_h, R_v, R_m } = sample.reactions();
     let Impulse { I_h, I_v, I_m } = motion.impulse;
     let Restraints { P_t, F_d1, F_d2 } = sample.restraints();
     let Dissipators { plastic: [e_p1, e_p2], viscous, hysteretic, .. } = motion.dissipators;
-    let of_motion = [motion.time, load.a_g, theta, u, a_t, V_t, M_t, theta_dot, u_dot, uplift, delta_t, v_t];
+    let (before, outputs) = ([motion.time, load.a_g], sample.outputs().values());
     let of_ground = [R_h, R_v, R_m, I_h, I_v, I_m];
     let of_restraints = [load.a_v, P_t, F_d1, F_d2, e_p1, e_p2, viscous, hysteretic];
-    let mut numbers = [of_motion.as_slice(), &of_ground, &of_restraints].into_iter().flatten();
+    let mut numbers = [before.as_slice(), &outputs, &of_ground, &of_restraints].into_iter().flatten();
     std::array::from_fn(|_| *numbers.next().expect("as many as there are headings"))
 }
 

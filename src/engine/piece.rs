@@ -1,7 +1,7 @@
 //! A piece: what the engine has proved about a stretch of time, shown once to whoever watches.
 //!
-//! Within a piece there is no transition. Where the engine expanded the motion into a polynomial, that is part of it; where it
-//! leapt by an exact flow, there are bounds, and polynomials for who asks for them.
+//! Within a piece there is no transition. If the engine expanded the motion into a polynomial, the piece has that polynomial. If
+//! the engine leapt by an exact flow, the piece has bounds, and makes polynomials on request.
 
 use crate::engine::motion::Motion;
 use crate::engine::transition::Transition;
@@ -19,24 +19,24 @@ use std::f64::consts::TAU;
 
 /// Watches a motion go by.
 pub trait Watch {
-    /// Whether it looks at pieces. If not, none is made for it.
+    /// Whether the watcher looks at pieces. If not, the engine makes none for it.
     const SEES_PIECES: bool;
 
-    /// The next piece of it.
+    /// Sees the next piece.
     #[inline]
     fn piece(&mut self, _piece: &Piece) {}
 
-    /// The transition at the end of the piece shown last.
+    /// Sees the transition at the end of the last piece.
     #[inline]
     fn transition(&mut self, _transition: &Transition) {}
 }
 
-/// Watches nothing.
+/// The watcher that ignores pieces and transitions.
 impl Watch for () {
     const SEES_PIECES: bool = false;
 }
 
-/// Watches the transitions alone.
+/// A watcher of transitions only.
 impl<F: FnMut(&Transition)> Watch for F {
     const SEES_PIECES: bool = false;
 
@@ -45,7 +45,7 @@ impl<F: FnMut(&Transition)> Watch for F {
     }
 }
 
-/// Two that watch the same motion.
+/// Two watchers of the same motion.
 impl<A: Watch, B: Watch> Watch for (&mut A, &mut B) {
     const SEES_PIECES: bool = A::SEES_PIECES || B::SEES_PIECES;
 
@@ -70,7 +70,7 @@ impl<A: Watch, B: Watch> Watch for (&mut A, &mut B) {
 pub struct Sample<'a> {
     /// Time, state and phase, transitions and impulses so far.
     pub motion: Motion,
-    /// What acts.
+    /// Load at the instant.
     pub load: Load,
     pub(crate) model: &'a Model,
 }
@@ -87,7 +87,7 @@ impl Sample<'_> {
         Reactions::of(&self.model.structure, phase, &self.motion.state, self.accelerations(), self.load)
     }
 
-    /// What of the reactions the edges of the base carry: all of them, unless the structure is restrained.
+    /// The part of the reactions that the edges of the base carry: all of it, unless the structure is restrained.
     pub fn edges(&self) -> Reactions {
         let Sample { motion: Motion { phase, state, dissipators, .. }, model, .. } = self;
         let (structure, side) = (&model.structure, phase.side());
@@ -124,36 +124,36 @@ const FINEST_PART: u32 = 5;
 pub struct Piece<'a> {
     /// The motion at its start: time, state, and the phase that it is in throughout.
     pub before: &'a Motion,
-    /// How long it lasts, s.
+    /// Duration of the piece, s.
     pub duration: f64,
-    /// What acts, from its start on.
+    /// Load from the start of the piece on.
     pub load: LinearLoad,
     /// State at its end.
     pub end: State,
     pub(crate) model: &'a Model,
-    /// Its polynomial; none where the engine leapt over it.
+    /// Polynomial of the piece; none if the engine leapt over the piece.
     pub(crate) arc: Option<&'a Arc>,
 }
 
 impl Piece<'_> {
-    /// All of it, as a part.
+    /// The whole piece as a part.
     #[inline]
     pub(crate) fn whole(&self) -> Part<'_> {
         Part { piece: self, start: (0.0, self.before.state), end: (self.duration, self.end) }
     }
 
-    /// It as polynomials, one after the other.
+    /// The motion of the piece as polynomials, in order of time.
     pub(crate) fn arcs(&self) -> Arcs<'_> {
         self.whole().arcs()
     }
 
-    /// The outputs in `state`, `tau` seconds into it.
+    /// The outputs in `state`, `tau` seconds after the start of the piece.
     pub(crate) fn outputs(&self, tau: f64, state: &State) -> Outputs {
         let now = Now { state, load: self.load.at(tau), dissipators: &self.before.dissipators };
         self.model.outputs(self.before.phase, &now)
     }
 
-    /// The state `tau` seconds into it.
+    /// The state `tau` seconds after the start of the piece.
     pub(crate) fn state_at(&self, tau: f64) -> State {
         if tau <= 0.0 {
             return self.before.state;
@@ -177,7 +177,7 @@ impl Piece<'_> {
         self.end
     }
 
-    /// The dissipators `tau` seconds into it.
+    /// The dissipators `tau` seconds after the start of the piece.
     fn dissipators_at(&self, tau: f64) -> Dissipators {
         let Motion { phase, dissipators, .. } = self.before;
         match (self.model.level.ties(), phase, self.arc) {
@@ -188,7 +188,7 @@ impl Piece<'_> {
         }
     }
 
-    /// The motion at `time` (s), within it.
+    /// The motion at `time` (s), which lies within the piece.
     pub fn sample(&self, time: f64) -> Sample<'_> {
         let end = self.before.time + self.duration;
         // an instant that misses the end by the clock's rounding is the end
@@ -217,7 +217,7 @@ impl<'a> Part<'a> {
         piece.model.start(state, &piece.before.dissipators, piece.load.from(passed), until - passed)
     }
 
-    /// Its halves, where the state between them is known without expanding the motion.
+    /// The halves of the part, if the state between them is known without expanding the motion.
     pub(crate) fn halves(&self) -> Option<[Part<'a>; 2]> {
         let Part { piece, start, .. } = *self;
         if piece.arc.is_some() {
@@ -230,12 +230,12 @@ impl<'a> Part<'a> {
         Some([Part { end: middle, ..*self }, Part { start: middle, ..*self }])
     }
 
-    /// It as polynomials, one after the other.
+    /// The motion of the part as polynomials, in order of time.
     pub(crate) fn arcs(&self) -> Arcs<'a> {
         Arcs { begin: self.start.0, left: Some(*self), arc: None, evaluations: 0 }
     }
 
-    /// The outputs at both its ends, with seconds from the start of the piece.
+    /// The outputs at both ends of the part, with seconds from the start of the piece.
     pub(crate) fn ends(&self) -> [(f64, Outputs); 2] {
         [self.start, self.end].map(|(tau, state)| (tau, self.piece.outputs(tau, &state)))
     }
@@ -276,7 +276,7 @@ impl<'a> Part<'a> {
                 theta_dot: rates.theta_dot,
             }
         };
-        model.most(before.phase, load.from(self.start.0), self.end.0 - self.start.0, &most)
+        model.most(before.phase, [self.start.0, self.end.0].map(|tau| load.at(tau)), &most)
     }
 
     /// Bounds over a leap: a quantity whose second derivative is at most M over the time h stays within M h²/8 of its chord. It
@@ -294,7 +294,7 @@ impl<'a> Part<'a> {
         std::array::from_fn(|i| {
             let of = |outputs: &Outputs| Measure::SEARCHED[i].of(outputs).abs();
             let ends = of(&first).max(of(&last));
-            let bend = if bends[i].bend.is_nan() { f64::INFINITY } else { bends[i].bend };
+            let bend = bends[i].bend;
             let between = (bend * h * h / 8.0).min((bends[i].value - ends).max(0.0));
             let rate = rates[i].abs() * h;
             Bound { ends, between, rate: [rate - bend * h * h, rate + bend * h * h] }
@@ -305,7 +305,7 @@ impl<'a> Part<'a> {
 /// Goes through a part of a piece polynomial by polynomial.
 #[derive(Debug)]
 pub(crate) struct Arcs<'a> {
-    /// Where it begins, s after the start of the piece.
+    /// Start of the part, s after the start of the piece.
     begin: f64,
     left: Option<Part<'a>>,
     /// Of a leap: the polynomial in hand.
@@ -334,9 +334,9 @@ impl Arcs<'_> {
 
     /// Leaves out the middle of what is left of a long leap.
     ///
-    /// In full contact the motion is a line and a decaying vibration about it. The magnitude of the line and that of the
-    /// vibration are convex, and with them their sum, which the vibration touches once a period: what is largest is so
-    /// within a period of an end. Without vibration (ζ ≥ 1) the line is left once what decays is gone.
+    /// The motion in full contact is a line and a decaying vibration about the line. The magnitudes of the line and of the
+    /// vibration are convex, and so is their sum, which the motion touches once a period. The largest magnitude is therefore
+    /// within a period of an end. Without vibration (ζ ≥ 1) only the line is left in the middle.
     pub(crate) fn skip_middle(&mut self) {
         let Some(part) = &mut self.left else { return };
         let &Piece { model: Model { structure, level, .. }, before: &Motion { phase, .. }, .. } = part.piece;
@@ -358,7 +358,7 @@ impl Arcs<'_> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Expansion<'a> {
     pub piece: &'a Piece<'a>,
-    /// Where it starts, s after the start of the piece.
+    /// Start of the polynomial, s after the start of the piece.
     pub from: f64,
     pub arc: &'a Arc,
 }

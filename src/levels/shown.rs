@@ -6,8 +6,8 @@
 use crate::levels::detail::{Detail, Model};
 use crate::levels::level::{Now, Rates};
 use crate::mechanics::instant::{Instant, Strut, damping};
-use crate::mechanics::load::LinearLoad;
-use crate::mechanics::outputs::{Measure, Outputs, searched};
+use crate::mechanics::load::{LinearLoad, Load};
+use crate::mechanics::outputs::{Measure, Outputs, composed, searched};
 use crate::numbers::bend::Bend;
 use crate::numbers::dual::Dual;
 use crate::numbers::linear::{Leaf, Linear};
@@ -57,12 +57,11 @@ impl Model {
         terms(&self.structure, phase, load, arc, self.is_rigid())
     }
 
-    /// Bounds of the searched outputs over a piece under `load` that lasts `duration` (s), given bounds of the components of
-    /// the state. The elastic strut is assumed: the rigid limit has no bound of a_t from these.
+    /// Bounds of the searched outputs between two instants with these `loads`, given bounds of the components of the state. The
+    /// strut is taken as elastic: the rigid limit has no bound of a_t from these.
     #[inline]
-    pub(crate) fn most(&self, phase: Phase, load: LinearLoad, duration: f64, state: &State) -> Searched<f64> {
-        let last = load.at(duration);
-        let most = |from: f64, to: f64| Most(from.abs().max(to.abs()));
+    pub(crate) fn most(&self, phase: Phase, loads: [Load; 2], state: &State) -> Searched<f64> {
+        let most = |of: fn(&Load) -> f64| Most(of(&loads[0]).abs().max(of(&loads[1]).abs()));
         let theta = Most(state.theta);
         let x = Instant {
             structure: &self.structure,
@@ -73,14 +72,15 @@ impl Model {
             theta,
             theta_dot: Most(state.theta_dot),
             turn: theta.turn(),
-            a_g: most(load.value.a_g, last.a_g),
-            F_t: most(load.value.F_t, last.F_t),
-            a_v: most(load.value.a_v, last.a_v),
+            a_g: most(|load| load.a_g),
+            F_t: most(|load| load.F_t),
+            a_v: most(|load| load.a_v),
         };
         searched(&x).map(|Most(most)| most)
     }
 
     /// Bounds of the searched outputs, their rates and second derivatives over a leap under `load` that lasts `duration` (s).
+    #[inline]
     pub(crate) fn bends(&self, phase: Phase, load: LinearLoad, duration: f64, rates: &Rates) -> Searched<Bend> {
         let &Rates { u, u_dot, u_ddot, u_dddot, theta, theta_dot, theta_ddot } = rates;
         let last = load.at(duration);
@@ -104,6 +104,7 @@ impl Model {
     }
 
     /// Rates of the searched outputs in `phase` and `state` under `load`, given (ü, θ̈), with an elastic strut.
+    #[inline]
     pub(crate) fn searched_rates(
         &self,
         phase: Phase,
@@ -116,70 +117,51 @@ impl Model {
 
     /// Bounds of the searched outputs over `arc` under `load`.
     pub(crate) fn bounds(&self, phase: Phase, load: LinearLoad, arc: &Arc) -> Searched<Bound> {
-        if self.is_rigid() { self.bounds_of_rigid(phase, load, arc) } else { self.bounds_of_elastic(phase, load, arc) }
-    }
-
-    /// Leaves: θ, u, u̇, time.
-    fn bounds_of_elastic(&self, phase: Phase, load: LinearLoad, arc: &Arc) -> Searched<Bound> {
-        let leaves = |k: usize| [arc.theta[k], arc.u[k], arc.u_dot[k]];
-        let [theta, u, u_dot] = extremes::ranges(leaves, arc.order, arc.reach).map(leaf);
-        let x = Instant {
-            strut: Strut::Elastic(damping(&self.structure, phase)),
-            u: Linear::leaf(1, 1.0, u),
-            u_dot: Linear::leaf(2, 1.0, u_dot),
-            theta_dot: loose(arc, &arc.theta_dot),
-            ..over::<4>(&self.structure, phase, load, arc, theta)
-        };
-        let searched = searched(&x);
-        let courses = courses(&searched, |k| [arc.theta[k], arc.u[k], arc.u_dot[k], time(k)], arc);
-        std::array::from_fn(|i| courses[i].and(searched[i].rest, searched[i].rest_rate))
-    }
-
-    /// Leaves: θ, θ̇, θ̈, time.
-    fn bounds_of_rigid(&self, phase: Phase, load: LinearLoad, arc: &Arc) -> Searched<Bound> {
-        let leaves = |k: usize| [arc.theta[k], arc.theta_dot[k], arc.slope(&arc.theta_dot, k)];
-        let [theta, theta_dot, theta_ddot] = extremes::ranges(leaves, arc.order, arc.reach).map(leaf);
-        let x = Instant {
-            strut: Strut::Rigid(Linear::leaf(2, 1.0, theta_ddot)),
-            theta_dot: Linear::leaf(1, 1.0, theta_dot),
-            ..over::<4>(&self.structure, phase, load, arc, theta)
-        };
-        let searched = searched(&x);
-        let with_time = |k: usize| {
-            let [theta, theta_dot, theta_ddot] = leaves(k);
-            [theta, theta_dot, theta_ddot, time(k)]
-        };
-        let courses = courses(&searched, with_time, arc);
-        std::array::from_fn(|i| courses[i].and(searched[i].rest, searched[i].rest_rate))
+        let range = |series: &Series| extremes::ranges(|k| [series[k]], arc.order, arc.reach)[0];
+        let (theta, u) = (range(&arc.theta), range(&arc.u));
+        let leaf = |of: &Range| Leaf { start: of.start, change: of.change(), rate: of.rate() };
+        let turn = turning::<4>(leaf(&theta));
+        let mut composed = if self.is_rigid() {
+            let x = Instant {
+                strut: Strut::Rigid(Linear::leaf(2, 1.0 / arc.span, Leaf::of_slope(arc.used(&arc.theta_dot)))),
+                theta_dot: Linear::leaf(1, 1.0, Leaf::of(arc.used(&arc.theta_dot))),
+                ..over(&self.structure, phase, load, arc, turn)
+            };
+            courses(&composed(&x), |k| [arc.theta[k], arc.theta_dot[k], arc.slope(&arc.theta_dot, k)], arc)
+        } else {
+            let x = Instant {
+                u: Linear::leaf(1, 1.0, leaf(&u)),
+                u_dot: Linear::leaf(2, 1.0, Leaf::of(arc.used(&arc.u_dot))),
+                theta_dot: Linear::loose(Leaf::of(arc.used(&arc.theta_dot))),
+                ..over(&self.structure, phase, load, arc, turn)
+            };
+            courses(&composed(&x), |k| [arc.theta[k], arc.u[k], arc.u_dot[k]], arc)
+        }
+        .into_iter();
+        Measure::SEARCHED.map(|measure| match measure {
+            Measure::theta => theta.and(0.0, 0.0),
+            Measure::u => u.and(0.0, 0.0),
+            Measure::theta_dot => range(&arc.theta_dot).and(0.0, 0.0),
+            Measure::u_dot => range(&arc.u_dot).and(0.0, 0.0),
+            _ => composed.next().unwrap_or_default(),
+        })
     }
 }
 
-/// Coefficient `k` of time, the last leaf.
-#[inline]
-pub(crate) fn time(k: usize) -> f64 {
-    if k == 1 { 1.0 } else { 0.0 }
+/// θ as the first leaf, with its turn.
+#[inline(always)]
+pub(crate) fn turning<const L: usize>(theta: Leaf) -> (Linear<L>, Turn<Linear<L>>) {
+    (Linear::leaf(0, 1.0, theta), Linear::turn(0, theta, libm::sincos(theta.start)))
 }
 
-#[inline]
-pub(crate) fn leaf(range: Range) -> Leaf {
-    Leaf { start: range.start, change: range.change(), rate: range.rate() }
-}
-
-/// A component of `arc` that is no leaf.
-#[inline]
-fn loose<const L: usize>(arc: &Arc, series: &Series) -> Linear<L> {
-    let [range] = extremes::ranges(|k| [series[k]], arc.order, arc.reach);
-    Linear::loose(leaf(range))
-}
-
-/// The instant over `arc` whose first leaf is θ and whose last leaf is time. The components u, u̇ and θ̇ are left at 0.
-#[inline]
+/// The instant over `arc` whose last leaf is time. The components u, u̇ and θ̇ are left at 0.
+#[inline(always)]
 pub(crate) fn over<'a, const L: usize>(
     structure: &'a Structure,
     phase: Phase,
     load: LinearLoad,
     arc: &Arc,
-    theta: Leaf,
+    (theta, turn): (Linear<L>, Turn<Linear<L>>),
 ) -> Instant<'a, Linear<L>> {
     let ramp = |value: f64, slope: f64| {
         let passes = Leaf { start: 0.0, change: arc.reach, rate: arc.reach };
@@ -190,31 +172,39 @@ pub(crate) fn over<'a, const L: usize>(
     Instant {
         structure,
         s: phase.side().sign(),
-        strut: Strut::Elastic(0.0),
+        strut: Strut::Elastic(damping(structure, phase)),
         u: none,
         u_dot: none,
-        theta: Linear::leaf(0, 1.0, theta),
+        theta,
         theta_dot: none,
-        turn: Linear::turn(0, theta, libm::sincos(theta.start)),
+        turn,
         a_g: ramp(value.a_g, slope.a_g),
         F_t: ramp(value.F_t, slope.F_t),
         a_v: ramp(value.a_v, slope.a_v),
     }
 }
 
-/// The courses of the linear parts of `quantities` over `arc`, whose leaves have the coefficients `leaves`.
-#[inline]
-pub(crate) fn courses<const L: usize, const N: usize>(
+/// Bounds of `quantities` over `arc`. Their leaves have the coefficients `leaves`, in order, and the last leaf is time.
+#[inline(always)]
+fn courses<const L: usize, const N: usize, const M: usize>(
     quantities: &[Linear<L>; N],
-    leaves: impl Fn(usize) -> [f64; L],
+    leaves: impl Fn(usize) -> [f64; M],
+    arc: &Arc,
+) -> [Bound; N] {
+    let ranges = linear_parts(quantities, leaves, arc);
+    std::array::from_fn(|i| ranges[i].and(quantities[i].rest, quantities[i].rest_rate))
+}
+
+/// The courses of the linear parts of `quantities` over `arc`, as in [`courses`].
+#[inline(always)]
+pub(crate) fn linear_parts<const L: usize, const N: usize, const M: usize>(
+    quantities: &[Linear<L>; N],
+    leaves: impl Fn(usize) -> [f64; M],
     arc: &Arc,
 ) -> [Range; N] {
     let row = |k: usize| {
-        if k == 0 {
-            return std::array::from_fn(|i| quantities[i].start);
-        }
         let leaves = leaves(k);
-        std::array::from_fn(|i| (0..L).map(|leaf| quantities[i].slopes[leaf] * leaves[leaf]).sum())
+        std::array::from_fn(|i| quantities[i].coefficient(k, &leaves))
     };
     extremes::ranges(row, arc.order, arc.reach)
 }

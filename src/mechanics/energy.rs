@@ -12,7 +12,7 @@ use crate::{Parameters, Phase, State, Structure};
 /// E = ½ m [(u̇ + Hθ̇)² + (sB−u)² θ̇²] + ½ (J0 + m0 B²) θ̇² + ½ k u² + m g [(sB−u) sin θ + H cos θ] + s m0 g B sin θ
 /// ```
 ///
-/// In full contact θ = θ̇ = 0 and s does not matter.
+/// s does not matter in full contact, where θ = θ̇ = 0.
 pub fn energy(structure: &Structure, phase: Phase, state: &State) -> f64 {
     let x = Instant::of(structure, phase, state, Load::default());
     kinetic(&x) + x.u * (0.5 * structure.k) * x.u + potential(&x)

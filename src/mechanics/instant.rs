@@ -5,8 +5,8 @@ use crate::numbers::dual::Dual;
 use crate::numbers::{Number, Turn};
 use crate::{Phase, State, Structure};
 
-/// The structure at an instant. With many masses there is one instant for each floor: `u` and `u_dot` are then the displacement
-/// and velocity of that floor, sums over the modes, so that no number grows with the number of modes.
+/// The structure at an instant. A structure of many masses has one instant for each floor. There `u` and `u_dot` are the
+/// displacement and velocity of the floor, sums over the modes, so that no number grows with the number of modes.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Instant<'a, N> {
     pub structure: &'a Structure,
@@ -70,6 +70,7 @@ impl<'a> Instant<'a, f64> {
 
 impl<'a> Instant<'a, Dual<f64>> {
     /// The structure with its rates, given (ü, θ̈); once it has overturned, all rates are 0.
+    #[inline]
     pub(crate) fn moving(
         structure: &'a Structure,
         phase: Phase,
@@ -99,7 +100,7 @@ impl<'a> Instant<'a, Dual<f64>> {
 
 impl<N: Number> Instant<'_, N> {
     /// w = sB − u, m: the top mass is so far from the plane of the pivot.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn lever(&self) -> N {
         N::constant(self.pivot()) - self.u
     }

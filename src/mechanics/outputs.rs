@@ -14,24 +14,27 @@
 use crate::mechanics::instant::Instant;
 use crate::mechanics::load::Load;
 use crate::numbers::Number;
-use crate::{Parameters, Phase, State, Structure};
+use crate::{Phase, State, Structure};
+use serde::{Deserialize, Serialize};
 
 /// The way to the peak of an output.
 #[derive(Clone, Copy, Debug)]
 pub enum PeakRule {
-    /// No peak is shown.
+    /// The output has no peak that is shown.
     None,
     /// The peak is searched between the ends of pieces, too. It is shown at this place among all peaks.
     Searched(usize),
     /// The peak comes with the peak of another output, whose magnitude gives it. It is shown at this place among all peaks.
-    With(usize, Measure, fn(&Parameters, f64) -> f64),
+    With(usize, Measure, fn(&Sizes, f64) -> f64),
 }
 
-impl PeakRule {
-    /// Whether the peak is searched.
-    pub const fn is_searched(self) -> bool {
-        matches!(self, PeakRule::Searched(_))
-    }
+/// Top mass m (kg), its height H (m) and half the width of the base B (m): enough for a peak that comes with another.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[allow(missing_docs)] // the paper's letters
+pub struct Sizes {
+    pub m: f64,
+    pub H: f64,
+    pub B: f64,
 }
 
 /// A row of the table of outputs.
@@ -58,7 +61,7 @@ macro_rules! outputs {
             $($(#[doc = $doc])+ pub $name: N,)+
         }
 
-        /// One of the outputs.
+        /// The name of an output.
         #[derive(Clone, Copy, Debug, PartialEq, Eq)]
         #[allow(non_camel_case_types)] // the names of the fields
         pub enum Measure {
@@ -116,7 +119,19 @@ macro_rules! outputs {
         #[inline(always)]
         pub(crate) fn searched<N: Number>(x: &Instant<N>) -> [N; Measure::SEARCHED.len()] {
             let (mut found, mut count) = ([N::constant(0.0); Measure::SEARCHED.len()], 0);
-            $(if const { OUTPUTS[Measure::$name as usize].peak.is_searched() } {
+            $(if const { Measure::$name.is_searched() } {
+                found[count] = formulas::$name(x);
+                count += 1;
+            })+
+            debug_assert_eq!(count, found.len());
+            found
+        }
+
+        /// The searched outputs without the components of the motion, in the same order.
+        #[inline(always)]
+        pub(crate) fn composed<N: Number>(x: &Instant<N>) -> [N; Measure::COMPOSED] {
+            let (mut found, mut count) = ([N::constant(0.0); Measure::COMPOSED], 0);
+            $(if const { Measure::$name.is_searched() && !Measure::$name.is_component() } {
                 found[count] = formulas::$name(x);
                 count += 1;
             })+
@@ -134,15 +149,15 @@ outputs! {
     /// Acceleration of the top mass in the direction of u, a_t, m/s² (Eq 27).
     a_t["m/s2"] PeakRule::Searched(4);
     /// Base shear V_t = m a_t, N (Eqs 2, 23).
-    V_t["N"] PeakRule::With(5, Measure::a_t, |&Parameters { m, .. }, a_t| m * a_t);
+    V_t["N"] PeakRule::With(5, Measure::a_t, |&Sizes { m, .. }, a_t| m * a_t);
     /// Overturning moment M_t = m H a_t, N·m (Eqs 3, 24).
-    M_t["N.m"] PeakRule::With(6, Measure::a_t, |&Parameters { m, H, .. }, a_t| m * H * a_t);
+    M_t["N.m"] PeakRule::With(6, Measure::a_t, |&Sizes { m, H, .. }, a_t| m * H * a_t);
     /// Angular velocity θ̇, rad/s.
     theta_dot["rad/s"] PeakRule::None;
     /// Elastic velocity u̇, m/s.
     u_dot["m/s"] PeakRule::None;
     /// Uplift of the free edge of the base δ_u = 2 B sin|θ|, m (Eq 25).
-    uplift["m"] PeakRule::With(3, Measure::theta, |&Parameters { B, .. }, theta| 2.0 * B * libm::sin(theta));
+    uplift["m"] PeakRule::With(3, Measure::theta, |&Sizes { B, .. }, theta| 2.0 * B * libm::sin(theta));
     /// Lateral displacement of the top mass δ_t = sB (1 − cos θ) + u cos θ + H sin θ, m (Eq 26).
     delta_t["m"] PeakRule::Searched(2);
     /// Lateral velocity of the top mass relative to the ground, the rate of δ_t: u̇ cos θ + [(sB − u) sin θ + H cos θ] θ̇, m/s.
@@ -155,28 +170,28 @@ mod formulas {
     use crate::mechanics::instant::{Instant, Strut};
     use crate::numbers::Number;
 
-    #[inline]
+    #[inline(always)]
     pub fn theta<N: Number>(x: &Instant<N>) -> N {
         x.theta
     }
 
-    #[inline]
+    #[inline(always)]
     pub fn theta_dot<N: Number>(x: &Instant<N>) -> N {
         x.theta_dot
     }
 
-    #[inline]
+    #[inline(always)]
     pub fn u<N: Number>(x: &Instant<N>) -> N {
         x.u
     }
 
-    #[inline]
+    #[inline(always)]
     pub fn u_dot<N: Number>(x: &Instant<N>) -> N {
         x.u_dot
     }
 
     /// Eq 27 by (5), and at the rigid level as it stands; of a_v it has −a_v sin θ, which (5) cancels.
-    #[inline]
+    #[inline(always)]
     pub fn a_t<N: Number>(x: &Instant<N>) -> N {
         let &Parameters { m, H, g, .. } = x.structure.parameters();
         match x.strut {
@@ -189,35 +204,35 @@ mod formulas {
         }
     }
 
-    #[inline]
+    #[inline(always)]
     pub fn V_t<N: Number>(x: &Instant<N>) -> N {
         a_t(x) * x.structure.parameters().m
     }
 
-    #[inline]
+    #[inline(always)]
     pub fn M_t<N: Number>(x: &Instant<N>) -> N {
         let &Parameters { m, H, .. } = x.structure.parameters();
         a_t(x) * (m * H)
     }
 
-    #[inline]
+    #[inline(always)]
     pub fn uplift<N: Number>(x: &Instant<N>) -> N {
         x.turn.sin * (2.0 * x.pivot())
     }
 
-    #[inline]
+    #[inline(always)]
     pub fn delta_t<N: Number>(x: &Instant<N>) -> N {
         x.turn.versine * x.pivot() + x.u * x.turn.cos + x.turn.sin * x.structure.parameters().H
     }
 
-    #[inline]
+    #[inline(always)]
     pub fn v_t<N: Number>(x: &Instant<N>) -> N {
         x.u_dot * x.turn.cos + super::height(x) * x.theta_dot
     }
 }
 
 /// Height of the top mass above the ground, (sB − u) sin θ + H cos θ, m.
-#[inline]
+#[inline(always)]
 pub(crate) fn height<N: Number>(x: &Instant<N>) -> N {
     x.lever() * x.turn.sin + x.turn.cos * x.structure.parameters().H
 }
@@ -230,36 +245,56 @@ impl Outputs {
 }
 
 impl Measure {
-    const COUNT: usize = {
+    /// The number of outputs before `end` whose peaks are searched, with the components of the motion or without.
+    const fn count(end: usize, with_components: bool) -> usize {
         let (mut count, mut i) = (0, 0);
-        while i < OUTPUTS.len() {
-            count += OUTPUTS[i].peak.is_searched() as usize;
+        while i < end {
+            let measure = OUTPUTS[i].measure;
+            count += (measure.is_searched() && (with_components || !measure.is_component())) as usize;
             i += 1;
         }
         count
-    };
+    }
 
     /// The outputs whose peaks are searched.
-    pub const SEARCHED: [Measure; Measure::COUNT] = {
-        let (mut searched, mut count, mut i) = ([Measure::theta; Measure::COUNT], 0, 0);
+    pub const SEARCHED: [Measure; Measure::count(OUTPUTS.len(), true)] = {
+        let mut searched = [Measure::theta; Measure::count(OUTPUTS.len(), true)];
+        let mut i = 0;
         while i < OUTPUTS.len() {
-            if OUTPUTS[i].peak.is_searched() {
-                searched[count] = OUTPUTS[i].measure;
-                count += 1;
+            let measure = OUTPUTS[i].measure;
+            if measure.is_searched() {
+                searched[measure.place()] = measure;
             }
             i += 1;
         }
         searched
     };
 
-    /// The place of this output in [`Measure::SEARCHED`]; the number of searched outputs before it.
+    /// The number of outputs in [`composed`].
+    pub(crate) const COMPOSED: usize = Measure::count(OUTPUTS.len(), false);
+
+    /// The place of this output in [`Measure::SEARCHED`].
+    #[inline]
     pub(crate) const fn place(self) -> usize {
-        let (mut count, mut i) = (0, 0);
-        while i < self as usize {
-            count += OUTPUTS[i].peak.is_searched() as usize;
-            i += 1;
-        }
-        count
+        const PLACES: [usize; OUTPUTS.len()] = {
+            let mut places = [0; OUTPUTS.len()];
+            let mut i = 0;
+            while i < OUTPUTS.len() {
+                places[i] = Measure::count(i, true);
+                i += 1;
+            }
+            places
+        };
+        PLACES[self as usize]
+    }
+
+    const fn is_searched(self) -> bool {
+        matches!(OUTPUTS[self as usize].peak, PeakRule::Searched(_))
+    }
+
+    /// Whether the output is a component of the motion, whose polynomial is known without a formula.
+    const fn is_component(self) -> bool {
+        matches!(self, Measure::theta | Measure::theta_dot | Measure::u | Measure::u_dot)
     }
 
     /// The row of this output.
@@ -274,12 +309,12 @@ mod tests {
     use crate::levels::detail::Detail;
     use crate::levels::full_contact;
     use crate::levels::nonlinear;
-    use crate::mechanics::load::Load;
+    use crate::mechanics::load::LinearLoad;
     use crate::mechanics::restraint::Dissipators;
-    use crate::{Engine, LinearLoad, Parameters, Reactions, Side};
+    use crate::{Engine, Parameters, Reactions, Side};
     use approx::assert_relative_eq;
 
-    /// Eq 27 with ü and θ̈ from Eqs 5 and 6 is what the state alone gives, and Eq 1 in full contact.
+    /// Eq 27 with ü and θ̈ from Eqs 5 and 6, or from Eq 1 in full contact, agrees with a_t from the state.
     #[test]
     fn the_acceleration_is_that_of_equation_27() {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();

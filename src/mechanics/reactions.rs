@@ -1,7 +1,13 @@
 //! The reactions: forces of the structure on the ground, from its momentum balance (d'Alembert).
 //!
-//! With w = sB − u, the top mass has the accelerations α = ü + H θ̈ + w θ̇² along u and β = w θ̈ − H θ̇² − 2 u̇ θ̇ across, relative
-//! to the ground; the foundation has α₀ = sB θ̇² and β₀ = sB θ̈. With P = m α + m0 α₀ and Q = m β + m0 β₀ the reactions are
+//! The accelerations relative to the ground are α along u and β across, w = sB − u:
+//!
+//! ```text
+//! top mass     α = ü + H θ̈ + w θ̇²,   β = w θ̈ − H θ̇² − 2 u̇ θ̇
+//! foundation   α₀ = sB θ̇²,           β₀ = sB θ̈
+//! ```
+//!
+//! With P = m α + m0 α₀ and Q = m β + m0 β₀ the reactions are
 //!
 //! ```text
 //! R_h = F_t − (m + m0) a_g − P cos θ − Q sin θ              to the right
@@ -9,8 +15,8 @@
 //! R_m = y X − x Y + y₀ X₀ − x₀ Y₀ − J0 θ̈
 //! ```
 //!
-//! Here x, y, x₀, y₀ are the places of the top mass and of the middle of the base, and X, Y, X₀, Y₀ the forces to the right and
-//! upwards that the masses leave for the ground. R_m is about the place of the middle of the base in full contact, positive as θ.
+//! The top mass is at (x, y) and the middle of the base at (x₀, y₀). Their forces on the ground are (X, Y) and (X₀, Y₀), to the
+//! right and upwards. R_m is about the place of the middle of the base in full contact, positive as θ.
 //! In full contact R_h = c_fc u̇ + k u − m0 a_g, R_v = (m + m0) g and R_m = H (c_fc u̇ + k u) + m g u. While the structure rocks, the
 //! pivot is the only contact, so that R_m = sB R_v by Eqs 5 and 6. The levels with linear equations miss R_m = sB R_v by the
 //! terms that they leave out.
@@ -64,7 +70,7 @@ struct Acceleration<N> {
 }
 
 /// Accelerations of the top mass and of the foundation.
-#[inline]
+#[inline(always)]
 fn accelerations<N: Number>(x: &Instant<N>, second: &Second<N>) -> [Acceleration<N>; 2] {
     let H = x.structure.parameters().H;
     let &Second { u_ddot, theta_ddot } = second;
@@ -77,7 +83,7 @@ fn accelerations<N: Number>(x: &Instant<N>, second: &Second<N>) -> [Acceleration
 }
 
 /// R_h and R_v, N.
-#[inline]
+#[inline(always)]
 pub(crate) fn forces<N: Number>(x: &Instant<N>, second: &Second<N>) -> [N; 2] {
     let &Parameters { m, m0, g, .. } = x.structure.parameters();
     let [top, base] = accelerations(x, second);
@@ -90,19 +96,25 @@ pub(crate) fn forces<N: Number>(x: &Instant<N>, second: &Second<N>) -> [N; 2] {
 }
 
 /// R_m, N·m.
-#[inline]
+#[inline(always)]
 pub(crate) fn moment<N: Number>(x: &Instant<N>, second: &Second<N>) -> N {
-    let &Parameters { m, m0, J0, g, .. } = x.structure.parameters();
-    let weight = x.a_v + N::constant(g);
-    let force = |of: Acceleration<N>, mass: f64, push: N| {
-        let right = push - (x.a_g + of.along * x.turn.cos + of.across * x.turn.sin) * mass;
-        (right, (weight + of.across * x.turn.cos - of.along * x.turn.sin) * mass)
-    };
+    let &Parameters { m, m0, J0, .. } = x.structure.parameters();
     let [top, base] = accelerations(x, second);
-    let ((right, down), (base_right, base_down)) = (force(top, m, x.F_t), force(base, m0, N::constant(0.0)));
-    let of_top = height(x) * right + Measure::delta_t.at(x) * down;
+    let [right, down] = force(x, top, m);
+    let [base_right, base_down] = force(x, base, m0);
+    let of_top = height(x) * (right + x.F_t) + Measure::delta_t.at(x) * down;
     let of_base = x.turn.sin * x.pivot() * base_right + x.turn.versine * x.pivot() * base_down;
     of_top + of_base - second.theta_ddot * J0
+}
+
+/// The force that a mass leaves for the ground, to the right and downwards, N.
+#[inline(always)]
+fn force<N: Number>(x: &Instant<N>, Acceleration { along, across }: Acceleration<N>, mass: f64) -> [N; 2] {
+    let weight = x.a_v + N::constant(x.structure.parameters().g);
+    [
+        -(x.a_g + along * x.turn.cos + across * x.turn.sin) * mass,
+        (weight + across * x.turn.cos - along * x.turn.sin) * mass,
+    ]
 }
 
 impl<N: Number> Reactions<N> {
@@ -183,11 +195,11 @@ fn momentum(structure: &Structure, phase: Phase, state: &State) -> Impulse {
     let x = Instant::moving(structure, phase, state, [0.0; 2], LinearLoad::default());
     let top = (Measure::delta_t.at(&x), height(&x));
     let base = (x.turn.versine * x.pivot(), x.turn.sin * x.pivot());
-    let along = |(right, up): (Dual<f64>, Dual<f64>)| up.value * right.rate - right.value * up.rate;
+    let about = |(right, up): (Dual<f64>, Dual<f64>)| up.value * right.rate - right.value * up.rate;
     Impulse {
         I_h: m * top.0.rate + m0 * base.0.rate,
         I_v: -(m * top.1.rate + m0 * base.1.rate),
-        I_m: m * along(top) + m0 * along(base) + J0 * state.theta_dot,
+        I_m: m * about(top) + m0 * about(base) + J0 * state.theta_dot,
     }
 }
 

@@ -11,13 +11,13 @@ pub(crate) struct Bend {
 }
 
 impl Bend {
-    #[inline]
-    fn plus(self, other: Self) -> Self {
+    #[inline(always)]
+    fn plus(&self, other: &Self) -> Self {
         Bend { value: self.value + other.value, rate: self.rate + other.rate, bend: self.bend + other.bend }
     }
 
-    #[inline]
-    fn times(self, other: Self) -> Self {
+    #[inline(always)]
+    fn times(&self, other: &Self) -> Self {
         Bend {
             value: self.value * other.value,
             rate: self.rate * other.value + self.value * other.rate,
@@ -25,14 +25,14 @@ impl Bend {
         }
     }
 
-    #[inline]
-    fn map(self, linear: impl Fn(f64) -> f64) -> Self {
+    #[inline(always)]
+    fn map(&self, linear: impl Fn(f64) -> f64) -> Self {
         let of = |part: f64| linear(part).abs();
         Bend { value: of(self.value), rate: of(self.rate), bend: of(self.bend) }
     }
 
     /// Bounds of the turn by this rotation.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn turn(self) -> Turn<Bend> {
         let Bend { value, rate, bend } = self;
         let falling = rate * rate + value * bend; // bounds |θ̈ sin θ + θ̇² cos θ|
@@ -48,7 +48,7 @@ impl Bend {
 operators!([] Bend);
 
 impl Number for Bend {
-    #[inline]
+    #[inline(always)]
     fn constant(value: f64) -> Self {
         Bend { value: value.abs(), rate: 0.0, bend: 0.0 }
     }

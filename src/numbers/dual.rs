@@ -10,15 +10,18 @@ pub(crate) struct Dual<T> {
 }
 
 impl<T: Number> Dual<T> {
-    fn plus(self, other: Self) -> Self {
+    #[inline]
+    fn plus(&self, other: &Self) -> Self {
         Dual { value: self.value + other.value, rate: self.rate + other.rate }
     }
 
-    fn times(self, other: Self) -> Self {
+    #[inline]
+    fn times(&self, other: &Self) -> Self {
         Dual { value: self.value * other.value, rate: self.rate * other.value + self.value * other.rate }
     }
 
-    fn map(self, linear: impl Fn(T) -> T) -> Self {
+    #[inline]
+    fn map(&self, linear: impl Fn(T) -> T) -> Self {
         Dual { value: linear(self.value), rate: linear(self.rate) }
     }
 }
@@ -33,6 +36,7 @@ impl<T: Number> Number for Dual<T> {
 
 impl<T: Number> Turn<T> {
     /// The turn with its rate, given θ̇.
+    #[inline]
     pub(crate) fn at_rate(self, theta_dot: T) -> Turn<Dual<T>> {
         let Turn { sin, cos, versine } = self;
         Turn {

@@ -8,17 +8,17 @@ pub(crate) struct Most(pub f64);
 
 impl Most {
     #[inline]
-    fn plus(self, other: Self) -> Self {
+    fn plus(&self, other: &Self) -> Self {
         Most(self.0 + other.0)
     }
 
     #[inline]
-    fn times(self, other: Self) -> Self {
+    fn times(&self, other: &Self) -> Self {
         Most(self.0 * other.0)
     }
 
     #[inline]
-    fn map(self, linear: impl Fn(f64) -> f64) -> Self {
+    fn map(&self, linear: impl Fn(f64) -> f64) -> Self {
         Most(linear(self.0).abs())
     }
 

@@ -8,7 +8,7 @@
 use crate::engine::piece::{Expansion, Part, Piece, Watch};
 use crate::levels::detail::Model;
 use crate::levels::shown::Searched;
-use crate::mechanics::outputs::{Measure, OUTPUTS, PeakRule};
+use crate::mechanics::outputs::{Measure, OUTPUTS, PeakRule, Sizes};
 use crate::mechanics::restraint::Angles;
 use crate::series::extremes::{self, Bound};
 use crate::series::taylor::Arc;
@@ -65,8 +65,11 @@ pub struct Peaks {
     /// Peaks of the searched outputs, in the order of [`Measure::SEARCHED`].
     largest: Searched<Peak>,
     ground: Peak,
-    /// Parameters of the structure, which give the peaks that come with others.
-    parameters: Parameters,
+    /// Sizes of the structure, which give the peaks that come with others.
+    sizes: Sizes,
+    /// Prestress and stiffness of the tendon.
+    P_0: f64,
+    k_t: f64,
     /// Elongation of the tendon at this level of detail.
     angles: Angles,
     /// The start of the motion, s.
@@ -139,9 +142,10 @@ pub fn of(structure: &Structure) -> impl Iterator<Item = &'static Peaking> + use
 impl Peaks {
     /// Peaks of `structure` at the level `detail` from `time` (s) on, before any motion. A peak that stays 0 has this instant.
     pub fn since(time: f64, structure: &Structure, detail: Detail) -> Peaks {
+        let &Parameters { m, H, B, P_0, k_t, .. } = structure.parameters();
         let (none, angles) = (Peak { magnitude: 0.0, time }, detail.angles());
         let largest = [none; Measure::SEARCHED.len()];
-        Peaks { largest, ground: none, parameters: *structure.parameters(), angles, start: time, evaluations: 0 }
+        Peaks { largest, ground: none, sizes: Sizes { m, H, B }, P_0, k_t, angles, start: time, evaluations: 0 }
     }
 
     /// Sees the `outputs` at `time` (s), which need not be in a piece.
@@ -156,7 +160,7 @@ impl Peaks {
             PeakRule::Searched(_) => self.largest[measure.place()],
             PeakRule::With(_, measure, magnitude) => {
                 let peak = self.of(measure);
-                Peak { magnitude: magnitude(&self.parameters, peak.magnitude), ..peak }
+                Peak { magnitude: magnitude(&self.sizes, peak.magnitude), ..peak }
             }
         }
     }
@@ -183,8 +187,8 @@ impl Peaks {
 
     /// Peak of the tendon's force P_t = P_0 + k_t e, N. It comes with the peak of |θ|, unless the force is constant.
     pub fn P_t(&self) -> Peak {
-        let (theta, &Parameters { B, P_0, k_t, .. }) = (self.theta(), &self.parameters);
-        let magnitude = P_0 + k_t * B * self.angles.chord(theta.magnitude, 0.0).length;
+        let (theta, &Peaks { P_0, k_t, sizes, .. }) = (self.theta(), self);
+        let magnitude = P_0 + k_t * sizes.B * self.angles.chord(theta.magnitude, 0.0).length;
         Peak { magnitude, time: if k_t > 0.0 { theta.time } else { self.start } }
     }
 
@@ -321,7 +325,7 @@ pub struct PeakWatch<'a> {
     peaks: &'a mut Peaks,
     /// Pieces that may hold more than what has been seen.
     kept: Vec<Kept>,
-    /// What moves the structure of these.
+    /// The model of the kept pieces.
     model: Option<Box<Model>>,
     /// Whether the next piece may begin with other outputs than the last one ended with.
     is_torn: bool,

@@ -3,17 +3,18 @@
 //! The series tell the instant at which a reaction is largest; its value there comes from the state.
 
 use crate::levels::detail::Model;
-use crate::levels::shown::{courses, leaf, over, time};
-use crate::mechanics::instant::Second;
+use crate::levels::shown::{linear_parts, over, turning};
+use crate::levels::tie_series::TieSeries;
+use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::load::LinearLoad;
-use crate::mechanics::reactions::{forces, moment};
+use crate::mechanics::reactions::forces;
 use crate::mechanics::restraint::{Sum, ties};
-use crate::numbers::Number;
-use crate::numbers::linear::Linear;
-use crate::series::extremes::{self, Range};
-use crate::series::taylor::Arc;
+use crate::numbers::linear::{Leaf, Linear};
+use crate::numbers::{Number, Turn};
+use crate::series::extremes::Range;
+use crate::series::taylor::{Arc, Series};
 use crate::series::terms::Terms;
-use crate::{Dissipators, Phase, Reactions};
+use crate::{Dissipators, Phase, Reactions, Structure};
 
 /// The reactions of the edges over `arc`, a motion in `phase` under `load`, which is given from its start on. The moment is given
 /// in full contact only; while rocking it is sB R_v.
@@ -24,16 +25,50 @@ pub(crate) fn series(
     load: LinearLoad,
     arc: &Arc,
 ) -> Reactions<Terms> {
-    let x = model.terms(phase, load, arc);
-    let second = Second { u_ddot: x.u_dot.slope(arc.span), theta_ddot: x.theta_dot.slope(arc.span) };
-    let [R_h, R_v] = forces(&x, &second);
-    let R_m = if phase == Phase::FullContact { moment(&x, &second) } else { Terms::constant(0.0) };
-    let reactions = Reactions { R_h, R_v, R_m };
+    let reactions = if phase == Phase::FullContact {
+        in_full_contact(model, load, arc)
+    } else {
+        let x = model.terms(phase, load, arc);
+        let second = Second { u_ddot: x.u_dot.slope(arc.span), theta_ddot: x.theta_dot.slope(arc.span) };
+        let [R_h, R_v] = forces(&x, &second);
+        Reactions { R_h, R_v, R_m: Terms::constant(0.0) }
+    };
     let Some(angles) = model.level.ties() else { return reactions };
-    let ties = ties(&model.structure, phase.side(), dissipators);
-    let [up, right] = crate::levels::tie_series::TieSeries::over(Sum::of_pulls(&ties), angles, arc).pulls(arc);
-    let moment = ties.iter().map(|tie| tie.force * (x.pivot() - tie.lever)).sum::<f64>();
+    let (side, B) = (phase.side(), model.structure.parameters().B);
+    let ties = ties(&model.structure, side, dissipators);
+    let [up, right] = TieSeries::over(Sum::of_pulls(&ties), angles, arc).pulls(arc);
+    let moment = ties.iter().map(|tie| tie.force * (side.sign() * B - tie.lever)).sum::<f64>();
     reactions.of_edges(Terms::of(&up, arc.order), Terms::of(&right, arc.order), Terms::constant(moment))
+}
+
+/// The reactions in full contact. There they are linear in u, ü and time, so that their slopes give the series, unless the
+/// ground moves vertically.
+fn in_full_contact(model: &Model, load: LinearLoad, arc: &Arc) -> Reactions<Terms> {
+    let Reactions { R_h, R_v, R_m } = linear_in_full_contact(&model.structure, load, arc);
+    if R_m.rest == 0.0 {
+        let of = |reaction: Linear<3>| Terms::from_fn(arc.order, |k| reaction.coefficient(k, &contact_leaves(arc, k)));
+        return Reactions { R_h: of(R_h), R_v: of(R_v), R_m: of(R_m) };
+    }
+    let x = model.terms(Phase::FullContact, load, arc);
+    Reactions::at(&x, &Second { u_ddot: x.u_dot.slope(arc.span), theta_ddot: Terms::constant(0.0) })
+}
+
+/// The reactions in full contact; leaves u, ü, time.
+#[inline(always)]
+fn linear_in_full_contact(structure: &Structure, load: LinearLoad, arc: &Arc) -> Reactions<Linear<3>> {
+    let none = (Linear::constant(0.0), Turn::none());
+    let x = Instant {
+        u: Linear::leaf(0, 1.0, Leaf::of(arc.used(&arc.u)).changing()),
+        ..over(structure, Phase::FullContact, load, arc, none)
+    };
+    let u_ddot = Linear::leaf(1, 1.0 / arc.span, Leaf::of_slope(arc.used(&arc.u_dot)));
+    Reactions::at(&x, &Second { u_ddot, theta_ddot: Linear::constant(0.0) })
+}
+
+/// Coefficient `k` of u and ü, the latter per unit of σ.
+#[inline(always)]
+fn contact_leaves(arc: &Arc, k: usize) -> [f64; 2] {
+    [arc.u[k], arc.slope(&arc.u_dot, k)]
 }
 
 /// Bounds of a reaction over a polynomial.
@@ -44,46 +79,43 @@ pub(crate) struct Extent {
 }
 
 impl Extent {
-    fn of(course: &Range, reaction: &Linear<LEAVES>) -> Extent {
+    /// The extent of a reaction without bounds.
+    pub(crate) const ANY: Extent = Extent { least: f64::NEG_INFINITY, largest: f64::INFINITY };
+
+    /// The extent of a reaction, given the course of its linear part.
+    fn of<const L: usize>(course: &Range, reaction: &Linear<L>) -> Extent {
         let off = course.off_chord + reaction.rest;
         Extent { least: course.start.min(course.end) - off, largest: course.start.max(course.end) + off }
     }
-
-    /// Bound of the magnitude.
-    pub(crate) fn magnitude(&self) -> f64 {
-        self.largest.max(-self.least)
-    }
 }
 
-/// Leaves of the reactions: θ, u, u̇, θ̇, ü, θ̈, time.
-const LEAVES: usize = 7;
-
 /// Bounds of the reactions over `arc`, a motion in `phase` under `load`. The moment is given in full contact only.
-pub(crate) fn extents(model: &Model, phase: Phase, load: LinearLoad, arc: &Arc) -> Reactions<Extent> {
-    let row = |k: usize| {
-        let [u_ddot, theta_ddot] = [&arc.u_dot, &arc.theta_dot].map(|rate| arc.slope(rate, k));
-        [arc.theta[k], arc.u[k], arc.u_dot[k], arc.theta_dot[k], u_ddot, theta_ddot]
-    };
-    let [theta, u, u_dot, theta_dot, u_ddot, theta_ddot] = extremes::ranges(row, arc.order, arc.reach).map(leaf);
-    let x = crate::mechanics::instant::Instant {
-        u: Linear::leaf(1, 1.0, u),
-        u_dot: Linear::leaf(2, 1.0, u_dot),
-        theta_dot: Linear::leaf(3, 1.0, theta_dot),
-        ..over::<LEAVES>(&model.structure, phase, load, arc, theta)
-    };
-    let second = Second { u_ddot: Linear::leaf(4, 1.0, u_ddot), theta_ddot: Linear::leaf(5, 1.0, theta_ddot) };
-    let [R_h, R_v] = forces(&x, &second);
-    let leaves = |k: usize| {
-        let [theta, u, u_dot, theta_dot, u_ddot, theta_ddot] = row(k);
-        [theta, u, u_dot, theta_dot, u_ddot, theta_ddot, time(k)]
-    };
+///
+/// Leaves while rocking: θ, ü, θ̈, time. The other components enter as a rest, because they change little over a step.
+pub(crate) fn extents(structure: &Structure, phase: Phase, load: LinearLoad, arc: &Arc) -> Reactions<Extent> {
     if phase == Phase::FullContact {
-        let reactions = [R_h, R_v, moment(&x, &second)];
-        let courses = courses(&reactions, leaves, arc);
-        let [R_h, R_v, R_m] = std::array::from_fn(|i| Extent::of(&courses[i], &reactions[i]));
+        let Reactions { R_h, R_v, R_m } = linear_in_full_contact(structure, load, arc);
+        let reactions = [R_h, R_v, R_m];
+        let parts = linear_parts(&reactions, |k| contact_leaves(arc, k), arc);
+        let [R_h, R_v, R_m] = std::array::from_fn(|i| Extent::of(&parts[i], &reactions[i]));
         return Reactions { R_h, R_v, R_m };
     }
-    let courses = courses(&[R_h, R_v], leaves, arc);
-    let [R_h, R_v] = [Extent::of(&courses[0], &R_h), Extent::of(&courses[1], &R_v)];
-    Reactions { R_h, R_v, R_m: Extent { least: 0.0, largest: 0.0 } }
+    let of = |series: &Series| Leaf::of(arc.used(series)).changing();
+    let slope = |series: &Series| Leaf::of_slope(arc.used(series));
+    let per_span = 1.0 / arc.span;
+    let x = Instant {
+        u: Linear::loose(of(&arc.u)),
+        u_dot: Linear::loose(of(&arc.u_dot)),
+        theta_dot: Linear::loose(of(&arc.theta_dot)),
+        ..over::<4>(structure, phase, load, arc, turning(of(&arc.theta)))
+    };
+    let second = Second {
+        u_ddot: Linear::leaf(1, per_span, slope(&arc.u_dot)),
+        theta_ddot: Linear::leaf(2, per_span, slope(&arc.theta_dot)),
+    };
+    let reactions = forces(&x, &second);
+    let leaves = |k: usize| [arc.theta[k], arc.slope(&arc.u_dot, k), arc.slope(&arc.theta_dot, k)];
+    let parts = linear_parts(&reactions, leaves, arc);
+    let [R_h, R_v] = std::array::from_fn(|i| Extent::of(&parts[i], &reactions[i]));
+    Reactions { R_h, R_v, R_m: Extent::ANY }
 }

@@ -1,5 +1,4 @@
-//! Where the model itself ends: what it takes for granted, and how far a motion goes beyond that; exact, between the ends
-//! of its pieces too.
+//! The assumptions of the model, and the amounts by which a motion breaks them: exact, between the ends of pieces, too.
 //!
 //! The model holds the base down until |u| = u_cr, keeps the edge that it rocks about on the ground, lets nothing slide
 //! and takes θ̇ ← r θ̇ at every impact. With W = (m + m0) g, the reactions R and the impulse I of an impact
@@ -14,24 +13,33 @@
 //! energy_gain_max  largest (T₊ − T₋)/T₋ of an impact              above 0 energy comes out of nothing
 //! ```
 //!
-//! Of a restrained structure the reactions are those that the edges of the base carry. Where a vertical ground acceleration
-//! brings g + a_v to 0, the base would fly: told by its first instant, while the motion goes on by the model's equations.
+//! The reactions of a restrained structure are those that the edges of the base carry. If a vertical ground acceleration
+//! brings g + a_v to 0, the real base would fly. The first such instant is reported, and the motion continues by the model's
+//! equations.
 //!
-//! The reactions are series in time (`reaction_series`). A value worse than λ is a point where a combination of them is
-//! positive, as ±R_h − λ R_v for friction: it is looked for at that combination's stationary points, with λ the worst
-//! seen so far, until none is positive (Dinkelbach). When, and for how long, a limit is passed is between its roots.
+//! The reactions are series in time (`reaction_series`). A value is worse than λ where a combination of them is positive, such
+//! as ±R_h − λ R_v for friction. The search goes through the stationary points of the combination, with λ the worst value so
+//! far, until none is positive (Dinkelbach). A limit is passed between the roots of the combination with that limit.
 
+mod assumptions;
+
+use super::reaction_series::{self, Extent, extents};
 use super::{Finish, Run, RunError};
 use crate::engine::piece::{Expansion, Piece, Sample, Watch};
 use crate::levels::level::Rates;
 use crate::mechanics::impact;
-use crate::numbers::Number;
-use crate::run::reaction_series::{self, extents};
 use crate::series::bisection::last_where;
 use crate::series::extremes;
 use crate::series::taylor::evaluate;
 use crate::series::terms::Terms;
 use crate::{Detail, Impulse, Motion, Parameters, Phase, Ramp, Reactions, Side, Structure, Transition, TransitionKind};
+pub use assumptions::{
+    ASSUMPTIONS, Assumption, EDGE_LOAD, ENERGY, FRICTION, IMPACT_FRICTION, IMPACT_TENSION, TENSION, WEIGHT,
+};
+use assumptions::{
+    Combination, EdgeLoad, EnergyGain, Friction, Impact, ImpactFriction, ImpactTension, OfImpacts, OfReactions, Scale,
+    Tension,
+};
 use serde::{Deserialize, Serialize};
 
 /// Something worse by no more than this part may be rounding.
@@ -46,11 +54,11 @@ const CONVERGED: f64 = 1e-10;
 /// How often an arc is halved before its reactions' series are taken as they are.
 const FINEST_PART: u32 = 5;
 
-/// Of a leap that takes more arcs than these, what lies between the first of them and the last period is left out: it is
-/// no worse than what is looked at, but the time that it spends beyond a limit is not counted.
+/// The largest number of arcs of a leap that are all looked at. Of a longer leap only the first arcs and the last period are: the
+/// rest is no worse, but its time beyond a limit is not counted.
 const MOST_ARCS: u32 = 1000;
 
-/// What may be asked of the ground and of an impact without a word.
+/// The limits: a value beyond one gives a warning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Of `tension_max` and `tension_impact`, parts of the weight and of the impulse.
@@ -84,7 +92,7 @@ impl Limits {
     ///
     /// # Errors
     ///
-    /// One that is not a finite number of at least 0.
+    /// A limit that is not a finite number of at least 0.
     pub fn check(&self) -> Result<(), LimitError> {
         let &Limits { tension, edge_load, friction, energy_gain } = self;
         let named =
@@ -96,7 +104,7 @@ impl Limits {
     }
 }
 
-/// What is found of one of [`ASSUMPTIONS`].
+/// The findings about one of [`ASSUMPTIONS`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Worst {
     /// The worst value: the largest, of `R_v_min` the least.
@@ -109,94 +117,7 @@ pub struct Worst {
     pub beyond: f64,
 }
 
-/// One of the things that the model takes for granted.
-#[derive(Debug)]
-pub struct Assumption {
-    /// Of the value that tells of it.
-    pub name: &'static str,
-    /// Of the instant of that value.
-    pub time_name: &'static str,
-    /// What the value is.
-    pub description: &'static str,
-    /// What the instant is.
-    pub time_description: &'static str,
-    /// What it means where the value is beyond its limit.
-    pub meaning: &'static str,
-    /// Whether it is about impacts alone.
-    pub is_of_impacts: bool,
-    /// Its limit among others.
-    pub limit: fn(&Limits) -> f64,
-}
-
-/// Place of `tension_max` in [`ASSUMPTIONS`].
-pub const TENSION: usize = 0;
-/// Of `R_v_min`.
-pub const EDGE_LOAD: usize = 1;
-/// Of `mu_required`.
-pub const FRICTION: usize = 2;
-/// Of `mu_impact`.
-pub const IMPACT_FRICTION: usize = 3;
-/// Of `tension_impact`.
-pub const IMPACT_TENSION: usize = 4;
-/// Of `energy_gain_max`.
-pub const ENERGY: usize = 5;
-/// Of `weight_min`.
-pub const WEIGHT: usize = 6;
-
-macro_rules! assumption {
-    ($name:literal $description:literal, $meaning:literal, $is_of_impacts:literal, $limit:expr) => {
-        Assumption {
-            name: $name,
-            time_name: concat!("t_", $name),
-            description: $description,
-            time_description: concat!("first instant of ", $name),
-            meaning: $meaning,
-            is_of_impacts: $is_of_impacts,
-            limit: $limit,
-        }
-    };
-}
-
-/// All of them, in the order of [`Found::worst`].
-pub const ASSUMPTIONS: [Assumption; 7] = [
-    assumption!(
-        "tension_max" "largest (|R_m|/B - R_v)/W in full contact, W = (m + m0) g: above 0 tension holds the base down",
-        "tension holds the base down in full contact; in truth it lifts off earlier than at u_cr",
-        false, |limits| limits.tension
-    ),
-    assumption!(
-        "R_v_min" "least R_v/W: below 0 a pull holds the edge of the base down",
-        "a pull holds down the edge that the structure rocks about; in truth it jumps",
-        false, |limits| limits.edge_load
-    ),
-    assumption!(
-        "mu_required" "largest |R_h|/R_v, the friction that the ground must have; infinite once R_v is 0 or less",
-        "it takes that much friction to keep the base where it is; in truth it may slide",
-        false, |limits| limits.friction
-    ),
-    assumption!(
-        "mu_impact" "largest |I_h|/I_v of an impact, friction likewise; infinite where I_v is not above 0",
-        "it takes that much friction to keep the base where it is at an impact; in truth it may slide",
-        true, |limits| limits.friction
-    ),
-    assumption!(
-        "tension_impact" "largest (|I_m|/B - I_v)/I_v of an impact: above 0 one of the edges of the base pulls",
-        "one of the edges pulls at an impact; in truth r is larger, or the other edge lifts off",
-        true, |limits| limits.tension
-    ),
-    assumption!(
-        "energy_gain_max" "largest gain of an impact over the kinetic energy before it; 0 while none gains",
-        "an impact raises the energy; in truth it cannot",
-        true, |limits| limits.energy_gain
-    ),
-    assumption!(
-        "weight_min" "least (g + a_v)/g: at 0 or below nothing holds the base down; 1 without vertical motion",
-        "nothing holds the base down; in truth it flies",
-        false, |_| 0.0
-    ),
-];
-
-/// What is found of a motion.
+/// The findings about a motion.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Found {
     /// In the order of [`ASSUMPTIONS`].
@@ -216,23 +137,21 @@ pub struct Found {
 }
 
 impl Found {
-    /// Nothing seen yet since `time` (s).
+    /// Findings before anything has been seen, from `time` (s) on.
     pub fn since(time: f64) -> Found {
         let none = |value| Worst { value, time, first_beyond: None, beyond: 0.0 };
-        // of each the least bad that there can be
-        let worst = [-1.0, f64::INFINITY, 0.0, 0.0, -1.0, 0.0, 1.0].map(none);
+        let worst = ASSUMPTIONS.map(|assumption| none(assumption.start));
         Found { worst, has_stood: false, gains: 0, impacts: 0, settlings: 0, held: 0.0, duration: 0.0 }
     }
 
-    /// Sees `value` of assumption `which` at `time` (s). Of values that are the same but for rounding the first counts.
+    /// Sees `value` of assumption `which` at `time` (s). The first of several values that differ by rounding counts.
     fn see(&mut self, which: usize, value: f64, time: f64) {
         // a base pressed down by more than its weight has less tension than that of nothing seen
         let is_first = which == TENSION && !std::mem::replace(&mut self.has_stood, true);
         let worst = &mut self.worst[which];
         let is_same =
             value == worst.value || (value - worst.value).abs() <= MARGIN * value.abs().min(worst.value.abs());
-        let is_least = matches!(which, EDGE_LOAD | WEIGHT);
-        let is_worse = is_first || if is_least { value < worst.value } else { value > worst.value };
+        let is_worse = is_first || if ASSUMPTIONS[which].is_least { value < worst.value } else { value > worst.value };
         if is_same {
             worst.time = worst.time.min(time);
         } else if is_worse {
@@ -264,15 +183,14 @@ impl Found {
         self.see_beyond(WEIGHT, time + from, to - from);
     }
 
-    /// What assumption `which` of [`ASSUMPTIONS`] says once its limit has been passed: what, when, how much, what it
-    /// means.
+    /// The warning about assumption `which` of [`ASSUMPTIONS`] once its limit has been passed: instant, value, meaning.
     pub fn warning(&self, which: usize, limits: &Limits) -> Option<String> {
-        let (Assumption { name, meaning, limit, .. }, Worst { value, time, first_beyond, .. }) =
+        let (Assumption { name, meaning, limit, is_least, .. }, Worst { value, time, first_beyond, .. }) =
             (&ASSUMPTIONS[which], &self.worst[which]);
-        let side = match which {
-            EDGE_LOAD => "below",
-            WEIGHT => "not above",
-            _ => "above",
+        let side = match (which, is_least) {
+            (WEIGHT, _) => "not above",
+            (_, true) => "below",
+            (_, false) => "above",
         };
         let first = (*first_beyond)?;
         let limit = limit(limits);
@@ -289,68 +207,55 @@ pub struct Validity {
 }
 
 impl Validity {
-    /// Of `structure`; goes on from what has been `found`.
+    /// The watcher of `structure`, which continues from what has been `found`.
     pub fn new(structure: &Structure, limits: Limits, found: Found) -> Validity {
         Validity { structure: *structure, limits, found }
     }
 
-    /// What has been found so far.
+    /// The findings so far.
     pub fn found(&self) -> &Found {
         &self.found
     }
 
-    /// W = (m + m0) g, N.
-    fn weight(&self) -> f64 {
-        let &Parameters { m, m0, g, .. } = self.structure.parameters();
-        (m + m0) * g
+    fn scale(&self) -> Scale {
+        let &Parameters { m, m0, g, B, .. } = self.structure.parameters();
+        Scale { W: (m + m0) * g, B }
     }
 
-    /// The `reactions` in `phase` at `time` (s), which need not be in a piece.
+    /// Sees the `reactions` in `phase` at `time` (s), which need not be in a piece.
     pub fn see_instant(&mut self, time: f64, phase: Phase, reactions: &Reactions) {
-        for which in [TENSION, EDGE_LOAD, FRICTION] {
-            if which != TENSION || phase == Phase::FullContact {
-                self.found.see(which, self.value(which, reactions), time);
-            }
-        }
+        self.see::<Tension>(time, phase, reactions);
+        self.see::<EdgeLoad>(time, phase, reactions);
+        self.see::<Friction>(time, phase, reactions);
     }
 
-    /// What `reactions` mean for assumption `which`.
-    fn value(&self, which: usize, &Reactions { R_h, R_v, R_m }: &Reactions) -> f64 {
-        match which {
-            TENSION => (R_m.abs() / self.structure.parameters().B - R_v) / self.weight(),
-            EDGE_LOAD => R_v / self.weight(),
-            _ if R_v > 0.0 => R_h.abs() / R_v,
-            _ => f64::INFINITY,
-        }
-    }
-
-    /// The combinations of R_h, R_v, R_m and 1 one of which is positive where assumption `which` is worse than `than`.
-    fn worse(&self, which: usize, than: f64) -> Vec<[f64; 4]> {
-        let per_width = 1.0 / self.structure.parameters().B;
-        match which {
-            TENSION => [1.0, -1.0].map(|s| [0.0, -1.0, s * per_width, -than * self.weight()]).to_vec(),
-            EDGE_LOAD => vec![[0.0, -1.0, 0.0, than * self.weight()]],
-            _ => [1.0, -1.0].map(|s| [s, -than, 0.0, 0.0]).to_vec(),
+    fn see<A: OfReactions>(&mut self, time: f64, phase: Phase, reactions: &Reactions) {
+        if A::holds_in(phase) {
+            self.found.see(A::PLACE, A::value(self.scale(), reactions), time);
         }
     }
 
     /// Whether reactions within these bounds may hold something worse than what has been seen, or go beyond a limit.
-    fn may_matter(&self, phase: Phase, [R_h, R_v, R_m]: [f64; 3]) -> bool {
-        let W = self.weight();
-        let Limits { tension, edge_load, friction, .. } = self.limits;
-        let [tension, edge_load, friction] = [(TENSION, tension), (EDGE_LOAD, edge_load), (FRICTION, friction)]
-            .map(|(which, limit)| (self.found.worst[which].value, limit));
-        let slack = MARGIN * W;
-        let is_closed = R_v > edge_load.0.max(edge_load.1).max(0.0) * W - slack
-            && R_h < friction.0.min(friction.1) * R_v + slack
-            && (phase != Phase::FullContact
-                || R_m / self.structure.parameters().B - W < tension.0.min(tension.1) * W + slack);
-        !is_closed
+    fn may_matter(&self, phase: Phase, reactions: &Reactions<Extent>) -> bool {
+        let has_weight = reactions.R_v.least > 0.0; // otherwise no friction is enough
+        !has_weight
+            || self.may_break::<EdgeLoad>(phase, reactions)
+            || self.may_break::<Friction>(phase, reactions)
+            || self.may_break::<Tension>(phase, reactions)
     }
 
-    /// Whether a leap in full contact may hold such: what changes no faster than its second derivative leaves its chord by no
-    /// more than that over 8/h².
-    fn leap_may_matter(&self, piece: &Piece) -> bool {
+    fn may_break<A: OfReactions>(&self, phase: Phase, reactions: &Reactions<Extent>) -> bool {
+        let Assumption { limit, is_least, .. } = &ASSUMPTIONS[A::PLACE];
+        let (worst, limit) = (self.found.worst[A::PLACE].value, limit(&self.limits));
+        let first = if *is_least { worst.max(limit) } else { worst.min(limit) };
+        let slack = MARGIN * self.scale().W;
+        let is_closed = |combination: &Combination| combination.extent(reactions).largest < slack;
+        A::holds_in(phase) && !A::worse(self.scale(), first).iter().flatten().all(is_closed)
+    }
+
+    /// Bounds of the reactions over a leap in full contact: a quantity whose second derivative is at most M over the time h
+    /// stays within M h²/8 of its chord.
+    fn extents_of_leap(&self, piece: &Piece) -> Reactions<Extent> {
         let &Parameters { m, m0, H, g, .. } = self.structure.parameters();
         let &Structure { k, c_fc, .. } = &self.structure;
         let ends = [(0.0, &piece.before.state), (piece.duration, &piece.end)].map(|(tau, state)| {
@@ -361,93 +266,93 @@ impl Validity {
         let Rates { u_ddot, u_dddot, .. } = piece.model.level.rates(piece.before.phase, &start, &piece.end);
         let per_bend = piece.duration * piece.duration / 8.0;
         let strut = per_bend * (c_fc * u_dddot + k * u_ddot);
-        let [R_h, R_m] = [0, 1].map(|i| ends[0][i].abs().max(ends[1][i].abs()));
-        let bounds = [R_h + strut, self.weight(), R_m + H * strut + per_bend * m * g * u_ddot];
-        self.may_matter(piece.before.phase, bounds)
+        let extent = |i: usize, off: f64| {
+            let [from, to]: [f64; 2] = [ends[0][i], ends[1][i]];
+            Extent { least: from.min(to) - off, largest: from.max(to) + off }
+        };
+        let W = self.scale().W;
+        let R_v = Extent { least: W, largest: W };
+        Reactions { R_h: extent(0, strut), R_v, R_m: extent(1, H * strut + per_bend * m * g * u_ddot) }
     }
 
-    /// Whether the motion over a polynomial may hold something worse than what has been seen, or go beyond a limit.
-    fn arc_may_matter(&self, &Expansion { piece, from, arc }: &Expansion) -> bool {
-        let phase = piece.before.phase;
-        let Reactions { R_h, R_v, R_m } = extents(piece.model, phase, piece.load.from(from), arc);
-        self.may_matter(phase, [R_h.magnitude(), R_v.least, R_m.magnitude()])
-    }
-
-    /// Looks at the motion over a polynomial; `halvings` are left.
-    fn look(&mut self, expansion: Expansion, halvings: u32) {
-        let stretch = Stretch::new(expansion);
+    /// Looks at the motion over a polynomial, which may be halved `halvings` times; `extents` are bounds of its reactions.
+    fn look(&mut self, expansion: Expansion, extents: &Reactions<Extent>, halvings: u32) {
+        let stretch = Stretch::new(expansion, extents);
         let Expansion { piece, from, arc } = expansion;
-        if halvings > 0 && !stretch.has_converged() {
+        let last = stretch.reactions(arc.reach);
+        if halvings > 0 && !stretch.has_converged(&last) {
             let middle = 0.5 * arc.reach;
             for [start, end] in [[0.0, middle], [middle, arc.reach]] {
                 let half = &arc.between(start, end);
-                self.look(Expansion { piece, from: from + start * arc.span, arc: half }, halvings - 1);
+                self.look(Expansion { piece, from: from + start * arc.span, arc: half }, extents, halvings - 1);
             }
             return;
         }
         let phase = piece.before.phase;
         // no friction is enough from where R_v is 0, which may be sooner than either end
-        if let Some((start, _)) = stretch.above(&[[0.0, -1.0, 0.0, 0.0]]).first() {
+        if let Some((start, _)) = stretch.above([Some(Combination([0.0, -1.0, 0.0, 0.0])), None]).first() {
             self.found.see(FRICTION, f64::INFINITY, stretch.of.time(*start));
         }
-        for sigma in [0.0, arc.reach] {
-            self.see_instant(stretch.of.time(sigma), phase, &stretch.reactions(sigma));
+        self.see_instant(stretch.of.time(0.0), phase, &stretch.reactions(0.0));
+        self.see_instant(stretch.of.time(arc.reach), phase, &last);
+        self.look_for::<Tension>(phase, &stretch);
+        self.look_for::<EdgeLoad>(phase, &stretch);
+        self.look_for::<Friction>(phase, &stretch);
+    }
+
+    /// Looks within `stretch` for the worst value of an assumption, and for the time beyond its limit.
+    fn look_for<A: OfReactions>(&mut self, phase: Phase, stretch: &Stretch) {
+        if !A::holds_in(phase) {
+            return;
         }
-        for which in [TENSION, EDGE_LOAD, FRICTION] {
-            if which == TENSION && phase != Phase::FullContact {
-                continue;
-            }
-            self.search(which, &stretch);
-            let beyond = self.worse(which, (ASSUMPTIONS[which].limit)(&self.limits));
-            for (start, end) in stretch.above(&beyond) {
-                self.found.see_beyond(which, stretch.of.time(start), (end - start) * arc.span);
-            }
+        self.search::<A>(stretch);
+        let beyond = A::worse(self.scale(), (ASSUMPTIONS[A::PLACE].limit)(&self.limits));
+        for (start, end) in stretch.above(beyond) {
+            self.found.see_beyond(A::PLACE, stretch.of.time(start), (end - start) * stretch.of.arc.span);
         }
     }
 
-    /// Looks for the worst of assumption `which` within `stretch`, where R_v > 0 for the sake of friction.
-    fn search(&mut self, which: usize, stretch: &Stretch) {
+    /// Looks for the worst value of an assumption within `stretch`.
+    fn search<A: OfReactions>(&mut self, stretch: &Stretch) {
+        let (scale, reach) = (self.scale(), stretch.of.arc.reach);
         loop {
-            let worst = self.found.worst[which].value;
+            let worst = self.found.worst[A::PLACE].value;
             if worst.is_infinite() {
                 return;
             }
-            let combinations = self.worse(which, worst);
-            for combination in &combinations {
-                let series = stretch.combination(combination);
+            for combination in A::worse(scale, worst).iter().flatten() {
+                let Some(series) = stretch.combination(combination, ROUNDING * scale.W) else { continue };
                 let used = series.used();
-                if highest(used, stretch.of.arc.reach) > ROUNDING * self.weight() {
-                    extremes::stationary_points(used, stretch.of.arc.reach, |sigma| {
-                        let value = self.value(which, &stretch.reactions(sigma));
-                        self.found.see(which, value, stretch.of.time(sigma));
+                if highest(used, reach) > ROUNDING * scale.W {
+                    extremes::stationary_points(used, reach, |sigma| {
+                        let value = A::value(scale, &stretch.reactions(sigma));
+                        self.found.see(A::PLACE, value, stretch.of.time(sigma));
                     });
                 }
             }
-            let now = self.found.worst[which].value;
-            // where friction is stationary is not where its combination is, unless with the friction found there
-            if which != FRICTION || now <= worst * (1.0 + ROUNDING) {
+            let now = self.found.worst[A::PLACE].value;
+            // a ratio is stationary where its combination is, with the ratio found there
+            if A::PLACE != FRICTION || now <= worst * (1.0 + ROUNDING) {
                 return;
             }
         }
     }
 
-    /// Looks at the impulse of an impact at `time` (s), and at the energy it gains over what there was.
-    fn see_impact(&mut self, time: f64, Impulse { I_h, I_v, I_m }: Impulse, gain: f64) {
+    /// Sees an impact at `time` (s).
+    fn see_impact(&mut self, time: f64, impact: &Impact) {
         self.found.impacts += 1;
-        let B = self.structure.parameters().B;
-        let per_impulse = |of: f64| if I_v > 0.0 { of / I_v } else { f64::INFINITY };
-        let values = [
-            (IMPACT_FRICTION, per_impulse(I_h.abs())),
-            (IMPACT_TENSION, per_impulse(I_m.abs() / B - I_v)),
-            (ENERGY, gain),
-        ];
-        for (which, value) in values {
-            self.found.see(which, value, time);
-            if value > (ASSUMPTIONS[which].limit)(&self.limits) {
-                self.found.see_beyond(which, time, 1.0);
-            }
+        self.found.gains += u64::from(impact.gain > 0.0);
+        self.see_at::<ImpactFriction>(time, impact);
+        self.see_at::<ImpactTension>(time, impact);
+        self.see_at::<EnergyGain>(time, impact);
+    }
+
+    fn see_at<A: OfImpacts>(&mut self, time: f64, impact: &Impact) {
+        let value = A::value(self.scale(), impact);
+        self.found.see(A::PLACE, value, time);
+        if value > (ASSUMPTIONS[A::PLACE].limit)(&self.limits) {
+            self.found.see_beyond(A::PLACE, time, 1.0);
         }
-        self.found.gains += u64::from(gain > 0.0);
     }
 }
 
@@ -461,16 +366,22 @@ impl Watch for Validity {
             let g = self.structure.parameters().g;
             self.found.see_vertical(g, piece.load.upwards(), piece.before.time, piece.duration);
         }
-        let is_leap = piece.arc.is_none() && piece.before.phase == Phase::FullContact;
-        let is_restrained = piece.model.level.ties().is_some();
-        if is_leap && !is_restrained && !self.leap_may_matter(piece) {
+        let (phase, is_restrained) = (piece.before.phase, piece.model.level.ties().is_some());
+        // bounds over a whole leap are known in full contact under gravity only
+        let is_leap = piece.arc.is_none() && phase == Phase::FullContact && !piece.load.is_vertical();
+        if is_leap && !is_restrained && !self.may_matter(phase, &self.extents_of_leap(piece)) {
             return;
         }
         let mut arcs = piece.arcs();
         let mut count = 0;
         while let Some(expansion) = arcs.next() {
-            if is_restrained || self.arc_may_matter(&expansion) {
-                self.look(expansion, FINEST_PART);
+            // of what the ties pull there are no bounds
+            let extents = match is_restrained {
+                true => Reactions { R_h: Extent::ANY, R_v: Extent::ANY, R_m: Extent::ANY },
+                false => extents(&self.structure, phase, piece.load.from(expansion.from), expansion.arc),
+            };
+            if self.may_matter(phase, &extents) {
+                self.look(expansion, &extents, FINEST_PART);
             }
             count += 1;
             if count >= MOST_ARCS {
@@ -504,7 +415,7 @@ impl Watch for Validity {
             _ => 0.0, // a landing always loses
         };
         let impulse = Impulse::of(structure, (Phase::Rocking(side), &before), (phase, &after));
-        self.see_impact(time, impulse, gained / kinetic);
+        self.see_impact(time, &Impact { impulse, gain: gained / kinetic });
     }
 }
 
@@ -512,14 +423,15 @@ impl Watch for Validity {
 struct Stretch<'a> {
     of: Expansion<'a>,
     series: Reactions<Terms>,
+    extents: &'a Reactions<Extent>,
 }
 
 impl<'a> Stretch<'a> {
-    fn new(of: Expansion<'a>) -> Stretch<'a> {
+    fn new(of: Expansion<'a>, extents: &'a Reactions<Extent>) -> Stretch<'a> {
         let Expansion { piece, from, arc } = of;
         let Motion { phase, dissipators, .. } = piece.before;
         let series = reaction_series::series(piece.model, *phase, dissipators, piece.load.from(from), arc);
-        Stretch { of, series }
+        Stretch { of, series, extents }
     }
 
     /// The reactions at `sigma`, from the state there.
@@ -529,33 +441,35 @@ impl<'a> Stretch<'a> {
         Sample { motion, load: load.at(from + sigma * arc.span), model }.edges()
     }
 
-    /// Whether the series of R_h and R_v end where the state does.
-    fn has_converged(&self) -> bool {
-        let Reactions { R_h, R_v, .. } = self.reactions(self.of.arc.reach);
-        [(&self.series.R_h, R_h), (&self.series.R_v, R_v)].into_iter().all(|(series, expected)| {
+    /// Whether the series of R_h and R_v end in the reactions `last` of the state.
+    fn has_converged(&self, last: &Reactions) -> bool {
+        [(&self.series.R_h, last.R_h), (&self.series.R_v, last.R_v)].into_iter().all(|(series, expected)| {
             let used = series.used();
             let terms = used.iter().rev().fold(0.0, |sum, c| sum * self.of.arc.reach + c.abs());
             let off = evaluate(used, self.of.arc.reach) - expected;
-            // what is no number is not so for want of terms
+            // more terms do not turn NaN into a number
             off.is_nan() || off.abs() <= CONVERGED.max(1e3 * self.of.piece.model.local_error) * terms
         })
     }
 
-    /// h R_h + v R_v + m R_m + n for [h, v, m, n].
-    fn combination(&self, &[h, v, m, n]: &[f64; 4]) -> Terms {
-        let Reactions { R_h, R_v, R_m } = &self.series;
-        let weighed = [(h, R_h), (v, R_v), (m, R_m)].into_iter().filter(|(weight, _)| *weight != 0.0);
-        weighed.fold(Terms::constant(n), |sum, (weight, terms)| sum + *terms * weight)
+    /// The series of a combination that may exceed `least`.
+    fn combination(&self, combination: &Combination, least: f64) -> Option<Terms> {
+        (combination.extent(self.extents).largest > least).then(|| combination.series(&self.series))
     }
 
-    /// Where one of `combinations` is positive: from and to, in σ, in their order.
-    fn above(&self, combinations: &[[f64; 4]]) -> Vec<(f64, f64)> {
-        let mut found: Vec<(f64, f64)> = Vec::new();
-        for combination in combinations {
-            let series = self.combination(combination);
-            let used = series.used();
-            if highest(used, self.of.arc.reach) > 0.0 {
-                positive(used, self.of.arc.reach, &mut found);
+    /// The stretches in σ on which one of `combinations` is positive, in their order.
+    fn above(&self, combinations: [Option<Combination>; 2]) -> Vec<(f64, f64)> {
+        let (mut found, reach): (Vec<(f64, f64)>, _) = (Vec::new(), self.of.arc.reach);
+        for combination in combinations.iter().flatten() {
+            let Extent { least, largest } = combination.extent(self.extents);
+            if least > 0.0 {
+                return vec![(0.0, reach)];
+            }
+            if largest > 0.0 {
+                let series = combination.series(&self.series);
+                if highest(series.used(), reach) > 0.0 {
+                    positive(series.used(), reach, &mut found);
+                }
             }
         }
         found.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
@@ -577,23 +491,24 @@ fn highest(coefficients: &[f64], reach: f64) -> f64 {
 
 /// Adds to `found` where Σ c_k σᵏ is positive up to σ = `reach`, stretch by stretch on which it rises or falls throughout.
 fn positive(coefficients: &[f64], reach: f64, found: &mut Vec<(f64, f64)>) {
-    let mut start = 0.0;
+    let is_positive = |sigma: f64| evaluate(coefficients, sigma) > 0.0;
+    let (mut start, mut was_positive) = (0.0, coefficients[0] > 0.0);
     let mut look = |end: f64| {
-        let is_positive = |sigma: f64| evaluate(coefficients, sigma) > 0.0;
-        match [start, end].map(is_positive) {
+        let is_so = is_positive(end);
+        match [was_positive, is_so] {
             [true, true] => found.push((start, end)),
             [true, false] => found.push((start, last_where(start, end, is_positive))),
             [false, true] => found.push((last_where(start, end, |sigma| !is_positive(sigma)), end)),
             [false, false] => (),
         }
-        start = end;
+        (start, was_positive) = (end, is_so);
     };
     extremes::stationary_points(coefficients, reach, &mut look);
     look(reach);
 }
 
 impl Run<'_> {
-    /// What the run goes beyond, and how it ended.
+    /// The assumptions that the run breaks, and its end.
     pub fn validity(&self, limits: Limits) -> Result<(Found, Finish), RunError> {
         let mut validity = Validity::new(&self.structure, limits, Found::since(self.ground.start()));
         let finish = self.follow(&mut validity)?;
@@ -601,7 +516,7 @@ impl Run<'_> {
     }
 }
 
-/// What the parameters alone say at the level `detail`, before anything moves.
+/// The warnings that follow from the parameters at the level `detail`, before anything moves.
 pub fn of_parameters(structure: &Structure, detail: Detail) -> Vec<String> {
     let &Parameters { m, B, H, g, r, P_0, .. } = structure.parameters();
     let &Structure { gamma, omega_fc, u_cr, .. } = structure;

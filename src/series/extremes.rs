@@ -1,7 +1,7 @@
-//! Where a polynomial is largest: a bound over a step, and its stationary points, none of which is passed over.
+//! The largest magnitude of a polynomial: bounds over a step, and all of its stationary points.
 
 use crate::series::first_crossing::{Crossing, Guard, first_time_closed_from};
-use crate::series::taylor::{MAX_ORDER, Series, ZERO, evaluate};
+use crate::series::taylor::{MAX_ORDER, Series, ZERO, evaluate, weighed_sum};
 
 /// max (σ − σᵏ) over 0 ≤ σ ≤ 1 for each k, rounded up.
 const OFF_CHORD: Series = {
@@ -28,9 +28,9 @@ pub struct Bound {
 }
 
 impl Bound {
-    /// Whether the polynomial may turn round.
+    /// Whether the polynomial may turn round; so may one whose rate is not known.
     pub fn may_turn(&self) -> bool {
-        self.rate[0] <= 0.0
+        self.rate[0] <= 0.0 || self.rate[0].is_nan()
     }
 
     /// Bound of the magnitude.
@@ -83,27 +83,25 @@ impl Range {
 #[inline]
 pub fn ranges<const N: usize>(row: impl Fn(usize) -> [f64; N], order: usize, reach: f64) -> [Range; N] {
     let start = row(0);
-    let [mut end, mut off, mut slope, mut turning] = [start, [0.0; N], [0.0; N], [0.0; N]];
-    let mut power = 1.0;
-    for (k, off_chord) in OFF_CHORD.iter().enumerate().take(order + 1).skip(1) {
+    let first = row(1).map(|c| c * reach); // of order 0 the next coefficient is 0
+    let mut end: [f64; N] = std::array::from_fn(|i| start[i] + first[i]);
+    let [mut off, mut turning] = [[0.0; N]; 2];
+    let mut power = reach;
+    for (k, off_chord) in OFF_CHORD.iter().enumerate().take(order + 1).skip(2) {
         power *= reach;
-        let terms = row(k);
+        let (terms, order) = (row(k), k as f64);
         for i in 0..N {
             let term = terms[i] * power;
             end[i] += term;
-            if k == 1 {
-                slope[i] = term.abs();
-            } else {
-                off[i] += off_chord * term.abs();
-                turning[i] += k as f64 * term.abs();
-            }
+            off[i] += off_chord * term.abs();
+            turning[i] += order * term.abs();
         }
     }
     std::array::from_fn(|i| Range {
         start: start[i],
         end: end[i],
         off_chord: off[i],
-        slope: slope[i],
+        slope: first[i].abs(),
         turning: turning[i],
     })
 }
@@ -116,26 +114,17 @@ pub fn off_chord(coefficients: &[f64], reach: f64) -> f64 {
         let powers = std::iter::successors(Some(reach * reach), |power| Some(power * reach));
         return weights.iter().zip(higher).zip(powers).map(|((weight, c), power)| weight * power * c.abs()).sum();
     }
-    // four sums side by side: a sum waits for the one before it
-    let (fours, rest) = higher.as_chunks::<4>();
-    let mut sums = [0.0; 4];
-    for (weights, four) in weights.as_chunks::<4>().0.iter().zip(fours) {
-        for i in 0..4 {
-            sums[i] += weights[i] * four[i].abs();
-        }
-    }
-    let of_rest = weights[4 * fours.len()..].iter().zip(rest).map(|(weight, c)| weight * c.abs()).sum::<f64>();
-    sums.iter().sum::<f64>() + of_rest
+    weighed_sum(weights, higher)
 }
 
 /// Bound of |Σ c_k σᵏ| up to σ = `reach`, by its course.
 pub fn bound(coefficients: &[f64], reach: f64) -> f64 {
-    let [range] = ranges(|k| [coefficients[k]], coefficients.len() - 1, reach);
+    let [range] = ranges(|k| [coefficients.get(k).copied().unwrap_or(0.0)], coefficients.len() - 1, reach);
     range.and(0.0, 0.0).largest()
 }
 
-/// A tighter bound of |Σ c_k σᵏ| up to σ = `reach`: the largest of the cubic with its values and slopes at both ends, and
-/// how far the terms of higher order can leave that.
+/// A tighter bound of |Σ c_k σᵏ| up to σ = `reach`. The cubic with the values and slopes at both ends has a largest magnitude,
+/// and the terms of higher order leave the cubic by a bounded amount.
 pub fn bound_by_cubic(coefficients: &[f64], reach: f64) -> f64 {
     let (mut end, mut slope_end, mut off_cubic, mut power) = (0.0, 0.0, 0.0, 1.0);
     for (k, c) in coefficients.iter().enumerate() {

@@ -37,7 +37,21 @@ pub fn evaluate(coefficients: &[f64], sigma: f64) -> f64 {
     coefficients.iter().rev().fold(0.0, |sum, c| sum * sigma + c)
 }
 
-/// Σ |c_k|, in four sums side by side: a sum waits for the one before it.
+/// Σ w_k |c_k|, in four sums side by side: a sum waits for the one before it.
+#[inline(always)]
+pub(crate) fn weighed_sum(weights: &[f64], coefficients: &[f64]) -> f64 {
+    let (fours, rest) = coefficients.as_chunks::<4>();
+    let mut sums = [0.0; 4];
+    for (weights, four) in weights.as_chunks::<4>().0.iter().zip(fours) {
+        for i in 0..4 {
+            sums[i] += weights[i] * four[i].abs();
+        }
+    }
+    let of_rest = weights[4 * fours.len()..].iter().zip(rest).map(|(weight, c)| weight * c.abs()).sum::<f64>();
+    sums.iter().sum::<f64>() + of_rest
+}
+
+/// Σ |c_k|, in four sums side by side.
 #[inline]
 pub(crate) fn sum_of_magnitudes(coefficients: &[f64]) -> f64 {
     let (fours, rest) = coefficients.as_chunks::<4>();
@@ -49,6 +63,17 @@ pub(crate) fn sum_of_magnitudes(coefficients: &[f64]) -> f64 {
     }
     sums.iter().sum::<f64>() + rest.iter().map(|c| c.abs()).sum::<f64>()
 }
+
+/// The orders, as weights of [`weighed_sum`].
+pub(crate) const ORDERS: Series = {
+    let mut orders = ZERO;
+    let mut k = 0;
+    while k < orders.len() {
+        orders[k] = k as f64;
+        k += 1;
+    }
+    orders
+};
 
 /// Coefficients of the same polynomial about `by`.
 fn shift(coefficients: &mut [f64], by: f64) {
@@ -113,14 +138,14 @@ impl Arc {
         series
     }
 
-    /// Coefficient `k` of the slope (per second) of `series`; of the highest order, which the arc does not have, 0.
-    #[inline]
+    /// Coefficient `k` of the slope of `series` per unit of σ; 0 of the highest order, because the next one is not known.
+    #[inline(always)]
     pub(crate) fn slope(&self, series: &Series, k: usize) -> f64 {
-        if k < self.order { (k + 1) as f64 * series[k + 1] / self.span } else { 0.0 }
+        if k < self.order { ORDERS[k + 1] * series[k + 1] } else { 0.0 }
     }
 
     /// Bound of the magnitude of a `series` of this arc that ends in `end`.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn most(&self, series: &Series, end: f64) -> f64 {
         series[0].abs().max(end.abs()) + off_chord(self.used(series), self.reach)
     }
@@ -149,6 +174,9 @@ impl Arc {
     /// The state at `sigma`.
     #[inline]
     pub fn at(&self, sigma: f64) -> State {
+        if sigma == 0.0 {
+            return State { u: self.u[0], u_dot: self.u_dot[0], theta: self.theta[0], theta_dot: self.theta_dot[0] };
+        }
         State {
             u: evaluate(self.used(&self.u), sigma),
             u_dot: evaluate(self.used(&self.u_dot), sigma),

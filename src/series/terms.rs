@@ -26,6 +26,14 @@ impl Terms {
         terms
     }
 
+    /// The series of this `order` with these coefficients.
+    #[inline(always)]
+    pub(crate) fn from_fn(order: usize, coefficient: impl Fn(usize) -> f64) -> Terms {
+        let mut terms = Terms { coefficients: [0.0; LENGTH], degree: order, order };
+        terms.coefficients.iter_mut().enumerate().take(order + 1).for_each(|(k, c)| *c = coefficient(k));
+        terms
+    }
+
     /// A value that changes by `rise` over σ = 1.
     #[inline]
     pub(crate) fn ramp(value: f64, rise: f64) -> Terms {
@@ -59,31 +67,27 @@ impl Terms {
     }
 
     #[inline]
-    fn plus(mut self, other: Terms) -> Terms {
-        let (sum, added) = (&mut self.coefficients, &other.coefficients);
-        for (sum, added) in
-            sum.as_chunks_mut::<4>().0.iter_mut().zip(added.as_chunks::<4>().0).take(other.degree / 4 + 1)
-        {
-            for i in 0..4 {
-                sum[i] += added[i];
-            }
-        }
-        (self.degree, self.order) = (self.degree.max(other.degree), self.order.min(other.order));
-        self
+    fn plus(&self, other: &Terms) -> Terms {
+        let (degree, order) = (self.degree.max(other.degree), self.order.min(other.order));
+        Terms::by_fours(degree, order, |i| {
+            let (a, b) = (self.four(i), other.four(i));
+            std::array::from_fn(|lane| a[lane] + b[lane])
+        })
     }
 
     /// The product row by row, so that the sums of four orders run side by side.
-    fn times(self, other: Terms) -> Terms {
+    fn times(&self, other: &Terms) -> Terms {
         let order = self.order.min(other.order);
-        let (short, long) = if self.degree <= other.degree { (&self, &other) } else { (&other, &self) };
+        let (short, long) = if self.degree <= other.degree { (self, other) } else { (other, self) };
         let degree = (short.degree + long.degree).min(order);
-        let mut product = Terms { coefficients: [0.0; LENGTH], degree, order };
-        for i in 0..=short.degree.min(degree) {
+        let factor = short.coefficients[0];
+        let mut product = Terms::by_fours(degree, order, |i| long.four(i).map(|c| factor * c));
+        for i in 1..=short.degree.min(degree) {
             let (factor, fours) = (short.coefficients[i], long.degree.min(degree - i) / 4 + 1);
             let sums = product.coefficients[i..].as_chunks_mut::<4>().0;
             for (sums, four) in sums.iter_mut().zip(long.coefficients.as_chunks::<4>().0).take(fours) {
-                for i in 0..4 {
-                    sums[i] += factor * four[i];
+                for lane in 0..4 {
+                    sums[lane] += factor * four[lane];
                 }
             }
         }
@@ -92,11 +96,24 @@ impl Terms {
     }
 
     #[inline]
-    fn map(mut self, linear: impl Fn(f64) -> f64) -> Terms {
-        for four in self.coefficients.as_chunks_mut::<4>().0.iter_mut().take(self.degree / 4 + 1) {
-            *four = four.map(&linear);
+    fn map(&self, linear: impl Fn(f64) -> f64) -> Terms {
+        Terms::by_fours(self.degree, self.order, |i| self.four(i).map(&linear))
+    }
+
+    /// Four coefficients.
+    #[inline(always)]
+    fn four(&self, i: usize) -> [f64; 4] {
+        self.coefficients.as_chunks::<4>().0[i]
+    }
+
+    /// The series of this `degree` whose coefficients come by fours.
+    #[inline(always)]
+    fn by_fours(degree: usize, order: usize, four: impl Fn(usize) -> [f64; 4]) -> Terms {
+        let mut terms = Terms { coefficients: [0.0; LENGTH], degree, order };
+        for (i, place) in terms.coefficients.as_chunks_mut::<4>().0.iter_mut().enumerate().take(degree / 4 + 1) {
+            *place = four(i);
         }
-        self
+        terms
     }
 
     /// The turn by this rotation: each order of sin θ and cos θ follows from the orders before, as (cos θ)' = −θ' sin θ.

@@ -1,0 +1,260 @@
+//! The assumptions of the model: one type each, with the value that tells of it, and a row of the table.
+
+use super::Limits;
+use crate::numbers::Number;
+use crate::run::reaction_series::Extent;
+use crate::series::terms::Terms;
+use crate::{Impulse, Phase, Reactions};
+
+/// A row of the table: one of the assumptions of the model.
+#[derive(Debug)]
+pub struct Assumption {
+    /// Name of the value that tells of the assumption.
+    pub name: &'static str,
+    /// Name of the instant of the value.
+    pub time_name: &'static str,
+    /// Description of the value.
+    pub description: &'static str,
+    /// Description of the instant.
+    pub time_description: &'static str,
+    /// Meaning of a value beyond the limit.
+    pub meaning: &'static str,
+    /// Whether the assumption is about impacts only.
+    pub is_of_impacts: bool,
+    /// Whether the worst value is the least.
+    pub is_least: bool,
+    /// The limit among others.
+    pub limit: fn(&Limits) -> f64,
+    /// The value before anything has been seen.
+    pub start: f64,
+}
+
+/// Place of `tension_max` in [`ASSUMPTIONS`].
+pub const TENSION: usize = 0;
+/// Place of `R_v_min` in [`ASSUMPTIONS`].
+pub const EDGE_LOAD: usize = 1;
+/// Place of `mu_required` in [`ASSUMPTIONS`].
+pub const FRICTION: usize = 2;
+/// Place of `mu_impact` in [`ASSUMPTIONS`].
+pub const IMPACT_FRICTION: usize = 3;
+/// Place of `tension_impact` in [`ASSUMPTIONS`].
+pub const IMPACT_TENSION: usize = 4;
+/// Place of `energy_gain_max` in [`ASSUMPTIONS`].
+pub const ENERGY: usize = 5;
+/// Place of `weight_min` in [`ASSUMPTIONS`].
+pub const WEIGHT: usize = 6;
+
+macro_rules! assumption {
+    ($name:literal $description:literal, $meaning:literal, $limit:ident, $start:expr, $($special:ident)?) => {
+        Assumption {
+            time_name: concat!("t_", $name),
+            time_description: concat!("first instant of ", $name),
+            $($special: true,)?
+            ..Assumption {
+                name: $name,
+                time_name: "",
+                description: $description,
+                time_description: "",
+                meaning: $meaning,
+                is_of_impacts: false,
+                is_least: false,
+                limit: |limits| limits.$limit,
+                start: $start,
+            }
+        }
+    };
+}
+
+/// All assumptions, in the order of [`Found::worst`](super::Found::worst).
+pub const ASSUMPTIONS: [Assumption; 7] = [
+    assumption!(
+        "tension_max" "largest (|R_m|/B - R_v)/W in full contact, W = (m + m0) g: above 0 tension holds the base down",
+        "tension holds the base down in full contact; in truth it lifts off earlier than at u_cr",
+        tension, -1.0,
+    ),
+    assumption!(
+        "R_v_min" "least R_v/W: below 0 a pull holds the edge of the base down",
+        "a pull holds down the edge that the structure rocks about; in truth it jumps",
+        edge_load, f64::INFINITY, is_least
+    ),
+    assumption!(
+        "mu_required" "largest |R_h|/R_v, the friction that the ground must have; infinite once R_v is 0 or less",
+        "it takes that much friction to keep the base where it is; in truth it may slide",
+        friction, 0.0,
+    ),
+    assumption!(
+        "mu_impact" "largest |I_h|/I_v of an impact, friction likewise; infinite where I_v is not above 0",
+        "it takes that much friction to keep the base where it is at an impact; in truth it may slide",
+        friction, 0.0, is_of_impacts
+    ),
+    assumption!(
+        "tension_impact" "largest (|I_m|/B - I_v)/I_v of an impact: above 0 one of the edges of the base pulls",
+        "one of the edges pulls at an impact; in truth r is larger, or the other edge lifts off",
+        tension, -1.0, is_of_impacts
+    ),
+    assumption!(
+        "energy_gain_max" "largest gain of an impact over the kinetic energy before it; 0 while none gains",
+        "an impact raises the energy; in truth it cannot",
+        energy_gain, 0.0, is_of_impacts
+    ),
+    Assumption {
+        limit: |_| 0.0,
+        ..assumption!(
+            "weight_min" "least (g + a_v)/g: at 0 or below nothing holds the base down; 1 without vertical motion",
+            "nothing holds the base down; in truth it flies",
+            tension, 1.0, is_least
+        )
+    },
+];
+
+/// Weight W = (m + m0) g (N) and half the width B (m) of the structure.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Scale {
+    pub W: f64,
+    pub B: f64,
+}
+
+/// h R_h + v R_v + m R_m + n for [h, v, m, n].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Combination(pub [f64; 4]);
+
+impl Combination {
+    /// The three weights other than 0, each with its reaction.
+    fn weighed<'a, T>(&self, reactions: &'a Reactions<T>) -> impl Iterator<Item = (f64, &'a T)> + use<'a, T> {
+        let (Reactions { R_h, R_v, R_m }, [h, v, m, _]) = (reactions, self.0);
+        [(h, R_h), (v, R_v), (m, R_m)].into_iter().filter(|(weight, _)| *weight != 0.0)
+    }
+
+    /// The combination as a power series.
+    pub fn series(&self, reactions: &Reactions<Terms>) -> Terms {
+        self.weighed(reactions).fold(Terms::constant(self.0[3]), |sum, (weight, terms)| sum + *terms * weight)
+    }
+
+    /// Bounds of the combination.
+    pub fn extent(&self, reactions: &Reactions<Extent>) -> Extent {
+        let n = Extent { least: self.0[3], largest: self.0[3] };
+        self.weighed(reactions).fold(n, |sum, (weight, of)| {
+            let (low, high) = (weight * of.least, weight * of.largest);
+            Extent { least: sum.least + low.min(high), largest: sum.largest + low.max(high) }
+        })
+    }
+}
+
+/// An assumption about the reactions.
+pub(super) trait OfReactions {
+    /// Place in [`ASSUMPTIONS`].
+    const PLACE: usize;
+
+    /// Whether `phase` rests on the assumption.
+    fn holds_in(_phase: Phase) -> bool {
+        true
+    }
+
+    /// The value that tells of the assumption.
+    fn value(scale: Scale, reactions: &Reactions) -> f64;
+
+    /// The combinations of which one is positive if the value is worse than `than`.
+    fn worse(scale: Scale, than: f64) -> [Option<Combination>; 2];
+}
+
+/// The base stays down in full contact without tension.
+pub(super) struct Tension;
+
+impl OfReactions for Tension {
+    const PLACE: usize = TENSION;
+
+    fn holds_in(phase: Phase) -> bool {
+        phase == Phase::FullContact
+    }
+
+    fn value(Scale { W, B }: Scale, &Reactions { R_v, R_m, .. }: &Reactions) -> f64 {
+        (R_m.abs() / B - R_v) / W
+    }
+
+    fn worse(Scale { W, B }: Scale, than: f64) -> [Option<Combination>; 2] {
+        [1.0, -1.0].map(|s| Some(Combination([0.0, -1.0, s * (1.0 / B), -than * W])))
+    }
+}
+
+/// The edge of the base presses on the ground.
+pub(super) struct EdgeLoad;
+
+impl OfReactions for EdgeLoad {
+    const PLACE: usize = EDGE_LOAD;
+
+    fn value(Scale { W, .. }: Scale, &Reactions { R_v, .. }: &Reactions) -> f64 {
+        R_v / W
+    }
+
+    fn worse(Scale { W, .. }: Scale, than: f64) -> [Option<Combination>; 2] {
+        [Some(Combination([0.0, -1.0, 0.0, than * W])), None]
+    }
+}
+
+/// The base does not slide.
+pub(super) struct Friction;
+
+impl OfReactions for Friction {
+    const PLACE: usize = FRICTION;
+
+    fn value(_: Scale, &Reactions { R_h, R_v, .. }: &Reactions) -> f64 {
+        if R_v > 0.0 { R_h.abs() / R_v } else { f64::INFINITY }
+    }
+
+    fn worse(_: Scale, than: f64) -> [Option<Combination>; 2] {
+        [1.0, -1.0].map(|s| Some(Combination([s, -than, 0.0, 0.0])))
+    }
+}
+
+/// An impact: its impulse, and the energy that it gains as a fraction of the energy before it.
+pub(super) struct Impact {
+    pub impulse: Impulse,
+    pub gain: f64,
+}
+
+/// An assumption about impacts.
+pub(super) trait OfImpacts {
+    /// Place in [`ASSUMPTIONS`].
+    const PLACE: usize;
+
+    /// The value that tells of the assumption.
+    fn value(scale: Scale, impact: &Impact) -> f64;
+}
+
+/// `force` over the vertical impulse; infinite where this does not press.
+fn per_impulse(force: f64, &Impulse { I_v, .. }: &Impulse) -> f64 {
+    if I_v > 0.0 { force / I_v } else { f64::INFINITY }
+}
+
+/// The base does not slide at an impact.
+pub(super) struct ImpactFriction;
+
+impl OfImpacts for ImpactFriction {
+    const PLACE: usize = IMPACT_FRICTION;
+
+    fn value(_: Scale, Impact { impulse, .. }: &Impact) -> f64 {
+        per_impulse(impulse.I_h.abs(), impulse)
+    }
+}
+
+/// The edges of the base only press at an impact.
+pub(super) struct ImpactTension;
+
+impl OfImpacts for ImpactTension {
+    const PLACE: usize = IMPACT_TENSION;
+
+    fn value(Scale { B, .. }: Scale, Impact { impulse, .. }: &Impact) -> f64 {
+        per_impulse(impulse.I_m.abs() / B - impulse.I_v, impulse)
+    }
+}
+
+/// Impacts never raise the energy.
+pub(super) struct EnergyGain;
+
+impl OfImpacts for EnergyGain {
+    const PLACE: usize = ENERGY;
+
+    fn value(_: Scale, impact: &Impact) -> f64 {
+        impact.gain
+    }
+}
