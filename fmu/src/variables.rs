@@ -243,7 +243,7 @@ fn overturned(motion: &Motion) -> i32 {
 
 /// How many variables there are: their table is no allocation, which would be left behind where the library is
 /// unloaded.
-const COUNT: usize = 104;
+const COUNT: usize = 106;
 
 /// All variables, in the order of the model description.
 pub static VARIABLES: LazyLock<[Variable; COUNT]> = LazyLock::new(|| {
@@ -582,7 +582,7 @@ fn calculated_parameters() -> [Variable; 6] {
         calculated("alpha_cg", &["m", "m0", "H", "B"]),
         calculated("p_l", &["m", "m0", "H", "B", "J0", "g"]),
         calculated("chi", &["m", "m0", "H", "B", "J0"]),
-        calculated("u_cr", &["m", "m0", "H", "B", "f_fc", "g"]),
+        calculated("u_cr", &["m", "m0", "H", "B", "f_fc", "g", "P_0"]),
         calculated("f_u", &["m", "m0", "H", "B", "J0", "f_fc"]),
         Variable {
             causality: Causality::CalculatedParameter,
