@@ -35,6 +35,7 @@ pub struct Structure {
     pub u_cr: f64,
     /// Circular frequency of the vibration mode while rocking ω_u = ω_fc/√(1−χ), rad/s (before Eq 18).
     pub omega_u: f64,
+    is_restrained: bool,
     /// ω_fc² = k/m, 1/s².
     pub(crate) stiffness: f64,
     /// c_fc/m, 1/s.
@@ -74,7 +75,7 @@ pub const DERIVED: [Derived; 16] = [
     derived!("omega_fc" ["rad/s"] "circular frequency in full contact", "Eq 1", |s| s.omega_fc),
     derived!("k" ["N/m"] "stiffness of the strut", "Eq 1", |s| s.k),
     derived!("c_fc" ["N.s/m"] "viscous damping in full contact", "after Eq 1", |s| s.c_fc),
-    derived!("u_cr" ["m"] "critical displacement: uplift of a base at rest", "after Eq 4", |s| s.u_cr),
+    derived!("u_cr" ["m"] "critical displacement: uplift", "after Eq 4", |s| s.u_cr),
     derived!("c_u" ["N.s/m"] "viscous damping while rocking", "after Eq 6", |s| s.c_u),
     derived!("J_P" ["kg.m2"] "inertia about a pivot", "after Eq 8", |s| s.J_P),
     derived!("p_l" ["rad/s"] "frequency parameter", "before Eq 11", |s| s.p_l),
@@ -92,7 +93,7 @@ impl Structure {
     /// Derives a structure from its parameters, or says which parameter is refused and why.
     pub fn new(parameters: Parameters) -> Result<Structure, ParameterError> {
         parameters.check()?;
-        let Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, g, P_0, .. } = parameters;
+        let Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, g, P_0, k_t, c_d, k_d, .. } = parameters;
         let gamma = (m + m0) / m;
         let omega_fc = TAU * f_fc;
         let k = m * omega_fc * omega_fc;
@@ -105,6 +106,7 @@ impl Structure {
         let tan_alpha_cg = gamma * B / H;
         Ok(Structure {
             parameters,
+            is_restrained: [P_0, k_t, c_d, k_d].iter().any(|restraint| *restraint > 0.0),
             gamma,
             omega_fc,
             k,
@@ -127,8 +129,7 @@ impl Structure {
 
     /// Whether a tendon or dissipators restrain it.
     pub fn is_restrained(&self) -> bool {
-        let &Parameters { P_0, k_t, c_d, k_d, .. } = &self.parameters;
-        [P_0, k_t, c_d, k_d].iter().any(|restraint| *restraint > 0.0)
+        self.is_restrained
     }
 
     /// The parameters that this structure was derived from.

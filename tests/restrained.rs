@@ -365,23 +365,24 @@ fn what_does_not_centre_itself_stays_turned() {
     }
 }
 
-/// A dissipator at the edge that the base rocks about does not move, and yields as little as one beside it.
+/// A dissipator at the edge that the base rocks about does not move: it neither begins nor ceases to yield there.
 #[test]
 fn a_dissipator_at_the_edge_never_yields_about_that_edge() {
     let ground = shaking(5, 0.01, 300, 5.0);
-    for detail in LEVELS {
-        let kinds = |xi_d: f64| {
-            let at_edge = Parameters { xi_d, k_d: 1e5, F_y: 200.0, ..Parameters::MCMANUS };
-            let mut kinds = Vec::new();
-            let run = Run { detail, end: End::At(3.0), ..Run::new(structure(at_edge), &ground) };
-            run.follow(&mut |at: &Transition| kinds.push(at.kind)).unwrap();
-            kinds
+    let mut yieldings = 0;
+    for (detail, F_y) in LEVELS.into_iter().flat_map(|detail| [30.0, 80.0, 200.0].map(|F_y| (detail, F_y))) {
+        let at_edge = Parameters { xi_d: Parameters::MCMANUS.B, k_d: 1e6, F_y, ..Parameters::MCMANUS };
+        let run = Run { detail, end: End::At(3.0), ..Run::new(structure(at_edge), &ground) };
+        let mut see = |at: &Transition| {
+            if let TransitionKind::Yielding(which) | TransitionKind::Unloading(which) = at.kind {
+                let beside = usize::from(at.before.theta < 0.0); // the first is at the right edge
+                assert!(which != beside, "{detail:?}, {F_y} N: {at:?}");
+                yieldings += 1;
+            }
         };
-        let B = Parameters::MCMANUS.B;
-        let found = kinds(B);
-        assert!(found.iter().any(|kind| matches!(kind, TransitionKind::Yielding(_))));
-        assert_eq!(found, kinds(B * (1.0 + 1e-13)), "{detail:?}");
+        run.follow(&mut see).unwrap();
     }
+    assert!(yieldings > 50, "{yieldings}");
 }
 
 /// At each level the tendon's force is the one that its equations have, and the peak the largest of it.

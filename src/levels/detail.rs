@@ -217,27 +217,20 @@ impl<Rocking: ElasticRocking> Level for Elastic<Rocking> {
     }
 
     fn first_uplift(&self, structure: &Structure, start: &Start, arc: &Arc) -> (Crossing, Side) {
-        let turning = self.rocking.turning_moment(structure);
-        match self.rocking.ties() {
-            None => first_uplift::first_on(structure, &turning, arc),
-            Some(_) => first_uplift::first_of_restrained(structure, &turning, start, arc),
-        }
+        first_uplift::first(structure, &self.rocking.turning_moment(structure), start, arc)
     }
 
     #[inline(always)]
     fn least_displacement(&self, structure: &Structure, start: &Start) -> f64 {
         match self.rocking.ties() {
-            None => structure.u_cr,
+            None => structure.u_cr, // every leap asks
             Some(_) => uplift::least_displacement(structure, start.a_v, start.interval, start.dissipators),
         }
     }
 
     fn uplift_margin(&self, structure: &Structure, now: &Now) -> (f64, Side) {
         let turning = self.rocking.turning_moment(structure);
-        match self.rocking.ties() {
-            None => uplift::margin(structure, &turning, now.state),
-            Some(_) => uplift::margin_of_restrained(structure, &turning, now.state, now.load.a_v, now.dissipators),
-        }
+        uplift::margin(structure, &turning, now.state, now.load.a_v, now.dissipators)
     }
 
     fn accelerations(&self, structure: &Structure, phase: Phase, now: &Now) -> [f64; 2] {

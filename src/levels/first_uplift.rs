@@ -1,69 +1,54 @@
 //! The first instant of a motion in full contact at which [uplift](crate::mechanics::uplift) is due.
 
-use crate::mechanics::restraint::{holding_moment, uplift_displacement};
-use crate::mechanics::uplift::{LEAST_EXCESS, TurningMoment};
+use crate::mechanics::uplift::{self, Hold, LEAST_EXCESS, TurningMoment};
 use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
-use crate::series::taylor::{Arc, Series, Start, evaluate};
+use crate::series::taylor::{Arc, Series, Start};
 use crate::{Side, Structure};
 
-/// The first instant of `arc`, a motion in full contact, at which uplift is due, and the side about which it rocks
-/// from there. `turning` is that of the equations by which it will.
-pub(crate) fn first_on(structure: &Structure, turning: &TurningMoment, arc: &Arc) -> (Crossing, Side) {
-    let right = first_about(structure, turning, arc, Side::Right);
-    let left = first_about(structure, turning, arc, Side::Left);
+/// The first instant of `arc`, a motion in full contact from `start`, at which uplift is due, and the side about which the
+/// structure rocks from there. `turning` is that of the equations by which it will.
+pub(crate) fn first(structure: &Structure, turning: &TurningMoment, start: &Start, arc: &Arc) -> (Crossing, Side) {
+    let right = first_about(structure, turning, start, arc, Side::Right);
+    let left = first_about(structure, turning, start, arc, Side::Left);
+    if right.sigma() == left.sigma() && right.sigma() < f64::INFINITY {
+        let (state, a_v) = (arc.at(right.sigma()), start.a_v.at(right.sigma() * arc.span));
+        return (right, uplift::margin(structure, turning, &state, a_v, start.dissipators).1);
+    }
     if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
 }
 
-fn first_about(structure: &Structure, turning: &TurningMoment, arc: &Arc, side: Side) -> Crossing {
+fn first_about(structure: &Structure, turning: &TurningMoment, start: &Start, arc: &Arc, side: Side) -> Crossing {
     let s = side.sign();
-    let u = arc.used(&arc.u);
-    let displacement = Guard::new(u, -s, structure.u_cr);
-    if displacement.is_open_throughout(arc.reach) {
+    let [a_v, a_v_change] = [0, 1].map(|k| start.a_v.coefficient(k, arc.span));
+    let hold = Hold::about(structure, side, a_v, start.dissipators);
+    let end = if a_v_change == 0.0 { hold } else { Hold::about(structure, side, a_v + a_v_change, start.dissipators) };
+    let [rise, gain] = [end.displacement - hold.displacement, end.moment - hold.moment];
+    let moving = a_v_change != 0.0;
+    let mut displacement = arc.u;
+    if moving {
+        displacement[1] -= s * rise;
+    }
+    let displacement = Guard::new(arc.used(&displacement), -s, hold.displacement);
+    let is_held = hold.displacement.min(end.displacement) > 0.0;
+    if is_held && displacement.is_open_throughout(arc.reach) {
         return Crossing::None;
     }
     let mut moment: Series = arc.u;
     for (k, coefficient) in moment[..=arc.order].iter_mut().enumerate() {
-        *coefficient = turning.u * arc.u[k] + turning.u_dot * arc.u_dot[k];
+        *coefficient = (turning.u + a_v) * arc.u[k] + turning.u_dot * arc.u_dot[k];
+        if moving && k > 0 {
+            *coefficient += a_v_change * arc.u[k - 1] - if k == 1 { s * gain } else { 0.0 };
+        }
     }
-    let moment = Guard::new(arc.used(&moment), -s, (1.0 + LEAST_EXCESS) * turning.weight);
-    first_time_all_closed([displacement, moment], arc.reach)
-}
-
-/// [`first_on`] of a restrained structure, or one shaken vertically, from `start`.
-pub(crate) fn first_of_restrained(
-    structure: &Structure,
-    turning: &TurningMoment,
-    start: &Start,
-    arc: &Arc,
-) -> (Crossing, Side) {
-    let a_v = |k: usize| start.a_v.coefficient(k, arc.span);
-    let about = |side: Side| {
-        let of = |a_v: f64| {
-            let held = turning.weight + holding_moment(structure, side, a_v, start.dissipators);
-            (uplift_displacement(structure, side, a_v, start.dissipators), held)
-        };
-        let (now, at_end) = (of(a_v(0)), of(a_v(0) + a_v(1)));
-        let line = |now: f64, end: f64, k: usize| [now, end - now].get(k).copied().unwrap_or(0.0);
-        let s = side.sign();
-        let limit = arc.series(|k| line(now.0, at_end.0, k));
-        let displacement = arc.series(|k| limit[k] - s * arc.u[k]);
-        let moment = arc.series(|k| {
-            let lifted = a_v(0) * arc.u[k] + if k > 0 { a_v(1) * arc.u[k - 1] } else { 0.0 };
-            line(now.1, at_end.1, k) - s * (turning.u * arc.u[k] + turning.u_dot * arc.u_dot[k] + lifted)
-        });
-        let turns = || Guard::new(arc.used(&moment), 1.0, LEAST_EXCESS * turning.weight);
-        let first = |of: &Series| first_time_all_closed([Guard::new(arc.used(of), 1.0, 0.0), turns()], arc.reach);
-        let (far, loose) = (first(&displacement), first(&limit));
-        (if far.sigma() <= loose.sigma() { far } else { loose }, moment)
-    };
-    let [right, left] = [Side::Right, Side::Left].map(about);
-    let sigma = right.0.sigma();
-    let turns = |(_, moment): &(Crossing, Series)| evaluate(arc.used(moment), sigma);
-    let is_right = match sigma == left.0.sigma() && sigma < f64::INFINITY {
-        true => turns(&right) <= turns(&left),
-        false => sigma <= left.0.sigma(),
-    };
-    if is_right { (right.0, Side::Right) } else { (left.0, Side::Left) }
+    let moment = Guard::new(arc.used(&moment), -s, (1.0 + LEAST_EXCESS) * turning.weight + hold.moment);
+    let far = first_time_all_closed([displacement, moment], arc.reach);
+    if is_held {
+        return far;
+    }
+    // nothing holds the base while u_cr,s is not above 0
+    let limit = [hold.displacement, if moving { rise } else { 0.0 }];
+    let loose = first_time_all_closed([Guard::new(&limit, 1.0, 0.0), moment], arc.reach);
+    if far.sigma() <= loose.sigma() { far } else { loose }
 }
 
 #[cfg(test)]
@@ -79,12 +64,9 @@ mod tests {
     fn first_from(structure: &Structure, state: State) -> (Crossing, Side) {
         let mut arc = Arc::default();
         let a_g = Ramp::default();
-        full_contact::series(
-            structure,
-            &Start { state, a_g, a_top: a_g, interval: 1e-9, local_error: 1e-13, ..Start::default() },
-            &mut arc,
-        );
-        first_on(structure, &TurningMoment::new(structure), &arc)
+        let start = Start { state, a_g, a_top: a_g, interval: 1e-9, local_error: 1e-13, ..Start::default() };
+        full_contact::series(structure, &start, &mut arc);
+        first(structure, &TurningMoment::new(structure), &start, &arc)
     }
 
     proptest! {
@@ -122,12 +104,10 @@ mod tests {
         let state = State { u: 1.05 * structure.u_cr, u_dot: -0.02, ..State::default() };
         let push = Ramp { value: -40.0, slope: 0.0 }; // turns the velocity round
         let mut arc = Arc::default();
-        full_contact::series(
-            &structure,
-            &Start { state, a_g: push, a_top: push, interval: 2e-3, local_error: 1e-15, ..Start::default() },
-            &mut arc,
-        );
-        let (Crossing::At(sigma), Side::Right) = first_on(&structure, &TurningMoment::new(&structure), &arc) else {
+        let start = Start { state, a_g: push, a_top: push, interval: 2e-3, local_error: 1e-15, ..Start::default() };
+        full_contact::series(&structure, &start, &mut arc);
+        let (Crossing::At(sigma), Side::Right) = first(&structure, &TurningMoment::new(&structure), &start, &arc)
+        else {
             panic!("no uplift")
         };
         let there = arc.at(sigma);

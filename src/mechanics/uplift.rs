@@ -46,14 +46,48 @@ pub fn least_push(structure: &Structure) -> f64 {
     (1.0 + LEAST_EXCESS) * g * structure.tan_alpha_cg + (1.0 + LEAST_EXCESS) * P_0 * B / (m * H)
 }
 
-/// How far a structure in full contact in `state` is from uplift, in parts of u_cr or of the moment of the weight, whichever
-/// lacks more, and the side that lacks less. Uplift is due where it is not positive.
-pub(crate) fn margin(structure: &Structure, turning: &TurningMoment, state: &State) -> (f64, Side) {
+/// The condition of uplift about a side: the displacement, and the moment beside that of the weight and of the tendon at rest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Hold {
+    /// u_cr,s, m.
+    pub displacement: f64,
+    /// Moment over m, m²/s².
+    pub moment: f64,
+}
+
+impl Hold {
+    /// The condition about `side` under the vertical acceleration `a_v` (m/s²).
+    #[inline]
+    pub(crate) fn about(structure: &Structure, side: Side, a_v: f64, dissipators: &Dissipators) -> Hold {
+        if a_v == 0.0 && !structure.is_restrained() {
+            return Hold { displacement: structure.u_cr, moment: 0.0 };
+        }
+        let displacement = uplift_displacement(structure, side, a_v, dissipators);
+        Hold { displacement, moment: holding_moment(structure, side, a_v, dissipators) }
+    }
+}
+
+/// Distance of a structure in full contact in `state` from uplift, and the side of the smaller distance. The distance is the larger
+/// of what lacks in displacement, as a fraction of u_cr, and in moment, as a fraction of the weight's. Uplift is due if it is not
+/// positive; if it is due about both sides, about the one that turns faster.
+pub(crate) fn margin(
+    structure: &Structure,
+    turning: &TurningMoment,
+    state: &State,
+    a_v: f64,
+    dissipators: &Dissipators,
+) -> (f64, Side) {
     let displacement = state.u / structure.u_cr;
-    let moment = (turning.u * state.u + turning.u_dot * state.u_dot) / turning.weight;
-    let about = |side: Side| (1.0 - side.sign() * displacement).max(1.0 + LEAST_EXCESS - side.sign() * moment);
+    let turns = ((turning.u + a_v) * state.u + turning.u_dot * state.u_dot) / turning.weight;
+    let about = |side: Side| {
+        let hold = Hold::about(structure, side, a_v, dissipators);
+        let (s, limit) = (side.sign(), hold.displacement / structure.u_cr);
+        let moment = 1.0 + LEAST_EXCESS + hold.moment / turning.weight - s * turns;
+        ((limit - s * displacement).min(limit).max(moment), moment)
+    };
     let (right, left) = (about(Side::Right), about(Side::Left));
-    if right <= left { (right, Side::Right) } else { (left, Side::Left) }
+    let is_right = if right.0 <= 0.0 && left.0 <= 0.0 { right.1 <= left.1 } else { right.0 <= left.0 };
+    if is_right { (right.0, Side::Right) } else { (left.0, Side::Left) }
 }
 
 /// How far |u| gets in free vibration in full contact at most, m.
@@ -64,28 +98,6 @@ pub(crate) fn farthest(structure: &Structure, state: &State) -> f64 {
 /// The least displacement (m), on either side, that uplift takes over `interval` (s) of a vertical acceleration `a_v`.
 pub(crate) fn least_displacement(structure: &Structure, a_v: Ramp, interval: f64, dissipators: &Dissipators) -> f64 {
     let least = a_v.value.min(a_v.at(interval));
-    let about = |side| uplift_displacement(structure, side, least, dissipators);
+    let about = |side| Hold::about(structure, side, least, dissipators).displacement;
     about(Side::Right).min(about(Side::Left))
-}
-
-/// [`margin`] of a restrained structure, or one under the vertical ground acceleration `a_v` (m/s²).
-pub(crate) fn margin_of_restrained(
-    structure: &Structure,
-    turning: &TurningMoment,
-    state: &State,
-    a_v: f64,
-    dissipators: &Dissipators,
-) -> (f64, Side) {
-    let about = |side: Side| {
-        let (s, displacement) = (side.sign(), uplift_displacement(structure, side, a_v, dissipators));
-        let lacks = (displacement - s * state.u).min(displacement) / structure.u_cr;
-        let held = turning.weight + holding_moment(structure, side, a_v, dissipators);
-        let turns = s * ((turning.u + a_v) * state.u + turning.u_dot * state.u_dot);
-        let moment = LEAST_EXCESS + (held - turns) / turning.weight;
-        (lacks.max(moment), moment)
-    };
-    let (right, left) = (about(Side::Right), about(Side::Left));
-    // of two that are due the one that turns faster
-    let is_right = if right.0 <= 0.0 && left.0 <= 0.0 { right.1 <= left.1 } else { right.0 <= left.0 };
-    if is_right { (right.0, Side::Right) } else { (left.0, Side::Left) }
 }
