@@ -85,7 +85,7 @@ def events(messages: list[Message]) -> list[Event]:
     """The transitions among the messages."""
     found = []
     for message in messages:
-        if message.category == "logEvents":
+        if message.category == "logEvents" and message.text.startswith("t = "):  # not what is said of a record
             fields = _EVENT.match(message.text)
             assert fields, f"this event is not in the expected words: {message.text!r}"
             numbers = {name: float(text) for name, text in fields.groupdict().items() if name != "kind"}

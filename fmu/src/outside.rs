@@ -78,7 +78,8 @@ impl Scene {
 
     /// Goes to the host's state u, u̇, θ, θ̇.
     pub fn take_states(&mut self, states: &[f64]) -> Result<(), Failure> {
-        let far = states.iter().zip(COMPONENTS).find(|(value, _)| !(value.abs() <= FARTHEST));
+        let is_near = |value: &f64| value.abs() <= FARTHEST;
+        let far = states.iter().zip(COMPONENTS).find(|(value, _)| !is_near(value));
         if let Some((&value, name)) = far {
             return Err(Refusal::FarState { name, value }.into());
         }

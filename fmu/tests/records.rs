@@ -364,13 +364,15 @@ fn the_ground_carries_the_weight_under_both_accelerations() {
     assert_relative_eq!(host.get("R_v"), mass * (9.81 + 1.5 - 12.0), max_relative = 1e-12);
 }
 
-/// Before the first step the log tells what a record's file is, if events are asked for, and warns of what is assumed or
-/// doubtful in any case.
+/// Before the first step the log tells what a record's file is and what is assumed of it, if events are asked for, and warns
+/// of what is doubtful in any case.
 #[test]
 fn what_was_found_and_assumed_of_a_record_is_logged_before_the_run() {
-    for (text, found, doubts) in
-        [("t (s),a (g)\n0,0.1\n0.01,0.2\n", "table, ", 0), ("t (s),a\n0,0.1\n0.01,0.2\n", "m/s2 assumed", 1)]
-    {
+    for (text, found, doubts) in [
+        ("t (s),a (g)\n0,0.1\n0.01,0.2\n", "table, ", 0),
+        ("t (s),a\n0,0.1\n0.01,0.2\n", "m/s2 assumed", 0),
+        ("t (s),a (g)\n0,90\n0.01,0\n", "table, ", 2),
+    ] {
         let host = Host::instantiate(Instantiate { logging_on: 1, ..Instantiate::default() }).unwrap();
         host.write("a.csv", text);
         assert_eq!(

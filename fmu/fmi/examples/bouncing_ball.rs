@@ -8,8 +8,8 @@ use std::{error::Error, path::Path, sync::Arc};
 const REST: f64 = 1e-2; // a bounce that leaves less speed, m/s, is the last
 
 /// Numbers are height, velocity, gravity, coefficient of restitution and time.
-#[derive(Clone, Copy, serde::Serialize, serde::Deserialize)]
-struct Ball {
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
+pub struct Ball {
     known: [f64; 5], // where the exact motion was last known
     here: [f64; 5],  // where the host is
     bounces: i32,

@@ -1,5 +1,5 @@
 //! Which function may be called when: FMI 3.0, section 2.3, 4.2.1 for a slave, 3.2.1 for a model. Beside the standard's
-//! states stand "step failed", to which overturning leads, after which there is nothing to step to, and "error", in which
+//! states stand "step failed", to which a step leads that ends the simulation, and "error", in which
 //! the solver could not go on.
 
 use super::Function;
