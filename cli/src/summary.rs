@@ -128,7 +128,8 @@ impl Summary {
             writeln!(out, "{:<14} {magnitude:>12} {unit:<4} at {time} s", format!("peak |{name}|"))?;
         }
         if let Some(fall) = fall {
-            writeln!(out, "fall           from {} s on, beyond alpha_cg: the peaks are those before", instant(fall))?;
+            let angle = if self.structure.is_restrained() { "its angle of no return" } else { "alpha_cg" };
+            writeln!(out, "fall           from {} s on, beyond {angle}: the peaks are those before", instant(fall))?;
         }
         if let Some(Taken { E_viscous, E_hysteretic, theta_end }) = self.taken(motion) {
             let [E_viscous, E_hysteretic, theta_end] = [E_viscous, E_hysteretic, theta_end].map(significant);
