@@ -279,7 +279,11 @@ impl Run {
             _ if last <= self.end() => self.run(),
             _ => rocking::Run { end: End::At(last), ..self.run() },
         };
-        let mut columns = vec![vec![f64::NAN; times.len()]; RESPONSE.len() - 2];
+        let column = |_| {
+            abandoned.check();
+            vec![f64::NAN; times.len()]
+        };
+        let mut columns: Vec<_> = (2..RESPONSE.len()).map(column).collect();
         let (mut phases, mut transitions) = (vec![0; times.len()], vec![0; times.len()]);
         let mut next = 0;
         let mut show = |at: usize, sample: &Sample| {
