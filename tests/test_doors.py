@@ -19,7 +19,7 @@ from host import PHASES
 from reference import EVISON, MCMANUS, Structure
 
 LEVELS = ("auto", "nonlinear", "linear", "modal", "rigid", "fixed_base")
-VALIDITY = ("tension_max", "R_v_min", "mu_required", "mu_impact", "tension_impact", "energy_gain_max")
+VALIDITY = ("tension_max", "R_v_min", "mu_required", "mu_impact", "tension_impact", "energy_gain_max", "weight_min")
 GROUNDS = ("AT2", "CSV", "arrays", "arrays with a_v", "free")
 SCENES = range(40)
 
@@ -174,7 +174,7 @@ def co_simulation(fmu: Path, scene: Scene) -> dict:
     values = {f"record_{name}": value for name, value in scene.scales.items()} | scene.initial
     values |= dict(peaks=True, validity=True, detail=1 + LEVELS.index(scene.how.get("detail", "auto")))
     names = {variable.name for variable in fmpy.read_model_description(str(fmu)).modelVariables}
-    peaks = {name.removeprefix("t_") for name in names if re.fullmatch("t_.*_max|t_mu_.*|t_R_v_min|t_tension_impact", name)}
+    peaks = {name.removeprefix("t_") for name in names if re.fullmatch("t_.*_max|t_mu_.*|t_R_v_min|t_tension_impact|t_weight_min", name)}
     asked, said = [*peaks, *(f"t_{name}" for name in peaks), "transitions", "phase", "t_overturned"], []
     rows = fmpy.simulate_fmu(str(fmu), start_time=scene.start, stop_time=until, output_interval=until - scene.start, start_values=values,
                              relative_tolerance=scene.how.get("tolerance", 1e-9), output=asked, record_events=False,
