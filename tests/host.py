@@ -104,14 +104,15 @@ def simulate(fmu: Fmu, messages: list | None = None, **arguments) -> tuple[np.nd
     return result, events(messages)
 
 
-# fmpy knows one logger per process, the last one given to it: one for all instances, which tells them apart by name.
+# fmpy knows one logger per process, the last one given to it: one for all instances, which tells them apart by name. Runs of
+# other tests that give no logger reach it, too.
 _LOGS: dict[bytes, list[Message]] = {}
 _NUMBERS = itertools.count()
 
 
 @fmi2CallbackLoggerTYPE
 def _LOGGER(_environment, name, status, category, text):
-    _LOGS[name].append(Message(status, category.decode(), text.decode()))
+    _LOGS.get(name, []).append(Message(status, category.decode(), text.decode()))
 
 
 class Fmu:
