@@ -1,4 +1,4 @@
-"""What pip calls: maturin, after the command line has written the FMU that the wheel carries."""
+"""The build backend: maturin, after the command line has written the FMU that the wheel carries."""
 
 import subprocess
 from pathlib import Path

@@ -52,8 +52,8 @@ def export(
 
     record: a Record or a file, or several; the FMU follows the first and has the others inside, each Record under its title.
     name: what hosts call the model. fmi: the version of the standard, 2 (2.0) or 3 (3.0). library: an FMU or a shared library
-    to take the code from; by default `fmu()`. What is assumed of a file, or likely wrong with it, is a warning. Raises ValueError
-    with the reason.
+    to take the code from; by default `fmu()`. A Python warning names an assumption about a file, or a likely fault. Raises
+    ValueError with the reason.
     """
     records = [record] if isinstance(record, (Record, str, PathLike)) else list(record)
     _native.export(target, structure, records, name, fmi, fmu() if library is None else library)

@@ -70,9 +70,8 @@ class Transitions(list[Transition]):
 class Worst(NamedTuple):
     """How far a run goes beyond one of the things that the model takes for granted.
 
-    value: the worst value, the largest, of R_v_min the least; time: its first instant, s. limit: a value beyond it gives a
-    warning. first_beyond: when the limit was passed first, s; None if it never was. beyond: for how long, s, or at how many
-    impacts it was passed.
+    value: the largest value, of R_v_min the least. time: the first instant of the value, s. limit: a value beyond the limit gives
+    a warning. first_beyond: the first instant beyond the limit, s, or None. beyond: time beyond the limit, s, or number of impacts.
     """
 
     value: float
@@ -90,9 +89,9 @@ class Worst(NamedTuple):
 class Advice:
     """Every level of detail on one scene, and which is the cheapest that will do: what `advise` returns.
 
-    detail: the level that is advised; None where none is good enough. levels: a dict each: level, relative errors by criterion,
-    overturned (None where it still rocks), steps, evaluations, cost_of_auto (steps and evaluations over those of auto). text:
-    what print(advice) shows.
+    detail: the level that is advised, or None if none is good enough. levels: a dict each: level, relative errors by criterion,
+    overturned (None if it still rocks), steps, evaluations, cost_of_auto (steps and evaluations over those of auto). text: the
+    printed form.
     """
 
     detail: str | None

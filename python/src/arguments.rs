@@ -15,7 +15,7 @@ pub fn refused(error: impl Into<anyhow::Error>) -> PyErr {
     PyValueError::new_err(rocking_report::message(&error.into()))
 }
 
-/// The number that `value` is, which messages call `name`: a float, an int, or what numpy has in their place.
+/// The number `value`, which messages call `name`: a float, an int, or a scalar of numpy.
 pub fn number(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
     if value.is_exact_instance_of::<PyFloat>() || value.is_exact_instance_of::<PyInt>() {
         return value.extract();
@@ -25,7 +25,7 @@ pub fn number(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
     numbers.map(|of| of[0]).ok_or_else(|| PyValueError::new_err(format!("{name} = {value:?}: it is no number")))
 }
 
-/// The numbers of an array of one dimension, or the one that `value` is, which messages call `name`.
+/// The numbers of an array of one dimension, or one number, which messages call `name`.
 pub fn numbers(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     let array = array(name, value)?;
     if array.ndim() > 1 {
@@ -35,8 +35,8 @@ pub fn numbers(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     array.to_vec().map_err(refused)
 }
 
-/// What numpy makes of `value`, contiguous and aligned: the one place where arrays enter. Anything but plain numbers is refused,
-/// because numpy would turn it into other numbers.
+/// The array that numpy makes of `value`, contiguous and aligned: the one place where arrays enter. The function refuses all but
+/// plain numbers, because numpy would convert the rest into wrong numbers.
 fn array<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let refused = |why: &str| PyValueError::new_err(format!("{name}: {why}"));
     let numpy = value.py().import("numpy")?;
@@ -63,13 +63,13 @@ fn array<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAr
     }
 }
 
-/// Warns of each of `sentences`, at the line of Python that is `above` levels up.
+/// Gives a Python warning for each of `sentences`, at the line of Python that is `above` levels up.
 pub fn warn(py: Python<'_>, sentences: impl IntoIterator<Item = String>, above: i32) -> PyResult<()> {
     let warn = |of: String| PyErr::warn(py, &py.get_type::<PyUserWarning>(), &CString::new(of)?, above);
     sentences.into_iter().try_for_each(warn)
 }
 
-/// What the Python part calls `name`, made of `parts`.
+/// An object of the class `name` of `_results.py`, made of `parts`.
 pub fn result<'py>(py: Python<'py>, name: &str, parts: impl PyCallArgs<'py>) -> PyResult<Bound<'py, PyAny>> {
     py.import("flexible_rocking._results")?.call_method1(name, parts)
 }

@@ -1,4 +1,4 @@
-//! Work without the GIL that Ctrl-C ends: other threads of Python go on meanwhile.
+//! Work without the GIL, which Ctrl-C interrupts. Other threads of Python run meanwhile.
 
 use crate::arguments::refused;
 use pyo3::exceptions::PyRuntimeError;
@@ -14,10 +14,10 @@ use std::time::Duration;
 /// How long a signal, such as Ctrl-C, may have to wait.
 pub const MOMENT: Duration = Duration::from_millis(50);
 
-/// What is said of a panic, whose message the standard error has.
+/// Message of the error that stands for a panic. The standard error has the message of the panic itself.
 pub const FAULT: &str = "a fault of flexible_rocking itself, which is printed above: please report it";
 
-/// Whether nobody waits for the work any more. As the watcher of a run it ends the run then.
+/// Tells the work that nobody waits for its result any more. As the watcher of a run, ends the run then.
 #[derive(Clone, Default)]
 pub struct Abandoned(Arc<AtomicBool>);
 
@@ -38,8 +38,8 @@ impl Watch for Abandoned {
     }
 }
 
-/// What `work` returns. The work is done on a thread of its own; a signal ends the wait for the result at once, whatever the
-/// work is at, and the work at its next check. A panic of the work is an error.
+/// Does `work` on a thread of its own and returns its result. A signal ends the wait for the result at once, and ends the work at
+/// the next check. A panic of the work is an error.
 pub fn interruptible<T: Send + 'static, E: Into<anyhow::Error> + Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&mut Abandoned) -> Result<T, E> + Send + 'static,

@@ -19,7 +19,7 @@ use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// What a unit of g stands for where no structure is shaken, m/s².
+/// The g in the attributes of a record, m/s²; the g of a structure that is shaken is its own.
 pub const G: f64 = Parameters::EVISON.g;
 
 /// A ground motion: the acceleration of the ground at two instants or more, linear between them.
@@ -29,10 +29,10 @@ pub const G: f64 = Parameters::EVISON.g;
 /// Record(time, a_g, a_v): with the vertical component, positive upwards, of the same shape and unit.
 /// Record.read(file): a file as the archives publish it.
 ///
-/// unit: "m/s2" (default), "g", "cm/s2", "gal", "mm/s2", "in/s2", "ft/s2", "mg", "%g". A record keeps its unit: g is that of
-/// the structure that it shakes; the attributes of the record are in m/s2, with 9.81 m/s2 for g. time_scale multiplies the
-/// times, scale the accelerations; title is what the record is called in tables. The samples are copied. What is likely wrong
-/// with them is a warning. Raises ValueError for other shapes, NaN and infinity, and times that do not increase.
+/// unit: "m/s2" (default), "g", "cm/s2", "gal", "mm/s2", "in/s2", "ft/s2", "mg", "%g". A record keeps its unit: "g" means the
+/// g of the structure that the record shakes. The attributes of the record are in m/s2, with 9.81 m/s2 for g. time_scale
+/// multiplies the times and scale the accelerations. Tables call the record by its title. The samples are copied. A Python
+/// warning names a likely fault. Raises ValueError for other shapes, NaN and infinity, and times that do not increase.
 #[pyclass(frozen, module = "flexible_rocking")]
 pub struct Record {
     given: Samples,
@@ -48,7 +48,7 @@ fn unit(name: &str) -> PyResult<Unit> {
     one_of("unit", name, Unit::NAMES)
 }
 
-/// These in m/s², unless the g of a structure decides how large their `unit` is.
+/// The `samples` in m/s², or as they are if the g of a structure decides how large their `unit` is.
 fn fixed(samples: Samples, unit: Unit) -> (Samples, Unit) {
     match unit {
         Unit::G | Unit::MilliG | Unit::PercentG => (samples, unit),
@@ -67,7 +67,7 @@ impl Record {
         Record::new(samples, Unit::MetrePerSecondSquared, 1.0)
     }
 
-    /// It in m/s² as it shakes a structure under `g` (m/s²).
+    /// The record in m/s² as it shakes a structure under `g` (m/s²).
     pub fn under(&self, g: f64) -> Arc<Samples> {
         if g == G || !self.is_in_g() {
             return Arc::clone(&self.usual);
@@ -120,7 +120,7 @@ impl Record {
         Ok(record)
     }
 
-    /// The same without a warning: pickles call it.
+    /// Makes a record from a pickle, without warnings.
     #[staticmethod]
     fn _of(
         time: &Bound<'_, PyAny>,
@@ -160,8 +160,8 @@ impl Record {
     ///
     /// What the file does not state is said by unit (of its accelerations), dt (s between samples), column (a number
     /// from 1, a heading, or "all"), ignore_npts (take the samples that are there). vertical is the file of the vertical
-    /// component, read by the same options. time_scale and scale multiply. What is assumed of the file because it does not
-    /// state it, and what is likely wrong with it, is a warning. Raises ValueError with the line and what would help.
+    /// component, read by the same options. time_scale and scale multiply. A Python warning names an assumption
+    /// about the file, or a likely fault. Raises ValueError with the line and what would help.
     #[staticmethod]
     #[pyo3(signature = (file, *, vertical=None, unit=None, dt=None, column=None, ignore_npts=false, time_scale=1.0, scale=1.0))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
@@ -309,7 +309,7 @@ impl Record {
     }
 }
 
-/// What [`Record::_of`] takes.
+/// Arguments of [`Record::_of`].
 type Parts<'py> = (Array<'py>, Array<'py>, Option<Array<'py>>, String, f64, String);
 type Array<'py> = Bound<'py, PyArray1<f64>>;
 

@@ -77,7 +77,7 @@ impl Run {
         self.conditions.tolerance
     }
 
-    /// The exact largest magnitudes by name, each a Peak, a float with unit and time: a_g (m/s2), theta (rad), u (m), delta_t (m, Eq 26), uplift
+    /// The exact largest magnitudes by name, each a Peak (a float with unit and time): a_g (m/s2), theta (rad), u (m), delta_t (m, Eq 26), uplift
     /// (m, Eq 25), a_t (m/s2, Eq 27), V_t (N, Eqs 2, 23), M_t (N.m, Eqs 3, 24), and with a tendon its force P_t (N). Of a
     /// structure that overturns those before it falls.
     #[getter]
