@@ -10,7 +10,9 @@ use minijinja::{Value, context};
 use population::{Pair, both};
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::impact;
-use rocking::run::validity::{ASSUMPTIONS, EDGE_LOAD, FRICTION, Found, IMPACT_FRICTION, IMPACT_TENSION, TENSION, WEIGHT};
+use rocking::run::validity::{
+    ASSUMPTIONS, EDGE_LOAD, FRICTION, Found, IMPACT_FRICTION, IMPACT_TENSION, TENSION, WEIGHT,
+};
 use rocking::{Detail, Parameters};
 use std::path::Path;
 
