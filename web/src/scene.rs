@@ -207,7 +207,7 @@ impl Fields {
             Some("true") => true,
             Some(asked) => return Err(format!("ignore_npts = {asked:?} is unknown: it is true or left out")),
         };
-        Ok(Reading { unit, dt, column: self.text("column").map(Column::from), ignores_count, ..Reading::default() })
+        Ok(Reading { unit, dt, column: self.text("column").map(Column::from), ignores_count })
     }
 
     /// The run of `structure` under `ground`, with the scene's start and method.
