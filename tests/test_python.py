@@ -197,10 +197,10 @@ def test_a_file_says_what_would_help(tmp_path):
     with pytest.warns(UserWarning) as warned:
         fr.Record.read(tmp_path / "column.txt", dt=0.5)
     assumed, doubted = (str(warning.message) for warning in warned)
-    assert "; m/s2 assumed" in assumed and "a step of 0.5 s: is the time in another unit" in doubted
+    assert "the file states no unit: m/s2 is assumed" in assumed and "a step of 0.5 s: is the time in another unit" in doubted
     assert {warning.filename for warning in warned} == {__file__}
     (tmp_path / "table.txt").write_text("0 1\n0.01 2\n0.02 0\n")
-    with pytest.warns(UserWarning, match="table.txt: .*; m/s2 assumed"):
+    with pytest.warns(UserWarning, match="table.txt: .*m/s2 is assumed"):
         fr.export(tmp_path / "table.fmu", fr.Structure(preset="mcmanus"), record=tmp_path / "table.txt")
     with pytest.warns(UserWarning, match="mine: a peak of 6 g: is the unit right"):
         fr.Record(0.01, [0, 6, -6, 0], unit="g", title="mine")

@@ -19,7 +19,7 @@ pub fn is_standard(path: &Path) -> bool {
 
 /// Whether `path` can be read once only: standard input, or a pipe that is open already, which bash makes of `<(command)`.
 pub fn is_stream(path: &Path) -> bool {
-    let is_open = path.starts_with("/dev/fd") || path.starts_with("/proc");
+    let is_open = path == Path::new("/dev/stdin") || path.starts_with("/dev/fd") || path.starts_with("/proc");
     is_standard(path) || is_open && fs::metadata(path).is_ok_and(|told| !told.is_file() && !told.is_dir())
 }
 

@@ -145,7 +145,7 @@ impl Run {
     }
 
     /// What the model leaves out on this run, exact, each a Worst: tension_max, R_v_min, mu_required, mu_impact,
-    /// tension_impact, energy_gain_max; within the usual limits.
+    /// tension_impact, energy_gain_max, weight_min; within the usual limits.
     #[getter]
     fn validity(slf: Py<Self>, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         Run::validity_within(slf, py, None, None, None, None)

@@ -2,17 +2,11 @@
 
 use crate::{quantities::in_readable_unit, significant::significant};
 use rocking::estimates::pushover::{Equilibrium, PushoverError, at_overturning, at_rotation, in_full_contact};
-use rocking::mechanics::restraint::{Dissipators, uplift_displacement};
-use rocking::{Phase, Side, Structure};
+use rocking::{Phase, Structure};
 use serde::Serialize;
 
 /// Headings of the curve.
 pub const HEADINGS: [&str; 6] = ["phase", "theta[rad]", "u[m]", "delta_t[m]", "P[N]", "M[N.m]"];
-
-/// The displacement (m) at which the base lifts off, with what a tendon adds.
-fn u_cr(structure: &Structure) -> f64 {
-    uplift_displacement(structure, Side::Right, 0.0, &Dissipators::default())
-}
 
 /// A corner of the curve, in SI units.
 #[derive(Serialize)]
@@ -31,7 +25,7 @@ pub fn corners(structure: &Structure) -> Result<[Corner; 3], PushoverError> {
         Corner { name, delta_t, theta, P, M }
     };
     let corners = [
-        ("uplift", in_full_contact(structure, u_cr(structure))),
+        ("uplift", in_full_contact(structure, structure.u_cr)),
         ("start of rocking", at_rotation(structure, 0.0).ok_or(PushoverError::TooSoft)?),
         ("overturning", at_overturning(structure).ok_or(PushoverError::TooSoft)?),
     ];

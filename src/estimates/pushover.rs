@@ -22,7 +22,7 @@
 //! mass, and the force drops by that part (2e-3 for Evison, 5e-3 for McManus) as the base lifts off.
 
 use crate::mechanics::outputs::Outputs;
-use crate::mechanics::restraint::{Angles, Dissipators, Sum, uplift_displacement};
+use crate::mechanics::restraint::{Angles, Dissipators, Sum};
 use crate::series::bisection::last_where;
 use crate::{Phase, Side, State, Structure};
 use std::f64::consts::FRAC_PI_2;
@@ -65,7 +65,7 @@ pub fn curve(structure: &Structure, points: u32) -> Result<Vec<Equilibrium>, Pus
         return Err(PushoverError::BadPoints(points));
     }
     let end = at_overturning(structure).ok_or(PushoverError::TooSoft)?.delta_t;
-    let u_cr = uplift_displacement(structure, Side::Right, 0.0, &Dissipators::default());
+    let u_cr = structure.u_cr;
     let evenly = |from: f64, to: f64| {
         let part = move |i| f64::from(i) / f64::from(points - 1);
         (0..points).map(move |i| if i == points - 1 { to } else { from + (to - from) * part(i) })
@@ -109,8 +109,7 @@ pub fn at_rotation(structure: &Structure, theta: f64) -> Option<Equilibrium> {
 /// The pushover at the lateral displacement `delta_t` (m) of the top mass: full contact up to u_cr, rocking beyond.
 /// `None` where rocking does not reach, B + H at most.
 pub fn at_displacement(structure: &Structure, delta_t: f64) -> Option<Equilibrium> {
-    let u_cr = uplift_displacement(structure, Side::of(delta_t), 0.0, &Dissipators::default());
-    if delta_t.abs() <= u_cr {
+    if delta_t.abs() <= structure.u_cr {
         return Some(in_full_contact(structure, delta_t));
     }
     let reaches = |theta| at_rotation(structure, theta).is_some_and(|there| there.delta_t >= delta_t.abs());

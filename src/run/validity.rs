@@ -11,6 +11,7 @@
 //! mu_impact        largest |I_h|/I_v of an impact                 the same; infinite where I_v is not above 0
 //! tension_impact   largest (|I_m|/B − I_v)/I_v of an impact       above 0 one of the edges pulls
 //! energy_gain_max  largest (T₊ − T₋)/T₋ of an impact              above 0 energy comes out of nothing
+//! weight_min       least (g + a_v)/g                              at 0 or below nothing holds the base down
 //! ```
 //!
 //! The reactions of a restrained structure are those that the edges of the base carry. If a vertical ground acceleration
@@ -107,7 +108,7 @@ impl Limits {
 /// The findings about one of [`ASSUMPTIONS`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Worst {
-    /// The worst value: the largest, of `R_v_min` the least.
+    /// The worst value: the largest, or the least of an assumption that [`is_least`](Assumption::is_least).
     pub value: f64,
     /// Its first instant, s.
     pub time: f64,
@@ -152,7 +153,7 @@ impl Found {
         let is_same =
             value == worst.value || (value - worst.value).abs() <= MARGIN * value.abs().min(worst.value.abs());
         let is_worse = is_first || if ASSUMPTIONS[which].is_least { value < worst.value } else { value > worst.value };
-        if is_same {
+        if is_same && !is_first {
             worst.time = worst.time.min(time);
         } else if is_worse {
             worst.time = time;
@@ -250,7 +251,8 @@ impl Validity {
         let first = if *is_least { worst.max(limit) } else { worst.min(limit) };
         let slack = MARGIN * self.scale().W;
         let is_closed = |combination: &Combination| combination.extent(reactions).largest < slack;
-        A::holds_in(phase) && !A::worse(self.scale(), first).iter().flatten().all(is_closed)
+        let is_unseen = A::PLACE == TENSION && !self.found.has_stood;
+        A::holds_in(phase) && (is_unseen || !A::worse(self.scale(), first).iter().flatten().all(is_closed))
     }
 
     /// Bounds of the reactions over a leap in full contact: a quantity whose second derivative is at most M over the time h

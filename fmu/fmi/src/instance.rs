@@ -344,7 +344,8 @@ impl Instance {
                 _ if self.stage.has_started() => return Err(Failure::Fixed { name }),
                 _ => (),
             }
-            if let Some((min, max)) = range.filter(|(min, max)| !(*min..=*max).contains(&value)) {
+            let (min, max) = range.unwrap_or((f64::MIN, f64::MAX));
+            if !(min..=max).contains(&value) {
                 return Err(Failure::OutOfRange { name, value, unit, min, max, description });
             }
         }
@@ -380,7 +381,7 @@ impl Instance {
                 _ => return Err(refused(variable)),
             }
             let value = value_of(variable, *value)?;
-            if self.stage.has_started() {
+            if variable.causality != Causality::Input && self.stage.has_started() {
                 return Err(Failure::Fixed { name: variable.name.to_string() });
             }
             Ok(value)
