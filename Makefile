@@ -3,7 +3,7 @@
 # make check   format, clippy and the tests of what differs from the last commit: the loop of whoever changes a line
 # make lint    format and clippy of everything, warnings denied
 # make heavy   what takes longer or needs more, of which each can be made alone:
-# make python    the Python module, installed into .venv, its types, its page, what is computed with it
+# make python    the Python module, installed into .venv, its types, its page, what is computed with it; pip install in a fresh clone
 # make study     the tests of study/
 # make hosts     hosts that bring much, and Windows' library under wine
 # make browser   the pages of `view` and `explore` in Chromium, and in Firefox

@@ -25,9 +25,6 @@ use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{self, RecvTimeoutError};
 use std::thread;
 
-/// More threads than any machine has cores for.
-const MOST_THREADS: usize = 1024;
-
 /// Does every run that is not in the file at `path` yet: every one of the populations of structures under every record
 /// at every scale. Returns the keys of all runs, in that order. `progress` is told how many runs of how many are done.
 #[pyfunction]
@@ -46,10 +43,6 @@ pub fn sweep(
     threads: usize,
     progress: Option<Bound<'_, PyAny>>,
 ) -> PyResult<Vec<String>> {
-    if threads > MOST_THREADS {
-        let needed = format!("0 to {MOST_THREADS} are possible, 0 is one a core");
-        return Err(PyValueError::new_err(format!("threads = {threads} is out of range: {needed}")));
-    }
     let scales = numbers("scale", scale)?;
     let population = |(name, of): &(String, Vec<Py<Structure>>)| {
         Population::of(name, of.iter().map(|structure| *structure.get().0.parameters()).collect())
