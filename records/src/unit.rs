@@ -165,6 +165,35 @@ fn has_factor(text: &str) -> bool {
     })
 }
 
+/// Words of a heading by which the accelerations are multiplied or turned round.
+const FACTORS: [&str; 18] = [
+    "%",
+    "\u{2030}",
+    "percent",
+    "per",
+    "mille",
+    "permille",
+    "tenth",
+    "tenths",
+    "hundredth",
+    "hundredths",
+    "thousandth",
+    "thousandths",
+    "parts",
+    "scaled",
+    "times",
+    "multiplied",
+    "divided",
+    "minus",
+];
+
+/// Whether a word of `text` is one of [`FACTORS`].
+fn has_factor_in_words(text: &str) -> bool {
+    let text = text.to_lowercase();
+    text.split(|letter: char| !letter.is_alphabetic() && !"%\u{2030}".contains(letter))
+        .any(|word| FACTORS.contains(&word))
+}
+
 /// Whether `word` is a number, or a factor such as `10^-3`, `10-3`, `x0.1`.
 fn is_factor(word: &str) -> bool {
     let begins = word.trim_start_matches(['x', 'X', '+', '-', '.']).starts_with(char::is_numeric);
@@ -215,7 +244,10 @@ impl Stated {
         let found = starts().filter(is_free).find_map(named);
         let (unit, beside) = found.map_or((None, [heading, ""]), |(unit, beside)| (Some(unit), beside));
         match unit {
-            _ if beside.into_iter().any(has_factor) => return Stated::Multiplied(heading.to_owned()),
+            _ if beside.into_iter().any(|text| has_factor(text) || has_factor_in_words(text)) => {
+                return Stated::Multiplied(heading.to_owned());
+            }
+            Some(_) if beside.into_iter().any(mentions_unit) => return Stated::Other(heading.to_owned()),
             Some(unit) => return Stated::Unit(unit),
             None => {}
         }
@@ -275,6 +307,12 @@ mod tests {
             "acc (1/1000 g)",
             "acc (1e-3 g)",
             "acc*1000",
+            "acc [% of g]",
+            "acc (percent of g)",
+            "acc per mille g",
+            "acc (thousandths of g)",
+            "acc (g) scaled by 1000",
+            "minus acc (g)",
         ] {
             let stated = Stated::of(multiplied);
             let is_refused =
@@ -285,6 +323,9 @@ mod tests {
             [("CH 2, 090 deg, acc (g)", g), ("17/3/2005 north (g)", g), ("acc x [g]", g), ("S90E m*s^-2", m)]
         {
             assert_eq!(Stated::of(heading), Stated::Unit(unit), "{heading}");
+        }
+        for two in ["acc (gal, not g)", "acc (m/s^2)*g", "acc (cm/s/s) g"] {
+            assert_eq!(Stated::of(two), Stated::Other(two.into()));
         }
         for other in ["cm/s", "counts", "km/s2", "nm/s^2"] {
             assert_eq!(Stated::of(&format!("acc ({other})")), Stated::Other(other.into()));
