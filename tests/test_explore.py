@@ -92,7 +92,7 @@ def check_scenes(exporter, folder, evaluate):
 def test_numbers_are_the_command_lines_in_chromium(opened, exporter, tmp_path):
     page = opened()
     check_scenes(exporter, tmp_path, lambda given: page.evaluate(COMPUTED, given))
-    assert PAGE.stat().st_size <= 2.5e6
+    assert PAGE.stat().st_size <= 2.9e6
 
 
 def random_scenes(count: int):
@@ -260,7 +260,7 @@ def test_a_record_is_dropped_shown_and_moved(opened):
     assert "PEER AT2" in page.locator("#remarks").text_content()
     peak = lambda name: number(page.locator(f"tr[data-name={name}] td").nth(1).text_content())
     assert abs(peak("theta") - 0.0120001) < 1e-6
-    assert page.locator("#validity summary").text_content().endswith("3 of 6 limits are exceeded")
+    assert page.locator("#validity summary").text_content().endswith("3 of 7 limits are exceeded")
     before = page.locator("path.curve[data-name=theta]").get_attribute("d")
     slider = page.locator(".row[data-name=H] input[type=range]")
     slider.evaluate("slider => { slider.value = 0.6; slider.dispatchEvent(new Event('input', { bubbles: true })); }")
