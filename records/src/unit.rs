@@ -209,6 +209,13 @@ pub(super) fn mentions_unit(line: &str) -> bool {
     })
 }
 
+/// Whether `text`, one of the parts of a heading beside its unit, has a second unit that is not the unit of a number.
+fn has_second_unit(text: &str) -> bool {
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let is_of_a_number = |index: usize| index > 0 && is_factor(words[index - 1]);
+    words.iter().enumerate().any(|(index, word)| mentions_unit(word) && !is_of_a_number(index))
+}
+
 /// What a heading says of the unit of its column.
 #[derive(Debug, PartialEq)]
 pub(super) enum Stated {
@@ -247,7 +254,7 @@ impl Stated {
             _ if beside.into_iter().any(|text| has_factor(text) || has_factor_in_words(text)) => {
                 return Stated::Multiplied(heading.to_owned());
             }
-            Some(_) if beside.into_iter().any(mentions_unit) => return Stated::Other(heading.to_owned()),
+            Some(_) if beside.into_iter().any(has_second_unit) => return Stated::Other(heading.to_owned()),
             Some(unit) => return Stated::Unit(unit),
             None => {}
         }
@@ -324,6 +331,8 @@ mod tests {
         {
             assert_eq!(Stated::of(heading), Stated::Unit(unit), "{heading}");
         }
+        let with_a_value = "ground acceleration (m/s2): a full sine of 0.5 s and 0.6 g";
+        assert_eq!(Stated::of(with_a_value), Stated::Unit(Unit::MetrePerSecondSquared));
         for two in ["acc (gal, not g)", "acc (m/s^2)*g", "acc (cm/s/s) g"] {
             assert_eq!(Stated::of(two), Stated::Other(two.into()));
         }
