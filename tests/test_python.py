@@ -501,9 +501,10 @@ def test_formats_read_back(tmp_path):
             assert numbers(state) == (of.probability(levels).tolist() if levels else counted)
 
 
-def test_the_page_prints_what_it_shows(tmp_path, monkeypatch):
+@pytest.mark.parametrize("name", ["python", "choose_numbers"])
+def test_a_page_of_the_module_prints_what_it_shows(name, tmp_path, monkeypatch):
     """WRITE_PAGE=1 writes what is printed into it."""
-    page = ROOT / "docs" / "howto" / "python.md"
+    page = ROOT / "docs" / "howto" / f"{name}.md"
     text = page.read_text(encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     names = {}
