@@ -449,7 +449,7 @@ fn a_transition_is_foreseen_whatever_brings_it() {
             let foresees = |time: f64| {
                 let mut engine = Engine::with_detail(run.structure, run.initial, 0.0, run.tolerance, detail).unwrap();
                 engine.admit_vertical(ground.vertical().is_some()).unwrap();
-                motion.advance(&mut engine, Elapsed::default(), time, LinearLoad::default(), &mut ()).unwrap();
+                motion.advance(&mut engine, &mut Elapsed::default(), time, LinearLoad::default(), &mut ()).unwrap();
                 !engine.goes_on_for(ahead, motion.at(Elapsed::default().and(time)))
             };
             let mut quiet = 0;

@@ -66,7 +66,7 @@ impl<'a> Shown<'a> {
             Source::Ground(which) => load[which],
             Source::Overturning => scene.overturned_at().unwrap_or(setup.start_time),
             Source::Time => scene.engine.motion().time,
-            Source::RecordDuration => scene.record_duration(setup),
+            Source::RecordDuration => scene.record_duration(),
             _ => return None,
         })
     }

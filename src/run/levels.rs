@@ -6,7 +6,7 @@ use super::peaks::Peaks;
 use super::{Course, Ending, Run, RunError};
 use crate::Detail;
 use crate::engine::motion::Work;
-use crate::run::record::Segment;
+use crate::run::ground_motion::Segment;
 
 /// Tolerance of the run that all others are measured by.
 pub const REFERENCE_TOLERANCE: f64 = 1e-12;
@@ -185,14 +185,14 @@ fn start<'a>(
     })
 }
 
-/// `segment` in equal parts of at most `longest` (s).
+/// `segment` in equal segments of at most `longest` (s).
 fn cut(segment: Segment, longest: f64) -> impl Iterator<Item = Segment> {
-    let Segment { start, end, .. } = segment;
-    let parts = ((end - start) / longest).ceil().max(1.0);
-    let at = move |part: f64| if part == parts { end } else { start + (end - start) * (part / parts) };
-    (0..parts as u64).map(move |part| {
-        let (start, end) = (at(part as f64), at((part + 1) as f64));
-        Segment { start, end, ground: segment.from(start) }
+    let Segment { since, duration, until, ground } = segment;
+    let count = (duration / longest).ceil().max(1.0);
+    let passed = move |i: f64| if i == count { duration } else { duration * (i / count) };
+    (0..count as u64).map(move |i| {
+        let [from, to] = [passed(i as f64), passed((i + 1) as f64)];
+        Segment { since: since + from, duration: to - from, until: until - (duration - to), ground: ground.from(from) }
     })
 }
 
