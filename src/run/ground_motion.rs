@@ -167,9 +167,11 @@ impl<'a> GroundMotion<'a> {
 
     /// The segments of `interval` (s) from `elapsed` on.
     pub fn segments(&self, elapsed: Elapsed, interval: f64) -> Segments<'a> {
-        let next = self.reached(elapsed, |i| self.uncut(i, elapsed));
-        let ground = self.ramp_from(next, elapsed);
-        Segments { motion: *self, elapsed, interval, since: 0.0, next, ground }
+        let mut next = self.reached(elapsed, |i| self.uncut(i, elapsed));
+        while self.ahead(next, elapsed) <= 0.0 {
+            next += 1; // a late clock has one instant for several samples
+        }
+        Segments { motion: *self, elapsed, interval, first: self.ramp_from(next, elapsed), since: 0.0, next, last: 0 }
     }
 
     /// The time of the record at `elapsed`, s.
@@ -187,9 +189,9 @@ impl<'a> GroundMotion<'a> {
         self.start + (self.record.times()[i] - self.record.start())
     }
 
-    /// Seconds from `elapsed` to sample `i`.
+    /// Seconds from `elapsed` to sample `i`; ∞ after the last sample.
     fn ahead(&self, i: usize, elapsed: Elapsed) -> f64 {
-        self.instant(i) - elapsed.sum - elapsed.rounding
+        if i < self.record.times().len() { self.instant(i) - elapsed.sum - elapsed.rounding } else { f64::INFINITY }
     }
 
     /// The time before sample `i` that counts as the sample's own instant, s.
@@ -268,12 +270,14 @@ pub struct Segments<'a> {
     elapsed: Elapsed,
     /// Duration of the interval, s.
     interval: f64,
-    /// Start of the next segment, s after the start of the interval.
+    /// Ground accelerations at the start of the interval.
+    first: LinearLoad,
+    /// Latest known end of a segment, s after the start of the interval.
     since: f64,
     /// The sample that ends the next segment.
     next: usize,
-    /// Ground accelerations of the next segment.
-    ground: LinearLoad,
+    /// The last sample within the interval, once a segment has ended before the end of the interval.
+    last: usize,
 }
 
 impl Iterator for Segments<'_> {
@@ -281,26 +285,41 @@ impl Iterator for Segments<'_> {
 
     #[inline(always)] // for each sample of a run
     fn next(&mut self) -> Option<Segment> {
-        let &mut Segments { motion, elapsed, interval, since, .. } = self;
+        let &mut Segments { motion, elapsed, next, last, .. } = self;
+        if next >= last {
+            return self.first_or_last();
+        }
+        self.next = next + 1;
         let times = motion.record.times();
+        let (since, duration) = (motion.ahead(next - 1, elapsed), times[next] - times[next - 1]);
+        Some(Segment { since, duration, until: times[next], ground: motion.ramp(next) })
+    }
+}
+
+impl Segments<'_> {
+    /// The first segment of the interval, or a segment after which no whole one comes.
+    #[cold]
+    fn first_or_last(&mut self) -> Option<Segment> {
+        let &mut Segments { motion, elapsed, interval, next, .. } = self;
+        let times = motion.record.times();
+        let is_first = self.since == 0.0;
+        let since = if is_first { 0.0 } else { self.since.max(motion.ahead(next - 1, elapsed)) };
         if since >= interval || interval.is_nan() {
             return None;
         }
-        let ahead = |i: usize| if i < times.len() { motion.ahead(i, elapsed) } else { f64::INFINITY };
-        let mut end = ahead(self.next);
-        while end <= since {
-            self.next += 1; // instants that are the same, so late do they come
-            (end, self.ground) = (ahead(self.next), motion.ramp(self.next));
-        }
-        let (next, ground) = (self.next, self.ground);
+        let ground = if is_first { self.first } else { motion.ramp(next) };
+        let end = motion.ahead(next, elapsed);
         let is_close = || end >= interval - motion.same_instant(next) && end >= interval - motion.uncut(next, elapsed);
         if end > interval || end < interval && is_close() {
             self.since = interval;
             let until = motion.time(elapsed) + interval;
             return Some(Segment { since, duration: interval - since, until, ground });
         }
-        let duration = if since == 0.0 { end } else { times[next] - times[next - 1] };
-        (self.since, self.next, self.ground) = (end, next + 1, motion.ramp(next + 1));
+        if end < interval && is_first {
+            self.last = motion.reached(elapsed.and(interval), |_| 0.0).saturating_sub(1);
+        }
+        (self.since, self.next) = (end, next + 1);
+        let duration = if is_first { end } else { times[next] - times[next - 1] };
         Some(Segment { since, duration, until: times[next], ground })
     }
 }
@@ -352,9 +371,9 @@ mod tests {
     fn samples_at_one_instant_of_a_late_clock_are_passed() {
         let record = record(&[0.0, 1e-8, 2e-8, 1.0], &[1.0, 2.0, 3.0, 4.0]);
         let ground = GroundMotion { record: &record, start: 1e9 };
-        let segments: Vec<_> = ground.segments(Elapsed::default(), 2e9).collect();
-        let slopes = segments.iter().map(|segment| segment.ground.slope.a_g).collect::<Vec<_>>();
-        assert_eq!(slopes, [0.0, 1.0 / (1.0 - 2e-8), 0.0]);
+        let segments: Vec<_> = ground.segments(after([1e9]), 2.0).collect();
+        let durations = segments.iter().map(|segment| segment.duration).collect::<Vec<_>>();
+        assert_eq!(durations, [1.0, 1.0]);
     }
 
     /// The steps of a host add up to the times of the record up to rounding. Each step is one segment, whatever the start.
