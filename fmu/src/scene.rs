@@ -107,10 +107,10 @@ impl Scene {
     }
 
     /// What the motion has gone beyond since the start; before the first step, what the reactions under `load` are.
-    pub fn validity(&self, setup: &Setup, load: Load) -> Found {
+    pub fn validity(&self, load: Load) -> Found {
         let mut validity = self.watch_validity();
         if self.is_at_start(load) {
-            validity.see_instant(setup.start_time, self.engine.motion().phase, &self.engine.edges(load));
+            validity.see_instant(&self.engine.sample(load));
         }
         *validity.found()
     }
