@@ -25,7 +25,7 @@ fn run(ground: &Record, detail: Detail, tolerance: f64) -> Run<'_> {
 
 fn levels(criterion: &mut Criterion) {
     let ground = record();
-    let samples = ground.segments_until(DURATION).count();
+    let samples = ground.segments(DURATION).count();
     let mut group = criterion.benchmark_group("record");
     group.throughput(Throughput::Elements(samples as u64));
     for detail in Detail::ALL {

@@ -18,8 +18,8 @@ pub mod validity;
 use crate::engine::piece::Sample;
 use crate::engine::{AdvanceError, DEFAULT_TOLERANCE};
 use crate::mechanics::state::InitialStateError;
+use crate::run::ground_motion::Segment;
 use crate::run::record::Record;
-use crate::run::record::Segment;
 use crate::{Detail, Engine, Motion, Progress, Ramp, State, Structure, Watch};
 use peaks::Peaks;
 use samples::Samples;
@@ -177,7 +177,7 @@ impl<'a> Run<'a> {
             End::AtRest => self.ground.end(),
             End::At(end) => end,
         };
-        let segments = self.ground.segments_until(until);
+        let segments = self.ground.segments(until - self.ground.start());
         Ok(Course { engine: self.start()?, segments, end: self.end, rest: LONGEST_REST })
     }
 
@@ -261,9 +261,9 @@ fn error(engine: &Engine, cause: AdvanceError) -> RunError {
 /// Follows a structure over `segment`.
 #[inline]
 fn over<W: Watch>(engine: &mut Engine, segment: Segment, watch: &mut W) -> Result<Progress, AdvanceError> {
-    let progress = engine.advance(segment.end - segment.start, segment.ground, watch)?;
+    let progress = engine.advance(segment.duration, segment.ground, watch)?;
     if progress != Progress::Overturned {
-        engine.set_time(segment.end);
+        engine.set_time(segment.until);
     }
     Ok(progress)
 }
@@ -277,7 +277,8 @@ fn come_to_rest<W: Watch>(
     watch: &mut W,
 ) -> Result<Option<Ending>, AdvanceError> {
     let &Structure { p_l, omega_fc, .. } = engine.structure();
-    if let End::At(_) = end {
+    if let End::At(end) = end {
+        engine.set_time(end);
         return Ok(Some(Ending::AtTime));
     }
     if engine.stays_down() {

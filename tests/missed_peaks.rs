@@ -43,7 +43,7 @@ fn magnitudes(o: Outputs) -> [f64; PEAKS.len()] {
 fn worst(&Parameters { m, m0, B, g, .. }: &Parameters, phase: Phase, r: Reactions) -> [f64; 3] {
     let weight = (m + m0) * g;
     let friction = if r.R_v > 0.0 { r.R_h.abs() / r.R_v } else { f64::INFINITY };
-    let tension = if phase == Phase::FullContact { (r.R_m.abs() / B - r.R_v) / weight } else { -1.0 };
+    let tension = if phase == Phase::FullContact { (r.R_m.abs() / B - r.R_v) / weight } else { f64::NEG_INFINITY };
     [tension, -r.R_v / weight, friction]
 }
 
@@ -145,7 +145,7 @@ fn no_peak_is_missed() {
         let mut dense = Dense {
             parameters,
             largest: [0.0; PEAKS.len()],
-            worst: [-1.0, f64::NEG_INFINITY, 0.0],
+            worst: [f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0],
             beyond: [0.0; 3],
             first: [None; 3],
             pieces: 0,
@@ -220,7 +220,7 @@ fn no_peak_is_missed() {
             let name = format!("scene {seed}, {}: {i}: {value} at {time} s", detail.name());
             if value == f64::INFINITY {
                 assert_eq!(Some(time), found[1].first_beyond, "{name}");
-            } else if value != [-1.0, f64::NEG_INFINITY, 0.0][i] {
+            } else if value != [f64::NEG_INFINITY, f64::NEG_INFINITY, 0.0][i] {
                 assert!((value - shown).abs() <= 1e-9 * (1.0 + value.abs()), "{name}, where it is {shown}");
             }
         }

@@ -6,7 +6,9 @@
 mod shaking;
 
 use rocking::run::record::Record;
-use rocking::run::validity::{ASSUMPTIONS, EDGE_LOAD, ENERGY, IMPACT_FRICTION, IMPACT_TENSION, Limits};
+use rocking::run::validity::{
+    ASSUMPTIONS, EDGE_LOAD, ENERGY, IMPACT_FRICTION, IMPACT_TENSION, Limits, TENSION, WEIGHT,
+};
 use rocking::run::{End, Run};
 use rocking::{Detail, Parameters, Phase, Side, State, Structure, Transition, TransitionKind};
 use shaking::shaking;
@@ -101,4 +103,22 @@ fn a_fixed_base_carries_least_when_the_ground_falls_fastest() {
     let (found, _) = run.validity(Limits::default()).unwrap();
     let expected = 1.0 + least / structure.parameters().g;
     assert!((found.worst[EDGE_LOAD].value - expected).abs() < 1e-12, "{} {expected}", found.worst[EDGE_LOAD].value);
+}
+
+/// A ground that accelerates upwards throughout presses the base down by more than its weight. A base that never stood has no
+/// tension.
+#[test]
+fn the_worst_value_is_one_that_has_been() {
+    let structure = Structure::new(Parameters::MCMANUS).unwrap();
+    let [level, upwards] = [0.0, 2.0].map(|a| Record::from_samples("", vec![0.0, 1.0], vec![a, a]).unwrap());
+    let ground = level.with_vertical(&upwards).unwrap();
+    let worst = |initial, until| {
+        let run = Run { initial, end: End::At(until), ..Run::new(structure, &ground) };
+        run.validity(Limits::default()).unwrap().0.worst
+    };
+    let [standing, rocking] = [worst(State::default(), 0.5), worst(State { theta: 0.1, ..State::default() }, 0.01)];
+    let weight = 1.0 + 2.0 / structure.parameters().g;
+    assert_eq!([standing[WEIGHT].value, rocking[WEIGHT].value], [weight; 2]);
+    assert!((standing[TENSION].value + weight).abs() < 1e-12, "{}", standing[TENSION].value);
+    assert_eq!(rocking[TENSION].value, ASSUMPTIONS[TENSION].start);
 }

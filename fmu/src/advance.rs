@@ -91,9 +91,6 @@ impl Scene {
     ) -> Result<Progress, AdvanceError> {
         let Scene { engine, ground, elapsed, .. } = self;
         let Some(ground) = ground else { return engine.advance(step, *inputs, watch) };
-        let start = engine.motion().time;
-        let progress = setup.ground_motion(ground).advance(engine, *elapsed, step, *inputs, watch)?;
-        *elapsed = elapsed.and(if progress == Progress::Complete { step } else { engine.motion().time - start });
-        Ok(progress)
+        setup.ground_motion(ground).advance(engine, elapsed, step, *inputs, watch)
     }
 }

@@ -5,6 +5,7 @@ use crate::resources::ResourceError;
 use fmi_unit::Failure;
 use rocking::engine::AdvanceError;
 use rocking::mechanics::state::InitialStateError;
+use rocking::run::record::SamplesError;
 use rocking::structure::parameters::ParameterError;
 use rocking::structure::quantity::OutOfRange;
 
@@ -20,9 +21,9 @@ pub enum Refusal {
     /// The record is out of the range of an input.
     #[error("the record, as it is scaled: {0}")]
     StrongRecord(OutOfRange),
-    /// The record is scaled to no end.
-    #[error("record_duration = {0} is out of range: it must be finite: lower record_time_scale")]
-    LongRecord(f64),
+    /// The scales leave no ground motion.
+    #[error("the record, as it is scaled: {0}")]
+    BadScales(#[from] SamplesError),
     /// The record has changed since a state was kept.
     #[error(
         "record = {record:?}{} has other samples now than when the FMU state was kept",

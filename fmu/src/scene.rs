@@ -6,8 +6,9 @@ use crate::ground::{Digest, GroundRecord};
 use crate::setup::Setup;
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::fall::FallingPeaks;
-use rocking::run::ground_motion::Elapsed;
+use rocking::run::ground_motion::{Elapsed, Placement};
 use rocking::run::outside_step::Known;
+use rocking::run::record::Record;
 use rocking::run::validity::{Found, Limits, Validity};
 use rocking::{Engine, LinearLoad, Load, Phase, Structure, Watch};
 use serde::{Deserialize, Serialize};
@@ -16,7 +17,10 @@ use std::sync::Arc;
 /// The structure on its ground.
 pub(crate) struct Scene {
     pub engine: Engine,
-    pub ground: Option<Arc<GroundRecord>>,
+    /// The record that the ground follows, as its files give it.
+    pub source: Option<Arc<GroundRecord>>,
+    /// The record in m/s² and as the setup scales it.
+    pub ground: Option<Record>,
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
     /// If the host integrates: the engine is then where the host is.
@@ -43,39 +47,37 @@ impl Setup {
         Ok(Engine::with_detail(structure, self.initial, self.start_time, self.tolerance, self.detail)?)
     }
 
-    /// Refuses a `record` that cannot act as it is scaled.
-    fn check_ground(&self, record: &GroundRecord) -> Result<(), Refusal> {
-        let ground = self.ground_motion(record);
-        LOADS[0].check(ground.pga()).map_err(Refusal::StrongRecord)?;
-        LOADS[VERTICAL].check(ground.vertical_peak()).map_err(Refusal::StrongRecord)?;
-        if ground.duration().is_finite() {
-            return Ok(());
+    /// The record of `source` in m/s² and scaled. Refuses scales that leave no ground motion in the range of the inputs.
+    fn scaled(&self, source: &GroundRecord) -> Result<Record, Refusal> {
+        let (record, Placement { scale, time_scale, .. }) = (source.in_m_s2(self.parameters.g), self.placement);
+        for (load, peak) in [(0, record.pga()), (VERTICAL, record.vertical_peak())] {
+            LOADS[load].check(peak * scale.abs()).map_err(Refusal::StrongRecord)?;
         }
-        Err(Refusal::LongRecord(ground.duration()))
+        Ok(record.scaled(time_scale, scale)?)
     }
 }
 
 /// Whether what follows `ground` may move vertically.
-fn may_move_vertically(setup: &Setup, ground: Option<&GroundRecord>) -> bool {
-    setup.vertical || ground.is_some_and(|ground| ground.record.vertical().is_some())
+fn may_move_vertically(setup: &Setup, ground: Option<&Record>) -> bool {
+    setup.vertical || ground.is_some_and(|record| record.vertical().is_some())
 }
 
 impl Scene {
-    /// At the start that `setup` describes, on ground that follows `ground`.
-    pub fn new(setup: &Setup, ground: Option<Arc<GroundRecord>>) -> Result<Scene, Refusal> {
+    /// At the start that `setup` describes, on ground that follows the record of `source`.
+    pub fn new(setup: &Setup, source: Option<Arc<GroundRecord>>) -> Result<Scene, Refusal> {
         let mut engine = setup.engine()?;
-        if may_move_vertically(setup, ground.as_deref()) {
-            engine.admit_vertical(true)?;
-        }
-        ground.as_deref().map_or(Ok(()), |ground| setup.check_ground(ground))?;
+        engine.admit_vertical(
+            source.as_ref().map_or(setup.vertical, |of| setup.vertical || of.record.vertical().is_some()),
+        )?;
+        let ground = source.as_deref().map(|source| setup.scaled(source)).transpose()?;
         let peaks = FallingPeaks::since(setup.start_time, engine.structure(), setup.detail);
         let validity = Found::since(setup.start_time);
-        Ok(Scene { engine, ground, elapsed: Elapsed::default(), outside: None, peaks, validity })
+        Ok(Scene { engine, source, ground, elapsed: Elapsed::default(), outside: None, peaks, validity })
     }
 
     /// Whether the ground may move vertically.
     pub fn may_move_vertically(&self, setup: &Setup) -> bool {
-        may_move_vertically(setup, self.ground.as_deref())
+        may_move_vertically(setup, self.ground.as_ref())
     }
 
     /// What acts now: `inputs` and the record.
@@ -105,10 +107,10 @@ impl Scene {
     }
 
     /// What the motion has gone beyond since the start; before the first step, what the reactions under `load` are.
-    pub fn validity(&self, setup: &Setup, load: Load) -> Found {
+    pub fn validity(&self, load: Load) -> Found {
         let mut validity = self.watch_validity();
         if self.is_at_start(load) {
-            validity.see_instant(setup.start_time, self.engine.motion().phase, &self.engine.edges(load));
+            validity.see_instant(&self.engine.sample(load));
         }
         *validity.found()
     }
@@ -119,13 +121,13 @@ impl Scene {
     }
 
     /// From the first to the last sample of the record, s; 0 without one.
-    pub fn record_duration(&self, setup: &Setup) -> f64 {
-        self.ground.as_ref().map_or(0.0, |ground| setup.ground_motion(ground).duration())
+    pub fn record_duration(&self) -> f64 {
+        self.ground.as_ref().map_or(0.0, |record| record.end() - record.start())
     }
 
     /// Names the record that the ground follows.
     pub fn digest(&self) -> Option<Digest> {
-        self.ground.as_ref().map(|ground| ground.digest)
+        self.source.as_ref().map(|source| source.digest)
     }
 
     /// Whether the structure has overturned, which ends the simulation.

@@ -1,11 +1,11 @@
 //! What is set before a simulation starts.
 
-use crate::ground::GroundRecord;
 use crate::inputs::Between;
 use crate::resources::Contents;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::load::LOADS;
 use rocking::run::ground_motion::Placement;
+use rocking::run::record::Record;
 use rocking::{Detail, GroundMotion, Parameters, State};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
@@ -62,9 +62,8 @@ impl Setup {
         [of_ground, F_t, of_ground]
     }
 
-    /// `record` as it acts.
-    pub(crate) fn ground_motion<'a>(&self, record: &'a GroundRecord) -> GroundMotion<'a> {
-        let [unit, vertical_unit] = record.units.map(|unit| unit.in_m_s2(self.parameters.g));
-        GroundMotion { record: &record.record, unit, vertical_unit, placement: self.placement }
+    /// The scaled `record` at its place in time.
+    pub(crate) fn ground_motion<'a>(&self, record: &'a Record) -> GroundMotion<'a> {
+        GroundMotion { record, start: self.placement.start }
     }
 }

@@ -57,8 +57,8 @@ impl<'a> Shown<'a> {
             Source::Peak(_) if !setup.peaks || scene.is_integrated_outside() => f64::NAN,
             Source::Peak(of) => of(scene.peaks(setup, load).peaks()),
             Source::Worst(_) | Source::WorstInstant(_) if !setup.validity || scene.is_integrated_outside() => f64::NAN,
-            Source::Worst(which) => scene.validity(setup, load).worst[which].value,
-            Source::WorstInstant(which) => scene.validity(setup, load).worst[which].time,
+            Source::Worst(which) => scene.validity(load).worst[which].value,
+            Source::WorstInstant(which) => scene.validity(load).worst[which].time,
             Source::Restraint(of) => of(&scene.engine.restraints()),
             Source::Dissipator(of) => of(&scene.engine.motion().dissipators),
             Source::Impulse(of) => of(&scene.engine.motion().impulse),
@@ -66,7 +66,7 @@ impl<'a> Shown<'a> {
             Source::Ground(which) => load[which],
             Source::Overturning => scene.overturned_at().unwrap_or(setup.start_time),
             Source::Time => scene.engine.motion().time,
-            Source::RecordDuration => scene.record_duration(setup),
+            Source::RecordDuration => scene.record_duration(),
             _ => return None,
         })
     }

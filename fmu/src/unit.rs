@@ -218,7 +218,7 @@ impl Model for Unit {
 
     fn start(&mut self, interface: Interface, logger: &Logger) -> Result<(), Failure> {
         let (scene, setup, inputs) = self.parts()?;
-        for of_file in scene.ground.iter().flat_map(|ground| &ground.sentences) {
+        for of_file in scene.source.iter().flat_map(|source| &source.sentences) {
             let (found, doubts) = of_file.split_at(1.min(of_file.len()));
             found.iter().for_each(|found| logger.event(|| found.clone()));
             doubts.iter().for_each(|doubt| logger.warning(doubt));

@@ -41,8 +41,10 @@ pub fn text(
         writeln!(out, "  {:<10} not possible here: {error:#}", detail.name())?;
     }
     print_advice(&mut out, comparison, advised, allowed)?;
-    if let Some(level) = &comparison.without_vertical {
-        print_vertical(&mut out, level, allowed)?;
+    match &comparison.without_vertical {
+        Some(Ok(level)) => print_vertical(&mut out, level, allowed)?,
+        Some(Err(error)) => writeln!(out, "without the vertical component the run is not possible: {error}")?,
+        None => (),
     }
     let (found, _) = run.validity(limits)?;
     writeln!(out)?;
@@ -149,7 +151,8 @@ pub fn rows(comparison: &Comparison, advised: Option<&Verdict>) -> Vec<Level> {
     let reference = &comparison.reference;
     let reference = row("reference", reference, [0.0; 6], reference.ending.overturned().map(|_| true), false);
     let levels = comparison.verdicts.iter().map(|verdict| of_verdict(verdict.response.detail.name(), verdict));
-    let without_vertical = comparison.without_vertical.iter().map(|verdict| of_verdict("auto without a_v", verdict));
+    let without_vertical =
+        comparison.without_vertical.iter().flatten().map(|verdict| of_verdict("auto without a_v", verdict));
     [reference].into_iter().chain(levels).chain(without_vertical).collect()
 }
 

@@ -2,7 +2,7 @@
 
 use crate::quantities::Number;
 use crate::significant::significant;
-use rocking::run::validity::{self, ASSUMPTIONS, Assumption, EDGE_LOAD, Found, Limits, WEIGHT, Worst};
+use rocking::run::validity::{self, ASSUMPTIONS, Assumption, Found, Limits, WEIGHT, Worst};
 use rocking::{Detail, Structure};
 use serde::Serialize;
 
@@ -72,25 +72,17 @@ pub fn section(structure: &Structure, detail: Detail, found: &Found, limits: &Li
 
 fn line(which: usize, found: &Found, limits: &Limits) -> String {
     let Worst { value, time, first_beyond, beyond } = found.worst[which];
-    let assumption = &ASSUMPTIONS[which];
-    let limit = (assumption.limit)(limits);
-    let side = match which {
-        EDGE_LOAD => "below",
-        WEIGHT => "at or below",
-        _ => "above",
-    };
+    let &Assumption { is_of_impacts, passing, limit, start, .. } = &ASSUMPTIONS[which];
+    let limit = limit(limits);
     let passed = match first_beyond {
-        None => format!("never {side} {limit}"),
+        None => format!("never {passing} {limit}"),
         Some(first) => {
-            let amount = if assumption.is_of_impacts {
-                of_impacts(beyond as u64, found.impacts)
-            } else {
-                share(beyond, found.duration)
-            };
-            format!("{side} {limit} for {amount}, first at {} s", significant(first))
+            let amount =
+                if is_of_impacts { of_impacts(beyond as u64, found.impacts) } else { share(beyond, found.duration) };
+            format!("{passing} {limit} for {amount}, first at {} s", significant(first))
         }
     };
-    if assumption.is_of_impacts && (found.impacts == 0 || value == 0.0) {
+    if value == start && (is_of_impacts || start.is_infinite()) {
         return format!("  {:<34} {:>12}", LABELS[which], "none");
     }
     let (value, time) = (significant(value), significant(time));

@@ -20,8 +20,8 @@
 //! that rate's own slope, which have a closed form, the rate passes 0 once at most.
 
 use crate::levels::oscillator::Oscillator;
+use crate::run::ground_motion::Segment;
 use crate::run::record::Record;
-use crate::run::record::Segment;
 use crate::series::bisection::last_where;
 use crate::structure::quantity::OutOfRange;
 use nalgebra::{Matrix2, Vector2};
@@ -47,7 +47,7 @@ pub fn spectrum(record: &Record, periods: impl IntoIterator<Item = f64>, zeta: f
 /// S_a of `record` at the period `T` (s) and the damping ratio `zeta` of a structure, m/s². The oscillator starts at rest and swings
 /// on for a period after the record's end: its largest swing comes within a quarter of one.
 pub fn spectral_acceleration(record: &Record, T: f64, zeta: f64) -> f64 {
-    Oscillator { omega: TAU / T, zeta }.peak(record.segments_until(record.end() + T))
+    Oscillator { omega: TAU / T, zeta }.peak(record.segments(record.end() - record.start() + T))
 }
 
 impl Oscillator {
@@ -56,8 +56,8 @@ impl Oscillator {
         let mut flow_over = (f64::NAN, Matrix2::identity()); // of the last step length, which few records change
         let mut motion = Vector2::zeros(); // (u̇, ü + a_g)
         let mut peak: f64 = 0.0;
-        for Segment { start, end, ground } in segments {
-            let (step, a_g) = (end - start, ground.on_foundation());
+        for Segment { duration: step, ground, .. } in segments {
+            let a_g = ground.on_foundation();
             if step != flow_over.0 {
                 flow_over = (step, self.free(step));
             }
@@ -126,7 +126,7 @@ mod tests {
         let samples = times.windows(2).zip(a_g.windows(2));
         let segment = |(t, a): (&[f64], &[f64])| {
             let a_g = Ramp { value: a[0], slope: (a[1] - a[0]) / (t[1] - t[0]) };
-            Segment { start: t[0], end: t[1], ground: a_g.into() }
+            Segment { since: t[0], duration: t[1] - t[0], until: t[1], ground: a_g.into() }
         };
         samples.map(segment).collect()
     }
@@ -186,11 +186,11 @@ mod tests {
             let (mut seen, mut fastest) = (0.0f64, 0.0f64);
             for segment in &load {
                 for i in 0..SEEN {
-                    let at = |i: usize| segment.start + (segment.end - segment.start) * i as f64 / SEEN as f64;
+                    let at = |i: usize| segment.since + segment.duration * i as f64 / SEEN as f64;
                     let (mut now, until) = (at(i), at(i + 1));
                     while now < until {
                         let interval = until - now;
-                        let a_g = segment.from(now).on_foundation();
+                        let a_g = segment.ground.from(now - segment.since).on_foundation();
                         let start = Start { state, a_g, a_top: a_g, interval, local_error: 1e-15, ..Start::default() };
                         full_contact::series(&structure, &start, &mut arc);
                         state = arc.end();

@@ -278,11 +278,11 @@ mod tests {
             (Elapsed::default(), FallingPeaks::since(run.ground.start(), &run.structure, run.detail));
         let ground = GroundMotion::from(run.ground);
         loop {
-            let progress = ground.advance(&mut engine, elapsed, step, Default::default(), &mut kept.watch()).unwrap();
+            let progress =
+                ground.advance(&mut engine, &mut elapsed, step, Default::default(), &mut kept.watch()).unwrap();
             if progress == Progress::Overturned {
                 return kept;
             }
-            elapsed = elapsed.and(step);
         }
     }
 

@@ -1,9 +1,8 @@
-//! A ground motion as a structure meets it: a record, scaled and placed in time, followed from sample to sample however
-//! time is cut into steps.
+//! A ground motion followed from sample to sample, however time is cut into steps.
 //!
-//! Where a step is in the record follows from the time elapsed since the start, a compensated sum of the steps, and not
-//! from a clock: the same steps give the same bits at every start time. Hosts whose steps are those of the record meet
-//! its samples but for rounding: what is that close to a sample counts as there, and no sliver of a step is made of it.
+//! The time elapsed since the start tells where a step is in the record. This time is a compensated sum of the steps and not
+//! a clock, so that the same steps give the same bits at every start time. A host whose steps are those of the record meets
+//! the samples only up to rounding. A step that ends as close to a sample as that is not cut there.
 
 use crate::engine::{AdvanceError, MAX_STEPS_PER_ADVANCE};
 use crate::run::record::Record;
@@ -12,20 +11,20 @@ use crate::{Engine, LinearLoad, Progress, Ramp, Watch};
 use serde::{Deserialize, Serialize};
 
 /// Part of the time between two samples over which a kink between them makes no difference: with the slope of the other side
-/// the ground's velocity is off by its square.
+/// the velocity of the ground is off by the square of this part.
 const SAME_INSTANT: f64 = 1e-9;
 
-/// Part of the times involved by which steps that are to meet a sample may miss it.
+/// Part of the times involved by which a step that is meant to end at a sample may miss the sample.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// How a record is scaled, and when it comes.
+/// The scales of a record, and the instant of its first sample.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Placement {
-    /// Multiplies its accelerations.
+    /// Factor of the accelerations.
     pub scale: f64,
-    /// Multiplies its times.
+    /// Factor of the times.
     pub time_scale: f64,
-    /// When its first sample comes, s after the start.
+    /// Instant of the first sample, s after the start.
     pub start: f64,
 }
 
@@ -42,73 +41,59 @@ pub const PLACEMENT: [Quantity<Placement>; 3] = [
     quantity!("record_start", start["s"] - 1e9, 1e9, "when the record's first sample comes, counted from startTime"),
 ];
 
-/// Seconds since a start: the exact sum of the steps, but for the last digit of its rounding.
+/// Seconds since a start: the exact sum of the steps, except for the last digit of its rounding.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Elapsed {
     sum: f64,
     rounding: f64,
+    /// The number of samples that had come after the last advance: the search for the present number begins here.
+    reached: u32,
 }
 
 impl Elapsed {
-    /// After another `step` (s).
+    /// The time after another `step` (s).
     pub fn and(self, step: f64) -> Elapsed {
         let sum = (self.sum + step).min(f64::MAX);
         let part = sum - self.sum;
-        Elapsed { sum, rounding: self.rounding + ((self.sum - (sum - part)) + (step - part)) }
+        Elapsed { sum, rounding: self.rounding + ((self.sum - (sum - part)) + (step - part)), ..self }
     }
 
-    /// In one number, s.
+    /// The time in one number, s.
     pub fn seconds(self) -> f64 {
         self.sum + self.rounding
     }
 }
 
-/// A record as it acts.
+/// A record that begins some time after a start. The ground rests before the first sample and after the last one.
 #[derive(Clone, Copy, Debug)]
 pub struct GroundMotion<'a> {
     /// The record.
     pub record: &'a Record,
-    /// What its accelerations are given in, m/s²: 1, or g.
-    pub unit: f64,
-    /// The same of its vertical component.
-    pub vertical_unit: f64,
-    /// How it is scaled, and when it comes.
-    pub placement: Placement,
+    /// Instant of the first sample, s after the start.
+    pub start: f64,
 }
 
-/// A part of an interval over which the ground's accelerations are linear.
+/// A part of an interval over which the ground accelerations are linear.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Stretch {
-    /// From the start of the interval, s.
-    start: f64,
-    duration: f64,
-    /// From the start of the stretch on.
-    ground: LinearLoad,
+pub struct Segment {
+    /// Start of the segment, s after the start of the interval.
+    pub since: f64,
+    /// Duration, s.
+    pub duration: f64,
+    /// End of the segment by the times of the record, s.
+    pub until: f64,
+    /// Ground accelerations from the start of the segment on.
+    pub ground: LinearLoad,
 }
 
-impl GroundMotion<'_> {
-    /// From its first to its last sample, s.
-    pub fn duration(&self) -> f64 {
-        self.time(self.record.times().len() - 1) - self.time(0)
-    }
-
-    /// Peak ground acceleration, m/s².
-    pub fn pga(&self) -> f64 {
-        self.record.pga() * self.unit * self.placement.scale.abs()
-    }
-
-    /// Largest vertical ground acceleration, m/s²; 0 where the ground moves horizontally alone.
-    pub fn vertical_peak(&self) -> f64 {
-        (0..self.record.times().len()).fold(0.0, |peak, i| peak.max(self.vertical(i).abs()))
-    }
-
-    /// The ground accelerations as they are given from `elapsed` on; 0 before the first sample and from the last one on.
+impl<'a> GroundMotion<'a> {
+    /// The ground accelerations from `elapsed` on, until the next sample.
     pub fn at(&self, elapsed: Elapsed) -> LinearLoad {
         self.ramp_from(self.reached(elapsed, |i| self.same_instant(i)), elapsed)
     }
 
-    /// What it is for an integrator at `elapsed` that has dealt with all samples up to `dealt_with`: a later one that it has just
-    /// arrived at is still to come, so that the ground acceleration is the one that led there.
+    /// The ground accelerations for an integrator at `elapsed` that has dealt with all samples up to `dealt_with`. A later
+    /// sample at which the integrator has just arrived is still to come: the accelerations are those that lead to the sample.
     pub fn since(&self, dealt_with: Elapsed, elapsed: Elapsed) -> LinearLoad {
         let reached = |at: Elapsed| self.reached(at, |i| self.same_instant(i));
         let here = reached(elapsed);
@@ -116,7 +101,7 @@ impl GroundMotion<'_> {
         self.ramp_from(reached(dealt_with).clamp(passed, here), elapsed)
     }
 
-    /// `elapsed`, or that of the sample which a clock that is right to `resolution` (s) cannot tell from it.
+    /// `elapsed`, or the time of a sample if a clock that is right to `resolution` (s) cannot tell the two apart.
     pub fn by_clock(&self, elapsed: Elapsed, resolution: f64) -> Elapsed {
         let next = self.reached(elapsed, |i| self.same_instant(i));
         let mut near = next.saturating_sub(1)..self.record.times().len().min(next + 1);
@@ -124,8 +109,8 @@ impl GroundMotion<'_> {
         sample.map_or(elapsed, |i| Elapsed::default().and(self.instant(i)))
     }
 
-    /// The next instant after `elapsed` at which the ground acceleration jumps, by a first or last sample that is not 0, s
-    /// after the start.
+    /// The next instant after `elapsed` at which the ground acceleration jumps, s after the start. The ground acceleration jumps
+    /// at a first or last sample that is not 0.
     pub fn next_jump(&self, elapsed: Elapsed) -> Option<f64> {
         let ends = [0, self.record.times().len() - 1].into_iter().filter(|i| self.is_moved(*i));
         self.first_ahead(ends, elapsed)
@@ -136,18 +121,17 @@ impl GroundMotion<'_> {
         self.first_ahead(self.reached(elapsed, |i| self.same_instant(i))..self.record.times().len(), elapsed)
     }
 
-    /// The instant of the first of `samples`, which follow each other, that is still to come. It is the sample's own,
-    /// wherever `elapsed` is.
+    /// The instant of the first of `samples`, which follow each other, that is still to come after `elapsed`.
     fn first_ahead(&self, mut samples: impl Iterator<Item = usize>, elapsed: Elapsed) -> Option<f64> {
         samples.find(|i| self.ahead(*i, elapsed) > self.same_instant(*i)).map(|i| self.instant(i))
     }
 
-    /// Advances `engine`, which is at `elapsed`, by `interval` (s) under the record and `load`, as one advance: the
-    /// bound on its work is for all samples together, and if it fails the motion is as it was before.
+    /// Advances `engine` and `elapsed` by `interval` (s), or to a transition that ends the advance, under the record and `load`.
+    /// One bound on the work holds for all samples together. If the advance fails, nothing has changed.
     pub fn advance<W: Watch>(
         &self,
         engine: &mut Engine,
-        elapsed: Elapsed,
+        elapsed: &mut Elapsed,
         interval: f64,
         load: LinearLoad,
         watch: &mut W,
@@ -155,11 +139,16 @@ impl GroundMotion<'_> {
         engine.check(interval, &load)?;
         let before = *engine.motion();
         let last_step = before.work.steps + MAX_STEPS_PER_ADVANCE;
-        for Stretch { start, duration, ground } in self.stretches(elapsed, interval) {
-            engine.set_time(before.time + start);
-            match engine.advance_within(last_step, duration, load.from(start).on_ground(ground), watch) {
-                Ok(Progress::Complete) => (),
-                Ok(progress @ (Progress::Overturned | Progress::Transition)) => return Ok(progress),
+        let clock = before.time - self.time(*elapsed);
+        let mut segments = self.segments(*elapsed, interval);
+        let (mut passed, mut progress) = (interval, Progress::Complete);
+        for Segment { since, duration, until, ground } in &mut segments {
+            match engine.advance_within(last_step, duration, load.from(since).on_ground(ground), watch) {
+                Ok(Progress::Complete) => engine.set_time(clock + until),
+                Ok(ended) => {
+                    (passed, progress) = (engine.motion().time - before.time, ended);
+                    break;
+                }
                 Err(mut error) => {
                     engine.set_motion(before);
                     if let AdvanceError::TooLong { until, .. } = &mut error {
@@ -169,100 +158,75 @@ impl GroundMotion<'_> {
                 }
             }
         }
-        engine.set_time(before.time + interval);
-        Ok(Progress::Complete)
+        if progress == Progress::Complete {
+            engine.set_time(before.time + interval);
+        }
+        *elapsed = Elapsed { reached: segments.next as u32, ..elapsed.and(passed) };
+        Ok(progress)
     }
 
-    /// `interval` (s) from `elapsed` on, cut at the samples.
-    fn stretches(&self, elapsed: Elapsed, interval: f64) -> impl Iterator<Item = Stretch> {
-        let (this, samples) = (*self, self.record.times().len());
-        let mut next = this.reached(elapsed, |i| this.uncut(i, elapsed));
-        let mut ground = this.ramp_from(next, elapsed);
-        let (mut start, mut is_first) = (0.0, true);
-        std::iter::from_fn(move || {
-            if start >= interval {
-                return None;
-            }
-            let ahead = |i: usize| if i < samples { this.ahead(i, elapsed) } else { f64::INFINITY };
-            let mut end = ahead(next);
-            while end <= start {
-                next += 1; // times that are the same once they are scaled
-                (end, ground) = (ahead(next), this.ramp(next));
-            }
-            let is_close = || end >= interval - this.same_instant(next) && end >= interval - this.uncut(next, elapsed);
-            let is_last = end >= interval || is_close();
-            let duration = if is_last {
-                interval - start
-            } else if is_first {
-                end
-            } else {
-                this.time(next) - this.time(next - 1)
-            };
-            let stretch = Stretch { start, duration, ground };
-            start = if is_last { interval } else { end };
-            next += usize::from(!is_last);
-            (ground, is_first) = (this.ramp(next), false);
-            Some(stretch)
-        })
+    /// The segments of `interval` (s) from `elapsed` on.
+    pub fn segments(&self, elapsed: Elapsed, interval: f64) -> Segments<'a> {
+        let mut next = self.reached(elapsed, |i| self.uncut(i, elapsed));
+        while self.ahead(next, elapsed) <= 0.0 {
+            next += 1; // a late clock has one instant for several samples
+        }
+        Segments { motion: *self, elapsed, interval, first: self.ramp_from(next, elapsed), since: 0.0, next, last: 0 }
     }
 
-    /// Time of sample `i` in the record, s.
-    fn time(&self, i: usize) -> f64 {
-        self.record.times()[i] * self.placement.time_scale
-    }
-
-    fn acceleration(&self, i: usize) -> f64 {
-        self.record.acceleration()[i] * self.unit * self.placement.scale
-    }
-
-    /// Vertical acceleration of sample `i`, if there is any, m/s².
-    fn vertical(&self, i: usize) -> f64 {
-        self.record.vertical().map_or(0.0, |vertical| vertical[i] * self.vertical_unit * self.placement.scale)
+    /// The time of the record at `elapsed`, s.
+    fn time(&self, elapsed: Elapsed) -> f64 {
+        (elapsed.sum - self.start + elapsed.rounding) + self.record.start()
     }
 
     /// Whether the ground accelerates at sample `i`.
     fn is_moved(&self, i: usize) -> bool {
-        self.acceleration(i) != 0.0 || self.vertical(i) != 0.0
+        self.record.acceleration()[i] != 0.0 || self.record.vertical().is_some_and(|vertical| vertical[i] != 0.0)
     }
 
-    /// When sample `i` comes, s after the start.
+    /// Instant of sample `i`, s after the start.
     fn instant(&self, i: usize) -> f64 {
-        self.placement.start + (self.time(i) - self.time(0))
+        self.start + (self.record.times()[i] - self.record.start())
     }
 
-    /// Seconds from `elapsed` to sample `i`.
+    /// Seconds from `elapsed` to sample `i`; ∞ after the last sample.
     fn ahead(&self, i: usize, elapsed: Elapsed) -> f64 {
-        self.instant(i) - elapsed.sum - elapsed.rounding
+        if i < self.record.times().len() { self.instant(i) - elapsed.sum - elapsed.rounding } else { f64::INFINITY }
     }
 
-    /// How close to sample `i` an instant before it is not told from it, s.
+    /// The time before sample `i` that counts as the sample's own instant, s.
     fn same_instant(&self, i: usize) -> f64 {
-        let i = i.clamp(1, self.record.times().len() - 1);
-        SAME_INSTANT * (self.time(i) - self.time(i - 1))
+        let times = self.record.times();
+        let i = i.clamp(1, times.len() - 1);
+        SAME_INSTANT * (times[i] - times[i - 1])
     }
 
-    /// How close to sample `i` a step is not cut there, s: as long as its kink makes no difference, or it is met but for
-    /// rounding. Where the ground jumps the latter alone counts.
+    /// The distance from sample `i` within which a step that ends there is not cut, s: the kink makes no difference, or
+    /// rounding alone misses the sample. Only rounding counts if the ground acceleration jumps.
     fn uncut(&self, i: usize, elapsed: Elapsed) -> f64 {
-        let samples = self.record.times().len();
+        let times = self.record.times();
         let beyond = |end: usize| if self.is_moved(end) { 0.0 } else { f64::INFINITY };
-        let before = if i == 0 { beyond(0) } else { self.time(i) - self.time(i - 1) };
-        let after = if i + 1 == samples { beyond(i) } else { self.time(i + 1) - self.time(i) };
+        let before = if i == 0 { beyond(0) } else { times[i] - times[i - 1] };
+        let after = if i + 1 == times.len() { beyond(i) } else { times[i + 1] - times[i] };
         (SAME_INSTANT * before.min(after)).max(self.rounding(i, elapsed))
     }
 
-    /// By how much steps may miss sample `i` for rounding alone, s.
+    /// The time by which rounding alone may miss sample `i`, s.
     fn rounding(&self, i: usize, elapsed: Elapsed) -> f64 {
-        let times = [elapsed.sum, self.placement.start, self.time(i), self.time(0)];
+        let times = [elapsed.sum, self.start, self.record.times()[i], self.record.start()];
         let most = times.into_iter().fold(0.0, |most: f64, time| most.max(time.abs()));
         (ROUNDING * most).min(self.same_instant(i))
     }
 
-    /// How many samples have come, with those that are no farther ahead than `near`, s, of each.
+    /// The number of samples that have come at `elapsed`. A sample that is no farther ahead than `near` (s) has come.
     fn reached(&self, elapsed: Elapsed, near: impl Fn(usize) -> f64) -> usize {
-        let times = self.record.times();
-        let time = (elapsed.sum - self.placement.start + elapsed.rounding) + self.time(0);
-        let reached = times.partition_point(|of_sample| of_sample * self.placement.time_scale <= time);
+        let (times, time) = (self.record.times(), self.time(elapsed));
+        let is_so = |reached: usize| {
+            (reached == 0 || times[reached - 1] <= time) && times.get(reached).is_none_or(|next| *next > time)
+        };
+        let last = (elapsed.reached as usize).min(times.len());
+        let known = [last, (last + 1).min(times.len())].into_iter().find(|reached| is_so(*reached));
+        let reached = known.unwrap_or_else(|| times.partition_point(|of_sample| *of_sample <= time));
         let is_next_here = reached < times.len() && self.ahead(reached, elapsed) <= near(reached);
         reached + usize::from(is_next_here)
     }
@@ -270,16 +234,17 @@ impl GroundMotion<'_> {
     /// The ground accelerations from the last of `reached` samples to the next.
     #[inline(always)]
     pub(super) fn ramp(&self, reached: usize) -> LinearLoad {
-        if reached == 0 || reached >= self.record.times().len() {
+        let (times, a_g) = (self.record.times(), self.record.acceleration());
+        if reached == 0 || reached >= times.len() {
             return LinearLoad::default();
         }
         let last = reached - 1;
-        let step = self.time(reached) - self.time(last);
-        let ground: LinearLoad = Ramp::between(self.acceleration(last), self.acceleration(reached), step).into();
-        if self.record.vertical().is_none() {
-            return ground;
+        let step = times[reached] - times[last];
+        let ground: LinearLoad = Ramp::between(a_g[last], a_g[reached], step).into();
+        match self.record.vertical() {
+            Some(a_v) => ground.and_upwards(Ramp::between(a_v[last], a_v[reached], step)),
+            None => ground,
         }
-        ground.and_upwards(Ramp::between(self.vertical(last), self.vertical(reached), step))
     }
 
     /// The ground accelerations from the last of `reached` samples to the next, as they are given from `elapsed` on.
@@ -293,7 +258,69 @@ impl GroundMotion<'_> {
 
 impl<'a> From<&'a Record> for GroundMotion<'a> {
     fn from(record: &'a Record) -> GroundMotion<'a> {
-        GroundMotion { record, unit: 1.0, vertical_unit: 1.0, placement: Placement::default() }
+        GroundMotion { record, start: 0.0 }
+    }
+}
+
+/// The segments of an interval, one after the other ([`GroundMotion::segments`]).
+#[derive(Clone, Debug)]
+pub struct Segments<'a> {
+    motion: GroundMotion<'a>,
+    /// Start of the interval.
+    elapsed: Elapsed,
+    /// Duration of the interval, s.
+    interval: f64,
+    /// Ground accelerations at the start of the interval.
+    first: LinearLoad,
+    /// Latest known end of a segment, s after the start of the interval.
+    since: f64,
+    /// The sample that ends the next segment.
+    next: usize,
+    /// The last sample within the interval, once a segment has ended before the end of the interval.
+    last: usize,
+}
+
+impl Iterator for Segments<'_> {
+    type Item = Segment;
+
+    #[inline(always)] // for each sample of a run
+    fn next(&mut self) -> Option<Segment> {
+        let &mut Segments { motion, elapsed, next, last, .. } = self;
+        if next >= last {
+            return self.first_or_last();
+        }
+        self.next = next + 1;
+        let times = motion.record.times();
+        let (since, duration) = (motion.ahead(next - 1, elapsed), times[next] - times[next - 1]);
+        Some(Segment { since, duration, until: times[next], ground: motion.ramp(next) })
+    }
+}
+
+impl Segments<'_> {
+    /// The first segment of the interval, or a segment after which no whole one comes.
+    #[cold]
+    fn first_or_last(&mut self) -> Option<Segment> {
+        let &mut Segments { motion, elapsed, interval, next, .. } = self;
+        let times = motion.record.times();
+        let is_first = self.since == 0.0;
+        let since = if is_first { 0.0 } else { self.since.max(motion.ahead(next - 1, elapsed)) };
+        if since >= interval || interval.is_nan() {
+            return None;
+        }
+        let ground = if is_first { self.first } else { motion.ramp(next) };
+        let end = motion.ahead(next, elapsed);
+        let is_close = || end >= interval - motion.same_instant(next) && end >= interval - motion.uncut(next, elapsed);
+        if end > interval || end < interval && is_close() {
+            self.since = interval;
+            let until = motion.time(elapsed) + interval;
+            return Some(Segment { since, duration: interval - since, until, ground });
+        }
+        if end < interval && is_first {
+            self.last = motion.reached(elapsed.and(interval), |_| 0.0).saturating_sub(1);
+        }
+        (self.since, self.next) = (end, next + 1);
+        let duration = if is_first { end } else { times[next] - times[next - 1] };
+        Some(Segment { since, duration, until: times[next], ground })
     }
 }
 
@@ -319,55 +346,48 @@ mod tests {
 
     #[test]
     fn an_interval_is_cut_at_the_samples() {
-        let record = record(&[1.0, 1.5, 2.5], &[2.0, 4.0, -4.0]);
-        let stretches = |placement, from: f64, interval| {
-            let ground = GroundMotion { placement, unit: 10.0, ..GroundMotion::from(&record) };
-            ground.stretches(after([from]), interval).collect::<Vec<_>>()
+        let record = record(&[1.0, 1.5, 2.5], &[20.0, 40.0, -40.0]);
+        let segments = |start: f64, from: f64, interval| {
+            let segments = GroundMotion { record: &record, start }.segments(after([from]), interval);
+            segments.map(|of| (of.since, of.duration, of.until, of.ground)).collect::<Vec<_>>()
         };
-        let stretch = |start, duration, value, slope| {
-            let ground = Ramp { value, slope }.into();
-            Stretch { start, duration, ground }
-        };
-        let as_it_is = Placement::default();
-        let all = [stretch(0.0, 0.5, 20.0, 40.0), stretch(0.5, 1.0, 40.0, -80.0), stretch(1.5, 0.5, 0.0, 0.0)];
-        assert_eq!(stretches(as_it_is, 0.0, 2.0), all);
-        assert_eq!(stretches(as_it_is, 0.0, 1.5), all[..2]);
-        assert_eq!(stretches(as_it_is, 0.25, 0.125), [stretch(0.0, 0.125, 30.0, 40.0)]);
-        assert_eq!(stretches(as_it_is, 0.25, 0.5), [stretch(0.0, 0.25, 30.0, 40.0), stretch(0.25, 0.25, 40.0, -80.0)]);
-        assert_eq!(stretches(as_it_is, 7.0, 1.0), [stretch(0.0, 1.0, 0.0, 0.0)]);
-        let late = Placement { scale: -0.5, time_scale: 2.0, start: 3.0 };
-        assert_eq!(
-            stretches(late, 1.0, 4.0),
-            [stretch(0.0, 2.0, 0.0, 0.0), stretch(2.0, 1.0, -10.0, -10.0), stretch(3.0, 1.0, -20.0, 20.0)]
-        );
-        let early = Placement { start: -1.0, ..as_it_is };
-        assert_eq!(stretches(early, 0.0, 0.25), [stretch(0.0, 0.25, 0.0, -80.0)]);
+        let ramp = |value, slope| -> LinearLoad { Ramp { value, slope }.into() };
+        let (first, second, rest) = (ramp(20.0, 40.0), ramp(40.0, -80.0), ramp(0.0, 0.0));
+        let all = [(0.0, 0.5, 1.5, first), (0.5, 1.0, 2.5, second), (1.5, 0.5, 3.0, rest)];
+        assert_eq!(segments(0.0, 0.0, 2.0), all);
+        assert_eq!(segments(0.0, 0.0, 1.5), all[..2]);
+        let beside = 0.5 + 1e-10; // a sliver is not cut off
+        assert_eq!(segments(0.0, 0.0, beside), [(0.0, beside, 1.0 + beside, first)]);
+        assert_eq!(segments(0.0, 0.25, 0.125), [(0.0, 0.125, 1.375, ramp(30.0, 40.0))]);
+        let cut = [(0.0, 0.25, 1.5, ramp(30.0, 40.0)), (0.25, 0.25, 1.75, second)];
+        assert_eq!(segments(0.0, 0.25, 0.5), cut);
+        assert_eq!(segments(0.0, 7.0, 1.0), [(0.0, 1.0, 9.0, rest)]);
+        assert_eq!(segments(3.0, 1.0, 2.25), [(0.0, 2.0, 1.0, rest), (2.0, 0.25, 1.25, first)]);
+        assert_eq!(segments(-1.0, 0.0, 0.25), [(0.0, 0.25, 2.25, ramp(0.0, -80.0))]);
+        assert_eq!((segments(0.0, 0.0, f64::NAN), segments(0.0, 0.0, 0.0)), (vec![], vec![]));
     }
 
     #[test]
-    fn samples_that_scaling_makes_one_are_passed() {
-        let record = record(&[0.0, 5e-324, 1e-323, 1.0], &[1.0, 2.0, 3.0, 4.0]);
-        let placement = Placement { time_scale: 0.25, ..Placement::default() };
-        let ground = GroundMotion { placement, ..GroundMotion::from(&record) };
-        let stretches: Vec<_> = ground.stretches(Elapsed::default(), 1.0).collect();
-        let ground = Ramp { value: 3.0, slope: 4.0 }.into();
-        let rest = Stretch { start: 0.25, duration: 0.75, ground: LinearLoad::default() };
-        assert_eq!(stretches, [Stretch { start: 0.0, duration: 0.25, ground }, rest]);
+    fn samples_at_one_instant_of_a_late_clock_are_passed() {
+        let record = record(&[0.0, 1e-8, 2e-8, 1.0], &[1.0, 2.0, 3.0, 4.0]);
+        let ground = GroundMotion { record: &record, start: 1e9 };
+        let segments: Vec<_> = ground.segments(after([1e9]), 2.0).collect();
+        let durations = segments.iter().map(|segment| segment.duration).collect::<Vec<_>>();
+        assert_eq!(durations, [1.0, 1.0]);
     }
 
-    /// A host's steps add up to the record's times but for rounding: each is then one stretch, whatever the start.
+    /// The steps of a host add up to the times of the record up to rounding. Each step is one segment, whatever the start.
     #[test]
     fn steps_of_the_records_own_are_not_cut() {
         let times: Vec<_> = (0..5000).map(|i| f64::from(i) * 0.01).collect();
         let record = record(&times, &times);
         for start in [0.0, 0.03, 1234.56] {
-            let ground =
-                GroundMotion { placement: Placement { start, ..Placement::default() }, ..GroundMotion::from(&record) };
+            let ground = GroundMotion { record: &record, start };
             let mut elapsed = Elapsed::default().and(start);
             for i in 0..4999 {
-                let stretches: Vec<_> = ground.stretches(elapsed, 0.01).collect();
-                let [Stretch { start: 0.0, duration: 0.01, ground: here }] = stretches[..] else {
-                    panic!("{i}: {stretches:?}")
+                let segments: Vec<_> = ground.segments(elapsed, 0.01).collect();
+                let [Segment { since: 0.0, duration: 0.01, ground: here, .. }] = segments[..] else {
+                    panic!("{i}: {segments:?}")
                 };
                 assert_eq!(here, ground.ramp(i + 1), "sample {i} from {start} s");
                 elapsed = elapsed.and(0.01);
@@ -376,8 +396,8 @@ mod tests {
         }
     }
 
-    /// Steps that end a little before a sample, or after it, move nothing: neither a kink, nor a jump, nor what is as steep as a
-    /// jump beside the time before it. The motion is that of steps that end at the samples, at the same instant.
+    /// Steps that end a little before or after a sample shift nothing: neither a kink, nor a jump, nor a slope as steep as a jump.
+    /// The motion is the same as with steps that end at the samples.
     #[test]
     fn steps_that_miss_the_samples_by_little_shift_nothing() {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
@@ -393,8 +413,7 @@ mod tests {
                 let mut elapsed = Elapsed::default();
                 let first = record.times()[1] + miss;
                 for step in std::iter::once(first).chain((1..210).map(|_| 0.01)).chain([0.01 - miss]) {
-                    ground.advance(&mut engine, elapsed, step, LinearLoad::default(), &mut ()).unwrap();
-                    elapsed = elapsed.and(step);
+                    ground.advance(&mut engine, &mut elapsed, step, LinearLoad::default(), &mut ()).unwrap();
                 }
                 engine.motion().state
             };
@@ -407,7 +426,7 @@ mod tests {
         }
     }
 
-    /// The bound on the work of a step holds for all samples within it, and a step that is refused changes nothing.
+    /// The bound on the work of a step holds for all samples within the step, and a refused step changes nothing.
     #[test]
     fn one_bound_holds_for_all_samples() {
         let samples = MAX_STEPS_PER_ADVANCE as usize + 2;
@@ -418,11 +437,11 @@ mod tests {
         let mut engine = Engine::new(structure, State::default(), 5.0, 1e-9).unwrap();
         let before = *engine.motion();
         let mut advance = |interval| {
-            let done = ground.advance(&mut engine, Elapsed::default(), interval, LinearLoad::default(), &mut ());
+            let done = ground.advance(&mut engine, &mut Elapsed::default(), interval, LinearLoad::default(), &mut ());
             (done, *engine.motion())
         };
-        let (refused, motion) = advance(ground.duration());
-        let until = 5.0 + ground.duration();
+        let (refused, motion) = advance(record.end());
+        let until = 5.0 + record.end();
         assert!(matches!(refused, Err(AdvanceError::TooLong { until: told, .. }) if told == until), "{refused:?}");
         assert_eq!(motion, before);
         for none in [0.0, -1.0, f64::NAN, f64::INFINITY] {

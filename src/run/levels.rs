@@ -6,7 +6,7 @@ use super::peaks::Peaks;
 use super::{Course, Ending, Run, RunError};
 use crate::Detail;
 use crate::engine::motion::Work;
-use crate::run::record::Segment;
+use crate::run::ground_motion::Segment;
 
 /// Tolerance of the run that all others are measured by.
 pub const REFERENCE_TOLERANCE: f64 = 1e-12;
@@ -95,8 +95,8 @@ pub struct Comparison {
     pub reference: Response,
     /// In the order of [`SIMPLEST_FIRST`], each to the tolerance of the run.
     pub verdicts: Vec<Verdict>,
-    /// The level `auto` on ground that moves horizontally alone, if the run's moves vertically, too.
-    pub without_vertical: Option<Verdict>,
+    /// The level `auto` without the vertical ground acceleration, if the run has one.
+    pub without_vertical: Option<Result<Verdict, RunError>>,
     /// Levels that cannot do the run, and why.
     pub refused: Vec<(Detail, RunError)>,
 }
@@ -109,7 +109,7 @@ pub fn compare(run: &Run) -> Result<Comparison, RunError> {
     let level_ground = run.ground.clone().without_vertical();
     let exact = Run { detail: Detail::Nonlinear, tolerance: REFERENCE_TOLERANCE, ..run.clone() };
     let mut reference = start(&exact, &mut exact_peaks)?;
-    let (mut trials, mut refused) = (Vec::new(), Vec::new());
+    let (mut trials, mut refused, mut without_vertical) = (Vec::new(), Vec::new(), None);
     for (detail, peaks) in SIMPLEST_FIRST.into_iter().zip(&mut peaks) {
         match start(&Run { detail, ..run.clone() }, peaks) {
             Ok(trial) => trials.push(trial),
@@ -123,8 +123,13 @@ pub fn compare(run: &Run) -> Result<Comparison, RunError> {
     while reference.ending.is_none() || trials.iter().any(|trial| trial.ending.is_none()) {
         reference.go_on()?;
         trials.retain_mut(|trial| {
-            let went_on = trial.go_on();
-            went_on.map_err(|error| refused.push((trial.run.detail, error))).is_ok()
+            let Err(error) = trial.go_on() else { return true };
+            if trial.is_level {
+                without_vertical = Some(Err(error));
+            } else {
+                refused.push((trial.run.detail, error));
+            }
+            false
         });
         trials.iter_mut().for_each(|trial| trial.compare(&reference));
         let known = reference.history.stretches.len();
@@ -133,13 +138,13 @@ pub fn compare(run: &Run) -> Result<Comparison, RunError> {
         trials.iter_mut().for_each(|trial| trial.compared -= done);
     }
     let (reference, all, _) = reference.response();
-    let (mut verdicts, mut without_vertical) = (Vec::new(), None);
+    let mut verdicts = Vec::new();
     for trial in trials {
         let is_level = trial.is_level;
         let (response, _, distance) = trial.response();
         let verdict = Verdict::new(response, distance, &reference, &all);
         if is_level {
-            without_vertical = Some(verdict);
+            without_vertical = Some(Ok(verdict));
         } else {
             verdicts.push(verdict);
         }
@@ -185,14 +190,14 @@ fn start<'a>(
     })
 }
 
-/// `segment` in equal parts of at most `longest` (s).
+/// `segment` in equal segments of at most `longest` (s).
 fn cut(segment: Segment, longest: f64) -> impl Iterator<Item = Segment> {
-    let Segment { start, end, .. } = segment;
-    let parts = ((end - start) / longest).ceil().max(1.0);
-    let at = move |part: f64| if part == parts { end } else { start + (end - start) * (part / parts) };
-    (0..parts as u64).map(move |part| {
-        let (start, end) = (at(part as f64), at((part + 1) as f64));
-        Segment { start, end, ground: segment.from(start) }
+    let Segment { since, duration, until, ground } = segment;
+    let count = (duration / longest).ceil().max(1.0);
+    let passed = move |i: f64| if i == count { duration } else { duration * (i / count) };
+    (0..count as u64).map(move |i| {
+        let [from, to] = [passed(i as f64), passed((i + 1) as f64)];
+        Segment { since: since + from, duration: to - from, until: until - (duration - to), ground: ground.from(from) }
     })
 }
 
@@ -290,6 +295,7 @@ impl Comparison {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::record::Record;
     use crate::{Parameters, Structure};
 
     fn verdict(detail: Detail, errors: [f64; 6], cost: u64) -> Verdict {
@@ -303,6 +309,22 @@ mod tests {
             work,
         };
         Verdict { response, errors, is_right_about_overturning: Some(true) }
+    }
+
+    /// With the vertical component the structure falls at once. Without it the top mass comes above the pivot of a foundation
+    /// without inertia.
+    #[test]
+    fn a_failure_without_the_vertical_component_is_no_failure_of_the_level() {
+        let structure = Structure::new(Parameters { m0: 0.0, J0: 0.0, f_fc: 0.2, ..Parameters::MCMANUS }).unwrap();
+        let times: Vec<_> = (0..=400).map(|i| f64::from(i) * 0.02).collect();
+        let a_g = times.iter().map(|t| (std::f64::consts::TAU * t / 4.0).sin()).collect();
+        let a_v = times.iter().map(|t| if *t > 0.01 { -15.0 } else { 0.0 }).collect();
+        let upwards = Record::from_samples("", times.clone(), a_v).unwrap();
+        let ground = Record::from_samples("", times, a_g).unwrap().with_vertical(&upwards).unwrap();
+        let comparison = compare(&Run::new(structure, &ground)).unwrap();
+        let refused: Vec<_> = comparison.refused.iter().map(|(detail, _)| *detail).collect();
+        assert_eq!((refused, comparison.reference.ending), (vec![Detail::Modal], Ending::Overturned));
+        assert!(matches!(comparison.without_vertical, Some(Err(RunError::Advance { .. }))));
     }
 
     #[test]

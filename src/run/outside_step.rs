@@ -133,7 +133,7 @@ impl Known {
         };
         let load = LinearLoad { value: self.load, slope };
         match ground {
-            Some(ground) => ground.advance(engine, self.elapsed, interval, load, watch),
+            Some(ground) => ground.advance(engine, &mut self.elapsed.clone(), interval, load, watch),
             None => engine.advance(interval, load, watch),
         }
         .map(|_| ())

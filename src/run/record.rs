@@ -1,6 +1,6 @@
 //! A ground motion record: its samples, between which the ground accelerations are linear.
 
-use crate::{LinearLoad, Ramp};
+use crate::run::ground_motion::{Elapsed, GroundMotion, Segments};
 
 /// Most samples that a record has.
 pub const MAX_SAMPLES: usize = 10_000_000;
@@ -169,15 +169,19 @@ impl Record {
         self.times[self.times.len() - 1]
     }
 
-    /// Peak ground acceleration, m/s²: exact, for a straight line is largest at one of its ends.
+    /// Peak ground acceleration, m/s²; exact, because a straight line is largest at one of its ends.
     pub fn pga(&self) -> f64 {
         self.acceleration.iter().fold(0.0, |peak, a_g| peak.max(a_g.abs()))
     }
 
-    /// The ground motion from its first sample until `end` (s); after its last sample the ground is at rest.
-    pub fn segments_until(&self, end: f64) -> Segments<'_> {
-        let (time, a_g) = (self.times[0], self.acceleration[0]);
-        Segments { record: self, reached: 1, time, a_g, end: end.max(time) } // where `end` is NaN, `time`
+    /// Largest magnitude of the vertical ground acceleration, m/s²; 0 without a vertical component.
+    pub fn vertical_peak(&self) -> f64 {
+        self.vertical.iter().flatten().fold(0.0, |peak, a_v| peak.max(a_v.abs()))
+    }
+
+    /// The ground motion segment by segment, over `duration` (s) from the first sample on. After the last sample the ground rests.
+    pub fn segments(&self, duration: f64) -> Segments<'_> {
+        GroundMotion::from(self).segments(Elapsed::default(), duration)
     }
 
     /// Velocity (m/s) and displacement (m) of the ground at each sample, at rest before the first one: exact, as the
@@ -192,64 +196,6 @@ impl Record {
         };
         [[0.0; 2]].into_iter().chain(steps.scan([0.0; 2], after))
     }
-}
-
-/// The part of a ground motion between two samples.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Segment {
-    /// First instant, s.
-    pub start: f64,
-    /// Last instant, s.
-    pub end: f64,
-    /// Ground accelerations from `start` on.
-    pub ground: LinearLoad,
-}
-
-impl Segment {
-    /// The ground accelerations as they are given from `time` (s) on.
-    pub fn from(&self, time: f64) -> LinearLoad {
-        self.ground.from(time - self.start)
-    }
-}
-
-/// A ground motion segment by segment ([`Record::segments_until`]).
-#[derive(Clone, Debug)]
-pub struct Segments<'a> {
-    record: &'a Record,
-    /// Samples that have come, and time (s) and acceleration (m/s²) of the last of them.
-    reached: usize,
-    time: f64,
-    a_g: f64,
-    /// Where they end, s.
-    end: f64,
-}
-
-impl Iterator for Segments<'_> {
-    type Item = Segment;
-
-    #[inline(always)] // for each sample of a run
-    fn next(&mut self) -> Option<Segment> {
-        let Segments { record, reached, time: start, a_g: value, end } = *self;
-        if start >= end {
-            return None;
-        }
-        let (Some(&time), Some(&a_g)) = (record.times.get(reached), record.acceleration.get(reached)) else {
-            self.time = end;
-            return Some(Segment { start, end, ground: LinearLoad::default() });
-        };
-        (self.reached, self.time, self.a_g) = (reached + 1, time, a_g);
-        let mut ground = Ramp::between(value, a_g, time - start).into();
-        if let Some(vertical) = &record.vertical {
-            ground = and_upwards(ground, &vertical[reached - 1..=reached], time - start);
-        }
-        Some(Segment { start, end: time.min(end), ground })
-    }
-}
-
-/// `ground` whose vertical acceleration goes from the first of these to the second within `duration` (s).
-#[cold]
-fn and_upwards(ground: LinearLoad, vertical: &[f64], duration: f64) -> LinearLoad {
-    ground.and_upwards(Ramp::between(vertical[0], vertical[1], duration))
 }
 
 /// These samples with those that bring them to rest until `end` (s), where they end before.
@@ -359,20 +305,5 @@ mod tests {
             assert!(refused.starts_with(&expected), "{refused}");
         }
         assert_eq!(record().scaled(2.0, -1.0).unwrap().acceleration(), [-2.0, -4.0, 0.0]);
-    }
-
-    #[test]
-    fn segments_are_linear_between_samples_and_at_rest_after_them() {
-        let record =
-            Record::from_samples("", vec![1.0, 2.0, 4.0], vec![2.0, 4.0, 0.0]).unwrap().scaled(0.5, 10.0).unwrap();
-        assert_eq!(record.times(), [0.5, 1.0, 2.0]);
-        let segment = |start, end, value, slope| Segment { start, end, ground: Ramp { value, slope }.into() };
-        let first = segment(0.5, 1.0, 20.0, 40.0);
-        let until = |end| record.segments_until(end).collect::<Vec<_>>();
-        assert_eq!((until(0.5), until(f64::NAN)), (vec![], vec![]));
-        assert_eq!(until(1.0), [first]);
-        assert_eq!(until(1.5), [first, segment(1.0, 1.5, 40.0, -40.0)]);
-        assert_eq!(until(3.0), [first, segment(1.0, 2.0, 40.0, -40.0), segment(2.0, 3.0, 0.0, 0.0)]);
-        assert_eq!(first.from(0.75), Ramp { value: 30.0, slope: 40.0 }.into());
     }
 }

@@ -35,7 +35,7 @@ use crate::series::taylor::evaluate;
 use crate::series::terms::Terms;
 use crate::{Detail, Impulse, Motion, Parameters, Phase, Ramp, Reactions, Side, Structure, Transition, TransitionKind};
 pub use assumptions::{
-    ASSUMPTIONS, Assumption, EDGE_LOAD, ENERGY, FRICTION, IMPACT_FRICTION, IMPACT_TENSION, TENSION, WEIGHT,
+    ASSUMPTIONS, Assumption, EDGE_LOAD, ENERGY, FRICTION, IMPACT_FRICTION, IMPACT_TENSION, Passing, TENSION, WEIGHT,
 };
 use assumptions::{
     Combination, EdgeLoad, EnergyGain, Friction, Impact, ImpactFriction, ImpactTension, OfImpacts, OfReactions, Scale,
@@ -108,9 +108,9 @@ impl Limits {
 /// The findings about one of [`ASSUMPTIONS`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Worst {
-    /// The worst value: the largest, or the least of an assumption that [`is_least`](Assumption::is_least).
+    /// The worst value: the largest or the least, as [`Passing`] tells. [`Assumption::start`] if no value has been seen.
     pub value: f64,
-    /// Its first instant, s.
+    /// First instant of the worst value, s.
     pub time: f64,
     /// When the limit was passed first, s.
     pub first_beyond: Option<f64>,
@@ -123,8 +123,6 @@ pub struct Worst {
 pub struct Found {
     /// In the order of [`ASSUMPTIONS`].
     pub worst: [Worst; ASSUMPTIONS.len()],
-    /// Whether the base has been down, for `tension_max`.
-    has_stood: bool,
     /// Impacts that raise the energy, however little.
     pub gains: u64,
     /// Impacts and landings.
@@ -142,18 +140,16 @@ impl Found {
     pub fn since(time: f64) -> Found {
         let none = |value| Worst { value, time, first_beyond: None, beyond: 0.0 };
         let worst = ASSUMPTIONS.map(|assumption| none(assumption.start));
-        Found { worst, has_stood: false, gains: 0, impacts: 0, settlings: 0, held: 0.0, duration: 0.0 }
+        Found { worst, gains: 0, impacts: 0, settlings: 0, held: 0.0, duration: 0.0 }
     }
 
     /// Sees `value` of assumption `which` at `time` (s). The first of several values that differ by rounding counts.
     fn see(&mut self, which: usize, value: f64, time: f64) {
-        // a base pressed down by more than its weight has less tension than that of nothing seen
-        let is_first = which == TENSION && !std::mem::replace(&mut self.has_stood, true);
         let worst = &mut self.worst[which];
         let is_same =
             value == worst.value || (value - worst.value).abs() <= MARGIN * value.abs().min(worst.value.abs());
-        let is_worse = is_first || if ASSUMPTIONS[which].is_least { value < worst.value } else { value > worst.value };
-        if is_same && !is_first {
+        let is_worse = ASSUMPTIONS[which].passing.is_worse(value, worst.value);
+        if is_same {
             worst.time = worst.time.min(time);
         } else if is_worse {
             worst.time = time;
@@ -175,7 +171,7 @@ impl Found {
         let ends = [0.0, duration].map(|tau| (time + tau, 1.0 + ramp.at(tau) / g));
         ends.iter().for_each(|(time, value)| self.see(WEIGHT, *value, *time));
         let root = (-(g + ramp.value) / ramp.slope).clamp(0.0, duration);
-        let (from, to) = match ends.map(|(_, value)| value <= 0.0) {
+        let (from, to) = match ends.map(|(_, value)| ASSUMPTIONS[WEIGHT].passing.passes(value, 0.0)) {
             [false, false] => return,
             [true, true] => (0.0, duration),
             [true, false] => (0.0, root),
@@ -186,16 +182,10 @@ impl Found {
 
     /// The warning about assumption `which` of [`ASSUMPTIONS`] once its limit has been passed: instant, value, meaning.
     pub fn warning(&self, which: usize, limits: &Limits) -> Option<String> {
-        let (Assumption { name, meaning, limit, is_least, .. }, Worst { value, time, first_beyond, .. }) =
+        let (Assumption { name, meaning, limit, passing, .. }, Worst { value, time, first_beyond, .. }) =
             (&ASSUMPTIONS[which], &self.worst[which]);
-        let side = match (which, is_least) {
-            (WEIGHT, _) => "not above",
-            (_, true) => "below",
-            (_, false) => "above",
-        };
-        let first = (*first_beyond)?;
-        let limit = limit(limits);
-        Some(format!("t = {first} s: {name} is {side} {limit}: {meaning}; so far {name} = {value} at t = {time} s"))
+        let (first, limit) = ((*first_beyond)?, limit(limits));
+        Some(format!("t = {first} s: {name} is {passing} {limit}: {meaning}; so far {name} = {value} at t = {time} s"))
     }
 }
 
@@ -223,8 +213,15 @@ impl Validity {
         Scale { W: (m + m0) * g, B }
     }
 
-    /// Sees the `reactions` in `phase` at `time` (s), which need not be in a piece.
-    pub fn see_instant(&mut self, time: f64, phase: Phase, reactions: &Reactions) {
+    /// Sees an instant, which need not be in a piece.
+    pub fn see_instant(&mut self, at: &Sample) {
+        let &Sample { motion: Motion { time, phase, .. }, load, .. } = at;
+        self.found.see(WEIGHT, 1.0 + load.a_v / self.structure.parameters().g, time);
+        self.see_reactions(time, phase, &at.edges());
+    }
+
+    /// Sees the `reactions` in `phase` at `time` (s).
+    fn see_reactions(&mut self, time: f64, phase: Phase, reactions: &Reactions) {
         self.see::<Tension>(time, phase, reactions);
         self.see::<EdgeLoad>(time, phase, reactions);
         self.see::<Friction>(time, phase, reactions);
@@ -246,13 +243,12 @@ impl Validity {
     }
 
     fn may_break<A: OfReactions>(&self, phase: Phase, reactions: &Reactions<Extent>) -> bool {
-        let Assumption { limit, is_least, .. } = &ASSUMPTIONS[A::PLACE];
+        let Assumption { limit, passing, .. } = &ASSUMPTIONS[A::PLACE];
         let (worst, limit) = (self.found.worst[A::PLACE].value, limit(&self.limits));
-        let first = if *is_least { worst.max(limit) } else { worst.min(limit) };
+        let first = if passing.is_worse(worst, limit) { limit } else { worst };
         let slack = MARGIN * self.scale().W;
         let is_closed = |combination: &Combination| combination.extent(reactions).largest < slack;
-        let is_unseen = A::PLACE == TENSION && !self.found.has_stood;
-        A::holds_in(phase) && (is_unseen || !A::worse(self.scale(), first).iter().flatten().all(is_closed))
+        A::holds_in(phase) && !A::worse(self.scale(), first).iter().flatten().all(is_closed)
     }
 
     /// Bounds of the reactions over a leap in full contact: a quantity whose second derivative is at most M over the time h
@@ -295,8 +291,8 @@ impl Validity {
         if let Some((start, _)) = stretch.above([Some(Combination([0.0, -1.0, 0.0, 0.0])), None]).first() {
             self.found.see(FRICTION, f64::INFINITY, stretch.of.time(*start));
         }
-        self.see_instant(stretch.of.time(0.0), phase, &stretch.reactions(0.0));
-        self.see_instant(stretch.of.time(arc.reach), phase, &last);
+        self.see_reactions(stretch.of.time(0.0), phase, &stretch.reactions(0.0));
+        self.see_reactions(stretch.of.time(arc.reach), phase, &last);
         self.look_for::<Tension>(phase, &stretch);
         self.look_for::<EdgeLoad>(phase, &stretch);
         self.look_for::<Friction>(phase, &stretch);
@@ -352,7 +348,8 @@ impl Validity {
     fn see_at<A: OfImpacts>(&mut self, time: f64, impact: &Impact) {
         let value = A::value(self.scale(), impact);
         self.found.see(A::PLACE, value, time);
-        if value > (ASSUMPTIONS[A::PLACE].limit)(&self.limits) {
+        let Assumption { limit, passing, .. } = &ASSUMPTIONS[A::PLACE];
+        if passing.passes(value, limit(&self.limits)) {
             self.found.see_beyond(A::PLACE, time, 1.0);
         }
     }
@@ -367,6 +364,8 @@ impl Watch for Validity {
         if piece.load.is_vertical() {
             let g = self.structure.parameters().g;
             self.found.see_vertical(g, piece.load.upwards(), piece.before.time, piece.duration);
+        } else {
+            self.found.see(WEIGHT, 1.0, piece.before.time);
         }
         let (phase, is_restrained) = (piece.before.phase, piece.model.level.ties().is_some());
         // bounds over a whole leap are known in full contact under gravity only

@@ -5,6 +5,40 @@ use crate::numbers::Number;
 use crate::run::reaction_series::Extent;
 use crate::series::terms::Terms;
 use crate::{Impulse, Phase, Reactions};
+use std::fmt;
+
+/// Values that pass a limit: those on this side of the limit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Passing {
+    /// Larger values; the worst value is the largest.
+    Above,
+    /// Smaller values; the worst value is the least.
+    Below,
+    /// The limit itself and smaller values; the worst value is the least.
+    AtOrBelow,
+}
+
+impl Passing {
+    /// Whether `value` is worse than another value `than`.
+    pub(super) fn is_worse(self, value: f64, than: f64) -> bool {
+        if self == Passing::Above { value > than } else { value < than }
+    }
+
+    /// Whether `value` passes `limit`.
+    pub(super) fn passes(self, value: f64, limit: f64) -> bool {
+        self.is_worse(value, limit) || self == Passing::AtOrBelow && value == limit
+    }
+}
+
+impl fmt::Display for Passing {
+    fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
+        out.write_str(match self {
+            Passing::Above => "above",
+            Passing::Below => "below",
+            Passing::AtOrBelow => "at or below",
+        })
+    }
+}
 
 /// A row of the table: one of the assumptions of the model.
 #[derive(Debug)]
@@ -21,11 +55,11 @@ pub struct Assumption {
     pub meaning: &'static str,
     /// Whether the assumption is about impacts only.
     pub is_of_impacts: bool,
-    /// Whether the worst value is the least.
-    pub is_least: bool,
+    /// Values that pass the limit.
+    pub passing: Passing,
     /// The limit among others.
     pub limit: fn(&Limits) -> f64,
-    /// The value before anything has been seen.
+    /// The value before anything has been seen: no value is better.
     pub start: f64,
 }
 
@@ -45,22 +79,17 @@ pub const ENERGY: usize = 5;
 pub const WEIGHT: usize = 6;
 
 macro_rules! assumption {
-    ($name:literal $description:literal, $meaning:literal, $limit:ident, $start:expr, $($special:ident)?) => {
+    ($name:literal $description:literal, $meaning:literal, $passing:ident $limit:expr, $start:expr, $impacts:expr) => {
         Assumption {
+            name: $name,
             time_name: concat!("t_", $name),
+            description: $description,
             time_description: concat!("first instant of ", $name),
-            $($special: true,)?
-            ..Assumption {
-                name: $name,
-                time_name: "",
-                description: $description,
-                time_description: "",
-                meaning: $meaning,
-                is_of_impacts: false,
-                is_least: false,
-                limit: |limits| limits.$limit,
-                start: $start,
-            }
+            meaning: $meaning,
+            is_of_impacts: $impacts,
+            passing: Passing::$passing,
+            limit: $limit,
+            start: $start,
         }
     };
 }
@@ -68,43 +97,40 @@ macro_rules! assumption {
 /// All assumptions, in the order of [`Found::worst`](super::Found::worst).
 pub const ASSUMPTIONS: [Assumption; 7] = [
     assumption!(
-        "tension_max" "largest (|R_m|/B - R_v)/W in full contact, W = (m + m0) g: above 0 tension holds the base down",
+        "tension_max" "largest (|R_m|/B - R_v)/W in full contact, W = (m + m0) g: above 0 tension holds the base down; -inf before full contact",
         "tension holds the base down in full contact; in truth it lifts off earlier than at u_cr",
-        tension, -1.0,
+        Above |limits| limits.tension, f64::NEG_INFINITY, false
     ),
     assumption!(
         "R_v_min" "least R_v/W: below 0 a pull holds the edge of the base down",
         "a pull holds down the edge that the structure rocks about; in truth it jumps",
-        edge_load, f64::INFINITY, is_least
+        Below |limits| limits.edge_load, f64::INFINITY, false
     ),
     assumption!(
         "mu_required" "largest |R_h|/R_v, the friction that the ground must have; infinite once R_v is 0 or less",
         "it takes that much friction to keep the base where it is; in truth it may slide",
-        friction, 0.0,
+        Above |limits| limits.friction, 0.0, false
     ),
     assumption!(
         "mu_impact" "largest |I_h|/I_v of an impact, friction likewise; infinite where I_v is not above 0",
         "it takes that much friction to keep the base where it is at an impact; in truth it may slide",
-        friction, 0.0, is_of_impacts
+        Above |limits| limits.friction, 0.0, true
     ),
     assumption!(
         "tension_impact" "largest (|I_m|/B - I_v)/I_v of an impact: above 0 one of the edges of the base pulls",
         "one of the edges pulls at an impact; in truth r is larger, or the other edge lifts off",
-        tension, -1.0, is_of_impacts
+        Above |limits| limits.tension, -1.0, true
     ),
     assumption!(
         "energy_gain_max" "largest gain of an impact over the kinetic energy before it; 0 while none gains",
         "an impact raises the energy; in truth it cannot",
-        energy_gain, 0.0, is_of_impacts
+        Above |limits| limits.energy_gain, 0.0, true
     ),
-    Assumption {
-        limit: |_| 0.0,
-        ..assumption!(
-            "weight_min" "least (g + a_v)/g: at 0 or below nothing holds the base down; 1 without vertical motion",
-            "nothing holds the base down; in truth it flies",
-            tension, 1.0, is_least
-        )
-    },
+    assumption!(
+        "weight_min" "least (g + a_v)/g: at 0 or below nothing holds the base down; 1 without vertical motion",
+        "nothing holds the base down; in truth it flies",
+        AtOrBelow |_| 0.0, f64::INFINITY, false
+    ),
 ];
 
 /// Weight W = (m + m0) g (N) and half the width B (m) of the structure.
