@@ -426,7 +426,7 @@ fn transit(level: &dyn Level, watched: Option<&Watched>, motion: &mut Motion) ->
 /// The state at the end of `start`, if it is known exactly and no transition can happen until then.
 #[inline(always)]
 fn leap(level: &impl Level, motion: &Motion, start: &Start) -> Option<State> {
-    if motion.held() > 0.0 {
+    if motion.chatter.held > 0.0 {
         return None;
     }
     level.leap(motion.phase, start).filter(State::is_finite)
@@ -573,4 +573,68 @@ fn first(watched: &Watched, step: &mut Step) -> Option<Closed> {
         }
     }
     closed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::series::first_crossing::{self, first_time_all_closed};
+    use crate::{Parameters, TransitionKind};
+    use approx::assert_relative_eq;
+    use phases::{Guard, RESTING, Way};
+    use std::f64::consts::PI;
+
+    /// Amplitude of the vibration, m.
+    const AMPLITUDE: f64 = 1e-3;
+
+    /// A wall at half the amplitude, from which the top mass bounces.
+    struct Wall;
+
+    impl Guard for Wall {
+        fn first(&self, &Step { arc, reach, .. }: &Step) -> (Crossing, Way) {
+            let is_there = first_crossing::Guard::new(arc.used(&arc.u), -1.0, 0.5 * AMPLITUDE);
+            let moves_on = first_crossing::Guard::new(arc.used(&arc.u_dot), -1.0, 0.0);
+            (first_time_all_closed([is_there, moves_on], reach), Way::default())
+        }
+
+        fn apply(&self, _level: &dyn Level, motion: &mut Motion, _way: Way) -> TransitionKind {
+            motion.state.u_dot *= -1.0;
+            TransitionKind::Landing
+        }
+
+        fn stays_open(&self, _now: &Sample, _ahead: f64) -> bool {
+            false
+        }
+
+        fn indicator(&self, _now: &Sample) -> (usize, f64) {
+            (0, 1.0)
+        }
+    }
+
+    /// Vibration without damping between the wall and its far end takes 2/3 of a period.
+    #[test]
+    fn a_new_phase_is_one_more_list_of_guards() {
+        static WALLED: Watched = Watched { guards: &[&Wall], ..RESTING };
+        let structure = Structure::new(Parameters { zeta_fc: 0.0, ..Parameters::EVISON }).unwrap();
+        let released = State { u: -AMPLITUDE, ..State::default() };
+        let mut engine = Engine::with_detail(structure, released, 0.0, 1e-12, Detail::Nonlinear).unwrap();
+        let Engine { level, motion, arc, .. } = &mut engine;
+        let mut bounces = Vec::new();
+        let mut watch = |transition: &Transition| bounces.push(transition.time);
+        let AnyLevel::Nonlinear(of_its_type) = &**level else { panic!("another level") };
+        Loop {
+            any: level,
+            level: of_its_type,
+            phases: |_: &Motion| Some(&WALLED),
+            arc,
+            last_step: u64::MAX,
+            stops: false,
+        }
+        .go(motion, &mut None, 9.0 * PI / structure.omega_fc, LinearLoad::default(), &mut watch)
+        .unwrap();
+        assert_eq!(bounces.len(), 7);
+        for (k, time) in bounces.into_iter().enumerate() {
+            assert_relative_eq!(time * structure.omega_fc, (2 * k + 1) as f64 * 2.0 * PI / 3.0, max_relative = 1e-10);
+        }
+    }
 }

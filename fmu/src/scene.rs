@@ -4,6 +4,7 @@
 use crate::failure::Refusal;
 use crate::ground::{Digest, GroundRecord};
 use crate::setup::Setup;
+use rocking::engine::Settings;
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::fall::FallingPeaks;
 use rocking::run::ground_motion::Elapsed;
@@ -37,10 +38,11 @@ pub struct Outside {
 }
 
 impl Setup {
-    /// The structure at the start time.
-    pub(crate) fn engine(&self) -> Result<Engine, Refusal> {
-        let structure = Structure::new(self.parameters)?;
-        Ok(Engine::with_detail(structure, self.initial, self.start_time, self.tolerance, self.detail)?)
+    /// The structure at the start time, on ground that may move vertically if `vertical`.
+    fn engine(&self, vertical: bool) -> Result<Engine, Refusal> {
+        let &Setup { detail, tolerance, initial, start_time, .. } = self;
+        let settings = Settings { detail, tolerance, vertical, stops: false };
+        Ok(Engine::with(Structure::new(self.parameters)?, initial, start_time, settings)?)
     }
 
     /// Refuses a `record` that cannot act as it is scaled.
@@ -63,14 +65,21 @@ fn may_move_vertically(setup: &Setup, ground: Option<&GroundRecord>) -> bool {
 impl Scene {
     /// At the start that `setup` describes, on ground that follows `ground`.
     pub fn new(setup: &Setup, ground: Option<Arc<GroundRecord>>) -> Result<Scene, Refusal> {
-        let mut engine = setup.engine()?;
-        if may_move_vertically(setup, ground.as_deref()) {
-            engine.admit_vertical(true)?;
-        }
+        let engine = setup.engine(may_move_vertically(setup, ground.as_deref()))?;
         ground.as_deref().map_or(Ok(()), |ground| setup.check_ground(ground))?;
         let peaks = FallingPeaks::since(setup.start_time, engine.structure(), setup.detail);
         let validity = Found::since(setup.start_time);
         Ok(Scene { engine, ground, elapsed: Elapsed::default(), outside: None, peaks, validity })
+    }
+
+    /// Lets the engine do what `change` makes of its settings.
+    pub fn set(&mut self, change: impl FnOnce(&mut Settings)) -> Result<(), Refusal> {
+        let mut settings = self.engine.settings();
+        change(&mut settings);
+        if settings != self.engine.settings() {
+            self.engine = self.engine.remade(settings)?;
+        }
+        Ok(())
     }
 
     /// Whether the ground may move vertically.
@@ -91,7 +100,7 @@ impl Scene {
 
     /// Whether no step has been made, and the first phase lasts: under `load` the structure does not uplift at once.
     fn is_at_start(&self, load: Load) -> bool {
-        self.engine.motion().work.steps == 0 && self.engine.uplift_due(load).is_none()
+        self.engine.motion().work.steps == 0 && !self.engine.is_uplift_due(load)
     }
 
     /// The peaks since the start, of a structure that has overturned those before it fell; before the first step, the

@@ -77,7 +77,9 @@ impl Chatter {
     #[inline]
     pub(crate) fn pass(&mut self, duration: f64) {
         self.age += duration;
-        self.held = (self.held - duration).max(0.0);
+        if self.held > 0.0 {
+            self.held = (self.held - duration).max(0.0);
+        }
     }
 
     /// Holds contact to the end of the period.

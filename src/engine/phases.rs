@@ -96,8 +96,8 @@ static ROCKING: Watched = Watched {
     ..RESTING
 };
 
-/// A phase in which the base does not move.
-const RESTING: Watched = Watched { lasts: None, stays: None, guards: &[], dissipators: |_| None };
+/// A phase in which the base does not move, without guards.
+pub(super) const RESTING: Watched = Watched { lasts: None, stays: None, guards: &[], dissipators: |_| None };
 
 /// The phase of `motion`; none once the structure has overturned.
 #[inline]

@@ -102,8 +102,8 @@ pub(crate) enum AnyLevel {
     Nonlinear(Elastic<NonlinearRocking>),
     Linear(Elastic<LinearRocking>),
     Modal(Elastic<ModalRocking>),
-    Rigid(Rigid),
     FixedBase(FixedBase),
+    Rigid(Rigid),
 }
 
 /// Does the same with a level of every type.
@@ -113,8 +113,8 @@ macro_rules! by_level {
             AnyLevel::Nonlinear($level) => $do,
             AnyLevel::Linear($level) => $do,
             AnyLevel::Modal($level) => $do,
-            AnyLevel::Rigid($level) => $do,
             AnyLevel::FixedBase($level) => $do,
+            AnyLevel::Rigid($level) => $do,
         }
     };
 }

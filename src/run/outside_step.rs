@@ -39,9 +39,11 @@ impl Sample<'_> {
         let mut indicators = [f64::INFINITY; INDICATORS];
         for guard in phases::of(&self.motion).map_or(&[][..], |watched| watched.guards) {
             let (place, value) = guard.indicator(self);
-            indicators[place] = value.min(indicators[place]);
+            if value < indicators[place] || value.is_nan() {
+                indicators[place] = value;
+            }
         }
-        indicators.map(|value| if value < f64::INFINITY { value } else { 1.0 })
+        indicators.map(|value| if value == f64::INFINITY { 1.0 } else { value })
     }
 }
 
