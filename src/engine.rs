@@ -13,23 +13,25 @@
 //! no more of them where full contact has an exact flow.
 
 pub mod motion;
+pub(crate) mod phases;
 pub mod piece;
 pub mod transition;
 pub(crate) mod yielding;
 
-use crate::levels::detail::{AnyLevel, Detail, Model, by_level};
+use crate::levels::detail::{AnyLevel, Detail, by_level};
 use crate::levels::level::Level;
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
-use crate::mechanics::restraint::{Angles, Dissipators, Restraints};
+use crate::mechanics::restraint::{Dissipators, Restraints};
 use crate::mechanics::state::InitialStateError;
-use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
-use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
+use crate::series::first_crossing::Crossing;
+use crate::series::taylor::{Arc, Start};
 use crate::structure::quantity::with_unit;
-use crate::{Outputs, Phase, Side, State, Structure};
-use motion::{Chatter, Event, Motion, Work};
+use crate::{Outputs, Phase, State, Structure};
+use motion::{Chatter, Motion, Work};
+use phases::{Closed, Step, Watched};
 use piece::{Piece, Sample, Watch};
-use std::f64::consts::FRAC_PI_2;
+use transition::Transition;
 
 /// The default relative tolerance of the results.
 pub const DEFAULT_TOLERANCE: f64 = 1e-9;
@@ -65,8 +67,7 @@ pub enum Progress {
     Complete,
     /// To the instant of overturning, which is the motion's time now; it stays there.
     Overturned,
-    /// To the instant at which another transition is due, where it was asked to stop there
-    /// ([`Engine::stop_at_transitions`]).
+    /// To the instant at which another transition is due, if the engine stops there ([`Settings::stops`]).
     Transition,
 }
 
@@ -104,7 +105,7 @@ pub enum AdvanceError {
         /// The interval, s.
         interval: f64,
     },
-    /// The ground moves vertically, which it was not to ([`Engine::admit_vertical`]).
+    /// The ground moves vertically, and the engine was made without ([`Settings::vertical`]).
     #[error("a_v = {} with slope {slope:?} m/s3: this structure was to be shaken horizontally alone", with_unit(*value, "m/s2"))]
     Vertical {
         /// At the start, m/s².
@@ -152,17 +153,41 @@ impl AdvanceError {
     }
 }
 
+/// What an engine is to do.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Settings {
+    /// Level of detail.
+    pub detail: Detail,
+    /// Relative tolerance of the results.
+    pub tolerance: f64,
+    /// Whether the ground may move vertically.
+    pub vertical: bool,
+    /// Whether an advance ends at the first transition except overturning, before the transition: [`Engine::transit`] applies it,
+    /// or the next advance.
+    pub stops: bool,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings { detail: Detail::Auto, tolerance: DEFAULT_TOLERANCE, vertical: false, stops: false }
+    }
+}
+
+impl Settings {
+    /// The level of detail of `structure`.
+    fn level(&self, structure: Structure) -> Result<Box<AnyLevel>, InitialStateError> {
+        check_tolerance(self.tolerance)?;
+        let local_error = (LOCAL_SHARE * self.tolerance).clamp(f64::EPSILON / 2.0, LARGEST_LOCAL_ERROR);
+        self.detail.level(structure, local_error, self.vertical).map(Box::new)
+    }
+}
+
 /// A structure in motion.
 #[derive(Debug)]
 pub struct Engine {
-    model: Box<Model>,
+    level: Box<AnyLevel>,
+    settings: Settings,
     motion: Motion,
-    /// Whether the ground may move vertically.
-    vertical: bool,
-    /// Whether an advance ends where a transition is due.
-    stops: bool,
-    /// An advance over more than this, s, is taken in parts.
-    far: f64,
     /// The step in hand.
     arc: Arc,
 }
@@ -170,11 +195,10 @@ pub struct Engine {
 impl Engine {
     /// Starts at `time` (s) from `initial`, to a relative `tolerance` of the results, at the level of detail `auto`.
     pub fn new(structure: Structure, initial: State, time: f64, tolerance: f64) -> Result<Engine, InitialStateError> {
-        Engine::with_detail(structure, initial, time, tolerance, Detail::Auto)
+        Engine::with(structure, initial, time, Settings { tolerance, ..Settings::default() })
     }
 
-    /// Starts at `time` (s) from `initial`, to a relative `tolerance` of the results, at the level of detail `detail`. The
-    /// dissipators of a structure that starts turned have been moved there slowly from rest; what that took is not counted.
+    /// Starts at `time` (s) from `initial`, to a relative `tolerance` of the results, at the level of detail `detail`.
     pub fn with_detail(
         structure: Structure,
         initial: State,
@@ -182,14 +206,21 @@ impl Engine {
         tolerance: f64,
         detail: Detail,
     ) -> Result<Engine, InitialStateError> {
+        Engine::with(structure, initial, time, Settings { detail, tolerance, ..Settings::default() })
+    }
+
+    /// Starts at `time` (s) from `initial`. The dissipators of a structure that starts turned have been moved there slowly from
+    /// rest; the energy that they took on the way is not counted.
+    pub fn with(
+        structure: Structure,
+        initial: State,
+        time: f64,
+        settings: Settings,
+    ) -> Result<Engine, InitialStateError> {
         let phase = initial.initial_phase()?;
-        check_tolerance(tolerance)?;
-        let local_error = (LOCAL_SHARE * tolerance).clamp(f64::EPSILON / 2.0, LARGEST_LOCAL_ERROR);
-        detail.check_start(&initial)?;
-        let restrained = structure.is_restrained();
-        detail.check_restrained(restrained)?;
-        let model = Box::new(Model::new(structure, detail, local_error, restrained));
-        let chord = model.level.ties().unwrap_or(Angles::Any).chord(initial.theta, 0.0);
+        let level = settings.level(structure)?;
+        level.check_start(&initial)?;
+        let chord = level.angles().chord(initial.theta, 0.0);
         let moved = Dissipators::default().moved_by(&structure, phase.side(), chord);
         let motion = Motion {
             time,
@@ -202,53 +233,44 @@ impl Engine {
             chatter: Chatter::NONE,
             due: None,
         };
-        let far = FAR / structure.omega_fc;
-        Ok(Engine { model, motion, vertical: false, stops: false, far, arc: Arc::default() })
+        Ok(Engine { level, settings, motion, arc: Arc::default() })
+    }
+
+    /// The same structure in the same motion, with other `settings`.
+    pub fn remade(&self, settings: Settings) -> Result<Engine, InitialStateError> {
+        let level = settings.level(*self.structure())?;
+        Ok(Engine { level, settings, motion: self.motion, arc: Arc::default() })
+    }
+
+    /// What the engine does.
+    pub fn settings(&self) -> Settings {
+        self.settings
     }
 
     /// The structure.
     pub fn structure(&self) -> &Structure {
-        &self.model.structure
+        self.level.structure()
     }
 
-    /// Where it is now.
+    /// The motion now.
     pub fn motion(&self) -> &Motion {
         &self.motion
     }
 
-    /// Puts it back where it was.
+    /// Puts the structure in this `motion`.
     pub fn set_motion(&mut self, motion: Motion) {
         self.motion = motion;
     }
 
-    /// Sets its clock to `time` (s). Nothing but the times that it tells depends on it.
+    /// Sets the clock to `time` (s). Nothing but the times that the engine reports depends on it.
     pub fn set_time(&mut self, time: f64) {
         self.motion.time = time;
     }
 
-    /// Admits a vertical ground acceleration from now on, or none again. Unless this is called, there is none.
-    pub fn admit_vertical(&mut self, admitted: bool) -> Result<(), InitialStateError> {
-        let Model { structure, detail, local_error, .. } = *self.model;
-        let restrained = structure.is_restrained() || admitted;
-        detail.check_restrained(restrained)?;
-        if admitted != self.vertical {
-            *self.model = Model::new(structure, detail, local_error, restrained);
-            self.vertical = admitted;
-        }
-        Ok(())
-    }
-
-    /// Whether an advance ends at the first transition but overturning, before it: [`Engine::transit`] applies it, or the
-    /// next advance. Unless this is called, it does not.
-    pub fn stop_at_transitions(&mut self, stops: bool) {
-        self.stops = stops;
-    }
-
     /// Applies the transition that is due, if there is one, and shows it to `watch`.
     pub fn transit<W: Watch>(&mut self, watch: &mut W) {
-        if let Some(event) = self.motion.due.take() {
-            let Engine { model, motion, .. } = self;
-            watch.transition(&transition::resolve(&*model.level, &model.structure, motion, event));
+        if let Some(transition) = transit(&**self.level, phases::of(&self.motion), &mut self.motion) {
+            watch.transition(&transition);
         }
     }
 
@@ -273,73 +295,25 @@ impl Engine {
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
         self.check(interval, &load)?;
+        let mut before = None;
         if self.motion.due.is_some() {
-            return self.advance_past_transition(last_step, interval, load, watch);
+            before = Some(self.motion);
+            self.transit(watch);
         }
-        if interval > self.far {
-            return self.advance_far(last_step, interval, load, watch);
-        }
-        let &mut Engine { ref model, ref mut motion, stops, ref mut arc, .. } = self;
+        let &mut Engine { level: ref any, settings: Settings { stops, .. }, ref mut motion, ref mut arc } = self;
         // each level gets a loop of its own, so that nothing stands between the loop and the level's equations
-        by_level!(&model.level, level => {
-            Hand { model, level, arc, last_step, stops }.advance(motion, interval, load, watch)
-        })
-    }
-
-    /// Advances over a long time: in parts, each twice as long as the one before, until all that is left is one leap.
-    #[cold]
-    fn advance_far<W: Watch>(
-        &mut self,
-        last_step: u64,
-        interval: f64,
-        load: LinearLoad,
-        watch: &mut W,
-    ) -> Result<Progress, AdvanceError> {
-        let (before, until) = (self.motion, self.motion.time + interval);
-        let (mut elapsed, mut part) = (0.0, std::mem::replace(&mut self.far, f64::INFINITY));
-        let far = part;
-        let mut result = Ok(Progress::Complete);
-        while elapsed < interval && result == Ok(Progress::Complete) {
-            let (left, load) = (interval - elapsed, load.from(elapsed));
-            let is_last = part >= left || self.can_leap(left, load);
-            result = self.advance_within(last_step, if is_last { left } else { part }, load, watch);
-            elapsed = if is_last { interval } else { elapsed + part };
-            if result == Ok(Progress::Complete) {
-                self.motion.time = if is_last { until } else { before.time + elapsed };
+        let result = by_level!(&**any, level => {
+            let start = level.subject().start(motion.state, &motion.dissipators, load, interval);
+            // most advances are one leap
+            if motion.work.steps != last_step && let Some(end) = leap(level, motion, &start) {
+                leapt(any, motion, interval, load, end, watch);
+                motion.time += interval;
+                return Ok(Progress::Complete);
             }
-            part *= 2.0;
-        }
-        self.far = far;
-        result.map_err(|mut error| {
-            self.motion = before;
-            if let AdvanceError::TooLong { until: told, .. } = &mut error {
-                *told = until;
-            }
-            error
-        })
-    }
-
-    /// Whether `interval` (s) under `load` is one leap.
-    fn can_leap(&self, interval: f64, load: LinearLoad) -> bool {
-        let Engine { model, motion, .. } = self;
-        let start = model.start(motion.state, &motion.dissipators, load, interval);
-        motion.held() == 0.0 && model.level.leap(&model.structure, motion.phase, &start).is_some()
-    }
-
-    /// Advances from where a transition is due.
-    #[cold]
-    fn advance_past_transition<W: Watch>(
-        &mut self,
-        last_step: u64,
-        interval: f64,
-        load: LinearLoad,
-        watch: &mut W,
-    ) -> Result<Progress, AdvanceError> {
-        let before = self.motion;
-        self.transit(watch);
-        let result = self.advance_within(last_step, interval, load, watch);
-        if result.is_err() {
-            self.motion = before;
+            Loop { any, level, phases: phases::of, arc, last_step, stops }.go(motion, &mut before, interval, load, watch)
+        });
+        if let (Err(_), Some(before)) = (&result, before) {
+            *motion = before;
         }
         result
     }
@@ -348,7 +322,7 @@ impl Engine {
     #[inline]
     pub(crate) fn check(&self, interval: f64, load: &LinearLoad) -> Result<(), AdvanceError> {
         let is_ahead = interval > 0.0 && interval <= f64::MAX;
-        let is_admitted = is_ahead && load.is_finite_over(interval) && (!load.is_vertical() || self.vertical);
+        let is_admitted = is_ahead && load.is_finite_over(interval) && (!load.is_vertical() || self.settings.vertical);
         if is_admitted { Ok(()) } else { self.refusal(interval, load) }
     }
 
@@ -359,7 +333,7 @@ impl Engine {
             return Err(AdvanceError::NotAhead { from: self.motion.time, interval });
         }
         let Ramp { value, slope } = load.upwards();
-        if !self.vertical && (value, slope) != (0.0, 0.0) {
+        if !self.settings.vertical && (value, slope) != (0.0, 0.0) {
             return Err(AdvanceError::Vertical { value, slope });
         }
         let end = load.at(interval);
@@ -370,41 +344,24 @@ impl Engine {
 
     /// Whether certainly no transition comes within `ahead` (s), a tiny time, under `load`.
     pub fn goes_on_for(&self, ahead: f64, load: LinearLoad) -> bool {
-        let Engine { model, motion, .. } = self;
-        let &Motion { phase, state, ref dissipators, .. } = motion;
-        let way = |rate: f64| ahead * (rate.abs() + 1.0); // at most, whatever accelerates it
-        match phase {
-            Phase::FullContact => {
-                let start = model.start(state, dissipators, load, ahead);
-                state.u.abs() + way(state.u_dot) < model.level.least_displacement(&model.structure, &start)
-            }
-            Phase::Rocking(side) => {
-                let change = way(state.theta_dot);
-                let yields = |angles| {
-                    let [_, theta_ddot] = self.sample(load.value).accelerations();
-                    let changes = [change, way(2.0 * theta_ddot)];
-                    yielding::least_margin(&model.structure, side, angles, dissipators, &state, changes) <= 0.0
-                };
-                (change..FRAC_PI_2 - change).contains(&state.theta.abs()) && !model.level.ties().is_some_and(yields)
-            }
-            Phase::Overturned(_) => true,
-        }
+        let now = self.sample(load.value);
+        phases::of(&self.motion).is_none_or(|watched| watched.guards.iter().all(|guard| guard.stays_open(&now, ahead)))
     }
 
     /// Whether the structure, in full contact now, stays there while nothing acts on it.
     pub fn stays_down(&self) -> bool {
-        self.motion.phase == Phase::FullContact
-            && self.model.level.stays_down(&self.model.structure, &self.motion.state, &self.motion.dissipators)
+        let Motion { phase, state, dissipators, .. } = &self.motion;
+        *phase == Phase::FullContact && self.level.stays_down(state, dissipators)
     }
 
     /// The motion now, under `load`.
     pub fn sample(&self, load: Load) -> Sample<'_> {
-        Sample { motion: self.motion, load, model: &self.model }
+        Sample { motion: self.motion, load, level: &self.level }
     }
 
     /// The outputs now under `load`; once overturned, those of the instant before.
     pub fn outputs(&self, load: Load) -> Outputs {
-        self.model.outputs(self.motion.phase.in_motion(), &self.motion.under(load)) // a sample would copy the motion
+        self.level.outputs(self.motion.phase.in_motion(), &self.motion.under(load)) // a sample would copy the motion
     }
 
     /// The reactions now under `load`; once overturned, those of the instant before.
@@ -424,12 +381,12 @@ impl Engine {
 
     /// Rates of the forces of the restraints now under `load`, N/s; 0 once overturned.
     pub fn restraint_rates(&self, load: Load) -> Restraints {
-        let (structure, Motion { phase, state, dissipators, .. }) = (&self.model.structure, &self.motion);
+        let Motion { phase, state, dissipators, .. } = &self.motion;
         if let Phase::Overturned(_) = phase {
             return Restraints::default();
         }
         let [_, theta_ddot] = self.sample(load).accelerations();
-        let angles = self.model.level.ties().unwrap_or(Angles::Any);
+        let (structure, angles) = (self.structure(), self.level.angles());
         Restraints::rates(structure, phase.side(), dissipators, angles, state, theta_ddot)
     }
 
@@ -438,19 +395,19 @@ impl Engine {
     pub fn rates(&self, load: LinearLoad) -> (Outputs, Reactions) {
         let derivatives = self.derivatives(load);
         let Motion { phase, state, .. } = &self.motion;
-        let outputs = self.model.output_rates(*phase, state, derivatives, load);
-        (outputs, Reactions::rates(&self.model.structure, *phase, state, derivatives, load))
+        let outputs = self.level.output_rates(*phase, state, derivatives, load);
+        (outputs, Reactions::rates(self.structure(), *phase, state, derivatives, load))
     }
 
     /// (ü, θ̈) and (u⃛, θ⃛) now under `load`, from the first terms of the series; 0 once overturned.
     fn derivatives(&self, load: LinearLoad) -> [[f64; 2]; 2] {
-        let Engine { model, motion: Motion { phase, state, dissipators, .. }, .. } = self;
+        let Engine { level, motion: Motion { phase, state, dissipators, .. }, .. } = self;
         if let Phase::Overturned(_) = phase {
             return [[0.0; 2]; 2];
         }
         let mut arc = Arc::default();
-        let start = Start { local_error: 1.0, ..model.start(*state, dissipators, load, 1.0) };
-        model.level.series(&model.structure, *phase, &start, &mut arc);
+        let start = Start { local_error: 1.0, ..level.subject().start(*state, dissipators, load, 1.0) };
+        level.series(*phase, &start, &mut arc);
         let derivative = |k: i32, factor: f64| {
             [arc.u_dot[k as usize], arc.theta_dot[k as usize]].map(|c| factor * c / arc.span.powi(k))
         };
@@ -458,53 +415,55 @@ impl Engine {
     }
 }
 
+/// Applies the transition that is due in `motion`, if there is one, in the phase that is `watched`.
+fn transit(level: &dyn Level, watched: Option<&Watched>, motion: &mut Motion) -> Option<Transition> {
+    let (Closed { guard, way }, before) = (motion.due.take()?, motion.state);
+    let kind = watched?.guards.get(usize::from(guard))?.apply(level, motion, way);
+    motion.transitions += 1;
+    Some(Transition { time: motion.time, kind, before, after: motion.state })
+}
+
+/// The state at the end of `start`, if it is known exactly and no transition can happen until then.
+#[inline(always)]
+fn leap(level: &impl Level, motion: &Motion, start: &Start) -> Option<State> {
+    if motion.chatter.held > 0.0 {
+        return None;
+    }
+    level.leap(motion.phase, start).filter(State::is_finite)
+}
+
+/// Takes `motion`, all but its time, over a leap to the state `end`.
+#[inline(always)]
+fn leapt<W: Watch>(level: &AnyLevel, motion: &mut Motion, duration: f64, load: LinearLoad, end: State, watch: &mut W) {
+    if W::SEES_PIECES {
+        watch.piece(&Piece { before: motion, duration, load, end, level, arc: None });
+    }
+    motion.state = end;
+    motion.work.steps += 1;
+    motion.chatter.pass(duration);
+}
+
 /// What an advance has in hand.
-struct Hand<'a, L> {
-    model: &'a Model,
-    /// Its level.
+struct Loop<'a, L, P> {
+    any: &'a AnyLevel,
+    /// The same level by its type.
     level: &'a L,
+    /// Gives the phase of a motion; none where the motion is over.
+    phases: P,
     /// The step.
     arc: &'a mut Arc,
-    /// Steps since the start after which it ends.
+    /// Steps since the start after which the advance ends.
     last_step: u64,
-    /// Whether it ends where a transition is due.
+    /// Whether the advance ends where a transition is due.
     stops: bool,
 }
 
-impl<L: Level> Hand<'_, L> {
-    /// [`Engine::advance`] of `now`.
-    fn advance<W: Watch>(
-        &mut self,
-        now: &mut Motion,
-        interval: f64,
-        load: LinearLoad,
-        watch: &mut W,
-    ) -> Result<Progress, AdvanceError> {
-        if let Some(end) = self.leap(now, &self.model.start(now.state, &now.dissipators, load, interval)) {
-            if now.work.steps == self.last_step {
-                return Err(AdvanceError::TooLong { time: now.time, until: now.time + interval });
-            }
-            if W::SEES_PIECES {
-                watch.piece(&Piece { before: now, duration: interval, load, end, model: self.model, arc: None });
-            }
-            now.state = end;
-            now.time += interval;
-            now.work.steps += 1;
-            now.chatter.pass(interval);
-            return Ok(Progress::Complete);
-        }
-        let mut before = None;
-        let result = self.step(now, &mut before, interval, load, watch);
-        if let (Err(_), Some(before)) = (&result, before) {
-            *now = before;
-        }
-        result
-    }
-
-    /// Advances over `interval` (s), step by step. A motion that takes more than one is kept as it was `before`: a step that
-    /// fails changes nothing.
-    #[inline(always)]
-    fn step<W: Watch>(
+impl<L: Level, P: Fn(&Motion) -> Option<&'static Watched>> Loop<'_, L, P> {
+    /// Advances step by step: expands the motion, finds the first guard that closes, applies its transition. A long interval is
+    /// taken in parts, each twice as long as the one before, until the rest is one leap. The motion `before` the first change is
+    /// kept: an advance that fails changes nothing.
+    #[inline(never)]
+    fn go<W: Watch>(
         &mut self,
         motion: &mut Motion,
         before: &mut Option<Motion>,
@@ -512,30 +471,52 @@ impl<L: Level> Hand<'_, L> {
         load: LinearLoad,
         watch: &mut W,
     ) -> Result<Progress, AdvanceError> {
+        let level = self.level;
         let Start { a_g, a_top, a_v, local_error, .. } =
-            self.model.start(motion.state, &motion.dissipators, load, interval);
-        let start = motion.time;
-        let until = start + interval;
+            level.subject().start(motion.state, &motion.dissipators, load, interval);
+        let (start, until) = (motion.time, motion.time + interval);
+        let mut part = FAR / level.structure().omega_fc;
         // Time runs from the start of the interval: transitions are then as sharp at t = 1000 s as at 0.
-        let mut elapsed = 0.0;
-        while elapsed < interval {
-            let left = interval - elapsed;
+        let (mut elapsed, mut end) = (0.0, if interval > part { 0.0 } else { interval });
+        loop {
+            let Some(watched) = (self.phases)(motion) else { return Ok(Progress::Overturned) };
+            if elapsed >= interval {
+                return Ok(Progress::Complete);
+            }
+            if elapsed >= end {
+                before.get_or_insert(*motion);
+                end = if elapsed + part < interval { elapsed + part } else { interval };
+                part *= 2.0;
+                let load = load.from(elapsed);
+                let leap = |to: f64| {
+                    let start = level.subject().start(motion.state, &motion.dissipators, load, to - elapsed);
+                    Some((to, leap(level, motion, &start)?))
+                };
+                if let Some((to, state)) = leap(interval).or_else(|| leap(end)) {
+                    leapt(self.any, motion, to - elapsed, load, state, watch);
+                    elapsed = to;
+                    motion.time = if elapsed < interval { start + elapsed } else { until };
+                    continue;
+                }
+            }
+            let left = end - elapsed;
             let begin = Start {
                 state: motion.state,
                 a_g: a_g.from(elapsed),
                 a_top: a_top.from(elapsed),
                 a_v: a_v.from(elapsed),
                 dissipators: &motion.dissipators,
-                interval: left,
+                interval: watched.lasts.map_or(left, |lasts| left.min(lasts(motion))),
                 local_error,
             };
-            let event = match motion.phase {
-                Phase::FullContact => self.step_in_full_contact(begin, motion.chatter.held),
-                Phase::Rocking(side) => self.step_while_rocking(&begin, side),
-                Phase::Overturned(_) => break,
-            };
+            level.series(motion.phase, &begin, self.arc);
+            let mut step =
+                Step { level, side: motion.phase.side(), start: &begin, arc: self.arc, reach: self.arc.reach };
+            let closed = first(watched, &mut step);
+            let (reach, moved) = (step.reach, (watched.dissipators)(&step));
+            self.arc.reach = reach;
             let duration = self.arc.duration();
-            if !self.arc.is_finite() || self.arc.reach < 1.0 && self.is_at_its_end(motion.phase, motion.state, event) {
+            if !self.arc.is_finite() || reach < 1.0 && self.is_at_its_end(motion, closed) {
                 let State { u, theta, .. } = motion.state;
                 return Err(AdvanceError::Singular { time: motion.time, u, theta });
             }
@@ -548,120 +529,112 @@ impl<L: Level> Hand<'_, L> {
             motion.work.steps += 1;
             motion.work.evaluations += self.arc.order as u64;
             let state = self.arc.end();
-            // what lasts for no time, as contact where uplift is due at once, is no motion
+            // a step without duration, as in contact if uplift is due at once, is no motion
             if W::SEES_PIECES && duration > 0.0 {
                 let (load, arc) = (load.from(elapsed), Some(&*self.arc));
-                watch.piece(&Piece { before: motion, duration, load, end: state, model: self.model, arc });
-            }
-            if let (Some(angles), Phase::Rocking(side)) = (self.level.ties(), motion.phase) {
-                let moved =
-                    yielding::moved(&self.model.structure, side, angles, &motion.dissipators, self.arc, self.arc.reach);
-                motion.dissipators = moved;
+                watch.piece(&Piece { before: motion, duration, load, end: state, level: self.any, arc });
             }
             motion.state = state;
+            if let Some(moved) = moved {
+                motion.dissipators = moved;
+            }
             motion.chatter.pass(duration);
-            elapsed = if duration == left { interval } else { elapsed + duration };
+            elapsed = if duration == left { end } else { elapsed + duration };
             motion.time = if elapsed < interval { start + elapsed } else { until };
-            if let Some(event) = event {
-                if self.stops && !matches!(event, Event::Overturning(_)) {
-                    motion.due = Some(event);
+            motion.due = closed;
+            if let Some(Closed { guard, .. }) = closed {
+                if self.stops && watched.guards[usize::from(guard)].is_stop() {
                     return Ok(Progress::Transition);
                 }
-                watch.transition(&transition::resolve(self.level, &self.model.structure, motion, event));
+                transit(level, Some(watched), motion).iter().for_each(|transition| watch.transition(transition));
             }
         }
-        match motion.phase {
-            Phase::Overturned(_) => Ok(Progress::Overturned),
-            _ => Ok(Progress::Complete),
-        }
     }
 
-    /// The state at the end of `start` where it is known exactly and no transition can happen until then.
-    #[inline]
-    fn leap(&mut self, now: &Motion, start: &Start) -> Option<State> {
-        if now.chatter.held > 0.0 {
-            return None;
-        }
-        self.level.leap(&self.model.structure, now.phase, start).filter(State::is_finite)
-    }
-
-    /// Whether the step in hand, which goes from `state` to less than what was asked for, is the last that there can be.
-    fn is_at_its_end(&self, phase: Phase, state: State, event: Option<Event>) -> bool {
-        let has_stalled = self.arc.duration() <= STALLED / self.model.structure.omega_u;
-        has_stalled && event.is_none() || self.level.is_singular(&self.model.structure, phase, &state)
-    }
-
-    /// Motion in full contact, cut at uplift; none of it for the first `held` seconds.
-    fn step_in_full_contact(&mut self, mut start: Start, held: f64) -> Option<Event> {
-        let is_held = held > 0.0;
-        if is_held {
-            start.interval = start.interval.min(held);
-        }
-        self.level.series(&self.model.structure, Phase::FullContact, &start, self.arc);
-        if is_held {
-            return None;
-        }
-        let (crossing, side) = self.level.first_uplift(&self.model.structure, &start, self.arc);
-        cut(self.arc, crossing, Event::Uplift(side))
-    }
-
-    /// Rocking about `side`, cut at impact or overturning.
-    fn step_while_rocking(&mut self, start: &Start, side: Side) -> Option<Event> {
-        self.level.series(&self.model.structure, Phase::Rocking(side), start, self.arc);
-        let mut end = None;
-        if let Some(angles) = self.level.ties() {
-            let (crossing, event) = yielding::first(&self.model.structure, side, angles, start.dissipators, self.arc);
-            end = cut(self.arc, crossing, event);
-        }
-        if stays_about(self.arc, side) {
-            return end;
-        }
-        match first_overturning(self.arc, side) {
-            Crossing::None => (),
-            crossing => end = cut(self.arc, crossing, Event::Overturning(side)),
-        }
-        match first_return(self.arc, side) {
-            Crossing::None => end,
-            crossing => cut(self.arc, crossing, Event::Impact(side)),
-        }
+    /// Whether the step in hand, which goes from `motion` to less than the requested end, is the last that there can be.
+    fn is_at_its_end(&self, motion: &Motion, closed: Option<Closed>) -> bool {
+        let has_stalled = self.arc.duration() <= STALLED / self.level.structure().omega_u;
+        has_stalled && closed.is_none() || self.level.is_singular(motion.phase, &motion.state)
     }
 }
 
-/// Ends `arc` at `crossing`; `event` is what happens there.
-fn cut(arc: &mut Arc, crossing: Crossing, event: Event) -> Option<Event> {
-    match crossing {
-        Crossing::None => None,
-        Crossing::NoneUntil(sigma) => {
-            arc.reach = sigma;
-            None
-        }
-        Crossing::At(sigma) => {
-            arc.reach = sigma;
-            Some(event)
+/// The first guard of `watched` that closes on `step`, which is cut there.
+#[inline]
+fn first(watched: &Watched, step: &mut Step) -> Option<Closed> {
+    if watched.stays.is_some_and(|stays| stays(step)) {
+        return None;
+    }
+    let mut closed = None;
+    for (place, guard) in watched.guards.iter().enumerate() {
+        let (crossing, way) = guard.first(step);
+        if crossing != Crossing::None {
+            step.reach = crossing.sigma();
+            closed = matches!(crossing, Crossing::At(_)).then_some(Closed { guard: place as u8, way });
         }
     }
+    closed
 }
 
-/// Whether the magnitudes of the terms of θ prove that neither guard of rocking about `side` closes on `arc`.
-fn stays_about(arc: &Arc, side: Side) -> bool {
-    let start = side.sign() * arc.theta[0];
-    let excursion = sum_of_magnitudes(&arc.theta[1..=arc.order]);
-    excursion < start && excursion + start < FRAC_PI_2
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::series::first_crossing::{self, first_time_all_closed};
+    use crate::{Parameters, TransitionKind};
+    use approx::assert_relative_eq;
+    use phases::{Guard, RESTING, Way};
+    use std::f64::consts::PI;
 
-/// The first instant of a rocking `arc` at which |θ| reaches π/2.
-fn first_overturning(arc: &Arc, side: Side) -> Crossing {
-    let theta = arc.used(&arc.theta);
-    first_time_all_closed([Guard::new(theta, -side.sign(), FRAC_PI_2)], arc.reach)
-}
+    /// Amplitude of the vibration, m.
+    const AMPLITUDE: f64 = 1e-3;
 
-/// The first instant of a rocking `arc` at which s θ returns to 0. A start at θ = 0 is divided out: s θ/σ^z is
-/// searched, z the number of leading zeros, so that the start is no return and a return right after it is not missed.
-/// What underflows counts as zero; a θ that is zero throughout, over a step of 1e-200 s say, has not returned.
-fn first_return(arc: &Arc, side: Side) -> Crossing {
-    let theta = arc.used(&arc.theta);
-    match theta.iter().position(|c| c.is_normal()) {
-        Some(zeros) => first_time_all_closed([Guard::new(&theta[zeros..], side.sign(), 0.0)], arc.reach),
-        None => Crossing::None,
+    /// A wall at half the amplitude, from which the top mass bounces.
+    struct Wall;
+
+    impl Guard for Wall {
+        fn first(&self, &Step { arc, reach, .. }: &Step) -> (Crossing, Way) {
+            let is_there = first_crossing::Guard::new(arc.used(&arc.u), -1.0, 0.5 * AMPLITUDE);
+            let moves_on = first_crossing::Guard::new(arc.used(&arc.u_dot), -1.0, 0.0);
+            (first_time_all_closed([is_there, moves_on], reach), Way::default())
+        }
+
+        fn apply(&self, _level: &dyn Level, motion: &mut Motion, _way: Way) -> TransitionKind {
+            motion.state.u_dot *= -1.0;
+            TransitionKind::Landing
+        }
+
+        fn stays_open(&self, _now: &Sample, _ahead: f64) -> bool {
+            false
+        }
+
+        fn indicator(&self, _now: &Sample) -> (usize, f64) {
+            (0, 1.0)
+        }
+    }
+
+    /// Vibration without damping between the wall and its far end takes 2/3 of a period.
+    #[test]
+    fn a_new_phase_is_one_more_list_of_guards() {
+        static WALLED: Watched = Watched { guards: &[&Wall], ..RESTING };
+        let structure = Structure::new(Parameters { zeta_fc: 0.0, ..Parameters::EVISON }).unwrap();
+        let released = State { u: -AMPLITUDE, ..State::default() };
+        let mut engine = Engine::with_detail(structure, released, 0.0, 1e-12, Detail::Nonlinear).unwrap();
+        let Engine { level, motion, arc, .. } = &mut engine;
+        let mut bounces = Vec::new();
+        let mut watch = |transition: &Transition| bounces.push(transition.time);
+        let AnyLevel::Nonlinear(of_its_type) = &**level else { panic!("another level") };
+        Loop {
+            any: level,
+            level: of_its_type,
+            phases: |_: &Motion| Some(&WALLED),
+            arc,
+            last_step: u64::MAX,
+            stops: false,
+        }
+        .go(motion, &mut None, 9.0 * PI / structure.omega_fc, LinearLoad::default(), &mut watch)
+        .unwrap();
+        assert_eq!(bounces.len(), 7);
+        for (k, time) in bounces.into_iter().enumerate() {
+            assert_relative_eq!(time * structure.omega_fc, (2 * k + 1) as f64 * 2.0 * PI / 3.0, max_relative = 1e-10);
+        }
     }
 }

@@ -12,4 +12,4 @@ pub(crate) mod oscillator;
 mod rigid;
 pub mod rules;
 pub(crate) mod shown;
-pub(crate) mod tie_series;
+pub(crate) mod ties;

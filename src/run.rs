@@ -16,7 +16,7 @@ mod samples;
 pub mod validity;
 
 use crate::engine::piece::Sample;
-use crate::engine::{AdvanceError, DEFAULT_TOLERANCE};
+use crate::engine::{AdvanceError, DEFAULT_TOLERANCE, Settings};
 use crate::mechanics::state::InitialStateError;
 use crate::run::ground_motion::Segment;
 use crate::run::record::Record;
@@ -187,9 +187,9 @@ impl<'a> Run<'a> {
         match self.end {
             End::At(end) if !(end > start && end.is_finite()) => Err(RunError::End { end, start }),
             _ => {
-                let mut engine = Engine::with_detail(self.structure, self.initial, start, self.tolerance, self.detail)?;
-                engine.admit_vertical(self.ground.vertical().is_some())?;
-                Ok(engine)
+                let &Run { structure, ground, initial, detail, tolerance, .. } = self;
+                let settings = Settings { detail, tolerance, vertical: ground.vertical().is_some(), stops: false };
+                Ok(Engine::with(structure, initial, start, settings)?)
             }
         }
     }

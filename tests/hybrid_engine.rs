@@ -1,7 +1,7 @@
 //! The engine from outside: the paper's numbers, advances that end at transitions, overturning.
 
 use approx::assert_abs_diff_eq;
-use rocking::engine::DEFAULT_TOLERANCE;
+use rocking::engine::{DEFAULT_TOLERANCE, Settings};
 use rocking::run::peaks::Peaks;
 use rocking::{
     Detail, Engine, Motion, Parameters, Phase, Progress, Ramp, Side, State, Structure, Transition, TransitionKind,
@@ -34,10 +34,9 @@ fn evison_released(structure: &Structure) -> Engine {
 fn an_advance_can_end_at_every_transition() {
     let structure = Structure::new(Parameters { r: 0.85, ..Parameters::EVISON }).unwrap();
     let released = State { theta: 0.01, ..State::default() };
-    let new = || Engine::new(structure, released, 0.0, DEFAULT_TOLERANCE).unwrap();
-    let (mut through, mut to_each) = (new(), new());
+    let new = |stops| Engine::with(structure, released, 0.0, Settings { stops, ..Settings::default() }).unwrap();
+    let (mut through, mut to_each) = (new(false), new(true));
     let expected = advance(&mut through, 1.0, STILL);
-    to_each.stop_at_transitions(true);
     let mut transitions = Vec::new();
     while to_each.motion().time < 1.0 {
         let due = to_each.advance(1.0 - to_each.motion().time, STILL, &mut ()).unwrap() == Progress::Transition;
@@ -58,8 +57,7 @@ fn an_advance_can_end_at_every_transition() {
         assert_abs_diff_eq!(transition.after.u_dot, expected.after.u_dot, epsilon = 1e-8);
     }
     // what is due is applied by the next advance if nobody has
-    let mut left = new();
-    left.stop_at_transitions(true);
+    let mut left = new(true);
     while left.motion().time < 1.0 {
         left.advance(1.0 - left.motion().time, STILL, &mut ()).unwrap();
     }

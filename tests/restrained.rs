@@ -4,6 +4,7 @@
 mod shaking;
 
 use approx::assert_relative_eq;
+use rocking::engine::Settings;
 use rocking::engine::piece::Sample;
 use rocking::mechanics::energy::energy;
 use rocking::mechanics::restraint::{Restraints, centring_moments, stored_energy, uplift_displacement};
@@ -160,8 +161,8 @@ fn uplift_is_due_where_the_vertical_acceleration_and_the_prestress_put_it() {
         let u = |t: f64| 0.9 * u_cr(0.0) * (omega * t).sin();
         let meets = (0..).map(|i| f64::from(i) * 1e-6).find(|t| u(*t) >= u_cr(*t)).unwrap();
         let initial = State { u_dot: side.sign() * 0.9 * u_cr(0.0) * omega, ..State::default() };
-        let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-12, detail).unwrap();
-        engine.admit_vertical(true).unwrap();
+        let settings = Settings { detail, tolerance: 1e-12, vertical: true, ..Settings::default() };
+        let mut engine = Engine::with(structure, initial, 0.0, settings).unwrap();
         let mut seen = None;
         let load = LinearLoad { slope: Load { a_v: -40.0, ..Load::default() }, ..LinearLoad::default() };
         engine.advance(0.1, load, &mut |at: &Transition| _ = seen.get_or_insert(*at)).unwrap();
@@ -171,8 +172,8 @@ fn uplift_is_due_where_the_vertical_acceleration_and_the_prestress_put_it() {
         assert_relative_eq!(side.sign() * before.u, limit, max_relative = 1e-12);
     }
     // a rigid one: m H |a_g| against the moment of what is left of the weight and of the tendon, both linear in time
-    let mut engine = Engine::with_detail(structure, State::default(), 0.0, 1e-9, Detail::Rigid).unwrap();
-    engine.admit_vertical(true).unwrap();
+    let settings = Settings { detail: Detail::Rigid, vertical: true, ..Settings::default() };
+    let mut engine = Engine::with(structure, State::default(), 0.0, settings).unwrap();
     let slope = Load { a_g: 5.0, F_t: 0.0, a_v: -40.0 };
     let mut seen = None;
     let load = LinearLoad { slope, ..LinearLoad::default() };
@@ -194,8 +195,8 @@ fn uplift_waits_for_the_moment() {
     let initial = State { u: 1.2 * u_cr, u_dot: -0.1, ..State::default() };
     let slope = Load { a_v: -2000.0, ..Load::default() };
     let load = LinearLoad { value: Load { a_g: -60.0, F_t: 0.0, a_v: 2.0 }, slope };
-    let mut engine = Engine::new(structure, initial, 0.0, 1e-12).unwrap();
-    engine.admit_vertical(true).unwrap();
+    let settings = Settings { tolerance: 1e-12, vertical: true, ..Settings::default() };
+    let mut engine = Engine::with(structure, initial, 0.0, settings).unwrap();
     let mut seen = None;
     engine.advance(0.1, load, &mut |at: &Transition| _ = seen.get_or_insert(*at)).unwrap();
     let Transition { time, kind, before: State { u, u_dot, .. }, .. } = seen.unwrap();
@@ -212,9 +213,8 @@ fn a_vertical_slope_is_followed_within_a_step() {
     for detail in LEVELS {
         let start = || {
             let initial = State { theta: 0.03, ..State::default() };
-            let mut engine = Engine::with_detail(structure(RESTRAINED), initial, 0.0, 1e-12, detail).unwrap();
-            engine.admit_vertical(true).unwrap();
-            engine
+            let settings = Settings { detail, tolerance: 1e-12, vertical: true, ..Settings::default() };
+            Engine::with(structure(RESTRAINED), initial, 0.0, settings).unwrap()
         };
         let (mut at_once, mut cut) = (start(), start());
         at_once.advance(2e-3, load, &mut ()).unwrap();
@@ -447,8 +447,13 @@ fn a_transition_is_foreseen_whatever_brings_it() {
             assert!(transitions.len() > 5, "{detail:?}: {}", transitions.len());
             let (motion, ahead) = (GroundMotion::from(ground), 1e-10);
             let foresees = |time: f64| {
-                let mut engine = Engine::with_detail(run.structure, run.initial, 0.0, run.tolerance, detail).unwrap();
-                engine.admit_vertical(ground.vertical().is_some()).unwrap();
+                let settings = Settings {
+                    detail,
+                    tolerance: run.tolerance,
+                    vertical: ground.vertical().is_some(),
+                    ..Settings::default()
+                };
+                let mut engine = Engine::with(run.structure, run.initial, 0.0, settings).unwrap();
                 motion.advance(&mut engine, &mut Elapsed::default(), time, LinearLoad::default(), &mut ()).unwrap();
                 !engine.goes_on_for(ahead, motion.at(Elapsed::default().and(time)))
             };

@@ -1,6 +1,5 @@
 //! Derivatives of outputs: by time, and by what the host sets.
 
-use crate::failure::Refusal;
 use crate::scene::Scene;
 use crate::setup::Setup;
 use crate::shown::Shown;
@@ -82,7 +81,7 @@ impl Unit {
         }
         let is_admitted_for_this = direction.a_v != 0.0 && !scene.may_move_vertically(setup);
         if is_admitted_for_this {
-            scene.engine.admit_vertical(true).map_err(Refusal::from)?;
+            scene.set(|settings| settings.vertical = true)?;
         }
         let &Parameters { m, g, .. } = scene.engine.structure().parameters();
         let before = Shown::new(scene, setup, Load::default());
@@ -98,7 +97,7 @@ impl Unit {
         let found = unknowns.iter().zip(by_states);
         let found: Vec<_> = found.map(|(of, by)| by.map_or(f64::NAN, |by| size * change(*of) + by)).collect();
         if is_admitted_for_this {
-            scene.engine.admit_vertical(false).map_err(Refusal::from)?;
+            scene.set(|settings| settings.vertical = false)?;
         }
         Ok(found)
     }

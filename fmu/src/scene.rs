@@ -4,6 +4,7 @@
 use crate::failure::Refusal;
 use crate::ground::{Digest, GroundRecord};
 use crate::setup::Setup;
+use rocking::engine::Settings;
 use rocking::mechanics::load::{LOADS, VERTICAL};
 use rocking::run::fall::FallingPeaks;
 use rocking::run::ground_motion::{Elapsed, Placement};
@@ -41,10 +42,11 @@ pub struct Outside {
 }
 
 impl Setup {
-    /// The structure at the start time.
-    pub(crate) fn engine(&self) -> Result<Engine, Refusal> {
-        let structure = Structure::new(self.parameters)?;
-        Ok(Engine::with_detail(structure, self.initial, self.start_time, self.tolerance, self.detail)?)
+    /// The structure at the start time, on ground that may move vertically if `vertical`.
+    fn engine(&self, vertical: bool) -> Result<Engine, Refusal> {
+        let &Setup { detail, tolerance, initial, start_time, .. } = self;
+        let settings = Settings { detail, tolerance, vertical, stops: false };
+        Ok(Engine::with(Structure::new(self.parameters)?, initial, start_time, settings)?)
     }
 
     /// The record of `source` in m/s² and scaled. Refuses scales that leave no ground motion in the range of the inputs.
@@ -65,14 +67,21 @@ fn may_move_vertically(setup: &Setup, ground: Option<&Record>) -> bool {
 impl Scene {
     /// At the start that `setup` describes, on ground that follows the record of `source`.
     pub fn new(setup: &Setup, source: Option<Arc<GroundRecord>>) -> Result<Scene, Refusal> {
-        let mut engine = setup.engine()?;
-        engine.admit_vertical(
-            source.as_ref().map_or(setup.vertical, |of| setup.vertical || of.record.vertical().is_some()),
-        )?;
         let ground = source.as_deref().map(|source| setup.scaled(source)).transpose()?;
+        let engine = setup.engine(may_move_vertically(setup, ground.as_ref()))?;
         let peaks = FallingPeaks::since(setup.start_time, engine.structure(), setup.detail);
         let validity = Found::since(setup.start_time);
         Ok(Scene { engine, source, ground, elapsed: Elapsed::default(), outside: None, peaks, validity })
+    }
+
+    /// Lets the engine do what `change` makes of its settings.
+    pub fn set(&mut self, change: impl FnOnce(&mut Settings)) -> Result<(), Refusal> {
+        let mut settings = self.engine.settings();
+        change(&mut settings);
+        if settings != self.engine.settings() {
+            self.engine = self.engine.remade(settings)?;
+        }
+        Ok(())
     }
 
     /// Whether the ground may move vertically.
@@ -93,7 +102,7 @@ impl Scene {
 
     /// Whether no step has been made, and the first phase lasts: under `load` the structure does not uplift at once.
     fn is_at_start(&self, load: Load) -> bool {
-        self.engine.motion().work.steps == 0 && self.engine.uplift_due(load).is_none()
+        self.engine.motion().work.steps == 0 && !self.engine.is_uplift_due(load)
     }
 
     /// The peaks since the start, of a structure that has overturned those before it fell; before the first step, the

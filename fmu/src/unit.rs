@@ -92,7 +92,7 @@ impl Unit {
     #[cold]
     fn admit_vertical(&mut self) -> Result<(), Refusal> {
         if let Some(scene) = &mut self.scene {
-            scene.engine.admit_vertical(true)?;
+            scene.set(|settings| settings.vertical = true)?;
         }
         self.setup.vertical = true;
         Ok(())
@@ -256,7 +256,7 @@ impl Model for Unit {
 
         let time = scene.engine.motion().time;
         scene.engine.set_time(point);
-        scene.engine.stop_at_transitions(stops);
+        scene.set(|settings| settings.stops = stops)?;
         let known = setup.validity.then_some(scene.validity);
         let mut watch = |transition: &Transition| log(logger, transition);
         let result = if stops {

@@ -1,11 +1,12 @@
 //! Everything about a structure that changes with time, in a few dozen numbers.
 
+use crate::engine::phases::Closed;
 use crate::levels::level::Now;
 use crate::levels::rules::ChatterLimit;
 use crate::mechanics::load::Load;
 use crate::mechanics::reactions::Impulse;
 use crate::mechanics::restraint::Dissipators;
-use crate::{Phase, Side, State};
+use crate::{Phase, State};
 use serde::{Deserialize, Serialize};
 
 /// Work done since the start, counted.
@@ -15,21 +16,6 @@ pub struct Work {
     pub steps: u64,
     /// Right-hand-side evaluations: one for every order of every series.
     pub evaluations: u64,
-}
-
-/// What happens at the end of a step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) enum Event {
-    /// The base lifts off about this side.
-    Uplift(Side),
-    /// Rocking about this side is back at the ground.
-    Impact(Side),
-    /// |θ| is π/2 on this side.
-    Overturning(Side),
-    /// This dissipator begins to yield: pulled, +1, or pressed, −1.
-    Yielding(u8, i8),
-    /// This dissipator ceases to yield.
-    Unloading(u8),
 }
 
 /// Everything about a structure that changes with time.
@@ -47,15 +33,15 @@ pub struct Motion {
     pub work: Work,
     /// Impulse of the impacts on the ground so far.
     pub impulse: Impulse,
-    /// What the dissipators keep and have taken.
+    /// The plastic elongations of the dissipators, and the energy that the dissipators have taken.
     pub dissipators: Dissipators,
     pub(crate) chatter: Chatter,
-    /// What is due now and has not been applied.
-    pub(crate) due: Option<Event>,
+    /// The guard that has closed now, before its transition is applied.
+    pub(crate) due: Option<Closed>,
 }
 
 impl Motion {
-    /// It under `load`.
+    /// The motion under `load`.
     #[inline]
     pub(crate) fn under(&self, load: Load) -> Now<'_> {
         Now { state: &self.state, load, dissipators: &self.dissipators }
@@ -66,7 +52,7 @@ impl Motion {
         self.due.is_some()
     }
 
-    /// For how long contact is held from now on because too many transitions came before, s.
+    /// Duration from now on, s, over which contact is held because too many transitions came before.
     pub fn held(&self) -> f64 {
         self.chatter.held
     }
@@ -77,29 +63,31 @@ impl Motion {
 pub(crate) struct Chatter {
     /// Time since the first of them, s.
     age: f64,
-    /// How many.
+    /// Number of transitions since then.
     transitions: u32,
-    /// For how long contact is held from now on, s.
+    /// Duration over which contact is held from now on, s.
     pub held: f64,
 }
 
 impl Chatter {
-    /// None so far.
+    /// No transition so far.
     pub(crate) const NONE: Chatter = Chatter { age: f64::MAX, transitions: 0, held: 0.0 };
 
-    /// Time goes by, s.
+    /// Passes `duration` seconds.
     #[inline]
     pub(crate) fn pass(&mut self, duration: f64) {
         self.age += duration;
-        self.held = (self.held - duration).max(0.0);
+        if self.held > 0.0 {
+            self.held = (self.held - duration).max(0.0);
+        }
     }
 
-    /// Contact is held to the end of the period.
+    /// Holds contact to the end of the period.
     pub(crate) fn hold(&mut self, limit: ChatterLimit) {
         self.held = limit.period - self.age;
     }
 
-    /// One more transition.
+    /// Counts one more transition.
     pub(crate) fn count(&mut self, limit: ChatterLimit) {
         if self.age >= limit.period {
             (self.age, self.transitions) = (0.0, 0);
@@ -107,7 +95,7 @@ impl Chatter {
         self.transitions += 1;
     }
 
-    /// Whether there may be no more of them.
+    /// Whether the period may see no more transitions.
     pub(crate) fn is_too_much(&self, limit: ChatterLimit) -> bool {
         self.transitions >= limit.transitions && self.age < limit.period
     }

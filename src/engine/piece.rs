@@ -4,14 +4,14 @@
 //! the engine leapt by an exact flow, the piece has bounds, and makes polynomials on request.
 
 use crate::engine::motion::Motion;
+use crate::engine::phases::{self, Step};
 use crate::engine::transition::Transition;
-use crate::engine::yielding;
-use crate::levels::detail::Model;
-use crate::levels::level::Now;
+use crate::levels::detail::AnyLevel;
+use crate::levels::level::{Now, Subject};
 use crate::levels::shown::Searched;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::Measure;
-use crate::mechanics::restraint::{Angles, Dissipators, Restraints, ties};
+use crate::mechanics::restraint::{Dissipators, Restraints, ties};
 use crate::series::extremes::Bound;
 use crate::series::taylor::{Arc, Series, Start, evaluate};
 use crate::{Outputs, Phase, Reactions, State};
@@ -72,44 +72,45 @@ pub struct Sample<'a> {
     pub motion: Motion,
     /// Load at the instant.
     pub load: Load,
-    pub(crate) model: &'a Model,
+    pub(crate) level: &'a AnyLevel,
 }
 
 impl Sample<'_> {
     /// The outputs; once overturned, those of the instant before.
     pub fn outputs(&self) -> Outputs {
-        self.model.outputs(self.motion.phase.in_motion(), &self.motion.under(self.load))
+        self.level.outputs(self.motion.phase.in_motion(), &self.motion.under(self.load))
     }
 
     /// The reactions; once overturned, those of the instant before.
     pub fn reactions(&self) -> Reactions {
         let phase = self.motion.phase.in_motion();
-        Reactions::of(&self.model.structure, phase, &self.motion.state, self.accelerations(), self.load)
+        Reactions::of(self.level.structure(), phase, &self.motion.state, self.accelerations(), self.load)
     }
 
     /// The part of the reactions that the edges of the base carry: all of it, unless the structure is restrained.
     pub fn edges(&self) -> Reactions {
-        let Sample { motion: Motion { phase, state, dissipators, .. }, model, .. } = self;
-        let (structure, side) = (&model.structure, phase.side());
-        let ties = || ties(structure, side, dissipators);
-        let reactions = self.reactions();
-        model.level.ties().map_or(reactions, |angles| {
-            let [up, right, moment] = Reactions::pulls(structure, side, angles, state, &ties());
-            reactions.of_edges(up, right, moment)
-        })
+        let Sample { motion: Motion { phase, state, dissipators, .. }, level, .. } = self;
+        let (&Subject { ref structure, is_tied, .. }, reactions) = (level.subject(), self.reactions());
+        if !is_tied {
+            return reactions;
+        }
+        let side = phase.side();
+        let ties = ties(structure, side, dissipators);
+        let [up, right, moment] = Reactions::pulls(structure, side, level.angles(), state, &ties);
+        reactions.of_edges(up, right, moment)
     }
 
     /// The forces of the restraints.
     pub fn restraints(&self) -> Restraints {
         let Motion { phase, state, dissipators, .. } = &self.motion;
-        let chord = self.model.level.ties().unwrap_or(Angles::Any).chord(state.theta, state.theta_dot);
-        Restraints::of(&self.model.structure, phase.side(), dissipators, chord)
+        let chord = self.level.angles().chord(state.theta, state.theta_dot);
+        Restraints::of(self.level.structure(), phase.side(), dissipators, chord)
     }
 
     /// (ü, θ̈), m/s² and rad/s²; once overturned, those of the instant before.
     pub(crate) fn accelerations(&self) -> [f64; 2] {
-        let Sample { motion, load, model } = self;
-        model.level.accelerations(&model.structure, motion.phase.in_motion(), &motion.under(*load))
+        let Sample { motion, load, level } = self;
+        level.accelerations(motion.phase.in_motion(), &motion.under(*load))
     }
 }
 
@@ -130,7 +131,7 @@ pub struct Piece<'a> {
     pub load: LinearLoad,
     /// State at its end.
     pub end: State,
-    pub(crate) model: &'a Model,
+    pub(crate) level: &'a AnyLevel,
     /// Polynomial of the piece; none if the engine leapt over the piece.
     pub(crate) arc: Option<&'a Arc>,
 }
@@ -150,7 +151,7 @@ impl Piece<'_> {
     /// The outputs in `state`, `tau` seconds after the start of the piece.
     pub(crate) fn outputs(&self, tau: f64, state: &State) -> Outputs {
         let now = Now { state, load: self.load.at(tau), dissipators: &self.before.dissipators };
-        self.model.outputs(self.before.phase, &now)
+        self.level.outputs(self.before.phase, &now)
     }
 
     /// The state `tau` seconds after the start of the piece.
@@ -161,10 +162,9 @@ impl Piece<'_> {
         if tau >= self.duration {
             return self.end;
         }
-        let Model { structure, level, .. } = self.model;
         let step = Start { interval: tau, ..self.whole().step() };
         if self.arc.is_none()
-            && let Some(state) = level.leap(structure, self.before.phase, &step)
+            && let Some(state) = self.level.leap(self.before.phase, &step)
         {
             return state;
         }
@@ -179,13 +179,11 @@ impl Piece<'_> {
 
     /// The dissipators `tau` seconds after the start of the piece.
     fn dissipators_at(&self, tau: f64) -> Dissipators {
-        let Motion { phase, dissipators, .. } = self.before;
-        match (self.model.level.ties(), phase, self.arc) {
-            (Some(angles), Phase::Rocking(side), Some(arc)) => {
-                yielding::moved(&self.model.structure, *side, angles, dissipators, arc, tau / arc.span)
-            }
-            _ => *dissipators,
-        }
+        let moved = phases::of(self.before).zip(self.arc).and_then(|(watched, arc)| {
+            let (level, side) = (&**self.level, self.before.phase.side());
+            (watched.dissipators)(&Step { level, side, start: &self.whole().step(), arc, reach: tau / arc.span })
+        });
+        moved.unwrap_or(self.before.dissipators)
     }
 
     /// The motion at `time` (s), which lies within the piece.
@@ -195,7 +193,7 @@ impl Piece<'_> {
         let is_before = time < end - 2.0 * f64::EPSILON * end.abs();
         let tau = if is_before { time - self.before.time } else { self.duration };
         let motion = Motion { time, state: self.state_at(tau), dissipators: self.dissipators_at(tau), ..*self.before };
-        Sample { motion, load: self.load.at(tau), model: self.model }
+        Sample { motion, load: self.load.at(tau), level: self.level }
     }
 }
 
@@ -214,7 +212,7 @@ impl<'a> Part<'a> {
     #[inline]
     fn step(&self) -> Start<'a> {
         let Part { piece, start: (passed, state), end: (until, _) } = *self;
-        piece.model.start(state, &piece.before.dissipators, piece.load.from(passed), until - passed)
+        piece.level.subject().start(state, &piece.before.dissipators, piece.load.from(passed), until - passed)
     }
 
     /// The halves of the part, if the state between them is known without expanding the motion.
@@ -225,7 +223,7 @@ impl<'a> Part<'a> {
         }
         let mut half = self.step();
         half.interval *= 0.5;
-        let middle = piece.model.level.leap(&piece.model.structure, piece.before.phase, &half)?;
+        let middle = piece.level.leap(piece.before.phase, &half)?;
         let middle = (start.0 + half.interval, middle);
         Some([Part { end: middle, ..*self }, Part { start: middle, ..*self }])
     }
@@ -242,17 +240,17 @@ impl<'a> Part<'a> {
 
     /// Bounds of the magnitudes of the searched outputs over this part.
     pub(crate) fn bounds(&self) -> Searched<Bound> {
-        let Piece { model, before, load, arc, .. } = self.piece;
+        let Piece { level, before, load, arc, .. } = self.piece;
         match arc {
-            Some(arc) => model.bounds(before.phase, *load, arc),
+            Some(arc) => level.bounds(before.phase, *load, arc),
             None => self.bounds_of_leap(),
         }
     }
 
     /// Bounds of the same magnitudes that cost less.
     pub(crate) fn crude_bounds(&self) -> Searched<f64> {
-        let &Piece { model, before, load, arc, .. } = self.piece;
-        if model.is_rigid() {
+        let &Piece { level, before, load, arc, .. } = self.piece;
+        if !level.has_strut() {
             return self.bounds().map(|bound| bound.largest());
         }
         let end = &self.end.1;
@@ -265,7 +263,7 @@ impl<'a> Part<'a> {
             }
         } else {
             let start = self.step();
-            let rates = model.level.rates(before.phase, &start, end);
+            let rates = level.rates(before.phase, &start, end);
             let off_chord = start.interval * start.interval / 8.0;
             let bound =
                 |most: f64, from: f64, to: f64, bend: f64| most.min(from.abs().max(to.abs()) + bend * off_chord);
@@ -276,21 +274,20 @@ impl<'a> Part<'a> {
                 theta_dot: rates.theta_dot,
             }
         };
-        model.most(before.phase, [self.start.0, self.end.0].map(|tau| load.at(tau)), &most)
+        level.most(before.phase, [self.start.0, self.end.0].map(|tau| load.at(tau)), &most)
     }
 
     /// Bounds over a leap: a quantity whose second derivative is at most M over the time h stays within M h²/8 of its chord. It
     /// does not turn round if its rate at the start exceeds M h.
     fn bounds_of_leap(&self) -> Searched<Bound> {
-        let &Piece { model, before: &Motion { phase, .. }, load, .. } = self.piece;
-        let Model { structure, level, .. } = model;
+        let &Piece { level, before: &Motion { phase, .. }, load, .. } = self.piece;
         let (step, end, load) = (self.step(), &self.end.1, load.from(self.start.0));
         let h = step.interval;
-        let bends = model.bends(phase, load, h, &level.rates(phase, &step, end));
+        let bends = level.bends(phase, load, h, &level.rates(phase, &step, end));
         let [(_, first), (_, last)] = self.ends();
         let now = Now { state: &step.state, load: load.value, dissipators: step.dissipators };
-        let accelerations = level.accelerations(structure, phase, &now);
-        let rates = model.searched_rates(phase, &step.state, accelerations, load);
+        let accelerations = level.accelerations(phase, &now);
+        let rates = level.searched_rates(phase, &step.state, accelerations, load);
         std::array::from_fn(|i| {
             let of = |outputs: &Outputs| Measure::SEARCHED[i].of(outputs).abs();
             let ends = of(&first).max(of(&last));
@@ -323,7 +320,7 @@ impl Arcs<'_> {
             return Some(Expansion { piece, from, arc });
         }
         let arc = self.arc.get_or_insert_default();
-        piece.model.level.series(&piece.model.structure, piece.before.phase, &part.step(), arc);
+        piece.level.series(piece.before.phase, &part.step(), arc);
         self.evaluations += arc.order as u64;
         let covered = arc.duration();
         if covered < until - from && from + covered > from {
@@ -339,7 +336,8 @@ impl Arcs<'_> {
     /// within a period of an end. Without vibration (ζ ≥ 1) only the line is left in the middle.
     pub(crate) fn skip_middle(&mut self) {
         let Some(part) = &mut self.left else { return };
-        let &Piece { model: Model { structure, level, .. }, before: &Motion { phase, .. }, .. } = part.piece;
+        let &Piece { level, before: &Motion { phase, .. }, .. } = part.piece;
+        let structure = level.structure();
         let zeta = structure.parameters().zeta_fc;
         let decay = if zeta < 1.0 { 0.0 } else { 80.0 * zeta };
         let (periods, passed, until) = ((2.0 * TAU + decay) / structure.omega_fc, part.start.0, part.end.0);
@@ -348,7 +346,7 @@ impl Arcs<'_> {
         }
         let mut middle = part.step();
         middle.interval -= periods;
-        if let Some(state) = level.leap(structure, phase, &middle) {
+        if let Some(state) = level.leap(phase, &middle) {
             part.start = (until - periods, state);
         }
     }
@@ -389,7 +387,7 @@ impl Expansion<'_> {
         halvings: u32,
         show: &mut dyn FnMut(f64, &Arc, &Series),
     ) {
-        let &Piece { model, before: &Motion { phase, .. }, load, .. } = self.piece;
+        let &Piece { level, before: &Motion { phase, .. }, load, .. } = self.piece;
         match measure {
             Measure::theta => return show(from, arc, &arc.series(|k| arc.theta[k])),
             Measure::u => return show(from, arc, &arc.series(|k| arc.u[k])),
@@ -397,11 +395,11 @@ impl Expansion<'_> {
         }
         let until = from + arc.duration() / self.arc.span;
         let load = load.from(self.from + from * self.arc.span);
-        let series = measure.at(&model.terms(phase, load, arc)).series();
+        let series = measure.at(&level.terms(phase, load, arc)).series();
         if halvings > 0 {
             let off = evaluate(arc.used(&series), arc.reach) - measure.of(&self.outputs(until));
             let terms = arc.used(&series).iter().rev().fold(0.0, |sum, c| sum * arc.reach + c.abs());
-            if off.abs() > (100.0 * model.local_error).max(CONVERGED) * terms {
+            if off.abs() > (100.0 * level.subject().local_error).max(CONVERGED) * terms {
                 let middle = 0.5 * arc.reach;
                 for [start, end] in [[0.0, middle], [middle, arc.reach]] {
                     let start_on_it = from + start * arc.span / self.arc.span;

@@ -4,57 +4,89 @@
 //! elongation turns round, which is where θ̇ does. Right after it has turned its force is still F_y: it yields again only once
 //! it moves that way, so that the zeros of θ̇ at the start are divided out as those of θ are at an uplift.
 
-use crate::engine::motion::Event;
-use crate::levels::tie_series::TieSeries;
-use crate::mechanics::restraint::{Angles, Dissipators, Sum, levers};
-use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
-use crate::series::taylor::{Arc, ZERO};
-use crate::{Side, State, Structure};
+use crate::engine::motion::Motion;
+use crate::engine::phases::{BAND, Guard, Step, Way, way};
+use crate::engine::piece::Sample;
+use crate::engine::transition::TransitionKind;
+use crate::levels::level::Level;
+use crate::levels::ties::TieSeries;
+use crate::mechanics::restraint::{Dissipators, Sum, levers};
+use crate::series::first_crossing::{self, Crossing, first_time_all_closed};
+use crate::series::taylor::ZERO;
+use crate::{Side, Structure};
 
 /// Rotation at which a dissipator would begin to yield as the base comes down, as a fraction of the rotation that takes it from 0 to
 /// F_y, below which the impact comes first. A dissipator that has yielded up to an impact returns to F_y at the next one: rounding
 /// alone would decide.
 const AT_CONTACT: f64 = 1e-10;
 
-/// The first instant of `arc`, rocking about `side`, at which one of the `dissipators` begins to yield or ceases to, and which.
-pub(crate) fn first(
-    structure: &Structure,
-    side: Side,
-    angles: Angles,
-    dissipators: &Dissipators,
-    arc: &Arc,
-) -> (Crossing, Event) {
-    let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
-    let mut found = (Crossing::None, Event::Unloading(0));
-    let theta_dot = arc.used(&arc.theta_dot);
-    let Some(zeros) = theta_dot.iter().position(|c| c.is_normal()).filter(|_| F_y > 0.0) else { return found };
-    let mut see = |crossing: Crossing, event| {
-        if crossing.sigma() < found.0.sigma() {
-            found = (crossing, event);
-        }
-    };
-    for (j, lever) in moving(structure, side) {
-        // positive while it moves that way
-        let moves = |way: f64| Guard::new(&theta_dot[zeros..], (way * lever).signum(), 0.0);
-        match dissipators.yields[j] {
-            0 => {
-                for way in [1_i8, -1] {
-                    let elongation = dissipators.plastic[j] + f64::from(way) * F_y / k_d;
-                    let Some(theta) = angles.rotation(elongation / lever) else { continue };
-                    let towards = (f64::from(way) * lever).signum();
-                    let is_at_contact = theta.abs() <= AT_CONTACT * (F_y / (k_d * lever)).abs();
-                    if is_at_contact && towards != side.sign() {
-                        continue;
-                    }
-                    let is_less = Guard::new(arc.used(&arc.theta), -towards, towards * theta);
-                    let moves_back = moves(-f64::from(way));
-                    see(first_time_all_closed([is_less, moves_back], arc.reach), Event::Yielding(j as u8, way));
-                }
+/// A dissipator begins to yield, pulled or pressed by the sign, or ceases to, where the sign is 0.
+pub(crate) struct Yielding;
+
+/// Whether `structure` has dissipators that yield.
+#[inline]
+pub(crate) fn is_possible(structure: &Structure) -> bool {
+    structure.parameters().F_y > 0.0
+}
+
+impl Guard for Yielding {
+    fn first(&self, &Step { level, side, start, arc, reach }: &Step) -> (Crossing, Way) {
+        let (structure, dissipators) = (level.structure(), start.dissipators);
+        let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
+        let mut found = (Crossing::None, Way::default());
+        let theta_dot = arc.used(&arc.theta_dot);
+        let Some(zeros) = theta_dot.iter().position(|c| c.is_normal()).filter(|_| F_y > 0.0) else { return found };
+        let mut see = |crossing: Crossing, j: usize, sign: i8| {
+            if crossing.sigma() < found.0.sigma() {
+                found = (crossing, Way { which: j as u8, sign });
             }
-            way => see(first_time_all_closed([moves(f64::from(way))], arc.reach), Event::Unloading(j as u8)),
+        };
+        for (j, lever) in moving(structure, side) {
+            // positive while it moves that way
+            let moves = |way: f64| first_crossing::Guard::new(&theta_dot[zeros..], (way * lever).signum(), 0.0);
+            match dissipators.yields[j] {
+                0 => {
+                    for way in [1_i8, -1] {
+                        let elongation = dissipators.plastic[j] + f64::from(way) * F_y / k_d;
+                        let Some(theta) = level.angles().rotation(elongation / lever) else { continue };
+                        let towards = (f64::from(way) * lever).signum();
+                        let is_at_contact = theta.abs() <= AT_CONTACT * (F_y / (k_d * lever)).abs();
+                        if is_at_contact && towards != side.sign() {
+                            continue;
+                        }
+                        let is_less = first_crossing::Guard::new(arc.used(&arc.theta), -towards, towards * theta);
+                        let moves_back = moves(-f64::from(way));
+                        see(first_time_all_closed([is_less, moves_back], reach), j, way);
+                    }
+                }
+                way => see(first_time_all_closed([moves(f64::from(way))], reach), j, 0),
+            }
         }
+        found
     }
-    found
+
+    fn apply(&self, _level: &dyn Level, motion: &mut Motion, way: Way) -> TransitionKind {
+        let which = usize::from(way.which);
+        motion.dissipators.yields[which] = way.sign;
+        if way.sign != 0 {
+            return TransitionKind::Yielding(which);
+        }
+        motion.state.theta_dot = 0.0; // it ceases to yield where the elongation turns round
+        TransitionKind::Unloading(which)
+    }
+
+    fn stays_open(&self, now: &Sample, ahead: f64) -> bool {
+        if !is_possible(now.level.structure()) {
+            return true;
+        }
+        let [_, theta_ddot] = now.accelerations();
+        let changes = [now.motion.state.theta_dot, 2.0 * theta_ddot].map(|rate| way(ahead, rate));
+        least_margin(now, changes) > 0.0
+    }
+
+    fn indicator(&self, now: &Sample) -> (usize, f64) {
+        (1, least_margin(now, [0.0; 2]) + BAND)
+    }
 }
 
 /// The dissipators, by number, with their levers about `side`; without one at the pivot, which rocking does not elongate.
@@ -62,27 +94,11 @@ fn moving(structure: &Structure, side: Side) -> impl Iterator<Item = (usize, f64
     levers(structure, side).into_iter().enumerate().filter(|(_, lever)| *lever != 0.0)
 }
 
-/// Distance of the `dissipators` from beginning to yield, as a fraction of F_y, or from ceasing to, as a fraction of p_l α_cg: the
-/// smallest, for a structure that rocks about `side` in `state`.
-pub(crate) fn margin(
-    structure: &Structure,
-    side: Side,
-    angles: Angles,
-    dissipators: &Dissipators,
-    state: &State,
-) -> f64 {
-    least_margin(structure, side, angles, dissipators, state, [0.0; 2])
-}
-
-/// [`margin`] less what changes of θ and θ̇ by at most `changes` (rad, rad/s) can take of it.
-pub(crate) fn least_margin(
-    structure: &Structure,
-    side: Side,
-    angles: Angles,
-    dissipators: &Dissipators,
-    state: &State,
-    changes: [f64; 2],
-) -> f64 {
+/// Distance of the dissipators from beginning to yield, as a fraction of F_y, or from ceasing to, as a fraction of p_l α_cg: the
+/// smallest, less the most that changes of θ and θ̇ by `changes` (rad, rad/s) can take of it.
+fn least_margin(now: &Sample, changes: [f64; 2]) -> f64 {
+    let (structure, Motion { phase, state, dissipators, .. }) = (now.level.structure(), &now.motion);
+    let (side, angles) = (phase.side(), now.level.angles());
     let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
     let chord = angles.chord(state.theta, 0.0).length;
     let of = |(j, lever): (usize, f64)| match f64::from(dissipators.yields[j]) {
@@ -96,15 +112,12 @@ pub(crate) fn least_margin(
     moving(structure, side).map(of).fold(1.0, f64::min)
 }
 
-/// The `dissipators` at σ = `reach` of `arc`, rocking about `side`.
-pub(crate) fn moved(
-    structure: &Structure,
-    side: Side,
-    angles: Angles,
-    dissipators: &Dissipators,
-    arc: &Arc,
-    reach: f64,
-) -> Dissipators {
+/// The dissipators at the reach of a step, if there are any.
+pub(crate) fn moved(&Step { level, side, start, arc, reach }: &Step) -> Option<Dissipators> {
+    let (structure, angles, dissipators) = (level.structure(), level.angles(), start.dissipators);
+    if !structure.is_restrained() {
+        return None;
+    }
     let &crate::Parameters { B, xi_d, c_d, k_d, F_y, .. } = structure.parameters();
     let (mut moved, theta) = (*dissipators, arc.at(reach).theta);
     for (j, lever) in levers(structure, side).into_iter().enumerate() {
@@ -120,7 +133,7 @@ pub(crate) fn moved(
         let squared = square_integral(arc.used(&rate), reach) * arc.span;
         moved.viscous += 2.0 * c_d * (B * B + xi_d * xi_d) * squared;
     }
-    moved
+    Some(moved)
 }
 
 /// ∫ (Σ c_k σᵏ)² dσ from 0 to `reach`.

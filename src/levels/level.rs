@@ -1,12 +1,12 @@
-//! What a level of detail has to tell of the motion: its equations, its condition of uplift, its rule of impact.
+//! A level of detail as the engine uses it: equations, uplift, impact, and exact leaps where there are any.
 
 use crate::levels::rules::{ChatterLimit, MAX_TRANSITIONS_PER_PERIOD};
 use crate::mechanics::impact;
-use crate::mechanics::load::Load;
+use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::restraint::{Angles, Dissipators};
 use crate::mechanics::uplift::{self, TurningMoment};
 use crate::series::first_crossing::Crossing;
-use crate::series::taylor::{Arc, Start};
+use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation};
 use crate::{Phase, Side, State, Structure};
 use std::f64::consts::TAU;
 
@@ -14,59 +14,96 @@ use std::f64::consts::TAU;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Now<'a> {
     pub state: &'a State,
-    /// What acts.
     pub load: Load,
     pub dissipators: &'a Dissipators,
 }
 
-/// What moves a structure. Where nothing else is said it is as at the levels with an elastic strut.
-pub(crate) trait Level {
-    /// The state at the end of `start` where it is known exactly and no transition can happen until then.
-    fn leap(&self, structure: &Structure, phase: Phase, start: &Start) -> Option<State>;
+/// The structure that a level moves, and how it is moved.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Subject {
+    pub structure: Structure,
+    /// Truncation error that a step may have.
+    pub local_error: f64,
+    /// Whether the structure is restrained or shaken vertically: its equations of rocking then have more terms.
+    pub is_tied: bool,
+}
 
-    /// Bounds of what changes on such a leap from `start` to `end`.
+impl Subject {
+    /// The step of `interval` (s) from `state` under `load`.
+    #[inline]
+    pub(crate) fn start<'a>(
+        &self,
+        state: State,
+        dissipators: &'a Dissipators,
+        load: LinearLoad,
+        interval: f64,
+    ) -> Start<'a> {
+        let (a_g, a_top, a_v) = (load.on_foundation(), load.on_top(&self.structure), load.upwards());
+        Start { state, a_g, a_top, a_v, dissipators, interval, local_error: self.local_error }
+    }
+}
+
+/// The level of detail of a structure. The provided methods are those of an elastic strut. Without the methods about uplift the
+/// base stays on the ground.
+pub(crate) trait Level {
+    fn subject(&self) -> &Subject;
+
+    fn structure(&self) -> &Structure {
+        &self.subject().structure
+    }
+
+    /// The state at the end of `start`, if it is known exactly and no transition can happen until then.
+    fn leap(&self, phase: Phase, start: &Start) -> Option<State>;
+
+    /// Bounds of the motion over such a leap from `start` to `end`.
     fn rates(&self, phase: Phase, start: &Start, end: &State) -> Rates;
 
-    /// Writes the motion from `start` in `phase` into `arc`; there is none once overturned.
-    fn series(&self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc);
+    /// Writes the motion from `start` in `phase` into `arc`.
+    fn series(&self, phase: Phase, start: &Start, arc: &mut Arc);
 
     /// Whether the equations of rocking are about to have no solution.
-    fn is_singular(&self, _structure: &Structure, _phase: Phase, _state: &State) -> bool {
+    fn is_singular(&self, _phase: Phase, _state: &State) -> bool {
         false
     }
 
-    /// How the ties of a restrained structure elongate; none where nothing restrains it.
-    fn ties(&self) -> Option<Angles> {
-        None
+    /// The angles at which the ties elongate.
+    fn angles(&self) -> Angles {
+        Angles::Any
     }
 
     /// The first instant of `arc`, a motion in full contact from `start`, at which uplift is due, and about which side.
-    fn first_uplift(&self, structure: &Structure, start: &Start, arc: &Arc) -> (Crossing, Side);
+    fn first_uplift(&self, _start: &Start, _arc: &Arc) -> (Crossing, Side) {
+        (Crossing::None, Side::Right)
+    }
 
     /// The |u| (m) below which the base stays down over the interval of `start`, whatever pushes the top mass.
-    fn least_displacement(&self, structure: &Structure, start: &Start) -> f64;
+    fn least_displacement(&self, _start: &Start) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Distance of a structure in full contact from uplift, as a fraction of the demand for uplift, and the side of that uplift.
+    /// The distance is continuous, and uplift is due if it is not positive.
+    fn uplift_margin(&self, _now: &Now) -> (f64, Side) {
+        (1.0, Side::Right)
+    }
 
     /// Whether a structure in full contact in `state` stays there while nothing acts on it.
-    fn stays_down(&self, structure: &Structure, state: &State, dissipators: &Dissipators) -> bool {
+    fn stays_down(&self, state: &State, dissipators: &Dissipators) -> bool {
         let at_rest = Start { dissipators, ..Start::default() };
-        uplift::farthest(structure, state) < self.least_displacement(structure, &at_rest)
+        uplift::farthest(self.structure(), state) < self.least_displacement(&at_rest)
     }
-
-    /// How far a structure in full contact is from uplift, in parts of what uplift takes, and about which side that would be:
-    /// continuous, positive while the base stays down, due where it is not.
-    fn uplift_margin(&self, structure: &Structure, now: &Now) -> (f64, Side);
 
     /// Phase and state just after an impact that ends rocking about `side` in the state `before`.
-    fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
-        impact::resolve(structure, side, before)
+    fn after_impact(&self, side: Side, before: &State) -> (Phase, State) {
+        impact::resolve(self.structure(), side, before)
     }
 
-    /// How many transitions may happen how fast.
-    fn chatter_limit(&self, structure: &Structure) -> ChatterLimit {
-        ChatterLimit { period: TAU / structure.omega_u, transitions: MAX_TRANSITIONS_PER_PERIOD }
+    /// The most transitions that may happen within a period.
+    fn chatter_limit(&self) -> ChatterLimit {
+        ChatterLimit { period: TAU / self.structure().omega_u, transitions: MAX_TRANSITIONS_PER_PERIOD }
     }
 
-    /// `state` with what does not move in `phase` at rest in its place.
+    /// `state`, with 0 for all that cannot move in `phase`.
     fn admissible(&self, phase: Phase, state: State) -> State {
         match phase {
             Phase::FullContact => State { theta: 0.0, theta_dot: 0.0, ..state },
@@ -75,11 +112,13 @@ pub(crate) trait Level {
     }
 
     /// (ü, θ̈) in `phase`, m/s² and rad/s²; not a number where the equations have no solution.
-    fn accelerations(&self, structure: &Structure, phase: Phase, now: &Now) -> [f64; 2];
+    fn accelerations(&self, phase: Phase, now: &Now) -> [f64; 2];
 }
 
 /// Equations of rocking with an elastic strut.
 pub(crate) trait ElasticRocking {
+    fn subject(&self) -> &Subject;
+
     fn leap(&self, _side: Side, _start: &Start) -> Option<State> {
         None
     }
@@ -88,21 +127,63 @@ pub(crate) trait ElasticRocking {
         Rates::NONE
     }
 
-    fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc);
+    fn series(&self, side: Side, start: &Start, arc: &mut Arc);
 
-    fn is_singular(&self, _structure: &Structure, _side: Side, _state: &State) -> bool {
+    fn is_singular(&self, _side: Side, _state: &State) -> bool {
         false
     }
 
-    /// As [`Level::ties`].
-    fn ties(&self) -> Option<Angles> {
-        None
+    fn angles(&self) -> Angles {
+        Angles::Any
     }
 
-    /// What decides the sign of θ̈ at the start of rocking.
-    fn turning_moment(&self, structure: &Structure) -> TurningMoment;
+    /// The moment that gives the sign of θ̈ at the start of rocking.
+    fn turning_moment(&self) -> TurningMoment {
+        TurningMoment::new(&self.subject().structure)
+    }
 
-    fn accelerations(&self, structure: &Structure, side: Side, now: &Now) -> [f64; 2];
+    fn accelerations(&self, side: Side, now: &Now) -> [f64; 2];
+}
+
+/// The length and the accuracy of steps while a structure with an elastic strut rocks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pace {
+    /// The longest span that a series is tried over, s.
+    longest_span: f64,
+    /// ω_u, rad/s.
+    omega: f64,
+    /// g tan α_cg, m/s².
+    gravity: f64,
+    height: f64,
+}
+
+impl Pace {
+    /// The pace of `structure`. Restraints make it stiffer, and may damp it faster than it vibrates.
+    pub(crate) fn new(structure: &Structure) -> Pace {
+        let &crate::Parameters { m, H, B, g, k_t, xi_d, c_d, k_d, .. } = structure.parameters();
+        let &Structure { omega_u, p_l, foundation, tan_alpha_cg, .. } = structure;
+        let (inertia, pair) = (m * (foundation + B * B), 2.0 * (B * B + xi_d * xi_d));
+        let stiffness = k_t * B * B + k_d * pair;
+        let fastest = (omega_u * omega_u + stiffness / inertia).sqrt().max(p_l).max(c_d * pair / inertia);
+        Pace { longest_span: LONGEST_SPAN / fastest, omega: omega_u, gravity: g * tan_alpha_cg, height: H }
+    }
+
+    /// The span of a series from `start`, s.
+    #[inline]
+    pub(crate) fn span(&self, start: &Start) -> f64 {
+        start.interval.min(self.longest_span)
+    }
+
+    /// The truncation that `start` requires over a step of `span` s.
+    #[inline]
+    pub(crate) fn truncation(&self, start: &Start, span: f64) -> Truncation {
+        let &Start { state, a_top, local_error, .. } = start;
+        let response_time = span.min(1.0 / self.omega);
+        let forcing = a_top.value.abs() + a_top.slope.abs() * span + self.gravity;
+        let u_dot = state.u_dot.abs() + response_time * (self.omega * self.omega * state.u.abs() + forcing);
+        let theta_dot = state.theta_dot.abs() + u_dot / self.height;
+        Truncation { u_dot: local_error * u_dot, theta_dot: local_error * theta_dot }
+    }
 }
 
 /// Bounds of |u|, |θ| and their derivatives over an exact leap.
@@ -118,7 +199,7 @@ pub(crate) struct Rates {
 }
 
 impl Rates {
-    /// Nothing is known.
+    /// No bounds.
     pub(crate) const NONE: Rates = {
         const ANY: f64 = f64::INFINITY;
         Rates { u: ANY, u_dot: ANY, u_ddot: ANY, u_dddot: ANY, theta: ANY, theta_dot: ANY, theta_ddot: ANY }

@@ -14,11 +14,10 @@
 //! A force F_t on the top mass makes a_g − F_t/m of a_g. Under loads that are linear in time the exact solution is a
 //! matrix exponential, kept for the step lengths used last; series serve the steps on which a transition may happen.
 
-use crate::levels::level::{ElasticRocking, Now, Rates};
+use crate::levels::level::{ElasticRocking, Now, Pace, Rates, Subject};
 use crate::levels::linear_system::{LinearSystem, Row};
-use crate::levels::nonlinear::{longest_restrained_span, truncation};
 use crate::levels::oscillator::Kept;
-use crate::levels::tie_series::TieSeries;
+use crate::levels::ties::TieSeries;
 use crate::mechanics::restraint::{Angles, Sum};
 use crate::mechanics::uplift::TurningMoment;
 use crate::series::taylor::{Arc, Series, Start};
@@ -35,6 +34,8 @@ type Flow = SMatrix<f64, 4, 7>;
 /// Exact propagation by Eqs 7 and 8.
 #[derive(Clone, Debug)]
 pub(crate) struct LinearRocking {
+    subject: Subject,
+    pace: Pace,
     pub(crate) system: LinearSystem,
     /// Flows, and the [`amplification`] over the same time.
     flows: Kept<(Flow, f64)>,
@@ -50,8 +51,8 @@ pub(crate) struct LinearRocking {
 }
 
 impl LinearRocking {
-    /// For `structure`.
-    pub(crate) fn new(structure: &Structure) -> LinearRocking {
+    pub(crate) fn new(subject: Subject) -> LinearRocking {
+        let structure = &subject.structure;
         let &crate::Parameters { H, B, g, .. } = structure.parameters();
         let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
         let inertia = foundation + B * B;
@@ -72,6 +73,8 @@ impl LinearRocking {
         let omega = (-u_ddot.u).sqrt();
         let turning_per_speed = theta_ddot.u / omega + theta_ddot.u_dot;
         LinearRocking {
+            subject,
+            pace: Pace::new(structure),
             system: LinearSystem { u_ddot, theta_ddot },
             flows: Kept::new((Flow::zeros(), 1.0)),
             omega,
@@ -137,13 +140,22 @@ struct Swing {
 }
 
 impl ElasticRocking for LinearRocking {
+    #[inline(always)]
+    fn subject(&self) -> &Subject {
+        &self.subject
+    }
+
+    fn angles(&self) -> Angles {
+        Angles::Small
+    }
+
     /// The state after the interval of `start` if rocking about `side` certainly goes on until then: θ is no farther
     /// from its chord than |θ̈| h²/8, and no closer to 0 than the Bernstein coefficients of its cubic but for what it leaves
     /// that.
     #[inline(always)]
     fn leap(&self, side: Side, start: &Start) -> Option<State> {
         let &Start { state: State { u, u_dot, theta, theta_dot }, a_top, interval: h, .. } = start;
-        if self.omega * h > LONGEST_LEAP {
+        if self.subject.is_tied || self.omega * h > LONGEST_LEAP {
             return None;
         }
         let (system, omega, feedback) = (&self.system, self.omega, self.feedback);
@@ -167,59 +179,46 @@ impl ElasticRocking for LinearRocking {
         if swing.turning < f64::INFINITY { self.rates_of(start, &swing) } else { Rates::NONE }
     }
 
-    fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
-        self.system.series(structure, side, start, arc);
-    }
-
-    fn turning_moment(&self, _structure: &Structure) -> TurningMoment {
-        self.system.turning_moment()
-    }
-
-    fn accelerations(&self, structure: &Structure, side: Side, now: &Now) -> [f64; 2] {
-        self.system.accelerations(side, now.state, now.load.on_top(structure))
-    }
-}
-
-/// Series by Eqs 7 and 8 of a structure that is restrained or shaken vertically: g is g + a_v, linear in time, and the ties
-/// take their moment from Eq 8,
-///
-/// ```text
-/// θ̈ = [H κ + (g + a_v) u − s γ (g + a_v) B − Σ F l/m]/i,      ü = −a_g + (g + a_v) θ − κ − H θ̈
-/// ```
-#[derive(Clone, Debug)]
-pub(crate) struct RestrainedLinear;
-
-impl ElasticRocking for RestrainedLinear {
-    fn ties(&self) -> Option<Angles> {
-        Some(Angles::Small)
-    }
-
-    fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
-        let &Start { state, a_top, a_v, interval, dissipators, .. } = start;
-        let span = interval.min(longest_restrained_span(structure));
+    /// The series by Eqs 7 and 8. If the structure is restrained or shaken vertically, g is g + a_v, linear in time, and the ties
+    /// take their moment from Eq 8:
+    ///
+    /// ```text
+    /// θ̈ = [H κ + (g + a_v) u − s γ (g + a_v) B − Σ F l/m]/i,      ü = −a_g + (g + a_v) θ − κ − H θ̈
+    /// ```
+    fn series(&self, side: Side, start: &Start, arc: &mut Arc) {
+        let &Subject { ref structure, is_tied, .. } = &self.subject;
+        if !is_tied {
+            return self.system.series(&self.pace, side, start, arc);
+        }
+        let &Start { state, a_top, a_v, dissipators, .. } = start;
+        let span = self.pace.span(start);
         let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
         let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
         let (inertia, offset) = (foundation + B * B, side.sign() * gamma * B);
         let gravity = [g + a_v.value, a_v.slope * span];
-        let mut held = TieSeries::new(Sum::of_moments(structure, side, dissipators), Angles::Small, state.theta);
-        arc.expand(&state, span, truncation(structure, start, span), |arc, k, per| {
+        let mut ties = TieSeries::new(Sum::of_moments(structure, side, dissipators), Angles::Small, state.theta);
+        arc.expand(&state, span, self.pace.truncation(start, span), |arc, k, per| {
             let n = k - 1;
             let weighted = |of: &Series| gravity[0] * of[n] + if n > 0 { gravity[1] * of[n - 1] } else { 0.0 };
             let elastic = damping_u * arc.u_dot[n] + stiffness * arc.u[n];
             let down = gravity.get(n).map_or(0.0, |weight| offset * weight);
-            let back = held.next(&arc.theta_dot, n, per) / m;
+            let back = ties.next(&arc.theta_dot, n, per) / m;
             let theta_ddot = (H * elastic + weighted(&arc.u) - down - back) / inertia;
             let u_ddot = weighted(&arc.theta) - a_top.coefficient(n, span) - elastic - H * theta_ddot;
             (u_ddot * per, theta_ddot * per)
         });
     }
 
-    fn turning_moment(&self, structure: &Structure) -> TurningMoment {
-        TurningMoment::new(structure)
+    fn turning_moment(&self) -> TurningMoment {
+        if self.subject.is_tied { TurningMoment::new(&self.subject.structure) } else { self.system.turning_moment() }
     }
 
-    fn accelerations(&self, structure: &Structure, side: Side, now: &Now) -> [f64; 2] {
+    fn accelerations(&self, side: Side, now: &Now) -> [f64; 2] {
         let &Now { state, load, dissipators } = now;
+        let &Subject { ref structure, is_tied, .. } = &self.subject;
+        if !is_tied {
+            return self.system.accelerations(side, state, load.on_top(structure));
+        }
         let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
         let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
         let &State { u, u_dot, theta, theta_dot } = state;
@@ -278,7 +277,7 @@ mod tests {
     fn the_accelerations_satisfy_equations_7_and_8() {
         let structure = Structure::new(Parameters::MCMANUS).unwrap();
         let &Parameters { m, H, B, g, .. } = structure.parameters();
-        let system = LinearRocking::new(&structure).system;
+        let system = LinearRocking::new(Subject { structure, local_error: 1e-9, is_tied: false }).system;
         let (side, a_g) = (Side::Left, 0.8);
         let distance = |scale: f64| {
             let state = State { u: 1e-3 * scale, u_dot: 0.1 * scale, theta: -0.01 * scale, theta_dot: 0.05 * scale };

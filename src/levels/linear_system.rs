@@ -5,10 +5,10 @@
 //! θ̈ = T_u u + T_u̇ u̇ + T_θ θ + T_a (a_g − F_t/m) + s T_s
 //! ```
 
-use crate::levels::nonlinear::{longest_span, truncation};
+use crate::levels::level::Pace;
 use crate::mechanics::uplift::TurningMoment;
 use crate::series::taylor::{Arc, Start};
-use crate::{Side, State, Structure};
+use crate::{Side, State};
 
 /// One of the two equations: the coefficients of u, u̇, θ, a_g − F_t/m and s.
 #[derive(Clone, Copy, Debug)]
@@ -45,14 +45,14 @@ impl LinearSystem {
     }
 
     /// Writes the motion from `start` about `side` into `arc`.
-    pub(crate) fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
-        let &Start { state, a_top, interval, .. } = start;
-        let span = interval.min(longest_span(structure));
+    pub(crate) fn series(&self, pace: &Pace, side: Side, start: &Start, arc: &mut Arc) {
+        let &Start { state, a_top, .. } = start;
+        let span = pace.span(start);
         let rows = [&self.u_ddot, &self.theta_ddot];
         let mut forcing = rows.map(|row| row.forcing(a_top.value, side.sign()));
         let mut next_forcing = rows.map(|row| row.forcing(a_top.slope * span, 0.0));
         let mut u_dot = state.u_dot;
-        arc.expand(&state, span, truncation(structure, start, span), |arc, k, per| {
+        arc.expand(&state, span, pace.truncation(start, span), |arc, k, per| {
             let (u, theta) = (arc.u[k - 1], arc.theta[k - 1]);
             // what the last order of u̇ adds comes last: only that has to be waited for
             let [u_rate, theta_rate] = [0, 1].map(|i| {

@@ -9,7 +9,7 @@
 //! A force F_t on the top mass makes a_g − F_t/m of a_g. Both have closed forms under loads that are linear in time;
 //! series serve the steps on which a transition may happen, from the same equations written for θ = q_r − (p_l²/g) u.
 
-use crate::levels::level::{ElasticRocking, Now, Rates};
+use crate::levels::level::{ElasticRocking, Now, Pace, Rates, Subject};
 use crate::levels::linear_system::{LinearSystem, Row};
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
 use crate::mechanics::uplift::TurningMoment;
@@ -20,6 +20,8 @@ use std::f64::consts::FRAC_PI_2;
 /// Propagation by the closed forms of Eqs 11 and 18.
 #[derive(Clone, Debug)]
 pub(crate) struct ModalRocking {
+    subject: Subject,
+    pace: Pace,
     pub(crate) system: LinearSystem,
     vibration: Oscillator,
     /// (χ/(1−χ)) g tan α_cg, m/s².
@@ -56,8 +58,8 @@ impl Growth {
 }
 
 impl ModalRocking {
-    /// For `structure`.
-    pub(crate) fn new(structure: &Structure) -> ModalRocking {
+    pub(crate) fn new(subject: Subject) -> ModalRocking {
+        let structure = &subject.structure;
         let &Structure { p_l, omega_u, zeta_u, tan_alpha_cg, chi, one_minus_chi, .. } = structure;
         let g = structure.parameters().g;
         let gravity_forcing = chi / one_minus_chi * g * tan_alpha_cg;
@@ -77,6 +79,8 @@ impl ModalRocking {
             side: -p_l * p_l * tan_alpha_cg - shape * gravity_forcing,
         };
         ModalRocking {
+            subject,
+            pace: Pace::new(structure),
             system: LinearSystem { u_ddot, theta_ddot },
             vibration: Oscillator { omega: omega_u, zeta: zeta_u },
             gravity_forcing,
@@ -89,6 +93,11 @@ impl ModalRocking {
 }
 
 impl ElasticRocking for ModalRocking {
+    #[inline(always)]
+    fn subject(&self) -> &Subject {
+        &self.subject
+    }
+
     /// The state after the interval of `start` if rocking about `side` certainly goes on until then.
     ///
     /// q_r leaves the line that follows the load by a hyperbolic arc, which is farthest from it at an end and bounds
@@ -145,16 +154,16 @@ impl ElasticRocking for ModalRocking {
         }
     }
 
-    fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
-        self.system.series(structure, side, start, arc);
+    fn series(&self, side: Side, start: &Start, arc: &mut Arc) {
+        self.system.series(&self.pace, side, start, arc);
     }
 
-    fn turning_moment(&self, _structure: &Structure) -> TurningMoment {
+    fn turning_moment(&self) -> TurningMoment {
         self.system.turning_moment()
     }
 
-    fn accelerations(&self, structure: &Structure, side: Side, now: &Now) -> [f64; 2] {
-        self.system.accelerations(side, now.state, now.load.on_top(structure))
+    fn accelerations(&self, side: Side, now: &Now) -> [f64; 2] {
+        self.system.accelerations(side, now.state, now.load.on_top(&self.subject.structure))
     }
 }
 
@@ -172,7 +181,9 @@ mod tests {
         let g = structure.parameters().g;
         let state = State { u: 8e-4, u_dot: -0.03, theta: 0.02, theta_dot: 0.3 };
         let (s, a_g) = (1.0, -2.5);
-        let [u_ddot, theta_ddot] = ModalRocking::new(&structure).system.accelerations(Side::Right, &state, a_g);
+        let [u_ddot, theta_ddot] = ModalRocking::new(Subject { structure, local_error: 1e-9, is_tied: false })
+            .system
+            .accelerations(Side::Right, &state, a_g);
         let forcing = -a_g + s * chi / (1.0 - chi) * g * tan_alpha_cg;
         let left = u_ddot + 2.0 * zeta_u * omega_u * state.u_dot + omega_u * omega_u * state.u;
         assert_relative_eq!(left, forcing, max_relative = 1e-12);

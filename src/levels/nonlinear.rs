@@ -23,12 +23,11 @@
 //! Of a restrained structure, or one shaken vertically, g is g + a_v, linear in time, and the moment of the ties
 //! ([`restraint`](crate::mechanics::restraint)) over m is taken from L̇.
 
-use crate::levels::level::{ElasticRocking, Now};
-use crate::levels::tie_series::TieSeries;
+use crate::levels::level::{ElasticRocking, Now, Pace, Subject};
+use crate::levels::ties::TieSeries;
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{Angles, Dissipators, Sum};
-use crate::mechanics::uplift::TurningMoment;
-use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
+use crate::series::taylor::{Arc, MAX_ORDER, Start};
 use crate::{Side, State, Structure};
 use nalgebra::{Matrix2, Vector2};
 use std::cell::RefCell;
@@ -120,47 +119,60 @@ fn products(a: &Factors, b: &Factors, newest_a: &Row, newest_b: &Row, n: usize) 
 /// of order i ("next": of order i + 1). Column by column they multiply to the rates of sin θ and −cos θ, to what the
 /// later coefficients of w contribute to w θ̇ and w² θ̇, to w θ̇² and to the moment of the top mass's weight.
 #[derive(Clone, Debug)]
-pub(crate) struct NonlinearRocking<const RESTRAINED: bool> {
+pub(crate) struct NonlinearRocking {
+    subject: Subject,
+    pace: Pace,
     /// Left and right.
     factors: RefCell<[Factors; 2]>,
 }
 
-impl<const RESTRAINED: bool> Default for NonlinearRocking<RESTRAINED> {
-    fn default() -> Self {
-        NonlinearRocking { factors: RefCell::new([[NO_ROW; MAX_ORDER + 1]; 2]) }
+impl NonlinearRocking {
+    pub(crate) fn new(subject: Subject) -> NonlinearRocking {
+        let factors = RefCell::new([[NO_ROW; MAX_ORDER + 1]; 2]);
+        NonlinearRocking { subject, pace: Pace::new(&subject.structure), factors }
     }
 }
 
-impl<const RESTRAINED: bool> ElasticRocking for NonlinearRocking<RESTRAINED> {
-    fn ties(&self) -> Option<Angles> {
-        RESTRAINED.then_some(Angles::Any)
+impl ElasticRocking for NonlinearRocking {
+    #[inline(always)]
+    fn subject(&self) -> &Subject {
+        &self.subject
     }
 
-    fn is_singular(&self, structure: &Structure, side: Side, state: &State) -> bool {
+    fn is_singular(&self, side: Side, state: &State) -> bool {
+        let structure = &self.subject.structure;
         let (foundation, B) = (structure.foundation, structure.parameters().B);
         let lever = side.sign() * B - state.u;
         foundation + lever * lever < LEAST_INERTIA * (foundation + B * B)
     }
 
-    fn turning_moment(&self, structure: &Structure) -> TurningMoment {
-        TurningMoment::new(structure)
-    }
-
-    fn accelerations(&self, structure: &Structure, side: Side, now: &Now) -> [f64; 2] {
+    fn accelerations(&self, side: Side, now: &Now) -> [f64; 2] {
         let &Now { state, load, dissipators } = now;
-        accelerations(structure, side, state, load, dissipators).map_or([f64::NAN; 2], Into::into)
+        accelerations(&self.subject.structure, side, state, load, dissipators).map_or([f64::NAN; 2], Into::into)
     }
 
     #[inline(always)]
-    fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
-        let &Start { state, a_g, a_top, interval, .. } = start;
+    fn series(&self, side: Side, start: &Start, arc: &mut Arc) {
+        if self.subject.is_tied {
+            self.expand::<true>(side, start, arc)
+        } else {
+            self.expand::<false>(side, start, arc)
+        }
+    }
+}
+
+impl NonlinearRocking {
+    /// Writes the motion into `arc`. The structure is `TIED` or not throughout a step, and most are not.
+    #[inline(always)]
+    fn expand<const TIED: bool>(&self, side: Side, start: &Start, arc: &mut Arc) {
+        let &Start { state, a_g, a_top, .. } = start;
+        let structure = &self.subject.structure;
         let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
         let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
-        let longest = if RESTRAINED { longest_restrained_span(structure) } else { longest_span(structure) };
-        let span = interval.min(longest);
-        // g + a_v now, and what it gains over the span
-        let (g, lift) = if RESTRAINED { (g + start.a_v.value, start.a_v.slope * span) } else { (g, 0.0) };
-        let mut held = RESTRAINED.then(|| {
+        let span = self.pace.span(start);
+        // g + a_v now, and its gain over the span
+        let (g, lift) = if TIED { (g + start.a_v.value, start.a_v.slope * span) } else { (g, 0.0) };
+        let mut ties = TIED.then(|| {
             let sum = Sum::of_moments(structure, side, start.dissipators);
             TieSeries::new(sum, Angles::Any, state.theta)
         });
@@ -181,7 +193,7 @@ impl<const RESTRAINED: bool> ElasticRocking for NonlinearRocking<RESTRAINED> {
         let mut newest_left = row([theta_dot, theta_dot, theta_dot, lever * theta_dot, lever * theta_dot, lever]);
         let mut theta_dot = theta_dot;
 
-        let truncation = truncation(structure, start, span);
+        let truncation = self.pace.truncation(start, span);
         arc.expand(&state, span, truncation, |arc, k, per| {
             let before = k - 1;
             let newest_right = row([cos, sin, -arc.u[k], -arc.u[k], theta_dot, weight]);
@@ -192,8 +204,8 @@ impl<const RESTRAINED: bool> ElasticRocking for NonlinearRocking<RESTRAINED> {
             let y = (along - elastic - centrifugal) * per;
             let mut moment =
                 (height * elastic - offset * weight_below) + (height * centrifugal - per_inertia * weight_moment);
-            if RESTRAINED && let Some(held) = &mut held {
-                moment -= per_inertia / m * held.next(&arc.theta_dot, before, per);
+            if TIED && let Some(ties) = &mut ties {
+                moment -= per_inertia / m * ties.next(&arc.theta_dot, before, per);
             }
             theta_dot = moment * per - (lever_start * w_turning + per_inertia * w_w_turning);
             let u_dot = y - H * theta_dot;
@@ -204,7 +216,7 @@ impl<const RESTRAINED: bool> ElasticRocking for NonlinearRocking<RESTRAINED> {
             weight = g * cos + a * sin + slope * sin_before;
             weight_below = g * cos + a_ground * sin + slope_ground * sin_before;
             along = g * sin - a * cos - slope * cos_before;
-            if RESTRAINED {
+            if TIED {
                 weight += lift * cos_before;
                 weight_below += lift * cos_before;
                 along += lift * sin_before;
@@ -214,32 +226,6 @@ impl<const RESTRAINED: bool> ElasticRocking for NonlinearRocking<RESTRAINED> {
             (u_dot, theta_dot)
         });
     }
-}
-
-/// The longest span (s) that a series is tried over while rocking.
-pub(crate) fn longest_span(structure: &Structure) -> f64 {
-    LONGEST_SPAN / structure.omega_u.max(structure.p_l)
-}
-
-/// That of a structure with restraints, which make it stiffer and may damp it faster than it vibrates.
-pub(crate) fn longest_restrained_span(structure: &Structure) -> f64 {
-    let &crate::Parameters { m, B, k_t, xi_d, c_d, k_d, .. } = structure.parameters();
-    let &Structure { omega_u, p_l, foundation, .. } = structure;
-    let (inertia, pair) = (m * (foundation + B * B), 2.0 * (B * B + xi_d * xi_d));
-    let stiffness = k_t * B * B + k_d * pair;
-    LONGEST_SPAN / (omega_u * omega_u + stiffness / inertia).sqrt().max(p_l).max(c_d * pair / inertia)
-}
-
-/// The truncation that `start` asks for over a step of `span` s while rocking.
-pub(crate) fn truncation(structure: &Structure, start: &Start, span: f64) -> Truncation {
-    let &Start { state, a_top, local_error, .. } = start;
-    let omega = structure.omega_u;
-    let response_time = span.min(1.0 / omega);
-    let gravity = structure.parameters().g * structure.tan_alpha_cg;
-    let forcing = a_top.value.abs() + a_top.slope.abs() * span + gravity;
-    let u_dot = state.u_dot.abs() + response_time * (omega * omega * state.u.abs() + forcing);
-    let theta_dot = state.theta_dot.abs() + u_dot / structure.parameters().H;
-    Truncation { u_dot: local_error * u_dot, theta_dot: local_error * theta_dot }
 }
 
 #[cfg(test)]
@@ -266,7 +252,8 @@ mod tests {
             let load = LinearLoad { value, slope: Load { a_g: slope, F_t: force_slope, a_v: 0.0 } };
             let (a_g, a_top) = (load.on_foundation(), load.on_top(&structure));
             let start = Start { state, a_g, a_top, interval: 2e-3, local_error: 1e-16, ..Start::default() };
-            NonlinearRocking::<false>::default().series(&structure, side, &start, &mut arc);
+            let subject = Subject { structure, local_error: 1e-16, is_tied: false };
+            NonlinearRocking::new(subject).series(side, &start, &mut arc);
             for sigma in [0.0, 0.2, 0.55, 1.0] {
                 let load = load.at(sigma * arc.span);
                 let expected = accelerations(&structure, side, &arc.at(sigma), load, &Dissipators::NEW).unwrap();

@@ -18,9 +18,9 @@
 //! move, is an error that later impacts amplify like a step's. The kinetic energy left behind, ½ J_P θ̇², is at most ε² of
 //! ½ m g H tan² α_cg, which overturning takes at small angles.
 
-use crate::levels::level::{Level, Now, Rates};
+use crate::levels::level::{Level, Now, Rates, Subject};
 use crate::levels::rules::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD};
-use crate::levels::tie_series::TieSeries;
+use crate::levels::ties::TieSeries;
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{Angles, Dissipators, Sum, holding_moment};
 use crate::mechanics::uplift::least_push;
@@ -35,76 +35,80 @@ fn shape(structure: &Structure, side: Side, theta: f64) -> [f64; 2] {
     [sin - slenderness * cos, cos + slenderness * sin]
 }
 
-/// The coefficients of P and Q in T.
-fn force_by_shape(structure: &Structure, side: Side) -> [f64; 2] {
-    let &crate::Parameters { H, B, .. } = structure.parameters();
-    let [slenderness, aspect] = [structure.tan_alpha_cg, B / H].map(|tangent| side.sign() * tangent);
-    [aspect - slenderness, 1.0 + aspect * slenderness].map(|part| part / (1.0 + slenderness * slenderness))
-}
-
-/// Writes the motion from `start` about `side` into `arc`.
-fn series<const RESTRAINED: bool>(structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
-    let &Start { state, a_g, a_top, a_v, interval, local_error, dissipators } = start;
-    let &Structure { p_l, tan_alpha_cg, J_P, .. } = structure;
-    let g = structure.parameters().g;
-    let sum = Sum::of_moments(structure, side, dissipators);
-    let mut held = RESTRAINED.then(|| TieSeries::new(sum, Angles::Any, state.theta));
-    let fastest = if RESTRAINED { (p_l * p_l + sum.stiffness / J_P).sqrt().max(sum.damping / J_P) } else { p_l };
-    let span = interval.min(LONGEST_SPAN / fastest.max(state.theta_dot.abs()));
-    let stiffness = p_l * p_l;
-    let (push, push_slope) = (a_g.value / g, a_g.slope * span / g);
-    let (pull, pull_slope) = ((a_g.value - a_top.value) / g, (a_g.slope - a_top.slope) * span / g);
-    let [of_p, of_q] = force_by_shape(structure, side);
-    // θ̈ is p_l² of these times P, Q and, for the slopes, times what P and Q were one order before
-    let (mut p_now, q_now) = (1.0 + pull * of_p, pull * of_q - push);
-    let (mut p_slope, q_slope) = (pull_slope * of_p, pull_slope * of_q - push_slope);
-    if RESTRAINED {
-        (p_now, p_slope) = (p_now + a_v.value / g, p_slope + a_v.slope * span / g);
-    }
-    let loads = [push, push_slope, pull, pull_slope].map(f64::abs).iter().sum::<f64>();
-    let forcing = stiffness * (tan_alpha_cg + loads + state.theta.abs());
-    let theta_dot = state.theta_dot.abs() + span.min(1.0 / p_l) * forcing;
-    let (mut p, mut q) = (ZERO, ZERO);
-    [p[0], q[0]] = shape(structure, side, state.theta);
-    let (mut p_before, mut q_before) = (0.0, 0.0);
-    let truncation = Truncation { u_dot: 0.0, theta_dot: local_error * theta_dot };
-    arc.expand(&State { u: 0.0, u_dot: 0.0, ..state }, span, truncation, |arc, k, per| {
-        let shaped = p_now * p[k - 1] + q_now * q[k - 1] + q_slope * q_before + p_slope * p_before;
-        let mut theta_ddot = stiffness * shaped;
-        if RESTRAINED && let Some(held) = &mut held {
-            theta_ddot -= held.next(&arc.theta_dot, k - 1, per) / J_P;
-        }
-        let theta_dot = theta_ddot * per;
-        (p_before, q_before) = (p[k - 1], q[k - 1]);
-        p[k] = product(&q, &arc.theta_dot, k - 1) * per;
-        q[k] = -product(&p, &arc.theta_dot, k - 1) * per;
-        (0.0, theta_dot)
-    });
-}
-
 /// The rigid limit as a level of detail.
 #[derive(Clone, Debug)]
-pub(crate) struct Rigid<const RESTRAINED: bool> {
-    /// Error ε that a step may have.
-    pub local_error: f64,
+pub(crate) struct Rigid {
+    subject: Subject,
+    /// The coefficients of P and Q in T about the right pivot.
+    force_by_shape: [f64; 2],
 }
 
-impl<const RESTRAINED: bool> Rigid<RESTRAINED> {
-    /// By how much (m/s²) the push that lifts the base off about `side` is more than that of the weight alone.
-    fn more_push(structure: &Structure, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
-        if !RESTRAINED {
-            return 0.0;
-        }
+impl Rigid {
+    pub(crate) fn new(subject: Subject) -> Rigid {
+        let &crate::Parameters { H, B, .. } = subject.structure.parameters();
+        let (slenderness, aspect) = (subject.structure.tan_alpha_cg, B / H);
+        let parts = [aspect - slenderness, 1.0 + aspect * slenderness];
+        Rigid { subject, force_by_shape: parts.map(|part| part / (1.0 + slenderness * slenderness)) }
+    }
+
+    /// The coefficients of P and Q in T.
+    fn force_by_shape(&self, side: Side) -> [f64; 2] {
+        let [of_p, of_q] = self.force_by_shape;
+        [side.sign() * of_p, of_q]
+    }
+
+    /// Writes the motion while rocking from `start` about `side` into `arc`.
+    fn rocking(&self, side: Side, start: &Start, arc: &mut Arc) {
+        let &Subject { ref structure, is_tied, .. } = &self.subject;
+        let &Start { state, a_g, a_top, a_v, interval, local_error, dissipators } = start;
+        let &Structure { p_l, tan_alpha_cg, J_P, .. } = structure;
+        let g = structure.parameters().g;
+        let sum = is_tied.then(|| Sum::of_moments(structure, side, dissipators));
+        let mut ties = sum.map(|sum| TieSeries::new(sum, Angles::Any, state.theta));
+        let fastest = sum.map_or(p_l, |sum| (p_l * p_l + sum.stiffness / J_P).sqrt().max(sum.damping / J_P));
+        let span = interval.min(LONGEST_SPAN / fastest.max(state.theta_dot.abs()));
+        let stiffness = p_l * p_l;
+        let (push, push_slope) = (a_g.value / g, a_g.slope * span / g);
+        let (pull, pull_slope) = ((a_g.value - a_top.value) / g, (a_g.slope - a_top.slope) * span / g);
+        let [of_p, of_q] = self.force_by_shape(side);
+        // θ̈ is p_l² times the sum of these times P and Q, and of the slopes times P and Q of the order before
+        let (p_now, q_now) = (1.0 + pull * of_p + a_v.value / g, pull * of_q - push);
+        let (p_slope, q_slope) = (pull_slope * of_p + a_v.slope * span / g, pull_slope * of_q - push_slope);
+        let loads = [push, push_slope, pull, pull_slope].map(f64::abs).iter().sum::<f64>();
+        let forcing = stiffness * (tan_alpha_cg + loads + state.theta.abs());
+        let theta_dot = state.theta_dot.abs() + span.min(1.0 / p_l) * forcing;
+        let (mut p, mut q) = (ZERO, ZERO);
+        [p[0], q[0]] = shape(structure, side, state.theta);
+        let (mut p_before, mut q_before) = (0.0, 0.0);
+        let truncation = Truncation { u_dot: 0.0, theta_dot: local_error * theta_dot };
+        arc.expand(&State { u: 0.0, u_dot: 0.0, ..state }, span, truncation, |arc, k, per| {
+            let shaped = p_now * p[k - 1] + q_now * q[k - 1] + q_slope * q_before + p_slope * p_before;
+            let mut theta_ddot = stiffness * shaped;
+            if let Some(ties) = &mut ties {
+                theta_ddot -= ties.next(&arc.theta_dot, k - 1, per) / J_P;
+            }
+            let theta_dot = theta_ddot * per;
+            (p_before, q_before) = (p[k - 1], q[k - 1]);
+            p[k] = product(&q, &arc.theta_dot, k - 1) * per;
+            q[k] = -product(&p, &arc.theta_dot, k - 1) * per;
+            (0.0, theta_dot)
+        });
+    }
+
+    /// The push (m/s²) for uplift about `side`, beyond the push against the weight alone.
+    fn more_push(&self, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
+        let structure = &self.subject.structure;
         holding_moment(structure, side, a_v, dissipators) / structure.parameters().H
     }
 }
 
-impl<const RESTRAINED: bool> Level for Rigid<RESTRAINED> {
-    fn ties(&self) -> Option<Angles> {
-        RESTRAINED.then_some(Angles::Any)
+impl Level for Rigid {
+    #[inline(always)]
+    fn subject(&self) -> &Subject {
+        &self.subject
     }
 
-    fn leap(&self, _structure: &Structure, _phase: Phase, _start: &Start) -> Option<State> {
+    fn leap(&self, _phase: Phase, _start: &Start) -> Option<State> {
         None
     }
 
@@ -112,10 +116,10 @@ impl<const RESTRAINED: bool> Level for Rigid<RESTRAINED> {
         Rates::NONE
     }
 
-    /// Rest on the ground in full contact.
-    fn series(&self, structure: &Structure, phase: Phase, start: &Start, arc: &mut Arc) {
+    /// The series; rest on the ground in full contact.
+    fn series(&self, phase: Phase, start: &Start, arc: &mut Arc) {
         match phase {
-            Phase::Rocking(side) => series::<RESTRAINED>(structure, side, start, arc),
+            Phase::Rocking(side) => self.rocking(side, start, arc),
             Phase::FullContact | Phase::Overturned(_) => {
                 let nothing = Truncation { u_dot: 0.0, theta_dot: 0.0 };
                 arc.expand(&State::default(), start.interval, nothing, |_, _, _| (0.0, 0.0));
@@ -123,56 +127,56 @@ impl<const RESTRAINED: bool> Level for Rigid<RESTRAINED> {
         }
     }
 
-    /// |a_top|, a_top = a_g − F_t/m, exceeds g tan α_cg; of a restrained structure −s a_top exceeds what holds side s.
-    fn first_uplift(&self, structure: &Structure, start: &Start, arc: &Arc) -> (Crossing, Side) {
-        let limit = least_push(structure);
-        let push = [start.a_top.value, start.a_top.slope * arc.span];
+    /// The first instant at which −s a_top, a_top = a_g − F_t/m, exceeds the push for uplift about side s.
+    fn first_uplift(&self, start: &Start, arc: &Arc) -> (Crossing, Side) {
+        let limit = least_push(self.structure());
         let first = |side: Side| {
-            let mut push = push;
-            if RESTRAINED {
-                let more = |a_v| side.sign() * Self::more_push(structure, side, a_v, start.dissipators);
+            let mut push = [start.a_top.value, start.a_top.slope * arc.span];
+            if self.subject.is_tied {
+                let more = |a_v| side.sign() * self.more_push(side, a_v, start.dissipators);
                 let held = more(start.a_v.value);
                 push = [push[0] + held, push[1] + (more(start.a_v.at(arc.span)) - held)];
             }
             first_time_all_closed([Guard::new(&push, side.sign(), limit)], 1.0)
         };
         let (right, left) = (first(Side::Right), first(Side::Left));
-        if RESTRAINED && right.sigma() == left.sigma() && right.sigma() < f64::INFINITY {
+        if right.sigma() == left.sigma() && right.sigma() < f64::INFINITY {
             let at = right.sigma() * arc.span;
             let load = Load { a_g: start.a_top.at(at), F_t: 0.0, a_v: start.a_v.at(at) };
             let now = Now { state: &start.state, load, dissipators: start.dissipators };
-            let (_, side) = self.uplift_margin(structure, &now);
-            return (right, side);
+            return (right, self.uplift_margin(&now).1);
         }
         if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
     }
 
     /// Without u the load alone decides.
-    fn least_displacement(&self, _structure: &Structure, _start: &Start) -> f64 {
+    fn least_displacement(&self, _start: &Start) -> f64 {
         0.0
     }
 
-    fn stays_down(&self, structure: &Structure, state: &State, dissipators: &Dissipators) -> bool {
-        self.uplift_margin(structure, &Now { state, load: Load::default(), dissipators }).0 > 0.0
+    fn stays_down(&self, state: &State, dissipators: &Dissipators) -> bool {
+        self.uplift_margin(&Now { state, load: Load::default(), dissipators }).0 > 0.0
     }
 
-    fn uplift_margin(&self, structure: &Structure, &Now { load, dissipators, .. }: &Now) -> (f64, Side) {
+    fn uplift_margin(&self, &Now { load, dissipators, .. }: &Now) -> (f64, Side) {
+        let structure = self.structure();
         let push = load.on_top(structure) / least_push(structure);
-        let more = |side| Self::more_push(structure, side, load.a_v, dissipators) / least_push(structure);
+        let more = |side| self.more_push(side, load.a_v, dissipators) / least_push(structure);
         let (right, left) = (1.0 + push + more(Side::Right), 1.0 - push + more(Side::Left));
         if right <= left { (right, Side::Right) } else { (left, Side::Left) }
     }
 
-    fn after_impact(&self, structure: &Structure, side: Side, before: &State) -> (Phase, State) {
+    fn after_impact(&self, side: Side, before: &State) -> (Phase, State) {
+        let &Subject { ref structure, local_error, .. } = &self.subject;
         let theta_dot = structure.parameters().r * before.theta_dot;
-        if theta_dot.abs() <= self.local_error * structure.p_l * structure.tan_alpha_cg {
+        if theta_dot.abs() <= local_error * structure.p_l * structure.tan_alpha_cg {
             return (Phase::FullContact, State::default());
         }
         (Phase::Rocking(side.opposite()), State { theta_dot, ..State::default() })
     }
 
-    fn chatter_limit(&self, structure: &Structure) -> ChatterLimit {
-        ChatterLimit { period: 1.0 / structure.p_l, transitions: MAX_RIGID_TRANSITIONS_PER_PERIOD }
+    fn chatter_limit(&self) -> ChatterLimit {
+        ChatterLimit { period: 1.0 / self.structure().p_l, transitions: MAX_RIGID_TRANSITIONS_PER_PERIOD }
     }
 
     fn admissible(&self, phase: Phase, state: State) -> State {
@@ -183,13 +187,14 @@ impl<const RESTRAINED: bool> Level for Rigid<RESTRAINED> {
     }
 
     /// Nothing moves relative to the ground in full contact.
-    fn accelerations(&self, structure: &Structure, phase: Phase, now: &Now) -> [f64; 2] {
+    fn accelerations(&self, phase: Phase, now: &Now) -> [f64; 2] {
+        let &Subject { ref structure, is_tied, .. } = &self.subject;
         let (&crate::Parameters { m, g, .. }, Structure { p_l, .. }) = (structure.parameters(), structure);
         let (Phase::Rocking(side), &Now { state, load, dissipators }) = (phase, now) else { return [0.0; 2] };
         let [p, q] = shape(structure, side, state.theta);
-        let [of_p, of_q] = force_by_shape(structure, side);
+        let [of_p, of_q] = self.force_by_shape(side);
         let free = p_l.powi(2) * (p - load.a_g / g * q + load.F_t / (m * g) * (of_p * p + of_q * q));
-        if !RESTRAINED {
+        if !is_tied {
             return [0.0, free];
         }
         let held = Sum::of_moments(structure, side, dissipators).at(Angles::Any, state.theta, state.theta_dot);

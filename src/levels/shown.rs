@@ -3,7 +3,7 @@
 //! The series tell the instant at which an output is largest; its value there comes from the state. At the rigid level a_t
 //! follows from θ̈ (Eq 27).
 
-use crate::levels::detail::{Detail, Model};
+use crate::levels::detail::AnyLevel;
 use crate::levels::level::{Now, Rates};
 use crate::mechanics::instant::{Instant, Strut, damping};
 use crate::mechanics::load::{LinearLoad, Load};
@@ -21,20 +21,17 @@ use crate::{Phase, State, Structure};
 /// One number for each output whose peak is searched.
 pub(crate) type Searched<T> = [T; Measure::SEARCHED.len()];
 
-impl Model {
-    pub(crate) fn is_rigid(&self) -> bool {
-        self.detail == Detail::Rigid
+impl AnyLevel {
+    /// The strut in `phase`, given θ̈.
+    fn strut<N>(&self, phase: Phase, theta_ddot: impl FnOnce() -> N) -> Strut<N> {
+        if self.has_strut() { Strut::Elastic(damping(self.structure(), phase)) } else { Strut::Rigid(theta_ddot()) }
     }
 
     /// The outputs in `phase`.
     #[inline]
     pub(crate) fn outputs(&self, phase: Phase, now: &Now) -> Outputs {
-        let mut x = Instant::of(&self.structure, phase, now.state, now.load);
-        if self.is_rigid() {
-            let [_, theta_ddot] = self.level.accelerations(&self.structure, phase, now);
-            x.strut = Strut::Rigid(theta_ddot);
-        }
-        Outputs::at(&x)
+        let strut = self.strut(phase, || self.accelerations(phase, now)[1]);
+        Outputs::at(&Instant { strut, ..Instant::of(self.structure(), phase, now.state, now.load) })
     }
 
     /// Time derivatives of the outputs under `load`, given (ü, θ̈) and (u⃛, θ⃛).
@@ -45,16 +42,37 @@ impl Model {
         [accelerations, jerks]: [[f64; 2]; 2],
         load: LinearLoad,
     ) -> Outputs {
-        let mut x = Instant::moving(&self.structure, phase, state, accelerations, load);
-        if self.is_rigid() {
-            x.strut = Strut::Rigid(Dual { value: accelerations[1], rate: jerks[1] });
-        }
+        let strut = self.strut(phase, || Dual { value: accelerations[1], rate: jerks[1] });
+        let x = Instant { strut, ..Instant::moving(self.structure(), phase, state, accelerations, load) };
         Outputs::at(&x).map(|output| output.rate)
     }
 
     /// The motion over `arc` under `load` as power series.
     pub(crate) fn terms(&self, phase: Phase, load: LinearLoad, arc: &Arc) -> Instant<'_, Terms> {
-        terms(&self.structure, phase, load, arc, self.is_rigid())
+        let of = |series: &Series| Terms::of(series, arc.order);
+        let ramp = |value: f64, slope: f64| Terms::ramp(value, slope * arc.span);
+        let (theta, theta_dot, turn) = match phase {
+            Phase::FullContact => (Terms::constant(0.0), Terms::constant(0.0), Turn::none()),
+            Phase::Rocking(_) | Phase::Overturned(_) => {
+                let theta = of(&arc.theta);
+                (theta, of(&arc.theta_dot), theta.turn())
+            }
+        };
+        let strut = self.strut(phase, || theta_dot.slope(arc.span));
+        let LinearLoad { value, slope } = load;
+        Instant {
+            structure: self.structure(),
+            s: phase.side().sign(),
+            strut,
+            u: of(&arc.u),
+            u_dot: of(&arc.u_dot),
+            theta,
+            theta_dot,
+            turn,
+            a_g: ramp(value.a_g, slope.a_g),
+            F_t: ramp(value.F_t, slope.F_t),
+            a_v: ramp(value.a_v, slope.a_v),
+        }
     }
 
     /// Bounds of the searched outputs between two instants with these `loads`, given bounds of the components of the state. The
@@ -64,9 +82,9 @@ impl Model {
         let most = |of: fn(&Load) -> f64| Most(of(&loads[0]).abs().max(of(&loads[1]).abs()));
         let theta = Most(state.theta);
         let x = Instant {
-            structure: &self.structure,
+            structure: self.structure(),
             s: phase.side().sign(),
-            strut: Strut::Elastic(damping(&self.structure, phase)),
+            strut: Strut::Elastic(damping(self.structure(), phase)),
             u: Most(state.u),
             u_dot: Most(state.u_dot),
             theta,
@@ -88,9 +106,9 @@ impl Model {
         let ramp = |from: f64, to: f64, slope: f64| bend(from.abs().max(to.abs()), slope.abs(), 0.0);
         let turning = bend(theta, theta_dot, theta_ddot);
         let x = Instant {
-            structure: &self.structure,
+            structure: self.structure(),
             s: phase.side().sign(),
-            strut: Strut::Elastic(damping(&self.structure, phase)),
+            strut: Strut::Elastic(damping(self.structure(), phase)),
             u: bend(u, u_dot, u_ddot),
             u_dot: bend(u_dot, u_ddot, u_dddot),
             theta: turning,
@@ -112,7 +130,7 @@ impl Model {
         accelerations: [f64; 2],
         load: LinearLoad,
     ) -> Searched<f64> {
-        searched(&Instant::moving(&self.structure, phase, state, accelerations, load)).map(|output| output.rate)
+        searched(&Instant::moving(self.structure(), phase, state, accelerations, load)).map(|output| output.rate)
     }
 
     /// Bounds of the searched outputs over `arc` under `load`.
@@ -121,11 +139,11 @@ impl Model {
         let (theta, u) = (range(&arc.theta), range(&arc.u));
         let leaf = |of: &Range| Leaf { start: of.start, change: of.change(), rate: of.rate() };
         let turn = turning::<4>(leaf(&theta));
-        let mut composed = if self.is_rigid() {
+        let mut composed = if !self.has_strut() {
             let x = Instant {
                 strut: Strut::Rigid(Linear::leaf(2, 1.0 / arc.span, Leaf::of_slope(arc.used(&arc.theta_dot)))),
                 theta_dot: Linear::leaf(1, 1.0, Leaf::of(arc.used(&arc.theta_dot))),
-                ..over(&self.structure, phase, load, arc, turn)
+                ..over(self.structure(), phase, load, arc, turn)
             };
             courses(&composed(&x), |k| [arc.theta[k], arc.theta_dot[k], arc.slope(&arc.theta_dot, k)], arc)
         } else {
@@ -133,7 +151,7 @@ impl Model {
                 u: Linear::leaf(1, 1.0, leaf(&u)),
                 u_dot: Linear::leaf(2, 1.0, Leaf::of(arc.used(&arc.u_dot))),
                 theta_dot: Linear::loose(Leaf::of(arc.used(&arc.theta_dot))),
-                ..over(&self.structure, phase, load, arc, turn)
+                ..over(self.structure(), phase, load, arc, turn)
             };
             courses(&composed(&x), |k| [arc.theta[k], arc.u[k], arc.u_dot[k]], arc)
         }
@@ -207,41 +225,4 @@ pub(crate) fn linear_parts<const L: usize, const N: usize, const M: usize>(
         std::array::from_fn(|i| quantities[i].coefficient(k, &leaves))
     };
     extremes::ranges(row, arc.order, arc.reach)
-}
-
-/// The motion over `arc` under `load` as power series.
-fn terms<'a>(
-    structure: &'a Structure,
-    phase: Phase,
-    load: LinearLoad,
-    arc: &Arc,
-    is_rigid: bool,
-) -> Instant<'a, Terms> {
-    let of = |series: &Series| Terms::of(series, arc.order);
-    let ramp = |value: f64, slope: f64| Terms::ramp(value, slope * arc.span);
-    let (theta, theta_dot, turn) = match phase {
-        Phase::FullContact => (Terms::constant(0.0), Terms::constant(0.0), Turn::none()),
-        Phase::Rocking(_) | Phase::Overturned(_) => {
-            let theta = of(&arc.theta);
-            (theta, of(&arc.theta_dot), theta.turn())
-        }
-    };
-    let strut = match is_rigid {
-        true => Strut::Rigid(theta_dot.slope(arc.span)),
-        false => Strut::Elastic(damping(structure, phase)),
-    };
-    let LinearLoad { value, slope } = load;
-    Instant {
-        structure,
-        s: phase.side().sign(),
-        strut,
-        u: of(&arc.u),
-        u_dot: of(&arc.u_dot),
-        theta,
-        theta_dot,
-        turn,
-        a_g: ramp(value.a_g, slope.a_g),
-        F_t: ramp(value.F_t, slope.F_t),
-        a_v: ramp(value.a_v, slope.a_v),
-    }
 }

@@ -8,27 +8,22 @@
 //! not, the engine's own motion from the start of the step counts.
 
 use crate::engine::AdvanceError;
-use crate::engine::motion::Event;
+use crate::engine::phases::{self, Closed};
 use crate::engine::piece::{Sample, Watch};
-use crate::engine::yielding;
-use crate::levels::detail::Model;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::run::ground_motion::Elapsed;
-use crate::{Engine, GroundMotion, Motion, Phase, Side, State};
+use crate::{Engine, GroundMotion, Motion, Phase, State};
 use serde::{Deserialize, Serialize};
-use std::f64::consts::FRAC_PI_2;
 
 /// How many event indicators there are.
 pub const INDICATORS: usize = 2;
 
-/// How far beyond its guard a phase lasts for the indicators, in parts of α_cg or of what uplift takes: no integration
-/// starts on a root, and no rounding makes one.
-pub const BAND: f64 = 1e-9;
+pub use crate::engine::phases::BAND;
 
 impl Sample<'_> {
     /// (u̇, ü, θ̇, θ̈) by the equations of the level and the phase; not numbers where these have no solution.
     pub fn state_rates(&self) -> State {
-        let State { u_dot, theta_dot, .. } = self.model.level.admissible(self.motion.phase, self.motion.state);
+        let State { u_dot, theta_dot, .. } = self.level.admissible(self.motion.phase, self.motion.state);
         let [u_ddot, theta_ddot] = self.accelerations();
         match self.motion.phase {
             Phase::Overturned(_) => State::default(),
@@ -41,22 +36,14 @@ impl Sample<'_> {
     /// Of the end of contact at a pivot (in full contact uplift, while rocking impact) and of overturning, or of what yields or
     /// ceases to: continuous, of order one, positive while the phase lasts.
     pub fn event_indicators(&self) -> [f64; INDICATORS] {
-        let &Motion { phase, state, dissipators, .. } = &self.motion;
-        match phase {
-            Phase::FullContact if self.motion.held() > 0.0 => [1.0; INDICATORS],
-            Phase::FullContact => {
-                let (margin, _) = self.model.level.uplift_margin(&self.model.structure, &self.motion.under(self.load));
-                [margin + BAND, 1.0]
+        let mut indicators = [f64::INFINITY; INDICATORS];
+        for guard in phases::of(&self.motion).map_or(&[][..], |watched| watched.guards) {
+            let (place, value) = guard.indicator(self);
+            if value < indicators[place] || value.is_nan() {
+                indicators[place] = value;
             }
-            Phase::Rocking(side) => {
-                let height = side.sign() * state.theta / libm::atan(self.model.structure.tan_alpha_cg);
-                let fall = 1.0 - state.theta.abs() / FRAC_PI_2;
-                let Model { structure, level, .. } = self.model;
-                let goes_on = |angles| yielding::margin(structure, side, angles, &dissipators, &state) + BAND;
-                [height + BAND, level.ties().map_or(fall, |angles| fall.min(goes_on(angles)))]
-            }
-            Phase::Overturned(_) => [1.0; INDICATORS],
         }
+        indicators.map(|value| if value == f64::INFINITY { 1.0 } else { value })
     }
 }
 
@@ -143,26 +130,28 @@ impl Known {
 impl Engine {
     /// Takes `state` from another integrator; what does not move in the present phase stays at rest.
     pub fn set_state(&mut self, state: State) {
-        let Sample { motion, model, .. } = self.sample(Load::default());
-        let state = model.level.admissible(motion.phase, state);
+        let Sample { motion, level, .. } = self.sample(Load::default());
+        let state = level.admissible(motion.phase, state);
         self.set_motion(Motion { state, ..motion });
     }
 
     /// Lifts the base off if that is due at once under `load`: after a landing, at the start, or when a load jumps.
     pub fn lift_off_if_due<W: Watch>(&mut self, load: Load, watch: &mut W) {
-        if let Some(side) = self.uplift_due(load) {
-            self.set_motion(Motion { due: Some(Event::Uplift(side)), ..*self.motion() });
+        if let Some(closed) = self.due_at_once(load) {
+            self.set_motion(Motion { due: Some(closed), ..*self.motion() });
             self.transit(watch);
         }
     }
 
-    /// The side about which the base lifts off at once under `load`, if it does.
-    pub fn uplift_due(&self, load: Load) -> Option<Side> {
-        let Sample { motion, model, .. } = self.sample(load);
-        if motion.phase != Phase::FullContact || motion.held() > 0.0 {
-            return None;
-        }
-        let (margin, side) = model.level.uplift_margin(&model.structure, &motion.under(load));
-        (margin <= 0.0).then_some(side)
+    /// Whether the base lifts off at once under `load`.
+    pub fn is_uplift_due(&self, load: Load) -> bool {
+        self.due_at_once(load).is_some()
+    }
+
+    /// The guard that is closed from the start under `load`.
+    fn due_at_once(&self, load: Load) -> Option<Closed> {
+        let now = self.sample(load);
+        let mut guards = phases::of(&now.motion)?.guards.iter().enumerate();
+        guards.find_map(|(guard, of)| Some(Closed { guard: guard as u8, way: of.closed(&now)? }))
     }
 }

@@ -6,7 +6,7 @@
 //! what has been seen is first kept, since most are soon beaten by the end of another.
 
 use crate::engine::piece::{Expansion, Part, Piece, Watch};
-use crate::levels::detail::Model;
+use crate::levels::detail::AnyLevel;
 use crate::levels::shown::Searched;
 use crate::mechanics::outputs::{Measure, OUTPUTS, PeakRule, Sizes};
 use crate::mechanics::restraint::Angles;
@@ -220,7 +220,7 @@ impl Peaks {
     /// Looks for more of them in the pieces of a motion; they are known once the watch is dropped.
     pub fn watch(&mut self) -> PeakWatch<'_> {
         let goes_on = self.largest.iter().any(|peak| peak.magnitude > 0.0);
-        PeakWatch { peaks: self, kept: Vec::new(), model: None, is_torn: true, goes_on }
+        PeakWatch { peaks: self, kept: Vec::new(), level: None, is_torn: true, goes_on }
     }
 
     /// Looks for that of θ alone, and with it of the uplift: the others stay as they are.
@@ -325,8 +325,8 @@ pub struct PeakWatch<'a> {
     peaks: &'a mut Peaks,
     /// Pieces that may hold more than what has been seen.
     kept: Vec<Kept>,
-    /// The model of the kept pieces.
-    model: Option<Box<Model>>,
+    /// The level of the kept pieces.
+    level: Option<Box<AnyLevel>>,
     /// Whether the next piece may begin with other outputs than the last one ended with.
     is_torn: bool,
     /// Whether the next piece is the first since other peaks: the step of a host is often no more, and not put off.
@@ -354,10 +354,10 @@ impl PeakWatch<'_> {
 
     /// Looks at what has been kept, the latest first, which is often the largest.
     fn look_back(&mut self) {
-        let Some(model) = &self.model else { return };
+        let Some(level) = &self.level else { return };
         while let Some(Kept { bounds, before, duration, load, end, arc }) = self.kept.pop() {
             if self.peaks.may_change_within(&Measure::SEARCHED, &bounds, before.time) {
-                let piece = Piece { before: &before, duration, load, end, model, arc: arc.as_ref() };
+                let piece = Piece { before: &before, duration, load, end, level, arc: arc.as_ref() };
                 self.peaks.look(&Measure::SEARCHED, &piece.whole(), HALVINGS);
             }
         }
@@ -374,7 +374,7 @@ impl Watch for PeakWatch<'_> {
     const SEES_PIECES: bool = true;
 
     fn piece(&mut self, piece: &Piece) {
-        let &Piece { before, duration, load, end, model, arc } = piece;
+        let &Piece { before, duration, load, end, level, arc } = piece;
         for tau in [0.0, duration] {
             self.peaks.ground.see(load.at(tau).a_g, before.time + tau);
         }
@@ -402,7 +402,7 @@ impl Watch for PeakWatch<'_> {
         if self.kept.len() == KEPT {
             self.look_back();
         }
-        self.model.get_or_insert_with(|| Box::new(model.clone()));
+        self.level.get_or_insert_with(|| Box::new(level.clone()));
         self.kept.push(Kept { bounds, before: *before, duration, load, end, arc: arc.cloned() });
     }
 

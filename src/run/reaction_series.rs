@@ -2,9 +2,10 @@
 //!
 //! The series tell the instant at which a reaction is largest; its value there comes from the state.
 
-use crate::levels::detail::Model;
+use crate::levels::detail::AnyLevel;
+use crate::levels::level::Subject;
 use crate::levels::shown::{linear_parts, over, turning};
-use crate::levels::tie_series::TieSeries;
+use crate::levels::ties::TieSeries;
 use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::load::LinearLoad;
 use crate::mechanics::reactions::forces;
@@ -19,37 +20,40 @@ use crate::{Dissipators, Phase, Reactions, Structure};
 /// The reactions of the edges over `arc`, a motion in `phase` under `load`, which is given from its start on. The moment is given
 /// in full contact only; while rocking it is sB R_v.
 pub(crate) fn series(
-    model: &Model,
+    level: &AnyLevel,
     phase: Phase,
     dissipators: &Dissipators,
     load: LinearLoad,
     arc: &Arc,
 ) -> Reactions<Terms> {
     let reactions = if phase == Phase::FullContact {
-        in_full_contact(model, load, arc)
+        in_full_contact(level, load, arc)
     } else {
-        let x = model.terms(phase, load, arc);
+        let x = level.terms(phase, load, arc);
         let second = Second { u_ddot: x.u_dot.slope(arc.span), theta_ddot: x.theta_dot.slope(arc.span) };
         let [R_h, R_v] = forces(&x, &second);
         Reactions { R_h, R_v, R_m: Terms::constant(0.0) }
     };
-    let Some(angles) = model.level.ties() else { return reactions };
-    let (side, B) = (phase.side(), model.structure.parameters().B);
-    let ties = ties(&model.structure, side, dissipators);
-    let [up, right] = TieSeries::over(Sum::of_pulls(&ties), angles, arc).pulls(arc);
+    let &Subject { ref structure, is_tied, .. } = level.subject();
+    if !is_tied {
+        return reactions;
+    }
+    let (side, B) = (phase.side(), structure.parameters().B);
+    let ties = ties(structure, side, dissipators);
+    let [up, right] = TieSeries::over(Sum::of_pulls(&ties), level.angles(), arc).pulls(arc);
     let moment = ties.iter().map(|tie| tie.force * (side.sign() * B - tie.lever)).sum::<f64>();
     reactions.of_edges(Terms::of(&up, arc.order), Terms::of(&right, arc.order), Terms::constant(moment))
 }
 
 /// The reactions in full contact. There they are linear in u, ü and time, so that their slopes give the series, unless the
 /// ground moves vertically.
-fn in_full_contact(model: &Model, load: LinearLoad, arc: &Arc) -> Reactions<Terms> {
-    let Reactions { R_h, R_v, R_m } = linear_in_full_contact(&model.structure, load, arc);
+fn in_full_contact(level: &AnyLevel, load: LinearLoad, arc: &Arc) -> Reactions<Terms> {
+    let Reactions { R_h, R_v, R_m } = linear_in_full_contact(level.structure(), load, arc);
     if R_m.rest == 0.0 {
         let of = |reaction: Linear<3>| Terms::from_fn(arc.order, |k| reaction.coefficient(k, &contact_leaves(arc, k)));
         return Reactions { R_h: of(R_h), R_v: of(R_v), R_m: of(R_m) };
     }
-    let x = model.terms(Phase::FullContact, load, arc);
+    let x = level.terms(Phase::FullContact, load, arc);
     Reactions::at(&x, &Second { u_ddot: x.u_dot.slope(arc.span), theta_ddot: Terms::constant(0.0) })
 }
 

@@ -260,8 +260,9 @@ impl Validity {
             let strut = c_fc * state.u_dot + k * state.u;
             [strut - m0 * piece.load.at(tau).a_g, H * strut + m * g * state.u]
         });
-        let start = piece.model.start(piece.before.state, &piece.before.dissipators, piece.load, piece.duration);
-        let Rates { u_ddot, u_dddot, .. } = piece.model.level.rates(piece.before.phase, &start, &piece.end);
+        let start =
+            piece.level.subject().start(piece.before.state, &piece.before.dissipators, piece.load, piece.duration);
+        let Rates { u_ddot, u_dddot, .. } = piece.level.rates(piece.before.phase, &start, &piece.end);
         let per_bend = piece.duration * piece.duration / 8.0;
         let strut = per_bend * (c_fc * u_dddot + k * u_ddot);
         let extent = |i: usize, off: f64| {
@@ -367,7 +368,7 @@ impl Watch for Validity {
         } else {
             self.found.see(WEIGHT, 1.0, piece.before.time);
         }
-        let (phase, is_restrained) = (piece.before.phase, piece.model.level.ties().is_some());
+        let (phase, is_restrained) = (piece.before.phase, piece.level.subject().is_tied);
         // bounds over a whole leap are known in full contact under gravity only
         let is_leap = piece.arc.is_none() && phase == Phase::FullContact && !piece.load.is_vertical();
         if is_leap && !is_restrained && !self.may_matter(phase, &self.extents_of_leap(piece)) {
@@ -431,15 +432,15 @@ impl<'a> Stretch<'a> {
     fn new(of: Expansion<'a>, extents: &'a Reactions<Extent>) -> Stretch<'a> {
         let Expansion { piece, from, arc } = of;
         let Motion { phase, dissipators, .. } = piece.before;
-        let series = reaction_series::series(piece.model, *phase, dissipators, piece.load.from(from), arc);
+        let series = reaction_series::series(piece.level, *phase, dissipators, piece.load.from(from), arc);
         Stretch { of, series, extents }
     }
 
     /// The reactions at `sigma`, from the state there.
     fn reactions(&self, sigma: f64) -> Reactions {
-        let Expansion { piece: &Piece { model, before, load, .. }, from, arc } = self.of;
+        let Expansion { piece: &Piece { level, before, load, .. }, from, arc } = self.of;
         let motion = Motion { state: arc.at(sigma), ..*before };
-        Sample { motion, load: load.at(from + sigma * arc.span), model }.edges()
+        Sample { motion, load: load.at(from + sigma * arc.span), level }.edges()
     }
 
     /// Whether the series of R_h and R_v end in the reactions `last` of the state.
@@ -449,7 +450,7 @@ impl<'a> Stretch<'a> {
             let terms = used.iter().rev().fold(0.0, |sum, c| sum * self.of.arc.reach + c.abs());
             let off = evaluate(used, self.of.arc.reach) - expected;
             // more terms do not turn NaN into a number
-            off.is_nan() || off.abs() <= CONVERGED.max(1e3 * self.of.piece.model.local_error) * terms
+            off.is_nan() || off.abs() <= CONVERGED.max(1e3 * self.of.piece.level.subject().local_error) * terms
         })
     }
 

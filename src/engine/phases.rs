@@ -1,0 +1,235 @@
+//! The phases of a motion as data: which guards are watched, and what happens when each of them closes.
+//!
+//! The loop of the [engine](crate::engine) expands the motion, finds the first guard that closes, and applies the guard's transition.
+//! A new kind of contact is one more [`Watched`] here, with its guards.
+
+use crate::engine::motion::Motion;
+use crate::engine::piece::Sample;
+use crate::engine::transition::{TransitionKind, enter};
+use crate::engine::yielding::{self, Yielding};
+use crate::levels::level::Level;
+use crate::mechanics::impact;
+use crate::mechanics::restraint::Dissipators;
+use crate::series::first_crossing::{self, Crossing, first_time_all_closed};
+use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
+use crate::{Phase, Side};
+use serde::{Deserialize, Serialize};
+use std::f64::consts::FRAC_PI_2;
+
+/// Event indicators are shifted by this part of α_cg or of the demand for uplift. No integration then starts on a root, and no
+/// rounding makes one.
+pub const BAND: f64 = 1e-9;
+
+/// One expanded step in one phase.
+pub(crate) struct Step<'a> {
+    pub level: &'a dyn Level,
+    /// The side about which the structure rocks.
+    pub side: Side,
+    pub start: &'a Start<'a>,
+    pub arc: &'a Arc,
+    /// The σ up to which no guard is known to close.
+    pub reach: f64,
+}
+
+/// Which of several conditions of a guard closes: a number and a sign, with the meaning that the guard gives them.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Way {
+    pub which: u8,
+    pub sign: i8,
+}
+
+/// A guard of the present phase that has closed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Closed {
+    /// Place of the guard in [`Watched::guards`].
+    pub guard: u8,
+    pub way: Way,
+}
+
+/// A condition that ends a phase, or changes the equations within it.
+pub(crate) trait Guard: Sync {
+    /// The first instant of `step` at which the guard closes.
+    fn first(&self, step: &Step) -> (Crossing, Way);
+
+    /// Takes `motion`, which is where the guard has closed, over the transition.
+    fn apply(&self, level: &dyn Level, motion: &mut Motion, way: Way) -> TransitionKind;
+
+    /// Whether the guard certainly stays open for `ahead` (s), a tiny time.
+    fn stays_open(&self, now: &Sample, ahead: f64) -> bool;
+
+    /// Place and value of the event indicator: continuous, of order one, positive while the guard is open.
+    fn indicator(&self, now: &Sample) -> (usize, f64);
+
+    /// The way in which the guard is closed from the start, after a transition or a jump of the load.
+    fn closed(&self, _now: &Sample) -> Option<Way> {
+        None
+    }
+
+    /// Whether an engine that stops at transitions stops before this one.
+    fn is_stop(&self) -> bool {
+        true
+    }
+}
+
+/// A phase as the loop knows it.
+pub(crate) struct Watched {
+    /// Duration of the phase at most, s.
+    pub lasts: Option<fn(&Motion) -> f64>,
+    /// A cheap proof that no guard closes over a step.
+    pub stays: Option<fn(&Step) -> bool>,
+    pub guards: &'static [&'static dyn Guard],
+    /// The dissipators at the reach of a step, if the step moves them.
+    pub dissipators: fn(&Step) -> Option<Dissipators>,
+}
+
+/// Full contact that is held after too many transitions.
+static HELD: Watched = Watched { lasts: Some(Motion::held), ..RESTING };
+
+/// Full contact.
+static CONTACT: Watched = Watched { guards: &[&Uplift], ..RESTING };
+
+/// Rocking about either side.
+static ROCKING: Watched = Watched {
+    stays: Some(|step| !yielding::is_possible(step.level.structure()) && stays_about(step.arc, step.side)),
+    guards: &[&Yielding, &Overturning, &Impact],
+    dissipators: yielding::moved,
+    ..RESTING
+};
+
+/// A phase in which the base does not move, without guards.
+pub(super) const RESTING: Watched = Watched { lasts: None, stays: None, guards: &[], dissipators: |_| None };
+
+/// The phase of `motion`; none once the structure has overturned.
+#[inline]
+pub(crate) fn of(motion: &Motion) -> Option<&'static Watched> {
+    match motion.phase {
+        Phase::FullContact if motion.held() > 0.0 => Some(&HELD),
+        Phase::FullContact => Some(&CONTACT),
+        Phase::Rocking(_) => Some(&ROCKING),
+        Phase::Overturned(_) => None,
+    }
+}
+
+/// The most by which a quantity with this `rate` changes over `ahead` (s), whatever accelerates it.
+pub(crate) fn way(ahead: f64, rate: f64) -> f64 {
+    ahead * (rate.abs() + 1.0)
+}
+
+/// The base lifts off about the side of the sign.
+struct Uplift;
+
+impl Guard for Uplift {
+    fn first(&self, step: &Step) -> (Crossing, Way) {
+        let (crossing, side) = step.level.first_uplift(step.start, step.arc);
+        (crossing, about(side))
+    }
+
+    fn apply(&self, level: &dyn Level, motion: &mut Motion, way: Way) -> TransitionKind {
+        let side = Side::of(way.sign.into());
+        enter(level, motion, Phase::Rocking(side), motion.state);
+        TransitionKind::Uplift(side)
+    }
+
+    fn stays_open(&self, now: &Sample, ahead: f64) -> bool {
+        let Motion { state, dissipators, .. } = &now.motion;
+        let start = now.level.subject().start(*state, dissipators, now.load.into(), ahead);
+        state.u.abs() + way(ahead, state.u_dot) < now.level.least_displacement(&start)
+    }
+
+    fn indicator(&self, now: &Sample) -> (usize, f64) {
+        (0, now.level.uplift_margin(&now.motion.under(now.load)).0 + BAND)
+    }
+
+    fn closed(&self, now: &Sample) -> Option<Way> {
+        let (margin, side) = now.level.uplift_margin(&now.motion.under(now.load));
+        (margin <= 0.0).then_some(about(side))
+    }
+}
+
+fn about(side: Side) -> Way {
+    Way { which: 0, sign: if side == Side::Right { 1 } else { -1 } }
+}
+
+/// |θ| reaches π/2.
+struct Overturning;
+
+impl Guard for Overturning {
+    fn first(&self, step: &Step) -> (Crossing, Way) {
+        let theta = step.arc.used(&step.arc.theta);
+        let falls = first_crossing::Guard::new(theta, -step.side.sign(), FRAC_PI_2);
+        (first_time_all_closed([falls], step.reach), Way::default())
+    }
+
+    fn apply(&self, level: &dyn Level, motion: &mut Motion, _way: Way) -> TransitionKind {
+        let side = motion.phase.side();
+        enter(level, motion, Phase::Overturned(side), motion.state);
+        TransitionKind::Overturning(side)
+    }
+
+    fn stays_open(&self, now: &Sample, ahead: f64) -> bool {
+        let state = &now.motion.state;
+        state.theta.abs() < FRAC_PI_2 - way(ahead, state.theta_dot)
+    }
+
+    fn indicator(&self, now: &Sample) -> (usize, f64) {
+        (1, 1.0 - now.motion.state.theta.abs() / FRAC_PI_2)
+    }
+
+    fn is_stop(&self) -> bool {
+        false
+    }
+}
+
+/// s θ returns to 0.
+struct Impact;
+
+impl Guard for Impact {
+    /// A start at θ = 0 is divided out: s θ/σ^z is searched, z the number of leading zeros, so that the start is no return and a
+    /// return right after it is not missed. A coefficient that underflows counts as zero; a θ that is zero throughout, over a step
+    /// of 1e-200 s say, has not returned.
+    fn first(&self, step: &Step) -> (Crossing, Way) {
+        let theta = step.arc.used(&step.arc.theta);
+        let crossing = match theta.iter().position(|c| c.is_normal()) {
+            Some(zeros) => {
+                let height = first_crossing::Guard::new(&theta[zeros..], step.side.sign(), 0.0);
+                first_time_all_closed([height], step.reach)
+            }
+            None => Crossing::None,
+        };
+        (crossing, Way::default())
+    }
+
+    fn apply(&self, level: &dyn Level, motion: &mut Motion, _way: Way) -> TransitionKind {
+        let (before, limit) = (motion.state, level.chatter_limit());
+        let (kind, phase, after) = if motion.chatter.is_too_much(limit) {
+            motion.chatter.hold(limit);
+            let landed = level.admissible(Phase::FullContact, impact::land(level.structure(), &before));
+            (TransitionKind::Settling, Phase::FullContact, landed)
+        } else {
+            match level.after_impact(motion.phase.side(), &before) {
+                (Phase::Rocking(side), after) => (TransitionKind::Impact(side), Phase::Rocking(side), after),
+                (phase, after) => (TransitionKind::Landing, phase, after),
+            }
+        };
+        enter(level, motion, phase, after);
+        kind
+    }
+
+    fn stays_open(&self, now: &Sample, ahead: f64) -> bool {
+        let state = &now.motion.state;
+        state.theta.abs() >= way(ahead, state.theta_dot)
+    }
+
+    fn indicator(&self, now: &Sample) -> (usize, f64) {
+        let Motion { phase, state, .. } = &now.motion;
+        let alpha_cg = libm::atan(now.level.structure().tan_alpha_cg);
+        (0, phase.side().sign() * state.theta / alpha_cg + BAND)
+    }
+}
+
+/// Whether the magnitudes of the terms of θ prove that s θ stays between 0 and π/2 on `arc`.
+fn stays_about(arc: &Arc, side: Side) -> bool {
+    let start = side.sign() * arc.theta[0];
+    let excursion = sum_of_magnitudes(&arc.theta[1..=arc.order]);
+    excursion < start && excursion + start < FRAC_PI_2
+}
