@@ -17,8 +17,6 @@ SI units and radians throughout. What is refused raises ValueError with the name
 IPython are needed only by what returns a table, draws, or is shown in a notebook.
 """
 
-import signal
-import sys
 from collections.abc import Iterable
 from importlib.metadata import distribution
 from os import PathLike
@@ -58,9 +56,3 @@ def export(
     records = [record] if isinstance(record, (Record, str, PathLike)) else list(record)
     _native.export(target, structure, records, name, fmi, fmu() if library is None else library)
     return Path(target).absolute()
-
-
-def _command_line() -> None:
-    """The console script rocking-fmu."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Python's own handler waits until the engine has ended
-    sys.exit(_native.command_line(Path(sys.argv[0]).resolve(), sys.argv))

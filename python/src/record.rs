@@ -11,9 +11,9 @@ use rocking::Parameters;
 use rocking::estimates::intensity::peak_velocity;
 use rocking::estimates::response_spectrum;
 use rocking::run::record::Record as Samples;
-use rocking_cli::output_files::OutputFiles;
-use rocking_cli::record_args::RecordOptions;
-use rocking_records::{Column, Unit, csv_in, doubts, vertical_csv};
+use rocking_records::{Column, Reading, Unit, csv_in, doubts, vertical_csv};
+use rocking_report::output_files::OutputFiles;
+use rocking_report::record::understand;
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;
@@ -179,17 +179,12 @@ impl Record {
         let unit = unit.map(self::unit).transpose()?;
         let dt = dt.map(|dt| number("dt", dt)).transpose()?;
         let column = column.map(|column| -> PyResult<_> { Ok(Column::from(column.str()?.to_str()?)) }).transpose()?;
-        let options = RecordOptions { unit, dt, column, ignore_npts, ..RecordOptions::default() };
+        let how = Reading { unit, dt, column, ignores_count: ignore_npts };
         let read = |file: PathBuf| -> PyResult<(Samples, Unit)> {
-            let options = options.clone();
-            let (understood, sentences) = interruptible(py, move |_| -> anyhow::Result<_> {
-                let understood = options.understand(&file, G)?;
-                let sentences = understood.sentences[1..].to_vec();
-                Ok((understood, sentences))
-            })?;
-            warn(py, sentences, 1)?;
-            let unit = understood.unit();
-            Ok(fixed(understood.in_file_unit, unit))
+            let how = how.clone();
+            let understood = interruptible(py, move |_| understand(&file, &how, [1.0; 2], G))?;
+            warn(py, understood.sentences[1..].iter().cloned(), 1)?;
+            Ok(fixed(understood.in_file_unit, understood.unit))
         };
         let (mut given, unit) = read(file)?;
         if let Some(vertical) = vertical {

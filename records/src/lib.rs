@@ -148,12 +148,12 @@ pub fn from_bytes(path: &Path, bytes: &[u8], how: &Reading) -> Result<(Record, S
     }
 }
 
-/// The record as its file gives it, with its accelerations in m/s²; `g` (m/s²) is what a record's g stands for. What no
-/// earthquake has is among the warnings of the `source`.
+/// The record as its file gives it, with its accelerations in m/s²; `g` (m/s²) is what a record's g stands for. Adds the
+/// doubts about the record to its `source`.
 pub fn in_m_s2(record: Record, mut source: Source, g: f64) -> Result<(Record, Source), OutOfRange> {
     PARAMETERS.iter().filter(|quantity| quantity.name == "g").try_for_each(|quantity| quantity.check(g))?;
     let record = record.multiplied(source.unit.in_m_s2(g));
-    source.warnings.extend(doubts(&record, g));
+    source.doubts.extend(doubts(&record, g));
     Ok((record, source))
 }
 

@@ -46,9 +46,7 @@ impl Times {
 impl Parsed {
     /// Nothing yet.
     pub fn new(format: Format, title: impl Into<String>, unit: Unit, unit_from: UnitFrom, times: Times) -> Parsed {
-        let assumed = || format!("the file states no unit: {unit} is assumed; say as unit what it is");
-        let warnings = (unit_from == UnitFrom::Assumed).then(assumed).into_iter().collect();
-        let source = Source { format, unit, unit_from, remarks: Vec::new(), warnings };
+        let source = Source { format, unit, unit_from, remarks: Vec::new(), doubts: Vec::new() };
         Parsed { title: title.into(), times, values: Vec::new(), source, last_line: 1 }
     }
 

@@ -60,14 +60,14 @@ pub struct Source {
     pub unit_from: UnitFrom,
     /// All else that was found or assumed: which column, how many lines of headings, and the like.
     pub remarks: Vec<String>,
-    /// What is likely wrong with the file or with how it is read, though it may be right.
-    pub warnings: Vec<String>,
+    /// Likely errors in the file or in how it is read.
+    pub doubts: Vec<String>,
 }
 
 impl Source {
-    /// Sentences to report before a run under `record` (m/s²), which was read from the file called `name`. The first describes
-    /// the findings and assumptions, each other one warns. The peak is reported in units of `g` (m/s²).
-    pub fn sentences(&self, name: &str, record: &Record, g: f64) -> Vec<String> {
+    /// Findings and assumptions in a sentence, for `record` (m/s²), which was read from the file called `name`. The peak is
+    /// reported in units of `g` (m/s²).
+    pub fn findings(&self, name: &str, record: &Record, g: f64) -> String {
         let unit_from = match self.unit_from {
             UnitFrom::File => "as the file states",
             UnitFrom::User => "as asked for",
@@ -76,9 +76,19 @@ impl Source {
         let remarks: String = self.remarks.iter().map(|remark| format!(", {remark}")).collect();
         let (format, unit, samples) = (self.format, self.unit, record.times().len());
         let (steps, peak) = (steps(record), six_digits(record.pga() / g));
-        let found = format!("{name}: {format}{remarks}; {unit} {unit_from}; {samples} samples, {steps}, peak {peak} g");
-        let warnings = self.warnings.iter().map(|warning| format!("{name}: {warning}"));
-        [found].into_iter().chain(warnings).collect()
+        format!("{name}: {format}{remarks}; {unit} {unit_from}; {samples} samples, {steps}, peak {peak} g")
+    }
+
+    /// A warning of a unit that is assumed, and the doubts.
+    pub fn warnings(&self) -> impl Iterator<Item = String> {
+        let assumed = || format!("the file states no unit: {} is assumed; say as unit what it is", self.unit);
+        (self.unit_from == UnitFrom::Assumed).then(assumed).into_iter().chain(self.doubts.iter().cloned())
+    }
+
+    /// The [findings](Source::findings), and a sentence for each warning.
+    pub fn sentences(&self, name: &str, record: &Record, g: f64) -> Vec<String> {
+        let warnings = self.warnings().map(|warning| format!("{name}: {warning}"));
+        [self.findings(name, record, g)].into_iter().chain(warnings).collect()
     }
 }
 
