@@ -156,6 +156,8 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, intensity: st
             several = ", ".join(map(repr, values[:5].tolist())) + (", ..." if len(values) > 5 else "")
             raise ValueError(f"the table has {len(values)} values of {name}, {several}, and a curve is of one: choose the rows, "
                              f"table[table[{name!r}] == {values[0]!r}], or call fragility for each of table.groupby({name!r})")
+    if twice := int(table["run"].duplicated().sum()):
+        raise ValueError(f"the table has {twice} rows of runs that it has already: leave them out by table.drop_duplicates('run')")
     peak = _native.measure_of(limit)
     ended = table[table["ending"] != "failed"]
     varying = ["record"] if ended["record"].nunique() > 1 else list(table.columns[1:table.columns.get_loc("record")])
@@ -165,6 +167,6 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, intensity: st
         raise ValueError(f"{peaks.name} is NaN in {missing} rows of runs that ended: run them again, or leave them out by "
                          f"table.dropna(subset={[peaks.name]!r}), and with them what they would have counted")
     curve, bins = _native.fragility(groups.tolist(), ended[column].tolist(), [str(ending) for ending in ended["ending"]],
-                                    peaks.tolist(), ended["g[m/s2]"].tolist(), limit)
+                                    peaks.tolist(), ended["g[m/s2]"].tolist(), limit, ended["B[m]"].max())
     names = ["lowest", "mean", "highest", "runs", "known", "exceedances"]
     return Fragility(limit, column, curve, pandas.DataFrame(bins, columns=names))

@@ -56,10 +56,10 @@ fn export(
     structure: &structure::Structure,
     records: Vec<Packed>,
     name: String,
-    fmi: u32,
+    fmi: &Bound<'_, PyAny>,
     library: PathBuf,
 ) -> PyResult<()> {
-    let version = one_of("fmi", &fmi.to_string(), [("2", Version::Fmi2), ("3", Version::Fmi3)])?;
+    let version = one_of("fmi", fmi, [("2", Version::Fmi2), ("3", Version::Fmi3)])?;
     let mut files = OutputFiles::of_inputs([library.as_path()]);
     for packed in &records {
         if let Packed::File(path) = packed {

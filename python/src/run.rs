@@ -1,6 +1,6 @@
 //! `simulate` and `Run`: one structure under one ground motion.
 
-use crate::arguments::{conditions, numbers, refused, result};
+use crate::arguments::{argument, conditions, numbers, refused, result};
 use crate::interruptible::{Abandoned, interruptible};
 use crate::record::{Ground, Record};
 use crate::structure::Structure;
@@ -15,7 +15,7 @@ use rocking::run::fall::Found;
 use rocking::run::peaks::{self, Peak};
 use rocking::run::validity::{ASSUMPTIONS, Limits, Worst};
 use rocking::run::{End, Ending, RunError};
-use rocking::{Phase, Side, State, Transition};
+use rocking::{Detail, Phase, Side, State, Transition};
 use rocking_report::summary::Summary;
 use rocking_report::tables::{RESPONSE, response_numbers};
 use rocking_report::validity;
@@ -240,6 +240,16 @@ impl Run {
         })
     }
 
+    /// Whether both have the same inputs, and therefore the same results.
+    fn __eq__(&self, other: &Run) -> bool {
+        let are_same = self.structure.get() == other.structure.get() && self.record.get() == other.record.get();
+        are_same && self.conditions == other.conditions
+    }
+
+    fn __hash__(&self) -> u64 {
+        self.structure.get().__hash__() ^ self.record.get().__hash__()
+    }
+
     /// A pickle is the call of `simulate`.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, ())> {
         let asked = PyDict::new(py);
@@ -321,15 +331,15 @@ impl Run {
 /// Overturning is a result, not an error. Raises ValueError where the run cannot begin, or not go on. Other threads of
 /// Python go on meanwhile; the same inputs give the same bits.
 #[pyfunction]
-#[pyo3(signature = (structure, record=None, *, duration=None, detail="auto", tolerance=DEFAULT_TOLERANCE, **initial))]
+#[pyo3(signature = (structure, record=None, *, duration=None, detail=Detail::Auto, tolerance=DEFAULT_TOLERANCE, **initial))]
 #[pyo3(text_signature = "(structure, record=None, *, duration=None, detail='auto', tolerance=1e-09, **initial)")]
 pub fn simulate(
     py: Python<'_>,
     structure: Py<Structure>,
     record: Option<Ground>,
     duration: Option<&Bound<'_, PyAny>>,
-    detail: &str,
-    tolerance: f64,
+    #[pyo3(from_py_with = argument::detail)] detail: Detail,
+    #[pyo3(from_py_with = argument::tolerance)] tolerance: f64,
     initial: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Run> {
     let conditions = conditions(detail, tolerance, duration, initial)?;

@@ -32,7 +32,8 @@ use rocking_report::describe;
 /// another.
 ///
 /// Raises ValueError where a number is unknown, missing, given twice in different ways or out of its range.
-#[pyclass(frozen, module = "flexible_rocking")]
+#[pyclass(frozen, eq, module = "flexible_rocking")]
+#[derive(PartialEq)]
 pub struct Structure(pub rocking::Structure);
 
 fn given(numbers: Option<&Bound<'_, PyDict>>) -> PyResult<Given> {
@@ -59,7 +60,7 @@ impl Structure {
 impl Structure {
     #[new]
     #[pyo3(signature = (*, preset=None, **numbers))]
-    fn new(preset: Option<&str>, numbers: Option<&Bound<'_, PyDict>>) -> PyResult<Structure> {
+    fn new(preset: Option<&Bound<'_, PyAny>>, numbers: Option<&Bound<'_, PyDict>>) -> PyResult<Structure> {
         let given = given(numbers)?;
         let parameters = match preset {
             None => given.parameters(),
@@ -170,11 +171,7 @@ impl Structure {
         describe::text(&self.0).map_err(refused)
     }
 
-    fn __eq__(&self, other: &Structure) -> bool {
-        self.0 == other.0
-    }
-
-    fn __hash__(&self) -> u64 {
+    pub fn __hash__(&self) -> u64 {
         let bits = |value: f64| (value + 0.0).to_bits(); // of -0 as of 0, which it equals
         self.named().fold(0, |hash, (_, value)| hash.rotate_left(7).wrapping_mul(31) ^ bits(value))
     }

@@ -201,6 +201,8 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read);
         say_few(&warnings, "warnings");
         let plan = Plan::new(populations, motions?, scales)?.under(file.conditions())?;
+        let widest = plan.cases().map(|case| case.structure.parameters().B).fold(0.0, f64::max);
+        limits.iter().try_for_each(|limit| limit.check(widest)).context("limits")?;
         Ok(Asked::Records(RecordSweep { plan, limits, measure, records }))
     };
     read().with_context(|| format!("sweep in {}", path.display()))
