@@ -1,4 +1,4 @@
-//! What Python's arguments say, and how they are refused: by name, value and limit, in the words of the library.
+//! Arguments of Python, and their errors with name, value and limit in the words of the library.
 
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::call::PyCallArgs;

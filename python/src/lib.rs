@@ -1,5 +1,5 @@
-//! The Python module: the same crates as the command line's, as Python's objects. What is computed, the library
-//! computes; here arguments are read, and results are given the form that Python has for them.
+//! The Python module: the same crates as the command line's, as Python's objects. The library computes; this crate reads
+//! arguments and gives results their form in Python.
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
 mod advice;

@@ -160,10 +160,10 @@ impl Record {
     /// Reads the record in `file`: PEER .AT2, ESM and ITACA, K-NET, COSMOS, CSMIP, or a table of text, known by its
     /// content.
     ///
-    /// What the file does not state is said by unit (of its accelerations), dt (s between samples), column (a number
-    /// from 1, a heading, or "all"), ignore_npts (take the samples that are there). vertical is the file of the vertical
-    /// component, read by the same options. time_scale and scale multiply. A Python warning names an assumption
-    /// about the file, or a likely fault. Raises ValueError with the line and what would help.
+    /// The options replace statements that the file lacks: unit (of the accelerations), dt (s between samples), column (a
+    /// number from 1, a heading, or "all"). ignore_npts reads all samples, even if the file states another number. vertical:
+    /// the file of the vertical component, read by the same options. time_scale and scale multiply. A Python warning names an
+    /// assumption about the file, or a likely fault. Raises ValueError with the line and what would help.
     #[staticmethod]
     #[pyo3(signature = (file, *, vertical=None, unit=None, dt=None, column=None, ignore_npts=false, time_scale=1.0, scale=1.0))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
@@ -220,7 +220,7 @@ impl Record {
         self.usual.vertical().map(|a_v| PyArray1::from_slice(py, a_v))
     }
 
-    /// What it is called.
+    /// Title of the record.
     #[getter]
     pub fn title(&self) -> &str {
         self.usual.title()
@@ -313,10 +313,10 @@ type Array<'py> = Bound<'py, PyArray1<f64>>;
 /// The pulse of this shape as a Record: "half_sine", "sine", "cosine", "ricker", "antisymmetric_ricker",
 /// "mavroeidis_papageorgiou".
 ///
-/// amplitude a_p in g, frequency in Hz; with a structure both are in its units instead: amplitude in g tan(alpha_cg),
-/// frequency in p_l, of which it is the circular one. cycles: periods of a sine or cosine (1), gamma of
-/// mavroeidis_papageorgiou (2); phase in rad; error, how far its straight lines may be off the curve over the amplitude.
-/// g in m/s2. Raises ValueError for a pulse that cannot be.
+/// amplitude a_p in g, frequency in Hz. With a structure, amplitude is in g tan(alpha_cg), and frequency is the circular one
+/// in p_l. cycles: periods of a sine or cosine (1), gamma of mavroeidis_papageorgiou (2). phase in rad, g in m/s2. error: the
+/// largest distance of the straight lines from the curve, as a fraction of the amplitude. Raises ValueError for a pulse that
+/// cannot be.
 #[pyfunction]
 #[pyo3(signature = (shape, *, amplitude, frequency, cycles=None, phase=0.0, error=DEFAULT_ERROR, structure=None, g=G))]
 #[pyo3(

@@ -1,4 +1,4 @@
-//! How a record's file is read, and what was found in it or assumed of it.
+//! Options for reading a record's file, and the findings and assumptions about the file.
 
 use super::text::{quote, six_digits};
 use super::unit::Stated;
@@ -6,20 +6,20 @@ use super::{BadLine, Record, Remedy, Unit, bad};
 use serde::{Deserialize, Deserializer, de::Error};
 use std::fmt;
 
-/// What the user says of a file; the file says the rest.
+/// Options of the user for facts that a file does not state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reading {
     /// Unit of the accelerations; must be the one that the file states, if it states one.
     pub unit: Option<Unit>,
     /// Time between two samples of a file without times, s.
     pub dt: Option<f64>,
-    /// Which of several columns, or of the channels of a COSMOS file, has the accelerations.
+    /// Column, or channel of a COSMOS file, with the accelerations.
     pub column: Option<Column>,
-    /// Whether the samples that are there are taken where the file states another number of them.
+    /// Whether all samples are read even if the file states another number of them.
     pub ignores_count: bool,
 }
 
-/// What has the accelerations in a table.
+/// Position of the accelerations in a table.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(untagged)]
 pub enum Column {
@@ -49,16 +49,16 @@ pub enum Format {
     Csmip,
 }
 
-/// Where a record comes from: what its file states, and what was assumed where it says nothing.
+/// Origin of a record: statements of its file, and assumptions about missing statements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
     /// Its layout.
     pub format: Format,
     /// Unit of the accelerations in the file.
     pub unit: Unit,
-    /// Who says so.
+    /// Origin of the unit.
     pub unit_from: UnitFrom,
-    /// All else that was found or assumed: which column, how many lines of headings, and the like.
+    /// Other findings and assumptions, such as the column and the number of lines of headings.
     pub remarks: Vec<String>,
     /// Likely errors in the file or in how it is read.
     pub doubts: Vec<String>,
@@ -100,14 +100,14 @@ pub fn steps(record: &Record) -> String {
     if least == most { format!("step {least} s") } else { format!("steps of {least} to {most} s") }
 }
 
-/// Who decides the unit of a record.
+/// Origin of the unit of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnitFrom {
     /// The file.
     File,
-    /// The user, where the file says nothing.
+    /// The user, if the file states no unit.
     User,
-    /// No one: the unit is assumed.
+    /// An assumption, if neither states a unit.
     Assumed,
 }
 
@@ -152,7 +152,8 @@ impl fmt::Display for Format {
     }
 }
 
-/// Who is right about the unit, which `line` states: the file, which must not be contradicted, else the user, else it is m/s².
+/// Decides the unit: the unit that the file states on `line`, else the unit of the user, else m/s². The user must not
+/// contradict the file.
 pub(super) fn decide(stated: &Stated, asked: Option<Unit>, line: usize) -> Result<(Unit, UnitFrom), BadLine> {
     let contradicted = |stated: &dyn fmt::Display, asked: Unit| {
         Err(bad(line, format!("the file states accelerations in {stated}, and {asked} is asked for")))

@@ -1,8 +1,8 @@
-//! Tables of text: a sample on each line, with a comma, a semicolon or blanks between its numbers; or, where the file or the
-//! user says so, samples alone, one after the other, as many on a line as there are; after any lines of text.
+//! Tables of text: a sample on each line, with a comma, a semicolon or blanks between the numbers. If the file or the user
+//! says so, the lines have any number of samples instead. Lines of text can stand before the numbers.
 //!
-//! What a column has its heading says; without headings the first has the times. Whole numbers without a unit of time count
-//! the samples, or are milliseconds: the file does not tell, so that the time between samples is to be given.
+//! The headings say which column has what. Without headings the first column has the times. Whole numbers without a unit of
+//! time could be counts or milliseconds: then the user must give the time between samples.
 
 use super::fields::{Layout, cells, is_numbers};
 use super::parsed::{Parsed, Times};
@@ -11,32 +11,32 @@ use super::text::{is_number, number, numbered, quote, without_blanks};
 use super::unit::{Stated, TimeUnit, mentions_unit};
 use super::{BadLine, Column, Format, Reading, Remedy, bad, source::decide};
 
-/// The numbers of a file, and what is said before them.
+/// The numbers of a file, and the text before them.
 struct Table<'a> {
     text: &'a str,
     /// The lines of text before the numbers, with their numbers.
     before: Vec<(usize, &'a str)>,
     /// The cells of the lines of text that have one for each column, with the numbers of these lines.
     headings: Vec<(usize, Vec<&'a str>)>,
-    /// What a line before the samples states.
+    /// Number of samples and step that a line before the samples states.
     stated: Sampling,
     /// The first line of samples.
     first: usize,
     last: usize,
     layout: Layout,
-    /// How many numbers the first line has.
+    /// Number of columns of the first line.
     count: usize,
-    /// Those of all lines.
+    /// The numbers of all lines.
     numbers: Vec<f64>,
-    /// The first line that has another number of them.
+    /// The first line with another number of columns.
     uneven: Option<BadLine>,
 }
 
-/// Where the samples are in a table.
+/// Columns of a table.
 struct Samples {
     /// The column of times, and their unit.
     time: Option<(usize, TimeUnit)>,
-    /// That of accelerations; without it all numbers are samples, one after the other.
+    /// The column of accelerations; without one, all numbers are samples, one after the other.
     value: Option<usize>,
 }
 
@@ -355,7 +355,7 @@ mod tests {
         format!("{line}: {problem}")
     }
 
-    /// Nothing but what the file says.
+    /// No options.
     const AS_IT_IS: Reading = Reading { unit: None, dt: None, column: None, ignores_count: false };
 
     #[test]
@@ -447,7 +447,7 @@ mod tests {
         }
     }
 
-    /// Numbers that change like those of one instrument, of two, or of times and samples, are none of them until somebody says.
+    /// The reader does not guess whether numbers are the samples of one instrument, of two, or times and samples.
     #[test]
     fn several_samples_a_line_are_read_if_it_is_said() {
         let step = Reading { dt: Some(0.5), ..AS_IT_IS };
@@ -485,7 +485,7 @@ mod tests {
         }
     }
 
-    /// It may be that of a peak, or of the accelerations: the user says.
+    /// The unit can be of a peak or of the accelerations: the user decides.
     #[test]
     fn a_unit_in_no_heading_is_not_taken_and_not_passed_over() {
         for line in ["time acc cm/s2", "Acceleration in cm/s2", "# peak in g: 0.3", "peak 0.3 g", "PGA=0.3g"] {

@@ -1,4 +1,4 @@
-//! What a run came to, in a few numbers, and whether a limit was exceeded.
+//! Outcome of a run in a few numbers, and whether the run exceeded a limit.
 
 use crate::{Refused, ensure, six_digits};
 use rocking::Watch;
@@ -11,26 +11,26 @@ use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 use std::str::FromStr;
 
-/// What a run came to.
+/// Outcome of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// It was followed to its end.
+    /// The run reached its end.
     Ended(Summary),
-    /// It could not be continued: nothing is known of the structure.
+    /// The run could not be continued: the fate of the structure is unknown.
     Failed {
-        /// From this instant on, s.
+        /// Time of the failure, s.
         time: f64,
         /// Why.
         reason: String,
     },
 }
 
-/// A run that was followed to its end.
+/// Results of a run that reached its end.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
-    /// How it ended.
+    /// Ending of the run.
     pub ending: Ending,
-    /// When, s.
+    /// Time of the end, s.
     pub end: f64,
     /// Largest magnitudes, in the order of [`MEASURES`]; of a structure that overturns, before it falls.
     pub peaks: [f64; MEASURES.len()],
@@ -42,7 +42,7 @@ pub struct Summary {
     pub evaluations: u64,
 }
 
-/// What a run is measured by, with units: [`PEAKS`], and the largest rotation over the slenderness angle.
+/// Measures of a run with their units: [`PEAKS`], and the largest rotation as a fraction of the slenderness angle.
 pub const MEASURES: [(&str, &str); PEAKS.len() + 1] = {
     let mut measures = [("theta/alpha_cg", "1"); PEAKS.len() + 1];
     let mut i = 0;
@@ -65,7 +65,7 @@ const USUAL_UNITS: [(&str, &str, Option<f64>); 8] = [
     ("kN.m", "N.m", Some(1e3)),
 ];
 
-/// What may be exceeded.
+/// Limit that a run can exceed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Limit {
     /// The structure stands.
@@ -82,7 +82,7 @@ pub enum Limit {
 }
 
 impl Outcome {
-    /// Does `run`, which `watch` sees go by.
+    /// Follows `run` to its end, watched by `watch`.
     pub fn of(run: &Run, watch: &mut impl Watch) -> Outcome {
         let Found { peaks, finish, .. } = match run.found(watch) {
             Ok(found) => found,
