@@ -47,6 +47,7 @@ WINDOWS := x86_64-pc-windows-gnu
 ZIG := x86_64-unknown-linux-gnu.2.17 aarch64-unknown-linux-gnu.2.17 universal2-apple-darwin
 ZIG_PARTS := x86_64-unknown-linux-gnu aarch64-unknown-linux-gnu x86_64-apple-darwin aarch64-apple-darwin
 export MACOSX_DEPLOYMENT_TARGET := 11.0
+ZIGBUILD = $(NATIVE_UNTRACED) PATH="$(CURDIR)/.venv/bin:$$PATH" cargo zigbuild --profile dist --locked
 # What is built for a named target tells neither where nor when: cargo's packages are elsewhere on every machine. For this
 # machine's own it is said at each place, or whatever is built here without a name would be built again. Names that no loader
 # needs are left out by the linker: those for macOS, though taken away later, are in what identifies a binary, and those for
@@ -115,7 +116,8 @@ python: .venv/heavy module
 
 # In .venv the module is that of this folder; the archive in its place has the libraries that are there.
 module: .venv/dist exporter
-	mkdir -p out/wheel/data/share/flexible-rocking
+	mkdir -p out/wheel/data/share/flexible-rocking out/wheel/scripts
+	cp $(TARGET)/release/rocking-fmu out/wheel/scripts/
 	$(TARGET)/release/rocking-fmu export --record examples/pulse.csv -o out/wheel/data/share/flexible-rocking/FlexibleRocking.fmu
 	VIRTUAL_ENV=.venv $(MATURIN) develop --release --locked
 
@@ -182,20 +184,29 @@ dist: exporter windows zig
 packaged: .venv/test wheel
 	$(PYTEST) -m heavy tests/test_wheel.py tests/test_wheels.py
 
-# The module of each wheel is for one machine and every Python from 3.10 on, the archive in it for all machines.
+# Module and program of a wheel are for one machine, the module for every Python from 3.10 on; the archive is for all machines.
 MATURIN := PATH="$(CURDIR)/.venv/bin:$$PATH" SOURCE_DATE_EPOCH=315532800 maturin
-WHEEL := $(MATURIN) build --profile dist --locked --out out/wheels --target
+# The wheel for the target $(1), with the program $(2), which is built; $(3) are options of maturin.
+define build_wheel
+	rm -rf out/wheel/scripts
+	mkdir out/wheel/scripts
+	cp $(TARGET)/$(1)/dist/$(2) out/wheel/scripts/
+	$(NATIVE_UNTRACED) $(MATURIN) build --profile dist --locked --out out/wheels --target $(1) $(3)
+endef
 wheel: dist
 	rm -rf out/wheel out/wheels
 	mkdir -p out/wheel/data/share/flexible-rocking
 	cp out/FlexibleRocking.fmu out/wheel/data/share/flexible-rocking/
 	$(MATURIN) sdist --out out/wheels
-	$(NATIVE_UNTRACED) $(WHEEL) x86_64-unknown-linux-gnu --zig --compatibility manylinux2014
+	$(ZIGBUILD) --package rocking-cli --target x86_64-unknown-linux-gnu.2.17
+	$(call build_wheel,x86_64-unknown-linux-gnu,rocking-fmu,--zig --compatibility manylinux2014)
 
 wheels: wheel
-	$(WHEEL) aarch64-unknown-linux-gnu --zig --compatibility manylinux2014
-	$(WHEEL) universal2-apple-darwin --zig
-	$(WHEEL) $(WINDOWS)
+	for target in $(ZIG); do $(ZIGBUILD) --package rocking-cli --target $$target || exit; done
+	cargo build --profile dist --locked --package rocking-cli --target $(WINDOWS)
+	$(call build_wheel,aarch64-unknown-linux-gnu,rocking-fmu,--zig --compatibility manylinux2014)
+	$(call build_wheel,universal2-apple-darwin,rocking-fmu,--zig)
+	$(call build_wheel,$(WINDOWS),rocking-fmu.exe)
 
 # All tests see what is released: of the archive Linux's library, those that are read and run as for other machines, the
 # packages; the one of the source is built and installed here alone, for it takes minutes.
@@ -230,8 +241,7 @@ windows: mingw
 
 zig: .venv/dist
 	rustup target add $(ZIG_PARTS)
-	for target in $(ZIG); do $(NATIVE_UNTRACED) PATH="$(CURDIR)/.venv/bin:$$PATH" cargo zigbuild --profile dist --locked \
-		--package flexible-rocking-fmu --target $$target || exit; done
+	for target in $(ZIG); do $(ZIGBUILD) --package flexible-rocking-fmu --target $$target || exit; done
 
 docs: .venv/docs
 	$(PYTHON) -m sphinx -W --keep-going -q -b html -c docs -d out/doctrees . out/site

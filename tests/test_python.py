@@ -162,7 +162,13 @@ def test_what_is_refused_has_the_command_lines_text(said, arguments, options):
     (lambda ground: fr.Record(pd.to_timedelta([0, 5], unit="ms"), [0, 1]), "time: these are durations: numbers are needed, in s"),
     (lambda ground: fr.Record(0.1, np.ma.masked_equal([0.0, -999.0, 1.0], -999)), "a_g: some of it is masked"),
     (lambda ground: fr.Record(0.1, np.array(["1", 2.0], object)), "a_g: numbers are needed"),
-    (lambda ground: fr.Record(0.1, [True, False]), "a_g: these are bools"),
+    (lambda ground: fr.Record(0.1, [True, 1.0]), "a_g: these are bools"),
+    (lambda ground: fr.Record(0.1, np.array([0.0, np.True_], object)), "a_g: these are bools"),
+    (lambda ground: fr.Record(0.1, [0, 1], unit=None), 'unit = "None" is unknown; these are known: g, m/s2'),
+    (lambda ground: fr.Record(0.1, [0, 1], scale="2"), "scale = '2': it is no number"),
+    (lambda ground: fr.export("a.fmu", fr.Structure(preset="mcmanus"), fmi="3.0"), 'fmi = "3.0" is unknown; these are known: 2, 3'),
+    (lambda ground: fr.advise(fr.Structure(preset="mcmanus"), ground, within="5%"), "within = '5%': it is no number"),
+    (lambda ground: fr.advise(fr.Structure(preset="mcmanus"), ground, of=["theta", 3]), 'of = "3" is unknown'),
     (lambda ground: fr.Record(0.1, [1j, 2j]), "a_g: these are complex"),
     (lambda ground: fr.Structure(preset="mcmanus", m=True), "m = True: it is no number"),
     (lambda ground: fr.simulate(fr.Structure(preset="mcmanus"), duration=np.timedelta64(9, "ns")), "it is no number"),
@@ -299,7 +305,7 @@ def test_results_are_pickled_and_copied(run, ground):
     pulses = {f"{f} Hz": fr.pulse("sine", amplitude=0.5, frequency=f) for f in (1.0, 1.5, 2.0, 2.5, 3.0)}
     fragility = fr.fragility(fr.sweep(run.structure, pulses, scale=np.linspace(0.2, 3, 15)))
     for same in (lambda of: pickle.loads(pickle.dumps(of)), copy.deepcopy):
-        for result in (run.peaks["theta"], run.transitions, run.validity["mu_required"], fr.advise(run.structure, ground), ground):
+        for result in (run, run.peaks["theta"], run.transitions, run.validity["mu_required"], fr.advise(run.structure, ground), ground):
             assert same(result) == result and type(same(result)) is type(result) and repr(same(result)) == repr(result)
         assert (same(run.peaks["u"]).time, same(run.peaks["u"]).unit) == (run.peaks["u"].time, "m")
         copied = same(fragility)
@@ -346,11 +352,13 @@ def test_help_shows_the_defaults(ground):
 
 
 def test_pip_installs_a_fresh_clone(tmp_path):
-    """With nothing but cargo and pip: the script of README, and an FMU that the installed command line packs."""
+    """With nothing but cargo and pip: the script of README, an FMU that the module packs, and the program."""
     if not (ROOT / ".git").exists():
         pytest.skip("this is no clone: of the package of the source, see test_wheel.py")
     clone, python = tmp_path / "clone", tmp_path / "venv/bin/python"
-    environment = os.environ | {"CARGO_TARGET_DIR": str(ROOT / "out/fresh")}
+    built = ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "release"
+    shutil.copytree(built, tmp_path / "target/release")  # in which cargo finds the packages that others have written
+    environment = os.environ | {"CARGO_TARGET_DIR": str(tmp_path / "target")}
 
     def run(*command):
         done = subprocess.run([str(part) for part in command], cwd=tmp_path, env=environment, capture_output=True, text=True)
@@ -365,6 +373,8 @@ def test_pip_installs_a_fresh_clone(tmp_path):
     run(python, "-c", "import flexible_rocking as fr; "
                       "fr.export('own.fmu', fr.Structure(preset='evison'), record=fr.pulse('sine', amplitude=0.5, frequency=2))")
     assert np.abs(simulate_fmu(tmp_path / "own.fmu", stop_time=2)["theta"]).max() > 0
+    run(python.with_name("rocking-fmu"), "export", "-o", "packed.fmu")
+    assert (tmp_path / "packed.fmu").stat().st_size > 500_000
 
 
 def test_threads_and_processes_give_the_same_bits(run, ground):
@@ -446,6 +456,7 @@ def test_a_curve_is_of_one_population_under_one_measure(two_populations):
         (two_populations, "the table has 2 values of structures, 'mcmanus', 'evison', and a curve is of one: choose"),
         (pd.concat([alone, alone.assign(detail="linear")]), "the table has 2 values of detail, 'auto', 'linear'"),
         (pd.concat([alone, alone.assign(**{"u_0[m]": 0.01})]), "the table has 2 values of u_0[m], 0.0, 0.01, and"),
+        (pd.concat([alone, alone[:2]]), "the table has 2 rows of runs that it has already: leave them out by table.drop_duplicates"),
         (lost, "intensity is needed: the table has lost the measure of its sweep; give one of PGA, PGV, S_a"),
         (alone.assign(**{"peak_theta/alpha_cg": np.nan}), "peak_theta/alpha_cg is NaN in"),
         (alone.assign(ending=np.nan), "unknown variant `nan`"),
@@ -463,8 +474,10 @@ def test_limits_have_usual_units(two_populations):
     for usual, own in [("theta >= 0.5 deg", np.radians(0.5)), ("uplift >= 1 cm", 0.01), ("a_t >= 0.6 g", 0.6 * 9.81)]:
         expected = fr.fragility(alone, f"{usual.split()[0]} >= {float(own)!r}")
         assert fr.fragility(alone, usual).bins.equals(expected.bins)
-    with pytest.raises(ValueError, match="a number is needed, in m, cm, mm"):
-        fr.fragility(alone, "uplift >= 1 inch")
+    for limit, refused in [("uplift >= 1 inch", "a number is needed, in m, cm, mm"), ("theta >= 3", "stays below pi/2 rad"),
+                           ("uplift >= 58 cm", "stays below 2 B = 0.57 m; use overturned")]:
+        with pytest.raises(ValueError, match=refused):
+            fr.fragility(alone, limit)
 
 
 def test_the_sweep_on_dask_comes_to_the_same(tmp_path):

@@ -22,6 +22,7 @@ TAGS = {
     "macos": "cp310-abi3-macosx_11_0_arm64.macosx_11_0_universal2.macosx_11_0_x86_64",
 }
 MODULES = dict.fromkeys(TAGS, "_native.abi3.so") | {"windows": "_native.pyd"}
+PROGRAMS = dict.fromkeys(TAGS, "rocking-fmu") | {"windows": "rocking-fmu.exe"}
 VERSION = tomllib.loads((ROOT / "Cargo.toml").read_text())["workspace"]["package"]["version"]
 NAME = f"flexible_rocking-{VERSION}"
 
@@ -42,16 +43,14 @@ def test_files(wheel):
     machine, content = wheel
     module = {f"flexible_rocking/{name}" for name in ("__init__.py", "_native.pyi", "_results.py", "_sweep.py", "formats.py", "py.typed",
                                                       MODULES[machine])}
-    own = module | {f"{NAME}.data/data/share/flexible-rocking/FlexibleRocking.fmu"}
-    about = {f"{NAME}.dist-info/{file}" for file in ("METADATA", "WHEEL", "RECORD", "entry_points.txt", "licenses/LICENSE-MIT",
-                                                     "licenses/LICENSE-APACHE")}
+    own = module | {f"{NAME}.data/data/share/flexible-rocking/FlexibleRocking.fmu", f"{NAME}.data/scripts/{PROGRAMS[machine]}"}
+    about = {f"{NAME}.dist-info/{file}" for file in ("METADATA", "WHEEL", "RECORD", "licenses/LICENSE-MIT", "licenses/LICENSE-APACHE")}
     assert set(content.namelist()) == own | about
     assert all(binaries.tells_no_place(content.read(name)) for name in content.namelist())
     tags = [line.partition(": ")[2] for line in content.read(f"{NAME}.dist-info/WHEEL").decode().splitlines() if line.startswith("Tag: ")]
     python, abi, platforms = TAGS[machine].split("-")
     assert set(tags) == {f"{python}-{abi}-{platform}" for platform in platforms.split(".")}
     assert {entry.date_time[:3] for entry in content.infolist()} == {(1980, 1, 1)}, "it tells when it was built"
-    assert "rocking-fmu=flexible_rocking:_command_line" in content.read(f"{NAME}.dist-info/entry_points.txt").decode().replace(" ", "")
 
 
 def test_the_archive_is_the_one_of_dist(wheel):
@@ -60,19 +59,22 @@ def test_the_archive_is_the_one_of_dist(wheel):
     assert content.read(inside) == (ROOT / "out" / "FlexibleRocking.fmu").read_bytes()
 
 
-def test_module(wheel, tmp_path):
+def test_module_and_program_need_no_newer_system(wheel, tmp_path):
     machine, content = wheel
     module = content.extract(f"flexible_rocking/{MODULES[machine]}", tmp_path)
-    match machine:
-        case "linux-x86":
-            binary = binaries.for_linux(module, "X86_64")
-        case "linux-arm":
-            binary = binaries.for_linux(module, "AARCH64")
-        case "windows":
-            binary = binaries.for_windows(module, {"python3.dll"})
-        case "macos":
-            parts = binaries.for_macos(module, {"X86_64", "ARM64"})  # they own their binaries
-            binary = parts.at(0)
+    program = content.extract(f"{NAME}.data/scripts/{PROGRAMS[machine]}", tmp_path)
+    assert content.getinfo(f"{NAME}.data/scripts/{PROGRAMS[machine]}").external_attr >> 16 & 0o111, "it cannot be run"
+    for file in (program, module):
+        match machine:
+            case "linux-x86":
+                binary = binaries.for_linux(file, "X86_64")
+            case "linux-arm":
+                binary = binaries.for_linux(file, "AARCH64")
+            case "windows":
+                binary = binaries.for_windows(file, {"python3.dll"} if file is module else frozenset())
+            case "macos":
+                parts = binaries.for_macos(file, {"X86_64", "ARM64"})  # they own their binaries
+                binary = parts.at(0)
     assert any(function.name.strip("_") == "PyInit__native" for function in binary.exported_functions)
 
 
@@ -95,7 +97,7 @@ def test_arm_gives_the_bits_of_this_machine(tmp_path):
 def test_source():
     """The package of the source has every file that is compiled, and what these include."""
     path = package(f"{NAME}.tar.gz")
-    compiled = [file for folder in ("src", "modelDescription/src", "fmu/src", "fmu/build", "fmu/export", "view/src", "report/src", "cli/src", "sweep/src", "python/src")
+    compiled = [file for folder in ("src", "modelDescription/src", "fmu/src", "fmu/build", "fmu/export", "view/src", "records/src", "report/src", "cli/src", "sweep/src", "python/src")
                 for file in (ROOT / folder).rglob("*") if file.is_file()]
     compiled += [(file.parent / included).resolve() for file in compiled if file.suffix == ".rs"
                  for included in re.findall(r'include_(?:str|bytes)!\("(.*?)"\)', file.read_text())]

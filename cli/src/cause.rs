@@ -1,9 +1,9 @@
 //! The origin of a result: program, structure, ground motion, and the conditions of the computation.
-use crate::record_args::{RecordArgs, RecordOptions, Understood};
+use crate::record_args::{RecordArgs, RecordOptions};
 use rocking::run::record::Record;
 use rocking::{Parameters, State, Structure};
 use rocking_records::Column;
-use rocking_report::program::version;
+use rocking_report::{program::version, record::Understood};
 use rocking_sweep::plan::Conditions;
 use serde::Serialize;
 use std::path::Path;
@@ -74,7 +74,7 @@ impl Cause {
 
     /// Of what follows from the record in the file at `path` alone, which is understood as `options` say.
     pub fn of_record(path: &Path, options: &RecordOptions, understood: &Understood) -> Cause {
-        let record_unit = Some(understood.unit().to_string());
+        let record_unit = Some(understood.unit.to_string());
         let ground = Ground { record_unit, ..Ground::new([Some(path), None], options, &understood.record) };
         Cause::of(None, Some(ground))
     }

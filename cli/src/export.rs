@@ -1,13 +1,12 @@
 //! `export`: packs the shared libraries, with all that describes them, into an FMU.
 
-use crate::input;
-use crate::output_files::OutputFiles;
-use crate::record_args::{RecordOptions, one_of};
+use crate::record_args::{RecordOptions, one_of, say_understood};
 use crate::structure_args::{StructureArgs, in_one_line};
 use crate::talk::say;
 use FlexibleRocking::guid;
 use anyhow::{Context, bail};
 use fmu_export::{Library, LibraryError, ModelName, Platform, Version};
+use rocking_report::{input, output_files::OutputFiles};
 use std::env::consts::{DLL_PREFIX, DLL_SUFFIX};
 use std::path::{Path, PathBuf};
 
@@ -90,7 +89,7 @@ pub fn run(args: &ExportArgs, program: &Path) -> anyhow::Result<()> {
 /// The file to pack for the record at `path`, and its content: itself, or what is understood of it.
 fn record(options: &RecordOptions, path: &Path, g: f64) -> anyhow::Result<(PathBuf, Vec<u8>)> {
     let understood = options.understand(path, g)?;
-    understood.say("");
+    say_understood("", &understood);
     if options.are_none() && !input::is_stream(path) {
         return Ok((path.into(), rocking_records::read_file(path)?));
     }

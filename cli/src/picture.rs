@@ -3,13 +3,14 @@
 
 pub mod histories;
 
-use crate::output_files::{OutputFile, OutputFiles};
+use crate::talk::write_as;
 use anyhow::{Context, bail};
 use plotters::coord::combinators::WithKeyPoints;
 use plotters::coord::{Shift, ranged1d::ValueFormatter, types::RangedCoordf64};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use resvg::{tiny_skia, usvg};
+use rocking_report::output_files::{OutputFile, OutputFiles};
 use std::{ffi::OsStr, ops::Range, path::Path, sync::Arc};
 
 /// Colours that all eyes tell apart (Okabe and Ito, their purple darker), and those of what is no data.
@@ -80,7 +81,7 @@ impl Picture {
     pub fn draw(self, size: (u32, u32), draw: impl FnOnce(&Area) -> anyhow::Result<()>) -> anyhow::Result<()> {
         let svg = svg(size, draw)?;
         let content = if self.is_png { rasterized(&svg, size)? } else { svg.into_bytes() };
-        self.file.write_as("picture", &content)
+        write_as(self.file, "picture", &content)
     }
 }
 

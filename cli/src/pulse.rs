@@ -1,13 +1,11 @@
 //! `pulse`: one of the field's standard ground motions as a CSV file that every other command reads.
-use crate::{
-    cause::Cause, output_files::OutputFiles, record_args::one_of, results::FormatArgs, structure_args::StructureArgs,
-};
+use crate::{cause::Cause, record_args::one_of, results::FormatArgs, structure_args::StructureArgs, talk::write_as};
 use clap::{ArgGroup, builder::PossibleValue};
 use rocking::Structure;
 use rocking::estimates::intensity::peak_velocity;
 use rocking::run::record::Record;
 use rocking_records::csv;
-use rocking_report::quantities::NamedValue;
+use rocking_report::{output_files::OutputFiles, quantities::NamedValue};
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
 use std::path::PathBuf;
 
@@ -80,7 +78,7 @@ pub fn run(args: &PulseArgs) -> anyhow::Result<()> {
     let pulse = args.of.pulse(&structure);
     let record = pulse.record()?;
     let file = OutputFiles::of_inputs(args.structure.input()).create(&args.output)?;
-    file.write_as("pulse", csv(&record).as_bytes())?;
+    write_as(file, "pulse", csv(&record).as_bytes())?;
     let (title, cause) = ((record.title(), structure.parameters().g), Cause::new(&structure));
     args.results.print_table(Some(&args.output), title, &cause, &amounts(&pulse, &record, &structure))
 }

@@ -2,11 +2,12 @@
 
 use crate::{
     cause::Cause,
-    output_files::OutputFiles,
     results::{FormatArgs, Traced, csv},
     structure_args::StructureArgs,
+    talk::write_as,
 };
 use rocking::estimates::pushover::curve;
+use rocking_report::output_files::OutputFiles;
 use rocking_report::pushover::{Corner, HEADINGS, corners, line};
 use std::path::PathBuf;
 
@@ -33,7 +34,7 @@ pub fn run(args: &PushoverArgs) -> anyhow::Result<()> {
     let file = args.output.as_ref().map(create).transpose()?;
     let curve = curve(&structure, args.points)?;
     if let Some(file) = file {
-        file.write_as("curve", &csv(HEADINGS, curve.iter().map(line))?)?;
+        write_as(file, "curve", &csv(HEADINGS, curve.iter().map(line))?)?;
     }
     let rows = corners(&structure)?;
     let text = || Ok(rows.iter().map(Corner::line).collect());

@@ -1,9 +1,11 @@
 //! `record`: what is understood of a record, and the same as a table that is read without options.
-use crate::{cause::Cause, output_files::OutputFiles, record_args::RecordOptions, results::FormatArgs};
+use crate::{
+    cause::Cause, record_args::RecordOptions, record_args::say_understood, results::FormatArgs, talk::write_as,
+};
 use rocking::Parameters;
 use rocking::estimates::intensity::{arias_intensity, peak_velocity, significant_duration};
 use rocking::run::record::Record;
-use rocking_report::quantities::NamedValue;
+use rocking_report::{output_files::OutputFiles, quantities::NamedValue};
 use std::path::PathBuf;
 
 /// Gravity of a record whose unit is g, m/s².
@@ -28,10 +30,10 @@ pub struct RecordCommand {
 pub fn run(args: &RecordCommand) -> anyhow::Result<()> {
     args.results.check_beside(args.output.as_deref())?;
     let understood = args.options.understand(&args.record, G)?;
-    understood.say("record         ");
+    say_understood("record         ", &understood);
     if let Some(output) = &args.output {
         let file = OutputFiles::of_inputs([args.record.as_path()]).create(output)?;
-        file.write_as("written", understood.table().as_bytes())?;
+        write_as(file, "written", understood.table().as_bytes())?;
     }
     let (record, output) = (&understood.record, args.output.as_deref());
     let cause = Cause::of_record(&args.record, &args.options, &understood);

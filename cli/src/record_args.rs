@@ -1,9 +1,9 @@
 //! Which ground motion record a command works on, how it is read, and how it is scaled.
-use crate::{input, significant::short, talk::say};
-use anyhow::anyhow;
+use crate::{significant::short, talk::say};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use rocking::run::record::Record;
-use rocking_records::{Column, Reading, RecordError, Unit, csv_in};
+use rocking_records::{Column, Reading, Unit};
+use rocking_report::record::{Understood, understand};
 use serde::Deserialize;
 use std::path::{Path, PathBuf};
 
@@ -62,23 +62,12 @@ impl RecordArgs {
     }
 }
 
-/// A record as it is understood.
-pub struct Understood {
-    /// Scaled, in m/s².
-    pub record: Record,
-    /// Scaled, in the unit of its file.
-    pub in_file_unit: Record,
-    unit: Unit,
-    /// Findings and assumptions in a sentence, then one sentence for each likely error.
-    pub sentences: Vec<String>,
-}
-
 impl RecordOptions {
     /// Reads and scales the record in the file at `path`, in m/s²; a record's g means `g` (m/s²). Reports findings and
     /// assumptions under the name `what`.
     fn load(&self, what: &str, path: &Path, g: f64) -> anyhow::Result<Record> {
         let understood = self.understand(path, g)?;
-        understood.say(&format!("{what:<14} "));
+        say_understood(&format!("{what:<14} "), &understood);
         let record = understood.record;
         if self.time_scale.is_some() || self.scale.is_some() {
             say!("scaled         {}, peak {} g", rocking_records::steps(&record), short(record.pga() / g));
@@ -86,20 +75,11 @@ impl RecordOptions {
         Ok(record)
     }
 
-    /// Reads the record at `path` and says nothing yet; `g` in m/s².
+    /// Reads the record at `path` without messages; `g` in m/s².
     pub fn understand(&self, path: &Path, g: f64) -> anyhow::Result<Understood> {
         let &RecordOptions { unit, dt, ref column, ignore_npts: ignores_count, .. } = self;
-        let [time_scale, scale] = self.factors();
         let how = Reading { unit, dt, column: column.clone(), ignores_count };
-        let read = match input::is_stream(path) {
-            true => rocking_records::from_bytes(Path::new(&input::name(path)), &input::read(path)?, &how),
-            false => rocking_records::read_raw(path, &how),
-        };
-        let (in_file_unit, source) = read.map_err(with_remedy)?;
-        let (record, source) = rocking_records::in_m_s2(in_file_unit.clone(), source, g)?;
-        let sentences = source.sentences(&input::name(path), &record, g);
-        let in_file_unit = in_file_unit.scaled(time_scale, scale)?;
-        Ok(Understood { record: record.scaled(time_scale, scale)?, in_file_unit, unit: source.unit, sentences })
+        understand(path, &how, self.factors(), g)
     }
 
     /// Factors on the record's times and on its accelerations.
@@ -113,35 +93,10 @@ impl RecordOptions {
     }
 }
 
-impl Understood {
-    /// Prints findings and assumptions after `label`, and warnings.
-    pub fn say(&self, label: &str) {
-        say!("{label}{}", self.sentences[0]);
-        self.warnings().for_each(|warning| say!("{warning}"));
-    }
-
-    /// Warnings of likely errors, a line each.
-    pub fn warnings(&self) -> impl Iterator<Item = String> {
-        self.sentences[1..].iter().map(|warning| format!("warning: {warning}"))
-    }
-
-    /// The unit of its file.
-    pub fn unit(&self) -> Unit {
-        self.unit
-    }
-
-    /// It as a table that is read without options, in s and the unit of its file: one in g follows a g that is set later.
-    pub fn table(&self) -> String {
-        csv_in(&self.in_file_unit, self.unit)
-    }
-}
-
-/// The error with what helps.
-fn with_remedy(error: RecordError) -> anyhow::Error {
-    match error {
-        RecordError::Malformed { remedy: Some(remedy), .. } => anyhow!("{error}; {remedy}"),
-        _ => error.into(),
-    }
+/// Prints findings and assumptions about a record after `label`, and warnings.
+pub fn say_understood(label: &str, understood: &Understood) {
+    say!("{label}{}", understood.sentences[0]);
+    understood.warnings().for_each(|warning| say!("{warning}"));
 }
 
 /// Takes one of `all` by its name.

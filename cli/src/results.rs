@@ -1,12 +1,11 @@
 //! Results on standard output: for people, or for programs as JSON, where a number reads back to the same bits.
 
 use crate::cause::Cause;
-use crate::input;
-use crate::output_files::OutputFile;
 use crate::talk::say;
 use anyhow::ensure;
 use clap::ValueEnum;
 use rocking_report::quantities::{NamedValue, write_columns};
+use rocking_report::{input, output_files::OutputFile};
 use serde::Serialize;
 use std::path::Path;
 

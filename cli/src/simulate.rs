@@ -4,12 +4,11 @@ mod picture;
 use crate::{
     cause::Cause,
     limit_args::LimitArgs,
-    output_files::{OutputFile, OutputFiles},
     picture::Picture,
     results::{FormatArgs, csv},
     scene_args::MotionArgs,
     significant::{short, significant},
-    talk::say,
+    talk::{say, write_as},
 };
 use anyhow::ensure;
 use rocking::run::record::Record;
@@ -19,6 +18,7 @@ use rocking::{
     run::validity::{Found as Beyond, Validity},
 };
 use rocking_report::{
+    output_files::{OutputFile, OutputFiles},
     quantities::in_readable_unit,
     summary::{Summary, instant},
     tables::{EVENTS, RESPONSE, event_line, response_line},
@@ -94,7 +94,7 @@ impl SimulateArgs {
         {
             rows.remove(rows.len() - 2);
         }
-        file.write_as("response", &csv(RESPONSE, rows.iter().map(|(_, line)| line))?)
+        write_as(file, "response", &csv(RESPONSE, rows.iter().map(|(_, line)| line))?)
     }
 }
 
@@ -130,7 +130,7 @@ pub fn run(args: &SimulateArgs) -> anyhow::Result<()> {
     let mut see = |transition: &Transition| transitions.push(*transition);
     let found = run.found(&mut (&mut validity, &mut see))?;
     if let Some(file) = events {
-        file.write_as("transitions", &csv(EVENTS, transitions.iter().map(event_line))?)?;
+        write_as(file, "transitions", &csv(EVENTS, transitions.iter().map(event_line))?)?;
     }
     if let Some(file) = response {
         args.check_rows(&ground, found.finish.motion.time)?;

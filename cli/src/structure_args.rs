@@ -1,6 +1,6 @@
 //! Which structure a command works on: one of the paper's specimens, or parameters from a file, with single numbers in
 //! the place of theirs, or numbers that are all of it.
-use crate::{input, record_args::one_of, significant::in_full, talk::say};
+use crate::{record_args::one_of, significant::in_full, talk::say};
 use anyhow::{Context, anyhow};
 use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource, value_parser};
 use rocking::structure::Derived;
@@ -8,6 +8,7 @@ use rocking::structure::natural_quantities::{Given, GivenError, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
 use rocking::structure::quantity::{Quantity, with_unit};
 use rocking::{Parameters, Structure};
+use rocking_report::input;
 use std::path::{Path, PathBuf};
 
 /// The structure asked for.

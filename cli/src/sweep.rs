@@ -7,8 +7,6 @@ mod picture;
 mod table;
 
 use crate::{
-    input,
-    output_files::OutputFiles,
     picture::Picture,
     results::FormatArgs,
     talk::{self, say, say_few},
@@ -18,7 +16,7 @@ use file::{Asked, RecordSweep};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::ThreadPool;
 use rocking::structure::quantity::with_unit;
-use rocking_report::program::program;
+use rocking_report::{input, output_files::OutputFiles, program::program};
 use rocking_sweep::{
     exceedances,
     outcome::Outcome,

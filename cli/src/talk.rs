@@ -1,7 +1,7 @@
 //! Messages of a command, on standard error: a program that reads the results does not see them.
 
 use indicatif::ProgressBar;
-use rocking_report::message;
+use rocking_report::{input, message, output_files::OutputFile};
 use std::io::{Write, stderr};
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -38,6 +38,16 @@ pub fn be_quiet() {
 /// Whether nothing is to be said but errors.
 pub fn is_quiet() -> bool {
     QUIET.load(Ordering::Relaxed)
+}
+
+/// Writes `content` to `file`, and says the path of the file as that of `what`.
+pub fn write_as(file: OutputFile, what: &str, content: &[u8]) -> anyhow::Result<()> {
+    let path = file.path().to_owned();
+    file.write(content)?;
+    if !input::is_standard(&path) {
+        say!("{what:<14} {}", path.display());
+    }
+    Ok(())
 }
 
 /// A bar that shows how many of `length` steps are done; none where standard error is no terminal.

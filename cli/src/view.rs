@@ -1,5 +1,6 @@
 //! `view`: a page that shows the structure in motion, one file that needs nothing else.
-use crate::{input, output_files::OutputFiles, scene_args::MotionArgs};
+use crate::{scene_args::MotionArgs, talk::write_as};
+use rocking_report::{input, output_files::OutputFiles};
 use std::path::PathBuf;
 
 /// Arguments of `view`.
@@ -17,7 +18,7 @@ pub fn run(args: &ViewArgs) -> anyhow::Result<()> {
     let (structure, ground, conditions) = args.motion.load()?;
     let file = OutputFiles::of_inputs(args.motion.inputs()).create(&args.output_path())?;
     let page = rocking_view::page(&conditions.run(structure, &ground))?;
-    file.write_as("view", page.as_bytes())
+    write_as(file, "view", page.as_bytes())
 }
 
 impl ViewArgs {

@@ -91,7 +91,7 @@ def lines_of_same_moments(h, d, v):
 
 
 def linear(time, a_g):
-    """What gives the ground acceleration at the start and the end of a step, linear between samples."""
+    """Returns a function for the ground acceleration at the start and the end of a step, linear between samples."""
     return lambda t, h: np.interp((t, t + h), time, a_g)
 
 

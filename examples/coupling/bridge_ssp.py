@@ -1,7 +1,7 @@
 """The bridge as an SSP archive, run by fmpy: two piers and the deck, an FMU each, with the ground motion inside them.
 
-fmpy hands every value on after the step; the piers (`F_t_extrapolated`) and the deck continue what they are given with
-the slope of its last two values: the master is Jacobi's, of second order. The deck's FMU is built by pythonfmu. Writes the
+fmpy passes every value on after the step. The piers (`F_t_extrapolated`) and the deck extrapolate their inputs with the slope of the last
+two values. The master is therefore a Jacobi master of second order. The deck's FMU is built by pythonfmu. Writes the
 archive and runs it.
 
     PYTHONPATH=examples python -m coupling.bridge_ssp

@@ -97,8 +97,8 @@ class EventBridge(Bridge):
         return y
 
     def first_until_transition(self, t, h, reach, w, start):
-        """Advances the piers over at most `h` under forces that are lines from t to t + `reach` and go on beyond; from
-        `start` again where another pier came to a transition before. Their lines, and how long the step became."""
+        """Advances the piers over at most `h` under forces that are linear from t to t + `reach` and beyond. If another pier comes to a
+    transition before, a pier starts again from `start`. Their lines, and how long the step became."""
         a_g, ends = self.ground(t, h), w[0] + (w[1] - w[0]) * (h / reach)
         tops = [pier.step(t, h, list(zip(a_g, forces))) for pier, forces in zip(self.piers, np.transpose([w[0], ends]))]
         reached = min(min(pier.time for pier in self.piers) - t, h)

@@ -47,8 +47,8 @@ def gauss_seidel(system, t, h, guess):
 class Iterated:
     """Repeats the sweep over a step, each time from the same state, until its w is the w that it was given.
 
-    The next w is the sweep's (fixed point, `columns` = 0), or the one that would make the residual least if that were
-    linear in w, by least squares over the last differences (Anderson). IQN-ILS keeps them from step to step.
+    The next w is the result of the sweep (fixed point, `columns` = 0), or the w with the least residual if the residual were linear in w
+    (Anderson: least squares over the last differences). IQN-ILS keeps them from step to step.
     """
 
     def __init__(self, columns: int = 0, keep: bool = False):
@@ -80,7 +80,7 @@ class Iterated:
         raise Diverged(f"{MOST_SWEEPS} sweeps over the step of {h} s from {t} s leave a residual of {left:.1e}")
 
     def correction(self, residual):
-        """What the differences so far say is still missing from the sweep's value."""
+        """The correction of the sweep's value that follows from the differences so far."""
         if not self.residuals:
             return 0.0
         R, V = np.array(self.residuals).T, np.array(self.values).T

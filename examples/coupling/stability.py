@@ -1,4 +1,4 @@
-"""Where weak coupling of the bridge blows up, and how many sweeps the iterated master takes, over mass ratio and step.
+"""Stability limit of weak coupling of the bridge, and sweeps of the iterated master, over mass ratio and step.
 
 Theory beside measurement: the masters themselves, run for one step on piers with linear equations from every unit
 state, give the matrix that the errors are multiplied by.
@@ -45,7 +45,7 @@ def mass(ratio: float) -> float:
 
 @functools.cache
 def propagator(p, rocking: bool, h: float) -> np.ndarray:
-    """What makes u, u_dot, theta, theta_dot at the end of a step of them, the force over the top mass and its slope.
+    """Matrices that give u, u_dot, theta, theta_dot at the end of a step from their start values, the force per top mass, and its slope.
 
     By Eq 1, or rocking by Eqs 7 and 8 without their constant load.
     """
@@ -98,7 +98,7 @@ def growth(master, guess, ratio: float, h: float, rocking: bool, frequency: floa
 
 
 def contraction(ratio: float, h: float, rocking: bool, frequency: float = FREQUENCY) -> float:
-    """What a sweep multiplies the error of its w by."""
+    """Factor by which a sweep multiplies the error of its w."""
     columns = []
     for unit in np.eye(4):
         bridge = linear_bridge(ratio, frequency, rocking, moments=True)
@@ -169,7 +169,7 @@ def spread(values) -> str:
 
 
 def findings(found: dict[str, np.ndarray]) -> dict[str, str]:
-    """What the page says of the maps, by the names that it has there."""
+    """Numbers of the maps, by their names on the page."""
     told, at_half_limit = {}, []
     for name, short in (("Jacobi, extrapolated", "jacobi"), ("Gauss-Seidel, extrapolated", "gauss_seidel")):
         master, guess = WEAK[name]

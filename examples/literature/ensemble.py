@@ -119,7 +119,7 @@ class Halves:
 
 
 def between_halves(runs: pd.DataFrame, structure: str) -> Halves:
-    """What another choice of records does."""
+    """Effect of another choice of records."""
     own = runs[runs["structure"] == structure]
     of_record = {record: group["auto"].to_numpy() for record, group in own.groupby("record")}
     names, found = sorted(of_record), []

@@ -37,7 +37,7 @@ class Case:
 
     @property
     def words(self) -> str:
-        """What happens at the boundary."""
+        """Events at the boundary."""
         how = ["without impact", "after one impact", "after two impacts"][self.boundary.impacts]
         return f"{how}, {'below' if self.boundary.upper else 'above'}"
 

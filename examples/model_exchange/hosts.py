@@ -38,7 +38,7 @@ class Scene:
 
 @dataclass(frozen=True)
 class Result:
-    """What a host made of it."""
+    """Result of a host."""
 
     rows: np.ndarray  # OUTPUTS over time
     hidden: int  # events of which the host's own step showed nothing

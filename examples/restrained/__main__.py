@@ -96,7 +96,7 @@ def median_percent(values) -> str:
 
 
 def vertical(structures, alone, both, picture: Path) -> dict:
-    """What the vertical component changes."""
+    """Effect of the vertical component."""
     bare, shaken, larger = sweep(structures, alone), sweep(structures, both), sweep(structures, alone, LARGER)
     rocks = (bare["theta"] > 0) | (shaken["theta"] > 0)
     stands = pd.concat([rows["ending"] == "at rest" for rows in (bare, shaken, larger)], axis=1).all(axis=1)
@@ -146,7 +146,7 @@ def draw_vertical(path: Path, changes: pd.DataFrame) -> None:
 
 
 def restraints(structures, both, picture: Path) -> dict:
-    """What a tendon and dissipators do to rotation and overturning."""
+    """Effect of a tendon and dissipators on rotation and overturning."""
     found = {name: sweep({number: s.replace(**ties(s)) for number, s in structures.items()}, both)
              for name, ties in RESTRAINTS.items()}
     bare = found["none"]

@@ -59,12 +59,12 @@ def compute(structures: list[fr.Structure]) -> pd.DataFrame:
 
 
 def cases_of(runs: pd.DataFrame) -> pd.DataFrame:
-    """Those that lift off and stay up."""
+    """The cases that lift off and do not overturn."""
     return runs[(runs["transitions"] > 0) & (runs["ending"] != "overturned")]
 
 
 def damped_amplification(zeta_u):
-    """What damping leaves of C = 2 at the first swing, half a vibration after an instant transition."""
+    """Rest of C = 2 after the damping up to the first swing, half a vibration after an instant transition."""
     return 2 * np.exp(-np.pi * zeta_u / np.sqrt(1 - zeta_u**2))
 
 

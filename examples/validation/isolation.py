@@ -74,7 +74,7 @@ def _test(ground: fr.Record, free: float = 0.0) -> Test:
 
 
 def rows(dam: Test, pulse: Test) -> list[Row]:
-    """What the text says of both tests; of Bucharest only what does not define the stand-in."""
+    """Statements of the text about both tests; for Bucharest only those that do not define the stand-in."""
     e, p = dam.estimate, pulse.estimate
     chi_of_ground = e["(1-chi) S_a"] / e["S_a(T_u, zeta_u)"]
     second = (e["chi g tan"] + e["C chi g tan"]) / G

@@ -57,7 +57,7 @@ def decompose(time: np.ndarray, signal: np.ndarray) -> tuple[np.ndarray, np.ndar
 
 
 def dominant_frequency(time: np.ndarray, signal: np.ndarray) -> float:
-    """Where the spectrum of a signal is largest, Hz."""
+    """Frequency of the largest spectral value of a signal, Hz."""
     tapered = (signal - np.mean(signal)) * np.hanning(len(signal))
     spectrum = np.abs(np.fft.rfft(tapered, SPECTRUM_LENGTH))
     return np.fft.rfftfreq(SPECTRUM_LENGTH, time[1] - time[0])[np.argmax(spectrum)]
@@ -70,7 +70,7 @@ def _swing_in_full_contact() -> float:
 
 
 def rows(of: Release, c: Components) -> list[Row]:
-    """What the text says of Fig 6."""
+    """Statements of the text about Fig 6."""
     second_cycle = of.peak("a_t", 0) / G
     return [
         Row("step of the rocking mode, χ tan α_cg (Eq 13)", "0.34", STEP, ".4f", "g",

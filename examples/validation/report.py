@@ -1,4 +1,4 @@
-"""What the report is made of: rows "paper / computed / difference / remark", sections, and their Markdown."""
+"""Parts of the report: rows "paper / computed / difference / remark", sections, and their Markdown."""
 
 import re
 import textwrap
@@ -27,7 +27,7 @@ class Row:
 
     @property
     def agrees(self) -> bool:
-        """Whether ours, rounded to the digits that the paper prints, is what it prints; true where it prints none."""
+        """Whether our number, rounded to the digits of the paper, equals the number of the paper; true if the paper prints none."""
         if self.paper is None:
             return True
         decimals = len(self.paper.partition(".")[2])

@@ -3,7 +3,7 @@
 use crate::resources::Archive;
 use fmi_unit::uri;
 use rocking::run::record::{Record, SamplesError};
-use rocking_records::{Reading, RecordError, Unit, UnitFrom};
+use rocking_records::{Reading, RecordError, Unit};
 use std::error::Error;
 use std::path::{MAIN_SEPARATOR, Path, PathBuf, is_separator};
 use std::sync::Arc;
@@ -53,13 +53,13 @@ impl GroundRecord {
     /// A g stands for `g` (m/s²) in what is said of the record.
     pub fn from_bytes(path: &Path, bytes: &[u8], g: f64) -> Result<GroundRecord, RecordError> {
         let (record, source) = rocking_records::from_bytes(path, bytes, &Reading::default())?;
-        let (unit, is_assumed) = (source.unit, source.unit_from == UnitFrom::Assumed);
+        let unit = source.unit;
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        let said = rocking_records::in_m_s2(record.clone(), source, g);
-        let mut sentences = said.map_or(Vec::new(), |(in_m_s2, source)| source.sentences(&name, &in_m_s2, g));
-        if is_assumed && sentences.len() > 1 {
-            sentences.remove(1); // the first sentence says so, too: a log that is always on is for what is doubtful
-        }
+        // No warning of an assumed unit, which the findings have: a log that is always on is for doubts.
+        let sentences = rocking_records::in_m_s2(record.clone(), source, g).map_or(Vec::new(), |(in_m_s2, source)| {
+            let doubts = source.doubts.iter().map(|doubt| format!("{name}: {doubt}"));
+            [source.findings(&name, &in_m_s2, g)].into_iter().chain(doubts).collect()
+        });
         let numbers = record.times().iter().chain(record.acceleration());
         let bytes: Vec<_> = numbers.flat_map(|number| number.to_le_bytes()).chain([unit as u8]).collect();
         let digest = Uuid::new_v5(&Uuid::NAMESPACE_OID, &bytes).into_bytes();

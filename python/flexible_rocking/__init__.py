@@ -8,17 +8,15 @@
     run.peaks["theta"], run.overturned, run.transitions
     run.at([0.5, 1.0]).to_pandas()
 
-Structure and Record are what is shaken and what shakes it; simulate returns a Run. advise says which level of detail is enough,
-estimate what is known without a time history. sweep runs many on all cores, fragility fits a curve to them. export writes an FMU;
-fmu is the path of one. help() of each has units, shapes, equation numbers (those of the paper) and errors; docs/howto/python.md is the
-page.
+A Structure is shaken by a Record, which is a ground motion; simulate returns a Run. advise recommends a level of detail. estimate
+gives the demands that need no time history. sweep does many runs on all cores, and fragility fits a curve to them. export writes
+an FMU; fmu is the path of one. help() of each has units, shapes, equation numbers of the paper, and errors. docs/howto/python.md is
+the page of the module.
 
-SI units and radians throughout. What is refused raises ValueError with the name, the value and the limit. pandas, matplotlib and
-IPython are needed only by what returns a table, draws, or is shown in a notebook.
+SI units and radians throughout. Invalid input raises ValueError with the name, the value and the limit. Tables need pandas,
+pictures matplotlib, and notebooks IPython.
 """
 
-import signal
-import sys
 from collections.abc import Iterable
 from importlib.metadata import distribution
 from os import PathLike
@@ -50,17 +48,11 @@ def export(
 ) -> Path:
     """Writes the FMU of a structure to `target` and returns its path.
 
-    record: a Record or a file, or several; the FMU follows the first and has the others inside, each Record under its title.
-    name: what hosts call the model. fmi: the version of the standard, 2 (2.0) or 3 (3.0). library: an FMU or a shared library
-    to take the code from; by default `fmu()`. A Python warning names an assumption about a file, or a likely fault. Raises
+    record: a Record or a file, or several. The FMU follows the first and has the others inside, each Record under its title.
+    name: the name of the model for hosts. fmi: the version of the standard, 2 (2.0) or 3 (3.0).
+    library: an FMU or a shared library with the code; by default `fmu()`. A Python warning names an assumption about a file, or a likely fault. Raises
     ValueError with the reason.
     """
     records = [record] if isinstance(record, (Record, str, PathLike)) else list(record)
     _native.export(target, structure, records, name, fmi, fmu() if library is None else library)
     return Path(target).absolute()
-
-
-def _command_line() -> None:
-    """The console script rocking-fmu."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Python's own handler waits until the engine has ended
-    sys.exit(_native.command_line(Path(sys.argv[0]).resolve(), sys.argv))

@@ -1,4 +1,4 @@
-"""What runs return, as Python has it: tables and pictures."""
+"""Results of runs as tables and pictures."""
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
@@ -70,8 +70,9 @@ class Transitions(list[Transition]):
 class Worst(NamedTuple):
     """How far a run goes beyond one of the things that the model takes for granted.
 
-    value: the largest value, of R_v_min the least. time: the first instant of the value, s. limit: a value beyond the limit gives
-    a warning. first_beyond: the first instant beyond the limit, s, or None. beyond: time beyond the limit, s, or number of impacts.
+    value: the largest value, of R_v_min the least. time: the first instant of the value, s.
+    limit: a value beyond the limit gives a warning. first_beyond: the first instant beyond the limit, s, or None.
+    beyond: time beyond the limit, s, or number of impacts.
     """
 
     value: float
@@ -89,9 +90,9 @@ class Worst(NamedTuple):
 class Advice:
     """Every level of detail on one scene, and which is the cheapest that will do: what `advise` returns.
 
-    detail: the level that is advised, or None if none is good enough. levels: a dict each: level, relative errors by criterion,
-    overturned (None if it still rocks), steps, evaluations, cost_of_auto (steps and evaluations over those of auto). text: the
-    printed form.
+    detail: the recommended level, or None if no level is good enough. text: the printed form.
+    levels: a dict each, with level, relative errors by criterion, overturned (None if it still rocks), steps, evaluations,
+    cost_of_auto (steps and evaluations as a multiple of those of auto).
     """
 
     detail: str | None

@@ -33,18 +33,18 @@ def sweep(
     progress: bool = False,
     **initial: float,
 ) -> "pd.DataFrame":
-    """Runs every structure under every record at every scale on all cores: a DataFrame with a row a run.
+    """Runs every structure under every record at every scale on all cores: a DataFrame with a row per run.
 
-    structures: one, several, or populations by name, each one or several; records: one, several, or by name. scale: factors
-    on the accelerations. intensity: by which measure `fragility` counts, "PGA" (g), "PGV" (m/s) or "S_a" (g, at the structure's own
-    f_fc and zeta_fc). detail, tolerance, duration and initial values as in `simulate`; validity: find what each run goes
-    beyond, too; threads: 0 is one a core.
+    structures: one, several, or populations by name, each one or several. records: one, several, or by name.
+    scale: factors on the accelerations. intensity: the measure for `fragility`, "PGA" (g), "PGV" (m/s) or "S_a" (g, at the
+    structure's own f_fc and zeta_fc). detail, tolerance, duration and initial values: as in `simulate`.
+    validity: whether the rows have how far each run exceeds the model's limits. threads: 0 is one per core.
 
     The columns are those of `rocking-fmu sweep`: structures, parameters, record, scale, intensities, ending, peaks
     ("peak_theta[rad]", ...), transitions, ... A run that cannot go on is a row with the ending "failed" and a reason.
 
-    path: the command line's file of rows. What is there is not run again; rows are added as runs end, so that a sweep that was
-    stopped goes on from there. Ctrl-C raises KeyboardInterrupt, whose attribute `table` has the rows that are there.
+    path: the command line's file of rows. Runs whose rows are there are not repeated. Rows are added as runs end, and a
+    stopped sweep continues after them. Ctrl-C raises KeyboardInterrupt, whose attribute `table` has the rows that are there.
     Raises ValueError where a structure or record is there twice, has no name of its own, or cannot be run.
     """
     groups = structures if isinstance(structures, Mapping) else {"structures": structures}
@@ -134,12 +134,12 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, intensity: st
     """Fits the lognormal curve of greatest likelihood to the runs of one population in a sweep's table, or to some of its rows.
 
     limit: "overturned", or a peak such as "theta/alpha_cg >= 0.5", "theta >= 3 deg", "uplift >= 1 cm", "a_t >= 0.3 g" (the
-    structure's own g); a run that overturned has exceeded every one. intensity: "PGA", "PGV", "S_a" or a column of the
+    structure's own g). A run that overturned has exceeded every limit. intensity: "PGA", "PGV", "S_a" or a column of the
     table; by default the measure of the sweep. Runs that failed are not counted. How sure the curve
     is follows from the records, whose runs do not depend on each other; where there is one record, from the structures.
     Several structures that `sweep` ran under one name are one population. Raises ValueError with the reason if there is no
-    curve (never exceeded, always exceeded, no overlap), if the table has several populations or conditions, if peaks are NaN,
-    and if the table has lost the measure of its sweep.
+    curve (never exceeded, always exceeded, no overlap). A table with several populations or conditions, with a run twice, with
+    peaks that are NaN, or without the measure of its sweep raises ValueError, too.
     """
     import pandas
 
@@ -156,6 +156,8 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, intensity: st
             several = ", ".join(map(repr, values[:5].tolist())) + (", ..." if len(values) > 5 else "")
             raise ValueError(f"the table has {len(values)} values of {name}, {several}, and a curve is of one: choose the rows, "
                              f"table[table[{name!r}] == {values[0]!r}], or call fragility for each of table.groupby({name!r})")
+    if twice := int(table["run"].duplicated().sum()):
+        raise ValueError(f"the table has {twice} rows of runs that it has already: leave them out by table.drop_duplicates('run')")
     peak = _native.measure_of(limit)
     ended = table[table["ending"] != "failed"]
     varying = ["record"] if ended["record"].nunique() > 1 else list(table.columns[1:table.columns.get_loc("record")])
@@ -165,6 +167,6 @@ def fragility(table: "pd.DataFrame", limit: str = "overturned", *, intensity: st
         raise ValueError(f"{peaks.name} is NaN in {missing} rows of runs that ended: run them again, or leave them out by "
                          f"table.dropna(subset={[peaks.name]!r}), and with them what they would have counted")
     curve, bins = _native.fragility(groups.tolist(), ended[column].tolist(), [str(ending) for ending in ended["ending"]],
-                                    peaks.tolist(), ended["g[m/s2]"].tolist(), limit)
+                                    peaks.tolist(), ended["g[m/s2]"].tolist(), limit, ended["B[m]"].max())
     names = ["lowest", "mean", "highest", "runs", "known", "exceedances"]
     return Fragility(limit, column, curve, pandas.DataFrame(bins, columns=names))

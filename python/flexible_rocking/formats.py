@@ -43,9 +43,9 @@ def write_openquake(file: str | PathLike[str], functions: "Mapping[str, Mapping[
                     description: str = "structures that rock") -> None:
     """Writes a fragilityModel of NRML 0.5 with discrete functions: probabilities at intensity levels.
 
-    functions: by the taxonomy of their assets, each a Fragility by limit state, the same states in all. The levels are those of
-    the counted runs, and the probabilities the counted parts, which need not be lognormal; with levels (n,), increasing, in the unit
-    of the curves, the probabilities are the curves'. period: that of S_a, s, as its type names it, SA(0.5). Raises ValueError where
+    functions: by the taxonomy of their assets, each a Fragility by limit state, the same states in all. Without levels, the probabilities are the counted parts at the intensities of the bins, which need not be lognormal. With
+    levels (n,), increasing, in the unit of the curves, the probabilities are those of the curves.
+    period: the period of S_a, s, which the type SA(0.5) names. Raises ValueError where
     the limit states of the functions differ, or the measures or the counted runs of one function.
     """
     states = list(next(iter(functions.values())))

@@ -1,12 +1,13 @@
 //! `advise` and `estimate`: how little of the model will do, and what is known without a time history.
 
-use crate::arguments::{conditions, one_of, refused, result};
+use crate::arguments::{argument, conditions, one_of, refused, result};
 use crate::interruptible::interruptible;
 use crate::record::Ground;
 use crate::structure::Structure;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyDict, PyString};
+use rocking::Detail;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::estimates::demand::INSTANT_TRANSITION;
 use rocking::run::levels::{Criterion, Verdict, compare};
@@ -14,11 +15,12 @@ use rocking::run::validity::Limits;
 use rocking_report::quantities::write_columns;
 use rocking_report::{advice, estimate as estimates};
 
-/// Names of results of which one is asked for, or several.
-#[derive(FromPyObject)]
-pub enum Names {
-    One(String),
-    Several(Vec<String>),
+/// The criteria that `value` names: one name, or several.
+fn criteria(value: &Bound<'_, PyAny>) -> PyResult<Vec<Criterion>> {
+    let is_one = value.is_instance_of::<PyString>();
+    let names = if is_one { vec![value.clone()] } else { value.try_iter()?.collect::<PyResult<Vec<_>>>()? };
+    let criterion = |name| one_of("of", name, Criterion::ALL.map(|of| (of.name(), of)));
+    names.iter().map(criterion).collect()
 }
 
 /// Runs every level of detail and names the cheapest level whose errors stay `within` a part of the reference,
@@ -33,8 +35,8 @@ pub fn advise<'py>(
     py: Python<'py>,
     structure: &Structure,
     record: Ground,
-    within: f64,
-    of: Option<Names>,
+    #[pyo3(from_py_with = argument::within)] within: f64,
+    of: Option<&Bound<'_, PyAny>>,
     duration: Option<&Bound<'_, PyAny>>,
     initial: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -42,13 +44,8 @@ pub fn advise<'py>(
         let needed = "more than 0 and less than 1 is needed";
         return Err(PyValueError::new_err(format!("within = {within} is out of range: {needed}")));
     }
-    let criterion = |name: &String| one_of("of", name, Criterion::ALL.map(|of| (of.name(), of)));
-    let criteria: Vec<_> = match of {
-        Some(Names::One(name)) => vec![criterion(&name)?],
-        Some(Names::Several(names)) => names.iter().map(criterion).collect::<PyResult<_>>()?,
-        None => Criterion::ALL.into(),
-    };
-    let conditions = conditions("auto", DEFAULT_TOLERANCE, duration, initial)?;
+    let criteria = of.map_or(Ok(Criterion::ALL.into()), criteria)?;
+    let conditions = conditions(Detail::Auto, DEFAULT_TOLERANCE, duration, initial)?;
     conditions.check(&structure.0).map_err(refused)?;
     let (structure, record) = (structure.0, record.0.get().under(structure.0.parameters().g));
     let (text, detail, levels) = interruptible(py, move |_| -> anyhow::Result<_> {
@@ -88,7 +85,7 @@ pub fn estimate<'py>(
     py: Python<'py>,
     structure: &Structure,
     record: Option<Ground>,
-    amplification: f64,
+    #[pyo3(from_py_with = argument::amplification)] amplification: f64,
 ) -> PyResult<Bound<'py, PyAny>> {
     let (structure, g) = (structure.0, structure.0.parameters().g);
     let record = record.map(|Ground(record)| record.get().under(g));

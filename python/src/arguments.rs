@@ -1,14 +1,16 @@
-//! What Python's arguments say, and how they are refused: by name, value and limit, in the words of the library.
+//! Arguments of Python, and their errors with name, value and limit in the words of the library.
 
 use numpy::{PyArrayDyn, PyArrayMethods, PyUntypedArrayMethods};
 use pyo3::call::PyCallArgs;
 use pyo3::exceptions::{PyUserWarning, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyFloat, PyInt};
+use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyTuple};
 use rocking::mechanics::state::INITIAL_VALUES;
 use rocking::{Detail, State};
 use rocking_sweep::plan::Conditions;
 use std::ffi::CString;
+
+const BOOLS: &str = "these are bools: numbers are needed";
 
 /// The `ValueError` that says why.
 pub fn refused(error: impl Into<anyhow::Error>) -> PyErr {
@@ -25,6 +27,24 @@ pub fn number(name: &str, value: &Bound<'_, PyAny>) -> PyResult<f64> {
     numbers.map(|of| of[0]).ok_or_else(|| PyValueError::new_err(format!("{name} = {value:?}: it is no number")))
 }
 
+/// Readers of an argument of their name, whose messages have that name.
+pub mod argument {
+    use super::{Bound, Detail, PyAny, PyResult, number, one_of};
+
+    macro_rules! numbers {
+        ($($name:ident)*) => {$(
+            pub fn $name(value: &Bound<'_, PyAny>) -> PyResult<f64> {
+                number(stringify!($name), value)
+            }
+        )*};
+    }
+    numbers!(amplification amplitude error frequency g phase scale time_scale tolerance within zeta);
+
+    pub fn detail(value: &Bound<'_, PyAny>) -> PyResult<Detail> {
+        one_of("detail", value, Detail::ALL.map(|of| (of.name(), of)))
+    }
+}
+
 /// The numbers of an array of one dimension, or one number, which messages call `name`.
 pub fn numbers(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     let array = array(name, value)?;
@@ -39,17 +59,25 @@ pub fn numbers(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
 /// plain numbers, because numpy would convert the rest into wrong numbers.
 fn array<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let refused = |why: &str| PyValueError::new_err(format!("{name}: {why}"));
-    let numpy = value.py().import("numpy")?;
+    let py = value.py();
+    let numpy = py.import("numpy")?;
     if numpy.getattr("ma")?.call_method1("is_masked", (value,))?.is_truthy()? {
         return Err(refused("some of it is masked: leave that out, as by .compressed(), or fill it, as by .filled(0)"));
     }
+    let bools = (py.get_type::<PyBool>(), numpy.getattr("bool_")?).into_pyobject(py)?;
     let read = |of: &Bound<'py, PyAny>| -> PyResult<(Bound<'py, PyAny>, String)> {
+        // numpy makes 1 of True beside other numbers
+        let mut items = of.cast::<PyList>().into_iter().flatten();
+        if items.any(|item| item.is_instance(&bools).is_ok_and(|is_bool| is_bool)) {
+            return Err(refused(BOOLS));
+        }
         let array = numpy.call_method1("asarray", (of,));
-        let array = array.map_err(|error| refused(&error.value(of.py()).to_string()))?;
+        let array = array.map_err(|error| refused(&error.value(py).to_string()))?;
         let kind = array.getattr("dtype")?.getattr("kind")?.extract()?;
         Ok((array, kind))
     };
-    let (mut array, mut kind) = read(value)?;
+    let listed = value.cast::<PyTuple>().map(|values| values.to_list().into_any());
+    let (mut array, mut kind) = read(listed.as_ref().unwrap_or(value))?;
     if kind == "O" {
         (array, kind) = read(&array.call_method0("tolist")?)?; // of a table that has columns of other types, too
     }
@@ -57,7 +85,7 @@ fn array<'py>(name: &str, value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAr
         "f" | "i" | "u" => Ok(numpy.call_method1("require", (array, "float64", "CA"))?.cast_into()?),
         "M" => Err(refused("these are dates: numbers are needed, such as the seconds since the first")),
         "m" => Err(refused("these are durations: numbers are needed, in s, as by / numpy.timedelta64(1, 's')")),
-        "b" => Err(refused("these are bools: numbers are needed")),
+        "b" => Err(refused(BOOLS)),
         "c" => Err(refused("these are complex: real numbers are needed")),
         _ => Err(refused("numbers are needed, not text or other objects")),
     }
@@ -74,27 +102,26 @@ pub fn result<'py>(py: Python<'py>, name: &str, parts: impl PyCallArgs<'py>) -> 
     py.import("flexible_rocking._results")?.call_method1(name, parts)
 }
 
-/// The one of `all` that is called `asked`; a message calls what is asked for `name`.
-pub fn one_of<T, const N: usize>(name: &str, asked: &str, all: [(&str, T); N]) -> PyResult<T> {
+/// The one of `all` that `asked` names; a message calls the argument `name`.
+pub fn one_of<T, const N: usize>(name: &str, asked: &Bound<'_, PyAny>, all: [(&str, T); N]) -> PyResult<T> {
+    let asked = asked.str()?.to_string();
     let known = all.each_ref().map(|(known, _)| *known).join(", ");
     let found = all.into_iter().find_map(|(known, of)| (known == asked).then_some(of));
     found.ok_or_else(|| PyValueError::new_err(format!("{name} = {asked:?} is unknown; these are known: {known}")))
 }
 
-/// What runs have in common: the level called `detail`, and `initial` values by their names.
+/// The conditions that runs have in common, with `initial` values by their names.
 pub fn conditions(
-    detail: &str,
+    detail: Detail,
     tolerance: f64,
     duration: Option<&Bound<'_, PyAny>>,
     initial: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Conditions> {
     let duration = duration.map(|duration| number("duration", duration)).transpose()?;
-    let detail = one_of("detail", detail, Detail::ALL.map(|of| (of.name(), of)))?;
     let mut state = State::default();
     for (name, value) in initial.into_iter().flatten() {
-        let name: String = name.extract()?;
         let quantity = one_of("initial value", &name, INITIAL_VALUES.each_ref().map(|of| (of.name, of)))?;
-        (quantity.set)(&mut state, number(&name, &value)?);
+        (quantity.set)(&mut state, number(quantity.name, &value)?);
     }
     Ok(Conditions { initial: state, detail, tolerance, duration })
 }

@@ -1,5 +1,5 @@
-//! The Python module: the same crates as the command line's, as Python's objects. What is computed, the library
-//! computes; here arguments are read, and results are given the form that Python has for them.
+//! The Python module: the same crates as the command line's, as Python's objects. The library computes; this crate reads
+//! arguments and gives results their form in Python.
 #![allow(non_snake_case)] // H, B, J0: the paper's own letters
 
 mod advice;
@@ -15,9 +15,9 @@ use fmu_export::{Library, Version};
 use interruptible::interruptible;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use rocking_cli::output_files::OutputFiles;
-use rocking_cli::record_args::RecordOptions;
-use std::ffi::OsString;
+use rocking_records::Reading;
+use rocking_report::output_files::OutputFiles;
+use rocking_report::record::understand;
 use std::path::PathBuf;
 
 /// The engine of `flexible_rocking`, which has what is here under its own names.
@@ -26,6 +26,8 @@ mod _native {
     #[pymodule_export]
     use super::advice::{advise, estimate};
     #[pymodule_export]
+    use super::export;
+    #[pymodule_export]
     use super::record::{Record, pulse};
     #[pymodule_export]
     use super::run::{Run, simulate};
@@ -33,19 +35,10 @@ mod _native {
     use super::structure::Structure;
     #[pymodule_export]
     use super::sweep::{Curve, fragility, intensity_measures, measure_of, sweep};
-    #[pymodule_export]
-    use super::{command_line, export};
 
     #[pymodule_export]
     #[expect(non_upper_case_globals, reason = "as Python has it")]
     const __version__: &str = env!("CARGO_PKG_VERSION");
-}
-
-/// What the command line `rocking-fmu` does with `arguments`, the first of which is its name: its exit code. `program`
-/// is the path of the console script, beside whose folder the archive with the libraries is.
-#[pyfunction]
-fn command_line(py: Python<'_>, program: PathBuf, arguments: Vec<OsString>) -> u8 {
-    py.detach(|| rocking_cli::main(program, arguments))
 }
 
 /// A ground motion to pack: a record, under its title, or a file.
@@ -63,10 +56,10 @@ fn export(
     structure: &structure::Structure,
     records: Vec<Packed>,
     name: String,
-    fmi: u32,
+    fmi: &Bound<'_, PyAny>,
     library: PathBuf,
 ) -> PyResult<()> {
-    let version = one_of("fmi", &fmi.to_string(), [("2", Version::Fmi2), ("3", Version::Fmi3)])?;
+    let version = one_of("fmi", fmi, [("2", Version::Fmi2), ("3", Version::Fmi3)])?;
     let mut files = OutputFiles::of_inputs([library.as_path()]);
     for packed in &records {
         if let Packed::File(path) = packed {
@@ -85,8 +78,8 @@ fn export(
             }
             Packed::File(path) => path,
         };
-        let understood = RecordOptions::default().understand(path, structure.0.parameters().g).map_err(refused)?;
-        warn(py, understood.sentences[1..].to_vec(), 2)?;
+        let understood = understand(path, &Reading::default(), [1.0; 2], structure.0.parameters().g);
+        warn(py, understood.map_err(refused)?.sentences[1..].to_vec(), 2)?;
         Ok(vec![(path.clone(), rocking_records::read_file(path).map_err(refused)?)])
     };
     let mut records: Vec<_> = records.iter().map(contents).collect::<PyResult<_>>()?;

@@ -1,6 +1,6 @@
 //! `Record`: a ground motion from arrays, a file or a formula.
 
-use crate::arguments::{number, numbers, one_of, refused, warn};
+use crate::arguments::{argument, number, numbers, one_of, refused, warn};
 use crate::interruptible::interruptible;
 use crate::structure::Structure;
 use anyhow::ensure;
@@ -11,9 +11,9 @@ use rocking::Parameters;
 use rocking::estimates::intensity::peak_velocity;
 use rocking::estimates::response_spectrum;
 use rocking::run::record::Record as Samples;
-use rocking_cli::output_files::OutputFiles;
-use rocking_cli::record_args::RecordOptions;
-use rocking_records::{Column, Unit, csv_in, doubts, vertical_csv};
+use rocking_records::{Column, Reading, Unit, csv_in, doubts, vertical_csv};
+use rocking_report::output_files::OutputFiles;
+use rocking_report::record::understand;
 use rocking_sweep::pulse::{DEFAULT_ERROR, Pulse, Shape, units_of};
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::PathBuf;
@@ -33,7 +33,8 @@ pub const G: f64 = Parameters::EVISON.g;
 /// g of the structure that the record shakes. The attributes of the record are in m/s2, with 9.81 m/s2 for g. time_scale
 /// multiplies the times and scale the accelerations. Tables call the record by its title. The samples are copied. A Python
 /// warning names a likely fault. Raises ValueError for other shapes, NaN and infinity, and times that do not increase.
-#[pyclass(frozen, module = "flexible_rocking")]
+#[pyclass(frozen, eq, module = "flexible_rocking")]
+#[derive(PartialEq)]
 pub struct Record {
     given: Samples,
     /// Of what was given: m/s², or a unit of g.
@@ -44,8 +45,8 @@ pub struct Record {
     usual: Arc<Samples>,
 }
 
-fn unit(name: &str) -> PyResult<Unit> {
-    one_of("unit", name, Unit::NAMES)
+fn unit(value: &Bound<'_, PyAny>) -> PyResult<Unit> {
+    one_of("unit", value, Unit::NAMES)
 }
 
 /// The `samples` in m/s², or as they are if the g of a structure decides how large their `unit` is.
@@ -103,16 +104,17 @@ impl<'a, 'py> FromPyObject<'a, 'py> for Ground {
 #[pymethods]
 impl Record {
     #[new]
-    #[pyo3(signature = (time, a_g, a_v=None, *, unit="m/s2", time_scale=1.0, scale=1.0, title="record"))]
+    #[pyo3(signature = (time, a_g, a_v=None, *, unit=Unit::MetrePerSecondSquared, time_scale=1.0, scale=1.0, title="record"))]
+    #[pyo3(text_signature = "(time, a_g, a_v=None, *, unit='m/s2', time_scale=1.0, scale=1.0, title='record')")]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn of_arrays(
         py: Python<'_>,
         time: &Bound<'_, PyAny>,
         a_g: &Bound<'_, PyAny>,
         a_v: Option<&Bound<'_, PyAny>>,
-        unit: &str,
-        time_scale: f64,
-        scale: f64,
+        #[pyo3(from_py_with = unit)] unit: Unit,
+        #[pyo3(from_py_with = argument::time_scale)] time_scale: f64,
+        #[pyo3(from_py_with = argument::scale)] scale: f64,
         title: &str,
     ) -> PyResult<Record> {
         let record = Record::_of(time, a_g, a_v, unit, scale, title)?.scaled(1.0, time_scale)?;
@@ -126,7 +128,7 @@ impl Record {
         time: &Bound<'_, PyAny>,
         a_g: &Bound<'_, PyAny>,
         a_v: Option<&Bound<'_, PyAny>>,
-        unit: &str,
+        #[pyo3(from_py_with = unit)] unit: Unit,
         scale: f64,
         title: &str,
     ) -> PyResult<Record> {
@@ -144,7 +146,7 @@ impl Record {
         if let Some(a_v) = a_v {
             samples = samples.with_vertical(&component(numbers("a_v", a_v)?)?).map_err(refused)?;
         }
-        let (given, unit) = fixed(samples, self::unit(unit)?);
+        let (given, unit) = fixed(samples, unit);
         Record::new(given, unit, 1.0).scaled(scale, 1.0)
     }
 
@@ -158,10 +160,10 @@ impl Record {
     /// Reads the record in `file`: PEER .AT2, ESM and ITACA, K-NET, COSMOS, CSMIP, or a table of text, known by its
     /// content.
     ///
-    /// What the file does not state is said by unit (of its accelerations), dt (s between samples), column (a number
-    /// from 1, a heading, or "all"), ignore_npts (take the samples that are there). vertical is the file of the vertical
-    /// component, read by the same options. time_scale and scale multiply. A Python warning names an assumption
-    /// about the file, or a likely fault. Raises ValueError with the line and what would help.
+    /// The options replace statements that the file lacks: unit (of the accelerations), dt (s between samples), column (a
+    /// number from 1, a heading, or "all"). ignore_npts reads all samples, even if the file states another number. vertical:
+    /// the file of the vertical component, read by the same options. time_scale and scale multiply. A Python warning names an
+    /// assumption about the file, or a likely fault. Raises ValueError with the line and what would help.
     #[staticmethod]
     #[pyo3(signature = (file, *, vertical=None, unit=None, dt=None, column=None, ignore_npts=false, time_scale=1.0, scale=1.0))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
@@ -169,27 +171,22 @@ impl Record {
         py: Python<'_>,
         file: PathBuf,
         vertical: Option<PathBuf>,
-        unit: Option<&str>,
+        unit: Option<&Bound<'_, PyAny>>,
         dt: Option<&Bound<'_, PyAny>>,
         column: Option<Bound<'_, PyAny>>,
         ignore_npts: bool,
-        time_scale: f64,
-        scale: f64,
+        #[pyo3(from_py_with = argument::time_scale)] time_scale: f64,
+        #[pyo3(from_py_with = argument::scale)] scale: f64,
     ) -> PyResult<Record> {
         let unit = unit.map(self::unit).transpose()?;
         let dt = dt.map(|dt| number("dt", dt)).transpose()?;
         let column = column.map(|column| -> PyResult<_> { Ok(Column::from(column.str()?.to_str()?)) }).transpose()?;
-        let options = RecordOptions { unit, dt, column, ignore_npts, ..RecordOptions::default() };
+        let how = Reading { unit, dt, column, ignores_count: ignore_npts };
         let read = |file: PathBuf| -> PyResult<(Samples, Unit)> {
-            let options = options.clone();
-            let (understood, sentences) = interruptible(py, move |_| -> anyhow::Result<_> {
-                let understood = options.understand(&file, G)?;
-                let sentences = understood.sentences[1..].to_vec();
-                Ok((understood, sentences))
-            })?;
-            warn(py, sentences, 1)?;
-            let unit = understood.unit();
-            Ok(fixed(understood.in_file_unit, unit))
+            let how = how.clone();
+            let understood = interruptible(py, move |_| understand(&file, &how, [1.0; 2], G))?;
+            warn(py, understood.sentences[1..].iter().cloned(), 1)?;
+            Ok(fixed(understood.in_file_unit, understood.unit))
         };
         let (mut given, unit) = read(file)?;
         if let Some(vertical) = vertical {
@@ -223,7 +220,7 @@ impl Record {
         self.usual.vertical().map(|a_v| PyArray1::from_slice(py, a_v))
     }
 
-    /// What it is called.
+    /// Title of the record.
     #[getter]
     pub fn title(&self) -> &str {
         self.usual.title()
@@ -249,7 +246,11 @@ impl Record {
 
     /// This ground motion with its times multiplied by time_scale, its accelerations by scale.
     #[pyo3(signature = (scale=1.0, *, time_scale=1.0))]
-    fn scaled(&self, scale: f64, time_scale: f64) -> PyResult<Record> {
+    fn scaled(
+        &self,
+        #[pyo3(from_py_with = argument::scale)] scale: f64,
+        #[pyo3(from_py_with = argument::time_scale)] time_scale: f64,
+    ) -> PyResult<Record> {
         Samples::clone(&self.usual).scaled(time_scale, scale).map_err(refused)?;
         let given = self.given.clone().scaled(time_scale, 1.0).map_err(refused)?;
         Ok(Record::new(given, self.unit, self.scale * scale))
@@ -262,7 +263,7 @@ impl Record {
         &self,
         py: Python<'py>,
         periods: &Bound<'py, PyAny>,
-        zeta: f64,
+        #[pyo3(from_py_with = argument::zeta)] zeta: f64,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
         let (record, periods) = (Arc::clone(&self.usual), numbers("periods", periods)?);
         let spectrum = interruptible(py, move |abandoned| {
@@ -298,11 +299,7 @@ impl Record {
         format!("<Record {:?}: {samples} samples, {} s, peak {pga:.4} m/s2>", self.title(), self.duration())
     }
 
-    fn __eq__(&self, other: &Record) -> bool {
-        (&self.given, self.unit, self.scale) == (&other.given, other.unit, other.scale)
-    }
-
-    fn __hash__(&self) -> u64 {
+    pub fn __hash__(&self) -> u64 {
         let mut hasher = DefaultHasher::new();
         (self.title(), self.usual.times().len(), self.usual.pga().to_bits()).hash(&mut hasher);
         hasher.finish()
@@ -316,10 +313,10 @@ type Array<'py> = Bound<'py, PyArray1<f64>>;
 /// The pulse of this shape as a Record: "half_sine", "sine", "cosine", "ricker", "antisymmetric_ricker",
 /// "mavroeidis_papageorgiou".
 ///
-/// amplitude a_p in g, frequency in Hz; with a structure both are in its units instead: amplitude in g tan(alpha_cg),
-/// frequency in p_l, of which it is the circular one. cycles: periods of a sine or cosine (1), gamma of
-/// mavroeidis_papageorgiou (2); phase in rad; error, how far its straight lines may be off the curve over the amplitude.
-/// g in m/s2. Raises ValueError for a pulse that cannot be.
+/// amplitude a_p in g, frequency in Hz. With a structure, amplitude is in g tan(alpha_cg), and frequency is the circular one
+/// in p_l. cycles: periods of a sine or cosine (1), gamma of mavroeidis_papageorgiou (2). phase in rad, g in m/s2. error: the
+/// largest distance of the straight lines from the curve, as a fraction of the amplitude. Raises ValueError for a pulse that
+/// cannot be.
 #[pyfunction]
 #[pyo3(signature = (shape, *, amplitude, frequency, cycles=None, phase=0.0, error=DEFAULT_ERROR, structure=None, g=G))]
 #[pyo3(
@@ -327,18 +324,19 @@ type Array<'py> = Bound<'py, PyArray1<f64>>;
 )]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn pulse(
-    shape: &str,
-    amplitude: f64,
-    frequency: f64,
-    cycles: Option<f64>,
-    phase: f64,
-    error: f64,
+    shape: &Bound<'_, PyAny>,
+    #[pyo3(from_py_with = argument::amplitude)] amplitude: f64,
+    #[pyo3(from_py_with = argument::frequency)] frequency: f64,
+    cycles: Option<&Bound<'_, PyAny>>,
+    #[pyo3(from_py_with = argument::phase)] phase: f64,
+    #[pyo3(from_py_with = argument::error)] error: f64,
     structure: Option<&Structure>,
-    g: f64,
+    #[pyo3(from_py_with = argument::g)] g: f64,
 ) -> PyResult<Record> {
     let shape = one_of("shape", shape, Shape::ALL.map(|of| (of.name(), of)))?;
     let (of_amplitude, of_frequency) = structure.map_or((g, 1.0), |structure| units_of(&structure.0));
     let pulse = Pulse::new(shape, amplitude * of_amplitude, frequency * of_frequency);
-    let pulse = Pulse { cycles: cycles.unwrap_or(pulse.cycles), phase, error, ..pulse };
+    let cycles = cycles.map_or(Ok(pulse.cycles), |cycles| number("cycles", cycles))?;
+    let pulse = Pulse { cycles, phase, error, ..pulse };
     pulse.record().map(Record::in_si).map_err(refused)
 }

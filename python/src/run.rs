@@ -1,6 +1,6 @@
 //! `simulate` and `Run`: one structure under one ground motion.
 
-use crate::arguments::{conditions, numbers, refused, result};
+use crate::arguments::{argument, conditions, numbers, refused, result};
 use crate::interruptible::{Abandoned, interruptible};
 use crate::record::{Ground, Record};
 use crate::structure::Structure;
@@ -15,7 +15,7 @@ use rocking::run::fall::Found;
 use rocking::run::peaks::{self, Peak};
 use rocking::run::validity::{ASSUMPTIONS, Limits, Worst};
 use rocking::run::{End, Ending, RunError};
-use rocking::{Phase, Side, State, Transition};
+use rocking::{Detail, Phase, Side, State, Transition};
 use rocking_report::summary::Summary;
 use rocking_report::tables::{RESPONSE, response_numbers};
 use rocking_report::validity;
@@ -30,9 +30,9 @@ fn state<'py>(py: Python<'py>, of: &State) -> PyResult<Bound<'py, PyDict>> {
 
 /// A structure that has been followed through a ground motion: what `simulate` returns.
 ///
-/// print(run) shows all of it; in a notebook a run is its animated view. It keeps what it was asked for and what was
-/// found, and not the motion: what `at`, `plot`, `page` and `validity` show is computed again, to the same bits, in
-/// about a millisecond. So does a pickle: it carries the structure and the record.
+/// print(run) shows all of it; in a notebook a run is its animated view. A run stores its inputs and results, but not the
+/// motion. `at`, `plot`, `page` and `validity` compute the motion again, to the same bits, in about a millisecond. A pickle
+/// has the structure and the record, and runs again. Two runs with the same inputs are equal.
 #[pyclass(frozen, module = "flexible_rocking")]
 pub struct Run {
     structure: Py<Structure>,
@@ -77,9 +77,9 @@ impl Run {
         self.conditions.tolerance
     }
 
-    /// The exact largest magnitudes by name, each a Peak (a float with unit and time): a_g (m/s2), theta (rad), u (m), delta_t (m, Eq 26), uplift
-    /// (m, Eq 25), a_t (m/s2, Eq 27), V_t (N, Eqs 2, 23), M_t (N.m, Eqs 3, 24), and with a tendon its force P_t (N). Of a
-    /// structure that overturns those before it falls.
+    /// The exact largest magnitudes by name, each a Peak (a float with unit and time). Names: a_g (m/s2), theta (rad), u (m),
+    /// delta_t (m, Eq 26), uplift (m, Eq 25), a_t (m/s2, Eq 27), V_t (N, Eqs 2, 23), M_t (N.m, Eqs 3, 24). A tendon adds P_t
+    /// (N). Of a structure that overturns those before it falls.
     #[getter]
     fn peaks<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let named = PyDict::new(py);
@@ -144,16 +144,16 @@ impl Run {
         self.found.finish.motion.work.evaluations
     }
 
-    /// What the model leaves out on this run, exact, each a Worst: tension_max, R_v_min, mu_required, mu_impact,
-    /// tension_impact, energy_gain_max, weight_min; within the usual limits.
+    /// How far the run exceeds the assumptions of the model, exact, each a Worst, within the usual limits. Names:
+    /// tension_max, R_v_min, mu_required, mu_impact, tension_impact, energy_gain_max, weight_min.
     #[getter]
     fn validity(slf: Py<Self>, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
         Run::validity_within(slf, py, None, None, None, None)
     }
 
-    /// What the model leaves out as validity has it, within limits of your own, of at least 0, or None for the usual one:
-    /// friction (coefficient), tension and edge_load (over the weight; tension at an impact, over its impulse), energy_gain
-    /// (over the kinetic energy before an impact).
+    /// The same as `validity` within limits of your own, each at least 0, or None for the usual one. friction: coefficient.
+    /// tension and edge_load: as fractions of the weight, at an impact of its impulse. energy_gain: as a fraction of the
+    /// kinetic energy before an impact.
     #[pyo3(signature = (*, friction=None, tension=None, edge_load=None, energy_gain=None))]
     fn validity_within(
         slf: Py<Self>,
@@ -181,12 +181,13 @@ impl Run {
         Ok(named)
     }
 
-    /// The motion at `times` (s), a number or an array (n,) in any order: a Response, a dict of arrays (n,) by the names of the
-    /// FMU's outputs (time, a_g, theta, u, a_t, V_t, M_t, ..., phase, transitions), with to_pandas().
+    /// The motion at `times` (s), a number or an array (n,) in any order: a Response. A Response is a dict of arrays (n,) by
+    /// the names of the FMU's outputs: time, a_g, theta, u, a_t, V_t, M_t, ..., phase, transitions. to_pandas() makes it a
+    /// table.
     ///
-    /// Exact: the engine's own polynomials and flows are evaluated, nothing is interpolated. At a transition the values
-    /// are those just after it. After the end of the run the motion goes on over ground at rest; once overturned there
-    /// is none, and it is NaN. Raises ValueError for times before the start of the run, and NaN.
+    /// Exact: the engine's own polynomials and flows are evaluated, nothing is interpolated. The values at a transition are
+    /// the values just after it. After the end of the run the motion goes on over ground at rest; once overturned there is
+    /// none, and it is NaN. Raises ValueError for times before the start of the run, and NaN.
     fn at<'py>(slf: Py<Self>, py: Python<'py>, times: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let times = numbers("times", times)?;
         let start = slf.get().found.start;
@@ -238,6 +239,16 @@ impl Run {
             let lines = validity::section(&run.structure, run.detail, &beyond, &limits);
             Ok(format!("{}\n{}{}", run.ground.title(), summary.text(&of.found)?, lines.join("\n")))
         })
+    }
+
+    /// Whether both have the same inputs, and therefore the same results.
+    fn __eq__(&self, other: &Run) -> bool {
+        let are_same = self.structure.get() == other.structure.get() && self.record.get() == other.record.get();
+        are_same && self.conditions == other.conditions
+    }
+
+    fn __hash__(&self) -> u64 {
+        self.structure.get().__hash__() ^ self.record.get().__hash__()
     }
 
     /// A pickle is the call of `simulate`.
@@ -312,24 +323,24 @@ impl Run {
 
 /// Follows a structure through a ground motion, or in free vibration, exactly, and returns the Run.
 ///
-/// record: a Record; without one the ground is at rest for `duration`. The structure starts at rest in full contact
-/// unless initial values are given: theta_0 (rad), theta_dot_0 (rad/s), u_0 (m), u_dot_0 (m/s). duration (s): when it
-/// ends; without one, when the structure stands and will, or overturns, or still rocks 100/p_l after the record.
-/// detail: "auto", "nonlinear" (Eqs 1, 5, 6), "linear" (Eqs 1, 7, 8), "modal" (Eqs 1, 11, 18), "rigid" (Eq 6 with u =
-/// 0), "fixed_base" (Eq 1). tolerance: relative, of the results.
+/// record: a Record; without one the ground is at rest for `duration`. The structure starts at rest in full contact unless
+/// initial values are given: theta_0 (rad), theta_dot_0 (rad/s), u_0 (m), u_dot_0 (m/s). duration (s): the length of the run.
+/// Without a duration, the run ends when the base is down for good or the structure overturns, at the latest 100/p_l after
+/// the record. detail: "auto", "nonlinear" (Eqs 1, 5, 6), "linear" (Eqs 1, 7, 8), "modal" (Eqs 1, 11, 18), "rigid" (Eq 6 with
+/// u = 0), "fixed_base" (Eq 1). tolerance: relative, of the results.
 ///
 /// Overturning is a result, not an error. Raises ValueError where the run cannot begin, or not go on. Other threads of
 /// Python go on meanwhile; the same inputs give the same bits.
 #[pyfunction]
-#[pyo3(signature = (structure, record=None, *, duration=None, detail="auto", tolerance=DEFAULT_TOLERANCE, **initial))]
+#[pyo3(signature = (structure, record=None, *, duration=None, detail=Detail::Auto, tolerance=DEFAULT_TOLERANCE, **initial))]
 #[pyo3(text_signature = "(structure, record=None, *, duration=None, detail='auto', tolerance=1e-09, **initial)")]
 pub fn simulate(
     py: Python<'_>,
     structure: Py<Structure>,
     record: Option<Ground>,
     duration: Option<&Bound<'_, PyAny>>,
-    detail: &str,
-    tolerance: f64,
+    #[pyo3(from_py_with = argument::detail)] detail: Detail,
+    #[pyo3(from_py_with = argument::tolerance)] tolerance: f64,
     initial: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Run> {
     let conditions = conditions(detail, tolerance, duration, initial)?;

@@ -20,19 +20,19 @@ use rocking_report::describe;
 /// Structure(m=4e5, m0=1e5, H=9, B=1.5, J0=1e5, f_fc=2.5, zeta_fc=0.03, r=0.95)
 /// Structure(preset="mcmanus", f_fc=8)
 ///
-/// Every number is a keyword, and an attribute; SI units. Parameters: m, m0 (kg), H, B (m), J0 (kg.m2, 0), f_fc (Hz),
-/// zeta_fc, c_ratio (1), r, g (m/s2, 9.81); the values in brackets are what they are if they are left out. In the place
-/// of a parameter: period_fc (s) for f_fc, weight and weight0 (kN) for m and m0, width (m) for B, alpha_cg (rad) for H,
-/// or for B where H is given, p_l (rad/s) for J0. Restraints, 0 without them: a tendon of P_0 (N) and k_t (N/m), and a
-/// pair of dissipators at xi_d (m) from the middle, viscous c_d (N.s/m) or elastoplastic k_d (N/m) and F_y (N). With
-/// preset, "mcmanus" or "evison", the specimen of the paper with these numbers in the place of its own.
+/// Every number is a keyword and an attribute, in SI units. Parameters: m, m0 (kg), H, B (m), J0 (kg.m2, 0), f_fc (Hz),
+/// zeta_fc, c_ratio (1), r, g (m/s2, 9.81); the numbers in brackets are defaults. These replace parameters: period_fc (s) for
+/// f_fc, weight and weight0 (kN) for m and m0, width (m) for B. p_l (rad/s) replaces J0. alpha_cg (rad) replaces H, or B if H
+/// is given. Tendon: P_0 (N), k_t (N/m). Pair of dissipators: distance xi_d (m) from the middle, viscous c_d (N.s/m), or
+/// elastoplastic k_d (N/m) and F_y (N). With preset, "mcmanus" or "evison", the specimen of the paper with these numbers in
+/// the place of its own.
 ///
-/// What follows from them is an attribute, too: alpha_cg, p_l, chi, u_cr, f_u, ...; `parameters` and `derived` have all
-/// of them, print(structure) shows them with units and equation numbers. A structure cannot be changed; `replace` makes
-/// another.
+/// Derived quantities are attributes, too: alpha_cg, p_l, chi, u_cr, f_u, ... `parameters` and `derived` have all of them,
+/// and print(structure) shows them with units and equation numbers. A structure cannot be changed; `replace` makes another.
 ///
 /// Raises ValueError where a number is unknown, missing, given twice in different ways or out of its range.
-#[pyclass(frozen, module = "flexible_rocking")]
+#[pyclass(frozen, eq, module = "flexible_rocking")]
+#[derive(PartialEq)]
 pub struct Structure(pub rocking::Structure);
 
 fn given(numbers: Option<&Bound<'_, PyDict>>) -> PyResult<Given> {
@@ -59,7 +59,7 @@ impl Structure {
 impl Structure {
     #[new]
     #[pyo3(signature = (*, preset=None, **numbers))]
-    fn new(preset: Option<&str>, numbers: Option<&Bound<'_, PyDict>>) -> PyResult<Structure> {
+    fn new(preset: Option<&Bound<'_, PyAny>>, numbers: Option<&Bound<'_, PyDict>>) -> PyResult<Structure> {
         let given = given(numbers)?;
         let parameters = match preset {
             None => given.parameters(),
@@ -82,8 +82,8 @@ impl Structure {
         Ok(all)
     }
 
-    /// What follows from the parameters, by name: gamma, omega_fc (rad/s), k (N/m), u_cr (m), J_P (kg.m2), p_l (rad/s),
-    /// alpha_cg (rad), chi, f_u (Hz), weight (kN), ...
+    /// The derived quantities by name: gamma, omega_fc (rad/s), k (N/m), u_cr (m), J_P (kg.m2), p_l (rad/s), alpha_cg (rad),
+    /// chi, f_u (Hz), weight (kN), ...
     #[getter]
     fn derived<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
@@ -98,8 +98,9 @@ impl Structure {
         effective_frequency(&self.0, theta).map_err(refused)
     }
 
-    /// The static pushover of Fig 1 to the right, from rest to overturning (Eqs 5 and 6 without inertia): a dict of arrays
-    /// (2 points,) theta (rad), u, delta_t (m), P (N), M (N.m), `points` of them in full contact, then as many while it rocks.
+    /// The static pushover of Fig 1 to the right, from rest to overturning (Eqs 5 and 6 without inertia). Returns a dict of
+    /// arrays (2 points,): theta (rad), u, delta_t (m), P (N), M (N.m). `points` of them are in full contact, and as many
+    /// rock.
     ///
     /// Raises ValueError where the strut is too soft to hold the structure, and for other than 2 to 1,000,000 points.
     #[pyo3(signature = (points=100))]
@@ -116,8 +117,8 @@ impl Structure {
         Ok(named)
     }
 
-    /// `response`, what Run.at returns, split into the rocking and the vibration mode: a dict of arrays (n,) q_r, q_u (rad,
-    /// Eq 16), a_r, a_u (m/s2, Eqs 12, 19), which are NaN where it does not rock.
+    /// Splits the `response` of Run.at into the rocking and the vibration mode. Returns a dict of arrays (n,): q_r, q_u (rad,
+    /// Eq 16), a_r, a_u (m/s2, Eqs 12, 19), NaN unless the structure rocks.
     ///
     /// Raises ValueError for a structure with a tendon or dissipators.
     fn modes<'py>(&self, response: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
@@ -170,11 +171,7 @@ impl Structure {
         describe::text(&self.0).map_err(refused)
     }
 
-    fn __eq__(&self, other: &Structure) -> bool {
-        self.0 == other.0
-    }
-
-    fn __hash__(&self) -> u64 {
+    pub fn __hash__(&self) -> u64 {
         let bits = |value: f64| (value + 0.0).to_bits(); // of -0 as of 0, which it equals
         self.named().fold(0, |hash, (_, value)| hash.rotate_left(7).wrapping_mul(31) ^ bits(value))
     }

@@ -1,6 +1,6 @@
 //! `sweep` and `fragility`: many runs on all cores, and what they say together.
 
-use crate::arguments::{conditions, numbers, refused};
+use crate::arguments::{argument, conditions, numbers, refused};
 use crate::interruptible::{FAULT, MOMENT};
 use crate::record::{G, Ground};
 use crate::structure::Structure;
@@ -8,6 +8,7 @@ use numpy::{PyArray1, PyArray2};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use rocking::Detail;
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::Ending;
 use rocking_report::program::program;
@@ -35,8 +36,8 @@ pub fn sweep(
     records: Vec<(String, Ground)>,
     scale: &Bound<'_, PyAny>,
     path: PathBuf,
-    detail: &str,
-    tolerance: f64,
+    #[pyo3(from_py_with = argument::detail)] detail: Detail,
+    #[pyo3(from_py_with = argument::tolerance)] tolerance: f64,
     duration: Option<&Bound<'_, PyAny>>,
     initial: &Bound<'_, PyDict>,
     validity: bool,
@@ -166,8 +167,8 @@ impl Curve {
 /// known, and how many exceed the limit.
 type Counted = (f64, f64, f64, usize, usize, usize);
 
-/// The curve of runs, and the counted runs that are drawn beside it. Of each run: its group, its intensity, how it ended, the
-/// peak that the limit is of, and g (m/s²).
+/// The curve of runs, and the counted runs that are drawn beside the curve. Each run has its group, its intensity, its ending, the
+/// peak that `limit` compares, and g (m/s²). `half_width` (m) is the largest B of their structures.
 #[pyfunction]
 pub fn fragility(
     py: Python<'_>,
@@ -177,8 +178,10 @@ pub fn fragility(
     peaks: Vec<f64>,
     gs: Vec<f64>,
     limit: &str,
+    half_width: f64,
 ) -> PyResult<(Curve, Vec<Counted>)> {
     let limit: Limit = limit.parse().map_err(refused)?;
+    limit.check(half_width).map_err(refused)?;
     let exceeds = |ending: &String, peak: f64, g: f64| -> PyResult<Option<bool>> {
         let ending: Result<_, serde::de::value::Error> = Ending::deserialize(ending.as_str().into_deserializer());
         let (ending, peaks) = (ending.map_err(refused)?, [peak; MEASURES.len()]);

@@ -8,7 +8,7 @@ use super::text::{columns, number, numbered, quote};
 use super::unit::Stated;
 use super::{BadLine, Column, Format, Reading, Remedy, Unit, bad, source::decide};
 
-/// What the first line says of the layout, if it is one of these files.
+/// Layout that the first line states, if the file is COSMOS or CSMIP.
 pub(super) fn format(text: &str) -> Option<Format> {
     let first = text.lines().next()?.to_ascii_lowercase();
     if first.contains("(format v") {
@@ -25,7 +25,7 @@ struct Announced<'a> {
     line: usize,
     count: usize,
     unit: &'a str,
-    /// Letters in a column; none where the line does not state them, and blanks separate.
+    /// Letters in a column; none if blanks separate the columns.
     width: Option<usize>,
     dt: f64,
 }
@@ -63,7 +63,7 @@ fn ends_data(line: &str) -> bool {
     lower.contains("pts") || lower.contains("points of") || lower.contains("end") || lower.contains("/&")
 }
 
-/// All that announces accelerations.
+/// Words that announce accelerations.
 fn channels(text: &str, format: Format) -> Result<Vec<Announced<'_>>, BadLine> {
     let mut channels = Vec::new();
     let mut reals = Reals::default();

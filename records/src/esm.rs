@@ -46,7 +46,7 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     Ok(parsed)
 }
 
-/// What `line` says of `key`.
+/// Value of `key` on `line`.
 fn value_of<'a>(line: &'a str, key: &str) -> Option<&'a str> {
     line.trim_start().strip_prefix(key)?.trim_start().strip_prefix(':').map(str::trim)
 }

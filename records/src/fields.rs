@@ -4,10 +4,10 @@ use super::text::is_number;
 use super::unit::TimeUnit;
 use std::borrow::Cow;
 
-/// How the fields of a line are told apart, and what stands before the digits after the point.
+/// Separator of the fields of a line, and decimal mark.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Layout {
-    /// None for blanks and tabs.
+    /// Separator; blanks and tabs separate without one.
     separator: Option<char>,
     pub decimal_comma: bool,
 }
@@ -24,7 +24,7 @@ pub(super) fn is_numbers(line: &str) -> bool {
     !words.is_empty() && words.into_iter().all(is_number)
 }
 
-/// What is between separators that stand in no quotes.
+/// Parts of a line between separators outside of quotes.
 fn split(line: &str, is_separator: impl Fn(char) -> bool) -> Vec<&str> {
     let (mut fields, mut start, mut quoted) = (Vec::new(), 0, false);
     for (index, letter) in line.char_indices() {
@@ -68,8 +68,8 @@ fn not_blank<'a>(cells: impl IntoIterator<Item = &'a str>) -> Vec<&'a str> {
 }
 
 impl Layout {
-    /// That of lines of numbers: a semicolon separates wherever there is one; so does a comma, unless blanks separate and
-    /// each comma is between digits.
+    /// Layout of lines of numbers. A semicolon always separates. A comma separates unless blanks separate and each comma is
+    /// between digits.
     pub fn of<'a, L: Iterator<Item = &'a str>>(lines: impl Fn() -> L) -> Layout {
         let has = |letter: char| lines().any(|line| line.contains(letter));
         let is_decimal = |line: &str| {

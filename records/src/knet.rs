@@ -12,8 +12,8 @@ pub(super) fn is_its(text: &str) -> bool {
     text.starts_with("Origin Time")
 }
 
-/// The step from the sampling frequency; a count times the scale factor is an acceleration in gal. What the recorder shows
-/// at rest, its offset, is the mean of all counts and no acceleration.
+/// The step from the sampling frequency; a count times the scale factor is an acceleration in gal. The offset of the recorder
+/// at rest is the mean of all counts and is subtracted.
 pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     const WIDTH: usize = 9;
     let find = |key: &str| {
@@ -47,7 +47,7 @@ pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     Ok(parsed)
 }
 
-/// What `line` says of `key`.
+/// Value of `key` on `line`.
 fn value_of<'a>(line: &'a str, key: &str) -> Option<&'a str> {
     line.strip_prefix(key).map(str::trim)
 }

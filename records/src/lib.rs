@@ -1,7 +1,7 @@
 //! Files of ground motions as the world's archives publish them.
 //!
-//! What a file is, its content tells: PEER AT2, ESM and ITACA, K-NET, COSMOS, CSMIP, or columns of text. [`read`] gives its
-//! samples in m/s², and what was found in the file or assumed of it.
+//! The content of a file decides the layout: PEER AT2, ESM and ITACA, K-NET, COSMOS, CSMIP, or columns of text. [`read`]
+//! returns the samples in m/s², and the findings and assumptions about the file.
 
 mod at2;
 mod cosmos;
@@ -31,10 +31,10 @@ pub use unit::Unit;
 /// Largest file that is read, bytes: 256 MiB.
 pub const MAX_FILE: u64 = 1 << 28;
 
-/// A peak above this, in g, is rather one in another unit.
+/// A peak above this, in g, is probably in another unit.
 const LARGEST_USUAL_PEAK: f64 = 5.0;
 
-/// A mean above this, in g, with a velocity at the end above that, in m/s, is of no earthquake.
+/// No earthquake has a mean above this, in g, together with a velocity at the end above the next limit, in m/s.
 const LARGEST_USUAL_MEAN: f64 = 0.05;
 const LARGEST_USUAL_VELOCITY: f64 = 2.0;
 
@@ -52,13 +52,13 @@ pub enum RecordError {
     Unreadable {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the system.
         source: io::Error,
     },
-    /// A folder, a device or a pipe: nothing is read of these.
+    /// A folder, a device or a pipe, which is not read.
     #[error("{} is not a file", path.display())]
     NotAFile {
-        /// What is no file.
+        /// The folder, device or pipe.
         path: PathBuf,
     },
     /// The file is larger than any record.
@@ -69,30 +69,30 @@ pub enum RecordError {
         /// Its size.
         size: u64,
     },
-    /// [`Reading::dt`] is no step.
+    /// [`Reading::dt`] is not a step.
     #[error("dt = {0} is out of range: a finite number greater than 0 is needed")]
     BadStep(f64),
     /// The acceleration of gravity is out of range.
     #[error(transparent)]
     BadGravity(#[from] OutOfRange),
-    /// A line is not what the format asks for.
+    /// A line contradicts the format.
     #[error("{}, line {line}: {problem}", path.display())]
     Malformed {
         /// The file.
         path: PathBuf,
         /// The line, counted from 1.
         line: usize,
-        /// What was found there and what belongs there.
+        /// The content that was found, and the content that is needed.
         problem: String,
-        /// What would make it readable.
+        /// The option that makes the file readable.
         remedy: Option<Remedy>,
     },
 }
 
-/// What [`Reading`] must say to make a file readable, under the names that every door has for it.
+/// The option of [`Reading`] that makes a file readable, under the name that every door has for it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Remedy {
-    /// That the number of samples does not matter.
+    /// Ignore the stated number of samples.
     #[error("ignore_npts takes those")]
     IgnoreCount,
     /// The time between samples.
@@ -106,7 +106,7 @@ pub enum Remedy {
     Unit,
 }
 
-/// A line that is not what the format asks for, before the file's name is known.
+/// A line that contradicts the format, before the file's name is known.
 #[derive(Clone, Debug, PartialEq)]
 struct BadLine {
     line: usize,
@@ -120,8 +120,7 @@ impl BadLine {
     }
 }
 
-/// Reads the record in the file at `path` as `how` says, with accelerations in m/s²; `g` (m/s²) is what a record's g
-/// stands for.
+/// Reads the record in the file at `path` as `how` says, with accelerations in m/s². A record's g means `g` (m/s²).
 pub fn read(path: &Path, how: &Reading, g: f64) -> Result<(Record, Source), RecordError> {
     let (record, source) = read_raw(path, how)?;
     Ok(in_m_s2(record, source, g)?)
@@ -148,16 +147,16 @@ pub fn from_bytes(path: &Path, bytes: &[u8], how: &Reading) -> Result<(Record, S
     }
 }
 
-/// The record as its file gives it, with its accelerations in m/s²; `g` (m/s²) is what a record's g stands for. What no
-/// earthquake has is among the warnings of the `source`.
+/// Converts the accelerations of `record` from the unit of the `source` to m/s². A record's g means `g` (m/s²). Adds the
+/// doubts about the record to its `source`.
 pub fn in_m_s2(record: Record, mut source: Source, g: f64) -> Result<(Record, Source), OutOfRange> {
     PARAMETERS.iter().filter(|quantity| quantity.name == "g").try_for_each(|quantity| quantity.check(g))?;
     let record = record.multiplied(source.unit.in_m_s2(g));
-    source.warnings.extend(doubts(&record, g));
+    source.doubts.extend(doubts(&record, g));
     Ok((record, source))
 }
 
-/// A sentence for each thing that no earthquake has and a record that is read wrongly has; `record` and `g` in m/s².
+/// A sentence for each property that no earthquake has but a wrongly read record often has; `record` and `g` in m/s².
 pub fn doubts(record: &Record, g: f64) -> Vec<String> {
     let duration = record.end() - record.start();
     let last = record.velocities_and_displacements().last();
@@ -182,8 +181,7 @@ pub fn doubts(record: &Record, g: f64) -> Vec<String> {
     doubts.into_iter().flatten().collect()
 }
 
-/// The layout of `text`, the content of the file at `path`: what it shows itself. A damaged AT2 file is known by its
-/// extension.
+/// The layout of `text`, the content of the file at `path`. The extension identifies a damaged AT2 file.
 fn format(path: &Path, text: &str) -> Format {
     let is_at2 = || path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("at2"));
     match () {
@@ -203,7 +201,7 @@ fn parse(text: &str, format: Format, how: &Reading) -> Result<Parsed, BadLine> {
     }
 }
 
-/// The bytes of the file of a record. Whether `path` is one is asked before it is opened, for opening a pipe may last for ever.
+/// The bytes of the file of a record. The function opens regular files only, because opening a pipe can block for ever.
 pub fn read_file(path: &Path) -> Result<Vec<u8>, RecordError> {
     let unreadable = |source| RecordError::Unreadable { path: path.into(), source };
     let told = fs::metadata(path).map_err(unreadable)?;

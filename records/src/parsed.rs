@@ -1,4 +1,4 @@
-//! What the parsers of all layouts make: samples as the file gives them.
+//! Result of the parsers of all layouts: samples as the file gives them.
 
 use super::text::{columns, nine_digits, number, quote, without_blanks};
 use super::{BadLine, Format, MAX_SAMPLES, Reading, Record, Remedy, Source, Unit, UnitFrom, bad};
@@ -9,7 +9,7 @@ const SAME_STEP: f64 = 1e-6;
 /// Part of a step that the last of rounded times may be off.
 const ROUNDING: f64 = 0.1;
 
-/// The samples of a file, and what was found out about them.
+/// The samples of a file, with the findings about them.
 #[derive(Debug)]
 pub(super) struct Parsed {
     pub title: String,
@@ -19,18 +19,18 @@ pub(super) struct Parsed {
     last_line: usize,
 }
 
-/// When the samples are.
+/// Times of the samples.
 #[derive(Debug)]
 pub(super) enum Times {
-    /// Every so many seconds.
+    /// One sample every so many seconds.
     Every(f64),
-    /// At these times, s.
+    /// Samples at these times, s.
     At(Vec<f64>),
 }
 
 impl Times {
     /// The step (s), and whether it is `dt` (s): times as they are written may be rounded, and after the last step be off by
-    /// a tenth of one. None of a single time.
+    /// a tenth of one. A single time has no step.
     pub fn have_step(&self, dt: f64) -> Option<(f64, bool)> {
         match self {
             Times::Every(step) => Some((*step, (step - dt).abs() <= SAME_STEP * dt)),
@@ -44,11 +44,9 @@ impl Times {
 }
 
 impl Parsed {
-    /// Nothing yet.
+    /// Starts without samples.
     pub fn new(format: Format, title: impl Into<String>, unit: Unit, unit_from: UnitFrom, times: Times) -> Parsed {
-        let assumed = || format!("the file states no unit: {unit} is assumed; say as unit what it is");
-        let warnings = (unit_from == UnitFrom::Assumed).then(assumed).into_iter().collect();
-        let source = Source { format, unit, unit_from, remarks: Vec::new(), warnings };
+        let source = Source { format, unit, unit_from, remarks: Vec::new(), doubts: Vec::new() };
         Parsed { title: title.into(), times, values: Vec::new(), source, last_line: 1 }
     }
 
@@ -78,7 +76,7 @@ impl Parsed {
         Ok(())
     }
 
-    /// One more thing that was found or assumed.
+    /// Adds a finding or an assumption.
     pub fn remark(&mut self, remark: impl Into<String>) {
         self.source.remarks.push(remark.into());
     }

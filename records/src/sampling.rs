@@ -4,7 +4,7 @@ use super::text::{number, quote};
 use super::unit::TimeUnit;
 use super::{BadLine, MAX_SAMPLES, bad};
 
-/// What is stated.
+/// Number of samples and step, as far as a line states them.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Sampling {
     /// NPTS, the number of samples.
@@ -14,8 +14,8 @@ pub(super) struct Sampling {
 }
 
 impl Sampling {
-    /// What `line` states, which is the one of this `number`: `NPTS=  4172, DT=   .0100 SEC, UNITS=G`, one of the two, or
-    /// `4164    0.0100    NPTS, DT`.
+    /// Reads the line of this `number`: `NPTS=  4172, DT=   .0100 SEC, UNITS=G`, one of the two, or `4164    0.0100    NPTS,
+    /// DT`.
     pub fn of(number: usize, line: &str) -> Result<Sampling, BadLine> {
         let upper = line.to_ascii_uppercase().replace([',', ';'], " , ");
         let words = upper.split(|letter: char| letter.is_whitespace() || "=:\"#%!".contains(letter));

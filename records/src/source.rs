@@ -1,4 +1,4 @@
-//! How a record's file is read, and what was found in it or assumed of it.
+//! Options for reading a record's file, and the findings and assumptions about the file.
 
 use super::text::{quote, six_digits};
 use super::unit::Stated;
@@ -6,20 +6,20 @@ use super::{BadLine, Record, Remedy, Unit, bad};
 use serde::{Deserialize, Deserializer, de::Error};
 use std::fmt;
 
-/// What the user says of a file; the file says the rest.
+/// Options of the user for facts that a file does not state.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reading {
     /// Unit of the accelerations; must be the one that the file states, if it states one.
     pub unit: Option<Unit>,
     /// Time between two samples of a file without times, s.
     pub dt: Option<f64>,
-    /// Which of several columns, or of the channels of a COSMOS file, has the accelerations.
+    /// Column, or channel of a COSMOS file, with the accelerations.
     pub column: Option<Column>,
-    /// Whether the samples that are there are taken where the file states another number of them.
+    /// Whether all samples are read even if the file states another number of them.
     pub ignores_count: bool,
 }
 
-/// What has the accelerations in a table.
+/// Position of the accelerations in a table.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
 #[serde(untagged)]
 pub enum Column {
@@ -49,25 +49,25 @@ pub enum Format {
     Csmip,
 }
 
-/// Where a record comes from: what its file states, and what was assumed where it says nothing.
+/// Origin of a record: statements of its file, and assumptions about missing statements.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
     /// Its layout.
     pub format: Format,
     /// Unit of the accelerations in the file.
     pub unit: Unit,
-    /// Who says so.
+    /// Origin of the unit.
     pub unit_from: UnitFrom,
-    /// All else that was found or assumed: which column, how many lines of headings, and the like.
+    /// Other findings and assumptions, such as the column and the number of lines of headings.
     pub remarks: Vec<String>,
-    /// What is likely wrong with the file or with how it is read, though it may be right.
-    pub warnings: Vec<String>,
+    /// Likely errors in the file or in how it is read.
+    pub doubts: Vec<String>,
 }
 
 impl Source {
-    /// Sentences to report before a run under `record` (m/s²), which was read from the file called `name`. The first describes
-    /// the findings and assumptions, each other one warns. The peak is reported in units of `g` (m/s²).
-    pub fn sentences(&self, name: &str, record: &Record, g: f64) -> Vec<String> {
+    /// Findings and assumptions in a sentence, for `record` (m/s²), which was read from the file called `name`. The peak is
+    /// reported in units of `g` (m/s²).
+    pub fn findings(&self, name: &str, record: &Record, g: f64) -> String {
         let unit_from = match self.unit_from {
             UnitFrom::File => "as the file states",
             UnitFrom::User => "as asked for",
@@ -76,9 +76,19 @@ impl Source {
         let remarks: String = self.remarks.iter().map(|remark| format!(", {remark}")).collect();
         let (format, unit, samples) = (self.format, self.unit, record.times().len());
         let (steps, peak) = (steps(record), six_digits(record.pga() / g));
-        let found = format!("{name}: {format}{remarks}; {unit} {unit_from}; {samples} samples, {steps}, peak {peak} g");
-        let warnings = self.warnings.iter().map(|warning| format!("{name}: {warning}"));
-        [found].into_iter().chain(warnings).collect()
+        format!("{name}: {format}{remarks}; {unit} {unit_from}; {samples} samples, {steps}, peak {peak} g")
+    }
+
+    /// A warning of a unit that is assumed, and the doubts.
+    pub fn warnings(&self) -> impl Iterator<Item = String> {
+        let assumed = || format!("the file states no unit: {} is assumed; say as unit what it is", self.unit);
+        (self.unit_from == UnitFrom::Assumed).then(assumed).into_iter().chain(self.doubts.iter().cloned())
+    }
+
+    /// The [findings](Source::findings), and a sentence for each warning.
+    pub fn sentences(&self, name: &str, record: &Record, g: f64) -> Vec<String> {
+        let warnings = self.warnings().map(|warning| format!("{name}: {warning}"));
+        [self.findings(name, record, g)].into_iter().chain(warnings).collect()
     }
 }
 
@@ -90,14 +100,14 @@ pub fn steps(record: &Record) -> String {
     if least == most { format!("step {least} s") } else { format!("steps of {least} to {most} s") }
 }
 
-/// Who decides the unit of a record.
+/// Origin of the unit of a record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum UnitFrom {
     /// The file.
     File,
-    /// The user, where the file says nothing.
+    /// The user, if the file states no unit.
     User,
-    /// No one: the unit is assumed.
+    /// An assumption, if neither states a unit.
     Assumed,
 }
 
@@ -142,7 +152,8 @@ impl fmt::Display for Format {
     }
 }
 
-/// Who is right about the unit, which `line` states: the file, which must not be contradicted, else the user, else it is m/s².
+/// Decides the unit: the unit that the file states on `line`, else the unit of the user, else m/s². The user must not
+/// contradict the file.
 pub(super) fn decide(stated: &Stated, asked: Option<Unit>, line: usize) -> Result<(Unit, UnitFrom), BadLine> {
     let contradicted = |stated: &dyn fmt::Display, asked: Unit| {
         Err(bad(line, format!("the file states accelerations in {stated}, and {asked} is asked for")))

@@ -1,8 +1,8 @@
-//! Tables of text: a sample on each line, with a comma, a semicolon or blanks between its numbers; or, where the file or the
-//! user says so, samples alone, one after the other, as many on a line as there are; after any lines of text.
+//! Tables of text: a sample on each line, with a comma, a semicolon or blanks between the numbers. If the file or the user
+//! says so, the lines have any number of samples instead. Lines of text can stand before the numbers.
 //!
-//! What a column has its heading says; without headings the first has the times. Whole numbers without a unit of time count
-//! the samples, or are milliseconds: the file does not tell, so that the time between samples is to be given.
+//! The headings say which column has what. Without headings the first column has the times. Whole numbers without a unit of
+//! time could be counts or milliseconds: then the user must give the time between samples.
 
 use super::fields::{Layout, cells, is_numbers};
 use super::parsed::{Parsed, Times};
@@ -11,32 +11,32 @@ use super::text::{is_number, number, numbered, quote, without_blanks};
 use super::unit::{Stated, TimeUnit, mentions_unit};
 use super::{BadLine, Column, Format, Reading, Remedy, bad, source::decide};
 
-/// The numbers of a file, and what is said before them.
+/// The numbers of a file, and the text before them.
 struct Table<'a> {
     text: &'a str,
-    /// The lines of text before the numbers.
-    before: Vec<&'a str>,
-    /// Those of them that have as many cells as there are columns.
-    headings: Vec<Vec<&'a str>>,
-    /// What a line before the samples states.
+    /// The lines of text before the numbers, with their numbers.
+    before: Vec<(usize, &'a str)>,
+    /// The cells of the lines of text that have one for each column, with the numbers of these lines.
+    headings: Vec<(usize, Vec<&'a str>)>,
+    /// Number of samples and step that a line before the samples states.
     stated: Sampling,
     /// The first line of samples.
     first: usize,
     last: usize,
     layout: Layout,
-    /// How many numbers the first line has.
+    /// Number of columns of the first line.
     count: usize,
-    /// Those of all lines.
+    /// The numbers of all lines.
     numbers: Vec<f64>,
-    /// The first line that has another number of them.
+    /// The first line with another number of columns.
     uneven: Option<BadLine>,
 }
 
-/// Where the samples are in a table.
+/// Columns of a table.
 struct Samples {
     /// The column of times, and their unit.
     time: Option<(usize, TimeUnit)>,
-    /// That of accelerations; without it all numbers are samples, one after the other.
+    /// The column of accelerations; without one, all numbers are samples, one after the other.
     value: Option<usize>,
 }
 
@@ -44,7 +44,8 @@ struct Samples {
 pub(super) fn parse(text: &str, how: &Reading) -> Result<Parsed, BadLine> {
     let table = Table::read(text)?;
     let Samples { time, value } = table.samples(how)?;
-    let (unit, unit_from) = decide(&table.stated_unit(value, how)?, how.unit, table.first)?;
+    let (stated, line) = table.stated_unit(value, how)?;
+    let (unit, unit_from) = decide(&stated, how.unit, line)?;
     let times = table.times(time, how)?;
     if let Some((stated, (step, false))) = table.stated.dt.and_then(|dt| Some((dt, times.have_step(dt)?))) {
         let problem =
@@ -86,14 +87,16 @@ impl<'a> Table<'a> {
             !is_comment(line) && fields.len() == count && is_number(fields[0])
         };
         for (line, text) in numbered(text).take(first - 1).filter(|(_, line)| !line.trim().is_empty()) {
-            before.push(text);
+            before.push((line, text));
             match Sampling::of(line, text)? {
                 Sampling { npts: None, dt: None } if is_damaged(text) => {
                     let problem =
                         format!("{} is neither numbers nor text: correct it, or write # before it", quote(text));
                     return Err(bad(line, problem));
                 }
-                Sampling { npts: None, dt: None } if count > 1 => headings.extend(cells(text, count)),
+                Sampling { npts: None, dt: None } if count > 1 => {
+                    headings.extend(cells(text, count).map(|cells| (line, cells)))
+                }
                 of_line => stated = Sampling { npts: stated.npts.or(of_line.npts), dt: stated.dt.or(of_line.dt) },
             }
         }
@@ -149,9 +152,9 @@ impl<'a> Table<'a> {
     /// count the samples, whatever their heading.
     fn check_first(&self) -> Result<(), BadLine> {
         match self.headings_of(0).next() {
-            Some(name) if !self.is_whole(0) => {
+            Some((line, name)) if !self.is_whole(0) => {
                 let problem = format!("column 1 is {}, which is no time in s or ms: ", quote(name));
-                Err(bad(self.first, problem + "give the step in seconds as dt, or head a column of seconds time (s)"))
+                Err(bad(line, problem + "give the step in seconds as dt, or head a column of seconds time (s)"))
             }
             _ => self.check_growth(0).map_err(|no_times| no_times.remedied_by(Remedy::Column)),
         }
@@ -161,19 +164,19 @@ impl<'a> Table<'a> {
         self.column(column).all(|number| number.fract() == 0.0)
     }
 
-    /// All headings of the column.
-    fn headings_of(&self, column: usize) -> impl Iterator<Item = &'a str> {
-        self.headings.iter().map(move |cells| cells[column]).filter(|cell| !cell.is_empty())
+    /// All headings of the column, with the numbers of their lines.
+    fn headings_of(&self, column: usize) -> impl Iterator<Item = (usize, &'a str)> {
+        self.headings.iter().map(move |(line, cells)| (*line, cells[column])).filter(|(_, cell)| !cell.is_empty())
     }
 
     /// The heading of the column, as it is said.
     fn name(&self, column: usize) -> String {
-        self.headings_of(column).next().map_or(String::new(), |name| format!(" {}", quote(name)))
+        self.headings_of(column).next().map_or(String::new(), |(_, name)| format!(" {}", quote(name)))
     }
 
     /// The column of times, if a heading says so, and their unit.
     fn headed_time(&self) -> Option<(usize, TimeUnit)> {
-        let unit = |column| self.headings_of(column).filter_map(TimeUnit::of).max();
+        let unit = |column| self.headings_of(column).filter_map(|(_, heading)| TimeUnit::of(heading)).max();
         (0..self.count).find_map(|column| Some((column, unit(column)?)))
     }
 
@@ -208,7 +211,8 @@ impl<'a> Table<'a> {
             (Some(asked), _) => asked,
             (None, [one]) => *one,
             (None, _) => {
-                let (count, names) = (self.count, self.headings.first().map(|names| format!(" ({})", listed(names))));
+                let (count, names) =
+                    (self.count, self.headings.first().map(|(_, names)| format!(" ({})", listed(names))));
                 let names = names.unwrap_or_default();
                 let problem = format!("{count} columns{names}: which has the accelerations is not known");
                 return Err(bad(self.first, problem).remedied_by(Remedy::Column));
@@ -261,7 +265,7 @@ impl<'a> Table<'a> {
             Some(asked @ Column::Heading(heading)) => match (self.with_heading(heading), self.headings.first()) {
                 (Some(one), _) => Ok(Some(one)),
                 (None, None) => refused(asked, "there are no headings".into()),
-                (None, Some(names)) => refused(asked, format!("the headings are {}", listed(names))),
+                (None, Some((_, names))) => refused(asked, format!("the headings are {}", listed(names))),
             },
             Some(asked @ Column::All) => refused(asked, "a heading says that one has times".into()),
             None => Ok(None),
@@ -272,31 +276,33 @@ impl<'a> Table<'a> {
     fn with_heading(&self, asked: &str) -> Option<usize> {
         let same = |heading: &str| heading.trim().eq_ignore_ascii_case(asked.trim());
         let name = |heading: &'a str| heading.split(['(', '[', '{']).next().unwrap_or_default();
-        let is_it = |column: &usize| self.headings_of(*column).any(|heading| same(heading) || same(name(heading)));
+        let is_it = |column: &usize| self.headings_of(*column).any(|(_, of)| same(of) || same(name(of)));
         let mut found = (0..self.count).filter(is_it);
         found.next().filter(|_| found.next().is_none())
     }
 
-    /// What is said before the data of the unit of the column `value`, or of all numbers; where `how` does not say it, a unit
-    /// that stands elsewhere is refused, for it may be that of a peak.
-    fn stated_unit(&self, value: Option<usize>, how: &Reading) -> Result<Stated, BadLine> {
+    /// The unit that text before the data states for the column `value`, or for all numbers, and the number of its line. Refuses
+    /// a unit in another place unless `how` has the unit: it may be the unit of a peak.
+    fn stated_unit(&self, value: Option<usize>, how: &Reading) -> Result<(Stated, usize), BadLine> {
         let texts = match value {
             Some(value) => self.headings_of(value).collect(),
             None => self.before.clone(),
         };
-        if let Some(other) = texts.iter().find(|text| is_no_acceleration(text)) {
+        if let Some((line, other)) = texts.iter().find(|(_, text)| is_no_acceleration(text)) {
             let place = value.map_or("a line before the data".into(), |value| format!("column {}", value + 1));
-            return Err(bad(self.first, format!("{place} is {}: accelerations are needed", quote(other))));
+            return Err(bad(*line, format!("{place} is {}: accelerations are needed", quote(other))));
         }
-        let stated = texts.into_iter().map(Stated::of).filter(|stated| *stated != Stated::Nothing);
-        let stated = stated.min_by_key(|stated| !matches!(stated, Stated::Multiplied(_))); // else the first
-        match (stated, self.before.iter().find(|line| mentions_unit(line))) {
-            (None, Some(line)) if how.unit.is_none() => {
-                let line = quote(line);
-                let problem = format!("{line} has a unit, and no heading says that it is that of the accelerations");
-                Err(bad(self.first, problem).remedied_by(Remedy::Unit))
+        let stated = texts.into_iter().map(|(line, text)| (Stated::of(text), line));
+        let stated = stated.filter(|(stated, _)| *stated != Stated::Nothing);
+        let stated = stated.min_by_key(|(stated, _)| !matches!(stated, Stated::Multiplied(_))); // else the first
+        match (stated, self.before.iter().find(|(_, text)| mentions_unit(text))) {
+            (None, Some((line, text))) if how.unit.is_none() => {
+                let text = quote(text);
+                let problem =
+                    format!("{text} has a unit, and no heading says that it is the unit of the accelerations");
+                Err(bad(*line, problem).remedied_by(Remedy::Unit))
             }
-            (stated, _) => Ok(stated.unwrap_or(Stated::Nothing)),
+            (stated, _) => Ok(stated.unwrap_or((Stated::Nothing, self.first))),
         }
     }
 }
@@ -349,7 +355,7 @@ mod tests {
         format!("{line}: {problem}")
     }
 
-    /// Nothing but what the file says.
+    /// No options.
     const AS_IT_IS: Reading = Reading { unit: None, dt: None, column: None, ignores_count: false };
 
     #[test]
@@ -399,7 +405,7 @@ mod tests {
         assert_eq!(read("t,a (north)\n0,1\n.5,2\n", &asked).unwrap().1.unit, Unit::G);
         let unknown = "t (s),a (km/s2)\n0,1\n1,2\n";
         let expected =
-            "2: the accelerations are in \"km/s2\", which is none of g, m/s2, cm/s2, gal, mm/s2, in/s2, ft/s2, mg, %g";
+            "1: the accelerations are in \"km/s2\", which is none of g, m/s2, cm/s2, gal, mm/s2, in/s2, ft/s2, mg, %g";
         assert_eq!(problem(unknown, &AS_IT_IS), expected);
         assert!(problem(unknown, &asked).ends_with("\"km/s2\", and g is asked for"));
     }
@@ -441,7 +447,7 @@ mod tests {
         }
     }
 
-    /// Numbers that change like those of one instrument, of two, or of times and samples, are none of them until somebody says.
+    /// The reader does not guess whether numbers are the samples of one instrument, of two, or times and samples.
     #[test]
     fn several_samples_a_line_are_read_if_it_is_said() {
         let step = Reading { dt: Some(0.5), ..AS_IT_IS };
@@ -474,12 +480,12 @@ mod tests {
     #[test]
     fn velocities_and_displacements_are_refused() {
         for heading in ["velocity", "Displacement", "disp (cm)", "vel_x", "Sa (g)"] {
-            let expected = format!("2: column 2 is {heading:?}: accelerations are needed");
+            let expected = format!("1: column 2 is {heading:?}: accelerations are needed");
             assert_eq!(problem(&format!("time,{heading}\n0,1\n.5,2\n"), &AS_IT_IS), expected);
         }
     }
 
-    /// It may be that of a peak, or of the accelerations: the user says.
+    /// The unit can be of a peak or of the accelerations: the user decides.
     #[test]
     fn a_unit_in_no_heading_is_not_taken_and_not_passed_over() {
         for line in ["time acc cm/s2", "Acceleration in cm/s2", "# peak in g: 0.3", "peak 0.3 g", "PGA=0.3g"] {
@@ -555,7 +561,7 @@ mod tests {
             ("NPTS=4\nt,a\n0,1\n.5,2\n", "4: NPTS states 4 samples, and the file has 2"),
             (
                 "t (min),a (g)\n0,1\n.5,2\n",
-                "2: column 1 is \"t (min)\", which is no time in s or ms: give the step in seconds as dt, or head a \
+                "1: column 1 is \"t (min)\", which is no time in s or ms: give the step in seconds as dt, or head a \
                  column of seconds time (s)",
             ),
             (

@@ -4,7 +4,7 @@ use super::{BadLine, bad};
 use rocking::structure::quantity::with_unit;
 use std::borrow::Cow;
 
-/// What DOS writes after the last line.
+/// End mark of DOS, after the last line.
 const END_OF_DOS: char = '\x1a';
 
 /// The text of a file in UTF-8, UTF-16 or Latin-1, its lines ended by `\n` alone. UTF-16 without its mark begins with two
@@ -100,7 +100,7 @@ pub(super) fn columns(line: &str, width: Option<usize>) -> Vec<&str> {
     }
 }
 
-/// What was found, short enough for a message, which shows a field of a file and no more of it.
+/// A quoted field of a file, cut to the length of a message.
 pub(super) fn quote(found: &str) -> String {
     const SHOWN: usize = 40;
     let found = found.trim();

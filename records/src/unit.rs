@@ -46,7 +46,7 @@ impl Unit {
         ("%g", Unit::PercentG),
     ];
 
-    /// The unit in m/s², where `g` (m/s²) is what a record's g stands for.
+    /// The unit in m/s². A record's g means `g` (m/s²).
     pub fn in_m_s2(self, g: f64) -> f64 {
         match self {
             Unit::G => g,
@@ -89,7 +89,7 @@ impl fmt::Display for Unit {
     }
 }
 
-/// What the heading of a column of times says of their unit.
+/// Unit of times that the heading of a column states.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum TimeUnit {
     Unstated,
@@ -123,7 +123,7 @@ impl TimeUnit {
         }
     }
 
-    /// How many seconds it has; those that are not stated are seconds.
+    /// The unit in seconds; an unstated unit is the second.
     pub(super) fn in_seconds(self) -> f64 {
         if self == TimeUnit::Millisecond { 1e-3 } else { 1.0 }
     }
@@ -216,7 +216,7 @@ fn has_second_unit(text: &str) -> bool {
     words.iter().enumerate().any(|(index, word)| mentions_unit(word) && !is_of_a_number(index))
 }
 
-/// What a heading says of the unit of its column.
+/// Unit of a column, as the heading states it.
 #[derive(Debug, PartialEq)]
 pub(super) enum Stated {
     Nothing,

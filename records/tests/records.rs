@@ -145,12 +145,12 @@ fn bound(bytes: &[u8]) -> u64 {
     LEAST + PER_BYTE * bytes.len() as u64
 }
 
-/// What files have in them, and what is meant to hurt, with a bar between each and the next.
+/// Parts of files and hostile parts, separated by bars.
 const WORDS: &str = "\n|\r|\r\n|\n\n| |\t|,|;|\"|'|#|(|[g]|(cm/s2)|)|e|E+999|-|nan|inf|1e308|-1e-320|99999999999999999999|1,5|\
     NPTS= 2, DT= 1e-300 SEC|/s2|_|\u{b2}|\0|\u{2212}|units=| pts acc units=g,(8F0.3)\n|\
     100 Real-header values follow (1F0.0)\n";
 
-/// What takes the place of some bytes of a file.
+/// Bytes that replace some bytes of a file.
 fn inserted() -> impl Strategy<Value = Vec<u8>> {
     let words: Vec<_> = WORDS.split('|').collect();
     prop_oneof![
@@ -201,7 +201,7 @@ proptest! {
     }
 }
 
-/// Nothing is read again for each of its parts: memory stays in bounds, and so does time, or this would never end.
+/// The reader never reads the whole again for each part: memory and time stay in bounds.
 #[test]
 fn a_large_file_of_anything_stays_in_bounds() {
     const SIZE: usize = 1 << 18;

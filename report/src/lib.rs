@@ -4,9 +4,12 @@
 pub mod advice;
 pub mod describe;
 pub mod estimate;
+pub mod input;
+pub mod output_files;
 pub mod program;
 pub mod pushover;
 pub mod quantities;
+pub mod record;
 pub mod summary;
 pub mod tables;
 pub mod validity;

@@ -20,9 +20,9 @@ const FEWEST_RUNS: usize = 3;
 pub struct Exceedances {
     /// The population's name.
     pub population: String,
-    /// Runs of about the same intensity, by intensity. Those that failed are in none.
+    /// Runs of about the same intensity, by intensity, without the failed runs.
     pub bins: Vec<Bin>,
-    /// Of overturning, then of the limits.
+    /// Fragilities of overturning, then of the limits.
     pub fragilities: Vec<Fragility>,
     /// Runs that failed.
     pub failed: usize,
@@ -39,7 +39,7 @@ pub struct Bin {
     pub mean: f64,
     /// Largest intensity among them.
     pub highest: f64,
-    /// How many they are.
+    /// Number of runs.
     pub runs: usize,
 }
 
@@ -57,9 +57,9 @@ pub struct Fragility {
 /// Runs of a bin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Tally {
-    /// Those of which it is known whether they exceed the limit.
+    /// Number of runs that certainly exceed the limit, or certainly do not.
     pub known: usize,
-    /// Those among them that do.
+    /// Number of runs that exceed the limit.
     pub exceedances: usize,
 }
 
@@ -112,7 +112,7 @@ fn fragility(limit: Limit, bins: &[Vec<Counted<Of>>]) -> Fragility {
     Fragility { limit, tallies, curve }
 }
 
-/// What the runs in `bins` say of a limit: how often it is exceeded in each, and the curve through the single runs.
+/// Counts how often the runs in each of `bins` exceed a limit, and fits the curve to the single runs.
 fn fit(bins: &[Vec<Counted<Option<bool>>>]) -> (Vec<Tally>, Result<FragilityCurve, Refused>) {
     let tally = |runs: &Vec<Counted<Option<bool>>>| {
         runs.iter().filter_map(|run| run.2).fold(Tally::default(), |Tally { known, exceedances }, exceeds| Tally {

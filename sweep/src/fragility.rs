@@ -1,14 +1,14 @@
-//! Fragility curve: the probability that a limit is exceeded under a ground motion of intensity x, as a lognormal
-//! distribution function fitted to counted exceedances by maximum likelihood, and how sure it is.
+//! Fragility curve: the probability that a ground motion of intensity x exceeds a limit. The curve is a lognormal
+//! distribution function, fitted to counted exceedances by maximum likelihood, with its uncertainty.
 //!
 //! ```text
 //! P(x) = Φ(ln(x/x_m)/β)                               x_m median, β dispersion, Φ standard normal distribution
 //! L    = Π P(x_i)^z_i (1 − P(x_i))^(n_i − z_i)        z_i exceedances in n_i runs at intensity x_i; → maximum
 //! ```
 //!
-//! (J. W. Baker, Efficient analytical fragility function fitting using dynamic structural analysis, Earthquake Spectra
-//! 31, 2015.) With P(x) = Φ(a + b ln x), ln L is concave in a and b: it has one maximum, provided that intensities with
-//! and without exceedances overlap. Where they do not, L grows without end as β → 0 and there is no curve.
+//! (J. W. Baker, Efficient analytical fragility function fitting using dynamic structural analysis, Earthquake Spectra 31,
+//! 2015.) With P(x) = Φ(a + b ln x), ln L is concave in a and b. ln L has one maximum if intensities with and without
+//! exceedances overlap. Otherwise L grows without end as β → 0, and there is no curve.
 //!
 //! Runs under one record at many scale factors depend on each other, those under different records do not. With the
 //! contributions s_j = ∂ln L_j/∂(a, b) of the G independent groups of runs and the information I = −E[∂²ln L/∂(a, b)²],
@@ -27,7 +27,7 @@ use std::collections::BTreeMap;
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
 use std::iter;
 
-/// Fewer independent groups than this tell nothing of how sure a curve is.
+/// Smallest number of independent groups that gives an uncertainty.
 pub const FEWEST_GROUPS: usize = 5;
 
 const NOT_GROWING: &str = "exceedances do not grow with the intensity";
@@ -41,7 +41,7 @@ pub struct Trials {
     pub intensity: f64,
     /// Runs n_i.
     pub runs: usize,
-    /// Those among them that exceed the limit, z_i.
+    /// Number of these runs that exceed the limit, z_i.
     pub exceedances: usize,
 }
 
@@ -52,14 +52,14 @@ pub struct FragilityCurve {
     pub median: f64,
     /// Standard deviation of ln x, β.
     pub dispersion: f64,
-    /// How sure it is, if there are [`FEWEST_GROUPS`] independent groups of runs or more.
+    /// Uncertainty, if there are at least [`FEWEST_GROUPS`] independent groups of runs.
     pub certainty: Option<Certainty>,
 }
 
-/// How sure a curve is.
+/// Uncertainty of a curve.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Certainty {
-    /// Of a and b in P = Φ(a + b ln(x/x_m)).
+    /// Covariance of a and b in P = Φ(a + b ln(x/x_m)).
     pub covariance: Matrix2<f64>,
     /// Half a 95 % interval over the standard deviation.
     pub half_width: f64,
@@ -293,9 +293,9 @@ mod tests {
         }
     }
 
-    /// Records that each exceed the limit from an intensity of their own on, lognormal about 2 with a dispersion of 0.5,
-    /// each at 12 scale factors: 95 % intervals hold the truth about 95 times in 100. Taken as independent, the same
-    /// runs would promise far more.
+    /// Each record exceeds the limit above an intensity of its own, lognormal about 2 with a dispersion of 0.5, and is run at
+    /// 12 scale factors. About 95 of 100 intervals of 95 % must contain the truth. Taken as independent, the same runs would
+    /// promise far more.
     #[test]
     fn the_band_holds_the_truth_as_often_as_it_says() {
         const SWEEPS: usize = 300;

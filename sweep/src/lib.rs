@@ -32,7 +32,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 pub struct Refused(pub String);
 
 impl Refused {
-    /// What another error says.
+    /// The message of another error.
     fn by(error: impl std::error::Error) -> Refused {
         Refused(error.to_string())
     }

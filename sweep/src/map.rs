@@ -57,7 +57,7 @@ pub struct Map {
     pub finds_condition: bool,
 }
 
-/// Where a point is: counted in 1/256 of the steps of the grid.
+/// Position of a point, in 1/256 of the steps of the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Place {
     /// Along the amplitudes.
@@ -66,7 +66,7 @@ pub struct Place {
     pub frequency: u32,
 }
 
-/// What becomes of a structure.
+/// Fate of a structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Fate {
     /// Its base stays down.
@@ -86,10 +86,10 @@ pub enum Fate {
     Failed,
 }
 
-/// What tells neighbours apart: the fate, and of what overturns how often its base came down before, 2 for more than once.
+/// Class of a point: the fate, and for a structure that overturns the number of impacts before, 2 for more than one.
 pub type Class = (Fate, u64);
 
-/// What the classes are called, in their order.
+/// Names of the classes, in their order.
 pub const CLASSES: [(Class, &str); 7] = [
     ((Fate::NoUplift, 0), "no uplift"),
     ((Fate::Stands, 0), "rocks and stands"),
@@ -103,9 +103,9 @@ pub const CLASSES: [(Class, &str); 7] = [
 /// A point that has been run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
-    /// What became of the structure.
+    /// Fate of the structure.
     pub fate: Fate,
-    /// How often its base came down: impacts and landings.
+    /// Number of impacts and landings.
     pub impacts: u64,
     /// The largest |θ|/α_cg, exact.
     pub theta: f64,
@@ -154,7 +154,7 @@ impl Place {
 }
 
 impl Point {
-    /// What tells it from its neighbours.
+    /// Class of the point.
     pub fn class(&self) -> Class {
         (self.fate, if self.fate == Fate::Overturns { self.impacts.min(2) } else { 0 })
     }
@@ -199,8 +199,8 @@ impl Point {
 }
 
 impl Map {
-    /// Of `structure` under `pulse` at each of the frequencies (Hz) and amplitudes (m/s²), or, where it `is_dimensionless`,
-    /// at these ω/p_l and a_p/(g tan α_cg); at the level of detail `auto` to the default tolerance.
+    /// Map of `structure` under `pulse` at each of the frequencies (Hz) and amplitudes (m/s²). A map that `is_dimensionless`
+    /// has ω/p_l and a_p/(g tan α_cg) instead. The level of detail is `auto`, and the tolerance the default.
     pub fn new(
         structure: Structure,
         pulse: Pulse,
@@ -229,7 +229,7 @@ impl Map {
         Ok(Map { detail, tolerance, finds_condition, ..self })
     }
 
-    /// What the pulses are called.
+    /// Name of the pulses.
     pub fn pulse_name(&self) -> String {
         self.pulse.name()
     }
@@ -275,9 +275,9 @@ impl Map {
             .flat_map(move |amplitude| (0..frequencies).map(move |frequency| Place::of_grid(frequency, amplitude)))
     }
 
-    /// Points that refining `known` for the `level`th time, 1 to [`MAX_REFINEMENTS`], still lacks: of the squares of half as
-    /// many levels' steps those that hold different classes get their middle and the middles of their edges. With these
-    /// known there may be more; when there are none the refinement is complete.
+    /// Points that the `level`th refinement, 1 to [`MAX_REFINEMENTS`], of the `known` points still needs. Each square of the
+    /// coarser grid with different classes gets its middle and the middles of its edges. New points can make more squares
+    /// differ: the refinement is complete when no point is needed.
     pub fn refinement(&self, level: u32, known: &HashMap<Place, Point>) -> Vec<Place> {
         let half = PARTS >> level;
         let at = |of: Place, [frequency, amplitude]: [u32; 2]| Place {

@@ -1,36 +1,36 @@
-//! What a run came to, in a few numbers, and whether a limit was exceeded.
+//! Outcome of a run in a few numbers, and whether the run exceeded a limit.
 
-use crate::{Refused, ensure};
+use crate::{Refused, ensure, six_digits};
 use rocking::Watch;
 use rocking::run::fall::Found;
 use rocking::run::peaks::PEAKS;
 use rocking::run::{Ending, Run};
 use rocking::structure::quantity::with_unit;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::PI;
+use std::f64::consts::{FRAC_PI_2, PI};
 use std::fmt;
 use std::str::FromStr;
 
-/// What a run came to.
+/// Outcome of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Outcome {
-    /// It was followed to its end.
+    /// The run reached its end.
     Ended(Summary),
-    /// It could not be continued: nothing is known of the structure.
+    /// The run could not be continued: the fate of the structure is unknown.
     Failed {
-        /// From this instant on, s.
+        /// Time of the failure, s.
         time: f64,
         /// Why.
         reason: String,
     },
 }
 
-/// A run that was followed to its end.
+/// Results of a run that reached its end.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
-    /// How it ended.
+    /// Ending of the run.
     pub ending: Ending,
-    /// When, s.
+    /// Time of the end, s.
     pub end: f64,
     /// Largest magnitudes, in the order of [`MEASURES`]; of a structure that overturns, before it falls.
     pub peaks: [f64; MEASURES.len()],
@@ -42,7 +42,7 @@ pub struct Summary {
     pub evaluations: u64,
 }
 
-/// What a run is measured by, with units: [`PEAKS`], and the largest rotation over the slenderness angle.
+/// Measures of a run with their units: [`PEAKS`], and the largest rotation as a fraction of the slenderness angle.
 pub const MEASURES: [(&str, &str); PEAKS.len() + 1] = {
     let mut measures = [("theta/alpha_cg", "1"); PEAKS.len() + 1];
     let mut i = 0;
@@ -65,7 +65,7 @@ const USUAL_UNITS: [(&str, &str, Option<f64>); 8] = [
     ("kN.m", "N.m", Some(1e3)),
 ];
 
-/// What may be exceeded.
+/// Limit that a run can exceed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Limit {
     /// The structure stands.
@@ -82,7 +82,7 @@ pub enum Limit {
 }
 
 impl Outcome {
-    /// Does `run`, which `watch` sees go by.
+    /// Follows `run` to its end, watched by `watch`.
     pub fn of(run: &Run, watch: &mut impl Watch) -> Outcome {
         let Found { peaks, finish, .. } = match run.found(watch) {
             Ok(found) => found,
@@ -113,13 +113,16 @@ impl Outcome {
             _ if summary.ending == Ending::Overturned => true,
             Limit::Overturning => false,
             Limit::Peak { measure, .. } if summary.peaks[measure].is_nan() => return None,
-            Limit::Peak { measure, value, unit } => {
-                let usual = USUAL_UNITS.iter().find(|(usual, ..)| *usual == unit);
-                summary.peaks[measure] >= value * usual.map_or(1.0, |(.., factor)| factor.unwrap_or(g))
-            }
+            Limit::Peak { measure, value, unit } => summary.peaks[measure] >= in_own_unit(value, unit, g),
         };
         Some(has_exceeded).filter(|has_exceeded| *has_exceeded || summary.ending != Ending::StillRocking)
     }
+}
+
+/// A `value` in a usual `unit`, or in the own unit of a measure, in that own unit; `g` in m/s².
+fn in_own_unit(value: f64, unit: &str, g: f64) -> f64 {
+    let usual = USUAL_UNITS.iter().find(|(usual, ..)| *usual == unit);
+    value * usual.map_or(1.0, |(.., factor)| factor.unwrap_or(g))
 }
 
 impl Limit {
@@ -127,6 +130,21 @@ impl Limit {
     pub fn peak(name: &str, value: f64) -> Result<Limit, Refused> {
         let (measure, unit) = measure(name)?;
         Limit::checked(measure, value, unit)
+    }
+
+    /// Refuses a peak that no structure with a base of this `half_width` (m) reaches without overturning: for such a limit the
+    /// curve would silently be the curve of overturning.
+    pub fn check(&self, half_width: f64) -> Result<(), Refused> {
+        let Limit::Peak { measure, value, unit } = *self else { return Ok(()) };
+        let (most, shown) = match MEASURES[measure].0 {
+            "theta" => (FRAC_PI_2, "pi/2 rad"),
+            "uplift" => (2.0 * half_width, &*format!("2 B = {} m", six_digits(2.0 * half_width))),
+            _ => return Ok(()),
+        };
+        let is_reached = in_own_unit(value, unit, 1.0) < most;
+        ensure(is_reached, || {
+            format!("{self} is out of range: a structure that stands stays below {shown}; use overturned")
+        })
     }
 
     fn checked(measure: usize, value: f64, unit: &'static str) -> Result<Limit, Refused> {
@@ -211,6 +229,15 @@ mod tests {
             refused("theta >= -3 deg"),
             "theta = -3 deg is out of range: a finite number greater than 0 is needed"
         );
+        let out_of_reach =
+            |limit: &str| limit.parse::<Limit>().unwrap().check(0.5).map_err(|refused| refused.to_string());
+        let stays =
+            |below: &str| format!(" is out of range: a structure that stands stays below {below}; use overturned");
+        assert_eq!(out_of_reach("theta >= 90 deg"), Err("theta >= 90 deg".to_owned() + &stays("pi/2 rad")));
+        assert_eq!(out_of_reach("uplift >= 101 cm"), Err("uplift >= 101 cm".to_owned() + &stays("2 B = 1 m")));
+        for limit in ["overturned", "theta >= 89 deg", "uplift >= 99 cm", "u >= 3"] {
+            assert_eq!(out_of_reach(limit), Ok(()), "{limit}");
+        }
         assert!(refused("phi >= 3").starts_with("\"phi\" is unknown; these are known: theta, "));
     }
 

@@ -28,7 +28,7 @@ const SLENDERNESS: Quantity<Parameters> = Quantity {
     set: |parameters, slenderness| parameters.H = slenderness * parameters.B,
 };
 
-/// What can vary; slenderness last, so that it applies to the B of the same structure.
+/// Quantities that can vary. The slenderness is last and therefore uses the B of the same structure.
 pub const AXES: [&Quantity<Parameters>; PARAMETERS.len() + 1] = {
     const OWN: &[Quantity<Parameters>; PARAMETERS.len()] = &PARAMETERS;
     let mut axes = [&SLENDERNESS; OWN.len() + 1];
@@ -63,7 +63,7 @@ pub struct NamedRecord {
     pgv: f64,
 }
 
-/// What all runs of a plan have in common.
+/// Conditions of all runs of a plan.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Conditions {
     /// State at the first sample.
@@ -101,9 +101,9 @@ pub struct Plan {
 /// One run of a plan.
 #[derive(Clone, Debug)]
 pub struct Case<'a> {
-    /// What the structure is one of.
+    /// Population of the structure.
     pub population: &'a Population,
-    /// Which one, counted from 0.
+    /// Number of the structure in its population, from 0.
     member: usize,
     /// The structure.
     pub structure: Structure,
@@ -111,7 +111,7 @@ pub struct Case<'a> {
     pub motion: &'a NamedRecord,
     /// Factor on its acceleration, beside its own.
     pub scale: f64,
-    /// What it has in common with the others.
+    /// Conditions of all runs.
     pub conditions: &'a Conditions,
     /// Runs of different groups do not depend on each other: the ground motion's number, or where there is one alone the
     /// structure's.
@@ -120,12 +120,12 @@ pub struct Case<'a> {
 }
 
 impl Population {
-    /// Of the one structure `base`, until something varies.
+    /// Population of the one structure `base`, until something varies.
     pub fn new(name: impl Into<String>, base: Parameters) -> Population {
         Population { name: name.into(), bases: vec![base], varying: Vec::new() }
     }
 
-    /// Of each of the structures `bases`, of which there is one at least.
+    /// Population of the structures `bases`, at least one.
     pub fn of(name: impl Into<String>, bases: Vec<Parameters>) -> Result<Population, Refused> {
         let name = name.into();
         ensure(!bases.is_empty(), || is_empty(&format!("structures {name:?}")))?;
@@ -150,7 +150,7 @@ impl Population {
         Ok(self)
     }
 
-    /// What it is called.
+    /// Name of the population.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -160,7 +160,7 @@ impl Population {
         self.varying.iter().fold(self.bases.len(), |len, (_, values)| len.saturating_mul(values.len()))
     }
 
-    /// What varies, and its value in structure `member`: the last axis changes first.
+    /// Varying quantities and their values in structure `member`. The last axis changes first.
     fn values(&self, member: usize) -> impl Iterator<Item = (&'static Quantity<Parameters>, f64)> {
         let mut stride = self.len() / self.bases.len();
         self.varying.iter().map(move |(axis, values)| {
@@ -187,7 +187,7 @@ impl NamedRecord {
         Ok(NamedRecord { name, record, scale, pga, pgv })
     }
 
-    /// What it is called.
+    /// Name of the ground motion.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -323,7 +323,7 @@ impl Case<'_> {
         unscaled * self.factor().abs()
     }
 
-    /// What the record's accelerations are multiplied by.
+    /// Factor on the record's accelerations.
     fn factor(&self) -> f64 {
         self.motion.scale * self.scale
     }

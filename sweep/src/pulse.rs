@@ -2,17 +2,17 @@
 //!
 //! a_p is the amplitude, ω = 2π f the circular frequency, T = 1/f, t = 0 the pulse's start or, where it says so, its middle.
 //!
-//! [`Shape::definition`] has the ground acceleration of each. The authors of the last, Mavroeidis and Papageorgiou, give the
-//! velocity and its amplitude A; a_p is ω A, and the peak of the acceleration 0.87 to 1 times as much, after γ and ν. n and γ
-//! are `cycles`, φ and ν `phase`. A Ricker wavelet has no end: what is below 1e-9 of a_p is cut.
+//! [`Shape::definition`] has the ground acceleration of each. Mavroeidis and Papageorgiou define the velocity and its
+//! amplitude A. Here a_p is ω A, and the peak of the acceleration is 0.87 to 1 times a_p, depending on γ and ν. `cycles` is n
+//! or γ, `phase` is φ or ν. A Ricker wavelet has no end: what is below 1e-9 of a_p is cut.
 //!
 //! # Straight lines
 //!
-//! On a step h of its lines the curve's second derivative moves them off by up to h²/8 of it, all to one side. The corners
-//! stand h²/12 of it outside the curve instead: every line then has the curve's impulse to O(h⁴), and so has what the
-//! motion does to a structure, and it is still within h²/8 of the curve (between −h²/12 and h²/24 of it, to O(h³)). h is
-//! the largest step for which max h²/8 abs(a″) ≤ `error` a_p that divides the pulse evenly: its ends, where a sine has
-//! its kinks, are corners. Where it begins or ends off 0 the record itself does.
+//! A chord over a step h leaves the curve by up to h²/8 abs(a″), always to the same side. The corners are therefore moved
+//! outside the curve by h²/12 abs(a″). Then each line has the impulse of the curve to O(h⁴), and stays within h²/8 abs(a″) of
+//! the curve. To O(h³) the line is between −h²/12 and h²/24 times abs(a″) from the curve. The step h is the largest that
+//! divides the pulse evenly with h²/8 abs(a″) ≤ `error` a_p. The ends, where a sine has its kinks, are corners. A pulse that
+//! begins or ends off 0 gives a record that begins or ends off 0.
 
 use crate::{Refused, ensure, six_digits};
 use rocking::Structure;
@@ -71,7 +71,7 @@ pub const DEFAULT_ERROR: f64 = 1e-4;
 /// A wavelet less than this part of its amplitude has ended, and a pulse that begins or ends with less begins or ends at 0.
 const NOTHING: f64 = 1e-9;
 
-/// Where x has made both wavelets less than [`NOTHING`].
+/// Value of x beyond which both wavelets are less than [`NOTHING`].
 const RICKER_END: f64 = 7.5;
 
 /// The largest magnitude of (x³ − 3x) e^(−x²/2), at x² = 3 − √6.
@@ -142,7 +142,7 @@ impl Shape {
     }
 }
 
-/// What a structure measures pulses by: g tan α_cg (m/s²), below which a rigid one does not lift off, and p_l/2π (Hz).
+/// Units of pulses for a structure: g tan α_cg (m/s²), below which a rigid structure does not lift off, and p_l/2π (Hz).
 pub fn units_of(structure: &Structure) -> (f64, f64) {
     (structure.parameters().g * structure.tan_alpha_cg, structure.p_l / TAU)
 }
@@ -154,7 +154,7 @@ impl Pulse {
         Pulse { shape, amplitude, frequency, cycles, phase: 0.0, error: DEFAULT_ERROR }
     }
 
-    /// What it is called: its shape and, where there is a choice, cycles and phase.
+    /// Name of the pulse: its shape, with cycles and phase if the shape has them.
     pub fn name(&self) -> String {
         let &Pulse { shape, .. } = self;
         let [cycles, phase] = [self.cycles, self.phase].map(six_digits);
@@ -335,8 +335,8 @@ mod tests {
         }
     }
 
-    /// Lines stay within the error of the curve at a hundred points each, and are not much better than that: no more of
-    /// them than it takes. With the curve's impulse they are off to both sides.
+    /// Lines stay within the error of the curve at a hundred points each, and are not much better than that: no more of them
+    /// than it takes. Lines with the curve's impulse leave the curve to both sides.
     #[test]
     fn straight_lines_keep_to_the_error() {
         for shape in Shape::ALL {
@@ -358,7 +358,7 @@ mod tests {
         }
     }
 
-    /// What [`Shape::definition`] says of the peak, at the γ and ν of the least one and of the largest.
+    /// The range of the peak in [`Shape::definition`], at the γ and ν of its ends.
     #[test]
     fn the_peak_of_a_velocity_pulse_is_nearly_its_amplitude() {
         let peak = |cycles, phase| {

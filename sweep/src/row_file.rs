@@ -3,8 +3,8 @@
 //! A row begins with the run's key, which stands for all that the run depends on. So rows may stand in any order, and
 //! those of other runs among them.
 //!
-//! A row is written at once and whole when its run ends. Whatever ends the program, the file then holds complete rows,
-//! and at most part of one more at its end, which is cut off when the runs go on.
+//! A row is written whole, as soon as its run ends. However the program ends, the file holds complete rows and at most a part
+//! of one more. That part is cut off when the runs continue.
 
 use anyhow::{Context, bail, ensure};
 use csv::{ReaderBuilder, StringRecord, WriterBuilder};
@@ -23,11 +23,11 @@ use uuid::Uuid;
 #[derive(Debug)]
 pub struct RowFile {
     path: PathBuf,
-    /// With the length of what is complete.
+    /// The file, and the length of its complete rows.
     file: Mutex<(File, u64)>,
 }
 
-/// What the rows say that were there, each a `T`, that have not been taken yet.
+/// Contents of the rows in the file, each a `T`, until they are taken.
 #[derive(Debug)]
 pub struct Known<T> {
     by_key: HashMap<Uuid, T>,
@@ -36,9 +36,9 @@ pub struct Known<T> {
 /// The program that does the runs.
 #[derive(Clone, Debug)]
 pub struct Program {
-    /// Stands for all of it that a run depends on.
+    /// Identifies all of the program that a run depends on.
     pub build: Uuid,
-    /// What its rows call it.
+    /// Version in the rows.
     pub version: String,
 }
 
@@ -49,18 +49,18 @@ impl Program {
     }
 }
 
-/// A number that stands for `of` in `namespace`.
+/// Number that identifies `of` in `namespace`.
 pub fn digest(namespace: &Uuid, of: &impl Serialize) -> Uuid {
     Uuid::new_v5(namespace, &postcard::to_allocvec(of).expect("numbers and slices can be serialized"))
 }
 
 impl<T> Known<T> {
-    /// What the row with `key` says, if there is one.
+    /// Takes the content of the row with `key`, if there is one.
     pub fn take(&mut self, key: &Uuid) -> Option<T> {
         self.by_key.remove(key)
     }
 
-    /// What there is beside them in the file at `path`: rows of other runs or points, `what`.
+    /// A sentence about the rows in the file at `path` that were not taken: rows of other runs or points, `what`.
     pub fn others(&self, path: &Path, what: &str) -> Option<String> {
         let (path, count) = (path.display(), self.by_key.len());
         let others =

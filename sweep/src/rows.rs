@@ -71,7 +71,7 @@ impl<'a> Sweep<'a> {
     }
 }
 
-/// What tells a run and its record from others.
+/// Identities of a run and of its record.
 #[derive(Debug)]
 struct Key {
     /// Stands for all that the run depends on.
@@ -114,7 +114,7 @@ fn open(path: &Path) -> anyhow::Result<(RowFile, Known<Outcome>)> {
     })
 }
 
-/// What stands before the first row.
+/// Headings of the rows.
 fn headings() -> Vec<String> {
     let quantities = AXES.map(|axis| heading(axis.name, axis.unit));
     let intensities = IntensityMeasure::ALL.map(|measure| heading(measure.name(), measure.unit()));
@@ -160,7 +160,7 @@ fn row(
     }
 }
 
-/// What a run goes beyond, in the order of the headings.
+/// Results of the check of validity, in the order of the headings.
 fn columns(beyond: Option<&Beyond>) -> Vec<Option<f64>> {
     let Some(beyond) = beyond else { return vec![None; 2 * ASSUMPTIONS.len() + 2] };
     let worst = beyond.worst.iter().flat_map(|worst| [worst.value, worst.time]);

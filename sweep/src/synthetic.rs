@@ -5,9 +5,9 @@
 //! ẍ_f + 2 ζ_f ω_f ẋ_f + ω_f² x_f = a_1,       a_g = ẍ_f e(t)
 //! ```
 //!
-//! w is white; ω_g = 15.6 rad/s and ζ_g = 0.6 are firm soil, ω_f = ω_g/10 and ζ_f = ζ_g take away what has no period of an
-//! earthquake (Clough and Penzien 1975). e(t) rises as t² over a sixth of the duration, stays 1 for a third and then decays
-//! by e^(−4) (Jennings, Housner and Tsai 1968, in proportion).
+//! w is white noise. ω_g = 15.6 rad/s and ζ_g = 0.6 are firm soil. ω_f = ω_g/10 and ζ_f = ζ_g remove periods longer than
+//! those of earthquakes (Clough and Penzien 1975). e(t) rises as t² over a sixth of the duration, stays 1 for a third and
+//! then decays by e^(−4). The proportions follow Jennings, Housner and Tsai (1968).
 
 use crate::{Refused, ensure};
 use rocking::run::record::{MAX_SAMPLES, Record};

@@ -12,7 +12,7 @@ fn block(slenderness: f64) -> Structure {
     Structure::new(parameters).unwrap()
 }
 
-/// What becomes of `structure` at the level `rigid` under one pulse, both numbers in its units.
+/// Fate of `structure` at the level `rigid` under one pulse, with both numbers in units of the structure.
 fn fate(structure: &Structure, shape: Shape, frequency: f64, amplitude: f64) -> Point {
     let axis = |value: f64| Axis { values: vec![value, 2.0 * value], is_log: false };
     let pulse = Pulse { error: 1e-6, ..Pulse::new(shape, 1.0, 1.0) };
@@ -48,8 +48,8 @@ fn least_amplitude_of_half_sine(frequency: f64) -> f64 {
     bisect(1.0 + 1e-12, 1e3, |a| excess(a) > 0.0)
 }
 
-/// Housner's (1963) block: the boundary under a half sine is the closed form's to 1e-6 once the slenderness is
-/// extrapolated to none, from angles of 1/50 and 1/100: what a finite angle adds goes with its square.
+/// Housner's (1963) block under a half sine: the boundary agrees with the closed form to 1e-6 after extrapolation to the
+/// slenderness angle 0. The angles are 1/50 and 1/100, and the error of an angle grows with its square.
 #[test]
 fn the_rigid_boundary_is_the_closed_form() {
     for frequency in [0.5, 1.5, 4.0] {
@@ -110,8 +110,8 @@ fn complete(map: &Map, refinements: u32) -> HashMap<Place, Point> {
     known
 }
 
-/// A refined map has every point of the boundary that a grid as fine has, at a fraction of its runs: where the grid's
-/// neighbours differ the refined map holds both, and the same.
+/// A refined map has every point of the boundary of a grid as fine, at a fraction of the runs. If two neighbours of the fine
+/// grid differ, the refined map has both points, with the same results.
 #[test]
 fn a_refined_map_has_the_boundary_of_a_fine_grid() {
     let (coarse, fine) = (map(17, false), map(33, false));
@@ -131,8 +131,8 @@ fn a_refined_map_has_the_boundary_of_a_fine_grid() {
     assert!(differing <= all.len() / 100, "{differing} of {}", all.len());
 }
 
-/// Where the structure stays down nothing changes; elsewhere a change of the amplitude is amplified, or damped, by few
-/// orders of magnitude away from the boundaries.
+/// A structure that stays down does not change. Away from the boundaries, a change of the amplitude grows or decays by few
+/// orders of magnitude.
 #[test]
 fn conditions_are_of_the_order_of_the_change() {
     let map = map(5, true);

@@ -247,7 +247,7 @@ impl File {
         let (_, in_file_unit, source) = self.read.clone().expect("it has just been read");
         let (record, source) = rocking_records::in_m_s2(in_file_unit.clone(), source, g).map_err(says)?;
         let mut remarks = vec![format!("{}, {}", source.format, source.unit)];
-        remarks.extend(source.remarks.into_iter().chain(source.warnings));
+        remarks.extend(source.remarks.iter().cloned().chain(source.warnings()));
         Ok(Ground { record, in_file_unit, unit: source.unit, remarks })
     }
 }

@@ -1,12 +1,13 @@
 //! The TOML file of a sweep: every record at every scale factor on every structure, or pulses of every frequency
 //! and amplitude.
-use crate::{input, output_files::OutputFiles, record_args::RecordOptions, scene_args::InitialArgs, talk::say_few};
+use crate::{record_args::RecordOptions, scene_args::InitialArgs, talk::say_few};
 use anyhow::{Context, anyhow, bail, ensure};
 use rocking::estimates::intensity::IntensityMeasure;
 use rocking::run::record::Record;
 use rocking::structure::natural_quantities::Given;
 use rocking::{Detail, Parameters, Structure, engine::DEFAULT_TOLERANCE};
 use rocking_records::{Column, Unit};
+use rocking_report::{input, output_files::OutputFiles};
 use rocking_sweep::map::{Axis, MAX_REFINEMENTS, Map};
 use rocking_sweep::outcome::Limit;
 use rocking_sweep::plan::{Conditions, MAX_RUNS, NamedRecord, Plan, Population};
@@ -200,6 +201,8 @@ pub fn read(path: &Path, files: &mut OutputFiles) -> anyhow::Result<Asked> {
         let motions = motions(&file.records, path.parent().unwrap_or(Path::new("")), read);
         say_few(&warnings, "warnings");
         let plan = Plan::new(populations, motions?, scales)?.under(file.conditions())?;
+        let widest = plan.cases().map(|case| case.structure.parameters().B).fold(0.0, f64::max);
+        limits.iter().try_for_each(|limit| limit.check(widest)).context("limits")?;
         Ok(Asked::Records(RecordSweep { plan, limits, measure, records }))
     };
     read().with_context(|| format!("sweep in {}", path.display()))

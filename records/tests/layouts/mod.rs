@@ -10,10 +10,10 @@ pub const DT: f64 = 0.005;
 /// A file, and what it holds.
 #[derive(Clone, Debug)]
 pub struct Layout {
-    /// What the file is called.
+    /// Name of the file.
     pub path: PathBuf,
     pub bytes: Vec<u8>,
-    /// How it is to be read.
+    /// Options for reading the file.
     pub how: Reading,
     pub format: Format,
     pub unit: Unit,

@@ -1,6 +1,6 @@
 //! The files that a command writes. A command cannot overwrite its inputs, or write one file twice.
 
-use crate::{input, talk::say};
+use crate::input;
 use anyhow::{Context, bail, ensure};
 use std::{
     fs::{self, File},
@@ -15,7 +15,7 @@ pub struct OutputFiles {
     outputs: Vec<PathBuf>,
 }
 
-/// A file that is going to be written, once all of it is known.
+/// A file that a command writes when its content is complete.
 pub struct OutputFile {
     path: PathBuf,
     /// Canonical path of the file.
@@ -28,7 +28,7 @@ impl OutputFiles {
         OutputFiles { inputs: inputs.into_iter().map(Path::to_owned).collect(), outputs: Vec::new() }
     }
 
-    /// One more file that the command reads.
+    /// Adds a file that the command reads.
     pub fn add_input(&mut self, path: &Path) {
         self.inputs.push(path.into());
     }
@@ -70,7 +70,12 @@ impl OutputFile {
         OutputFile { path: "-".into(), target: "-".into() }
     }
 
-    /// Writes all of it.
+    /// The path, as the user gave it.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Writes the whole `content`.
     pub fn write(self, content: &[u8]) -> anyhow::Result<()> {
         if input::is_standard(&self.path) {
             let written = stdout().write_all(content).and_then(|()| stdout().flush());
@@ -81,16 +86,6 @@ impl OutputFile {
             _ => replace(&self.target, content),
         };
         written.with_context(|| format!("{} cannot be written", self.path.display()))
-    }
-
-    /// Writes all of it, and says where, as `what`.
-    pub fn write_as(self, what: &str, content: &[u8]) -> anyhow::Result<()> {
-        let path = self.path.clone();
-        self.write(content)?;
-        if !input::is_standard(&path) {
-            say!("{what:<14} {}", path.display());
-        }
-        Ok(())
     }
 }
 
