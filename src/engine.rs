@@ -21,7 +21,7 @@ use crate::levels::detail::{AnyLevel, Detail, Model, by_level};
 use crate::levels::level::Level;
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
-use crate::mechanics::restraint::{Angles, Dissipators, Restraints};
+use crate::mechanics::restraint::{Angles, Dissipators, Restraint, Restraints};
 use crate::mechanics::state::InitialStateError;
 use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
@@ -190,7 +190,7 @@ impl Engine {
         detail.check_restrained(restrained)?;
         let model = Box::new(Model::new(structure, detail, local_error, restrained));
         let chord = model.level.ties().unwrap_or(Angles::Any).chord(initial.theta, 0.0);
-        let moved = Dissipators::default().moved_by(&structure, phase.side(), chord);
+        let moved = Dissipators::NEW.moved_by(&structure, phase.side(), chord);
         let motion = Motion {
             time,
             state: initial,
@@ -430,7 +430,7 @@ impl Engine {
         }
         let [_, theta_ddot] = self.sample(load).accelerations();
         let angles = self.model.level.ties().unwrap_or(Angles::Any);
-        Restraints::rates(structure, phase.side(), dissipators, angles, state, theta_ddot)
+        Restraints::rates(&Restraint::about(structure, phase.side(), dissipators), angles, state, theta_ddot)
     }
 
     /// Time derivatives of the outputs and reactions now under `load`, from the equations of motion; 0 once overturned.

@@ -11,7 +11,7 @@ use crate::levels::level::Now;
 use crate::levels::shown::Searched;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::Measure;
-use crate::mechanics::restraint::{Angles, Dissipators, Restraints, ties};
+use crate::mechanics::restraint::{Angles, Dissipators, Restraint, Restraints};
 use crate::series::extremes::Bound;
 use crate::series::taylor::{Arc, Series, Start, evaluate};
 use crate::{Outputs, Phase, Reactions, State};
@@ -89,12 +89,11 @@ impl Sample<'_> {
 
     /// The part of the reactions that the edges of the base carry: all of it, unless the structure is restrained.
     pub fn edges(&self) -> Reactions {
-        let Sample { motion: Motion { phase, state, dissipators, .. }, model, .. } = self;
-        let (structure, side) = (&model.structure, phase.side());
-        let ties = || ties(structure, side, dissipators);
         let reactions = self.reactions();
-        model.level.ties().map_or(reactions, |angles| {
-            let [up, right, moment] = Reactions::pulls(structure, side, angles, state, &ties());
+        self.model.level.ties().map_or(reactions, |angles| {
+            let Motion { phase, state, dissipators, .. } = &self.motion;
+            let restraint = Restraint::about(&self.model.structure, phase.side(), dissipators);
+            let [up, right, moment] = restraint.pulls(&angles.chord(state.theta, state.theta_dot));
             reactions.of_edges(up, right, moment)
         })
     }
@@ -103,7 +102,7 @@ impl Sample<'_> {
     pub fn restraints(&self) -> Restraints {
         let Motion { phase, state, dissipators, .. } = &self.motion;
         let chord = self.model.level.ties().unwrap_or(Angles::Any).chord(state.theta, state.theta_dot);
-        Restraints::of(&self.model.structure, phase.side(), dissipators, chord)
+        Restraint::about(&self.model.structure, phase.side(), dissipators).forces(&chord)
     }
 
     /// (ü, θ̈), m/s² and rad/s²; once overturned, those of the instant before.

@@ -5,10 +5,10 @@
 //! it moves that way, so that the zeros of θ̇ at the start are divided out as those of θ are at an uplift.
 
 use crate::engine::motion::Event;
-use crate::levels::tie_series::TieSeries;
-use crate::mechanics::restraint::{Angles, Dissipators, Sum, levers};
+use crate::mechanics::restraint::{Angles, Dissipators, levers};
 use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::series::taylor::{Arc, ZERO};
+use crate::series::terms::Terms;
 use crate::{Side, State, Structure};
 
 /// Rotation at which a dissipator would begin to yield as the base comes down, as a fraction of the rotation that takes it from 0 to
@@ -116,8 +116,9 @@ pub(crate) fn moved(
         }
     }
     if c_d > 0.0 {
-        let rate = TieSeries::over(Sum::default(), angles, arc).rate;
-        let squared = square_integral(arc.used(&rate), reach) * arc.span;
+        let [theta, theta_dot] = [&arc.theta, &arc.theta_dot].map(|series| Terms::of(series, arc.order));
+        let rate = angles.chord(theta, theta_dot).rate;
+        let squared = square_integral(rate.used(), reach) * arc.span;
         moved.viscous += 2.0 * c_d * (B * B + xi_d * xi_d) * squared;
     }
     moved

@@ -22,7 +22,8 @@
 //! mass, and the force drops by that part (2e-3 for Evison, 5e-3 for McManus) as the base lifts off.
 
 use crate::mechanics::outputs::Outputs;
-use crate::mechanics::restraint::{Angles, Dissipators, Sum};
+use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
+use crate::run::fall::angle_of_no_return;
 use crate::series::bisection::last_where;
 use crate::{Phase, Side, State, Structure};
 use std::f64::consts::FRAC_PI_2;
@@ -90,8 +91,8 @@ pub fn at_rotation(structure: &Structure, theta: f64) -> Option<Equilibrium> {
     let s = side.sign();
     let (sin, cos) = libm::sincos(theta.abs());
     let (quadratic, linear) = (k * sin, k * (H * cos + B * sin) + m * g);
-    let dissipators = Dissipators::default().moved(structure, side, theta);
-    let held = s * Sum::of_moments(structure, side, &dissipators).at(Angles::Any, theta, 0.0);
+    let dissipators = Dissipators::NEW.moved(structure, side, theta);
+    let held = s * Restraint::about(structure, side, &dissipators).moment(&Angles::Any.chord(theta, 0.0));
     let constant = g * B * (m + m0 * cos * cos) + held * cos;
     let discriminant = linear * linear - 4.0 * quadratic * constant;
     if discriminant < 0.0 {
@@ -123,8 +124,7 @@ pub fn at_displacement(structure: &Structure, delta_t: f64) -> Option<Equilibriu
 /// The unstable equilibrium without a force, beyond which the structure overturns (to the right); at π/2 of one that its
 /// tendon turns back from everywhere. `None` for a strut too soft to hold the structure on the way there.
 pub fn at_overturning(structure: &Structure) -> Option<Equilibrium> {
-    let alpha_cg = libm::atan(structure.tan_alpha_cg);
-    let farthest = if structure.is_restrained() { FRAC_PI_2 } else { alpha_cg };
+    let farthest = angle_of_no_return(structure).unwrap_or(FRAC_PI_2); // an elastic strut overturns before
     let restores = |theta| at_rotation(structure, theta).is_some_and(|there| there.force >= 0.0);
     at_rotation(structure, last_where(0.0, farthest, restores))
 }

@@ -1,10 +1,10 @@
 //! The moment that turns a rocking base back, without a time history: what the weight, a tendon and dissipators restore while
 //! the base is turned slowly.
 //!
-//! The moment is [`restoring_moment`]: Eq 6 at rest, of a strut that is not deformed. From the way there to the way back the elastoplastic dissipators change sign:
-//! the loop is a flag of the height Σ_j 2 F_y |sB − ξ_j| cos(θ/2).
+//! The moment is [`Restraint::restoring_moment`]: Eq 6 at rest with a strut that is not deformed. The forces of the elastoplastic
+//! dissipators change sign on the way back, so that the loop is a flag of the height Σ_j 2 F_y |sB − ξ_j| cos(θ/2).
 
-use crate::mechanics::restraint::{Dissipators, restoring_moment};
+use crate::mechanics::restraint::{Dissipators, Restraint};
 use crate::{Side, Structure};
 use serde::Serialize;
 
@@ -21,10 +21,10 @@ pub struct Point {
 /// equal steps: the moment at the start and after each of them.
 pub fn flag(structure: &Structure, theta: f64, steps: u32) -> Vec<Point> {
     let there = (0..=steps).map(|i| theta * f64::from(i) / f64::from(steps));
-    let mut dissipators = Dissipators::default();
+    let mut dissipators = Dissipators::NEW;
     let at = |theta: f64| {
         dissipators = dissipators.moved(structure, Side::Right, theta);
-        Point { theta, moment: restoring_moment(structure, theta, &dissipators) }
+        Point { theta, moment: Restraint::about(structure, Side::Right, &dissipators).restoring_moment(theta) }
     };
     there.clone().chain(there.rev().skip(1)).map(at).collect()
 }

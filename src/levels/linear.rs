@@ -19,7 +19,7 @@ use crate::levels::linear_system::{LinearSystem, Row};
 use crate::levels::nonlinear::{longest_restrained_span, truncation};
 use crate::levels::oscillator::Kept;
 use crate::levels::tie_series::TieSeries;
-use crate::mechanics::restraint::{Angles, Sum};
+use crate::mechanics::restraint::{Angles, Restraint};
 use crate::mechanics::uplift::TurningMoment;
 use crate::series::taylor::{Arc, Series, Start};
 use crate::{Side, State, Structure};
@@ -201,7 +201,8 @@ impl ElasticRocking for RestrainedLinear {
         let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
         let (inertia, offset) = (foundation + B * B, side.sign() * gamma * B);
         let gravity = [g + a_v.value, a_v.slope * span];
-        let mut held = TieSeries::new(Sum::of_moments(structure, side, dissipators), Angles::Small, state.theta);
+        let ties = Restraint::about(structure, side, dissipators).moments();
+        let mut held = TieSeries::new(ties, Angles::Small, state.theta);
         arc.expand(&state, span, truncation(structure, start, span), |arc, k, per| {
             let n = k - 1;
             let weighted = |of: &Series| gravity[0] * of[n] + if n > 0 { gravity[1] * of[n - 1] } else { 0.0 };
@@ -215,7 +216,7 @@ impl ElasticRocking for RestrainedLinear {
     }
 
     fn turning_moment(&self, structure: &Structure) -> TurningMoment {
-        TurningMoment::new(structure)
+        TurningMoment { inertia: TurningMoment::CONSTANT, ..TurningMoment::new(structure) }
     }
 
     fn accelerations(&self, structure: &Structure, side: Side, now: &Now) -> [f64; 2] {
@@ -224,7 +225,8 @@ impl ElasticRocking for RestrainedLinear {
         let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
         let &State { u, u_dot, theta, theta_dot } = state;
         let (g, elastic) = (g + load.a_v, damping_u * u_dot + stiffness * u);
-        let back = Sum::of_moments(structure, side, dissipators).at(Angles::Small, theta, theta_dot) / m;
+        let chord = Angles::Small.chord(theta, theta_dot);
+        let back = Restraint::about(structure, side, dissipators).moment(&chord) / m;
         let theta_ddot = (H * elastic + g * (u - side.sign() * gamma * B) - back) / (foundation + B * B);
         [g * theta - load.on_top(structure) - elastic - H * theta_ddot, theta_ddot]
     }

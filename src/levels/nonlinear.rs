@@ -26,7 +26,7 @@
 use crate::levels::level::{ElasticRocking, Now};
 use crate::levels::tie_series::TieSeries;
 use crate::mechanics::load::Load;
-use crate::mechanics::restraint::{Angles, Dissipators, Sum};
+use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
 use crate::mechanics::uplift::TurningMoment;
 use crate::series::taylor::{Arc, LONGEST_SPAN, MAX_ORDER, Start, Truncation};
 use crate::{Side, State, Structure};
@@ -44,7 +44,10 @@ pub fn accelerations(
     dissipators: &Dissipators,
 ) -> Option<Vector2<f64>> {
     let back = match structure.is_restrained() {
-        true => Sum::of_moments(structure, side, dissipators).at(Angles::Any, state.theta, state.theta_dot),
+        true => {
+            let chord = Angles::Any.chord(state.theta, state.theta_dot);
+            Restraint::about(structure, side, dissipators).moment(&chord)
+        }
         false => 0.0,
     };
     let Load { a_g, F_t, a_v } = load;
@@ -161,8 +164,8 @@ impl<const RESTRAINED: bool> ElasticRocking for NonlinearRocking<RESTRAINED> {
         // g + a_v now, and what it gains over the span
         let (g, lift) = if RESTRAINED { (g + start.a_v.value, start.a_v.slope * span) } else { (g, 0.0) };
         let mut held = RESTRAINED.then(|| {
-            let sum = Sum::of_moments(structure, side, start.dissipators);
-            TieSeries::new(sum, Angles::Any, state.theta)
+            let ties = Restraint::about(structure, side, start.dissipators).moments();
+            TieSeries::new(ties, Angles::Any, state.theta)
         });
         let [(a, slope), (a_ground, slope_ground)] = [a_top, a_g].map(|a| (a.value, a.slope * span));
         let weight_offset = side.sign() * (gamma - 1.0) * B; // s(γ−1)B

@@ -22,7 +22,7 @@ use crate::levels::level::{Level, Now, Rates};
 use crate::levels::rules::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD};
 use crate::levels::tie_series::TieSeries;
 use crate::mechanics::load::Load;
-use crate::mechanics::restraint::{Angles, Dissipators, Sum, holding_moment};
+use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
 use crate::mechanics::uplift::least_push;
 use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation, ZERO, product};
@@ -47,9 +47,9 @@ fn series<const RESTRAINED: bool>(structure: &Structure, side: Side, start: &Sta
     let &Start { state, a_g, a_top, a_v, interval, local_error, dissipators } = start;
     let &Structure { p_l, tan_alpha_cg, J_P, .. } = structure;
     let g = structure.parameters().g;
-    let sum = Sum::of_moments(structure, side, dissipators);
-    let mut held = RESTRAINED.then(|| TieSeries::new(sum, Angles::Any, state.theta));
-    let fastest = if RESTRAINED { (p_l * p_l + sum.stiffness / J_P).sqrt().max(sum.damping / J_P) } else { p_l };
+    let ties = Restraint::about(structure, side, dissipators).moments();
+    let mut held = RESTRAINED.then(|| TieSeries::new(ties, Angles::Any, state.theta));
+    let fastest = if RESTRAINED { (p_l * p_l + ties.stiffness / J_P).sqrt().max(ties.damping / J_P) } else { p_l };
     let span = interval.min(LONGEST_SPAN / fastest.max(state.theta_dot.abs()));
     let stiffness = p_l * p_l;
     let (push, push_slope) = (a_g.value / g, a_g.slope * span / g);
@@ -95,7 +95,7 @@ impl<const RESTRAINED: bool> Rigid<RESTRAINED> {
         if !RESTRAINED {
             return 0.0;
         }
-        holding_moment(structure, side, a_v, dissipators) / structure.parameters().H
+        Restraint::about(structure, side, dissipators).hold(a_v).moment / structure.parameters().H
     }
 }
 
@@ -192,7 +192,8 @@ impl<const RESTRAINED: bool> Level for Rigid<RESTRAINED> {
         if !RESTRAINED {
             return [0.0, free];
         }
-        let held = Sum::of_moments(structure, side, dissipators).at(Angles::Any, state.theta, state.theta_dot);
+        let chord = Angles::Any.chord(state.theta, state.theta_dot);
+        let held = Restraint::about(structure, side, dissipators).moment(&chord);
         [0.0, free - (held / structure.J_P - p_l.powi(2) * load.a_v / g * p)]
     }
 }

@@ -12,7 +12,7 @@ use crate::numbers::bend::Bend;
 use crate::numbers::dual::Dual;
 use crate::numbers::linear::{Leaf, Linear};
 use crate::numbers::most::Most;
-use crate::numbers::{Number, Turn};
+use crate::numbers::{Angle, Number, Turn};
 use crate::series::extremes::{self, Bound, Range};
 use crate::series::taylor::{Arc, Series};
 use crate::series::terms::Terms;

@@ -14,8 +14,12 @@ use crate::{Parameters, Phase, State, Structure};
 ///
 /// s does not matter in full contact, where θ = θ̇ = 0.
 pub fn energy(structure: &Structure, phase: Phase, state: &State) -> f64 {
-    let x = Instant::of(structure, phase, state, Load::default());
-    kinetic(&x) + x.u * (0.5 * structure.k) * x.u + potential(&x)
+    mechanical(&Instant::of(structure, phase, state, Load::default()))
+}
+
+/// Energy at the instant `x`, J.
+fn mechanical<N: Number>(x: &Instant<N>) -> N {
+    kinetic(x) + x.u * (0.5 * x.structure.k) * x.u + potential(x)
 }
 
 /// Kinetic energy, J.

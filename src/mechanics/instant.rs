@@ -2,7 +2,7 @@
 
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::numbers::dual::Dual;
-use crate::numbers::{Number, Turn};
+use crate::numbers::{Angle, Number, Turn};
 use crate::{Phase, State, Structure};
 
 /// The structure at an instant. A structure of many masses has one instant for each floor. There `u` and `u_dot` are the
@@ -64,7 +64,7 @@ impl<'a> Instant<'a, f64> {
         let &State { u, u_dot, theta, theta_dot } = state;
         let Load { a_g, F_t, a_v } = load;
         let (s, strut) = (phase.side().sign(), Strut::Elastic(damping(structure, phase)));
-        Instant { structure, s, strut, u, u_dot, theta, theta_dot, turn: Turn::by(theta), a_g, F_t, a_v }
+        Instant { structure, s, strut, u, u_dot, theta, theta_dot, turn: theta.turn(), a_g, F_t, a_v }
     }
 }
 

@@ -34,10 +34,9 @@
 use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::{Measure, height};
-use crate::mechanics::restraint::{Angles, Tie};
 use crate::numbers::Number;
 use crate::numbers::dual::Dual;
-use crate::{Parameters, Phase, Side, State, Structure};
+use crate::{Parameters, Phase, State, Structure};
 use serde::{Deserialize, Serialize};
 
 /// Forces on the ground; from [`crate::Engine::rates`], their time derivatives in the same fields.
@@ -161,18 +160,6 @@ impl Reactions {
         let Reactions { R_h, R_v, R_m } = Reactions::at(&x, &Second { u_ddot, theta_ddot });
         Reactions { R_h: R_h.rate, R_v: R_v.rate, R_m: R_m.rate }
     }
-
-    /// The pulls of the `ties` on the ground at this state: up, to the right, and their moment about the middle of the base, which
-    /// is the moment of full contact.
-    pub(crate) fn pulls(structure: &Structure, side: Side, angles: Angles, state: &State, ties: &[Tie; 3]) -> [f64; 3] {
-        let chord = angles.chord(state.theta, state.theta_dot);
-        let (sin, cos) = if angles == Angles::Any { libm::sincos(state.theta / 2.0) } else { (0.0, 1.0) };
-        let middle = side.sign() * structure.parameters().B;
-        ties.iter().fold([0.0; 3], |[up, right, moment], tie| {
-            let force = tie.force_at(chord);
-            [up + force * cos, right + force * sin, moment + force * cos * (middle - tie.lever)]
-        })
-    }
 }
 
 impl Impulse {
@@ -206,7 +193,8 @@ fn momentum(structure: &Structure, phase: Phase, state: &State) -> Impulse {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numbers::Turn;
+    use crate::Side;
+    use crate::numbers::Angle;
     use approx::assert_relative_eq;
 
     /// The accelerations in the formulas are second derivatives of the places: δ_t and the height, differentiated twice.
@@ -230,7 +218,7 @@ mod tests {
             u_dot: none(),
             theta: none(),
             theta_dot: none(),
-            turn: Turn::by(state.theta).at_rate(state.theta_dot).at_rate(theta_dot),
+            turn: state.theta.turn().at_rate(state.theta_dot).at_rate(theta_dot),
             a_g: none(),
             F_t: none(),
             a_v: none(),
