@@ -36,6 +36,8 @@ pub struct Structure {
     /// Circular frequency of the vibration mode while rocking ω_u = ω_fc/√(1−χ), rad/s (before Eq 18).
     pub omega_u: f64,
     is_restrained: bool,
+    pub(crate) base: Base,
+    pub(crate) mode: Mode,
     /// ω_fc² = k/m, 1/s².
     pub(crate) stiffness: f64,
     /// c_fc/m, 1/s.
@@ -46,6 +48,44 @@ pub struct Structure {
     pub(crate) foundation: f64,
     /// Damping ratio of the vibration mode ζ_u = c_u/(2√(k m (1−χ))) (before Eq 18).
     pub zeta_u: f64,
+}
+
+/// The rigid base of a structure, with all mass that no mode carries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Base {
+    /// Mass of the whole structure m_t, kg.
+    pub m_t: f64,
+    /// Mass that no mode carries, m_t − Σ Γ²/μ, kg; of one mass, the mass of the foundation.
+    pub m0: f64,
+    /// Half-width B, m.
+    pub B: f64,
+    /// Inertia of the mass that no mode carries, about the middle of the base, kg·m².
+    pub J0: f64,
+    /// Inertia of the whole structure about a pivot J_P, kg·m².
+    pub J_P: f64,
+    /// Coefficient of restitution.
+    pub r: f64,
+    /// Acceleration of gravity, m/s².
+    pub g: f64,
+    /// Viscous damping while rocking as a fraction of the damping in full contact.
+    pub c_ratio: f64,
+}
+
+/// A mode of vibration in full contact: an oscillator on the base. One mass is one mode with the shape 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mode {
+    /// Modal mass μ = φᵀMφ, kg.
+    pub mass: f64,
+    /// Γ = φᵀM1, kg.
+    pub gamma: f64,
+    /// Γ/μ: part that the mode takes in a translation of the base.
+    pub share: f64,
+    /// κ/μ, m, with κ = φᵀMh: part that the mode takes in a rotation of the base.
+    pub height: f64,
+    /// Modal stiffness μ ω², N/m.
+    pub stiffness: f64,
+    /// Modal damping in full contact 2 ζ ω μ, N·s/m.
+    pub damping: f64,
 }
 
 /// A derived quantity as `describe` and the FMU show it.
@@ -93,7 +133,7 @@ impl Structure {
     /// Derives a structure from its parameters, or says which parameter is refused and why.
     pub fn new(parameters: Parameters) -> Result<Structure, ParameterError> {
         parameters.check()?;
-        let Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, g, P_0, k_t, c_d, k_d, .. } = parameters;
+        let Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, r, g, P_0, k_t, c_d, k_d, .. } = parameters;
         let gamma = (m + m0) / m;
         let omega_fc = TAU * f_fc;
         let k = m * omega_fc * omega_fc;
@@ -107,6 +147,8 @@ impl Structure {
         Ok(Structure {
             parameters,
             is_restrained: [P_0, k_t, c_d, k_d].iter().any(|restraint| *restraint > 0.0),
+            base: Base { m_t: m + m0, m0, B, J0, J_P, r, g, c_ratio },
+            mode: Mode { mass: m, gamma: m, share: 1.0, height: H, stiffness: k, damping: c_fc },
             gamma,
             omega_fc,
             k,

@@ -112,7 +112,7 @@ fn energy_goes_where_the_dissipators_take_it() {
                 (energy(&structure, phase, &state) + stored + taken, taken)
             };
             let (before, _) = total(engine.motion());
-            let scale = before - energy(&structure, Phase::FullContact, &State::default());
+            let scale = before - energy(&structure, Phase::FullContact, &<State>::default());
             let mut last = (0.0, 0.0);
             for _ in 0..400 {
                 engine.advance(2e-3, Load::default(), &mut ()).unwrap();

@@ -5,7 +5,7 @@
 
 use crate::levels::detail::{Detail, Model};
 use crate::levels::level::{Now, Rates};
-use crate::mechanics::instant::{Instant, Strut, damping};
+use crate::mechanics::instant::{Instant, Strut};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::{Measure, Outputs, composed, searched};
 use crate::numbers::bend::Bend;
@@ -66,7 +66,7 @@ impl Model {
         let x = Instant {
             structure: &self.structure,
             s: phase.side().sign(),
-            strut: Strut::Elastic(damping(&self.structure, phase)),
+            strut: Strut::Elastic(self.structure.base.damping(phase)),
             u: Most(state.u),
             u_dot: Most(state.u_dot),
             theta,
@@ -90,7 +90,7 @@ impl Model {
         let x = Instant {
             structure: &self.structure,
             s: phase.side().sign(),
-            strut: Strut::Elastic(damping(&self.structure, phase)),
+            strut: Strut::Elastic(self.structure.base.damping(phase)),
             u: bend(u, u_dot, u_ddot),
             u_dot: bend(u_dot, u_ddot, u_dddot),
             theta: turning,
@@ -172,7 +172,7 @@ pub(crate) fn over<'a, const L: usize>(
     Instant {
         structure,
         s: phase.side().sign(),
-        strut: Strut::Elastic(damping(structure, phase)),
+        strut: Strut::Elastic(structure.base.damping(phase)),
         u: none,
         u_dot: none,
         theta,
@@ -228,7 +228,7 @@ fn terms<'a>(
     };
     let strut = match is_rigid {
         true => Strut::Rigid(theta_dot.slope(arc.span)),
-        false => Strut::Elastic(damping(structure, phase)),
+        false => Strut::Elastic(structure.base.damping(phase)),
     };
     let LinearLoad { value, slope } = load;
     Instant {

@@ -11,20 +11,27 @@
 
 use crate::mechanics::energy::kinetic;
 use crate::mechanics::instant::Instant;
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
+use crate::structure::{Base, Mode};
 use crate::{Phase, Side, State, Structure};
 
 /// Angular momentum L about the pivot that comes down, kg·m²/s, of a structure that touches the ground (θ = 0).
-pub fn angular_momentum(structure: &Structure, before: &State) -> f64 {
-    let &crate::Parameters { m, m0, H, B, J0, .. } = structure.parameters();
+pub fn angular_momentum<Q: Coordinates>(structure: &Q::Structure, before: &State<Q>) -> f64 {
+    let &Base { m0, B, J0, .. } = Q::base(structure);
     let &State { u, u_dot, theta_dot, .. } = before;
-    m * H * (u_dot + H * theta_dot) - (m * (B * B - u * u) + m0 * B * B - J0) * theta_dot
+    let along = Q::sum(structure, |j, mode| mode.mass * mode.height * (u_dot.of(j) + mode.height * theta_dot));
+    let across = Q::sum(structure, |j, mode| {
+        let b = mode.share * B;
+        mode.mass * (b * b - u.of(j) * u.of(j))
+    });
+    along - (across + m0 * B * B - J0) * theta_dot
 }
 
 /// Phase and state just after an impact that ends rocking about `side` in the state `before`.
-pub fn resolve(structure: &Structure, side: Side, before: &State) -> (Phase, State) {
+pub fn resolve<Q: Coordinates>(structure: &Q::Structure, side: Side, before: &State<Q>) -> (Phase, State<Q>) {
     if angular_momentum(structure, before) * before.theta_dot > 0.0 {
-        let theta_dot = structure.parameters().r * before.theta_dot;
+        let theta_dot = Q::base(structure).r * before.theta_dot;
         (Phase::Rocking(side.opposite()), State { theta: 0.0, theta_dot, ..*before })
     } else {
         (Phase::FullContact, land(structure, before))
@@ -41,24 +48,21 @@ pub fn resolve(structure: &Structure, side: Side, before: &State) -> (Phase, Sta
 /// Where u̇ and θ̇ differ in sign, taking momentum from the base and not from the top mass adds to the energy; and so does
 /// to keep θ̇ about a pivot that the top mass is farther from than from the one before, s u > 0: with r = 1, too. A landing
 /// always loses ½ J₋ θ̇² less ½ m H² θ̇².
-pub fn energy_gained(structure: &Structure, side: Side, before: &State) -> f64 {
-    let &crate::Parameters { m, H, B, r, .. } = structure.parameters();
+pub fn energy_gained<Q: Coordinates>(structure: &Q::Structure, side: Side, before: &State<Q>) -> f64 {
+    let (&Base { B, r, J_P, .. }, s) = (Q::base(structure), side.sign());
     let &State { u, u_dot, theta_dot, .. } = before;
-    let s = side.sign();
-    let (square, inertia) = (theta_dot * theta_dot, inertia_before(structure, s * u));
-    -(1.0 - r) * m * H * u_dot * theta_dot - 0.5 * (1.0 - r * r) * inertia * square
-        + 2.0 * r * r * m * B * s * u * square
-}
-
-/// J₋ at the displacement `u` (m) towards the pivot, kg·m².
-fn inertia_before(structure: &Structure, u: f64) -> f64 {
-    let &crate::Parameters { m, B, .. } = structure.parameters();
-    structure.J_P + m * u * (u - 2.0 * B)
+    let sum = |term: &dyn Fn(usize, &Mode) -> f64| Q::sum(structure, term);
+    let square = theta_dot * theta_dot;
+    let inertia = J_P + sum(&|j, mode| mode.mass * (s * u.of(j)) * (s * u.of(j) - 2.0 * B * mode.share));
+    sum(&|j, mode| -(1.0 - r) * mode.mass * mode.height * u_dot.of(j)) * theta_dot
+        - 0.5 * (1.0 - r * r) * inertia * square
+        + sum(&|j, mode| 2.0 * r * r * mode.gamma * B * s * u.of(j)) * square
 }
 
 /// Kinetic energy T₋ in the state `before`, which ends rocking about `side`, J.
-pub(crate) fn kinetic_energy(structure: &Structure, side: Side, before: &State) -> f64 {
-    kinetic(&Instant::of(structure, Phase::Rocking(side), before, Load::default()))
+pub(crate) fn kinetic_energy<Q: Coordinates>(structure: &Q::Structure, side: Side, before: &State<Q>) -> f64 {
+    let load = Load { a_g: 0.0, F_t: Q::each(structure, |_, _| 0.0), a_v: 0.0 };
+    kinetic(&Instant::of(structure, Phase::Rocking(side), before, load))
 }
 
 /// A = J0 + m (H² + u²) and F = (m + m0) B², kg·m²: J₋ is A + F − 2 m B s u.
@@ -108,8 +112,8 @@ pub fn pulling_restitution(structure: &Structure) -> f64 {
 }
 
 /// The state just after landing: both pivots down, horizontal momentum kept.
-pub fn land(structure: &Structure, before: &State) -> State {
-    let u_dot = before.u_dot + structure.parameters().H * before.theta_dot;
+pub fn land<Q: Coordinates>(structure: &Q::Structure, before: &State<Q>) -> State<Q> {
+    let u_dot = Q::each(structure, |j, mode| before.u_dot.of(j) + mode.height * before.theta_dot);
     State { u: before.u, u_dot, theta: 0.0, theta_dot: 0.0 }
 }
 

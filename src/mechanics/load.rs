@@ -66,11 +66,12 @@ pub const VERTICAL: usize = 2;
 
 /// What acts at one instant, or its rate; indexed in the order of [`LOADS`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Load {
+pub struct Load<Q = f64> {
     /// Ground acceleration, m/s², positive to the right.
     pub a_g: f64,
-    /// External force on the top mass, N, horizontal in the ground's frame, positive to the right.
-    pub F_t: f64,
+    /// External force on the top mass, N, horizontal in the ground's frame, positive to the right; of many masses, the force φᵀF of
+    /// each mode.
+    pub F_t: Q,
     /// Vertical ground acceleration, m/s², positive upwards.
     pub a_v: f64,
 }

@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 
 /// State of the structure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct State {
-    /// Elastic displacement of the top mass in the frame that turns with the base, m.
-    pub u: f64,
-    /// Its rate, m/s.
-    pub u_dot: f64,
+pub struct State<Q = f64> {
+    /// Elastic displacement of the top mass in the frame that turns with the base, m; of many masses, a coordinate for each mode.
+    pub u: Q,
+    /// Rate of u, m/s.
+    pub u_dot: Q,
     /// Rotation of the base, rad; positive about the right pivot.
     pub theta: f64,
-    /// Its rate, rad/s.
+    /// Rate of θ, rad/s.
     pub theta_dot: f64,
 }
 
