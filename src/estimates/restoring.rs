@@ -17,8 +17,8 @@ pub struct Point {
     pub moment: f64,
 }
 
-/// The base of `structure` turned slowly from rest to the rotation `theta` (rad, 0 to π/2) and back to 0, each way in as many
-/// equal steps: the moment at the start and after each of them.
+/// The moments while the base of `structure` is turned slowly from rest to the rotation `theta` (rad, 0 to π/2) and back to 0, in
+/// this many equal `steps` each way.
 pub fn flag(structure: &Structure, theta: f64, steps: u32) -> Vec<Point> {
     let there = (0..=steps).map(|i| theta * f64::from(i) / f64::from(steps));
     let mut dissipators = Dissipators::NEW;
@@ -59,7 +59,7 @@ mod tests {
             assert!((moment - expected).abs() <= 1e-12 * expected.abs(), "{theta}: {moment}, {expected}");
         }
         assert_eq!(points[0].moment, elastic(0.0));
-        // with the base down what is left is what decides whether it stays so
+        // with the base down, the residual forces decide whether it stays down
         let [restoring, residual] = centring_moments(&structure);
         assert!((points[20].moment - (restoring - residual)).abs() < 1e-9 * restoring);
         assert!((residual - F_y * ((B - xi_d) + (B + xi_d))).abs() < 1e-12 * residual);

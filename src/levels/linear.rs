@@ -16,7 +16,7 @@
 
 use crate::levels::level::{ElasticRocking, Now, Rates};
 use crate::levels::linear_system::{LinearSystem, Row};
-use crate::levels::nonlinear::{longest_restrained_span, truncation};
+use crate::levels::nonlinear::{longest_span, truncation};
 use crate::levels::oscillator::Kept;
 use crate::levels::tie_series::TieSeries;
 use crate::mechanics::restraint::{Angles, Restraint};
@@ -196,7 +196,7 @@ impl ElasticRocking for RestrainedLinear {
 
     fn series(&self, structure: &Structure, side: Side, start: &Start, arc: &mut Arc) {
         let &Start { state, a_top, a_v, interval, dissipators, .. } = start;
-        let span = interval.min(longest_restrained_span(structure));
+        let span = interval.min(longest_span(structure));
         let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
         let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
         let (inertia, offset) = (foundation + B * B, side.sign() * gamma * B);

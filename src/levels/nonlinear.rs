@@ -159,8 +159,7 @@ impl<const RESTRAINED: bool> ElasticRocking for NonlinearRocking<RESTRAINED> {
         let &Start { state, a_g, a_top, interval, .. } = start;
         let &crate::Parameters { m, H, B, g, .. } = structure.parameters();
         let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
-        let longest = if RESTRAINED { longest_restrained_span(structure) } else { longest_span(structure) };
-        let span = interval.min(longest);
+        let span = interval.min(longest_span(structure));
         // g + a_v now, and what it gains over the span
         let (g, lift) = if RESTRAINED { (g + start.a_v.value, start.a_v.slope * span) } else { (g, 0.0) };
         let mut held = RESTRAINED.then(|| {
@@ -221,16 +220,7 @@ impl<const RESTRAINED: bool> ElasticRocking for NonlinearRocking<RESTRAINED> {
 
 /// The longest span (s) that a series is tried over while rocking.
 pub(crate) fn longest_span(structure: &Structure) -> f64 {
-    LONGEST_SPAN / structure.omega_u.max(structure.p_l)
-}
-
-/// That of a structure with restraints, which make it stiffer and may damp it faster than it vibrates.
-pub(crate) fn longest_restrained_span(structure: &Structure) -> f64 {
-    let &crate::Parameters { m, B, k_t, xi_d, c_d, k_d, .. } = structure.parameters();
-    let &Structure { omega_u, p_l, foundation, .. } = structure;
-    let (inertia, pair) = (m * (foundation + B * B), 2.0 * (B * B + xi_d * xi_d));
-    let stiffness = k_t * B * B + k_d * pair;
-    LONGEST_SPAN / (omega_u * omega_u + stiffness / inertia).sqrt().max(p_l).max(c_d * pair / inertia)
+    LONGEST_SPAN / structure.rocking_rate
 }
 
 /// The truncation that `start` asks for over a step of `span` s while rocking.

@@ -1,4 +1,4 @@
-//! Impact: what happens when s θ returns to 0.
+//! Impact: the change of the motion when s θ returns to 0.
 //!
 //! L is the angular momentum about the pivot that comes down, −s, just before:
 //!
@@ -38,16 +38,16 @@ pub fn resolve<Q: Coordinates>(structure: &Q::Structure, side: Side, before: &St
     }
 }
 
-/// By how much the energy grows, J, at an impact that ends rocking about `side` in the state `before` and is followed by
-/// rocking about the other pivot, J₋ the inertia about the pivot before it:
+/// Energy gained, J, at an impact that ends rocking about `side` in the state `before` and begins rocking about the other pivot.
+/// J₋ is the inertia about the pivot before the impact:
 ///
 /// ```text
 /// T₊ − T₋ = −(1−r) m H u̇ θ̇ − ½ (1−r²) J₋ θ̇² + 2 r² m B s u θ̇²,      J₋ = J0 + m0 B² + m H² + m (sB−u)²
 /// ```
 ///
-/// Where u̇ and θ̇ differ in sign, taking momentum from the base and not from the top mass adds to the energy; and so does
-/// to keep θ̇ about a pivot that the top mass is farther from than from the one before, s u > 0: with r = 1, too. A landing
-/// always loses ½ J₋ θ̇² less ½ m H² θ̇².
+/// The rule takes momentum from the base and not from the top mass, which adds energy if u̇ and θ̇ differ in sign. If s u > 0, the
+/// new pivot is farther from the top mass, and keeping θ̇ adds energy even with r = 1. A landing always loses ½ J₋ θ̇² less
+/// ½ m H² θ̇². With many masses, each term with m is a sum over the modes.
 pub fn energy_gained<Q: Coordinates>(structure: &Q::Structure, side: Side, before: &State<Q>) -> f64 {
     let (&Base { B, r, J_P, .. }, s) = (Q::base(structure), side.sign());
     let &State { u, u_dot, theta_dot, .. } = before;
@@ -71,10 +71,11 @@ fn inertias(structure: &Structure, u: f64) -> [f64; 2] {
     [J0 + m * (H * H + u * u), (m + m0) * B * B]
 }
 
-/// The supremum of (T₊ − T₋)/θ̇², kg·m², over all impacts at the displacement `u` (m) towards the pivot rocked about (s u,
-/// so negative away from it) after which rocking goes on.
+/// The supremum of (T₊ − T₋)/θ̇², kg·m², over all impacts at the displacement `u` (m) after which rocking continues. `u` is
+/// positive towards the pivot before the impact.
 ///
-/// It falls as u̇/θ̇ rises, which L θ̇ > 0 bounds from below; there it is, with A = J0 + m (H² + u²) and F = (m + m0) B²,
+/// The gain falls as u̇/θ̇ rises, and L θ̇ > 0 bounds u̇/θ̇ from below. At this bound, with A = J0 + m (H² + u²) and
+/// F = (m + m0) B², the gain is
 ///
 /// ```text
 /// ½ (1−r) [(1−r) A − (3+r) F] + (1+r²) m B s u
@@ -85,8 +86,8 @@ pub fn greatest_gain(structure: &Structure, u: f64) -> f64 {
     0.5 * (1.0 - r) * ((1.0 - r) * a - (3.0 + r) * f) + (1.0 + r * r) * m * B * u
 }
 
-/// The coefficients of restitution between which no impact at the displacement `u` (m) towards the pivot raises the energy:
-/// where [`greatest_gain`] is not positive, or none. With U = 2 m B s u they are
+/// The two coefficients of restitution between which no impact at the displacement `u` (m) towards the pivot raises the energy.
+/// [`greatest_gain`] is not positive between them. If there is no such range, the result is none. With U = 2 m B s u they are
 ///
 /// ```text
 /// r = [A − F ± √(4 F² − 2 U (A − F) − U²)]/(A + F + U),      at u = 0: 1 − 4 (m + m0) B²/J_P and 1
@@ -99,7 +100,7 @@ pub fn lossless_restitution(structure: &Structure, u: f64) -> Option<[f64; 2]> {
     (square >= 0.0).then(|| [-square.sqrt(), square.sqrt()].map(|root| (a - f + root) / (a + f + lift)))
 }
 
-/// The coefficient of restitution below which an impact with u = 0 takes an impulse that pulls at the edge that lifts off:
+/// The coefficient of restitution below which an impact with u = 0 requires a pull at the edge that lifts off:
 ///
 /// ```text
 /// r < 1 − 2 (m + m0) B²/J_P

@@ -11,7 +11,7 @@
 //! ```
 //!
 //! Every tie is therefore a force, a stiffness and a damper. A yielding tie is a force alone, and e_p follows from the rotation
-//! at the end. The equations for small angles have e = l θ instead. At θ = 0 all elongations are 0. An elastoplastic dissipator
+//! at the end. The equations for small angles have e = l θ instead. All elongations are 0 at θ = 0. An elastoplastic dissipator
 //! then pulls with its residual force − k_d e_p. Impacts leave e_p unchanged.
 
 use crate::mechanics::uplift::Hold;

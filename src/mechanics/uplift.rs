@@ -23,8 +23,8 @@ use crate::mechanics::restraint::{Dissipators, Restraint};
 use crate::numbers::Number;
 use crate::{Ramp, Side, State, Structure};
 
-/// Smallest excess of the turning moment over the weight's, as a fraction of the latter. It is far above rounding, so that a base
-/// that has lifted off moves away from the ground.
+/// Smallest excess of the turning moment over the weight's, as a fraction of the latter. It is far above rounding. After uplift
+/// the base therefore moves away from the ground.
 pub(crate) const LEAST_EXCESS: f64 = 1e-12;
 
 /// The equation of θ̈ at θ = θ̇ = 0: inertia · s θ̈ = s (u·`u` + u̇·`u_dot`) − `weight`.
@@ -150,8 +150,8 @@ mod tests {
         }
     }
 
-    /// The ground falls faster than the structure could: the base lifts off about the side of the larger s θ̈ by Eqs 5 and 6, which
-    /// is not the side of the larger moment.
+    /// The ground falls faster than the structure could. By Eqs 5 and 6 the side of the larger s θ̈ is not the side of the larger
+    /// moment. The base lifts off about the former.
     #[test]
     fn the_structure_lifts_off_about_the_side_that_turns_faster() {
         let structure = Structure::new(Parameters { zeta_fc: 0.1, ..Parameters::MCMANUS }).unwrap();
