@@ -22,7 +22,7 @@ use crate::levels::detail::{AnyLevel, Detail, by_level};
 use crate::levels::level::Level;
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
-use crate::mechanics::restraint::{Dissipators, Restraints};
+use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
 use crate::mechanics::state::InitialStateError;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, Start};
@@ -221,7 +221,7 @@ impl Engine {
         let level = settings.level(structure)?;
         level.check_start(&initial)?;
         let chord = level.angles().chord(initial.theta, 0.0);
-        let moved = Dissipators::default().moved_by(&structure, phase.side(), chord);
+        let moved = Dissipators::NEW.moved_by(&structure, phase.side(), chord);
         let motion = Motion {
             time,
             state: initial,
@@ -386,8 +386,8 @@ impl Engine {
             return Restraints::default();
         }
         let [_, theta_ddot] = self.sample(load).accelerations();
-        let (structure, angles) = (self.structure(), self.level.angles());
-        Restraints::rates(structure, phase.side(), dissipators, angles, state, theta_ddot)
+        let restraint = Restraint::about(self.structure(), phase.side(), dissipators);
+        Restraints::rates(&restraint, self.level.angles(), state, theta_ddot)
     }
 
     /// Time derivatives of the outputs and reactions now under `load`, from the equations of motion; 0 once overturned.

@@ -1,4 +1,4 @@
-//! What is known without a time history, or of the ground motion alone.
+//! Estimates without a time history, and measures of the ground motion alone.
 
 pub mod demand;
 pub mod effective_frequency;

@@ -42,7 +42,7 @@ pub use levels::detail::Detail;
 pub use mechanics::load::{LinearLoad, Load, Ramp};
 pub use mechanics::outputs::Outputs;
 pub use mechanics::reactions::{Impulse, Reactions};
-pub use mechanics::restraint::{Dissipators, Restraints};
+pub use mechanics::restraint::{Dissipators, Restraint, Restraints};
 pub use mechanics::state::{Phase, Side, State};
 pub use run::Run;
 pub use run::ground_motion::GroundMotion;

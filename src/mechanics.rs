@@ -3,6 +3,7 @@
 pub mod energy;
 pub mod impact;
 pub(crate) mod instant;
+pub(crate) mod lateral;
 pub mod load;
 pub mod outputs;
 pub mod reactions;

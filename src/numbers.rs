@@ -117,11 +117,16 @@ impl<N: Number> Turn<N> {
     }
 }
 
-impl Turn<f64> {
-    /// The turn by `theta` (rad), |θ| ≤ π/2.
+/// A kind of number that has a rule for the turn by a rotation.
+pub(crate) trait Angle: Number {
+    /// The turn by this rotation (rad), |θ| ≤ π/2.
+    fn turn(self) -> Turn<Self>;
+}
+
+impl Angle for f64 {
     #[inline]
-    pub(crate) fn by(theta: f64) -> Turn<f64> {
-        let (sin, cos) = libm::sincos(theta);
+    fn turn(self) -> Turn<f64> {
+        let (sin, cos) = libm::sincos(self);
         Turn { sin, cos, versine: sin * sin / (1.0 + cos) } // without cancellation: cos θ ≥ 0
     }
 }

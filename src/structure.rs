@@ -1,4 +1,4 @@
-//! Everything that follows from a structure's parameters (before Eq 11, after 4, 8 and 13, before 18).
+//! The structure: its parameters and the constants that follow from them (before Eq 11, after 4, 8 and 13, before 18).
 
 pub mod natural_quantities;
 pub mod parameters;
@@ -35,7 +35,11 @@ pub struct Structure {
     pub u_cr: f64,
     /// Circular frequency of the vibration mode while rocking ω_u = ω_fc/√(1−χ), rad/s (before Eq 18).
     pub omega_u: f64,
+    /// Bound of the rates of rocking, 1/s: ω_u and p_l, with the stiffness and the damping that the ties add to them.
+    pub(crate) rocking_rate: f64,
     is_restrained: bool,
+    pub(crate) base: Base,
+    pub(crate) mode: Mode,
     /// ω_fc² = k/m, 1/s².
     pub(crate) stiffness: f64,
     /// c_fc/m, 1/s.
@@ -48,18 +52,56 @@ pub struct Structure {
     pub zeta_u: f64,
 }
 
-/// A derived quantity as `describe` and the FMU show it.
+/// The rigid base of a structure, with all mass that no mode carries.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Base {
+    /// Mass of the whole structure m_t, kg.
+    pub m_t: f64,
+    /// Mass that no mode carries, m_t − Σ Γ²/μ, kg; of one mass, the mass of the foundation.
+    pub m0: f64,
+    /// Half-width B, m.
+    pub B: f64,
+    /// Inertia of the mass that no mode carries, about the middle of the base, kg·m².
+    pub J0: f64,
+    /// Inertia of the whole structure about a pivot J_P, kg·m².
+    pub J_P: f64,
+    /// Coefficient of restitution.
+    pub r: f64,
+    /// Acceleration of gravity, m/s².
+    pub g: f64,
+    /// Viscous damping while rocking as a fraction of the damping in full contact.
+    pub c_ratio: f64,
+}
+
+/// A mode of vibration in full contact: an oscillator on the base. One mass is one mode with the shape 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Mode {
+    /// Modal mass μ = φᵀMφ, kg.
+    pub mass: f64,
+    /// Γ = φᵀM1, kg.
+    pub gamma: f64,
+    /// Γ/μ: part that the mode takes in a translation of the base.
+    pub share: f64,
+    /// κ/μ, m, with κ = φᵀMh: part that the mode takes in a rotation of the base.
+    pub height: f64,
+    /// Modal stiffness μ ω², N/m.
+    pub stiffness: f64,
+    /// Modal damping in full contact 2 ζ ω μ, N·s/m.
+    pub damping: f64,
+}
+
+/// A derived quantity, for `describe` and the FMU.
 #[derive(Debug)]
 pub struct Derived {
     /// Symbol.
     pub name: &'static str,
     /// Unit.
     pub unit: &'static str,
-    /// What it is.
+    /// Description.
     pub description: &'static str,
-    /// Where the paper defines it.
+    /// Equation of the paper that defines the quantity.
     pub equation: &'static str,
-    /// Its value for a structure.
+    /// Value for a structure.
     pub value: fn(&Structure) -> f64,
 }
 
@@ -69,7 +111,7 @@ macro_rules! derived {
     };
 }
 
-/// The derived quantities that people ask for, in the order in which the paper defines them.
+/// The derived quantities that are shown, in the order of the paper.
 pub const DERIVED: [Derived; 16] = [
     derived!("gamma" ["1"] "mass ratio (m + m0)/m", "before Eq 1", |s| s.gamma),
     derived!("omega_fc" ["rad/s"] "circular frequency in full contact", "Eq 1", |s| s.omega_fc),
@@ -90,10 +132,10 @@ pub const DERIVED: [Derived; 16] = [
 ];
 
 impl Structure {
-    /// Derives a structure from its parameters, or says which parameter is refused and why.
+    /// Derives a structure from its parameters, or returns the first parameter that is out of range.
     pub fn new(parameters: Parameters) -> Result<Structure, ParameterError> {
         parameters.check()?;
-        let Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, g, P_0, k_t, c_d, k_d, .. } = parameters;
+        let Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, r, g, P_0, k_t, xi_d, c_d, k_d, .. } = parameters;
         let gamma = (m + m0) / m;
         let omega_fc = TAU * f_fc;
         let k = m * omega_fc * omega_fc;
@@ -104,30 +146,38 @@ impl Structure {
         let chi = m * H * H / J_P;
         let one_minus_chi = foundation_and_offset / J_P;
         let tan_alpha_cg = gamma * B / H;
+        let (p_l, omega_u) = ((m * g * H / J_P).sqrt(), omega_fc / one_minus_chi.sqrt());
+        let foundation = (J0 + m0 * B * B) / m;
+        let (inertia, pair) = (m * (foundation + B * B), 2.0 * (B * B + xi_d * xi_d));
+        let ties = k_t * B * B + k_d * pair;
+        let rocking_rate = (omega_u * omega_u + ties / inertia).sqrt().max(p_l).max(c_d * pair / inertia);
         Ok(Structure {
             parameters,
             is_restrained: [P_0, k_t, c_d, k_d].iter().any(|restraint| *restraint > 0.0),
+            base: Base { m_t: m + m0, m0, B, J0, J_P, r, g, c_ratio },
+            mode: Mode { mass: m, gamma: m, share: 1.0, height: H, stiffness: k, damping: c_fc },
             gamma,
             omega_fc,
             k,
             c_fc,
             c_u,
             J_P,
-            p_l: (m * g * H / J_P).sqrt(),
+            p_l,
             tan_alpha_cg,
             chi,
             one_minus_chi,
             u_cr: (g * tan_alpha_cg + P_0 * B / (m * H)) / (omega_fc * omega_fc),
-            omega_u: omega_fc / one_minus_chi.sqrt(),
+            omega_u,
+            rocking_rate,
             stiffness: omega_fc * omega_fc,
             damping_fc: c_fc / m,
             damping_u: c_u / m,
-            foundation: (J0 + m0 * B * B) / m,
+            foundation,
             zeta_u: c_u / (2.0 * (k * m * one_minus_chi).sqrt()),
         })
     }
 
-    /// Whether a tendon or dissipators restrain it.
+    /// Whether a tendon or dissipators restrain the structure.
     pub fn is_restrained(&self) -> bool {
         self.is_restrained
     }

@@ -7,7 +7,7 @@ use approx::assert_relative_eq;
 use rocking::engine::Settings;
 use rocking::engine::piece::Sample;
 use rocking::mechanics::energy::energy;
-use rocking::mechanics::restraint::{Restraints, centring_moments, stored_energy, uplift_displacement};
+use rocking::mechanics::restraint::{Restraint, Restraints, centring_moments};
 use rocking::run::ground_motion::Elapsed;
 use rocking::run::record::Record;
 use rocking::run::validity::{Limits, TENSION, WEIGHT, of_parameters};
@@ -108,12 +108,12 @@ fn energy_goes_where_the_dissipators_take_it() {
             let initial = State { theta, theta_dot, u: 1e-3, u_dot: 0.0 };
             let mut engine = Engine::with_detail(structure, initial, 0.0, 1e-11, Detail::Nonlinear).unwrap();
             let total = |&Motion { phase, state, dissipators, .. }: &Motion| {
-                let stored = stored_energy(&structure, phase.side(), state.theta, &dissipators);
+                let stored = Restraint::about(&structure, phase.side(), &dissipators).stored_energy(state.theta);
                 let taken = dissipators.viscous + dissipators.hysteretic;
                 (energy(&structure, phase, &state) + stored + taken, taken)
             };
             let (before, _) = total(engine.motion());
-            let scale = before - energy(&structure, Phase::FullContact, &State::default());
+            let scale = before - energy(&structure, Phase::FullContact, &<State>::default());
             let mut last = (0.0, 0.0);
             for _ in 0..400 {
                 engine.advance(2e-3, Load::default(), &mut ()).unwrap();
@@ -168,7 +168,7 @@ fn uplift_is_due_where_the_vertical_acceleration_and_the_prestress_put_it() {
         engine.advance(0.1, load, &mut |at: &Transition| _ = seen.get_or_insert(*at)).unwrap();
         let Transition { time, kind, before, .. } = seen.unwrap();
         assert!(kind == TransitionKind::Uplift(side) && (time - meets).abs() < 2e-6, "{kind:?} {time} {meets}");
-        let limit = uplift_displacement(&structure, side, -40.0 * time, &Dissipators::default());
+        let limit = Restraint::about(&structure, side, &Dissipators::NEW).uplift_displacement(-40.0 * time);
         assert_relative_eq!(side.sign() * before.u, limit, max_relative = 1e-12);
     }
     // a rigid one: m H |a_g| against the moment of what is left of the weight and of the tendon, both linear in time
@@ -191,7 +191,7 @@ fn uplift_waits_for_the_moment() {
     let parameters = Parameters { zeta_fc: 0.5, P_0: 200.0, ..Parameters::MCMANUS };
     let structure = structure(parameters);
     let Parameters { m, m0, H, B, g, P_0, .. } = parameters;
-    let u_cr = uplift_displacement(&structure, Side::Right, 0.0, &Dissipators::default());
+    let u_cr = Restraint::about(&structure, Side::Right, &Dissipators::NEW).uplift_displacement(0.0);
     let initial = State { u: 1.2 * u_cr, u_dot: -0.1, ..State::default() };
     let slope = Load { a_v: -2000.0, ..Load::default() };
     let load = LinearLoad { value: Load { a_g: -60.0, F_t: 0.0, a_v: 2.0 }, slope };
@@ -472,7 +472,7 @@ fn a_transition_is_foreseen_whatever_brings_it() {
 #[test]
 fn the_warning_of_a_base_held_down_beyond_its_edge_knows_the_tendon() {
     let tied = structure(Parameters { P_0: 5e5, ..Parameters::MCMANUS });
-    assert_eq!(tied.u_cr, uplift_displacement(&tied, Side::Right, 0.0, &Dissipators::NEW));
+    assert_eq!(tied.u_cr, Restraint::about(&tied, Side::Right, &Dissipators::NEW).uplift_displacement(0.0));
     let warnings = of_parameters(&tied, Detail::Auto);
     assert!(warnings[0].starts_with("u_cr = 0.6") && warnings[0].contains("exceeds B = 0.285 m"), "{warnings:?}");
 }

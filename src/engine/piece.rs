@@ -11,7 +11,7 @@ use crate::levels::level::{Now, Subject};
 use crate::levels::shown::Searched;
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::Measure;
-use crate::mechanics::restraint::{Dissipators, Restraints, ties};
+use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
 use crate::series::extremes::Bound;
 use crate::series::taylor::{Arc, Series, Start, evaluate};
 use crate::{Outputs, Phase, Reactions, State};
@@ -94,9 +94,8 @@ impl Sample<'_> {
         if !is_tied {
             return reactions;
         }
-        let side = phase.side();
-        let ties = ties(structure, side, dissipators);
-        let [up, right, moment] = Reactions::pulls(structure, side, level.angles(), state, &ties);
+        let restraint = Restraint::about(structure, phase.side(), dissipators);
+        let [up, right, moment] = restraint.pulls(&level.angles().chord(state.theta, state.theta_dot));
         reactions.of_edges(up, right, moment)
     }
 
@@ -104,7 +103,7 @@ impl Sample<'_> {
     pub fn restraints(&self) -> Restraints {
         let Motion { phase, state, dissipators, .. } = &self.motion;
         let chord = self.level.angles().chord(state.theta, state.theta_dot);
-        Restraints::of(self.level.structure(), phase.side(), dissipators, chord)
+        Restraint::about(self.level.structure(), phase.side(), dissipators).forces(&chord)
     }
 
     /// (ü, θ̈), m/s² and rad/s²; once overturned, those of the instant before.

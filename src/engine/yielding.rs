@@ -9,10 +9,10 @@ use crate::engine::phases::{BAND, Guard, Step, Way, way};
 use crate::engine::piece::Sample;
 use crate::engine::transition::TransitionKind;
 use crate::levels::level::Level;
-use crate::levels::ties::TieSeries;
-use crate::mechanics::restraint::{Dissipators, Sum, levers};
+use crate::mechanics::restraint::{Dissipators, levers};
 use crate::series::first_crossing::{self, Crossing, first_time_all_closed};
 use crate::series::taylor::ZERO;
+use crate::series::terms::Terms;
 use crate::{Side, Structure};
 
 /// Rotation at which a dissipator would begin to yield as the base comes down, as a fraction of the rotation that takes it from 0 to
@@ -129,8 +129,9 @@ pub(crate) fn moved(&Step { level, side, start, arc, reach }: &Step) -> Option<D
         }
     }
     if c_d > 0.0 {
-        let rate = TieSeries::over(Sum::default(), angles, arc).rate;
-        let squared = square_integral(arc.used(&rate), reach) * arc.span;
+        let [theta, theta_dot] = [&arc.theta, &arc.theta_dot].map(|series| Terms::of(series, arc.order));
+        let rate = angles.chord(theta, theta_dot).rate;
+        let squared = square_integral(rate.used(), reach) * arc.span;
         moved.viscous += 2.0 * c_d * (B * B + xi_d * xi_d) * squared;
     }
     Some(moved)

@@ -11,7 +11,7 @@
 //! ([`crate::estimates::response_spectrum`]). C is the dynamic amplification of the weight's change of sides at an impact: 2 for
 //! an instant change that meets a quiet structure, down to 0 for a slow one.
 //!
-//! They are of a structure that its weight alone turns back, and are refused for one with a tendon or dissipators.
+//! The equations are for a structure that its weight alone turns back. A structure with a tendon or dissipators is an error.
 
 use crate::Structure;
 use crate::structure::quantity::OutOfRange;
@@ -133,8 +133,8 @@ mod tests {
         assert_relative_eq!(demand.M_t, m * H * expected, max_relative = 1e-14);
     }
 
-    /// Eqs 5 and 6 themselves: the change of sides under a quiet structure at the static displacement of the side that
-    /// it leaves sets the top mass off with ü_gr,max for C = 2, but for the terms in g/(ω_u² H) that Eq 18 neglects.
+    /// The structure is at rest at the static displacement of one side. By Eqs 5 and 6 a change of sides then accelerates the top
+    /// mass by ü_gr,max for C = 2, up to terms in g/(ω_u² H) that Eq 18 neglects.
     #[test]
     fn an_instant_change_of_sides_accelerates_as_equation_21_says() {
         let structure = Structure::new(Parameters { f_fc: 1e3, ..Parameters::MCMANUS }).unwrap();

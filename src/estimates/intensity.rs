@@ -8,8 +8,8 @@
 //! | D_5–95 | time from 5 % to 95 % of the Arias intensity, the significant duration | s |
 //! | S_a | largest acceleration of the structure on a fixed base, S_a(1/f_fc, ζ_fc) | g |
 //!
-//! All are exact for a record that is linear between its samples. PGA, PGV and S_a grow in proportion to it, and can be
-//! what runs are measured by ([`IntensityMeasure`]).
+//! All are exact for a record that is linear between its samples. PGA, PGV and S_a grow in proportion to the record and can
+//! be the horizontal axis of a fragility curve ([`IntensityMeasure`]).
 
 use crate::run::record::Record;
 use crate::series::bisection::last_where;
@@ -28,7 +28,7 @@ pub enum IntensityMeasure {
 }
 
 impl IntensityMeasure {
-    /// All of them.
+    /// All intensity measures.
     pub const ALL: [IntensityMeasure; 3] = [IntensityMeasure::Pga, IntensityMeasure::Pgv, IntensityMeasure::Sa];
 
     /// Its name in files and tables.
@@ -48,7 +48,7 @@ impl IntensityMeasure {
         }
     }
 
-    /// What it is.
+    /// Description.
     pub const fn description(self) -> &'static str {
         match self {
             IntensityMeasure::Pga => "peak ground acceleration PGA",
@@ -79,8 +79,8 @@ pub fn arias_intensity(record: &Record, g: f64) -> f64 {
     FRAC_PI_2 / g * squares(record).sum::<f64>()
 }
 
-/// The instants at which 5 % and 95 % of the Arias intensity of `record` have come, s: the significant duration D_5–95 is
-/// between them. Those of the record's start where the ground is at rest.
+/// The instants at which 5 % and 95 % of the Arias intensity of `record` are reached, s. The significant duration D_5–95 is between
+/// them. If the ground is at rest, both are the start of the record.
 pub fn significant_duration(record: &Record) -> [f64; 2] {
     let total: f64 = squares(record).sum();
     [0.05, 0.95].map(|part| {
@@ -103,7 +103,7 @@ fn squares(record: &Record) -> impl Iterator<Item = f64> {
     samples.map(|(t, a)| square_of(t[1] - t[0], a[0], a[1]))
 }
 
-/// ∫ a² dt of what goes from `first` to `last` in a straight line over `duration`.
+/// ∫ a² dt of an acceleration that changes linearly from `first` to `last` over `duration`.
 fn square_of(duration: f64, first: f64, last: f64) -> f64 {
     duration / 3.0 * (first * first + first * last + last * last)
 }

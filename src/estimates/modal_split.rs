@@ -17,8 +17,8 @@
 //! a_t = a_r + a_u                                                                                      (20)
 //! ```
 //!
-//! The paper's (13) and (20) are these with q_r → 0. The sum needs no a_g: it is χ g q_r − (c_u u̇ + k u)/m, and
-//! differs from that of the full equations by g (θ − χ q_r) to first order.
+//! The paper's (13) and (20) are these with q_r → 0. The sum χ g q_r − (c_u u̇ + k u)/m does not depend on a_g. It differs from a_t
+//! of the full equations by g (θ − χ q_r) to first order.
 
 use crate::estimates::demand::Restrained;
 use crate::{Side, State, Structure};
@@ -83,8 +83,8 @@ mod tests {
 
     const STATE: State = State { u: 2e-4, u_dot: -0.03, theta: 0.02, theta_dot: 0.15 };
 
-    /// The linearised equations (7, 8), their gravity terms replaced by those which the modes keep: g H q_r in (8), and
-    /// in (7) χ g q_r, whose moment about the vibration mode's node is the same.
+    /// The modes solve the linearised equations (7, 8) with the gravity terms that the modes keep: g H q_r in (8) and χ g q_r in
+    /// (7). Both have the same moment about the node of the vibration mode.
     #[test]
     fn the_modes_solve_the_linearised_equations() {
         let structure = Structure::new(Parameters::EVISON).unwrap();

@@ -17,12 +17,13 @@
 //! Ties ([`restraint`](crate::mechanics::restraint)) add their moment Σ F s l cos(θ/2) to the right side of (6), and cos θ times
 //! that to the last term of the quadratic.
 //!
-//! The bracket of P is the height of the top mass, so (6) is the moment about the pivot: P's, and what the weight has
-//! left to restore. At θ → 0 the quadratic gives u_cr/(1 + g/(ω_fc² H)): u_cr leaves out the moment m g u of the top
-//! mass, and the force drops by that part (2e-3 for Evison, 5e-3 for McManus) as the base lifts off.
+//! The bracket of P is the height of the top mass, so that (6) is the balance of moments about the pivot. At θ → 0 the quadratic
+//! gives u_cr/(1 + g/(ω_fc² H)), because u_cr leaves out the moment m g u of the top mass. The force drops by this fraction as the
+//! base lifts off (2e-3 for Evison, 5e-3 for McManus).
 
 use crate::mechanics::outputs::Outputs;
-use crate::mechanics::restraint::{Angles, Dissipators, Sum};
+use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
+use crate::run::fall::angle_of_no_return;
 use crate::series::bisection::last_where;
 use crate::{Phase, Side, State, Structure};
 use std::f64::consts::FRAC_PI_2;
@@ -30,7 +31,7 @@ use std::f64::consts::FRAC_PI_2;
 /// The structure at rest under a horizontal force on the top mass.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Equilibrium {
-    /// What holds of the base.
+    /// Phase: full contact, or rocking about a side.
     pub phase: Phase,
     /// Rotation of the base, rad.
     pub theta: f64,
@@ -90,8 +91,8 @@ pub fn at_rotation(structure: &Structure, theta: f64) -> Option<Equilibrium> {
     let s = side.sign();
     let (sin, cos) = libm::sincos(theta.abs());
     let (quadratic, linear) = (k * sin, k * (H * cos + B * sin) + m * g);
-    let dissipators = Dissipators::default().moved(structure, side, theta);
-    let held = s * Sum::of_moments(structure, side, &dissipators).at(Angles::Any, theta, 0.0);
+    let dissipators = Dissipators::NEW.moved(structure, side, theta);
+    let held = s * Restraint::about(structure, side, &dissipators).moment(&Angles::Any.chord(theta, 0.0));
     let constant = g * B * (m + m0 * cos * cos) + held * cos;
     let discriminant = linear * linear - 4.0 * quadratic * constant;
     if discriminant < 0.0 {
@@ -123,8 +124,7 @@ pub fn at_displacement(structure: &Structure, delta_t: f64) -> Option<Equilibriu
 /// The unstable equilibrium without a force, beyond which the structure overturns (to the right); at π/2 of one that its
 /// tendon turns back from everywhere. `None` for a strut too soft to hold the structure on the way there.
 pub fn at_overturning(structure: &Structure) -> Option<Equilibrium> {
-    let alpha_cg = libm::atan(structure.tan_alpha_cg);
-    let farthest = if structure.is_restrained() { FRAC_PI_2 } else { alpha_cg };
+    let farthest = angle_of_no_return(structure).unwrap_or(FRAC_PI_2); // an elastic strut overturns before
     let restores = |theta| at_rotation(structure, theta).is_some_and(|there| there.force >= 0.0);
     at_rotation(structure, last_where(0.0, farthest, restores))
 }
@@ -153,7 +153,7 @@ mod tests {
     }
 
     proptest! {
-        /// The force is what holds the masses against the accelerations that Eqs 5 and 6 would give them.
+        /// The force cancels the accelerations of Eqs 5 and 6.
         #[test]
         fn the_force_balances_equations_5_and_6(theta in -1.4..1.4f64, preset in 0..3usize) {
             let tied = Parameters { P_0: 300.0, k_t: 2e4, k_d: 1e5, F_y: 200.0, ..Parameters::MCMANUS };

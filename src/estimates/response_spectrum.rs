@@ -4,20 +4,20 @@
 //! ü + 2 ζ ω u̇ + ω² u = −a_g,        S_a = max |ü + a_g| = max |2 ζ ω u̇ + ω² u|,        ω = 2π/T
 //! ```
 //!
-//! Of the two accelerations in use this is the absolute one, not the pseudo-acceleration ω² max|u|: it is ü + a_g that
-//! stands in Eqs 2 and 20 and that S_a bounds in Eqs 4 and 22, and the damper's force is part of it. The two are close
-//! at small damping, but ζ_u = ζ_fc c_ratio/√(1−χ) of a slender structure need not be small.
+//! S_a is the absolute acceleration, not the pseudo-acceleration ω² max|u|. Eqs 2 and 20 contain ü + a_g, which includes the force
+//! of the damper, and S_a bounds it in Eqs 4 and 22. Both accelerations are close at small damping, but
+//! ζ_u = ζ_fc c_ratio/√(1−χ) of a slender structure need not be small.
 //!
-//! On ground whose acceleration is a + b τ between two samples, the motion that follows the ground without swinging
-//! has ü + a_g = a + b τ and u̇ = −b/ω². What is left of (u̇, ü + a_g) is free vibration (w, ẇ):
+//! The ground acceleration is a + b τ between two samples. The motion that follows the ground without swinging has
+//! ü + a_g = a + b τ and u̇ = −b/ω². The rest of (u̇, ü + a_g) is free vibration (w, ẇ):
 //!
 //! ```text
 //! w(τ) = (C + ζω S) w₀ + S ẇ₀,   ẇ(τ) = −ω² S w₀ + (C − ζω S) ẇ₀,   C = e^{−ζωτ} cos dτ,  S = e^{−ζωτ} sin(dτ)/d
 //! ```
 //!
-//! with d = ω √(1 − ζ²), hyperbolic functions for ζ > 1 and S = τ e^{−ωτ} for ζ = 1: exact for any step and damping. So
-//! is the peak between samples: |ü + a_g| is largest at a sample or where its rate b + ẅ is 0, and between the zeros of
-//! that rate's own slope, which have a closed form, the rate passes 0 once at most.
+//! with d = ω √(1 − ζ²), hyperbolic functions for ζ > 1 and S = τ e^{−ωτ} for ζ = 1. This is exact for any step and damping. The
+//! peak between samples is exact, too. |ü + a_g| is largest at a sample or at a zero of its rate b + ẅ. The zeros of the slope of
+//! this rate have a closed form, and between two of them the rate passes 0 at most once.
 
 use crate::levels::oscillator::Oscillator;
 use crate::run::ground_motion::Segment;
@@ -44,8 +44,8 @@ pub fn spectrum(record: &Record, periods: impl IntoIterator<Item = f64>, zeta: f
     periods.into_iter().map(at).collect()
 }
 
-/// S_a of `record` at the period `T` (s) and the damping ratio `zeta` of a structure, m/s². The oscillator starts at rest and swings
-/// on for a period after the record's end: its largest swing comes within a quarter of one.
+/// S_a of `record` at the period `T` (s) and the damping ratio `zeta` of a structure, m/s². The oscillator starts at rest. The
+/// search ends one period after the record, because the largest swing comes within a quarter of a period.
 pub fn spectral_acceleration(record: &Record, T: f64, zeta: f64) -> f64 {
     Oscillator { omega: TAU / T, zeta }.peak(record.segments(record.end() - record.start() + T))
 }
@@ -145,8 +145,8 @@ mod tests {
         }
     }
 
-    /// Closed form of the response to ground that takes up the acceleration 1 at once and keeps it: the peak
-    /// 1 + exp(−ζ (π − 2 asin ζ)/√(1−ζ²)) at ω t = (π − 2 asin ζ)/√(1−ζ²) for ζ < 1, 1 + e^{−2} at ω t = 2 for ζ = 1.
+    /// The ground acceleration is 1 from the start. The peak is 1 + exp(−ζ (π − 2 asin ζ)/√(1−ζ²)) for ζ < 1, and 1 + e^{−2}
+    /// for ζ = 1.
     #[test]
     fn a_step_has_its_closed_form_however_it_is_cut() {
         for zeta in [0.0, 0.02, 0.5, 0.9, 1.0] {

@@ -1,10 +1,10 @@
 //! The moment that turns a rocking base back, without a time history: what the weight, a tendon and dissipators restore while
 //! the base is turned slowly.
 //!
-//! The moment is [`restoring_moment`]: Eq 6 at rest, of a strut that is not deformed. From the way there to the way back the elastoplastic dissipators change sign:
-//! the loop is a flag of the height Σ_j 2 F_y |sB − ξ_j| cos(θ/2).
+//! The moment is [`Restraint::restoring_moment`]: Eq 6 at rest with a strut that is not deformed. The forces of the elastoplastic
+//! dissipators change sign on the way back, so that the loop is a flag of the height Σ_j 2 F_y |sB − ξ_j| cos(θ/2).
 
-use crate::mechanics::restraint::{Dissipators, restoring_moment};
+use crate::mechanics::restraint::{Dissipators, Restraint};
 use crate::{Side, Structure};
 use serde::Serialize;
 
@@ -17,14 +17,14 @@ pub struct Point {
     pub moment: f64,
 }
 
-/// The base of `structure` turned slowly from rest to the rotation `theta` (rad, 0 to π/2) and back to 0, each way in as many
-/// equal steps: the moment at the start and after each of them.
+/// The moments while the base of `structure` is turned slowly from rest to the rotation `theta` (rad, 0 to π/2) and back to 0, in
+/// this many equal `steps` each way.
 pub fn flag(structure: &Structure, theta: f64, steps: u32) -> Vec<Point> {
     let there = (0..=steps).map(|i| theta * f64::from(i) / f64::from(steps));
-    let mut dissipators = Dissipators::default();
+    let mut dissipators = Dissipators::NEW;
     let at = |theta: f64| {
         dissipators = dissipators.moved(structure, Side::Right, theta);
-        Point { theta, moment: restoring_moment(structure, theta, &dissipators) }
+        Point { theta, moment: Restraint::about(structure, Side::Right, &dissipators).restoring_moment(theta) }
     };
     there.clone().chain(there.rev().skip(1)).map(at).collect()
 }
@@ -59,7 +59,7 @@ mod tests {
             assert!((moment - expected).abs() <= 1e-12 * expected.abs(), "{theta}: {moment}, {expected}");
         }
         assert_eq!(points[0].moment, elastic(0.0));
-        // with the base down what is left is what decides whether it stays so
+        // with the base down, the residual forces decide whether it stays down
         let [restoring, residual] = centring_moments(&structure);
         assert!((points[20].moment - (restoring - residual)).abs() < 1e-9 * restoring);
         assert!((residual - F_y * ((B - xi_d) + (B + xi_d))).abs() < 1e-12 * residual);

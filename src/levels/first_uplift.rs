@@ -1,6 +1,7 @@
 //! The first instant of a motion in full contact at which [uplift](crate::mechanics::uplift) is due.
 
-use crate::mechanics::uplift::{self, Hold, LEAST_EXCESS, TurningMoment};
+use crate::mechanics::restraint::Restraint;
+use crate::mechanics::uplift::{self, LEAST_EXCESS, TurningMoment};
 use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::series::taylor::{Arc, Series, Start};
 use crate::{Side, Structure};
@@ -20,8 +21,9 @@ pub(crate) fn first(structure: &Structure, turning: &TurningMoment, start: &Star
 fn first_about(structure: &Structure, turning: &TurningMoment, start: &Start, arc: &Arc, side: Side) -> Crossing {
     let s = side.sign();
     let [a_v, a_v_change] = [0, 1].map(|k| start.a_v.coefficient(k, arc.span));
-    let hold = Hold::about(structure, side, a_v, start.dissipators);
-    let end = if a_v_change == 0.0 { hold } else { Hold::about(structure, side, a_v + a_v_change, start.dissipators) };
+    let restraint = Restraint::about(structure, side, start.dissipators);
+    let hold = restraint.hold(a_v);
+    let end = if a_v_change == 0.0 { hold } else { restraint.hold(a_v + a_v_change) };
     let [rise, gain] = [end.displacement - hold.displacement, end.moment - hold.moment];
     let moving = a_v_change != 0.0;
     let mut displacement = arc.u;
@@ -35,7 +37,7 @@ fn first_about(structure: &Structure, turning: &TurningMoment, start: &Start, ar
     }
     let mut moment: Series = arc.u;
     for (k, coefficient) in moment[..=arc.order].iter_mut().enumerate() {
-        *coefficient = (turning.u + a_v) * arc.u[k] + turning.u_dot * arc.u_dot[k];
+        *coefficient = turning.at(arc.u[k], arc.u_dot[k], a_v);
         if moving && k > 0 {
             *coefficient += a_v_change * arc.u[k - 1] - if k == 1 { s * gain } else { 0.0 };
         }

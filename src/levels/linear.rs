@@ -18,7 +18,7 @@ use crate::levels::level::{ElasticRocking, Now, Pace, Rates, Subject};
 use crate::levels::linear_system::{LinearSystem, Row};
 use crate::levels::oscillator::Kept;
 use crate::levels::ties::TieSeries;
-use crate::mechanics::restraint::{Angles, Sum};
+use crate::mechanics::restraint::{Angles, Restraint};
 use crate::mechanics::uplift::TurningMoment;
 use crate::series::taylor::{Arc, Series, Start};
 use crate::{Side, State, Structure};
@@ -196,7 +196,8 @@ impl ElasticRocking for LinearRocking {
         let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
         let (inertia, offset) = (foundation + B * B, side.sign() * gamma * B);
         let gravity = [g + a_v.value, a_v.slope * span];
-        let mut ties = TieSeries::new(Sum::of_moments(structure, side, dissipators), Angles::Small, state.theta);
+        let ties = Restraint::about(structure, side, dissipators).moments();
+        let mut ties = TieSeries::new(ties, Angles::Small, state.theta);
         arc.expand(&state, span, self.pace.truncation(start, span), |arc, k, per| {
             let n = k - 1;
             let weighted = |of: &Series| gravity[0] * of[n] + if n > 0 { gravity[1] * of[n - 1] } else { 0.0 };
@@ -210,7 +211,10 @@ impl ElasticRocking for LinearRocking {
     }
 
     fn turning_moment(&self) -> TurningMoment {
-        if self.subject.is_tied { TurningMoment::new(&self.subject.structure) } else { self.system.turning_moment() }
+        match self.subject.is_tied {
+            true => TurningMoment { inertia: TurningMoment::CONSTANT, ..TurningMoment::new(&self.subject.structure) },
+            false => self.system.turning_moment(),
+        }
     }
 
     fn accelerations(&self, side: Side, now: &Now) -> [f64; 2] {
@@ -223,7 +227,8 @@ impl ElasticRocking for LinearRocking {
         let &Structure { stiffness, damping_u, foundation, gamma, .. } = structure;
         let &State { u, u_dot, theta, theta_dot } = state;
         let (g, elastic) = (g + load.a_v, damping_u * u_dot + stiffness * u);
-        let back = Sum::of_moments(structure, side, dissipators).at(Angles::Small, theta, theta_dot) / m;
+        let chord = Angles::Small.chord(theta, theta_dot);
+        let back = Restraint::about(structure, side, dissipators).moment(&chord) / m;
         let theta_ddot = (H * elastic + g * (u - side.sign() * gamma * B) - back) / (foundation + B * B);
         [g * theta - load.on_top(structure) - elastic - H * theta_ddot, theta_ddot]
     }

@@ -68,6 +68,6 @@ impl LinearSystem {
     /// s θ̈ at θ = θ̇ = 0.
     pub(crate) fn turning_moment(&self) -> TurningMoment {
         let Row { u, u_dot, side, .. } = self.theta_ddot;
-        TurningMoment { u, u_dot, weight: -side }
+        TurningMoment { u, u_dot, weight: -side, inertia: TurningMoment::CONSTANT }
     }
 }

@@ -26,7 +26,7 @@
 use crate::levels::level::{ElasticRocking, Now, Pace, Subject};
 use crate::levels::ties::TieSeries;
 use crate::mechanics::load::Load;
-use crate::mechanics::restraint::{Angles, Dissipators, Sum};
+use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
 use crate::series::taylor::{Arc, MAX_ORDER, Start};
 use crate::{Side, State, Structure};
 use nalgebra::{Matrix2, Vector2};
@@ -43,7 +43,10 @@ pub fn accelerations(
     dissipators: &Dissipators,
 ) -> Option<Vector2<f64>> {
     let back = match structure.is_restrained() {
-        true => Sum::of_moments(structure, side, dissipators).at(Angles::Any, state.theta, state.theta_dot),
+        true => {
+            let chord = Angles::Any.chord(state.theta, state.theta_dot);
+            Restraint::about(structure, side, dissipators).moment(&chord)
+        }
         false => 0.0,
     };
     let Load { a_g, F_t, a_v } = load;
@@ -173,8 +176,8 @@ impl NonlinearRocking {
         // g + a_v now, and its gain over the span
         let (g, lift) = if TIED { (g + start.a_v.value, start.a_v.slope * span) } else { (g, 0.0) };
         let mut ties = TIED.then(|| {
-            let sum = Sum::of_moments(structure, side, start.dissipators);
-            TieSeries::new(sum, Angles::Any, state.theta)
+            let ties = Restraint::about(structure, side, start.dissipators).moments();
+            TieSeries::new(ties, Angles::Any, state.theta)
         });
         let [(a, slope), (a_ground, slope_ground)] = [a_top, a_g].map(|a| (a.value, a.slope * span));
         let weight_offset = side.sign() * (gamma - 1.0) * B; // s(γ−1)B

@@ -22,7 +22,7 @@ use crate::levels::level::{Level, Now, Rates, Subject};
 use crate::levels::rules::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD};
 use crate::levels::ties::TieSeries;
 use crate::mechanics::load::Load;
-use crate::mechanics::restraint::{Angles, Dissipators, Sum, holding_moment};
+use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
 use crate::mechanics::uplift::least_push;
 use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation, ZERO, product};
@@ -63,9 +63,9 @@ impl Rigid {
         let &Start { state, a_g, a_top, a_v, interval, local_error, dissipators } = start;
         let &Structure { p_l, tan_alpha_cg, J_P, .. } = structure;
         let g = structure.parameters().g;
-        let sum = is_tied.then(|| Sum::of_moments(structure, side, dissipators));
-        let mut ties = sum.map(|sum| TieSeries::new(sum, Angles::Any, state.theta));
-        let fastest = sum.map_or(p_l, |sum| (p_l * p_l + sum.stiffness / J_P).sqrt().max(sum.damping / J_P));
+        let tie = is_tied.then(|| Restraint::about(structure, side, dissipators).moments());
+        let mut ties = tie.map(|tie| TieSeries::new(tie, Angles::Any, state.theta));
+        let fastest = tie.map_or(p_l, |tie| (p_l * p_l + tie.stiffness / J_P).sqrt().max(tie.damping / J_P));
         let span = interval.min(LONGEST_SPAN / fastest.max(state.theta_dot.abs()));
         let stiffness = p_l * p_l;
         let (push, push_slope) = (a_g.value / g, a_g.slope * span / g);
@@ -98,7 +98,7 @@ impl Rigid {
     /// The push (m/s²) for uplift about `side`, beyond the push against the weight alone.
     fn more_push(&self, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
         let structure = &self.subject.structure;
-        holding_moment(structure, side, a_v, dissipators) / structure.parameters().H
+        Restraint::about(structure, side, dissipators).hold(a_v).moment / structure.parameters().H
     }
 }
 
@@ -197,7 +197,8 @@ impl Level for Rigid {
         if !is_tied {
             return [0.0, free];
         }
-        let held = Sum::of_moments(structure, side, dissipators).at(Angles::Any, state.theta, state.theta_dot);
+        let chord = Angles::Any.chord(state.theta, state.theta_dot);
+        let held = Restraint::about(structure, side, dissipators).moment(&chord);
         [0.0, free - (held / structure.J_P - p_l.powi(2) * load.a_v / g * p)]
     }
 }

@@ -5,14 +5,14 @@
 
 use crate::levels::detail::AnyLevel;
 use crate::levels::level::{Now, Rates};
-use crate::mechanics::instant::{Instant, Strut, damping};
+use crate::mechanics::instant::{Instant, Strut};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::mechanics::outputs::{Measure, Outputs, composed, searched};
 use crate::numbers::bend::Bend;
 use crate::numbers::dual::Dual;
 use crate::numbers::linear::{Leaf, Linear};
 use crate::numbers::most::Most;
-use crate::numbers::{Number, Turn};
+use crate::numbers::{Angle, Number, Turn};
 use crate::series::extremes::{self, Bound, Range};
 use crate::series::taylor::{Arc, Series};
 use crate::series::terms::Terms;
@@ -24,7 +24,7 @@ pub(crate) type Searched<T> = [T; Measure::SEARCHED.len()];
 impl AnyLevel {
     /// The strut in `phase`, given θ̈.
     fn strut<N>(&self, phase: Phase, theta_ddot: impl FnOnce() -> N) -> Strut<N> {
-        if self.has_strut() { Strut::Elastic(damping(self.structure(), phase)) } else { Strut::Rigid(theta_ddot()) }
+        if self.has_strut() { Strut::Elastic(self.structure().base.damping(phase)) } else { Strut::Rigid(theta_ddot()) }
     }
 
     /// The outputs in `phase`.
@@ -84,7 +84,7 @@ impl AnyLevel {
         let x = Instant {
             structure: self.structure(),
             s: phase.side().sign(),
-            strut: Strut::Elastic(damping(self.structure(), phase)),
+            strut: Strut::Elastic(self.structure().base.damping(phase)),
             u: Most(state.u),
             u_dot: Most(state.u_dot),
             theta,
@@ -108,7 +108,7 @@ impl AnyLevel {
         let x = Instant {
             structure: self.structure(),
             s: phase.side().sign(),
-            strut: Strut::Elastic(damping(self.structure(), phase)),
+            strut: Strut::Elastic(self.structure().base.damping(phase)),
             u: bend(u, u_dot, u_ddot),
             u_dot: bend(u_dot, u_ddot, u_dddot),
             theta: turning,
@@ -190,7 +190,7 @@ pub(crate) fn over<'a, const L: usize>(
     Instant {
         structure,
         s: phase.side().sign(),
-        strut: Strut::Elastic(damping(structure, phase)),
+        strut: Strut::Elastic(structure.base.damping(phase)),
         u: none,
         u_dot: none,
         theta,

@@ -1,32 +1,43 @@
 //! Mechanical energy: constant between impacts when c_u = 0 and a_g = 0.
 
 use crate::mechanics::instant::Instant;
+use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::Load;
-use crate::mechanics::outputs::height;
 use crate::numbers::Number;
-use crate::{Parameters, Phase, State, Structure};
+use crate::structure::Base;
+use crate::{Phase, State};
 
 /// Energy in J, zero at height zero:
 ///
 /// ```text
-/// E = ½ m [(u̇ + Hθ̇)² + (sB−u)² θ̇²] + ½ (J0 + m0 B²) θ̇² + ½ k u² + m g [(sB−u) sin θ + H cos θ] + s m0 g B sin θ
+/// E = Σ { ½ μ [(u̇ + hθ̇)² + w² θ̇²] + ½ k u² + Γ g [w sin θ + h cos θ] } + ½ (J0 + m0 B²) θ̇² + s m0 g B sin θ
 /// ```
 ///
-/// s does not matter in full contact, where θ = θ̇ = 0.
-pub fn energy(structure: &Structure, phase: Phase, state: &State) -> f64 {
-    let x = Instant::of(structure, phase, state, Load::default());
-    kinetic(&x) + x.u * (0.5 * structure.k) * x.u + potential(&x)
+/// The sum is over the modes, w = sB Γ/μ − u. One mass has μ = Γ = m and h = H. s does not matter in full contact, where θ = θ̇ = 0.
+pub fn energy<Q: Coordinates>(structure: &Q::Structure, phase: Phase, state: &State<Q>) -> f64 {
+    let load = Load { a_g: 0.0, F_t: Q::each(structure, |_, _| 0.0), a_v: 0.0 };
+    mechanical(&Instant::of(structure, phase, state, load))
+}
+
+/// Energy at the instant `x`, J.
+fn mechanical<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>) -> N {
+    kinetic(x) + x.sum(|j, mode| x.u.of(j) * (0.5 * mode.stiffness) * x.u.of(j)) + potential(x)
 }
 
 /// Kinetic energy, J.
-pub(crate) fn kinetic<N: Number>(x: &Instant<N>) -> N {
-    let &Parameters { m, m0, H, B, J0, .. } = x.structure.parameters();
-    let (along, across) = (x.u_dot + x.theta_dot * H, x.lever() * x.theta_dot);
-    (along * along + across * across) * (0.5 * m) + x.theta_dot * (0.5 * (J0 + m0 * B * B)) * x.theta_dot
+pub(crate) fn kinetic<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>) -> N {
+    let &Base { m0, J0, B, .. } = x.base();
+    let of_modes = x.sum(|j, mode| {
+        let along = x.u_dot.of(j) + x.theta_dot * mode.height;
+        let across = x.place(j, mode).lever(x.pivot()) * x.theta_dot;
+        (along * along + across * across) * (0.5 * mode.mass)
+    });
+    of_modes + x.theta_dot * (0.5 * (J0 + m0 * B * B)) * x.theta_dot
 }
 
 /// Potential energy of the weights, J.
-fn potential<N: Number>(x: &Instant<N>) -> N {
-    let &Parameters { m, m0, g, .. } = x.structure.parameters();
-    height(x) * (m * g) + x.turn.sin * (m0 * g * x.pivot())
+fn potential<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>) -> N {
+    let &Base { m0, g, .. } = x.base();
+    let of_modes = x.sum(|j, mode| x.place(j, mode).up(x.pivot(), &x.turn) * (mode.gamma * g));
+    of_modes + x.turn.sin * (m0 * g * x.pivot())
 }

@@ -1,4 +1,4 @@
-//! Impact: what happens when s θ returns to 0.
+//! Impact: the change of the motion when s θ returns to 0.
 //!
 //! L is the angular momentum about the pivot that comes down, −s, just before:
 //!
@@ -11,54 +11,58 @@
 
 use crate::mechanics::energy::kinetic;
 use crate::mechanics::instant::Instant;
+use crate::mechanics::lateral::Coordinates;
 use crate::mechanics::load::Load;
+use crate::structure::{Base, Mode};
 use crate::{Phase, Side, State, Structure};
 
 /// Angular momentum L about the pivot that comes down, kg·m²/s, of a structure that touches the ground (θ = 0).
-pub fn angular_momentum(structure: &Structure, before: &State) -> f64 {
-    let &crate::Parameters { m, m0, H, B, J0, .. } = structure.parameters();
+pub fn angular_momentum<Q: Coordinates>(structure: &Q::Structure, before: &State<Q>) -> f64 {
+    let &Base { m0, B, J0, .. } = Q::base(structure);
     let &State { u, u_dot, theta_dot, .. } = before;
-    m * H * (u_dot + H * theta_dot) - (m * (B * B - u * u) + m0 * B * B - J0) * theta_dot
+    let along = Q::sum(structure, |j, mode| mode.mass * mode.height * (u_dot.of(j) + mode.height * theta_dot));
+    let across = Q::sum(structure, |j, mode| {
+        let b = mode.share * B;
+        mode.mass * (b * b - u.of(j) * u.of(j))
+    });
+    along - (across + m0 * B * B - J0) * theta_dot
 }
 
 /// Phase and state just after an impact that ends rocking about `side` in the state `before`.
-pub fn resolve(structure: &Structure, side: Side, before: &State) -> (Phase, State) {
+pub fn resolve<Q: Coordinates>(structure: &Q::Structure, side: Side, before: &State<Q>) -> (Phase, State<Q>) {
     if angular_momentum(structure, before) * before.theta_dot > 0.0 {
-        let theta_dot = structure.parameters().r * before.theta_dot;
+        let theta_dot = Q::base(structure).r * before.theta_dot;
         (Phase::Rocking(side.opposite()), State { theta: 0.0, theta_dot, ..*before })
     } else {
         (Phase::FullContact, land(structure, before))
     }
 }
 
-/// By how much the energy grows, J, at an impact that ends rocking about `side` in the state `before` and is followed by
-/// rocking about the other pivot, J₋ the inertia about the pivot before it:
+/// Energy gained, J, at an impact that ends rocking about `side` in the state `before` and begins rocking about the other pivot.
+/// J₋ is the inertia about the pivot before the impact:
 ///
 /// ```text
 /// T₊ − T₋ = −(1−r) m H u̇ θ̇ − ½ (1−r²) J₋ θ̇² + 2 r² m B s u θ̇²,      J₋ = J0 + m0 B² + m H² + m (sB−u)²
 /// ```
 ///
-/// Where u̇ and θ̇ differ in sign, taking momentum from the base and not from the top mass adds to the energy; and so does
-/// to keep θ̇ about a pivot that the top mass is farther from than from the one before, s u > 0: with r = 1, too. A landing
-/// always loses ½ J₋ θ̇² less ½ m H² θ̇².
-pub fn energy_gained(structure: &Structure, side: Side, before: &State) -> f64 {
-    let &crate::Parameters { m, H, B, r, .. } = structure.parameters();
+/// The rule takes momentum from the base and not from the top mass, which adds energy if u̇ and θ̇ differ in sign. If s u > 0, the
+/// new pivot is farther from the top mass, and keeping θ̇ adds energy even with r = 1. A landing always loses ½ J₋ θ̇² less
+/// ½ m H² θ̇². With many masses, each term with m is a sum over the modes.
+pub fn energy_gained<Q: Coordinates>(structure: &Q::Structure, side: Side, before: &State<Q>) -> f64 {
+    let (&Base { B, r, J_P, .. }, s) = (Q::base(structure), side.sign());
     let &State { u, u_dot, theta_dot, .. } = before;
-    let s = side.sign();
-    let (square, inertia) = (theta_dot * theta_dot, inertia_before(structure, s * u));
-    -(1.0 - r) * m * H * u_dot * theta_dot - 0.5 * (1.0 - r * r) * inertia * square
-        + 2.0 * r * r * m * B * s * u * square
-}
-
-/// J₋ at the displacement `u` (m) towards the pivot, kg·m².
-fn inertia_before(structure: &Structure, u: f64) -> f64 {
-    let &crate::Parameters { m, B, .. } = structure.parameters();
-    structure.J_P + m * u * (u - 2.0 * B)
+    let sum = |term: &dyn Fn(usize, &Mode) -> f64| Q::sum(structure, term);
+    let square = theta_dot * theta_dot;
+    let inertia = J_P + sum(&|j, mode| mode.mass * (s * u.of(j)) * (s * u.of(j) - 2.0 * B * mode.share));
+    sum(&|j, mode| -(1.0 - r) * mode.mass * mode.height * u_dot.of(j)) * theta_dot
+        - 0.5 * (1.0 - r * r) * inertia * square
+        + sum(&|j, mode| 2.0 * r * r * mode.gamma * B * s * u.of(j)) * square
 }
 
 /// Kinetic energy T₋ in the state `before`, which ends rocking about `side`, J.
-pub(crate) fn kinetic_energy(structure: &Structure, side: Side, before: &State) -> f64 {
-    kinetic(&Instant::of(structure, Phase::Rocking(side), before, Load::default()))
+pub(crate) fn kinetic_energy<Q: Coordinates>(structure: &Q::Structure, side: Side, before: &State<Q>) -> f64 {
+    let load = Load { a_g: 0.0, F_t: Q::each(structure, |_, _| 0.0), a_v: 0.0 };
+    kinetic(&Instant::of(structure, Phase::Rocking(side), before, load))
 }
 
 /// A = J0 + m (H² + u²) and F = (m + m0) B², kg·m²: J₋ is A + F − 2 m B s u.
@@ -67,10 +71,11 @@ fn inertias(structure: &Structure, u: f64) -> [f64; 2] {
     [J0 + m * (H * H + u * u), (m + m0) * B * B]
 }
 
-/// The supremum of (T₊ − T₋)/θ̇², kg·m², over all impacts at the displacement `u` (m) towards the pivot rocked about (s u,
-/// so negative away from it) after which rocking goes on.
+/// The supremum of (T₊ − T₋)/θ̇², kg·m², over all impacts at the displacement `u` (m) after which rocking continues. `u` is
+/// positive towards the pivot before the impact.
 ///
-/// It falls as u̇/θ̇ rises, which L θ̇ > 0 bounds from below; there it is, with A = J0 + m (H² + u²) and F = (m + m0) B²,
+/// The gain falls as u̇/θ̇ rises, and L θ̇ > 0 bounds u̇/θ̇ from below. At this bound, with A = J0 + m (H² + u²) and
+/// F = (m + m0) B², the gain is
 ///
 /// ```text
 /// ½ (1−r) [(1−r) A − (3+r) F] + (1+r²) m B s u
@@ -81,8 +86,8 @@ pub fn greatest_gain(structure: &Structure, u: f64) -> f64 {
     0.5 * (1.0 - r) * ((1.0 - r) * a - (3.0 + r) * f) + (1.0 + r * r) * m * B * u
 }
 
-/// The coefficients of restitution between which no impact at the displacement `u` (m) towards the pivot raises the energy:
-/// where [`greatest_gain`] is not positive, or none. With U = 2 m B s u they are
+/// The two coefficients of restitution between which no impact at the displacement `u` (m) towards the pivot raises the energy.
+/// [`greatest_gain`] is not positive between them. If there is no such range, the result is none. With U = 2 m B s u they are
 ///
 /// ```text
 /// r = [A − F ± √(4 F² − 2 U (A − F) − U²)]/(A + F + U),      at u = 0: 1 − 4 (m + m0) B²/J_P and 1
@@ -95,7 +100,7 @@ pub fn lossless_restitution(structure: &Structure, u: f64) -> Option<[f64; 2]> {
     (square >= 0.0).then(|| [-square.sqrt(), square.sqrt()].map(|root| (a - f + root) / (a + f + lift)))
 }
 
-/// The coefficient of restitution below which an impact with u = 0 takes an impulse that pulls at the edge that lifts off:
+/// The coefficient of restitution below which an impact with u = 0 requires a pull at the edge that lifts off:
 ///
 /// ```text
 /// r < 1 − 2 (m + m0) B²/J_P
@@ -108,8 +113,8 @@ pub fn pulling_restitution(structure: &Structure) -> f64 {
 }
 
 /// The state just after landing: both pivots down, horizontal momentum kept.
-pub fn land(structure: &Structure, before: &State) -> State {
-    let u_dot = before.u_dot + structure.parameters().H * before.theta_dot;
+pub fn land<Q: Coordinates>(structure: &Q::Structure, before: &State<Q>) -> State<Q> {
+    let u_dot = Q::each(structure, |j, mode| before.u_dot.of(j) + mode.height * before.theta_dot);
     State { u: before.u, u_dot, theta: 0.0, theta_dot: 0.0 }
 }
 

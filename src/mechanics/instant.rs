@@ -1,22 +1,23 @@
 //! All that a formula reads: the structure at one instant, in numbers of any kind.
 
+use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::{LinearLoad, Load};
 use crate::numbers::dual::Dual;
-use crate::numbers::{Number, Turn};
+use crate::numbers::{Angle, Number, Turn};
+use crate::structure::{Base, Mode};
 use crate::{Phase, State, Structure};
 
-/// The structure at an instant. A structure of many masses has one instant for each floor. There `u` and `u_dot` are the
-/// displacement and velocity of the floor, sums over the modes, so that no number grows with the number of modes.
+/// The structure at an instant, with lateral coordinates `Q`.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Instant<'a, N> {
-    pub structure: &'a Structure,
+pub(crate) struct Instant<'a, N: Number, Q: Lateral<N> = N> {
+    pub structure: &'a Q::Structure,
     /// s: +1 about the right pivot, −1 about the left one.
     pub s: f64,
     pub strut: Strut<N>,
     /// u, m.
-    pub u: N,
+    pub u: Q,
     /// u̇, m/s.
-    pub u_dot: N,
+    pub u_dot: Q,
     /// θ, rad.
     pub theta: N,
     /// θ̇, rad/s.
@@ -25,7 +26,7 @@ pub(crate) struct Instant<'a, N> {
     /// Ground acceleration, m/s².
     pub a_g: N,
     /// Force on the top mass, N.
-    pub F_t: N,
+    pub F_t: Q,
     /// Vertical ground acceleration, m/s².
     pub a_v: N,
 }
@@ -33,38 +34,51 @@ pub(crate) struct Instant<'a, N> {
 /// The part that carries the top mass.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Strut<N> {
-    /// An elastic strut with this viscous damping, N·s/m.
+    /// An elastic strut with this viscous damping, as a fraction of the damping in full contact.
     Elastic(f64),
-    /// The rigid limit with θ̈ in rad/s²: there u is 0 and says nothing of the forces.
+    /// The rigid limit with θ̈ in rad/s². There u is 0 whatever the forces are.
     Rigid(N),
 }
 
 /// The accelerations, which the formulas of the reactions read besides.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Second<N> {
+pub(crate) struct Second<N, Q = N> {
     /// ü, m/s².
-    pub u_ddot: N,
+    pub u_ddot: Q,
     /// θ̈, rad/s².
     pub theta_ddot: N,
 }
 
-/// The damping in force, N·s/m: c_fc in full contact, c_u otherwise.
-#[inline]
-pub(crate) fn damping(structure: &Structure, phase: Phase) -> f64 {
-    match phase {
-        Phase::FullContact => structure.c_fc,
-        Phase::Rocking(_) | Phase::Overturned(_) => structure.c_u,
+/// A place on the structure: a mass, or what stands for it in a sum over the modes.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Place<N> {
+    /// Part that the place takes in a translation of the base; 1 of a mass.
+    pub share: f64,
+    /// Height above the base, m.
+    pub height: f64,
+    /// Elastic displacement, m.
+    pub u: N,
+}
+
+impl Base {
+    /// The damping in `phase` as a fraction of the damping in full contact.
+    #[inline]
+    pub(crate) fn damping(&self, phase: Phase) -> f64 {
+        match phase {
+            Phase::FullContact => 1.0,
+            Phase::Rocking(_) | Phase::Overturned(_) => self.c_ratio,
+        }
     }
 }
 
-impl<'a> Instant<'a, f64> {
+impl<'a, Q: Coordinates> Instant<'a, f64, Q> {
     /// The structure in `phase` and `state` under `load`, with an elastic strut.
     #[inline]
-    pub(crate) fn of(structure: &'a Structure, phase: Phase, state: &State, load: Load) -> Self {
+    pub(crate) fn of(structure: &'a Q::Structure, phase: Phase, state: &State<Q>, load: Load<Q>) -> Self {
         let &State { u, u_dot, theta, theta_dot } = state;
         let Load { a_g, F_t, a_v } = load;
-        let (s, strut) = (phase.side().sign(), Strut::Elastic(damping(structure, phase)));
-        Instant { structure, s, strut, u, u_dot, theta, theta_dot, turn: Turn::by(theta), a_g, F_t, a_v }
+        let (s, strut) = (phase.side().sign(), Strut::Elastic(Q::base(structure).damping(phase)));
+        Instant { structure, s, strut, u, u_dot, theta, theta_dot, turn: theta.turn(), a_g, F_t, a_v }
     }
 }
 
@@ -85,7 +99,7 @@ impl<'a> Instant<'a, Dual<f64>> {
         Instant {
             structure,
             s,
-            strut: Strut::Elastic(damping(structure, phase)),
+            strut: Strut::Elastic(structure.base.damping(phase)),
             u: dual(u, u_dot),
             u_dot: dual(u_dot, u_ddot),
             theta: dual(theta, theta_dot),
@@ -98,16 +112,48 @@ impl<'a> Instant<'a, Dual<f64>> {
     }
 }
 
-impl<N: Number> Instant<'_, N> {
-    /// w = sB − u, m: the top mass is so far from the plane of the pivot.
+impl<N: Number, Q: Lateral<N>> Instant<'_, N, Q> {
+    /// The base.
     #[inline(always)]
-    pub(crate) fn lever(&self) -> N {
-        N::constant(self.pivot()) - self.u
+    pub(crate) fn base(&self) -> &Base {
+        Q::base(self.structure)
     }
 
     /// Place of the pivot, sB, m.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn pivot(&self) -> f64 {
-        self.s * self.structure.parameters().B
+        self.s * self.base().B
+    }
+
+    /// A sum over the modes.
+    #[inline(always)]
+    pub(crate) fn sum(&self, term: impl Fn(usize, &Mode) -> N) -> N {
+        Q::sum(self.structure, term)
+    }
+
+    /// The place that stands for mode `j`.
+    #[inline(always)]
+    pub(crate) fn place(&self, j: usize, mode: &Mode) -> Place<N> {
+        Place { share: mode.share, height: mode.height, u: self.u.of(j) }
+    }
+}
+
+impl<N: Number> Place<N> {
+    /// w = sB − u, m: distance from the plane of the pivot, which is at sB.
+    #[inline(always)]
+    pub(crate) fn lever(&self, pivot: f64) -> N {
+        N::constant(pivot * self.share) - self.u
+    }
+
+    /// Height above the ground, (sB − u) sin θ + h cos θ, m.
+    #[inline(always)]
+    pub(crate) fn up(&self, pivot: f64, turn: &Turn<N>) -> N {
+        self.lever(pivot) * turn.sin + turn.cos * self.height
+    }
+
+    /// Displacement to the right, sB (1 − cos θ) + u cos θ + h sin θ, m (Eq 26).
+    #[inline(always)]
+    pub(crate) fn right(&self, pivot: f64, turn: &Turn<N>) -> N {
+        turn.versine * (pivot * self.share) + self.u * turn.cos + turn.sin * self.height
     }
 }

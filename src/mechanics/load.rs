@@ -1,4 +1,4 @@
-//! What acts on a structure: the ground's accelerations and a force on its top mass.
+//! Loads: the accelerations of the ground and a force on the top mass.
 //!
 //! The force F_t does the work F_t δx on the top mass, x = sB (1 − cos θ) + u cos θ + H sin θ. On the right it adds to
 //!
@@ -6,11 +6,10 @@
 //! (1)  F_t/m        (5)  F_t cos θ        (6)  F_t [H cos θ + (sB − u) sin θ]        (7)  F_t/m        (8)  H F_t/m
 //! ```
 //!
-//! which is what −a_g does there, times m, but for the foundation's share in Eq 6. So the top mass feels the ground
-//! acceleration a_g − F_t/m, the foundation a_g alone, and with F_t = 0 every equation is what it was, to the last bit.
-//! Uplift asks for s u ≥ u_cr and s θ̈ > 0, which neither of them enters; impacts are too short for both.
+//! The top mass therefore feels the ground acceleration a_g − F_t/m, and the foundation feels a_g alone. With F_t = 0 no result
+//! changes in a bit. Uplift requires s u ≥ u_cr and s θ̈ > 0, and neither depends on a_g or F_t. Impacts are too short for both.
 //!
-//! The vertical ground acceleration a_v makes g + a_v of g wherever that is a weight.
+//! The vertical ground acceleration a_v replaces g by g + a_v in every weight.
 
 use crate::Structure;
 use crate::structure::quantity::{OutOfRange, Quantity, quantity};
@@ -20,30 +19,30 @@ use std::ops::{Index, IndexMut};
 /// An acceleration over one interval, positive to the right: `value + slope·(t − start of the interval)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Ramp {
-    /// At the start of the interval, m/s².
+    /// Value at the start of the interval, m/s².
     pub value: f64,
-    /// Its rate, m/s³.
+    /// Rate of the acceleration, m/s³.
     pub slope: f64,
 }
 
 impl Ramp {
-    /// From the acceleration `from` to `to` (m/s²) within `duration` (s).
+    /// The acceleration that changes from `from` to `to` (m/s²) within `duration` (s).
     #[inline(always)] // for each sample of a run
     pub fn between(from: f64, to: f64, duration: f64) -> Ramp {
         Ramp { value: from, slope: (to - from) / duration }
     }
 
-    /// Its value `tau` seconds into the interval, m/s².
+    /// Acceleration `tau` seconds after the start of the interval, m/s².
     pub fn at(self, tau: f64) -> f64 {
         self.value + self.slope * tau
     }
 
-    /// The same, its interval started `tau` seconds later.
+    /// The same acceleration with an interval that starts `tau` seconds later.
     pub fn from(self, tau: f64) -> Ramp {
         Ramp { value: self.at(tau), slope: self.slope }
     }
 
-    /// Coefficient `k` of its series over a step of `span` s.
+    /// Coefficient `k` of the power series over a step of `span` s.
     #[inline]
     pub(crate) fn coefficient(self, k: usize, span: f64) -> f64 {
         match k {
@@ -54,7 +53,7 @@ impl Ramp {
     }
 }
 
-/// What may act, with units and ranges.
+/// All loads, with units and ranges.
 pub static LOADS: [Quantity<Load>; 3] = [
     quantity!(a_g["m/s2"] - 1e4, 1e4, "horizontal ground acceleration, positive to the right"),
     quantity!(F_t["N"] - 1e15, 1e15, "external horizontal force on the top mass, positive to the right"),
@@ -64,13 +63,14 @@ pub static LOADS: [Quantity<Load>; 3] = [
 /// The place of a_v in [`LOADS`].
 pub const VERTICAL: usize = 2;
 
-/// What acts at one instant, or its rate; indexed in the order of [`LOADS`].
+/// The loads at one instant, or their rates; indexed in the order of [`LOADS`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Load {
+pub struct Load<Q = f64> {
     /// Ground acceleration, m/s², positive to the right.
     pub a_g: f64,
-    /// External force on the top mass, N, horizontal in the ground's frame, positive to the right.
-    pub F_t: f64,
+    /// External force on the top mass, N, horizontal in the ground's frame, positive to the right; of many masses, the force φᵀF of
+    /// each mode.
+    pub F_t: Q,
     /// Vertical ground acceleration, m/s², positive upwards.
     pub a_v: f64,
 }
@@ -81,12 +81,12 @@ impl Load {
         Load { a_g, ..Load::default() }
     }
 
-    /// Whether all are numbers.
+    /// Whether all loads are finite numbers.
     pub fn is_finite(&self) -> bool {
         LOADS.iter().all(|quantity| (quantity.get)(self).is_finite())
     }
 
-    /// Accepts what lies within the ranges of [`LOADS`].
+    /// Accepts loads within the ranges of [`LOADS`].
     #[inline]
     pub fn check(&self) -> Result<(), OutOfRange> {
         LOADS[0].check(self.a_g)?;
@@ -127,17 +127,17 @@ impl IndexMut<usize> for Load {
     }
 }
 
-/// What acts over one interval: `value + slope·(t − start of the interval)`.
+/// The loads over one interval: `value + slope·(t − start of the interval)`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LinearLoad {
-    /// At the start of the interval.
+    /// Loads at the start of the interval.
     pub value: Load,
-    /// Its rate, per second.
+    /// Rates of the loads, per second.
     pub slope: Load,
 }
 
 impl LinearLoad {
-    /// Its value `tau` seconds into the interval.
+    /// Loads `tau` seconds after the start of the interval.
     #[inline]
     pub fn at(self, tau: f64) -> Load {
         Load {
@@ -147,24 +147,24 @@ impl LinearLoad {
         }
     }
 
-    /// The same, its interval started `tau` seconds later.
+    /// The same loads with an interval that starts `tau` seconds later.
     pub fn from(self, tau: f64) -> LinearLoad {
         LinearLoad { value: self.at(tau), ..self }
     }
 
-    /// This load on ground that accelerates by that of `ground` more.
+    /// These loads with the accelerations of `ground` added.
     pub fn on_ground(self, ground: LinearLoad) -> LinearLoad {
         let and = |own: Load, ground: Load| Load { a_g: own.a_g + ground.a_g, a_v: own.a_v + ground.a_v, ..own };
         LinearLoad { value: and(self.value, ground.value), slope: and(self.slope, ground.slope) }
     }
 
-    /// The same with the vertical ground acceleration `a_v`.
+    /// These loads with the vertical ground acceleration `a_v`.
     #[cold]
     pub(crate) fn and_upwards(self, a_v: Ramp) -> LinearLoad {
         LinearLoad { value: Load { a_v: a_v.value, ..self.value }, slope: Load { a_v: a_v.slope, ..self.slope } }
     }
 
-    /// Whether the sum of all at the end of an `interval` (s) is finite; then each is, all along.
+    /// Whether the sum of the loads at the end of an `interval` (s) is finite. Then every load is finite throughout.
     #[inline]
     pub(crate) fn is_finite_over(&self, interval: f64) -> bool {
         let Load { a_g, F_t, a_v } = self.at(interval);
@@ -177,12 +177,12 @@ impl LinearLoad {
         self.value.a_v.abs() + self.slope.a_v.abs() > 0.0
     }
 
-    /// Its vertical ground acceleration.
+    /// The vertical ground acceleration.
     pub(crate) fn upwards(self) -> Ramp {
         Ramp { value: self.value.a_v, slope: self.slope.a_v }
     }
 
-    /// Its horizontal ground acceleration.
+    /// The horizontal ground acceleration.
     pub(crate) fn on_foundation(self) -> Ramp {
         Ramp { value: self.value.a_g, slope: self.slope.a_g }
     }
@@ -191,20 +191,20 @@ impl LinearLoad {
     #[inline]
     pub(crate) fn on_top(self, structure: &Structure) -> Ramp {
         if self.value.F_t.abs() + self.slope.F_t.abs() == 0.0 {
-            return self.on_foundation(); // what a division would yield, for less
+            return self.on_foundation(); // the result of the division, at less cost
         }
         Ramp { value: self.value.on_top(structure), slope: self.slope.on_top(structure) }
     }
 }
 
-/// Held.
+/// Constant loads.
 impl From<Load> for LinearLoad {
     fn from(value: Load) -> LinearLoad {
         LinearLoad { value, slope: Load::default() }
     }
 }
 
-/// The ground motion alone.
+/// Horizontal ground motion alone.
 impl From<Ramp> for LinearLoad {
     fn from(a_g: Ramp) -> LinearLoad {
         LinearLoad { value: Load::ground(a_g.value), slope: Load::ground(a_g.slope) }

@@ -12,6 +12,7 @@
 //! rate and, if its peak is searched, an exact peak.
 
 use crate::mechanics::instant::Instant;
+use crate::mechanics::lateral::Lateral;
 use crate::mechanics::load::Load;
 use crate::numbers::Number;
 use crate::{Phase, State, Structure};
@@ -167,7 +168,7 @@ outputs! {
 /// The formula of each output, by its name.
 mod formulas {
     use crate::Parameters;
-    use crate::mechanics::instant::{Instant, Strut};
+    use crate::mechanics::instant::{Instant, Place, Strut};
     use crate::numbers::Number;
 
     #[inline(always)]
@@ -193,13 +194,11 @@ mod formulas {
     /// Eq 27 by (5), and at the rigid level as it stands; of a_v it has −a_v sin θ, which (5) cancels.
     #[inline(always)]
     pub fn a_t<N: Number>(x: &Instant<N>) -> N {
-        let &Parameters { m, H, g, .. } = x.structure.parameters();
         match x.strut {
-            Strut::Elastic(damping) => {
-                x.turn.sin * g + (x.F_t * x.turn.cos - x.u_dot * damping - x.u * x.structure.k) / m
-            }
+            Strut::Elastic(damping) => super::acceleration(x, damping, |_, part| part),
             Strut::Rigid(theta_ddot) => {
-                theta_ddot * H + x.theta_dot * x.theta_dot * x.pivot() + x.a_g * x.turn.cos - x.a_v * x.turn.sin
+                theta_ddot * x.structure.parameters().H + x.theta_dot * x.theta_dot * x.pivot() + x.a_g * x.turn.cos
+                    - x.a_v * x.turn.sin
             }
         }
     }
@@ -222,19 +221,30 @@ mod formulas {
 
     #[inline(always)]
     pub fn delta_t<N: Number>(x: &Instant<N>) -> N {
-        x.turn.versine * x.pivot() + x.u * x.turn.cos + x.turn.sin * x.structure.parameters().H
+        top(x).right(x.pivot(), &x.turn)
     }
 
     #[inline(always)]
     pub fn v_t<N: Number>(x: &Instant<N>) -> N {
-        x.u_dot * x.turn.cos + super::height(x) * x.theta_dot
+        x.u_dot * x.turn.cos + top(x).up(x.pivot(), &x.turn) * x.theta_dot
+    }
+
+    /// The place of the top mass.
+    #[inline(always)]
+    fn top<N: Number>(x: &Instant<N>) -> Place<N> {
+        Place { share: 1.0, height: x.structure.parameters().H, u: x.u }
     }
 }
 
-/// Height of the top mass above the ground, (sB − u) sin θ + H cos θ, m.
+/// Acceleration of a mass by (5), g sin θ + Σ φ (F cos θ − c u̇ − k u)/μ, m/s². The function `at` weighs the part of a mode by its
+/// shape φ at the mass.
 #[inline(always)]
-pub(crate) fn height<N: Number>(x: &Instant<N>) -> N {
-    x.lever() * x.turn.sin + x.turn.cos * x.structure.parameters().H
+pub(crate) fn acceleration<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, damping: f64, at: impl Fn(usize, N) -> N) -> N {
+    let of_modes = x.sum(|j, mode| {
+        let force = x.F_t.of(j) * x.turn.cos - x.u_dot.of(j) * (mode.damping * damping) - x.u.of(j) * mode.stiffness;
+        at(j, force / mode.mass)
+    });
+    x.turn.sin * x.base().g + of_modes
 }
 
 impl Outputs {

@@ -31,13 +31,13 @@
 //! P_h = m ẋ + m0 ẋ₀,   P_v = −m ẏ − m0 ẏ₀,   P_m = m (y ẋ − x ẏ) + m0 (y₀ ẋ₀ − x₀ ẏ₀) + J0 θ̇
 //! ```
 
-use crate::mechanics::instant::{Instant, Second};
+use crate::mechanics::instant::{Instant, Place, Second};
+use crate::mechanics::lateral::{Coordinates, Lateral};
 use crate::mechanics::load::{LinearLoad, Load};
-use crate::mechanics::outputs::{Measure, height};
-use crate::mechanics::restraint::{Angles, Tie};
-use crate::numbers::Number;
 use crate::numbers::dual::Dual;
-use crate::{Parameters, Phase, Side, State, Structure};
+use crate::numbers::{Angle, Number, Turn};
+use crate::structure::{Base, Mode};
+use crate::{Phase, State, Structure};
 use serde::{Deserialize, Serialize};
 
 /// Forces on the ground; from [`crate::Engine::rates`], their time derivatives in the same fields.
@@ -69,58 +69,71 @@ struct Acceleration<N> {
     across: N,
 }
 
-/// Accelerations of the top mass and of the foundation.
-#[inline(always)]
-fn accelerations<N: Number>(x: &Instant<N>, second: &Second<N>) -> [Acceleration<N>; 2] {
-    let H = x.structure.parameters().H;
-    let &Second { u_ddot, theta_ddot } = second;
-    let (lever, square) = (x.lever(), x.theta_dot * x.theta_dot);
-    let top = Acceleration {
-        along: u_ddot + theta_ddot * H + lever * square,
-        across: lever * theta_ddot - square * H - x.u_dot * x.theta_dot * 2.0,
-    };
-    [top, Acceleration { along: square * x.pivot(), across: theta_ddot * x.pivot() }]
+impl<N: Number> Acceleration<N> {
+    /// The acceleration of the place that stands for mode `j`.
+    #[inline(always)]
+    fn of_mode<Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>, j: usize, mode: &Mode) -> Self {
+        let theta_ddot = second.theta_ddot;
+        let (lever, square) = (x.place(j, mode).lever(x.pivot()), x.theta_dot * x.theta_dot);
+        Acceleration {
+            along: second.u_ddot.of(j) + theta_ddot * mode.height + lever * square,
+            across: lever * theta_ddot - square * mode.height - x.u_dot.of(j) * x.theta_dot * 2.0,
+        }
+    }
+
+    /// The acceleration of the middle of the base.
+    #[inline(always)]
+    fn of_base<Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>) -> Self {
+        Acceleration { along: x.theta_dot * x.theta_dot * x.pivot(), across: second.theta_ddot * x.pivot() }
+    }
+
+    /// The force that a mass leaves for the ground, to the right and downwards, N, given the acceleration of the ground there.
+    #[inline(always)]
+    fn force(self, turn: &Turn<N>, [a_g, weight]: [N; 2], mass: f64) -> [N; 2] {
+        let Acceleration { along, across } = self;
+        [-(a_g + along * turn.cos + across * turn.sin) * mass, (weight + across * turn.cos - along * turn.sin) * mass]
+    }
 }
 
 /// R_h and R_v, N.
 #[inline(always)]
-pub(crate) fn forces<N: Number>(x: &Instant<N>, second: &Second<N>) -> [N; 2] {
-    let &Parameters { m, m0, g, .. } = x.structure.parameters();
-    let [top, base] = accelerations(x, second);
-    let along = top.along * m + base.along * m0;
-    let across = top.across * m + base.across * m0;
+pub(crate) fn forces<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>) -> [N; 2] {
+    let &Base { m_t, m0, g, .. } = x.base();
+    let base = Acceleration::of_base(x, second);
+    let (mut along, mut across, mut push) = (base.along * m0, base.across * m0, -(x.a_g * m_t));
+    for (j, mode) in Q::modes(x.structure).iter().enumerate() {
+        let acceleration = Acceleration::of_mode(x, second, j, mode);
+        along = along + acceleration.along * mode.gamma;
+        across = across + acceleration.across * mode.gamma;
+        push = push + mode.part(x.F_t.of(j));
+    }
     [
-        x.F_t - x.a_g * (m + m0) - along * x.turn.cos - across * x.turn.sin,
-        (x.a_v + N::constant(g)) * (m + m0) + across * x.turn.cos - along * x.turn.sin,
+        push - along * x.turn.cos - across * x.turn.sin,
+        (x.a_v + N::constant(g)) * m_t + across * x.turn.cos - along * x.turn.sin,
     ]
 }
 
 /// R_m, N·m.
 #[inline(always)]
-pub(crate) fn moment<N: Number>(x: &Instant<N>, second: &Second<N>) -> N {
-    let &Parameters { m, m0, J0, .. } = x.structure.parameters();
-    let [top, base] = accelerations(x, second);
-    let [right, down] = force(x, top, m);
-    let [base_right, base_down] = force(x, base, m0);
-    let of_top = height(x) * (right + x.F_t) + Measure::delta_t.at(x) * down;
-    let of_base = x.turn.sin * x.pivot() * base_right + x.turn.versine * x.pivot() * base_down;
-    of_top + of_base - second.theta_ddot * J0
-}
-
-/// The force that a mass leaves for the ground, to the right and downwards, N.
-#[inline(always)]
-fn force<N: Number>(x: &Instant<N>, Acceleration { along, across }: Acceleration<N>, mass: f64) -> [N; 2] {
-    let weight = x.a_v + N::constant(x.structure.parameters().g);
-    [
-        -(x.a_g + along * x.turn.cos + across * x.turn.sin) * mass,
-        (weight + across * x.turn.cos - along * x.turn.sin) * mass,
-    ]
+pub(crate) fn moment<N: Number, Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>) -> N {
+    let &Base { m0, J0, g, .. } = x.base();
+    let ground = [x.a_g, x.a_v + N::constant(g)];
+    let [right, down] = Acceleration::of_base(x, second).force(&x.turn, ground, m0);
+    let mut moment = x.turn.sin * x.pivot() * right + x.turn.versine * x.pivot() * down;
+    for (j, mode) in Q::modes(x.structure).iter().enumerate() {
+        let ground = ground.map(|part| mode.part(part));
+        let [right, down] = Acceleration::of_mode(x, second, j, mode).force(&x.turn, ground, mode.mass);
+        let place = x.place(j, mode);
+        moment =
+            moment + (place.up(x.pivot(), &x.turn) * (right + x.F_t.of(j)) + place.right(x.pivot(), &x.turn) * down);
+    }
+    moment - second.theta_ddot * J0
 }
 
 impl<N: Number> Reactions<N> {
     /// The reactions at the instant `x`.
     #[inline]
-    pub(crate) fn at(x: &Instant<N>, second: &Second<N>) -> Reactions<N> {
+    pub(crate) fn at<Q: Lateral<N>>(x: &Instant<N, Q>, second: &Second<N, Q>) -> Reactions<N> {
         let [R_h, R_v] = forces(x, second);
         Reactions { R_h, R_v, R_m: moment(x, second) }
     }
@@ -161,23 +174,15 @@ impl Reactions {
         let Reactions { R_h, R_v, R_m } = Reactions::at(&x, &Second { u_ddot, theta_ddot });
         Reactions { R_h: R_h.rate, R_v: R_v.rate, R_m: R_m.rate }
     }
-
-    /// The pulls of the `ties` on the ground at this state: up, to the right, and their moment about the middle of the base, which
-    /// is the moment of full contact.
-    pub(crate) fn pulls(structure: &Structure, side: Side, angles: Angles, state: &State, ties: &[Tie; 3]) -> [f64; 3] {
-        let chord = angles.chord(state.theta, state.theta_dot);
-        let (sin, cos) = if angles == Angles::Any { libm::sincos(state.theta / 2.0) } else { (0.0, 1.0) };
-        let middle = side.sign() * structure.parameters().B;
-        ties.iter().fold([0.0; 3], |[up, right, moment], tie| {
-            let force = tie.force_at(chord);
-            [up + force * cos, right + force * sin, moment + force * cos * (middle - tie.lever)]
-        })
-    }
 }
 
 impl Impulse {
     /// The impulse of a transition that changes the motion from `before` to `after`.
-    pub(crate) fn of(structure: &Structure, before: (Phase, &State), after: (Phase, &State)) -> Impulse {
+    pub(crate) fn of<Q: Coordinates>(
+        structure: &Q::Structure,
+        before: (Phase, &State<Q>),
+        after: (Phase, &State<Q>),
+    ) -> Impulse {
         let [before, after] = [before, after].map(|(phase, state)| momentum(structure, phase, state));
         Impulse { I_h: before.I_h - after.I_h, I_v: before.I_v - after.I_v, I_m: before.I_m - after.I_m }
     }
@@ -190,23 +195,29 @@ impl Impulse {
 
 /// Momentum of the structure relative to the ground: to the right, downwards and about the middle of the base. The velocities are
 /// the rates of the places.
-fn momentum(structure: &Structure, phase: Phase, state: &State) -> Impulse {
-    let &Parameters { m, m0, J0, .. } = structure.parameters();
-    let x = Instant::moving(structure, phase, state, [0.0; 2], LinearLoad::default());
-    let top = (Measure::delta_t.at(&x), height(&x));
-    let base = (x.turn.versine * x.pivot(), x.turn.sin * x.pivot());
-    let about = |(right, up): (Dual<f64>, Dual<f64>)| up.value * right.rate - right.value * up.rate;
-    Impulse {
-        I_h: m * top.0.rate + m0 * base.0.rate,
-        I_v: -(m * top.1.rate + m0 * base.1.rate),
-        I_m: m * about(top) + m0 * about(base) + J0 * state.theta_dot,
+fn momentum<Q: Coordinates>(structure: &Q::Structure, phase: Phase, state: &State<Q>) -> Impulse {
+    let &Base { m0, B, J0, .. } = Q::base(structure);
+    let (pivot, moves) = (phase.side().sign() * B, phase == phase.in_motion());
+    let rate = |rate: f64| if moves { rate } else { 0.0 };
+    let turn = state.theta.turn().at_rate(rate(state.theta_dot));
+    let about = |right: Dual<f64>, up: Dual<f64>| up.value * right.rate - right.value * up.rate;
+    let (right, up) = (turn.versine * pivot, turn.sin * pivot);
+    let (mut to_right, mut upwards, mut turning) = (m0 * right.rate, m0 * up.rate, m0 * about(right, up));
+    for (j, mode) in Q::modes(structure).iter().enumerate() {
+        let u = Dual { value: state.u.of(j), rate: rate(state.u_dot.of(j)) };
+        let place = Place { share: mode.share, height: mode.height, u };
+        let (right, up) = (place.right(pivot, &turn), place.up(pivot, &turn));
+        to_right += mode.gamma * right.rate;
+        upwards += mode.gamma * up.rate;
+        turning += mode.mass * about(right, up);
     }
+    Impulse { I_h: to_right, I_v: -upwards, I_m: turning + J0 * state.theta_dot }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numbers::Turn;
+    use crate::{Parameters, Side};
     use approx::assert_relative_eq;
 
     /// The accelerations in the formulas are second derivatives of the places: δ_t and the height, differentiated twice.
@@ -230,12 +241,16 @@ mod tests {
             u_dot: none(),
             theta: none(),
             theta_dot: none(),
-            turn: Turn::by(state.theta).at_rate(state.theta_dot).at_rate(theta_dot),
+            turn: state.theta.turn().at_rate(state.theta_dot).at_rate(theta_dot),
             a_g: none(),
             F_t: none(),
             a_v: none(),
         };
-        let places = [(Measure::delta_t.at(&x), height(&x)), (x.turn.versine * x.pivot(), x.turn.sin * x.pivot())];
+        let top = x.place(0, &structure.mode);
+        let places = [
+            (top.right(x.pivot(), &x.turn), top.up(x.pivot(), &x.turn)),
+            (x.turn.versine * x.pivot(), x.turn.sin * x.pivot()),
+        ];
         let (mut right, mut down, mut about) = (0.0, 0.0, -J0 * theta_ddot);
         for ((to_right, up), mass, push) in [(places[0], m, load.F_t), (places[1], m0, 0.0)] {
             let force = push - mass * (to_right.rate.rate + load.a_g);

@@ -1,6 +1,6 @@
-//! What restrains rocking: a tendon and a pair of dissipators, ties between the base and the ground.
+//! Restraints of rocking: a tendon and a pair of dissipators. They are ties between the base and the ground.
 //!
-//! A tie at ξ from the middle of the base has the lever l = sB − ξ about the pivot; pulled is positive:
+//! A tie at ξ from the middle of the base has the lever l = sB − ξ about the pivot. A force that pulls is positive:
 //!
 //! ```text
 //! e = 2 l sin(θ/2),   ∂e/∂θ = l cos(θ/2),   moment about the pivot − F l cos(θ/2), on the right side of (6)
@@ -10,72 +10,71 @@
 //! elastoplastic  ξ = ±ξ_d      F = k_d (e − e_p),  |F| ≤ F_y,   ė_p = ė while |F| = F_y and e moves on that way, or else 0
 //! ```
 //!
-//! So every tie is a force, a stiffness and a damper. A yielding one is a force alone, and e_p follows from it at the end.
-//! The equations for small angles have e = l θ instead. At θ = 0 all e are 0: what an elastoplastic dissipator then pulls
-//! is its residual force − k_d e_p. Impacts leave e_p as it is.
+//! Every tie is therefore a force, a stiffness and a damper. A yielding tie is a force alone, and e_p follows from the rotation
+//! at the end. The equations for small angles have e = l θ instead. All elongations are 0 at θ = 0. An elastoplastic dissipator
+//! then pulls with its residual force − k_d e_p. Impacts leave e_p unchanged.
 
+use crate::mechanics::uplift::Hold;
+use crate::numbers::dual::Dual;
+use crate::numbers::{Angle, Number, Turn};
 use crate::{Side, State, Structure};
 use serde::{Deserialize, Serialize};
 
-/// What the dissipators keep, and what they have taken: the first is at +ξ_d, the second at −ξ_d.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+/// The state of the dissipators and the energy they have taken. The first is at +ξ_d, the second at −ξ_d.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Dissipators {
     /// Plastic elongations e_p, m.
     pub plastic: [f64; 2],
-    /// +1 of one that yields pulled, −1 pressed, 0 of one that is elastic.
+    /// Yielding of each: +1 pulled, −1 pressed, 0 elastic.
     pub yields: [i8; 2],
-    /// Energy that the viscous ones have taken, J.
+    /// Energy that the viscous dissipators have taken, J.
     pub viscous: f64,
-    /// Energy that the elastoplastic ones have taken, J.
+    /// Energy that the elastoplastic dissipators have taken, J.
     pub hysteretic: f64,
 }
 
-/// Forces of the restraints, N; pulled is positive.
+/// Forces of the restraints, N; a force that pulls is positive.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Restraints {
+pub struct Restraints<N = f64> {
     /// Tendon.
-    pub P_t: f64,
+    pub P_t: N,
     /// Dissipators at +ξ_d, viscous and elastoplastic together.
-    pub F_d1: f64,
-    /// Those at −ξ_d.
-    pub F_d2: f64,
+    pub F_d1: N,
+    /// Dissipators at −ξ_d.
+    pub F_d2: N,
 }
 
-/// How large the rotations are that the equations are for.
+/// Size of the rotations that the equations are for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(crate) enum Angles {
     Any,
     Small,
 }
 
-/// 2 sin(θ/2), for small angles θ, and its rate: over the lever the elongation of every tie.
+/// The chord 2 sin(θ/2), which is the elongation of every tie per lever, with the turn by θ/2, which is the
+/// direction of the ties. For small angles the chord is θ, and the ties stay vertical.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Chord {
-    pub length: f64,
-    pub rate: f64,
+pub(crate) struct Chord<N = f64> {
+    pub length: N,
+    pub rate: N,
+    half: Turn<N>,
 }
 
 impl Angles {
-    /// The chord at the rotation `theta` (rad) and its rate.
-    pub(crate) fn chord(self, theta: f64, theta_dot: f64) -> Chord {
-        let (sin, cos) = libm::sincos(theta / 2.0);
-        match self {
-            Angles::Any => Chord { length: 2.0 * sin, rate: cos * theta_dot },
-            Angles::Small => Chord { length: theta, rate: theta_dot },
-        }
-    }
-
-    /// The rate of the chord that has the rate `theta_dot` (rad/s), which changes by `theta_ddot` (rad/s²).
-    fn chord_rate(self, theta: f64, theta_dot: f64, theta_ddot: f64) -> Chord {
-        let (sin, cos) = libm::sincos(theta / 2.0);
-        let rate = match self {
-            Angles::Any => cos * theta_ddot - 0.5 * sin * theta_dot * theta_dot,
-            Angles::Small => theta_ddot,
+    /// The chord at the rotation `theta` (rad) and the rate `theta_dot` (rad/s).
+    #[inline(always)] // so that nobody pays for a part that he does not read
+    pub(crate) fn chord<N: Angle>(self, theta: N, theta_dot: N) -> Chord<N> {
+        let (half, length) = match self {
+            Angles::Any => {
+                let half = (theta * 0.5).turn();
+                (half, half.sin * 2.0)
+            }
+            Angles::Small => (Turn::none(), theta),
         };
-        Chord { length: self.chord(theta, theta_dot).rate, rate }
+        Chord { length, rate: half.cos * theta_dot, half }
     }
 
-    /// The rotation (rad) that has a chord of this `length`, if one has.
+    /// The rotation (rad) with a chord of this `length`, if there is one.
     pub(crate) fn rotation(self, length: f64) -> Option<f64> {
         match self {
             Angles::Any => Some(2.0 * libm::asin(length / 2.0)).filter(|theta| !theta.is_nan()),
@@ -89,18 +88,19 @@ impl Angles {
 pub(crate) struct Tie {
     /// l, m.
     pub lever: f64,
-    /// At e = ė = 0, N.
+    /// Force at e = ė = 0, N.
     pub force: f64,
-    /// N/m.
+    /// Stiffness, N/m.
     pub stiffness: f64,
-    /// N·s/m.
+    /// Damping, N·s/m.
     pub damping: f64,
 }
 
 impl Tie {
-    /// Its force at `chord`, N.
-    pub(crate) fn force_at(&self, chord: Chord) -> f64 {
-        self.force + self.lever * (self.stiffness * chord.length + self.damping * chord.rate)
+    /// The force F = F_0 + l (k · chord + c · rate of the chord), N.
+    #[inline]
+    pub(crate) fn force<N: Number>(&self, length: N, rate: N) -> N {
+        N::constant(self.force) + (length * self.stiffness + rate * self.damping) * self.lever
     }
 }
 
@@ -110,141 +110,151 @@ pub(crate) fn levers(structure: &Structure, side: Side) -> [f64; 2] {
     [side.sign() * B - xi_d, side.sign() * B + xi_d]
 }
 
-/// Tendon and dissipators while rocking about `side`.
-pub(crate) fn ties(structure: &Structure, side: Side, dissipators: &Dissipators) -> [Tie; 3] {
-    let &crate::Parameters { B, P_0, k_t, c_d, k_d, F_y, .. } = structure.parameters();
-    let levers = levers(structure, side);
-    let dissipator = |j: usize| {
-        let (force, stiffness) = match dissipators.yields[j] {
-            0 => (-k_d * dissipators.plastic[j], k_d),
-            way => (f64::from(way) * F_y, 0.0),
+/// Tendon and dissipators of a structure that rocks, or is about to lift off, about a side.
+#[derive(Clone, Copy, Debug)]
+pub struct Restraint<'a> {
+    structure: &'a Structure,
+    side: Side,
+    /// The tendon and both dissipators.
+    ties: [Tie; 3],
+}
+
+impl<'a> Restraint<'a> {
+    /// The restraint about `side` with the dissipators in this state.
+    #[inline]
+    pub fn about(structure: &'a Structure, side: Side, dissipators: &Dissipators) -> Restraint<'a> {
+        let &crate::Parameters { B, P_0, k_t, c_d, k_d, F_y, .. } = structure.parameters();
+        let levers = levers(structure, side);
+        let dissipator = |j: usize| {
+            let (force, stiffness) = match dissipators.yields[j] {
+                0 => (-k_d * dissipators.plastic[j], k_d),
+                way => (f64::from(way) * F_y, 0.0),
+            };
+            Tie { lever: levers[j], force, stiffness, damping: c_d }
         };
-        Tie { lever: levers[j], force, stiffness, damping: c_d }
-    };
-    let tendon = Tie { lever: side.sign() * B, force: P_0, stiffness: k_t, damping: 0.0 };
-    [tendon, dissipator(0), dissipator(1)]
-}
-
-/// What all ties do together: (force + stiffness chord + damping its rate) cos(θ/2), for small angles without the cosine.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Sum {
-    pub force: f64,
-    pub stiffness: f64,
-    pub damping: f64,
-}
-
-impl Sum {
-    /// The moment Σ F l cos(θ/2) about the pivot by which tendon and dissipators turn the base back, N·m.
-    pub(crate) fn of_moments(structure: &Structure, side: Side, dissipators: &Dissipators) -> Sum {
-        Sum::of(&ties(structure, side, dissipators), |tie| tie.lever)
+        let tendon = Tie { lever: side.sign() * B, force: P_0, stiffness: k_t, damping: 0.0 };
+        Restraint { structure, side, ties: [tendon, dissipator(0), dissipator(1)] }
     }
 
-    /// Their vertical pull Σ F cos(θ/2), N.
-    pub(crate) fn of_pulls(ties: &[Tie; 3]) -> Sum {
-        Sum::of(ties, |_| 1.0)
+    /// The forces of the ties at this `chord`.
+    pub(crate) fn forces<N: Number>(&self, chord: &Chord<N>) -> Restraints<N> {
+        let [P_t, F_d1, F_d2] = self.ties.map(|tie| tie.force(chord.length, chord.rate));
+        Restraints { P_t, F_d1, F_d2 }
     }
 
-    fn of(ties: &[Tie; 3], weight: impl Fn(&Tie) -> f64) -> Sum {
-        ties.iter().fold(Sum::default(), |sum, tie| {
+    /// One tie with the lever 1 in place of all ties, each with this weight.
+    #[inline]
+    fn sum(&self, weight: impl Fn(&Tie) -> f64) -> Tie {
+        self.ties.iter().fold(Tie { lever: 1.0, force: 0.0, stiffness: 0.0, damping: 0.0 }, |sum, tie| {
             let of_elongation = weight(tie) * tie.lever;
-            Sum {
+            Tie {
                 force: sum.force + weight(tie) * tie.force,
                 stiffness: sum.stiffness + of_elongation * tie.stiffness,
                 damping: sum.damping + of_elongation * tie.damping,
+                ..sum
             }
         })
     }
 
-    /// At the rotation `theta` (rad) and its rate.
-    pub(crate) fn at(&self, angles: Angles, theta: f64, theta_dot: f64) -> f64 {
-        let Chord { length, rate } = angles.chord(theta, theta_dot);
-        let towards = if angles == Angles::Any { libm::cos(theta / 2.0) } else { 1.0 };
-        towards * (self.force + self.stiffness * length + self.damping * rate)
+    /// The tie that turns the base back about the pivot like all ties together: its force times cos(θ/2) is their moment, N·m.
+    #[inline]
+    pub(crate) fn moments(&self) -> Tie {
+        self.sum(|tie| tie.lever)
+    }
+
+    /// The moment Σ F l cos(θ/2) about the pivot by which the ties turn the base back, N·m.
+    #[inline]
+    pub(crate) fn moment<N: Number>(&self, chord: &Chord<N>) -> N {
+        self.moments().force(chord.length, chord.rate) * chord.half.cos
+    }
+
+    /// Pulls of the ties on the ground, up and to the right, N, and their moment about the place of the middle of the base in
+    /// full contact, N·m. The moment holds in full contact.
+    pub(crate) fn pulls<N: Number>(&self, chord: &Chord<N>) -> [N; 3] {
+        let middle = self.side.sign() * self.structure.parameters().B;
+        let force = |tie: Tie| tie.force(chord.length, chord.rate);
+        let (pull, moment) = (force(self.sum(|_| 1.0)), force(self.sum(|tie| middle - tie.lever)));
+        [pull * chord.half.cos, pull * chord.half.sin, moment * chord.half.cos]
+    }
+
+    /// Energy that the ties store at the rotation `theta` (rad), J.
+    pub fn stored_energy(&self, theta: f64) -> f64 {
+        self.stored(&Angles::Any.chord(theta, 0.0))
+    }
+
+    /// Stored energy P_0 e + ½ k_t e² + Σ F²/(2 k_d) at this `chord`, J, with F the force of an elastoplastic dissipator.
+    fn stored<N: Number>(&self, chord: &Chord<N>) -> N {
+        let &crate::Parameters { P_0, k_t, k_d, F_y, .. } = self.structure.parameters();
+        let [tendon, pair @ ..] = &self.ties;
+        let e = chord.length * tendon.lever;
+        let of_tendon = e * (N::constant(P_0) + e * (0.5 * k_t));
+        if F_y == 0.0 {
+            return of_tendon;
+        }
+        pair.iter().fold(of_tendon, |sum, tie| {
+            let force = tie.force(chord.length, N::constant(0.0));
+            sum + force * force / (2.0 * k_d)
+        })
+    }
+
+    /// The displacement u_cr,s (m) towards the side at which the base lifts off, if its turning moment suffices there:
+    ///
+    /// ```text
+    /// u_cr,s = { [(m + m0)(g + a_v) + P_0] B + Σ F (B − s ξ) }/(m H ω_fc²)
+    /// ```
+    ///
+    /// If u_cr,s is not above 0, the weight no longer holds the base. `a_v` in m/s².
+    pub fn uplift_displacement(&self, a_v: f64) -> f64 {
+        self.hold(a_v).displacement
+    }
+
+    /// The condition of uplift under the vertical acceleration `a_v` (m/s²).
+    #[inline]
+    pub(crate) fn hold(&self, a_v: f64) -> Hold {
+        let &crate::Parameters { m, H, B, .. } = self.structure.parameters();
+        let [_, pair @ ..] = &self.ties;
+        let residual: f64 = pair.iter().map(|tie| tie.lever * tie.force).sum();
+        let moment = self.structure.gamma * a_v * B + self.side.sign() * residual / m;
+        Hold { displacement: self.structure.u_cr + moment / (H * self.structure.stiffness), moment }
+    }
+
+    /// Moment that turns the base back about the pivot at the rotation `theta` (rad), at rest and with u = 0, N·m:
+    ///
+    /// ```text
+    /// M(θ) = s (m + m0) g B cos θ − m g H sin θ + s P_0 B cos(θ/2) + k_t B² sin θ + Σ_j F_j (sB − ξ_j) cos(θ/2)
+    /// ```
+    pub fn restoring_moment(&self, theta: f64) -> f64 {
+        let &crate::Parameters { m, m0, H, B, g, .. } = self.structure.parameters();
+        let of_ties = self.moment(&Angles::Any.chord(theta, 0.0));
+        let (sin, cos) = libm::sincos(theta);
+        self.side.sign() * (m + m0) * g * B * cos - m * g * H * sin + of_ties
     }
 }
 
 impl Restraints {
-    /// Forces of the ties of `structure` about `side`, elongated by `chord`.
-    pub(crate) fn of(structure: &Structure, side: Side, dissipators: &Dissipators, chord: Chord) -> Restraints {
-        let [P_t, F_d1, F_d2] = ties(structure, side, dissipators).map(|tie| tie.force_at(chord));
-        Restraints { P_t, F_d1, F_d2 }
-    }
-
     /// Rates of the forces, N/s, in `state` while θ̇ changes by `theta_ddot` (rad/s²).
-    pub(crate) fn rates(
-        structure: &Structure,
-        side: Side,
-        dissipators: &Dissipators,
-        angles: Angles,
-        &State { theta, theta_dot, .. }: &State,
-        theta_ddot: f64,
-    ) -> Restraints {
-        let chord = angles.chord_rate(theta, theta_dot, theta_ddot);
-        let rate = |tie: Tie| Tie { force: 0.0, ..tie }.force_at(chord);
-        let [P_t, F_d1, F_d2] = ties(structure, side, dissipators).map(rate);
-        Restraints { P_t, F_d1, F_d2 }
+    pub(crate) fn rates(restraint: &Restraint, angles: Angles, state: &State, theta_ddot: f64) -> Restraints {
+        let theta_dot = Dual { value: state.theta_dot, rate: theta_ddot };
+        let theta = Dual { value: state.theta, rate: state.theta_dot };
+        let Restraints { P_t, F_d1, F_d2 } = restraint.forces(&angles.chord(theta, theta_dot));
+        Restraints { P_t: P_t.rate, F_d1: F_d1.rate, F_d2: F_d2.rate }
     }
 }
 
-/// Energy that the restraints of `structure` store about `side` at the rotation `theta` (rad), J: P_0 e + ½ k_t e² + Σ F²/(2 k_d).
-pub fn stored_energy(structure: &Structure, side: Side, theta: f64, dissipators: &Dissipators) -> f64 {
-    let &crate::Parameters { P_0, k_t, k_d, F_y, .. } = structure.parameters();
-    let [tendon, rest @ ..] = ties(structure, side, dissipators);
-    let chord = Angles::Any.chord(theta, 0.0);
-    let e = tendon.lever * chord.length;
-    let elastic = |tie: &Tie| {
-        let force = Tie { damping: 0.0, ..*tie }.force_at(chord);
-        if F_y > 0.0 { force * force / (2.0 * k_d) } else { 0.0 }
-    };
-    e * (P_0 + 0.5 * k_t * e) + rest.iter().map(elastic).sum::<f64>()
-}
-
-/// The displacement u_cr,s (m) towards `side` at which the base lifts off about it, where its turning moment then suffices:
-///
-/// ```text
-/// u_cr,s = { [(m + m0)(g + a_v) + P_0] B + Σ F (B − s ξ) }/(m H ω_fc²)
-/// ```
-///
-/// Where it is not above 0 the weight no longer holds the base. `a_v` in m/s².
-pub fn uplift_displacement(structure: &Structure, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
-    let more = holding_moment(structure, side, a_v, dissipators);
-    structure.u_cr + more / (structure.parameters().H * structure.stiffness)
-}
-
-/// Moment about the pivot that holds the base down beside that of its weight and tendon at rest, over m, m²/s².
-pub(crate) fn holding_moment(structure: &Structure, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
-    let &crate::Parameters { m, B, .. } = structure.parameters();
-    let [_, pair @ ..] = ties(structure, side, dissipators);
-    let residual: f64 = pair.iter().map(|tie| tie.lever * tie.force).sum();
-    structure.gamma * a_v * B + side.sign() * residual / m
-}
-
-/// Whether a structure centres itself once it has rocked: what turns it back at the ground, [(m + m0) g + P_0] B, and the most that
-/// the residual forces of the dissipators hold against it, Σ F_y |sB − ξ|, N·m. Where the latter is more it may come to rest
-/// turned.
+/// The two moments that decide whether a structure centres itself after rocking, N·m. The first turns the base back at the ground,
+/// [(m + m0) g + P_0] B. The second is the largest that the residual forces of the dissipators hold against it, Σ F_y |sB − ξ|. If the
+/// second is larger, the structure may come to rest turned.
 pub fn centring_moments(structure: &Structure) -> [f64; 2] {
     let &crate::Parameters { m, m0, B, g, P_0, F_y, .. } = structure.parameters();
     [((m + m0) * g + P_0) * B, levers(structure, Side::Right).iter().map(|lever| F_y * lever.abs()).sum()]
 }
 
-/// Moment that turns the base of a structure back about the right pivot at the rotation `theta` (rad), at rest, u = 0, N·m:
-///
-/// ```text
-/// M(θ) = (m + m0) g B cos θ − m g H sin θ + P_0 B cos(θ/2) + k_t B² sin θ + Σ_j F_j (B − ξ_j) cos(θ/2)
-/// ```
-pub fn restoring_moment(structure: &Structure, theta: f64, dissipators: &Dissipators) -> f64 {
-    let &crate::Parameters { m, m0, H, B, g, .. } = structure.parameters();
-    let of_ties = Sum::of_moments(structure, Side::Right, dissipators).at(Angles::Any, theta, 0.0);
-    let (sin, cos) = libm::sincos(theta);
-    (m + m0) * g * B * cos - m * g * H * sin + of_ties
-}
-
 impl Dissipators {
-    /// Of a structure that has not moved yet.
+    /// The dissipators of a structure that has not moved yet.
     pub const NEW: Dissipators = Dissipators { plastic: [0.0; 2], yields: [0; 2], viscous: 0.0, hysteretic: 0.0 };
 
-    /// After a transition to rocking about `side` at the rate `theta_dot` (rad/s), or at rest in contact (none): what goes on
-    /// the way it yielded goes on yielding.
+    /// The dissipators after a transition to rocking about a side at a rate θ̇ (rad/s), or to rest in contact (none). A dissipator
+    /// that keeps moving the way it yielded keeps yielding.
     pub(crate) fn after(mut self, structure: &Structure, rocking: Option<(Side, f64)>) -> Dissipators {
         for j in 0..2 {
             let on = |(side, theta_dot)| f64::from(self.yields[j]) * levers(structure, side)[j] * theta_dot > 0.0;
@@ -255,8 +265,7 @@ impl Dissipators {
         self
     }
 
-    /// Moved slowly from where they are to the rotation `theta` (rad) of `structure` about `side`, without turning back on the
-    /// way: plastic elongations and the energy taken.
+    /// The dissipators after a slow rotation of `structure` to `theta` (rad) about `side` that does not turn back on its way.
     pub fn moved(&self, structure: &Structure, side: Side, theta: f64) -> Dissipators {
         self.moved_by(structure, side, Angles::Any.chord(theta, 0.0))
     }

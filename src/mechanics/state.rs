@@ -1,4 +1,4 @@
-//! The state of the structure and the phase it is in.
+//! State and phase of the structure.
 
 use crate::Structure;
 use crate::structure::quantity::{OutOfRange, Quantity, quantity, with_unit};
@@ -6,14 +6,14 @@ use serde::{Deserialize, Serialize};
 
 /// State of the structure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct State {
-    /// Elastic displacement of the top mass in the frame that turns with the base, m.
-    pub u: f64,
-    /// Its rate, m/s.
-    pub u_dot: f64,
+pub struct State<Q = f64> {
+    /// Elastic displacement of the top mass in the frame that turns with the base, m; of many masses, a coordinate for each mode.
+    pub u: Q,
+    /// Rate of u, m/s.
+    pub u_dot: Q,
     /// Rotation of the base, rad; positive about the right pivot.
     pub theta: f64,
-    /// Its rate, rad/s.
+    /// Rate of θ, rad/s.
     pub theta_dot: f64,
 }
 
@@ -52,7 +52,7 @@ impl Side {
     }
 }
 
-/// What holds of the base.
+/// Contact of the base with the ground.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Phase {
     /// Both pivots down: θ = θ̇ = 0, Eq 1.
@@ -64,7 +64,7 @@ pub enum Phase {
 }
 
 impl Phase {
-    /// What it is called.
+    /// Name of the phase.
     pub const fn name(self) -> &'static str {
         match self {
             Phase::FullContact => "full contact",
@@ -74,7 +74,7 @@ impl Phase {
         }
     }
 
-    /// The pivot; in full contact, where it does not matter, the right one.
+    /// The pivot; the right one in full contact, where it does not matter.
     pub fn side(self) -> Side {
         match self {
             Phase::FullContact => Side::Right,
@@ -82,7 +82,7 @@ impl Phase {
         }
     }
 
-    /// The same, or that in which the structure overturned.
+    /// This phase, or the phase in which the structure overturned.
     pub(crate) fn in_motion(self) -> Phase {
         match self {
             Phase::Overturned(side) => Phase::Rocking(side),
@@ -105,7 +105,7 @@ pub enum InitialStateError {
     /// One value is outside its own range.
     #[error(transparent)]
     OutOfRange(#[from] OutOfRange),
-    /// The tolerance of the results is none.
+    /// The tolerance of the results is out of range.
     #[error("tolerance = {} is out of range: it must be between 0 and 1, such as 1e-9", with_unit(*.0, "1"))]
     Tolerance(f64),
     /// The base turns although both pivots are down.
@@ -117,13 +117,13 @@ pub enum InitialStateError {
     /// The base is turned although it is fixed.
     #[error("theta_0 = {0:?} rad contradicts detail = fixed_base, where the base cannot turn: set theta_0 to 0")]
     TurnedFixedBase(f64),
-    /// There are no modes of a restrained structure.
+    /// A restrained structure has no modes.
     #[error(
         "detail = modal has no modes of a structure that is restrained or shaken vertically, whose equations change with \
          time and with what yields: choose linear, or set P_0, k_t, c_d, k_d and a_v to 0"
     )]
     RestrainedModal,
-    /// The structure is deformed although it is rigid.
+    /// The top mass is displaced although the strut is rigid.
     #[error("u_0 = {u:?} m, u_dot_0 = {u_dot:?} m/s contradict detail = rigid, where u is always 0: set both to 0")]
     DeformedRigid {
         /// u_0, m.
@@ -144,14 +144,14 @@ impl State {
         State { u, u_dot, theta, theta_dot }
     }
 
-    /// Magnitudes that are usual in a motion of `structure`: those of a rotation α_cg, at which it is about to fall, and of u_cr,
-    /// at which its base lifts off.
+    /// Usual magnitudes in a motion of `structure`: u_cr, at which the base lifts off, α_cg, at which the structure falls, and the
+    /// rates that belong to them.
     pub fn usual(structure: &Structure) -> State {
         let (u, theta) = (structure.u_cr, libm::atan(structure.tan_alpha_cg));
         State { u, u_dot: structure.omega_fc * u, theta, theta_dot: structure.p_l * theta }
     }
 
-    /// Whether it consists of numbers.
+    /// Whether all components are finite numbers.
     pub fn is_finite(&self) -> bool {
         (self.u + self.u_dot + self.theta + self.theta_dot).abs() <= f64::MAX // one instruction where f64::is_finite takes a dozen
     }

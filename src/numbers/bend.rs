@@ -1,6 +1,6 @@
 //! Bounds of a quantity and of its first two derivatives, by the product rule.
 
-use super::{Number, Turn, operators};
+use super::{Angle, Number, Turn, operators};
 
 /// The largest magnitudes that a quantity, its rate and its second derivative can have over a piece.
 #[derive(Clone, Copy, Debug)]
@@ -30,19 +30,6 @@ impl Bend {
         let of = |part: f64| linear(part).abs();
         Bend { value: of(self.value), rate: of(self.rate), bend: of(self.bend) }
     }
-
-    /// Bounds of the turn by this rotation.
-    #[inline(always)]
-    pub(crate) fn turn(self) -> Turn<Bend> {
-        let Bend { value, rate, bend } = self;
-        let falling = rate * rate + value * bend; // bounds |θ̈ sin θ + θ̇² cos θ|
-        let rising = bend + value * rate * rate; // bounds |θ̈ cos θ − θ̇² sin θ|
-        Turn {
-            sin: Bend { value, rate, bend: rising },
-            cos: Bend { value: 1.0, rate: value * rate, bend: falling },
-            versine: Bend { value: value * value / 2.0, rate: value * rate, bend: falling },
-        }
-    }
 }
 
 operators!([] Bend);
@@ -51,5 +38,19 @@ impl Number for Bend {
     #[inline(always)]
     fn constant(value: f64) -> Self {
         Bend { value: value.abs(), rate: 0.0, bend: 0.0 }
+    }
+}
+
+impl Angle for Bend {
+    #[inline(always)]
+    fn turn(self) -> Turn<Bend> {
+        let Bend { value, rate, bend } = self;
+        let falling = rate * rate + value * bend; // bounds |θ̈ sin θ + θ̇² cos θ|
+        let rising = bend + value * rate * rate; // bounds |θ̈ cos θ − θ̇² sin θ|
+        Turn {
+            sin: Bend { value, rate, bend: rising },
+            cos: Bend { value: 1.0, rate: value * rate, bend: falling },
+            versine: Bend { value: value * value / 2.0, rate: value * rate, bend: falling },
+        }
     }
 }

@@ -1,6 +1,6 @@
 //! A value with its rate, by the rules of differentiation.
 
-use super::{Number, Turn, operators};
+use super::{Angle, Number, Turn, operators};
 
 /// A value and its time derivative. The parts may be any number: the rate of a rate is a second derivative.
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +31,13 @@ operators!([T: Number] Dual<T>);
 impl<T: Number> Number for Dual<T> {
     fn constant(value: f64) -> Self {
         Dual { value: T::constant(value), rate: T::constant(0.0) }
+    }
+}
+
+impl<T: Angle> Angle for Dual<T> {
+    #[inline]
+    fn turn(self) -> Turn<Self> {
+        self.value.turn().at_rate(self.rate)
     }
 }
 

@@ -4,7 +4,7 @@
 use super::peaks::{Peak, PeakWatch, Peaks};
 use super::{Finish, Run, RunError};
 use crate::engine::piece::Expansion;
-use crate::mechanics::restraint::{Dissipators, restoring_moment};
+use crate::mechanics::restraint::{Dissipators, Restraint};
 use crate::run::ground_motion::GroundMotion;
 use crate::series::bisection::last_where;
 use crate::series::first_crossing::{Crossing, Guard, first_time_closed_from};
@@ -48,7 +48,7 @@ struct Fall {
     before: Peaks,
 }
 
-/// Rotation beyond which nothing turns the structure back, rad: α_cg without ties. With ties it is where [`restoring_moment`]
+/// Rotation beyond which nothing turns the structure back, rad: α_cg without ties. With ties it is where [`Restraint::restoring_moment`]
 /// vanishes, the dissipators moved there slowly from rest; none if the ties turn the structure back up to π/2.
 ///
 /// The moment vanishes once: while an elastic tie makes it grow it is positive, and it falls from there on.
@@ -57,8 +57,8 @@ pub fn angle_of_no_return(structure: &Structure) -> Option<f64> {
         return Some(libm::atan(structure.tan_alpha_cg));
     }
     let restores = |theta| {
-        let dissipators = Dissipators::default().moved(structure, Side::Right, theta);
-        restoring_moment(structure, theta, &dissipators) > 0.0
+        let dissipators = Dissipators::NEW.moved(structure, Side::Right, theta);
+        Restraint::about(structure, Side::Right, &dissipators).restoring_moment(theta) > 0.0
     };
     (!restores(FRAC_PI_2)).then(|| last_where(0.0, FRAC_PI_2, restores))
 }

@@ -5,11 +5,10 @@
 use crate::levels::detail::AnyLevel;
 use crate::levels::level::Subject;
 use crate::levels::shown::{linear_parts, over, turning};
-use crate::levels::ties::TieSeries;
 use crate::mechanics::instant::{Instant, Second};
 use crate::mechanics::load::LinearLoad;
 use crate::mechanics::reactions::forces;
-use crate::mechanics::restraint::{Sum, ties};
+use crate::mechanics::restraint::Restraint;
 use crate::numbers::linear::{Leaf, Linear};
 use crate::numbers::{Number, Turn};
 use crate::series::extremes::Range;
@@ -38,11 +37,15 @@ pub(crate) fn series(
     if !is_tied {
         return reactions;
     }
-    let (side, B) = (phase.side(), structure.parameters().B);
-    let ties = ties(structure, side, dissipators);
-    let [up, right] = TieSeries::over(Sum::of_pulls(&ties), level.angles(), arc).pulls(arc);
-    let moment = ties.iter().map(|tie| tie.force * (side.sign() * B - tie.lever)).sum::<f64>();
-    reactions.of_edges(Terms::of(&up, arc.order), Terms::of(&right, arc.order), Terms::constant(moment))
+    let (restraint, angles) = (Restraint::about(structure, phase.side(), dissipators), level.angles());
+    let [up, right, moment] = match phase {
+        Phase::FullContact => restraint.pulls(&angles.chord(0.0, 0.0)).map(Terms::constant),
+        _ => {
+            let [theta, theta_dot] = [&arc.theta, &arc.theta_dot].map(|series| Terms::of(series, arc.order));
+            restraint.pulls(&angles.chord(theta, theta_dot))
+        }
+    };
+    reactions.of_edges(up, right, moment)
 }
 
 /// The reactions in full contact. There they are linear in u, ü and time, so that their slopes give the series, unless the

@@ -1,7 +1,7 @@
 //! A quantity over a step as a power series.
 
 use super::taylor::{MAX_ORDER, Series, reciprocal};
-use crate::numbers::{Number, Turn, operators};
+use crate::numbers::{Angle, Number, Turn, operators};
 use wide::f64x2;
 
 /// Coefficients in σ, as many as the longest series has, rounded up to whole fours.
@@ -115,16 +115,29 @@ impl Terms {
         }
         terms
     }
+}
 
-    /// The turn by this rotation: each order of sin θ and cos θ follows from the orders before, as (cos θ)' = −θ' sin θ.
-    pub(crate) fn turn(&self) -> Turn<Terms> {
+operators!([] Terms);
+
+impl Number for Terms {
+    #[inline]
+    fn constant(value: f64) -> Terms {
+        let mut coefficients = [0.0; LENGTH];
+        coefficients[0] = value;
+        Terms { coefficients, degree: 0, order: MAX_ORDER + 1 }
+    }
+}
+
+impl Angle for Terms {
+    /// Each order of sin θ and cos θ follows from the orders before, because (cos θ)' = −θ' sin θ.
+    fn turn(self) -> Turn<Terms> {
         let theta = &self.coefficients;
         let mut slope = [0.0; LENGTH];
         let mut both = [f64x2::ZERO; LENGTH];
         // sin θ and −cos θ, whose slopes are θ' times (cos θ, sin θ)
         let (sin, cos) = libm::sincos(theta[0]);
         both[0] = f64x2::new([cos, sin]);
-        let mut turn = Turn { sin: *self, cos: *self, versine: *self };
+        let mut turn = Turn { sin: self, cos: self, versine: self };
         let mut put = |k: usize, sin: f64, cos: f64, versine: f64| {
             turn.sin.coefficients[k] = sin;
             turn.cos.coefficients[k] = cos;
@@ -142,16 +155,5 @@ impl Terms {
             put(k, sin, -minus_cos, minus_cos);
         }
         turn
-    }
-}
-
-operators!([] Terms);
-
-impl Number for Terms {
-    #[inline]
-    fn constant(value: f64) -> Terms {
-        let mut coefficients = [0.0; LENGTH];
-        coefficients[0] = value;
-        Terms { coefficients, degree: 0, order: MAX_ORDER + 1 }
     }
 }

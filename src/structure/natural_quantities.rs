@@ -8,7 +8,7 @@
 //! | `alpha_cg` | H, or B where H is given | tan α_cg = γ B/H, γ = (m + m0)/m (before Eq 11) |
 //! | `p_l` | J0 | J_P = m g H/p_l² = J0 + m (H² + B²) + m0 B² (before Eq 11, after Eq 8) |
 //!
-//! What is given together with what it stands for is refused: neither of the two is right for certain.
+//! A natural quantity and the parameter that it stands for cannot be given together, because they may contradict each other.
 
 use crate::structure::parameters::{PARAMETERS, Parameters};
 use crate::structure::quantity::{OutOfRange, Quantity, with_unit};
@@ -19,19 +19,19 @@ use std::collections::BTreeMap;
 /// A derived quantity that may be given in the place of a parameter.
 #[derive(Debug)]
 pub struct Natural {
-    /// Its name among the [`DERIVED`] quantities.
+    /// Name among the [`DERIVED`] quantities.
     pub name: &'static str,
-    /// Smallest value accepted, in its unit.
+    /// Smallest value accepted, in the unit of the quantity.
     pub min: f64,
     /// Largest value accepted.
     pub max: f64,
-    /// The parameter that it stands for.
+    /// The parameter that the quantity stands for.
     pub stands_for: &'static str,
-    /// What messages say that it stands for.
+    /// The parameter in the words of messages.
     pub in_place_of: &'static str,
 }
 
-/// All of them. What follows from a value in its range is checked as a parameter once more.
+/// All natural quantities. The parameter that follows from a value is checked as well.
 pub const NATURAL: [Natural; 6] = [
     Natural { name: "period_fc", min: 1e-4, max: 1e3, stands_for: "f_fc", in_place_of: "f_fc" },
     Natural { name: "weight", min: 1e-9, max: 1e12, stands_for: "m", in_place_of: "m" },
@@ -41,7 +41,7 @@ pub const NATURAL: [Natural; 6] = [
     Natural { name: "p_l", min: 1e-4, max: 1e3, stands_for: "J0", in_place_of: "J0" },
 ];
 
-/// What a parameter is that may be left out, in its unit.
+/// Default values of the parameters that may be left out.
 pub const DEFAULTS: [(&str, f64); 9] = [
     ("J0", 0.0),
     ("c_ratio", 1.0),
@@ -64,7 +64,7 @@ pub struct Given(Vec<(&'static str, f64)>);
 /// Why numbers determine no structure.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum GivenError {
-    /// No number is called that.
+    /// The name is unknown.
     #[error("{name:?} is unknown; these are known: {}", names().collect::<Vec<_>>().join(", "))]
     Unknown {
         /// The refused name.
@@ -76,7 +76,7 @@ pub enum GivenError {
     /// A natural quantity, or the parameter that it determines, is outside its range.
     #[error(transparent)]
     OutOfRange(OutOfRange),
-    /// More numbers than are free.
+    /// A natural quantity is given beside the parameter that it determines.
     #[error(
         "{natural} = {} is given beside {}: {natural} determines {determined}, leave one of them out",
         with_unit(*value, unit),
@@ -85,31 +85,31 @@ pub enum GivenError {
     OverDetermined {
         /// The natural quantity.
         natural: &'static str,
-        /// Its value.
+        /// Value of the natural quantity.
         value: f64,
-        /// Its unit.
+        /// Unit of the natural quantity.
         unit: &'static str,
-        /// What else is given.
+        /// Numbers that are given beside it.
         with: Vec<&'static str>,
-        /// What it would determine.
+        /// Parameter that the natural quantity determines.
         determined: &'static str,
     },
-    /// Too few: all parameters that are not determined.
+    /// Parameters that nothing determines.
     #[error("{}", in_words(.0))]
     Missing(Vec<Missing>),
-    /// A natural quantity asks for a parameter that is impossible.
+    /// A natural quantity requires a parameter that is out of range.
     #[error("{natural} = {} does not fit: {cause}", with_unit(*value, unit))]
     Impossible {
         /// The natural quantity.
         natural: &'static str,
-        /// Its value.
+        /// Value of the natural quantity.
         value: f64,
-        /// Its unit.
+        /// Unit of the natural quantity.
         unit: &'static str,
-        /// What is wrong with the parameter that it determines.
+        /// Error of the parameter that the natural quantity determines.
         cause: OutOfRange,
     },
-    /// The masses alone turn too slowly for this frequency parameter.
+    /// The frequency parameter is higher than the masses allow.
     #[error(
         "p_l = {} does not fit: it would take a negative J0; with these masses, H and B it is {} at most",
         with_unit(*p_l, "rad/s"),
@@ -118,7 +118,7 @@ pub enum GivenError {
     TooFast {
         /// The refused value, rad/s.
         p_l: f64,
-        /// That of J0 = 0, rad/s.
+        /// Frequency parameter with J0 = 0, rad/s.
         largest: f64,
     },
 }
@@ -128,14 +128,14 @@ pub enum GivenError {
 pub struct Missing {
     /// The parameter.
     pub name: &'static str,
-    /// What it is.
+    /// Description.
     pub description: &'static str,
-    /// Names and units of what may be given for it.
+    /// Names and units of the numbers that determine the parameter.
     pub ways: Vec<(&'static str, &'static str)>,
 }
 
 impl Missing {
-    /// What to give, with each name as it is `called` where it is given.
+    /// The missing parameter and the numbers to give for it, each name as it is `called` in the input.
     pub fn advice(&self, called: impl Fn(&str) -> String) -> String {
         let way = |&(name, unit): &(&str, &str)| match unit {
             "1" => called(name),
@@ -150,13 +150,13 @@ fn in_words(missing: &[Missing]) -> String {
     missing.iter().map(|missing| missing.advice(str::to_owned)).collect::<Vec<_>>().join("; ")
 }
 
-/// What may be given, by name.
+/// Names of all numbers that may be given.
 pub fn names() -> impl Iterator<Item = &'static str> {
     PARAMETERS.iter().map(|parameter| parameter.name).chain(NATURAL.iter().map(|natural| natural.name))
 }
 
 impl Natural {
-    /// The derived quantity that it is.
+    /// The derived quantity of this name.
     pub fn derived(&self) -> &'static Derived {
         const { &DERIVED }.iter().find(|derived| derived.name == self.name).expect("it is one of them")
     }
@@ -173,22 +173,22 @@ impl Given {
         Ok(())
     }
 
-    /// The parameters that these numbers determine on their own; what they leave open of [`DEFAULTS`] is that.
+    /// The parameters that these numbers determine, with [`DEFAULTS`] for the rest.
     pub fn parameters(&self) -> Result<Parameters, GivenError> {
         self.solve(|name| DEFAULTS.iter().find(|(default, _)| *default == name).map(|(_, value)| *value))
     }
 
-    /// The parameters `base` with these numbers in the place of its own. α_cg moves H, unless H is given: then B.
+    /// The parameters `base` changed by these numbers. α_cg changes H, or B if H is given.
     pub fn over(&self, base: &Parameters) -> Result<Parameters, GivenError> {
         self.solve(|name| PARAMETERS.iter().find(|parameter| parameter.name == name).map(|of| (of.get)(base)))
     }
 
-    /// Whether none is given.
+    /// Whether no number is given.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Whether these numbers determine the parameter called `name`: by itself, or by what stands for it.
+    /// Whether these numbers determine the parameter called `name`, directly or by a natural quantity.
     fn determine(&self, name: &str) -> bool {
         let stands_in = |natural: &Natural| match natural.name {
             "alpha_cg" => name == if self.get("H").is_some() { "B" } else { "H" },
@@ -202,7 +202,7 @@ impl Given {
         self.0.iter().find(|(given, _)| *given == name).map(|(_, value)| *value)
     }
 
-    /// The parameters; what is not given is left to `otherwise`.
+    /// The parameters, with `otherwise` for the numbers that are not given.
     fn solve(&self, otherwise: impl Fn(&str) -> Option<f64>) -> Result<Parameters, GivenError> {
         self.check()?;
         let is_missing = |name: &&Quantity<Parameters>| !self.determine(name.name) && otherwise(name.name).is_none();
@@ -240,7 +240,7 @@ impl Given {
         Ok(Parameters { m, m0, H, B, J0, f_fc, zeta_fc, c_ratio, r, g, P_0, k_t, xi_d, c_d, k_d, F_y })
     }
 
-    /// Whether every natural quantity is in its range, and nothing that it determines is given as well.
+    /// Checks that every natural quantity is in its range and that its parameter is not given as well.
     fn check(&self) -> Result<(), GivenError> {
         for natural in &NATURAL {
             let Some(value) = self.get(natural.name) else { continue };
@@ -277,8 +277,7 @@ fn parameter_for(natural: &'static str, given: f64, name: &'static str, value: f
     Ok(value)
 }
 
-/// J0 = J_P − J_0 of the frequency parameter `p_l`, kg·m²: J_P = m g H/p_l², and J_0 that of a foundation without
-/// inertia of its own. What is negative by rounding alone is 0.
+/// J0 = m g H/p_l² − J_P(J0 = 0) for the frequency parameter `p_l`, kg·m². A result that is negative by rounding is 0.
 fn inertia(p_l: f64, m_g_H: f64, without_J0: f64) -> Result<f64, GivenError> {
     const ROUNDING: f64 = 1e-14;
     let J_P = m_g_H / (p_l * p_l);
@@ -389,8 +388,8 @@ mod tests {
     }
 
     proptest! {
-        /// What a structure's natural quantities are, it is again when they are given: the tangent of a slenderness near a
-        /// right angle, of hardly any mass on top of a wide base, has lost its digits.
+        /// The natural quantities of a structure give its parameters back. The ranges leave out slendernesses near a right angle,
+        /// whose tangent has few digits.
         #[test]
         fn natural_quantities_give_the_structure_back(
             m in 1.0..1e6f64, mass_ratio in 0.0..10.0f64, H in 1.0..30.0f64, B in 0.2..10.0f64, J0 in 0.0..1e7f64, f_fc in 0.1..30.0f64,

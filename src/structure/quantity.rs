@@ -1,21 +1,21 @@
 //! A named number with a unit and a range: the one table that checks, messages, files and the FMU read.
 
-/// One number of `T` (a parameter of the structure, an initial value): what it is called, its unit, its range.
+/// A number of `T`, such as a parameter or an initial value, with its name, unit and range.
 #[derive(Debug)]
 pub struct Quantity<T> {
-    /// The field's own symbol, as in files and in the FMU.
+    /// Symbol of the field, as in files and in the FMU.
     pub name: &'static str,
     /// Unit, as FMI writes it (`kg.m2`); `1` for a ratio.
     pub unit: &'static str,
-    /// What it is, in one line.
+    /// Description in one line.
     pub description: &'static str,
     /// Smallest value accepted.
     pub min: f64,
     /// Largest value accepted.
     pub max: f64,
-    /// Reads it.
+    /// Reads the number.
     pub get: fn(&T) -> f64,
-    /// Writes it, unchecked.
+    /// Writes the number without a check.
     pub set: fn(&mut T, f64),
 }
 
@@ -38,12 +38,12 @@ pub struct OutOfRange {
     pub min: f64,
     /// Largest value accepted.
     pub max: f64,
-    /// What the quantity is.
+    /// Description of the quantity.
     pub description: &'static str,
 }
 
 impl<T> Quantity<T> {
-    /// Accepts `value` (in the quantity's unit), or says by name, value and limit why not. NaN and ±∞ are refused.
+    /// Accepts `value` (in the unit of the quantity) if it is in range. NaN and ±∞ are out of range.
     #[inline]
     pub fn check(&self, value: f64) -> Result<(), OutOfRange> {
         if (self.min..=self.max).contains(&value) { Ok(()) } else { Err(self.refused(value)) }
@@ -56,7 +56,7 @@ impl<T> Quantity<T> {
     }
 }
 
-/// `value` with its unit, which a ratio has none of, in digits that stay few.
+/// `value` with its unit, in few digits; a ratio has no unit.
 pub fn with_unit(value: f64, unit: &str) -> String {
     let digits = if value.abs() < 1e7 { format!("{value:?}") } else { format!("{value:e}") };
     let digits = digits.strip_suffix(".0").unwrap_or(&digits);

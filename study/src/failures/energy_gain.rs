@@ -22,7 +22,7 @@ const DURATION: f64 = 0.5;
 /// The energy of an example over time, on ground at rest.
 pub fn show() -> Result<Exhibit> {
     let scene = at_rest(GAINER, State { theta: RELEASE, ..State::default() }, DURATION);
-    let rest = energy(&scene.structure, Phase::FullContact, &State::default());
+    let rest = energy(&scene.structure, Phase::FullContact, &<State>::default());
     let history = exact(&scene, Detail::Auto, every(1e-3 * DURATION))?;
     let over_rest =
         |motion: &rocking::Motion| (motion.time, energy(&scene.structure, motion.phase, &motion.state) - rest);

@@ -1,0 +1,332 @@
+//! Lateral coordinates: u of one mass, or a coordinate for each mode of a structure of many masses.
+//!
+//! A structure is a rigid base that carries modes of vibration in full contact. A formula of this room is a sum over the modes. For
+//! one mass the sum is its only term, so that no result differs from the paper's formula in a bit.
+
+use crate::Structure;
+use crate::numbers::Number;
+use crate::structure::{Base, Mode};
+
+/// Lateral coordinates in numbers of the kind `N`.
+pub trait Lateral<N: Number>: Copy {
+    /// The structures with these coordinates.
+    type Structure;
+
+    /// The base of a structure.
+    fn base(structure: &Self::Structure) -> &Base;
+
+    /// The coordinate of mode `j`.
+    fn of(&self, j: usize) -> N;
+
+    /// The modes of a structure.
+    fn modes(structure: &Self::Structure) -> &[Mode];
+
+    /// A sum over the modes of a structure.
+    #[inline(always)]
+    fn sum(structure: &Self::Structure, term: impl Fn(usize, &Mode) -> N) -> N {
+        let terms = Self::modes(structure).iter().enumerate().map(|(j, mode)| term(j, mode));
+        terms.reduce(|sum, term| sum + term).unwrap_or(N::constant(0.0))
+    }
+}
+
+/// Lateral coordinates of a state.
+pub trait Coordinates: Lateral<f64> {
+    /// Makes the coordinates of a structure, each from its number and its mode.
+    fn each(structure: &Self::Structure, coordinate: impl Fn(usize, &Mode) -> f64) -> Self;
+}
+
+impl<N: Number> Lateral<N> for N {
+    type Structure = Structure;
+
+    #[inline(always)]
+    fn base(structure: &Structure) -> &Base {
+        &structure.base
+    }
+
+    #[inline(always)]
+    fn of(&self, _: usize) -> N {
+        *self
+    }
+
+    #[inline(always)]
+    fn modes(structure: &Structure) -> &[Mode] {
+        std::slice::from_ref(&structure.mode)
+    }
+}
+
+impl Coordinates for f64 {
+    #[inline(always)]
+    fn each(structure: &Structure, coordinate: impl Fn(usize, &Mode) -> f64) -> f64 {
+        coordinate(0, &structure.mode)
+    }
+}
+
+impl Mode {
+    /// The part that the mode takes in a translation of the base.
+    #[inline(always)]
+    pub(crate) fn part<N: Number>(&self, translation: N) -> N {
+        if self.share == 1.0 { translation } else { translation * self.share } // one mass spares the product
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mechanics::energy::energy;
+    use crate::mechanics::impact::{angular_momentum, energy_gained, land, resolve};
+    use crate::mechanics::instant::{Instant, Second};
+    use crate::mechanics::outputs::acceleration;
+    use crate::mechanics::reactions::{Impulse, Reactions};
+    use crate::{Load, Parameters, Phase, Side, State};
+    use approx::assert_relative_eq;
+    use nalgebra::{Matrix3, Vector3};
+
+    /// The most modes of a structure.
+    const MOST_MODES: usize = 24;
+
+    /// A coordinate for each mode.
+    #[derive(Clone, Copy, Debug, PartialEq)]
+    struct Modes([f64; MOST_MODES]);
+
+    /// Three masses on a base, with their modes.
+    struct Frame {
+        base: Base,
+        modes: Vec<Mode>,
+        m: Vector3<f64>,
+        h: Vector3<f64>,
+        stiffness: Matrix3<f64>,
+        damping: Matrix3<f64>,
+        /// The shapes of the modes, by columns.
+        shapes: Matrix3<f64>,
+    }
+
+    impl Lateral<f64> for Modes {
+        type Structure = Frame;
+
+        fn base(structure: &Frame) -> &Base {
+            &structure.base
+        }
+
+        fn of(&self, j: usize) -> f64 {
+            self.0[j]
+        }
+
+        fn modes(structure: &Frame) -> &[Mode] {
+            &structure.modes
+        }
+    }
+
+    impl Coordinates for Modes {
+        fn each(structure: &Frame, coordinate: impl Fn(usize, &Mode) -> f64) -> Modes {
+            let mut modes = [0.0; MOST_MODES];
+            structure.modes.iter().enumerate().for_each(|(j, mode)| modes[j] = coordinate(j, mode));
+            Modes(modes)
+        }
+    }
+
+    impl Frame {
+        /// The masses `m` (kg) at the heights `h` (m), with the damping ratio `zeta` in each mode, on the base of `parameters`.
+        fn new(m: [f64; 3], h: [f64; 3], stiffness: Matrix3<f64>, zeta: f64, parameters: &Parameters) -> Frame {
+            let &Parameters { m0, B, J0, r, g, c_ratio, .. } = parameters;
+            let (m, h) = (Vector3::from(m), Vector3::from(h));
+            let root = Matrix3::from_diagonal(&m.map(f64::sqrt));
+            let inverse = root.try_inverse().unwrap();
+            let eigen = (inverse * stiffness * inverse).symmetric_eigen();
+            let shapes = inverse * eigen.eigenvectors * 30.0; // any scale of the shapes gives the same structure
+            let mass = Matrix3::from_diagonal(&m);
+            let mode = |j: usize| {
+                let shape = shapes.column(j);
+                let [mu, gamma, kappa] =
+                    [shape.into_owned(), Vector3::repeat(1.0), h].map(|with| shape.dot(&(mass * with)));
+                let omega = eigen.eigenvalues[j].sqrt();
+                Mode {
+                    mass: mu,
+                    gamma,
+                    share: gamma / mu,
+                    height: kappa / mu,
+                    stiffness: mu * omega * omega,
+                    damping: 2.0 * zeta * omega * mu,
+                }
+            };
+            let modes: Vec<_> = (0..3).map(mode).collect();
+            let weights = Matrix3::from_diagonal(&Vector3::from_fn(|j, _| modes[j].damping / modes[j].mass.powi(2)));
+            let damping = mass * shapes * weights * shapes.transpose() * mass;
+            let m_t = m.sum() + m0;
+            let J_P = J0 + m_t * B * B + m.dot(&h.component_mul(&h));
+            Frame { base: Base { m_t, m0, B, J0, J_P, r, g, c_ratio }, modes, m, h, stiffness, damping, shapes }
+        }
+
+        /// The frame of three storeys whose numbers are known.
+        fn three_storeys() -> Frame {
+            let [a, b, c] = [60e6, 50e6, 40e6];
+            let stiffness = Matrix3::new(a + b, -b, 0.0, -b, b + c, -c, 0.0, -c, c);
+            let parameters = Parameters { m0: 20e3, B: 1.5, J0: 3e4, r: 0.93, ..Parameters::MCMANUS };
+            Frame::new([40e3, 40e3, 30e3], [3.5, 7.0, 10.5], stiffness, 0.02, &parameters)
+        }
+
+        /// Coordinates of the modes from displacements of the masses.
+        fn modal(&self, u: &Vector3<f64>) -> Modes {
+            let weighed = u.component_mul(&self.m);
+            Modes::each(self, |j, mode| self.shapes.column(j).dot(&weighed) / mode.mass)
+        }
+
+        fn state(&self, u: &Vector3<f64>, u_dot: &Vector3<f64>, theta: f64, theta_dot: f64) -> State<Modes> {
+            State { u: self.modal(u), u_dot: self.modal(u_dot), theta, theta_dot }
+        }
+
+        /// Forces of springs and dampers on the masses.
+        fn elastic(&self, u: &Vector3<f64>, u_dot: &Vector3<f64>) -> Vector3<f64> {
+            self.stiffness * u + self.damping * u_dot
+        }
+
+        fn no_force(&self) -> Modes {
+            Modes::each(self, |_, _| 0.0)
+        }
+    }
+
+    fn displacements() -> [Vector3<f64>; 2] {
+        [Vector3::new(0.02, -0.05, 0.11), Vector3::new(0.4, 0.7, -0.3)]
+    }
+
+    /// Frequencies, effective masses and effective heights, from an independent calculation.
+    #[test]
+    fn the_modes_of_the_frame_are_the_known_ones() {
+        let frame = Frame::three_storeys();
+        let mut modes = frame.modes.clone();
+        modes.sort_by(|a, b| (a.stiffness / a.mass).total_cmp(&(b.stiffness / b.mass)));
+        let known =
+            [(2.79631878, 97782.91, 7.652647), (7.16132844, 9645.66, -1.689684), (10.06584242, 2571.43, 1.166667)];
+        for (mode, (frequency, mass, height)) in modes.iter().zip(known) {
+            assert_relative_eq!(
+                (mode.stiffness / mode.mass).sqrt() / std::f64::consts::TAU,
+                frequency,
+                max_relative = 1e-8
+            );
+            assert_relative_eq!(mode.gamma * mode.share, mass, max_relative = 1e-6);
+            assert_relative_eq!(mode.height / mode.share, height, max_relative = 1e-6);
+        }
+        assert_relative_eq!(frame.base.J_P, 6.08e6, max_relative = 1e-12);
+    }
+
+    /// Energy and angular momentum of the masses themselves, and the gains of energy at an impact and at a landing.
+    #[test]
+    fn energy_and_impact_are_those_of_the_masses() {
+        let frame = Frame::three_storeys();
+        let &Base { m0, B, J0, r, g, .. } = &frame.base;
+        let [u, u_dot] = displacements();
+        for side in [Side::Right, Side::Left] {
+            let (s, theta, theta_dot) = (side.sign(), side.sign() * 0.1, -0.3 * side.sign());
+            let state = frame.state(&u, &u_dot, theta, theta_dot);
+            let (sin, cos) = theta.sin_cos();
+            let mut expected = 0.5 * u.dot(&(frame.stiffness * u)) + m0 * g * s * B * sin;
+            expected += 0.5 * (J0 + m0 * B * B) * theta_dot * theta_dot;
+            let mut momentum = -(m0 * B * B - J0) * theta_dot;
+            for i in 0..3 {
+                let (m, h) = (frame.m[i], frame.h[i]);
+                let (along, across) = (u_dot[i] + h * theta_dot, (s * B - u[i]) * theta_dot);
+                expected += 0.5 * m * (along * along + across * across) + m * g * ((s * B - u[i]) * sin + h * cos);
+                momentum += m * h * along - m * (B * B - u[i] * u[i]) * theta_dot;
+            }
+            assert_relative_eq!(energy(&frame, Phase::Rocking(side), &state), expected, max_relative = 1e-13);
+
+            let before = State { theta: 0.0, ..state };
+            assert_relative_eq!(angular_momentum(&frame, &before), momentum, max_relative = 1e-13);
+            let of = |phase, state: &State<Modes>| energy(&frame, phase, state);
+            let energy_before = of(Phase::Rocking(side), &before);
+            // (M17): a landing loses ½ D θ̇²
+            let landed = land(&frame, &before);
+            let D = J0 + m0 * B * B + (0..3).map(|i| frame.m[i] * (s * B - u[i]).powi(2)).sum::<f64>();
+            let lost = energy_before - of(Phase::FullContact, &landed);
+            assert_relative_eq!(lost, 0.5 * D * theta_dot * theta_dot, max_relative = 1e-9);
+            // each mass keeps its horizontal momentum
+            let Impulse { I_h, I_v, .. } =
+                Impulse::of(&frame, (Phase::Rocking(side), &before), (Phase::FullContact, &landed));
+            let mu = frame.m.dot(&u);
+            assert_relative_eq!(I_h, 0.0, epsilon = 1e-9);
+            assert_relative_eq!(I_v, -(s * frame.base.m_t * B - mu) * theta_dot, max_relative = 1e-12);
+            // (M16)
+            let going = State { u_dot: frame.modal(&(-s * u_dot)), ..before };
+            let (phase, after) = resolve(&frame, side, &going);
+            assert_eq!((phase, after.theta_dot), (Phase::Rocking(side.opposite()), r * theta_dot));
+            let gained = of(phase, &after) - of(Phase::Rocking(side), &going);
+            assert_relative_eq!(energy_gained(&frame, side, &going), gained, max_relative = 1e-9);
+        }
+    }
+
+    /// (M1) in full contact and (M7) while rocking, written for the masses, against the reactions and the accelerations of the
+    /// modes: R_m of (M2), and sB R_v.
+    #[test]
+    fn the_reactions_are_those_of_the_masses() {
+        let frame = Frame::three_storeys();
+        let &Base { m_t, B, J0, m0, g, .. } = &frame.base;
+        let [u, u_dot] = displacements();
+        let Frame { m, h, .. } = &frame;
+        let load = Load { a_g: 3.0, F_t: frame.no_force(), a_v: -1.5 };
+        let weight = g + load.a_v;
+        let (elastic, mu) = (frame.elastic(&u, &u_dot), m.dot(&u));
+
+        let state = frame.state(&u, &u_dot, 0.0, 0.0);
+        let u_ddot = -elastic.component_div(m) - Vector3::repeat(load.a_g);
+        let second = Second { u_ddot: frame.modal(&u_ddot), theta_ddot: 0.0 };
+        let x = Instant::of(&frame, Phase::FullContact, &state, load);
+        let Reactions { R_h, R_v, R_m } = Reactions::at(&x, &second);
+        assert_relative_eq!(R_h, elastic.sum() - m0 * load.a_g, max_relative = 1e-12);
+        assert_relative_eq!(R_v, m_t * weight, max_relative = 1e-12);
+        assert_relative_eq!(R_m, h.dot(&elastic) + mu * weight, max_relative = 1e-12);
+
+        let (s, theta, theta_dot) = (-1.0, -0.2, 0.6);
+        let state = frame.state(&u, &u_dot, theta, theta_dot);
+        let (sin, cos) = f64::sin_cos(theta);
+        let d = Vector3::repeat(s * B) - u;
+        let D = J0 + m0 * B * B + d.dot(&m.component_mul(&d));
+        let centrifugal = theta_dot * theta_dot * h.dot(&m.component_mul(&d));
+        let theta_ddot = (h.dot(&elastic) + centrifugal + 2.0 * theta_dot * d.dot(&m.component_mul(&u_dot))
+            - (s * m_t * B - mu) * (weight * cos + load.a_g * sin))
+            / D;
+        let u_ddot = -elastic.component_div(m) - h * theta_ddot - d * theta_dot * theta_dot
+            + Vector3::repeat(weight * sin - load.a_g * cos);
+        let x = Instant::of(&frame, Phase::Rocking(Side::Left), &state, load);
+        let second = Second { u_ddot: frame.modal(&u_ddot), theta_ddot };
+        let Reactions { R_h, R_v, R_m } = Reactions::at(&x, &second);
+        let across = s * m_t * B - mu;
+        let first_moment = m.dot(h);
+        let p_x = m.dot(&u_ddot) + first_moment * theta_ddot + across * theta_dot * theta_dot;
+        let p_y = across * theta_ddot - 2.0 * theta_dot * m.dot(&u_dot) - first_moment * theta_dot * theta_dot;
+        assert_relative_eq!(R_h, -(m_t * load.a_g + p_x * cos + p_y * sin), max_relative = 1e-12);
+        assert_relative_eq!(R_v, m_t * weight - p_x * sin + p_y * cos, max_relative = 1e-12);
+        assert_relative_eq!(R_m, s * B * R_v, max_relative = 1e-11);
+
+        let expected = g * sin - elastic[2] / m[2];
+        let at_the_top = acceleration(&x, 1.0, |j, part| part * frame.shapes[(2, j)]);
+        assert_relative_eq!(at_the_top, expected, max_relative = 1e-12);
+    }
+
+    /// One mass, split in three at its height with stiffness and damping split alike.
+    #[test]
+    fn three_masses_at_one_height_are_one_mass() {
+        let parameters = Parameters { J0: 10.7, ..Parameters::MCMANUS };
+        let (structure, Parameters { m, H, zeta_fc, .. }) = (Structure::new(parameters).unwrap(), parameters);
+        let parts = [0.2, 0.3, 0.5];
+        let stiffness = Matrix3::from_diagonal(&Vector3::from(parts.map(|part| part * structure.k)));
+        let frame = Frame::new(parts.map(|part| part * m), [H; 3], stiffness, zeta_fc, &parameters);
+        let (side, load) = (Side::Right, Load { a_g: 3.0, F_t: 0.0, a_v: -1.5 });
+        let one = State { u: 4e-3, u_dot: 0.3, theta: 0.0, theta_dot: -0.2 };
+        let three = frame.state(&Vector3::repeat(one.u), &Vector3::repeat(one.u_dot), one.theta, one.theta_dot);
+        let phase = Phase::Rocking(side);
+        assert_relative_eq!(energy(&frame, phase, &three), energy(&structure, phase, &one), max_relative = 1e-13);
+        assert_relative_eq!(angular_momentum(&frame, &three), angular_momentum(&structure, &one), max_relative = 1e-12);
+        assert_relative_eq!(
+            energy_gained(&frame, side, &three),
+            energy_gained(&structure, side, &one),
+            max_relative = 1e-11
+        );
+        let (u_ddot, theta_ddot) = (-5.0, 2.0);
+        let second = Second { u_ddot: frame.modal(&Vector3::repeat(u_ddot)), theta_ddot };
+        let of_three = Load { a_g: load.a_g, F_t: frame.no_force(), a_v: load.a_v };
+        let found = Reactions::at(&Instant::of(&frame, phase, &three, of_three), &second);
+        let expected = Reactions::of(&structure, phase, &one, [u_ddot, theta_ddot], load);
+        for (found, expected) in [(found.R_h, expected.R_h), (found.R_v, expected.R_v), (found.R_m, expected.R_m)] {
+            assert_relative_eq!(found, expected, max_relative = 1e-12);
+        }
+    }
+}
