@@ -6,7 +6,7 @@ import pytest
 from conftest import ROOT
 
 # All that the packages are made of.
-SOURCES = ("Cargo.lock", "pyproject.toml", "src", "modelDescription", "fmu", "view/src", "sweep/src", "cli/src", "python")
+SOURCES = ("Cargo.lock", "pyproject.toml", "src", "modelDescription", "fmu", "records/src", "report/src", "view/src", "sweep/src", "cli/src", "python")
 
 
 def package(pattern: str) -> Path:

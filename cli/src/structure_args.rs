@@ -2,7 +2,7 @@
 //! the place of theirs, or numbers that are all of it.
 use crate::{record_args::one_of, significant::in_full, talk::say};
 use anyhow::{Context, anyhow};
-use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource, value_parser};
+use clap::{Arg, ArgMatches, Command, FromArgMatches, parser::ValueSource};
 use rocking::structure::Derived;
 use rocking::structure::natural_quantities::{Given, GivenError, NATURAL, names};
 use rocking::structure::parameters::{PARAMETERS, PRESETS};
@@ -79,6 +79,11 @@ fn option_name(name: &str) -> String {
 }
 
 fn option(name: &'static str, unit: &'static str, help: String) -> Arg {
+    let needed = match unit {
+        "1" => "a number is needed".to_owned(),
+        unit => format!("a number in {unit} is needed, without the unit"),
+    };
+    let number = move |text: &str| text.parse::<f64>().map_err(|_| needed.clone());
     Arg::new(name)
         .long(option_name(name))
         .value_name(if unit == "1" { "NUMBER".into() } else { unit.to_uppercase() })
@@ -86,7 +91,7 @@ fn option(name: &'static str, unit: &'static str, help: String) -> Arg {
         .help_heading("Numbers that replace those of the preset or the file, or stand alone")
         .hide_short_help(true)
         .allow_negative_numbers(true)
-        .value_parser(value_parser!(f64))
+        .value_parser(number)
 }
 
 impl clap::Args for Numbers {
