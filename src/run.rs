@@ -1,7 +1,7 @@
 //! A run: one structure under one ground motion, from its first sample to the end.
 //!
-//! The engine goes from sample to sample, between which the ground acceleration is linear; whoever watches sees every
-//! piece and every transition of it. What is known of a run without a watcher is how it ended.
+//! The engine goes from sample to sample, between which the ground acceleration is linear. A watcher sees every piece and
+//! every transition. A run without a watcher reports only how it ended.
 
 pub mod curve;
 pub mod fall;
@@ -30,7 +30,7 @@ use std::fmt;
 /// For how long a structure may rock on after its record, in units of 1/p_l: amplitudes change by e^±1 in each.
 pub const LONGEST_REST: f64 = 100.0;
 
-/// What is run.
+/// A structure under a ground motion, and how the engine follows it.
 #[derive(Clone, Debug)]
 pub struct Run<'a> {
     /// The structure.
@@ -43,7 +43,7 @@ pub struct Run<'a> {
     pub detail: Detail,
     /// Relative tolerance of the results.
     pub tolerance: f64,
-    /// When it ends, unless the structure overturns.
+    /// End of the run, unless the structure overturns.
     pub end: End,
 }
 
@@ -88,7 +88,7 @@ impl fmt::Display for Ending {
     }
 }
 
-/// Where a run has come to.
+/// End of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Finish {
     /// How it ended.
@@ -116,7 +116,7 @@ pub enum RunError {
     /// It takes more steps than one stretch of it may.
     #[error("the run needs too many steps: they ended at t = {time:?} s of {until:?} s; give it a shorter duration")]
     TooLong {
-        /// Where the steps ended, s.
+        /// Instant at which the steps ended, s.
         time: f64,
         /// End of the stretch, s.
         until: f64,
@@ -128,7 +128,7 @@ pub enum RunError {
     TooManyPoints {
         /// How many a curve may have.
         most: usize,
-        /// Where they end, s.
+        /// Instant at which the points end, s.
         time: f64,
     },
     /// The run cannot go on.
@@ -142,7 +142,7 @@ pub enum RunError {
 }
 
 impl RunError {
-    /// Where a run that had begun could not go on, s.
+    /// Instant at which a run that had begun failed, s.
     pub fn time(&self) -> Option<f64> {
         match self {
             RunError::Advance { time, .. } | RunError::TooLong { time, .. } => Some(*time),
@@ -195,7 +195,7 @@ impl<'a> Run<'a> {
     }
 
     /// Follows the motion to the end and shows it at `times` (s), which rise; those before the start and after the end
-    /// are left out, and the end itself is shown last. What is shown is read from the pieces: it changes nothing.
+    /// are left out, and the end itself is shown last. The samples are read from the pieces and change nothing.
     pub fn sample<W: Watch>(
         &self,
         times: impl IntoIterator<Item = f64>,
@@ -216,13 +216,14 @@ impl<'a> Run<'a> {
     }
 }
 
-/// A run that goes on stretch by stretch: between two samples of its record, then, until nothing more can happen, for 1/p_l.
+/// A run on its way, segment by segment: from sample to sample of its record, and then for 1/p_l each until nothing more can
+/// happen.
 struct Course<Segments> {
     engine: Engine,
     /// The ground motion that is left.
     segments: Segments,
     end: End,
-    /// For how long it may rock on after that, in units of 1/p_l.
+    /// Time for which the structure may still rock after the record, in units of 1/p_l.
     rest: f64,
 }
 
@@ -236,7 +237,7 @@ impl<Segments: Iterator<Item = Segment>> Course<Segments> {
         }
     }
 
-    /// Follows the motion over the next stretch: how it has ended, if it has.
+    /// Follows the motion over the next segment. Returns the ending of the run if the run has ended.
     #[inline(always)]
     fn go_on<W: Watch>(&mut self, watch: &mut W) -> Result<Option<Ending>, RunError> {
         let Course { engine, segments, end, rest } = self;
@@ -268,8 +269,8 @@ fn over<W: Watch>(engine: &mut Engine, segment: Segment, watch: &mut W) -> Resul
     Ok(progress)
 }
 
-/// Follows a structure on ground at rest, if the run goes on to that `end`, for as long as decides what comes next; `rest` is
-/// for how long it may rock on. How the run has ended, if it has.
+/// Follows a structure on ground at rest until the next decision about the `end` of the run. `rest` is the time for which the
+/// structure may still rock. Returns the ending of the run if the run has ended.
 fn come_to_rest<W: Watch>(
     engine: &mut Engine,
     end: End,

@@ -18,7 +18,7 @@ fn values(point: &Point) -> [f64; 4] {
     [point.outputs.theta, point.outputs.u, point.outputs.a_t, point.a_g]
 }
 
-/// What the line through `points` says at `time`; just after a transition at its instant.
+/// Values at `time` of the line through `points`, after a transition at that instant.
 fn on_the_line(points: &[Point], time: f64) -> [f64; 4] {
     let after = points.partition_point(|point| point.time <= time).clamp(1, points.len() - 1);
     let (from, to) = (&points[after - 1], &points[after]);
@@ -55,7 +55,7 @@ fn lines_stay_as_close_to_the_motion_as_was_asked_for() {
     }
 }
 
-/// What a picture marks is on its line: each peak, and both sides of each transition.
+/// The line of a picture passes through each peak and both sides of each transition.
 #[test]
 fn peaks_and_transitions_are_points() {
     let ground = ground();
@@ -69,6 +69,7 @@ fn peaks_and_transitions_are_points() {
     }
     assert!(curve.transitions.len() > 10);
     assert!(curve.points.is_sorted_by(|a, b| a.time <= b.time));
+    assert_eq!(curve.points.last().unwrap().time, curve.found.finish.motion.time);
     for transition in &curve.transitions {
         let i = curve.points.partition_point(|point| point.time < transition.time);
         let (before, after) = (&curve.points[i], &curve.points[i + 1]);
@@ -79,18 +80,7 @@ fn peaks_and_transitions_are_points() {
     }
 }
 
-#[test]
-fn a_curve_ends_where_the_structure_lies() {
-    let ground = Record::at_rest(10.0);
-    let structure = Structure::new(Parameters::EVISON).unwrap();
-    let initial = State { theta: -0.4, ..State::default() };
-    let curve = Run { initial, ..Run::new(structure, &ground) }.curve(1e-3).unwrap();
-    let last = curve.points.last().unwrap();
-    assert_eq!(last.time, curve.found.finish.motion.time);
-    assert!((last.outputs.theta + std::f64::consts::FRAC_PI_2).abs() < 1e-12, "{last:?}");
-}
-
-/// What would fill the memory is refused, however long the run is.
+/// A run whose curve would fill the memory is refused.
 #[test]
 fn a_curve_has_no_more_points_than_a_picture_needs() {
     let ground = Record::at_rest(1.0);

@@ -33,7 +33,7 @@ fn run(detail: Detail, initial: State, a_g: f64, until: &[f64]) -> (Motion, Vec<
     (*engine.motion(), transitions)
 }
 
-/// What lifts off at t = 0: deformed beyond u_cr, or pushed where there is no u.
+/// A structure that lifts off at t = 0: deformed beyond u_cr, or pushed if its level has no u.
 fn lifting_off(detail: Detail) -> (State, f64) {
     let u_cr = Structure::new(Parameters::EVISON).unwrap().u_cr;
     match detail {
@@ -135,7 +135,7 @@ fn a_way_without_end_is_told_for_what_it_is() {
     assert_eq!(*engine.motion(), before);
 }
 
-/// One of the `edges`, or anything between `low` and `high`, evenly in its logarithm.
+/// A number of `edges`, or a number between `low` and `high`, evenly distributed in its logarithm.
 fn edge_or(edges: &'static [f64], low: f64, high: f64) -> impl Strategy<Value = f64> {
     prop_oneof![1 => prop::sample::select(edges), 2 => (low.ln()..high.ln()).prop_map(f64::exp)]
 }

@@ -28,8 +28,8 @@ fn evison_released(structure: &Structure) -> Engine {
     Engine::new(*structure, released, 0.0, DEFAULT_TOLERANCE).unwrap()
 }
 
-/// An advance that ends at transitions meets the same ones, each before it is applied: the last state of rocking is on the
-/// ground, that of full contact at the limit of uplift.
+/// Advances that end at transitions meet the transitions of one long advance, each before it is applied: the last state of
+/// rocking is on the ground, and the last state of full contact at the limit of uplift.
 #[test]
 fn an_advance_can_end_at_every_transition() {
     let structure = Structure::new(Parameters { r: 0.85, ..Parameters::EVISON }).unwrap();

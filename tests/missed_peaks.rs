@@ -47,7 +47,7 @@ fn worst(&Parameters { m, m0, B, g, .. }: &Parameters, phase: Phase, r: Reaction
     [tension, -r.R_v / weight, friction]
 }
 
-/// What lasts for no time is no motion.
+/// A piece of no duration is no motion.
 impl Watch for Dense {
     const SEES_PIECES: bool = true;
 
@@ -72,7 +72,7 @@ impl Watch for Dense {
     }
 }
 
-/// What a motion shows at the instants at which it was found to be largest and worst.
+/// Values of a motion at the instants of its peaks and worst values.
 struct There {
     parameters: Parameters,
     peaks: [(f64, f64); PEAKS.len()],

@@ -57,8 +57,9 @@ impl<'a> Outside<'a> {
         self.rates(t + h, end);
         let (elapsed, load, transitions) = (self.elapsed(), self.load(), &mut self.transitions);
         let mut watch = |transition: &Transition| transitions.push(*transition);
-        let Checked { motion, .. } =
+        let Checked { motion, is_corrected, .. } =
             self.known.check(&mut self.engine, Some(&self.ground), elapsed, Load::default(), &mut watch).unwrap();
+        assert!(is_corrected || motion.state == self.engine.motion().state, "the integrator's own state is lost");
         self.engine.set_motion(motion);
         self.engine.lift_off_if_due(load, &mut watch);
         self.known = Known { motion: *self.engine.motion(), elapsed, load: Load::default() };

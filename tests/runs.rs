@@ -1,6 +1,5 @@
 //! Runs from outside: levels compared on fine records, ends, start times.
 
-use rocking::run::peaks::Peak;
 use rocking::run::record::Record;
 use rocking::run::{End, Run, RunError, levels};
 use rocking::{Detail, Engine, Parameters, Ramp, State, Structure};
@@ -45,14 +44,6 @@ fn comparing_levels_takes_no_more_memory_for_more_of_them() {
         let long = most(dt, samples);
         assert!(long < 10_000_000.max(2 * short), "{dt} s, {samples} samples: {long} bytes beside {short}");
     }
-}
-
-#[test]
-fn the_ground_may_be_strongest_where_a_run_ends_between_samples() {
-    let ground = Record::from_samples("ramp", vec![0.0, 1.0], vec![0.0, 0.4]).unwrap();
-    let structure = Structure::new(Parameters::MCMANUS).unwrap();
-    let run = Run { end: End::At(0.5), ..Run::new(structure, &ground) };
-    assert_eq!(run.found(&mut ()).unwrap().ground, Peak { magnitude: 0.2, time: 0.5 });
 }
 
 #[test]

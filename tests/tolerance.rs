@@ -1,4 +1,4 @@
-//! What a tolerance promises: random structures, records and initial states at all levels that rock.
+//! The promise of a tolerance: random structures, records and initial states at all levels that rock.
 #![allow(non_snake_case)]
 
 use fastrand::Rng;

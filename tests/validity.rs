@@ -1,6 +1,5 @@
-//! What impacts go beyond, against the momenta and the kinetic energy before and after. What motions between them go
-//! beyond is compared with dense sampling in `missed_peaks.rs`, the reactions with the balance of momentum in
-//! `reactions.rs`.
+//! Validity at impacts, against the momenta and the kinetic energy before and after. `missed_peaks.rs` compares the motion
+//! between impacts with dense sampling, and `reactions.rs` the reactions with the balance of momentum.
 #![allow(non_snake_case)]
 
 mod shaking;

@@ -108,6 +108,12 @@ pub(crate) fn margin(
     if is_right { (right.0, Side::Right) } else { (left.0, Side::Left) }
 }
 
+/// Distance from uplift of a structure in full contact in `state`, without restraints and vertical motion: positive until uplift
+/// is due. For integrators that have no engine.
+pub fn distance(structure: &Structure, state: &State) -> f64 {
+    margin(structure, &TurningMoment::new(structure), state, 0.0, &Dissipators::NEW).0
+}
+
 /// The largest |u| (m) that free vibration in full contact can reach.
 pub(crate) fn farthest(structure: &Structure, state: &State) -> f64 {
     libm::hypot(state.u, state.u_dot / structure.omega_fc)

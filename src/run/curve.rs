@@ -1,8 +1,7 @@
 //! A motion as points that straight lines join: what a picture of it is drawn from.
 //!
-//! Nothing is sampled at an interval: each stretch is divided until a bound says that its series leave the line between its
-//! ends by no more than is allowed. Where two points have the same instant there is a transition between them,
-//! or the record ends there.
+//! Nothing is sampled at an interval. Each polynomial is divided until a bound says that its series stay as close to the
+//! straight lines as is allowed. Two points of the same instant have a transition, or the end of the record, between them.
 
 use super::fall::Found;
 use super::{Run, RunError};
@@ -12,10 +11,11 @@ use crate::mechanics::restraint::Restraints;
 use crate::series::{extremes, taylor};
 use crate::{Outputs, Phase, Transition};
 
-/// How often a stretch of one polynomial is divided at most.
+/// The largest number of times that a polynomial is divided.
 const DIVISIONS: u32 = 30;
 
-/// How far off, over what is allowed, a stretch is halved and not yet divided into as many parts as it takes.
+/// The error, as a multiple of the allowed one, from which on a polynomial is halved and not divided into as many parts as it
+/// takes.
 const NEARLY: f64 = 16.0;
 
 /// More points are no picture: 100 MB.
@@ -33,7 +33,7 @@ pub struct Point {
     pub phase: Phase,
     /// Ground acceleration, m/s².
     pub a_g: f64,
-    /// What the structure shows.
+    /// Outputs of the structure.
     pub outputs: Outputs,
     /// Forces of its tendon and dissipators.
     pub restraints: Restraints,
@@ -149,8 +149,8 @@ impl Watch for Tracer {
     }
 }
 
-/// Shows, in their order, the σ between `from` and `to` at which the polynomials have to be known so that they leave the
-/// lines between them by no more than `within`; `divisions` are left.
+/// Shows, in their order, the σ between `from` and `to` at which points are needed: between them the polynomials stay within
+/// `within` of straight lines. `divisions` are left.
 fn divide(
     coefficients: [&[f64]; 3],
     within: [f64; 3],

@@ -10,11 +10,11 @@ use crate::structure::quantity::{Quantity, quantity};
 use crate::{Engine, LinearLoad, Progress, Ramp, Watch};
 use serde::{Deserialize, Serialize};
 
-/// Part of the time between two samples over which a kink between them makes no difference: with the slope of the other side
-/// the velocity of the ground is off by the square of this part.
+/// Part of the time between two samples over which a kink makes no difference. The slope of the other side changes the ground
+/// velocity by the square of this part.
 const SAME_INSTANT: f64 = 1e-9;
 
-/// Part of the times involved by which a step that is meant to end at a sample may miss the sample.
+/// Part of the times involved by which rounding may take the end of a step away from a sample.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// The scales of a record, and the instant of its first sample.
@@ -201,7 +201,7 @@ impl<'a> GroundMotion<'a> {
         SAME_INSTANT * (times[i] - times[i - 1])
     }
 
-    /// The distance from sample `i` within which a step that ends there is not cut, s: the kink makes no difference, or
+    /// The distance from sample `i`, s, within which the end of a step counts as the sample: the kink makes no difference, or
     /// rounding alone misses the sample. Only rounding counts if the ground acceleration jumps.
     fn uncut(&self, i: usize, elapsed: Elapsed) -> f64 {
         let times = self.record.times();

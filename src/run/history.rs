@@ -1,23 +1,23 @@
 //! θ, u and a_t as series in time, and how far two motions are apart, exactly.
 //!
-//! What both have covered is compared and left: neither is kept whole.
+//! The time that both motions have covered is compared and dropped, so that neither motion is kept whole.
 
 use crate::engine::piece::{Piece, Watch};
 use crate::mechanics::outputs::Measure;
 use crate::series::extremes;
 use crate::series::taylor::{self, Series};
 
-/// Part of the vibration period 2π/ω_u: u̇, and with it a_t, jumps at a landing. Where one motion has landed and the other
-/// does so within this time, their distance is that jump and says nothing of either.
+/// Part of the vibration period 2π/ω_u: u̇, and with it a_t, jumps at a landing. If one motion has landed and the other
+/// lands within this time, their distance is this jump and says nothing about the motions.
 const SAME_LANDING: f64 = 1e-3;
 
-/// What has been seen of a motion and is still to be compared.
+/// The part of a motion that is still to be compared.
 #[derive(Clone, Debug, Default)]
 pub struct History {
     pub stretches: Vec<Stretch>,
 }
 
-/// One of its series.
+/// The motion over one polynomial.
 #[derive(Clone, Debug)]
 pub struct Stretch {
     start: f64,

@@ -21,7 +21,7 @@ pub const RULE: &str = "the cheapest level, or the simplest of equally cheap lev
 /// Levels go on together, from sample to sample, but no longer than this over ω_u at once: of what lies between nothing is kept.
 const LONGEST_STRETCH: f64 = 2000.0;
 
-/// What a level's error is measured by.
+/// Measure of the error of a level.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Criterion {
     /// Peak of |θ|.
@@ -62,7 +62,7 @@ impl Criterion {
     }
 }
 
-/// What a level makes of a run.
+/// Result of a level on a run.
 #[derive(Clone, Debug)]
 pub struct Response {
     /// The level.
@@ -73,14 +73,14 @@ pub struct Response {
     pub ending: Ending,
     /// Transitions.
     pub transitions: u64,
-    /// What it took, counted: steps, and right-hand-side evaluations.
+    /// Steps and right-hand-side evaluations.
     pub work: Work,
 }
 
 /// A level beside the reference.
 #[derive(Clone, Debug)]
 pub struct Verdict {
-    /// What the level makes of the run.
+    /// Result of the level.
     pub response: Response,
     /// Relative errors, in the order of [`Criterion::ALL`].
     pub errors: [f64; 6],
@@ -160,7 +160,7 @@ struct Trial<'a, Segments> {
     is_level: bool,
     course: Course<Segments>,
     peaks: FallWatch<'a>,
-    /// What is still to be compared with the reference.
+    /// The part of the motion that is still to be compared with the reference.
     history: History,
     /// From the reference.
     distance: Distance,
@@ -225,7 +225,7 @@ impl<Segments: Iterator<Item = Segment>> Trial<'_, Segments> {
         }
     }
 
-    /// What came of it, the peaks of all of it, and how far from the reference it has been.
+    /// The response, the peaks of all the motion, and the distance from the reference.
     fn response(self) -> (Response, Peaks, Distance) {
         let motion = self.course.engine.motion();
         let ending = self.ending.expect("it has been followed to its end");

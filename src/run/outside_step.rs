@@ -1,11 +1,11 @@
-//! Steps that another integrator takes: the equations that it integrates, what tells it of transitions, and a check that it
-//! has passed none over.
+//! Steps of another integrator: the equations to integrate, event indicators for transitions, and a check that no transition
+//! was passed over.
 //!
 //! Such an integrator knows ẋ = f(x, t) of the phase, and event indicators: they are positive while the phase lasts, and a
 //! root of one of them ends it. Many find no root, or not all of them: after an uplift θ starts at 0 as t³, a return within
 //! the step shows no change of sign, steps are fixed. So each complete step is gone over once more by the engine, which
-//! passes nothing over. Where there was a transition on the way, or where the integrator ended beyond one that there was
-//! not, the engine's own motion from the start of the step counts.
+//! passes nothing over. If the engine finds a transition on the way, or if the integrator ended beyond a guard without one,
+//! the engine's own motion from the start of the step counts.
 
 use crate::engine::AdvanceError;
 use crate::engine::phases::{self, Closed};
@@ -33,8 +33,8 @@ impl Sample<'_> {
         }
     }
 
-    /// Of the end of contact at a pivot (in full contact uplift, while rocking impact) and of overturning, or of what yields or
-    /// ceases to: continuous, of order one, positive while the phase lasts.
+    /// Event indicators: continuous, of order one, positive while the phase lasts. The first is for uplift in full contact and
+    /// for impact while rocking. The second is for overturning and for dissipators that begin or cease to yield.
     pub fn event_indicators(&self) -> [f64; INDICATORS] {
         let mut indicators = [f64::INFINITY; INDICATORS];
         for guard in phases::of(&self.motion).map_or(&[][..], |watched| watched.guards) {
@@ -47,7 +47,7 @@ impl Sample<'_> {
     }
 }
 
-/// What became of a step.
+/// Result of the check of a step.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Checked {
     /// The motion at its end.
@@ -58,14 +58,14 @@ pub struct Checked {
     pub was_hidden: bool,
 }
 
-/// Where a motion that another integrator carries on was last known: at the start, after a complete step, after an event.
+/// The last known instant of a motion that another integrator continues: the start, the end of a complete step, an event.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Known {
     /// The motion.
     pub motion: Motion,
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
-    /// What acted beside the record.
+    /// Load beside the record at this instant.
     pub load: Load,
 }
 

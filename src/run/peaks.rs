@@ -1,8 +1,8 @@
 //! The largest magnitudes of a motion and their instants, exact: between the ends of its pieces too.
 //!
-//! A bound on a piece tells most of the time that it holds nothing larger than what has been seen. Where it does not,
-//! each output is a series in time (`levels::shown`), which rises or falls throughout between the points where
-//! it is stationary (`extremes`): the largest magnitude is at one of these or at an end. A piece that may hold more than
+//! A bound on a piece tells most of the time that it holds nothing larger than what has been seen. Otherwise
+//! each output is expanded as a series in time (`levels::shown`). Between its stationary points (`extremes`) a series only
+//! rises or falls, so that the largest magnitude is at a stationary point or at an end. A piece that may hold more than
 //! what has been seen is first kept, since most are soon beaten by the end of another.
 
 use crate::engine::piece::{Expansion, Part, Piece, Watch};

@@ -15,7 +15,7 @@ pub struct Record {
     vertical: Option<Vec<f64>>,
 }
 
-/// Part of its last step over which a component that ends before the other falls to 0.
+/// Duration of the fall to 0 of a component that ends before the other one, as a part of its last step.
 const FALL: f64 = 1e-9;
 
 /// Why samples, or their scales, are refused.
@@ -27,19 +27,19 @@ pub enum SamplesError {
          than 0 is needed, and finite accelerations and slopes"
     )]
     BadScales {
-        /// What the record is called.
+        /// Title of the record.
         title: String,
-        /// What was to multiply its times.
+        /// Refused factor of the times.
         time_scale: f64,
-        /// What was to multiply its accelerations.
+        /// Refused factor of the accelerations.
         scale: f64,
     },
     /// Samples in memory are no ground motion.
     #[error("{title:?}: {problem}")]
     BadSamples {
-        /// What the record was to be called.
+        /// Title of the record.
         title: String,
-        /// What was found, at which index, counted from 0.
+        /// The problem and its index, counted from 0.
         problem: String,
     },
     /// The components of a ground motion do not begin together.
@@ -48,11 +48,11 @@ pub enum SamplesError {
          of them"
     )]
     Apart {
-        /// What the record is called.
+        /// Title of the record.
         title: String,
         /// Its first sample, s.
         start: f64,
-        /// What the vertical component is called.
+        /// Title of the vertical component.
         vertical: String,
         /// Its first sample, s.
         begins: f64,
@@ -139,7 +139,7 @@ impl Record {
         Record { title: title.into(), ..self }
     }
 
-    /// What the record is called.
+    /// Title of the record.
     pub fn title(&self) -> &str {
         &self.title
     }

@@ -9,7 +9,7 @@ use std::iter::Peekable;
 pub(crate) struct Samples<Times: Iterator<Item = f64>, Show> {
     times: Peekable<Times>,
     show: Show,
-    /// What acts at the end of the last piece.
+    /// Load at the end of the last piece.
     load: Load,
 }
 

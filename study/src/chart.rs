@@ -91,7 +91,7 @@ impl Axis {
         Axis { label: label.into(), low, high, logarithmic: true }
     }
 
-    /// Where `value` is on the axis: its decimal logarithm on a logarithmic one.
+    /// Place of `value` on the axis: its decimal logarithm on a logarithmic axis.
     fn place(&self, value: f64) -> f64 {
         if self.logarithmic { value.log10() } else { value }
     }
@@ -100,7 +100,7 @@ impl Axis {
         self.place(self.low)..self.place(self.high)
     }
 
-    /// Where `value` is on the axis, if it is on it but for rounding.
+    /// Place of `value` on the axis, if the axis covers it up to rounding.
     fn visible(&self, value: f64) -> Option<f64> {
         let Range { start, end } = self.range();
         let rounding = 1e-9 * (end - start);

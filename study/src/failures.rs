@@ -16,13 +16,13 @@ use minijinja::Value;
 use rayon::prelude::*;
 use std::path::Path;
 
-/// What is right is drawn so.
+/// Style of correct responses.
 const RIGHT: Style = Style::line(colour::BLACK, 3);
 
-/// What is wrong is drawn so.
+/// Style of wrong responses.
 const WRONG: Style = Style::line(colour::VERMILLION, 2);
 
-/// What leads the eye is drawn so.
+/// Style of guide lines.
 const GUIDE: Style = Style::dashed(colour::GREY, 1);
 
 /// One failure.

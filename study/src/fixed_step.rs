@@ -15,7 +15,7 @@
 //! ```
 //!
 //! The central difference takes x_{n+1} from the past alone; its velocity is implicit where forces depend on it. With α the
-//! method's own a is not that of the equations: it is carried from step to step and starts anew after a transition.
+//! method has an acceleration of its own, which it carries from step to step and which starts anew after a transition.
 
 use crate::equations::{Equations, state};
 use nalgebra::{Matrix2, Vector2};
@@ -31,7 +31,7 @@ pub struct Point {
 }
 
 impl Point {
-    /// Where a phase begins in `state`.
+    /// Start of a phase in `state`.
     pub fn start(state: &State) -> Point {
         Point {
             position: Vector2::new(state.u, state.theta),
@@ -115,7 +115,7 @@ impl Method {
                 }
             }
             Method::Newmark { alpha, beta, gamma } => {
-                // What is carried over is the equations' own without α.
+                // Without α the carried acceleration is that of the equations.
                 let there = acceleration.filter(|_| alpha == 0.0).unwrap_or_else(|| a(tau, x, v));
                 let start = acceleration.unwrap_or(there);
                 let position = |end| x + h * v + h * h * ((0.5 - beta) * start + beta * end);

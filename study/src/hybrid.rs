@@ -12,12 +12,12 @@ use std::f64::consts::FRAC_PI_2;
 /// When a transition is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Transitions {
-    Located, // where its guard closes, found within the step, which then ends there
-    /// Where the integrator ends: at the end of the step on which its guard closes, unless the integrator finds events.
+    Located, // at the instant at which its guard closes; the step ends there
+    /// At the end of the step on which its guard closes, unless the integrator itself finds events.
     AtStepEnds,
 }
 
-/// What is to be integrated: from `from`, `tau` s into the interval, to `until` (s).
+/// The motion to integrate: from `from`, `tau` s into the interval, to `until` (s).
 pub struct Span<'a> {
     pub equations: &'a PhaseEquations<'a>,
     pub tau: f64,
@@ -34,7 +34,7 @@ pub struct Stretch {
     pub is_over: bool,
 }
 
-/// What moves a structure between transitions.
+/// An integrator of the motion between transitions.
 pub trait Integrator {
     /// Steps over `span`, or to where `end` says that the phase is over; yields the last step.
     fn advance(&self, span: &Span, end: Option<&PhaseEnd>) -> Result<Stretch, String>;
@@ -45,8 +45,8 @@ pub trait Integrator {
     }
 }
 
-/// A textbook method on a grid of steps of `h` s from the start of each interval; a step that a transition cut is
-/// followed by one to the next point of the grid.
+/// A textbook method on a grid of steps of `h` s from the start of each interval. After a transition the first step ends at
+/// the next point of the grid.
 pub struct Grid {
     pub method: Method,
     pub h: f64, // the step, s
@@ -178,8 +178,7 @@ impl<'a> Motion<'a> {
     }
 }
 
-/// Instant (s into the interval) and point at which the guard that is closed at the end of `stretch` closes: secants
-/// within a bracket.
+/// Instant (s into the interval) and point at which the guard closes within `stretch`: secants within a bracket.
 fn locate(
     equations: &PhaseEquations,
     integrator: &dyn Integrator,
@@ -190,7 +189,7 @@ fn locate(
     const MAX_ITERATIONS: usize = 100; // halvings that reach rounding from anywhere
     let from = stretch.from.state();
     let just_begun = from.theta == 0.0;
-    // Where rocking has just begun, the zero at the start is divided out of s θ.
+    // If rocking has just begun, s θ is divided by the power of time of its zero at the start.
     let (open, zeros) = match equations.phase {
         Phase::Rocking(side) if side.sign() * stretch.to.state().theta >= FRAC_PI_2 => {
             return Ok((stretch.end, stretch.to));

@@ -24,7 +24,7 @@ pub struct Curve {
     pub points: Vec<Point>,    // from coarse to fine
 }
 
-/// Where a curve belongs.
+/// Group of a curve on the charts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Family {
     Ours,
@@ -64,7 +64,7 @@ pub struct Limits {
     pub points: usize, // no fewer points than these on a curve
 }
 
-/// What a curve of the full study is made of.
+/// Limits of the full study.
 pub const FULL: Limits = Limits { run: 0.25, points: 5 };
 
 /// Every curve on `scene`. Runs are timed: nothing else may run meanwhile.

@@ -1,4 +1,4 @@
-//! What a run yields: the response at the samples, what it cost, or why there is none.
+//! Result of a run: the response at the samples, its cost, or the reason of a failure.
 
 use rocking::Outputs;
 
@@ -20,7 +20,7 @@ pub struct Sample {
 }
 
 impl Sample {
-    /// What the study looks at of the outputs.
+    /// The outputs that the study compares.
     pub fn of(&Outputs { theta, u, a_t, .. }: &Outputs) -> Sample {
         Sample { theta, u, a_t }
     }

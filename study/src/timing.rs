@@ -1,4 +1,4 @@
-//! What things cost.
+//! Processor time.
 
 use cpu_time::ThreadTime;
 use std::time::Duration;
@@ -9,7 +9,7 @@ const LEAST: Duration = Duration::from_millis(30);
 /// And at most so often.
 const MOST_REPEATS: usize = 1000;
 
-/// What `run` yields, and the shortest time that a processor took for it, s.
+/// The result of `run`, and the shortest processor time, s.
 pub fn fastest<T>(mut run: impl FnMut() -> T) -> (T, f64) {
     let began = ThreadTime::now();
     let mut best = f64::INFINITY;

@@ -6,7 +6,7 @@ use study::stability::limits::{Limit, measure};
 use study::stability::uplift_trap;
 use study::stability::vibration::Vibration;
 
-/// Limits of ω_u h by theory, as functions of ζ_u; none where there is no limit. That of RK4 is a root of its polynomial.
+/// Limits of ω_u h by theory, as functions of ζ_u; none where there is no limit. The limit of RK4 is a root of its polynomial.
 static THEORY: [fn(f64) -> Option<f64>; TEXTBOOK.len()] = [
     |zeta| Some(if zeta <= 1.0 { 2.0 * zeta } else { 2.0 / (zeta + (zeta * zeta - 1.0).sqrt()) }),
     |zeta| Some(2.0 * ((1.0 + zeta * zeta).sqrt() - zeta)),

@@ -1,4 +1,4 @@
-//! The repaired rule of uplift is what it says.
+//! The repaired rule of uplift leaves no tension.
 
 mod synthetic;
 

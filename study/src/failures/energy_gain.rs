@@ -13,7 +13,7 @@ use rocking::{Detail, Parameters, Phase, Side, State};
 /// A structure that gains: McManus's specimen, softer, with little restitution.
 const GAINER: Parameters = Parameters { r: 0.5, f_fc: 2.0, ..Parameters::MCMANUS };
 
-/// Where it is released, at rest.
+/// Rotation at the release, from rest.
 const RELEASE: f64 = 0.02;
 
 /// How long it is followed, s.

@@ -14,7 +14,7 @@ pub enum Method {
     Esdirk34, // an ESDIRK pair of orders 3(4)
 }
 
-/// One of them, to a relative tolerance.
+/// A solver of diffsol with a relative tolerance.
 pub struct Diffsol {
     pub method: Method,
     pub tolerance: f64,

@@ -2,8 +2,8 @@
 //! ends a run after the step on which a guard closes, and the instant is found by integrating afresh from the start of
 //! that step.
 //!
-//! Its version 0.6.2 evaluates the last stage of DOP853 at the time of the first, which is wrong under moving ground:
-//! time is therefore carried as a fifth state, so small that it weighs nothing in the error control.
+//! Its version 0.6.2 evaluates the last stage of DOP853 at the time of the first, which is wrong under moving ground.
+//! Time is therefore a fifth state, so small that it has no weight in the error control.
 
 use super::{ABSOLUTE, numbers, point, rates};
 use crate::equations::PhaseEquations;
@@ -19,7 +19,7 @@ pub enum Pair {
     Dop853, // orders 8(5, 3)
 }
 
-/// One of the two, to a relative tolerance.
+/// A solver of ode_solvers with a relative tolerance.
 pub struct OdeSolvers {
     pub pair: Pair,
     pub tolerance: f64,

@@ -147,7 +147,7 @@ impl Diagram {
         panel
     }
 
-    /// What the picture finds.
+    /// Findings of the picture.
     fn finding(&self) -> Result<String> {
         let (name, _, ratio) = self.nearest(SIX_DIGITS)?;
         Ok(format!("{}: to six digits the nearest method, {name}, takes {ratio:.1} times as long", self.title))
@@ -246,7 +246,7 @@ fn range(values: impl Iterator<Item = f64>, show: impl Fn(f64) -> String) -> Str
     [least, most].into_iter().flatten().map(show).collect::<Vec<_>>().join(" to ")
 }
 
-/// What six digits cost the engine and the nearest method, scene by scene.
+/// Cost of six digits for the engine and the nearest method, scene by scene.
 fn speed(diagrams: &[Diagram]) -> Result<Value> {
     let microseconds = |time: f64| significant(1e6 * time);
     let rows = diagrams.iter().map(|diagram| {

@@ -16,7 +16,7 @@ const RANGE: (f64, f64) = (3e-3, 1e3);
 /// Relative width at which the bisection ends.
 const RESOLUTION: f64 = 1e-4;
 
-/// What a measurement says of a method.
+/// Result of the measurement of a method.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Limit {
     Never,

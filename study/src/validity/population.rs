@@ -37,7 +37,7 @@ const STRENGTH: (f64, f64) = (1.0, 4.0);
 /// Part of the structures that has r = 1.
 const PART_ELASTIC: f64 = 0.25;
 
-/// What becomes of a structure by one rule of uplift.
+/// Response of a structure with one rule of uplift.
 #[derive(Clone, Debug)]
 pub struct Response {
     pub peaks: Peaks,
@@ -46,7 +46,7 @@ pub struct Response {
     pub overturns: bool,
 }
 
-/// What becomes of it by both.
+/// Responses with both rules.
 #[derive(Clone, Debug)]
 pub struct Pair {
     pub structure: Structure,
@@ -94,7 +94,7 @@ pub fn all(folder: &Path) -> Result<Vec<Pair>> {
     (0..STRUCTURES).into_par_iter().map(respond).collect()
 }
 
-/// What becomes of `run` by both rules.
+/// Responses to `run` with both rules.
 pub fn both(run: &Run) -> Result<Pair, RunError> {
     let model = respond(run)?;
     let mut repaired = run.clone();
