@@ -9,6 +9,7 @@ pub mod significant;
 mod units;
 
 use ::model_description::DefaultExperiment;
+pub use ::model_description::Version;
 use ::model_description::archive::{Entry, archive};
 use FlexibleRocking::ground::GroundRecord;
 use FlexibleRocking::resources::{Contents, PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records};
@@ -23,16 +24,6 @@ use std::str::FromStr;
 const LICENSES: &str = include_str!("../resources/licenses.txt");
 
 const ICON: &[u8] = include_bytes!("../resources/model.png");
-
-/// A version of the standard that an archive can follow.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Version {
-    /// FMI 2.0
-    #[default]
-    Fmi2,
-    /// FMI 3.0
-    Fmi3,
-}
 
 /// What a model is called: in its description, and as the file of its libraries.
 #[derive(Clone, Debug)]
@@ -86,9 +77,6 @@ pub enum ExportError {
     /// Two records of one name, which is what the FMU knows them by.
     #[error("two records are called {0}: rename one of them; capitals and small letters are the same here")]
     SameName(String),
-    /// The model description cannot be written.
-    #[error("modelDescription.xml: {0}")]
-    Description(#[from] ::model_description::SeError),
     /// The documentation cannot be written.
     #[error("documentation/index.html: {0}")]
     Documentation(#[from] minijinja::Error),
@@ -158,7 +146,7 @@ fn entries(
 ) -> Result<Vec<Entry>, ExportError> {
     let entry = |path: &str, content| Entry { path: path.to_owned(), content };
     let page = documentation::documentation(version, name, structure, contents, libraries)?;
-    let description = model_description::xml(version, name, structure, contents, experiment)?;
+    let description = model_description::xml(version, name, structure, contents, experiment);
     let icon = if version == Version::Fmi2 { "model.png" } else { "terminalsAndIcons/icon.png" };
     let mut entries = vec![entry("modelDescription.xml", description.into()), entry(icon, ICON.to_vec())];
     entries.extend([

@@ -1,7 +1,7 @@
 //! Units: what each is in SI, what hosts show it in, and magnitudes that are usual.
 
 use fmi_unit::{DataType, Variable};
-use model_description as fmi;
+use model_description::Unit;
 use rocking::structure::parameters::PARAMETERS;
 use rocking::{State, Structure};
 
@@ -27,13 +27,8 @@ pub const UNITS: [(&str, [i32; 4]); 17] = [
 ];
 
 /// Definitions of the units; the display unit g is that of `structure`.
-pub fn definitions(structure: &Structure) -> Vec<fmi::Unit> {
-    let definition = |(name, [kg, m, s, rad]): (&str, [i32; 4])| {
-        let shown = shown_in(name, structure);
-        let shown = shown.map(|(name, factor)| fmi::DisplayUnit { name: name.into(), factor });
-        let base_unit = Some(fmi::BaseUnit { kg, m, s, rad });
-        fmi::Unit { name: name.into(), base_unit, display_units: shown.into_iter().collect() }
-    };
+pub fn definitions(structure: &Structure) -> Vec<Unit> {
+    let definition = |(name, base)| Unit { name, base: Some(base), display: shown_in(name, structure) };
     UNITS.map(definition).into()
 }
 
