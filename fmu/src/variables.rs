@@ -74,6 +74,12 @@ pub(crate) struct Switch {
 }
 
 impl Source {
+    /// Whether the host sets the value, a real number.
+    pub fn is_set(self) -> bool {
+        use Source::{InitialValue, Input, Parameter, Placement};
+        matches!(self, Input(_) | Parameter(_) | InitialValue(_) | Placement(_))
+    }
+
     /// The value of a Real parameter or an initial value.
     pub fn setting(&self, setup: &Setup) -> Option<f64> {
         match self {
@@ -114,21 +120,6 @@ impl Source {
             Source::Placement(quantity) => (quantity.set)(&mut setup.placement, value),
             _ => (),
         }
-    }
-}
-
-/// Needs the structure in motion.
-const SCENE: u8 = 1;
-
-/// Needs a solution of the equations of motion.
-pub(crate) const SOLUTION: u8 = 2;
-
-/// What has to be there for a real number to be read from `source`.
-fn needs(source: Source) -> u8 {
-    match source {
-        Source::Input(_) | Source::Parameter(_) | Source::InitialValue(_) | Source::Placement(_) => 0,
-        Source::Reaction(_) | Source::StateRate(_) => SCENE | SOLUTION,
-        _ => SCENE,
     }
 }
 
@@ -195,8 +186,6 @@ pub struct Table {
     pub variables: Arc<[Variable]>,
     /// Where their values are.
     pub(crate) sources: Arc<[Source]>,
-    /// What has to be there to read them.
-    pub(crate) needs: Arc<[u8]>,
 }
 
 impl Table {
@@ -221,8 +210,7 @@ impl Table {
             .chain([(Variable::time(), Source::Time)]);
         let started = rows.map(|(variable, source)| (Variable { start: source.set_value(&setup), ..variable }, source));
         let (variables, sources): (Vec<_>, Vec<_>) = started.unzip();
-        let needs = sources.iter().map(|source| needs(*source)).collect();
-        Table { variables: variables.into(), sources: sources.into(), needs }
+        Table { variables: variables.into(), sources: sources.into() }
     }
 }
 
@@ -405,6 +393,7 @@ fn event_indicators() -> [Row; INDICATORS] {
     #[rustfmt::skip]
     const PHASE: &[&str] = &[
         "a_ground", "F_t", "a_v_ground", "u", "u_dot", "theta", "m", "m0", "H", "B", "f_fc", "zeta_fc", "c_ratio", "g", "detail", "P_0",
+        "xi_d", "k_d", "F_y",
     ];
     let indicator = |which, name, description, of| {
         let (variable, source) = local(name, "1", description, Source::Indicator(which), of);

@@ -41,6 +41,12 @@ fn a_state_can_be_set_as_a_variable() {
         "fmi2SetReal: theta = NaN is out of range: at most 1e12 in SI units; take a shorter step"
     );
     assert_eq!(by_name.bytes(), before, "all of the values or none");
+    let modal = Host::going_model(&[("theta_0", 0.02), ("detail", 4.0)]);
+    modal.assert_refused(
+        || modal.set(&[("theta", 0.015), ("a_v", 1.0)]),
+        ERROR,
+        "fmi2SetReal: detail = modal has no modes",
+    );
     assert_eq!(by_name.enter_event_mode(), OK);
     let refusal = "fmi2SetReal: theta cannot be set: it is an output, computed by the FMU";
     by_name.assert_refused(|| by_name.set(&[("theta", 0.01)]), ERROR, refusal);

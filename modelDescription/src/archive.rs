@@ -51,7 +51,8 @@ pub fn write_fmu(
         tuple => tuple,
     };
     let binary = format!("binaries/{folder}/{}{}", description.name, env::consts::DLL_SUFFIX);
-    let entries = [("modelDescription.xml".to_owned(), description.to_xml(version).into()), (binary, fs::read(library)?)];
+    let entries =
+        [("modelDescription.xml".to_owned(), description.to_xml(version).into()), (binary, fs::read(library)?)];
     Ok(fs::write(path, archive(&entries.map(|(path, content)| Entry { path, content }))?)?)
 }
 

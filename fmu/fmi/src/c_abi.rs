@@ -28,7 +28,7 @@ use std::marker::PhantomData;
 use std::mem::MaybeUninit;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::{ptr, slice};
 
 /// The functions of a version of the standard that take an instance; [`functions!`] lists them.
@@ -55,6 +55,8 @@ struct Component<F> {
     magic: Cell<u64>,
     /// One of the following.
     availability: AtomicU8,
+    /// Whether a step is under way in which the host is called back, and which goes on with the instance.
+    calls_back: AtomicBool,
     /// The interface's table.
     allowed_in: &'static Table,
     instance: UnsafeCell<Instance>,
@@ -80,7 +82,8 @@ pub(crate) fn instantiate<F: Function>(create: impl FnOnce() -> Option<(Instance
     let created = catch_unwind(AssertUnwindSafe(create)).ok().flatten();
     let Some((instance, allowed_in)) = created else { return ptr::null_mut() };
     let (magic, availability, instance) = (Cell::new(F::MAGIC), AtomicU8::new(READY), UnsafeCell::new(instance));
-    let component = Component::<F> { magic, availability, allowed_in, instance, version: PhantomData };
+    let (calls_back, version) = (AtomicBool::new(false), PhantomData);
+    let component = Component::<F> { magic, availability, calls_back, allowed_in, instance, version };
     Box::into_raw(Box::new(component)).cast()
 }
 
@@ -94,16 +97,10 @@ pub(crate) fn open<M: Model>(name: &'static str, given: &str, resources: &Path) 
     Ok(Box::new(model))
 }
 
-/// Frees a component. Does nothing for null, and while a call is under way, as from within the logger.
+/// Frees a component. Does nothing for null, and while a call is under way, as from within the logger or a callback.
 pub(crate) unsafe fn free<F: Function>(c: *mut c_void) {
     let Some(component) = (unsafe { component::<F>(c) }) else { return };
-    let availability = component.availability.swap(BUSY, Ordering::Acquire);
-    if availability == BUSY {
-        return;
-    }
-    // called from within a step, which goes on with the instance
-    if unsafe { &*component.instance.get() }.stage().is_within_step() {
-        component.availability.store(availability, Ordering::Release);
+    if component.calls_back.load(Ordering::Relaxed) || component.availability.swap(BUSY, Ordering::Acquire) == BUSY {
         return;
     }
     // Volatile, so that a call with the freed component finds no magic number as long as the memory is not used anew.
@@ -133,6 +130,14 @@ pub(crate) unsafe fn call<F: Function>(
     body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
 ) -> c_int {
     unsafe { call_in(c, function, |allowed_in| allowed_in[function.place()], body) }
+}
+
+/// Calls the host back within a step of the instance that `c` points to, which is not freed meanwhile.
+pub(crate) unsafe fn call_back<F: Function>(c: *mut c_void, host: impl FnOnce()) {
+    let Some(component) = (unsafe { component::<F>(c) }) else { return };
+    component.calls_back.store(true, Ordering::Relaxed);
+    host();
+    component.calls_back.store(false, Ordering::Relaxed);
 }
 
 /// The rest of a call of `function`, after the host has been called back.

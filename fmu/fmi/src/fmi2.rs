@@ -376,42 +376,11 @@ functions! {
 mod tests {
     use super::*;
     use crate::logger::Status;
-    use crate::{Step, Value, Variable};
+    use crate::touchy::{PANICS, Touchy, token};
     use std::ptr;
-    use std::sync::Arc;
-
-    #[derive(serde::Serialize, serde::Deserialize)]
-    struct Panics;
-
-    impl Model for Panics {
-        fn open(_: &std::path::Path) -> Result<Panics, Failure> {
-            Ok(Panics)
-        }
-
-        fn variables(&self) -> Arc<[Variable]> {
-            Arc::new([Variable::time()])
-        }
-
-        fn get(&mut self, _: u32) -> Result<Value, Failure> {
-            panic!("on purpose")
-        }
-
-        fn set(&mut self, _: u32, _: Value) {}
-
-        fn advance(&mut self, _: Step, _: &Logger) -> Result<Progress, Failure> {
-            Ok(Progress::Complete)
-        }
-
-        fn update(&mut self, _: &Logger) -> Result<Update, Failure> {
-            Ok(Update::default())
-        }
-
-        crate::state_by_serde!();
-    }
 
     #[test]
     fn a_panic_is_fatal_and_the_instance_can_only_be_freed() {
-        let token = CString::new(Panics.token()).unwrap();
         let functions = CallbackFunctions {
             logger: None,
             allocate_memory: ptr::null(),
@@ -420,9 +389,9 @@ mod tests {
             component_environment: ptr::null_mut(),
         };
         unsafe {
-            let c = instantiate::<Panics>(c"a".as_ptr(), 1, token.as_ptr(), c"file:///".as_ptr(), &functions, 0);
+            let c = instantiate::<Touchy>(c"a".as_ptr(), 1, token().as_ptr(), c"file:///".as_ptr(), &functions, 0);
             assert_eq!(fmi2EnterInitializationMode(c), Status::Ok as c_int);
-            assert_eq!(fmi2GetReal(c, &0, 1, &mut 0.0), Status::Fatal as c_int);
+            assert_eq!(fmi2GetReal(c, &PANICS, 1, &mut 0.0), Status::Fatal as c_int);
             assert_eq!(fmi2ExitInitializationMode(c), Status::Fatal as c_int);
             assert_eq!(fmi2Reset(c), Status::Fatal as c_int);
             fmi2FreeInstance(c);

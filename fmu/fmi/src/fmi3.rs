@@ -10,8 +10,9 @@
 mod stages;
 
 use crate::c_abi::{
-    self, call, call_on, check_count, check_pointer, complete_step, escaped, free_state, functions, keep_state,
-    names_events, read_all, read_state, room, text, values, write, write_all, write_state, write_state_size,
+    self, call, call_back, call_on, check_count, check_pointer, complete_step, escaped, free_state, functions,
+    keep_state, names_events, read_all, read_state, room, text, values, write, write_all, write_state,
+    write_state_size,
 };
 use crate::failure::Failure;
 use crate::instance::Instance;
@@ -237,11 +238,11 @@ pub unsafe extern "C" fn fmi3DoStep(
     };
     let mut status = unsafe { call(c, Function::DoStep, begin) };
     if let Some(host) = asked {
-        host.ask_for_inputs(point + step);
+        unsafe { call_back::<Function>(c, || host.ask_for_inputs(point + step)) };
         status = unsafe { call_on(c, Function::DoStep, compute) };
     }
     if let Some((host, time)) = told {
-        host.show_outputs(time);
+        unsafe { call_back::<Function>(c, || host.show_outputs(time)) };
         let end = |instance: &mut Instance| {
             instance.end_step();
             Ok(())
@@ -507,4 +508,39 @@ functions! {
     fmi3SetShiftDecimal = SetShiftDecimal()
     fmi3SetShiftFraction = SetShiftFraction()
     fmi3ActivateModelPartition = ActivateModelPartition()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::logger::Status;
+    use crate::touchy::{DROPPED, PANICS, Touchy, token};
+    use std::ptr;
+
+    /// The callback reads a variable whose value panics, and tries to free the instance.
+    unsafe extern "C" fn update(c: *mut c_void, _: f64, _: u8, _: u8, _: u8, _: u8, _: *mut u8, _: *mut f64) {
+        unsafe {
+            let c = *c.cast::<*mut c_void>();
+            assert_eq!(fmi3GetFloat64(c, &PANICS, 1, &mut 0.0, 1), Status::Fatal as c_int);
+            fmi3FreeInstance(c);
+            assert_eq!(DROPPED.get(), 0);
+        }
+    }
+
+    #[test]
+    fn an_instance_that_broke_within_a_step_is_freed_after_it() {
+        let mut c: *mut c_void = ptr::null_mut();
+        let (token, log) = (token(), ((&raw mut c).cast(), None, 0));
+        DROPPED.set(0);
+        unsafe {
+            let texts = [c"a".as_ptr(), token.as_ptr(), c"/".as_ptr()];
+            c = instantiate_co_simulation::<Touchy>(texts, log, [0, 0], (&PANICS, 1), Some(update));
+            assert_eq!((fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0), fmi3ExitInitializationMode(c)), (0, 0));
+            let (mut flags, mut time) = ([0; 3], 0.0);
+            let [event, end, early] = &mut flags;
+            assert_eq!(fmi3DoStep(c, 0.0, 0.1, 0, event, end, early, &mut time), Status::Fatal as c_int);
+            fmi3FreeInstance(c);
+        }
+        assert_eq!(DROPPED.get(), 1);
+    }
 }

@@ -76,7 +76,8 @@ impl Instance {
         logger.set_events(events);
         let variables = model.variables();
         let kinds = variables.iter().map(Kind::from).collect();
-        let (stage, events_at_start, at_start) = (Stage::Instantiated, events, model.state());
+        let (stage, events_at_start, mut at_start) = (Stage::Instantiated, events, Vec::new());
+        model.state(&mut at_start);
         let (experiment, snapshots, reals, shown, asked, led_to) = Default::default();
         Instance {
             model,
@@ -198,14 +199,13 @@ impl Instance {
         Ok(self.model.ending()?.map(Failure::Ended))
     }
 
-    fn snapshot(&self) -> Snapshot {
-        let Instance { interface, stage, experiment, .. } = *self;
-        Snapshot { interface, stage, experiment, model: self.model.state() }
-    }
-
     /// Keeps the present state as the FMU state `handle`, or as a new one for 0; returns the handle.
     pub(crate) fn get_fmu_state(&mut self, handle: usize) -> Result<usize, Failure> {
-        self.snapshots.keep(handle, self.snapshot())
+        let Instance { interface, stage, experiment, .. } = *self;
+        let mut model = if handle == 0 { Vec::new() } else { self.snapshots.take_bytes(handle)? };
+        model.clear();
+        self.model.state(&mut model);
+        self.snapshots.keep(handle, Snapshot { interface, stage, experiment, model })
     }
 
     /// Goes back to the FMU state `handle`.
@@ -349,6 +349,20 @@ impl Instance {
                 return Err(Failure::OutOfRange { name, value, unit, min, max, description });
             }
         }
+        // one value is set or not; several could be set in part
+        let mut before = Vec::new();
+        if references.len() > 1 {
+            self.model.state(&mut before);
+        }
+        let result = self.apply(references, values, states);
+        if result.is_err() && !before.is_empty() {
+            self.model.restore(&before)?;
+        }
+        result
+    }
+
+    /// Sets real numbers that may be set, and `states`; those of the numbers that are states are among them.
+    fn apply(&mut self, references: &[u32], values: &[f64], states: Option<Vec<f64>>) -> Result<(), Failure> {
         if let Some(states) = &states {
             self.model.set_states(states)?;
         }
@@ -465,15 +479,15 @@ impl Instance {
         orders: &[i32],
         values: &mut [MaybeUninit<f64>],
     ) -> Result<(), Failure> {
-        for reference in references {
-            self.find(*reference)?;
+        for (reference, &order) in references.iter().zip(orders) {
+            let variable = self.find(*reference)?;
+            if order != 1 {
+                return Err(Failure::WrongOrder { name: variable.name.to_string(), order });
+            }
         }
         let mut rates = vec![0.0; references.len()];
         if !references.is_empty() {
             self.model.rates(references, &mut rates)?;
-        }
-        if let Some((reference, order)) = references.iter().zip(orders).find(|(_, order)| **order != 1) {
-            return Err(Failure::WrongOrder { name: self.model.name(*reference), order: *order });
         }
         if let Some(at) = rates.iter().position(|rate| !rate.is_finite()) {
             return Err(Failure::NoRate { name: self.model.name(references[at]), time: self.model.time()? });

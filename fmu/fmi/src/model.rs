@@ -101,8 +101,8 @@ pub trait Model: 'static {
         Ok(None)
     }
 
-    /// All that the future of the simulation depends on, as bytes.
-    fn state(&self) -> Vec<u8>;
+    /// Writes all that the future of the simulation depends on at the end of `bytes`.
+    fn state(&self, bytes: &mut Vec<u8>);
 
     /// Goes to a state of [`Model::state`].
     fn restore(&mut self, bytes: &[u8]) -> Result<(), Failure>;

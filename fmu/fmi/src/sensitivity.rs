@@ -87,6 +87,7 @@ pub(crate) fn along<M: Model + ?Sized>(
             model.get_reals(&[*reference], &mut x)?;
             let scale = known.nominal.unwrap_or(1.0).max(x[0].abs());
             let found = by_differences(x[0], scale, &[-1.0, 1.0], |value| {
+                known.data_type.accepts(value).then_some(())?;
                 model.set_inputs(&[*reference], &[value]).ok()?;
                 values(model)
             });
@@ -121,4 +122,20 @@ pub fn no_known(variables: &[Variable], reference: u32) -> Failure {
     let name = |reference: u32| variables[reference as usize].name.to_string();
     let knowns = state_references(variables).map(name).collect::<Vec<_>>().join(", ");
     Failure::NoKnown { name: name(reference), knowns }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::touchy::Touchy;
+
+    #[test]
+    fn differences_stay_in_the_range_of_an_input() {
+        for (x, slope) in [(0.0, 0.0), (0.5, 2.0), (1.0, 4.0)] {
+            let mut model = Touchy { x };
+            let by = along(&mut model, &[1], &[(0, 3.0)], true).unwrap();
+            assert!((by[0] - 3.0 * slope).abs() < 1e-9, "{by:?}");
+            assert_eq!(model.x, x);
+        }
+    }
 }

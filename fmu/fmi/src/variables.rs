@@ -83,6 +83,15 @@ pub enum DataType {
     Enumeration(&'static Enumeration),
 }
 
+impl DataType {
+    /// Whether `value` is a real number in the range of the type.
+    pub fn accepts(&self, value: f64) -> bool {
+        let DataType::Real { range, .. } = self else { return false };
+        let (min, max) = range.unwrap_or((f64::MIN, f64::MAX));
+        (min..=max).contains(&value)
+    }
+}
+
 /// An enumeration.
 #[derive(Debug, PartialEq)]
 pub struct Enumeration {

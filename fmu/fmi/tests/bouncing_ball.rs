@@ -45,7 +45,9 @@ fn what_the_model_does_not_write_follows_from_what_it_does() {
     let log = fmi_unit::Logger::new(Box::new(|_, _, _| ()));
     ball.start(fmi_unit::Interface::ModelExchange, &log).unwrap();
     let mut once = Ball::open(Path::new("")).unwrap();
-    once.restore(&ball.state()).unwrap();
+    let mut state = Vec::new();
+    ball.state(&mut state);
+    once.restore(&state).unwrap();
     let step = |start, duration| Step { start, duration, stops_at_events: false };
     once.advance(step(2.0, 4.0), &log).unwrap();
     (0..400).for_each(|at| drop(ball.advance(step(2.0 + 0.01 * f64::from(at), 0.01), &log)));
