@@ -38,7 +38,7 @@ fn a_state_can_be_set_as_a_variable() {
     assert_eq!(by_name.set(&[("u", 1e-3), ("theta", f64::NAN)]), DISCARD);
     assert_eq!(
         by_name.log.take()[0].text,
-        "fmi2SetReal: theta = NaN is out of range: at most 1e12 in SI units; take a shorter step"
+        "fmi2SetReal: theta = NaN is out of range: a state must be finite; take a shorter step"
     );
     assert_eq!(by_name.bytes(), before, "all of the values or none");
     let modal = Host::going_model(&[("theta_0", 0.02), ("detail", 4.0)]);

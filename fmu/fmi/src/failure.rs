@@ -104,7 +104,7 @@ pub enum Failure {
     /// A step from the wrong time.
     #[error("currentCommunicationPoint = {} is not where the FMU is, t = {time} s", with_unit(*given, "s"))]
     WrongPoint { given: f64, time: f64 },
-    /// A step of no length, or of no number.
+    /// A step of no length, of no number, or to no finite time.
     #[error(
         "communicationStepSize = {step} s is out of range: it must be positive, finite, and large enough to move t = {time} s"
     )]
@@ -115,6 +115,9 @@ pub enum Failure {
     /// A time that is not finite.
     #[error("time = {} is out of range: time and time - startTime must be finite", with_unit(*.0, "s"))]
     BadTime(f64),
+    /// A state that is not finite, at a trial of the host's integrator that may be repeated elsewhere.
+    #[error("{name} = {value} is out of range: a state must be finite; take a shorter step")]
+    BadState { name: String, value: f64 },
     /// A step of the host's integrator that ends before it starts.
     #[error(
         "the integrator's step from t = {from} s ends at t = {to} s: time must not fall below the last event or complete step"
@@ -151,7 +154,9 @@ impl Failure {
     /// What the call returns.
     pub fn status(&self) -> Status {
         match self {
-            Failure::Ended(_) | Failure::Discarded(_) | Failure::NoAnswer(_) => Status::Discard,
+            Failure::Ended(_) | Failure::Discarded(_) | Failure::BadState { .. } | Failure::NoAnswer(_) => {
+                Status::Discard
+            }
             Failure::Panicked(_) => Status::Fatal,
             _ => Status::Error,
         }

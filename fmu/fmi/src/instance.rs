@@ -364,7 +364,7 @@ impl Instance {
     /// Sets real numbers that may be set, and `states`; those of the numbers that are states are among them.
     fn apply(&mut self, references: &[u32], values: &[f64], states: Option<Vec<f64>>) -> Result<(), Failure> {
         if let Some(states) = &states {
-            self.model.set_states(states)?;
+            self.set_continuous_states(states)?;
         }
         let (mut inputs, mut of_inputs) = (Vec::new(), Vec::new());
         for (reference, &value) in references.iter().zip(values) {
@@ -597,7 +597,7 @@ impl Instance {
         if !is_same_time(point, time, step) {
             return Err(Failure::WrongPoint { given: point, time });
         }
-        if until <= point {
+        if until <= point || until.is_infinite() {
             return Err(Failure::BadStep { step, time });
         }
         match self.experiment.stop_time {
@@ -630,6 +630,10 @@ impl Instance {
 
     /// Goes to the host's states.
     pub(crate) fn set_continuous_states(&mut self, states: &[f64]) -> Result<(), Failure> {
+        let mut named = state_references(&self.variables).zip(states);
+        if let Some((reference, &value)) = named.find(|(_, value)| !value.is_finite()) {
+            return Err(Failure::BadState { name: self.model.name(reference), value });
+        }
         self.model.set_states(states)
     }
 
