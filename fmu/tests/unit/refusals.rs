@@ -1,12 +1,9 @@
 //! Refused calls: each says why and changes nothing.
-#![allow(unsafe_code)] // the C interface
 
-mod host;
-
+use crate::host::*;
 use FlexibleRocking::unit::Unit;
 use FlexibleRocking::{BUILD, guid};
 use fmi_unit::fmi2::{self, *};
-use host::*;
 use libc::{c_int, c_void};
 use rocking::Parameters;
 use std::cell::RefCell;

@@ -1,11 +1,8 @@
 //! The FMU under an integrator of the host's.
-#![allow(unsafe_code, non_snake_case)] // the C interface; the standard's names
 
-mod host;
-
+use crate::host::*;
 use approx::assert_relative_eq;
 use fmi_unit::fmi2::*;
-use host::*;
 
 const PHASE_IN_CONTACT: i32 = 1;
 

@@ -1,10 +1,7 @@
 //! The record inside: against a run without the FMU, at any steps; its peaks; states; what is refused.
-#![allow(unsafe_code, non_snake_case)] // the C interface; F_t
 
-mod host;
-
+use crate::host::*;
 use approx::assert_relative_eq;
-use host::*;
 use rocking::run::peaks::PEAKS;
 use rocking::run::record::Record;
 use rocking::run::{End, Run};

@@ -1,11 +1,7 @@
 //! `fmi2DoStep`, the input's value and slope, the outputs' rates.
 
-#![allow(non_snake_case)] // the names of the field
-
-mod host;
-
+use crate::host::*;
 use approx::assert_relative_eq;
-use host::*;
 use rocking::Ramp;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::{Engine, Outputs, Parameters, Phase, State, Structure};

@@ -1,8 +1,6 @@
 //! What the host is told, and when.
 
-mod host;
-
-use host::*;
+use crate::host::*;
 use rocking::{Engine, Parameters, Ramp, State, Structure, Transition, TransitionKind};
 
 /// Released at an angle: impacts, landings, uplifts.

@@ -1,11 +1,10 @@
 //! Values in and out, and the table of variables against what the FMU computes.
-mod host;
 
+use crate::host::*;
 use FlexibleRocking::variables::PHASES;
 use approx::assert_relative_eq;
 use fmi_unit::variables::dependencies;
 use fmi_unit::{Causality, DataType, Role, Variable};
-use host::*;
 use rocking::run::validity::ASSUMPTIONS;
 use std::collections::BTreeSet;
 

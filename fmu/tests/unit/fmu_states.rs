@@ -1,12 +1,9 @@
 //! FMU states: kept, restored, serialized.
-#![allow(unsafe_code, non_snake_case)] // the C interface; F_t
 
-mod host;
-
+use crate::host::*;
 use FlexibleRocking::BUILD;
 use FlexibleRocking::unit::Condition;
 use fmi_unit::fmi2::*;
-use host::*;
 use std::ffi::c_void;
 use std::ptr::{null_mut, without_provenance_mut};
 

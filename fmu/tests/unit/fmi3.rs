@@ -1,12 +1,9 @@
 //! FMI 3.0 where it is not FMI 2.0: events, messages, calls back within a step.
-#![allow(unsafe_code)] // the C interface
 
-mod host;
-
+use crate::host::{ERROR, OK, reference, resources};
 use FlexibleRocking::unit::Unit;
 use fmi_unit::fmi3::{self, *};
 use fmi_unit::interface::Stepping;
-use host::{ERROR, OK, reference, resources};
 use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
 use std::cell::RefCell;
