@@ -20,6 +20,7 @@ use crate::instance::Instance;
 use crate::logger::{Category, Status};
 use crate::model::{Completed, Model};
 use crate::state_machine::{Stage, Stages, Table, names};
+use crate::variables::DataType;
 use libc::{c_char, c_int, c_void, size_t};
 use std::any::Any;
 use std::cell::{Cell, UnsafeCell};
@@ -45,8 +46,49 @@ pub trait Function: Copy + Sized + 'static {
     /// Its name in the C interface.
     fn name(self) -> &'static str;
 
-    /// Which function of the version to call instead of one that met `failure`, as the end of a message.
-    fn remedy(failure: &Failure) -> &'static str;
+    /// The functions that messages name.
+    const WORDS: Words;
+}
+
+/// The functions of a version that messages name as a remedy.
+pub struct Words {
+    pub(crate) real: &'static str,
+    pub(crate) integer: &'static str,
+    pub(crate) enumeration: &'static str,
+    pub(crate) boolean: &'static str,
+    pub(crate) string: &'static str,
+    pub(crate) fixing: &'static str,
+    pub(crate) reset: &'static str,
+    pub(crate) set_state: &'static str,
+    pub(crate) set_up: &'static str,
+    pub(crate) state_size: &'static str,
+    pub(crate) status: &'static str,
+}
+
+impl Words {
+    /// The function to call instead of one that met `failure`, as the end of a message.
+    fn remedy(&self, failure: &Failure) -> String {
+        let Words { fixing, reset, set_state, set_up, state_size, status, .. } = self;
+        match failure {
+            Failure::WrongType { data_type, .. } => {
+                let function = match data_type {
+                    DataType::Real { .. } => self.real,
+                    DataType::Integer => self.integer,
+                    DataType::Enumeration(_) => self.enumeration,
+                    DataType::Boolean => self.boolean,
+                    DataType::String => self.string,
+                };
+                format!(": call {function} instead")
+            }
+            Failure::Fixed { .. } => format!(": set it before {fixing}, or call {reset}"),
+            Failure::WrongPoint { .. } => format!(": step from there, or go back with {set_state}"),
+            Failure::StepBack { .. } => format!("; to go back, call {set_state}"),
+            Failure::PastStop { .. } => format!(" given to {set_up}: shorten it"),
+            Failure::WrongSize { .. } => format!(" ({state_size})"),
+            Failure::NoAnswer(_) => format!(": {status}"),
+            _ => String::new(),
+        }
+    }
 }
 
 /// What a component points to, for a host that speaks the version with the functions `F`.
@@ -187,7 +229,7 @@ unsafe fn call_in<F: Function>(
 #[cold]
 #[inline(never)]
 fn report<F: Function>(instance: &Instance, function: F, failure: &Failure) -> Status {
-    instance.report(failure.status(), &format!("{}: {failure}{}", function.name(), F::remedy(failure)));
+    instance.logger.failure(failure.status(), &format!("{}: {failure}{}", function.name(), F::WORDS.remedy(failure)));
     failure.status()
 }
 
@@ -413,6 +455,7 @@ macro_rules! functions {
         impl $crate::c_abi::Function for Function {
             const ALL: &'static [Function] = &[$(Function::$apart_function,)* $(Function::$function),*];
             const MAGIC: u64 = MAGIC;
+            const WORDS: $crate::c_abi::Words = WORDS;
 
             fn place(self) -> usize {
                 self as usize
@@ -423,10 +466,6 @@ macro_rules! functions {
                     $(Function::$apart_function => stringify!($apart),)*
                     $(Function::$function => stringify!($name),)*
                 }
-            }
-
-            fn remedy(failure: &Failure) -> &'static str {
-                remedy(failure)
             }
         }
 

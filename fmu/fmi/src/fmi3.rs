@@ -10,7 +10,7 @@
 mod stages;
 
 use crate::c_abi::{
-    self, call, call_back, call_on, check_count, check_pointer, complete_step, escaped, free_state, functions,
+    self, Words, call, call_back, call_on, check_count, check_pointer, complete_step, escaped, free_state, functions,
     keep_state, names_events, read_all, read_state, room, text, values, write, write_all, write_state,
     write_state_size,
 };
@@ -176,24 +176,19 @@ unsafe fn references<'a>(
     unsafe { values("valueReferences", valueReferences, nValueReferences) }
 }
 
-/// What to call instead.
-fn remedy(failure: &Failure) -> &'static str {
-    match failure {
-        Failure::WrongType { data_type, .. } => match data_type {
-            DataType::Real { .. } => ": call fmi3GetFloat64 or fmi3SetFloat64 instead",
-            DataType::Integer => ": call fmi3GetInt32 instead",
-            DataType::Enumeration(_) => ": call fmi3GetInt64 or fmi3SetInt64 instead",
-            DataType::Boolean => ": call fmi3GetBoolean or fmi3SetBoolean instead",
-            DataType::String => ": call fmi3GetString or fmi3SetString instead",
-        },
-        Failure::Fixed { .. } => ": set it before fmi3ExitInitializationMode, or call fmi3Reset",
-        Failure::WrongPoint { .. } => ": step from there, or go back with fmi3SetFMUState",
-        Failure::StepBack { .. } => "; to go back, call fmi3SetFMUState",
-        Failure::PastStop { .. } => " given to fmi3EnterInitializationMode: shorten it",
-        Failure::WrongSize { .. } => " (fmi3SerializedFMUStateSize)",
-        _ => "",
-    }
-}
+const WORDS: Words = Words {
+    real: "fmi3GetFloat64 or fmi3SetFloat64",
+    integer: "fmi3GetInt32",
+    enumeration: "fmi3GetInt64 or fmi3SetInt64",
+    boolean: "fmi3GetBoolean or fmi3SetBoolean",
+    string: "fmi3GetString or fmi3SetString",
+    fixing: "fmi3ExitInitializationMode",
+    reset: "fmi3Reset",
+    set_state: "fmi3SetFMUState",
+    set_up: "fmi3EnterInitializationMode",
+    state_size: "fmi3SerializedFMUStateSize",
+    status: "", // none is ever asked for
+};
 
 /// `fmi3DoStep`
 ///
@@ -220,9 +215,9 @@ pub unsafe extern "C" fn fmi3DoStep(
     let (mut asked, mut told) = (None, None);
     let mut compute = |instance: &mut Instance| unsafe {
         let progress = instance.do_step(point, step)?;
-        let (time, may_return_early) = (instance.time()?, instance.may_return_early());
+        let (time, may_return_early) = (instance.model.time()?, instance.may_return_early());
         if let (Progress::Ended, Some(ending)) = (progress, instance.ending()?) {
-            instance.warn(&format!("fmi3DoStep: {ending}"));
+            instance.logger.warning(&format!("fmi3DoStep: {ending}"));
         }
         write("eventHandlingNeeded", eventHandlingNeeded, u8::from(progress == Progress::Event))?;
         write("terminateSimulation", terminateSimulation, u8::from(progress == Progress::Ended))?;
@@ -261,7 +256,7 @@ functions! {
         let has_events = names_events(nCategories, categories)?;
         let on = boolean("loggingOn", loggingOn)?;
         if has_events {
-            instance.log_events(on);
+            instance.logger.set_events(on);
         }
         Ok(())
     }
@@ -448,22 +443,22 @@ functions! {
     fmi3GetContinuousStateDerivatives = GetContinuousStateDerivatives(
         derivatives: *mut f64, nContinuousStates: size_t,
     ) |instance| {
-        write_all("derivatives", derivatives, ("nContinuousStates", nContinuousStates), instance.derivatives()?)
+        write_all("derivatives", derivatives, ("nContinuousStates", nContinuousStates), instance.model.state_rates()?)
     }
 
     fmi3GetEventIndicators = GetEventIndicators(eventIndicators: *mut f64, nEventIndicators: size_t) |instance| {
-        write_all("eventIndicators", eventIndicators, ("nEventIndicators", nEventIndicators), instance.event_indicators()?)
+        write_all("eventIndicators", eventIndicators, ("nEventIndicators", nEventIndicators), instance.model.indicators()?)
     }
 
     fmi3GetContinuousStates = GetContinuousStates(continuousStates: *mut f64, nContinuousStates: size_t) |instance| {
         let count = ("nContinuousStates", nContinuousStates);
-        write_all("continuousStates", continuousStates, count, instance.continuous_states()?)
+        write_all("continuousStates", continuousStates, count, instance.model.states()?)
     }
 
     fmi3GetNominalsOfContinuousStates = GetNominalsOfContinuousStates(
         nominals: *mut f64, nContinuousStates: size_t,
     ) |instance| {
-        write_all("nominals", nominals, ("nContinuousStates", nContinuousStates), instance.nominals()?)
+        write_all("nominals", nominals, ("nContinuousStates", nContinuousStates), instance.model.nominals()?)
     }
 
     fmi3GetNumberOfEventIndicators = GetNumberOfEventIndicators(nEventIndicators: *mut size_t) |instance| {

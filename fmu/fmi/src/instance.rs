@@ -3,7 +3,7 @@
 
 use crate::failure::Failure;
 use crate::interface::{Interface, IntermediateUpdate, Stepping};
-use crate::logger::{Logger, Status};
+use crate::logger::Logger;
 use crate::model::{Completed, Experiment, Model, Progress, Step, Update};
 use crate::snapshot::{Snapshot, Snapshots};
 use crate::state_machine::Stage;
@@ -24,14 +24,15 @@ const INPUT: u8 = 2;
 
 /// One instance.
 pub struct Instance {
-    model: Box<dyn Model>,
+    /// The model, for what needs no check but that of the stage.
+    pub(crate) model: Box<dyn Model>,
     variables: Arc<[Variable]>,
     /// The variables' limits as inputs and their kinds, packed for the calls of every step.
     kinds: Vec<Kind>,
     interface: Interface,
     stage: Stage,
     experiment: Experiment,
-    logger: Logger,
+    pub(crate) logger: Logger,
     events_at_start: bool,
     /// The model's state, as it was made.
     at_start: Vec<u8>,
@@ -104,21 +105,6 @@ impl Instance {
         self.stage
     }
 
-    /// Logs why a call returns `status`.
-    pub(crate) fn report(&self, status: Status, message: &str) {
-        self.logger.failure(status, message);
-    }
-
-    /// Switches the log of events on or off.
-    pub(crate) fn log_events(&mut self, on: bool) {
-        self.logger.set_events(on);
-    }
-
-    /// Sends a warning.
-    pub(crate) fn warn(&self, message: &str) {
-        self.logger.warning(message);
-    }
-
     /// The variable that `reference` stands for.
     #[inline]
     fn find(&self, reference: u32) -> Result<&Variable, Failure> {
@@ -187,11 +173,6 @@ impl Instance {
         self.experiment = Experiment::default();
         self.logger.set_events(self.events_at_start);
         self.enter(Stage::Instantiated)
-    }
-
-    /// Where the simulation is, s.
-    pub(crate) fn time(&mut self) -> Result<f64, Failure> {
-        self.model.time()
     }
 
     /// Why the simulation is over, if it is.
@@ -635,26 +616,6 @@ impl Instance {
             return Err(Failure::BadState { name: self.model.name(reference), value });
         }
         self.model.set_states(states)
-    }
-
-    /// The states at which the host is, or from which it is to start.
-    pub(crate) fn continuous_states(&mut self) -> Result<Vec<f64>, Failure> {
-        self.model.states()
-    }
-
-    /// The magnitudes of the states.
-    pub(crate) fn nominals(&mut self) -> Result<Vec<f64>, Failure> {
-        self.model.nominals()
-    }
-
-    /// Derivatives of the states.
-    pub(crate) fn derivatives(&mut self) -> Result<Vec<f64>, Failure> {
-        self.model.state_rates()
-    }
-
-    /// The event indicators.
-    pub(crate) fn event_indicators(&mut self) -> Result<Vec<f64>, Failure> {
-        self.model.indicators()
     }
 
     /// Tells the model that the host has completed a step to where it is.
