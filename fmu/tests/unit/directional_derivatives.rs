@@ -5,7 +5,7 @@ use approx::assert_relative_eq;
 use fmi_unit::fmi2::fmi2GetDirectionalDerivative;
 
 /// The derivatives of `unknowns` where each of `knowns` changes by so much, or the status.
-fn derivatives(host: &Host, unknowns: &[&str], knowns: &[(&str, f64)]) -> Result<Vec<f64>, i32> {
+pub fn derivatives(host: &Host, unknowns: &[&str], knowns: &[(&str, f64)]) -> Result<Vec<f64>, i32> {
     let references = unknowns.iter().map(|name| reference(name)).collect::<Vec<_>>();
     let (of, by): (Vec<_>, Vec<_>) = knowns.iter().map(|(name, change)| (reference(name), *change)).unzip();
     let mut values = vec![f64::MAX; unknowns.len()];

@@ -1,5 +1,6 @@
 //! The FMU under an integrator of the host's.
 
+use crate::directional_derivatives::derivatives;
 use crate::host::*;
 use approx::assert_relative_eq;
 use fmi_unit::fmi2::*;
@@ -83,6 +84,15 @@ fn no_indicator_is_zero_where_integration_starts() {
     let variables = host.try_get(&["phase_indicator", "overturning_indicator"]).unwrap();
     assert_eq!(host.indicators().unwrap().to_vec(), variables);
     assert!(host.indicators().unwrap().iter().all(|indicator| *indicator > 0.0));
+    // the free edge rises as the base turns on, to either side, of which the other is none
+    let by_theta = |host: &Host| derivatives(host, &["uplift"], &[("theta", 1.0)]).unwrap()[0];
+    let other_side = Host::new_model().initialized(&[("u_0", -8e-4)]);
+    assert_eq!((other_side.exit(), other_side.update().is_ok()), (OK, true));
+    for (host, phase) in [(&host, 3), (&other_side, 2)] {
+        let sign = f64::from(2 * phase - 5);
+        assert_eq!(host.integer("phase"), phase);
+        assert_relative_eq!(by_theta(host), sign * 2.0 * host.get("B"), max_relative = 1e-6);
+    }
     assert_eq!(host.go_on(), OK);
     for i in 0..2000 {
         host.integrate(f64::from(i) * 1e-3, 1e-3);
