@@ -32,7 +32,7 @@ impl Unit {
         Ok(())
     }
 
-    /// Where the values of `references` are.
+    /// The sources of the values of `references`.
     fn sources_of(&self, references: &[u32]) -> Vec<Source> {
         references.iter().map(|reference| self.table.sources[*reference as usize]).collect()
     }

@@ -6,7 +6,7 @@ use crate::variables::Source;
 use rocking::{Load, Outputs, Reactions, State};
 use std::cell::OnceCell;
 
-/// What a scene shows under a load.
+/// The values of a scene under a load.
 pub(crate) struct Shown<'a> {
     scene: &'a Scene,
     setup: &'a Setup,
@@ -20,7 +20,7 @@ pub(crate) struct Shown<'a> {
 }
 
 impl<'a> Shown<'a> {
-    /// That of `scene`, which follows `setup`, under `load`.
+    /// The values of `scene`, which follows `setup`, under `load`.
     #[inline]
     pub fn new(scene: &'a Scene, setup: &'a Setup, load: Load) -> Shown<'a> {
         let (reactions, rates) = Default::default();

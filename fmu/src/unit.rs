@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
 
-/// What an instance holds between two calls.
+/// An instance between two calls.
 pub struct Unit {
     pub(crate) table: Table,
     archive: Archive,
@@ -40,9 +40,9 @@ pub struct Unit {
 /// A few dozen numbers from which an instance goes on to the same bits: its part of an FMU state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Condition {
-    /// What was set before the start.
+    /// The settings before the start.
     pub setup: Setup,
-    /// What acts from the present time on.
+    /// The inputs from the present time on.
     pub inputs: Inputs,
     /// How far the simulation has come, once it has started: until then all follows from the setup.
     pub course: Option<Course>,
@@ -53,7 +53,7 @@ pub struct Condition {
 pub struct Course {
     /// The motion; the host's, if the host integrates.
     pub motion: Motion,
-    /// What is known beside the motion, if the host integrates.
+    /// The knowledge beside the motion, if the host integrates.
     pub outside: Option<Outside>,
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,

@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// An integer, or a Boolean as 0 or 1.
 pub(crate) type OfMotion = fn(&Motion) -> i32;
 
-/// Where the value of a variable is.
+/// The source of the value of a variable.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Source {
     /// By its place in [`LOADS`].
@@ -30,7 +30,7 @@ pub(crate) enum Source {
     Reaction(fn(&Reactions) -> f64),
     /// The derivative of one of [`COMPONENTS`], by its place.
     StateRate(usize),
-    /// One of the event indicators, by its place.
+    /// An event indicator, by its place.
     Indicator(usize),
     Impulse(fn(&Impulse) -> f64),
     Restraint(fn(&Restraints) -> f64),
@@ -41,7 +41,7 @@ pub(crate) enum Source {
     InitialValue(&'static Quantity<State>),
     Derived(&'static Derived),
     Detail,
-    /// One of the ground's accelerations, the input and the record, by its place in [`LOADS`].
+    /// A ground acceleration, the input and the record, by its place in [`LOADS`].
     Ground(usize),
     Peak(fn(&Peaks) -> f64),
     /// The worst value of one of [`ASSUMPTIONS`].
@@ -184,7 +184,7 @@ type Row = (Variable, Source);
 pub struct Table {
     /// The variables, in the order of the model description.
     pub variables: Arc<[Variable]>,
-    /// Where their values are.
+    /// The sources of their values.
     pub(crate) sources: Arc<[Source]>,
 }
 
@@ -233,7 +233,7 @@ fn input(which: usize) -> Row {
     (Variable { causality: Causality::Input, is_continuous: true, ..variable }, source)
 }
 
-/// What accelerations follow from.
+/// The variables that accelerations follow from.
 #[rustfmt::skip]
 const ACCELERATION: &[&str] = &[
     "a_ground", "F_t", "a_v_ground", "u", "u_dot", "theta", "theta_dot", "m", "m0", "H", "B", "J0", "f_fc", "zeta_fc", "c_ratio",
@@ -422,7 +422,7 @@ fn peaks() -> Vec<Row> {
     peaks!(theta "rad" u "m" delta_t "m" uplift "m" a_t "m/s2" V_t "N" M_t "N.m" P_t "N")
 }
 
-/// What the motion goes beyond.
+/// The limits that the motion passes.
 fn validity() -> Vec<Row> {
     let of_assumption = |(which, assumption): (usize, &'static Assumption)| {
         let Assumption { name, time_name, description, time_description, is_of_impacts, .. } = *assumption;

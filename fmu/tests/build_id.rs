@@ -1,4 +1,4 @@
-//! What the name of the build covers, and what it does not.
+//! The name of the build covers what enters the library, and nothing else.
 
 #[path = "../build/build_id.rs"]
 mod build_id;

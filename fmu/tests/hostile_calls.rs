@@ -30,7 +30,7 @@ fn time(snapshot: &Snapshot) -> f64 {
     course.outside.map_or(course.motion.time, |outside| outside.known.motion.time)
 }
 
-/// What nobody watches for is not a number, and friction may be infinite.
+/// Peaks and limits that nobody watches for are no numbers, and friction may be infinite.
 fn may_be_infinite(name: &str) -> bool {
     name.ends_with("_max") || ASSUMPTIONS.iter().any(|of| [of.name, of.time_name].contains(&name))
 }
@@ -41,7 +41,7 @@ fn check_step(before: &Snapshot, after: &Snapshot) {
     assert!(after - before <= MAX_STEPS_PER_ADVANCE, "{} steps", after - before);
 }
 
-/// What `record` is set to: files of the archive in `folder` and elsewhere, sound and broken, and what is no file.
+/// Values of `record`: files of the archive in `folder` and elsewhere, sound and broken, and what is no file.
 fn records(folder: &Path) -> Vec<CString> {
     let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
     let samples: String =

@@ -13,7 +13,7 @@ pub struct Description<'a> {
     pub name: &'a str,
     /// The model's GUID.
     pub token: String,
-    /// What the model is, in one line.
+    /// The model in one line.
     pub description: &'a str,
     /// Version of the model.
     pub version: &'a str,
@@ -71,7 +71,7 @@ impl Description<'_> {
             .document()
     }
 
-    /// What both interfaces can do.
+    /// The capabilities of both interfaces.
     fn interfaces(&self, version: Version) -> [Element; 2] {
         let [model_exchange, co_simulation] =
             ["ModelExchange", "CoSimulation"].map(|name| Element::new(name).with("modelIdentifier", self.name));
@@ -215,7 +215,7 @@ impl Description<'_> {
         found.map(move |at| (at, dependencies(self.variables, at, at_start)))
     }
 
-    /// What depends on what in FMI 2.0: after the start on inputs and states alone.
+    /// The dependencies in FMI 2.0: after the start on inputs and states alone.
     fn structure_of_fmi2(&self) -> Element {
         let is_input_or_state = |at: &usize| {
             let variable = &self.variables[*at];
@@ -235,7 +235,7 @@ impl Description<'_> {
         ])
     }
 
-    /// What depends on what in FMI 3.0, on parameters and time, too.
+    /// The dependencies in FMI 3.0, on parameters and time, too.
     fn structure_of_fmi3(&self) -> Element {
         let list = |name, is_one: fn(&Variable) -> bool, at_start: bool| {
             let unknowns = self.unknowns(is_one, at_start);

@@ -25,7 +25,7 @@ const LICENSES: &str = include_str!("../resources/licenses.txt");
 
 const ICON: &[u8] = include_bytes!("../resources/model.png");
 
-/// What a model is called: in its description, and as the file of its libraries.
+/// The name of a model in its description, and of the files of its libraries.
 #[derive(Clone, Debug)]
 pub struct ModelName(String);
 
@@ -45,7 +45,7 @@ impl Default for ModelName {
 impl FromStr for ModelName {
     type Err = ExportError;
 
-    /// Any identifier of C, which is what the standard asks for.
+    /// Accepts any identifier of C, as the standard does.
     fn from_str(name: &str) -> Result<ModelName, ExportError> {
         let is_word = |c: char| c == '_' || c.is_ascii_alphanumeric();
         if name.chars().all(is_word) && name.starts_with(|c: char| !c.is_ascii_digit()) {
@@ -74,7 +74,7 @@ pub enum ExportError {
     /// A file whose name is not text.
     #[error("the record {path} needs a name in UTF-8", path = .0.display())]
     RecordName(PathBuf),
-    /// Two records of one name, which is what the FMU knows them by.
+    /// Two records of one name.
     #[error("two records are called {0}: rename one of them; capitals and small letters are the same here")]
     SameName(String),
     /// The documentation cannot be written.
@@ -174,7 +174,7 @@ mod tests {
         Structure::new(parameters).unwrap()
     }
 
-    /// What passes for the library of this build for `platform`.
+    /// A library that passes for the one of this build for `platform`.
     fn library(platform: Platform) -> Library {
         Library { platform, content: platform.target().into() }
     }

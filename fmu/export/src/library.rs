@@ -59,7 +59,7 @@ impl Platform {
         if version == Version::Fmi3 { self.tuple() } else { self.names()[1] }
     }
 
-    /// What cargo, or cargo-zigbuild, calls it.
+    /// The target by the name that cargo, or cargo-zigbuild, has for it.
     pub fn target(self) -> &'static str {
         self.names()[2]
     }
@@ -69,13 +69,13 @@ impl Platform {
         self.names()[3]
     }
 
-    /// Where an archive of the model `name` has the library.
+    /// The path of the library in an archive of the model `name`.
     pub(crate) fn path(self, version: Version, name: &str) -> String {
         let (_, extension) = self.file().rsplit_once('.').expect("they have one");
         format!("binaries/{}/{name}.{extension}", self.folder(version))
     }
 
-    /// What `library` is for, by its header.
+    /// The platform that `library` is for, by its header.
     fn of(library: &[u8]) -> Option<Platform> {
         if FileKind::parse(library) == Ok(FileKind::MachOFat32) {
             let both = MachOFatFile32::parse(library).ok()?;
@@ -97,7 +97,7 @@ impl Platform {
 /// A shared library of this build.
 #[derive(Debug)]
 pub struct Library {
-    /// What it is for.
+    /// The platform of the library.
     pub platform: Platform,
     pub(crate) content: Vec<u8>,
 }
@@ -126,7 +126,7 @@ impl Library {
         Library::from_bytes(path, content)
     }
 
-    /// The shared library in `content`, that of the file at `path`, or those of the FMU that it is.
+    /// The shared library in `content`, the content of the file at `path`, or the libraries of an FMU.
     pub fn from_bytes(path: &Path, content: Vec<u8>) -> Result<Vec<Library>, LibraryError> {
         if !content.starts_with(b"PK") {
             return Ok(vec![Library::new(path, content)?]);
@@ -146,7 +146,7 @@ impl Library {
         Ok(libraries)
     }
 
-    /// The library with this `content`, of this build; `path` is where it comes from.
+    /// The library with this `content`, of this build; it comes from `path`.
     fn new(path: &Path, content: Vec<u8>) -> Result<Library, LibraryError> {
         let platform = Platform::of(&content).ok_or_else(|| LibraryError::NoLibrary(path.to_owned()))?;
         if memmem::find(&content, BUILD.as_bytes()).is_none() {
@@ -160,7 +160,7 @@ impl Library {
 mod tests {
     use super::*;
 
-    /// No more than a header.
+    /// A header alone.
     fn elf(machine: u8) -> Vec<u8> {
         let mut header = [0; 64];
         header[..7].copy_from_slice(b"\x7fELF\x02\x01\x01"); // 64 bits, little-endian

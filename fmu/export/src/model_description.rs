@@ -7,10 +7,10 @@ use fmi_unit::Variable;
 use model_description::{DefaultExperiment, Description};
 use rocking::Structure;
 
-/// What the model is, in one line.
+/// The model in one line.
 pub const DESCRIPTION: &str = "A flexible structure that rocks freely on rigid ground under earthquake ground motion";
 
-/// What the log category of events tells, in one line.
+/// The content of the log category of events, in one line.
 pub const EVENTS: &str = "uplift, impact, landing and overturning, as they happen";
 
 /// The text of the description of the FMU `name` of `structure` with these `contents`.

@@ -32,7 +32,7 @@ pub fn definitions(structure: &Structure) -> Vec<Unit> {
     UNITS.map(definition).into()
 }
 
-/// What hosts can show a unit in, and what a value is multiplied by for it. The g of an acceleration is the structure's own,
+/// The unit that hosts can show a unit in, and the factor of a value in that unit. The g of an acceleration is the structure's own,
 /// as in a record.
 fn shown_in(unit: &str, structure: &Structure) -> Option<(&'static str, f64)> {
     match unit {
@@ -46,7 +46,7 @@ fn shown_in(unit: &str, structure: &Structure) -> Option<(&'static str, f64)> {
     }
 }
 
-/// What `variable` is shown in, where that is not its unit. The structure's own parameters are in SI, as in its file, and
+/// The unit that `variable` is shown in, if that is another than its own. The structure's own parameters are in SI, as in its file, and
 /// instants in seconds: they are looked up in a record.
 pub fn display_unit(variable: &Variable, structure: &Structure) -> Option<&'static str> {
     let DataType::Real { unit, .. } = variable.data_type else { return None };

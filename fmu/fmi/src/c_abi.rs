@@ -1,4 +1,4 @@
-//! What the C interfaces of all versions of the standard have in common. Only here, in [`fmi2`](crate::fmi2) and in
+//! The common part of the C interfaces of all versions of the standard. Only here, in [`fmi2`](crate::fmi2) and in
 //! [`fmi3`](crate::fmi3) are pointers followed: each function turns its arguments into slices and text, and calls the
 //! instance.
 //!
@@ -37,7 +37,7 @@ pub trait Function: Copy + Sized + 'static {
     /// All of them.
     const ALL: &'static [Self];
 
-    /// What a component of this version begins with.
+    /// The first number in a component of this version.
     const MAGIC: u64;
 
     /// Its place among all of them.
@@ -91,11 +91,11 @@ impl Words {
     }
 }
 
-/// What a component points to, for a host that speaks the version with the functions `F`.
+/// The instance behind a component, for a host that speaks the version with the functions `F`.
 #[repr(C)] // the magic number first, whatever the version
 struct Component<F> {
     magic: Cell<u64>,
-    /// One of the following.
+    /// [`READY`], [`BUSY`] or [`BROKEN`].
     availability: AtomicU8,
     /// Whether a step is under way in which the host is called back, and which goes on with the instance.
     calls_back: AtomicBool,

@@ -1,4 +1,4 @@
-//! Why a call is not done: every message of that kind, in one place. What to call instead, the C interface adds.
+//! Why a call is not done: every message of that kind, in one place. The C interface adds the function to call instead.
 
 use crate::logger::Status;
 use crate::state_machine::Stage;
@@ -53,10 +53,10 @@ pub enum Failure {
          export it again, and unpack every FMU into a folder of its own"
     )]
     WrongToken { name: &'static str, given: String, needed: String },
-    /// No such log category.
+    /// A log category that does not exist.
     #[error("log category {0:?} does not exist; see LogCategories in modelDescription.xml")]
     UnknownCategory(String),
-    /// No such variable.
+    /// A variable that does not exist.
     #[error("value reference {reference} does not exist; they run from 0 to {last}")]
     UnknownReference { reference: u32, last: usize },
     /// A variable of another type.
@@ -151,7 +151,7 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// What the call returns.
+    /// The status that the call returns.
     pub fn status(&self) -> Status {
         match self {
             Failure::Ended(_) | Failure::Discarded(_) | Failure::BadState { .. } | Failure::NoAnswer(_) => {
@@ -175,7 +175,7 @@ fn with_unit(value: f64, unit: &str) -> String {
     if unit == "1" { digits.into() } else { format!("{digits} {unit}") }
 }
 
-/// What the numbers of an enumeration stand for.
+/// The items of an enumeration with their numbers.
 fn items(data_type: DataType) -> String {
     let DataType::Enumeration(enumeration) = data_type else { return String::new() };
     (1..)

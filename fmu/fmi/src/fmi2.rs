@@ -135,7 +135,7 @@ pub unsafe extern "C" fn fmi2FreeInstance(c: *mut c_void) {
     unsafe { c_abi::free::<Function>(c) }
 }
 
-/// What the `fmi2Boolean` `value`, given as `name`, stands for.
+/// The truth that the `fmi2Boolean` `value`, given as `name`, stands for.
 fn boolean(name: &str, value: c_int) -> Result<bool, Failure> {
     match value {
         0 => Ok(false),

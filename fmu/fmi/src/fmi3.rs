@@ -39,7 +39,7 @@ pub extern "C" fn fmi3GetVersion() -> *const c_char {
 /// Name, token and folder of an instance.
 type Texts = [*const c_char; 3];
 
-/// Where an instance logs to, and whether events too.
+/// The logger of an instance, and whether it takes events, too.
 type Log = (*mut c_void, Option<LogMessageCallback>, u8);
 
 /// `fmi3InstantiateCoSimulation` of the model `M`
@@ -155,7 +155,7 @@ pub unsafe extern "C" fn fmi3FreeInstance(instance: *mut c_void) {
     unsafe { c_abi::free::<Function>(instance) }
 }
 
-/// What the `fmi3Boolean` `value`, given as `name`, stands for.
+/// The truth that the `fmi3Boolean` `value`, given as `name`, stands for.
 fn boolean(name: &str, value: u8) -> Result<bool, Failure> {
     match value {
         0 => Ok(false),
@@ -322,7 +322,7 @@ functions! {
         instance.set_real(references, values("values", value, nValues)?)
     }
 
-    /// No integer can be set.
+    /// Refuses all, because a model has no integers to set.
     fmi3SetInt32 = SetInt32(
         valueReferences: *const c_uint, nValueReferences: size_t, _values: *const i32, nValues: size_t,
     ) |instance| {
@@ -469,7 +469,7 @@ functions! {
         write("nContinuousStates", nContinuousStates, instance.count(|role| *role == Role::State))
     }
 
-    // For what this unit does not have: never allowed. Arguments that are not read are not declared: on all platforms that
+    // Functions that this unit does not have are never allowed. Arguments that are not read are not declared: on all platforms that
     // there are libraries for, the caller removes them.
     fmi3GetFloat32 = GetFloat32()
     fmi3GetInt8 = GetInt8()

@@ -16,10 +16,10 @@ use std::sync::Arc;
 /// How close two times that mean the same are, in parts of the step, or in units in the last place if that is more.
 const SAME_TIME: (f64, f64) = (1e-4, 8.0);
 
-/// Of a variable: it is a real number.
+/// The variable is a real number.
 const REAL: u8 = 1;
 
-/// Of a variable: it is an input, of real numbers.
+/// The variable is an input.
 const INPUT: u8 = 2;
 
 /// One instance.
@@ -597,7 +597,7 @@ fn is_same_time(a: f64, b: f64, step: f64) -> bool {
     apart <= part * step || apart <= 0.5 * step && apart <= places * (b.abs().next_up() - b.abs())
 }
 
-/// What an instance does for a host that integrates.
+/// The service of an instance to a host that integrates.
 impl Instance {
     /// Goes to the host's `time` (s).
     pub(crate) fn set_time(&mut self, time: f64) -> Result<(), Failure> {

@@ -14,11 +14,11 @@ use uuid::Uuid;
 /// All that the future of an instance depends on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
-    /// Who integrates.
+    /// The side that integrates.
     pub interface: Interface,
     /// Stage of the instance.
     pub stage: Stage,
-    /// What the host gave at the start.
+    /// The times and the tolerance that the host gave.
     pub experiment: Experiment,
     /// The model's own part.
     pub model: Vec<u8>,

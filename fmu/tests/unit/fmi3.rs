@@ -203,7 +203,7 @@ fn the_other_versions_functions_refuse_an_instance() {
 /// A host that is called back: it sets inputs before a step is computed, and reads afterwards.
 struct Called {
     c: *mut c_void,
-    /// What the input is to be at the end of the next step.
+    /// The input at the end of the next step.
     end: f64,
     /// When it read theta and its rate, and what these were.
     read: Vec<[f64; 3]>,
@@ -276,7 +276,7 @@ fn a_host_that_is_called_back_sets_inputs_reads_and_does_no_harm() {
             assert_eq!(fmi3SetFloat64(c, &a_g, 1, &3.0, 1), OK);
             assert_eq!(fmi3DoStep(c, 0.5, 0.25, 0, event, terminate, early, null_mut()), ERROR);
             assert_eq!((fmi3GetFloat64(c, &a_g, 1, &mut value, 1), value), (OK, 3.0));
-            // the instant of overturning is where it reads last
+            // the host reads last at the instant of overturning
             (*environment).end = 0.0;
             assert_eq!(fmi3DoStep(c, 0.5, 100.0, 0, event, terminate, early, &mut reached), OK);
             let ends: Vec<_> = std::mem::take(&mut (*environment).read).iter().map(|read| read[0]).collect();

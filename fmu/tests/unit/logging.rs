@@ -1,4 +1,4 @@
-//! What the host is told, and when.
+//! The messages to the host, and their occasions.
 
 use crate::host::*;
 use rocking::{Engine, Parameters, Ramp, State, Structure, Transition, TransitionKind};

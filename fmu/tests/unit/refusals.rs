@@ -10,7 +10,7 @@ use std::cell::RefCell;
 use std::ffi::CString;
 use std::ptr::{null, null_mut, without_provenance_mut};
 
-/// What the log says, and the call.
+/// The message in the log, and the call.
 type Refused = (&'static str, fn(&Host) -> c_int);
 
 const INSTANTIATED: &[Refused] = &[
@@ -131,7 +131,7 @@ fn contradictions_are_refused_when_initialization_ends_and_can_be_put_right() {
     assert_eq!(host.try_get(&["theta", "theta_dot", "H"]).unwrap(), [0.02, 0.5, 1000.0]);
 }
 
-/// What a host asks for when it makes an instance, and the one message that it gets instead.
+/// The arguments of a host that makes an instance, and the one message that it gets instead.
 #[test]
 fn an_instance_that_cannot_be_made_is_null_and_the_log_says_why() {
     let with = Instantiate::default;

@@ -1,4 +1,4 @@
-//! What a motion goes beyond: as the engine's own run finds it, told once, kept in states, and not watched unless it is asked for.
+//! The limits that a motion passes: as the engine's own run finds it, told once, kept in states, and not watched unless it is asked for.
 
 use crate::host::*;
 use FlexibleRocking::BUILD;

@@ -62,7 +62,7 @@ fn is_state(variable: &Variable) -> bool {
     variable.role == Role::State
 }
 
-/// What one call is given.
+/// The arguments of one call.
 #[derive(Default)]
 pub struct Drawn {
     pub references: Vec<c_uint>,
@@ -74,7 +74,7 @@ pub struct Drawn {
     /// An FMU state, and where one is read and written.
     pub state: C,
     pub place: Option<Vec<C>>,
-    /// Where bytes of an FMU state are written.
+    /// Room for the bytes of an FMU state.
     pub serialized: Option<Vec<u8>>,
     pub rooms: Vec<Room>,
     held: Vec<Box<dyn Any>>,
@@ -296,7 +296,7 @@ impl Sequence<'_> {
         self.drawn.state
     }
 
-    /// Where an FMU state is, or one is to be.
+    /// A place with an FMU state, or for one.
     pub fn place_of_state(&mut self) -> *mut C {
         if self.rng.bool() {
             self.state();
@@ -366,7 +366,7 @@ impl Sequence<'_> {
         self.hold(states)
     }
 
-    /// What derivatives are asked of, and by what.
+    /// The variables that derivatives are asked of.
     pub fn unknowns(&mut self) -> *const c_uint {
         let unknowns = self.references(|variable| is_output(variable) || matches!(variable.role, Role::RateOf(_)));
         self.drawn.unknowns = self.drawn.n;

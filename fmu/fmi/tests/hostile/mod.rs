@@ -51,7 +51,7 @@ const CALLS: u64 = 100_000;
 /// On average.
 const CALLS_PER_SEQUENCE: usize = 400;
 
-/// What leads on, in the stages that it is for.
+/// The functions that lead on from their stages.
 const LEADING_ON: &str = "SetupExperiment EnterInitializationMode ExitInitializationMode SetReal SetFloat64 DoStep \
                           EnterEventMode NewDiscreteStates UpdateDiscreteStates EnterStepMode EnterContinuousTimeMode \
                           SetTime SetContinuousStates CompletedIntegratorStep SetFMUstate SetFMUState";
@@ -246,7 +246,7 @@ pub fn no_call_does_harm(subject: &Subject, version: u8, is_model: bool) {
     }
 }
 
-/// What came of the calls, by the place of each function in [`Version::calls`].
+/// The results of the calls, by the place of each function in [`Version::calls`].
 struct Tally {
     /// The stages that it was called in.
     tried: Vec<Stages>,
@@ -269,7 +269,7 @@ impl Tally {
     }
 }
 
-/// Where an instance logs to.
+/// The log of an instance.
 #[derive(Default)]
 struct Told {
     messages: RefCell<Vec<(c_int, String)>>,
@@ -304,9 +304,9 @@ struct Sequence<'a> {
     told: Told,
     /// The FMU states that it has handed out.
     states: Vec<C>,
-    /// One that it has handed out and freed.
+    /// An FMU state that the instance has handed out and freed.
     freed: C,
-    /// What it was when it was made, as bytes, and what it is before the next call.
+    /// The new instance as bytes, and the instance before the next call.
     new: Vec<u8>,
     before: Option<Snapshot>,
     /// Serialized states.
