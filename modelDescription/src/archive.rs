@@ -50,6 +50,9 @@ pub fn write_fmu(
         "x86_64-darwin" if version == Version::Fmi2 => "darwin64",
         tuple => tuple,
     };
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
     let binary = format!("binaries/{folder}/{}{}", description.name, env::consts::DLL_SUFFIX);
     let entries =
         [("modelDescription.xml".to_owned(), description.to_xml(version).into()), (binary, fs::read(library)?)];
