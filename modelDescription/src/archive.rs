@@ -34,6 +34,17 @@ pub fn archive(entries: &[Entry]) -> Result<Vec<u8>, ZipError> {
     Ok(archive.finish()?.into_inner())
 }
 
+/// The folder of a library for the platform `tuple`, as FMI 3.0 names it, in an archive of `version`. FMI 2.0 has names for
+/// x86 alone; since 2.0.4 it asks for the tuples of FMI 3.0 for all others.
+pub fn folder(version: Version, tuple: &str) -> &str {
+    match (version, tuple) {
+        (Version::Fmi2, "x86_64-linux") => "linux64",
+        (Version::Fmi2, "x86_64-windows") => "win64",
+        (Version::Fmi2, "x86_64-darwin") => "darwin64",
+        _ => tuple,
+    }
+}
+
 /// Writes the FMU that `description` describes to `path`, for hosts of `version`, with the shared `library` of this
 /// platform.
 pub fn write_fmu(
@@ -44,12 +55,7 @@ pub fn write_fmu(
 ) -> Result<(), Box<dyn Error>> {
     let (architecture, system) = (env::consts::ARCH, env::consts::OS.replace("macos", "darwin"));
     let tuple = format!("{architecture}-{system}");
-    let folder = match tuple.as_str() {
-        "x86_64-linux" if version == Version::Fmi2 => "linux64",
-        "x86_64-windows" if version == Version::Fmi2 => "win64",
-        "x86_64-darwin" if version == Version::Fmi2 => "darwin64",
-        tuple => tuple,
-    };
+    let folder = folder(version, &tuple);
     if let Some(folder) = path.parent() {
         fs::create_dir_all(folder)?;
     }

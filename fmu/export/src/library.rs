@@ -31,42 +31,36 @@ impl Platform {
     pub const ALL: [Platform; 5] =
         [Platform::Linux64, Platform::LinuxArm64, Platform::Windows64, Platform::Darwin64, Platform::DarwinArm64];
 
-    /// Its tuple, its folder in FMI 2.0, its target, and the file that cargo builds for it.
-    fn names(self) -> [&'static str; 4] {
+    /// The tuple of the platform, its target, and the file that cargo builds for it.
+    fn names(self) -> [&'static str; 3] {
         match self {
-            Platform::Linux64 => ["x86_64-linux", "linux64", "x86_64-unknown-linux-gnu", "libFlexibleRocking.so"],
-            Platform::LinuxArm64 => {
-                ["aarch64-linux", "aarch64-linux", "aarch64-unknown-linux-gnu", "libFlexibleRocking.so"]
-            }
-            Platform::Windows64 => ["x86_64-windows", "win64", "x86_64-pc-windows-gnu", "FlexibleRocking.dll"],
-            Platform::Darwin64 => ["x86_64-darwin", "darwin64", "universal2-apple-darwin", "libFlexibleRocking.dylib"],
-            Platform::DarwinArm64 => {
-                ["aarch64-darwin", "aarch64-darwin", "aarch64-apple-darwin", "libFlexibleRocking.dylib"]
-            }
+            Platform::Linux64 => ["x86_64-linux", "x86_64-unknown-linux-gnu", "libFlexibleRocking.so"],
+            Platform::LinuxArm64 => ["aarch64-linux", "aarch64-unknown-linux-gnu", "libFlexibleRocking.so"],
+            Platform::Windows64 => ["x86_64-windows", "x86_64-pc-windows-gnu", "FlexibleRocking.dll"],
+            Platform::Darwin64 => ["x86_64-darwin", "universal2-apple-darwin", "libFlexibleRocking.dylib"],
+            Platform::DarwinArm64 => ["aarch64-darwin", "aarch64-apple-darwin", "libFlexibleRocking.dylib"],
         }
     }
 
-    /// Its folder in an archive of FMI 3.0, the standard's tuple of architecture and system. `x86_64-darwin` has what
-    /// runs on both.
+    /// The standard's tuple of architecture and system. The library for `x86_64-darwin` runs on both architectures.
     pub fn tuple(self) -> &'static str {
         self.names()[0]
     }
 
-    /// The folder of its libraries in an archive of `version`. FMI 2.0 has names for x86 alone; since 2.0.4 it asks for
-    /// the tuples of FMI 3.0 for all others. Hosts that know no tuples look for `darwin64` on every Mac: what stands
-    /// there runs on both.
+    /// The folder of the library in an archive of `version`. Hosts that know no tuples look for `darwin64` on every Mac: the
+    /// library there runs on both architectures.
     pub fn folder(self, version: Version) -> &'static str {
-        if version == Version::Fmi3 { self.tuple() } else { self.names()[1] }
+        ::model_description::archive::folder(version, self.tuple())
     }
 
     /// The target by the name that cargo, or cargo-zigbuild, has for it.
     pub fn target(self) -> &'static str {
-        self.names()[2]
+        self.names()[1]
     }
 
     /// The file that cargo builds for it.
     pub fn file(self) -> &'static str {
-        self.names()[3]
+        self.names()[2]
     }
 
     /// The path of the library in an archive of the model `name`.
