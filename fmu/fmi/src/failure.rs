@@ -106,7 +106,9 @@ pub enum Failure {
     WrongPoint { given: f64, time: f64 },
     /// A step of no length, of no number, or to no finite time.
     #[error(
-        "communicationStepSize = {step} s is out of range: it must be positive, finite, and large enough to move t = {time} s"
+        "communicationStepSize = {} is out of range: it must be positive, finite, large enough to move t = {}, and end at a \
+         finite time",
+        with_unit(*step, "s"), with_unit(*time, "s")
     )]
     BadStep { step: f64, time: f64 },
     /// A step past the end.

@@ -31,6 +31,8 @@ fn derived_dependencies_are_the_true_ones() {
     unknowns.iter().for_each(|of| stated.extend(dependencies(&table, *of, true).into_iter().map(|known| (*of, known))));
     assert_eq!(found, stated);
     assert_eq!(dependencies(&table, position(&table, "der(h)"), false), [position(&table, "v")]);
+    let calculated = table.iter().filter(|variable| variable.is_initial_unknown());
+    assert_eq!(calculated.map(|variable| &*variable.name).collect::<Vec<_>>(), ["der(h)", "der(v)", "bounces"]);
 }
 
 /// Directional derivatives by states come from the table and differences, and steps of any length follow one motion.

@@ -107,6 +107,7 @@ fn a_transition_at_the_end_of_a_step_is_met_there() {
     let mut start = null_mut();
     unsafe {
         assert_eq!(fmi3SetFloat64(c, &reference("theta_0"), 1, &0.02, 1), OK);
+        assert_eq!(fmi3SetBoolean(c, &reference("a_g_late"), 1, &1, 1), OK);
         assert_eq!((fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0), fmi3ExitInitializationMode(c)), (OK, OK));
         assert_eq!((fmi3EnterStepMode(c), fmi3GetFMUState(c, &mut start)), (OK, OK));
     }
@@ -122,6 +123,26 @@ fn a_transition_at_the_end_of_a_step_is_met_there() {
         assert_eq!(unsafe { fmi3SetFMUState(c, start) }, OK);
         assert_eq!(step(until), (expected, if expected[2] == 1 { impact } else { until }), "{until}");
     }
+    // an input that comes late is still to come
+    let (a_g, mut value) = (reference("a_g"), 0.0);
+    let set = unsafe { (fmi3SetFMUState(c, start), fmi3SetFloat64(c, &a_g, 1, &0.5, 1)) };
+    assert_eq!((set, step(1.0).0), ((OK, OK), [1, 0, 1]));
+    assert_eq!((unsafe { fmi3GetFloat64(c, &a_g, 1, &mut value, 1) }, value), (OK, 0.5));
+}
+
+/// A host that handles events but no early return gets whole steps.
+#[test]
+fn a_step_ends_early_for_hosts_that_take_it_alone() {
+    let host = Host::new(Some(Stepping { event_mode: true, early_return: false }));
+    let (c, mut flags, mut time) = (host.c, [0; 3], f64::NAN);
+    let [event, end, early] = &mut flags;
+    unsafe {
+        assert_eq!(fmi3SetFloat64(c, &reference("theta_0"), 1, &0.02, 1), OK);
+        assert_eq!((fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0), fmi3ExitInitializationMode(c)), (OK, OK));
+        assert_eq!(fmi3EnterStepMode(c), OK);
+        assert_eq!(fmi3DoStep(c, 0.0, 1.0, 0, event, end, early, &mut time), OK);
+    }
+    assert_eq!((flags, time), ([0; 3], 1.0));
 }
 
 /// A host can go to a state that an instance of its own kind has kept, and to no other.

@@ -79,6 +79,10 @@ fn a_state_can_be_overwritten_and_outlives_a_reset() {
     assert_eq!(host.try_keep(state), Ok(state));
     assert_eq!((host.reset(), host.go_back(state)), (OK, OK));
     assert_eq!(host.bytes(), later);
+    let limited = Host::new();
+    assert_eq!((limited.setup(None, 0.0, Some(1.0)), limited.enter(), limited.exit()), (OK, OK, OK));
+    assert_eq!(host.go_back(host.deserialize(&limited.bytes()).unwrap()), OK);
+    host.assert_refused(|| host.step(0.0, 2.0), ERROR, "the step would end at t = 2 s, past stopTime = 1 s");
 }
 
 #[test]

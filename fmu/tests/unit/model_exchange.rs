@@ -116,6 +116,7 @@ fn overturning_ends_the_simulation() {
     assert_eq!((host.go_on(), host.set_time(2.0), host.complete()), (OK, OK, Ok((false, true))));
     assert_eq!(host.get("t_overturned"), slave.get("t_overturned"));
     assert_eq!(host.derivatives(), Ok([0.0; 4]));
+    assert_eq!((host.set_time(0.0), host.complete()), (OK, Ok((false, true))), "no step is checked any more");
 }
 
 /// The record acts at every trial time as it is there; where it jumps is foreseen, and a kink by hosts to which it matters.
@@ -294,14 +295,14 @@ fn directional_derivatives_are_the_slopes_of_the_values() {
     }
     let host = Host::new_model();
     host.write("ramp.csv", "0,1\n0.5,-3\n");
-    assert_eq!(host.set_record("ramp.csv"), OK);
+    assert_eq!((host.set_record("ramp.csv"), host.set_text("record_v", "ramp.csv")), (OK, OK));
     let host = host.initialized(&[("theta_0", 0.03)]);
     assert_eq!((host.exit(), host.update().is_ok(), host.go_on()), (OK, true, OK));
     let [before, after] = [0.125, 0.25].map(|time| {
         assert_eq!(host.set_time(time), OK);
         host.try_get(&unknowns).unwrap()
     });
-    assert_eq!(by(&host, "a_ground", "time"), -8.0);
+    assert_eq!((by(&host, "a_ground", "time"), by(&host, "a_v_ground", "time")), (-8.0, -8.0));
     for (at, unknown) in unknowns.into_iter().enumerate() {
         assert_relative_eq!(by(&host, unknown, "time"), (after[at] - before[at]) / 0.125, max_relative = 1e-9);
     }

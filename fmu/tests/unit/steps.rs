@@ -155,6 +155,9 @@ fn a_point_and_the_stop_time_are_met_but_for_rounding() {
     assert_eq!((late.setup(None, start, None), late.enter(), late.exit()), (OK, OK, OK));
     let rounding = start.next_up() - start;
     assert_eq!(late.step(start + 2.0 * rounding, 2.0 * rounding), ERROR, "a step would be missed");
+    let last = Host::new();
+    assert_eq!((last.setup(None, 1.7e308, None), last.enter(), last.exit()), (OK, OK, OK));
+    last.assert_refused(|| last.step(1.7e308, 1.7e308), ERROR, "communicationStepSize = 1.7e308 s is out of range");
 }
 
 /// The reaction follows the ramp to its end: the rate there is that of the ramp, until the input is set anew.

@@ -134,6 +134,10 @@ fn the_stated_dependencies_are_the_true_ones() {
     for (name, known) in of_indicators {
         assert!(of(name).contains(&(reference(known) as usize)), "{name} depends on {known}");
     }
+    let [at_start, later] = [true, false].map(|at_start| {
+        dependencies(&VARIABLES, reference("a_ground") as usize, at_start).contains(&(reference("time") as usize))
+    });
+    assert_eq!((at_start, later), (false, true));
     assert_eq!(found.difference(&stated).collect::<Vec<_>>(), Vec::<&(&str, &str)>::new(), "found, not stated");
     assert_eq!(stated.difference(&found).collect::<Vec<_>>(), Vec::<&(&str, &str)>::new(), "stated, not found");
 }
