@@ -115,15 +115,6 @@ def test_a_run_goes_on_from_bytes(shaken, exact):
     assert distance(np.vstack([rows(first), rows(second)[1:]]), exact(step)) < 1e-9
 
 
-def test_a_run_ends_where_the_structure_overturns(mcmanus):
-    result, events = simulate(mcmanus, stop_time=5.0, output_interval=0.01, start_values={"theta_0": 0.3},
-                              output=["theta", "overturned"])
-    assert events[-1].kind == "overturning"
-    assert result["time"][-1] == events[-1].time < 2.0
-    assert result["theta"][-1] == pytest.approx(np.pi / 2, abs=1e-14)
-    assert result["overturned"][-1] == 1
-
-
 def test_fmpy_has_one_logger_per_process():
     """A run without a logger of its own logs into that of the run before, which may be gone by then: keep it alive.
 

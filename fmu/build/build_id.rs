@@ -1,6 +1,6 @@
 //! Names the build: a GUID over what enters the shared library, and nothing else.
 //!
-//! It also binds `modelDescription.xml` to the library, and covers nothing of the exporter for that. What the two must
+//! It also binds `modelDescription.xml` to the library, and covers nothing of the exporter for that. All that the two must
 //! agree on (value references, names, types, causalities, limits, dependencies) is a table of the library; the exporter
 //! contains that table, and packs no library of another build. How the exporter words the table in XML may be put
 //! right, and is then as right of a library that was built before.
@@ -25,7 +25,7 @@ pub const MANIFESTS: [&str; 4] = ["Cargo.toml", "records/Cargo.toml", "fmu/fmi/C
 /// Versions of all dependencies.
 pub const LOCK: &str = "Cargo.lock";
 
-/// What of a manifest decides what is compiled, and how.
+/// The parts of a manifest that decide the compilation.
 const SETTINGS: [&str; 5] = ["dependencies", "features", "lib", "profile", "target"];
 
 /// Cargo.lock.
@@ -102,7 +102,7 @@ fn collect(workspace: &Path, path: &Path, files: &mut Vec<PathBuf>) -> io::Resul
     Ok(())
 }
 
-/// Adds the packages of `lock` that `package` depends on by a name that `is_linked`, and all that these depend on. What
+/// Adds the packages of `lock` that `package` depends on by a name that `is_linked`, and all that these depend on. All that
 /// a member of the workspace depends on for its tests, too, is in its entry; other entries have no such dependencies.
 /// Macros and build scripts count: what they write is compiled. Members do not: their sources do. An entry also names
 /// optional dependencies that another member has switched on, or may have: the few of these count without need.

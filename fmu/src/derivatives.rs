@@ -9,7 +9,7 @@ use fmi_unit::sensitivity::{by_differences, no_known};
 use fmi_unit::variables::state_references;
 use fmi_unit::{Failure, Model};
 use rocking::mechanics::state::COMPONENTS;
-use rocking::{LinearLoad, Load, Parameters, Phase, State};
+use rocking::{LinearLoad, Load, Parameters, State};
 
 impl Unit {
     /// Rates of outputs by the equations of motion, under the present inputs and their slopes: those set for the next
@@ -31,7 +31,7 @@ impl Unit {
         Ok(())
     }
 
-    /// Where the values of `references` are.
+    /// The sources of the values of `references`.
     fn sources_of(&self, references: &[u32]) -> Vec<Source> {
         references.iter().map(|reference| self.table.sources[*reference as usize]).collect()
     }
@@ -103,8 +103,8 @@ impl Unit {
     }
 }
 
-/// The derivatives of `unknowns` by the state `which` in the present phase under `inputs`. While the base rocks, θ is moved
-/// away from 0 only: at 0 the height of the free edge has a kink.
+/// The derivatives of `unknowns` by the state `which` in the present phase under `inputs`. In a phase nothing has a kink, not
+/// even at θ = 0.
 fn by_state(
     scene: &mut Scene,
     setup: &Setup,
@@ -116,11 +116,7 @@ fn by_state(
     let components = motion.state.components();
     let scale = components[which].abs().max(State::usual(scene.engine.structure()).components()[which]);
     let load = scene.load(setup, inputs).value;
-    let signs = match motion.phase {
-        Phase::Rocking(side) if COMPONENTS[which] == "theta" => vec![side.sign()],
-        _ => vec![-1.0, 1.0],
-    };
-    let found = by_differences(components[which], scale, &signs, |value| {
+    let found = by_differences(components[which], scale, |value| {
         let mut components = components;
         components[which] = value;
         scene.engine.set_state(State::of(components));

@@ -1,4 +1,4 @@
-//! What is refused for reasons of the structure, its ground and their motion.
+//! Refusals for reasons of the structure, its ground and their motion.
 
 use crate::ground::GroundError;
 use crate::resources::ResourceError;
@@ -15,7 +15,7 @@ pub enum Refusal {
     /// The archive's resources cannot be read.
     #[error(transparent)]
     Resource(#[from] ResourceError),
-    /// No such record.
+    /// A record that cannot be had.
     #[error(transparent)]
     Ground(#[from] GroundError),
     /// The record is out of the range of an input.

@@ -21,7 +21,7 @@ pub struct GroundRecord {
     pub units: [Unit; 2],
     /// Names all of it.
     pub digest: Digest,
-    /// What was found in each file and assumed of it, and then what is doubtful.
+    /// Sentences about each file: first the content and the assumptions, then the doubts.
     pub sentences: Vec<Vec<String>>,
 }
 
@@ -31,7 +31,7 @@ pub(crate) type Kept = (Uuid, Arc<GroundRecord>);
 /// Why a record cannot be had. Each names the parameter that asks for it.
 #[derive(Debug, thiserror::Error)]
 pub enum GroundError {
-    /// No file of that name.
+    /// A file that is not in the archive.
     #[error("{0} = {1:?} is not in {folder}; a path on disk needs a separator: .{MAIN_SEPARATOR}{1}", folder = .2.display())]
     NotInArchive(&'static str, String, PathBuf),
     /// Not the URI of a local file.
@@ -93,7 +93,7 @@ impl GroundRecord {
     }
 }
 
-/// What one of the parameters asks for.
+/// The file that one of the parameters names.
 struct Asked<'a> {
     parameter: &'static str,
     text: &'a str,

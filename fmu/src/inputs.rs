@@ -25,15 +25,15 @@ const HELD: [Between; LOADS.len()] = [Between::Held; LOADS.len()];
 pub struct Inputs {
     /// How they act, in the order of [`LOADS`].
     between: [Between; LOADS.len()],
-    /// What acts now, and the slopes of the next step, but for those that are late.
+    /// The inputs that act now, and the slopes of the next step, except for late ones.
     next: LinearLoad,
     /// The values that the host has set, or that the last step led to.
     set: Load,
-    /// What has been set of each since the last step, in the same order.
+    /// The settings of each input since the last step, in the same order.
     given: [Given; LOADS.len()],
-    /// Where the last step led, and the slopes that it followed.
+    /// The values at the end of the last step, and the slopes that the step followed.
     followed: LinearLoad,
-    /// What acted at the last communication point that a step began at, and how long ago that was, s; 0 before the
+    /// The inputs at the last communication point that a step began at, and the time since then, s; 0 before the
     /// first.
     before: (Load, f64),
     /// Whether the last step ended before the next communication point.
@@ -46,7 +46,7 @@ pub struct Inputs {
 /// motion: a push begins and ends with one such step.
 const STAIRS: u8 = 3;
 
-/// What has been set of an input.
+/// The setting of an input.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 enum Given {
     /// Nothing, or what was set before a step that ended early.
@@ -59,7 +59,7 @@ enum Given {
 }
 
 impl Inputs {
-    /// What acts now.
+    /// The inputs that act now.
     pub(crate) fn values(&self) -> Load {
         self.next.value
     }
@@ -154,7 +154,7 @@ impl Inputs {
         load
     }
 
-    /// What acts now, with the slopes of the next step, or those of the last step where none are set.
+    /// The inputs that act now, with the slopes of the next step, or of the last step if none are set.
     pub(crate) fn now(&self) -> LinearLoad {
         let mut load = self.next;
         for which in 0..LOADS.len() {

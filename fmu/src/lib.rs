@@ -1,6 +1,6 @@
 //! Unit of a flexible rocking structure for co-simulation and model exchange, of FMI 2.0 and of FMI 3.0.
 //!
-//! The C functions, stages and FMU states are [`fmi_unit`]'s, the physics is [`rocking`]'s. What is on a line of this list knows
+//! The C functions, stages and FMU states are [`fmi_unit`]'s, the physics is [`rocking`]'s. A file of this list knows
 //! nothing of the lines above it.
 //!
 //! | file | does |

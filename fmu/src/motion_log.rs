@@ -1,4 +1,4 @@
-//! What the host is told of the motion: its transitions, and the limits of the model that it passes.
+//! The messages to the host about the motion: its transitions, and the limits of the model that it passes.
 
 use fmi_unit::Logger;
 use rocking::run::validity::{ASSUMPTIONS, Found, Limits};

@@ -1,6 +1,6 @@
-//! What the structure does for a host that integrates: every complete step is checked, and transitions are applied.
+//! The structure under a host that integrates: every complete step is checked, and transitions are applied.
 //!
-//! The engine stands where the host is; [`Known`] is where the motion was last known to be right.
+//! The engine stands at the time and state of the host; [`Known`] keeps the last motion that was right.
 
 use crate::failure::Refusal;
 use crate::motion_log::log;
@@ -29,7 +29,7 @@ impl Scene {
         self.ground.as_ref().map_or(elapsed, |ground| setup.ground_motion(ground).by_clock(elapsed, resolution))
     }
 
-    /// What acts now under the inputs `load`.
+    /// The load that acts now under the inputs `load`.
     pub fn acting(&self, setup: &Setup, load: Load) -> Load {
         self.load(setup, load.into()).value
     }

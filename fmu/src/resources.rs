@@ -1,4 +1,4 @@
-//! What the archive carries in its folder `resources`, found through the URI that the host gives: the parameters, and
+//! The content of the archive's folder `resources`, found through the URI that the host gives: the parameters, and
 //! the list of the records that were packed.
 
 use rocking::Parameters;
@@ -19,11 +19,11 @@ pub const RECORDS_FILE: &str = "records.toml";
 pub struct Archive {
     /// Its folder `resources`.
     pub folder: PathBuf,
-    /// What it carries.
+    /// The content of the archive.
     pub contents: Contents,
 }
 
-/// What an archive carries.
+/// The content of an archive.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Contents {
     /// Start values.

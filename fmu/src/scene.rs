@@ -30,10 +30,10 @@ pub(crate) struct Scene {
     pub validity: Found,
 }
 
-/// What an instance knows beside the present of a motion that the host integrates.
+/// The knowledge of an instance beside the present of a motion that the host integrates.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub struct Outside {
-    /// Where the motion was last known.
+    /// The last motion that was known.
     pub known: Known,
     /// The inputs when event mode was entered: what is set there has not acted before.
     pub arrived: Load,
@@ -89,7 +89,7 @@ impl Scene {
         may_move_vertically(setup, self.ground.as_ref())
     }
 
-    /// What acts now: `inputs` and the record.
+    /// The load that acts now: `inputs` and the record.
     #[inline]
     pub fn load(&self, setup: &Setup, inputs: LinearLoad) -> LinearLoad {
         let Some(ground) = &self.ground else { return inputs };
@@ -115,7 +115,7 @@ impl Scene {
         peaks
     }
 
-    /// What the motion has gone beyond since the start; before the first step, what the reactions under `load` are.
+    /// The limits that the motion has passed since the start; before the first step by the reactions under `load`.
     pub fn validity(&self, load: Load) -> Found {
         let mut validity = self.watch_validity();
         if self.is_at_start(load) {

@@ -1,4 +1,4 @@
-//! What is set before a simulation starts.
+//! The settings before a simulation starts.
 
 use crate::inputs::Between;
 use crate::resources::Contents;
@@ -10,7 +10,7 @@ use rocking::{Detail, GroundMotion, Parameters, State};
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
-/// What is set before a simulation starts.
+/// The settings before a simulation starts.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Setup {
     pub(crate) parameters: Parameters,

@@ -6,22 +6,25 @@ use crate::variables::Source;
 use rocking::{Load, Outputs, Reactions, State};
 use std::cell::OnceCell;
 
-/// What a scene shows under a load.
+/// The values of a scene under a load.
 pub(crate) struct Shown<'a> {
     scene: &'a Scene,
     setup: &'a Setup,
     load: Load,
     /// The outputs.
     pub outputs: Outputs,
-    /// Computed when they are first asked for.
+    /// Computed when they are first asked for, as the next.
     reactions: OnceCell<Reactions>,
+    /// Derivatives of the states.
+    rates: OnceCell<State>,
 }
 
 impl<'a> Shown<'a> {
-    /// That of `scene`, which follows `setup`, under `load`.
+    /// The values of `scene`, which follows `setup`, under `load`.
     #[inline]
     pub fn new(scene: &'a Scene, setup: &'a Setup, load: Load) -> Shown<'a> {
-        Shown { scene, setup, load, outputs: scene.engine.outputs(load), reactions: OnceCell::new() }
+        let (reactions, rates) = Default::default();
+        Shown { scene, setup, load, outputs: scene.engine.outputs(load), reactions, rates }
     }
 
     /// The reactions.
@@ -30,8 +33,14 @@ impl<'a> Shown<'a> {
     }
 
     /// The last of the reactions, then of the rates, that are among `references` if the equations have no solution for them.
-    #[cold]
+    #[inline]
     pub fn unsolved(&self, references: &[u32], sources: &[Source]) -> Option<u32> {
+        let (reactions, rates) = (self.reactions.get(), self.rates.get());
+        if reactions.is_none() && rates.is_none() { None } else { self.last_unsolved(references, sources) }
+    }
+
+    #[cold]
+    fn last_unsolved(&self, references: &[u32], sources: &[Source]) -> Option<u32> {
         let last = |is_one: fn(Source) -> bool| {
             references.iter().copied().rfind(|reference| is_one(sources[*reference as usize]))
         };
@@ -41,8 +50,8 @@ impl<'a> Shown<'a> {
     }
 
     /// Derivatives of the states.
-    pub fn state_rates(&self) -> State {
-        self.scene.engine.sample(self.load).state_rates()
+    pub fn state_rates(&self) -> &State {
+        self.rates.get_or_init(|| self.scene.engine.sample(self.load).state_rates())
     }
 
     /// The value of a Real from `source`, if it is one that is computed.

@@ -8,8 +8,9 @@ use crate::resources::Archive;
 use crate::scene::{Outside, Scene};
 use crate::setup::Setup;
 use crate::shown::Shown;
-use crate::variables::{SOLUTION, Source, Table};
+use crate::variables::{Source, Table};
 use crate::{BUILD, guid};
+use fmi_unit::snapshot::write_state;
 use fmi_unit::{Completed, Experiment, Failure, Interface, Logger, Model, Progress, Step, Update, Value, Variable};
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::mechanics::load::VERTICAL;
@@ -21,7 +22,7 @@ use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::sync::Arc;
 
-/// What an instance holds between two calls.
+/// An instance between two calls.
 pub struct Unit {
     pub(crate) table: Table,
     archive: Archive,
@@ -39,9 +40,9 @@ pub struct Unit {
 /// A few dozen numbers from which an instance goes on to the same bits: its part of an FMU state.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Condition {
-    /// What was set before the start.
+    /// The settings before the start.
     pub setup: Setup,
-    /// What acts from the present time on.
+    /// The inputs from the present time on.
     pub inputs: Inputs,
     /// How far the simulation has come, once it has started: until then all follows from the setup.
     pub course: Option<Course>,
@@ -52,7 +53,7 @@ pub struct Condition {
 pub struct Course {
     /// The motion; the host's, if the host integrates.
     pub motion: Motion,
-    /// What is known beside the motion, if the host integrates.
+    /// The knowledge beside the motion, if the host integrates.
     pub outside: Option<Outside>,
     /// Time since the start, on ground that follows a record.
     pub elapsed: Elapsed,
@@ -88,9 +89,18 @@ impl Unit {
         Ok(())
     }
 
+    /// Reads real numbers that the host sets.
+    fn settings(&self, references: &[u32], values: &mut [f64]) -> Result<(), Failure> {
+        for (reference, value) in references.iter().zip(values) {
+            *value = setting(&self.setup, &self.inputs, self.table.sources[*reference as usize]);
+        }
+        Ok(())
+    }
+
     /// Lets the ground move vertically from now on.
     #[cold]
-    fn admit_vertical(&mut self) -> Result<(), Refusal> {
+    #[inline(never)]
+    fn admit_vertical(&mut self) -> Result<(), Failure> {
         if let Some(scene) = &mut self.scene {
             scene.set(|settings| settings.vertical = true)?;
         }
@@ -149,31 +159,31 @@ impl Model for Unit {
     }
 
     fn get_reals(&mut self, references: &[u32], values: &mut [f64]) -> Result<(), Failure> {
-        let needed = references.iter().fold(0, |needed, reference| needed | self.table.needs[*reference as usize]);
-        if needed != 0 && self.scene.is_none() {
+        if self.scene.is_none() {
+            let is_set = |reference: &u32| self.table.sources[*reference as usize].is_set();
+            if references.iter().all(is_set) {
+                return self.settings(references, values);
+            }
             self.build()?;
         }
-        let Unit { table: Table { sources, .. }, setup, inputs, scene, .. } = self;
-        let Some(scene) = scene.as_ref().filter(|_| needed != 0) else {
-            for (reference, value) in references.iter().zip(values) {
-                *value = setting(setup, inputs, sources[*reference as usize]);
-            }
-            return Ok(());
+        let Unit { table: Table { sources, .. }, setup, inputs, scene: Some(scene), .. } = self else {
+            unreachable!("it is built")
         };
         let shown = Shown::new(scene, setup, scene.load(setup, inputs.values().into()).value);
-        if needed & SOLUTION != 0
-            && let Some(reference) = shown.unsolved(references, sources)
-        {
-            let time = scene.engine.motion().time;
-            return Err(Refusal::NoReaction { name: self.name(reference), time }.into());
-        }
+        let sources: &[Source] = sources;
         for (reference, value) in references.iter().zip(values) {
             *value = match sources[*reference as usize] {
                 Source::Output(of) => of(&shown.outputs),
                 source => shown.value(source).unwrap_or_else(|| setting(setup, inputs, source)),
             };
         }
-        Ok(())
+        match shown.unsolved(references, sources) {
+            Some(reference) => {
+                let time = scene.engine.motion().time;
+                Err(Refusal::NoReaction { name: self.name(reference), time }.into())
+            }
+            None => Ok(()),
+        }
     }
 
     fn set(&mut self, reference: u32, value: Value) {
@@ -306,7 +316,7 @@ impl Model for Unit {
         Ok(scene.has_overturned().then(|| format!("the structure overturned at t = {time} s{fall}")))
     }
 
-    fn state(&self) -> Vec<u8> {
+    fn state(&self, bytes: &mut Vec<u8>) {
         let Unit { setup, inputs, scene, has_started, .. } = self;
         let course = scene.as_ref().filter(|_| *has_started).map(|scene| Course {
             motion: *scene.engine.motion(),
@@ -317,7 +327,7 @@ impl Model for Unit {
             record: scene.digest(),
         });
         let condition = Condition { setup: setup.clone(), inputs: *inputs, course };
-        postcard::to_stdvec(&condition).expect("numbers and text can always be written")
+        write_state(&condition, bytes);
     }
 
     /// The scene is built anew only for another setup.

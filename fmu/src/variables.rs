@@ -21,7 +21,7 @@ use std::sync::Arc;
 /// An integer, or a Boolean as 0 or 1.
 pub(crate) type OfMotion = fn(&Motion) -> i32;
 
-/// Where the value of a variable is.
+/// The source of the value of a variable.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Source {
     /// By its place in [`LOADS`].
@@ -30,7 +30,7 @@ pub(crate) enum Source {
     Reaction(fn(&Reactions) -> f64),
     /// The derivative of one of [`COMPONENTS`], by its place.
     StateRate(usize),
-    /// One of the event indicators, by its place.
+    /// An event indicator, by its place.
     Indicator(usize),
     Impulse(fn(&Impulse) -> f64),
     Restraint(fn(&Restraints) -> f64),
@@ -41,7 +41,7 @@ pub(crate) enum Source {
     InitialValue(&'static Quantity<State>),
     Derived(&'static Derived),
     Detail,
-    /// One of the ground's accelerations, the input and the record, by its place in [`LOADS`].
+    /// A ground acceleration, the input and the record, by its place in [`LOADS`].
     Ground(usize),
     Peak(fn(&Peaks) -> f64),
     /// The worst value of one of [`ASSUMPTIONS`].
@@ -74,6 +74,12 @@ pub(crate) struct Switch {
 }
 
 impl Source {
+    /// Whether the host sets the value, a real number.
+    pub fn is_set(self) -> bool {
+        use Source::{InitialValue, Input, Parameter, Placement};
+        matches!(self, Input(_) | Parameter(_) | InitialValue(_) | Placement(_))
+    }
+
     /// The value of a Real parameter or an initial value.
     pub fn setting(&self, setup: &Setup) -> Option<f64> {
         match self {
@@ -114,21 +120,6 @@ impl Source {
             Source::Placement(quantity) => (quantity.set)(&mut setup.placement, value),
             _ => (),
         }
-    }
-}
-
-/// Needs the structure in motion.
-const SCENE: u8 = 1;
-
-/// Needs a solution of the equations of motion.
-pub(crate) const SOLUTION: u8 = 2;
-
-/// What has to be there for a real number to be read from `source`.
-fn needs(source: Source) -> u8 {
-    match source {
-        Source::Input(_) | Source::Parameter(_) | Source::InitialValue(_) | Source::Placement(_) => 0,
-        Source::Reaction(_) | Source::StateRate(_) => SCENE | SOLUTION,
-        _ => SCENE,
     }
 }
 
@@ -193,10 +184,8 @@ type Row = (Variable, Source);
 pub struct Table {
     /// The variables, in the order of the model description.
     pub variables: Arc<[Variable]>,
-    /// Where their values are.
+    /// The sources of their values.
     pub(crate) sources: Arc<[Source]>,
-    /// What has to be there to read them.
-    pub(crate) needs: Arc<[u8]>,
 }
 
 impl Table {
@@ -221,8 +210,7 @@ impl Table {
             .chain([(Variable::time(), Source::Time)]);
         let started = rows.map(|(variable, source)| (Variable { start: source.set_value(&setup), ..variable }, source));
         let (variables, sources): (Vec<_>, Vec<_>) = started.unzip();
-        let needs = sources.iter().map(|source| needs(*source)).collect();
-        Table { variables: variables.into(), sources: sources.into(), needs }
+        Table { variables: variables.into(), sources: sources.into() }
     }
 }
 
@@ -245,7 +233,7 @@ fn input(which: usize) -> Row {
     (Variable { causality: Causality::Input, is_continuous: true, ..variable }, source)
 }
 
-/// What accelerations follow from.
+/// The variables that accelerations follow from.
 #[rustfmt::skip]
 const ACCELERATION: &[&str] = &[
     "a_ground", "F_t", "a_v_ground", "u", "u_dot", "theta", "theta_dot", "m", "m0", "H", "B", "J0", "f_fc", "zeta_fc", "c_ratio",
@@ -255,33 +243,19 @@ const ACCELERATION: &[&str] = &[
 /// A continuous real number, and what it follows from.
 fn real(
     causality: Causality,
-    name: &'static str,
-    unit: &'static str,
-    description: &'static str,
+    [name, unit, description]: [&'static str; 3],
     source: Source,
     of: &[&'static str],
 ) -> Row {
     (Variable::real(causality, name, unit, description).from(of.iter().copied()), source)
 }
 
-fn output(
-    name: &'static str,
-    unit: &'static str,
-    description: &'static str,
-    source: Source,
-    of: &[&'static str],
-) -> Row {
-    real(Causality::Output, name, unit, description, source, of)
+fn output(texts: [&'static str; 3], source: Source, of: &[&'static str]) -> Row {
+    real(Causality::Output, texts, source, of)
 }
 
-fn local(
-    name: &'static str,
-    unit: &'static str,
-    description: &'static str,
-    source: Source,
-    of: &[&'static str],
-) -> Row {
-    real(Causality::Local, name, unit, description, source, of)
+fn local(texts: [&'static str; 3], source: Source, of: &[&'static str]) -> Row {
+    real(Causality::Local, texts, source, of)
 }
 
 /// A local variable that events alone change.
@@ -299,12 +273,12 @@ const fn number(unit: &'static str) -> DataType {
 }
 
 fn outputs() -> Vec<Row> {
-    let of_state = |name, unit, description, of, from| output(name, unit, description, Source::Output(of), from);
-    let reaction = |name, unit, description, of| output(name, unit, description, Source::Reaction(of), ACCELERATION);
+    let of_state = |name, unit, description, of, from| output([name, unit, description], Source::Output(of), from);
+    let reaction = |name, unit, description, of| output([name, unit, description], Source::Reaction(of), ACCELERATION);
     let impulse = |name, unit, description, of| {
         (Variable::of_type(number(unit), Causality::Output, name, description), Source::Impulse(of))
     };
-    let tie = |name, description, of, from| output(name, "N", description, Source::Restraint(of), from);
+    let tie = |name, description, of, from| output([name, "N", description], Source::Restraint(of), from);
     const OF_DISSIPATOR: &[&str] = &["theta", "theta_dot", "B", "xi_d", "c_d", "k_d", "F_y"];
     let turned = "rotation of the base, positive about the right edge";
     let elastic = "elastic displacement of the top mass in the frame that turns with the base";
@@ -347,17 +321,17 @@ fn outputs() -> Vec<Row> {
 /// Variables for display: no other model needs them.
 fn locals() -> Vec<Row> {
     const PLASTIC: &[&str] = &["B", "theta_0", "xi_d", "k_d", "F_y"];
-    let kept = |name, unit, description, of, from| local(name, unit, description, Source::Dissipator(of), from);
+    let kept = |name, unit, description, of, from| local([name, unit, description], Source::Dissipator(of), from);
     let (turning, swaying) = (Source::Output(|o| o.theta_dot), Source::Output(|o| o.u_dot));
     let ground = |name, description, which, input, record| {
         let placed = ["record_scale", "record_time_scale", "record_start", "g", "time"];
-        local(name, "m/s2", description, Source::Ground(which), &[&[input, record][..], &placed].concat())
+        local([name, "m/s2", description], Source::Ground(which), &[&[input, record][..], &placed].concat())
     };
     let (phase, source) =
         counted("phase", PHASES.description, DataType::Enumeration(&PHASES), Source::Integer(phase_number));
     vec![
-        state(local("theta_dot", "rad/s", "angular velocity of the base", turning, &[]), "theta_dot_0"),
-        state(local("u_dot", "m/s", "elastic velocity of the top mass", swaying, &[]), "u_dot_0"),
+        state(local(["theta_dot", "rad/s", "angular velocity of the base"], turning, &[]), "theta_dot_0"),
+        state(local(["u_dot", "m/s", "elastic velocity of the top mass"], swaying, &[]), "u_dot_0"),
         ground("a_ground", "ground acceleration: a_g and the record", 0, "a_g", "record"),
         ground("a_v_ground", "vertical ground acceleration: a_v and record_v", VERTICAL, "a_v", "record_v"),
         kept("e_p1", "m", "plastic elongation of the elastoplastic dissipator at +xi_d", |d| d.plastic[0], PLASTIC),
@@ -384,7 +358,7 @@ fn locals() -> Vec<Row> {
 /// Derivatives of the states.
 fn state_rates() -> [Row; 4] {
     let rate = |which, name, unit, description, of| {
-        let (variable, source) = local(name, unit, description, Source::StateRate(which), of);
+        let (variable, source) = local([name, unit, description], Source::StateRate(which), of);
         (variable.rate_of(COMPONENTS[which]), source)
     };
     let [of_u, of_theta] = ["rate of u", "rate of theta"];
@@ -405,9 +379,10 @@ fn event_indicators() -> [Row; INDICATORS] {
     #[rustfmt::skip]
     const PHASE: &[&str] = &[
         "a_ground", "F_t", "a_v_ground", "u", "u_dot", "theta", "m", "m0", "H", "B", "f_fc", "zeta_fc", "c_ratio", "g", "detail", "P_0",
+        "xi_d", "k_d", "F_y",
     ];
     let indicator = |which, name, description, of| {
-        let (variable, source) = local(name, "1", description, Source::Indicator(which), of);
+        let (variable, source) = local([name, "1", description], Source::Indicator(which), of);
         (variable.indicator(), source)
     };
     let of_phase =
@@ -421,7 +396,7 @@ fn event_indicators() -> [Row; INDICATORS] {
 
 /// Largest magnitudes and their instants.
 fn peaks() -> Vec<Row> {
-    let peak = |name, unit, description, of| local(name, unit, description, Source::Peak(of), &[]);
+    let peak = |name, unit, description, of| local([name, unit, description], Source::Peak(of), &[]);
     macro_rules! peaks {
         ($($name:ident $unit:literal)*) => {
             vec![$(
@@ -447,12 +422,12 @@ fn peaks() -> Vec<Row> {
     peaks!(theta "rad" u "m" delta_t "m" uplift "m" a_t "m/s2" V_t "N" M_t "N.m" P_t "N")
 }
 
-/// What the motion goes beyond.
+/// The limits that the motion passes.
 fn validity() -> Vec<Row> {
     let of_assumption = |(which, assumption): (usize, &'static Assumption)| {
         let Assumption { name, time_name, description, time_description, is_of_impacts, .. } = *assumption;
         let worst = |name, unit, description, source| {
-            let (variable, source) = local(name, unit, description, source, &[]);
+            let (variable, source) = local([name, unit, description], source, &[]);
             (Variable { is_continuous: !is_of_impacts, ..variable }, source)
         };
         [
@@ -495,7 +470,7 @@ fn calculated_parameters() -> [Row; 6] {
     let calculated = |name, of: &[&'static str]| {
         let derived = const { &DERIVED }.iter().find(|derived| derived.name == name);
         let derived = derived.unwrap_or_else(|| panic!("no derived quantity is called {name}"));
-        real(causality, name, derived.unit, derived.description, Source::Derived(derived), of)
+        real(causality, [name, derived.unit, derived.description], Source::Derived(derived), of)
     };
     let duration = "from the first to the last sample of the record, of either component; 0 without a record";
     let of_record = ["record", "record_v", "record_time_scale"];
@@ -505,7 +480,7 @@ fn calculated_parameters() -> [Row; 6] {
         calculated("chi", &["m", "m0", "H", "B", "J0"]),
         calculated("u_cr", &["m", "m0", "H", "B", "f_fc", "g", "P_0"]),
         calculated("f_u", &["m", "m0", "H", "B", "J0", "f_fc"]),
-        real(causality, "record_duration", "s", duration, Source::RecordDuration, &of_record),
+        real(causality, ["record_duration", "s", duration], Source::RecordDuration, &of_record),
     ]
 }
 

@@ -1,4 +1,4 @@
-//! What the name of the build covers, and what it does not.
+//! The name of the build covers what enters the library, and nothing else.
 
 #[path = "../build/build_id.rs"]
 mod build_id;
@@ -64,7 +64,7 @@ fn nothing_else_changes_it() {
         "cli/Cargo.toml",
         "fmu/export/resources/model.svg",
         "fmu/export/src/documentation.rs",
-        "fmu/tests/steps.rs",
+        "fmu/tests/unit/steps.rs",
         "modelDescription/src/lib.rs",
         "study/src/main.rs",
         "tests/edges.rs",

@@ -1,6 +1,6 @@
 //! Archives that depend on nothing but what is in them: the same entries give the same bytes.
 
-use crate::Description;
+use crate::{Description, Version};
 use fmi_unit::Model;
 use std::error::Error;
 use std::io::{Cursor, Write};
@@ -34,20 +34,34 @@ pub fn archive(entries: &[Entry]) -> Result<Vec<u8>, ZipError> {
     Ok(archive.finish()?.into_inner())
 }
 
-/// Writes the FMU that `description` describes to `path`, for hosts of FMI 2.0 or 3.0, with the shared `library` of this
+/// The folder of a library for the platform `tuple`, as FMI 3.0 names it, in an archive of `version`. FMI 2.0 has names for
+/// x86 alone; since 2.0.4 it asks for the tuples of FMI 3.0 for all others.
+pub fn folder(version: Version, tuple: &str) -> &str {
+    match (version, tuple) {
+        (Version::Fmi2, "x86_64-linux") => "linux64",
+        (Version::Fmi2, "x86_64-windows") => "win64",
+        (Version::Fmi2, "x86_64-darwin") => "darwin64",
+        _ => tuple,
+    }
+}
+
+/// Writes the FMU that `description` describes to `path`, for hosts of `version`, with the shared `library` of this
 /// platform.
-pub fn write_fmu(path: &Path, description: &Description, version: u8, library: &Path) -> Result<(), Box<dyn Error>> {
+pub fn write_fmu(
+    path: &Path,
+    description: &Description,
+    version: Version,
+    library: &Path,
+) -> Result<(), Box<dyn Error>> {
     let (architecture, system) = (env::consts::ARCH, env::consts::OS.replace("macos", "darwin"));
     let tuple = format!("{architecture}-{system}");
-    let folder = match tuple.as_str() {
-        "x86_64-linux" if version == 2 => "linux64",
-        "x86_64-windows" if version == 2 => "win64",
-        "x86_64-darwin" if version == 2 => "darwin64",
-        tuple => tuple,
-    };
-    let xml = if version == 2 { description.fmi2().to_xml()? } else { description.fmi3().to_xml()? };
+    let folder = folder(version, &tuple);
+    if let Some(folder) = path.parent() {
+        fs::create_dir_all(folder)?;
+    }
     let binary = format!("binaries/{folder}/{}{}", description.name, env::consts::DLL_SUFFIX);
-    let entries = [("modelDescription.xml".to_owned(), xml.into()), (binary, fs::read(library)?)];
+    let entries =
+        [("modelDescription.xml".to_owned(), description.to_xml(version).into()), (binary, fs::read(library)?)];
     Ok(fs::write(path, archive(&entries.map(|(path, content)| Entry { path, content }))?)?)
 }
 
@@ -56,7 +70,7 @@ pub fn write_fmu(path: &Path, description: &Description, version: u8, library: &
 pub fn write_example(name: &str, model: &impl Model, library: &str) -> Result<(), Box<dyn Error>> {
     let arguments: Vec<_> = env::args().skip(1).collect();
     let path = arguments.first().ok_or("call it with the path of the FMU to write")?;
-    let version = if arguments.get(1).is_some_and(|version| version == "3") { 3 } else { 2 };
+    let version = if arguments.get(1).is_some_and(|version| version == "3") { Version::Fmi3 } else { Version::Fmi2 };
     let (token, variables) = (model.token(), &*model.variables());
     let description = Description { name, token, variables, ..Description::default() };
     write_fmu(Path::new(path), &description, version, &example(library)?)

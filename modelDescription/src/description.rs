@@ -1,18 +1,19 @@
 //! `modelDescription.xml` from a table of variables.
 
-use crate::{self as fmi, fmi3};
+use crate::element::{Element, digits};
+use crate::{DefaultExperiment, Unit, Version};
 use fmi_unit::logger::Category;
 use fmi_unit::variables::{dependencies, position};
 use fmi_unit::{Causality, DataType, Enumeration, Role, Value, Variable};
 
-/// What a description says of a model.
+/// The content of a model description.
 #[derive(Clone, Debug, Default)]
 pub struct Description<'a> {
     /// Name of the model, and of its libraries' files.
     pub name: &'a str,
     /// The model's GUID.
     pub token: String,
-    /// What the model is, in one line.
+    /// The model in one line.
     pub description: &'a str,
     /// Version of the model.
     pub version: &'a str,
@@ -20,175 +21,95 @@ pub struct Description<'a> {
     pub license: &'a str,
     /// Name of the tool that writes the FMU.
     pub generation_tool: &'a str,
-    /// What the log category of events tells, in one line.
+    /// The content of the log category of events, in one line.
     pub events: &'a str,
     /// Whether inputs have slopes and outputs have rates in co-simulation.
     pub has_slopes: bool,
     /// Units of the variables.
-    pub units: Vec<fmi::Unit>,
+    pub units: Vec<Unit>,
     /// The variables; a value reference is a position.
     pub variables: &'a [Variable],
-    /// Settings of a simulation for which nothing else is asked.
-    pub default_experiment: fmi::DefaultExperiment,
+    /// Settings of a simulation for which the user sets nothing else.
+    pub default_experiment: DefaultExperiment,
 }
 
-/// How a version points at the variable at a position.
-type Place = fn(usize) -> u32;
-
 impl Description<'_> {
-    /// The description in FMI 2.0, which leaves out time.
-    pub fn fmi2(&self) -> fmi::FmiModelDescription {
-        let capabilities = fmi::Capabilities {
-            can_not_use_memory_management_functions: true,
-            can_get_and_set_fmu_state: true,
-            can_serialize_fmu_state: true,
-            provides_directional_derivative: true,
+    /// The text of `modelDescription.xml` for hosts of `version`.
+    pub fn to_xml(&self, version: Version) -> String {
+        let (number, token, indicators) = match version {
+            Version::Fmi2 => ("2.0", "guid", Some(self.unknowns(is_indicator, false).count())),
+            Version::Fmi3 => ("3.0", "instantiationToken", None),
         };
-        let place: Place = |at| at as u32 + 1;
-        let is_in = |of: &usize| matches!(self.variables[*of].causality, Causality::Input) || self.is_state(*of);
-        let unknowns = |is_one: fn(&Variable) -> bool, at_start: bool| {
-            let found = self.unknowns(is_one, at_start).into_iter().map(|(at, mut known)| {
-                known.retain(|known| at_start || is_in(known));
-                let dependencies_kind = vec![fmi::DEPENDENT; known.len()];
-                fmi::Unknown {
-                    index: place(at),
-                    dependencies: known.into_iter().map(place).collect(),
-                    dependencies_kind,
-                }
-            });
-            fmi::List { items: found.collect() }
+        let units = self.all_units().into_iter().map(unit);
+        let types = self.enumerations().into_iter().map(|of| enumeration(version, of));
+        let variables = (0..).zip(self.variables);
+        let (variables, structure): (Vec<_>, _) = match version {
+            Version::Fmi2 => {
+                let has_no_row = |variable: &Variable| variable.causality == Causality::Independent;
+                let rows = variables.filter(|(_, variable)| !has_no_row(variable));
+                (rows.map(|(at, variable)| self.scalar_variable(at, variable)).collect(), self.structure_of_fmi2())
+            }
+            Version::Fmi3 => {
+                (variables.map(|(at, variable)| self.typed_variable(at, variable)).collect(), self.structure_of_fmi3())
+            }
         };
-        let variables = self.variables.iter().enumerate();
-        let variables = variables.filter(|(_, variable)| variable.causality != Causality::Independent);
-        fmi::FmiModelDescription {
-            fmi_version: "2.0",
-            model_name: self.name.into(),
-            guid: self.token.clone(),
-            description: self.description.into(),
-            version: self.version.into(),
-            license: self.license.into(),
-            generation_tool: self.generation_tool.into(),
-            variable_naming_convention: fmi::FLAT,
-            number_of_event_indicators: self.unknowns(|v| v.role == Role::Indicator, false).len(),
-            model_exchange: fmi::ModelExchange {
-                model_identifier: self.name.into(),
-                capabilities: capabilities.clone(),
-            },
-            co_simulation: fmi::CoSimulation {
-                model_identifier: self.name.into(),
-                can_handle_variable_communication_step_size: true,
-                can_interpolate_inputs: self.has_slopes,
-                max_output_derivative_order: self.has_slopes.into(),
-                capabilities,
-            },
-            unit_definitions: fmi::List { items: self.all_units() },
-            type_definitions: fmi::List {
-                items: self
-                    .enumerations()
-                    .map(|enumeration| fmi::SimpleType {
-                        name: enumeration.name.into(),
-                        description: enumeration.description.into(),
-                        enumeration: fmi::List { items: items(enumeration) },
-                    })
-                    .collect(),
-            },
-            log_categories: self.log_categories(),
-            default_experiment: self.default_experiment,
-            model_variables: fmi::ModelVariables {
-                scalar_variables: variables
-                    .map(|(at, variable)| fmi::ScalarVariable {
-                        attributes: attributes(at, variable),
-                        variable_type: self.variable_type(variable, place),
-                    })
-                    .collect(),
-            },
-            model_structure: fmi::ModelStructure {
-                outputs: unknowns(|v| v.causality == Causality::Output, false),
-                derivatives: unknowns(is_rate, false),
-                initial_unknowns: unknowns(Variable::is_initial_unknown, true),
-            },
+        Element::new("fmiModelDescription")
+            .with("fmiVersion", number)
+            .with("modelName", self.name)
+            .with(token, &self.token)
+            .with("description", self.description)
+            .with("version", self.version)
+            .with("license", self.license)
+            .with("generationTool", self.generation_tool)
+            .with("variableNamingConvention", "flat")
+            .with_any("numberOfEventIndicators", indicators)
+            .holding(self.interfaces(version))
+            .holding(Element::new("UnitDefinitions").holding(units).unless_empty())
+            .holding(Element::new("TypeDefinitions").holding(types).unless_empty())
+            .holding([self.log_categories(), self.default_experiment()])
+            .holding([Element::new("ModelVariables").holding(variables), structure])
+            .document()
+    }
+
+    /// The capabilities of both interfaces.
+    fn interfaces(&self, version: Version) -> [Element; 2] {
+        let [model_exchange, co_simulation] =
+            ["ModelExchange", "CoSimulation"].map(|name| Element::new(name).with("modelIdentifier", self.name));
+        let order = u8::from(self.has_slopes);
+        match version {
+            Version::Fmi2 => {
+                let common = [
+                    "canNotUseMemoryManagementFunctions",
+                    "canGetAndSetFMUstate",
+                    "canSerializeFMUstate",
+                    "providesDirectionalDerivative",
+                ];
+                let co_simulation = co_simulation
+                    .with("canHandleVariableCommunicationStepSize", true)
+                    .with("canInterpolateInputs", self.has_slopes)
+                    .with("maxOutputDerivativeOrder", order);
+                [model_exchange.with_true(&common), co_simulation.with_true(&common)]
+            }
+            Version::Fmi3 => {
+                let common = ["canGetAndSetFMUState", "canSerializeFMUState", "providesDirectionalDerivatives"];
+                let own = ["providesIntermediateUpdate", "mightReturnEarlyFromDoStep", "hasEventMode"];
+                let co_simulation = co_simulation
+                    .with_true(&common)
+                    .with("canHandleVariableCommunicationStepSize", true)
+                    .with("maxOutputDerivativeOrder", order)
+                    .with_true(&own);
+                [model_exchange.with_true(&common).with_true(&["needsCompletedIntegratorStep"]), co_simulation]
+            }
         }
-    }
-
-    /// The description in FMI 3.0, in which unknowns depend on parameters and time, too.
-    pub fn fmi3(&self) -> fmi3::FmiModelDescription {
-        let capabilities = fmi3::Capabilities {
-            model_identifier: self.name.into(),
-            can_get_and_set_fmu_state: true,
-            can_serialize_fmu_state: true,
-            provides_directional_derivatives: true,
-        };
-        let unknowns = |is_one: fn(&Variable) -> bool, at_start: bool| {
-            let found = self.unknowns(is_one, at_start).into_iter().map(|(at, known)| {
-                let dependencies_kind = vec![fmi::DEPENDENT; known.len()];
-                let dependencies = known.into_iter().map(|at| at as u32).collect();
-                fmi3::Unknown { value_reference: at as u32, dependencies, dependencies_kind }
-            });
-            found.collect()
-        };
-        fmi3::FmiModelDescription {
-            fmi_version: "3.0",
-            model_name: self.name.into(),
-            instantiation_token: self.token.clone(),
-            description: self.description.into(),
-            version: self.version.into(),
-            license: self.license.into(),
-            generation_tool: self.generation_tool.into(),
-            variable_naming_convention: fmi::FLAT,
-            model_exchange: fmi3::ModelExchange {
-                capabilities: capabilities.clone(),
-                needs_completed_integrator_step: true,
-            },
-            co_simulation: fmi3::CoSimulation {
-                capabilities,
-                can_handle_variable_communication_step_size: true,
-                max_output_derivative_order: self.has_slopes.into(),
-                provides_intermediate_update: true,
-                might_return_early_from_do_step: true,
-                has_event_mode: true,
-            },
-            unit_definitions: fmi::List { items: self.all_units() },
-            type_definitions: fmi::List {
-                items: self
-                    .enumerations()
-                    .map(|enumeration| fmi3::EnumerationType {
-                        name: enumeration.name.into(),
-                        description: enumeration.description.into(),
-                        items: items(enumeration),
-                    })
-                    .collect(),
-            },
-            log_categories: self.log_categories(),
-            default_experiment: self.default_experiment,
-            model_variables: fmi::List {
-                items: self.variables.iter().enumerate().map(|(at, variable)| self.of_type(at, variable)).collect(),
-            },
-            model_structure: fmi3::ModelStructure {
-                outputs: unknowns(|v| v.causality == Causality::Output, false),
-                continuous_state_derivatives: unknowns(is_rate, false),
-                initial_unknowns: unknowns(Variable::is_initial_unknown, true),
-                event_indicators: unknowns(|v| v.role == Role::Indicator, false),
-            },
-        }
-    }
-
-    fn is_state(&self, at: usize) -> bool {
-        self.variables[at].role == Role::State
-    }
-
-    /// The positions of the variables that are one, with those of what they depend on.
-    fn unknowns(&self, is_one: fn(&Variable) -> bool, at_start: bool) -> Vec<(usize, Vec<usize>)> {
-        let found = (0..self.variables.len()).filter(|at| is_one(&self.variables[*at]));
-        found.map(|at| (at, dependencies(self.variables, at, at_start))).collect()
     }
 
     /// The units, and those that variables have beside them, of which nothing but the name is known.
-    fn all_units(&self) -> Vec<fmi::Unit> {
+    fn all_units(&self) -> Vec<Unit> {
         let mut units = self.units.clone();
         for variable in self.variables {
             match variable.data_type {
-                DataType::Real { unit, .. } if unit != "1" && units.iter().all(|known| known.name != unit) => {
-                    units.push(fmi::Unit { name: unit.into(), base_unit: None, display_units: Vec::new() });
+                DataType::Real { unit: name, .. } if name != "1" && units.iter().all(|known| known.name != name) => {
+                    units.push(Unit { name, base: None, display: None });
                 }
                 _ => (),
             }
@@ -197,7 +118,7 @@ impl Description<'_> {
     }
 
     /// The enumerations that variables have, each once.
-    fn enumerations(&self) -> impl Iterator<Item = &'static Enumeration> {
+    fn enumerations(&self) -> Vec<&'static Enumeration> {
         let mut found: Vec<&Enumeration> = Vec::new();
         for variable in self.variables {
             match variable.data_type {
@@ -205,114 +126,214 @@ impl Description<'_> {
                 _ => (),
             }
         }
-        found.into_iter()
+        found
     }
 
-    fn log_categories(&self) -> fmi::List<fmi::Category> {
-        let category = |category: Category| fmi::Category {
-            name: category.name().to_string_lossy().into_owned(),
-            description: if category == Category::Events { self.events } else { category.description() }.into(),
+    fn log_categories(&self) -> Element {
+        let category = |category: Category| {
+            let description = if category == Category::Events { self.events } else { category.description() };
+            let name = category.name().to_string_lossy();
+            Element::new("Category").with("name", name).with("description", description)
         };
-        fmi::List { items: Category::ALL.map(category).into() }
+        Element::new("LogCategories").holding(Category::ALL.map(category))
     }
 
-    /// The type of `variable`; `place` is how a version points at the state that it is the derivative of.
-    fn variable_type(&self, variable: &Variable, place: Place) -> fmi::VariableType {
-        let start = variable.start.clone();
-        match variable.data_type {
-            DataType::Real { unit, range } => fmi::VariableType::Real(fmi::Real {
-                unit: (unit != "1").then(|| unit.into()),
-                display_unit: variable.display_unit.as_deref().map(Into::into),
-                min: range.map(|(min, _)| min),
-                max: range.map(|(_, max)| max),
-                nominal: variable.nominal,
-                start: start.and_then(|value| if let Value::Real(value) = value { Some(value) } else { None }),
-                derivative: match &variable.role {
-                    Role::RateOf(state) => Some(place(position(self.variables, state))),
-                    _ => None,
-                },
-                reinit: (variable.role == Role::State).then_some(true),
-            }),
-            DataType::Integer => fmi::VariableType::Integer(fmi::Integer { min: Some(0) }),
-            DataType::Boolean => fmi::VariableType::Boolean(fmi::Boolean {
-                start: start.and_then(|value| if let Value::Boolean(value) = value { Some(value) } else { None }),
-            }),
-            DataType::String => fmi::VariableType::String(fmi::Text {
-                start: start.and_then(|value| if let Value::String(value) = value { Some(value) } else { None }),
-            }),
-            DataType::Enumeration(enumeration) => fmi::VariableType::Enumeration(fmi::Enumeration {
-                declared_type: enumeration.name.into(),
-                start: start.and_then(|value| if let Value::Integer(value) = value { Some(value) } else { None }),
-            }),
-        }
+    fn default_experiment(&self) -> Element {
+        let DefaultExperiment { start_time, stop_time, tolerance, step_size } = self.default_experiment;
+        Element::new("DefaultExperiment")
+            .with("startTime", digits(start_time))
+            .with("stopTime", digits(stop_time))
+            .with("tolerance", digits(tolerance))
+            .with("stepSize", digits(step_size))
+    }
+
+    /// The variable at position `at` in FMI 2.0, whose type is an element of its own.
+    fn scalar_variable(&self, at: usize, variable: &Variable) -> Element {
+        let name = match variable.data_type {
+            DataType::Real { .. } => "Real",
+            DataType::Integer => "Integer",
+            DataType::Boolean => "Boolean",
+            DataType::String => "String",
+            DataType::Enumeration(_) => "Enumeration",
+        };
+        let of_type = self.of_type(Element::new(name), variable, index);
+        let of_type = match variable.data_type {
+            DataType::String => of_type.with_any("start", start(variable)),
+            _ => of_type,
+        };
+        common(Element::new("ScalarVariable"), at, variable).holding([of_type])
     }
 
     /// The variable at position `at` in FMI 3.0.
-    fn of_type(&self, at: usize, variable: &Variable) -> fmi3::Variable {
-        let is_given_within_steps = variability(variable) == fmi::Variability::Continuous;
-        let is_given_within_steps = is_given_within_steps && variable.causality != Causality::Independent;
-        let (attributes, intermediate_update) = (attributes(at, variable), is_given_within_steps.then_some(true));
-        match self.variable_type(variable, |at| at as u32) {
-            fmi::VariableType::Real(own) => fmi3::Variable::Float64(fmi3::Of { attributes, intermediate_update, own }),
-            fmi::VariableType::Integer(own) => fmi3::Variable::Int32(fmi3::Of { attributes, intermediate_update, own }),
-            fmi::VariableType::Boolean(own) => {
-                fmi3::Variable::Boolean(fmi3::Of { attributes, intermediate_update, own })
-            }
-            fmi::VariableType::String(text) => {
-                let own = fmi3::Text { start: text.start.map(|value| fmi3::Start { value }) };
-                fmi3::Variable::String(fmi3::Of { attributes, intermediate_update, own })
-            }
-            fmi::VariableType::Enumeration(own) => {
-                fmi3::Variable::Enumeration(fmi3::Of { attributes, intermediate_update, own })
-            }
+    fn typed_variable(&self, at: usize, variable: &Variable) -> Element {
+        let name = match variable.data_type {
+            DataType::Real { .. } => "Float64",
+            DataType::Integer => "Int32",
+            DataType::Boolean => "Boolean",
+            DataType::String => "String",
+            DataType::Enumeration(_) => "Enumeration",
+        };
+        let is_given_within_steps =
+            variability(variable) == "continuous" && variable.causality != Causality::Independent;
+        let element = common(Element::new(name), at, variable)
+            .with_any("intermediateUpdate", is_given_within_steps.then_some(true));
+        let of_type = self.of_type(element, variable, |at| at);
+        match variable.data_type {
+            DataType::String => of_type.holding(start(variable).map(|text| Element::new("Start").with("value", text))),
+            _ => of_type,
         }
     }
+
+    /// `element` with the attributes that belong to the type of `variable`; `place` is how a version points at a state.
+    fn of_type(&self, element: Element, variable: &Variable, place: fn(usize) -> usize) -> Element {
+        match variable.data_type {
+            DataType::Real { unit, range } => {
+                let derivative_of = match &variable.role {
+                    Role::RateOf(state) => Some(place(position(self.variables, state))),
+                    _ => None,
+                };
+                element
+                    .with_any("unit", (unit != "1").then_some(unit))
+                    .with_any("displayUnit", variable.display_unit.as_deref())
+                    .with_any("min", range.map(|(min, _)| digits(min)))
+                    .with_any("max", range.map(|(_, max)| digits(max)))
+                    .with_any("nominal", variable.nominal.map(digits))
+                    .with_any("start", start(variable))
+                    .with_any("derivative", derivative_of)
+                    .with_any("reinit", (variable.role == Role::State).then_some(true))
+            }
+            DataType::Integer => element.with("min", 0),
+            DataType::Boolean => element.with_any("start", start(variable)),
+            DataType::Enumeration(of) => element.with("declaredType", of.name).with_any("start", start(variable)),
+            DataType::String => element, // the versions differ
+        }
+    }
+
+    /// The positions of the variables that are one, with the positions of what they depend on.
+    fn unknowns(&self, is_one: fn(&Variable) -> bool, at_start: bool) -> impl Iterator<Item = (usize, Vec<usize>)> {
+        let found = (0..self.variables.len()).filter(move |at| is_one(&self.variables[*at]));
+        found.map(move |at| (at, dependencies(self.variables, at, at_start)))
+    }
+
+    /// The dependencies in FMI 2.0: after the start on inputs and states alone.
+    fn structure_of_fmi2(&self) -> Element {
+        let is_input_or_state = |at: &usize| {
+            let variable = &self.variables[*at];
+            variable.causality == Causality::Input || variable.role == Role::State
+        };
+        let list = |name, is_one: fn(&Variable) -> bool, at_start: bool| {
+            let unknowns = self.unknowns(is_one, at_start).map(|(at, mut known)| {
+                known.retain(|known| at_start || is_input_or_state(known));
+                unknown(Element::new("Unknown").with("index", index(at)), known.into_iter().map(index))
+            });
+            Element::new(name).holding(unknowns)
+        };
+        Element::new("ModelStructure").holding([
+            list("Outputs", is_output, false),
+            list("Derivatives", is_rate, false),
+            list("InitialUnknowns", Variable::is_initial_unknown, true),
+        ])
+    }
+
+    /// The dependencies in FMI 3.0, on parameters and time, too.
+    fn structure_of_fmi3(&self) -> Element {
+        let list = |name, is_one: fn(&Variable) -> bool, at_start: bool| {
+            let unknowns = self.unknowns(is_one, at_start);
+            unknowns.map(move |(at, known)| unknown(Element::new(name).with("valueReference", at), known))
+        };
+        Element::new("ModelStructure")
+            .holding(list("Output", is_output, false))
+            .holding(list("ContinuousStateDerivative", is_rate, false))
+            .holding(list("InitialUnknown", Variable::is_initial_unknown, true))
+            .holding(list("EventIndicator", is_indicator, false))
+    }
+}
+
+/// How FMI 2.0 points at the variable at a position.
+fn index(at: usize) -> usize {
+    at + 1
+}
+
+fn is_output(variable: &Variable) -> bool {
+    variable.causality == Causality::Output
 }
 
 fn is_rate(variable: &Variable) -> bool {
     matches!(variable.role, Role::RateOf(_))
 }
 
-fn items(enumeration: &Enumeration) -> Vec<fmi::Item> {
-    (1..).zip(enumeration.items).map(|(value, &name)| fmi::Item { name: name.into(), value }).collect()
+fn is_indicator(variable: &Variable) -> bool {
+    variable.role == Role::Indicator
 }
 
-/// What the variable at position `at` of the table, which is its value reference, has whatever its type.
-fn attributes(at: usize, variable: &Variable) -> fmi::Attributes {
-    fmi::Attributes {
-        name: variable.name.to_string(),
-        value_reference: at as u32,
-        description: variable.description.to_string(),
-        causality: causality(variable),
-        variability: variability(variable),
-        initial: initial(variable),
+fn unit(Unit { name, base, display }: Unit) -> Element {
+    let base = base.map(|exponents| {
+        let exponents = ["kg", "m", "s", "rad"].into_iter().zip(exponents);
+        exponents.fold(Element::new("BaseUnit"), |base, (of, exponent)| {
+            base.with_any(of, (exponent != 0).then_some(exponent))
+        })
+    });
+    let display =
+        display.map(|(name, factor)| Element::new("DisplayUnit").with("name", name).with("factor", digits(factor)));
+    Element::new("Unit").with("name", name).holding(base).holding(display)
+}
+
+fn enumeration(version: Version, of: &Enumeration) -> Element {
+    let named = |element: Element| element.with("name", of.name).with("description", of.description);
+    let items = (1..).zip(of.items);
+    let items = items.map(|(value, name): (u32, _)| Element::new("Item").with("name", name).with("value", value));
+    match version {
+        Version::Fmi2 => named(Element::new("SimpleType")).holding([Element::new("Enumeration").holding(items)]),
+        Version::Fmi3 => named(Element::new("EnumerationType")).holding(items),
     }
 }
 
-fn causality(variable: &Variable) -> fmi::Causality {
-    match variable.causality {
-        Causality::Parameter => fmi::Causality::Parameter,
-        Causality::CalculatedParameter => fmi::Causality::CalculatedParameter,
-        Causality::Input => fmi::Causality::Input,
-        Causality::Output => fmi::Causality::Output,
-        Causality::Local => fmi::Causality::Local,
-        Causality::Independent => fmi::Causality::Independent,
-    }
-}
-
-fn variability(variable: &Variable) -> fmi::Variability {
-    match variable.causality {
-        Causality::Parameter | Causality::CalculatedParameter => fmi::Variability::Fixed,
-        _ if variable.is_continuous => fmi::Variability::Continuous,
-        Causality::Input | Causality::Output | Causality::Local | Causality::Independent => fmi::Variability::Discrete,
-    }
-}
-
-fn initial(variable: &Variable) -> Option<fmi::Initial> {
-    match variable.causality {
-        Causality::Parameter => Some(fmi::Initial::Exact),
-        Causality::Output | Causality::Local if variable.start.is_some() => Some(fmi::Initial::Exact),
-        Causality::CalculatedParameter | Causality::Output | Causality::Local => Some(fmi::Initial::Calculated),
+/// `element` with the attributes that the variable at position `at` has whatever its type.
+fn common(element: Element, at: usize, variable: &Variable) -> Element {
+    let causality = match variable.causality {
+        Causality::Parameter => "parameter",
+        Causality::CalculatedParameter => "calculatedParameter",
+        Causality::Input => "input",
+        Causality::Output => "output",
+        Causality::Local => "local",
+        Causality::Independent => "independent",
+    };
+    let initial = match variable.causality {
+        Causality::Parameter => Some("exact"),
+        Causality::Output | Causality::Local if variable.start.is_some() => Some("exact"),
+        Causality::CalculatedParameter | Causality::Output | Causality::Local => Some("calculated"),
         Causality::Input | Causality::Independent => None,
+    };
+    element
+        .with("name", &variable.name)
+        .with("valueReference", at)
+        .with("description", &variable.description)
+        .with("causality", causality)
+        .with("variability", variability(variable))
+        .with_any("initial", initial)
+}
+
+fn variability(variable: &Variable) -> &'static str {
+    match variable.causality {
+        Causality::Parameter | Causality::CalculatedParameter => "fixed",
+        _ if variable.is_continuous => "continuous",
+        _ => "discrete",
     }
+}
+
+/// The start value of `variable` as text.
+fn start(variable: &Variable) -> Option<String> {
+    variable.start.clone().map(|value| match value {
+        Value::Real(value) => digits(value),
+        Value::Integer(value) => value.to_string(),
+        Value::Boolean(value) => value.to_string(),
+        Value::String(value) => value,
+    })
+}
+
+/// `element` with the places of what it depends on; an empty list says that there is nothing.
+fn unknown(element: Element, known: impl IntoIterator<Item = usize>) -> Element {
+    let places: Vec<_> = known.into_iter().map(|place| place.to_string()).collect();
+    let kinds = vec!["dependent"; places.len()].join(" ");
+    element.with("dependencies", places.join(" ")).with("dependenciesKind", kinds)
 }

@@ -105,7 +105,7 @@ fn row(variable: &Variable, structure: &Structure) -> Filling {
     }
 }
 
-/// What is known of a variable's value before the simulation: its start value, or what follows from the parameters.
+/// The value of a variable before the simulation, as far as it is known: start value, or result of the parameters.
 fn value(variable: &Variable, structure: &Structure) -> String {
     match variable.start.clone() {
         Some(Value::Real(start)) => return in_full(start),

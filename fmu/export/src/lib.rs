@@ -9,6 +9,7 @@ pub mod significant;
 mod units;
 
 use ::model_description::DefaultExperiment;
+pub use ::model_description::Version;
 use ::model_description::archive::{Entry, archive};
 use FlexibleRocking::ground::GroundRecord;
 use FlexibleRocking::resources::{Contents, PARAMETERS_FILE, PackedRecord, RECORDS_FILE, Records};
@@ -24,17 +25,7 @@ const LICENSES: &str = include_str!("../resources/licenses.txt");
 
 const ICON: &[u8] = include_bytes!("../resources/model.png");
 
-/// A version of the standard that an archive can follow.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Version {
-    /// FMI 2.0
-    #[default]
-    Fmi2,
-    /// FMI 3.0
-    Fmi3,
-}
-
-/// What a model is called: in its description, and as the file of its libraries.
+/// The name of a model in its description, and of the files of its libraries.
 #[derive(Clone, Debug)]
 pub struct ModelName(String);
 
@@ -54,7 +45,7 @@ impl Default for ModelName {
 impl FromStr for ModelName {
     type Err = ExportError;
 
-    /// Any identifier of C, which is what the standard asks for.
+    /// Accepts any identifier of C, as the standard does.
     fn from_str(name: &str) -> Result<ModelName, ExportError> {
         let is_word = |c: char| c == '_' || c.is_ascii_alphanumeric();
         if name.chars().all(is_word) && name.starts_with(|c: char| !c.is_ascii_digit()) {
@@ -83,12 +74,9 @@ pub enum ExportError {
     /// A file whose name is not text.
     #[error("the record {path} needs a name in UTF-8", path = .0.display())]
     RecordName(PathBuf),
-    /// Two records of one name, which is what the FMU knows them by.
+    /// Two records of one name.
     #[error("two records are called {0}: rename one of them; capitals and small letters are the same here")]
     SameName(String),
-    /// The model description cannot be written.
-    #[error("modelDescription.xml: {0}")]
-    Description(#[from] ::model_description::SeError),
     /// The documentation cannot be written.
     #[error("documentation/index.html: {0}")]
     Documentation(#[from] minijinja::Error),
@@ -158,7 +146,7 @@ fn entries(
 ) -> Result<Vec<Entry>, ExportError> {
     let entry = |path: &str, content| Entry { path: path.to_owned(), content };
     let page = documentation::documentation(version, name, structure, contents, libraries)?;
-    let description = model_description::xml(version, name, structure, contents, experiment)?;
+    let description = model_description::xml(version, name, structure, contents, experiment);
     let icon = if version == Version::Fmi2 { "model.png" } else { "terminalsAndIcons/icon.png" };
     let mut entries = vec![entry("modelDescription.xml", description.into()), entry(icon, ICON.to_vec())];
     entries.extend([
@@ -186,7 +174,7 @@ mod tests {
         Structure::new(parameters).unwrap()
     }
 
-    /// What passes for the library of this build for `platform`.
+    /// A library that passes for the one of this build for `platform`.
     fn library(platform: Platform) -> Library {
         Library { platform, content: platform.target().into() }
     }

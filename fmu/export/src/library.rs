@@ -31,51 +31,45 @@ impl Platform {
     pub const ALL: [Platform; 5] =
         [Platform::Linux64, Platform::LinuxArm64, Platform::Windows64, Platform::Darwin64, Platform::DarwinArm64];
 
-    /// Its tuple, its folder in FMI 2.0, its target, and the file that cargo builds for it.
-    fn names(self) -> [&'static str; 4] {
+    /// The tuple of the platform, its target, and the file that cargo builds for it.
+    fn names(self) -> [&'static str; 3] {
         match self {
-            Platform::Linux64 => ["x86_64-linux", "linux64", "x86_64-unknown-linux-gnu", "libFlexibleRocking.so"],
-            Platform::LinuxArm64 => {
-                ["aarch64-linux", "aarch64-linux", "aarch64-unknown-linux-gnu", "libFlexibleRocking.so"]
-            }
-            Platform::Windows64 => ["x86_64-windows", "win64", "x86_64-pc-windows-gnu", "FlexibleRocking.dll"],
-            Platform::Darwin64 => ["x86_64-darwin", "darwin64", "universal2-apple-darwin", "libFlexibleRocking.dylib"],
-            Platform::DarwinArm64 => {
-                ["aarch64-darwin", "aarch64-darwin", "aarch64-apple-darwin", "libFlexibleRocking.dylib"]
-            }
+            Platform::Linux64 => ["x86_64-linux", "x86_64-unknown-linux-gnu", "libFlexibleRocking.so"],
+            Platform::LinuxArm64 => ["aarch64-linux", "aarch64-unknown-linux-gnu", "libFlexibleRocking.so"],
+            Platform::Windows64 => ["x86_64-windows", "x86_64-pc-windows-gnu", "FlexibleRocking.dll"],
+            Platform::Darwin64 => ["x86_64-darwin", "universal2-apple-darwin", "libFlexibleRocking.dylib"],
+            Platform::DarwinArm64 => ["aarch64-darwin", "aarch64-apple-darwin", "libFlexibleRocking.dylib"],
         }
     }
 
-    /// Its folder in an archive of FMI 3.0, the standard's tuple of architecture and system. `x86_64-darwin` has what
-    /// runs on both.
+    /// The standard's tuple of architecture and system. The library for `x86_64-darwin` runs on both architectures.
     pub fn tuple(self) -> &'static str {
         self.names()[0]
     }
 
-    /// The folder of its libraries in an archive of `version`. FMI 2.0 has names for x86 alone; since 2.0.4 it asks for
-    /// the tuples of FMI 3.0 for all others. Hosts that know no tuples look for `darwin64` on every Mac: what stands
-    /// there runs on both.
+    /// The folder of the library in an archive of `version`. Hosts that know no tuples look for `darwin64` on every Mac: the
+    /// library there runs on both architectures.
     pub fn folder(self, version: Version) -> &'static str {
-        if version == Version::Fmi3 { self.tuple() } else { self.names()[1] }
+        ::model_description::archive::folder(version, self.tuple())
     }
 
-    /// What cargo, or cargo-zigbuild, calls it.
+    /// The target by the name that cargo, or cargo-zigbuild, has for it.
     pub fn target(self) -> &'static str {
-        self.names()[2]
+        self.names()[1]
     }
 
     /// The file that cargo builds for it.
     pub fn file(self) -> &'static str {
-        self.names()[3]
+        self.names()[2]
     }
 
-    /// Where an archive of the model `name` has the library.
+    /// The path of the library in an archive of the model `name`.
     pub(crate) fn path(self, version: Version, name: &str) -> String {
         let (_, extension) = self.file().rsplit_once('.').expect("they have one");
         format!("binaries/{}/{name}.{extension}", self.folder(version))
     }
 
-    /// What `library` is for, by its header.
+    /// The platform that `library` is for, by its header.
     fn of(library: &[u8]) -> Option<Platform> {
         if FileKind::parse(library) == Ok(FileKind::MachOFat32) {
             let both = MachOFatFile32::parse(library).ok()?;
@@ -97,7 +91,7 @@ impl Platform {
 /// A shared library of this build.
 #[derive(Debug)]
 pub struct Library {
-    /// What it is for.
+    /// The platform of the library.
     pub platform: Platform,
     pub(crate) content: Vec<u8>,
 }
@@ -126,7 +120,7 @@ impl Library {
         Library::from_bytes(path, content)
     }
 
-    /// The shared library in `content`, that of the file at `path`, or those of the FMU that it is.
+    /// The shared library in `content`, the content of the file at `path`, or the libraries of an FMU.
     pub fn from_bytes(path: &Path, content: Vec<u8>) -> Result<Vec<Library>, LibraryError> {
         if !content.starts_with(b"PK") {
             return Ok(vec![Library::new(path, content)?]);
@@ -146,7 +140,7 @@ impl Library {
         Ok(libraries)
     }
 
-    /// The library with this `content`, of this build; `path` is where it comes from.
+    /// The library with this `content`, of this build; it comes from `path`.
     fn new(path: &Path, content: Vec<u8>) -> Result<Library, LibraryError> {
         let platform = Platform::of(&content).ok_or_else(|| LibraryError::NoLibrary(path.to_owned()))?;
         if memmem::find(&content, BUILD.as_bytes()).is_none() {
@@ -160,7 +154,7 @@ impl Library {
 mod tests {
     use super::*;
 
-    /// No more than a header.
+    /// A header alone.
     fn elf(machine: u8) -> Vec<u8> {
         let mut header = [0; 64];
         header[..7].copy_from_slice(b"\x7fELF\x02\x01\x01"); // 64 bits, little-endian

@@ -1,16 +1,16 @@
 //! `modelDescription.xml`, from the table of variables.
 
-use crate::{ExportError, Version, units};
+use crate::{Version, units};
 use FlexibleRocking::resources::Contents;
 use FlexibleRocking::variables::Table;
 use fmi_unit::Variable;
 use model_description::{DefaultExperiment, Description};
 use rocking::Structure;
 
-/// What the model is, in one line.
+/// The model in one line.
 pub const DESCRIPTION: &str = "A flexible structure that rocks freely on rigid ground under earthquake ground motion";
 
-/// What the log category of events tells, in one line.
+/// The content of the log category of events, in one line.
 pub const EVENTS: &str = "uplift, impact, landing and overturning, as they happen";
 
 /// The text of the description of the FMU `name` of `structure` with these `contents`.
@@ -20,7 +20,7 @@ pub fn xml(
     structure: &Structure,
     contents: &Contents,
     default_experiment: DefaultExperiment,
-) -> Result<String, ExportError> {
+) -> String {
     let variables = Table::new(contents).variables;
     let variables: Vec<_> = variables
         .iter()
@@ -43,10 +43,7 @@ pub fn xml(
         variables: &variables,
         default_experiment,
     };
-    Ok(match version {
-        Version::Fmi2 => description.fmi2().to_xml()?,
-        Version::Fmi3 => description.fmi3().to_xml()?,
-    })
+    description.to_xml(version)
 }
 
 #[cfg(test)]
@@ -58,7 +55,7 @@ mod tests {
     fn described(version: Version, contents: &Contents) -> String {
         let structure = Structure::new(contents.parameters).unwrap();
         let experiment = DefaultExperiment { start_time: 0.0, stop_time: 4.0, tolerance: 1e-9, step_size: 0.005 };
-        xml(version, "Pier", &structure, contents, experiment).unwrap()
+        xml(version, "Pier", &structure, contents, experiment)
     }
 
     /// What the table says of a few variables is what the description points at: once the simulation goes on, at the states,

@@ -1,7 +1,7 @@
 //! Units: what each is in SI, what hosts show it in, and magnitudes that are usual.
 
 use fmi_unit::{DataType, Variable};
-use model_description as fmi;
+use model_description::Unit;
 use rocking::structure::parameters::PARAMETERS;
 use rocking::{State, Structure};
 
@@ -27,17 +27,12 @@ pub const UNITS: [(&str, [i32; 4]); 17] = [
 ];
 
 /// Definitions of the units; the display unit g is that of `structure`.
-pub fn definitions(structure: &Structure) -> Vec<fmi::Unit> {
-    let definition = |(name, [kg, m, s, rad]): (&str, [i32; 4])| {
-        let shown = shown_in(name, structure);
-        let shown = shown.map(|(name, factor)| fmi::DisplayUnit { name: name.into(), factor });
-        let base_unit = Some(fmi::BaseUnit { kg, m, s, rad });
-        fmi::Unit { name: name.into(), base_unit, display_units: shown.into_iter().collect() }
-    };
+pub fn definitions(structure: &Structure) -> Vec<Unit> {
+    let definition = |(name, base)| Unit { name, base: Some(base), display: shown_in(name, structure) };
     UNITS.map(definition).into()
 }
 
-/// What hosts can show a unit in, and what a value is multiplied by for it. The g of an acceleration is the structure's own,
+/// The unit that hosts can show a unit in, and the factor of a value in that unit. The g of an acceleration is the structure's own,
 /// as in a record.
 fn shown_in(unit: &str, structure: &Structure) -> Option<(&'static str, f64)> {
     match unit {
@@ -51,7 +46,7 @@ fn shown_in(unit: &str, structure: &Structure) -> Option<(&'static str, f64)> {
     }
 }
 
-/// What `variable` is shown in, where that is not its unit. The structure's own parameters are in SI, as in its file, and
+/// The unit that `variable` is shown in, if that is another than its own. The structure's own parameters are in SI, as in its file, and
 /// instants in seconds: they are looked up in a record.
 pub fn display_unit(variable: &Variable, structure: &Structure) -> Option<&'static str> {
     let DataType::Real { unit, .. } = variable.data_type else { return None };

@@ -15,7 +15,7 @@ const TARGETS: [&str; 5] = [
     "aarch64-apple-darwin",
 ];
 
-/// What begins the name of a file with a licence.
+/// Beginnings of the names of files with a licence.
 const LICENSE_FILES: [&str; 5] = ["LICENSE", "LICENCE", "UNLICENSE", "COPYING", "NOTICE"];
 
 /// `make licenses` sets the variable `WRITE_LICENSES`, which writes the file anew.

@@ -1,5 +1,4 @@
-//! A ball that bounces. `cargo run --example bouncing_ball -- out/BouncingBall.fmu` writes its FMU, with one more argument, 3,
-//! for FMI 3.0. The page `docs/howto/write_an_fmu.md` walks through it.
+//! A ball that bounces. The page `docs/howto/write_an_fmu.md` walks through this example, which writes the FMU of the ball.
 
 use fmi_unit::{Causality::*, *};
 use model_description::archive;
@@ -21,6 +20,7 @@ fmi_unit::export_fmu!(Ball);
 impl Ball {
     /// The exact motion until `until`, s, or, if it `stops`, up to the first contact on the way.
     fn follow(&mut self, until: f64, stops: bool) -> Progress {
+        let until = until.max(self.known[4]); // no host turns back
         while !self.rests {
             let [h, v, g, e, t] = self.known;
             let fall = (v + (v * v + 2.0 * g * h).sqrt()) / g; // the first root of h + v τ - g τ²/2

@@ -1,4 +1,4 @@
-//! What the C interfaces of all versions of the standard have in common. Only here, in [`fmi2`](crate::fmi2) and in
+//! The common part of the C interfaces of all versions of the standard. Only here, in [`fmi2`](crate::fmi2) and in
 //! [`fmi3`](crate::fmi3) are pointers followed: each function turns its arguments into slices and text, and calls the
 //! instance.
 //!
@@ -20,6 +20,7 @@ use crate::instance::Instance;
 use crate::logger::{Category, Status};
 use crate::model::{Completed, Model};
 use crate::state_machine::{Stage, Stages, Table, names};
+use crate::variables::DataType;
 use libc::{c_char, c_int, c_void, size_t};
 use std::any::Any;
 use std::cell::{Cell, UnsafeCell};
@@ -28,7 +29,7 @@ use std::marker::PhantomData;
 use std::mem::MaybeUninit;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
-use std::sync::atomic::{AtomicU8, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU8, Ordering};
 use std::{ptr, slice};
 
 /// The functions of a version of the standard that take an instance; [`functions!`] lists them.
@@ -36,7 +37,7 @@ pub trait Function: Copy + Sized + 'static {
     /// All of them.
     const ALL: &'static [Self];
 
-    /// What a component of this version begins with.
+    /// The first number in a component of this version.
     const MAGIC: u64;
 
     /// Its place among all of them.
@@ -45,16 +46,59 @@ pub trait Function: Copy + Sized + 'static {
     /// Its name in the C interface.
     fn name(self) -> &'static str;
 
-    /// Which function of the version to call instead of one that met `failure`, as the end of a message.
-    fn remedy(failure: &Failure) -> &'static str;
+    /// The functions that messages name.
+    const WORDS: Words;
 }
 
-/// What a component points to, for a host that speaks the version with the functions `F`.
+/// The functions of a version that messages name as a remedy.
+pub struct Words {
+    pub(crate) real: &'static str,
+    pub(crate) integer: &'static str,
+    pub(crate) enumeration: &'static str,
+    pub(crate) boolean: &'static str,
+    pub(crate) string: &'static str,
+    pub(crate) fixing: &'static str,
+    pub(crate) reset: &'static str,
+    pub(crate) set_state: &'static str,
+    pub(crate) set_up: &'static str,
+    pub(crate) state_size: &'static str,
+    pub(crate) status: &'static str,
+}
+
+impl Words {
+    /// The function to call instead of one that met `failure`, as the end of a message.
+    fn remedy(&self, failure: &Failure) -> String {
+        let Words { fixing, reset, set_state, set_up, state_size, status, .. } = self;
+        match failure {
+            Failure::WrongType { data_type, .. } => {
+                let function = match data_type {
+                    DataType::Real { .. } => self.real,
+                    DataType::Integer => self.integer,
+                    DataType::Enumeration(_) => self.enumeration,
+                    DataType::Boolean => self.boolean,
+                    DataType::String => self.string,
+                };
+                format!(": call {function} instead")
+            }
+            Failure::Fixed { .. } => format!(": set it before {fixing}, or call {reset}"),
+            Failure::WrongPoint { .. } => format!(": step from there, or go back with {set_state}"),
+            Failure::StepBack { .. } => format!("; to go back, call {set_state}"),
+            Failure::PastStop { .. } => format!(" given to {set_up}: shorten it"),
+            Failure::WrongSize { .. } => format!(" ({state_size})"),
+            Failure::NoAnswer(_) => format!(": {status}"),
+            _ => String::new(),
+        }
+    }
+}
+
+/// The instance behind a component, for a host that speaks the version with the functions `F`.
 #[repr(C)] // the magic number first, whatever the version
 struct Component<F> {
     magic: Cell<u64>,
-    /// One of the following.
+    /// [`READY`], [`BUSY`] or [`BROKEN`].
     availability: AtomicU8,
+    /// Whether a step is under way in which the host is called back, and which goes on with the instance.
+    calls_back: AtomicBool,
     /// The interface's table.
     allowed_in: &'static Table,
     instance: UnsafeCell<Instance>,
@@ -80,7 +124,8 @@ pub(crate) fn instantiate<F: Function>(create: impl FnOnce() -> Option<(Instance
     let created = catch_unwind(AssertUnwindSafe(create)).ok().flatten();
     let Some((instance, allowed_in)) = created else { return ptr::null_mut() };
     let (magic, availability, instance) = (Cell::new(F::MAGIC), AtomicU8::new(READY), UnsafeCell::new(instance));
-    let component = Component::<F> { magic, availability, allowed_in, instance, version: PhantomData };
+    let (calls_back, version) = (AtomicBool::new(false), PhantomData);
+    let component = Component::<F> { magic, availability, calls_back, allowed_in, instance, version };
     Box::into_raw(Box::new(component)).cast()
 }
 
@@ -94,16 +139,10 @@ pub(crate) fn open<M: Model>(name: &'static str, given: &str, resources: &Path) 
     Ok(Box::new(model))
 }
 
-/// Frees a component. Does nothing for null, and while a call is under way, as from within the logger.
+/// Frees a component. Does nothing for null, and while a call is under way, as from within the logger or a callback.
 pub(crate) unsafe fn free<F: Function>(c: *mut c_void) {
     let Some(component) = (unsafe { component::<F>(c) }) else { return };
-    let availability = component.availability.swap(BUSY, Ordering::Acquire);
-    if availability == BUSY {
-        return;
-    }
-    // called from within a step, which goes on with the instance
-    if unsafe { &*component.instance.get() }.stage().is_within_step() {
-        component.availability.store(availability, Ordering::Release);
+    if component.calls_back.load(Ordering::Relaxed) || component.availability.swap(BUSY, Ordering::Acquire) == BUSY {
         return;
     }
     // Volatile, so that a call with the freed component finds no magic number as long as the memory is not used anew.
@@ -133,6 +172,14 @@ pub(crate) unsafe fn call<F: Function>(
     body: impl FnOnce(&mut Instance) -> Result<(), Failure>,
 ) -> c_int {
     unsafe { call_in(c, function, |allowed_in| allowed_in[function.place()], body) }
+}
+
+/// Calls the host back within a step of the instance that `c` points to, which is not freed meanwhile.
+pub(crate) unsafe fn call_back<F: Function>(c: *mut c_void, host: impl FnOnce()) {
+    let Some(component) = (unsafe { component::<F>(c) }) else { return };
+    component.calls_back.store(true, Ordering::Relaxed);
+    host();
+    component.calls_back.store(false, Ordering::Relaxed);
 }
 
 /// The rest of a call of `function`, after the host has been called back.
@@ -182,7 +229,7 @@ unsafe fn call_in<F: Function>(
 #[cold]
 #[inline(never)]
 fn report<F: Function>(instance: &Instance, function: F, failure: &Failure) -> Status {
-    instance.report(failure.status(), &format!("{}: {failure}{}", function.name(), F::remedy(failure)));
+    instance.logger.failure(failure.status(), &format!("{}: {failure}{}", function.name(), F::WORDS.remedy(failure)));
     failure.status()
 }
 
@@ -408,6 +455,7 @@ macro_rules! functions {
         impl $crate::c_abi::Function for Function {
             const ALL: &'static [Function] = &[$(Function::$apart_function,)* $(Function::$function),*];
             const MAGIC: u64 = MAGIC;
+            const WORDS: $crate::c_abi::Words = WORDS;
 
             fn place(self) -> usize {
                 self as usize
@@ -418,10 +466,6 @@ macro_rules! functions {
                     $(Function::$apart_function => stringify!($apart),)*
                     $(Function::$function => stringify!($name),)*
                 }
-            }
-
-            fn remedy(failure: &Failure) -> &'static str {
-                remedy(failure)
             }
         }
 

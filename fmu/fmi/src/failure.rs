@@ -1,4 +1,4 @@
-//! Why a call is not done: every message of that kind, in one place. What to call instead, the C interface adds.
+//! Why a call is not done: every message of that kind, in one place. The C interface adds the function to call instead.
 
 use crate::logger::Status;
 use crate::state_machine::Stage;
@@ -53,10 +53,10 @@ pub enum Failure {
          export it again, and unpack every FMU into a folder of its own"
     )]
     WrongToken { name: &'static str, given: String, needed: String },
-    /// No such log category.
+    /// A log category that does not exist.
     #[error("log category {0:?} does not exist; see LogCategories in modelDescription.xml")]
     UnknownCategory(String),
-    /// No such variable.
+    /// A variable that does not exist.
     #[error("value reference {reference} does not exist; they run from 0 to {last}")]
     UnknownReference { reference: u32, last: usize },
     /// A variable of another type.
@@ -104,9 +104,11 @@ pub enum Failure {
     /// A step from the wrong time.
     #[error("currentCommunicationPoint = {} is not where the FMU is, t = {time} s", with_unit(*given, "s"))]
     WrongPoint { given: f64, time: f64 },
-    /// A step of no length, or of no number.
+    /// A step of no length, of no number, or to no finite time.
     #[error(
-        "communicationStepSize = {step} s is out of range: it must be positive, finite, and large enough to move t = {time} s"
+        "communicationStepSize = {} is out of range: it must be positive, finite, large enough to move t = {}, and end at a \
+         finite time",
+        with_unit(*step, "s"), with_unit(*time, "s")
     )]
     BadStep { step: f64, time: f64 },
     /// A step past the end.
@@ -115,6 +117,9 @@ pub enum Failure {
     /// A time that is not finite.
     #[error("time = {} is out of range: time and time - startTime must be finite", with_unit(*.0, "s"))]
     BadTime(f64),
+    /// A state that is not finite, at a trial of the host's integrator that may be repeated elsewhere.
+    #[error("{name} = {value} is out of range: a state must be finite; take a shorter step")]
+    BadState { name: String, value: f64 },
     /// A step of the host's integrator that ends before it starts.
     #[error(
         "the integrator's step from t = {from} s ends at t = {to} s: time must not fall below the last event or complete step"
@@ -148,10 +153,12 @@ pub enum Failure {
 }
 
 impl Failure {
-    /// What the call returns.
+    /// The status that the call returns.
     pub fn status(&self) -> Status {
         match self {
-            Failure::Ended(_) | Failure::Discarded(_) | Failure::NoAnswer(_) => Status::Discard,
+            Failure::Ended(_) | Failure::Discarded(_) | Failure::BadState { .. } | Failure::NoAnswer(_) => {
+                Status::Discard
+            }
             Failure::Panicked(_) => Status::Fatal,
             _ => Status::Error,
         }
@@ -170,7 +177,7 @@ fn with_unit(value: f64, unit: &str) -> String {
     if unit == "1" { digits.into() } else { format!("{digits} {unit}") }
 }
 
-/// What the numbers of an enumeration stand for.
+/// The items of an enumeration with their numbers.
 fn items(data_type: DataType) -> String {
     let DataType::Enumeration(enumeration) = data_type else { return String::new() };
     (1..)

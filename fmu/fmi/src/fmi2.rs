@@ -5,8 +5,8 @@
 mod stages;
 
 use crate::c_abi::{
-    self, check_pointer, complete_step, escaped, free_state, functions, keep_state, names_events, read_all, read_state,
-    room, text, values, write, write_all, write_state, write_state_size,
+    self, Words, check_pointer, complete_step, escaped, free_state, functions, keep_state, names_events, read_all,
+    read_state, room, text, values, write, write_all, write_state, write_state_size,
 };
 use crate::failure::Failure;
 use crate::instance::Instance;
@@ -135,7 +135,7 @@ pub unsafe extern "C" fn fmi2FreeInstance(c: *mut c_void) {
     unsafe { c_abi::free::<Function>(c) }
 }
 
-/// What the `fmi2Boolean` `value`, given as `name`, stands for.
+/// The truth that the `fmi2Boolean` `value`, given as `name`, stands for.
 fn boolean(name: &str, value: c_int) -> Result<bool, Failure> {
     match value {
         0 => Ok(false),
@@ -156,35 +156,27 @@ fn status_kind(value: c_int) -> Result<&'static str, Failure> {
     kind.copied().ok_or(Failure::BadChoice { name: "fmi2StatusKind".into(), value, accepted })
 }
 
-/// What to call instead.
-fn remedy(failure: &Failure) -> &'static str {
-    match failure {
-        Failure::WrongType { data_type, .. } => match data_type {
-            DataType::Real { .. } => ": call fmi2GetReal or fmi2SetReal instead",
-            DataType::Integer => ": call fmi2GetInteger instead",
-            DataType::Enumeration(_) => ": call fmi2GetInteger or fmi2SetInteger instead",
-            DataType::Boolean => ": call fmi2GetBoolean or fmi2SetBoolean instead",
-            DataType::String => ": call fmi2GetString or fmi2SetString instead",
-        },
-        Failure::Fixed { .. } => ": set it before fmi2ExitInitializationMode, or call fmi2Reset",
-        Failure::WrongPoint { .. } => ": step from there, or go back with fmi2SetFMUstate",
-        Failure::StepBack { .. } => "; to go back, call fmi2SetFMUstate",
-        Failure::PastStop { .. } => " given to fmi2SetupExperiment: shorten it",
-        Failure::WrongSize { .. } => " (fmi2SerializedFMUstateSize)",
-        Failure::NoAnswer(_) => {
-            ": fmi2DoStep never returns fmi2Pending, fmi2GetRealStatus knows fmi2LastSuccessfulTime, \
-             fmi2GetBooleanStatus knows fmi2Terminated"
-        }
-        _ => "",
-    }
-}
+const WORDS: Words = Words {
+    real: "fmi2GetReal or fmi2SetReal",
+    integer: "fmi2GetInteger",
+    enumeration: "fmi2GetInteger or fmi2SetInteger",
+    boolean: "fmi2GetBoolean or fmi2SetBoolean",
+    string: "fmi2GetString or fmi2SetString",
+    fixing: "fmi2ExitInitializationMode",
+    reset: "fmi2Reset",
+    set_state: "fmi2SetFMUstate",
+    set_up: "fmi2SetupExperiment",
+    state_size: "fmi2SerializedFMUstateSize",
+    status: "fmi2DoStep never returns fmi2Pending, fmi2GetRealStatus knows fmi2LastSuccessfulTime, \
+             fmi2GetBooleanStatus knows fmi2Terminated",
+};
 
 functions! {
     fmi2SetDebugLogging = SetDebugLogging(
         loggingOn: c_int, nCategories: size_t, categories: *const *const c_char,
     ) |instance| {
         let has_events = names_events(nCategories, categories)?;
-        instance.log_events(boolean("loggingOn", loggingOn)? && has_events);
+        instance.logger.set_events(boolean("loggingOn", loggingOn)? && has_events);
         Ok(())
     }
 
@@ -302,7 +294,7 @@ functions! {
 
     fmi2GetRealStatus = GetRealStatus(s: c_int, value: *mut c_double) |instance| {
         match status_kind(s)? {
-            LAST_SUCCESSFUL_TIME => write("value", value, instance.time()?),
+            LAST_SUCCESSFUL_TIME => write("value", value, instance.model.time()?),
             other => Err(Failure::NoAnswer(other)),
         }
     }
@@ -354,21 +346,21 @@ functions! {
     }
 
     fmi2GetDerivatives = GetDerivatives(derivatives: *mut c_double, nx: size_t) |instance| {
-        write_all("derivatives", derivatives, ("nx", nx), instance.derivatives()?)
+        write_all("derivatives", derivatives, ("nx", nx), instance.model.state_rates()?)
     }
 
     fmi2GetEventIndicators = GetEventIndicators(eventIndicators: *mut c_double, ni: size_t) |instance| {
-        write_all("eventIndicators", eventIndicators, ("ni", ni), instance.event_indicators()?)
+        write_all("eventIndicators", eventIndicators, ("ni", ni), instance.model.indicators()?)
     }
 
     fmi2GetContinuousStates = GetContinuousStates(x: *mut c_double, nx: size_t) |instance| {
-        write_all("x", x, ("nx", nx), instance.continuous_states()?)
+        write_all("x", x, ("nx", nx), instance.model.states()?)
     }
 
     fmi2GetNominalsOfContinuousStates = GetNominalsOfContinuousStates(
         x_nominal: *mut c_double, nx: size_t,
     ) |instance| {
-        write_all("x_nominal", x_nominal, ("nx", nx), instance.nominals()?)
+        write_all("x_nominal", x_nominal, ("nx", nx), instance.model.nominals()?)
     }
 }
 
@@ -376,42 +368,11 @@ functions! {
 mod tests {
     use super::*;
     use crate::logger::Status;
-    use crate::{Step, Value, Variable};
+    use crate::touchy::{PANICS, Touchy, token};
     use std::ptr;
-    use std::sync::Arc;
-
-    #[derive(serde::Serialize, serde::Deserialize)]
-    struct Panics;
-
-    impl Model for Panics {
-        fn open(_: &std::path::Path) -> Result<Panics, Failure> {
-            Ok(Panics)
-        }
-
-        fn variables(&self) -> Arc<[Variable]> {
-            Arc::new([Variable::time()])
-        }
-
-        fn get(&mut self, _: u32) -> Result<Value, Failure> {
-            panic!("on purpose")
-        }
-
-        fn set(&mut self, _: u32, _: Value) {}
-
-        fn advance(&mut self, _: Step, _: &Logger) -> Result<Progress, Failure> {
-            Ok(Progress::Complete)
-        }
-
-        fn update(&mut self, _: &Logger) -> Result<Update, Failure> {
-            Ok(Update::default())
-        }
-
-        crate::state_by_serde!();
-    }
 
     #[test]
     fn a_panic_is_fatal_and_the_instance_can_only_be_freed() {
-        let token = CString::new(Panics.token()).unwrap();
         let functions = CallbackFunctions {
             logger: None,
             allocate_memory: ptr::null(),
@@ -420,9 +381,9 @@ mod tests {
             component_environment: ptr::null_mut(),
         };
         unsafe {
-            let c = instantiate::<Panics>(c"a".as_ptr(), 1, token.as_ptr(), c"file:///".as_ptr(), &functions, 0);
+            let c = instantiate::<Touchy>(c"a".as_ptr(), 1, token().as_ptr(), c"file:///".as_ptr(), &functions, 0);
             assert_eq!(fmi2EnterInitializationMode(c), Status::Ok as c_int);
-            assert_eq!(fmi2GetReal(c, &0, 1, &mut 0.0), Status::Fatal as c_int);
+            assert_eq!(fmi2GetReal(c, &PANICS, 1, &mut 0.0), Status::Fatal as c_int);
             assert_eq!(fmi2ExitInitializationMode(c), Status::Fatal as c_int);
             assert_eq!(fmi2Reset(c), Status::Fatal as c_int);
             fmi2FreeInstance(c);

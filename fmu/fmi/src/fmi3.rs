@@ -10,8 +10,9 @@
 mod stages;
 
 use crate::c_abi::{
-    self, call, call_on, check_count, check_pointer, complete_step, escaped, free_state, functions, keep_state,
-    names_events, read_all, read_state, room, text, values, write, write_all, write_state, write_state_size,
+    self, Words, call, call_back, call_on, check_count, check_pointer, complete_step, escaped, free_state, functions,
+    keep_state, names_events, read_all, read_state, room, text, values, write, write_all, write_state,
+    write_state_size,
 };
 use crate::failure::Failure;
 use crate::instance::Instance;
@@ -38,7 +39,7 @@ pub extern "C" fn fmi3GetVersion() -> *const c_char {
 /// Name, token and folder of an instance.
 type Texts = [*const c_char; 3];
 
-/// Where an instance logs to, and whether events too.
+/// The logger of an instance, and whether it takes events, too.
 type Log = (*mut c_void, Option<LogMessageCallback>, u8);
 
 /// `fmi3InstantiateCoSimulation` of the model `M`
@@ -154,7 +155,7 @@ pub unsafe extern "C" fn fmi3FreeInstance(instance: *mut c_void) {
     unsafe { c_abi::free::<Function>(instance) }
 }
 
-/// What the `fmi3Boolean` `value`, given as `name`, stands for.
+/// The truth that the `fmi3Boolean` `value`, given as `name`, stands for.
 fn boolean(name: &str, value: u8) -> Result<bool, Failure> {
     match value {
         0 => Ok(false),
@@ -175,24 +176,19 @@ unsafe fn references<'a>(
     unsafe { values("valueReferences", valueReferences, nValueReferences) }
 }
 
-/// What to call instead.
-fn remedy(failure: &Failure) -> &'static str {
-    match failure {
-        Failure::WrongType { data_type, .. } => match data_type {
-            DataType::Real { .. } => ": call fmi3GetFloat64 or fmi3SetFloat64 instead",
-            DataType::Integer => ": call fmi3GetInt32 instead",
-            DataType::Enumeration(_) => ": call fmi3GetInt64 or fmi3SetInt64 instead",
-            DataType::Boolean => ": call fmi3GetBoolean or fmi3SetBoolean instead",
-            DataType::String => ": call fmi3GetString or fmi3SetString instead",
-        },
-        Failure::Fixed { .. } => ": set it before fmi3ExitInitializationMode, or call fmi3Reset",
-        Failure::WrongPoint { .. } => ": step from there, or go back with fmi3SetFMUState",
-        Failure::StepBack { .. } => "; to go back, call fmi3SetFMUState",
-        Failure::PastStop { .. } => " given to fmi3EnterInitializationMode: shorten it",
-        Failure::WrongSize { .. } => " (fmi3SerializedFMUStateSize)",
-        _ => "",
-    }
-}
+const WORDS: Words = Words {
+    real: "fmi3GetFloat64 or fmi3SetFloat64",
+    integer: "fmi3GetInt32",
+    enumeration: "fmi3GetInt64 or fmi3SetInt64",
+    boolean: "fmi3GetBoolean or fmi3SetBoolean",
+    string: "fmi3GetString or fmi3SetString",
+    fixing: "fmi3ExitInitializationMode",
+    reset: "fmi3Reset",
+    set_state: "fmi3SetFMUState",
+    set_up: "fmi3EnterInitializationMode",
+    state_size: "fmi3SerializedFMUStateSize",
+    status: "", // none is ever asked for
+};
 
 /// `fmi3DoStep`
 ///
@@ -219,9 +215,9 @@ pub unsafe extern "C" fn fmi3DoStep(
     let (mut asked, mut told) = (None, None);
     let mut compute = |instance: &mut Instance| unsafe {
         let progress = instance.do_step(point, step)?;
-        let (time, may_return_early) = (instance.time()?, instance.may_return_early());
+        let (time, may_return_early) = (instance.model.time()?, instance.may_return_early());
         if let (Progress::Ended, Some(ending)) = (progress, instance.ending()?) {
-            instance.warn(&format!("fmi3DoStep: {ending}"));
+            instance.logger.warning(&format!("fmi3DoStep: {ending}"));
         }
         write("eventHandlingNeeded", eventHandlingNeeded, u8::from(progress == Progress::Event))?;
         write("terminateSimulation", terminateSimulation, u8::from(progress == Progress::Ended))?;
@@ -237,11 +233,11 @@ pub unsafe extern "C" fn fmi3DoStep(
     };
     let mut status = unsafe { call(c, Function::DoStep, begin) };
     if let Some(host) = asked {
-        host.ask_for_inputs(point + step);
+        unsafe { call_back::<Function>(c, || host.ask_for_inputs(point + step)) };
         status = unsafe { call_on(c, Function::DoStep, compute) };
     }
     if let Some((host, time)) = told {
-        host.show_outputs(time);
+        unsafe { call_back::<Function>(c, || host.show_outputs(time)) };
         let end = |instance: &mut Instance| {
             instance.end_step();
             Ok(())
@@ -260,7 +256,7 @@ functions! {
         let has_events = names_events(nCategories, categories)?;
         let on = boolean("loggingOn", loggingOn)?;
         if has_events {
-            instance.log_events(on);
+            instance.logger.set_events(on);
         }
         Ok(())
     }
@@ -326,7 +322,7 @@ functions! {
         instance.set_real(references, values("values", value, nValues)?)
     }
 
-    /// No integer can be set.
+    /// Refuses all, because a model has no integers to set.
     fmi3SetInt32 = SetInt32(
         valueReferences: *const c_uint, nValueReferences: size_t, _values: *const i32, nValues: size_t,
     ) |instance| {
@@ -447,22 +443,22 @@ functions! {
     fmi3GetContinuousStateDerivatives = GetContinuousStateDerivatives(
         derivatives: *mut f64, nContinuousStates: size_t,
     ) |instance| {
-        write_all("derivatives", derivatives, ("nContinuousStates", nContinuousStates), instance.derivatives()?)
+        write_all("derivatives", derivatives, ("nContinuousStates", nContinuousStates), instance.model.state_rates()?)
     }
 
     fmi3GetEventIndicators = GetEventIndicators(eventIndicators: *mut f64, nEventIndicators: size_t) |instance| {
-        write_all("eventIndicators", eventIndicators, ("nEventIndicators", nEventIndicators), instance.event_indicators()?)
+        write_all("eventIndicators", eventIndicators, ("nEventIndicators", nEventIndicators), instance.model.indicators()?)
     }
 
     fmi3GetContinuousStates = GetContinuousStates(continuousStates: *mut f64, nContinuousStates: size_t) |instance| {
         let count = ("nContinuousStates", nContinuousStates);
-        write_all("continuousStates", continuousStates, count, instance.continuous_states()?)
+        write_all("continuousStates", continuousStates, count, instance.model.states()?)
     }
 
     fmi3GetNominalsOfContinuousStates = GetNominalsOfContinuousStates(
         nominals: *mut f64, nContinuousStates: size_t,
     ) |instance| {
-        write_all("nominals", nominals, ("nContinuousStates", nContinuousStates), instance.nominals()?)
+        write_all("nominals", nominals, ("nContinuousStates", nContinuousStates), instance.model.nominals()?)
     }
 
     fmi3GetNumberOfEventIndicators = GetNumberOfEventIndicators(nEventIndicators: *mut size_t) |instance| {
@@ -473,7 +469,7 @@ functions! {
         write("nContinuousStates", nContinuousStates, instance.count(|role| *role == Role::State))
     }
 
-    // For what this unit does not have: never allowed. Arguments that are not read are not declared: on all platforms that
+    // Functions that this unit does not have are never allowed. Arguments that are not read are not declared: on all platforms that
     // there are libraries for, the caller removes them.
     fmi3GetFloat32 = GetFloat32()
     fmi3GetInt8 = GetInt8()
@@ -507,4 +503,39 @@ functions! {
     fmi3SetShiftDecimal = SetShiftDecimal()
     fmi3SetShiftFraction = SetShiftFraction()
     fmi3ActivateModelPartition = ActivateModelPartition()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::logger::Status;
+    use crate::touchy::{DROPPED, PANICS, Touchy, token};
+    use std::ptr;
+
+    /// The callback reads a variable whose value panics, and tries to free the instance.
+    unsafe extern "C" fn update(c: *mut c_void, _: f64, _: u8, _: u8, _: u8, _: u8, _: *mut u8, _: *mut f64) {
+        unsafe {
+            let c = *c.cast::<*mut c_void>();
+            assert_eq!(fmi3GetFloat64(c, &PANICS, 1, &mut 0.0, 1), Status::Fatal as c_int);
+            fmi3FreeInstance(c);
+            assert_eq!(DROPPED.get(), 0);
+        }
+    }
+
+    #[test]
+    fn an_instance_that_broke_within_a_step_is_freed_after_it() {
+        let mut c: *mut c_void = ptr::null_mut();
+        let (token, log) = (token(), ((&raw mut c).cast(), None, 0));
+        DROPPED.set(0);
+        unsafe {
+            let texts = [c"a".as_ptr(), token.as_ptr(), c"/".as_ptr()];
+            c = instantiate_co_simulation::<Touchy>(texts, log, [0, 0], (&PANICS, 1), Some(update));
+            assert_eq!((fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0), fmi3ExitInitializationMode(c)), (0, 0));
+            let (mut flags, mut time) = ([0; 3], 0.0);
+            let [event, end, early] = &mut flags;
+            assert_eq!(fmi3DoStep(c, 0.0, 0.1, 0, event, end, early, &mut time), Status::Fatal as c_int);
+            fmi3FreeInstance(c);
+        }
+        assert_eq!(DROPPED.get(), 1);
+    }
 }

@@ -3,7 +3,7 @@
 
 use crate::failure::Failure;
 use crate::interface::{Interface, IntermediateUpdate, Stepping};
-use crate::logger::{Logger, Status};
+use crate::logger::Logger;
 use crate::model::{Completed, Experiment, Model, Progress, Step, Update};
 use crate::snapshot::{Snapshot, Snapshots};
 use crate::state_machine::Stage;
@@ -16,22 +16,23 @@ use std::sync::Arc;
 /// How close two times that mean the same are, in parts of the step, or in units in the last place if that is more.
 const SAME_TIME: (f64, f64) = (1e-4, 8.0);
 
-/// Of a variable: it is a real number.
+/// The variable is a real number.
 const REAL: u8 = 1;
 
-/// Of a variable: it is an input, of real numbers.
+/// The variable is an input.
 const INPUT: u8 = 2;
 
 /// One instance.
 pub struct Instance {
-    model: Box<dyn Model>,
+    /// The model, for what needs no check but that of the stage.
+    pub(crate) model: Box<dyn Model>,
     variables: Arc<[Variable]>,
     /// The variables' limits as inputs and their kinds, packed for the calls of every step.
     kinds: Vec<Kind>,
     interface: Interface,
     stage: Stage,
     experiment: Experiment,
-    logger: Logger,
+    pub(crate) logger: Logger,
     events_at_start: bool,
     /// The model's state, as it was made.
     at_start: Vec<u8>,
@@ -76,7 +77,8 @@ impl Instance {
         logger.set_events(events);
         let variables = model.variables();
         let kinds = variables.iter().map(Kind::from).collect();
-        let (stage, events_at_start, at_start) = (Stage::Instantiated, events, model.state());
+        let (stage, events_at_start, mut at_start) = (Stage::Instantiated, events, Vec::new());
+        model.state(&mut at_start);
         let (experiment, snapshots, reals, shown, asked, led_to) = Default::default();
         Instance {
             model,
@@ -101,21 +103,6 @@ impl Instance {
     #[inline]
     pub(crate) fn stage(&self) -> Stage {
         self.stage
-    }
-
-    /// Logs why a call returns `status`.
-    pub(crate) fn report(&self, status: Status, message: &str) {
-        self.logger.failure(status, message);
-    }
-
-    /// Switches the log of events on or off.
-    pub(crate) fn log_events(&mut self, on: bool) {
-        self.logger.set_events(on);
-    }
-
-    /// Sends a warning.
-    pub(crate) fn warn(&self, message: &str) {
-        self.logger.warning(message);
     }
 
     /// The variable that `reference` stands for.
@@ -188,24 +175,18 @@ impl Instance {
         self.enter(Stage::Instantiated)
     }
 
-    /// Where the simulation is, s.
-    pub(crate) fn time(&mut self) -> Result<f64, Failure> {
-        self.model.time()
-    }
-
     /// Why the simulation is over, if it is.
     pub(crate) fn ending(&mut self) -> Result<Option<Failure>, Failure> {
         Ok(self.model.ending()?.map(Failure::Ended))
     }
 
-    fn snapshot(&self) -> Snapshot {
-        let Instance { interface, stage, experiment, .. } = *self;
-        Snapshot { interface, stage, experiment, model: self.model.state() }
-    }
-
     /// Keeps the present state as the FMU state `handle`, or as a new one for 0; returns the handle.
     pub(crate) fn get_fmu_state(&mut self, handle: usize) -> Result<usize, Failure> {
-        self.snapshots.keep(handle, self.snapshot())
+        let Instance { interface, stage, experiment, .. } = *self;
+        let mut model = if handle == 0 { Vec::new() } else { self.snapshots.take_bytes(handle)? };
+        model.clear();
+        self.model.state(&mut model);
+        self.snapshots.keep(handle, Snapshot { interface, stage, experiment, model })
     }
 
     /// Goes back to the FMU state `handle`.
@@ -349,8 +330,22 @@ impl Instance {
                 return Err(Failure::OutOfRange { name, value, unit, min, max, description });
             }
         }
+        // one value is set or not; several could be set in part
+        let mut before = Vec::new();
+        if references.len() > 1 {
+            self.model.state(&mut before);
+        }
+        let result = self.apply(references, values, states);
+        if result.is_err() && !before.is_empty() {
+            self.model.restore(&before)?;
+        }
+        result
+    }
+
+    /// Sets real numbers that may be set, and `states`; those of the numbers that are states are among them.
+    fn apply(&mut self, references: &[u32], values: &[f64], states: Option<Vec<f64>>) -> Result<(), Failure> {
         if let Some(states) = &states {
-            self.model.set_states(states)?;
+            self.set_continuous_states(states)?;
         }
         let (mut inputs, mut of_inputs) = (Vec::new(), Vec::new());
         for (reference, &value) in references.iter().zip(values) {
@@ -465,15 +460,15 @@ impl Instance {
         orders: &[i32],
         values: &mut [MaybeUninit<f64>],
     ) -> Result<(), Failure> {
-        for reference in references {
-            self.find(*reference)?;
+        for (reference, &order) in references.iter().zip(orders) {
+            let variable = self.find(*reference)?;
+            if order != 1 {
+                return Err(Failure::WrongOrder { name: variable.name.to_string(), order });
+            }
         }
         let mut rates = vec![0.0; references.len()];
         if !references.is_empty() {
             self.model.rates(references, &mut rates)?;
-        }
-        if let Some((reference, order)) = references.iter().zip(orders).find(|(_, order)| **order != 1) {
-            return Err(Failure::WrongOrder { name: self.model.name(*reference), order: *order });
         }
         if let Some(at) = rates.iter().position(|rate| !rate.is_finite()) {
             return Err(Failure::NoRate { name: self.model.name(references[at]), time: self.model.time()? });
@@ -583,7 +578,7 @@ impl Instance {
         if !is_same_time(point, time, step) {
             return Err(Failure::WrongPoint { given: point, time });
         }
-        if until <= point {
+        if until <= point || until.is_infinite() {
             return Err(Failure::BadStep { step, time });
         }
         match self.experiment.stop_time {
@@ -602,7 +597,7 @@ fn is_same_time(a: f64, b: f64, step: f64) -> bool {
     apart <= part * step || apart <= 0.5 * step && apart <= places * (b.abs().next_up() - b.abs())
 }
 
-/// What an instance does for a host that integrates.
+/// The service of an instance to a host that integrates.
 impl Instance {
     /// Goes to the host's `time` (s).
     pub(crate) fn set_time(&mut self, time: f64) -> Result<(), Failure> {
@@ -616,27 +611,11 @@ impl Instance {
 
     /// Goes to the host's states.
     pub(crate) fn set_continuous_states(&mut self, states: &[f64]) -> Result<(), Failure> {
+        let mut named = state_references(&self.variables).zip(states);
+        if let Some((reference, &value)) = named.find(|(_, value)| !value.is_finite()) {
+            return Err(Failure::BadState { name: self.model.name(reference), value });
+        }
         self.model.set_states(states)
-    }
-
-    /// The states at which the host is, or from which it is to start.
-    pub(crate) fn continuous_states(&mut self) -> Result<Vec<f64>, Failure> {
-        self.model.states()
-    }
-
-    /// The magnitudes of the states.
-    pub(crate) fn nominals(&mut self) -> Result<Vec<f64>, Failure> {
-        self.model.nominals()
-    }
-
-    /// Derivatives of the states.
-    pub(crate) fn derivatives(&mut self) -> Result<Vec<f64>, Failure> {
-        self.model.state_rates()
-    }
-
-    /// The event indicators.
-    pub(crate) fn event_indicators(&mut self) -> Result<Vec<f64>, Failure> {
-        self.model.indicators()
     }
 
     /// Tells the model that the host has completed a step to where it is.

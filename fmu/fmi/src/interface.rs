@@ -1,10 +1,10 @@
-//! What an instance was made for: model exchange, or co-simulation with or without event mode and calls back.
+//! The purpose of an instance: model exchange, or co-simulation with or without event mode and calls back.
 
 use crate::state_machine::Stage;
 use serde::{Deserialize, Serialize};
 use std::ffi::c_void;
 
-/// Who integrates.
+/// The side that integrates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Interface {
     /// The FMU.

@@ -36,6 +36,8 @@ pub mod model;
 pub mod sensitivity;
 pub mod snapshot;
 pub mod state_machine;
+#[cfg(test)]
+mod touchy;
 pub mod uri;
 pub mod variables;
 
@@ -51,8 +53,8 @@ pub use variables::{Causality, DataType, Enumeration, Role, Value, Variable};
 #[macro_export]
 macro_rules! state_by_serde {
     () => {
-        fn state(&self) -> ::std::vec::Vec<u8> {
-            $crate::postcard::to_stdvec(self).expect("the model can be written")
+        fn state(&self, bytes: &mut ::std::vec::Vec<u8>) {
+            $crate::snapshot::write_state(self, bytes);
         }
 
         fn restore(&mut self, bytes: &[u8]) -> ::std::result::Result<(), $crate::Failure> {

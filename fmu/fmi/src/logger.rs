@@ -18,12 +18,12 @@ pub enum Status {
     Fatal = 4,
 }
 
-/// What a message is about. Hosts switch categories on and off by name.
+/// The topic of a message. Hosts switch categories on and off by name.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Category {
-    /// What happens at events.
+    /// Messages about events.
     Events,
-    /// What the user should know of the results.
+    /// Doubts about the results.
     Warning,
     /// Steps that end early, questions without an answer.
     Discard,
@@ -50,7 +50,7 @@ impl Category {
         Category::ALL.into_iter().find(|category| category.name().to_str() == Ok(name))
     }
 
-    /// What it is about, in one line.
+    /// The topic in one line.
     pub const fn description(self) -> &'static str {
         match self {
             Category::Events => "what happens at events",

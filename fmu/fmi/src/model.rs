@@ -1,4 +1,4 @@
-//! What a model is: the one trait that an author writes.
+//! The model: the one trait that an author writes.
 
 use crate::failure::Failure;
 use crate::interface::Interface;
@@ -27,7 +27,7 @@ pub trait Model: 'static {
         Uuid::new_v5(&Uuid::NAMESPACE_OID, content.as_bytes()).braced().to_string()
     }
 
-    /// What FMU states are known by: only states that were written under this name are read. FMUs with other start values
+    /// The name of FMU states: only states that were written under this name are read. FMUs with other start values
     /// may have the same.
     fn build(&self) -> String {
         self.token()
@@ -36,7 +36,7 @@ pub trait Model: 'static {
     /// The table of variables, which stays the same; value references are its positions.
     fn variables(&self) -> Arc<[Variable]>;
 
-    /// The value of a variable, also before the start: then it is what follows from the values set so far.
+    /// The value of a variable; before the start it follows from the values set so far.
     fn get(&mut self, reference: u32) -> Result<Value, Failure>;
 
     /// The values of real variables: those of [`Model::get`], unless there is a faster way.
@@ -77,7 +77,7 @@ pub trait Model: 'static {
         Ok(())
     }
 
-    /// Where the simulation is, s: the value of the last variable.
+    /// The time of the simulation, s: the value of the last variable.
     fn time(&mut self) -> Result<f64, Failure> {
         let last = self.variables().len() as u32 - 1;
         Ok(self.values(&[last])?[0])
@@ -101,8 +101,8 @@ pub trait Model: 'static {
         Ok(None)
     }
 
-    /// All that the future of the simulation depends on, as bytes.
-    fn state(&self) -> Vec<u8>;
+    /// Writes all that the future of the simulation depends on at the end of `bytes`.
+    fn state(&self, bytes: &mut Vec<u8>);
 
     /// Goes to a state of [`Model::state`].
     fn restore(&mut self, bytes: &[u8]) -> Result<(), Failure>;
@@ -183,9 +183,9 @@ pub struct Experiment {
 /// A step of a co-simulation.
 #[derive(Clone, Copy, Debug)]
 pub struct Step {
-    /// Where it begins, by the host's clock, s.
+    /// The start of the step by the host's clock, s.
     pub start: f64,
-    /// How long it lasts, s.
+    /// The duration of the step, s.
     pub duration: f64,
     /// Whether it ends at the first event on it, which [`Model::update`] then applies.
     pub stops_at_events: bool,
@@ -202,7 +202,7 @@ pub enum Progress {
     Ended,
 }
 
-/// What came of an event.
+/// The result of an event.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Update {
     /// Whether the simulation is over.
@@ -213,7 +213,7 @@ pub struct Update {
     pub next_event: Option<f64>,
 }
 
-/// What came of a complete step of the host's integrator.
+/// The result of a complete step of the host's integrator.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Completed {
     /// Whether there is an event to be dealt with.

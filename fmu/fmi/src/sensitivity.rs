@@ -17,20 +17,14 @@ const FIRST: f64 = 0.1;
 /// Differences, each half of the one before.
 const DIFFERENCES: i32 = 12;
 
-/// The derivatives of the values that `shown` gives for a number, at `x`, whose magnitude is `scale`; differences are taken
-/// to the sides of `signs` alone. A derivative that does not settle is none.
-pub fn by_differences(
-    x: f64,
-    scale: f64,
-    signs: &[f64],
-    mut shown: impl FnMut(f64) -> Option<Vec<f64>>,
-) -> Option<Vec<Option<f64>>> {
+/// The derivatives of the values that `shown` gives for a number, at `x`, whose magnitude is `scale`. A derivative that does
+/// not settle is none.
+pub fn by_differences(x: f64, scale: f64, mut shown: impl FnMut(f64) -> Option<Vec<f64>>) -> Option<Vec<Option<f64>>> {
     let here = shown(x)?;
-    let sides = signs.iter().map(|sign| {
+    let sides = [-1.0, 1.0].map(|sign| {
         let places = (0..DIFFERENCES).map(|k| x + sign * (FIRST * scale) * 0.5_f64.powi(k));
         places.filter(|place| *place != x).filter_map(|place| Some((place - x, shown(place)?))).collect::<Vec<_>>()
     });
-    let sides: Vec<_> = sides.collect();
     let derivative = |(at, here): (usize, &f64)| {
         let of_side = |side: &Vec<_>| {
             limit(side.iter().map(|(step, values): &(f64, Vec<f64>)| (*step, (values[at] - here) / step)))
@@ -86,7 +80,8 @@ pub(crate) fn along<M: Model + ?Sized>(
             let mut x = [0.0];
             model.get_reals(&[*reference], &mut x)?;
             let scale = known.nominal.unwrap_or(1.0).max(x[0].abs());
-            let found = by_differences(x[0], scale, &[-1.0, 1.0], |value| {
+            let found = by_differences(x[0], scale, |value| {
+                known.data_type.accepts(value).then_some(())?;
                 model.set_inputs(&[*reference], &[value]).ok()?;
                 values(model)
             });
@@ -94,13 +89,12 @@ pub(crate) fn along<M: Model + ?Sized>(
             found
         } else if known.role == Role::State && has_started {
             let which = state_references(&variables).position(|state| state == *reference).expect("it is a state");
-            let found =
-                by_differences(states[which], nominals[which].max(states[which].abs()), &[-1.0, 1.0], |value| {
-                    let mut states = states.clone();
-                    states[which] = value;
-                    model.set_states(&states).ok()?;
-                    values(model)
-                });
+            let found = by_differences(states[which], nominals[which].max(states[which].abs()), |value| {
+                let mut states = states.clone();
+                states[which] = value;
+                model.set_states(&states).ok()?;
+                values(model)
+            });
             model.set_states(&states)?;
             found
         } else {
@@ -121,4 +115,20 @@ pub fn no_known(variables: &[Variable], reference: u32) -> Failure {
     let name = |reference: u32| variables[reference as usize].name.to_string();
     let knowns = state_references(variables).map(name).collect::<Vec<_>>().join(", ");
     Failure::NoKnown { name: name(reference), knowns }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::touchy::Touchy;
+
+    #[test]
+    fn differences_stay_in_the_range_of_an_input() {
+        for (x, slope) in [(0.0, 0.0), (0.5, 2.0), (1.0, 4.0)] {
+            let mut model = Touchy { x };
+            let by = along(&mut model, &[1], &[(0, 3.0)], true).unwrap();
+            assert!((by[0] - 3.0 * slope).abs() < 1e-9, "{by:?}");
+            assert_eq!(model.x, x);
+        }
+    }
 }

@@ -14,11 +14,11 @@ use uuid::Uuid;
 /// All that the future of an instance depends on.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
-    /// Who integrates.
+    /// The side that integrates.
     pub interface: Interface,
     /// Stage of the instance.
     pub stage: Stage,
-    /// What the host gave at the start.
+    /// The times and the tolerance that the host gave.
     pub experiment: Experiment,
     /// The model's own part.
     pub model: Vec<u8>,
@@ -45,6 +45,12 @@ impl Snapshots {
     /// The state kept under `handle`.
     pub fn find(&self, handle: usize) -> Result<&Snapshot, Failure> {
         self.live.get(&handle).ok_or(Failure::UnknownSnapshot(handle))
+    }
+
+    /// The model's part of the state kept under `handle`, which has none until it is kept anew: its memory is used again.
+    pub fn take_bytes(&mut self, handle: usize) -> Result<Vec<u8>, Failure> {
+        let kept = self.live.get_mut(&handle).ok_or(Failure::UnknownSnapshot(handle))?;
+        Ok(std::mem::take(&mut kept.model))
     }
 
     /// Forgets the state kept under `handle`.
@@ -82,6 +88,12 @@ impl Snapshot {
         let Some((payload, _)) = whole else { return Err(Failure::BadBytes("its checksum is wrong")) };
         postcard::from_bytes(payload).map_err(|_| Failure::BadBytes("its content cannot be read"))
     }
+}
+
+/// Writes `state` at the end of `bytes`, for [`Model::state`](crate::Model::state).
+pub fn write_state(state: &impl Serialize, bytes: &mut Vec<u8>) {
+    let written = postcard::to_extend(state, std::mem::take(bytes));
+    *bytes = written.expect("numbers, text and lists can always be written");
 }
 
 fn checksum(bytes: &[u8]) -> [u8; 16] {

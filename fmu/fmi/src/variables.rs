@@ -12,15 +12,15 @@ pub type Text = Cow<'static, str>;
 pub struct Variable {
     /// Name, as hosts show it.
     pub name: Text,
-    /// What it is, in one line.
+    /// The variable in one line.
     pub description: Text,
     /// Data type, with what belongs to that type alone.
     pub data_type: DataType,
-    /// Who sets the variable.
+    /// The side that sets the variable.
     pub causality: Causality,
     /// Whether the value may change at any time, and not at events alone.
     pub is_continuous: bool,
-    /// What the variable is for a host that integrates.
+    /// The role of the variable for a host that integrates.
     pub role: Role,
     /// The variables that the value follows from directly, by name; of a state, those that it starts from.
     pub depends_on: Vec<Text>,
@@ -32,7 +32,7 @@ pub struct Variable {
     pub nominal: Option<f64>,
 }
 
-/// Who sets a variable. Parameters are given before the simulation, inputs during the simulation; the model computes the rest.
+/// The side that sets a variable. Parameters are given before the simulation, inputs during the simulation; the model computes the rest.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Causality {
     /// The user, before the simulation.
@@ -49,10 +49,10 @@ pub enum Causality {
     Independent,
 }
 
-/// What a variable is for a host that integrates.
+/// The role of a variable for a host that integrates.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub enum Role {
-    /// Nothing of the following.
+    /// Any other.
     #[default]
     Other,
     /// A continuous state.
@@ -79,8 +79,17 @@ pub enum DataType {
     Boolean,
     /// Text.
     String,
-    /// One of these, numbered from 1.
+    /// An item of an enumeration, numbered from 1.
     Enumeration(&'static Enumeration),
+}
+
+impl DataType {
+    /// Whether `value` is a real number in the range of the type.
+    pub fn accepts(&self, value: f64) -> bool {
+        let DataType::Real { range, .. } = self else { return false };
+        let (min, max) = range.unwrap_or((f64::MIN, f64::MAX));
+        (min..=max).contains(&value)
+    }
 }
 
 /// An enumeration.
@@ -88,7 +97,7 @@ pub enum DataType {
 pub struct Enumeration {
     /// Name of the type.
     pub name: &'static str,
-    /// What it tells, in one line.
+    /// The enumeration in one line.
     pub description: &'static str,
     /// Its items, numbered from 1.
     pub items: &'static [&'static str],

@@ -8,7 +8,6 @@ use FlexibleRocking::variables::Table;
 use fmi_unit::Variable;
 use fmi_unit::fmi2::{self, *};
 use fmi_unit::snapshot::Snapshot;
-use fmi_unit::state_machine::Stage;
 use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
 use std::cell::RefCell;
@@ -26,16 +25,6 @@ pub const OK: c_int = 0;
 pub const WARNING: c_int = 1;
 pub const DISCARD: c_int = 2;
 pub const ERROR: c_int = 3;
-
-/// The stages of a model, whatever the version.
-pub const STAGES_OF_MODEL: [Stage; 6] = [
-    Stage::Instantiated,
-    Stage::InitializationMode,
-    Stage::EventMode,
-    Stage::ContinuousTimeMode,
-    Stage::Terminated,
-    Stage::Error,
-];
 
 /// How far the simulation had come that `snapshot` is of, once it had started.
 pub fn course(snapshot: &Snapshot) -> Option<Course> {

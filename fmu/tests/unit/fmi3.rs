@@ -1,12 +1,9 @@
 //! FMI 3.0 where it is not FMI 2.0: events, messages, calls back within a step.
-#![allow(unsafe_code)] // the C interface
 
-mod host;
-
+use crate::host::{ERROR, OK, reference, resources};
 use FlexibleRocking::unit::Unit;
 use fmi_unit::fmi3::{self, *};
 use fmi_unit::interface::Stepping;
-use host::{ERROR, OK, reference, resources};
 use libc::{c_char, c_int, c_uint, c_void};
 use rocking::Parameters;
 use std::cell::RefCell;
@@ -96,6 +93,58 @@ fn what_acts_at_an_event_is_what_lifts_off_there() {
     }
 }
 
+/// A transition within rounding of the end of a step is at its end; one that is well before ends the step early.
+#[test]
+fn a_transition_at_the_end_of_a_step_is_met_there() {
+    let host = Host::new(Some(Stepping { event_mode: true, early_return: true }));
+    let c = host.c;
+    let step = |until: f64| {
+        let (mut flags, mut time) = ([0; 3], f64::NAN);
+        let [event, end, early] = &mut flags;
+        assert_eq!(unsafe { fmi3DoStep(c, 0.0, until, 0, event, end, early, &mut time) }, OK);
+        (flags, time)
+    };
+    let mut start = null_mut();
+    unsafe {
+        assert_eq!(fmi3SetFloat64(c, &reference("theta_0"), 1, &0.02, 1), OK);
+        assert_eq!(fmi3SetBoolean(c, &reference("a_g_late"), 1, &1, 1), OK);
+        assert_eq!((fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0), fmi3ExitInitializationMode(c)), (OK, OK));
+        assert_eq!((fmi3EnterStepMode(c), fmi3GetFMUState(c, &mut start)), (OK, OK));
+    }
+    let (flags, impact) = step(1.0);
+    assert_eq!((flags, impact < 0.9), ([1, 0, 1], true));
+    for (until, expected) in [
+        (impact + 4e-16, [1, 0, 0]),
+        (impact, [1, 0, 0]),
+        (impact - 4e-16, [1, 0, 0]),
+        (impact + 1e-12, [1, 0, 1]),
+        (impact - 1e-12, [0, 0, 0]),
+    ] {
+        assert_eq!(unsafe { fmi3SetFMUState(c, start) }, OK);
+        assert_eq!(step(until), (expected, if expected[2] == 1 { impact } else { until }), "{until}");
+    }
+    // an input that comes late is still to come
+    let (a_g, mut value) = (reference("a_g"), 0.0);
+    let set = unsafe { (fmi3SetFMUState(c, start), fmi3SetFloat64(c, &a_g, 1, &0.5, 1)) };
+    assert_eq!((set, step(1.0).0), ((OK, OK), [1, 0, 1]));
+    assert_eq!((unsafe { fmi3GetFloat64(c, &a_g, 1, &mut value, 1) }, value), (OK, 0.5));
+}
+
+/// A host that handles events but no early return gets whole steps.
+#[test]
+fn a_step_ends_early_for_hosts_that_take_it_alone() {
+    let host = Host::new(Some(Stepping { event_mode: true, early_return: false }));
+    let (c, mut flags, mut time) = (host.c, [0; 3], f64::NAN);
+    let [event, end, early] = &mut flags;
+    unsafe {
+        assert_eq!(fmi3SetFloat64(c, &reference("theta_0"), 1, &0.02, 1), OK);
+        assert_eq!((fmi3EnterInitializationMode(c, 0, 0.0, 0.0, 0, 0.0), fmi3ExitInitializationMode(c)), (OK, OK));
+        assert_eq!(fmi3EnterStepMode(c), OK);
+        assert_eq!(fmi3DoStep(c, 0.0, 1.0, 0, event, end, early, &mut time), OK);
+    }
+    assert_eq!((flags, time), ([0; 3], 1.0));
+}
+
 /// A host can go to a state that an instance of its own kind has kept, and to no other.
 #[test]
 fn a_state_is_taken_by_an_instance_of_its_kind_alone() {
@@ -175,7 +224,7 @@ fn the_other_versions_functions_refuse_an_instance() {
 /// A host that is called back: it sets inputs before a step is computed, and reads afterwards.
 struct Called {
     c: *mut c_void,
-    /// What the input is to be at the end of the next step.
+    /// The input at the end of the next step.
     end: f64,
     /// When it read theta and its rate, and what these were.
     read: Vec<[f64; 3]>,
@@ -248,7 +297,7 @@ fn a_host_that_is_called_back_sets_inputs_reads_and_does_no_harm() {
             assert_eq!(fmi3SetFloat64(c, &a_g, 1, &3.0, 1), OK);
             assert_eq!(fmi3DoStep(c, 0.5, 0.25, 0, event, terminate, early, null_mut()), ERROR);
             assert_eq!((fmi3GetFloat64(c, &a_g, 1, &mut value, 1), value), (OK, 3.0));
-            // the instant of overturning is where it reads last
+            // the host reads last at the instant of overturning
             (*environment).end = 0.0;
             assert_eq!(fmi3DoStep(c, 0.5, 100.0, 0, event, terminate, early, &mut reached), OK);
             let ends: Vec<_> = std::mem::take(&mut (*environment).read).iter().map(|read| read[0]).collect();

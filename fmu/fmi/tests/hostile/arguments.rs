@@ -1,17 +1,13 @@
 //! Arguments of calls, from sensible to absurd: what is read is held until the call is over, and of what is written it is
 //! known whether it may be.
 
-use crate::host::VARIABLES;
-use crate::{C, Sequence, host};
+use super::{C, Sequence};
 use fmi_unit::state_machine::Stage;
-use fmi_unit::{DataType, Value};
+use fmi_unit::{Causality, DataType, Role, Value, Variable};
 use libc::{c_char, c_uint};
-use rocking::run::validity::ASSUMPTIONS;
 use std::any::Any;
-use std::ffi::{CStr, CString};
-use std::fs;
+use std::ffi::CStr;
 use std::ops::Range;
-use std::path::Path;
 use std::ptr::{null, null_mut, without_provenance_mut};
 
 /// Makes the table of functions by name, each with its arguments.
@@ -25,10 +21,48 @@ pub(crate) use calls;
 /// Log categories, the first two of which exist.
 pub const CATEGORIES: [&CStr; 4] = [c"logEvents", c"logStatusError", c"nonsense", c"\xff%n"];
 
-/// What is a Boolean and can be set.
-pub const SWITCHES: [&str; 4] = ["a_g_late", "F_t_extrapolated", "peaks", "validity"];
+/// Any variable, none of them more often than others.
+pub fn is_any(_: &Variable) -> bool {
+    false
+}
 
-/// What one call is given.
+pub fn is_integer(variable: &Variable) -> bool {
+    variable.data_type == DataType::Integer
+}
+
+pub fn is_number(variable: &Variable) -> bool {
+    matches!(variable.data_type, DataType::Enumeration(_))
+}
+
+pub fn is_boolean(variable: &Variable) -> bool {
+    variable.data_type == DataType::Boolean
+}
+
+pub fn is_text(variable: &Variable) -> bool {
+    variable.data_type == DataType::String
+}
+
+pub fn is_number_to_set(variable: &Variable) -> bool {
+    is_number(variable) && variable.causality == Causality::Parameter
+}
+
+pub fn is_switch(variable: &Variable) -> bool {
+    is_boolean(variable) && variable.causality == Causality::Parameter
+}
+
+pub fn is_output(variable: &Variable) -> bool {
+    variable.causality == Causality::Output && variable.is_continuous
+}
+
+fn is_input(variable: &Variable) -> bool {
+    variable.causality == Causality::Input
+}
+
+fn is_state(variable: &Variable) -> bool {
+    variable.role == Role::State
+}
+
+/// The arguments of one call.
 #[derive(Default)]
 pub struct Drawn {
     pub references: Vec<c_uint>,
@@ -40,7 +74,7 @@ pub struct Drawn {
     /// An FMU state, and where one is read and written.
     pub state: C,
     pub place: Option<Vec<C>>,
-    /// Where bytes of an FMU state are written.
+    /// Room for the bytes of an FMU state.
     pub serialized: Option<Vec<u8>>,
     pub rooms: Vec<Room>,
     held: Vec<Box<dyn Any>>,
@@ -118,12 +152,12 @@ impl Sequence<'_> {
         self.room(self.drawn.references.len())
     }
 
-    /// Room for a real number of each variable. What nobody watches for is not a number, and friction may be infinite.
+    /// Room for a real number of each variable.
     pub fn reals_of_references(&mut self) -> *mut f64 {
-        let is_finite = self.drawn.references.iter().all(|reference| {
-            let name = VARIABLES.get(*reference as usize).map_or("", |variable| &variable.name);
-            !name.ends_with("_max") && !ASSUMPTIONS.iter().any(|of| [of.name, of.time_name].contains(&name))
-        });
+        let subject = self.subject;
+        let may_be_infinite = |variable: &Variable| (subject.may_be_infinite)(&variable.name);
+        let named = self.drawn.references.iter().filter_map(|reference| subject.variables.get(*reference as usize));
+        let is_finite = !named.into_iter().any(may_be_infinite);
         let place = self.values();
         self.drawn.rooms.last_mut().unwrap().is_finite = is_finite;
         place
@@ -158,14 +192,18 @@ impl Sequence<'_> {
         self.hold(integers)
     }
 
-    /// References to variables, to those called `names` more often than not.
-    pub fn references(&mut self, names: &[&str]) -> *const c_uint {
+    /// References to variables, to one that `is_meant` more often than not.
+    pub fn references(&mut self, is_meant: fn(&Variable) -> bool) -> *const c_uint {
         let n = if self.one_in(50) { 1000 } else { self.rng.usize(..5) };
-        let last = VARIABLES.len() as c_uint;
+        let last = self.subject.variables.len() as c_uint;
         let mut references: Vec<_> =
             (0..n).map(|_| if self.one_in(24) { self.rng.u32(last..) } else { self.rng.u32(..last) }).collect();
-        if !names.is_empty() && self.rng.bool() {
-            references = vec![host::reference(names[self.rng.usize(..names.len())])];
+        let meant = (0..).zip(&*self.subject.variables).filter(|(_, variable)| is_meant(variable));
+        let meant = meant.map(|(reference, _)| reference);
+        if self.rng.bool()
+            && let Some(meant) = self.rng.choice(meant.collect::<Vec<_>>())
+        {
+            references = vec![meant];
         }
         self.drawn.n = references.len();
         self.drawn.references.clone_from(&references);
@@ -174,16 +212,13 @@ impl Sequence<'_> {
 
     /// References to variables that are to be set.
     pub fn references_to_set(&mut self) -> *const c_uint {
-        if self.one_in(6) {
-            // the top mass above the pivot of a foundation without inertia: no step can be made
-            self.drawn.reals = vec![0.0, 0.0, 0.3, 0.1, 0.3];
-            self.drawn.references = ["m0", "J0", "B", "theta_0", "u_0"].map(host::reference).into();
-            self.drawn.n = 5;
+        if self.one_in(6) && !self.subject.sticks.is_empty() {
+            (self.drawn.references, self.drawn.reals) = self.subject.sticks.iter().copied().unzip();
+            self.drawn.n = self.drawn.references.len();
             return self.hold(self.drawn.references.clone());
         }
         let is_continuous = self.before.as_ref().is_some_and(|of| of.stage == Stage::ContinuousTimeMode);
-        let states = ["u", "u_dot", "theta", "theta_dot"];
-        if is_continuous && self.one_in(4) { self.references(&states) } else { self.references(&["a_g", "F_t", "a_v"]) }
+        if is_continuous && self.one_in(4) { self.references(is_state) } else { self.references(is_input) }
     }
 
     /// Values for them.
@@ -197,7 +232,7 @@ impl Sequence<'_> {
 
     /// A value for the variable `reference`: in its range or on its edge, more often than not.
     fn value(&mut self, reference: Option<c_uint>) -> f64 {
-        let variable = reference.and_then(|reference| VARIABLES.get(reference as usize));
+        let variable = reference.and_then(|reference| self.subject.variables.get(reference as usize));
         let Some(DataType::Real { range: Some((min, max)), .. }) = variable.map(|v| v.data_type) else {
             return self.number();
         };
@@ -261,7 +296,7 @@ impl Sequence<'_> {
         self.drawn.state
     }
 
-    /// Where an FMU state is, or one is to be.
+    /// A place with an FMU state, or for one.
     pub fn place_of_state(&mut self) -> *mut C {
         if self.rng.bool() {
             self.state();
@@ -298,7 +333,7 @@ impl Sequence<'_> {
 
     /// Mostly where the instance is, s.
     pub fn point(&mut self) -> f64 {
-        let now = self.before.as_ref().and_then(host::course).map_or(0.0, |course| course.motion.time);
+        let now = self.before.as_ref().map_or(0.0, self.subject.time);
         if self.one_in(16) { self.number() } else { now }
     }
 
@@ -308,7 +343,6 @@ impl Sequence<'_> {
             0 => 1e9,
             1..40 => self.number(),
             40..120 => 1e-300,
-            // over a record
             120..200 => self.between(0.1, 10.0),
             _ => self.between(1e-4, 0.1),
         }
@@ -316,8 +350,7 @@ impl Sequence<'_> {
 
     /// On by some milliseconds, or anywhere, s. A check over a long time takes as much work as a thousand others.
     pub fn time(&mut self) -> f64 {
-        let outside = self.before.as_ref().and_then(|snapshot| host::course(snapshot)?.outside);
-        let now = outside.map_or(0.0, |outside| outside.known.motion.time);
+        let now = self.before.as_ref().map_or(0.0, self.subject.time);
         match self.rng.u16(..4000) {
             0..8 => self.number(),
             8..200 => now + self.between(0.1, 10.0),
@@ -328,20 +361,20 @@ impl Sequence<'_> {
 
     /// Continuous states: small, large, or no numbers.
     pub fn states(&mut self) -> *const f64 {
-        self.drawn.n = if self.one_in(20) { self.rng.usize(..9) } else { 4 };
+        self.drawn.n = if self.one_in(20) { self.rng.usize(..9) } else { self.subject.states().count() };
         let states = (0..self.drawn.n).map(|_| self.sign() * self.within(1e-9, 2.0)).collect();
         self.hold(states)
     }
 
-    /// What derivatives are asked of, and by what.
+    /// The variables that derivatives are asked of.
     pub fn unknowns(&mut self) -> *const c_uint {
-        let unknowns = self.references(&["a_t", "R_v", "der(theta_dot)"]);
+        let unknowns = self.references(|variable| is_output(variable) || matches!(variable.role, Role::RateOf(_)));
         self.drawn.unknowns = self.drawn.n;
         unknowns
     }
 
     pub fn knowns(&mut self) -> *const c_uint {
-        self.references(&["a_g", "F_t", "a_v"])
+        self.references(is_input)
     }
 
     /// Changes of the knowns.
@@ -349,24 +382,4 @@ impl Sequence<'_> {
         let seed = (0..=self.drawn.n).map(|_| self.number()).collect();
         self.hold(seed)
     }
-}
-
-/// What `record` is set to: files of the archive in `folder` and elsewhere, sound and broken, and what is no file.
-pub fn records(folder: &Path) -> Vec<CString> {
-    let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
-    let samples: String =
-        (0..300).map(|i| format!("{:.3},{:.3}\n", 0.01 * f64::from(i), f64::from(i * i % 19 - 9))).collect();
-    write("quake.csv", &samples);
-    write("Quake 2.AT2", "-\n-\nACCELERATION IN UNITS OF G\n4, .005 NPTS, DT\n.1 -.2 .4 1e-3\n");
-    write("broken.csv", "0,1\n1,%s%n#\n");
-    write("huge.csv", "-1e308,1\n1e308,2\n");
-    write("dense.csv", "0,1e-300\n5e-324,1e3\n1e-323,2\n1,-1e4\n");
-    fs::create_dir(folder.join("folder.csv")).unwrap();
-    let inside = folder.join("quake.csv").display().to_string();
-    let (uri, long) = (format!("file://{inside}"), "a".repeat(70_000));
-    let sound = ["quake.csv", "Quake 2.AT2"];
-    let others = ["broken.csv", "huge.csv", "dense.csv", "folder.csv", "absent.csv", "", ".", ".."];
-    let elsewhere = ["/dev/zero", "/dev/full", "/dev/stdin", "/", "/etc/passwd", "file:///dev/zero", "file:"];
-    let texts = [&sound[..], &others, &elsewhere, &["file:///%00.csv", &inside, &uri, &long]].concat();
-    texts.into_iter().map(|text| CString::new(text).unwrap()).chain([c"\xff%n".into()]).collect()
 }

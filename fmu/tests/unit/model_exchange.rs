@@ -1,11 +1,9 @@
 //! The FMU under an integrator of the host's.
-#![allow(unsafe_code, non_snake_case)] // the C interface; the standard's names
 
-mod host;
-
+use crate::directional_derivatives::derivatives;
+use crate::host::*;
 use approx::assert_relative_eq;
 use fmi_unit::fmi2::*;
-use host::*;
 
 const PHASE_IN_CONTACT: i32 = 1;
 
@@ -38,9 +36,15 @@ fn a_state_can_be_set_as_a_variable() {
     assert_eq!(by_name.set(&[("u", 1e-3), ("theta", f64::NAN)]), DISCARD);
     assert_eq!(
         by_name.log.take()[0].text,
-        "fmi2SetReal: theta = NaN is out of range: at most 1e12 in SI units; take a shorter step"
+        "fmi2SetReal: theta = NaN is out of range: a state must be finite; take a shorter step"
     );
     assert_eq!(by_name.bytes(), before, "all of the values or none");
+    let modal = Host::going_model(&[("theta_0", 0.02), ("detail", 4.0)]);
+    modal.assert_refused(
+        || modal.set(&[("theta", 0.015), ("a_v", 1.0)]),
+        ERROR,
+        "fmi2SetReal: detail = modal has no modes",
+    );
     assert_eq!(by_name.enter_event_mode(), OK);
     let refusal = "fmi2SetReal: theta cannot be set: it is an output, computed by the FMU";
     by_name.assert_refused(|| by_name.set(&[("theta", 0.01)]), ERROR, refusal);
@@ -80,6 +84,15 @@ fn no_indicator_is_zero_where_integration_starts() {
     let variables = host.try_get(&["phase_indicator", "overturning_indicator"]).unwrap();
     assert_eq!(host.indicators().unwrap().to_vec(), variables);
     assert!(host.indicators().unwrap().iter().all(|indicator| *indicator > 0.0));
+    // the free edge rises as the base turns on, to either side, of which the other is none
+    let by_theta = |host: &Host| derivatives(host, &["uplift"], &[("theta", 1.0)]).unwrap()[0];
+    let other_side = Host::new_model().initialized(&[("u_0", -8e-4)]);
+    assert_eq!((other_side.exit(), other_side.update().is_ok()), (OK, true));
+    for (host, phase) in [(&host, 3), (&other_side, 2)] {
+        let sign = f64::from(2 * phase - 5);
+        assert_eq!(host.integer("phase"), phase);
+        assert_relative_eq!(by_theta(host), sign * 2.0 * host.get("B"), max_relative = 1e-6);
+    }
     assert_eq!(host.go_on(), OK);
     for i in 0..2000 {
         host.integrate(f64::from(i) * 1e-3, 1e-3);
@@ -103,6 +116,7 @@ fn overturning_ends_the_simulation() {
     assert_eq!((host.go_on(), host.set_time(2.0), host.complete()), (OK, OK, Ok((false, true))));
     assert_eq!(host.get("t_overturned"), slave.get("t_overturned"));
     assert_eq!(host.derivatives(), Ok([0.0; 4]));
+    assert_eq!((host.set_time(0.0), host.complete()), (OK, Ok((false, true))), "no step is checked any more");
 }
 
 /// The record acts at every trial time as it is there; where it jumps is foreseen, and a kink by hosts to which it matters.
@@ -281,14 +295,14 @@ fn directional_derivatives_are_the_slopes_of_the_values() {
     }
     let host = Host::new_model();
     host.write("ramp.csv", "0,1\n0.5,-3\n");
-    assert_eq!(host.set_record("ramp.csv"), OK);
+    assert_eq!((host.set_record("ramp.csv"), host.set_text("record_v", "ramp.csv")), (OK, OK));
     let host = host.initialized(&[("theta_0", 0.03)]);
     assert_eq!((host.exit(), host.update().is_ok(), host.go_on()), (OK, true, OK));
     let [before, after] = [0.125, 0.25].map(|time| {
         assert_eq!(host.set_time(time), OK);
         host.try_get(&unknowns).unwrap()
     });
-    assert_eq!(by(&host, "a_ground", "time"), -8.0);
+    assert_eq!((by(&host, "a_ground", "time"), by(&host, "a_v_ground", "time")), (-8.0, -8.0));
     for (at, unknown) in unknowns.into_iter().enumerate() {
         assert_relative_eq!(by(&host, unknown, "time"), (after[at] - before[at]) / 0.125, max_relative = 1e-9);
     }

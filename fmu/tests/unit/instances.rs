@@ -1,12 +1,9 @@
 //! Instances come and go: what they say of themselves, calls at the same time, many at once.
-#![allow(unsafe_code)]
 
-mod host;
-
+use crate::host::*;
 use FlexibleRocking::unit::Unit;
 use FlexibleRocking::{BUILD, guid};
 use fmi_unit::fmi2::{self, *};
-use host::*;
 use rocking::Parameters;
 use std::ffi::{CStr, CString, c_char, c_void};
 use std::hint::spin_loop;

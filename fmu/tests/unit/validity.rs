@@ -1,12 +1,9 @@
-//! What a motion goes beyond: as the engine's own run finds it, told once, kept in states, and not watched unless it is asked for.
-#![allow(unsafe_code)] // the C interface
+//! The limits that a motion passes: as the engine's own run finds it, told once, kept in states, and not watched unless it is asked for.
 
-mod host;
-
+use crate::host::*;
 use FlexibleRocking::BUILD;
 use approx::assert_relative_eq;
 use fmi_unit::snapshot::Snapshot;
-use host::*;
 use rocking::run::fall::FallingPeaks;
 use rocking::run::peaks::PEAKS;
 use rocking::run::validity::{ASSUMPTIONS, Found, Limits};

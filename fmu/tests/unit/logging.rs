@@ -1,8 +1,6 @@
-//! What the host is told, and when.
+//! The messages to the host, and their occasions.
 
-mod host;
-
-use host::*;
+use crate::host::*;
 use rocking::{Engine, Parameters, Ramp, State, Structure, Transition, TransitionKind};
 
 /// Released at an angle: impacts, landings, uplifts.
@@ -106,8 +104,9 @@ fn an_unknown_category_is_refused_and_the_others_with_it() {
 }
 
 #[test]
-fn a_reset_instance_logs_as_it_was_instantiated() {
-    let host = released(0);
+fn a_reset_instance_logs_as_it_was_instantiated_and_has_no_stop_time() {
+    let host = Host::new();
+    assert_eq!((host.setup(None, 0.0, Some(0.1)), host.enter(), host.exit()), (OK, OK, OK));
     assert_eq!((host.set_debug_logging(true, &[]), host.reset()), (OK, OK));
     assert_eq!((host.set(&[("theta_0", 0.01)]), host.enter(), host.exit()), (OK, OK, OK));
     assert_eq!(host.step(0.0, 0.5), OK);

@@ -1,10 +1,7 @@
 //! The record inside: against a run without the FMU, at any steps; its peaks; states; what is refused.
-#![allow(unsafe_code, non_snake_case)] // the C interface; F_t
 
-mod host;
-
+use crate::host::*;
 use approx::assert_relative_eq;
-use host::*;
 use rocking::run::peaks::PEAKS;
 use rocking::run::record::Record;
 use rocking::run::{End, Run};
@@ -81,7 +78,7 @@ fn following(path: &Path, detail: Detail) -> Host {
     host
 }
 
-/// What is shown after each of `steps`.
+/// The values after each of `steps`.
 fn step_through(host: &Host, steps: impl IntoIterator<Item = f64>) -> Vec<Vec<f64>> {
     let mut time = host.last_successful_time();
     let step = |step| {
@@ -92,7 +89,7 @@ fn step_through(host: &Host, steps: impl IntoIterator<Item = f64>) -> Vec<Vec<f6
     steps.into_iter().map(step).collect()
 }
 
-/// Whether `last` is what `all` ends with, to `tolerance` parts of the largest value in `all`.
+/// Asserts that `all` ends with `last`, to `tolerance` parts of the largest value in `all`.
 fn assert_close(all: &[Vec<f64>], last: &[f64], tolerance: f64) {
     for (i, (found, expected)) in last.iter().zip(all.last().unwrap()).enumerate() {
         let largest = all.iter().fold(f64::MIN_POSITIVE, |largest, shown| largest.max(shown[i].abs()));
@@ -281,7 +278,7 @@ fn a_state_goes_on_in_the_midst_of_its_record() {
     assert!(without.log.take()[0].text.contains("record = \"quake.AT2\" is not in "));
 }
 
-/// What cannot be followed is told when initialization ends, or before if its values are asked for; nothing changes.
+/// A record that cannot be followed is told when initialization ends, or before if its values are asked for; nothing changes.
 #[test]
 fn a_record_that_cannot_be_followed_is_refused() {
     let host = Host::initializing(&[]);

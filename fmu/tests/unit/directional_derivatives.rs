@@ -1,14 +1,11 @@
 //! Directional derivatives: of the outputs by the inputs, as a host asks for them.
-#![allow(unsafe_code, non_snake_case)]
 
-mod host;
-
+use crate::host::*;
 use approx::assert_relative_eq;
 use fmi_unit::fmi2::fmi2GetDirectionalDerivative;
-use host::*;
 
 /// The derivatives of `unknowns` where each of `knowns` changes by so much, or the status.
-fn derivatives(host: &Host, unknowns: &[&str], knowns: &[(&str, f64)]) -> Result<Vec<f64>, i32> {
+pub fn derivatives(host: &Host, unknowns: &[&str], knowns: &[(&str, f64)]) -> Result<Vec<f64>, i32> {
     let references = unknowns.iter().map(|name| reference(name)).collect::<Vec<_>>();
     let (of, by): (Vec<_>, Vec<_>) = knowns.iter().map(|(name, change)| (reference(name), *change)).unzip();
     let mut values = vec![f64::MAX; unknowns.len()];

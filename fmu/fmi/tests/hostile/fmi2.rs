@@ -1,15 +1,16 @@
 //! FMI 2.0: how its functions are called, when they may be, how instances are made.
 
-use crate::arguments::{CATEGORIES, SWITCHES, calls};
-use crate::{C, Table, Told, Version, host};
-use FlexibleRocking::unit::Unit;
+use super::arguments::{
+    CATEGORIES, calls, is_any, is_boolean, is_number, is_number_to_set, is_output, is_switch, is_text,
+};
+use super::{C, ERROR, STAGES_OF_MODEL, Subject, Table, Told, Version};
 use fastrand::Rng;
 use fmi_unit::c_abi::Function as _;
-use fmi_unit::fmi2::{self, *};
+use fmi_unit::fmi2::*;
 use fmi_unit::interface::Interface;
 use fmi_unit::state_machine::Stage;
-use host::{ERROR, STAGES_OF_MODEL};
 use libc::{c_char, c_int, c_void};
+use std::ptr::null;
 
 pub const VERSION: Version = Version {
     functions: || Function::ALL.iter().map(|function| function.name()).collect(),
@@ -22,14 +23,14 @@ pub const VERSION: Version = Version {
         fmi2ExitInitializationMode()
         fmi2Terminate()
         fmi2Reset()
-        fmi2GetReal(call.references(&[]), call.count(), call.reals_of_references())
-        fmi2GetInteger(call.references(&["phase"]), call.count(), call.values())
-        fmi2GetBoolean(call.references(&["peaks"]), call.count(), call.values())
-        fmi2GetString(call.references(&["record"]), call.count(), call.values())
+        fmi2GetReal(call.references(is_any), call.count(), call.reals_of_references())
+        fmi2GetInteger(call.references(is_number), call.count(), call.values())
+        fmi2GetBoolean(call.references(is_boolean), call.count(), call.values())
+        fmi2GetString(call.references(is_text), call.count(), call.values())
         fmi2SetReal(call.references_to_set(), call.count(), call.reals_to_set())
-        fmi2SetInteger(call.references(&["detail"]), call.count(), call.integers(0..8))
-        fmi2SetBoolean(call.references(&SWITCHES), call.count(), call.integers(0..2))
-        fmi2SetString(call.references(&["record"]), call.count(), call.texts(call.records))
+        fmi2SetInteger(call.references(is_number_to_set), call.count(), call.integers(0..8))
+        fmi2SetBoolean(call.references(is_switch), call.count(), call.integers(0..2))
+        fmi2SetString(call.references(is_text), call.count(), call.texts(&call.subject.texts))
         fmi2GetFMUstate(call.place_of_state())
         fmi2SetFMUstate(call.state())
         fmi2FreeFMUstate(call.place_of_state())
@@ -41,7 +42,7 @@ pub const VERSION: Version = Version {
         )
         fmi2SetRealInputDerivatives(call.references_to_set(), call.count(), call.integers(1..2), call.reals_to_set())
         fmi2GetRealOutputDerivatives(
-            call.references(&["R_h"]), call.count(), call.integers(1..2), call.reals_of_references()
+            call.references(is_output), call.count(), call.integers(1..2), call.reals_of_references()
         )
         fmi2DoStep(call.point(), call.step(), call.integer(0..2))
         fmi2CancelStep()
@@ -56,10 +57,10 @@ pub const VERSION: Version = Version {
         fmi2CompletedIntegratorStep(call.integer(0..2), call.room(1), call.room(1))
         fmi2SetTime(call.time())
         fmi2SetContinuousStates(call.states(), call.count())
-        fmi2GetDerivatives(call.reals(4), call.count())
-        fmi2GetEventIndicators(call.reals(2), call.count())
-        fmi2GetContinuousStates(call.reals(4), call.count())
-        fmi2GetNominalsOfContinuousStates(call.reals(4), call.count())
+        fmi2GetDerivatives(call.reals(call.subject.states().count()), call.count())
+        fmi2GetEventIndicators(call.reals(call.subject.indicators()), call.count())
+        fmi2GetContinuousStates(call.reals(call.subject.states().count()), call.count())
+        fmi2GetNominalsOfContinuousStates(call.reals(call.subject.states().count()), call.count())
     },
     slave: SLAVE,
     model: MODEL,
@@ -114,13 +115,24 @@ const MODEL: Table = Table {
         - - - x - -  CompletedIntegratorStep SetContinuousStates",
 };
 
-fn instantiate(rng: &mut Rng, interface: Interface, [name, guid, location]: [*const c_char; 3], told: &Told) -> C {
-    let mut functions = host::callbacks((&raw const *told).cast_mut().cast());
+fn instantiate(
+    subject: &Subject,
+    rng: &mut Rng,
+    interface: Interface,
+    [name, guid, location]: [*const c_char; 3],
+    told: &Told,
+) -> C {
+    // the logger has no further arguments to read, so that it may be declared without them
     let logger: unsafe extern "C" fn(_, _, _, _, _) = tell;
-    functions.logger = Some(unsafe { std::mem::transmute::<*const (), CallbackLogger>(logger as *const ()) });
-    let is_model = interface == Interface::ModelExchange;
-    let kind = if is_model { host::MODEL_EXCHANGE } else { host::CO_SIMULATION };
-    unsafe { fmi2::instantiate::<Unit>(name, kind, guid, location, &functions, rng.i32(0..2)) }
+    let functions = CallbackFunctions {
+        logger: Some(unsafe { std::mem::transmute::<*const (), CallbackLogger>(logger as *const ()) }),
+        allocate_memory: null(),
+        free_memory: null(),
+        step_finished: null(),
+        component_environment: (&raw const *told).cast_mut().cast(),
+    };
+    let kind = c_int::from(interface != Interface::ModelExchange);
+    unsafe { (subject.instantiate_2)(name, kind, guid, location, &functions, rng.i32(0..2)) }
 }
 
 unsafe extern "C" fn tell(

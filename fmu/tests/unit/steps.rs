@@ -1,11 +1,7 @@
 //! `fmi2DoStep`, the input's value and slope, the outputs' rates.
 
-#![allow(non_snake_case)] // the names of the field
-
-mod host;
-
+use crate::host::*;
 use approx::assert_relative_eq;
-use host::*;
 use rocking::Ramp;
 use rocking::engine::DEFAULT_TOLERANCE;
 use rocking::{Engine, Outputs, Parameters, Phase, State, Structure};
@@ -155,6 +151,13 @@ fn a_point_and_the_stop_time_are_met_but_for_rounding() {
     assert_eq!((host.setup(None, 10.0, Some(12.0)), host.enter(), host.exit()), (OK, OK, OK));
     assert_eq!((host.step(10.0 + 1e-9, 0.5), host.last_successful_time()), (OK, 10.0 + 1e-9 + 0.5));
     assert_eq!(host.step(10.5, 1.5 + 1e-9), OK);
+    let (late, start) = (Host::new(), 1e12_f64);
+    assert_eq!((late.setup(None, start, None), late.enter(), late.exit()), (OK, OK, OK));
+    let rounding = start.next_up() - start;
+    assert_eq!(late.step(start + 2.0 * rounding, 2.0 * rounding), ERROR, "a step would be missed");
+    let last = Host::new();
+    assert_eq!((last.setup(None, 1.7e308, None), last.enter(), last.exit()), (OK, OK, OK));
+    last.assert_refused(|| last.step(1.7e308, 1.7e308), ERROR, "communicationStepSize = 1.7e308 s is out of range");
 }
 
 /// The reaction follows the ramp to its end: the rate there is that of the ramp, until the input is set anew.

@@ -1,14 +1,14 @@
 //! FMI 3.0: how its functions are called, when they may be, how instances are made.
 
-use crate::arguments::{CATEGORIES, SWITCHES, calls};
-use crate::{C, Table, Told, Version, host};
-use FlexibleRocking::unit::Unit;
+use super::arguments::{
+    CATEGORIES, calls, is_any, is_boolean, is_integer, is_number, is_number_to_set, is_output, is_switch, is_text,
+};
+use super::{C, ERROR, STAGES_OF_MODEL, Subject, Table, Told, Version};
 use fastrand::Rng;
 use fmi_unit::c_abi::Function as _;
-use fmi_unit::fmi3::{self, *};
+use fmi_unit::fmi3::*;
 use fmi_unit::interface::{Interface, Stepping};
 use fmi_unit::state_machine::Stage;
-use host::{ERROR, STAGES_OF_MODEL};
 use libc::{c_char, c_int, c_void};
 use std::ptr::null;
 
@@ -23,16 +23,16 @@ pub const VERSION: Version = Version {
         fmi3EnterEventMode()
         fmi3Terminate()
         fmi3Reset()
-        fmi3GetFloat64(call.references(&[]), call.count(), call.reals_of_references(), call.count_of_values())
-        fmi3GetInt32(call.references(&["transitions"]), call.count(), call.values(), call.count_of_values())
-        fmi3GetInt64(call.references(&["phase"]), call.count(), call.values(), call.count_of_values())
-        fmi3GetBoolean(call.references(&["peaks"]), call.count(), call.values(), call.count_of_values())
-        fmi3GetString(call.references(&["record"]), call.count(), call.values(), call.count_of_values())
+        fmi3GetFloat64(call.references(is_any), call.count(), call.reals_of_references(), call.count_of_values())
+        fmi3GetInt32(call.references(is_integer), call.count(), call.values(), call.count_of_values())
+        fmi3GetInt64(call.references(is_number), call.count(), call.values(), call.count_of_values())
+        fmi3GetBoolean(call.references(is_boolean), call.count(), call.values(), call.count_of_values())
+        fmi3GetString(call.references(is_text), call.count(), call.values(), call.count_of_values())
         fmi3SetFloat64(call.references_to_set(), call.count(), call.reals_to_set(), call.count_of_values())
-        fmi3SetInt32(call.references(&["transitions"]), call.count(), call.integers(0..8), call.count_of_values())
-        fmi3SetInt64(call.references(&["detail"]), call.count(), call.integers(0..8), call.count_of_values())
-        fmi3SetBoolean(call.references(&SWITCHES), call.count(), call.integers(0..2), call.count_of_values())
-        fmi3SetString(call.references(&["record"]), call.count(), call.texts(call.records), call.count_of_values())
+        fmi3SetInt32(call.references(is_integer), call.count(), call.integers(0..8), call.count_of_values())
+        fmi3SetInt64(call.references(is_number_to_set), call.count(), call.integers(0..8), call.count_of_values())
+        fmi3SetBoolean(call.references(is_switch), call.count(), call.integers(0..2), call.count_of_values())
+        fmi3SetString(call.references(is_text), call.count(), call.texts(&call.subject.texts), call.count_of_values())
         fmi3GetFMUState(call.place_of_state())
         fmi3SetFMUState(call.state())
         fmi3FreeFMUState(call.place_of_state())
@@ -49,7 +49,7 @@ pub const VERSION: Version = Version {
         )
         fmi3EnterStepMode()
         fmi3GetOutputDerivatives(
-            call.references(&["R_h"]), call.count(), call.integers(1..2), call.reals_of_references(), call.count_of_values()
+            call.references(is_output), call.count(), call.integers(1..2), call.reals_of_references(), call.count_of_values()
         )
         fmi3DoStep(
             call.point(), call.step(), call.integer(0..2), call.room(1), call.room(1), call.room(1), call.finite(1)
@@ -58,10 +58,10 @@ pub const VERSION: Version = Version {
         fmi3CompletedIntegratorStep(call.integer(0..2), call.room(1), call.room(1))
         fmi3SetTime(call.time())
         fmi3SetContinuousStates(call.states(), call.count())
-        fmi3GetContinuousStateDerivatives(call.reals(4), call.count())
-        fmi3GetEventIndicators(call.reals(2), call.count())
-        fmi3GetContinuousStates(call.reals(4), call.count())
-        fmi3GetNominalsOfContinuousStates(call.reals(4), call.count())
+        fmi3GetContinuousStateDerivatives(call.reals(call.subject.states().count()), call.count())
+        fmi3GetEventIndicators(call.reals(call.subject.indicators()), call.count())
+        fmi3GetContinuousStates(call.reals(call.subject.states().count()), call.count())
+        fmi3GetNominalsOfContinuousStates(call.reals(call.subject.states().count()), call.count())
         fmi3GetNumberOfEventIndicators(call.room(1))
         fmi3GetNumberOfContinuousStates(call.room(1))
         fmi3EnterConfigurationMode()
@@ -128,16 +128,16 @@ const MODEL: Table = Table {
         - - - x - -  EnterEventMode CompletedIntegratorStep SetContinuousStates",
 };
 
-fn instantiate(rng: &mut Rng, interface: Interface, texts: [*const c_char; 3], told: &Told) -> C {
+fn instantiate(subject: &Subject, rng: &mut Rng, interface: Interface, texts: [*const c_char; 3], told: &Told) -> C {
     let environment = (&raw const *told).cast_mut().cast();
     let log = (environment, Some(tell as LogMessageCallback), rng.u8(0..2));
     unsafe {
         match interface {
             Interface::CoSimulation(Stepping { event_mode, early_return }) => {
                 let flags = [event_mode.into(), early_return.into()];
-                fmi3::instantiate_co_simulation::<Unit>(texts, log, flags, (null(), 0), None)
+                (subject.instantiate_3)(texts, log, flags, (null(), 0), None)
             }
-            Interface::ModelExchange => fmi3::instantiate_model_exchange::<Unit>(texts, log),
+            Interface::ModelExchange => (subject.instantiate_model_3)(texts, log),
         }
     }
 }

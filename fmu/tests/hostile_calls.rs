@@ -1,0 +1,62 @@
+//! Hostile calls of the structure.
+#![allow(unsafe_code)] // the C interface
+
+mod host;
+#[path = "../fmi/tests/hostile/mod.rs"]
+mod hostile;
+
+use FlexibleRocking::unit::Unit;
+use fmi_unit::snapshot::Snapshot;
+use hostile::{Subject, hostile_calls};
+use rocking::engine::MAX_STEPS_PER_ADVANCE;
+use rocking::run::validity::ASSUMPTIONS;
+use std::ffi::CString;
+use std::fs;
+use std::path::Path;
+
+hostile_calls!(structure);
+
+fn structure() -> Subject {
+    let resources = host::resources();
+    let texts = records(resources.path());
+    // the top mass above the pivot of a foundation without inertia
+    let sticks = [("m0", 0.0), ("J0", 0.0), ("B", 0.3), ("theta_0", 0.1), ("u_0", 0.3)];
+    let sticks = sticks.map(|(name, value)| (host::reference(name), value)).into();
+    Subject { texts, sticks, may_be_infinite, check_step, ..Subject::of::<Unit>(resources, time) }
+}
+
+fn time(snapshot: &Snapshot) -> f64 {
+    let Some(course) = host::course(snapshot) else { return 0.0 };
+    course.outside.map_or(course.motion.time, |outside| outside.known.motion.time)
+}
+
+/// Peaks and limits that nobody watches for are no numbers, and friction may be infinite.
+fn may_be_infinite(name: &str) -> bool {
+    name.ends_with("_max") || ASSUMPTIONS.iter().any(|of| [of.name, of.time_name].contains(&name))
+}
+
+/// The work is bounded.
+fn check_step(before: &Snapshot, after: &Snapshot) {
+    let [before, after] = [before, after].map(|of| host::course(of).unwrap().motion.work.steps);
+    assert!(after - before <= MAX_STEPS_PER_ADVANCE, "{} steps", after - before);
+}
+
+/// Values of `record`: files of the archive in `folder` and elsewhere, sound and broken, and what is no file.
+fn records(folder: &Path) -> Vec<CString> {
+    let write = |name: &str, text: &str| fs::write(folder.join(name), text).unwrap();
+    let samples: String =
+        (0..300).map(|i| format!("{:.3},{:.3}\n", 0.01 * f64::from(i), f64::from(i * i % 19 - 9))).collect();
+    write("quake.csv", &samples);
+    write("Quake 2.AT2", "-\n-\nACCELERATION IN UNITS OF G\n4, .005 NPTS, DT\n.1 -.2 .4 1e-3\n");
+    write("broken.csv", "0,1\n1,%s%n#\n");
+    write("huge.csv", "-1e308,1\n1e308,2\n");
+    write("dense.csv", "0,1e-300\n5e-324,1e3\n1e-323,2\n1,-1e4\n");
+    fs::create_dir(folder.join("folder.csv")).unwrap();
+    let inside = folder.join("quake.csv").display().to_string();
+    let (uri, long) = (format!("file://{inside}"), "a".repeat(70_000));
+    let sound = ["quake.csv", "Quake 2.AT2"];
+    let others = ["broken.csv", "huge.csv", "dense.csv", "folder.csv", "absent.csv", "", ".", ".."];
+    let elsewhere = ["/dev/zero", "/dev/full", "/dev/stdin", "/", "/etc/passwd", "file:///dev/zero", "file:"];
+    let texts = [&sound[..], &others, &elsewhere, &["file:///%00.csv", &inside, &uri, &long]].concat();
+    texts.into_iter().map(|text| CString::new(text).unwrap()).chain([c"\xff%n".into()]).collect()
+}
