@@ -113,7 +113,7 @@ pub enum RunError {
         /// First sample of the record, s.
         start: f64,
     },
-    /// It takes more steps than one stretch of it may.
+    /// It takes more steps than one of its segments may.
     #[error("the run needs too many steps: they ended at t = {time:?} s of {until:?} s; give it a shorter duration")]
     TooLong {
         /// Instant at which the steps ended, s.

@@ -202,7 +202,7 @@ fn cut(segment: Segment, longest: f64) -> impl Iterator<Item = Segment> {
 }
 
 impl<Segments: Iterator<Item = Segment>> Trial<'_, Segments> {
-    /// Goes on over the next stretch unless it has ended.
+    /// Follows the motion over the next segment unless the run has ended.
     fn go_on(&mut self) -> Result<(), RunError> {
         if self.ending.is_none() {
             self.ending = self.course.go_on(&mut (&mut self.peaks, &mut self.history))?;

@@ -276,10 +276,10 @@ impl Validity {
 
     /// Looks at the motion over a polynomial, which may be halved `halvings` times; `extents` are bounds of its reactions.
     fn look(&mut self, expansion: Expansion, extents: &Reactions<Extent>, halvings: u32) {
-        let stretch = Stretch::new(expansion, extents);
+        let polynomial = Polynomial::new(expansion, extents);
         let Expansion { piece, from, arc } = expansion;
-        let last = stretch.reactions(arc.reach);
-        if halvings > 0 && !stretch.has_converged(&last) {
+        let last = polynomial.reactions(arc.reach);
+        if halvings > 0 && !polynomial.has_converged(&last) {
             let middle = 0.5 * arc.reach;
             for [start, end] in [[0.0, middle], [middle, arc.reach]] {
                 let half = &arc.between(start, end);
@@ -289,43 +289,43 @@ impl Validity {
         }
         let phase = piece.before.phase;
         // no friction is enough from where R_v is 0, which may be sooner than either end
-        if let Some((start, _)) = stretch.above([Some(Combination([0.0, -1.0, 0.0, 0.0])), None]).first() {
-            self.found.see(FRICTION, f64::INFINITY, stretch.of.time(*start));
+        if let Some((start, _)) = polynomial.above([Some(Combination([0.0, -1.0, 0.0, 0.0])), None]).first() {
+            self.found.see(FRICTION, f64::INFINITY, polynomial.of.time(*start));
         }
-        self.see_reactions(stretch.of.time(0.0), phase, &stretch.reactions(0.0));
-        self.see_reactions(stretch.of.time(arc.reach), phase, &last);
-        self.look_for::<Tension>(phase, &stretch);
-        self.look_for::<EdgeLoad>(phase, &stretch);
-        self.look_for::<Friction>(phase, &stretch);
+        self.see_reactions(polynomial.of.time(0.0), phase, &polynomial.reactions(0.0));
+        self.see_reactions(polynomial.of.time(arc.reach), phase, &last);
+        self.look_for::<Tension>(phase, &polynomial);
+        self.look_for::<EdgeLoad>(phase, &polynomial);
+        self.look_for::<Friction>(phase, &polynomial);
     }
 
-    /// Looks within `stretch` for the worst value of an assumption, and for the time beyond its limit.
-    fn look_for<A: OfReactions>(&mut self, phase: Phase, stretch: &Stretch) {
+    /// Looks within `polynomial` for the worst value of an assumption, and for the time beyond its limit.
+    fn look_for<A: OfReactions>(&mut self, phase: Phase, polynomial: &Polynomial) {
         if !A::holds_in(phase) {
             return;
         }
-        self.search::<A>(stretch);
+        self.search::<A>(polynomial);
         let beyond = A::worse(self.scale(), (ASSUMPTIONS[A::PLACE].limit)(&self.limits));
-        for (start, end) in stretch.above(beyond) {
-            self.found.see_beyond(A::PLACE, stretch.of.time(start), (end - start) * stretch.of.arc.span);
+        for (start, end) in polynomial.above(beyond) {
+            self.found.see_beyond(A::PLACE, polynomial.of.time(start), (end - start) * polynomial.of.arc.span);
         }
     }
 
-    /// Looks for the worst value of an assumption within `stretch`.
-    fn search<A: OfReactions>(&mut self, stretch: &Stretch) {
-        let (scale, reach) = (self.scale(), stretch.of.arc.reach);
+    /// Looks for the worst value of an assumption within `polynomial`.
+    fn search<A: OfReactions>(&mut self, polynomial: &Polynomial) {
+        let (scale, reach) = (self.scale(), polynomial.of.arc.reach);
         loop {
             let worst = self.found.worst[A::PLACE].value;
             if worst.is_infinite() {
                 return;
             }
             for combination in A::worse(scale, worst).iter().flatten() {
-                let Some(series) = stretch.combination(combination, ROUNDING * scale.W) else { continue };
+                let Some(series) = polynomial.combination(combination, ROUNDING * scale.W) else { continue };
                 let used = series.used();
                 if highest(used, reach) > ROUNDING * scale.W {
                     extremes::stationary_points(used, reach, |sigma| {
-                        let value = A::value(scale, &stretch.reactions(sigma));
-                        self.found.see(A::PLACE, value, stretch.of.time(sigma));
+                        let value = A::value(scale, &polynomial.reactions(sigma));
+                        self.found.see(A::PLACE, value, polynomial.of.time(sigma));
                     });
                 }
             }
@@ -422,18 +422,18 @@ impl Watch for Validity {
 }
 
 /// A polynomial of a motion with its reactions.
-struct Stretch<'a> {
+struct Polynomial<'a> {
     of: Expansion<'a>,
     series: Reactions<Terms>,
     extents: &'a Reactions<Extent>,
 }
 
-impl<'a> Stretch<'a> {
-    fn new(of: Expansion<'a>, extents: &'a Reactions<Extent>) -> Stretch<'a> {
+impl<'a> Polynomial<'a> {
+    fn new(of: Expansion<'a>, extents: &'a Reactions<Extent>) -> Polynomial<'a> {
         let Expansion { piece, from, arc } = of;
         let Motion { phase, dissipators, .. } = piece.before;
         let series = reaction_series::series(piece.level, *phase, dissipators, piece.load.from(from), arc);
-        Stretch { of, series, extents }
+        Polynomial { of, series, extents }
     }
 
     /// The reactions at `sigma`, from the state there.
@@ -459,7 +459,7 @@ impl<'a> Stretch<'a> {
         (combination.extent(self.extents).largest > least).then(|| combination.series(&self.series))
     }
 
-    /// The stretches in σ on which one of `combinations` is positive, in their order.
+    /// The intervals of σ on which one of `combinations` is positive, in their order.
     fn above(&self, combinations: [Option<Combination>; 2]) -> Vec<(f64, f64)> {
         let (mut found, reach): (Vec<(f64, f64)>, _) = (Vec::new(), self.of.arc.reach);
         for combination in combinations.iter().flatten() {
@@ -491,7 +491,7 @@ fn highest(coefficients: &[f64], reach: f64) -> f64 {
     coefficients[0].max(evaluate(coefficients, reach)) + extremes::off_chord(coefficients, reach)
 }
 
-/// Adds to `found` where Σ c_k σᵏ is positive up to σ = `reach`, stretch by stretch on which it rises or falls throughout.
+/// Adds to `found` where Σ c_k σᵏ is positive up to σ = `reach`, one interval between stationary points after the other.
 fn positive(coefficients: &[f64], reach: f64, found: &mut Vec<(f64, f64)>) {
     let is_positive = |sigma: f64| evaluate(coefficients, sigma) > 0.0;
     let (mut start, mut was_positive) = (0.0, coefficients[0] > 0.0);
