@@ -170,6 +170,7 @@ type Counted = (f64, f64, f64, usize, usize, usize);
 /// The curve of runs, and the counted runs that are drawn beside the curve. Each run has its group, its intensity, its ending, the
 /// peak that `limit` compares, and g (m/s²). `half_width` (m) is the largest B of their structures.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "columns of a table")]
 pub fn fragility(
     py: Python<'_>,
     groups: Vec<usize>,
