@@ -1,9 +1,9 @@
 //! The classical Runge–Kutta method of fixed step, as it is often coded, beside the engine: Eq 1 in full contact, Eqs 5 and 6
 //! while rocking, and each transition taken at the end of the step on which its condition is met.
 
+use rocking::Restraint;
 use rocking::levels::{full_contact, nonlinear};
 use rocking::mechanics::impact;
-use rocking::Restraint;
 use rocking::run::record::Record;
 use rocking::{Dissipators, Load, Phase, Ramp, Side, State, Structure};
 use std::f64::consts::FRAC_PI_2;
@@ -98,7 +98,8 @@ fn next(structure: &Structure, phase: Phase, state: &State, dissipators: &Dissip
                 let rates = nonlinear::accelerations(structure, side, state, Load::default(), dissipators);
                 rates.is_some_and(|rates| rates[1] * side.sign() > 0.0)
             };
-            let is_due = state.u.abs() >= Restraint::about(structure, side, dissipators).uplift_displacement(0.0) && lifts();
+            let is_due =
+                state.u.abs() >= Restraint::about(structure, side, dissipators).uplift_displacement(0.0) && lifts();
             is_due.then_some((Phase::Rocking(side), *state))
         }
         Phase::Rocking(side) if side.sign() * state.theta >= FRAC_PI_2 => Some((Phase::Overturned(side), *state)),
