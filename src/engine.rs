@@ -1,16 +1,14 @@
 //! The hybrid engine: phase equations → step → guard → transition, repeated to the end of an interval.
 //!
-//! A step is a Taylor series ([`crate::series::taylor`]) that ends where its truncation error meets the tolerance, at the end
-//! of the interval, or at the first transition on it, which [`crate::series::first_crossing`] cannot pass. At the start of
-//! rocking θ is exactly 0; its leading zero coefficients are divided out before the search for its return, so that
-//! neither is a return within microseconds missed nor the start taken for one.
+//! A step is a Taylor series of the motion ([`crate::series::taylor`]). A step ends at the first transition, at the end of the
+//! interval, or where its truncation error reaches the tolerance. [`crate::series::first_crossing`] finds the first transition and
+//! cannot step over it. [Phases](phases) say which guards are watched, and what happens when a guard closes.
 //!
-//! Steps are bounded as transitions are ([`crate::levels::rules`]): an advance takes at most one for itself, two for each
-//! transition, and one for each 1/Ω of time, Ω the largest of ω_u, 2 ζ_u ω_u, 2 ζ_fc ω_fc and p_l, and of what restraints
-//! add to these. Only what is thrown
-//! about takes more, up to four for each 1/Ω with |θ̇|, |u̇|/ρ and √(|ü|/ρ) among them, ρ² = (J0 + m0 B²)/m + (sB − u)².
-//! One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps. What is left of a long one once the base is down for good takes
-//! no more of them where full contact has an exact flow.
+//! The number of steps is bounded because the number of transitions is ([`crate::levels::rules`]). One advance takes at most one
+//! step, plus two steps per transition, plus one step per time 1/Ω. Ω is the largest of ω_u, 2 ζ_u ω_u, 2 ζ_fc ω_fc, p_l and the
+//! rates that restraints add. A violent motion takes up to four steps per 1/Ω, and Ω is then the largest of these rates and |θ̇|,
+//! |u̇|/ρ and √(|ü|/ρ), where ρ² = (J0 + m0 B²)/m + (sB − u)². One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps. At levels
+//! with an exact flow of full contact, one step covers the rest of a long interval once the base stays down for good.
 
 pub mod motion;
 pub(crate) mod phases;
@@ -40,13 +38,13 @@ pub const DEFAULT_TOLERANCE: f64 = 1e-9;
 /// series pays for each with only one more coefficient or so.
 const LOCAL_SHARE: f64 = 1e-5;
 
-/// What it may use up at most, however loose the tolerance is: ten times the relative change of 1e-12 in the input by
-/// which conditioning is judged. An answer that such a change moves by less than a tenth of the tolerance is then within
-/// it, although impacts amplify the change by 1e8, as a tolerance of 1e-3 admits.
+/// The largest truncation error of a step, however loose the tolerance is: ten times the relative change of 1e-12 in the input
+/// by which conditioning is judged. If such a change moves an answer by less than a tenth of the tolerance, the answer is within
+/// the tolerance, although impacts amplify the change by 1e8.
 const LARGEST_LOCAL_ERROR: f64 = 1e-11;
 
-/// Steps that one advance may take, a second or two of computing, and some ten of what is thrown about so wildly that every
-/// step has to be searched for transitions throughout; a longer interval has to be cut.
+/// Steps that one advance may take: a second or two of computing, or some ten seconds of a motion so violent that every step is
+/// searched for transitions throughout. A longer interval has to be cut.
 pub const MAX_STEPS_PER_ADVANCE: u64 = 2_000_000;
 
 /// An advance over more than this, as ω_fc h in rad, may be long over before it ends.
@@ -120,7 +118,7 @@ pub enum AdvanceError {
         with_unit(*until, "s")
     )]
     TooLong {
-        /// Where the steps ended, s.
+        /// Time at which the steps ended, s.
         time: f64,
         /// End of the interval, s.
         until: f64,
@@ -153,7 +151,7 @@ impl AdvanceError {
     }
 }
 
-/// What an engine is to do.
+/// The task of an engine.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Level of detail.
@@ -242,7 +240,7 @@ impl Engine {
         Ok(Engine { level, settings, motion: self.motion, arc: Arc::default() })
     }
 
-    /// What the engine does.
+    /// The settings of the engine.
     pub fn settings(&self) -> Settings {
         self.settings
     }
@@ -369,7 +367,7 @@ impl Engine {
         self.sample(load).reactions()
     }
 
-    /// What the edges of the base carry of the reactions now under `load`.
+    /// The part of the reactions now under `load` that the edges of the base carry.
     pub fn edges(&self, load: Load) -> Reactions {
         self.sample(load).edges()
     }
@@ -443,7 +441,7 @@ fn leapt<W: Watch>(level: &AnyLevel, motion: &mut Motion, duration: f64, load: L
     motion.chatter.pass(duration);
 }
 
-/// What an advance has in hand.
+/// The loop over the steps of one advance.
 struct Loop<'a, L, P> {
     any: &'a AnyLevel,
     /// The same level by its type.
@@ -609,6 +607,15 @@ mod tests {
         fn indicator(&self, _now: &Sample) -> (usize, f64) {
             (0, 1.0)
         }
+    }
+
+    /// Truncation below rounding would be work without an effect.
+    #[test]
+    fn a_step_is_no_more_exact_than_rounding() {
+        let structure = Structure::new(Parameters::EVISON).unwrap();
+        let of =
+            |tolerance| Engine::new(structure, State::default(), 0.0, tolerance).unwrap().level.subject().local_error;
+        assert_eq!([1e-15, 1e-9, 0.1].map(of), [0.5 * f64::EPSILON, LOCAL_SHARE * 1e-9, LARGEST_LOCAL_ERROR]);
     }
 
     /// Vibration without damping between the wall and its far end takes 2/3 of a period.

@@ -269,7 +269,7 @@ impl Level for FixedBase {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{Parameters, Ramp};
+    use crate::{Dissipators, Load, Parameters, Ramp};
     use proptest::prelude::*;
 
     /// Numbers between −1 and 1: a linear congruential generator.
@@ -329,6 +329,17 @@ mod tests {
             let lowest = (0..=1000).map(|i| s * arc.at(f64::from(i) / 1000.0).theta).fold(1.0, f64::min);
             if let Some(end) = level.leap(phase, &start) {
                 prop_assert!(lowest > 0.0);
+                let most = level.rates(phase, &start, &end);
+                for i in 0..=20 {
+                    let sigma = f64::from(i) / 20.0;
+                    let (state, load) = (&arc.at(sigma), Load::ground(a_g.at(sigma * interval)));
+                    let [u_ddot, theta_ddot] =
+                        level.accelerations(phase, &Now { state, load, dissipators: &Dissipators::NEW });
+                    let bounds = [most.u, most.u_dot, most.u_ddot, most.theta, most.theta_dot, most.theta_ddot];
+                    let values = [state.u, state.u_dot, u_ddot, state.theta, state.theta_dot, theta_ddot];
+                    let is_within = values.iter().zip(bounds).all(|(value, most)| value.abs() <= most * (1.0 + 1e-9));
+                    prop_assert!(is_within, "{values:?} {bounds:?}");
+                }
                 let expected = arc.end();
                 prop_assert!((end.theta - expected.theta).abs() < 1e-14);
                 prop_assert!((end.theta_dot - expected.theta_dot).abs() < 1e-12);

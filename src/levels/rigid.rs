@@ -202,3 +202,26 @@ impl Level for Rigid {
         [0.0, free - (held / structure.J_P - p_l.powi(2) * load.a_v / g * p)]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Parameters;
+
+    /// The orders of a step follow the velocity that the loads bring within 1/p_l.
+    #[test]
+    fn the_order_follows_the_forcing() {
+        let structure =
+            Structure::new(Parameters { m0: 0.0, J0: 0.0, H: 0.02, B: 0.005, ..Parameters::EVISON }).unwrap();
+        let rigid = Rigid::new(Subject { structure, local_error: 1e-9, is_tied: false });
+        let (state, mut arc) = (State { theta: 0.01, ..State::default() }, Arc::default());
+        for tenths in 10..25 {
+            let interval = 0.1 * f64::from(tenths) / structure.p_l;
+            let start = Start { state, interval, local_error: 1e-4, ..Start::default() };
+            rigid.series(Phase::Rocking(Side::Right), &start, &mut arc);
+            let most = 1e-4 * structure.p_l * (structure.tan_alpha_cg + 0.01) * (1.0 + 1e-12);
+            let [last, before] = [arc.order, arc.order - 1].map(|k| arc.theta_dot[k].abs());
+            assert!(arc.reach == 1.0 && last <= most && before <= most, "{tenths}: {last:e} {before:e} {most:e}");
+        }
+    }
+}
