@@ -572,13 +572,13 @@ impl Instance {
     fn check_step(&mut self, point: f64, step: f64) -> Result<(), Failure> {
         let time = self.model.time()?;
         let until = point + step;
-        if !(step > 0.0 && step <= f64::MAX) {
+        if step.is_nan() || step <= 0.0 {
             return Err(Failure::BadStep { step, time });
         }
         if !is_same_time(point, time, step) {
             return Err(Failure::WrongPoint { given: point, time });
         }
-        if until <= point || until.is_infinite() {
+        if !(until > point && until <= f64::MAX) {
             return Err(Failure::BadStep { step, time });
         }
         match self.experiment.stop_time {

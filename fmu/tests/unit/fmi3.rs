@@ -301,7 +301,7 @@ fn a_host_that_is_called_back_sets_inputs_reads_and_does_no_harm() {
             (*environment).end = 0.0;
             assert_eq!(fmi3DoStep(c, 0.5, 100.0, 0, event, terminate, early, &mut reached), OK);
             let ends: Vec<_> = std::mem::take(&mut (*environment).read).iter().map(|read| read[0]).collect();
-            assert_eq!((*terminate, ends), (1, if reads { vec![reached] } else { vec![] }));
+            assert_eq!((*terminate, *early, ends), (1, 0, if reads { vec![reached] } else { vec![] }));
             fmi3FreeInstance(c);
         }
     }

@@ -33,6 +33,7 @@ const INITIALIZING: &[Refused] = &[
     ("theta cannot be set: it is an output, computed by the FMU", |h| h.set(&[("u_0", 1e-3), ("theta", 0.1)])),
     ("chi cannot be set: it is a calculated parameter, computed by the FMU", |h| h.set(&[("chi", f64::NAN)])),
     ("phase cannot be set: it is a local variable, computed by the FMU", |h| h.set_integer("phase", 1)),
+    ("detail = 0 is out of range: 1 = auto", |h| h.set_integer("detail", 0)),
     ("peaks = 2 is not one of 0 (fmi2False), 1 (fmi2True)", |h| h.set_boolean("peaks", 2)),
     ("record is a string: call fmi2GetString or fmi2SetString instead", |h| h.set(&[("record", 1.0)])),
     ("phase is an enumeration: call fmi2GetInteger or fmi2SetInteger instead", |h| get(h, &["phase"])),
