@@ -46,8 +46,11 @@ fn scenes(records: &Path) -> Result<[(&'static str, Scene); 4]> {
 }
 
 fn number(value: f64) -> String {
-    let text = if value.is_infinite() { "∞".into() } else { format!("{value:.3}") };
-    text.replace('-', "−")
+    match value {
+        f64::INFINITY => "∞".into(),
+        f64::NEG_INFINITY => "none".into(),
+        _ => format!("{value:.3}").replace('-', "−"),
+    }
 }
 
 fn percent(part: f64) -> String {
