@@ -1,0 +1,246 @@
+"""An independent integration of a frame of n masses that rocks on its base, to compare the engine's modes with.
+
+The equations are the physical ones, with M, C and K: no modes, no matrix exponential. The numbers (M1), (M7) … count the
+equations of many masses. DOP853 integrates each phase at a relative tolerance of 1e-13, from sample to sample and from
+transition to transition. A transition is a root of a polynomial over the step, refined by fresh integrations.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from types import SimpleNamespace
+
+import numpy as np
+import reference
+from host import ground_motion
+from numpy.polynomial import polynomial
+from reference import FULL_CONTACT, Transition
+from restrained_reference import Ties
+from scipy.integrate import DOP853
+from scipy.linalg import eigh
+
+MAX_TRANSITIONS = 1000  # within one period of the lowest vibration mode while rocking; then contact is held to its end
+TIE = 1e-12  # an angle this small, relative to that at yield, is 0
+NODES = (1 - np.cos(np.pi * np.arange(8) / 7)) / 2
+FIT = np.linalg.inv(np.vander(NODES, increasing=True))  # from values at NODES to the polynomial of degree 7
+
+
+@dataclass(frozen=True)
+class Frame:
+    """Masses on a rigid base (SI). `stiffness` lists the storeys of a shear frame, or is K. `zeta` is the damping ratio of every
+    mode, or one for each; instead, `rayleigh` is (a, b) of C = a M + b K. Without r, the impact follows from momentum."""
+
+    masses: tuple
+    heights: tuple
+    stiffness: tuple
+    m0: float
+    J0: float
+    B: float
+    r: float | None = None
+    zeta: float | tuple = 0.0
+    rayleigh: tuple | None = None
+    g: float = 9.81
+
+    def __post_init__(self):
+        m, h, K = (np.array(values, dtype=float) for values in (self.masses, self.heights, self.stiffness))
+        if K.ndim == 1:
+            K = np.diag(K + np.append(K[1:], 0)) - np.diag(K[1:], 1) - np.diag(K[1:], -1)
+        squares, phi = eigh(K, np.diag(m))
+        omega, M_phi = np.sqrt(squares), m[:, None] * phi
+        C = M_phi * (2 * np.array(self.zeta) * omega) @ M_phi.T
+        if self.rayleigh:
+            C = self.rayleigh[0] * np.diag(m) + self.rayleigh[1] * K
+        m_t, S_1, I_2 = m.sum() + self.m0, m @ h, m @ h**2
+        J_P = self.J0 + m_t * self.B**2 + I_2
+        omega_r = np.sqrt(eigh(K, np.diag(m) - np.outer(m * h, m * h) / J_P, eigvals_only=True))  # (M13)
+        vars(self).update(m=m, h=h, K=K, C=C, phi=phi, omega=omega, omega_r=omega_r, m_t=m_t, S_1=S_1, I_2=I_2, J_P=J_P,
+                          elastic=np.hstack([K, C]) / m[:, None], period=2 * math.pi / omega_r[0])
+
+
+class Motion:
+    """The frame at one instant, and how its motion continues. The state is u, u_dot, theta, theta_dot in one row."""
+
+    def __init__(self, frame: Frame, ties: Ties, y, rtol: float, atol: float):
+        assert ties.xi_d <= frame.B, "beyond the edge, what yields at an impact may go on yielding"
+        self.frame, self.ties, self.y, self.n = frame, ties, np.array(y, dtype=float), len(frame.masses)
+        self.tolerances, self.t, self.h, self.s = dict(rtol=rtol, atol=atol), 0.0, 1e-4, int(np.sign(y[-2]))
+        self.zeros, self.plastic, self.yields, self.released = 0, [0.0, 0.0], [0, 0], [0, 0]  # zeros of theta(t) at this instant
+        self.transitions, self.peaks = [], np.abs(self.outputs(self.y)[0])
+        self.burst, self.count, self.held_until = -math.inf, 0, -math.inf
+
+    def outputs(self, y):
+        """u, absolute accelerations a, theta, V_t and M_t of states y, a row each."""
+        p, y = self.frame, np.atleast_2d(y)
+        a = p.g * np.sin(y[:, -2:-1]) - y[:, :-2] @ p.elastic.T
+        return np.column_stack([y[:, : self.n], a, y[:, -2], a @ p.m, a @ (p.m * p.h)])
+
+    def gravity(self, t):
+        return self.frame.g + self.a_v[0] + self.a_v[1] * (t - self.start)
+
+    def forces(self, theta, s):
+        """F_j of the elastoplastic dissipators, and their levers sB - xi_j."""
+        levers = self.ties.levers(self.frame, s)
+        return [way * self.ties.F_y if way else self.ties.k_d * (2 * lever * math.sin(theta / 2) - plastic)
+                for lever, way, plastic in zip(levers, self.yields, self.plastic)], levers
+
+    def rates(self, t, y):
+        p, ties, s, n = self.frame, self.ties, self.s, self.n
+        u, u_dot, theta, theta_dot = y[:n], y[n:-2], y[-2], y[-1]
+        a_g, f = self.a_g[0] + self.a_g[1] * (t - self.start), p.elastic @ y[:-2]  # f = M^-1 (K u + C u_dot)
+        if s == FULL_CONTACT:
+            return np.concatenate([u_dot, -f - a_g, [0.0, 0.0]])  # (M1)
+        sn, cs, half, g, d = math.sin(theta), math.cos(theta), math.cos(theta / 2), self.gravity(t), s * p.B - u
+        tied = (-s * ties.P_0 * p.B * half - ties.k_t * p.B**2 * sn - half * np.dot(*self.forces(theta, s))
+                - ties.c_d * (2 * p.B**2 + 2 * ties.xi_d**2) * half**2 * theta_dot)
+        moment = (p.m * p.h @ f + theta_dot**2 * (s * p.B * p.S_1 - p.m * p.h @ u) + 2 * theta_dot * (p.m * d @ u_dot)
+                  - (s * p.m_t * p.B - p.m @ u) * (g * cs + a_g * sn) + tied)
+        theta_ddot = moment / (p.J0 + p.m0 * p.B**2 + p.m @ d**2)  # (M7)
+        u_ddot = -f - p.h * theta_ddot - theta_dot**2 * d + (g * sn - a_g * cs)  # (M7), its second line
+        return np.concatenate([u_dot, u_ddot, [theta_dot, theta_ddot]])
+
+    def margins(self, s, t, y):
+        """The excess of the base's moment about side s over what holds the base down: by (M3), and by (M2), s D theta_ddot."""
+        p, n = self.frame, self.n
+        held = (p.m_t * self.gravity(t) + self.ties.P_0) * p.B + s * np.dot(*self.forces(0.0, s))
+        by_rule = s * (y[..., :n] @ (p.K @ p.h)) - held
+        return by_rule, by_rule + s * (y[..., n:-2] @ (p.C @ p.h) + (y[..., :n] @ p.m) * self.gravity(t))
+
+    def lift_off(self):
+        """Lifts the base off where uplift is due as the state stands, about the side with the larger s theta_ddot."""
+        due = []
+        for s in (1, -1) if self.s == FULL_CONTACT and self.t >= self.held_until else ():
+            margins = self.margins(s, self.t, self.y)
+            if min(margins) > 0:
+                D = self.frame.J0 + self.frame.m0 * self.frame.B**2 + self.frame.m @ (s * self.frame.B - self.y[: self.n]) ** 2
+                due.append((margins[1] / D, s))
+        if due:
+            self.enter("uplift", max(due)[1], self.y, 2)
+        return bool(due)
+
+    def enter(self, kind, phase, y, zeros=0):
+        """Goes into a phase with the state y, where theta(t) has so many zeros."""
+        self.transitions.append(Transition(self.t, kind, self.s or phase, tuple(self.y), tuple(y)))
+        if self.t - self.burst >= self.frame.period:
+            self.burst, self.count = self.t, 0
+        self.count, self.s, self.y, self.zeros, self.yields = self.count + 1, phase, y, zeros, [0, 0]
+
+    def impact(self):
+        p, s, u, u_dot, theta_dot = self.frame, self.s, self.y[: self.n], self.y[self.n : -2], self.y[-1]
+        rest = p.m @ (p.B**2 - u**2) + p.m0 * p.B**2 - p.J0
+        L = p.m * p.h @ (u_dot + p.h * theta_dot) - rest * theta_dot  # (M14)
+        r = p.r if p.r is not None else (p.I_2 - rest) / (p.I_2 + p.J0 + p.m0 * p.B**2 + p.m @ (p.B + s * u) ** 2)  # (M19)
+        too_many = self.count >= MAX_TRANSITIONS and self.t - self.burst < p.period
+        if L * theta_dot > 0 and r > 0 and not too_many:
+            return self.enter("impact", -s, np.concatenate([u, u_dot, [0.0, r * theta_dot]]), 1)  # (M15)
+        if too_many:
+            self.held_until = self.burst + p.period
+        self.enter("settling" if too_many else "landing", FULL_CONTACT, np.concatenate([u, u_dot + p.h * theta_dot, [0.0, 0.0]]))
+
+    def advance(self, end: float):
+        """Moves on to `end`, or to the first transition before it."""
+        self.lift_off()
+        if self.s == FULL_CONTACT and self.t < self.held_until:
+            end = min(end, self.held_until)
+        solver = DOP853(self.rates, self.t, self.y, end, first_step=min(self.h, end - self.t), **self.tolerances)
+        while solver.status == "running":
+            solver.step()
+            assert solver.status != "failed", self.t
+            self.h = max(self.h, solver.h_abs) if solver.status == "finished" else solver.h_abs
+            step = reference._Step(solver)
+            found = self.uplifts(step) if self.s == FULL_CONTACT else self.ends_of_rocking(step)
+            if found:
+                return self.make(step, *min(found, key=lambda one: one[0]))
+            self.see(step, 1.0)
+            self.move(solver.t, solver.y)
+            if self.lift_off():  # if rounding hides the root at the end of the step
+                return None
+
+    def uplifts(self, step):
+        """(x, guard, what) where both guards about a side hold up to the next root of either side's."""
+        found, states = [], np.vander(NODES, 8, increasing=True) @ step.powers
+        for s in (1, -1) if self.t >= self.held_until else ():
+            fits = FIT @ np.column_stack(self.margins(s, step.t0 + NODES * step.h, states))
+            for i in (0, 1):
+                guard = lambda t, y, s=s, i=i: self.margins(s, t, y)[i]
+                found += [(x, guard, ("uplift", s, 2 + i), fits) for x in reference.unit_roots(fits[:, i])]
+        found.sort(key=lambda one: one[0])
+        following = [*(one[0] for one in found[1:]), 1.0]
+        return [one[:3] for one, x in zip(found, following) if np.min(polynomial.polyval((one[0] + x) / 2, one[3])) > 0]
+
+    def ends_of_rocking(self, step):
+        """(x, guard, what) of impact, overturning, yielding and its end."""
+        s, ties, found = self.s, self.ties, []
+        guards = [(-2, 0.0, self.zeros, ("impact",)), (-2, s * math.pi / 2, 0, ("overturning",))]
+        for j, (lever, way) in enumerate(zip(ties.levers(self.frame, s), self.yields) if ties.k_d else ()):
+            if way:
+                guards.append((-1, 0.0, 0, ("yield", j, 0)))
+            for to in () if way else (1, -1):  # |F_j| = F_y at this angle; if that is 0, the impact comes first
+                sine = (self.plastic[j] + to * ties.F_y / ties.k_d) / (2 * lever)
+                if TIE * ties.F_y / ties.k_d / lever * s < s * sine < 1:
+                    guards.append((-2, 2 * math.asin(sine), 2 * (self.released[j] == to), ("yield", j, to)))
+        for column, value, zeros, what in guards:
+            c = step.powers[:, column].copy()
+            c[0] -= value
+            roots = [x for x in reference.unit_roots(c[zeros:]) if x > 0]
+            if what[0] == "impact" and s * step.y1[-2] <= 0:
+                roots.append(1.0)  # also if rounding hides the root at the end of the step
+            found += [(x, lambda t, y, at=column, value=value: y[at] - value, what) for x in roots]
+        return found
+
+    def make(self, step, x, guard, what):
+        """Makes the transition near x: Newton's iteration on fresh integrations, unless the touch grazes."""
+        state = lambda x: step.integrate_to(step.t0 + x * step.h, **self.tolerances)
+        slope = np.diff([guard(step.t0 + near * step.h, step.at(near)) for near in (x - 1e-4, x + 1e-4)])[0] / 2e-4
+        for _ in range(3):
+            change = guard(step.t0 + x * step.h, state(x)) / slope if slope else 0.0
+            x = min(max(x - change, 0.0), 1.0) if abs(change) < 1e-3 else x
+        self.see(step, x)
+        self.move(step.t0 + x * step.h, state(x))
+        if what[0] == "uplift":
+            self.enter("uplift", what[1], self.y, what[2])
+        elif what[0] == "overturning":
+            self.enter("overturning", self.s, self.y)
+        elif what[0] == "impact":
+            self.y[-2] = 0.0
+            self.impact()
+        for j in (0, 1) if what[0] == "yield" else ():
+            if j == what[1] or not what[2] and self.yields[j]:  # both elongations turn round together
+                self.released[j], self.yields[j] = self.yields[j], what[2]
+                kind = "yielding" if what[2] else "unloading"
+                self.transitions.append(Transition(self.t, kind, self.s, tuple(self.y), tuple(self.y)))
+
+    def move(self, t, y):
+        self.t, self.y, self.zeros, self.released = float(t), y.copy(), 0, [0, 0]
+        for j, (lever, way) in enumerate(zip(self.ties.levers(self.frame, self.s), self.yields)):
+            if way:
+                self.plastic[j] = 2 * lever * math.sin(y[-2] / 2) - way * self.ties.F_y / self.ties.k_d
+
+    def see(self, step, end):
+        """Takes the largest absolute values over the step up to x = end."""
+        values = self.outputs(np.vander(end * NODES, 8, increasing=True) @ step.powers)
+        self.peaks = np.maximum(self.peaks, np.abs(values).max(axis=0))
+        for i in np.flatnonzero(np.abs(values).max(axis=0) > 0.98 * self.peaks):
+            c = FIT @ values[:, i]
+            extrema = reference.unit_roots(polynomial.polyder(c))
+            self.peaks[i] = max([self.peaks[i], *np.abs(polynomial.polyval(np.array(extrema), c))])
+
+
+def simulate(frame: Frame, dt: float, a_g, a_v=None, ties: Ties = Ties(), *, initial=None, at=None, rtol: float = reference.RTOL,
+             atol: float = reference.ATOL):
+    """The response to accelerations (m/s2) linear between samples every dt (s): u, theta, a, V_t, M_t and F_d at the samples, or at
+    the instants `at`; transitions with the state before and after; peaks of u, a, theta, V_t and M_t in one row."""
+    knots, n, rows = dt * np.arange(len(a_g)), len(frame.masses), []
+    at, a_v = knots if at is None else np.asarray(at, dtype=float), np.zeros(len(a_g)) if a_v is None else a_v
+    motion = Motion(frame, ties, np.zeros(2 * n + 2) if initial is None else initial, rtol, atol)
+    for end in np.union1d(knots, at).tolist():
+        while motion.t < end and abs(motion.y[-2]) < math.pi / 2 - 1e-9:
+            i = min(int(np.searchsorted(knots, motion.t, side="right")) - 1, len(knots) - 2)
+            motion.start = knots[i]
+            motion.a_g, motion.a_v = ((float(values[i]), float(values[i + 1] - values[i]) / dt) for values in (a_g, a_v))
+            motion.advance(end)
+        if motion.t == end and end in at:
+            rows.append([end, *motion.outputs(motion.y)[0], *motion.forces(motion.y[-2], motion.s)[0]])
+    rows = np.array(rows)
+    names = dict(time=0, u=slice(1, n + 1), a=slice(n + 1, 2 * n + 1), theta=2 * n + 1, V_t=2 * n + 2, M_t=2 * n + 3, F_d=slice(-2, None))
+    return SimpleNamespace(**{name: rows[:, at] for name, at in names.items()}, transitions=motion.transitions, peaks=motion.peaks)
