@@ -196,7 +196,8 @@ class Motion:
             change = guard(step.t0 + x * step.h, state(x)) / slope if slope else 0.0
             x = min(max(x - change, 0.0), 1.0) if abs(change) < 1e-3 else x
         self.see(step, x)
-        self.move(step.t0 + x * step.h, state(x))
+        y = state(x)
+        self.move(step.t0 + x * step.h, y)
         if what[0] == "uplift":
             self.enter("uplift", what[1], self.y, what[2])
         elif what[0] == "overturning":
@@ -204,10 +205,11 @@ class Motion:
         elif what[0] == "impact":
             self.y[-2] = 0.0
             self.impact()
-        for j in (0, 1) if what[0] == "yield" else ():
-            if j == what[1] or not what[2] and self.yields[j]:  # both elongations turn round together
-                self.released[j], self.yields[j] = self.yields[j], what[2]
-                kind = "yielding" if what[2] else "unloading"
+        for j, F in enumerate(self.forces(y[-2], self.s)[0] if what[0] == "yield" else ()):  # both turn round, or yield again, together
+            to, way = what[2], self.yields[j]
+            if j == what[1] or (to * F >= (1 - TIE) * self.ties.F_y and not way if to else way):
+                self.released[j], self.yields[j] = way, to
+                kind = "yielding" if to else "unloading"
                 self.transitions.append(Transition(self.t, kind, self.s, tuple(self.y), tuple(self.y)))
 
     def move(self, t, y):
