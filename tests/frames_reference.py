@@ -9,11 +9,11 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
 import reference
-from host import ground_motion
 from numpy.polynomial import polynomial
 from reference import FULL_CONTACT, Transition
 from restrained_reference import Ties
@@ -57,6 +57,9 @@ class Frame:
         vars(self).update(m=m, h=h, K=K, C=C, phi=phi, omega=omega, omega_r=omega_r, m_t=m_t, S_1=S_1, I_2=I_2, J_P=J_P,
                           elastic=np.hstack([K, C]) / m[:, None], period=2 * math.pi / omega_r[0])
 
+    def D(self, s, u):
+        return self.J0 + self.m0 * self.B**2 + self.m @ (s * self.B - u) ** 2
+
 
 class Motion:
     """The frame at one instant, and how its motion continues. The state is u, u_dot, theta, theta_dot in one row."""
@@ -67,13 +70,16 @@ class Motion:
         self.tolerances, self.t, self.h, self.s = dict(rtol=rtol, atol=atol), 0.0, 1e-4, int(np.sign(y[-2]))
         self.zeros, self.plastic, self.yields, self.released = 0, [0.0, 0.0], [0, 0], [0, 0]  # zeros of theta(t) at this instant
         self.transitions, self.peaks = [], np.abs(self.outputs(self.y)[0])
-        self.burst, self.count, self.held_until = -math.inf, 0, -math.inf
+        self.burst, self.count, self.held_until, self.overturned = -math.inf, 0, -math.inf, False
 
     def outputs(self, y):
         """u, absolute accelerations a, theta, V_t and M_t of states y, a row each."""
         p, y = self.frame, np.atleast_2d(y)
         a = p.g * np.sin(y[:, -2:-1]) - y[:, :-2] @ p.elastic.T
         return np.column_stack([y[:, : self.n], a, y[:, -2], a @ p.m, a @ (p.m * p.h)])
+
+    def row(self):
+        return [self.t, *self.outputs(self.y)[0], *self.forces(self.y[-2], self.s)[0]]
 
     def gravity(self, t):
         return self.frame.g + self.a_v[0] + self.a_v[1] * (t - self.start)
@@ -95,7 +101,7 @@ class Motion:
                 - ties.c_d * (2 * p.B**2 + 2 * ties.xi_d**2) * half**2 * theta_dot)
         moment = (p.m * p.h @ f + theta_dot**2 * (s * p.B * p.S_1 - p.m * p.h @ u) + 2 * theta_dot * (p.m * d @ u_dot)
                   - (s * p.m_t * p.B - p.m @ u) * (g * cs + a_g * sn) + tied)
-        theta_ddot = moment / (p.J0 + p.m0 * p.B**2 + p.m @ d**2)  # (M7)
+        theta_ddot = moment / p.D(s, u)  # (M7)
         u_ddot = -f - p.h * theta_ddot - theta_dot**2 * d + (g * sn - a_g * cs)  # (M7), its second line
         return np.concatenate([u_dot, u_ddot, [theta_dot, theta_ddot]])
 
@@ -112,24 +118,26 @@ class Motion:
         for s in (1, -1) if self.s == FULL_CONTACT and self.t >= self.held_until else ():
             margins = self.margins(s, self.t, self.y)
             if min(margins) > 0:
-                D = self.frame.J0 + self.frame.m0 * self.frame.B**2 + self.frame.m @ (s * self.frame.B - self.y[: self.n]) ** 2
-                due.append((margins[1] / D, s))
+                due.append((margins[1] / self.frame.D(s, self.y[: self.n]), s))
         if due:
-            self.enter("uplift", max(due)[1], self.y, 2)
+            self.enter("uplift", max(due)[1], zeros=2)
         return bool(due)
 
-    def enter(self, kind, phase, y, zeros=0):
-        """Goes into a phase with the state y, where theta(t) has so many zeros."""
+    def enter(self, kind, phase, y=None, zeros=0):
+        """Goes into a phase, with the state y if it jumps; theta(t) has so many zeros there."""
+        y = self.y if y is None else y
         self.transitions.append(Transition(self.t, kind, self.s or phase, tuple(self.y), tuple(y)))
         if self.t - self.burst >= self.frame.period:
             self.burst, self.count = self.t, 0
         self.count, self.s, self.y, self.zeros, self.yields = self.count + 1, phase, y, zeros, [0, 0]
+        self.overturned = kind == "overturning"
 
     def impact(self):
+        self.y[-2] = 0.0
         p, s, u, u_dot, theta_dot = self.frame, self.s, self.y[: self.n], self.y[self.n : -2], self.y[-1]
         rest = p.m @ (p.B**2 - u**2) + p.m0 * p.B**2 - p.J0
         L = p.m * p.h @ (u_dot + p.h * theta_dot) - rest * theta_dot  # (M14)
-        r = p.r if p.r is not None else (p.I_2 - rest) / (p.I_2 + p.J0 + p.m0 * p.B**2 + p.m @ (p.B + s * u) ** 2)  # (M19)
+        r = (p.I_2 - rest) / (p.I_2 + p.D(-s, u)) if p.r is None else p.r  # (M19)
         too_many = self.count >= MAX_TRANSITIONS and self.t - self.burst < p.period
         if L * theta_dot > 0 and r > 0 and not too_many:
             return self.enter("impact", -s, np.concatenate([u, u_dot, [0.0, r * theta_dot]]), 1)  # (M15)
@@ -157,38 +165,47 @@ class Motion:
                 return None
 
     def uplifts(self, step):
-        """(x, guard, what) where both guards about a side hold up to the next root of either side's."""
+        """(x, guard, transition) where both guards about a side hold up to the next root of either side's."""
         found, states = [], np.vander(NODES, 8, increasing=True) @ step.powers
         for s in (1, -1) if self.t >= self.held_until else ():
             fits = FIT @ np.column_stack(self.margins(s, step.t0 + NODES * step.h, states))
             for i in (0, 1):
                 guard = lambda t, y, s=s, i=i: self.margins(s, t, y)[i]
-                found += [(x, guard, ("uplift", s, 2 + i), fits) for x in reference.unit_roots(fits[:, i])]
+                found += [(x, guard, partial(self.enter, "uplift", s, zeros=2 + i), fits) for x in reference.unit_roots(fits[:, i])]
         found.sort(key=lambda one: one[0])
         following = [*(one[0] for one in found[1:]), 1.0]
         return [one[:3] for one, x in zip(found, following) if np.min(polynomial.polyval((one[0] + x) / 2, one[3])) > 0]
 
     def ends_of_rocking(self, step):
-        """(x, guard, what) of impact, overturning, yielding and its end."""
+        """(x, guard, transition) of impact, overturning, yielding and its end."""
         s, ties, found = self.s, self.ties, []
-        guards = [(-2, 0.0, self.zeros, ("impact",)), (-2, s * math.pi / 2, 0, ("overturning",))]
+        guards = [(-2, 0.0, self.zeros, self.impact), (-2, s * math.pi / 2, 0, partial(self.enter, "overturning", s))]
         for j, (lever, way) in enumerate(zip(ties.levers(self.frame, s), self.yields) if ties.k_d else ()):
             if way:
-                guards.append((-1, 0.0, 0, ("yield", j, 0)))
+                guards.append((-1, 0.0, 0, partial(self.change_yielding, j, 0)))
             for to in () if way else (1, -1):  # |F_j| = F_y at this angle; if that is 0, the impact comes first
                 sine = (self.plastic[j] + to * ties.F_y / ties.k_d) / (2 * lever)
                 if TIE * ties.F_y / ties.k_d / lever * s < s * sine < 1:
-                    guards.append((-2, 2 * math.asin(sine), 2 * (self.released[j] == to), ("yield", j, to)))
-        for column, value, zeros, what in guards:
+                    zeros = 2 * (self.released[j] == to)
+                    guards.append((-2, 2 * math.asin(sine), zeros, partial(self.change_yielding, j, to)))
+        for column, value, zeros, transition in guards:
             c = step.powers[:, column].copy()
             c[0] -= value
             roots = [x for x in reference.unit_roots(c[zeros:]) if x > 0]
-            if what[0] == "impact" and s * step.y1[-2] <= 0:
+            if transition == self.impact and s * step.y1[-2] <= 0:
                 roots.append(1.0)  # also if rounding hides the root at the end of the step
-            found += [(x, lambda t, y, at=column, value=value: y[at] - value, what) for x in roots]
+            found += [(x, lambda t, y, at=column, value=value: y[at] - value, transition) for x in roots]
         return found
 
-    def make(self, step, x, guard, what):
+    def change_yielding(self, which, to):
+        forces, _ = self.forces(self.y[-2], self.s)
+        for j, (F, way) in enumerate(zip(forces, self.yields)):  # elongations turn round together, and may yield again together
+            if j == which or (not way and to * F >= (1 - TIE) * self.ties.F_y if to else way):
+                self.released[j], self.yields[j] = way, to
+                kind = "yielding" if to else "unloading"
+                self.transitions.append(Transition(self.t, kind, self.s, tuple(self.y), tuple(self.y)))
+
+    def make(self, step, x, guard, transition):
         """Makes the transition near x: Newton's iteration on fresh integrations, unless the touch grazes."""
         state = lambda x: step.integrate_to(step.t0 + x * step.h, **self.tolerances)
         slope = np.diff([guard(step.t0 + near * step.h, step.at(near)) for near in (x - 1e-4, x + 1e-4)])[0] / 2e-4
@@ -196,21 +213,8 @@ class Motion:
             change = guard(step.t0 + x * step.h, state(x)) / slope if slope else 0.0
             x = min(max(x - change, 0.0), 1.0) if abs(change) < 1e-3 else x
         self.see(step, x)
-        y = state(x)
-        self.move(step.t0 + x * step.h, y)
-        if what[0] == "uplift":
-            self.enter("uplift", what[1], self.y, what[2])
-        elif what[0] == "overturning":
-            self.enter("overturning", self.s, self.y)
-        elif what[0] == "impact":
-            self.y[-2] = 0.0
-            self.impact()
-        for j, F in enumerate(self.forces(y[-2], self.s)[0] if what[0] == "yield" else ()):  # both turn round, or yield again, together
-            to, way = what[2], self.yields[j]
-            if j == what[1] or (to * F >= (1 - TIE) * self.ties.F_y and not way if to else way):
-                self.released[j], self.yields[j] = way, to
-                kind = "yielding" if to else "unloading"
-                self.transitions.append(Transition(self.t, kind, self.s, tuple(self.y), tuple(self.y)))
+        self.move(step.t0 + x * step.h, state(x))
+        transition()
 
     def move(self, t, y):
         self.t, self.y, self.zeros, self.released = float(t), y.copy(), 0, [0, 0]
@@ -228,21 +232,18 @@ class Motion:
             self.peaks[i] = max([self.peaks[i], *np.abs(polynomial.polyval(np.array(extrema), c))])
 
 
-def simulate(frame: Frame, dt: float, a_g, a_v=None, ties: Ties = Ties(), *, initial=None, at=None, rtol: float = reference.RTOL,
-             atol: float = reference.ATOL):
-    """The response to accelerations (m/s2) linear between samples every dt (s): u, theta, a, V_t, M_t and F_d at the samples, or at
-    the instants `at`; transitions with the state before and after; peaks of u, a, theta, V_t and M_t in one row."""
-    knots, n, rows = dt * np.arange(len(a_g)), len(frame.masses), []
-    at, a_v = knots if at is None else np.asarray(at, dtype=float), np.zeros(len(a_g)) if a_v is None else a_v
+def simulate(frame: Frame, dt: float, a_g, a_v=None, ties: Ties = Ties(), *, initial=None, rtol=1e-13, atol=1e-16):
+    """The response to accelerations (m/s2) linear between samples every dt (s): u, a, theta, V_t, M_t and F_d at the samples;
+    transitions with the states before and after; peaks of u, a, theta, V_t and M_t in one row."""
+    n, time, a_v = len(frame.masses), dt * np.arange(len(a_g)), np.zeros(len(a_g)) if a_v is None else a_v
     motion = Motion(frame, ties, np.zeros(2 * n + 2) if initial is None else initial, rtol, atol)
-    for end in np.union1d(knots, at).tolist():
-        while motion.t < end and abs(motion.y[-2]) < math.pi / 2 - 1e-9:
-            i = min(int(np.searchsorted(knots, motion.t, side="right")) - 1, len(knots) - 2)
-            motion.start = knots[i]
-            motion.a_g, motion.a_v = ((float(values[i]), float(values[i + 1] - values[i]) / dt) for values in (a_g, a_v))
+    rows = [motion.row()]
+    for i, end in enumerate(time[1:].tolist()):
+        motion.start = float(time[i])
+        motion.a_g, motion.a_v = ((float(values[i]), float(values[i + 1] - values[i]) / dt) for values in (a_g, a_v))
+        while motion.t < end and not motion.overturned:
             motion.advance(end)
-        if motion.t == end and end in at:
-            rows.append([end, *motion.outputs(motion.y)[0], *motion.forces(motion.y[-2], motion.s)[0]])
-    rows = np.array(rows)
-    names = dict(time=0, u=slice(1, n + 1), a=slice(n + 1, 2 * n + 1), theta=2 * n + 1, V_t=2 * n + 2, M_t=2 * n + 3, F_d=slice(-2, None))
-    return SimpleNamespace(**{name: rows[:, at] for name, at in names.items()}, transitions=motion.transitions, peaks=motion.peaks)
+        rows += [] if motion.overturned else [motion.row()]
+    names = dict(time=0, u=slice(1, n + 1), a=slice(n + 1, 2 * n + 1), theta=-5, V_t=-4, M_t=-3, F_d=slice(-2, None))
+    columns = {name: np.array(rows)[:, at] for name, at in names.items()}
+    return SimpleNamespace(**columns, transitions=motion.transitions, peaks=motion.peaks)
