@@ -8,57 +8,21 @@ transition to transition. A transition is a root of a polynomial over the step, 
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from functools import partial
 from types import SimpleNamespace
 
 import numpy as np
 import reference
+from frames import Frame
 from numpy.polynomial import polynomial
 from reference import FULL_CONTACT, Transition
 from restrained_reference import Ties
 from scipy.integrate import DOP853
-from scipy.linalg import eigh
 
 MAX_TRANSITIONS = 1000  # within one period of the lowest vibration mode while rocking; then contact is held to its end
 TIE = 1e-12  # an angle this small, relative to that at yield, is 0
 NODES = (1 - np.cos(np.pi * np.arange(8) / 7)) / 2
 FIT = np.linalg.inv(np.vander(NODES, increasing=True))  # from values at NODES to the polynomial of degree 7
-
-
-@dataclass(frozen=True)
-class Frame:
-    """Masses on a rigid base (SI). `stiffness` lists the storeys of a shear frame, or is K. `zeta` is the damping ratio of every
-    mode, or one for each; instead, `rayleigh` is (a, b) of C = a M + b K. Without r, the impact follows from momentum."""
-
-    masses: tuple
-    heights: tuple
-    stiffness: tuple
-    m0: float
-    J0: float
-    B: float
-    r: float | None = None
-    zeta: float | tuple = 0.0
-    rayleigh: tuple | None = None
-    g: float = 9.81
-
-    def __post_init__(self):
-        m, h, K = (np.array(values, dtype=float) for values in (self.masses, self.heights, self.stiffness))
-        if K.ndim == 1:
-            K = np.diag(K + np.append(K[1:], 0)) - np.diag(K[1:], 1) - np.diag(K[1:], -1)
-        squares, phi = eigh(K, np.diag(m))
-        omega, M_phi = np.sqrt(squares), m[:, None] * phi
-        C = M_phi * (2 * np.array(self.zeta) * omega) @ M_phi.T
-        if self.rayleigh:
-            C = self.rayleigh[0] * np.diag(m) + self.rayleigh[1] * K
-        m_t, S_1, I_2 = m.sum() + self.m0, m @ h, m @ h**2
-        J_P = self.J0 + m_t * self.B**2 + I_2
-        omega_r = np.sqrt(eigh(K, np.diag(m) - np.outer(m * h, m * h) / J_P, eigvals_only=True))  # (M13)
-        vars(self).update(m=m, h=h, K=K, C=C, phi=phi, omega=omega, omega_r=omega_r, m_t=m_t, S_1=S_1, I_2=I_2, J_P=J_P,
-                          elastic=np.hstack([K, C]) / m[:, None], period=2 * math.pi / omega_r[0])
-
-    def D(self, s, u):
-        return self.J0 + self.m0 * self.B**2 + self.m @ (s * self.B - u) ** 2
 
 
 class Motion:
@@ -101,7 +65,7 @@ class Motion:
                 - ties.c_d * (2 * p.B**2 + 2 * ties.xi_d**2) * half**2 * theta_dot)
         moment = (p.m * p.h @ f + theta_dot**2 * (s * p.B * p.S_1 - p.m * p.h @ u) + 2 * theta_dot * (p.m * d @ u_dot)
                   - (s * p.m_t * p.B - p.m @ u) * (g * cs + a_g * sn) + tied)
-        theta_ddot = moment / p.D(s, u)  # (M7)
+        theta_ddot = moment / (p.J0 + p.m0 * p.B**2 + p.m @ d**2)  # (M7)
         u_ddot = -f - p.h * theta_ddot - theta_dot**2 * d + (g * sn - a_g * cs)  # (M7), its second line
         return np.concatenate([u_dot, u_ddot, [theta_dot, theta_ddot]])
 
@@ -113,15 +77,12 @@ class Motion:
         return by_rule, by_rule + s * (y[..., n:-2] @ (p.C @ p.h) + (y[..., :n] @ p.m) * self.gravity(t))
 
     def lift_off(self):
-        """Lifts the base off where uplift is due as the state stands, about the side with the larger s theta_ddot."""
-        due = []
+        """Lifts the base off where uplift is due as the state stands; while g + a_v > 0, that is about one side at most."""
         for s in (1, -1) if self.s == FULL_CONTACT and self.t >= self.held_until else ():
-            margins = self.margins(s, self.t, self.y)
-            if min(margins) > 0:
-                due.append((margins[1] / self.frame.D(s, self.y[: self.n]), s))
-        if due:
-            self.enter("uplift", max(due)[1], zeros=2)
-        return bool(due)
+            if min(self.margins(s, self.t, self.y)) > 0:
+                self.enter("uplift", s, zeros=2)
+                return True
+        return False
 
     def enter(self, kind, phase, y=None, zeros=0):
         """Goes into a phase, with the state y if it jumps; theta(t) has so many zeros there."""
@@ -137,7 +98,8 @@ class Motion:
         p, s, u, u_dot, theta_dot = self.frame, self.s, self.y[: self.n], self.y[self.n : -2], self.y[-1]
         rest = p.m @ (p.B**2 - u**2) + p.m0 * p.B**2 - p.J0
         L = p.m * p.h @ (u_dot + p.h * theta_dot) - rest * theta_dot  # (M14)
-        r = (p.I_2 - rest) / (p.I_2 + p.D(-s, u)) if p.r is None else p.r  # (M19)
+        after = p.J0 + p.m0 * p.B**2 + p.I_2 + p.m @ (p.B + s * u) ** 2
+        r = (p.I_2 - rest) / after if p.r is None else p.r  # (M19)
         too_many = self.count >= MAX_TRANSITIONS and self.t - self.burst < p.period
         if L * theta_dot > 0 and r > 0 and not too_many:
             return self.enter("impact", -s, np.concatenate([u, u_dot, [0.0, r * theta_dot]]), 1)  # (M15)
@@ -171,10 +133,12 @@ class Motion:
             fits = FIT @ np.column_stack(self.margins(s, step.t0 + NODES * step.h, states))
             for i in (0, 1):
                 guard = lambda t, y, s=s, i=i: self.margins(s, t, y)[i]
-                found += [(x, guard, partial(self.enter, "uplift", s, zeros=2 + i), fits) for x in reference.unit_roots(fits[:, i])]
+                transition = partial(self.enter, "uplift", s, zeros=2 + i)  # theta_ddot starts at 0 if (M2) is met last
+                found += [(x, guard, transition, fits) for x in reference.unit_roots(fits[:, i])]
         found.sort(key=lambda one: one[0])
         following = [*(one[0] for one in found[1:]), 1.0]
-        return [one[:3] for one, x in zip(found, following) if np.min(polynomial.polyval((one[0] + x) / 2, one[3])) > 0]
+        return [one[:3] for one, x in zip(found, following)
+                if np.min(polynomial.polyval((one[0] + x) / 2, one[3])) > 0]
 
     def ends_of_rocking(self, step):
         """(x, guard, transition) of impact, overturning, yielding and its end."""
