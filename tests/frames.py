@@ -57,23 +57,23 @@ FRAMES = {
     "wall": Frame((12e3, 10e3, 8e3), (2.5, 5.0, 7.5), cantilever((2.5, 5.0, 7.5), 0.8e9), m0=10e3, J0=2e4, B=1.0, r=0.9,
                   zeta=(0.05, 0.03, 0.01)),  # 3.6, 21.6 and 55.6 Hz
 }
-MOTIONS = {  # event, component, first sample, scale
-    "El Centro": ("imperialValley_elCentro_1940", "elc180", 150, 1.6),
-    "Pacoima Dam": ("sanFernando_pacoidaDam_1971", "pul164", 200, 0.6),
+MOTIONS = {  # event, component, first sample, scale of the free and of the tied frame
+    "El Centro": ("imperialValley_elCentro_1940", "elc180", 150, (1.6, 1.6)),
+    "Pacoima Dam": ("sanFernando_pacoidaDam_1971", "pul164", 200, (0.8, 1.0)),
 }
 SCENES = [(frame, motion, tied) for frame in FRAMES for motion in (*MOTIONS, "pulse") for tied in (False, True)]
 
 
 def scene(name: str, motion: str, tied: bool) -> tuple:
-    """The frame, the time step, a_g, a_v and what ties the base down; a record's vertical component acts where it is tied."""
-    frame, samples = FRAMES[name], 250
+    """The frame, the time step, a_g, a_v and what ties the base down; a record's vertical component acts on tied frames alone."""
+    frame, samples = FRAMES[name], 180 if name == "wall" else 250
     if motion == "pulse":
         time = 0.01 * np.arange(samples)
-        dt, a_g, a_v = 0.01, 0.45 * G * np.where(time < 0.8, np.sin(2 * np.pi * time / 0.8), 0.0), np.zeros(samples)
+        a_g, a_v = (0.4 if tied else 0.3) * G * np.where(time < 0.8, np.sin(2 * np.pi * time / 0.8), 0.0), np.zeros(samples)
     else:
-        event, component, first, scale = MOTIONS[motion]
-        (time, a_g), (_, a_v) = (ground_motion(event, which, first + samples, scale=scale) for which in (component, "up"))
-        dt, a_g, a_v = time[1], a_g[first:], a_v[first:]
+        event, component, first, scales = MOTIONS[motion]
+        along, up = (ground_motion(event, which, first + samples, scale=scales[tied]) for which in (component, "up"))
+        time, a_g, a_v = along[0], along[1][first:], up[1][first:]
     weight, B = frame.m_t * frame.g, frame.B
     ties = Ties(P_0=0.3 * weight, k_t=20 * weight / B, xi_d=0.8 * B, c_d=0.02 * weight / B, k_d=50 * weight / B, F_y=0.1 * weight)
-    return (frame, dt, a_g, a_v, ties) if tied else (frame, dt, a_g, np.zeros(samples), Ties())
+    return (frame, time[1], a_g, a_v, ties) if tied else (frame, time[1], a_g, np.zeros(samples), Ties())
