@@ -1,4 +1,4 @@
-"""Frames that rock, and what shakes them: the scenes that the engine is compared with frames_reference.py on."""
+"""Frames that rock, and ground motions that shake them: the scenes of the comparison with frames_reference.py."""
 
 from __future__ import annotations
 

@@ -197,8 +197,8 @@ class Motion:
 
 
 def simulate(frame: Frame, dt: float, a_g, a_v=None, ties: Ties = Ties(), *, initial=None, rtol=1e-13, atol=1e-16):
-    """The response to accelerations (m/s2) linear between samples every dt (s): u, a, theta, V_t, M_t and F_d at the samples;
-    transitions with the states before and after; peaks of u, a, theta, V_t and M_t in one row."""
+    """The response to accelerations (m/s2) linear between samples every dt (s): u, a, theta, V_t, M_t and F_d at the samples.
+    `transitions` have the states before and after; `peaks` has u, a, theta, V_t and M_t in one row."""
     n, time, a_v = len(frame.masses), dt * np.arange(len(a_g)), np.zeros(len(a_g)) if a_v is None else a_v
     motion = Motion(frame, ties, np.zeros(2 * n + 2) if initial is None else initial, rtol, atol)
     rows = [motion.row()]
