@@ -66,7 +66,7 @@ SCENES = [(frame, motion, tied) for frame in FRAMES for motion in (*MOTIONS, "pu
 
 def scene(name: str, motion: str, tied: bool) -> tuple:
     """The frame, the time step, a_g, a_v and what ties the base down; a record's vertical component acts on tied frames alone."""
-    frame, samples = FRAMES[name], 180 if name == "wall" else 250
+    frame, samples = FRAMES[name], 150 if name == "wall" else 250
     if motion == "pulse":
         time = 0.01 * np.arange(samples)
         a_g, a_v = (0.4 if tied else 0.3) * G * np.where(time < 0.8, np.sin(2 * np.pi * time / 0.8), 0.0), np.zeros(samples)
