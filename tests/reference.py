@@ -202,7 +202,7 @@ def _dense_to_powers() -> np.ndarray:
 
 _POWERS = _dense_to_powers()
 _BERNSTEIN = {n: np.array([[math.comb(i, j) / math.comb(n, j) if j <= i else 0.0 for j in range(n + 1)]
-                           for i in range(n + 1)]) for n in (5, 6, 7)}
+                           for i in range(n + 1)]) for n in (4, 5, 6, 7)}
 
 
 def unit_roots(c: np.ndarray) -> list[float]:
