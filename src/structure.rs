@@ -1,5 +1,6 @@
 //! The structure: its parameters and the constants that follow from them (before Eq 11, after 4, 8 and 13, before 18).
 
+pub mod frame;
 pub mod natural_quantities;
 pub mod parameters;
 pub mod quantity;
@@ -88,6 +89,15 @@ pub struct Mode {
     pub stiffness: f64,
     /// Modal damping in full contact 2 ζ ω μ, N·s/m.
     pub damping: f64,
+}
+
+/// Circular frequencies of vibration, rad/s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Vibration {
+    /// The lowest in full contact.
+    pub contact: f64,
+    /// The lowest and the highest while rocking.
+    pub rocking: [f64; 2],
 }
 
 /// A derived quantity, for `describe` and the FMU.
