@@ -4,16 +4,18 @@
 //! elongation turns round, which is where θ̇ does. Right after it has turned its force is still F_y: it yields again only once
 //! it moves that way, so that the zeros of θ̇ at the start are divided out as those of θ are at an uplift.
 
+use crate::Side;
+use crate::engine::Moves;
 use crate::engine::motion::Motion;
-use crate::engine::phases::{BAND, Guard, Step, Way, way};
+use crate::engine::phases::{BAND, Guard, Step, Way};
 use crate::engine::piece::Sample;
 use crate::engine::transition::TransitionKind;
-use crate::levels::level::Level;
+use crate::levels::level::{Level, way};
 use crate::mechanics::restraint::{Dissipators, levers};
 use crate::series::first_crossing::{self, Crossing, first_time_all_closed};
-use crate::series::taylor::ZERO;
+use crate::series::taylor::{ZERO, evaluate};
 use crate::series::terms::Terms;
-use crate::{Side, Structure};
+use crate::structure::{Base, Ties};
 
 /// Rotation at which a dissipator would begin to yield as the base comes down, as a fraction of the rotation that takes it from 0 to
 /// F_y, below which the impact comes first. A dissipator that has yielded up to an impact returns to F_y at the next one: rounding
@@ -23,16 +25,16 @@ const AT_CONTACT: f64 = 1e-10;
 /// A dissipator begins to yield, pulled or pressed by the sign, or ceases to, where the sign is 0.
 pub(crate) struct Yielding;
 
-/// Whether `structure` has dissipators that yield.
+/// Whether `base` has dissipators that yield.
 #[inline]
-pub(crate) fn is_possible(structure: &Structure) -> bool {
-    structure.parameters().F_y > 0.0
+pub(crate) fn is_possible(base: &Base) -> bool {
+    base.ties.F_y > 0.0
 }
 
-impl Guard for Yielding {
-    fn first(&self, &Step { level, side, start, arc, reach }: &Step) -> (Crossing, Way) {
-        let (structure, dissipators) = (level.structure(), start.dissipators);
-        let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
+impl<Q: Moves> Guard<Q> for Yielding {
+    fn first(&self, &Step { level, side, start, arc, reach }: &Step<Q>) -> (Crossing, Way) {
+        let (base, dissipators) = (Q::base(level.structure()), start.dissipators);
+        let Ties { k_d, F_y, .. } = base.ties;
         let mut found = (Crossing::None, Way::default());
         let theta_dot = arc.used(&arc.theta_dot);
         let Some(zeros) = theta_dot.iter().position(|c| c.is_normal()).filter(|_| F_y > 0.0) else { return found };
@@ -41,7 +43,7 @@ impl Guard for Yielding {
                 found = (crossing, Way { which: j as u8, sign });
             }
         };
-        for (j, lever) in moving(structure, side) {
+        for (j, lever) in moving(base, side) {
             // positive while it moves that way
             let moves = |way: f64| first_crossing::Guard::new(&theta_dot[zeros..], (way * lever).signum(), 0.0);
             match dissipators.yields[j] {
@@ -65,7 +67,7 @@ impl Guard for Yielding {
         found
     }
 
-    fn apply(&self, _level: &dyn Level, motion: &mut Motion, way: Way) -> TransitionKind {
+    fn apply(&self, _level: &dyn Level<Q>, motion: &mut Motion<Q>, way: Way) -> TransitionKind {
         let which = usize::from(way.which);
         motion.dissipators.yields[which] = way.sign;
         if way.sign != 0 {
@@ -75,52 +77,52 @@ impl Guard for Yielding {
         TransitionKind::Unloading(which)
     }
 
-    fn stays_open(&self, now: &Sample, ahead: f64) -> bool {
-        if !is_possible(now.level.structure()) {
+    fn stays_open(&self, now: &Sample<Q>, ahead: f64) -> bool {
+        if !is_possible(Q::base(now.level.structure())) {
             return true;
         }
-        let [_, theta_ddot] = now.accelerations();
+        let theta_ddot = now.second().theta_ddot;
         let changes = [now.motion.state.theta_dot, 2.0 * theta_ddot].map(|rate| way(ahead, rate));
         least_margin(now, changes) > 0.0
     }
 
-    fn indicator(&self, now: &Sample) -> (usize, f64) {
+    fn indicator(&self, now: &Sample<Q>) -> (usize, f64) {
         (1, least_margin(now, [0.0; 2]) + BAND)
     }
 }
 
 /// The dissipators, by number, with their levers about `side`; without one at the pivot, which rocking does not elongate.
-fn moving(structure: &Structure, side: Side) -> impl Iterator<Item = (usize, f64)> {
-    levers(structure, side).into_iter().enumerate().filter(|(_, lever)| *lever != 0.0)
+fn moving(base: &Base, side: Side) -> impl Iterator<Item = (usize, f64)> {
+    levers(base, side).into_iter().enumerate().filter(|(_, lever)| *lever != 0.0)
 }
 
 /// Distance of the dissipators from beginning to yield, as a fraction of F_y, or from ceasing to, as a fraction of p_l α_cg: the
 /// smallest, less the most that changes of θ and θ̇ by `changes` (rad, rad/s) can take of it.
-fn least_margin(now: &Sample, changes: [f64; 2]) -> f64 {
-    let (structure, Motion { phase, state, dissipators, .. }) = (now.level.structure(), &now.motion);
+fn least_margin<Q: Moves>(now: &Sample<Q>, changes: [f64; 2]) -> f64 {
+    let (base, Motion { phase, state, dissipators, .. }) = (Q::base(now.level.structure()), &now.motion);
     let (side, angles) = (phase.side(), now.level.angles());
-    let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
+    let Ties { k_d, F_y, .. } = base.ties;
     let chord = angles.chord(state.theta, 0.0).length;
     let of = |(j, lever): (usize, f64)| match f64::from(dissipators.yields[j]) {
         _ if F_y == 0.0 => 1.0,
         0.0 => 1.0 - k_d * ((lever * chord - dissipators.plastic[j]).abs() + lever.abs() * changes[0]) / F_y,
         way => {
-            let natural = structure.p_l * libm::atan(structure.tan_alpha_cg);
+            let natural = base.p_l * libm::atan(base.tan_alpha_cg);
             (way * lever.signum() * state.theta_dot - changes[1]) / natural
         }
     };
-    moving(structure, side).map(of).fold(1.0, f64::min)
+    moving(base, side).map(of).fold(1.0, f64::min)
 }
 
 /// The dissipators at the reach of a step, if there are any.
-pub(crate) fn moved(&Step { level, side, start, arc, reach }: &Step) -> Option<Dissipators> {
-    let (structure, angles, dissipators) = (level.structure(), level.angles(), start.dissipators);
-    if !structure.is_restrained() {
+pub(crate) fn moved<Q: Moves>(&Step { level, side, start, arc, reach }: &Step<Q>) -> Option<Dissipators> {
+    let (base, angles, dissipators) = (Q::base(level.structure()), level.angles(), start.dissipators);
+    if !base.is_restrained() {
         return None;
     }
-    let &crate::Parameters { B, xi_d, c_d, k_d, F_y, .. } = structure.parameters();
-    let (mut moved, theta) = (*dissipators, arc.at(reach).theta);
-    for (j, lever) in levers(structure, side).into_iter().enumerate() {
+    let &Base { B, ties: Ties { xi_d, c_d, k_d, F_y, .. }, .. } = base;
+    let (mut moved, theta) = (*dissipators, evaluate(arc.used(&arc.theta), reach));
+    for (j, lever) in levers(base, side).into_iter().enumerate() {
         let way = f64::from(dissipators.yields[j]);
         if way != 0.0 {
             let plastic = lever * angles.chord(theta, 0.0).length - way * F_y / k_d;

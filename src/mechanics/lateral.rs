@@ -7,7 +7,7 @@ use crate::Structure;
 use crate::numbers::Number;
 use crate::series::taylor::evaluate;
 use crate::structure::frame::Frame;
-use crate::structure::{Base, Mode};
+use crate::structure::{Base, Mode, Vibration};
 use serde::{Deserialize, Serialize};
 use std::fmt::Debug;
 
@@ -34,7 +34,10 @@ pub trait Lateral<N: Number>: Copy {
 }
 
 /// Lateral coordinates of a state, or anything else that has a value for each mode.
-pub trait Coordinates: Lateral<f64> + Debug + PartialEq {
+pub trait Coordinates: Lateral<f64> + Debug + PartialEq + 'static {
+    /// The frequencies of vibration of a structure.
+    fn vibration(structure: &Self::Structure) -> Vibration;
+
     /// All coordinates are 0.
     const ZERO: Self;
 
@@ -86,6 +89,11 @@ impl<N: Number> Lateral<N> for N {
 }
 
 impl Coordinates for f64 {
+    #[inline(always)]
+    fn vibration(structure: &Structure) -> Vibration {
+        Vibration { contact: structure.omega_fc, rocking: [structure.omega_u; 2] }
+    }
+
     const ZERO: f64 = 0.0;
 
     #[inline(always)]
@@ -185,6 +193,11 @@ impl Lateral<f64> for Modes {
 }
 
 impl Coordinates for Modes {
+    #[inline(always)]
+    fn vibration(structure: &Frame) -> Vibration {
+        structure.vibration
+    }
+
     const ZERO: Modes = Modes { count: 0, of: [0.0; MOST_MODES] };
 
     #[inline(always)]
@@ -239,6 +252,7 @@ mod tests {
     use crate::mechanics::instant::{Instant, Second};
     use crate::mechanics::outputs::acceleration;
     use crate::mechanics::reactions::{Impulse, Reactions};
+    use crate::structure::Ties;
     use crate::{Load, Parameters, Phase, Side, State};
     use approx::assert_relative_eq;
     use nalgebra::{Matrix3, Vector3};
@@ -292,7 +306,10 @@ mod tests {
             let damping = mass * shapes * weights * shapes.transpose() * mass;
             let m_t = m.sum() + m0;
             let J_P = J0 + m_t * B * B + m.dot(&h.component_mul(&h));
-            let frame = Frame::new(Base { m_t, m0, B, J0, J_P, r, g, c_ratio }, &modes).unwrap();
+            let S_1 = m.dot(&h);
+            let (p_l, tan_alpha_cg, ties) = ((g * S_1 / J_P).sqrt(), m_t * B / S_1, Ties::default());
+            let base = Base { m_t, m0, B, J0, J_P, r, g, c_ratio, p_l, tan_alpha_cg, ties };
+            let frame = Frame::new(base, &modes).unwrap();
             Masses { frame, m, h, stiffness, damping, shapes }
         }
 

@@ -148,6 +148,11 @@ pub struct LinearLoad<Q = f64> {
 }
 
 impl<Q: Coordinates> LinearLoad<Q> {
+    /// Constant loads.
+    pub(crate) fn held(value: Load<Q>) -> LinearLoad<Q> {
+        LinearLoad { value, slope: Load { a_g: 0.0, F_t: Q::ZERO, a_v: 0.0 } }
+    }
+
     /// Loads `tau` seconds after the start of the interval.
     #[inline]
     pub fn at(self, tau: f64) -> Load<Q> {
@@ -214,7 +219,7 @@ impl LinearLoad {
 /// Constant loads.
 impl From<Load> for LinearLoad {
     fn from(value: Load) -> LinearLoad {
-        LinearLoad { value, slope: Load::default() }
+        LinearLoad::held(value)
     }
 }
 

@@ -1,6 +1,7 @@
 //! State and phase of the structure.
 
 use crate::Structure;
+use crate::mechanics::lateral::Coordinates;
 use crate::structure::quantity::{OutOfRange, Quantity, quantity, with_unit};
 use serde::{Deserialize, Serialize};
 
@@ -151,16 +152,24 @@ impl State {
         State { u, u_dot: structure.omega_fc * u, theta, theta_dot: structure.p_l * theta }
     }
 
-    /// Whether all components are finite numbers.
-    pub fn is_finite(&self) -> bool {
-        (self.u + self.u_dot + self.theta + self.theta_dot).abs() <= f64::MAX // one instruction where f64::is_finite takes a dozen
-    }
-
     /// The phase that this state starts in: full contact for θ = 0, otherwise rocking about the side of θ's sign.
     pub fn initial_phase(&self) -> Result<Phase, InitialStateError> {
         for quantity in &INITIAL_VALUES {
             quantity.check((quantity.get)(self))?;
         }
+        self.phase()
+    }
+}
+
+impl<Q: Coordinates> State<Q> {
+    /// Whether all components are finite numbers.
+    pub fn is_finite(&self) -> bool {
+        // one instruction where f64::is_finite takes a dozen
+        (self.u.total() + self.u_dot.total() + self.theta + self.theta_dot).abs() <= f64::MAX
+    }
+
+    /// The phase by θ and θ̇.
+    pub(crate) fn phase(&self) -> Result<Phase, InitialStateError> {
         if self.theta != 0.0 {
             Ok(Phase::Rocking(Side::of(self.theta)))
         } else if self.theta_dot == 0.0 {
