@@ -17,8 +17,10 @@ pub mod transition;
 pub(crate) mod yielding;
 
 use crate::levels::detail::{AnyLevel, Detail, by_level};
-use crate::levels::level::Level;
-use crate::mechanics::lateral::Coordinates;
+use crate::levels::level::{Level, Subject};
+use crate::levels::modes::Nonlinear;
+use crate::mechanics::energy::energy;
+use crate::mechanics::lateral::{Coordinates, Modes};
 use crate::mechanics::load::{LOADS, LinearLoad, Load, Ramp};
 use crate::mechanics::reactions::{Impulse, Reactions};
 use crate::mechanics::restraint::{Dissipators, Restraint, Restraints};
@@ -26,7 +28,7 @@ use crate::mechanics::state::InitialStateError;
 use crate::series::first_crossing::Crossing;
 use crate::series::taylor::{Arc, Start};
 use crate::structure::quantity::with_unit;
-use crate::{Outputs, Phase, State, Structure};
+use crate::{Frame, Outputs, Phase, State, Structure};
 use motion::{Chatter, Motion, Work};
 use phases::{Closed, Step, Watched};
 use piece::{Piece, Sample, Watch};
@@ -177,9 +179,13 @@ impl Default for Settings {
 impl Settings {
     /// The level of detail of `structure`.
     fn level(&self, structure: Structure) -> Result<Box<AnyLevel>, InitialStateError> {
+        self.detail.level(structure, self.local_error()?, self.vertical).map(Box::new)
+    }
+
+    /// The truncation error that a step may have.
+    fn local_error(&self) -> Result<f64, InitialStateError> {
         check_tolerance(self.tolerance)?;
-        let local_error = (LOCAL_SHARE * self.tolerance).clamp(f64::EPSILON / 2.0, LARGEST_LOCAL_ERROR);
-        self.detail.level(structure, local_error, self.vertical).map(Box::new)
+        Ok((LOCAL_SHARE * self.tolerance).clamp(f64::EPSILON / 2.0, LARGEST_LOCAL_ERROR))
     }
 }
 
@@ -200,6 +206,28 @@ impl Moves for f64 {
     #[inline(always)]
     fn advance<W: Watch>(any: &AnyLevel, task: Task<'_, f64, W>) -> Result<Progress, AdvanceError> {
         by_level!(any, level => task.with(any, level))
+    }
+}
+
+/// The levels of detail of structures of many masses.
+#[doc(hidden)]
+#[derive(Debug)]
+#[allow(private_interfaces)] // the coordinates name the type, and nobody else can use it
+pub struct LevelOfModes(Nonlinear);
+
+impl Deref for LevelOfModes {
+    type Target = dyn Level<Modes>;
+
+    fn deref(&self) -> &Self::Target {
+        &self.0
+    }
+}
+
+impl Moves for Modes {
+    type Level = LevelOfModes;
+
+    fn advance<W: Watch<Modes>>(any: &LevelOfModes, task: Task<'_, Modes, W>) -> Result<Progress, AdvanceError> {
+        task.with(any, &any.0)
     }
 }
 
@@ -327,6 +355,37 @@ impl Engine {
             [arc.u_dot[k as usize], arc.theta_dot[k as usize]].map(|c| factor * c / arc.span.powi(k))
         };
         [derivative(1, 1.0), derivative(2, 2.0)]
+    }
+}
+
+impl Engine<Modes> {
+    /// Starts the structure `frame` of many masses at `time` (s) from `state`, at the level of detail `auto` or `nonlinear`.
+    pub fn of_modes(
+        frame: Frame,
+        state: State<Modes>,
+        time: f64,
+        settings: Settings,
+    ) -> Result<Engine<Modes>, InitialStateError> {
+        let phase = state.phase()?;
+        let is_tied = frame.base.is_restrained() || settings.vertical;
+        let subject = Subject { structure: frame, local_error: settings.local_error()?, is_tied };
+        let is_exact = match settings.detail {
+            Detail::Auto => true,
+            Detail::Nonlinear => false,
+            other => return Err(InitialStateError::OneMass(other.name())),
+        };
+        let level = Box::new(LevelOfModes(Nonlinear::new(subject, is_exact)));
+        Ok(Engine::start(level, settings, time, state, phase, Dissipators::NEW))
+    }
+
+    /// The structure.
+    pub fn frame(&self) -> &Frame {
+        self.level.structure()
+    }
+
+    /// Mechanical energy now, J.
+    pub fn energy(&self) -> f64 {
+        energy(self.frame(), self.motion.phase, &self.motion.state)
     }
 }
 

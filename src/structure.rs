@@ -66,8 +66,8 @@ pub struct Base {
     pub J0: f64,
     /// Inertia of the whole structure about a pivot J_P, kg·m².
     pub J_P: f64,
-    /// Coefficient of restitution.
-    pub r: f64,
+    /// Coefficient of restitution; without one, momentum with the shape frozen gives a coefficient for each impact.
+    pub r: Option<f64>,
     /// Acceleration of gravity, m/s².
     pub g: f64,
     /// Viscous damping while rocking as a fraction of the damping in full contact.
@@ -197,7 +197,7 @@ impl Structure {
         Ok(Structure {
             parameters,
             is_restrained: [P_0, k_t, c_d, k_d].iter().any(|restraint| *restraint > 0.0),
-            base: Base { m_t: m + m0, m0, B, J0, J_P, r, g, c_ratio, p_l, tan_alpha_cg, ties },
+            base: Base { m_t: m + m0, m0, B, J0, J_P, r: Some(r), g, c_ratio, p_l, tan_alpha_cg, ties },
             mode: Mode { mass: m, gamma: m, share: 1.0, height: H, stiffness: k, damping: c_fc },
             gamma,
             omega_fc,

@@ -162,6 +162,21 @@ impl Modes {
         &self.of[..self.count]
     }
 
+    /// Writes the number of mode `j`.
+    #[inline]
+    pub(crate) fn set(&mut self, j: usize, number: f64) {
+        self.of[j] = number;
+    }
+
+    /// Adds `factor` times `other`.
+    #[inline(always)]
+    pub(crate) fn add(&mut self, other: &Modes, factor: f64) {
+        self.count = self.count.max(other.count);
+        for (own, other) in self.of.iter_mut().zip(&other.of[..self.count]) {
+            *own += other * factor;
+        }
+    }
+
     /// Combines the numbers of each mode.
     #[inline(always)]
     fn with(mut self, other: &Modes, combine: impl Fn(f64, f64) -> f64) -> Modes {
@@ -308,7 +323,7 @@ mod tests {
             let J_P = J0 + m_t * B * B + m.dot(&h.component_mul(&h));
             let S_1 = m.dot(&h);
             let (p_l, tan_alpha_cg, ties) = ((g * S_1 / J_P).sqrt(), m_t * B / S_1, Ties::default());
-            let base = Base { m_t, m0, B, J0, J_P, r, g, c_ratio, p_l, tan_alpha_cg, ties };
+            let base = Base { m_t, m0, B, J0, J_P, r: Some(r), g, c_ratio, p_l, tan_alpha_cg, ties };
             let frame = Frame::new(base, &modes).unwrap();
             Masses { frame, m, h, stiffness, damping, shapes }
         }
@@ -404,7 +419,7 @@ mod tests {
             // (M16)
             let going = State { u_dot: frame.modal(&(-s * u_dot)), ..before };
             let (phase, after) = resolve(&*frame, side, &going);
-            assert_eq!((phase, after.theta_dot), (Phase::Rocking(side.opposite()), r * theta_dot));
+            assert_eq!((phase, after.theta_dot), (Phase::Rocking(side.opposite()), r.unwrap() * theta_dot));
             let gained = of(phase, &after) - of(Phase::Rocking(side), &going);
             assert_relative_eq!(energy_gained(&*frame, side, &going), gained, max_relative = 1e-9);
         }

@@ -103,6 +103,12 @@ impl Tie {
     pub(crate) fn force<N: Number>(&self, length: N, rate: N) -> N {
         N::constant(self.force) + (length * self.stiffness + rate * self.damping) * self.lever
     }
+
+    /// The moment by which the tie that stands for all ties turns the base back at this `chord`, N·m.
+    #[inline]
+    pub(crate) fn moment<N: Number>(&self, chord: &Chord<N>) -> N {
+        self.force(chord.length, chord.rate) * chord.half.cos
+    }
 }
 
 /// The levers of the dissipators while rocking about `side`, m.
@@ -172,7 +178,7 @@ impl<'a> Restraint<'a> {
     /// The moment Σ F l cos(θ/2) about the pivot by which the ties turn the base back, N·m.
     #[inline]
     pub(crate) fn moment<N: Number>(&self, chord: &Chord<N>) -> N {
-        self.moments().force(chord.length, chord.rate) * chord.half.cos
+        self.moments().moment(chord)
     }
 
     /// Pulls of the ties on the ground, up and to the right, N, and their moment about the place of the middle of the base in

@@ -124,6 +124,9 @@ pub enum InitialStateError {
          time and with what yields: choose linear, or set P_0, k_t, c_d, k_d and a_v to 0"
     )]
     RestrainedModal,
+    /// Structures of many masses have no such level.
+    #[error("detail = {0} moves structures of one mass alone: choose auto or nonlinear")]
+    OneMass(&'static str),
     /// The top mass is displaced although the strut is rigid.
     #[error("u_0 = {u:?} m, u_dot_0 = {u_dot:?} m/s contradict detail = rigid, where u is always 0: set both to 0")]
     DeformedRigid {
