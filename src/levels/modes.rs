@@ -406,3 +406,90 @@ impl Level<Modes> for Nonlinear {
         Second { u_ddot: Modes::each(frame, |j, mode| along(j, mode) - mode.height * theta_ddot), theta_ddot }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::levels::nonlinear::accelerations;
+    use crate::mechanics::load::LinearLoad;
+    use crate::{Parameters, Structure};
+    use approx::assert_relative_eq;
+
+    /// A restrained structure whose modes have these shares.
+    fn frame(shares: &[f64]) -> (Structure, Frame) {
+        let restrained =
+            Parameters { P_0: 200.0, k_t: 3e4, xi_d: 0.1, c_d: 40.0, k_d: 1e5, F_y: 400.0, ..Parameters::MCMANUS };
+        let structure = Structure::new(Parameters { zeta_fc: 0.1, c_ratio: 1.3, ..restrained }).unwrap();
+        let mode = |(j, share): (usize, &f64)| {
+            let Mode { mass, height, stiffness, damping, .. } = structure.mode;
+            let (mass, stiffer) = (mass / shares.len() as f64 / (share * share), (1 + j) as f64);
+            Mode {
+                mass,
+                gamma: mass * share,
+                share: *share,
+                height: height * share / stiffer,
+                stiffness: mass * stiffer * stiffness / structure.mode.mass,
+                damping: mass * damping / structure.mode.mass,
+            }
+        };
+        let modes: Vec<_> = shares.iter().enumerate().map(mode).collect();
+        (structure, Frame::new(structure.base, &modes).unwrap())
+    }
+
+    fn level(frame: Frame) -> Nonlinear {
+        Nonlinear::new(Subject { structure: frame, local_error: 1e-16, is_tied: true }, false)
+    }
+
+    /// One mode of any scale, under all loads and with all ties, against Eqs 5 and 6.
+    #[test]
+    fn one_mode_has_the_accelerations_of_equations_5_and_6() {
+        let (scale, dissipators) = (1.7, Dissipators { plastic: [2e-3, -1e-3], yields: [0, 1], ..Dissipators::NEW });
+        let (structure, frame) = frame(&[1.0 / scale]);
+        for side in [Side::Right, Side::Left] {
+            let theta = 0.1 * side.sign();
+            let one = State { u: 0.02, u_dot: -0.7, theta, theta_dot: 0.6 };
+            let load = Load { a_g: 3.0, F_t: 250.0, a_v: -1.5 };
+            let expected = accelerations(&structure, side, &one, load, &dissipators).unwrap();
+            let of = |number: f64| Modes::new(&[number]);
+            let state = State { u: of(one.u / scale), u_dot: of(one.u_dot / scale), theta, theta_dot: one.theta_dot };
+            let load = Load { a_g: load.a_g, F_t: of(load.F_t * scale), a_v: load.a_v };
+            let now = Now { state: &state, load, dissipators: &dissipators };
+            let found = level(frame).accelerations(Phase::Rocking(side), &now);
+            assert_relative_eq!(scale * found.u_ddot.of(0), expected[0], max_relative = 1e-12);
+            assert_relative_eq!(found.theta_ddot, expected[1], max_relative = 1e-12);
+        }
+    }
+
+    /// The derivatives of the series are the accelerations along it, under all loads and with all ties.
+    #[test]
+    fn the_series_satisfies_the_equations_of_many_masses() {
+        let (_, frame) = frame(&[1.3, -0.6, 0.4]);
+        let level = level(frame);
+        let dissipators = Dissipators { plastic: [2e-3, -1e-3], ..Dissipators::NEW };
+        let modes = |numbers: [f64; 3]| Modes::new(&numbers);
+        let state =
+            State { u: modes([0.01, -0.02, 0.005]), u_dot: modes([0.3, 0.1, -0.2]), theta: -0.2, theta_dot: 0.5 };
+        let load = LinearLoad {
+            value: Load { a_g: 3.0, F_t: modes([100.0, -200.0, 50.0]), a_v: -1.5 },
+            slope: Load { a_g: 200.0, F_t: modes([-3e3, 1e4, 2e4]), a_v: 80.0 },
+        };
+        for phase in [Phase::Rocking(Side::Left), Phase::FullContact] {
+            let start = level.subject().start(level.admissible(phase, state), &dissipators, load, 3e-3);
+            let mut arc = Arc::default();
+            level.series(phase, &start, &mut arc);
+            assert_eq!(arc.reach, 1.0);
+            for sigma in [0.0, 0.3, 1.0] {
+                let now = Now { state: &arc.at(sigma), load: load.at(sigma * arc.span), dissipators: &dissipators };
+                let Second { u_ddot, theta_ddot } = level.accelerations(phase, &now);
+                let slope = |coefficient: &dyn Fn(usize) -> f64| -> f64 {
+                    (1..=arc.order).map(|k| k as f64 * coefficient(k) * sigma.powi(k as i32 - 1)).sum::<f64>()
+                        / arc.span
+                };
+                assert_relative_eq!(slope(&|k| arc.theta_dot[k]), theta_ddot, epsilon = 1e-9);
+                for j in 0..3 {
+                    assert_relative_eq!(slope(&|k| arc.u_dot[k].of(j)), u_ddot.of(j), epsilon = 1e-9);
+                }
+            }
+        }
+    }
+}

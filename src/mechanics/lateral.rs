@@ -263,7 +263,7 @@ impl Mode {
 mod tests {
     use super::*;
     use crate::mechanics::energy::energy;
-    use crate::mechanics::impact::{angular_momentum, energy_gained, land, resolve};
+    use crate::mechanics::impact::{angular_momentum, energy_gained, land, resolve, restitution};
     use crate::mechanics::instant::{Instant, Second};
     use crate::mechanics::outputs::acceleration;
     use crate::mechanics::reactions::{Impulse, Reactions};
@@ -416,6 +416,13 @@ mod tests {
             let mu = frame.m.dot(&u);
             assert_relative_eq!(I_h, 0.0, epsilon = 1e-9);
             assert_relative_eq!(I_v, -(s * frame.base.m_t * B - mu) * theta_dot, max_relative = 1e-12);
+            // (M19)
+            let momentum = Frame::new(Base { r: None, ..frame.base }, frame.modes()).unwrap();
+            let of_masses = |with: &dyn Fn(usize) -> f64| (0..3).map(|i| frame.m[i] * with(i)).sum::<f64>();
+            let rest = of_masses(&|i| B * B - u[i] * u[i]) + m0 * B * B - J0;
+            let height = of_masses(&|i| frame.h[i] * frame.h[i]);
+            let after = J0 + m0 * B * B + height + of_masses(&|i| (B + s * u[i]).powi(2));
+            assert_relative_eq!(restitution(&momentum, side, &before), (height - rest) / after, max_relative = 1e-12);
             // (M16)
             let going = State { u_dot: frame.modal(&(-s * u_dot)), ..before };
             let (phase, after) = resolve(&*frame, side, &going);
