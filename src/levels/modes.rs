@@ -1,6 +1,6 @@
 //! Structures of many masses: exact modes in full contact, nonlinear rocking on a base that carries the modes.
 //!
-//! With μ, h and Γ of each mode, its part S = Γ/μ in a translation, w = sB S − u and e = (c u̇ + k u)/μ, the equations (M8), (M9) are
+//! Each mode has μ, h and Γ, and takes the part S = Γ/μ in a translation. With w = sB S − u and e = (c u̇ + k u)/μ, (M8) and (M9) are
 //!
 //! ```text
 //! ü + h θ̈ = −e − w θ̇² + S g sin θ − a cos θ                    a = S a_g − φᵀF/μ of each mode
@@ -14,7 +14,7 @@ use crate::levels::level::{Level, Now, Rates, Subject, way};
 use crate::levels::oscillator::{Flow, Kept, Oscillator, Swing};
 use crate::levels::ties::TieSeries;
 use crate::mechanics::instant::Second;
-use crate::mechanics::lateral::{Coordinates, Lateral, Modes};
+use crate::mechanics::lateral::{Coordinates, Lateral, MOST_MODES, Modes};
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{self, Angles, Dissipators};
 use crate::mechanics::uplift::LEAST_EXCESS;
@@ -53,6 +53,8 @@ pub(crate) struct Nonlinear {
 struct Scratch {
     /// w of each mode.
     lever: Series<Modes>,
+    /// μ w of each mode.
+    moment: Series<Modes>,
     /// D.
     inertia: Series,
     /// X.
@@ -74,7 +76,7 @@ fn inertia(frame: &Frame, side: Side, u: &Modes) -> f64 {
     J0 + m0 * B * B + Modes::sum(frame, |j, mode| mode.mass * lever(j, mode) * lever(j, mode))
 }
 
-/// What holds the base down about `side` under the vertical acceleration `a_v`, N·m: the right side of (M3).
+/// The moment that holds the base down about `side` under the vertical acceleration `a_v`, N·m: the right side of (M3).
 fn hold(base: &Base, side: Side, a_v: f64, dissipators: &Dissipators) -> f64 {
     let [tendon, pair @ ..] = restraint::ties(base, side, dissipators);
     let residual: f64 = pair.iter().map(|tie| tie.lever * tie.force).sum();
@@ -114,6 +116,7 @@ impl Nonlinear {
             longest_span: LONGEST_SPAN / fastest,
             scratch: RefCell::new(Box::new(Scratch {
                 lever: [Modes::ZERO; MAX_ORDER + 2],
+                moment: [Modes::ZERO; MAX_ORDER + 2],
                 inertia: ZERO,
                 offset: ZERO,
                 sin: ZERO,
@@ -183,11 +186,19 @@ impl Nonlinear {
         let force = |a: &Modes, a_g: f64| Modes::each(frame, |j, mode| mode.share * a_g - a.of(j));
         let (pushed, push_slope) = (force(&a_top.value, a_g.value), force(&a_top.slope, a_g.slope).times(span));
         let is_pushed = !(pushed.is_within(&Modes::ZERO) && push_slope.is_within(&Modes::ZERO));
-        let Scratch { lever, inertia, offset, sin, cos, weight, square, push } = &mut **self.scratch.borrow_mut();
+        let Scratch { lever, moment: heavy, inertia, offset, sin, cos, weight, square, push } =
+            &mut **self.scratch.borrow_mut();
         lever[0] = Modes::each(frame, |j, mode| pivot * mode.share - state.u.of(j));
         (sin[0], cos[0]) = libm::sincos(state.theta);
         inertia[0] = J0 + m0 * B * B + Modes::sum(frame, |j, mode| mode.mass * lever[0].of(j) * lever[0].of(j));
         offset[0] = pivot * m0 + Modes::sum(frame, |j, mode| mode.gamma * lever[0].of(j));
+        let (modes, mut elastic) = (frame.modes().len(), [[0.0; 2]; MOST_MODES]);
+        elastic.iter_mut().zip(frame.modes()).for_each(|(elastic, mode)| {
+            *elastic = [mode.stiffness / mode.mass, c_ratio * mode.damping / mode.mass];
+        });
+        heavy[0] = Modes::each(frame, |j, mode| mode.mass * lever[0].of(j));
+        let shares = Modes::each(frame, |_, mode| mode.share);
+        let arms = Modes::each(frame, |_, mode| mode.mass * mode.height);
         let per_inertia = 1.0 / inertia[0];
         arc.expand(&state, span, self.truncation(start, span, true), |arc, k, per| {
             let n = k - 1;
@@ -202,11 +213,12 @@ impl Nonlinear {
                 turning.add(&lever[i], square[n - i]);
             }
             let (u, u_dot) = (&arc.u[n], &arc.u_dot[n]);
-            let held = Modes::each(frame, |j, mode| {
-                (c_ratio * mode.damping * u_dot.of(j) + mode.stiffness * u.of(j)) / mode.mass + turning.of(j)
-            });
-            let mut moment =
-                Modes::sum(frame, |j, mode| mode.mass * mode.height * held.of(j)) - product(offset, weight, n);
+            // e + w θ̇²
+            let mut held = turning;
+            for (j, [stiffness, damping]) in elastic.iter().enumerate().take(modes) {
+                held.set(j, held.of(j) + (stiffness * u.of(j) + damping * u_dot.of(j)));
+            }
+            let mut moment = arms.dot(&held) - product(offset, weight, n);
             if is_pushed {
                 let lever_before = if n > 0 { lever[n - 1] } else { Modes::ZERO };
                 push[n] = Modes::sum(frame, |j, mode| {
@@ -219,15 +231,16 @@ impl Nonlinear {
             }
             // what the orders before leave of D θ̇
             lever[k] = arc.u[k].times(-1.0);
+            heavy[k] = Modes::each(frame, |j, mode| mode.mass * lever[k].of(j));
             let (mut of_inertia, half) = (0.0, k.div_ceil(2));
             for i in 0..half {
-                of_inertia += 2.0 * Modes::sum(frame, |j, mode| mode.mass * lever[i].of(j) * lever[k - i].of(j));
+                of_inertia += 2.0 * lever[i].dot(&heavy[k - i]);
             }
             if k % 2 == 0 {
-                of_inertia += Modes::sum(frame, |j, mode| mode.mass * lever[half].of(j) * lever[half].of(j));
+                of_inertia += lever[half].dot(&heavy[half]);
             }
             inertia[k] = of_inertia;
-            offset[k] = Modes::sum(frame, |j, mode| mode.gamma * lever[k].of(j));
+            offset[k] = shares.dot(&heavy[k]);
             let known: f64 = (1..=k).map(|i| inertia[i] * arc.theta_dot[k - i]).sum();
             let theta_dot = per_inertia * (moment * per - known);
             let u_dot = Modes::each(frame, |j, mode| {
