@@ -26,11 +26,14 @@ fn first_about(structure: &Structure, turning: &TurningMoment, start: &Start, ar
     let end = if a_v_change == 0.0 { hold } else { restraint.hold(a_v + a_v_change) };
     let [rise, gain] = [end.displacement - hold.displacement, end.moment - hold.moment];
     let moving = a_v_change != 0.0;
-    let mut displacement = arc.u;
+    let mut risen;
+    let mut displacement = &arc.u;
     if moving {
-        displacement[1] -= s * rise;
+        risen = arc.u;
+        risen[1] -= s * rise;
+        displacement = &risen;
     }
-    let displacement = Guard::new(arc.used(&displacement), -s, hold.displacement);
+    let displacement = Guard::new(arc.used(displacement), -s, hold.displacement);
     let is_held = hold.displacement.min(end.displacement) > 0.0;
     if is_held && displacement.is_open_throughout(arc.reach) {
         return Crossing::None;
