@@ -511,7 +511,7 @@ impl<L: Level, P: Fn(&Motion) -> Option<&'static Watched>> Loop<'_, L, P> {
             let mut step =
                 Step { level, side: motion.phase.side(), start: &begin, arc: self.arc, reach: self.arc.reach };
             let closed = first(watched, &mut step);
-            let (reach, moved) = (step.reach, (watched.dissipators)(&step));
+            let (reach, moved) = (step.reach, watched.moved(level.structure(), &step));
             self.arc.reach = reach;
             let duration = self.arc.duration();
             if !self.arc.is_finite() || reach < 1.0 && self.is_at_its_end(motion, closed) {

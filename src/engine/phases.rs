@@ -12,7 +12,7 @@ use crate::mechanics::impact;
 use crate::mechanics::restraint::Dissipators;
 use crate::series::first_crossing::{self, Crossing, first_time_all_closed};
 use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
-use crate::{Phase, Side};
+use crate::{Phase, Side, Structure};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
 
@@ -78,8 +78,16 @@ pub(crate) struct Watched {
     /// A cheap proof that no guard closes over a step.
     pub stays: Option<fn(&Step) -> bool>,
     pub guards: &'static [&'static dyn Guard],
-    /// The dissipators at the reach of a step, if the step moves them.
-    pub dissipators: fn(&Step) -> Option<Dissipators>,
+    /// The dissipators at the reach of a step, if a step moves them.
+    pub moved: Option<fn(&Step) -> Dissipators>,
+}
+
+impl Watched {
+    /// The dissipators at the reach of `step`, if it moves them.
+    #[inline]
+    pub(crate) fn moved(&self, structure: &Structure, step: &Step) -> Option<Dissipators> {
+        self.moved.filter(|_| structure.is_restrained()).map(|moved| moved(step))
+    }
 }
 
 /// Full contact that is held after too many transitions.
@@ -92,12 +100,12 @@ static CONTACT: Watched = Watched { guards: &[&Uplift], ..RESTING };
 static ROCKING: Watched = Watched {
     stays: Some(|step| !yielding::is_possible(step.level.structure()) && stays_about(step.arc, step.side)),
     guards: &[&Yielding, &Overturning, &Impact],
-    dissipators: yielding::moved,
+    moved: Some(yielding::moved),
     ..RESTING
 };
 
 /// A phase in which the base does not move, without guards.
-pub(super) const RESTING: Watched = Watched { lasts: None, stays: None, guards: &[], dissipators: |_| None };
+pub(super) const RESTING: Watched = Watched { lasts: None, stays: None, guards: &[], moved: None };
 
 /// The phase of `motion`; none once the structure has overturned.
 #[inline]

@@ -180,7 +180,8 @@ impl Piece<'_> {
     fn dissipators_at(&self, tau: f64) -> Dissipators {
         let moved = phases::of(self.before).zip(self.arc).and_then(|(watched, arc)| {
             let (level, side) = (&**self.level, self.before.phase.side());
-            (watched.dissipators)(&Step { level, side, start: &self.whole().step(), arc, reach: tau / arc.span })
+            let step = Step { level, side, start: &self.whole().step(), arc, reach: tau / arc.span };
+            watched.moved(level.structure(), &step)
         });
         moved.unwrap_or(self.before.dissipators)
     }

@@ -34,8 +34,11 @@ impl Guard for Yielding {
         let (structure, dissipators) = (level.structure(), start.dissipators);
         let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
         let mut found = (Crossing::None, Way::default());
+        if !is_possible(structure) {
+            return found;
+        }
         let theta_dot = arc.used(&arc.theta_dot);
-        let Some(zeros) = theta_dot.iter().position(|c| c.is_normal()).filter(|_| F_y > 0.0) else { return found };
+        let Some(zeros) = theta_dot.iter().position(|c| c.is_normal()) else { return found };
         let mut see = |crossing: Crossing, j: usize, sign: i8| {
             if crossing.sigma() < found.0.sigma() {
                 found = (crossing, Way { which: j as u8, sign });
@@ -112,12 +115,9 @@ fn least_margin(now: &Sample, changes: [f64; 2]) -> f64 {
     moving(structure, side).map(of).fold(1.0, f64::min)
 }
 
-/// The dissipators at the reach of a step, if there are any.
-pub(crate) fn moved(&Step { level, side, start, arc, reach }: &Step) -> Option<Dissipators> {
+/// The dissipators at the reach of a step.
+pub(crate) fn moved(&Step { level, side, start, arc, reach }: &Step) -> Dissipators {
     let (structure, angles, dissipators) = (level.structure(), level.angles(), start.dissipators);
-    if !structure.is_restrained() {
-        return None;
-    }
     let &crate::Parameters { B, xi_d, c_d, k_d, F_y, .. } = structure.parameters();
     let (mut moved, theta) = (*dissipators, arc.at(reach).theta);
     for (j, lever) in levers(structure, side).into_iter().enumerate() {
@@ -134,7 +134,7 @@ pub(crate) fn moved(&Step { level, side, start, arc, reach }: &Step) -> Option<D
         let squared = square_integral(rate.used(), reach) * arc.span;
         moved.viscous += 2.0 * c_d * (B * B + xi_d * xi_d) * squared;
     }
-    Some(moved)
+    moved
 }
 
 /// ∫ (Σ c_k σᵏ)² dσ from 0 to `reach`.
