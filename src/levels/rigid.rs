@@ -58,12 +58,12 @@ impl Rigid {
     }
 
     /// Writes the motion while rocking from `start` about `side` into `arc`.
-    fn rocking(&self, side: Side, start: &Start, arc: &mut Arc) {
-        let &Subject { ref structure, is_tied, .. } = &self.subject;
+    fn rocking<const TIED: bool>(&self, side: Side, start: &Start, arc: &mut Arc) {
+        let structure = &self.subject.structure;
         let &Start { state, a_g, a_top, a_v, interval, local_error, dissipators } = start;
         let &Structure { p_l, tan_alpha_cg, J_P, .. } = structure;
         let g = structure.parameters().g;
-        let tie = is_tied.then(|| Restraint::about(structure, side, dissipators).moments());
+        let tie = TIED.then(|| Restraint::about(structure, side, dissipators).moments());
         let mut ties = tie.map(|tie| TieSeries::new(tie, Angles::Any, state.theta));
         let fastest = tie.map_or(p_l, |tie| (p_l * p_l + tie.stiffness / J_P).sqrt().max(tie.damping / J_P));
         let span = interval.min(LONGEST_SPAN / fastest.max(state.theta_dot.abs()));
@@ -84,7 +84,7 @@ impl Rigid {
         arc.expand(&State { u: 0.0, u_dot: 0.0, ..state }, span, truncation, |arc, k, per| {
             let shaped = p_now * p[k - 1] + q_now * q[k - 1] + q_slope * q_before + p_slope * p_before;
             let mut theta_ddot = stiffness * shaped;
-            if let Some(ties) = &mut ties {
+            if TIED && let Some(ties) = &mut ties {
                 theta_ddot -= ties.next(&arc.theta_dot, k - 1, per) / J_P;
             }
             let theta_dot = theta_ddot * per;
@@ -119,7 +119,8 @@ impl Level for Rigid {
     /// The series; rest on the ground in full contact.
     fn series(&self, phase: Phase, start: &Start, arc: &mut Arc) {
         match phase {
-            Phase::Rocking(side) => self.rocking(side, start, arc),
+            Phase::Rocking(side) if self.subject.is_tied => self.rocking::<true>(side, start, arc),
+            Phase::Rocking(side) => self.rocking::<false>(side, start, arc),
             Phase::FullContact | Phase::Overturned(_) => {
                 let nothing = Truncation { u_dot: 0.0, theta_dot: 0.0 };
                 arc.expand(&State::default(), start.interval, nothing, |_, _, _| (0.0, 0.0));

@@ -87,7 +87,7 @@ pub fn ranges<const N: usize>(row: impl Fn(usize) -> [f64; N], order: usize, rea
     let mut end: [f64; N] = std::array::from_fn(|i| start[i] + first[i]);
     let [mut off, mut turning] = [[0.0; N]; 2];
     let mut power = reach;
-    for (k, off_chord) in OFF_CHORD.iter().enumerate().take(order + 1).skip(2) {
+    for (k, off_chord) in OFF_CHORD[..=order].iter().enumerate().skip(2) {
         power *= reach;
         let (terms, order) = (row(k), k as f64);
         for i in 0..N {
