@@ -576,7 +576,7 @@ fn first(watched: &Watched, step: &mut Step) -> Option<Closed> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::series::first_crossing::{self, first_time_all_closed};
+    use crate::series::first_crossing::{Gap, first_time_all_closed};
     use crate::{Parameters, TransitionKind};
     use approx::assert_relative_eq;
     use phases::{Guard, RESTING, Way};
@@ -590,8 +590,8 @@ mod tests {
 
     impl Guard for Wall {
         fn first(&self, &Step { arc, reach, .. }: &Step) -> (Crossing, Way) {
-            let is_there = first_crossing::Guard::new(arc.used(&arc.u), -1.0, 0.5 * AMPLITUDE);
-            let moves_on = first_crossing::Guard::new(arc.used(&arc.u_dot), -1.0, 0.0);
+            let is_there = Gap::new(arc.used(&arc.u), -1.0, 0.5 * AMPLITUDE);
+            let moves_on = Gap::new(arc.used(&arc.u_dot), -1.0, 0.0);
             (first_time_all_closed([is_there, moves_on], reach), Way::default())
         }
 

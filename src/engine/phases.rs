@@ -10,7 +10,7 @@ use crate::engine::yielding::{self, Yielding};
 use crate::levels::level::Level;
 use crate::mechanics::impact;
 use crate::mechanics::restraint::Dissipators;
-use crate::series::first_crossing::{self, Crossing, first_time_all_closed};
+use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{Arc, Start, sum_of_magnitudes};
 use crate::{Phase, Side, Structure};
 use serde::{Deserialize, Serialize};
@@ -164,7 +164,7 @@ struct Overturning;
 impl Guard for Overturning {
     fn first(&self, step: &Step) -> (Crossing, Way) {
         let theta = step.arc.used(&step.arc.theta);
-        let falls = first_crossing::Guard::new(theta, -step.side.sign(), FRAC_PI_2);
+        let falls = Gap::new(theta, -step.side.sign(), FRAC_PI_2);
         (first_time_all_closed([falls], step.reach), Way::default())
     }
 
@@ -199,7 +199,7 @@ impl Guard for Impact {
         let theta = step.arc.used(&step.arc.theta);
         let crossing = match theta.iter().position(|c| c.is_normal()) {
             Some(zeros) => {
-                let height = first_crossing::Guard::new(&theta[zeros..], step.side.sign(), 0.0);
+                let height = Gap::new(&theta[zeros..], step.side.sign(), 0.0);
                 first_time_all_closed([height], step.reach)
             }
             None => Crossing::None,

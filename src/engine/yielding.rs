@@ -10,7 +10,7 @@ use crate::engine::piece::Sample;
 use crate::engine::transition::TransitionKind;
 use crate::levels::level::Level;
 use crate::mechanics::restraint::{Dissipators, levers};
-use crate::series::first_crossing::{self, Crossing, first_time_all_closed};
+use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::ZERO;
 use crate::series::terms::Terms;
 use crate::{Side, Structure};
@@ -46,7 +46,7 @@ impl Guard for Yielding {
         };
         for (j, lever) in moving(structure, side) {
             // positive while it moves that way
-            let moves = |way: f64| first_crossing::Guard::new(&theta_dot[zeros..], (way * lever).signum(), 0.0);
+            let moves = |way: f64| Gap::new(&theta_dot[zeros..], (way * lever).signum(), 0.0);
             match dissipators.yields[j] {
                 0 => {
                     for way in [1_i8, -1] {
@@ -57,7 +57,7 @@ impl Guard for Yielding {
                         if is_at_contact && towards != side.sign() {
                             continue;
                         }
-                        let is_less = first_crossing::Guard::new(arc.used(&arc.theta), -towards, towards * theta);
+                        let is_less = Gap::new(arc.used(&arc.theta), -towards, towards * theta);
                         let moves_back = moves(-f64::from(way));
                         see(first_time_all_closed([is_less, moves_back], reach), j, way);
                     }

@@ -24,7 +24,7 @@ use crate::levels::ties::TieSeries;
 use crate::mechanics::load::Load;
 use crate::mechanics::restraint::{Angles, Dissipators, Restraint};
 use crate::mechanics::uplift::least_push;
-use crate::series::first_crossing::{Crossing, Guard, first_time_all_closed};
+use crate::series::first_crossing::{Crossing, Gap, first_time_all_closed};
 use crate::series::taylor::{Arc, LONGEST_SPAN, Start, Truncation, ZERO, product};
 use crate::{Phase, Side, State, Structure};
 
@@ -138,7 +138,7 @@ impl Level for Rigid {
                 let held = more(start.a_v.value);
                 push = [push[0] + held, push[1] + (more(start.a_v.at(arc.span)) - held)];
             }
-            first_time_all_closed([Guard::new(&push, side.sign(), limit)], 1.0)
+            first_time_all_closed([Gap::new(&push, side.sign(), limit)], 1.0)
         };
         let (right, left) = (first(Side::Right), first(Side::Left));
         if right.sigma() == left.sigma() && right.sigma() < f64::INFINITY {
