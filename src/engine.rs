@@ -5,8 +5,8 @@
 //! cannot step over it. [Phases](phases) say which guards are watched, and what happens when a guard closes.
 //!
 //! The number of steps is bounded because the number of transitions is ([`crate::levels::rules`]). One advance takes at most one
-//! step, plus two steps per transition, plus one step per time 1/Ω. Ω is the largest of ω_u, 2 ζ_u ω_u, 2 ζ_fc ω_fc, p_l and the
-//! rates that restraints add. A violent motion takes up to four steps per 1/Ω, and Ω is then the largest of these rates and |θ̇|,
+//! step, plus two steps per transition, plus one step per time 1/Ω. The rate Ω is the largest of ω_u, 2 ζ_u ω_u, 2 ζ_fc ω_fc, p_l
+//! and the rates that restraints add. A violent motion takes up to four steps per 1/Ω, and Ω is then the largest of these rates and |θ̇|,
 //! |u̇|/ρ and √(|ü|/ρ), where ρ² = (J0 + m0 B²)/m + (sB − u)². One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps. At levels
 //! with an exact flow of full contact, one step covers the rest of a long interval once the base stays down for good.
 
@@ -47,10 +47,10 @@ const LARGEST_LOCAL_ERROR: f64 = 1e-11;
 /// searched for transitions throughout. A longer interval has to be cut.
 pub const MAX_STEPS_PER_ADVANCE: u64 = 2_000_000;
 
-/// An advance over more than this, as ω_fc h in rad, may be long over before it ends.
+/// An interval longer than FAR/ω_fc is advanced in parts, because the structure may come to rest long before its end.
 const FAR: f64 = 1000.0;
 
-/// A step shorter than this part of 1/ω_u is not the doing of the step's end or of a transition: the solution ends.
+/// If a step ends without a transition and is shorter than this part of 1/ω_u, the solution ends there.
 const STALLED: f64 = 1e-12;
 
 /// Whether `tolerance` is a relative tolerance of results.
@@ -63,13 +63,13 @@ pub fn check_tolerance(tolerance: f64) -> Result<(), InitialStateError> {
 pub enum Progress {
     /// To the end of the interval.
     Complete,
-    /// To the instant of overturning, which is the motion's time now; it stays there.
+    /// To the instant of overturning, at which the motion's time stays.
     Overturned,
     /// To the instant at which another transition is due, if the engine stops there ([`Settings::stops`]).
     Transition,
 }
 
-/// Why an advance failed; the motion is then as it was before, whatever has been shown on the way.
+/// The reason why an advance failed. The motion is then as before the advance, whatever has been shown on the way.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum AdvanceError {
     /// The interval is not positive and finite.
@@ -142,7 +142,7 @@ pub enum AdvanceError {
 }
 
 impl AdvanceError {
-    /// The instant from which on it cannot go on, s, where that lies within the interval.
+    /// The instant beyond which the motion cannot continue, s, if the instant lies within the interval.
     pub fn time(&self) -> Option<f64> {
         match *self {
             AdvanceError::TooLong { time, .. } | AdvanceError::Singular { time, .. } => Some(time),
@@ -324,7 +324,7 @@ impl Engine {
         if is_admitted { Ok(()) } else { self.refusal(interval, load) }
     }
 
-    /// Why it cannot.
+    /// The reason why `load` cannot act over `interval` (s).
     #[cold]
     fn refusal(&self, interval: f64, load: &LinearLoad) -> Result<(), AdvanceError> {
         if !(interval > 0.0 && interval <= f64::MAX) {
@@ -389,7 +389,7 @@ impl Engine {
     }
 
     /// Time derivatives of the outputs and reactions now under `load`, from the equations of motion; 0 once overturned.
-    /// At a transition they are those just after it.
+    /// The derivatives at a transition are taken just after the transition.
     pub fn rates(&self, load: LinearLoad) -> (Outputs, Reactions) {
         let derivatives = self.derivatives(load);
         let Motion { phase, state, .. } = &self.motion;

@@ -51,7 +51,7 @@ pub(crate) trait Guard: Sync {
     /// The first instant of `step` at which the guard closes.
     fn first(&self, step: &Step) -> (Crossing, Way);
 
-    /// Takes `motion`, which is where the guard has closed, over the transition.
+    /// Applies the transition to `motion`, which has reached the instant at which the guard closes.
     fn apply(&self, level: &dyn Level, motion: &mut Motion, way: Way) -> TransitionKind;
 
     /// Whether the guard certainly stays open for `ahead` (s), a tiny time.
@@ -192,9 +192,9 @@ impl Guard for Overturning {
 struct Impact;
 
 impl Guard for Impact {
-    /// A start at θ = 0 is divided out: s θ/σ^z is searched, z the number of leading zeros, so that the start is no return and a
-    /// return right after it is not missed. A coefficient that underflows counts as zero; a θ that is zero throughout, over a step
-    /// of 1e-200 s say, has not returned.
+    /// A start at θ = 0 is a root of θ. With z leading zeros the polynomial that is searched is therefore s θ/σ^z. The start is then
+    /// no return, and a return right after the start is found. A coefficient that underflows counts as zero. If θ is zero
+    /// throughout, over a step of 1e-200 s say, there is no return.
     fn first(&self, step: &Step) -> (Crossing, Way) {
         let theta = step.arc.used(&step.arc.theta);
         let crossing = match theta.iter().position(|c| c.is_normal()) {

@@ -1,8 +1,8 @@
-//! Elastoplastic dissipators while the base rocks: when they begin to yield and cease to, and what they have taken.
+//! Elastoplastic dissipators while the base rocks: when they begin and cease to yield, and the energy that they have taken.
 //!
-//! One that is elastic reaches ±F_y where θ has a value that follows from its e_p; one that yields ceases to where its
-//! elongation turns round, which is where θ̇ does. Right after it has turned its force is still F_y: it yields again only once
-//! it moves that way, so that the zeros of θ̇ at the start are divided out as those of θ are at an uplift.
+//! An elastic dissipator reaches ±F_y at a rotation θ that follows from its e_p. A dissipator ceases to yield when its elongation
+//! turns round, at a zero of θ̇. Its force is then still ±F_y, and yielding resumes only after the elongation moves that way again.
+//! The zeros of θ̇ at the start are therefore divided out, like the zeros of θ at an uplift.
 
 use crate::engine::motion::Motion;
 use crate::engine::phases::{BAND, Guard, Step, Way, way};
@@ -15,12 +15,12 @@ use crate::series::taylor::ZERO;
 use crate::series::terms::Terms;
 use crate::{Side, Structure};
 
-/// Rotation at which a dissipator would begin to yield as the base comes down, as a fraction of the rotation that takes it from 0 to
-/// F_y, below which the impact comes first. A dissipator that has yielded up to an impact returns to F_y at the next one: rounding
-/// alone would decide.
+/// The smallest rotation at which a dissipator begins to yield as the base comes down, as a fraction of the rotation from 0 to F_y.
+/// Below this rotation the impact comes first. A dissipator that has yielded up to an impact returns to F_y exactly at the next
+/// impact, so that rounding alone would decide.
 const AT_CONTACT: f64 = 1e-10;
 
-/// A dissipator begins to yield, pulled or pressed by the sign, or ceases to, where the sign is 0.
+/// A dissipator begins to yield, pulled or pressed by the sign, or ceases to yield if the sign is 0.
 pub(crate) struct Yielding;
 
 /// Whether `structure` has dissipators that yield.
@@ -45,7 +45,7 @@ impl Guard for Yielding {
             }
         };
         for (j, lever) in moving(structure, side) {
-            // positive while it moves that way
+            // positive while the elongation moves that way
             let moves = |way: f64| Gap::new(&theta_dot[zeros..], (way * lever).signum(), 0.0);
             match dissipators.yields[j] {
                 0 => {
@@ -74,7 +74,7 @@ impl Guard for Yielding {
         if way.sign != 0 {
             return TransitionKind::Yielding(which);
         }
-        motion.state.theta_dot = 0.0; // it ceases to yield where the elongation turns round
+        motion.state.theta_dot = 0.0; // the elongation turns round
         TransitionKind::Unloading(which)
     }
 
@@ -92,13 +92,13 @@ impl Guard for Yielding {
     }
 }
 
-/// The dissipators, by number, with their levers about `side`; without one at the pivot, which rocking does not elongate.
+/// The dissipators, by number, with their levers about `side`. A dissipator at the pivot is left out: rocking does not elongate it.
 fn moving(structure: &Structure, side: Side) -> impl Iterator<Item = (usize, f64)> {
     levers(structure, side).into_iter().enumerate().filter(|(_, lever)| *lever != 0.0)
 }
 
-/// Distance of the dissipators from beginning to yield, as a fraction of F_y, or from ceasing to, as a fraction of p_l α_cg: the
-/// smallest, less the most that changes of θ and θ̇ by `changes` (rad, rad/s) can take of it.
+/// The smallest distance of the dissipators from beginning or ceasing to yield, less the most by which `changes` of θ and θ̇ (rad,
+/// rad/s) can reduce the distance. The distance from yielding is a fraction of F_y, and from ceasing a fraction of p_l α_cg.
 fn least_margin(now: &Sample, changes: [f64; 2]) -> f64 {
     let (structure, Motion { phase, state, dissipators, .. }) = (now.level.structure(), &now.motion);
     let (side, angles) = (phase.side(), now.level.angles());

@@ -1,6 +1,6 @@
-//! Levels of detail: the equations by which a structure moves. The same code finds and applies transitions at all levels. One
-//! type for each level holds all that depends on it: the rigid limit has its own condition of uplift and its own end of
-//! bouncing, and a fixed base has no uplift.
+//! Levels of detail: the equations by which a structure moves. The same code finds and applies transitions at all levels. Each
+//! level is a type that contains all differences from other levels. The rigid limit has its own condition of uplift and its own
+//! end of bouncing. A fixed base has no uplift.
 //!
 //! | level | equations | solved by |
 //! |---|---|---|

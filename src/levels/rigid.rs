@@ -8,15 +8,15 @@
 //!
 //! P' = Q θ̇ and Q' = −P θ̇, so that its series take two products. A force F_t on the top mass adds p_l² (F_t/(m g)) T
 //! to θ̈, T = cos θ + s (B/H) sin θ, a combination of P and Q. The base lifts off when |a_g − F_t/m| ≥ g tan α_cg,
-//! towards the side away from the push; an impact leaves r θ̇ about the other pivot, also of a structure so squat that
-//! the momentum rule of the other levels would end rocking: with u = 0 that rule speaks of the shape alone.
+//! towards the side away from the push. An impact leaves r θ̇ about the other pivot, however squat the structure is. At other levels
+//! the momentum rule ends the rocking of a squat structure, but with u = 0 that rule would depend on the shape alone.
 //!
 //! # Zeno
 //!
-//! With r < 1 the structure comes to rest by infinitely many impacts in finite time. It is brought to rest at the first
-//! impact after which |θ̇| ≤ ε p_l tan α_cg, ε the error that a step may have: what is left out, while the ground may still
-//! move, is an error that later impacts amplify like a step's. The kinetic energy left behind, ½ J_P θ̇², is at most ε² of
-//! ½ m g H tan² α_cg, which overturning takes at small angles.
+//! With r < 1 the structure comes to rest by infinitely many impacts in finite time. The engine brings it to rest at the first
+//! impact after which |θ̇| ≤ ε p_l tan α_cg, where ε is the error that a step may have. Later impacts amplify the error of this rest
+//! like the error of a step. The kinetic energy that is left out, ½ J_P θ̇², is at most the part ε² of ½ m g H tan² α_cg, the energy
+//! for overturning at small angles.
 
 use crate::levels::level::{Level, Now, Rates, Subject};
 use crate::levels::rules::{ChatterLimit, MAX_RIGID_TRANSITIONS_PER_PERIOD};
@@ -150,7 +150,7 @@ impl Level for Rigid {
         if right.sigma() <= left.sigma() { (right, Side::Right) } else { (left, Side::Left) }
     }
 
-    /// Without u the load alone decides.
+    /// Without u only the load decides.
     fn least_displacement(&self, _start: &Start) -> f64 {
         0.0
     }
