@@ -6,8 +6,8 @@
 //!
 //! The number of steps is bounded because the number of transitions is ([`crate::levels::rules`]). One advance takes at most one
 //! step, plus two steps per transition, plus one step per time 1/Ω. The rate Ω is the largest of ω_u, 2 ζ_u ω_u, 2 ζ_fc ω_fc, p_l
-//! and the rates that restraints add. A violent motion takes up to four steps per 1/Ω, and Ω is then the largest of these rates and |θ̇|,
-//! |u̇|/ρ and √(|ü|/ρ), where ρ² = (J0 + m0 B²)/m + (sB − u)². One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps. At levels
+//! and the rates that restraints add. A violent motion takes up to four steps per 1/Ω, and Ω is then the largest of these rates and
+//! |θ̇|, |u̇|/ρ and √(|ü|/ρ), where ρ² = (J0 + m0 B²)/m + (sB − u)². One call takes at most [`MAX_STEPS_PER_ADVANCE`] steps. At levels
 //! with an exact flow of full contact, one step covers the rest of a long interval once the base stays down for good.
 
 pub mod motion;
@@ -267,7 +267,9 @@ impl Engine {
 
     /// Applies the transition that is due, if there is one, and shows it to `watch`.
     pub fn transit<W: Watch>(&mut self, watch: &mut W) {
-        if let Some(transition) = transit(&**self.level, phases::of(&self.motion), &mut self.motion) {
+        if let Some(transition) =
+            transit(&**self.level, phases::of(self.level.structure(), &self.motion), &mut self.motion)
+        {
             watch.transition(&transition);
         }
     }
@@ -308,7 +310,8 @@ impl Engine {
                 motion.time += interval;
                 return Ok(Progress::Complete);
             }
-            Loop { any, level, phases: phases::of, arc, last_step, stops }.go(motion, &mut before, interval, load, watch)
+            let phases = |motion: &Motion| phases::of(level.structure(), motion);
+            Loop { any, level, phases, arc, last_step, stops }.go(motion, &mut before, interval, load, watch)
         });
         if let (Err(_), Some(before)) = (&result, before) {
             *motion = before;
@@ -343,7 +346,8 @@ impl Engine {
     /// Whether certainly no transition comes within `ahead` (s), a tiny time, under `load`.
     pub fn goes_on_for(&self, ahead: f64, load: LinearLoad) -> bool {
         let now = self.sample(load.value);
-        phases::of(&self.motion).is_none_or(|watched| watched.guards.iter().all(|guard| guard.stays_open(&now, ahead)))
+        phases::of(self.structure(), &self.motion)
+            .is_none_or(|watched| watched.guards.iter().all(|guard| guard.stays_open(&now, ahead)))
     }
 
     /// Whether the structure, in full contact now, stays there while nothing acts on it.

@@ -98,21 +98,26 @@ static CONTACT: Watched = Watched { guards: &[&Uplift], ..RESTING };
 
 /// Rocking about either side.
 static ROCKING: Watched = Watched {
-    stays: Some(|step| !yielding::is_possible(step.level.structure()) && stays_about(step.arc, step.side)),
-    guards: &[&Yielding, &Overturning, &Impact],
+    stays: Some(|step| stays_about(step.arc, step.side)),
+    guards: &[&Overturning, &Impact],
     moved: Some(yielding::moved),
     ..RESTING
 };
 
+/// Rocking with dissipators that may yield.
+static ROCKING_YIELDING: Watched =
+    Watched { guards: &[&Yielding, &Overturning, &Impact], moved: Some(yielding::moved), ..RESTING };
+
 /// A phase in which the base does not move, without guards.
 pub(super) const RESTING: Watched = Watched { lasts: None, stays: None, guards: &[], moved: None };
 
-/// The phase of `motion`; none once the structure has overturned.
+/// The phase of `motion` of `structure`; none once the structure has overturned.
 #[inline]
-pub(crate) fn of(motion: &Motion) -> Option<&'static Watched> {
+pub(crate) fn of(structure: &Structure, motion: &Motion) -> Option<&'static Watched> {
     match motion.phase {
         Phase::FullContact if motion.held() > 0.0 => Some(&HELD),
         Phase::FullContact => Some(&CONTACT),
+        Phase::Rocking(_) if structure.parameters().F_y > 0.0 => Some(&ROCKING_YIELDING),
         Phase::Rocking(_) => Some(&ROCKING),
         Phase::Overturned(_) => None,
     }

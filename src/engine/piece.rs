@@ -178,7 +178,7 @@ impl Piece<'_> {
 
     /// The dissipators `tau` seconds after the start of the piece.
     fn dissipators_at(&self, tau: f64) -> Dissipators {
-        let moved = phases::of(self.before).zip(self.arc).and_then(|(watched, arc)| {
+        let moved = phases::of(self.level.structure(), self.before).zip(self.arc).and_then(|(watched, arc)| {
             let (level, side) = (&**self.level, self.before.phase.side());
             let step = Step { level, side, start: &self.whole().step(), arc, reach: tau / arc.span };
             watched.moved(level.structure(), &step)

@@ -23,20 +23,11 @@ const AT_CONTACT: f64 = 1e-10;
 /// A dissipator begins to yield, pulled or pressed by the sign, or ceases to yield if the sign is 0.
 pub(crate) struct Yielding;
 
-/// Whether `structure` has dissipators that yield.
-#[inline]
-pub(crate) fn is_possible(structure: &Structure) -> bool {
-    structure.parameters().F_y > 0.0
-}
-
 impl Guard for Yielding {
     fn first(&self, &Step { level, side, start, arc, reach }: &Step) -> (Crossing, Way) {
         let (structure, dissipators) = (level.structure(), start.dissipators);
         let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
         let mut found = (Crossing::None, Way::default());
-        if !is_possible(structure) {
-            return found;
-        }
         let theta_dot = arc.used(&arc.theta_dot);
         let Some(zeros) = theta_dot.iter().position(|c| c.is_normal()) else { return found };
         let mut see = |crossing: Crossing, j: usize, sign: i8| {
@@ -79,9 +70,6 @@ impl Guard for Yielding {
     }
 
     fn stays_open(&self, now: &Sample, ahead: f64) -> bool {
-        if !is_possible(now.level.structure()) {
-            return true;
-        }
         let [_, theta_ddot] = now.accelerations();
         let changes = [now.motion.state.theta_dot, 2.0 * theta_ddot].map(|rate| way(ahead, rate));
         least_margin(now, changes) > 0.0
@@ -105,7 +93,6 @@ fn least_margin(now: &Sample, changes: [f64; 2]) -> f64 {
     let &crate::Parameters { k_d, F_y, .. } = structure.parameters();
     let chord = angles.chord(state.theta, 0.0).length;
     let of = |(j, lever): (usize, f64)| match f64::from(dissipators.yields[j]) {
-        _ if F_y == 0.0 => 1.0,
         0.0 => 1.0 - k_d * ((lever * chord - dissipators.plastic[j]).abs() + lever.abs() * changes[0]) / F_y,
         way => {
             let natural = structure.p_l * libm::atan(structure.tan_alpha_cg);
